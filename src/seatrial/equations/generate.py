@@ -1,0 +1,253 @@
+"""From equations to machine code: one generated module for each set of equations, compiled once a machine.
+
+The module holds four functions with the project's fixed signatures: `rates`, `rates_tangent`, `outputs`,
+`outputs_tangent`, and `bindings` for the breakdown of forces. It lies in the cache folder under the hash of its text.
+"""
+
+import hashlib
+import importlib.util
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+from sympy.printing.pycode import PythonCodePrinter
+
+from seatrial.equations.differentiate import Row, rows
+from seatrial.equations.model import Binding, Model
+from seatrial.kernels.cache import cache_folder
+
+Pattern = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """Functions of one model and the structural nonzeros of their Jacobians, (row, column) with columns [x | u | p]."""
+
+    rates: Callable[..., None]
+    rates_tangent: Callable[..., None]
+    outputs: Callable[..., None]
+    outputs_tangent: Callable[..., None]
+    bindings: Callable[..., None]
+    rates_pattern: Pattern
+    outputs_pattern: Pattern
+
+
+class _Printer(PythonCodePrinter):
+    """SymPy to scalar Python for Numba: integer powers as products, sign by copysign, Piecewise as conditionals."""
+
+    def _print_Symbol(self, expr: sp.Symbol) -> str:
+        return mangled(expr.name)
+
+    def _print_Pow(self, expr: sp.Pow, **_: object) -> str:
+        base, exponent = expr.as_base_exp()
+        text = self._print(base)
+        if exponent == sp.Rational(1, 2):
+            return f"math.sqrt({text})"
+        if exponent == -sp.Rational(1, 2):
+            return f"(1.0/math.sqrt({text}))"
+        if exponent.is_Integer and 1 <= abs(int(exponent)) <= 8:
+            product = "*".join([f"({text})"] * abs(int(exponent)))
+            return f"({product})" if exponent > 0 else f"(1.0/({product}))"
+        return f"({text})**({self._print(exponent)})"
+
+    def _print_Integer(self, expr: sp.Integer) -> str:
+        return f"{int(expr)}.0"
+
+    def _print_Rational(self, expr: sp.Rational) -> str:
+        return repr(float(expr))
+
+    def _print_Float(self, expr: sp.Float) -> str:
+        return repr(float(expr))
+
+    def _print_Abs(self, expr: sp.Abs) -> str:
+        return f"abs({self._print(expr.args[0])})"
+
+    def _print_sign(self, expr: sp.sign) -> str:
+        return f"math.copysign(1.0, {self._print(expr.args[0])})"
+
+    def _print_Piecewise(self, expr: sp.Piecewise) -> str:
+        text = self._print(expr.args[-1].expr)
+        for value, condition in reversed(expr.args[:-1]):
+            text = f"({self._print(value)} if {self._print(condition)} else {text})"
+        return text
+
+
+_PRINT = _Printer({"fully_qualified_modules": True}).doprint
+
+
+def mangled(name: str) -> str:
+    """A Python name that cannot collide with a keyword or with the generated code's own."""
+    return f"{name}_"
+
+
+_HEADER = '''"""Generated from the equations of model {name!r}; do not edit."""
+import math
+from numba import njit
+from seatrial.kernels.types import FUNCTION_SIGNATURE, OPTIONS, TANGENT_SIGNATURE
+
+'''
+
+
+def _signature(name: str, kind: str, arguments: str) -> list[str]:
+    return [f"@njit({kind}, **OPTIONS)", f"def {name}(t_, x, u, p, {arguments}):"]
+
+
+def _unpack(model: Model, expressions: Sequence[Binding]) -> list[str]:
+    used = {str(s) for b in expressions for s in b.expression.free_symbols}
+    sources = (("x", model.states), ("u", model.input_names), ("p", model.parameters.names))
+    return [f"    {mangled(n)} = {array}[{i}]" for array, names in sources for i, n in enumerate(names) if n in used]
+
+
+def _needed(model: Model, wanted: Sequence[Binding]) -> list[Binding]:
+    """The bindings that `wanted` rests on, in order."""
+    names = {str(s) for b in wanted for s in b.expression.free_symbols} | {b.name for b in wanted}
+    kept = []
+    for binding in reversed(model.bindings):
+        if binding.name in names:
+            kept.append(binding)
+            names |= {str(s) for s in binding.expression.free_symbols}
+    return kept[::-1]
+
+
+def _function(model: Model, name: str, wanted: Sequence[Binding]) -> list[str]:
+    needed = _needed(model, wanted)
+    lines = _signature(name, "FUNCTION_SIGNATURE", "out") + _unpack(model, [*needed, *wanted])
+    lines += [f"    {mangled(b.name)} = {_PRINT(b.expression)}" for b in needed]
+    bound = {b.name for b in needed}
+    for i, b in enumerate(wanted):
+        lines.append(f"    out[{i}] = {mangled(b.name) if b.name in bound else _PRINT(b.expression)}")
+    return [*lines, "    return", ""]
+
+
+def _derivatives(row: Row, base: Sequence[str]) -> tuple[list[str], dict[str, str]]:
+    """Lines that compute the row's partials and, for each base variable, the expression of its total derivative."""
+    name = row.binding.name
+    lines, factor = [], {}
+    for symbol, value in row.partials.items():
+        if value.is_number or value.is_Symbol:
+            factor[symbol] = _PRINT(value)
+        else:
+            factor[symbol] = f"q_{name}_{symbol}"
+            lines.append(f"    {factor[symbol]} = {_PRINT(value)}")
+    totals = {}
+    for z, terms in row.chain.items():
+        products = []
+        for symbol, is_binding in terms:
+            inner = f"d_{symbol}_{z}" if is_binding else ""
+            products.append("*".join(part for part in (factor[symbol], inner) if part and part != "1.0") or "1.0")
+        totals[z] = " + ".join(products)
+    return lines, totals
+
+
+def _tangent(model: Model, name: str, wanted: Sequence[Binding]) -> tuple[list[str], list[tuple[int, int]]]:
+    base = (*model.states, *model.input_names, *model.parameters.names)
+    needed = _needed(model, wanted)
+    bound = {b.name for b in needed}
+    renamed = [
+        Binding(f"out{i}", sp.Symbol(b.name, real=True) if b.name in bound else b.expression)
+        for i, b in enumerate(wanted)
+    ]
+    lines = _signature(name, "TANGENT_SIGNATURE", "out, jac") + _unpack(model, [*needed, *wanted])
+    pattern = []
+    for row in rows([*needed, *renamed], base):
+        target = row.binding.name
+        is_output = target.startswith("out") and row.binding in renamed
+        left = f"out[{target[3:]}]" if is_output else mangled(target)
+        lines.append(f"    {left} = {_PRINT(row.binding.expression)}")
+        partial_lines, totals = _derivatives(row, base)
+        lines += partial_lines
+        for z, text in totals.items():
+            if is_output:
+                place = (int(target[3:]), base.index(z))
+                pattern.append(place)
+                lines.append(f"    jac[{place[0]}, {place[1]}] = {text}")
+            else:
+                lines.append(f"    d_{target}_{z} = {text}")
+    return [*lines, "    return", ""], pattern
+
+
+def source_text(model: Model) -> str:
+    """The generated module as text; the same equations give the same text in every process."""
+    outputs = [b for b in model.bindings if b.name in model.outputs]
+    outputs.sort(key=lambda b: model.outputs.index(b.name))
+    rates_tangent, rates_pattern = _tangent(model, "rates_tangent", model.rates)
+    outputs_tangent, outputs_pattern = _tangent(model, "outputs_tangent", outputs)
+    lines = [
+        *_function(model, "rates", model.rates),
+        *rates_tangent,
+        *_function(model, "outputs", outputs),
+        *outputs_tangent,
+        *_function(model, "bindings", model.bindings),
+        f"RATES_PATTERN = {sorted(rates_pattern)}",
+        f"OUTPUTS_PATTERN = {sorted(outputs_pattern)}",
+        "",
+    ]
+    return _HEADER.format(name=model.name) + "\n".join(lines)
+
+
+def _written(text: str) -> Path:
+    folder = cache_folder() / "generated"
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"model_{hashlib.sha256(text.encode()).hexdigest()[:24]}.py"
+    if not path.exists():
+        handle, temporary = tempfile.mkstemp(dir=folder, suffix=".tmp")
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(text)
+        Path(temporary).replace(path)
+    return path
+
+
+@lru_cache(maxsize=64)
+def _load(path: Path) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[path.stem] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def _module(model: Model) -> ModuleType:
+    """The generated module; the index from equation hash to module spares generating the text again."""
+    folder = cache_folder() / "generated"
+    index = folder / f"index_{_GENERATOR}_{model.equation_hash[:24]}.txt"
+    if index.exists():
+        path = folder / index.read_text(encoding="utf-8").strip()
+        if path.exists():
+            return _load(path)
+    path = _written(source_text(model))
+    temporary = index.with_suffix(f".{os.getpid()}.tmp")
+    temporary.write_text(path.name, encoding="utf-8")
+    temporary.replace(index)
+    return _load(path)
+
+
+_GENERATOR = hashlib.sha256(
+    Path(__file__).read_bytes() + Path(__file__).with_name("differentiate.py").read_bytes()
+).hexdigest()[:12]
+
+
+def compiled(model: Model) -> Compiled:
+    """Generate, load and compile the model's functions."""
+    module = _module(model)
+
+    def table(pairs: list[tuple[int, int]]) -> Pattern:
+        return np.array(pairs, dtype=np.int64).reshape(-1, 2)
+
+    return Compiled(
+        module.rates,
+        module.rates_tangent,
+        module.outputs,
+        module.outputs_tangent,
+        module.bindings,
+        table(module.RATES_PATTERN),
+        table(module.OUTPUTS_PATTERN),
+    )

@@ -1,0 +1,17 @@
+"""Solutions, and fits read in the field's terms."""
+
+from seatrial.results.fit import Coefficient, Fit, Measure, Method, Noise, Offset, Prediction, Residuals
+from seatrial.results.solution import Solution, Status
+
+__all__ = [
+    "Coefficient",
+    "Fit",
+    "Measure",
+    "Method",
+    "Noise",
+    "Offset",
+    "Prediction",
+    "Residuals",
+    "Solution",
+    "Status",
+]

@@ -1,0 +1,32 @@
+"""The nouns everybody knows: records, channels, parameters, ships, findings, units, notation."""
+
+from seatrial.values.arrays import Array, frozen
+from seatrial.values.errors import InputError, nearest
+from seatrial.values.finding import Finding, Severity
+from seatrial.values.notation import NOTATION, Quantity, quantity
+from seatrial.values.parameters import Parameter, Parameters, Prior
+from seatrial.values.record import Channel, Kind, Provenance, Record
+from seatrial.values.ship import Ship
+from seatrial.values.units import display, si
+
+__all__ = [
+    "NOTATION",
+    "Array",
+    "Channel",
+    "Finding",
+    "InputError",
+    "Kind",
+    "Parameter",
+    "Parameters",
+    "Prior",
+    "Provenance",
+    "Quantity",
+    "Record",
+    "Severity",
+    "Ship",
+    "display",
+    "frozen",
+    "nearest",
+    "quantity",
+    "si",
+]

@@ -1,0 +1,36 @@
+"""A finding: something a check or an estimate has to tell the user, with evidence and advice."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Severity(StrEnum):
+    """How much a finding matters."""
+
+    INFO = "info"
+    WARNING = "warning"
+    ERROR = "error"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One statement about a record, a model or a fit.
+
+    Attributes:
+        severity: how much it matters.
+        code: short stable identifier, e.g. ``velocity-frame``.
+        what: what was found, one sentence naming the record and channel.
+        evidence: the numbers it rests on.
+        advice: what the user can do.
+    """
+
+    severity: Severity
+    code: str
+    what: str
+    evidence: str = ""
+    advice: str = ""
+
+    @property
+    def text(self) -> str:
+        """What and evidence in one line."""
+        return f"{self.what} ({self.evidence})" if self.evidence else self.what

@@ -1,0 +1,76 @@
+"""The one table of channel names: symbol, meaning, unit, frame, sign, LaTeX, standard name.
+
+Axes: earth-fixed x0 north (or along the basin), y0 east, psi clockwise from x0;
+body-fixed x forward, y starboard, z down (ITTC 2021 symbols; SNAME 1950; Fossen 2021, section 2.1).
+"""
+
+from dataclasses import dataclass
+
+from seatrial.values.errors import InputError, nearest
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What a symbol means: SI unit, frame (body, earth or none), positive direction, LaTeX, standard name."""
+
+    symbol: str
+    meaning: str
+    unit: str
+    frame: str
+    positive: str
+    latex: str
+    standard_name: str
+
+
+_TABLE = [
+    Quantity("x0", "position north", "m", "earth", "north", "x_0", "position_north"),
+    Quantity("y0", "position east", "m", "earth", "east", "y_0", "position_east"),
+    Quantity("psi", "heading", "rad", "earth", "starboard", r"\psi", "platform_yaw"),
+    Quantity("u", "surge velocity", "m/s", "body", "forward", "u", "platform_surge_rate"),
+    Quantity("v", "sway velocity", "m/s", "body", "starboard", "v", "platform_sway_rate"),
+    Quantity("r", "yaw rate", "rad/s", "body", "starboard", "r", "platform_yaw_rate"),
+    Quantity("phi", "roll angle", "rad", "body", "starboard", r"\phi", "platform_roll"),
+    Quantity("p", "roll rate", "rad/s", "body", "starboard", "p", "platform_roll_rate"),
+    Quantity("theta", "pitch angle", "rad", "body", "bow up", r"\theta", "platform_pitch"),
+    Quantity("z", "heave", "m", "body", "down", "z", "platform_heave"),
+    Quantity("delta", "rudder or nozzle angle", "rad", "body", "starboard", r"\delta", "rudder_angle"),
+    Quantity("n", "propeller rate", "rps", "none", "ahead", "n", "propeller_rate"),
+    Quantity("v_j", "jet velocity", "m/s", "body", "aft", "v_j", "waterjet_velocity"),
+    Quantity("thrust", "propeller thrust", "N", "body", "forward", "T_P", "propeller_thrust"),
+    Quantity("torque", "propeller torque", "N m", "none", "ahead", "Q_P", "propeller_torque"),
+    Quantity("u_dot", "surge acceleration", "m/s^2", "body", "forward", r"\dot u", "platform_surge_acceleration"),
+    Quantity("v_dot", "sway acceleration", "m/s^2", "body", "starboard", r"\dot v", "platform_sway_acceleration"),
+    Quantity("wind_speed", "true wind speed", "m/s", "earth", "none", "V_w", "wind_speed"),
+    Quantity(
+        "wind_direction",
+        "direction the true wind comes from, as a heading",
+        "rad",
+        "earth",
+        "starboard",
+        r"\gamma_w",
+        "wind_from_direction",
+    ),
+    Quantity("wind_speed_relative", "apparent wind speed", "m/s", "body", "none", "V_A", "apparent_wind_speed"),
+    Quantity(
+        "wind_direction_relative",
+        "direction the apparent wind comes from, off the bow",
+        "rad",
+        "body",
+        "starboard",
+        r"\gamma_A",
+        "apparent_wind_from_direction",
+    ),
+]
+
+NOTATION: dict[str, Quantity] = {quantity.symbol: quantity for quantity in _TABLE}
+
+
+def quantity(symbol: str) -> Quantity:
+    """The entry of `symbol`.
+
+    Raises:
+        InputError: the symbol is not in the table; the nearest one is named.
+    """
+    if symbol not in NOTATION:
+        raise InputError(f"unknown channel '{symbol}'{nearest(symbol, sorted(NOTATION))}")
+    return NOTATION[symbol]

@@ -1,0 +1,30 @@
+"""A ship: its name and particulars, by the symbols of the models that use them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+
+@dataclass(frozen=True)
+class Ship:
+    """Particulars in SI units, keyed by symbol (``L``, ``B``, ``d``, ``m``, ``x_G``, ``D_P``, ``A_R``, …).
+
+    Attributes:
+        name: what people call her.
+        particulars: symbol -> value; a model takes those it knows by name.
+        source: where the particulars come from.
+        scale: model scale 1:scale; 1 for full scale.
+    """
+
+    name: str
+    particulars: Mapping[str, float] = field(default_factory=dict)
+    source: str = ""
+    scale: float = 1.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "particulars", MappingProxyType(dict(self.particulars)))
+
+    @property
+    def length(self) -> float:
+        """Length between perpendiculars [m], symbol ``L``."""
+        return self.particulars["L"]
