@@ -1,0 +1,61 @@
+# One word each: make demo | test | lint | bench | docs. The first one sets up .venv by itself.
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test lint bench docs clean
+MAKEFLAGS += --no-print-directory
+
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --retries 10 --timeout 60
+PYTHON ?= $(shell for p in python3.11 python3.12 python3.13 python3 python; do \
+	if $$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then echo $$p; break; fi; done)
+
+# Real records: SEATRIAL_DATA, or ../shared/data beside the checkout where that exists.
+ifeq ($(origin SEATRIAL_DATA),undefined)
+ifneq ($(wildcard $(CURDIR)/../shared/data/.),)
+export SEATRIAL_DATA := $(abspath $(CURDIR)/../shared/data)
+endif
+endif
+
+help:
+	@echo 'make demo   run the main job on a simulated trial series; the report lies in demo/'
+	@echo 'make test   the whole test suite'
+	@echo 'make lint   style, types and the order of the rooms'
+	@echo 'make bench  times and ratios on this machine'
+	@echo 'make docs   build the documentation into site/'
+
+setup: $(READY)
+
+$(READY): pyproject.toml constraints.txt
+	@test -n "$(PYTHON)" || { echo 'seatrial needs Python 3.11 or newer; name it with make PYTHON=/path/to/python3'; exit 1; }
+	@echo 'setting up $(VENV) ...'
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV) || \
+		{ rm -rf $(VENV); echo 'this Python cannot make virtual environments; on Debian: apt-get install python3-venv'; exit 1; }
+	@for attempt in 1 2 3; do \
+		$(PIP) -c constraints.txt -e '.[formats,dev]' && break; \
+		if [ $$attempt = 3 ]; then echo 'packages could not be installed; check the network and run make again'; exit 1; fi; \
+		echo "attempt $$attempt failed, trying again"; sleep 5; \
+	done
+	@touch $@
+
+demo: $(READY)
+	@$(BIN)/seatrial demo --out demo --json demo/result.json
+
+test: $(READY)
+	@$(BIN)/python -m pytest -n 2
+
+lint: $(READY)
+	@$(BIN)/ruff check --quiet .
+	@$(BIN)/ruff format --check --quiet .
+	@$(BIN)/basedpyright --pythonpath $(BIN)/python
+	@$(BIN)/lint-imports --no-cache
+
+bench: $(READY)
+	@$(BIN)/python benchmarks/run.py
+
+docs: $(READY)
+	@$(BIN)/mkdocs build --strict --quiet
+	@echo 'the documentation lies in site/index.html'
+
+clean:
+	@rm -rf $(VENV) site demo build dist .pytest_cache .ruff_cache .hypothesis

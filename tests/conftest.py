@@ -1,0 +1,43 @@
+"""What every test may use: real records where they can be had, a seeded generator, the machine's browser."""
+
+import os
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+REPOSITORY = Path(__file__).parents[1]
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+
+
+@pytest.fixture(scope="session")
+def repository() -> Path:
+    """The root of the checkout."""
+    return REPOSITORY
+
+
+@pytest.fixture(scope="session")
+def data_folder() -> Path:
+    """The folder of real records: SEATRIAL_DATA, or ../shared/data beside the checkout."""
+    named = os.environ.get("SEATRIAL_DATA")
+    folder = Path(named) if named else REPOSITORY.parent / "shared" / "data"
+    if not folder.is_dir():
+        pytest.skip("real records are not here; set SEATRIAL_DATA to their folder")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def browser_path() -> str:
+    """The machine's Chromium, for tests that look at a page."""
+    for name in BROWSERS:
+        found = shutil.which(name)
+        if found:
+            return found
+    pytest.skip("no Chromium on this machine; install the package 'chromium' to run browser tests")
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    """A seeded generator: the same draws in every run."""
+    return np.random.default_rng(20261)
