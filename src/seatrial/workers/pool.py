@@ -1,0 +1,118 @@
+"""One ordered map: over threads, for kernels that release the interpreter lock, or over processes.
+
+Results come in the order of the items whatever the number of workers, so the same seed gives the same bits.
+"""
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, ThreadPoolExecutor, wait
+from typing import TypeVar
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+Progress = Callable[[int, int], None]
+
+_POLL = 0.1  # s between looks at the keyboard
+
+
+def worker_count(workers: int | None = None) -> int:
+    """`workers` where given, else the cores this process may use.
+
+    Raises:
+        ValueError: fewer than one worker.
+    """
+    if workers is None:
+        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    if workers < 1:
+        raise ValueError(f"{workers} workers cannot do anything; give at least one, or None for all cores")
+    return workers
+
+
+def mapped(
+    function: Callable[[Item], Result],
+    items: Sequence[Item],
+    *,
+    workers: int | None = None,
+    progress: Progress | None = None,
+    keep: list[tuple[int, Result]] | None = None,
+) -> list[Result]:
+    """`[function(item) for item in items]` over threads of this process.
+
+    Args:
+        workers: number of threads; None takes the cores, 1 works in the caller's own thread.
+        progress: called in the caller's thread with (done, total) after each finished item.
+        keep: gets (position, result) of each item as it finishes, so that a map cut short loses nothing.
+
+    Raises:
+        KeyboardInterrupt: at once on Ctrl-C; waiting items are dropped, running ones are not waited for.
+        Exception: what `function` raised first.
+    """
+    count = min(worker_count(workers), len(items))
+    kept = [] if keep is None else keep
+    if count <= 1:
+        return _in_turn(function, items, progress, kept)
+    return _gathered(ThreadPoolExecutor(count), function, items, progress, kept)
+
+
+def mapped_in_processes(
+    function: Callable[[Item], Result],
+    items: Sequence[Item],
+    *,
+    workers: int | None = None,
+    progress: Progress | None = None,
+    keep: list[tuple[int, Result]] | None = None,
+) -> list[Result]:
+    """`mapped` over processes, for Python code that holds the lock; function, items and results must pickle.
+
+    The processes start afresh (not forked), so that threads of compiled code cannot hang them.
+    """
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+
+    count = min(worker_count(workers), len(items))
+    kept = [] if keep is None else keep
+    if count <= 1:
+        return _in_turn(function, items, progress, kept)
+    pool = ProcessPoolExecutor(count, mp_context=multiprocessing.get_context("spawn"))
+    return _gathered(pool, function, items, progress, kept)
+
+
+def _in_turn(
+    function: Callable[[Item], Result],
+    items: Sequence[Item],
+    progress: Progress | None,
+    kept: list[tuple[int, Result]],
+) -> list[Result]:
+    results = []
+    for place, item in enumerate(items):
+        results.append(function(item))
+        kept.append((place, results[-1]))
+        if progress:
+            progress(place + 1, len(items))
+    return results
+
+
+def _gathered(
+    pool: Executor,
+    function: Callable[[Item], Result],
+    items: Sequence[Item],
+    progress: Progress | None,
+    kept: list[tuple[int, Result]],
+) -> list[Result]:
+    places = {pool.submit(function, item): place for place, item in enumerate(items)}
+    finished: dict[int, Result] = {}
+    pending = set(places)
+    try:
+        while pending:
+            done, pending = wait(pending, timeout=_POLL, return_when=FIRST_COMPLETED)
+            for future in sorted(done, key=places.__getitem__):
+                place = places[future]
+                finished[place] = future.result()
+                kept.append((place, finished[place]))
+                if progress:
+                    progress(len(finished), len(items))
+    except BaseException:
+        pool.shutdown(wait=False, cancel_futures=True)
+        raise
+    pool.shutdown()
+    return [finished[place] for place in range(len(items))]
