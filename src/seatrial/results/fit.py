@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from seatrial.equations import Model
-from seatrial.results.solution import Solution
+from seatrial.optimise import Solution
 from seatrial.values import Array, Finding, Record, Ship
 
 

@@ -1,0 +1,91 @@
+"""Output error with the noise re-estimated: the estimator behind `fit`."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from seatrial.information.autocorrelation import autocorrelation, variance_inflation
+from seatrial.optimise import Optimum, levenberg_marquardt
+from seatrial.problem.output_error import OutputError
+from seatrial.values import Array
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Estimate:
+    """An optimum of an output-error problem whose noise levels agree with its residuals."""
+
+    problem: OutputError
+    optimum: Optimum
+
+    @property
+    def shared(self) -> Array:
+        """Shared unknowns at the optimum."""
+        return self.optimum.solution.point
+
+    def residuals(self) -> Array:
+        """Simulated minus measured, SI, shape (rows, ny); NaN where nothing was measured."""
+        return self.problem.simulated(self.shared, self.optimum.local) - self.problem.data.measured
+
+
+def residual_spread(problem: OutputError, residuals: Array) -> Array:
+    """Noise of each channel from its residuals, with the unknowns' degrees of freedom, shape (ny,).
+
+    With a robust loss the spread is that of the bulk (median absolute deviation), otherwise the rms.
+    """
+    count = np.isfinite(residuals).sum(axis=0)
+    unknowns = problem.size + problem.data.count * len(problem.starts)
+    freedom = max(1.0 - unknowns / max(count.sum(), 1), 0.1)
+    if np.isfinite(problem.huber):
+        spread = 1.4826 * np.nanmedian(np.abs(residuals), axis=0)
+    else:
+        spread = np.sqrt(np.nanmean(residuals**2, axis=0))
+    size = np.nanmax(np.abs(problem.data.measured), axis=0)
+    return np.maximum(spread / np.sqrt(freedom), 1e-12 * np.maximum(size, 1e-6))
+
+
+def estimate(
+    problem: OutputError,
+    shared: Array,
+    local: Array,
+    known_noise: dict[str, float],
+    *,
+    rounds: int = 6,
+    evaluations: int = 60,
+    progress: Progress | None = None,
+) -> Estimate:
+    """Alternate searches and noise estimates until the noise settles within 2 %."""
+    known = np.array([known_noise.get(o, np.nan) for o in problem.data.outputs])
+    problem = replace(problem, noise=np.where(np.isfinite(known), known, problem.noise))
+    made = _search(problem, shared, local, min(12, evaluations), progress)
+    for _ in range(rounds):
+        noise = np.where(np.isfinite(known), known, residual_spread(made.problem, made.residuals()))
+        change = np.max(np.abs(np.log(noise / made.problem.noise)))
+        made = _search(replace(problem, noise=noise), made.shared, made.optimum.local, evaluations, progress)
+        if change < 0.02 or np.all(np.isfinite(known)):
+            break
+    return made
+
+
+def _search(problem: OutputError, shared: Array, local: Array, evaluations: int, progress: Progress | None) -> Estimate:
+    def tell(count: int, cost: float) -> None:
+        if progress:
+            progress(f"{problem.data.count} segments, evaluation {count}: {cost:.6g}")
+
+    return Estimate(problem, levenberg_marquardt(problem, shared, local, evaluations=evaluations, progress=tell))
+
+
+def pieces(problem: OutputError, column: Array) -> list[Array]:
+    """A column of rows split into its segments."""
+    return [column[a:b] for a, b in zip(problem.data.offsets[:-1], problem.data.offsets[1:], strict=True)]
+
+
+def colour(made: Estimate) -> tuple[list[Array], Array]:
+    """Autocorrelation of each channel's residuals within segments, and its variance inflation, shape (ny,)."""
+    residuals = made.residuals()
+    longest = int(np.max(np.diff(made.problem.data.offsets)))
+    lags = min(longest // 2, 400)
+    rho = [autocorrelation(pieces(made.problem, residuals[:, i]), lags) for i in range(residuals.shape[1])]
+    return rho, np.array([variance_inflation(r) for r in rho])

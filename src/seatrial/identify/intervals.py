@@ -1,0 +1,33 @@
+"""Which interval is defensible for this fit, and the interval itself."""
+
+import numpy as np
+
+from seatrial.identify.estimate import Estimate
+from seatrial.identify.settings import WHITE_INFLATION
+from seatrial.information.covariance import Interval, from_information, one_step_jackknife, sandwich
+
+_RUNS_FOR_JACKKNIFE = 4
+_BLOCKS_FOR_SANDWICH = 10
+
+
+def intervals(made: Estimate, inflation: np.ndarray) -> Interval:
+    """Information matrix where residuals are white; else one-step jackknife over runs, or a sandwich over segments."""
+    problem, normal = made.problem, made.optimum.normal
+    hessian = normal.reduced()[1]
+    if np.max(inflation) <= WHITE_INFLATION:
+        return from_information(hessian)
+    blocks = problem.blocks(made.shared, made.optimum.local)
+
+    def reduced(chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return problem.assembled(blocks, made.shared, chosen.tolist(), with_prior=False).reduced()
+
+    runs = [np.flatnonzero(problem.data.run == r) for r in range(len(problem.data.runs))]
+    if len(runs) >= _RUNS_FOR_JACKKNIFE:
+        parts = [reduced(chosen) for chosen in runs]
+        return one_step_jackknife(hessian, np.array([g for g, _ in parts]), np.array([h for _, h in parts]))
+    if problem.data.count >= _BLOCKS_FOR_SANDWICH:
+        return sandwich(hessian, np.array([reduced(np.array([s]))[0] for s in range(problem.data.count)]))
+    widened = from_information(hessian)
+    factor = float(np.max(inflation))
+    return Interval(widened.covariance * factor, np.inf,
+                    f"information matrix times {factor:.3g} for the residuals' correlation")  # fmt: skip

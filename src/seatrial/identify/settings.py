@@ -1,0 +1,44 @@
+"""How a fit is made, with the defaults of the house. Defaults are frozen: never tuned for a ship."""
+
+from dataclasses import dataclass, field
+
+SEGMENT_SHIP_LENGTHS = 1.5
+"""Length of a multiple-shooting segment, in ship lengths travelled (1.5 L/U)."""
+
+WINDOW_SHIP_LENGTHS = 1.5
+"""Half width of the weak form's windows, in ship lengths travelled."""
+
+HUBER = 3.0
+"""Residuals beyond this many standard deviations count linearly where the loss is robust."""
+
+WHITE_INFLATION = 1.3
+"""Residuals whose correlation inflates the variance of a mean by less than this count as white."""
+
+START_SECONDS_LENGTHS = 1.0
+"""The initial state of a validation run comes from its first L/U seconds."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Choices of one fit; None means: the decision table decides.
+
+    Attributes:
+        segment_seconds: length of multiple-shooting segments; infinite for whole runs.
+        rate: Hz at which records are compared; None keeps their own.
+        robust: Huber loss.
+        noise: known standard deviations by channel, SI; others are estimated.
+        corrections: nuisances estimated once a session: (input, kind, prior standard deviation SI, unit).
+        current: whether a uniform current is estimated for each run, prior standard deviation in m/s (0: no).
+        substeps: Runge-Kutta steps in one sample.
+        evaluations: limit for each search.
+    """
+
+    segment_seconds: float | None = None
+    rate: float | None = None
+    robust: bool | None = None
+    noise: dict[str, float] = field(default_factory=dict)
+    corrections: tuple[tuple[str, str, float, str], ...] = ()
+    current: float = 0.0
+    substeps: int = 1
+    evaluations: int = 60
+    workers: int | None = None

@@ -1,0 +1,40 @@
+"""States of a model along a record, as measured: for the weak form and for starting values."""
+
+import numpy as np
+from scipy.signal import savgol_filter
+
+from seatrial.equations import Model
+from seatrial.values import Array, InputError, Record
+
+_SMOOTHING_SECONDS_PER_SAMPLE = 15
+
+
+def _slope(values: Array, dt: float) -> Array:
+    """Derivative by local cubic polynomials (Savitzky & Golay 1964) over 15 samples."""
+    width = min(_SMOOTHING_SECONDS_PER_SAMPLE, len(values) - 1 + len(values) % 2)
+    return savgol_filter(values, width, min(3, width - 1), deriv=1, delta=dt)
+
+
+def measured_states(model: Model, record: Record) -> Array:
+    """States as columns, shape (n, nx); u, v, r are derived from positions and heading where they were not measured.
+
+    Raises:
+        InputError: a state is neither measured nor derivable.
+    """
+    found: dict[str, Array] = {s: record[s] for s in model.states if s in record}
+    dt = record.dt
+    if "r" not in found and "psi" in record:
+        found["r"] = _slope(record["psi"], dt)
+    if "psi" not in found and "r" in found:
+        found["psi"] = np.concatenate([[0.0], np.cumsum(0.5 * dt * (found["r"][1:] + found["r"][:-1]))])
+    if not {"u", "v"} <= set(found) and {"x0", "y0", "psi"} <= set(record.channels):
+        north, east, psi = _slope(record["x0"], dt), _slope(record["y0"], dt), record["psi"]
+        found.setdefault("u", north * np.cos(psi) + east * np.sin(psi))
+        found.setdefault("v", -north * np.sin(psi) + east * np.cos(psi))
+    for unused in ("x0", "y0"):
+        found.setdefault(unused, np.zeros(len(record)))
+    missing = [s for s in model.states if s not in found]
+    if missing:
+        raise InputError(f"record '{record.name}' neither holds nor implies '{missing[0]}', which model '{model.name}' needs; add the channel")
+    columns = np.stack([found[s] for s in model.states], axis=1)
+    return np.ascontiguousarray(np.where(np.isfinite(columns), columns, 0.0))

@@ -1,0 +1,65 @@
+"""Covariance of estimates: from the information matrix, from runs left out, or from blocks.
+
+White-noise errors are valid only for white residuals; the other two stay valid under model error and coloured noise.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from seatrial.values import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Interval:
+    """Covariance of the shared unknowns, degrees of freedom of Student's t, and what it means in words."""
+
+    covariance: Array
+    degrees_of_freedom: float
+    meaning: str
+
+    @property
+    def standard_error(self) -> Array:
+        """Square roots of the diagonal."""
+        return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+
+    @property
+    def half_width(self) -> Array:
+        """Half widths of the 95 % intervals."""
+        return float(stats.t.ppf(0.975, self.degrees_of_freedom)) * self.standard_error
+
+
+def inverse(hessian: Array) -> Array:
+    """Inverse of a symmetric positive matrix in its own scales; singular directions get a huge variance, not zero."""
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-300))
+    values, vectors = np.linalg.eigh(hessian * scale[:, None] * scale[None, :])
+    values = np.maximum(values, 1e-14 * values[-1])
+    return scale[:, None] * ((vectors / values) @ vectors.T) * scale[None, :]
+
+
+def from_information(hessian: Array) -> Interval:
+    """Inverse of the Fisher information: the Cramer-Rao bound (Rao 1945), for white residuals."""
+    return Interval(inverse(hessian), np.inf, "information matrix (residuals are white)")
+
+
+def one_step_jackknife(hessian: Array, run_gradients: Array, run_hessians: Array) -> Interval:
+    """Leave one run out, each refit replaced by one Gauss-Newton step from the stored normal equations.
+
+    theta_(-i) - theta = (H - H_i)^-1 g_i; covariance (n - 1)/n sum of outer products about their mean
+    (Tukey 1958; Hinkley 1977). run_gradients (n, k), run_hessians (n, k, k), at the joint optimum.
+    """
+    count = len(run_gradients)
+    moved = np.array([inverse(hessian - h) @ g for g, h in zip(run_gradients, run_hessians, strict=True)])
+    centred = moved - moved.mean(axis=0)
+    covariance = (count - 1) / count * centred.T @ centred
+    return Interval(covariance, count - 1, f"one-step jackknife over {count} runs")
+
+
+def sandwich(hessian: Array, block_gradients: Array) -> Interval:
+    """H^-1 (sum g g') H^-1 over blocks longer than the residuals' memory (Huber 1967; White 1982)."""
+    count, size = block_gradients.shape
+    bread = inverse(hessian)
+    factor = count / max(count - 1, 1)
+    covariance = bread @ (factor * block_gradients.T @ block_gradients) @ bread
+    return Interval(covariance, max(count - 1, 1), f"sandwich over {count} blocks")

@@ -1,0 +1,176 @@
+"""Levenberg-Marquardt for least squares with shared and local unknowns, bounds on the shared ones.
+
+Local unknowns (initial states of segments) touch one block of residuals each and are eliminated block by block
+(Schur complement; Golub & Pereyra 2003, section 5). Damping after Nielsen 1999 (IMM-REP-1999-05), eq. (2.4).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from seatrial.optimise.solution import Array, Solution, Status
+
+
+@dataclass(frozen=True, eq=False)
+class Normal:
+    """Gauss-Newton model of half the sum of squares about one point.
+
+    Attributes:
+        cost: half the sum of squared residuals (robust loss included).
+        gradient, hessian: shared unknowns, shapes (n,), (n, n).
+        local_gradient, local_hessian, cross: blocks, shapes (s, m), (s, m, m), (s, n, m).
+    """
+
+    cost: float
+    gradient: Array
+    hessian: Array
+    local_gradient: Array
+    local_hessian: Array
+    cross: Array
+
+    def reduced(self) -> tuple[Array, Array]:
+        """Gradient and Hessian of the shared unknowns with the local ones eliminated at their optimum."""
+        if self.local_gradient.size == 0:
+            return self.gradient, self.hessian
+        solved = np.linalg.solve(_guarded(self.local_hessian), np.swapaxes(self.cross, 1, 2))
+        hessian = self.hessian - np.einsum("sij,sjk->ik", self.cross, solved)
+        gradient = self.gradient - np.einsum("sj,sjk->k", self.local_gradient, solved)
+        return gradient, hessian
+
+
+class LeastSquares(Protocol):
+    """What the optimiser asks of a problem; `local` has shape (s, m), possibly with m = 0."""
+
+    @property
+    def lower(self) -> Array: ...
+    @property
+    def upper(self) -> Array: ...
+    def cost(self, shared: Array, local: Array) -> float:
+        """Half the sum of squares; infinite where the model cannot be evaluated."""
+        ...
+
+    def normal(self, shared: Array, local: Array) -> Normal:
+        """The Gauss-Newton model at a point."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Optimum:
+    """Solution with its local unknowns and the Gauss-Newton model there."""
+
+    solution: Solution
+    local: Array
+    normal: Normal
+
+
+def _guarded(blocks: Array) -> Array:
+    """Blocks with a relative rounding-size ridge, so that an unobservable local direction stays put."""
+    diagonal = np.einsum("sii->si", blocks)
+    ridge = 1e-12 * diagonal + 1e-14 * (diagonal.max(axis=1, keepdims=True) + 1e-300)
+    return blocks + np.einsum("si,ij->sij", ridge, np.eye(blocks.shape[1]))
+
+
+def _step(normal: Normal, damping: float, held: Array) -> tuple[Array, Array]:
+    """The damped Gauss-Newton step; `held` marks shared unknowns kept at their bounds."""
+    diagonal = np.diag(normal.hessian).copy()
+    diagonal[diagonal <= 0] = 1.0
+    hessian = normal.hessian + damping * np.diag(diagonal)
+    gradient = normal.gradient.copy()
+    if normal.local_gradient.size:
+        local = _guarded(normal.local_hessian)
+        local = local + damping * np.einsum("sii,ij->sij", local, np.eye(local.shape[1]))
+        right = np.concatenate([np.swapaxes(normal.cross, 1, 2), normal.local_gradient[:, :, None]], axis=2)
+        solved = np.linalg.solve(local, right)
+        hessian = hessian - np.einsum("sij,sjk->ik", normal.cross, solved[:, :, :-1])
+        gradient = gradient - np.einsum("sij,sj->i", normal.cross, solved[:, :, -1])
+    step = np.zeros_like(gradient)
+    moving = ~held
+    step[moving] = _solve(hessian[np.ix_(moving, moving)], -gradient[moving])
+    if not normal.local_gradient.size:
+        return step, np.zeros_like(normal.local_gradient)
+    return step, -solved[:, :, -1] - solved[:, :, :-1] @ step
+
+
+def _solve(matrix: Array, right: Array) -> Array:
+    """Symmetric solve in the unknowns' own scales; least squares where the matrix is singular to rounding."""
+    scale = 1.0 / np.sqrt(np.maximum(np.abs(np.diag(matrix)), 1e-300))
+    scaled = matrix * scale[:, None] * scale[None, :]
+    try:
+        factor = np.linalg.cholesky(scaled)
+        return scale * np.linalg.solve(factor.T, np.linalg.solve(factor, scale * right))
+    except np.linalg.LinAlgError:
+        return scale * np.linalg.lstsq(scaled, scale * right, rcond=1e-13)[0]
+
+
+def _predicted(normal: Normal, step: Array, local_step: Array) -> float:
+    """Decrease of the quadratic model along a step."""
+    linear = normal.gradient @ step + np.sum(normal.local_gradient * local_step)
+    curved = step @ normal.hessian @ step
+    if local_step.size:
+        curved += 2.0 * np.einsum("i,sij,sj->", step, normal.cross, local_step)
+        curved += np.einsum("si,sij,sj->", local_step, normal.local_hessian, local_step)
+    return float(-linear - 0.5 * curved)
+
+
+def _promised(problem: LeastSquares, normal: Normal, shared: Array, step: Array, local_step: Array) -> float:
+    """Decrease the undamped step promises, bounds respected."""
+    return _predicted(normal, np.clip(shared + step, problem.lower, problem.upper) - shared, local_step)
+
+
+def levenberg_marquardt(
+    problem: LeastSquares,
+    shared: Array,
+    local: Array,
+    *,
+    tolerance: float = 1e-10,
+    evaluations: int = 100,
+    progress: Callable[[int, float], None] | None = None,
+) -> Optimum:
+    """Minimise from a start; stops when the model promises less than `tolerance` of the cost, or rounding is reached.
+
+    Deterministic. The result's status says how it ended; bounds of the shared unknowns are never left.
+    """
+    shared = np.clip(shared, problem.lower, problem.upper)
+    normal = problem.normal(shared, local)
+    count, damping, growth = 1, 1e-4, 2.0
+    history = [normal.cost]
+    if not np.isfinite(normal.cost):
+        return Optimum(Solution(shared, normal.cost, Status.FAILED, count), local, normal)
+    status = Status.EXHAUSTED
+    rejected = 0
+    while count < evaluations:
+        held = ((shared <= problem.lower) & (normal.gradient > 0)) | ((shared >= problem.upper) & (normal.gradient < 0))
+        newton, local_newton = _step(normal, 0.0, held)
+        if _promised(problem, normal, shared, newton, local_newton) <= tolerance * normal.cost:
+            trial = np.clip(shared + newton, problem.lower, problem.upper)
+            last = problem.normal(trial, local + local_newton)
+            count += 1
+            if last.cost <= normal.cost:
+                shared, local, normal = trial, local + local_newton, last
+            history.append(normal.cost)
+            status = Status.CONVERGED
+            break
+        step, local_step = _step(normal, damping, held)
+        trial = np.clip(shared + step, problem.lower, problem.upper)
+        trial_local = local + local_step
+        predicted = _predicted(normal, trial - shared, local_step)
+        cost = problem.cost(trial, trial_local)
+        count += 1
+        gain = (normal.cost - cost) / predicted if predicted > 0 else -1.0
+        if np.isfinite(cost) and gain > 0:
+            shared, local = trial, trial_local
+            normal = problem.normal(shared, local)
+            count += 1
+            damping *= 0.01 if gain > 0.8 else max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0) ** 3)
+            damping, growth, rejected = max(damping, 1e-14), 2.0, 0
+        else:
+            damping, growth, rejected = max(damping, 1e-8) * growth, growth * 2.0, rejected + 1
+            if predicted <= 1e-14 * normal.cost or rejected > 25:
+                status = Status.CONVERGED if predicted <= 1e-8 * normal.cost else Status.STALLED
+                break
+        history.append(normal.cost)
+        if progress:
+            progress(count, normal.cost)
+    return Optimum(Solution(shared, normal.cost, status, count, tuple(history)), local, normal)

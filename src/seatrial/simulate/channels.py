@@ -1,0 +1,48 @@
+"""Between records and a model's arrays: the one place where an input's sign is turned."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from seatrial.equations import Model
+from seatrial.values import NOTATION, Array, Channel, InputError, Kind, Record, frozen, quantity
+
+_STILL_AIR = {"wind_speed": 0.0, "wind_direction": 0.0}
+
+
+def inputs_of(model: Model, record: Record) -> Array:
+    """Inputs in the model's own signs, shape (n, nu); absent wind channels mean still air.
+
+    Raises:
+        InputError: an input channel is missing or holds NaN.
+    """
+    columns = []
+    for item in model.inputs:
+        if item.name not in record:
+            if item.name not in _STILL_AIR:
+                raise InputError(f"record '{record.name}' has no channel '{item.name}', an input of model '{model.name}'")
+            columns.append(np.full(len(record), _STILL_AIR[item.name]))
+            continue
+        channel = record.channel(item.name)
+        if not np.all(np.isfinite(channel.values)):
+            raise InputError(f"record '{record.name}': input channel '{item.name}' holds missing values; repair it first")
+        columns.append(-channel.values if channel.positive != item.direction else channel.values)
+    return np.ascontiguousarray(np.stack(columns, axis=1)) if columns else np.empty((len(record), 0))
+
+
+def record_of(
+    model: Model, name: str, time: Array, states: Array, outputs: Array, inputs: Array, kind: Kind = Kind.SIMULATED
+) -> Record:
+    """States, measurable outputs and inputs (model's signs) as a record in the notation table's signs."""
+    channels = {s: _channel(s, states[:, i]) for i, s in enumerate(model.states)}
+    channels |= {s: _channel(s, outputs[:, i]) for i, s in enumerate(model.outputs)}
+    for j, item in enumerate(model.inputs):
+        turned = item.name in NOTATION and item.direction != quantity(item.name).positive
+        channels[item.name] = _channel(item.name, -inputs[:, j] if turned else inputs[:, j])
+    return Record(name, frozen(time), channels, kind)
+
+
+def _channel(symbol: str, values: Array) -> Channel:
+    if symbol in NOTATION:
+        return Channel.of(symbol, values)
+    return Channel(frozen(values), "1", "none", "none")
