@@ -88,6 +88,11 @@ def mangled(name: str) -> str:
     return f"{name}_"
 
 
+def _slope(name: str, variable: str) -> str:
+    """The name of d(name)/d(variable); the length keeps d(a)/d(b_c) apart from d(a_b)/d(c)."""
+    return f"d{len(name)}_{name}_{variable}"
+
+
 _HEADER = '''"""Generated from the equations of model {name!r}; do not edit."""
 import math
 from numba import njit
@@ -127,7 +132,7 @@ def _function(model: Model, name: str, wanted: Sequence[Binding]) -> list[str]:
     return [*lines, "    return", ""]
 
 
-def _derivatives(row: Row, base: Sequence[str]) -> tuple[list[str], dict[str, str]]:
+def _derivatives(row: Row) -> tuple[list[str], dict[str, str]]:
     """Lines that compute the row's partials and, for each base variable, the expression of its total derivative."""
     name = row.binding.name
     lines, factor = [], {}
@@ -141,7 +146,7 @@ def _derivatives(row: Row, base: Sequence[str]) -> tuple[list[str], dict[str, st
     for z, terms in row.chain.items():
         products = []
         for symbol, is_binding in terms:
-            inner = f"d_{symbol}_{z}" if is_binding else ""
+            inner = _slope(symbol, z) if is_binding else ""
             products.append("*".join(part for part in (factor[symbol], inner) if part and part != "1.0") or "1.0")
         totals[z] = " + ".join(products)
     return lines, totals
@@ -162,7 +167,7 @@ def _tangent(model: Model, name: str, wanted: Sequence[Binding]) -> tuple[list[s
         is_output = target.startswith("out") and row.binding in renamed
         left = f"out[{target[3:]}]" if is_output else mangled(target)
         lines.append(f"    {left} = {_PRINT(row.binding.expression)}")
-        partial_lines, totals = _derivatives(row, base)
+        partial_lines, totals = _derivatives(row)
         lines += partial_lines
         for z, text in totals.items():
             if is_output:
@@ -170,7 +175,7 @@ def _tangent(model: Model, name: str, wanted: Sequence[Binding]) -> tuple[list[s
                 pattern.append(place)
                 lines.append(f"    jac[{place[0]}, {place[1]}] = {text}")
             else:
-                lines.append(f"    d_{target}_{z} = {text}")
+                lines.append(f"    {_slope(target, z)} = {text}")
     return [*lines, "    return", ""], pattern
 
 

@@ -17,19 +17,20 @@ OFFSET, GAIN, DELAY = 0, 1, 2
 
 @njit(**OPTIONS)
 def input_weights(inputs, first, last, k, gain, delay, dt, out):
-    """d(effective input)/d(offset, gain, delay) at sample k, three slots an input."""
+    """d(effective input)/d(offset, gain, delay) at sample k, three slots an input; clamped, no delay is felt."""
     for j in range(gain.size):
-        place = min(max(k - delay[j] / dt, first * 1.0), last - 1.0)
+        delayed = k - delay[j] / dt
+        place = min(max(delayed, first * 1.0), last - 1.0)
         left = min(int(place), last - 2)
         rise = inputs[left + 1, j] - inputs[left, j]
         out[3 * j + OFFSET] = 1.0
         out[3 * j + GAIN] = inputs[left, j] + (place - left) * rise
-        out[3 * j + DELAY] = -gain[j] * rise / dt
+        out[3 * j + DELAY] = -gain[j] * rise / dt if place == delayed else 0.0
 
 
 @njit(**OPTIONS)
 def push(jac, chain, link_p, link_u, w, s, out):
-    """out = jac_x s + jac_p + jac_u w, by the structural nonzeros: chain (row, state), links (row, column of jac, ...)."""
+    """out = jac_x s + jac_p + jac_u w, over structural nonzeros: chain (row, state), links (row, jac column, ...)."""
     ncol = out.shape[1]
     for i in range(out.shape[0]):
         for c in range(ncol):
