@@ -1,0 +1,93 @@
+"""A record's inputs run through a model: what the model says the ship would have done."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from seatrial.equations import Model
+from seatrial.kernels import integrate
+from seatrial.simulate.bounds import demand_bounded
+from seatrial.simulate.channels import inputs_of, record_of
+from seatrial.values import NOTATION, Array, InputError, Provenance, Record, nearest
+
+ZERO_STARTS = ("x0", "y0", "psi")
+
+
+def replay(model: Model, record: Record, initial: Mapping[str, float] | None = None, substeps: int = 1) -> Record:
+    """Simulate `model` from the record's inputs, linear between samples (classical Runge-Kutta, `substeps` a sample).
+
+    Args:
+        model: all parameters must have values.
+        record: its input channels are used, whatever their sign; absent wind channels mean still air.
+        initial: state -> value in SI units and notation signs; the others start at the record's first sample where it
+            has the channel, x0, y0 and psi otherwise at zero.
+        substeps: Runge-Kutta steps in each sample.
+
+    Returns:
+        A simulated record on the same time base: states, measurable outputs, inputs.
+
+    Raises:
+        InputError: an input or an initial state is missing, the time base is uneven, or the simulation diverges.
+    """
+    inputs = inputs_of(model, record)
+    states, outputs = trajectory(model, inputs, record.dt, initial_state(model, record, initial or {}), substeps)
+    demand_bounded(model, record.time, states, f"record '{record.name}'")
+    made = record_of(model, record.name, record.time, states, outputs, inputs)
+    step = f"inputs of '{record.name}' replayed through model '{model.name}'"
+    return replace(made, provenance=Provenance(record.provenance.source, record.provenance.sha256, (step,)))
+
+
+def trajectory(model: Model, inputs: Array, dt: float, start: Array, substeps: int = 1) -> tuple[Array, Array]:
+    """States (n, nx) and outputs (n, ny) from inputs (n, nu) in the model's signs; NaN after a divergence.
+
+    Raises:
+        InputError: a parameter has no value, or `substeps` is less than one.
+    """
+    if model.parameters.missing:
+        raise InputError(f"model '{model.name}' has no value for {', '.join(model.parameters.missing)}")
+    if substeps < 1:
+        raise InputError(f"{substeps} sub-steps are less than one")
+    nx, nu, ny = len(model.states), len(model.inputs), len(model.outputs)
+    y = np.empty((len(inputs), nx + ny))
+    one, none = np.ones((1, nu)), np.zeros((1, nu))
+    integrate.replay(
+        model.compiled.rates, model.compiled.outputs, inputs, np.array([0, len(inputs)]), 0, 1, dt, substeps,
+        start[None], model.parameters.values[None], one, none, none, np.arange(nx + ny), ny, y, np.full(1, -1),
+    )  # fmt: skip
+    return np.ascontiguousarray(y[:, :nx]), y[:, nx:]
+
+
+def initial_state(model: Model, record: Record, initial: Mapping[str, float]) -> Array:
+    """The state at the record's first sample, shape (nx,): given, measured, or zero for the pose.
+
+    Raises:
+        InputError: `initial` names no state, a state is neither given nor measured, or its channel is not the model's.
+    """
+    for name in initial:
+        if name not in model.states:
+            raise InputError(f"'{name}' is no state of model '{model.name}'{nearest(name, list(model.states))}")
+    return np.array([float(initial[s]) if s in initial else _measured(model, record, s) for s in model.states])
+
+
+def _measured(model: Model, record: Record, state: str) -> float:
+    if state not in record:
+        if state in ZERO_STARTS:
+            return 0.0
+        raise InputError(
+            f"record '{record.name}' has no channel '{state}', a state of model '{model.name}': give its initial value"
+        )
+    channel = record.channel(state)
+    value = float(channel.values[0])
+    if not np.isfinite(value):
+        raise InputError(
+            f"record '{record.name}': channel '{state}' is empty at the first sample; give its initial value"
+        )
+    if state not in NOTATION:
+        return value
+    if channel.frame != NOTATION[state].frame:
+        raise InputError(
+            f"record '{record.name}': channel '{state}' is {channel.frame}-fixed, model '{model.name}' needs it "
+            f"{NOTATION[state].frame}-fixed; turn it first or give its initial value"
+        )
+    return value if channel.positive == NOTATION[state].positive else -value
