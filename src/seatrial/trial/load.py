@@ -1,0 +1,94 @@
+"""A trial file into a `Trial`."""
+
+import tomllib
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from seatrial.equations import Model
+from seatrial.trial.complaints import complaint
+from seatrial.trial.model_choice import chosen_model, ship_of
+from seatrial.trial.runs import runs_of
+from seatrial.trial.schema import EstimateTable, TrialFile
+from seatrial.trial.trial import Estimate, Trial
+from seatrial.values import NOTATION, InputError, nearest
+
+
+def parse_trial(path: Path) -> TrialFile:
+    """The file's tables, checked key by key.
+
+    Raises:
+        InputError: no such file, no TOML, an unknown or missing key, a value of the wrong kind.
+    """
+    try:
+        with path.open("rb") as file:
+            table = tomllib.load(file)
+    except OSError as error:
+        raise InputError(f"trial file '{path}' cannot be read ({error.strerror}); check the path") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"trial file '{path}' is no valid TOML: {error}") from None
+    try:
+        return TrialFile.model_validate(table)
+    except ValidationError as error:
+        raise complaint(error, TrialFile, str(path)) from None
+
+
+def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
+    """Read and validate a trial file; record files are found but not read.
+
+    Args:
+        path: the TOML file.
+        own_model: takes the place of the built-in model that `[model] name` names.
+
+    Raises:
+        InputError: one sentence naming file, key and what to do.
+    """
+    path = Path(path)
+    file = parse_trial(path)
+    try:
+        ship = ship_of(file.ship)
+        model = chosen_model(file.model, ship, own_model)
+        known = set(NOTATION)
+        for number, block in enumerate(file.records, start=1):
+            _refuse_strangers(f"records[{number}].channels", list(block.channels), known)
+        _refuse_strangers("noise", list(file.noise), known)
+        _refuse_strangers("estimate.channels", list(file.estimate.channels), set(model.observables))
+        _refuse_strangers("estimate.offsets", list(file.estimate.offsets), known)
+        _refuse_strangers("estimate.gains", list(file.estimate.gains), known)
+        _refuse_strangers("truth", list(file.truth), set(model.parameters.names))
+        runs = runs_of(file.records, file.data.folder, path.resolve().parent)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    return Trial(
+        ship=ship,
+        runs=runs,
+        model=model,
+        estimate=_estimate(file.estimate),
+        noise={channel: spread.in_si for channel, spread in file.noise.items() if spread.in_si is not None},
+        truth=file.truth,
+        accept=file.accept,
+        reference_point=file.model.reference_point,
+        question=file.question,
+        path=path,
+    )
+
+
+def _refuse_strangers(where: str, names: list[str], known: set[str]) -> None:
+    for name in names:
+        if name not in known:
+            raise InputError(f"{where}: unknown name '{name}'{nearest(name, sorted(known))}")
+
+
+def _estimate(table: EstimateTable) -> Estimate:
+    return Estimate(
+        criterion=table.criterion,
+        channels=table.channels,
+        segment_s=table.segment_s,
+        segment_lengths=table.segment_lengths,
+        rate=table.rate,
+        robust=table.robust,
+        offsets={channel: spread.in_si for channel, spread in table.offsets.items()},
+        gains={channel: spread.in_si for channel, spread in table.gains.items()},
+        current=table.current,
+        initial_s=table.initial_s,
+    )

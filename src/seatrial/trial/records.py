@@ -1,0 +1,86 @@
+"""From a trial's runs to checked records in the house's own frames, signs and units."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from seatrial.check import canonical, examine, repair, timebase
+from seatrial.read import read_record
+from seatrial.trial.trial import Role, Run, Trial, Trimming
+from seatrial.values import Finding, InputError, Record, Severity
+
+# speed at the end of an acceleration run as a part of the speed at the first execution, and the rudder angle,
+# as a part of the largest, that counts as an execution
+_ACCELERATED, _EXECUTED = 0.9, 0.2
+
+
+@dataclass(frozen=True, eq=False)
+class TrialRecord:
+    """One record ready for use: canonical, trimmed, resampled."""
+
+    record: Record
+    role: Role
+    session: str
+
+
+def records_of(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ...]]:
+    """Read, repair and check every run that is not left out.
+
+    Raises:
+        InputError: a file cannot be parsed; trimming leaves nothing.
+    """
+    made, findings = [], []
+    for run in trial.runs:
+        if run.role is not Role.LEAVE_OUT:
+            record, said = checked(run, trial.reference_point)
+            made.append(TrialRecord(record, run.role, run.session))
+            findings += said
+    return tuple(made), tuple(findings)
+
+
+def checked(run: Run, reference_point: float) -> tuple[Record, list[Finding]]:
+    """One run read, its time base rebuilt, repaired, examined, made canonical, trimmed and resampled."""
+    record, of_time = timebase(read_record(run.path, run.layout).named(run.name))
+    record, of_repair = repair(record)
+    findings = [*of_time, *of_repair, *examine(record)]
+    record = trimmed(canonical(record, reference_point), run.trimming)
+    return record, findings
+
+
+def trimmed(record: Record, rules: Trimming) -> Record:
+    """The part of the record that the rules keep, at their rate.
+
+    Raises:
+        InputError: nothing is left, or the channels a rule needs are absent.
+    """
+    if rules.from_s is not None or rules.to_s is not None:
+        start = record.time[0] if rules.from_s is None else rules.from_s
+        stop = record.time[-1] if rules.to_s is None else rules.to_s
+        record = record.between(float(start), float(stop))
+    if rules.skip_acceleration:
+        record = record.rows(slice(_accelerated(record), None))
+    return record if rules.rate is None else record.resampled(rules.rate)
+
+
+def _accelerated(record: Record) -> int:
+    rudder, speed = np.abs(record["delta"]), record["u"]
+    execution = int(np.argmax(rudder > _EXECUTED * np.max(rudder)))
+    return int(np.argmax(speed >= _ACCELERATED * speed[execution]))
+
+
+def refuse_errors(findings: tuple[Finding, ...], accept: tuple[str, ...]) -> tuple[Finding, ...]:
+    """The findings, accepted errors lowered to warnings.
+
+    Raises:
+        InputError: an error finding that the trial does not accept.
+    """
+    open_errors = [f for f in findings if f.severity is Severity.ERROR and f.code not in accept]
+    if open_errors:
+        first, more = open_errors[0], len(open_errors) - 1
+        rest = f" (and {more} more; run 'seatrial check')" if more else ""
+        advice = f"; {first.advice}" if first.advice else ""
+        raise InputError(
+            f"the records do not pass the checks{rest}: {first.text}{advice}; "
+            f'or, if it is right as it is, add accept = ["{first.code}"] at the top of the trial file'
+        )
+    return tuple(replace(f, severity=Severity.WARNING) if f.severity is Severity.ERROR else f for f in findings)

@@ -1,0 +1,215 @@
+"""What a trial file may say: pydantic models, strict; unknown keys are refused by `seatrial.trial.complaints`."""
+
+import re
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+from seatrial.read.layout import Format, Separator
+from seatrial.values import si
+
+
+class Strict(BaseModel):
+    """A table of the trial file: no unknown keys, immutable."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+def _known_unit(unit: object) -> object:
+    if isinstance(unit, str):
+        si(unit)
+    return unit
+
+
+def _as_amount(value: object) -> object:
+    """A bare number is an amount in SI units."""
+    return {"value": value} if isinstance(value, int | float) and not isinstance(value, bool) else value
+
+
+def _as_spread(value: object) -> object:
+    return {"sd": value} if isinstance(value, int | float) and not isinstance(value, bool) else value
+
+
+def _as_tuple(value: object) -> object:
+    return (value,) if isinstance(value, str) else value
+
+
+def _as_nuisances(value: object) -> object:
+    """Channel names alone: the estimator's own prior. Numbers: standard deviations in SI units."""
+    if isinstance(value, list):
+        return {name: {} for name in value}
+    return {name: _as_spread(spread) for name, spread in value.items()} if isinstance(value, dict) else value
+
+
+def _valid_pattern(session: object) -> object:
+    if isinstance(session, str) and session not in ("run", "day"):
+        try:
+            re.compile(session)
+        except re.error as error:
+            raise ValueError(f"'{session}' is no regular expression ({error}); give one, or 'run', or 'day'") from None
+    return session
+
+
+Unit = Annotated[str, BeforeValidator(_known_unit)]
+Words = Annotated[tuple[str, ...], BeforeValidator(_as_tuple)]
+
+
+class Amount(Strict):
+    """A number with its unit; without one it is SI."""
+
+    value: float
+    unit: Unit | None = None
+
+    @property
+    def in_si(self) -> float:
+        """The value in SI units."""
+        return self.value * (si(self.unit)[0] if self.unit else 1.0)
+
+
+class Spread(Strict):
+    """A standard deviation with its unit; without one it is SI."""
+
+    sd: Annotated[float, Field(gt=0)] | None = None
+    unit: Unit | None = None
+
+    @property
+    def in_si(self) -> float | None:
+        """The standard deviation in SI units, None where it is not stated."""
+        return None if self.sd is None else self.sd * (si(self.unit)[0] if self.unit else 1.0)
+
+
+SiAmount = Annotated[Amount, BeforeValidator(_as_amount)]
+SiSpread = Annotated[Spread, BeforeValidator(_as_spread)]
+Nuisances = Annotated[dict[str, Spread], BeforeValidator(_as_nuisances)]
+Bound = Annotated[float, Field(allow_inf_nan=True)]
+
+
+class ShipTable(BaseModel):
+    """`[ship]`: every key besides these is a particular by its symbol, a number in SI units or {value, unit}."""
+
+    model_config = ConfigDict(extra="allow", frozen=True, allow_inf_nan=False)
+
+    name: str
+    source: str = ""
+    scale: Annotated[float, Field(gt=0)] = 1.0
+    __pydantic_extra__: dict[str, SiAmount] = Field(init=False)  # type: ignore[assignment]
+
+    @property
+    def particulars(self) -> dict[str, float]:
+        """Symbol -> value in SI units."""
+        return {symbol: amount.in_si for symbol, amount in (self.__pydantic_extra__ or {}).items()}
+
+
+class TimeColumn(Strict):
+    """Where the time stands: header name, or number counted from 1."""
+
+    column: str | Annotated[int, Field(ge=1)]
+    unit: Unit = "s"
+
+
+class ChannelColumn(Strict):
+    """Where a channel stands and what its numbers mean; frame and sign default to the notation table's."""
+
+    column: str | Annotated[int, Field(ge=1)]
+    unit: Unit
+    frame: Literal["body", "earth", "none"] | None = None
+    positive: Literal["forward", "aft", "ahead", "starboard", "port", "north", "south", "east", "west",
+                      "up", "down", "bow up", "bow down", "none"] | None = None  # fmt: skip
+    reference_point: float = 0.0
+
+
+class RecordsTable(Strict):
+    """One `[[records]]` block: files of one layout, their roles and trimming."""
+
+    files: Words
+    format: Format | None = None
+    header_lines: Annotated[int, Field(ge=0)] = 0
+    encoding: str = "utf-8"
+    separator: Separator = "auto"
+    decimal: Literal[".", ","] = "."
+    scale: Annotated[float, Field(gt=0)] = 1.0
+    source: str = ""
+    time: TimeColumn
+    channels: dict[str, ChannelColumn]
+    train: Words = ()
+    validate_: Words = Field((), alias="validate")
+    leave_out: Words = ()
+    session: Annotated[str, BeforeValidator(_valid_pattern)] = "run"
+    rate: Annotated[float, Field(gt=0)] | None = None
+    from_s: float | None = None
+    to_s: float | None = None
+    skip_acceleration: bool = False
+
+    @model_validator(mode="after")
+    def _times_in_order(self) -> Self:
+        if self.from_s is not None and self.to_s is not None and self.from_s >= self.to_s:
+            raise ValueError(f"from_s = {self.from_s:g} is not before to_s = {self.to_s:g}")
+        return self
+
+
+class DataTable(Strict):
+    """`[data]`: where record files are sought, relative to the trial file; ${NAME} is an environment variable."""
+
+    folder: str = "."
+
+
+class PriorTable(Strict):
+    """Gaussian prior of one parameter, in its own unit."""
+
+    mean: float | None = None
+    sd: Annotated[float, Field(gt=0)]
+    source: str = ""
+
+
+class ModelTable(Strict):
+    """`[model]`: which equations, which values, what is free."""
+
+    name: str
+    parameter_set: str | None = None
+    reference_point: float = 0.0
+    fixed: dict[str, SiAmount] = {}
+    start: dict[str, SiAmount] = {}
+    free: tuple[str, ...] | None = None
+    bounds: dict[str, tuple[Bound, Bound]] = {}
+    priors: dict[str, PriorTable] = {}
+    prior_sd_percent: Annotated[float, Field(gt=0)] | None = None
+
+
+class EstimateTable(Strict):
+    """`[estimate]`: settings of the estimator; what is not given follows the decision table."""
+
+    criterion: Literal["auto", "output-error", "multiple-shooting"] = "auto"
+    channels: tuple[str, ...] = ()
+    segment_s: Annotated[float, Field(gt=0)] | None = None
+    segment_lengths: Annotated[float, Field(gt=0)] | None = None
+    rate: Annotated[float, Field(gt=0)] | None = None
+    robust: bool | None = None
+    offsets: Nuisances = {}
+    gains: Nuisances = {}
+    current: Annotated[float, Field(ge=0)] = 0.0
+    initial_s: Annotated[float, Field(gt=0)] | None = None
+
+    @model_validator(mode="after")
+    def _one_segment_length(self) -> Self:
+        if self.segment_s is not None and self.segment_lengths is not None:
+            raise ValueError("segment_s and segment_lengths are both given; keep one")
+        return self
+
+
+class TrialFile(Strict):
+    """The whole file."""
+
+    question: str = ""
+    accept: tuple[str, ...] = ()
+    ship: ShipTable
+    data: DataTable = DataTable()
+    records: Annotated[tuple[RecordsTable, ...], Field(min_length=1)]
+    model: ModelTable
+    noise: dict[str, SiSpread] = {}
+    truth: dict[str, float] = {}
+    estimate: EstimateTable = EstimateTable()
+
+
+def trial_schema() -> dict[str, Any]:
+    """JSON Schema of a trial file, for editors."""
+    return TrialFile.model_json_schema()

@@ -1,0 +1,109 @@
+"""A trial: what a trial file says, validated. Values only."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from pathlib import Path
+
+from seatrial.equations import Model
+from seatrial.read import Layout
+from seatrial.values import Ship
+
+
+class Role(StrEnum):
+    """What a run is for."""
+
+    TRAIN = "train"
+    VALIDATE = "validate"
+    LEAVE_OUT = "leave_out"
+
+
+@dataclass(frozen=True)
+class Trimming:
+    """Which part of a record is used, and at what rate.
+
+    Attributes:
+        from_s, to_s: s on the record's own clock; None keeps the end.
+        skip_acceleration: drop what lies before 90 % of the speed at the first rudder execution.
+        rate: Hz after resampling; None keeps the record's own.
+    """
+
+    from_s: float | None = None
+    to_s: float | None = None
+    skip_acceleration: bool = False
+    rate: float | None = None
+
+
+@dataclass(frozen=True)
+class Run:
+    """One record file of the trial: where it lies, how to parse it, what it is for, what it shares offsets with."""
+
+    path: Path
+    layout: Layout
+    role: Role
+    session: str
+    trimming: Trimming = Trimming()
+    source: str = ""
+
+    @property
+    def name(self) -> str:
+        """The file's name without its endings."""
+        return self.path.name.split(".")[0]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Settings of the estimator; None, empty or ``auto`` leaves the choice to the decision table.
+
+    Attributes:
+        criterion: ``auto``, ``output-error`` or ``multiple-shooting``.
+        channels: observables that are fitted; empty: all that the records measure.
+        segment_s: length of a segment in s.
+        segment_lengths: the same in ship lengths travelled at the run's mean speed.
+        rate: Hz at which residuals are taken.
+        robust: whether a robust loss is used.
+        offsets: channel -> prior standard deviation (SI, None where not stated) of its zero per session.
+        gains: channel -> prior standard deviation (None where not stated) of its gain per session.
+        current: prior standard deviation of a uniform current for each run, m/s; 0: none.
+        initial_s: s of a validation run from which its initial state is taken.
+    """
+
+    criterion: str = "auto"
+    channels: tuple[str, ...] = ()
+    segment_s: float | None = None
+    segment_lengths: float | None = None
+    rate: float | None = None
+    robust: bool | None = None
+    offsets: Mapping[str, float | None] = field(default_factory=dict)
+    gains: Mapping[str, float | None] = field(default_factory=dict)
+    current: float = 0.0
+    initial_s: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """Ship, runs and their roles, model, assumptions.
+
+    Attributes:
+        model: with the ship's particulars, the parameter set, fixed and start values, freedom, bounds and priors set.
+        noise: channel -> known standard deviation, SI; empty: estimated.
+        truth: parameter -> true value where the records are simulated.
+        accept: codes of error findings the user takes upon himself.
+        reference_point: m forward of midship to which the model's u, v, x0, y0 refer.
+        path: the trial file; None for a trial made in Python.
+    """
+
+    ship: Ship
+    runs: tuple[Run, ...]
+    model: Model
+    estimate: Estimate = Estimate()
+    noise: Mapping[str, float] = field(default_factory=dict)
+    truth: Mapping[str, float] = field(default_factory=dict)
+    accept: tuple[str, ...] = ()
+    reference_point: float = 0.0
+    question: str = ""
+    path: Path | None = None
+
+    def of_role(self, role: Role) -> tuple[Run, ...]:
+        """The runs of one role, in order of their files."""
+        return tuple(run for run in self.runs if run.role is role)

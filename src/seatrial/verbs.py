@@ -1,0 +1,191 @@
+"""The commands as functions that take and give values: check, identify, simulate, report, demo, reproduce.
+
+import seatrial.verbs as sea
+
+trial = sea.load_trial("examples/waterjet.toml")
+fit = sea.identify(trial)
+sea.report(fit, "report.html")
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from seatrial.equations import Model
+    from seatrial.results import Fit
+    from seatrial.studies import Study
+    from seatrial.trial import Trial
+    from seatrial.trial.model_file import ModelFile
+    from seatrial.values import Finding, Record
+
+Progress = Callable[[str], None]
+
+
+def load_trial(path: str | Path, own_model: "Model | None" = None) -> "Trial":
+    """The trial a TOML file describes; record files are found, not yet read.
+
+    Raises:
+        InputError: one sentence naming file, key and what to do.
+    """
+    from seatrial.trial import load_trial
+
+    return load_trial(path, own_model)
+
+
+def check(trial: "Trial") -> "tuple[Finding, ...]":
+    """Read the trial's records and say what is odd about them.
+
+    Raises:
+        InputError: a record cannot be read at all.
+    """
+    from seatrial.trial import records_of
+
+    return records_of(trial)[1]
+
+
+def identify(trial: "Trial", seed: int = 0, progress: Progress | None = None) -> "Fit":
+    """Estimate the trial's model from its training runs and predict its validation runs.
+
+    Raises:
+        InputError: the records do not pass the checks, show no excitation, or cannot tell the parameters apart.
+    """
+    from seatrial.identify import identify
+
+    return identify(trial, seed=seed, progress=progress)
+
+
+def save(fit: "Fit", folder: str | Path) -> Path:
+    """Write the result folder (see docs/result-folder.md) with its report; returns the report's path.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    from seatrial.trial.folder import save_fit
+
+    return report(fit, save_fit(fit, folder) / "report.html")
+
+
+def load_fit(folder: str | Path, own_model: "Model | None" = None) -> "Fit":
+    """The fit of a result folder.
+
+    Raises:
+        InputError: it is none, or its files do not belong together.
+    """
+    from seatrial.trial.folder import load_fit
+
+    return load_fit(folder, own_model)
+
+
+def report(fit: "Fit", path: str | Path) -> Path:
+    """Render the fit as one self-contained HTML file; nothing is computed.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    from seatrial.report import write_report
+
+    write_report(fit, Path(path))
+    return Path(path)
+
+
+def load_model(path: str | Path, own_model: "Model | None" = None) -> "ModelFile":
+    """A model file: the model, its covariance, and the approach condition of the trials it comes from.
+
+    Raises:
+        InputError: no model file, or its equations have changed since.
+    """
+    from seatrial.trial.model_file import read_model_file
+
+    return read_model_file(path, own_model)
+
+
+def simulate(
+    model: "ModelFile",
+    manoeuvre: str,
+    *,
+    speed: float | None = None,
+    inputs: Mapping[str, float] | None = None,
+    duration: float | None = None,
+    rudder_rate: float | None = None,
+    seed: int = 0,
+) -> "Record":
+    """A manoeuvre such as ``zigzag:20/20`` steered by the model, as a record.
+
+    Args:
+        speed: approach speed, m/s; without it the speed at which surge balances.
+        inputs: constant inputs besides the rudder, SI; the trials' own if not given.
+        duration: s at most.
+        rudder_rate: rad/s; SOLAS's at the ship's scale if not given.
+        seed: of a random binary sequence.
+
+    Raises:
+        InputError: unknown manoeuvre, an input or the speed is known to nobody, or the simulation diverges.
+    """
+    from seatrial.manoeuvres import programme
+    from seatrial.simulate.steer import SOLAS_SLEW_RATE
+    from seatrial.simulate.steer import manoeuvre as steered
+
+    scale = model.ship.scale if model.ship else 1.0
+    held = {name: value for name, value in model.approach.items() if name in model.model.input_names}
+    known = model.approach.get("u") if "u" not in model.model.states else None
+    return steered(
+        model.model,
+        programme(_with_seed(manoeuvre, seed)),
+        duration=duration,
+        speed=known if speed is None else speed,
+        inputs={**held, **(inputs or {})},
+        slew_rate=rudder_rate or SOLAS_SLEW_RATE * math.sqrt(scale),
+    )
+
+
+def _with_seed(manoeuvre: str, seed: int) -> str:
+    """The programme's text; a random binary sequence that names amplitude and time but no seed gets this one."""
+    fields = manoeuvre.split(":")
+    return f"{manoeuvre}:{seed}" if fields[0] == "prbs" and len(fields) == 3 else manoeuvre
+
+
+def replay(model: "ModelFile", record: "Record") -> "Record":
+    """The model driven by the inputs of a record, from the record's first sample.
+
+    Raises:
+        InputError: an input channel is missing, or the simulation diverges.
+    """
+    from seatrial.simulate import replay
+
+    return replay(model.model, record)
+
+
+def measures(model: "ModelFile", record: "Record") -> dict[str, float]:
+    """Overshoots, advance, transfer, tactical diameter and the like, as far as the record shows them.
+
+    Raises:
+        InputError: the ship's length is not known.
+    """
+    raise NotImplementedError
+
+
+def demo(folder: str | Path, seed: int = 0, progress: Progress | None = None) -> "Fit":
+    """The main job on simulated trials of a ship with known coefficients; everything is written to `folder`.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    from seatrial.studies.demo import run_demo
+
+    return run_demo(Path(folder), seed=seed, progress=progress)
+
+
+def reproduce(study: str, *, quick: bool = False, seed: int = 0, progress: Progress | None = None) -> "Study":
+    """A published study, its claims checked.
+
+    Raises:
+        InputError: unknown study (the nearest is named).
+    """
+    from seatrial.studies import STUDIES
+    from seatrial.values import InputError, nearest
+
+    if study not in STUDIES:
+        raise InputError(f"unknown study '{study}'{nearest(study, sorted(STUDIES))}")
+    return STUDIES[study](quick=quick, seed=seed, progress=progress)
