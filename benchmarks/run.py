@@ -1,0 +1,36 @@
+"""Every benchmark in one run: times of this machine, ratios, and whether the targets hold.
+
+`python benchmarks/run.py simulation generation` runs the named ones only.
+"""
+
+import sys
+from collections.abc import Callable
+
+import against_shipmmg
+import generation
+import simulation
+from measure import Line, machine
+
+BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
+    "simulation": simulation.run,
+    "generation": generation.run,
+    "against_shipmmg": against_shipmmg.run,
+}
+
+
+def main(names: list[str]) -> int:
+    """Print the table; 2 for an unknown name."""
+    unknown = [n for n in names if n not in BENCHMARKS]
+    if unknown:
+        print(f"unknown benchmark '{unknown[0]}'; known are {', '.join(BENCHMARKS)}")
+        return 2
+    print(machine())
+    for name in names or BENCHMARKS:
+        print(f"\n{name.replace('_', ' ')}")
+        for line in BENCHMARKS[name]():
+            print(f"  {line.what:<66} {line.value:>10.4g} {line.unit:<10} {line.verdict}", flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
