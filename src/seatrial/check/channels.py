@@ -3,6 +3,7 @@
 import numpy as np
 
 from seatrial.check.frames import best_reading
+from seatrial.check.mend import INPUTS
 from seatrial.check.motion import motion_of
 from seatrial.check.rates import heading_rate
 from seatrial.check.signal import jackknifed, slope, smoothed, window
@@ -16,6 +17,7 @@ LAG_ERRORS, LAG_SAMPLES = 4.0, 1.5
 def channel_findings(record: Record) -> tuple[Finding, ...]:
     """Dead, stuck and constant channels, and headings that wrap, of a record as it was read."""
     found: list[Finding] = []
+    wraps: dict[str, int] = {}
     for symbol, channel in record.channels.items():
         values = channel.values[np.isfinite(channel.values)]
         if values.size < 2:
@@ -24,8 +26,13 @@ def channel_findings(record: Record) -> tuple[Finding, ...]:
             found.append(_constant(record, symbol, float(values[0])))
         elif symbol in OUTPUTS:
             found += _stuck(record, symbol, channel.values)
-        if channel.unit == "rad":
-            found += _wraps(record, symbol, values)
+        if channel.unit == "rad" and symbol not in INPUTS:
+            wraps[symbol] = int(np.sum(np.abs(np.diff(values)) > np.pi))
+    wraps = {symbol: count for symbol, count in wraps.items() if count}
+    if wraps:
+        what = f"record '{record.name}': {', '.join(wraps)} wrap round at half a turn; they are unwrapped"
+        evidence = ", ".join(f"{symbol} {count} times" for symbol, count in wraps.items())
+        found.append(Finding(Severity.INFO, "angle-wrap", what, evidence, "no action needed"))
     return tuple(found)
 
 
@@ -53,14 +60,6 @@ def _stuck(record: Record, symbol: str, values: Array) -> list[Finding]:
         f"{values[first]:.6g} from t = {record.time[first]:.6g} to {record.time[min(last, len(values) - 1)]:.6g} s"
     )
     return [Finding(Severity.WARNING, "stuck", what, evidence, "look whether the sensor stopped or the ship lay still")]
-
-
-def _wraps(record: Record, symbol: str, values: Array) -> list[Finding]:
-    count = int(np.sum(np.abs(np.diff(values)) > np.pi))
-    if count == 0 or symbol == "delta":
-        return []
-    what = f"record '{record.name}': '{symbol}' wraps round {count} times; it is unwrapped"
-    return [Finding(Severity.INFO, "angle-wrap", what, f"jumps of over 180 deg between samples: {count}")]
 
 
 def lag_findings(record: Record) -> tuple[Finding, ...]:

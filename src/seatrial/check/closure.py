@@ -94,7 +94,7 @@ def _words(name: str, value: tuple[float, ...]) -> tuple[str, str]:
             return f"a lag of {value[0]:.2g} s of the velocities", "shift u, v by the lag, or estimate it"
         case "drift":
             return (
-                f"a current or velocity bias of {np.hypot(*value):.3g} m/s",
+                f"a current or velocity bias of {np.hypot(value[0], value[1]):.3g} m/s",
                 "if the speed is through water, estimate a current for the run",
             )
         case "misalignment":

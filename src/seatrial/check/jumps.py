@@ -4,12 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from seatrial.check.signal import Rows
 from seatrial.values import Array
 
 REACH = 15
 STEP_RATIO, STEP_SIZE = 4.0, 6.0
 HELD_RATIO, LONGEST_HOLD = 0.35, 50
 SPIKE_RATIO, NEIGHBOURS = 4.0, 8
+_NONE: Rows = np.empty(0, dtype=np.intp)
 
 
 @dataclass(frozen=True)
@@ -22,9 +24,9 @@ class Jumps:
         held: samples to replace: the position stood still there before it caught up.
     """
 
-    rows: Array
+    rows: Rows
     sizes: Array
-    held: Array
+    held: Rows
 
 
 def track_jumps(x: Array, y: Array) -> Jumps:
@@ -39,22 +41,22 @@ def track_jumps(x: Array, y: Array) -> Jumps:
     moving = steps[steps > 0]
     typical = float(np.median(moving)) if moving.size else 0.0
     jumped = np.flatnonzero((steps > STEP_RATIO * mean) & (steps > STEP_SIZE * typical))
-    held = [_held_before(j, steps, mean) for j in jumped]
-    return Jumps(jumped + 1, steps[jumped], np.unique(np.concatenate([*held, np.empty(0)])).astype(int))
+    held = [_held_before(j, steps, mean) for j in jumped.tolist()]
+    return Jumps(jumped + 1, steps[jumped], np.unique(np.concatenate([*held, _NONE])))
 
 
-def _held_before(j: int, steps: Array, mean: Array) -> Array:
+def _held_before(j: int, steps: Array, mean: Array) -> Rows:
     """Samples held before step j, or none where the jump does not match the distance missed."""
     count = 0
     while count < LONGEST_HOLD and j - 1 - count >= 0 and steps[j - 1 - count] < HELD_RATIO * mean[j]:
         count += 1
     missed = (count + 1) * mean[j]
     if count == 0 or not 0.3 * missed < steps[j] < 2.5 * missed:
-        return np.empty(0)
-    return np.arange(j - count + 1, j + 1)
+        return _NONE
+    return np.arange(j - count + 1, j + 1, dtype=np.intp)
 
 
-def spikes(values: Array) -> Array:
+def spikes(values: Array) -> Rows:
     """Rows of single samples that leave and return in steps over four times any other step within eight samples.
 
     values: shape (n,), no NaN. The step must also exceed three times the record's 95 % step, and five times its
@@ -64,13 +66,13 @@ def spikes(values: Array) -> Array:
     sizes = np.abs(steps)
     moving = sizes[sizes > 0]
     if moving.size == 0 or len(values) < 2 * NEIGHBOURS:
-        return np.empty(0, dtype=int)
+        return _NONE
     floor = max(3.0 * float(np.quantile(sizes, 0.95)), 5.0 * float(moving.min()))
     both = np.minimum(sizes[:-1], sizes[1:])
     candidates = np.flatnonzero((steps[:-1] * steps[1:] < 0) & (both > floor))
     found = []
-    for c in candidates:
+    for c in candidates.tolist():
         before, after = sizes[max(0, c - NEIGHBOURS) : c], sizes[c + 2 : c + 2 + NEIGHBOURS]
         if both[c] > SPIKE_RATIO * max(before.max(initial=0.0), after.max(initial=0.0)):
             found.append(c + 1)
-    return np.array(found, dtype=int)
+    return np.array(found, dtype=np.intp)

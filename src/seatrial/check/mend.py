@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.check.jumps import spikes, track_jumps
-from seatrial.check.signal import unwrapped
+from seatrial.check.signal import Rows, unwrapped
 from seatrial.check.stamps import trimmed
 from seatrial.values import Array, Channel, Finding, InputError, Record, Severity
 
@@ -40,7 +40,7 @@ def parts(record: Record) -> tuple[Record, ...]:
     return tuple(record.rows(slice(int(first), int(last))) for first, last in pairs)
 
 
-def filled_in(channel: Channel, rows: Array) -> Channel:
+def filled_in(channel: Channel, rows: Rows) -> Channel:
     """The channel with the given rows interpolated linearly (angles along the shorter arc)."""
     is_angle = channel.unit == "rad"
     smooth = unwrapped(channel.values) if is_angle else channel.values
@@ -74,7 +74,7 @@ def _despiked(record: Record) -> tuple[Record, tuple[Finding, ...]]:
                 Finding(
                     Severity.WARNING,
                     "outlier",
-                    f"record '{record.name}', channel '{symbol}': {rows.size} single wild samples, interpolated",
+                    f"record '{record.name}', channel '{symbol}': {rows.size} single wild sample(s), interpolated",
                     f"off by up to {off:.4g} {channel.unit}, first at t = {record.time[rows[0]]:.6g} s",
                     "no action needed unless they are real",
                 )
@@ -98,9 +98,9 @@ def _caught_up(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     finding = Finding(
         Severity.WARNING,
         "jump",
-        f"record '{record.name}': the position jumps {jumps.rows.size} times"
+        f"record '{record.name}': the position jumps {_times(jumps.rows.size)}"
         + (f"; {held.size} samples it stood still before are interpolated" if held.size else "")
-        + (f"; {remaining} jumps remain as they are" if remaining else ""),
+        + (f"; of the jumps {remaining} cannot be mended and stay" if remaining else ""),
         f"up to {jumps.sizes[largest]:.2f} m, at t = {record.time[known[jumps.rows[largest]]]:.6g} s",
         "weight positions robustly; split the run at a jump that stays" if remaining else "weight positions robustly",
     )
@@ -109,6 +109,10 @@ def _caught_up(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     step = f"{held.size} held positions interpolated"
     mended = {s: filled_in(record.channel(s), held) for s in ("x0", "y0")}
     return replace(record, channels={**record.channels, **mended}, provenance=record.provenance.then(step)), (finding,)
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count} times"
 
 
 def _runs(holes: Array) -> list[tuple[int, int]]:

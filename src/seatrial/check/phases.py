@@ -34,7 +34,7 @@ def acceleration_end(record: Record) -> float | None:
     reached = float(np.quantile(U, 0.95))
     if reached <= 0 or U[0] > SLOW * reached:
         return None
-    return float(record.time[int(np.argmax(U >= RUNNING * reached)) + length // 2])
+    return float(record.time[int(np.argmax(RUNNING * reached <= U)) + length // 2])
 
 
 def _acceleration(record: Record) -> list[Finding]:

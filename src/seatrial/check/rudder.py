@@ -4,12 +4,13 @@ import math
 
 import numpy as np
 
+from seatrial.check.phases import speed
 from seatrial.check.rates import heading_rate
-from seatrial.check.signal import jackknifed, slope, smoothed, window
+from seatrial.check.signal import Mask, jackknifed, slope, smoothed, window
 from seatrial.values import Array, Finding, Record, Severity
 
 STILL = math.radians(0.2)
-CLEAR, DOUBTFUL = 5.0, 2.5
+CLEAR, POOLED, DOUBTFUL = 5.0, 3.5, 2.0
 ANGLES = "run a zigzag, for example 10/10 or 20/20"
 
 
@@ -29,25 +30,27 @@ def rudder_findings(record: Record) -> tuple[Finding, ...]:
         what = f"record '{record.name}': the rudder never moves, so nothing can be learnt about steering"
         span = f"range {math.degrees(float(np.ptp(record['delta']))):.2g} deg"
         return (Finding(Severity.WARNING, "no-excitation", what, span, ANGLES),)
-    answer = response(record)
-    if answer is None:
-        return ()
-    effect, error = answer
-    ratio = effect / max(error, 1e-300)
-    if ratio > -DOUBTFUL:
+    first, steady = _ratio(response(record)), _ratio(steady_turning(record))
+    pooled = (first + steady) / math.sqrt(2.0) if max(first, steady) < 0 else 0.0
+    if min(first, pooled) > -DOUBTFUL:
         return ()
     label = record.channel("delta").label
-    is_clear = ratio < -CLEAR
+    is_clear = first < -CLEAR or pooled < -POOLED
     return (
         Finding(
             Severity.ERROR if is_clear else Severity.WARNING,
             "rudder-sign",
             f"record '{record.name}': rudder 'delta'{f' ({label})' if label else ''} "
-            f"{'has' if is_clear else 'may have'} the opposite sign: what is declared as starboard turns the ship to port",
-            f"d(r)/dt per rudder angle {effect:.3g} 1/s^2, standard error {error:.2g}",
+            f"{'has' if is_clear else 'may have'} the opposite sign: "
+            "the ship turns to port where starboard rudder is declared",
+            f"effect over standard error: {first:.1f} on yaw acceleration, {steady:.1f} on the turn that follows",
             'declare positive = "port" for delta if it says starboard now, "starboard" if it says port',
         ),
     )
+
+
+def _ratio(estimate: tuple[float, float] | None) -> float:
+    return 0.0 if estimate is None else estimate[0] / max(estimate[1], 1e-300)
 
 
 def response(record: Record) -> tuple[float, float] | None:
@@ -60,15 +63,47 @@ def response(record: Record) -> tuple[float, float] | None:
     if yaw is None:
         return None
     length = window(len(record))
-    features = np.stack(
-        [smoothed(yaw, length), smoothed(record["delta"], length), np.ones(len(record) - length + 1)], 1
-    )
-    target = slope(yaw, record.dt, length)
+    delta = smoothed(record["delta"], length)
     ahead = _ahead(record, length)
-    if ahead.sum() < 30 or np.ptp(features[ahead, 1]) < STILL:
+    if ahead.sum() < 30 or np.ptp(delta[ahead]) < STILL:
         return None
-    coefficients, errors = jackknifed(features[ahead], target[ahead])
+    features = np.column_stack([smoothed(yaw, length), delta, np.ones_like(delta)])
+    coefficients, errors = jackknifed(features[ahead], slope(yaw, record.dt, length)[ahead])
     return float(coefficients[1]), float(errors[1])
+
+
+def steady_turning(record: Record) -> tuple[float, float] | None:
+    """Yaw rate per (speed times lagged rudder) [1/m] and its standard error, or None as for `response`.
+
+    r = K U delta_T + c with delta_T the rudder behind a first-order lag T, the one of twelve that correlates best:
+    the sign of a long turn, to which the initial response adds little.
+    """
+    yaw = _yaw(record)
+    if yaw is None:
+        return None
+    length = window(len(record))
+    r, ahead = smoothed(yaw, length), _ahead(record, length)
+    U = speed(record)
+    best, best_match = None, 0.0
+    for samples in np.geomspace(length / 2, len(record) / 3, 12):
+        effect = smoothed(_lagged(record["delta"], samples) * (1.0 if U is None else U), length)
+        if ahead.sum() < 30 or np.ptp(effect[ahead]) == 0 or np.ptp(r[ahead]) == 0:
+            continue
+        match = abs(float(np.corrcoef(effect[ahead], r[ahead])[0, 1]))
+        if match > best_match:
+            best, best_match = effect, match
+    if best is None:
+        return None
+    coefficients, errors = jackknifed(np.column_stack([best, np.ones_like(best)])[ahead], r[ahead])
+    return float(coefficients[0]), float(errors[0])
+
+
+def _lagged(values: Array, samples: float) -> Array:
+    """First-order lag of the given number of samples, started at rest at the first value."""
+    from scipy.signal import lfilter
+
+    a = 1.0 / (samples + 1.0)
+    return np.asarray(lfilter([a], [1.0, a - 1.0], values, zi=[values[0] * (1.0 - a)])[0])
 
 
 def _yaw(record: Record) -> Array | None:
@@ -83,7 +118,7 @@ def _yaw(record: Record) -> Array | None:
     return np.gradient(record["psi"], record.dt)
 
 
-def _ahead(record: Record, length: int) -> Array:
+def _ahead(record: Record, length: int) -> Mask:
     count = len(record) - length + 1
     if "n" not in record or record["n"].max() <= 0:
         return np.ones(count, dtype=bool)

@@ -1,9 +1,14 @@
 """Arithmetic the checks share: smoothed derivatives, robust size, integrals, jackknifed least squares."""
 
+from itertools import pairwise
+
 import numpy as np
+from numpy.typing import NDArray
 
 from seatrial.values import Array
 
+Rows = NDArray[np.intp]
+Mask = NDArray[np.bool_]
 BLOCKS = 8
 
 
@@ -15,7 +20,7 @@ def window(count: int) -> int:
 def smoothed(values: Array, length: int) -> Array:
     """Hann-weighted moving average, shape (n - length + 1,)."""
     weights = np.hanning(length + 2)[1:-1]
-    return np.convolve(values, weights / weights.sum(), "valid")
+    return np.asarray(np.convolve(values, weights / weights.sum(), "valid"), dtype=np.float64)
 
 
 def slope(values: Array, dt: float, length: int) -> Array:
@@ -36,7 +41,7 @@ def integral(rate: Array, dt: float) -> Array:
 
 def solved(features: Array, target: Array) -> tuple[Array, float]:
     """Least squares: coefficients and rms of the residual."""
-    answer = np.linalg.lstsq(features, target, rcond=None)[0]
+    answer = np.asarray(np.linalg.lstsq(features, target, rcond=None)[0], dtype=np.float64)
     return answer, float(np.sqrt(np.mean((target - features @ answer) ** 2)))
 
 
@@ -48,7 +53,7 @@ def jackknifed(features: Array, target: Array) -> tuple[Array, Array]:
     edges = np.linspace(0, len(target), BLOCKS + 1).astype(int)
     keep = np.ones(len(target), dtype=bool)
     partial = []
-    for first, last in zip(edges[:-1], edges[1:], strict=True):
+    for first, last in pairwise(edges):
         keep[first:last] = False
         partial.append(solved(features[keep], target[keep])[0])
         keep[first:last] = True

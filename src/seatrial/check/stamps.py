@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from seatrial.check.signal import unwrapped
+from seatrial.check.signal import Rows, unwrapped
 from seatrial.values import Array, Finding, InputError, Record, Severity
 
 GAP_STEPS = 2.5
@@ -82,13 +82,13 @@ def demand_forward(record: Record) -> None:
 
 @dataclass(frozen=True)
 class _Grid:
-    index: Array
+    index: Rows
     start: float
     step: float
     quantum: float
     jitter: float
     repeated: int
-    gaps: Array
+    gaps: Rows
 
 
 def _grid(time: Array) -> _Grid:
@@ -103,12 +103,12 @@ def _grid(time: Array) -> _Grid:
     index = np.arange(len(time)) + np.cumsum(skipped)
     step, start = np.polyfit(index, time, 1)
     jitter = float(np.max(np.abs(time - start - step * index)))
-    return _Grid(index.astype(np.int64).astype(float), float(start), float(step), quantum, jitter, repeated, gaps)
+    return _Grid(index.astype(np.intp), float(start), float(step), quantum, jitter, repeated, gaps)
 
 
 def _placed(record: Record, grid: _Grid) -> Record:
     """Every sample kept as it is, at its place on the even base."""
-    index = grid.index.astype(int)
+    index = grid.index
     channels = {}
     for symbol, channel in record.channels.items():
         values = np.full(index[-1] + 1, np.nan)

@@ -51,7 +51,7 @@ def _flat(variables: Mapping, prefix: str = "") -> dict[str, np.ndarray]:
 
 def _version_7(path: Path) -> dict[str, np.ndarray]:
     try:
-        import h5py
+        import h5py  # type: ignore[import-untyped]
     except ImportError:
         raise InputError(
             f"{path.name} is a MATLAB 7.3 file, which needs h5py; install it with: pip install 'seatrial[formats]'"

@@ -14,7 +14,7 @@ def read_parquet(path: Path, layout: Layout) -> Sheet:  # noqa: ARG001
         InputError: pyarrow is not installed, or not a Parquet file.
     """
     try:
-        import pyarrow.parquet as parquet
+        import pyarrow.parquet as parquet  # type: ignore[import-untyped]
     except ImportError:
         raise InputError(
             f"{path.name} is a Parquet file, which needs pyarrow; install it with: pip install 'seatrial[formats]'"

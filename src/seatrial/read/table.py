@@ -53,7 +53,7 @@ def read_table(path: Path) -> Record:
     header = [_symbol_unit(cell, path.name) for cell in lines[1 if metadata else 0].split(",")]
     if header[0] != ("time", "s"):
         raise InputError(f"{path.name} is not a record table: its first column must be 'time [s]'")
-    layout = Layout("text", Column("time", 1, "s"), tuple(), header_lines=1, separator=",")
+    layout = Layout("text", Column("time", 1, "s"), (), header_lines=1, separator=",")
     sheet = read_text(path, layout)
     columns = [sheet.numbers(Column("time", number + 1, "s")) for number in range(len(header))]
     described = metadata.get("channels", {})
