@@ -24,7 +24,7 @@ def helmsman(t, x, memory, u):
 
 
 def spiral_steps(largest: float, side: int) -> tuple[float, ...]:
-    """Rudder orders [rad] from `largest` [deg] through amidships to the other side and back, as in the direct spiral."""
+    """Rudder orders [rad] from `largest` [deg] through amidships to the other side and back (direct spiral)."""
     inner = [a for a in (25.0, 20.0, 15.0, 10.0, 5.0, 3.0, 1.0) if a < largest]
     down = [largest, *inner, 0.0, *(-a for a in reversed(inner)), -largest]
     return tuple(side * float(np.radians(a)) for a in (*down, *down[-2::-1]))

@@ -70,7 +70,7 @@ def under_way(t, x, memory):
 
 @njit(**OPTIONS)
 def deviation(x, memory):
-    """Heading off the original course [rad] half a step ahead, so that executes at samples are late by none on average."""
+    """Heading off the original course [rad] half a step ahead, so that executes at samples are not late on average."""
     place = int(memory[R])
     lead = 0.5 * memory[DT] * x[place] if place >= 0 else 0.0
     return x[int(memory[PSI])] + lead - memory[COURSE]
@@ -93,4 +93,4 @@ def rudder_angles(held: Array) -> Array:
     signs = np.where(np.arange(len(held)) % 2, 1.0, -1.0)
     angles = np.zeros(len(held))
     angles[1:] = np.cumsum(2.0 * signs[:-1] * held[:-1]) * signs[:-1]
-    return np.round(angles, 12) + 0.0
+    return np.round(angles, 14) + 0.0

@@ -17,10 +17,11 @@ def helmsman(t, x, memory, u):
     """
     order = 0.0
     if under_way(t, x, memory):
-        change = memory[TABLE + 1]
-        if memory[STAGE] == 1.0 and deviation(x, memory) / change >= 1.0:
-            next_stage(t, memory)
-        elif memory[STAGE] == 2.0 and t - memory[SINCE] >= memory[SINCE] - memory[APPROACH]:
+        if memory[STAGE] == 1.0:
+            over = deviation(x, memory) / memory[TABLE + 1] >= 1.0
+        else:
+            over = t - memory[SINCE] >= memory[SINCE] - memory[APPROACH]
+        if over:
             next_stage(t, memory)
         order = memory[TABLE] if memory[STAGE] == 1.0 else 0.0
     turn_rudder(memory, order, u)

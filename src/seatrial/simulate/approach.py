@@ -1,6 +1,7 @@
 """The straight run before a manoeuvre: inputs that are held, the steady speed, the time to travel one's own length."""
 
 from collections.abc import Mapping
+from itertools import pairwise
 
 import numpy as np
 
@@ -48,7 +49,7 @@ def approach_speed(model: Model, held: Array) -> float:
         return float(rates[place])
 
     speeds = np.geomspace(1e-3, _FASTEST, 60)
-    for low, high in zip(speeds[:-1], speeds[1:], strict=True):
+    for low, high in pairwise(speeds):
         if surge(low) > 0.0 >= surge(high):
             return float(brentq(surge, low, high, xtol=1e-12))
     raise InputError(f"model '{model.name}' has no steady speed ahead with these inputs; give the approach speed")

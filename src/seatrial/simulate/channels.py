@@ -1,7 +1,5 @@
 """Between records and a model's arrays: the one place where an input's sign is turned."""
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from seatrial.equations import Model
@@ -20,12 +18,18 @@ def inputs_of(model: Model, record: Record) -> Array:
     for item in model.inputs:
         if item.name not in record:
             if item.name not in _STILL_AIR:
-                raise InputError(f"record '{record.name}' has no channel '{item.name}', an input of model '{model.name}'")
+                raise InputError(
+                    f"record '{record.name}' has no channel '{item.name}', an input of model '{model.name}'"
+                )
             columns.append(np.full(len(record), _STILL_AIR[item.name]))
             continue
         channel = record.channel(item.name)
         if not np.all(np.isfinite(channel.values)):
-            raise InputError(f"record '{record.name}': input channel '{item.name}' holds missing values; repair it first")
+            row = int(np.argmin(np.isfinite(channel.values)))
+            raise InputError(
+                f"record '{record.name}': input channel '{item.name}' has no value at sample {row} "
+                f"(t = {record.time[row]:g} s); repair it first"
+            )
         columns.append(-channel.values if channel.positive != item.direction else channel.values)
     return np.ascontiguousarray(np.stack(columns, axis=1)) if columns else np.empty((len(record), 0))
 

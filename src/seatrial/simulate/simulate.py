@@ -20,7 +20,7 @@ def simulate(
     dt: float = 0.1,
     slew_rate: float = SOLAS_SLEW_RATE,
 ) -> Record:
-    """Replay a record (`initial` applies) or steer a programme (`inputs`, `speed`, `duration`, `dt`, `slew_rate` apply).
+    """Replay a record (`initial` applies) or steer a programme (the other arguments apply).
 
     See `replay` and `manoeuvre` for what each means, its unit and the errors raised.
     """

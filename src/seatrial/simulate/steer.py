@@ -14,7 +14,7 @@ from seatrial.simulate.approach import approach_speed, held_inputs, time_unit
 from seatrial.simulate.bounds import demand_bounded
 from seatrial.simulate.channels import record_of
 from seatrial.simulate.replay import trajectory
-from seatrial.values import Array, InputError, Provenance, Record
+from seatrial.values import Array, InputError, Provenance, Record, frozen
 
 RUDDER = "delta"
 # 35 deg to 30 deg on the other side in 28 s: SOLAS, chapter II-1, regulation 29.3.2
@@ -66,7 +66,7 @@ def manoeuvre(
     )  # fmt: skip
     used, finished = _steered(model, programme, steering, start, held, longest)
     states, outputs = trajectory(model, used, dt, start)
-    time = dt * np.arange(len(used))
+    time = frozen(dt * np.arange(len(used)))
     demand_bounded(model, time, states, f"manoeuvre '{programme.text}'")
     made = record_of(model, programme.text, time, states, outputs, used)
     ending = f"finished at {time[-1]:g} s" if finished else f"not finished after {time[-1]:g} s"
@@ -108,7 +108,9 @@ def _steered(
         inputs,
     )
     if diverged >= 0:
-        demand_bounded(model, dt * np.arange(diverged + 1), states[: diverged + 1], f"manoeuvre '{programme.text}'")
+        demand_bounded(
+            model, frozen(dt * np.arange(diverged + 1)), states[: diverged + 1], f"manoeuvre '{programme.text}'"
+        )
     finished = memory[FINISHED] != NOT_FINISHED
     last = min(count, round(memory[FINISHED] / dt) + 1) if finished else count
     used = np.ascontiguousarray(inputs[:last])
