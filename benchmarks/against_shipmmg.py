@@ -98,15 +98,10 @@ def _turn(ours: Ours, theirs: dict[str, np.ndarray], rudder: np.ndarray) -> list
 def _zigzag(ours: Ours, theirs: dict[str, np.ndarray], rudder: np.ndarray) -> list[Line]:
     seconds, truth = float(theirs["zigzag_seconds"]), theirs["zigzag_tight"]
     own = fastest(ours.zigzag)
+    tolerance, far = _distance(theirs["zigzag_loose"], truth), _distance(ours.replayed(rudder), truth)
     return [
         Line("20/20 zigzag, 100 s: shipmmg", 1e3 * seconds, "ms"),
-        Line(
-            "20/20 zigzag: its track off its own at tight tolerance, same rudder",
-            _distance(theirs["zigzag_loose"], truth),
-            "m",
-        ),
+        Line("20/20 zigzag: its track off its own at tight tolerance, same rudder", tolerance, "m"),
         at_least(f"20/20 zigzag: ratio with steps of {DT:g} s", seconds / own, "x", 20.0),
-        at_most(
-            "20/20 zigzag: our track off its tight one, same rudder", _distance(ours.replayed(rudder), truth), "m", 0.01
-        ),
+        at_most("20/20 zigzag: our track off its tight one, same rudder", far, "m", 0.01),
     ]
