@@ -9,6 +9,8 @@ import numpy as np
 from seatrial.read.layout import Column, Layout
 from seatrial.values import Array, InputError, nearest
 
+EMPTY = ("", "na", "n/a", "null", "none")
+
 
 @dataclass(frozen=True)
 class Sheet:
@@ -67,7 +69,7 @@ class Sheet:
         return values
 
     def _number(self, cell: object, row: int, column: Column) -> float:
-        if cell is None or (isinstance(cell, str) and not cell.strip()):
+        if cell is None or (isinstance(cell, str) and cell.strip().lower() in EMPTY):
             return np.nan
         try:
             return float(cell)  # type: ignore[arg-type]

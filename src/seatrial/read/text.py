@@ -4,16 +4,10 @@ import gzip
 import io
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING
-
-import numpy as np
 
 from seatrial.read.layout import Layout
 from seatrial.read.sheet import Sheet
 from seatrial.values import InputError
-
-if TYPE_CHECKING:
-    import pandas
 
 TABLE_MARK = "# seatrial record"
 _SEPARATORS = {",": ",", ";": ";", "tab": "\t", "whitespace": r"\s+"}
@@ -83,10 +77,9 @@ def read_text(path: Path, layout: Layout) -> Sheet:
             io.StringIO("\n".join(lines[start:])),
             sep=mark,
             header=None,
-            decimal=layout.decimal,
+            dtype=object,
+            keep_default_na=False,
             skip_blank_lines=False,
-            float_precision="round_trip",
-            low_memory=False,
         )
     except pd.errors.ParserError as error:
         found = re.search(r"Expected (\d+) fields in line (\d+), saw (\d+)", str(error))
@@ -95,10 +88,11 @@ def read_text(path: Path, layout: Layout) -> Sheet:
     names = _names(lines[start - 1], mark) if layout.has_names else []
     width = frame.shape[1]
     padded = (*names[:width], *[""] * (width - len(names)))
-    return Sheet(path.name, padded, tuple(_cells(frame.iloc[:, k], layout.decimal) for k in range(width)), start + 1)
+    cells = tuple(_cells(frame.iloc[:, k].tolist(), layout.decimal) for k in range(width))
+    return Sheet(path.name, padded, cells, start + 1)
 
 
-def _cells(series: "pandas.Series", decimal: str) -> np.ndarray | list:
-    if series.dtype.kind in "fiu":
-        return series.to_numpy(float)
-    return [cell.replace(decimal, ".") if isinstance(cell, str) else cell for cell in series.tolist()]
+def _cells(cells: list, decimal: str) -> list[str]:
+    """The cells as text with a decimal point; short rows leave NaN, which counts as empty."""
+    text = [cell if isinstance(cell, str) else "" for cell in cells]
+    return text if decimal == "." else [cell.replace(decimal, ".") for cell in text]
