@@ -54,7 +54,7 @@ bench: $(READY)
 	@$(BIN)/python benchmarks/run.py
 
 docs: $(READY)
-	@$(BIN)/mkdocs build --strict --quiet
+	@$(BIN)/mkdocs build --strict
 	@echo 'the documentation lies in site/index.html'
 
 clean:
