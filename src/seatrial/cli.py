@@ -209,9 +209,9 @@ def reproduce(
 def _own(path: Path | None) -> "Model | None":
     if path is None:
         return None
-    from seatrial.trial.own_model import own_model
+    from seatrial.models import model_from_file
 
-    return own_model(path)
+    return model_from_file(path)
 
 
 def _pair(text: str) -> tuple[str, float]:

@@ -161,20 +161,32 @@ def measures(model: "ModelFile", record: "Record") -> dict[str, float]:
     """Overshoots, advance, transfer, tactical diameter and the like, as far as the record shows them.
 
     Raises:
-        InputError: the ship's length is not known.
+        InputError: the ship's length is not known, or the record has no heading or rudder.
     """
-    raise NotImplementedError
+    from seatrial.manoeuvres.measures import measures
+    from seatrial.values import InputError
+
+    if model.ship is None:
+        raise InputError("the model file has no [ship] with the length L, which measures need; add it")
+    return measures(record, model.ship.length)
 
 
 def demo(folder: str | Path, seed: int = 0, progress: Progress | None = None) -> "Fit":
-    """The main job on simulated trials of a ship with known coefficients; everything is written to `folder`.
+    """The main job on simulated trials of a craft with known coefficients; trials, result and report go to `folder`.
 
     Raises:
         InputError: the folder cannot be written.
     """
-    from seatrial.studies.demo import run_demo
+    from seatrial.studies.demo import write_demo
+    from seatrial.trial.files import writable_folder
 
-    return run_demo(Path(folder), seed=seed, progress=progress)
+    tell = progress or (lambda _: None)
+    place = writable_folder(Path(folder))
+    tell("simulating the trials")
+    fit = identify(load_trial(write_demo(place / "trials", seed)), seed=seed, progress=progress)
+    tell("writing result and report")
+    save(fit, place)
+    return fit
 
 
 def reproduce(study: str, *, quick: bool = False, seed: int = 0, progress: Progress | None = None) -> "Study":

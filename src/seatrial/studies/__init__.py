@@ -1,0 +1,25 @@
+"""Published studies repeated: one explicit registry; importing this room imports no study."""
+
+from collections.abc import Callable
+from typing import Protocol
+
+from seatrial.studies.study import Check, Claim, Study, Verdict
+
+Progress = Callable[[str], None]
+
+
+class Reproduction(Protocol):
+    """Repeat a study; `quick` means fewer cases, under half a minute."""
+
+    def __call__(self, *, quick: bool, seed: int, progress: Progress | None) -> Study: ...
+
+
+def _alexandersson2022(*, quick: bool, seed: int, progress: Progress | None) -> Study:
+    from seatrial.studies.alexandersson2022 import study
+
+    return study(quick=quick, seed=seed, progress=progress)
+
+
+STUDIES: dict[str, Reproduction] = {"alexandersson2022": _alexandersson2022}
+
+__all__ = ["STUDIES", "Check", "Claim", "Reproduction", "Study", "Verdict"]

@@ -14,7 +14,13 @@ COMMON_PARTICULARS = (
 
 
 def ship_of(table: ShipTable) -> Ship:
-    """Name, source, scale and particulars in SI units."""
+    """Name, source, scale and particulars in SI units.
+
+    Raises:
+        InputError: the length is missing or not positive.
+    """
+    if not table.particulars.get("L", 0.0) > 0.0:
+        raise InputError("key 'ship.L' is missing or not positive; give the length between perpendiculars in m")
     return Ship(table.name, table.particulars, table.source, table.scale)
 
 
@@ -28,8 +34,8 @@ def chosen_model(table: ModelTable, ship: Ship, own_model: Model | None = None) 
     """
     model = own_model or model_named(table.name)
     if table.parameter_set is not None:
-        chosen = parameter_set(table.parameter_set)
-        model = model.with_parameters(chosen.applied(model.parameters))
+        published = parameter_set(table.parameter_set)
+        model = model.with_values(published.values, source=published.source)
     _refuse_unknown_particulars(ship, model)
     parameters = model.parameters
     parameters = _with_amounts(parameters, table.start, "model.start", "start value of the trial file")

@@ -140,13 +140,13 @@ def parsed_model(text: str, where: str, own_model: Model | None = None) -> Model
         items = tuple(_parameter(name, entry) for name, entry in table["parameters"].items())
         if tuple(p.name for p in items) != model.parameters.names:
             raise InputError(f"model file '{where}': its parameters are not those of model '{model.name}'")
-        covariance = frozen(
-            np.array(table.get("covariance", {}).get("rows", []), dtype=float).reshape(-1, _width(table))
-        )
+        covariance = _covariance(table)
         provenance = _provenance(table["provenance"])
         approach = {name: float(value) for name, value in table["approach"].items()}
         return ModelFile(model.with_parameters(Parameters(items)), covariance, provenance, _ship(table), approach)
-    except (KeyError, TypeError, AttributeError) as error:
+    except (KeyError, TypeError, AttributeError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
         raise InputError(f"model file '{where}' is damaged: {error}; write it again with 'seatrial identify'") from None
 
 
@@ -157,8 +157,9 @@ def _ship(table: Mapping[str, Any]) -> Ship | None:
     return Ship(table["ship"]["name"], particulars, table["ship"]["source"], float(table["ship"]["scale"]))
 
 
-def _width(table: Mapping[str, Any]) -> int:
-    return len(table.get("covariance", {}).get("of", []))
+def _covariance(table: Mapping[str, Any]) -> Array:
+    rows = table.get("covariance", {}).get("rows", [])
+    return frozen(np.array(rows, dtype=float).reshape(len(rows), len(rows)))
 
 
 def _equations(entry: Mapping[str, Any], where: str, own_model: Model | None) -> Model:

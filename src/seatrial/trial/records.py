@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from seatrial.check import canonical, examine, repair, timebase
+from seatrial.check import examine, prepared
 from seatrial.read import read_record
 from seatrial.trial.trial import Role, Run, Trial, Trimming
 from seatrial.values import Finding, InputError, Record, Severity
@@ -39,12 +39,10 @@ def records_of(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ..
 
 
 def checked(run: Run, reference_point: float) -> tuple[Record, list[Finding]]:
-    """One run read, its time base rebuilt, repaired, examined, made canonical, trimmed and resampled."""
-    record, of_time = timebase(read_record(run.path, run.layout).named(run.name))
-    record, of_repair = repair(record)
-    findings = [*of_time, *of_repair, *examine(record)]
-    record = trimmed(canonical(record, reference_point), run.trimming)
-    return record, findings
+    """One run read, examined as it is, repaired, made canonical, trimmed and resampled."""
+    raw = read_record(run.path, run.layout).named(run.name)
+    record, _ = prepared(raw, reference_point)
+    return trimmed(record, run.trimming), list(examine(raw))
 
 
 def trimmed(record: Record, rules: Trimming) -> Record:

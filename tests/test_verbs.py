@@ -1,0 +1,45 @@
+"""The verbs as functions: what each hands over."""
+
+from pathlib import Path
+
+import pytest
+
+import seatrial.verbs as sea
+from seatrial.trial.model_file import ModelFile
+from seatrial.values import InputError, Ship
+
+
+def test_the_demo_trial_loads_with_its_truth(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from seatrial.studies import demo, series
+
+    monkeypatch.setattr(demo, "demo_series", lambda seed: series.demo_series(seed, executes=1))
+    trial = sea.load_trial(demo.write_demo(tmp_path, seed=1))
+    assert [run.role for run in trial.runs].count("validate") == 2
+    assert set(trial.truth) == set(trial.model.parameters.free_names)
+    assert not [f for f in sea.check(trial) if f.severity == "error"]
+
+
+def test_the_waterjet_example_stands_alone(repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("SEATRIAL_DATA", raising=False)
+    trial = sea.load_trial(repository / "examples" / "waterjet.toml")
+    assert [run.role for run in trial.runs].count("train") == 1
+    assert not [f for f in sea.check(trial) if f.severity == "error"]
+    for name, value in trial.truth.items():
+        assert trial.model.parameters[name].value == value
+
+
+def test_a_model_scale_rudder_is_quicker(repository: Path) -> None:
+    trial = sea.load_trial(repository / "examples" / "waterjet.toml")
+    full = sea.simulate(ModelFile(trial.model, ship=trial.ship), "zigzag:20/20", inputs={"v_j": 1.866})
+    small = Ship("model", trial.ship.particulars, "", 25.0)
+    quick = sea.simulate(ModelFile(trial.model, ship=small), "zigzag:20/20", inputs={"v_j": 1.866})
+    over = [next(t for t, d in zip(r.time, r["delta"], strict=True) if d > 0.34) for r in (full, quick)]
+    assert over[0] / over[1] == pytest.approx(5.0, rel=0.1)
+
+
+def test_measures_need_a_ship(repository: Path) -> None:
+    trial = sea.load_trial(repository / "examples" / "waterjet.toml")
+    record = sea.simulate(ModelFile(trial.model), "zigzag:20/20", inputs={"v_j": 1.866})
+    with pytest.raises(InputError, match=r"no \[ship\]"):
+        sea.measures(ModelFile(trial.model), record)
+    assert sea.measures(ModelFile(trial.model, ship=trial.ship), record)["overshoot_1_deg"] > 0.0
