@@ -87,19 +87,23 @@ def lag_findings(record: Record) -> tuple[Finding, ...]:
 
 
 def velocity_lag(record: Record) -> tuple[float, float] | None:
-    """Delay of the measured velocity [s] and its standard error: d(position)/dt - w = tau dw/dt + constant.
+    """Delay of the measured velocity [s] and its standard error: d(position)/dt - w = tau dw/dt - d lever + constant.
 
+    A reference point d ahead is fitted along (its lever is the turned yaw rate), so that it does not pass for a lag.
     None where positions are missing or the declared frame is refuted.
     """
     motion = motion_of(record)
     if motion is None or best_reading(motion).changes:
         return None
     length = motion.length
-    features, target = [], []
-    for position, velocity in zip(motion.measured, motion.velocity(motion.readings[0]), strict=True):
+    levers = (-np.sin(motion.psi), np.cos(motion.psi))
+    turning = np.gradient(motion.psi, motion.dt)
+    features, levered, target = [], [], []
+    for position, velocity, lever in zip(motion.measured, motion.velocity(motion.readings[0]), levers, strict=True):
         features.append(slope(velocity, motion.dt, length))
+        levered.append(smoothed(turning * lever, length))
         target.append(position - smoothed(velocity, length))
-    return _delay(features, target)
+    return _delay(features, target, levered)
 
 
 def rate_lag(record: Record) -> tuple[float, float] | None:
@@ -114,12 +118,11 @@ def rate_lag(record: Record) -> tuple[float, float] | None:
     return _delay([slope(record["r"], record.dt, length)], [turning - r])
 
 
-def _delay(features: list[Array], target: list[Array]) -> tuple[float, float] | None:
+def _delay(features: list[Array], target: list[Array], *others: list[Array]) -> tuple[float, float] | None:
     """Components interleaved in time, so that blocks of rows are blocks of time; one offset for each component."""
-    count = len(features)
-    rate, misfit = np.stack(features, axis=1).ravel(), np.stack(target, axis=1).ravel()
+    rate, misfit, *rest = (np.stack(part, axis=1).ravel() for part in (features, target, *others))
     if not np.any(rate):
         return None
-    offsets = np.tile(np.eye(count), (len(features[0]), 1))
-    answer, errors = jackknifed(np.column_stack([rate, offsets]), misfit)
+    offsets = np.tile(np.eye(len(features)), (len(features[0]), 1))
+    answer, errors = jackknifed(np.column_stack([rate, *rest, offsets]), misfit)
     return float(answer[0]), float(errors[0])
