@@ -5,22 +5,22 @@ import os
 import subprocess
 import sys
 import tempfile
-from pathlib import Path
 
 import numpy as np
-import shipmmg_equations
 from measure import Line, at_most, fastest
 
 from seatrial.kernels.integrate import evaluate
 from seatrial.kernels.sensitivity import evaluate_tangent
+from seatrial.models.mmg import mmg
+from seatrial.models.published import kvlcc2_l7
 
 ROWS = 200
 PROGRAM = """
-import json, sys, time
-sys.path.insert(0, sys.argv[1])
-import numpy, sympy, numba, seatrial.kernels.integrate, seatrial.equations.generate as generate, shipmmg_equations
+import json, time
+import numpy, sympy, numba, seatrial.kernels.integrate, seatrial.equations.generate as generate
+from seatrial.models.mmg import mmg
 t = [time.perf_counter()]
-model = shipmmg_equations.model(); t.append(time.perf_counter())
+model = mmg(); t.append(time.perf_counter())
 generate.source_text(model); t.append(time.perf_counter())
 model.compiled; t.append(time.perf_counter())
 print(json.dumps({"write": t[1] - t[0], "generate": t[2] - t[1], "compile": t[3] - t[2]}))
@@ -31,17 +31,17 @@ def fresh() -> tuple[dict[str, float], dict[str, float]]:
     """Times [s] with an empty cache, and in a second process with the cache the first one left."""
     with tempfile.TemporaryDirectory() as cache:
         environment = {**os.environ, "SEATRIAL_CACHE": cache}
-        command = [sys.executable, "-c", PROGRAM, str(Path(__file__).parent)]
+        command = [sys.executable, "-c", PROGRAM]
         runs = [subprocess.run(command, env=environment, capture_output=True, text=True, check=True) for _ in range(2)]
     return json.loads(runs[0].stdout), json.loads(runs[1].stdout)
 
 
 def jacobian_ratio() -> tuple[float, float]:
     """Nanoseconds of one right-hand side, and value plus full Jacobian as a multiple of it."""
-    model = shipmmg_equations.model()
+    model = kvlcc2_l7().applied(mmg())
     nx, width = len(model.states), len(model.states) + len(model.inputs) + len(model.parameters)
     states = np.tile([1.1, -0.2, 0.05, 0.0, 0.0, 0.3], (ROWS, 1))
-    inputs = np.tile([0.3, 10.4], (ROWS, 1))
+    inputs = np.tile([0.3, 10.4, 0.0, 0.0], (ROWS, 1))
     p, out, jac = model.parameters.values, np.empty((ROWS, nx)), np.zeros((ROWS, nx, width))
     rows = np.tile(p, (ROWS, 1))
     compiled = model.compiled
@@ -61,7 +61,7 @@ def jacobian_ratio() -> tuple[float, float]:
 def run() -> list[Line]:
     """Generation, compilation, Jacobian."""
     cold, warm = fresh()
-    count = len(shipmmg_equations.model().parameters)
+    count = len(mmg().parameters)
     nanoseconds, ratio = jacobian_ratio()
     return [
         at_most(f"MMG with {count} parameters: generate", cold["generate"], "s", 1.0),
