@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 import seatrial.verbs as sea
+from seatrial.trial import Role
 from seatrial.trial.model_file import ModelFile
 from seatrial.values import InputError, Ship
 
@@ -14,7 +15,7 @@ def test_the_demo_trial_loads_with_its_truth(tmp_path: Path, monkeypatch: pytest
 
     monkeypatch.setattr(demo, "demo_series", lambda seed: series.demo_series(seed, executes=1))
     trial = sea.load_trial(demo.write_demo(tmp_path, seed=1))
-    assert [run.role for run in trial.runs].count("validate") == 2
+    assert [run.role for run in trial.runs].count(Role.VALIDATE) == 2
     assert set(trial.truth) == set(trial.model.parameters.free_names)
     assert not [f for f in sea.check(trial) if f.severity == "error"]
 
@@ -22,7 +23,7 @@ def test_the_demo_trial_loads_with_its_truth(tmp_path: Path, monkeypatch: pytest
 def test_the_waterjet_example_stands_alone(repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("SEATRIAL_DATA", raising=False)
     trial = sea.load_trial(repository / "examples" / "waterjet.toml")
-    assert [run.role for run in trial.runs].count("train") == 1
+    assert [run.role for run in trial.runs].count(Role.TRAIN) == 1
     assert not [f for f in sea.check(trial) if f.severity == "error"]
     for name, value in trial.truth.items():
         assert trial.model.parameters[name].value == value

@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 
 from seatrial.equations import Model
-from seatrial.models import model_named, parameter_set
+from seatrial.models import model_named
+from seatrial.models.published import parameter_set
 from seatrial.trial.schema import Amount, ModelTable, PriorTable, ShipTable
 from seatrial.values import InputError, Parameters, Prior, Ship, nearest, si
 
