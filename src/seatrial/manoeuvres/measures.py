@@ -48,7 +48,7 @@ def measures(record: Record, length: float, switching: float | None = None) -> d
 
 
 def _zigzag(seen: Observed, length: float, switching: float | None) -> dict[str, float]:
-    times, hold = seen.executes, seen.holds[0]
+    times, hold = list(seen.executes), seen.holds[0]
     first = Swing(seen, times[0], float(np.sign(hold.angle)))
     made = _start(seen, first, hold.angle)
     for k, value in enumerate(_overshoots(seen, switching), start=1):

@@ -87,13 +87,22 @@ class Observed:
 
     def _execute(self, k: int) -> float:
         hold = self.holds[k]
-        first = self.holds[k - 1].last - 1 if k else self._quiet(hold)
-        base = float(self.delta[first])
+        before = self.holds[k - 1] if k else None
+        if before is not None and self._straight(before, hold):
+            first, base = before.last - 1, before.angle
+        else:
+            first = self._quiet(hold)
+            base = float(self.delta[first])
         if base == hold.angle:
             return float(self.record.time[first])
         share = (self.delta[first : hold.last] - base) / (hold.angle - base)
         quarter, three = (self._crossing(share, first, hold.first, level) for level in (0.25, 0.75))
-        return max(quarter - 0.5 * (three - quarter), float(self.record.time[first]))
+        return max(quarter - 0.5 * (three - quarter), float(self.record.time[before.first if before else first]))
+
+    def _straight(self, before: Hold, hold: Hold) -> bool:
+        """Whether the rudder went from one hold to the next without a stop amidships."""
+        between = self.delta[before.last : hold.first]
+        return len(between) < 2 or float(np.mean(np.abs(between) < 0.1 * abs(hold.angle))) < 0.3
 
     def _quiet(self, hold: Hold) -> int:
         """The last row before a hold at which the rudder had not yet begun to slew to it."""

@@ -56,7 +56,7 @@ def approach_speed(model: Model, held: Array) -> float:
 
 
 def time_unit(model: Model, start: Array, known: float | None) -> float:
-    """L/U [s] from the start's u, the speed given, or the model's parameter U.
+    """L/U [s] from the start's u, the speed given, or the model's parameter U; else a Nomoto model's time constant.
 
     Raises:
         InputError: length or speed is not known.
@@ -69,6 +69,7 @@ def time_unit(model: Model, start: Array, known: float | None) -> float:
         speed = known or (model.parameters["U"].value if "U" in names else 0.0)
     if length > 0.0 and speed > 0.0:
         return length / speed
-    if "T" in names:
-        return model.parameters["T"].value
+    for constant in ("T", "T_1"):
+        if constant in names:
+            return model.parameters[constant].value
     raise InputError(f"model '{model.name}': the approach speed must be positive, and its parameters must give L")
