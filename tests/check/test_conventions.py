@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.check.ship import declared, in_earth_axes, with_values, zigzag
 
+from check.ship import declared, in_earth_axes, with_values, zigzag
 from seatrial.check import canonical
 from seatrial.values import InputError, Record
 

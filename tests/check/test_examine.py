@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from tests.check.ship import declared, in_earth_axes, mirrored, with_values, zigzag
 
+from check.ship import declared, in_earth_axes, mirrored, with_values, zigzag
 from seatrial.check import canonical, examine, is_excited
 from seatrial.values import Finding, Record, Severity
 
