@@ -101,7 +101,7 @@ def _caught_up(record: Record) -> tuple[Record, tuple[Finding, ...]]:
         f"record '{record.name}': the position jumps {_times(jumps.rows.size)}"
         + (f"; {held.size} samples it stood still before are interpolated" if held.size else "")
         + (f"; of the jumps {remaining} cannot be mended and stay" if remaining else ""),
-        f"up to {jumps.sizes[largest]:.2f} m, at t = {record.time[known[jumps.rows[largest]]]:.6g} s",
+        f"up to {jumps.sizes[largest]:.3g} m, at t = {record.time[known[jumps.rows[largest]]]:.6g} s",
         "weight positions robustly; split the run at a jump that stays" if remaining else "weight positions robustly",
     )
     if held.size == 0:
