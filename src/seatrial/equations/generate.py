@@ -58,6 +58,10 @@ class _Printer(PythonCodePrinter):
             return f"({product})" if exponent > 0 else f"(1.0/({product}))"
         return f"({text})**({self._print(exponent)})"
 
+    def _print_Mul(self, expr: sp.Mul) -> str:
+        # reciprocals as factors: 1/(m + m_x) waits for nothing, a quotient would wait for its numerator
+        return "*".join(f"({self._print(factor)})" for factor in expr.args)
+
     def _print_Integer(self, expr: sp.Integer) -> str:
         return f"{int(expr)}.0"
 
@@ -80,7 +84,30 @@ class _Printer(PythonCodePrinter):
         return text
 
 
-_PRINT = _Printer({"fully_qualified_modules": True}).doprint
+class _Lines:
+    """Lines of one generated function; every angle's sine and cosine are computed once, before their first use."""
+
+    def __init__(self, first: Sequence[str]) -> None:
+        self.text = list(first)
+        self._angles: dict[sp.Expr, int] = {}
+        self._printer = _Printer({"fully_qualified_modules": True})
+
+    def expression(self, value: sp.Expr) -> str:
+        """The text of an expression, after the sines and cosines it needs."""
+        replaced = {}
+        for call in sorted(value.atoms(sp.sin, sp.cos), key=sp.default_sort_key):
+            angle = call.args[0]
+            if angle not in self._angles:
+                text = self.expression(angle)
+                k = self._angles[angle] = len(self._angles)
+                self.text.append(f"    {mangled(f'sin__{k}')}, {mangled(f'cos__{k}')} = sincos({text})")
+            replaced[call] = sp.Symbol(f"{call.func.__name__}__{self._angles[angle]}", real=True)
+        return self._printer.doprint(value.xreplace(replaced))
+
+    def assign(self, target: str, value: sp.Expr) -> None:
+        """Append `target = value`."""
+        text = self.expression(value)
+        self.text.append(f"    {target} = {text}")
 
 
 def mangled(name: str) -> str:
@@ -97,6 +124,7 @@ _HEADER = '''"""Generated from the equations of model {name!r}; do not edit."""
 import math
 from numba import njit
 from seatrial.kernels.types import FUNCTION_SIGNATURE, OPTIONS, TANGENT_SIGNATURE
+from seatrial.kernels.trigonometry import sincos
 
 '''
 
@@ -124,24 +152,25 @@ def _needed(model: Model, wanted: Sequence[Binding]) -> list[Binding]:
 
 def _function(model: Model, name: str, wanted: Sequence[Binding]) -> list[str]:
     needed = _needed(model, wanted)
-    lines = _signature(name, "FUNCTION_SIGNATURE", "out") + _unpack(model, [*needed, *wanted])
-    lines += [f"    {mangled(b.name)} = {_PRINT(b.expression)}" for b in needed]
+    lines = _Lines(_signature(name, "FUNCTION_SIGNATURE", "out") + _unpack(model, [*needed, *wanted]))
+    for b in needed:
+        lines.assign(mangled(b.name), b.expression)
     bound = {b.name for b in needed}
     for i, b in enumerate(wanted):
-        lines.append(f"    out[{i}] = {mangled(b.name) if b.name in bound else _PRINT(b.expression)}")
-    return [*lines, "    return", ""]
+        lines.assign(f"out[{i}]", sp.Symbol(b.name) if b.name in bound else b.expression)
+    return [*lines.text, "    return", ""]
 
 
-def _derivatives(row: Row) -> tuple[list[str], dict[str, str]]:
-    """Lines that compute the row's partials and, for each base variable, the expression of its total derivative."""
+def _derivatives(lines: _Lines, row: Row) -> dict[str, str]:
+    """Append the row's partials; return, for each base variable, the text of its total derivative."""
     name = row.binding.name
-    lines, factor = [], {}
+    factor = {}
     for symbol, value in row.partials.items():
         if value.is_number or value.is_Symbol:
-            factor[symbol] = _PRINT(value)
+            factor[symbol] = lines.expression(value)
         else:
-            factor[symbol] = f"q_{name}_{symbol}"
-            lines.append(f"    {factor[symbol]} = {_PRINT(value)}")
+            factor[symbol] = f"q{len(name)}_{name}_{symbol}"
+            lines.assign(factor[symbol], value)
     totals = {}
     for z, terms in row.chain.items():
         products = []
@@ -149,7 +178,7 @@ def _derivatives(row: Row) -> tuple[list[str], dict[str, str]]:
             inner = _slope(symbol, z) if is_binding else ""
             products.append("*".join(part for part in (factor[symbol], inner) if part and part != "1.0") or "1.0")
         totals[z] = " + ".join(products)
-    return lines, totals
+    return totals
 
 
 def _tangent(model: Model, name: str, wanted: Sequence[Binding]) -> tuple[list[str], list[tuple[int, int]]]:
@@ -160,23 +189,20 @@ def _tangent(model: Model, name: str, wanted: Sequence[Binding]) -> tuple[list[s
         Binding(f"out{i}", sp.Symbol(b.name, real=True) if b.name in bound else b.expression)
         for i, b in enumerate(wanted)
     ]
-    lines = _signature(name, "TANGENT_SIGNATURE", "out, jac") + _unpack(model, [*needed, *wanted])
+    lines = _Lines(_signature(name, "TANGENT_SIGNATURE", "out, jac") + _unpack(model, [*needed, *wanted]))
     pattern = []
     for row in rows([*needed, *renamed], base):
         target = row.binding.name
         is_output = target.startswith("out") and row.binding in renamed
-        left = f"out[{target[3:]}]" if is_output else mangled(target)
-        lines.append(f"    {left} = {_PRINT(row.binding.expression)}")
-        partial_lines, totals = _derivatives(row)
-        lines += partial_lines
-        for z, text in totals.items():
+        lines.assign(f"out[{target[3:]}]" if is_output else mangled(target), row.binding.expression)
+        for z, text in _derivatives(lines, row).items():
             if is_output:
                 place = (int(target[3:]), base.index(z))
                 pattern.append(place)
-                lines.append(f"    jac[{place[0]}, {place[1]}] = {text}")
+                lines.text.append(f"    jac[{place[0]}, {place[1]}] = {text}")
             else:
-                lines.append(f"    {_slope(target, z)} = {text}")
-    return [*lines, "    return", ""], pattern
+                lines.text.append(f"    {_slope(target, z)} = {text}")
+    return [*lines.text, "    return", ""], pattern
 
 
 def source_text(model: Model) -> str:

@@ -9,12 +9,12 @@ import math
 import numpy as np
 from numba import njit, void
 
-from seatrial.kernels.types import COMMAND, F8, FUNCTION, I8, INDEX, MATRIX, OPTIONS, VECTOR
+from seatrial.kernels.types import COMMAND, F8, FUNCTION, I8, INDEX, LEAN, MATRIX, OPTIONS, VECTOR
 
 DIVERGED = 1e9
 
 
-@njit(**OPTIONS)
+@njit(inline="always", **OPTIONS)
 def effective_input(inputs, first, last, k, gain, offset, delay, dt, out):
     """out_j = gain_j * input_j(t_k - delay_j) + offset_j, linear between samples, clamped to the segment."""
     for j in range(out.size):
@@ -27,25 +27,32 @@ def effective_input(inputs, first, last, k, gain, offset, delay, dt, out):
         out[j] = gain[j] * raw + offset[j]
 
 
-@njit(**OPTIONS)
-def rk4_step(f, t, x, u0, um, u1, p, h, k, y, acc):
-    """Advance x in place by one step of length h; k, y, acc are scratch of the size of x."""
+@njit(inline="always", **OPTIONS)
+def rk4_step(f, t, x, u0, um, u1, p, h, k1, k2, k3, k4, y):
+    """Advance x in place by one step of length h; the rest is scratch. Returns the summed size of all stages.
+
+    The running sum is the check for divergence; it also keeps these short loops scalar, as f stores scalars and a
+    vector load behind scalar stores stalls (twice the time a step, measured).
+    """
     n = x.size
-    f(t, x, u0, p, k)
+    size = 0.0
+    f(t, x, u0, p, k1)
     for i in range(n):
-        acc[i] = k[i]
-        y[i] = x[i] + 0.5 * h * k[i]
-    f(t + 0.5 * h, y, um, p, k)
+        y[i] = x[i] + 0.5 * h * k1[i]
+        size += abs(y[i])
+    f(t + 0.5 * h, y, um, p, k2)
     for i in range(n):
-        acc[i] += 2.0 * k[i]
-        y[i] = x[i] + 0.5 * h * k[i]
-    f(t + 0.5 * h, y, um, p, k)
+        y[i] = x[i] + 0.5 * h * k2[i]
+        size += abs(y[i])
+    f(t + 0.5 * h, y, um, p, k3)
     for i in range(n):
-        acc[i] += 2.0 * k[i]
-        y[i] = x[i] + h * k[i]
-    f(t + h, y, u1, p, k)
+        y[i] = x[i] + h * k3[i]
+        size += abs(y[i])
+    f(t + h, y, u1, p, k4)
     for i in range(n):
-        x[i] += h / 6.0 * (acc[i] + k[i])
+        x[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i])
+        size += abs(x[i])
+    return size
 
 
 @njit(
@@ -64,30 +71,29 @@ def rk4_step(f, t, x, u0, um, u1, p, h, k, y, acc):
         MATRIX,
         MATRIX,
         INDEX,
-        I8,
         MATRIX,
         INDEX,
+        MATRIX,
+        MATRIX,
+        VECTOR,
     ),
-    **OPTIONS,
+    **LEAN,
 )
-def replay(
-    f, g, inputs, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay, select, ng, y_out, failed
-):
-    """Integrate segments seg_from..seg_to with recorded inputs; write selected outputs at every sample.
-
-    Segment s owns rows offsets[s]..offsets[s+1] of inputs and y_out. Outputs: index < nx is a state, nx + i is g_i.
-    failed[s] becomes the sample at which the solution left all bounds (or was not finite), else stays -1.
-    """
+def _replay(
+    f, g, inputs, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay, select, y_out, failed,
+    work_x, work_u, extra,
+):  # fmt: skip
     nx, nu = x0.shape[1], inputs.shape[1]
-    x, k, scratch, acc = np.empty(nx), np.empty(nx), np.empty(nx), np.empty(nx)
-    u0, u1, ua, um, ub = np.empty(nu), np.empty(nu), np.empty(nu), np.empty(nu), np.empty(nu)
-    extra = np.empty(max(ng, 1))
+    x, y, k1, k2, k3, k4 = work_x[0], work_x[1], work_x[2], work_x[3], work_x[4], work_x[5]
+    u0, u1, um, ub = work_u[0], work_u[1], work_u[2], work_u[3]
+    h = dt / substeps
     needs_g = False
     for i in range(select.size):
         needs_g = needs_g or select[i] >= nx
     for s in range(seg_from, seg_to):
         first, last = offsets[s], offsets[s + 1]
-        x[:] = x0[s]
+        for i in range(nx):
+            x[i] = x0[s, i]
         par = p[s]
         gain_s, offset_s, delay_s = gain[s], offset[s], delay[s]
         effective_input(inputs, first, last, first, gain_s, offset_s, delay_s, dt, u0)
@@ -100,23 +106,34 @@ def replay(
             if row == last - 1:
                 break
             effective_input(inputs, first, last, row + 1, gain_s, offset_s, delay_s, dt, u1)
-            h = dt / substeps
+            size = 0.0
             for m in range(substeps):
                 for j in range(nu):
-                    slope = (u1[j] - u0[j]) / substeps
-                    ua[j] = u0[j] + m * slope
-                    um[j] = ua[j] + 0.5 * slope
-                    ub[j] = ua[j] + slope
-                rk4_step(f, t + m * h, x, ua, um, ub, par, h, k, scratch, acc)
-            total = 0.0
-            for i in range(nx):
-                total += abs(x[i])
-            if not total < DIVERGED:
+                    half = 0.5 * (u1[j] - u0[j]) / (substeps - m)
+                    um[j] = u0[j] + half
+                    ub[j] = um[j] + half
+                size += rk4_step(f, t + m * h, x, u0, um, ub, par, h, k1, k2, k3, k4, y)
+                for j in range(nu):
+                    u0[j] = ub[j]
+            if not size < DIVERGED:
                 failed[s] = row + 1 - first
-                y_out[row + 1 : last, :] = math.nan
+                for late in range(row + 1, last):
+                    for i in range(select.size):
+                        y_out[late, i] = math.nan
                 break
-            for j in range(nu):
-                u0[j] = u1[j]
+
+
+def replay(
+    f, g, inputs, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay, select, ng, y_out, failed
+):
+    """Integrate segments seg_from..seg_to with recorded inputs; write selected outputs at every sample.
+
+    Segment s owns rows offsets[s]..offsets[s+1] of inputs and y_out. Outputs: index < nx is a state, nx + i is g_i.
+    failed[s] becomes the sample at which the solution left all bounds (or was not finite), else stays -1.
+    """
+    nx, nu = x0.shape[1], inputs.shape[1]
+    _replay(f, g, inputs, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay, select, y_out, failed,
+            np.empty((6, nx)), np.empty((4, nu)), np.empty(max(ng, 1)))  # fmt: skip
 
 
 @njit(I8(FUNCTION, COMMAND, VECTOR, VECTOR, VECTOR, VECTOR, F8, MATRIX, MATRIX), **OPTIONS)
@@ -126,20 +143,20 @@ def steer(f, command, x0, u_start, p, memory, dt, x_out, u_out):
     x_out, u_out: states and the input held from that sample on, one row a step.
     """
     nx = x0.size
-    x, k, scratch, acc = x0.copy(), np.empty(nx), np.empty(nx), np.empty(nx)
+    x, y = x0.copy(), np.empty(nx)
+    k1, k2, k3, k4 = np.empty(nx), np.empty(nx), np.empty(nx), np.empty(nx)
     u = u_start.copy()
+    size = 0.0
     for row in range(x_out.shape[0]):
         t = row * dt
         command(t, x, memory, u)
-        total = 0.0
         for i in range(nx):
             x_out[row, i] = x[i]
-            total += abs(x[i])
         for j in range(u.size):
             u_out[row, j] = u[j]
-        if not total < DIVERGED:
+        if not size < DIVERGED:
             return row
-        rk4_step(f, t, x, u, u, u, p, dt, k, scratch, acc)
+        size = rk4_step(f, t, x, u, u, u, p, dt, k1, k2, k3, k4, y)
     return -1
 
 
