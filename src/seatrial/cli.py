@@ -29,6 +29,7 @@ TrialPath = Annotated[Path, typer.Argument(metavar="TRIAL.toml", help="Trial fil
 OwnModel = Annotated[Path | None, typer.Option("--model", metavar="FILE.py", help="A model of your own (is executed).")]
 
 INTERRUPTED = 130
+OF_A_KIND = 2
 SEVERITY_MARK = {"error": "ERROR  ", "warning": "warning", "info": "note   "}
 
 
@@ -48,7 +49,13 @@ def _root(
 
 
 @app.command()
-def check(trial: TrialPath, json: Json = None, seed: Seed = 0, model: OwnModel = None) -> None:  # noqa: ARG001
+def check(
+    trial: TrialPath,
+    everything: Annotated[bool, typer.Option("--all", help="Every finding, not the first few of each kind.")] = False,
+    model: OwnModel = None,
+    json: Json = None,
+    seed: Seed = 0,  # noqa: ARG001
+) -> None:
     """Say what is odd about the records: frames, signs, units, gaps, jumps, lags.
 
     Example: seatrial check examples/esso_osaka.toml
@@ -57,7 +64,7 @@ def check(trial: TrialPath, json: Json = None, seed: Seed = 0, model: OwnModel =
     from seatrial.trial.fit_json import findings_json
 
     findings = verbs.check(verbs.load_trial(trial, _own(model)))
-    _print_findings(findings)
+    _print_findings(findings, len(findings) if everything else OF_A_KIND)
     _write_json(json, lambda: findings_json(findings))
 
 
@@ -240,13 +247,22 @@ def _write_json(path: Path | None, table: Callable[[], Mapping[str, Any]]) -> No
         write_whole(path, strict_json(table()).encode())
 
 
-def _print_findings(findings: "tuple[Finding, ...]") -> None:
-    for finding in findings:
-        print(f"{SEVERITY_MARK[finding.severity.value]} [{finding.code}] {finding.text}")
-        if finding.advice:
-            print(f"        {finding.advice}")
+def _print_findings(findings: "tuple[Finding, ...]", of_a_kind: int) -> None:
+    """Findings by kind, errors first; of each kind the first few."""
+    order = list(SEVERITY_MARK)
+    kinds = {
+        (f.severity.value, f.code): [g for g in findings if g.code == f.code and g.severity is f.severity]
+        for f in findings
+    }
+    for (severity, code), alike in sorted(kinds.items(), key=lambda item: order.index(item[0][0])):
+        for finding in alike[:of_a_kind]:
+            print(f"{SEVERITY_MARK[severity]} [{code}] {finding.text}")
+        if len(alike) > of_a_kind:
+            print(f"        ... and {len(alike) - of_a_kind} more of this kind; --all shows them")
+        if alike[0].advice:
+            print(f"        advice: {alike[0].advice}")
     errors = sum(finding.severity.value == "error" for finding in findings)
-    print(f"{len(findings)} findings, {errors} of them errors")
+    print(f"{len(findings)} finding{'s' * (len(findings) != 1)}, {errors} of them error{'s' * (errors != 1)}")
 
 
 def _print_fit(fit: "Fit") -> None:

@@ -134,3 +134,8 @@ def test_what_is_wrong_is_said_in_one_sentence(trial_file: Path, old: str, new: 
 def test_a_missing_trial_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"absent\.toml' cannot be read"):
         load_trial(tmp_path / "absent.toml")
+
+
+def test_dots_in_a_file_name_belong_to_the_run(trial_file: Path) -> None:
+    (trial_file.parent / "a_2024-05-01.csv").rename(trial_file.parent / "a_2.5deg_2024-05-01.csv")
+    assert load_trial(trial_file).runs[0].name == "a_2.5deg_2024-05-01"

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from seatrial.read import Column, Layout, format_of
 from seatrial.trial.schema import ChannelColumn, RecordsTable
-from seatrial.trial.trial import Role, Run, Trimming
+from seatrial.trial.trial import Role, Run, Trimming, run_name
 from seatrial.values import InputError, nearest, quantity, si
 
 _DAY = re.compile(r"\d{4}-\d{2}-\d{2}|\d{1,2}-[A-Z][a-z]{2}-\d{4}|(?<!\d)(?:19|20)\d{6}(?!\d)")
@@ -51,7 +51,7 @@ def runs_of(blocks: Sequence[RecordsTable], folder: str, home: Path) -> tuple[Ru
 def _block_runs(block: RecordsTable, base: Path, where: str) -> list[Run]:
     paths = sorted({path for text in block.files for path in _found(text, base, where)})
     trimming = Trimming(block.from_s, block.to_s, block.skip_acceleration, block.rate)
-    roles = _roles(block, [p.name.split(".")[0] for p in paths], where)
+    roles = _roles(block, [run_name(p) for p in paths], where)
     return [
         Run(path, layout_of(block, path, where), role, session_of(path, block.session), trimming, block.source)
         for path, role in zip(paths, roles, strict=True)
@@ -97,7 +97,7 @@ def session_of(path: Path, rule: str) -> str:
     Raises:
         InputError: the rule finds nothing in the name.
     """
-    name = path.name.split(".")[0]
+    name = run_name(path)
     if rule == "run":
         return name
     match = (_DAY if rule == "day" else re.compile(rule)).search(name)

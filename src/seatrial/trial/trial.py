@@ -18,6 +18,11 @@ class Role(StrEnum):
     LEAVE_OUT = "leave_out"
 
 
+def run_name(path: Path) -> str:
+    """The name of a run's file without its ending, ``.gz`` included."""
+    return Path(path.name.removesuffix(".gz")).stem
+
+
 @dataclass(frozen=True)
 class Trimming:
     """Which part of a record is used, and at what rate.
@@ -47,8 +52,8 @@ class Run:
 
     @property
     def name(self) -> str:
-        """The file's name without its endings."""
-        return self.path.name.split(".")[0]
+        """The file's name without its ending."""
+        return run_name(self.path)
 
 
 @dataclass(frozen=True)
