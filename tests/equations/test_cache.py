@@ -30,7 +30,9 @@ print(hashlib.sha256(source_text(model).encode()).hexdigest(), model.equation_ha
 
 def run(cache: Path, hash_seed: str, **more: str) -> list[str]:
     environment = {**os.environ, "SEATRIAL_CACHE": str(cache), "PYTHONHASHSEED": hash_seed, **more}
-    done = subprocess.run([sys.executable, "-c", PROGRAM], env=environment, capture_output=True, text=True, check=True)
+    command = [sys.executable, "-W", "error:Cannot cache", "-c", PROGRAM]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
     return done.stdout.strip().split("|")
 
 
