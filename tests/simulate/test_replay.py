@@ -42,10 +42,12 @@ def test_substeps_are_of_fourth_order() -> None:
     assert 14.0 < coarse / fine < 22.0
 
 
-def test_a_manoeuvre_replayed_repeats_to_the_last_bit(zigzag: Record) -> None:
-    again = replay(waterjet(), zigzag)
-    assert set(again.channels) == set(zigzag.channels)
-    assert all(np.array_equal(again[s], zigzag[s]) for s in zigzag.channels)
+@pytest.mark.parametrize("text", ["zigzag:10/10", "zigzag:20/20:port", "turning-circle:20", "pull-out", "prbs:10:7"])
+def test_a_manoeuvre_replayed_repeats_to_the_last_bit(text: str) -> None:
+    made = manoeuvre(waterjet(), programme(text), inputs=JET, slew_rate=math.radians(4.0))
+    again = replay(waterjet(), made)
+    assert set(again.channels) == set(made.channels)
+    assert all(np.array_equal(again[s], made[s]) for s in made.channels)
 
 
 def test_the_sign_of_the_rudder_is_metadata(zigzag: Record) -> None:
@@ -54,6 +56,12 @@ def test_the_sign_of_the_rudder_is_metadata(zigzag: Record) -> None:
     assert np.array_equal(inputs_of(waterjet(), zigzag), inputs_of(waterjet(), turned))
     assert np.array_equal(inputs_of(waterjet(), zigzag)[:, 0], -zigzag["delta"])
     assert np.array_equal(replay(waterjet(), turned)["psi"], zigzag["psi"])
+
+
+def test_a_direction_that_is_no_opposite_is_refused(zigzag: Record) -> None:
+    odd = zigzag.with_channel("delta", Channel(zigzag["delta"], "rad", "body", "up"))
+    with pytest.raises(InputError, match="'delta' is positive to 'up', model 'waterjet' has it positive to 'port'"):
+        inputs_of(waterjet(), odd)
 
 
 def test_a_state_recorded_to_port_starts_turned(zigzag: Record) -> None:

@@ -2,36 +2,48 @@
 
 import numpy as np
 
-from seatrial.equations import Model
+from seatrial.equations import Input, Model
 from seatrial.values import NOTATION, Array, Channel, InputError, Kind, Record, frozen, quantity
 
 _STILL_AIR = {"wind_speed": 0.0, "wind_direction": 0.0}
 
 
+_OPPOSITES = [{"starboard", "port"}, {"forward", "aft"}, {"ahead", "astern"}]
+
+
 def inputs_of(model: Model, record: Record) -> Array:
     """Inputs in the model's own signs, shape (n, nu); absent wind channels mean still air.
 
+    A channel whose positive direction is the opposite of the input's is turned here and nowhere else.
+
     Raises:
-        InputError: an input channel is missing or holds NaN.
+        InputError: an input channel is missing, holds NaN, or points in a direction that has nothing to do with the
+            model's.
     """
-    columns = []
-    for item in model.inputs:
-        if item.name not in record:
-            if item.name not in _STILL_AIR:
-                raise InputError(
-                    f"record '{record.name}' has no channel '{item.name}', an input of model '{model.name}'"
-                )
-            columns.append(np.full(len(record), _STILL_AIR[item.name]))
-            continue
-        channel = record.channel(item.name)
-        if not np.all(np.isfinite(channel.values)):
-            row = int(np.argmin(np.isfinite(channel.values)))
-            raise InputError(
-                f"record '{record.name}': input channel '{item.name}' has no value at sample {row} "
-                f"(t = {record.time[row]:g} s); repair it first"
-            )
-        columns.append(-channel.values if channel.positive != item.direction else channel.values)
+    columns = [_input(model, record, item) for item in model.inputs]
     return np.ascontiguousarray(np.stack(columns, axis=1)) if columns else np.empty((len(record), 0))
+
+
+def _input(model: Model, record: Record, item: Input) -> Array:
+    if item.name not in record:
+        if item.name in _STILL_AIR:
+            return np.full(len(record), _STILL_AIR[item.name])
+        raise InputError(f"record '{record.name}' has no channel '{item.name}', an input of model '{model.name}'")
+    channel = record.channel(item.name)
+    if not np.all(np.isfinite(channel.values)):
+        row = int(np.argmin(np.isfinite(channel.values)))
+        raise InputError(
+            f"record '{record.name}': input channel '{item.name}' has no value at sample {row} "
+            f"(t = {record.time[row]:g} s); repair it first"
+        )
+    if item.direction in (channel.positive, "none"):
+        return channel.values
+    if {item.direction, channel.positive} in _OPPOSITES:
+        return -channel.values
+    raise InputError(
+        f"record '{record.name}': input channel '{item.name}' is positive to '{channel.positive}', "
+        f"model '{model.name}' has it positive to '{item.direction}'; declare one of the two directions"
+    )
 
 
 def record_of(

@@ -65,8 +65,9 @@ def manoeuvre(
         model.input_names.index(RUDDER), _sign(model), slew_rate, dt, approach, unit,
     )  # fmt: skip
     used, finished = _steered(model, programme, steering, start, held, longest)
-    states, outputs = trajectory(model, used, dt, start)
     time = frozen(dt * np.arange(len(used)))
+    # Record.dt's own quotient, so that a replay takes the same steps to the last bit
+    states, outputs = trajectory(model, used, float(time[-1] - time[0]) / (len(time) - 1), start)
     demand_bounded(model, time, states, f"manoeuvre '{programme.text}'")
     made = record_of(model, programme.text, time, states, outputs, used)
     ending = f"finished at {time[-1]:g} s" if finished else f"not finished after {time[-1]:g} s"

@@ -36,9 +36,9 @@ def demo_series(seed: int, executes: int = 5) -> tuple[tuple[Record, ...], Model
     """Records with sensor noise at 10 Hz, and the model that made them.
 
     The first record is for training: consecutive zigzags 10/10 to 30/30, `executes` of each (5: 2075 s).
-    The others are held out: a 25/25 zigzag and a turning circle with 20 deg, where drift stays within the model's reach.
-    The generator is finer than any fitted model: steps of 0.01 s under a continuously slewing nozzle (4 deg/s), of which
-    the record keeps every tenth sample. Inputs are recorded without noise.
+    The others are held out: a 25/25 zigzag and a turning circle with 20 deg, where drift stays within the model's
+    reach. The generator is finer than any fitted model: steps of 0.01 s under a continuously slewing nozzle (4 deg/s),
+    of which the record keeps every tenth sample. Inputs are recorded without noise.
 
     Args:
         seed: every record has a stream of its own, so that one does not depend on the others' lengths.
