@@ -1,52 +1,25 @@
-"""Forward-mode differentiation, binding by binding: partials of one small expression, chained by name."""
+"""Differentiation binding by binding: partials of one small expression, never of the whole.
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+The generated code chains them from each output back to states, inputs and parameters (reverse accumulation, Griewank &
+Walther 2008, section 3.2): with few outputs and many parameters half the operations of the forward order, measured.
+"""
+
+from typing import cast
 
 import sympy as sp
-
-from seatrial.equations.model import Binding
-
-
-@dataclass(frozen=True)
-class Row:
-    """Total derivatives of one binding: local partials, then for each base variable the sum of products.
-
-    Attributes:
-        binding: what is differentiated.
-        partials: symbol name -> partial derivative, an expression of bindings and base variables.
-        chain: base variable -> terms; each term is (partial's symbol, whether it is itself a binding).
-    """
-
-    binding: Binding
-    partials: dict[str, sp.Expr]
-    chain: dict[str, tuple[tuple[str, bool], ...]]
 
 
 def partial(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
     """d expression / d symbol with d|x| = sign and d sign = 0."""
     derivative = sp.diff(expression, symbol)
-    return derivative.replace(sp.DiracDelta, lambda *_: sp.Integer(0)).replace(
+    plain = derivative.replace(sp.DiracDelta, lambda *_: sp.Integer(0)).replace(
         lambda e: isinstance(e, sp.Derivative), lambda _: sp.Integer(0)
     )
+    return cast(sp.Expr, plain)
 
 
-def rows(bindings: Sequence[Binding], base: Sequence[str]) -> list[Row]:
-    """Differentiate bindings in order with respect to the base variables (states, inputs, parameters)."""
-    support: dict[str, list[str]] = {}
-    made = []
-    for binding in bindings:
-        symbols = sorted(binding.expression.free_symbols, key=str)
-        partials = {str(s): partial(binding.expression, s) for s in symbols}
-        partials = {name: value for name, value in partials.items() if value != 0}
-        chain: dict[str, list[tuple[str, bool]]] = {}
-        for name in partials:
-            if name in support:
-                for z in support[name]:
-                    chain.setdefault(z, []).append((name, True))
-            else:
-                chain.setdefault(name, []).append((name, False))
-        ordered = {z: tuple(chain[z]) for z in base if z in chain}
-        support[binding.name] = list(ordered)
-        made.append(Row(binding, partials, ordered))
-    return made
+def partials(expression: sp.Expr) -> dict[str, sp.Expr]:
+    """Symbol name -> partial derivative, where it is not zero; symbols in the order of their names."""
+    symbols = sorted(expression.free_symbols, key=str)
+    made = {str(s): partial(expression, s) for s in symbols if isinstance(s, sp.Symbol)}
+    return {name: value for name, value in made.items() if value != 0}

@@ -1,8 +1,13 @@
 """From equations to machine code: one generated module for each set of equations, compiled once a machine.
 
-The module holds four functions with the project's fixed signatures: `rates`, `rates_tangent`, `outputs`,
-`outputs_tangent`, and `bindings` for the breakdown of forces. It lies in the cache folder under the hash of its text.
+The module holds four functions with the project's fixed signatures: `rates`, `rates_tangent`, `outputs` and
+`outputs_tangent`; `bindings`, for the breakdown of forces, is a module of its own, compiled when it is asked for.
+They lie in the cache folder under the hash of their text.
 """
+
+# SymPy annotates its printers and `args` too narrowly:
+# pyright: reportIncompatibleMethodOverride=false, reportAttributeAccessIssue=false, reportGeneralTypeIssues=false
+# pyright: reportArgumentType=false, reportReturnType=false
 
 import hashlib
 import importlib.util
@@ -11,7 +16,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 from types import ModuleType
 
@@ -20,7 +25,7 @@ import sympy as sp
 from numpy.typing import NDArray
 from sympy.printing.pycode import PythonCodePrinter
 
-from seatrial.equations.differentiate import Row, rows
+from seatrial.equations.differentiate import partials
 from seatrial.equations.model import Binding, Model
 from seatrial.kernels.cache import cache_folder
 
@@ -31,13 +36,18 @@ Pattern = NDArray[np.int64]
 class Compiled:
     """Functions of one model and the structural nonzeros of their Jacobians, (row, column) with columns [x | u | p]."""
 
+    model: Model
     rates: Callable[..., None]
     rates_tangent: Callable[..., None]
     outputs: Callable[..., None]
     outputs_tangent: Callable[..., None]
-    bindings: Callable[..., None]
     rates_pattern: Pattern
     outputs_pattern: Pattern
+
+    @cached_property
+    def bindings(self) -> Callable[..., None]:
+        """Every binding in order: the breakdown of forces."""
+        return _module(self.model, "bindings", bindings_text).bindings
 
 
 class _Printer(PythonCodePrinter):
@@ -115,11 +125,6 @@ def mangled(name: str) -> str:
     return f"{name}_"
 
 
-def _slope(name: str, variable: str) -> str:
-    """The name of d(name)/d(variable); the length keeps d(a)/d(b_c) apart from d(a_b)/d(c)."""
-    return f"d{len(name)}_{name}_{variable}"
-
-
 _HEADER = '''"""Generated from the equations of model {name!r}; do not edit."""
 import math
 from numba import njit
@@ -161,47 +166,60 @@ def _function(model: Model, name: str, wanted: Sequence[Binding]) -> list[str]:
     return [*lines.text, "    return", ""]
 
 
-def _derivatives(lines: _Lines, row: Row) -> dict[str, str]:
-    """Append the row's partials; return, for each base variable, the text of its total derivative."""
-    name = row.binding.name
-    factor = {}
-    for symbol, value in row.partials.items():
+def _factors(lines: _Lines, binding: Binding) -> dict[str, str]:
+    """Append the local partial derivatives of a binding; return the text of each, by symbol."""
+    name, texts = binding.name, {}
+    for symbol, value in partials(binding.expression).items():
         if value.is_number or value.is_Symbol:
-            factor[symbol] = lines.expression(value)
+            texts[symbol] = lines.expression(value)
         else:
-            factor[symbol] = f"q{len(name)}_{name}_{symbol}"
-            lines.assign(factor[symbol], value)
-    totals = {}
-    for z, terms in row.chain.items():
-        products = []
-        for symbol, is_binding in terms:
-            inner = _slope(symbol, z) if is_binding else ""
-            products.append("*".join(part for part in (factor[symbol], inner) if part and part != "1.0") or "1.0")
-        totals[z] = " + ".join(products)
-    return totals
+            texts[symbol] = f"q{len(name)}_{name}_{symbol}"
+            lines.assign(texts[symbol], value)
+    return texts
+
+
+def _product(left: str, right: str) -> str:
+    return "*".join(text for text in (left, right) if text != "1.0") or "1.0"
+
+
+def _adjoint_row(
+    lines: _Lines, row: int, seed: dict[str, str], needed: Sequence[Binding], local: dict[str, dict[str, str]]
+) -> dict[str, str]:
+    """Append the derivatives of one output by each binding, last to first; return those by states, inputs, parameters.
+
+    seed: derivatives of the output by the symbols of its own expression; local: those of each binding.
+    """
+    flow = {symbol: [text] for symbol, text in seed.items()}
+    for binding in reversed(needed):
+        terms = flow.pop(binding.name, [])
+        if not terms:
+            continue
+        total = terms[0]
+        if len(terms) > 1 or not total.isidentifier():
+            total = f"a{len(binding.name)}_{binding.name}_{row}"
+            lines.text.append(f"    {total} = {' + '.join(terms)}")
+        for symbol, text in local[binding.name].items():
+            flow.setdefault(symbol, []).append(_product(total, text))
+    return {symbol: " + ".join(terms) for symbol, terms in flow.items()}
 
 
 def _tangent(model: Model, name: str, wanted: Sequence[Binding]) -> tuple[list[str], list[tuple[int, int]]]:
     base = (*model.states, *model.input_names, *model.parameters.names)
     needed = _needed(model, wanted)
-    bound = {b.name for b in needed}
-    renamed = [
-        Binding(f"out{i}", sp.Symbol(b.name, real=True) if b.name in bound else b.expression)
-        for i, b in enumerate(wanted)
-    ]
     lines = _Lines(_signature(name, "TANGENT_SIGNATURE", "out, jac") + _unpack(model, [*needed, *wanted]))
+    local = {}
+    for b in needed:
+        lines.assign(mangled(b.name), b.expression)
+        local[b.name] = _factors(lines, b)
     pattern = []
-    for row in rows([*needed, *renamed], base):
-        target = row.binding.name
-        is_output = target.startswith("out") and row.binding in renamed
-        lines.assign(f"out[{target[3:]}]" if is_output else mangled(target), row.binding.expression)
-        for z, text in _derivatives(lines, row).items():
-            if is_output:
-                place = (int(target[3:]), base.index(z))
-                pattern.append(place)
-                lines.text.append(f"    jac[{place[0]}, {place[1]}] = {text}")
-            else:
-                lines.text.append(f"    {_slope(target, z)} = {text}")
+    for row, b in enumerate(wanted):
+        output = Binding(f"out{row}", sp.Symbol(b.name, real=True) if b.name in local else b.expression)
+        lines.assign(f"out[{row}]", output.expression)
+        slopes = _adjoint_row(lines, row, _factors(lines, output), needed, local)
+        for column, z in enumerate(base):
+            if z in slopes:
+                pattern.append((row, column))
+                lines.text.append(f"    jac[{row}, {column}] = {slopes[z]}")
     return [*lines.text, "    return", ""], pattern
 
 
@@ -216,12 +234,16 @@ def source_text(model: Model) -> str:
         *rates_tangent,
         *_function(model, "outputs", outputs),
         *outputs_tangent,
-        *_function(model, "bindings", model.bindings),
         f"RATES_PATTERN = {sorted(rates_pattern)}",
         f"OUTPUTS_PATTERN = {sorted(outputs_pattern)}",
         "",
     ]
     return _HEADER.format(name=model.name) + "\n".join(lines)
+
+
+def bindings_text(model: Model) -> str:
+    """The module of the breakdown of forces as text."""
+    return _HEADER.format(name=model.name) + "\n".join(_function(model, "bindings", model.bindings))
 
 
 def _written(text: str) -> Path:
@@ -246,15 +268,15 @@ def _load(path: Path) -> ModuleType:
     return module
 
 
-def _module(model: Model) -> ModuleType:
+def _module(model: Model, kind: str, text: Callable[[Model], str]) -> ModuleType:
     """The generated module; the index from equation hash to module spares generating the text again."""
     folder = cache_folder() / "generated"
-    index = folder / f"index_{_GENERATOR}_{model.equation_hash[:24]}.txt"
+    index = folder / f"{kind}_{_GENERATOR}_{model.equation_hash[:24]}.txt"
     if index.exists():
         path = folder / index.read_text(encoding="utf-8").strip()
         if path.exists():
             return _load(path)
-    path = _written(source_text(model))
+    path = _written(text(model))
     temporary = index.with_suffix(f".{os.getpid()}.tmp")
     temporary.write_text(path.name, encoding="utf-8")
     temporary.replace(index)
@@ -268,17 +290,17 @@ _GENERATOR = hashlib.sha256(
 
 def compiled(model: Model) -> Compiled:
     """Generate, load and compile the model's functions."""
-    module = _module(model)
+    module = _module(model, "index", source_text)
 
     def table(pairs: list[tuple[int, int]]) -> Pattern:
         return np.array(pairs, dtype=np.int64).reshape(-1, 2)
 
     return Compiled(
+        model,
         module.rates,
         module.rates_tangent,
         module.outputs,
         module.outputs_tangent,
-        module.bindings,
         table(module.RATES_PATTERN),
         table(module.OUTPUTS_PATTERN),
     )
