@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -79,7 +80,7 @@ def _search(problem: OutputError, shared: Array, local: Array, evaluations: int,
 
 def pieces(problem: OutputError, column: Array) -> list[Array]:
     """A column of rows split into its segments."""
-    return [column[a:b] for a, b in zip(problem.data.offsets[:-1], problem.data.offsets[1:], strict=True)]
+    return [column[a:b] for a, b in pairwise(problem.data.offsets)]
 
 
 def colour(made: Estimate) -> tuple[list[Array], Array]:

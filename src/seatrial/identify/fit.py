@@ -92,13 +92,14 @@ def _current(settings: Settings) -> tuple[tuple[str, Prior], ...]:
     return (("current_north", prior), ("current_east", prior))
 
 
-def _problem(model: Model, records: Sequence[Record], sessions: Sequence[str], seconds: float, settings: Settings) -> OutputError:
-    outputs = compared_outputs(model, records)
+def _problem(
+    model: Model, records: Sequence[Record], sessions: Sequence[str], seconds: float, settings: Settings
+) -> OutputError:
+    outputs = compared_outputs(model, records, settings.channels)
     data = cut(model, records, outputs, None if np.isinf(seconds) else seconds, sessions)
     spread = np.nanstd(data.measured, axis=0)
-    problem = OutputError(model, data, np.maximum(0.1 * spread, 1e-9), _nuisances(settings), _current(settings),
+    return OutputError(model, data, np.maximum(0.1 * spread, 1e-9), _nuisances(settings), _current(settings),
                           substeps=settings.substeps, workers=settings.workers)  # fmt: skip
-    return problem
 
 
 def _started(problem: OutputError, point: Array) -> Array:
@@ -129,8 +130,6 @@ def identified(
     if not model.parameters.free:
         raise InputError(f"model '{model.name}' has no free parameter; free some under [model]")
     refuse_without_excitation(model, records)
-    if settings.rate:
-        records = [r.resampled(settings.rate) for r in records]
     unit = ship_length_seconds(records, length)
     tell = progress or (lambda _: None)
     tell("weak-form start")
@@ -158,7 +157,9 @@ def identified(
         if whole is not None:
             made, criterion = whole, "output error over whole runs"
             rho, inflation = colour(made)
-            reasons.append("residuals within segments are white and stay so over whole runs: no process noise to guard against")
+            reasons.append(
+                "residuals within segments are white and stay so over whole runs: no process noise to guard against"
+            )
         else:
             reasons.append("whole runs do not fit within the noise of the segments")
     else:
@@ -170,10 +171,17 @@ def identified(
 
 
 def _whole(
-    made: Estimate, model: Model, records: Sequence[Record], sessions: Sequence[str], settings: Settings, progress: Progress | None
+    made: Estimate,
+    model: Model,
+    records: Sequence[Record],
+    sessions: Sequence[str],
+    settings: Settings,
+    progress: Progress | None,
 ) -> Estimate | None:
     """Whole runs from the segments' optimum, if their residuals are no larger (5 %) than within segments."""
-    problem = replace(_problem(model, records, sessions, np.inf, settings), noise=made.problem.noise, huber=made.problem.huber)
+    problem = replace(
+        _problem(model, records, sessions, np.inf, settings), noise=made.problem.noise, huber=made.problem.huber
+    )
     firsts = [int(np.flatnonzero(made.problem.data.run == r)[0]) for r in range(len(problem.data.runs))]
     local = made.optimum.local[firsts]
     if not np.isfinite(problem.cost(made.shared, local)):

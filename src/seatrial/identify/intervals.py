@@ -19,7 +19,7 @@ def intervals(made: Estimate, inflation: np.ndarray) -> Interval:
     blocks = problem.blocks(made.shared, made.optimum.local)
 
     def reduced(chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return problem.assembled(blocks, made.shared, chosen.tolist(), with_prior=False).reduced()
+        return problem.assembled(blocks, made.shared, chosen, with_prior=False).reduced()
 
     runs = [np.flatnonzero(problem.data.run == r) for r in range(len(problem.data.runs))]
     if len(runs) >= _RUNS_FOR_JACKKNIFE:

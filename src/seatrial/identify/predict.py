@@ -1,6 +1,5 @@
 """Open-loop prediction of a run: initial state from its first seconds, nothing else taken from it."""
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -8,12 +7,12 @@ import numpy as np
 from seatrial.equations import Model
 from seatrial.manoeuvres import measures
 from seatrial.optimise import levenberg_marquardt
-from seatrial.problem.output_error import Nuisance, OutputError
+from seatrial.problem.output_error import OutputError
 from seatrial.problem.segments import cut
 from seatrial.results import Measure, Prediction
 from seatrial.simulate.batch import Batch
 from seatrial.simulate.channels import record_of
-from seatrial.values import Array, InputError, Prior, Record
+from seatrial.values import Array, InputError, Record
 
 
 def _problem(template: OutputError, model: Model, record: Record, own: Array, outputs: tuple[str, ...]) -> OutputError:
@@ -47,7 +46,9 @@ def open_loop(template: OutputError, model: Model, record: Record, own: Array, s
     y, failed = batch.simulate(0, 1, x0, values, corrections)
     if failed[0] >= 0:
         when = record.time[0] + failed[0] * record.dt
-        raise InputError(f"the simulation of run '{record.name}' diverges at {when:.4g} s; check the coefficients and bounds")
+        raise InputError(
+            f"the simulation of run '{record.name}' diverges at {when:.4g} s; check the coefficients and bounds"
+        )
     nx = len(model.states)
     return record_of(model, record.name, record.time, y[:, :nx], y[:, nx:], problem.data.inputs)
 
@@ -81,13 +82,5 @@ def prediction(
 
 def session_means(template: OutputError, shared: Array) -> Array:
     """Mean of each nuisance over the training sessions: what an unseen session is given."""
-    own = shared[len(template.free) :].reshape(-1, template.kinds)
+    own = shared[len(template.free) :].reshape(len(template.data.sessions), template.kinds)
     return own.mean(axis=0)
-
-
-def nuisance(input_name: str, kind: str, spread: float, unit: str, scales: Mapping[str, float]) -> Nuisance:
-    """A nuisance with zero-mean prior (mean one for a gain)."""
-    from seatrial.simulate.batch import InputCorrection
-
-    del scales
-    return Nuisance(InputCorrection(input_name, kind), Prior(1.0 if kind == "gain" else 0.0, spread, "house default"), unit)

@@ -24,7 +24,7 @@ class Settings:
 
     Attributes:
         segment_seconds: length of multiple-shooting segments; infinite for whole runs.
-        rate: Hz at which records are compared; None keeps their own.
+        channels: observables that are compared; empty: all that the records hold.
         robust: Huber loss.
         noise: known standard deviations by channel, SI; others are estimated.
         corrections: nuisances estimated once a session: (input, kind, prior standard deviation SI, unit).
@@ -34,7 +34,7 @@ class Settings:
     """
 
     segment_seconds: float | None = None
-    rate: float | None = None
+    channels: tuple[str, ...] = ()
     robust: bool | None = None
     noise: dict[str, float] = field(default_factory=dict)
     corrections: tuple[tuple[str, str, float, str], ...] = ()

@@ -23,6 +23,8 @@ def weak_start(model: Model, records: Sequence[Record], seconds: float, rounds: 
     for _ in range(rounds):
         residual = problem.linearised(point)[0]
         spread = np.sqrt(np.mean(residual**2, axis=0))
-        problem = replace(problem, spread=np.maximum(spread, 1e-9 * np.max(np.abs(np.concatenate(states)), axis=0) + 1e-300))
+        problem = replace(
+            problem, spread=np.maximum(spread, 1e-9 * np.max(np.abs(np.concatenate(states)), axis=0) + 1e-300)
+        )
         point = levenberg_marquardt(problem, point, np.zeros((0, 0)), evaluations=30).solution.point
     return point

@@ -35,6 +35,9 @@ def measured_states(model: Model, record: Record) -> Array:
         found.setdefault(unused, np.zeros(len(record)))
     missing = [s for s in model.states if s not in found]
     if missing:
-        raise InputError(f"record '{record.name}' neither holds nor implies '{missing[0]}', which model '{model.name}' needs; add the channel")
+        raise InputError(
+            f"record '{record.name}' neither holds nor implies '{missing[0]}', "
+            f"which model '{model.name}' needs; add the channel"
+        )
     columns = np.stack([found[s] for s in model.states], axis=1)
     return np.ascontiguousarray(np.where(np.isfinite(columns), columns, 0.0))

@@ -58,7 +58,7 @@ def one_step_jackknife(hessian: Array, run_gradients: Array, run_hessians: Array
 
 def sandwich(hessian: Array, block_gradients: Array) -> Interval:
     """H^-1 (sum g g') H^-1 over blocks longer than the residuals' memory (Huber 1967; White 1982)."""
-    count, size = block_gradients.shape
+    count = len(block_gradients)
     bread = inverse(hessian)
     factor = count / max(count - 1, 1)
     covariance = bread @ (factor * block_gradients.T @ block_gradients) @ bread

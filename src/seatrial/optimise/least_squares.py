@@ -9,8 +9,11 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatrial.optimise.solution import Array, Solution, Status
+
+Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,9 +47,15 @@ class LeastSquares(Protocol):
     """What the optimiser asks of a problem; `local` has shape (s, m), possibly with m = 0."""
 
     @property
-    def lower(self) -> Array: ...
+    def lower(self) -> Array:
+        """Lower bounds of the shared unknowns."""
+        ...
+
     @property
-    def upper(self) -> Array: ...
+    def upper(self) -> Array:
+        """Upper bounds of the shared unknowns."""
+        ...
+
     def cost(self, shared: Array, local: Array) -> float:
         """Half the sum of squares; infinite where the model cannot be evaluated."""
         ...
@@ -72,12 +81,13 @@ def _guarded(blocks: Array) -> Array:
     return blocks + np.einsum("si,ij->sij", ridge, np.eye(blocks.shape[1]))
 
 
-def _step(normal: Normal, damping: float, held: Array) -> tuple[Array, Array]:
+def _step(normal: Normal, damping: float, held: Mask) -> tuple[Array, Array]:
     """The damped Gauss-Newton step; `held` marks shared unknowns kept at their bounds."""
     diagonal = np.diag(normal.hessian).copy()
     diagonal[diagonal <= 0] = 1.0
     hessian = normal.hessian + damping * np.diag(diagonal)
     gradient = normal.gradient.copy()
+    solved = np.zeros((len(normal.local_gradient), 0, len(gradient) + 1))
     if normal.local_gradient.size:
         local = _guarded(normal.local_hessian)
         local = local + damping * np.einsum("sii,ij->sij", local, np.eye(local.shape[1]))

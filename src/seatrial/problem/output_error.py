@@ -4,15 +4,15 @@ Whole runs give the classical output-error method (Maine & Iliff 1985), pieces o
 (Bock 1981) without continuity constraints, the remedy for nearly unstable ships.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
 from seatrial.equations import Model
 from seatrial.optimise import Normal
-from seatrial.problem.segments import Segments
+from seatrial.problem.segments import Index, Segments
 from seatrial.simulate.batch import Batch, InputCorrection
 from seatrial.values import Array, Prior
 from seatrial.workers import mapped
@@ -91,12 +91,12 @@ class OutputError:
         edge[: len(self.free)] = [getattr(self.model.parameters[n], side) for n in self.free]
         return edge
 
-    @cached_property
+    @property
     def lower(self) -> Array:
         """Lower bounds of the shared unknowns."""
         return self._bound("lower")
 
-    @cached_property
+    @property
     def upper(self) -> Array:
         """Upper bounds of the shared unknowns."""
         return self._bound("upper")
@@ -124,12 +124,12 @@ class OutputError:
         return np.concatenate([np.arange(len(self.free)), own + np.arange(self.kinds)])
 
     def measured_starts(self) -> Array:
-        """Initial states from each segment's first measured samples, shape (segments, len(starts)); zero if unmeasured."""
+        """Initial states from each segment's first measured samples, (segments, len(starts)); zero if unmeasured."""
         local = np.zeros((self.data.count, len(self.starts)))
         for m, state in enumerate(self.starts):
             if state in self.data.outputs:
                 column = self.data.measured[:, self.data.outputs.index(state)]
-                for s, (a, b) in enumerate(zip(self.data.offsets[:-1], self.data.offsets[1:], strict=True)):
+                for s, (a, b) in enumerate(pairwise(self.data.offsets)):
                     good = np.flatnonzero(np.isfinite(column[a:b]))
                     if len(good):
                         local[s, m] = column[a + good[0]]
@@ -213,12 +213,11 @@ class OutputError:
 
     def normal(self, shared: Array, local: Array) -> Normal:
         """The Gauss-Newton model at a point."""
-        return self.assembled(self.blocks(shared, local), shared, range(self.data.count), with_prior=True)
+        return self.assembled(self.blocks(shared, local), shared, np.arange(self.data.count), with_prior=True)
 
-    def assembled(self, blocks: "SegmentNormals", shared: Array, chosen: Sequence[int], *, with_prior: bool) -> Normal:
+    def assembled(self, blocks: "SegmentNormals", shared: Array, chosen: Index, *, with_prior: bool) -> Normal:
         """The normal equations of some segments (all for the fit, those of one run for the jackknife)."""
         n, gradient, hessian = blocks.shared, np.zeros(self.size), np.zeros((self.size, self.size))
-        chosen = np.asarray(chosen)
         cross = np.zeros((len(chosen), self.size, blocks.gradients.shape[1] - n))
         for session in np.unique(self.data.session[chosen]):
             inside = np.flatnonzero(self.data.session[chosen] == session)

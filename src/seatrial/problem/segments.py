@@ -2,13 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from seatrial.equations import Model
 from seatrial.simulate.channels import inputs_of
-from seatrial.values import Array, InputError, Record
+from seatrial.values import Array, InputError, Record, nearest
 
 Index = NDArray[np.int64]
 
@@ -39,16 +40,19 @@ class Segments:
         return len(self.run)
 
 
-def compared_outputs(model: Model, records: Sequence[Record]) -> tuple[str, ...]:
-    """Observables of the model that at least one record holds.
+def compared_outputs(model: Model, records: Sequence[Record], wanted: Sequence[str] = ()) -> tuple[str, ...]:
+    """Observables of the model that at least one record holds; only the wanted ones where some are named.
 
     Raises:
-        InputError: there is none.
+        InputError: there is none, or a wanted one is no observable of the model or in no record.
     """
     found = tuple(o for o in model.observables if any(o in r for r in records))
+    for name in wanted:
+        if name not in found:
+            raise InputError(f"channel '{name}' cannot be compared{nearest(name, list(found))}")
     if not found:
         raise InputError(f"no record holds any output of model '{model.name}': {', '.join(model.observables)}")
-    return found
+    return tuple(o for o in found if not wanted or o in wanted)
 
 
 def _bounds(rows: int, length: int) -> list[tuple[int, int]]:
@@ -56,7 +60,7 @@ def _bounds(rows: int, length: int) -> list[tuple[int, int]]:
     steps = rows - 1
     pieces = max(1, round(steps / length))
     edges = np.linspace(0, steps, pieces + 1).round().astype(int)
-    return [(int(a), int(b) + 1) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    return [(int(a), int(b) + 1) for a, b in pairwise(edges)]
 
 
 def cut(
@@ -77,7 +81,9 @@ def cut(
     inputs, measured, lengths, runs = [], [], [], []
     for index, record in enumerate(records):
         if abs(record.dt - dt) > 1e-3 * dt:
-            raise InputError(f"record '{record.name}' has a time step of {record.dt:g} s, the first one {dt:g} s; give one rate")
+            raise InputError(
+                f"record '{record.name}' has a time step of {record.dt:g} s, the first one {dt:g} s; give one rate"
+            )
         if len(record) < 3:
             raise InputError(f"record '{record.name}' has {len(record)} samples; at least three are needed")
         u = inputs_of(model, record)

@@ -66,7 +66,7 @@ class Batch:
         return np.array([self.model.observables.index(o) for o in self.outputs], dtype=np.int64)
 
     @cached_property
-    def _links(self) -> tuple[Index, ...]:
+    def _links(self) -> tuple[Index, Index, Index, Index, Index, Index]:
         compiled = self.model.compiled
         return (*self._linked(compiled.rates_pattern), *self._linked(compiled.outputs_pattern))
 
@@ -93,7 +93,9 @@ class Batch:
             made[c.kind][:, self.model.input_names.index(c.input)] = corrections[:, m]
         return made["gain"], made["zero"], made["delay"]
 
-    def simulate(self, first: int, last: int, start: Array, parameters: Array, corrections: Array) -> tuple[Array, Index]:
+    def simulate(
+        self, first: int, last: int, start: Array, parameters: Array, corrections: Array
+    ) -> tuple[Array, Index]:
         """Outputs of segments first..last: shapes (rows, ny), and the sample of failure or -1, (segments,).
 
         start (segments, nx), parameters (segments, np) all of the model's, corrections (segments, n): for all segments.
@@ -126,8 +128,11 @@ class Batch:
     def _piece(self, first: int, last: int) -> tuple[Index, Array, Index, Array]:
         rows = slice(self.offsets[first], self.offsets[last])
         offsets = np.ascontiguousarray(self.offsets[first : last + 1] - self.offsets[first])
-        return offsets, self.inputs[rows], np.full(last - first, -1, dtype=np.int64), np.empty(
-            (rows.stop - rows.start, len(self.outputs))
+        return (
+            offsets,
+            self.inputs[rows],
+            np.full(last - first, -1, dtype=np.int64),
+            np.empty((rows.stop - rows.start, len(self.outputs))),
         )
 
     def influential_states(self) -> tuple[str, ...]:

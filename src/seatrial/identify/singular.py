@@ -1,0 +1,41 @@
+"""Directions in parameter space that the records cannot tell, named before anybody prints a number for them."""
+
+import numpy as np
+
+from seatrial.values import Array, InputError
+
+_SINGULAR = 1e-11
+
+
+def weakest(hessian: Array, names: tuple[str, ...], values: Array) -> tuple[float, str]:
+    """Relative curvature along the weakest direction and the direction in words, e.g. ``0.71 m_x - 0.70 X_uu``.
+
+    The Hessian is scaled to unit diagonal; a parameter without any influence gives curvature 0 and is named alone.
+    """
+    diagonal = np.diag(hessian)
+    size = np.maximum(np.abs(values), 1e-3)
+    silent = np.flatnonzero(diagonal * size**2 <= 1e-14 * np.max(diagonal * size**2))
+    if len(silent):
+        return 0.0, names[int(silent[0])]
+    scale = 1.0 / np.sqrt(diagonal)
+    curvature, vectors = np.linalg.eigh(hessian * scale[:, None] * scale[None, :])
+    direction = vectors[:, 0] * scale / size
+    direction = direction / np.linalg.norm(direction)
+    order = [i for i in np.argsort(-np.abs(direction)) if abs(direction[i]) > 0.1][:6]
+    sign = np.sign(direction[order[0]])
+    terms = [f"{sign * direction[i]:+.2f} {names[i]}" for i in order]
+    return float(curvature[0] / curvature[-1]), " ".join(terms).lstrip("+")
+
+
+def refuse_singular(hessian: Array, names: tuple[str, ...], values: Array) -> None:
+    """Refuse a problem with an exactly free direction.
+
+    Raises:
+        InputError: the direction that cannot be told, and what to do.
+    """
+    curvature, direction = weakest(hessian, names, values)
+    if curvature < _SINGULAR:
+        raise InputError(
+            f"the records cannot tell the direction {direction} (relative change of each parameter): moving along it "
+            "changes no output; fix one of these parameters under [model.fixed], or give it a prior"
+        )

@@ -1,0 +1,97 @@
+"""A study: a published paper worked through again, its claims judged. Plain values only."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from seatrial.results.fit import Prediction
+from seatrial.values import Array, Finding
+
+
+class Verdict(StrEnum):
+    """What became of a claim."""
+
+    CONFIRMED = "confirmed"
+    REFUTED = "refuted"
+    UNKNOWABLE = "unknowable"
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table to print.
+
+    Attributes:
+        header: one entry for each column, with its unit.
+        rows: text or numbers in the header's units; None prints as a dash.
+        note: one sentence below it.
+    """
+
+    title: str
+    header: tuple[str, ...]
+    rows: tuple[tuple[str | float | None, ...], ...]
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A statement of the paper, the verdict on it and the numbers the verdict rests on."""
+
+    claim: str
+    verdict: Verdict
+    evidence: str
+
+
+@dataclass(frozen=True)
+class Check:
+    """A number held against a limit; `limit` is a number (not to be exceeded) or a range in words."""
+
+    name: str
+    value: float
+    limit: float | str
+    holds: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """One curve of a figure: x and y of the same shape (n,)."""
+
+    name: str
+    x: Array
+    y: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Figure:
+    """Curves over one pair of axes, labels with units; `is_map` for equal scales (tracks)."""
+
+    title: str
+    x_label: str
+    y_label: str
+    curves: tuple[Curve, ...]
+    note: str = ""
+    is_map: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """Everything the page of a study shows.
+
+    Attributes:
+        name: as in ``seatrial reproduce NAME``.
+        citation: the paper, with doi.
+        predictions: measured runs beside simulated ones, as in a fit.
+        seed, elapsed_s, versions: how to get the same again.
+    """
+
+    name: str
+    title: str
+    citation: str
+    question: str
+    tables: tuple[Table, ...]
+    claims: tuple[Claim, ...]
+    checks: tuple[Check, ...]
+    seed: int
+    elapsed_s: float
+    versions: dict[str, str]
+    figures: tuple[Figure, ...] = ()
+    predictions: tuple[Prediction, ...] = ()
+    findings: tuple[Finding, ...] = ()
