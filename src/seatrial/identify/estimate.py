@@ -13,6 +13,9 @@ from seatrial.values import Array
 
 Progress = Callable[[str], None]
 
+_NEGLIGIBLE = 1e-8
+_ROUNDING = 1e-9
+
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
@@ -34,7 +37,8 @@ class Estimate:
 def residual_spread(problem: OutputError, residuals: Array) -> Array:
     """Noise of each channel from its residuals, with the unknowns' degrees of freedom, shape (ny,).
 
-    With a robust loss the spread is that of the bulk (median absolute deviation), otherwise the rms.
+    With a robust loss the spread is that of the bulk (median absolute deviation), otherwise the rms. It never falls
+    below `rounding_level`.
     """
     count = np.isfinite(residuals).sum(axis=0)
     unknowns = problem.size + problem.data.count * len(problem.starts)
@@ -43,8 +47,12 @@ def residual_spread(problem: OutputError, residuals: Array) -> Array:
         spread = 1.4826 * np.nanmedian(np.abs(residuals), axis=0)
     else:
         spread = np.sqrt(np.nanmean(residuals**2, axis=0))
-    size = np.nanmax(np.abs(problem.data.measured), axis=0)
-    return np.maximum(spread / np.sqrt(freedom), 1e-12 * np.maximum(size, 1e-6))
+    return np.maximum(spread / np.sqrt(freedom), rounding_level(problem))
+
+
+def rounding_level(problem: OutputError) -> Array:
+    """Noise below which a channel counts as free of noise, 1e-9 of its largest value, shape (ny,), SI."""
+    return _ROUNDING * np.maximum(np.nanmax(np.abs(problem.data.measured), axis=0), 1e-6)
 
 
 def estimate(
@@ -75,7 +83,8 @@ def _search(problem: OutputError, shared: Array, local: Array, evaluations: int,
         if progress:
             progress(f"{problem.data.count} segments, evaluation {count}: {cost:.6g}")
 
-    return Estimate(problem, levenberg_marquardt(problem, shared, local, evaluations=evaluations, progress=tell))
+    found = levenberg_marquardt(problem, shared, local, negligible=_NEGLIGIBLE, evaluations=evaluations, progress=tell)
+    return Estimate(problem, found)
 
 
 def pieces(problem: OutputError, column: Array) -> list[Array]:
@@ -84,9 +93,13 @@ def pieces(problem: OutputError, column: Array) -> list[Array]:
 
 
 def colour(made: Estimate) -> tuple[list[Array], Array]:
-    """Autocorrelation of each channel's residuals within segments, and its variance inflation, shape (ny,)."""
+    """Autocorrelation of each channel's residuals within segments, and its variance inflation, shape (ny,).
+
+    Residuals of the size of rounding count as white (inflation 1): their colour says nothing about the ship.
+    """
     residuals = made.residuals()
     longest = int(np.max(np.diff(made.problem.data.offsets)))
     lags = min(longest // 2, 400)
     rho = [autocorrelation(pieces(made.problem, residuals[:, i]), lags) for i in range(residuals.shape[1])]
-    return rho, np.array([variance_inflation(r) for r in rho])
+    silent = made.problem.noise <= rounding_level(made.problem)
+    return rho, np.where(silent, 1.0, [variance_inflation(r) for r in rho])
