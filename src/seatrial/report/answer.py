@@ -1,0 +1,112 @@
+"""The answer in words: what was asked, what was fitted, how well held-out runs are predicted, what to mind."""
+
+from seatrial.report.numbers import duration, fixed, significant
+from seatrial.report.words import counted, listed
+from seatrial.results import Coefficient, Fit, Prediction
+from seatrial.values import Severity
+
+WHITE = 0.01
+
+
+def facts(fit: Fit) -> list[tuple[str, str]]:
+    """Ship, model and records as pairs of name and text."""
+    ship, trained, held = fit.ship, _with_role(fit, "training"), fit.validation()
+    scale = f", model scale 1:{significant(ship.scale, 4)}" if ship.scale != 1.0 else ""
+    length = f", L = {significant(ship.length, 4)} m" if "L" in ship.particulars else ""
+    free = sum(not c.fixed for c in fit.coefficients)
+    seconds = sum(p.measured.duration for p in trained)
+    return [
+        ("Ship", f"{ship.name}{length}{scale}"),
+        ("Model", f"{fit.model.name}, {counted(free, 'free coefficient')} of {len(fit.coefficients)}"),
+        ("Fitted to", f"{counted(len(trained), 'run')}, {duration(seconds)} of records"),
+        ("Held out", listed([p.record for p in held]) if held else "no run"),
+        ("Method", fit.method.criterion),
+    ]
+
+
+def sentences(fit: Fit) -> list[str]:
+    """The answer, most important first."""
+    told = [*_held_out(fit), _coefficients(fit), _truth(fit), _residuals(fit), _convergence(fit), _warnings(fit)]
+    return [sentence for sentence in told if sentence]
+
+
+def _with_role(fit: Fit, role: str) -> list[Prediction]:
+    return [p for p in fit.predictions if p.role == role]
+
+
+def _held_out(fit: Fit) -> list[str]:
+    held = fit.validation()
+    if not held:
+        return ["No run was held out: what follows shows how the model fits, not how it predicts."]
+    return [_predicted(p, fit) for p in held[:4]] + (
+        [f"{counted(len(held) - 4, 'further held-out run')} in the table."] if len(held) > 4 else []
+    )
+
+
+def _predicted(p: Prediction, fit: Fit) -> str:
+    parts = []
+    if "psi_deg" in p.rms:
+        parts.append(f"{significant(p.rms['psi_deg'], 2)}° in heading")
+    if "position_m" in p.rms:
+        length = fit.ship.particulars.get("L", 0.0)
+        share = f" ({significant(p.rms['position_m'] / length, 2)} L)" if length > 0 else ""
+        parts.append(f"{significant(p.rms['position_m'], 2)} m in position{share}")
+    if not parts and "r" in p.rms:
+        parts.append(f"{significant(p.rms['r'] * 57.29578, 2)} deg/s in yaw rate")
+    said = f"{p.record}, not fitted, is predicted open loop over {duration(p.measured.duration)}"
+    return said + (f" with errors of {listed(parts)} (rms)." if parts else ".") + _first_measures(p)
+
+
+def _first_measures(p: Prediction) -> str:
+    known = {"overshoot_1_deg": ("first overshoot", "°", 1), "advance_L": ("advance", " L", 2),
+             "tactical_diameter_L": ("tactical diameter", " L", 2)}  # fmt: skip
+    told = []
+    for name, (label, unit, decimals) in known.items():
+        m = p.measures.get(name)
+        if m is not None and m.measured is not None and m.simulated is not None:
+            told.append(f"{label} {fixed(m.simulated, decimals)}{unit}, measured {fixed(m.measured, decimals)}{unit}")
+    return f" Simulated {'; '.join(told)}." if told else ""
+
+
+def _free(fit: Fit) -> list[Coefficient]:
+    return [c for c in fit.coefficients if not c.fixed]
+
+
+def _coefficients(fit: Fit) -> str:
+    free = _free(fit)
+    vague = [c.name for c in free if c.lower is not None and c.upper is not None and c.lower < 0 < c.upper]
+    if not vague:
+        return f"All {len(free)} free coefficients differ from zero at the 95 % level."
+    return (
+        f"{len(vague)} of {len(free)} free coefficients cannot be told from zero at the 95 % level "
+        f"({listed(vague)})."
+    )
+
+
+def _truth(fit: Fit) -> str:
+    known = [c for c in _free(fit) if c.truth is not None and c.lower is not None and c.upper is not None]
+    if not known:
+        return ""
+    inside = [c for c in known if c.lower <= c.truth <= c.upper]  # type: ignore[operator]
+    return f"{len(inside)} of {len(known)} 95 % intervals contain the known value of the coefficient."
+
+
+def _residuals(fit: Fit) -> str:
+    if not fit.noise:
+        return ""
+    coloured = [n.channel for n in fit.noise if n.whiteness_p < WHITE]
+    if not coloured:
+        return "The residuals are white in all channels: the model leaves nothing but noise."
+    return (
+        f"The residuals are coloured in {len(coloured)} of {len(fit.noise)} channels ({listed(coloured)}): model error or "
+        "disturbances remain. The intervals allow for their correlation."
+    )
+
+
+def _convergence(fit: Fit) -> str:
+    return "" if fit.solution.status.is_success else f"The search did not converge: {fit.solution.status.value}."
+
+
+def _warnings(fit: Fit) -> str:
+    codes = list(dict.fromkeys(f.code for f in fit.findings if f.severity is not Severity.INFO))
+    return f"The checks warn of: {listed(codes)} (see Findings)." if codes else "The checks found nothing to warn of."

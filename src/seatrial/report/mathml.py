@@ -1,0 +1,185 @@
+"""LaTeX of formulas as MathML, which browsers draw without any script; long sums may break at their signs.
+
+Knows what SymPy and the equations' own symbols write: fractions, roots, scripts, primes, fences, functions, cases.
+"""
+
+import html
+import re
+from collections.abc import Callable
+
+_TOKEN = re.compile(r"\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|\s+|.", re.DOTALL)
+_LETTERS = {
+    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "varepsilon": "ε", "zeta": "ζ", "eta": "η",
+    "theta": "θ", "kappa": "κ", "lambda": "λ", "mu": "μ", "nu": "ν", "xi": "ξ", "pi": "π", "rho": "ρ", "sigma": "σ",
+    "tau": "τ", "phi": "φ", "varphi": "φ", "chi": "χ", "psi": "ψ", "omega": "ω", "Gamma": "Γ", "Delta": "Δ",
+    "Lambda": "Λ", "Phi": "Φ", "Psi": "Ψ", "Omega": "Ω", "infty": "∞", "nabla": "∇",
+}  # fmt: skip
+_OPERATORS = {
+    "cdot": "·", "times": "×", "leq": "≤", "geq": "≥", "le": "≤", "ge": "≥", "neq": "≠", "ne": "≠", "wedge": "∧",
+    "vee": "∨", "pm": "±",
+}  # fmt: skip
+_FENCES = {
+    r"\{": "{", r"\}": "}", ".": "", r"\lvert": "|", r"\rvert": "|", r"\lfloor": "⌊", r"\rfloor": "⌋",
+    r"\lceil": "⌈", r"\rceil": "⌉", r"\|": "‖",
+}  # fmt: skip
+_ACCENTS = {"dot": "˙", "ddot": "¨", "bar": "¯", "hat": "^", "tilde": "~"}
+_WORDS = {"mathrm", "operatorname", "text", "mathit", "mathbf"}
+_SPACES = {r"\,", r"\:", r"\;", r"\ ", r"\quad", r"\!"}
+
+Pieces = list[str]
+
+
+def pieces(latex: str) -> Pieces:
+    """The formula as MathML elements between which a line may break; unreadable LaTeX as plain text."""
+    try:
+        return [f"<math>{piece}</math>" for piece in _Reader(latex).row(lambda _: False)]
+    except (IndexError, StopIteration):
+        return [f"<code>{html.escape(latex)}</code>"]
+
+
+def inline(latex: str) -> str:
+    """The formula as one MathML element."""
+    return "".join(pieces(latex)).replace("</math><math>", "")
+
+
+def _joined(parts: Pieces) -> str:
+    body = "".join(parts)
+    return f"<mrow>{body}</mrow>"
+
+
+def _appended(left: Pieces, right: Pieces) -> Pieces:
+    return [*left[:-1], left[-1] + right[0], *right[1:]]
+
+
+class _Reader:
+    """Reads tokens from left to right; every method returns pieces of MathML."""
+
+    def __init__(self, latex: str) -> None:
+        self.tokens: list[str] = _TOKEN.findall(latex.strip())
+        self.at = 0
+
+    def row(self, ends: Callable[[str], bool]) -> Pieces:
+        made: Pieces = [""]
+        spaced = False
+        while self.at < len(self.tokens) and not ends(self.tokens[self.at]):
+            token = self.tokens[self.at]
+            if token.isspace():
+                self.at += 1
+                spaced = made[-1] != "" and not made[-1].endswith("</mo>")
+                continue
+            if token in ("+", "-"):
+                self.at += 1
+                sign = "<mo>+</mo>" if token == "+" else "<mo>−</mo>"
+                made = [*made, sign] if made[-1] and not made[-1].endswith("=</mo>") else _appended(made, [sign])
+            else:
+                part = self.scripted()
+                space = '<mspace width="0.17em"></mspace>' if spaced and not part[0].startswith("<mo") else ""
+                made = _appended(made, [space + part[0], *part[1:]])
+            spaced = False
+        return made
+
+    def scripted(self) -> Pieces:
+        """An atom with what hangs on it: primes, exponents, indices."""
+        base = self.atom()
+        upper, lower = "", ""
+        while self.at < len(self.tokens) and self.tokens[self.at] in ("^", "_", "'"):
+            token = self.tokens[self.at]
+            self.at += 1
+            if token == "'":
+                upper += "<mo>′</mo>"
+            elif token == "^":
+                upper += _joined(self.argument())
+            else:
+                lower = _joined(self.argument())
+        if not upper and not lower:
+            return base
+        body = base[0] if len(base) == 1 else _joined(base)
+        body = body if body.count("<") == 2 else f"<mrow>{body}</mrow>"
+        if upper and lower:
+            return [f"<msubsup>{body}{lower}<mrow>{upper}</mrow></msubsup>"]
+        return [f"<msup>{body}<mrow>{upper}</mrow></msup>" if upper else f"<msub>{body}{lower}</msub>"]
+
+    def argument(self) -> Pieces:
+        """The next group in braces, or the next atom."""
+        while self.tokens[self.at].isspace():
+            self.at += 1
+        return self.atom()
+
+    def atom(self) -> Pieces:
+        token = self.tokens[self.at]
+        self.at += 1
+        if token == "{":
+            inner = self.row(lambda t: t == "}")
+            self.at += 1
+            return inner
+        if token.startswith("\\"):
+            return self.command(token)
+        if token[0].isdigit():
+            return [f"<mn>{token}</mn>"]
+        if token.isalpha():
+            return [f"<mi>{html.escape(token)}</mi>"]
+        return [f'<mo stretchy="false">{html.escape(token)}</mo>']
+
+    def command(self, token: str) -> Pieces:
+        name = token[1:]
+        if name in _LETTERS:
+            return [f"<mi>{_LETTERS[name]}</mi>"]
+        if name in _OPERATORS:
+            return [f"<mo>{_OPERATORS[name]}</mo>"]
+        if name in ("frac", "dfrac", "tfrac"):
+            return [f"<mfrac>{_joined(self.argument())}{_joined(self.argument())}</mfrac>"]
+        if name == "sqrt":
+            return [f"<msqrt>{_joined(self.argument())}</msqrt>"]
+        if name in _ACCENTS:
+            return [f'<mover accent="true">{_joined(self.argument())}<mo>{_ACCENTS[name]}</mo></mover>']
+        if name in _WORDS:
+            return [f'<mi mathvariant="normal">{self.word()}</mi>']
+        if name == "left":
+            return self.fenced()
+        if name == "begin":
+            return self.cases()
+        if token in _SPACES:
+            return ['<mspace width="0.3em"></mspace>']
+        if token in _FENCES:
+            return [f'<mo stretchy="false">{_FENCES[token]}</mo>']
+        return [f"<mi>{html.escape(name)}</mi>"]
+
+    def word(self) -> str:
+        """The letters of the next group, as they stand."""
+        self.at += 1
+        start = self.at
+        while self.tokens[self.at] != "}":
+            self.at += 1
+        self.at += 1
+        letters = [_LETTERS.get(t[1:], t) for t in self.tokens[start : self.at - 1]]
+        return html.escape("".join(letters)).replace("\\", "")
+
+    def fenced(self) -> Pieces:
+        r"""From after \left to after \right and its fence."""
+        opening = self.fence()
+        inner = self.row(lambda t: t == r"\right")
+        self.at += 1
+        closing = self.fence()
+        whole = _appended(_appended([opening], inner), [closing])
+        return whole if "|" not in opening else [_joined(whole)]
+
+    def fence(self) -> str:
+        token = self.tokens[self.at]
+        self.at += 1
+        text = html.escape(_FENCES.get(token, token))
+        return f'<mo stretchy="true" fence="true">{text}</mo>' if text else ""
+
+    def cases(self) -> Pieces:
+        r"""A table of rows ended by \\ and columns by &, from after \begin to after \end{…}."""
+        self.word()
+        rows, cells = [], []
+        while True:
+            cells.append(_joined(self.row(lambda t: t in ("&", r"\\", r"\end"))))
+            ended = self.tokens[self.at]
+            self.at += 1
+            if ended != "&":
+                rows.append("<mtr>" + "".join(f'<mtd style="text-align:left">{c}</mtd>' for c in cells) + "</mtr>")
+                cells = []
+            if ended == r"\end":
+                self.word()
+                return ['<mrow><mo stretchy="true">{</mo><mtable>' + "".join(rows) + "</mtable></mrow>"]

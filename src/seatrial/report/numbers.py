@@ -1,0 +1,87 @@
+"""Numbers as people read them: digits from the standard error, true minus signs, thin spaces, powers of ten."""
+
+import math
+from dataclasses import dataclass
+
+MINUS, THIN, DASH = "\u2212", "\u202f", "\u2013"
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+LARGEST, SMALLEST = 1e7, 1e-4
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A value with its standard error and interval as text; `power` is their common factor, mostly empty."""
+
+    value: str
+    error: str
+    lower: str
+    upper: str
+    power: str = ""
+
+
+def fixed(value: float | None, decimals: int) -> str:
+    """A number with so many decimals (negative: rounded to tens, hundreds, …); a dash where there is none."""
+    if value is None or not math.isfinite(value):
+        return DASH
+    rounded = round(value, decimals) + 0.0
+    text = f"{abs(rounded):,.{max(decimals, 0)}f}".replace(",", THIN)
+    return (MINUS if rounded < 0 else "") + text
+
+
+def significant(value: float | None, digits: int = 3) -> str:
+    """A number with so many significant digits, trailing zeros kept; powers of ten where it is long."""
+    if value is None or not math.isfinite(value):
+        return DASH
+    if value == 0:
+        return "0"
+    exponent = _exponent(value, digits)
+    if SMALLEST <= abs(value) < LARGEST:
+        return fixed(value, digits - 1 - exponent)
+    return fixed(value / 10.0**exponent, digits - 1) + power_of_ten(exponent)
+
+
+def exact(value: float | None, digits: int = 6) -> str:
+    """A given value as somebody wrote it: up to `digits` significant digits, no trailing zeros."""
+    text = significant(value, digits)
+    mantissa, times, power = text.partition(THIN + "×")
+    if "." in mantissa:
+        mantissa = mantissa.rstrip("0").rstrip(".")
+    return mantissa + times + power
+
+
+def estimate(value: float, error: float | None, lower: float | None, upper: float | None) -> Estimate:
+    """Value, standard error and interval with the decimals of the error's second significant digit."""
+    if error is None or not math.isfinite(error) or error <= 0 or not math.isfinite(value):
+        return Estimate(exact(value), significant(error, 2), significant(lower), significant(upper))
+    largest = max(abs(value), error)
+    power = 0 if SMALLEST * 10 <= largest < LARGEST else _exponent(largest, 2)
+    factor = 10.0**power
+    decimals = 1 - _exponent(error / factor, 2)
+    texts = [fixed(None if x is None else x / factor, decimals) for x in (value, error, lower, upper)]
+    return Estimate(*texts, power_of_ten(power) if power else "")
+
+
+def percent(part: float | None, whole: float) -> str:
+    """`part` in per cent of `whole`, two significant digits."""
+    if part is None or whole == 0 or not math.isfinite(part / whole):
+        return DASH
+    share = 100.0 * abs(part / whole)
+    return "> 999" if share > 999 else significant(share, 2)
+
+
+def power_of_ten(exponent: int) -> str:
+    """`` ×10⁻⁵``."""
+    return f"{THIN}×{THIN}10{str(exponent).translate(SUPERSCRIPTS)}"
+
+
+def duration(seconds: float) -> str:
+    """Seconds, or minutes and seconds from two minutes on."""
+    if seconds < 120:
+        return f"{significant(seconds, 3)} s"
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} min {rest:02d} s"
+
+
+def _exponent(value: float, digits: int) -> int:
+    """Decimal exponent after rounding to so many digits: 9.99 with two digits has 1."""
+    return int(f"{abs(value):.{digits - 1}e}".partition("e")[2])

@@ -1,0 +1,100 @@
+"""One self-contained HTML page from a fit: templates, style and figures in one file, nothing fetched, nothing fitted."""
+
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from markupsafe import Markup
+
+from seatrial.report import answer, numbers, runs, tables, words
+from seatrial.report.citations import Citations
+from seatrial.report.figures import channels, correlation, forest, tracks, whiteness
+from seatrial.report.mathml import inline, pieces
+from seatrial.results import Fit
+from seatrial.trial.files import write_whole
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+TITLES = {
+    "answer": "Question and answer",
+    "records": "Records",
+    "findings": "Findings",
+    "coefficients": "Coefficients",
+    "prediction": "Prediction of held-out runs",
+    "training": "Fit of the training runs",
+    "residuals": "Residuals",
+    "offsets": "Offsets",
+    "standards": "IMO standards",
+    "model": "Equations of the model",
+    "fixed": "Fixed values and priors",
+    "method": "Method and provenance",
+}
+
+
+def write_report(fit: Fit, path: Path) -> Path:
+    """Write the fit's page, whole or not at all; returns the path.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    write_whole(path, html(fit).encode())
+    return path
+
+
+def html(fit: Fit) -> str:
+    """The page as text."""
+    citations = Citations()
+    length = fit.ship.length if "L" in fit.ship.particulars else 0.0
+    context: dict[str, object] = {
+        "fit": fit,
+        "titles": TITLES,
+        "answer": answer.sentences(fit),
+        "facts": answer.facts(fit),
+        "scores": runs.scores(fit.predictions, length),
+        "records": tables.records(fit),
+        "tracks": _figures(tracks.tracks(fit.records, length, "tracks")),
+        "channels": _figures(channels.overview(fit.records, "channels")),
+        "findings": tables.findings(fit.findings),
+        "equations": tables.equations(fit.model, citations),
+        "coefficients": tables.coefficients(fit.coefficients),
+        "has_truth": any(c.truth is not None for c in fit.coefficients if not c.fixed),
+        "has_prior": any(c.prior_mean is not None for c in fit.coefficients if not c.fixed),
+        "forest": Markup(forest.forest(fit.coefficients, "forest")),
+        "correlation": Markup(correlation.heat_map(fit.model.parameters.free_names, fit.covariance, "correlation")),
+        "correlated": words.correlated(fit.model.parameters.free_names, fit.covariance),
+        "runs": runs.runs(fit.predictions, length),
+        "noise": tables.noise(fit.noise),
+        "whiteness": Markup(whiteness.whiteness(fit.residuals, "whiteness")),
+        "offsets": tables.offsets(fit.offsets),
+        "standards": runs.standards(fit.predictions, length, fit.ship.scale),
+        "fixed": tables.fixed(fit.coefficients, citations),
+        "priors": tables.priors(fit.coefficients, fit.model, citations),
+        "ship_source": citations.marked(fit.ship.source),
+        "settings": tables.settings(fit.method),
+        "citations": citations,
+    }
+    return environment().get_template("report.html").render(context)
+
+
+def _figures(made: list[str]) -> list[Markup]:
+    return [Markup(figure) for figure in made if figure]
+
+
+@cache
+def environment() -> "Environment":
+    """The templates with everything escaped by default, and the filters they use."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    made = Environment(
+        loader=PackageLoader("seatrial.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    made.filters["duration"] = numbers.duration
+    made.filters["significant"] = numbers.significant
+    made.filters["math"] = lambda latex: Markup(inline(latex))
+    made.filters["breakable"] = lambda latex: Markup("".join(pieces(latex)))
+    return made

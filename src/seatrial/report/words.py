@@ -1,0 +1,90 @@
+"""Words for names and numbers: measures, channels, what correlations say."""
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from seatrial.report.figures.correlation import correlation_of
+from seatrial.report.numbers import fixed
+from seatrial.values import Array, display
+from seatrial.values.notation import NOTATION
+
+_MEASURES = {
+    "rudder_deg": ("rudder angle", "deg"),
+    "approach_speed": ("approach speed", "m/s"),
+    "advance_L": ("advance", "L"),
+    "transfer_L": ("transfer", "L"),
+    "tactical_diameter_L": ("tactical diameter", "L"),
+    "steady_diameter_L": ("steady turning diameter", "L"),
+    "steady_yaw_rate_deg_s": ("steady yaw rate", "deg/s"),
+    "steady_drift_deg": ("steady drift angle", "deg"),
+    "speed_loss": ("speed lost in the turn, share of approach speed", ""),
+    "time_90_s": ("time to 90° change of heading", "s"),
+    "initial_turning_time_s": ("initial turning time", "s"),
+    "initial_turning_L": ("initial turning, distance", "L"),
+    "period_s": ("period", "s"),
+}
+_UNIT_ENDINGS = (("_deg_s", "deg/s"), ("_deg", "deg"), ("_L", "L"), ("_s", "s"))
+STRONG = 0.9
+
+
+def measure(name: str) -> tuple[str, str]:
+    """Name and unit of a manoeuvring measure: ``overshoot_1_deg`` -> 1st overshoot, deg."""
+    if name in _MEASURES:
+        return _MEASURES[name]
+    overshoot = re.fullmatch(r"overshoot_(\d+)_deg", name)
+    if overshoot:
+        return f"{ordinal(int(overshoot[1]))} overshoot", "deg"
+    for ending, unit in _UNIT_ENDINGS:
+        if name.endswith(ending):
+            return name.removesuffix(ending).replace("_", " "), unit
+    return name.replace("_", " "), ""
+
+
+def ordinal(number: int) -> str:
+    """1st, 2nd, 3rd, 4th, … 11th, 21st."""
+    ending = "th" if number % 100 in (11, 12, 13) else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
+    return f"{number}{ending}"
+
+
+def channel(name: str) -> str:
+    """What a channel is: ``psi`` -> heading."""
+    return NOTATION[name].meaning if name in NOTATION else name
+
+
+def unit(si: str) -> str:
+    """The unit people read, empty for numbers."""
+    shown = display(si)[1]
+    return "" if shown == "1" else shown.replace("^2", "²").replace("^3", "³")
+
+
+def listed(items: Sequence[str], most: int = 6) -> str:
+    """a, b and c; from `most` on: a, b, c and 5 more."""
+    if len(items) > most:
+        return f"{', '.join(items[: most - 1])} and {len(items) - most + 1} more"
+    return " and ".join([", ".join(items[:-1]), items[-1]]) if len(items) > 1 else "".join(items)
+
+
+def counted(number: int, noun: str) -> str:
+    """1 run, 2 runs, no runs."""
+    return f"{number or 'no'} {noun}{'' if number == 1 else 's'}"
+
+
+def correlated(names: Sequence[str], covariance: Array) -> str:
+    """Which coefficients the records hardly tell apart."""
+    if len(names) < 2 or covariance.shape != (len(names), len(names)):
+        return ""
+    matrix = np.nan_to_num(np.tril(correlation_of(covariance), k=-1))
+    order = np.argsort(-np.abs(matrix), axis=None)
+    pairs = [(int(i // len(names)), int(i % len(names))) for i in order[:4]]
+    strong = [(i, j) for i, j in pairs if abs(matrix[i, j]) >= STRONG]
+    count = int(np.sum(np.abs(matrix) >= STRONG))
+    if not strong:
+        i, j = pairs[0]
+        return f"The strongest is {fixed(matrix[i, j], 2)}, between {names[i]} and {names[j]}."
+    told = listed([f"{names[i]} and {names[j]} ({fixed(matrix[i, j], 2)})" for i, j in strong])
+    return (
+        f"{counted(count, 'pair').capitalize()} at {STRONG} or above in size; the strongest: {told}. The records "
+        "determine such coefficients mainly together: take them as a set, not one by one."
+    )
