@@ -9,11 +9,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatrial.optimise.solution import Array, Solution, Status
 
-Mask = NDArray[np.bool_]
+_ROUNDING = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,8 +80,8 @@ def _guarded(blocks: Array) -> Array:
     return blocks + np.einsum("si,ij->sij", ridge, np.eye(blocks.shape[1]))
 
 
-def _step(normal: Normal, damping: float, held: Mask) -> tuple[Array, Array]:
-    """The damped Gauss-Newton step; `held` marks shared unknowns kept at their bounds."""
+def _step(normal: Normal, damping: float, low: Array, high: Array) -> tuple[Array, Array]:
+    """The damped Gauss-Newton step with low <= shared step <= high."""
     diagonal = np.diag(normal.hessian).copy()
     diagonal[diagonal <= 0] = 1.0
     hessian = normal.hessian + damping * np.diag(diagonal)
@@ -95,12 +94,37 @@ def _step(normal: Normal, damping: float, held: Mask) -> tuple[Array, Array]:
         solved = np.linalg.solve(local, right)
         hessian = hessian - np.einsum("sij,sjk->ik", normal.cross, solved[:, :, :-1])
         gradient = gradient - np.einsum("sij,sj->i", normal.cross, solved[:, :, -1])
-    step = np.zeros_like(gradient)
-    moving = ~held
-    step[moving] = _solve(hessian[np.ix_(moving, moving)], -gradient[moving])
+    step = _boxed(hessian, gradient, low, high)
     if not normal.local_gradient.size:
         return step, np.zeros_like(normal.local_gradient)
     return step, -solved[:, :, -1] - solved[:, :, :-1] @ step
+
+
+def _boxed(hessian: Array, gradient: Array, low: Array, high: Array) -> Array:
+    """Minimiser of the quadratic model in a box that holds zero (active sets; Stark & Parker 1995, BVLS)."""
+    step = np.zeros_like(gradient)
+    held = ((low >= 0) & (gradient > 0)) | ((high <= 0) & (gradient < 0)) | (low >= high)
+    for _ in range(3 * len(step) + 3):
+        moving = ~held
+        target = step.copy()
+        pull = gradient[moving] + hessian[np.ix_(moving, held)] @ step[held]
+        target[moving] = _solve(hessian[np.ix_(moving, moving)], -pull)
+        way = target - step
+        limit = np.where(way > 0, high, low)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = np.where(moving & (way != 0), (limit - step) / way, np.inf)
+        if share.size and np.min(share) < 1.0:
+            first = int(np.argmin(share))
+            step = np.clip(step + max(share[first], 0.0) * way, low, high)
+            step[first], held[first] = limit[first], True
+            continue
+        step = target
+        slope = (gradient + hessian @ step) / np.sqrt(np.maximum(np.diag(hessian), 1e-300))
+        wrong = np.where(held & (low < high), np.where(step <= low, -slope, slope), -np.inf)
+        if not wrong.size or np.max(wrong) <= 1e-12 * np.max(np.abs(slope)):
+            return step
+        held[int(np.argmax(wrong))] = False
+    return step
 
 
 def _solve(matrix: Array, right: Array) -> Array:
@@ -122,11 +146,6 @@ def _predicted(normal: Normal, step: Array, local_step: Array) -> float:
         curved += 2.0 * np.einsum("i,sij,sj->", step, normal.cross, local_step)
         curved += np.einsum("si,sij,sj->", local_step, normal.local_hessian, local_step)
     return float(-linear - 0.5 * curved)
-
-
-def _promised(problem: LeastSquares, normal: Normal, shared: Array, step: Array, local_step: Array) -> float:
-    """Decrease the undamped step promises, bounds respected."""
-    return _predicted(normal, np.clip(shared + step, problem.lower, problem.upper) - shared, local_step)
 
 
 def levenberg_marquardt(
@@ -155,9 +174,10 @@ def levenberg_marquardt(
     status = Status.EXHAUSTED
     rejected = 0
     while count < evaluations:
-        held = ((shared <= problem.lower) & (normal.gradient > 0)) | ((shared >= problem.upper) & (normal.gradient < 0))
-        newton, local_newton = _step(normal, 0.0, held)
-        if _promised(problem, normal, shared, newton, local_newton) <= max(tolerance * normal.cost, negligible):
+        low, high = problem.lower - shared, problem.upper - shared
+        newton, local_newton = _step(normal, 0.0, low, high)
+        promised = _predicted(normal, newton, local_newton)
+        if promised <= max(tolerance * normal.cost, negligible):
             trial = np.clip(shared + newton, problem.lower, problem.upper)
             last = problem.normal(trial, local + local_newton)
             count += 1
@@ -166,7 +186,7 @@ def levenberg_marquardt(
             history.append(normal.cost)
             status = Status.CONVERGED
             break
-        step, local_step = _step(normal, damping, held)
+        step, local_step = _step(normal, damping, low, high)
         trial = np.clip(shared + step, problem.lower, problem.upper)
         trial_local = local + local_step
         predicted = _predicted(normal, trial - shared, local_step)
@@ -182,7 +202,7 @@ def levenberg_marquardt(
         else:
             damping, growth, rejected = max(damping, 1e-8) * growth, growth * 2.0, rejected + 1
             if predicted <= 1e-14 * normal.cost or rejected > 25:
-                status = Status.CONVERGED if predicted <= 1e-8 * normal.cost else Status.STALLED
+                status = Status.CONVERGED if promised <= _ROUNDING * normal.cost else Status.STALLED
                 break
         history.append(normal.cost)
         if progress:
