@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 import against_shipmmg
 import generation
+import montecarlo
 import simulation
 from measure import Line, machine
 
@@ -15,6 +16,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "simulation": simulation.run,
     "generation": generation.run,
     "against_shipmmg": against_shipmmg.run,
+    "montecarlo": montecarlo.run,
 }
 
 
