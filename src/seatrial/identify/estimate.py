@@ -103,3 +103,9 @@ def colour(made: Estimate) -> tuple[list[Array], Array]:
     rho = [autocorrelation(pieces(made.problem, residuals[:, i]), lags) for i in range(residuals.shape[1])]
     silent = made.problem.noise <= rounding_level(made.problem)
     return rho, np.where(silent, 1.0, [variance_inflation(r) for r in rho])
+
+
+def tempered(made: Estimate, inflation: Array, evaluations: int, progress: Progress | None = None) -> Estimate:
+    """The same noise with correlated samples counted as their effective number; one more search."""
+    problem = replace(made.problem, inflation=np.maximum(inflation, 1.0))
+    return _search(problem, made.shared, made.optimum.local, evaluations, progress)

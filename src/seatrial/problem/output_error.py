@@ -39,6 +39,8 @@ class OutputError:
 
     Attributes:
         noise: standard deviation of each compared output, shape (ny,), SI.
+        inflation: variance inflation of each channel's residuals; coloured samples count for that many times fewer, so
+            that priors keep their weight against them (effective sample size; Sokal 1997). None: white.
         huber: residuals beyond this many standard deviations count linearly (Huber 1964); infinite: squares only.
         session_parameters: model parameters estimated once a session (a current), with their priors.
         pinned: shared unknowns held at these values, for predictions: only initial states move.
@@ -49,6 +51,7 @@ class OutputError:
     noise: Array
     nuisances: tuple[Nuisance, ...] = ()
     session_parameters: tuple[tuple[str, Prior], ...] = ()
+    inflation: Array | None = None
     huber: float = np.inf
     substeps: int = 1
     workers: int | None = None
@@ -160,14 +163,20 @@ class OutputError:
         residual = (simulated - self.data.measured[rows]) / self.noise
         return np.where(np.isfinite(self.data.measured[rows]), residual, 0.0)
 
+    @cached_property
+    def _trust(self) -> Array:
+        """Effective over actual number of samples, by channel."""
+        return np.ones(len(self.noise)) if self.inflation is None else 1.0 / self.inflation
+
     def _loss(self, scaled: Array) -> tuple[float, Array]:
-        """Half the robust sum of squares and the weight of each residual (Huber 1964)."""
+        """Half the robust sum of squares of effective samples, and the weight of each residual (Huber 1964)."""
         size = np.abs(scaled)
         if np.isinf(self.huber) or not np.any(size > self.huber):
-            return 0.5 * float(np.sum(scaled**2)), np.ones_like(scaled)
+            return 0.5 * float(np.sum(self._trust * scaled**2)), np.broadcast_to(self._trust, scaled.shape)
         inside = size <= self.huber
         loss = np.where(inside, 0.5 * scaled**2, self.huber * (size - 0.5 * self.huber))
-        return float(np.sum(loss)), np.where(inside, 1.0, self.huber / np.maximum(size, 1e-300))
+        weight = np.where(inside, 1.0, self.huber / np.maximum(size, 1e-300))
+        return float(np.sum(self._trust * loss)), self._trust * weight
 
     def _prior_cost(self, shared: Array) -> float:
         mean, weight = self.priors
