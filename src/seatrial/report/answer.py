@@ -1,6 +1,6 @@
 """The answer in words: what was asked, what was fitted, how well held-out runs are predicted, what to mind."""
 
-from seatrial.report.numbers import duration, fixed, significant
+from seatrial.report.numbers import duration, exact, fixed, significant
 from seatrial.report.words import counted, listed
 from seatrial.results import Coefficient, Fit, Prediction
 from seatrial.values import Severity
@@ -11,8 +11,9 @@ WHITE = 0.01
 def facts(fit: Fit) -> list[tuple[str, str]]:
     """Ship, model and records as pairs of name and text."""
     ship, trained, held = fit.ship, _with_role(fit, "training"), fit.validation()
-    scale = f", model scale 1:{significant(ship.scale, 4)}" if ship.scale != 1.0 else ""
-    length = f", L = {significant(ship.length, 4)} m" if "L" in ship.particulars else ""
+    ratio = f"1:{exact(ship.scale)}"
+    scale = f", model scale {ratio}" if ship.scale != 1.0 and ratio not in ship.name else ""
+    length = f", L = {exact(ship.length)} m" if "L" in ship.particulars else ""
     free = sum(not c.fixed for c in fit.coefficients)
     seconds = sum(p.measured.duration for p in trained)
     return [

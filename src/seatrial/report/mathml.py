@@ -32,14 +32,14 @@ Pieces = list[str]
 def pieces(latex: str) -> Pieces:
     """The formula as MathML elements between which a line may break; unreadable LaTeX as plain text."""
     try:
-        return [f"<math>{piece}</math>" for piece in _Reader(latex).row(lambda _: False)]
+        return [f'<math displaystyle="true">{piece}</math>' for piece in _Reader(latex).row(lambda _: False)]
     except (IndexError, StopIteration):
         return [f"<code>{html.escape(latex)}</code>"]
 
 
 def inline(latex: str) -> str:
     """The formula as one MathML element."""
-    return "".join(pieces(latex)).replace("</math><math>", "")
+    return "".join(pieces(latex)).replace('</math><math displaystyle="true">', "")
 
 
 def _joined(parts: Pieces) -> str:
@@ -69,8 +69,11 @@ class _Reader:
                 continue
             if token in ("+", "-"):
                 self.at += 1
-                sign = "<mo>+</mo>" if token == "+" else "<mo>−</mo>"
-                made = [*made, sign] if made[-1] and not made[-1].endswith("=</mo>") else _appended(made, [sign])
+                sign = "+" if token == "+" else "−"
+                if made[-1] and not made[-1].endswith("=</mo>"):
+                    made = [*made, f'<mo form="infix">{sign}</mo>']
+                else:
+                    made = _appended(made, [f"<mo>{sign}</mo>"])
             else:
                 part = self.scripted()
                 space = '<mspace width="0.17em"></mspace>' if spaced and not part[0].startswith("<mo") else ""
@@ -81,23 +84,23 @@ class _Reader:
     def scripted(self) -> Pieces:
         """An atom with what hangs on it: primes, exponents, indices."""
         base = self.atom()
-        upper, lower = "", ""
+        primes, upper, lower = "", "", ""
         while self.at < len(self.tokens) and self.tokens[self.at] in ("^", "_", "'"):
             token = self.tokens[self.at]
             self.at += 1
             if token == "'":
-                upper += "<mo>′</mo>"
+                primes += '<mo lspace="0.05em" rspace="0">′</mo>'
             elif token == "^":
-                upper += _joined(self.argument())
+                upper = _joined(self.argument())
             else:
                 lower = _joined(self.argument())
-        if not upper and not lower:
+        if not (primes or upper or lower):
             return base
-        body = base[0] if len(base) == 1 else _joined(base)
+        body = "".join(base) + primes
         body = body if body.count("<") == 2 else f"<mrow>{body}</mrow>"
         if upper and lower:
-            return [f"<msubsup>{body}{lower}<mrow>{upper}</mrow></msubsup>"]
-        return [f"<msup>{body}<mrow>{upper}</mrow></msup>" if upper else f"<msub>{body}{lower}</msub>"]
+            return [f"<msubsup>{body}{lower}{upper}</msubsup>"]
+        return [f"<msup>{body}{upper}</msup>" if upper else f"<msub>{body}{lower}</msub>" if lower else body]
 
     def argument(self) -> Pieces:
         """The next group in braces, or the next atom."""
@@ -110,7 +113,7 @@ class _Reader:
         self.at += 1
         if token == "{":
             inner = self.row(lambda t: t == "}")
-            self.at += 1
+            self.expect("}")
             return inner
         if token.startswith("\\"):
             return self.command(token)
@@ -144,6 +147,12 @@ class _Reader:
             return [f'<mo stretchy="false">{_FENCES[token]}</mo>']
         return [f"<mi>{html.escape(name)}</mi>"]
 
+    def expect(self, token: str) -> None:
+        """Step over a token that must be there; IndexError where the formula ends before it."""
+        if self.tokens[self.at] != token:
+            raise IndexError(token)
+        self.at += 1
+
     def word(self) -> str:
         """The letters of the next group, as they stand."""
         self.at += 1
@@ -158,7 +167,7 @@ class _Reader:
         r"""From after \left to after \right and its fence."""
         opening = self.fence()
         inner = self.row(lambda t: t == r"\right")
-        self.at += 1
+        self.expect(r"\right")
         closing = self.fence()
         whole = _appended(_appended([opening], inner), [closing])
         return whole if "|" not in opening else [_joined(whole)]

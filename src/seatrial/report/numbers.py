@@ -1,6 +1,7 @@
 """Numbers as people read them: digits from the standard error, true minus signs, thin spaces, powers of ten."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 MINUS, THIN, DASH = "\u2212", "\u202f", "\u2013"
@@ -59,6 +60,13 @@ def estimate(value: float, error: float | None, lower: float | None, upper: floa
     decimals = 1 - _exponent(error / factor, 2)
     texts = [fixed(None if x is None else x / factor, decimals) for x in (value, error, lower, upper)]
     return Estimate(*texts, power_of_ten(power) if power else "")
+
+
+def column(values: Sequence[float | None]) -> list[str]:
+    """Numbers below one another with the same decimals: two significant digits of the middle one."""
+    known = sorted(abs(v) for v in values if v is not None and math.isfinite(v) and v != 0)
+    decimals = max(0, 1 - _exponent(known[len(known) // 2], 2)) if known else 0
+    return [fixed(v, decimals) for v in values]
 
 
 def percent(part: float | None, whole: float) -> str:

@@ -53,19 +53,19 @@ def html(fit: Fit) -> str:
         "facts": answer.facts(fit),
         "scores": runs.scores(fit.predictions, length),
         "records": tables.records(fit),
-        "tracks": _figures(tracks.tracks(fit.records, length, "tracks")),
-        "channels": _figures(channels.overview(fit.records, "channels")),
+        "tracks": Markup(tracks.tracks(fit.records, length)),
+        "channels": [Markup(figure) for figure in channels.overview(fit.records)],
         "findings": tables.findings(fit.findings),
         "equations": tables.equations(fit.model, citations),
         "coefficients": tables.coefficients(fit.coefficients),
         "has_truth": any(c.truth is not None for c in fit.coefficients if not c.fixed),
         "has_prior": any(c.prior_mean is not None for c in fit.coefficients if not c.fixed),
-        "forest": Markup(forest.forest(fit.coefficients, "forest")),
-        "correlation": Markup(correlation.heat_map(fit.model.parameters.free_names, fit.covariance, "correlation")),
+        "forest": Markup(forest.forest(fit.coefficients)),
+        "correlation": Markup(correlation.heat_map(fit.model.parameters.free_names, fit.covariance)),
         "correlated": words.correlated(fit.model.parameters.free_names, fit.covariance),
-        "runs": runs.runs(fit.predictions, length),
+        "runs": runs.runs(fit.predictions, length, fit.model.input_names),
         "noise": tables.noise(fit.noise),
-        "whiteness": Markup(whiteness.whiteness(fit.residuals, "whiteness")),
+        "whiteness": Markup(whiteness.whiteness(fit.residuals)),
         "offsets": tables.offsets(fit.offsets),
         "standards": runs.standards(fit.predictions, length, fit.ship.scale),
         "fixed": tables.fixed(fit.coefficients, citations),
@@ -75,10 +75,6 @@ def html(fit: Fit) -> str:
         "citations": citations,
     }
     return environment().get_template("report.html").render(context)
-
-
-def _figures(made: list[str]) -> list[Markup]:
-    return [Markup(figure) for figure in made if figure]
 
 
 @cache

@@ -8,7 +8,7 @@ from markupsafe import Markup
 from seatrial.manoeuvres import Criterion, criteria
 from seatrial.report import words
 from seatrial.report.figures.channels import comparison
-from seatrial.report.numbers import DASH, fixed, significant
+from seatrial.report.numbers import DASH, column, fixed, significant
 from seatrial.results import Measure, Prediction
 from seatrial.values import InputError, Record
 
@@ -49,30 +49,33 @@ def scores(predictions: Sequence[Prediction], length: float) -> dict[str, object
     if "position_m" in names and length > 0:
         header.insert(names.index("position_m") + 1, ("position", "L"))
     ordered = sorted(predictions, key=lambda p: p.role != "validation")
-    return {"header": header, "rows": [(p.record, p.role == "validation", _errors(p, names, length)) for p in ordered]}
+    columns = [column(values) for values in zip(*(_errors(p, names, length) for p in ordered), strict=True)]
+    texts = zip(*columns, strict=True)
+    rows = [(p.record, p.role == "validation", list(cells)) for p, cells in zip(ordered, texts, strict=False)]
+    return {"header": header, "rows": rows}
 
 
-def _errors(p: Prediction, names: Sequence[str], length: float) -> list[str]:
-    texts = []
+def _errors(p: Prediction, names: Sequence[str], length: float) -> list[float | None]:
+    found: list[float | None] = []
     for name in names:
         value = p.rms.get(name)
         factor = _DEGREES if name == "r" else 1.0
-        texts.append(DASH if value is None else significant(value * factor, 2))
+        found.append(None if value is None else value * factor)
         if name == "position_m" and length > 0:
-            texts.append(DASH if value is None else significant(value / length, 2))
-    return texts
+            found.append(None if value is None else value / length)
+    return found
 
 
-def runs(predictions: Sequence[Prediction], length: float) -> list[Run]:
-    """All runs in order."""
-    return [_run(p, length, f"run{k}") for k, p in enumerate(predictions)]
+def runs(predictions: Sequence[Prediction], length: float, inputs: Sequence[str]) -> list[Run]:
+    """All runs in order; `inputs` are the channels the model is driven by."""
+    return [_run(p, length, inputs, f"run{k}") for k, p in enumerate(predictions)]
 
 
-def _run(p: Prediction, length: float, key: str) -> Run:
+def _run(p: Prediction, length: float, inputs: Sequence[str], key: str) -> Run:
     rows = {name: _measure(name, m) for name, m in p.measures.items()}
     late = {name for name in rows if name.startswith("overshoot_") and int(name.split("_")[1]) > OVERSHOOTS}
     return Run(
-        p.record, key, p.role == "validation", _summary(p), Markup(comparison(p, length, key)),
+        p.record, key, p.role == "validation", _summary(p), Markup(comparison(p, length, inputs)),
         tuple(row for name, row in rows.items() if name not in late),
         tuple(row for name, row in rows.items() if name in late),
     )  # fmt: skip

@@ -91,7 +91,8 @@ def _prior(c: Coefficient) -> str:
     if c.prior_mean is None or c.prior_standard_deviation is None:
         return DASH
     mean, spread = _shown(c.prior_mean, c.unit), _shown(c.prior_standard_deviation, c.unit)
-    return f"{exact(mean, 4)} ± {significant(spread, 2)}"
+    text = estimate(mean or 0.0, spread, None, None)
+    return f"{text.value} ± {text.error}{text.power}"
 
 
 def findings(items: Sequence[Finding]) -> list[FindingGroup]:

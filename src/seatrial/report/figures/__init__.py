@@ -1,1 +1,1 @@
-"""Figures as inline SVG, one file for each family."""
+"""Figures as inline SVG, one file for each family over one small plotter."""

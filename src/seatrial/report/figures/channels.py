@@ -1,103 +1,118 @@
 """Channels over time: all records as small multiples, and one run measured beside simulated."""
 
+import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
-from seatrial.report.figures.canvas import ACCENT, INK, MEASURED, canvas, decimated, label, shown, styled, svg
+import numpy as np
+
+from seatrial.report.figures.plot import (
+    GREY, MEASURED, PLAIN, SIMULATED, WIDTH, Panel, axes, common_prefix, decimated, drawing, label, legend, shown, span,
+    text,
+)  # fmt: skip
 from seatrial.report.figures.tracks import has_track, overlay
 from seatrial.results import Prediction
-from seatrial.values import Record
+from seatrial.values import Array, Record
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-ORDER = ("psi", "r", "u", "v", "delta", "n", "v_j", "thrust", "phi", "p", "wind_speed", "wind_direction")
+ORDER = ("psi", "r", "u", "v", "phi", "p", "thrust", "torque", "delta", "n", "v_j", "wind_speed", "wind_direction")
 POSITIONS = ("x0", "y0")
-MOST_COLUMNS, MOST_ROWS = 7, 12
+MOST_COLUMNS, MOST_ROWS, MOST_PANELS = 8, 16, 9
 
 
-def ordered(record: Record) -> list[str]:
+def in_order(names: Sequence[str]) -> list[str]:
     """Channels in the order of reading, positions left out."""
-    names = [s for s in record.channels if s not in POSITIONS]
-    return sorted(names, key=lambda s: (ORDER.index(s) if s in ORDER else len(ORDER), s))
+    known = [s for s in dict.fromkeys(names) if s not in POSITIONS]
+    return sorted(known, key=lambda s: (ORDER.index(s) if s in ORDER else len(ORDER), s))
 
 
-def overview(records: Sequence[Record], prefix: str) -> list[str]:
-    """A row for each record, a column for each channel, at most `MOST_ROWS` rows to a figure."""
-    names = list(dict.fromkeys(s for record in records for s in ordered(record)))
-    names = sorted(names, key=lambda s: ORDER.index(s) if s in ORDER else len(ORDER))[:MOST_COLUMNS]
+def is_constant(record: Record, name: str) -> bool:
+    """Whether a channel never changes."""
+    values = record[name][np.isfinite(record[name])]
+    return values.size == 0 or float(np.ptp(values)) <= 1e-9 * max(1.0, float(np.max(np.abs(values))))
+
+
+def overview(records: Sequence[Record]) -> list[str]:
+    """A row for each record, a column for each channel; channels that are constant everywhere are left out."""
+    names = in_order([s for r in records for s in r.channels if not is_constant(r, s)])[:MOST_COLUMNS]
     if not names:
         return []
-    return [
-        _grid(records[k : k + MOST_ROWS], names, f"{prefix}{k}") for k in range(0, len(records), MOST_ROWS)
-    ]
+    pages = math.ceil(len(records) / MOST_ROWS)
+    rows = math.ceil(len(records) / pages)
+    prefix = common_prefix([r.name for r in records])
+    return [_grid(records[k : k + rows], names, prefix, records) for k in range(0, len(records), rows)]
 
 
-def _grid(records: Sequence[Record], names: Sequence[str], prefix: str) -> str:
-    height = max(0.75, 1.3 - 0.1 * len(records))
-    with styled():
-        figure = canvas(height * len(records) + 0.45)
-        grid = figure.subplots(len(records), len(names), squeeze=False, sharey="col")
-        for row, record in zip(grid, records, strict=True):
-            for axes, name in zip(row, names, strict=True):
-                _small(axes, record, name)
-            row[0].set_ylabel(record.name, rotation=0, ha="right", va="center")
-        for axes, name in zip(grid[0], names, strict=True):
-            unit = next(r.channel(name).unit for r in records if name in r) if any(name in r for r in records) else ""
-            axes.set_title(label(name, unit), loc="left")
-        for axes in grid[-1]:
-            axes.set_xlabel("t [s]")
-        return svg(figure, f"channels of {', '.join(r.name for r in records)}", prefix)
-
-
-def _small(axes: "Axes", record: Record, name: str) -> None:
-    axes.tick_params(labelsize=6)
-    axes.locator_params(axis="y", nbins=3)
-    axes.locator_params(axis="x", nbins=3)
-    if name not in record:
-        axes.text(0.5, 0.5, "not recorded", transform=axes.transAxes, ha="center", va="center", color="#888", size=6)
-        return
-    values = shown(name, record[name], record.channel(name).unit)
-    axes.plot(*decimated(record.time, values, 240), color=INK, linewidth=0.7)
-
-
-def comparison(prediction: Prediction, length: float, prefix: str) -> str:
-    """Track and channels of one run, measured (broad, grey) and simulated (thin, dashed)."""
-    measured, simulated = prediction.measured, prediction.simulated
-    wanted = [s for s in ordered(measured) if s in simulated or s in ("delta", "n", "v_j")]
-    names = [s for s in wanted if s in simulated or s == "delta"][:8]
-    on_map = has_track(measured) and has_track(simulated)
-    rows = max(1, -(-len(names) // 2))
-    with styled():
-        figure = canvas(max(1.25 * rows + 0.5, 3.2))
-        grid = figure.add_gridspec(rows, 3 if on_map else 2, width_ratios=[1.25, 1, 1] if on_map else [1, 1])
-        if on_map:
-            overlay(figure.add_subplot(grid[:, 0]), measured, simulated, length)
+def _grid(records: Sequence[Record], names: Sequence[str], prefix: str, all_records: Sequence[Record]) -> str:
+    shown_names = [r.name.removeprefix(prefix) for r in records]
+    margin = min(190.0, 6.2 * max(len(n) for n in shown_names) + 10)
+    tile = (WIDTH - margin) / len(names)
+    height = 46.0 if len(records) > 6 else 74.0
+    end = max(r.duration for r in all_records)
+    parts = []
+    for i, record in enumerate(records):
+        top = 22 + i * (height + 10)
+        parts.append(text(0, top + height / 2 + 4, shown_names[i]))
         for k, name in enumerate(names):
-            axes = figure.add_subplot(grid[k // 2, k % 2 + (1 if on_map else 0)])
-            _pair(axes, measured, simulated, name)
-            if k >= len(names) - 2:
-                axes.set_xlabel("t [s]")
-        _legend(figure.legend)
-        return svg(figure, f"{prediction.record}: measured and simulated", prefix)
+            having = [r for r in all_records if name in r]
+            unit = having[0].channel(name).unit
+            reach = span([shown(name, r[name], unit) for r in having])
+            panel = Panel(margin + k * tile + 30, top, tile - 40, height, (0.0, end), reach)
+            last = i == len(records) - 1
+            parts.append(axes(panel, x_ticks=2, y_ticks=2, x_labels=last, title=label(name, unit) if i == 0 else "", size=8.5))
+            if name in record:
+                values = shown(name, record[name], unit)
+                parts.append(panel.curve(*decimated(record.time - record.time[0], values, 200), PLAIN))
+            else:
+                parts.append(text(panel.left + 4, top + height / 2, "not recorded", size=8.5, colour=GREY))
+    total = 22 + len(records) * (height + 10) + 26
+    parts.append(text(WIDTH - 10, total - 2, "t [s]", anchor="end", size=9.5))
+    return drawing(parts, total, "channels of the records")
 
 
-def _pair(axes: "Axes", measured: Record, simulated: Record, name: str) -> None:
+def comparison(prediction: Prediction, length: float, inputs: Sequence[str]) -> str:
+    """Track and channels of one run: measured broad and grey, simulated thin and dashed; inputs as measured."""
+    measured, simulated = prediction.measured, prediction.simulated
+    names = [s for s in in_order(list(measured.channels)) if s in inputs or s in simulated]
+    names = [s for s in names if not is_constant(measured, s)][:MOST_PANELS]
+    parts = [legend([("measured", MEASURED), ("simulated, open loop", SIMULATED)], WIDTH - 8, 14)]
+    top, columns, left, tall = 30.0, 3, 0.0, 0.0
+    if has_track(measured) and has_track(simulated):
+        picture, tall, is_strip = overlay(measured, simulated, length, 0.0, top, WIDTH / 3 + 20)
+        parts.append(picture)
+        if is_strip:
+            top, tall = top + tall, 0.0
+        else:
+            columns, left = 2, WIDTH / 3 + 20
+    tile = (WIDTH - left) / columns
+    rows = math.ceil(len(names) / columns)
+    height = max(86.0, (tall - 48.0) / max(rows, 1) - 22.0) if tall else 96.0
+    for k, name in enumerate(names):
+        box = (left + tile * (k % columns) + 56, top + (height + 26) * (k // columns), tile - 66, height)
+        parts.append(_pair(box, measured, None if name in inputs else simulated, name, last=k >= len(names) - columns))
+    total = max(top + tall, top + rows * (height + 26) + 22)
+    return drawing(parts, total, f"{prediction.record}: measured and simulated")
+
+
+def _pair(
+    box: tuple[float, float, float, float], measured: Record, simulated: Record | None, name: str, *, last: bool
+) -> str:
     unit = measured.channel(name).unit
-    axes.plot(*decimated(measured.time, shown(name, measured[name], unit)), color=MEASURED, linewidth=2.2)
-    if name in simulated and name != "delta":
-        values = shown(name, simulated[name], simulated.channel(name).unit)
-        axes.plot(*decimated(simulated.time, values), color=ACCENT, linewidth=1.0, linestyle="--")
-    axes.set_ylabel(label(name, unit))
-    axes.locator_params(axis="y", nbins=5)
-    axes.margins(x=0.01)
+    values = shown(name, measured[name], unit)
+    others: list[Array] = []
+    if simulated is not None and name in simulated:
+        others = [_near(shown(name, simulated[name], unit), values, name)]
+    begin, end = float(measured.time[0]), float(measured.time[-1])
+    panel = Panel(*box, (begin, end if end > begin else begin + 1.0), span([values, *others]))
+    title = label(name, unit) + (", input" if simulated is None else "")
+    parts = [axes(panel, y_label=title, x_label="t [s]" if last else "")]
+    parts.append(panel.curve(*decimated(measured.time, values), PLAIN if simulated is None else MEASURED))
+    if simulated is not None:
+        parts += [panel.curve(*decimated(simulated.time, other), SIMULATED) for other in others]
+    return "".join(parts)
 
 
-def _legend(place) -> None:
-    from matplotlib.lines import Line2D
-
-    handles = [
-        Line2D([], [], color=MEASURED, linewidth=2.4, label="measured"),
-        Line2D([], [], color=ACCENT, linewidth=1.1, linestyle="--", label="simulated, open loop"),
-    ]
-    place(handles=handles, loc="outside upper right", ncols=2)
+def _near(simulated: Array, measured: Array, name: str) -> Array:
+    """A heading on the measured one's turn."""
+    if name != "psi" or not np.isfinite(simulated).any() or not np.isfinite(measured).any():
+        return simulated
+    first = simulated[np.isfinite(simulated)][0] - measured[np.isfinite(measured)][0]
+    return simulated - 360.0 * np.round(first / 360.0)

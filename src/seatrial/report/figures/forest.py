@@ -1,38 +1,32 @@
-"""Forest plot: estimate, 95 % interval, truth and prior of every free coefficient, relative to the estimate."""
+"""Forest plot: estimate, 95 % interval, known value and prior of every free coefficient, relative to the estimate."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from seatrial.report.figures.canvas import ACCENT, SECOND, canvas, styled, svg
+from seatrial.report.figures.plot import ACCENT, SECOND, WIDTH, Panel, Stroke, axes, drawing, legend, segment, text
 from seatrial.results import Coefficient
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+NARROWEST, WIDEST = 1.0, 120.0
+ROW = 19.0
+_PRIOR, _INTERVAL, _KNOWN = Stroke("#d3dae0", 9.0), Stroke(ACCENT, 2.2), Stroke(SECOND, 1.3)
 
-NARROWEST, WIDEST = 5.0, 120.0
 
-
-def forest(coefficients: Sequence[Coefficient], prefix: str) -> str:
+def forest(coefficients: Sequence[Coefficient]) -> str:
     """One line for each free coefficient, deviations from the estimate in per cent of it; empty where none is free."""
     free = [c for c in coefficients if not c.fixed and c.estimate != 0 and c.lower is not None and c.upper is not None]
     if not free:
         return ""
     reach = _reach(free)
-    with styled():
-        figure = canvas(0.19 * len(free) + 0.75)
-        axes = figure.add_subplot()
-        for k, c in enumerate(free):
-            _line(axes, c, len(free) - 1 - k, reach)
-        axes.axvline(0, color="#999999", linewidth=0.6)
-        axes.set_xlim(-reach, reach)
-        axes.set_ylim(-0.7, len(free) - 0.3)
-        axes.set_yticks(range(len(free)), [c.name for c in reversed(free)])
-        axes.tick_params(axis="y", length=0)
-        axes.set_xlabel("deviation from the estimate, per cent of the estimate")
-        _legend(axes, free)
-        return svg(figure, "forest plot of the free coefficients", prefix)
+    margin = 8.0 * max(len(c.name) for c in free) + 12
+    panel = Panel(margin, 26, WIDTH - margin - 14, ROW * len(free), (-reach, reach), (-0.5, len(free) - 0.5), down=True)
+    name = "deviation from the estimate, per cent of the estimate"
+    parts = [axes(panel, x_ticks=8, y_ticks=1, y_labels=False, x_label=name), _legend(free)]
+    parts.append(segment(float(panel.px(0)), panel.top, float(panel.px(0)), panel.top + panel.height, Stroke("#999", 0.9)))
+    for k, c in enumerate(free):
+        parts.append(text(margin - 8, float(panel.py(k)) + 4, c.name, anchor="end"))
+        parts += _line(panel, c, k, reach)
+    return drawing(parts, panel.top + panel.height + 36, "forest plot of the free coefficients")
 
 
 def _reach(free: Sequence[Coefficient]) -> float:
@@ -44,30 +38,40 @@ def _deviation(c: Coefficient, value: float) -> float:
     return 100.0 * (value - c.estimate) / abs(c.estimate)
 
 
-def _line(axes: "Axes", c: Coefficient, place: float, reach: float) -> None:
+def _line(panel: Panel, c: Coefficient, row: int, reach: float) -> list[str]:
     assert c.lower is not None and c.upper is not None
-    low, high = _deviation(c, c.lower), _deviation(c, c.upper)
+    y = float(panel.py(row))
+    ends = [_deviation(c, c.lower), _deviation(c, c.upper)]
+    inside = [float(x) for x in panel.px(np.clip(ends, -reach, reach))]
+    parts = []
     if c.prior_mean is not None and c.prior_standard_deviation is not None:
         spread = 1.96 * c.prior_standard_deviation
-        ends = np.clip([_deviation(c, c.prior_mean - spread), _deviation(c, c.prior_mean + spread)], -reach, reach)
-        axes.plot(ends, [place, place], color="#d5dbe0", linewidth=6, solid_capstyle="butt", zorder=1)
-    axes.plot(np.clip([low, high], -reach, reach), [place, place], color=ACCENT, linewidth=1.6, zorder=2)
-    for end, marker in ((low, "<"), (high, ">")):
+        prior = np.clip([_deviation(c, c.prior_mean - spread), _deviation(c, c.prior_mean + spread)], -reach, reach)
+        a, b = (float(x) for x in panel.px(prior))
+        parts.append(segment(a, y, max(b, a + 1.5), y, _PRIOR))
+    parts.append(segment(inside[0], y, inside[1], y, _INTERVAL))
+    for end, place, side in ((ends[0], inside[0], -1), (ends[1], inside[1], 1)):
         if abs(end) > reach:
-            axes.plot([np.sign(end) * reach * 0.99], [place], marker, color=ACCENT, markersize=3.5, clip_on=False)
-    axes.plot([0], [place], "o", color=ACCENT, markersize=3.6, zorder=3)
+            parts.append(text(place + 5 * side, y + 4, "‹" if side < 0 else "›", anchor="middle", colour=ACCENT))
+    parts.append(f'<circle cx="{float(panel.px(0)):.1f}" cy="{y:.1f}" r="3.4" fill="{ACCENT}"/>')
     if c.truth is not None and abs(_deviation(c, c.truth)) <= reach:
-        axes.plot([_deviation(c, c.truth)], [place], "D", markersize=3.6, zorder=4, markerfacecolor="white",
-                  markeredgecolor=SECOND, markeredgewidth=1.0)  # fmt: skip
+        parts.append(_diamond(float(panel.px(_deviation(c, c.truth))), y))
+    return parts
 
 
-def _legend(axes: "Axes", free: Sequence[Coefficient]) -> None:
-    from matplotlib.lines import Line2D
+def _diamond(x: float, y: float) -> str:
+    return (
+        f'<path d="M{x - 4.6:.1f} {y:.1f}L{x:.1f} {y - 4.6:.1f}L{x + 4.6:.1f} {y:.1f}L{x:.1f} {y + 4.6:.1f}Z" '
+        f'fill="#fff" fill-opacity=".85" stroke="{SECOND}" stroke-width="1.4"/>'
+    )
 
-    handles = [Line2D([], [], color=ACCENT, marker="o", markersize=3.6, linewidth=1.6, label="estimate, 95 % interval")]
-    if any(c.truth is not None for c in free):
-        handles.append(Line2D([], [], color=SECOND, marker="D", markersize=3.6, linewidth=0, markerfacecolor="white",
-                              label="known value"))  # fmt: skip
+
+def _legend(free: Sequence[Coefficient]) -> str:
+    entries = [("estimate, 95 % interval", _INTERVAL)]
     if any(c.prior_mean is not None for c in free):
-        handles.append(Line2D([], [], color="#d5dbe0", linewidth=6, label="prior, 95 %"))
-    axes.legend(handles=handles, loc="lower right", bbox_to_anchor=(1, 1), ncols=3, borderaxespad=0.2)
+        entries.append(("prior, 95 %", _PRIOR))
+    known = any(c.truth is not None for c in free)
+    if known:
+        entries.append(("known value", Stroke("none", 0)))
+    sample = _diamond(WIDTH - 14 - 6.2 * len("known value") - 21, 10) if known else ""
+    return legend(entries, WIDTH - 14, 14) + sample

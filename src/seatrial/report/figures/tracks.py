@@ -1,21 +1,37 @@
-"""Tracks: earth-fixed positions from above, north up; a little ship every so often shows the heading."""
+"""Tracks from above; long and narrow ones lie on their side. Little ships at equal times show the heading."""
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
 
 import numpy as np
 
-from seatrial.report.figures.canvas import ACCENT, INK, MEASURED, WIDTH, canvas, styled, svg, thinned
+from seatrial.report.figures.plot import (
+    MEASURED, PLAIN, SIMULATED, WIDTH, Panel, Stroke, axes, common_prefix, drawing, path, span, thinned,
+)  # fmt: skip
 from seatrial.values import Array, Record
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-COLUMNS, ROWS, SHIPS = 4, 5, 7
+SHIPS, SLENDER = 7, 2.5
+COLUMNS, TILE = 4, 216.0
+TOP, LEFT, BELOW = 22.0, 52.0, 34.0
 # half a ship from above, in lengths: forward, starboard
 _HULL = np.array([[0.5, 0], [0.3, 0.075], [-0.4, 0.075], [-0.5, 0.05]])
 _OUTLINE = np.vstack([_HULL, _HULL[::-1] * [1, -1], _HULL[:1]])
+
+
+@dataclass(frozen=True)
+class View:
+    """How a track lies on the page: north up, or (`lying`) north to the right and east downwards."""
+
+    lying: bool
+
+    def across(self, record: Record) -> Array:
+        """The coordinate that runs to the right [m]."""
+        return record["x0"] if self.lying else record["y0"]
+
+    def along(self, record: Record) -> Array:
+        """The other coordinate [m]: up, or down where the track lies."""
+        return record["y0"] if self.lying else record["x0"]
 
 
 def has_track(record: Record) -> bool:
@@ -23,60 +39,86 @@ def has_track(record: Record) -> bool:
     return {"x0", "y0"} <= set(record.channels)
 
 
-def tracks(records: Sequence[Record], length: float, prefix: str) -> list[str]:
-    """Small multiples of all tracks, at most `ROWS` rows to a figure."""
+def extents(records: Sequence[Record]) -> tuple[float, float]:
+    """Largest extent of any record to the north and to the east [m]."""
+    return tuple(max(float(np.nanmax(r[s]) - np.nanmin(r[s])) for r in records) for s in ("x0", "y0"))  # type: ignore[return-value]
+
+
+def tracks(records: Sequence[Record], length: float) -> str:
+    """Small multiples of all tracks at one scale each; empty where no record has positions."""
     usable = [r for r in records if has_track(r)]
-    size = COLUMNS * ROWS
-    return [_page(usable[k : k + size], length, f"{prefix}{k}") for k in range(0, len(usable), size)]
+    if not usable:
+        return ""
+    north, east = extents(usable)
+    prefix = common_prefix([r.name for r in usable])
+    slender = max(north, east) > SLENDER * min(north, east)
+    columns = min(2 if slender else COLUMNS, len(usable)) if slender else min(COLUMNS, max(2, len(usable)))
+    view = View(lying=slender and north > east)
+    tile = WIDTH / columns
+    inner = tile - LEFT - 12
+    height = max(44.0, inner * (min(north, east) + length) / (max(north, east) + length)) if slender else inner
+    parts = []
+    for k, record in enumerate(usable):
+        left, top = tile * (k % columns) + LEFT, (height + TOP + BELOW) * (k // columns) + TOP
+        panel = fitted([record], view, length, (left, top, inner, height))
+        parts.append(axes(panel, title=record.name.removeprefix(prefix), y_ticks=2 if slender else 4, x_ticks=4))
+        parts.append(drawn(panel, view, record, length, PLAIN))
+    return drawing(parts, (height + TOP + BELOW) * math.ceil(len(usable) / columns), "tracks of the records")
 
 
-def _page(records: Sequence[Record], length: float, prefix: str) -> str:
-    columns = min(COLUMNS, len(records))
-    rows = math.ceil(len(records) / columns)
-    width = WIDTH if columns > 2 else WIDTH * 0.38 * columns
-    with styled():
-        figure = canvas(rows * 1.95 + 0.15, width)
-        for k, record in enumerate(records):
-            axes = figure.add_subplot(rows, columns, k + 1)
-            draw(axes, record, length, INK, "-", 1.0)
-            axes.set_title(record.name, loc="left")
-            square(axes)
-        return svg(figure, f"tracks of {', '.join(r.name for r in records)}", prefix)
+def overlay(measured: Record, simulated: Record, length: float, left: float, top: float, room: float) -> tuple[str, float, bool]:
+    """Measured and simulated track in one panel of width `room`; the parts, their height, and whether it is a strip.
+
+    Long and narrow tracks become a strip as wide as the page.
+    """
+    both = [measured, simulated]
+    north, east = extents(both)
+    slender = max(north, east) > SLENDER * min(north, east)
+    view = View(lying=slender and north > east)
+    width = (WIDTH - left - LEFT - 8) if slender else room - LEFT - 8
+    height = max(60.0, width * (min(north, east) + length) / (max(north, east) + length)) if slender else width
+    panel = fitted(both, view, length, (left + LEFT, top, width, height))
+    names = ("x₀, north [m]", "y₀, east [m]") if view.lying else ("y₀, east [m]", "x₀, north [m]")
+    parts = [
+        axes(panel, x_label=names[0], y_label=names[1], x_ticks=9 if slender else 5, y_ticks=3 if slender else 5),
+        drawn(panel, view, measured, length, MEASURED, fill="#d4d4d4"),
+        drawn(panel, view, simulated, length, SIMULATED),
+    ]
+    return "".join(parts), height + 48.0, slender
 
 
-def overlay(axes: "Axes", measured: Record, simulated: Record, length: float) -> None:
-    """Measured and simulated track in one picture."""
-    draw(axes, measured, length, MEASURED, "-", 2.4, fill=True)
-    draw(axes, simulated, length, ACCENT, "--", 1.1)
-    square(axes)
-    axes.set_xlabel("y₀, east [m]")
-    axes.set_ylabel("x₀, north [m]")
+def fitted(records: Sequence[Record], view: View, length: float, box: tuple[float, float, float, float]) -> Panel:
+    """A panel in the box that shows all tracks at equal scales."""
+    left, top, width, height = box
+    x = _widened(span([view.across(r) for r in records], 0.0), length)
+    y = _widened(span([view.along(r) for r in records], 0.0), length)
+    scale = max((x[1] - x[0]) / width, (y[1] - y[0]) / height)
+    return Panel(left, top, width, height, _about(x, scale * width), _about(y, scale * height), view.lying)
 
 
-def draw(
-    axes: "Axes", record: Record, length: float, colour: str, style: str, width: float, *, fill: bool = False
-) -> None:
-    """One track with ships at equal times where the heading is known."""
-    x, y = thinned(record["x0"], record["y0"], 600)
-    axes.plot(y, x, color=colour, linestyle=style, linewidth=width)
-    if "psi" not in record or not length > 0:
-        return
-    for i in np.linspace(0, len(record) - 1, SHIPS).astype(int):
-        outline = hull(float(record["x0"][i]), float(record["y0"][i]), float(record["psi"][i]), length)
-        if fill:
-            axes.fill(outline[:, 1], outline[:, 0], color=colour, linewidth=0)
-        else:
-            axes.plot(outline[:, 1], outline[:, 0], color=colour, linewidth=0.7)
+def _widened(ends: tuple[float, float], length: float) -> tuple[float, float]:
+    room = 0.6 * length + 0.03 * (ends[1] - ends[0])
+    return ends[0] - room, ends[1] + room
+
+
+def _about(ends: tuple[float, float], size: float) -> tuple[float, float]:
+    middle = 0.5 * (ends[0] + ends[1])
+    return middle - 0.5 * size, middle + 0.5 * size
+
+
+def drawn(panel: Panel, view: View, record: Record, length: float, stroke: Stroke, fill: str = "none") -> str:
+    """One track, with ships where the heading is known."""
+    parts = [panel.curve(*thinned(view.across(record), view.along(record)), stroke)]
+    if "psi" in record and length > 0:
+        outline_stroke = Stroke(stroke.colour if fill == "none" else "#9a9a9a", 0.8)
+        for i in np.linspace(0, len(record) - 1, SHIPS).astype(int):
+            north, east = hull(float(record["x0"][i]), float(record["y0"][i]), float(record["psi"][i]), length).T
+            across, along = (north, east) if view.lying else (east, north)
+            parts.append(path(panel.px(across), panel.py(along), outline_stroke, fill))
+    return "".join(parts)
 
 
 def hull(north: float, east: float, heading: float, length: float) -> Array:
     """Outline of the ship, shape (n, 2): north, east [m]; heading [rad]."""
     c, s = math.cos(heading), math.sin(heading)
     return _OUTLINE @ np.array([[c, s], [-s, c]]) * length + [north, east]
-
-
-def square(axes: "Axes") -> None:
-    """Equal scales, limits a square about the data."""
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.set_box_aspect(1)
-    axes.locator_params(nbins=5)
