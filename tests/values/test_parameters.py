@@ -56,7 +56,7 @@ def test_priors_come_and_go(parameters: Parameters) -> None:
     assert with_prior.without_priors() == parameters.with_priors({"Y_v": None})  # type: ignore[dict-item]
 
 
-@pytest.mark.parametrize(("scale", "value", "expected"), [(0.1, -0.3, 0.1), (0.0, -0.3, 0.3), (0.0, 0.0, 1.0)])
+@pytest.mark.parametrize(("scale", "value", "expected"), [(0.1, -0.3, 0.3), (0.0, -0.3, 0.3), (0.0, 0.0, 1.0)])
 def test_characteristic_scale(scale: float, value: float, expected: float) -> None:
     assert Parameter("a", value, scale=scale).characteristic_scale == expected
 

@@ -49,7 +49,7 @@ class _Motion:
 
 def _coefficient(sheet: Sheet, name: str, meaning: str = "hull force coefficient", *, free: bool = False) -> sp.Symbol:
     latex = f"{name[0]}'_{{{name[2:].replace('_', ' ')}}}"
-    return sheet.parameter(name, 0.0, "1", meaning, free=free, scale=0.01, latex=latex)
+    return sheet.parameter(name, 0.0, "1", meaning, free=free, scale=0.02, latex=latex)
 
 
 def _motion(sheet: Sheet, u: sp.Symbol, v: sp.Symbol, r: sp.Symbol, delta: sp.Symbol) -> _Motion:

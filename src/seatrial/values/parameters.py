@@ -29,7 +29,7 @@ class Parameter:
         value: NaN where the user must give it (ship particulars).
         unit: SI unit, ``1`` for nondimensional.
         lower, upper: bounds; infinite where there are none.
-        scale: size of a meaningful change; 0 means: take the value's own.
+        scale: smallest size that counts: priors in per cent refer to it where the value is smaller.
         prior: Gaussian knowledge, used only while the parameter is free.
         free: whether an estimator may move it.
         source: citation or file it comes from.
@@ -55,8 +55,8 @@ class Parameter:
 
     @property
     def characteristic_scale(self) -> float:
-        """`scale`, or the magnitude of the value, or 1."""
-        return self.scale or abs(self.value) or 1.0
+        """The magnitude of the value or `scale`, whichever is larger; 1 where both are 0."""
+        return max(self.scale, abs(self.value)) or 1.0
 
 
 @dataclass(frozen=True)
