@@ -1,7 +1,8 @@
 """A study: a published paper worked through again, its claims judged. Plain values only."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, field
 from enum import StrEnum
+from typing import Any
 
 from seatrial.results.fit import Prediction
 from seatrial.values import Array, Finding
@@ -73,25 +74,38 @@ class Figure:
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """Everything the page of a study shows.
+    """A published study repeated, with everything its page shows.
 
     Attributes:
-        name: as in ``seatrial reproduce NAME``.
-        citation: the paper, with doi.
+        name: as in ``seatrial reproduce NAME``, e.g. ``alexandersson2022``.
+        source: the paper, with doi.
+        title, question: for the head of the page.
         predictions: measured runs beside simulated ones, as in a fit.
         seed, elapsed_s, versions: how to get the same again.
     """
 
     name: str
-    title: str
-    citation: str
-    question: str
-    tables: tuple[Table, ...]
+    source: str
     claims: tuple[Claim, ...]
     checks: tuple[Check, ...]
-    seed: int
-    elapsed_s: float
-    versions: dict[str, str]
+    seed: int = 0
+    elapsed_s: float = 0.0
+    title: str = ""
+    question: str = ""
+    tables: tuple[Table, ...] = ()
     figures: tuple[Figure, ...] = ()
     predictions: tuple[Prediction, ...] = ()
     findings: tuple[Finding, ...] = ()
+    versions: dict[str, str] = field(default_factory=dict)
+
+    def as_table(self) -> dict[str, Any]:
+        """As ``reproduce --json`` writes it: name, source, claims, checks, seed, elapsed_s, versions."""
+        return {
+            "name": self.name,
+            "source": self.source,
+            "claims": [asdict(claim) for claim in self.claims],
+            "checks": [asdict(check) for check in self.checks],
+            "seed": self.seed,
+            "elapsed_s": self.elapsed_s,
+            "versions": dict(self.versions),
+        }
