@@ -13,6 +13,7 @@ from seatrial.report.words import counted
 from seatrial.results import Check, Study, Table, Verdict
 from seatrial.trial.files import write_whole
 
+INPUTS = ("delta", "n", "v_j", "wind_speed", "wind_direction")
 TITLES = {
     "outcome": "Outcome",
     "claims": "Claims",
@@ -23,6 +24,9 @@ TITLES = {
     "findings": "Findings",
     "versions": "Versions",
 }
+
+# channels a run is given rather than predicted
+INPUTS = ("delta", "n", "v_j")
 
 
 @dataclass(frozen=True)
@@ -62,8 +66,8 @@ def html(study: Study) -> str:
         "claims": study.claims,
         "checks": [_check(c) for c in study.checks],
         "tables": [_sheet(t) for t in study.tables],
-        "figures": [(Markup(curves(f, f"figure{k}")), f) for k, f in enumerate(study.figures)],
-        "runs": runs.runs(study.predictions, 0.0),
+        "figures": [(Markup(curves(f)), f) for f in study.figures],
+        "runs": runs.runs(study.predictions, 0.0, INPUTS),
         "findings": tables.findings(study.findings),
     }
     titles = {key: title for key, title in TITLES.items() if content.get(key, True)}
