@@ -1,5 +1,7 @@
 """Which interval is defensible for this fit, and the interval itself."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from seatrial.identify.estimate import Estimate
@@ -11,7 +13,11 @@ _BLOCKS_FOR_SANDWICH = 10
 
 
 def intervals(made: Estimate, inflation: np.ndarray) -> Interval:
-    """Information matrix where residuals are white; else one-step jackknife over runs, or a sandwich over segments."""
+    """Information matrix where residuals are white; else one-step jackknife over runs, or a sandwich over segments.
+
+    With few runs and few segments the information matrix is left, of the effective number of samples (the problem's
+    `inflation`).
+    """
     problem, normal = made.problem, made.optimum.normal
     hessian = normal.reduced()[1]
     if np.max(inflation) <= WHITE_INFLATION:
@@ -27,7 +33,5 @@ def intervals(made: Estimate, inflation: np.ndarray) -> Interval:
         return one_step_jackknife(hessian, np.array([g for g, _ in parts]), np.array([h for _, h in parts]))
     if problem.data.count >= _BLOCKS_FOR_SANDWICH:
         return sandwich(hessian, np.array([reduced(np.array([s]))[0] for s in range(problem.data.count)]))
-    widened = from_information(hessian)
-    factor = float(np.max(inflation))
-    return Interval(widened.covariance * factor, np.inf,
-                    f"information matrix times {factor:.3g} for the residuals' correlation")  # fmt: skip
+    meaning = "information matrix, correlated samples counted as their effective number"
+    return replace(from_information(hessian), meaning=meaning)

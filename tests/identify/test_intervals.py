@@ -1,0 +1,72 @@
+"""Which interval a fit gets, and what it is worth."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from seatrial.equations import Model
+from seatrial.identify.estimate import Estimate, tempered
+from seatrial.identify.intervals import intervals
+from seatrial.models.nomoto import nomoto
+from seatrial.optimise import levenberg_marquardt
+from seatrial.problem.output_error import OutputError
+from seatrial.problem.segments import cut
+from seatrial.simulate import replay
+from seatrial.values import Record
+
+WHITE, COLOURED = np.array([1.0, 1.1]), np.array([1.0, 16.0])
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    return nomoto().with_values({"K": 0.15, "T": 8.0})
+
+
+def made(model: Model, runs: int, seconds: float | None) -> Estimate:
+    rng, records = np.random.default_rng(5), []
+    for i in range(runs):
+        time = 0.5 * np.arange(241)
+        delta = 0.3 * np.sign(np.sin(0.12 * time + i))
+        record = replay(model, Record.of(f"run {i}", time, {"delta": delta}), {"r": 0.0})
+        psi = record.channel("psi").with_values(record["psi"] + 0.01 * rng.standard_normal(241))
+        r = record.channel("r").with_values(record["r"] + 0.005 * rng.standard_normal(241))
+        records.append(record.with_channel("psi", psi).with_channel("r", r))
+    problem = OutputError(model, cut(model, records, ("r", "psi"), seconds), np.array([0.005, 0.01]), workers=1)
+    return Estimate(problem, levenberg_marquardt(problem, problem.start(), problem.measured_starts()))
+
+
+def test_white_residuals_get_the_information_matrix(model: Model) -> None:
+    one = made(model, 6, None)
+    interval = intervals(one, WHITE)
+    assert interval.meaning.startswith("information matrix (residuals are white)")
+    np.testing.assert_allclose(interval.covariance, np.linalg.inv(one.optimum.normal.reduced()[1]), rtol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("runs", "seconds", "says"), [(6, 30.0, "jackknife over 6 runs"), (2, 10.0, "sandwich over 24 blocks")]
+)
+def test_coloured_residuals_get_what_the_runs_allow(model: Model, runs: int, seconds: float, says: str) -> None:
+    one = made(model, runs, seconds)
+    interval = intervals(one, COLOURED)
+    assert says in interval.meaning
+    plain = intervals(one, WHITE)
+    ratio = interval.standard_error / plain.standard_error
+    assert np.all((ratio > 0.3) & (ratio < 3.0)), "residuals of this record are white: all intervals agree roughly"
+
+
+def test_few_runs_and_segments_count_effective_samples_once(model: Model) -> None:
+    one = made(model, 1, None)
+    alike = np.array([9.0, 9.0])
+    widened = intervals(tempered(one, alike, 20), alike)
+    np.testing.assert_allclose(widened.standard_error, 3.0 * intervals(one, WHITE).standard_error, rtol=1e-3)
+    assert "effective number" in widened.meaning
+
+
+def test_tempering_leaves_the_optimum_without_priors(model: Model) -> None:
+    """Equal inflation of all channels scales the cost and nothing else."""
+    one = made(model, 2, None)
+    again = tempered(one, np.array([4.0, 4.0]), 20)
+    np.testing.assert_allclose(again.shared, one.shared, rtol=1e-8)
+    assert again.optimum.solution.value == pytest.approx(one.optimum.solution.value / 4.0, rel=1e-9)
+    assert replace(again.problem, inflation=None).noise is one.problem.noise
