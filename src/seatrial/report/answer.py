@@ -5,7 +5,7 @@ from seatrial.report.words import counted, listed
 from seatrial.results import Coefficient, Fit, Prediction
 from seatrial.values import Severity
 
-WHITE = 0.01
+WHITE, DISAGREES = 0.01, 3.0
 
 
 def facts(fit: Fit) -> list[tuple[str, str]]:
@@ -27,7 +27,15 @@ def facts(fit: Fit) -> list[tuple[str, str]]:
 
 def sentences(fit: Fit) -> list[str]:
     """The answer, most important first."""
-    told = [*_held_out(fit), _coefficients(fit), _truth(fit), _residuals(fit), _convergence(fit), _warnings(fit)]
+    told = [
+        *_held_out(fit),
+        _coefficients(fit),
+        _truth(fit),
+        _priors(fit),
+        _residuals(fit),
+        _convergence(fit),
+        _warnings(fit),
+    ]
     return [sentence for sentence in told if sentence]
 
 
@@ -79,8 +87,7 @@ def _coefficients(fit: Fit) -> str:
     if not vague:
         return f"All {len(free)} free coefficients differ from zero at the 95 % level."
     return (
-        f"{len(vague)} of {len(free)} free coefficients cannot be told from zero at the 95 % level "
-        f"({listed(vague)})."
+        f"{len(vague)} of {len(free)} free coefficients cannot be told from zero at the 95 % level ({listed(vague)})."
     )
 
 
@@ -90,6 +97,22 @@ def _truth(fit: Fit) -> str:
         return ""
     inside = [c for c in known if c.lower <= c.truth <= c.upper]  # type: ignore[operator]
     return f"{len(inside)} of {len(known)} 95 % intervals contain the known value of the coefficient."
+
+
+def _priors(fit: Fit) -> str:
+    off = [
+        c.name
+        for c in _free(fit)
+        if c.prior_mean is not None
+        and c.prior_standard_deviation
+        and abs(c.estimate - c.prior_mean) > DISAGREES * c.prior_standard_deviation
+    ]
+    if not off:
+        return ""
+    return (
+        f"{counted(len(off), 'coefficient').capitalize()} ended more than {DISAGREES:g} prior standard deviations from the "
+        f"prior ({listed(off)}): records and prior disagree there."
+    )
 
 
 def _residuals(fit: Fit) -> str:

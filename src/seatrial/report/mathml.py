@@ -51,6 +51,14 @@ def _appended(left: Pieces, right: Pieces) -> Pieces:
     return [*left[:-1], left[-1] + right[0], *right[1:]]
 
 
+def _accented(body: str, accent: str) -> str:
+    """The accent over the letter itself where an index hangs on it."""
+    indexed = re.fullmatch(r"<mrow><msub>(<mi>[^<]*</mi>)(.*)</msub></mrow>", body)
+    if indexed:
+        return f"<msub><mover>{indexed[1]}<mo>{accent}</mo></mover>{indexed[2]}</msub>"
+    return f"<mover>{body}<mo>{accent}</mo></mover>"
+
+
 class _Reader:
     """Reads tokens from left to right; every method returns pieces of MathML."""
 
@@ -134,7 +142,7 @@ class _Reader:
         if name == "sqrt":
             return [f"<msqrt>{_joined(self.argument())}</msqrt>"]
         if name in _ACCENTS:
-            return [f'<mover accent="true">{_joined(self.argument())}<mo>{_ACCENTS[name]}</mo></mover>']
+            return [_accented(_joined(self.argument()), _ACCENTS[name])]
         if name in _WORDS:
             return [f'<mi mathvariant="normal">{self.word()}</mi>']
         if name == "left":

@@ -9,6 +9,7 @@ from markupsafe import Markup
 from seatrial.report import answer, numbers, runs, tables, words
 from seatrial.report.citations import Citations
 from seatrial.report.figures import channels, correlation, forest, tracks, whiteness
+from seatrial.report.figures.plot import common_prefix
 from seatrial.report.mathml import inline, pieces
 from seatrial.results import Fit
 from seatrial.trial.files import write_whole
@@ -53,12 +54,14 @@ def html(fit: Fit) -> str:
         "facts": answer.facts(fit),
         "scores": runs.scores(fit.predictions, length),
         "records": tables.records(fit),
+        "without": words.without(common_prefix([r.name for r in fit.records])),
         "tracks": Markup(tracks.tracks(fit.records, length)),
         "channels": [Markup(figure) for figure in channels.overview(fit.records)],
         "findings": tables.findings(fit.findings),
         "equations": tables.equations(fit.model, citations),
         "coefficients": tables.coefficients(fit.coefficients),
         "has_truth": any(c.truth is not None for c in fit.coefficients if not c.fixed),
+        "has_meaning": any(c.meaning for c in fit.coefficients if not c.fixed),
         "has_prior": any(c.prior_mean is not None for c in fit.coefficients if not c.fixed),
         "forest": Markup(forest.forest(fit.coefficients)),
         "correlation": Markup(correlation.heat_map(fit.model.parameters.free_names, fit.covariance)),

@@ -31,7 +31,7 @@ class MeasureRow:
 
 @dataclass(frozen=True)
 class Run:
-    """One run: its picture and measures; `more` are the later overshoots."""
+    """One run: its picture and measures; `more` are the later overshoots, `is_unlike`: nothing simulated can be read."""
 
     name: str
     key: str
@@ -40,6 +40,7 @@ class Run:
     figure: Markup
     measures: tuple[MeasureRow, ...]
     more: tuple[MeasureRow, ...]
+    is_unlike: bool
 
 
 def scores(predictions: Sequence[Prediction], length: float) -> dict[str, object]:
@@ -78,6 +79,7 @@ def _run(p: Prediction, length: float, inputs: Sequence[str], key: str) -> Run:
         p.record, key, p.role == "validation", _summary(p), Markup(comparison(p, length, inputs)),
         tuple(row for name, row in rows.items() if name not in late),
         tuple(row for name, row in rows.items() if name in late),
+        bool(rows) and all(m.simulated is None for m in p.measures.values()),
     )  # fmt: skip
 
 

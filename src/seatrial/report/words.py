@@ -71,6 +71,11 @@ def counted(number: int, noun: str) -> str:
     return f"{number or 'no'} {noun}{'' if number == 1 else 's'}"
 
 
+def without(prefix: str) -> str:
+    """A sentence for captions whose names are shortened."""
+    return f" Names without their common beginning, {prefix}" if prefix else ""
+
+
 def correlated(names: Sequence[str], covariance: Array) -> str:
     """Which coefficients the records hardly tell apart."""
     if len(names) < 2 or covariance.shape != (len(names), len(names)):

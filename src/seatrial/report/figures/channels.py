@@ -16,6 +16,7 @@ from seatrial.values import Array, Record
 ORDER = ("psi", "r", "u", "v", "phi", "p", "thrust", "torque", "delta", "n", "v_j", "wind_speed", "wind_direction")
 POSITIONS = ("x0", "y0")
 MOST_COLUMNS, MOST_ROWS, MOST_PANELS = 8, 16, 9
+UNLIKE = 0.15
 
 
 def in_order(names: Sequence[str]) -> list[str]:
@@ -41,31 +42,46 @@ def overview(records: Sequence[Record]) -> list[str]:
     return [_grid(records[k : k + rows], names, prefix, records) for k in range(0, len(records), rows)]
 
 
-def _grid(records: Sequence[Record], names: Sequence[str], prefix: str, all_records: Sequence[Record]) -> str:
-    shown_names = [r.name.removeprefix(prefix) for r in records]
-    margin = min(190.0, 6.2 * max(len(n) for n in shown_names) + 10)
+def _grid(records: Sequence[Record], names: Sequence[str], prefix: str, everything: Sequence[Record]) -> str:
+    labels = [r.name.removeprefix(prefix) for r in records]
+    margin = min(190.0, 6.2 * max(len(n) for n in labels) + 10)
     tile = (WIDTH - margin) / len(names)
-    height = 46.0 if len(records) > 6 else 74.0
-    end = max(r.duration for r in all_records)
+    durations = [r.duration for r in everything]
+    alike = min(durations) > UNLIKE * max(durations)
+    height, gap = (46.0 if len(records) > 6 else 74.0), (10.0 if alike else 24.0)
     parts = []
     for i, record in enumerate(records):
-        top = 22 + i * (height + 10)
-        parts.append(text(0, top + height / 2 + 4, shown_names[i]))
+        top = 22 + i * (height + gap)
+        parts.append(text(0, top + height / 2 + 4, labels[i]))
+        end = max(durations) if alike else record.duration
         for k, name in enumerate(names):
-            having = [r for r in all_records if name in r]
-            unit = having[0].channel(name).unit
-            reach = span([shown(name, r[name], unit) for r in having])
-            panel = Panel(margin + k * tile + 30, top, tile - 40, height, (0.0, end), reach)
-            last = i == len(records) - 1
-            parts.append(axes(panel, x_ticks=2, y_ticks=2, x_labels=last, title=label(name, unit) if i == 0 else "", size=8.5))
-            if name in record:
-                values = shown(name, record[name], unit)
-                parts.append(panel.curve(*decimated(record.time - record.time[0], values, 200), PLAIN))
-            else:
-                parts.append(text(panel.left + 4, top + height / 2, "not recorded", size=8.5, colour=GREY))
-    total = 22 + len(records) * (height + 10) + 26
+            unit = next(r.channel(name).unit for r in everything if name in r)
+            panel = Panel(
+                margin + k * tile + 30, top, tile - 40, height, (0.0, end or 1.0), _reach(everything, record, name)
+            )
+            title = label(name, unit) if i == 0 else ""
+            has_labels = not alike or i == len(records) - 1
+            parts.append(axes(panel, x_ticks=2, y_ticks=2, x_labels=has_labels, title=title, size=8.5))
+            parts.append(_small(panel, record, name))
+    total = 22 + len(records) * (height + gap) + 26
     parts.append(text(WIDTH - 10, total - 2, "t [s]", anchor="end", size=9.5))
     return drawing(parts, total, "channels of the records")
+
+
+def _reach(everything: Sequence[Record], record: Record, name: str) -> tuple[float, float]:
+    """One range for all records, or the record's own where they differ too much to be seen together."""
+    curves = [shown(name, r[name], r.channel(name).unit) for r in everything if name in r]
+    widths = [span([c], 0.0)[1] - span([c], 0.0)[0] for c in curves]
+    if name not in record or min(widths) > UNLIKE * max(widths):
+        return span(curves)
+    return span([shown(name, record[name], record.channel(name).unit)])
+
+
+def _small(panel: Panel, record: Record, name: str) -> str:
+    if name not in record:
+        return text(panel.left + 4, panel.top + panel.height / 2, "not recorded", size=8.5, colour=GREY)
+    values = shown(name, record[name], record.channel(name).unit)
+    return panel.curve(*decimated(record.time - record.time[0], values, 200), PLAIN)
 
 
 def comparison(prediction: Prediction, length: float, inputs: Sequence[str]) -> str:
@@ -76,7 +92,7 @@ def comparison(prediction: Prediction, length: float, inputs: Sequence[str]) -> 
     parts = [legend([("measured", MEASURED), ("simulated, open loop", SIMULATED)], WIDTH - 8, 14)]
     top, columns, left, tall = 30.0, 3, 0.0, 0.0
     if has_track(measured) and has_track(simulated):
-        picture, tall, is_strip = overlay(measured, simulated, length, 0.0, top, WIDTH / 3 + 20)
+        picture, tall, is_strip = overlay(measured, simulated, length, top, WIDTH / 3 + 20)
         parts.append(picture)
         if is_strip:
             top, tall = top + tall, 0.0

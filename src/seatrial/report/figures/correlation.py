@@ -48,4 +48,6 @@ def _cell(left: float, top: float, size: float, value: float, *, numbered: bool)
         return made
     words = f"{value:.2f}".replace("-", "−").replace("0.", ".")
     colour = "#fff" if strength > 0.55 else "#333"
-    return made + text(left + (size - 1) / 2, top + size / 2 + 3, words, anchor="middle", size=0.3 * size, colour=colour)
+    return made + text(
+        left + (size - 1) / 2, top + size / 2 + 3, words, anchor="middle", size=0.3 * size, colour=colour
+    )

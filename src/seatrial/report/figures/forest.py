@@ -22,7 +22,9 @@ def forest(coefficients: Sequence[Coefficient]) -> str:
     panel = Panel(margin, 26, WIDTH - margin - 14, ROW * len(free), (-reach, reach), (-0.5, len(free) - 0.5), down=True)
     name = "deviation from the estimate, per cent of the estimate"
     parts = [axes(panel, x_ticks=8, y_ticks=1, y_labels=False, x_label=name), _legend(free)]
-    parts.append(segment(float(panel.px(0)), panel.top, float(panel.px(0)), panel.top + panel.height, Stroke("#999", 0.9)))
+    parts.append(
+        segment(float(panel.px(0)), panel.top, float(panel.px(0)), panel.top + panel.height, Stroke("#999", 0.9))
+    )
     for k, c in enumerate(free):
         parts.append(text(margin - 8, float(panel.py(k)) + 4, c.name, anchor="end"))
         parts += _line(panel, c, k, reach)

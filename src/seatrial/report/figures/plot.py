@@ -95,7 +95,8 @@ def text(x: float, y: float, words: str, *, anchor: str = "start", size: float =
 def drawing(parts: Sequence[str], height: float, title: str, width: float = WIDTH) -> str:
     """The parts as one SVG element that scales with the page."""
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}" role="img" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}" '
+        f'style="max-width:{width:.0f}px" role="img" '
         f'aria-label="{html.escape(title)}" font-family="{FONT}">{"".join(parts)}</svg>'
     )
 
@@ -117,7 +118,10 @@ def axes(panel: Panel, *, x_ticks: int = 5, y_ticks: int = 4, x_labels: bool = T
         if y_labels:
             words = tick_text(value, panel.y)
             parts.append(text(panel.left - 4, at + 0.36 * size, words, anchor="end", size=size))
-    parts += [segment(panel.left, panel.top, panel.left, bottom, line), segment(panel.left, bottom, right, bottom, line)]
+    parts += [
+        segment(panel.left, panel.top, panel.left, bottom, line),
+        segment(panel.left, bottom, right, bottom, line),
+    ]
     if x_label:
         parts.append(text(panel.left + panel.width / 2, bottom + 2 * size + 8, x_label, anchor="middle"))
     if y_label:
@@ -140,12 +144,15 @@ def legend(entries: Sequence[tuple[str, Stroke]], right: float, y: float) -> str
 
 
 def ticks(low: float, high: float, about: int) -> list[float]:
-    """Round numbers within a range: steps of 1, 2, 2.5 or 5 times a power of ten."""
-    rough = (high - low) / max(1, about)
-    if not rough > 0:
+    """Round numbers within a range, about so many: steps of 1, 2 or 5 times a power of ten."""
+    if not high > low:
         return [low]
-    power = 10.0 ** math.floor(math.log10(rough))
-    step = next((m * power for m in (1.0, 2.0, 2.5, 5.0, 10.0) if m * power >= rough * 0.999), 10.0 * power)
+    power = 10.0 ** math.floor(math.log10((high - low) / max(1, about)))
+    choices = [_multiples(low, high, m * power) for m in (0.5, 1.0, 2.0, 5.0, 10.0)]
+    return min(choices, key=lambda values: (len(values) < 2, abs(len(values) - about)))
+
+
+def _multiples(low: float, high: float, step: float) -> list[float]:
     first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
     return [k * step + 0.0 for k in range(first, last + 1)]
 

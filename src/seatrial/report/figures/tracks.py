@@ -12,7 +12,7 @@ from seatrial.report.figures.plot import (
 from seatrial.values import Array, Record
 
 SHIPS, SLENDER = 7, 2.5
-COLUMNS, TILE = 4, 216.0
+COLUMNS, STRIP_COLUMNS = 4, 2
 TOP, LEFT, BELOW = 22.0, 52.0, 34.0
 # half a ship from above, in lengths: forward, starboard
 _HULL = np.array([[0.5, 0], [0.3, 0.075], [-0.4, 0.075], [-0.5, 0.05]])
@@ -41,43 +41,57 @@ def has_track(record: Record) -> bool:
 
 def extents(records: Sequence[Record]) -> tuple[float, float]:
     """Largest extent of any record to the north and to the east [m]."""
-    return tuple(max(float(np.nanmax(r[s]) - np.nanmin(r[s])) for r in records) for s in ("x0", "y0"))  # type: ignore[return-value]
+    north, east = (max(float(np.nanmax(r[s]) - np.nanmin(r[s])) for r in records) for s in ("x0", "y0"))
+    return north, east
+
+
+def is_slender(records: Sequence[Record]) -> bool:
+    """Whether tracks are so long and narrow that they are better drawn as a strip."""
+    north, east = extents(records)
+    return max(north, east) > SLENDER * min(north, east)
 
 
 def tracks(records: Sequence[Record], length: float) -> str:
-    """Small multiples of all tracks at one scale each; empty where no record has positions."""
+    """Small multiples of all tracks, strips first; empty where no record has positions."""
     usable = [r for r in records if has_track(r)]
-    if not usable:
-        return ""
-    north, east = extents(usable)
-    prefix = common_prefix([r.name for r in usable])
-    slender = max(north, east) > SLENDER * min(north, east)
-    columns = min(2 if slender else COLUMNS, len(usable)) if slender else min(COLUMNS, max(2, len(usable)))
-    view = View(lying=slender and north > east)
+    prefix = common_prefix([r.name for r in records])
+    strips = [r for r in usable if is_slender([r])]
+    others = [r for r in usable if not is_slender([r])]
+    drawn_strips, below = _tiles(strips, length, prefix, 0.0, STRIP_COLUMNS)
+    drawn_others, bottom = _tiles(others, length, prefix, below, COLUMNS)
+    return drawing([*drawn_strips, *drawn_others], bottom, "tracks of the records") if usable else ""
+
+
+def _tiles(records: Sequence[Record], length: float, prefix: str, top: float, columns: int) -> tuple[list[str], float]:
+    """Tiles of one row after another below `top`; the parts, and where they end."""
     tile = WIDTH / columns
     inner = tile - LEFT - 12
-    height = max(44.0, inner * (min(north, east) + length) / (max(north, east) + length)) if slender else inner
+    ratio = max([min(extents([r])) / max(extents([r])) for r in records], default=1.0)
+    height = inner if columns == COLUMNS else max(44.0, inner * (ratio + 0.06))
     parts = []
-    for k, record in enumerate(usable):
-        left, top = tile * (k % columns) + LEFT, (height + TOP + BELOW) * (k // columns) + TOP
-        panel = fitted([record], view, length, (left, top, inner, height))
-        parts.append(axes(panel, title=record.name.removeprefix(prefix), y_ticks=2 if slender else 4, x_ticks=4))
+    for k, record in enumerate(records):
+        place = (tile * (k % columns) + LEFT, top + (height + TOP + BELOW) * (k // columns) + TOP)
+        north, east = extents([record])
+        view = View(lying=is_slender([record]) and north > east)
+        panel = fitted([record], view, length, (*place, inner, height))
+        y_ticks = 2 if columns == STRIP_COLUMNS else 4
+        parts.append(axes(panel, title=record.name.removeprefix(prefix), y_ticks=y_ticks, x_ticks=4))
         parts.append(drawn(panel, view, record, length, PLAIN))
-    return drawing(parts, (height + TOP + BELOW) * math.ceil(len(usable) / columns), "tracks of the records")
+    return parts, top + (height + TOP + BELOW) * math.ceil(len(records) / columns)
 
 
-def overlay(measured: Record, simulated: Record, length: float, left: float, top: float, room: float) -> tuple[str, float, bool]:
+def overlay(measured: Record, simulated: Record, length: float, top: float, room: float) -> tuple[str, float, bool]:
     """Measured and simulated track in one panel of width `room`; the parts, their height, and whether it is a strip.
 
     Long and narrow tracks become a strip as wide as the page.
     """
     both = [measured, simulated]
     north, east = extents(both)
-    slender = max(north, east) > SLENDER * min(north, east)
+    slender = is_slender(both)
     view = View(lying=slender and north > east)
-    width = (WIDTH - left - LEFT - 8) if slender else room - LEFT - 8
+    width = (WIDTH - LEFT - 8) if slender else room - LEFT - 8
     height = max(60.0, width * (min(north, east) + length) / (max(north, east) + length)) if slender else width
-    panel = fitted(both, view, length, (left + LEFT, top, width, height))
+    panel = fitted(both, view, length, (LEFT, top, width, height))
     names = ("x₀, north [m]", "y₀, east [m]") if view.lying else ("y₀, east [m]", "x₀, north [m]")
     parts = [
         axes(panel, x_label=names[0], y_label=names[1], x_ticks=9 if slender else 5, y_ticks=3 if slender else 5),

@@ -25,7 +25,11 @@ def whiteness(residuals: Sequence[Residuals]) -> str:
         parts.append(_histogram(one.values[np.isfinite(one.values)], top, last=last))
     if not parts:
         return ""
-    parts += [text(66, 14, "residual"), text(446, 14, "autocorrelation, 95 % band"), text(700, 14, "against the normal")]
+    parts += [
+        text(66, 14, "residual"),
+        text(446, 14, "autocorrelation, 95 % band"),
+        text(700, 14, "against the normal"),
+    ]
     return drawing(parts, 26 + len(usable) * (HEIGHT + GAP) + 20, "residuals, their autocorrelation and histogram")
 
 
