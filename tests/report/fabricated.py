@@ -71,6 +71,11 @@ def fabricated_fit(*, names: tuple[str, ...] = ("zigzag_10_10", "zigzag_20_20", 
         coefficients=tuple(
             _coefficient(model.parameters[n].latex, n, estimates[n], s, base.parameters[n].value, prior)
             for n, s in zip(COEFFICIENTS, spread, strict=True)
+        )
+        + tuple(
+            Coefficient(p.name, p.unit, p.value, None, None, None, True, source=p.source, meaning=p.meaning)
+            for p in model.parameters
+            if not p.free
         ),
         covariance=covariance,
         solution=Solution(np.array(list(estimates.values())), 5123.4, Status.CONVERGED, 23, (9e4, 6e3, 5123.4), 7),
