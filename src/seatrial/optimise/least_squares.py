@@ -12,7 +12,9 @@ import numpy as np
 
 from seatrial.optimise.solution import Array, Solution, Status
 
+# where no step lowers the cost: promises this small, against the cost and against the first cost, are rounding
 _ROUNDING = 1e-8
+_EXHAUSTED = 1e-20
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,7 +204,8 @@ def levenberg_marquardt(
         else:
             damping, growth, rejected = max(damping, 1e-8) * growth, growth * 2.0, rejected + 1
             if predicted <= 1e-14 * normal.cost or rejected > 25:
-                status = Status.CONVERGED if promised <= _ROUNDING * normal.cost else Status.STALLED
+                rounding = max(_ROUNDING * normal.cost, _EXHAUSTED * history[0])
+                status = Status.CONVERGED if promised <= rounding else Status.STALLED
                 break
         history.append(normal.cost)
         if progress:
