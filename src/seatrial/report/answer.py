@@ -110,8 +110,8 @@ def _priors(fit: Fit) -> str:
     if not off:
         return ""
     return (
-        f"{counted(len(off), 'coefficient').capitalize()} ended more than {DISAGREES:g} prior standard deviations from the "
-        f"prior ({listed(off)}): records and prior disagree there."
+        f"{counted(len(off), 'coefficient').capitalize()} ended more than {DISAGREES:g} prior standard deviations from "
+        f"the prior ({listed(off)}): records and prior disagree there."
     )
 
 
@@ -122,8 +122,8 @@ def _residuals(fit: Fit) -> str:
     if not coloured:
         return "The residuals are white in all channels: the model leaves nothing but noise."
     return (
-        f"The residuals are coloured in {len(coloured)} of {len(fit.noise)} channels ({listed(coloured)}): model error or "
-        "disturbances remain. The intervals allow for their correlation."
+        f"The residuals are coloured in {len(coloured)} of {len(fit.noise)} channels ({listed(coloured)}): model error "
+        "or disturbances remain. The intervals allow for their correlation."
     )
 
 

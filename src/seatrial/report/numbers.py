@@ -58,8 +58,11 @@ def estimate(value: float, error: float | None, lower: float | None, upper: floa
     power = 0 if SMALLEST * 10 <= largest < LARGEST else _exponent(largest, 2)
     factor = 10.0**power
     decimals = 1 - _exponent(error / factor, 2)
-    texts = [fixed(None if x is None else x / factor, decimals) for x in (value, error, lower, upper)]
-    return Estimate(*texts, power_of_ten(power) if power else "")
+
+    def text(x: float | None) -> str:
+        return fixed(None if x is None else x / factor, decimals)
+
+    return Estimate(text(value), text(error), text(lower), text(upper), power_of_ten(power) if power else "")
 
 
 def column(values: Sequence[float | None]) -> list[str]:

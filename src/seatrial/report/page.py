@@ -1,4 +1,4 @@
-"""One self-contained HTML page from a fit: templates, style and figures in one file, nothing fetched, nothing fitted."""
+"""One self-contained HTML page from a fit: style and figures in one file, nothing fetched, nothing fitted."""
 
 from functools import cache
 from pathlib import Path

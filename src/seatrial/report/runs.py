@@ -31,7 +31,7 @@ class MeasureRow:
 
 @dataclass(frozen=True)
 class Run:
-    """One run: its picture and measures; `more` are the later overshoots, `is_unlike`: nothing simulated can be read."""
+    """One run: its picture and measures; `more` are later overshoots, `is_unlike`: nothing simulated can be read."""
 
     name: str
     key: str

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from seatrial.equations import Model
+from seatrial.equations.latex import Equation, symbol
 from seatrial.equations.latex import equations as latex_equations
-from seatrial.equations.latex import symbol
 from seatrial.report import words
 from seatrial.report.citations import Citations
 from seatrial.report.mathml import inline, pieces
-from seatrial.report.numbers import DASH, Estimate, estimate, exact, fixed as decimals, significant
+from seatrial.report.numbers import DASH, Estimate, estimate, exact, significant
+from seatrial.report.numbers import fixed as decimals
 from seatrial.results import Coefficient, Fit, Method, Noise, Offset
 from seatrial.values import Finding, Severity, display
 
@@ -109,15 +110,17 @@ def findings(items: Sequence[Finding]) -> list[FindingGroup]:
 
 def equations(model: Model, citations: Citations) -> Equations:
     """Every line of the model."""
-    rows = [
-        (e.is_rate, EquationRow(e.name, tuple(Markup(p) for p in pieces(e.latex)), _equation_unit(e.unit, e.is_rate),
-                                citations.marked(e.source)))
-        for e in latex_equations(model)
-    ]  # fmt: skip
-    return Equations(tuple(r for is_rate, r in rows if is_rate), tuple(r for is_rate, r in rows if not is_rate))
+    lines = latex_equations(model)
+    rates = tuple(_equation(e, citations) for e in lines if e.is_rate)
+    return Equations(rates, tuple(_equation(e, citations) for e in lines if not e.is_rate))
 
 
-def _equation_unit(unit: str, is_rate: bool) -> str:  # noqa: FBT001
+def _equation(e: Equation, citations: Citations) -> EquationRow:
+    unit = _equation_unit(e.unit, is_rate=e.is_rate)
+    return EquationRow(e.name, tuple(Markup(p) for p in pieces(e.latex)), unit, citations.marked(e.source))
+
+
+def _equation_unit(unit: str, *, is_rate: bool) -> str:
     return "" if is_rate or unit == "1" else unit.replace("^2", "²").replace("^3", "³")
 
 

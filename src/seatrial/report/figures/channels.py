@@ -6,7 +6,20 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatrial.report.figures.plot import (
-    GREY, MEASURED, PLAIN, SIMULATED, WIDTH, Panel, axes, common_prefix, decimated, drawing, label, legend, shown, span,
+    GREY,
+    MEASURED,
+    PLAIN,
+    SIMULATED,
+    WIDTH,
+    Panel,
+    axes,
+    common_prefix,
+    decimated,
+    drawing,
+    label,
+    legend,
+    shown,
+    span,
     text,
 )  # fmt: skip
 from seatrial.report.figures.tracks import has_track, overlay
@@ -16,7 +29,7 @@ from seatrial.values import Array, Record
 ORDER = ("psi", "r", "u", "v", "phi", "p", "thrust", "torque", "delta", "n", "v_j", "wind_speed", "wind_direction")
 POSITIONS = ("x0", "y0")
 MOST_COLUMNS, MOST_ROWS, MOST_PANELS = 8, 16, 9
-UNLIKE = 0.15
+UNLIKE = 0.25
 
 
 def in_order(names: Sequence[str]) -> list[str]:

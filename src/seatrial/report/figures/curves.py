@@ -1,7 +1,19 @@
 """A study's own curves over one pair of axes; line styles tell them apart without colour."""
 
 from seatrial.report.figures.plot import (
-    ACCENT, INK, SECOND, WIDTH, Panel, Stroke, axes, decimated, drawing, segment, span, text, thinned,
+    ACCENT,
+    INK,
+    SECOND,
+    WIDTH,
+    Panel,
+    Stroke,
+    axes,
+    decimated,
+    drawing,
+    segment,
+    span,
+    text,
+    thinned,
 )  # fmt: skip
 from seatrial.results.study import Figure
 

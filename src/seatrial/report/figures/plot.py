@@ -7,6 +7,7 @@ import html
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -36,7 +37,7 @@ PLAIN = Stroke(INK, 0.9)
 
 @dataclass(frozen=True)
 class Panel:
-    """A rectangle of the page (left, top, width, height in px) and the ranges it shows; `down` for y growing downwards."""
+    """A rectangle of the page (left, top, width, height in px) and the ranges it shows; `down`: y grows downwards."""
 
     left: float
     top: float
@@ -183,7 +184,7 @@ def decimated(x: Array, y: Array, points: int = POINTS) -> tuple[Array, Array]:
     edges = np.linspace(0, len(x), points // 2 + 1).astype(int)
     low, high = np.where(np.isnan(y), np.inf, y), np.where(np.isnan(y), -np.inf, y)
     kept: list[int] = []
-    for first, last in zip(edges[:-1], edges[1:], strict=True):
+    for first, last in pairwise(edges):
         kept += sorted({first + int(np.argmin(low[first:last])), first + int(np.argmax(high[first:last]))})
     return x[kept], y[kept]
 

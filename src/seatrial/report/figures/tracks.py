@@ -7,7 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.report.figures.plot import (
-    MEASURED, PLAIN, SIMULATED, WIDTH, Panel, Stroke, axes, common_prefix, drawing, path, span, thinned,
+    MEASURED,
+    PLAIN,
+    SIMULATED,
+    WIDTH,
+    Panel,
+    Stroke,
+    axes,
+    common_prefix,
+    drawing,
+    path,
+    span,
+    thinned,
 )  # fmt: skip
 from seatrial.values import Array, Record
 
@@ -36,7 +47,7 @@ class View:
 
 def has_track(record: Record) -> bool:
     """Whether positions are there."""
-    return {"x0", "y0"} <= set(record.channels)
+    return {"x0", "y0"} <= set(record.channels) and bool(np.isfinite(record["x0"] + record["y0"]).any())
 
 
 def extents(records: Sequence[Record]) -> tuple[float, float]:
@@ -66,7 +77,7 @@ def _tiles(records: Sequence[Record], length: float, prefix: str, top: float, co
     """Tiles of one row after another below `top`; the parts, and where they end."""
     tile = WIDTH / columns
     inner = tile - LEFT - 12
-    ratio = max([min(extents([r])) / max(extents([r])) for r in records], default=1.0)
+    ratio = max([min(extents([r])) / (max(extents([r])) or 1.0) for r in records], default=1.0)
     height = inner if columns == COLUMNS else max(44.0, inner * (ratio + 0.06))
     parts = []
     for k, record in enumerate(records):

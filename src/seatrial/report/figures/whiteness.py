@@ -5,7 +5,20 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatrial.report.figures.plot import (
-    ACCENT, PLAIN, SECOND, WIDTH, Panel, Stroke, axes, decimated, drawing, label, rectangle, segment, span, text, unit_of,
+    ACCENT,
+    PLAIN,
+    SECOND,
+    Panel,
+    Stroke,
+    axes,
+    decimated,
+    drawing,
+    label,
+    rectangle,
+    segment,
+    span,
+    text,
+    unit_of,
 )  # fmt: skip
 from seatrial.results import Residuals
 from seatrial.values import Array, display
