@@ -78,3 +78,10 @@ def test_a_singular_direction_gets_a_huge_error_not_zero() -> None:
     error = from_information(hessian).standard_error
     assert np.all(error[:2] > 1e5)
     assert error[2] == pytest.approx(1.0)
+
+
+def test_a_parameter_without_influence_overflows_nothing() -> None:
+    error = from_information(np.diag([1.0, 0.0])).standard_error
+    assert error[0] == pytest.approx(1.0)
+    assert np.isfinite(error[1])
+    assert error[1] > 1e40

@@ -132,10 +132,10 @@ def identified(
     refuse_without_excitation(model, records)
     unit = ship_length_seconds(records, length)
     tell = progress or (lambda _: None)
-    tell("weak-form start")
-    point = weak_start(model, records, WINDOW_SHIP_LENGTHS * unit)
     seconds = settings.segment_seconds or SEGMENT_SHIP_LENGTHS * unit
     problem = _problem(model, records, sessions, seconds, settings)
+    tell("weak-form start")
+    point = weak_start(model, records, WINDOW_SHIP_LENGTHS * unit)
     local = problem.measured_starts()
     shared = _started(problem, point)
     first = problem.simulated(shared, local)

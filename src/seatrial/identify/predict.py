@@ -11,8 +11,9 @@ from seatrial.problem.output_error import OutputError
 from seatrial.problem.segments import cut
 from seatrial.results import Measure, Prediction
 from seatrial.simulate.batch import Batch
+from seatrial.simulate.bounds import demand_bounded
 from seatrial.simulate.channels import record_of
-from seatrial.values import Array, InputError, Record
+from seatrial.values import Array, Record
 
 
 def _problem(template: OutputError, model: Model, record: Record, own: Array, outputs: tuple[str, ...]) -> OutputError:
@@ -35,7 +36,7 @@ def open_loop(template: OutputError, model: Model, record: Record, own: Array, s
     """The record simulated over its whole length from its inputs; all observables of the model as channels.
 
     Raises:
-        InputError: the simulation diverges (when, which run).
+        InputError: the simulation diverges (which run, which channel, when).
     """
     start = initial_state(template, model, record, own, seconds)
     problem = _problem(template, model, record, own, model.observables)
@@ -43,13 +44,9 @@ def open_loop(template: OutputError, model: Model, record: Record, own: Array, s
     x0, values, corrections = problem.unpacked(own, local)
     batch = Batch(problem.model, problem.data.inputs, problem.data.offsets, problem.data.dt, model.observables,
                   corrections=tuple(n.correction for n in template.nuisances), substeps=template.substeps)  # fmt: skip
-    y, failed = batch.simulate(0, 1, x0, values, corrections)
-    if failed[0] >= 0:
-        when = record.time[0] + failed[0] * record.dt
-        raise InputError(
-            f"the simulation of run '{record.name}' diverges at {when:.4g} s; check the coefficients and bounds"
-        )
+    y, _ = batch.simulate(0, 1, x0, values, corrections)
     nx = len(model.states)
+    demand_bounded(model, record.time, y[:, :nx], f"run '{record.name}'")
     return record_of(model, record.name, record.time, y[:, :nx], y[:, nx:], problem.data.inputs)
 
 

@@ -5,12 +5,15 @@ import numpy as np
 from seatrial.values import Array, InputError
 
 _SINGULAR = 1e-11
+_INVOLVED, _NAMED = 0.1, 8
 
 
 def weakest(hessian: Array, names: tuple[str, ...], values: Array) -> tuple[float, str]:
-    """Relative curvature along the weakest direction and the direction in words, e.g. ``0.71 m_x - 0.70 X_uu``.
+    """Relative curvature along the weakest direction and the direction in words, e.g. ``1 N_v +1 N_r +1.9 J_z``.
 
-    The Hessian is scaled to unit diagonal; a parameter without any influence gives curvature 0 and is named alone.
+    The numbers are relative changes of the parameters, in units of the median one; those that move the outputs most
+    come first. The Hessian is scaled to unit diagonal; a parameter without any influence gives curvature 0 and is
+    named alone.
     """
     diagonal = np.diag(hessian)
     size = np.maximum(np.abs(values), 1e-3)
@@ -19,11 +22,11 @@ def weakest(hessian: Array, names: tuple[str, ...], values: Array) -> tuple[floa
         return 0.0, names[int(silent[0])]
     scale = 1.0 / np.sqrt(diagonal)
     curvature, vectors = np.linalg.eigh(hessian * scale[:, None] * scale[None, :])
-    direction = vectors[:, 0] * scale / size
-    direction = direction / np.linalg.norm(direction)
-    order = [i for i in np.argsort(-np.abs(direction)) if abs(direction[i]) > 0.1][:6]
-    sign = np.sign(direction[order[0]])
-    terms = [f"{sign * direction[i]:+.2f} {names[i]}" for i in order]
+    influence = vectors[:, 0]
+    order = [i for i in np.argsort(-np.abs(influence)) if abs(influence[i]) > _INVOLVED][:_NAMED]
+    change = influence[order] * scale[order] / np.copysign(size, values)[order]
+    change = change / (np.sign(change[0]) * np.median(np.abs(change)))
+    terms = [f"{c:+.2g} {names[i]}" for i, c in zip(order, change, strict=True)]
     return float(curvature[0] / curvature[-1]), " ".join(terms).lstrip("+")
 
 

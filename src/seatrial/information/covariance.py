@@ -32,7 +32,7 @@ class Interval:
 
 def inverse(hessian: Array) -> Array:
     """Inverse of a symmetric positive matrix in its own scales; singular directions get a huge variance, not zero."""
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-300))
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-100))
     values, vectors = np.linalg.eigh(hessian * scale[:, None] * scale[None, :])
     values = np.maximum(values, 1e-14 * values[-1])
     return scale[:, None] * ((vectors / values) @ vectors.T) * scale[None, :]
