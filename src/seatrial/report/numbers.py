@@ -66,9 +66,9 @@ def estimate(value: float, error: float | None, lower: float | None, upper: floa
 
 
 def column(values: Sequence[float | None]) -> list[str]:
-    """Numbers below one another with the same decimals: two significant digits of the middle one."""
+    """Numbers below one another with the same decimals: two significant digits of the smaller ones."""
     known = sorted(abs(v) for v in values if v is not None and math.isfinite(v) and v != 0)
-    decimals = max(0, 1 - _exponent(known[len(known) // 2], 2)) if known else 0
+    decimals = max(0, 1 - _exponent(known[len(known) // 4], 2)) if known else 0
     return [fixed(v, decimals) for v in values]
 
 

@@ -18,7 +18,10 @@ WIDTH = 864.0
 ACCENT, GREY, INK, FAINT, AXIS, SECOND = "#1b4f72", "#b2b2b2", "#222222", "#ececec", "#8a9299", "#a33022"
 POINTS = 400
 FONT = "Arial, Helvetica, 'Liberation Sans', 'DejaVu Sans', sans-serif"
-_SYMBOLS = {"psi": "ψ", "delta": "δ", "phi": "φ", "theta": "θ", "x0": "x₀", "y0": "y₀", "v_j": "vⱼ"}
+_SYMBOLS = {
+    "psi": "ψ", "delta": "δ", "phi": "φ", "theta": "θ", "x0": "x₀", "y0": "y₀", "v_j": "vⱼ", "wind_speed": "wind",
+    "wind_direction": "wind from", "wind_speed_relative": "app. wind", "wind_direction_relative": "app. wind from",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)

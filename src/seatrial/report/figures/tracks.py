@@ -75,20 +75,27 @@ def tracks(records: Sequence[Record], length: float) -> str:
 
 def _tiles(records: Sequence[Record], length: float, prefix: str, top: float, columns: int) -> tuple[list[str], float]:
     """Tiles of one row after another below `top`; the parts, and where they end."""
+    parts = []
+    for k in range(0, len(records), columns):
+        row, top = _row(records[k : k + columns], length, prefix, top, columns)
+        parts += row
+    return parts, top
+
+
+def _row(records: Sequence[Record], length: float, prefix: str, top: float, columns: int) -> tuple[list[str], float]:
     tile = WIDTH / columns
     inner = tile - LEFT - 12
-    ratio = max([min(extents([r])) / (max(extents([r])) or 1.0) for r in records], default=1.0)
+    ratio = max(min(extents([r])) / (max(extents([r])) or 1.0) for r in records)
     height = inner if columns == COLUMNS else max(44.0, inner * (ratio + 0.06))
     parts = []
     for k, record in enumerate(records):
-        place = (tile * (k % columns) + LEFT, top + (height + TOP + BELOW) * (k // columns) + TOP)
         north, east = extents([record])
         view = View(lying=is_slender([record]) and north > east)
-        panel = fitted([record], view, length, (*place, inner, height))
+        panel = fitted([record], view, length, (tile * k + LEFT, top + TOP, inner, height))
         y_ticks = 2 if columns == STRIP_COLUMNS else 4
         parts.append(axes(panel, title=record.name.removeprefix(prefix), y_ticks=y_ticks, x_ticks=4))
         parts.append(drawn(panel, view, record, length, PLAIN))
-    return parts, top + (height + TOP + BELOW) * math.ceil(len(records) / columns)
+    return parts, top + height + TOP + BELOW
 
 
 def overlay(measured: Record, simulated: Record, length: float, top: float, room: float) -> tuple[str, float, bool]:
