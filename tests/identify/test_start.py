@@ -10,7 +10,7 @@ from seatrial.identify import identified
 from seatrial.identify.start import weak_start
 from seatrial.identify.states import measured_states
 from seatrial.manoeuvres import programme
-from seatrial.models.nomoto import nomoto
+from seatrial.models.nomoto import nomoto, nomoto2
 from seatrial.models.waterjet import COEFFICIENTS, waterjet
 from seatrial.simulate import manoeuvre
 from seatrial.values import InputError, Record
@@ -65,3 +65,15 @@ def test_positions_nobody_measured_say_nothing_about_speed() -> None:
     assert started["U"] == 2.0
     assert started["K"] == pytest.approx(TRUTH["K"], rel=0.05)
     assert started["T"] == pytest.approx(TRUTH["T"], rel=0.1)
+
+
+def test_a_hidden_state_leaves_the_start_to_the_model() -> None:
+    """The second-order steering model has a state that no record can hold; its truth is found all the same."""
+    model = nomoto2().with_values({"K": 0.15, "T_1": 15.0, "T_2": 3.0, "T_3": 5.0, "U": 1.0})
+    record = manoeuvre(model, programme("zigzag:20/20"), dt=0.2, speed=1.0).without("r_rest")
+    start = nomoto2().with_values({"U": 1.0})
+    np.testing.assert_array_equal(weak_start(start, [record], 10.0), [p.value for p in start.parameters.free])
+    found = identified(start, [record], ["a"], 7.0)
+    assert any("r_rest" in reason for reason in found.reasons)
+    values = [found.model.parameters[n].value for n in ("K", "T_1", "T_2", "T_3")]
+    np.testing.assert_allclose(values, [0.15, 15.0, 3.0, 5.0], rtol=1e-6)

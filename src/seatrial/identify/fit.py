@@ -11,6 +11,7 @@ from seatrial.identify.estimate import Estimate, colour, estimate, residual_spre
 from seatrial.identify.intervals import intervals
 from seatrial.identify.settings import HUBER, SEGMENT_SHIP_LENGTHS, WHITE_INFLATION, WINDOW_SHIP_LENGTHS, Settings
 from seatrial.identify.start import weak_start
+from seatrial.identify.states import hidden_states
 from seatrial.information.covariance import Interval
 from seatrial.problem.output_error import Nuisance, OutputError
 from seatrial.problem.segments import compared_outputs, cut
@@ -149,6 +150,11 @@ def identified(
     made = estimate(problem, shared, local, settings.noise, evaluations=settings.evaluations, progress=progress)
     rho, inflation = colour(made)
     reasons = [f"segments of {seconds:.3g} s: the residuals' correlation inflates variances by {np.max(inflation):.3g}"]
+    hidden = hidden_states(model, records)
+    if hidden:
+        reasons.append(
+            f"started at the model's own values: nobody measures {', '.join(hidden)}, a state of the weak form"
+        )
     criterion = f"output error, multiple shooting with segments of {seconds:.3g} s"
     if np.isinf(seconds):
         criterion = "output error over whole runs"

@@ -1,10 +1,12 @@
 """States of a model along a record, as measured: for the weak form and for starting values."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.signal import savgol_filter
 
 from seatrial.equations import Model
-from seatrial.values import Array, InputError, Record
+from seatrial.values import NOTATION, Array, InputError, Record
 
 _SMOOTHING_SECONDS_PER_SAMPLE = 15
 
@@ -13,6 +15,11 @@ def _slope(values: Array, dt: float) -> Array:
     """Derivative by local cubic polynomials (Savitzky & Golay 1964) over 15 samples."""
     width = min(_SMOOTHING_SECONDS_PER_SAMPLE, len(values) - 1 + len(values) % 2)
     return savgol_filter(values, width, min(3, width - 1), deriv=1, delta=dt)
+
+
+def hidden_states(model: Model, records: Sequence[Record]) -> tuple[str, ...]:
+    """States that no instrument shows (they are not in the notation table) and no record holds."""
+    return tuple(s for s in model.states if s not in NOTATION and not all(s in r for r in records))
 
 
 def measured_states(model: Model, record: Record) -> Array:
