@@ -6,7 +6,14 @@ from numpy.typing import NDArray
 from scipy import stats
 from scipy.signal import lfilter
 
-from seatrial.information.covariance import from_information, inverse, one_step_jackknife, sandwich
+from seatrial.information.covariance import (
+    Interval,
+    from_information,
+    inverse,
+    one_step_jackknife,
+    sandwich,
+    with_prior,
+)
 
 Array = NDArray[np.float64]
 RUNS, ROWS, UNKNOWNS = 12, 40, 3
@@ -85,3 +92,11 @@ def test_a_parameter_without_influence_overflows_nothing() -> None:
     assert error[0] == pytest.approx(1.0)
     assert np.isfinite(error[1])
     assert error[1] > 1e40
+
+
+def test_a_coefficient_held_by_its_prior_keeps_the_priors_error() -> None:
+    prior = np.array([1e6, 1e-12])
+    hessian = np.diag(prior) + np.diag([1e-6, 1e3])
+    silent = Interval(np.zeros((2, 2)), 11, "one-step jackknife over 12 runs")
+    assert with_prior(silent, hessian, prior).standard_error[0] == pytest.approx(1e-3, rel=1e-6)
+    assert with_prior(silent, hessian, prior).standard_error[1] < 1e-6

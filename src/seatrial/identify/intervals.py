@@ -6,7 +6,7 @@ import numpy as np
 
 from seatrial.identify.estimate import Estimate
 from seatrial.identify.settings import WHITE_INFLATION
-from seatrial.information.covariance import Interval, from_information, one_step_jackknife, sandwich
+from seatrial.information.covariance import Interval, from_information, one_step_jackknife, sandwich, with_prior
 
 _RUNS_FOR_JACKKNIFE = 4
 _BLOCKS_FOR_SANDWICH = 10
@@ -30,8 +30,10 @@ def intervals(made: Estimate, inflation: np.ndarray) -> Interval:
     runs = [np.flatnonzero(problem.data.run == r) for r in range(len(problem.data.runs))]
     if len(runs) >= _RUNS_FOR_JACKKNIFE:
         parts = [reduced(chosen) for chosen in runs]
-        return one_step_jackknife(hessian, np.array([g for g, _ in parts]), np.array([h for _, h in parts]))
+        left_out = one_step_jackknife(hessian, np.array([g for g, _ in parts]), np.array([h for _, h in parts]))
+        return with_prior(left_out, hessian, problem.priors[1])
     if problem.data.count >= _BLOCKS_FOR_SANDWICH:
-        return sandwich(hessian, np.array([reduced(np.array([s]))[0] for s in range(problem.data.count)]))
+        scores = np.array([reduced(np.array([s]))[0] for s in range(problem.data.count)])
+        return with_prior(sandwich(hessian, scores), hessian, problem.priors[1])
     meaning = "information matrix, correlated samples counted as their effective number"
     return replace(from_information(hessian), meaning=meaning)

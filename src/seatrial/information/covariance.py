@@ -63,3 +63,13 @@ def sandwich(hessian: Array, block_gradients: Array) -> Interval:
     factor = count / max(count - 1, 1)
     covariance = bread @ (factor * block_gradients.T @ block_gradients) @ bread
     return Interval(covariance, max(count - 1, 1), f"sandwich over {count} blocks")
+
+
+def with_prior(interval: Interval, hessian: Array, prior_precision: Array) -> Interval:
+    """Add what the prior means may be wrong by: H^-1 diag(prior precision) H^-1, the variance of the prior's own score.
+
+    Leaving runs out never moves a prior, so without this a coefficient held by its prior would seem certain.
+    """
+    bread = inverse(hessian)
+    covariance = interval.covariance + bread @ (prior_precision[:, None] * bread)
+    return Interval(covariance, interval.degrees_of_freedom, f"{interval.meaning}, with the priors' own uncertainty")
