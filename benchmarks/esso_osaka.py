@@ -1,0 +1,86 @@
+"""Esso Osaka by cross-validation over whole runs: windows of 50 s of runs held out, beside the published coefficients.
+
+`SEATRIAL_DATA=folder python benchmarks/esso_osaka.py` reads examples/esso_osaka.toml; every run takes its turn in
+training and in validation, whatever its role there.
+"""
+
+import os
+import sys
+from pathlib import Path
+
+from seatrial.identify.cross_validation import (
+    CrossValidation,
+    Pooled,
+    Protocol,
+    cross_validated,
+    fitted_folds,
+    unfitted,
+)
+from seatrial.identify.identify import settings_of
+from seatrial.models import model_named
+from seatrial.models.published import parameter_set
+from seatrial.trial import load_trial, records_of
+from seatrial.values import InputError
+
+TRIAL = Path(__file__).parent.parent / "examples" / "esso_osaka.toml"
+LIMITS = {"turn": (0.40, 4.2), "zigzag": (0.75, 5.2), "berthing": (0.38, 4.5)}
+# the windows on which the published simulator was judged: the first two of a run, started from the first sample
+ANCHOR = Protocol(initial_s=0.0, first=2)
+
+
+def label_of(run: str) -> str:
+    """Kind of manoeuvre, the word before the date."""
+    return run.split("_")[0]
+
+
+def show(title: str, made: CrossValidation, *, judged: bool = False) -> None:
+    """Print one table; `judged`: with every fold and the targets."""
+    print(f"\n{title}")
+    print("             windows   mean of rms          scatter over folds    rms of all samples")
+    for label in made.labels:
+        p, (metres, degrees) = made.pooled(label), made.scatter(label)
+        scatter = f"{metres:6.3f} m {degrees:5.2f} deg" if made.elapsed_s else f"{'-':>18}"
+        print(f"  {label:<10} {p.windows:>6}   {p.position_m:6.3f} m {p.heading_deg:5.2f} deg   {scatter}   "
+              f"{p.rms_position_m:6.3f} m {p.rms_heading_deg:5.2f} deg{_verdict(p) if judged else ''}")  # fmt: skip
+        for fold in sorted({w.fold for w in made.windows if w.label == label} if judged else ()):
+            q = made.pooled(label, fold)
+            print(f"    fold {fold + 1:<3} {q.windows:>6}   {q.position_m:6.3f} m {q.heading_deg:5.2f} deg")
+
+
+def _verdict(pooled: Pooled) -> str:
+    metres, degrees = LIMITS[pooled.label]
+    holds = pooled.position_m <= metres and pooled.heading_deg <= degrees
+    return f"   target {metres:.2f} m {degrees:.1f} deg {'holds' if holds else 'missed'}"
+
+
+def main() -> int:
+    """Print the tables; 2 for bad input."""
+    os.environ.setdefault("SEATRIAL_DATA", str(TRIAL.parent.parent.parent / "shared" / "data"))
+    try:
+        trial = load_trial(TRIAL)
+        items, _ = records_of(trial)
+        rate = trial.estimate.rate
+        records = [i.record if rate is None else i.record.resampled(rate) for i in items]
+        labels = [label_of(r.name) for r in records]
+        settings = settings_of(trial, records)
+        protocol = Protocol(initial_s=trial.estimate.initial_s or 5.0)
+        sessions = [i.session for i in items]
+        folds = fitted_folds(trial.model, records, sessions, labels, trial.ship.length, settings,
+                             progress=lambda text: print(text, flush=True))  # fmt: skip
+        made = cross_validated(folds, records, sessions, labels, protocol)
+        raw = cross_validated(folds, records, sessions, labels, ANCHOR)
+        published = parameter_set("esso-osaka").applied(model_named("mmg"))
+        show(f"fitted, {len(records)} runs, all windows, initial state from the first {protocol.initial_s:g} s",
+             made, judged=True)  # fmt: skip
+        print(f"  a fit takes {min(made.elapsed_s):.1f} to {max(made.elapsed_s):.1f} s")
+        show("published coefficients, the same windows", unfitted(published, records, labels, protocol, settings))
+        show("fitted, first two windows of a run, started from the first sample", raw)
+        show("published coefficients, the same windows", unfitted(published, records, labels, ANCHOR, settings))
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
