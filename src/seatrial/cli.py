@@ -192,25 +192,30 @@ def demo(
 def reproduce(
     study: Annotated[str, typer.Argument(metavar="STUDY", help="E.g. alexandersson2022.")],
     quick: Annotated[bool, typer.Option("--quick", help="Fewer cases, under half a minute.")] = False,
+    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Where report and study.json go.")] = None,
     json: Json = None,
     seed: Seed = 0,
 ) -> None:
     """Repeat a published study: its claims beside our numbers.
 
-    Example: seatrial reproduce alexandersson2022 --quick
+    Example: seatrial reproduce alexandersson2022 --quick --out results/alexandersson2022
     """
     from seatrial import verbs
+    from seatrial.trial.files import writable_folder
 
+    if out is not None:
+        writable_folder(out)
     with _progress() as progress:
         made = verbs.reproduce(study, quick=quick, seed=seed, progress=progress)
-    table = made.as_table()
-    for claim in table["claims"]:
-        print(f"  {claim['verdict']:10s} {claim['claim']}: {claim['evidence']}")
-    for one in table["checks"]:
-        print(
-            f"  {'holds' if one['holds'] else 'FAILS':10s} {one['name']}: {one['value']:.4g} (limit {one['limit']:.4g})"
-        )
-    _write_json(json, lambda: table)
+        page = None if out is None else verbs.save_study(made, out)
+    for claim in made.claims:
+        print(f"  {claim.verdict:10s} {claim.claim}: {claim.evidence}")
+    for one in made.checks:
+        limit = one.limit if isinstance(one.limit, str) else f"{one.limit:.4g}"
+        print(f"  {'holds' if one.holds else 'FAILS':10s} {one.name}: {one.value:.4g} (limit {limit})")
+    _write_json(json, made.as_table)
+    if page is not None:
+        print(f"report: {page}")
 
 
 def _own(path: Path | None) -> "Model | None":

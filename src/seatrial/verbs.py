@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from seatrial.equations import Model
-    from seatrial.results import Fit
-    from seatrial.studies import Study
+    from seatrial.results import Fit, Study
     from seatrial.trial import Trial
     from seatrial.trial.model_file import ModelFile
     from seatrial.values import Finding, Record
@@ -201,3 +200,18 @@ def reproduce(study: str, *, quick: bool = False, seed: int = 0, progress: Progr
     if study not in STUDIES:
         raise InputError(f"unknown study '{study}'{nearest(study, sorted(STUDIES))}")
     return STUDIES[study](quick=quick, seed=seed, progress=progress)
+
+
+def save_study(study: "Study", folder: str | Path) -> Path:
+    """Write ``study.json`` and ``report.html`` of a study to `folder`; returns the report's path.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    from seatrial.report.study import write_study
+    from seatrial.trial.files import writable_folder, write_whole
+    from seatrial.trial.fit_json import strict_json
+
+    place = writable_folder(Path(folder))
+    write_whole(place / "study.json", strict_json(study.as_table()).encode())
+    return write_study(study, place / "report.html")

@@ -1,5 +1,6 @@
 """A study: a published paper worked through again, its claims judged. Plain values only."""
 
+import math
 from dataclasses import asdict, dataclass, field
 from enum import StrEnum
 from typing import Any
@@ -99,13 +100,19 @@ class Study:
     versions: dict[str, str] = field(default_factory=dict)
 
     def as_table(self) -> dict[str, Any]:
-        """As ``reproduce --json`` writes it: name, source, claims, checks, seed, elapsed_s, versions."""
+        """As ``reproduce --json`` writes it: study, source, tables, claims, checks, seed, elapsed_s, versions."""
         return {
-            "name": self.name,
+            "study": self.name,
             "source": self.source,
+            "tables": [asdict(t) | {"rows": [[_told(cell) for cell in row] for row in t.rows]} for t in self.tables],
             "claims": [asdict(claim) for claim in self.claims],
-            "checks": [asdict(check) for check in self.checks],
+            "checks": [asdict(check) | {"value": _told(check.value)} for check in self.checks],
             "seed": self.seed,
             "elapsed_s": self.elapsed_s,
             "versions": dict(self.versions),
         }
+
+
+def _told(cell: str | float | None) -> str | float | None:
+    """None for numbers that are none: JSON knows neither NaN nor infinity."""
+    return cell if cell is None or isinstance(cell, str) or math.isfinite(cell) else None

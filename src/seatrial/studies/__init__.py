@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Protocol
 
-from seatrial.studies.study import Check, Claim, Study, Verdict
+from seatrial.results import Study
 
 Progress = Callable[[str], None]
 
@@ -22,4 +22,4 @@ def _alexandersson2022(*, quick: bool, seed: int, progress: Progress | None) -> 
 
 STUDIES: dict[str, Reproduction] = {"alexandersson2022": _alexandersson2022}
 
-__all__ = ["STUDIES", "Check", "Claim", "Reproduction", "Study", "Verdict"]
+__all__ = ["STUDIES", "Reproduction"]

@@ -1,0 +1,174 @@
+"""The KVLCC2 benchmark repeated: what a quick run promises, and verdicts and checks that can come out either way."""
+
+import json
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from report.fabricated import fabricated_fit
+from seatrial import cli, verbs
+from seatrial.results import Study, Verdict
+from seatrial.studies import STUDIES
+from seatrial.studies.alexandersson2022 import published, verdicts
+from seatrial.studies.alexandersson2022.left_out import LeftOut, jackknife_error
+from seatrial.studies.alexandersson2022.published import MEASURED_TURNS, PREDICTED_TURNS, SIDES, percent
+from seatrial.studies.alexandersson2022.repetition import Repetition, sample_noise
+from seatrial.studies.alexandersson2022.tables import left_out, left_out_turns
+from seatrial.trial.fit_json import strict_json
+from seatrial.values import Finding, InputError, Record, Severity
+
+
+@pytest.fixture(scope="module")
+def quick(data_folder: Path) -> Iterator[Study]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SEATRIAL_DATA", str(data_folder))
+        yield verbs.reproduce("alexandersson2022", quick=True)
+
+
+def test_quick_run_has_the_promised_keys(quick: Study) -> None:
+    table = json.loads(strict_json(quick.as_table()))
+    assert table["study"] == "alexandersson2022" and "112940" in table["source"]
+    assert all(set(c) == {"claim", "verdict", "evidence"} for c in table["claims"])
+    assert {c["verdict"] for c in table["claims"]} <= set(Verdict)
+    assert [set(c) for c in table["checks"]] == [{"name", "value", "limit", "holds"}] * 8
+    assert len(table["tables"]) == 4 and quick.elapsed_s < 30
+
+
+def test_the_headers_labels_are_refuted(quick: Study) -> None:
+    claim = next(c for c in quick.claims if "u, v, p, r" in c.claim)
+    assert claim.verdict is Verdict.REFUTED
+    assert "velocity-frame 13, yaw-rate 13, rudder-sign 13" in claim.evidence
+
+
+def test_nothing_is_fitted_on_the_validation_run(quick: Study) -> None:
+    offsets = next(t for t in quick.tables if t.title == "Offsets by run")
+    assert len({row[0] for row in offsets.rows}) == 12
+    assert not any("Z_35_05" in str(row[0]) for row in offsets.rows)
+    assert [p.record for p in quick.predictions] == ["HSVA_CPMC_KVLCC2_Z_35_05"]
+
+
+def test_the_page_and_the_json_are_written(quick: Study, tmp_path: Path) -> None:
+    page = verbs.save_study(quick, tmp_path / "made")
+    assert json.loads((tmp_path / "made" / "study.json").read_text()) == json.loads(strict_json(quick.as_table()))
+    assert "MARIN" in page.read_text() and page.name == "report.html"
+
+
+def test_the_command_writes_report_and_json_and_prints_what_fails(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    repetition = made(factor=1.2)
+    bare = Study("bare", "Nobody 2022", (verdicts.turning(repetition),), verdicts.checks(repetition))
+    monkeypatch.setitem(STUDIES, "bare", lambda **_: bare)
+    arguments = ["seatrial", "reproduce", "bare", "--out", str(tmp_path / "out"), "--json", str(tmp_path / "bare.json")]
+    monkeypatch.setattr("sys.argv", arguments)
+    with pytest.raises(SystemExit) as ending:
+        cli.main()
+    said = capsys.readouterr().out
+    assert not ending.value.code and "FAILS      35 deg turn to port, advance [L]: 3.701 (limit 3.01 to 3.28)" in said
+    written = [tmp_path / "bare.json", tmp_path / "out" / "study.json"]
+    assert len({path.read_text() for path in written}) == 1 and (tmp_path / "out" / "report.html").exists()
+
+
+@pytest.mark.parametrize("folder", [None, "nowhere"])
+def test_without_the_records_it_says_what_to_do(folder: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("SEATRIAL_DATA", raising=False)
+    if folder:
+        monkeypatch.setenv("SEATRIAL_DATA", folder)
+    with pytest.raises(InputError, match=r"SEATRIAL_DATA.*set it to their folder"):
+        verbs.reproduce("alexandersson2022", quick=True)
+
+
+def test_the_paper_s_errors_follow_from_its_table() -> None:
+    errors = {
+        m: [percent(getattr(PREDICTED_TURNS[s], m), getattr(MEASURED_TURNS[s], m)) for s in SIDES]
+        for m in ("advance", "diameter")
+    }
+    assert errors["advance"] == pytest.approx([-1.8, -2.0], abs=0.05)
+    assert errors["diameter"] == pytest.approx([6.2, 3.1], abs=0.05)
+    assert published.published_range("advance") == pytest.approx((3.009, 3.283), abs=1e-3)
+
+
+def made(heading: float = 8.0, position: float = 4.0, factor: float = 1.0, warm: float = 1.0) -> Repetition:
+    """A repetition nobody computed: errors on the validation run, turns as a multiple of the measured ones."""
+    fit = fabricated_fit()
+    rms = {"psi_deg": heading, "position_m": position}
+    predictions = tuple(replace(p, rms=rms) for p in fit.predictions)
+    turns = {s: replace(t, advance=factor * t.advance, diameter=factor * t.diameter) for s, t in MEASURED_TURNS.items()}
+    noise = {n.channel: 0.01 * n.standard_deviation for n in fit.noise}
+    return Repetition(replace(fit, predictions=predictions), warm, turns, {}, {}, noise, ())
+
+
+def held(repetition: Repetition) -> list[bool]:
+    return [check.holds for check in verdicts.checks(repetition)]
+
+
+def test_checks_hold_and_fail() -> None:
+    assert held(made()) == [True] * 8
+    assert held(made(heading=11.1, position=6.1, warm=5.1))[:3] == [False] * 3
+    assert held(made(factor=1.2))[4:] == [False] * 4
+    assert held(made(factor=math.nan, heading=math.nan)) == [False, True, True, True] + [False] * 4
+
+
+@pytest.mark.parametrize(
+    ("heading", "factor", "turning", "zigzag"),
+    [
+        (8.0, 1.04, Verdict.CONFIRMED, Verdict.CONFIRMED),
+        (8.0, 1.06, Verdict.REFUTED, Verdict.CONFIRMED),
+        (20.0, 1.06, Verdict.UNKNOWABLE, Verdict.UNKNOWABLE),
+        (20.0, 1.04, Verdict.CONFIRMED, Verdict.UNKNOWABLE),
+    ],
+)
+def test_verdicts_follow_the_numbers(heading: float, factor: float, turning: Verdict, zigzag: Verdict) -> None:
+    repetition = made(heading=heading, factor=factor)
+    assert verdicts.turning(repetition).verdict is turning
+    assert verdicts.zigzag(repetition).verdict is zigzag
+
+
+def test_noise_is_blamed_only_where_there_is_some() -> None:
+    quiet = made()
+    noisy = replace(quiet, noise={n.channel: n.standard_deviation for n in quiet.fit.noise})
+    assert verdicts.filtering(quiet).verdict is Verdict.REFUTED
+    assert verdicts.filtering(noisy).verdict is Verdict.UNKNOWABLE
+    assert verdicts.filtering(made(heading=20.0)).verdict is Verdict.UNKNOWABLE
+
+
+def test_labels_are_refuted_only_where_every_run_speaks() -> None:
+    finding = [Finding(Severity.ERROR, c, "wrong", "1") for c in ("velocity-frame", "yaw-rate", "rudder-sign")]
+    all_of_them = {"a": tuple(finding), "b": tuple(finding)}
+    assert verdicts.labels(replace(made(), labels=all_of_them)).verdict is Verdict.REFUTED
+    assert verdicts.labels(replace(made(), labels=all_of_them | {"c": ()})).verdict is Verdict.UNKNOWABLE
+    assert verdicts.labels(made()).verdict is Verdict.UNKNOWABLE
+
+
+@pytest.mark.parametrize(("spread", "verdict"), [(0.001, Verdict.REFUTED), (0.05, Verdict.UNKNOWABLE)])
+def test_certainty_is_judged_by_leaving_runs_out(spread: float, verdict: Verdict) -> None:
+    base = made(factor=1.05)
+    whole = base.fit.validation()[0]
+    entries = tuple(
+        LeftOut(f"run {k}", whole, 3, 1.5, 0.2, {s: replace(t, diameter=t.diameter * (1.0 + spread * (k - 1)))
+                                                for s, t in base.turns.items()})
+        for k in range(3)
+    )  # fmt: skip
+    repetition = replace(base, left_out=entries)
+    assert verdicts.certainty(repetition).verdict is verdict
+    assert verdicts.certainty(base).verdict is Verdict.UNKNOWABLE
+    assert left_out(entries).rows[-1] == ("median", 8.0, 4.0, None, 1.5, 0.2)
+    assert left_out_turns(entries).rows[-1][1] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_jackknife_of_a_mean_is_its_standard_error(rng: np.random.Generator) -> None:
+    values = rng.standard_normal(12)
+    without = [float(np.delete(values, k).mean()) for k in range(12)]
+    assert jackknife_error(without) == pytest.approx(float(values.std(ddof=1)) / math.sqrt(12))
+
+
+def test_noise_from_sample_to_sample_is_found_beneath_a_motion(rng: np.random.Generator) -> None:
+    time = np.arange(8000) * 0.05
+    psi = 0.3 * np.sin(0.2 * time) + 1e-3 * rng.standard_normal(len(time))
+    found = sample_noise([Record.of("run", time, {"psi": psi})], ["psi", "r"])
+    assert set(found) == {"psi"}
+    assert found["psi"] == pytest.approx(1e-3, rel=0.03)
