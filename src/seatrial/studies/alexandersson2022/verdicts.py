@@ -38,8 +38,8 @@ def turning(made: Repetition) -> Claim:
     elif zigzag(made).verdict is Verdict.CONFIRMED:
         verdict = Verdict.REFUTED
         tail = (
-            "a second model structure predicts the zigzag left aside as well as the paper's, but not the circles within "
-            "5 %: zigzags alone leave them to structure and prior"
+            "a second model structure predicts the zigzag left aside as well as the paper's, but not the circles "
+            "within 5 %: zigzags alone leave them to structure and prior"
         )
     else:
         verdict, tail = Verdict.UNKNOWABLE, "but our model is no match for the paper's on the zigzag left aside either"
