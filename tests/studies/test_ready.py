@@ -28,5 +28,5 @@ def test_kvlcc2_trains_on_twelve_and_validates_on_one(data_folder: Path, monkeyp
 
 def test_a_trial_nobody_shipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SEATRIAL_DATA", str(tmp_path))
-    with pytest.raises(InputError, match="nobody.toml"):
+    with pytest.raises(InputError, match=r"nobody\.toml"):
         ready.ready_trial("nobody.toml")
