@@ -87,6 +87,9 @@ def test_environment_variables_name_the_folder(
     elsewhere.write_text(text)
     monkeypatch.setenv("SEATRIAL_TEST", str(trial_file.parent))
     assert len(load_trial(elsewhere).runs) == 3
+    monkeypatch.chdir(trial_file.parent.parent)
+    monkeypatch.setenv("SEATRIAL_TEST", trial_file.parent.name)
+    assert len(load_trial(elsewhere).runs) == 3
 
 
 REFUSALS = [

@@ -16,7 +16,7 @@ _VARIABLE = re.compile(r"\$\{(\w+)\}")
 
 
 def expanded(text: str) -> str:
-    """`text` with every ${NAME} replaced by the environment variable.
+    """`text` with every ${NAME} replaced by the environment variable; a folder in it counts from the working folder.
 
     Raises:
         InputError: the variable is not set.
@@ -26,7 +26,8 @@ def expanded(text: str) -> str:
         name = match.group(1)
         if not os.environ.get(name):
             raise InputError(f"the environment variable {name} in '{text}' is not set; set it to the data's folder")
-        return os.environ[name]
+        folder = Path(os.environ[name])
+        return str(folder.resolve()) if folder.exists() else os.environ[name]
 
     return _VARIABLE.sub(value, text)
 
