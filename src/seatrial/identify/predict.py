@@ -70,9 +70,9 @@ def rms(measured: Record, simulated: Record) -> dict[str, float]:
 def prediction(
     template: OutputError, model: Model, record: Record, role: str, own: Array, seconds: float, length: float
 ) -> Prediction:
-    """One run open loop beside its measurement, with rms and manoeuvring measures."""
+    """One run open loop beside its measurement, with rms and manoeuvring measures, both at the measured executes."""
     simulated = open_loop(template, model, record, own, seconds)
-    of_measured, of_simulated = measures(record, length), measures(simulated, length)
+    of_measured, of_simulated = measures(record, length), measures(simulated, length, like=record)
     pairs = {k: Measure(of_measured.get(k), of_simulated.get(k)) for k in dict.fromkeys([*of_measured, *of_simulated])}
     return Prediction(record.name, role, record, simulated, rms(record, simulated), pairs, seconds)
 

@@ -40,7 +40,11 @@ class Criterion:
 
 
 def criteria(
-    record: Record, length: float, scale: float = 1.0, switching: float | None = None
+    record: Record,
+    length: float,
+    scale: float = 1.0,
+    switching: float | None = None,
+    like: Record | None = None,
 ) -> tuple[Criterion, ...]:
     """The standards that the record's manoeuvre allows to judge; empty where it allows none.
 
@@ -52,14 +56,15 @@ def criteria(
         length: of the ship as recorded [m].
         scale: model scale 1:scale; 1 for full scale.
         switching: switching heading [rad] of a zigzag where it is known; by default the heading at the executes.
+        like: record whose manoeuvre and executes this one shares, as in `measures`; it tells which standards apply.
 
     Raises:
         InputError: as `measures`, or the scale is not positive.
     """
     if not scale > 0.0:
         raise InputError(f"the scale 1:{scale:g} is not positive")
-    found = measures(record, length, switching)
-    seen = Observed.of(record)
+    found = measures(record, length, switching, like)
+    seen = Observed.of(record if like is None else like)
     match seen.kind:
         case Manoeuvre.TURNING_CIRCLE:
             wanted = _turning(found)

@@ -14,7 +14,9 @@ TEN = float(np.radians(10.0))
 PEAK = 0.04
 
 
-def measures(record: Record, length: float, switching: float | None = None) -> dict[str, float]:
+def measures(
+    record: Record, length: float, switching: float | None = None, like: Record | None = None
+) -> dict[str, float]:
     """Measures of the manoeuvre the record shows, by name; those it does not allow are absent.
 
     Args:
@@ -22,20 +24,24 @@ def measures(record: Record, length: float, switching: float | None = None) -> d
         length: of the ship [m], the unit of names ending in ``_L``.
         switching: switching heading [rad] of a zigzag where it is known; overshoots are counted from it. By default
             they are counted from the heading at which the rudder began to move.
+        like: record of the same rudder history at the same times, e.g. the measured run of which `record` is the open
+            loop simulation. Manoeuvre and executes are then made out on it, so that a heading that drifts off hides
+            nothing; headings, tracks and speeds are `record`'s own. By default all is read from `record`.
 
     Returns:
         Zigzag: ``overshoot_1_deg``, ``overshoot_2_deg``, …; ``initial_turning_time_s`` and ``initial_turning_L`` to 10
-        deg of heading; ``period_s``. Turning circle: ``advance_L``, ``transfer_L``, ``tactical_diameter_L`` and, from a
-        turn through 360 deg on, ``steady_diameter_L``, ``steady_yaw_rate_deg_s``, ``steady_drift_deg``, ``speed_loss``.
-        Pull-out: ``residual_yaw_rate_deg_s``. All with ``rudder_deg`` and ``approach_speed`` [m/s]; distances are
-        positive to the side turned to, drift positive with the bow into the turn, residual rate positive to that side.
+        deg of heading; ``period_s``, the mean time between successive extremes of heading to the same side. Turning
+        circle: ``advance_L``, ``transfer_L``, ``tactical_diameter_L`` and, from a turn through 360 deg on,
+        ``steady_diameter_L``, ``steady_yaw_rate_deg_s``, ``steady_drift_deg``, ``speed_loss``. Pull-out:
+        ``residual_yaw_rate_deg_s``. All with ``rudder_deg`` and ``approach_speed`` [m/s]; distances are positive to the
+        side turned to, drift positive with the bow into the turn, residual rate positive to that side.
 
     Raises:
-        InputError: psi or delta is missing or empty, or the length is not positive.
+        InputError: psi or delta is missing or empty, the length is not positive, or `like` has other times.
     """
     if not length > 0.0:
         raise InputError(f"the ship's length {length:g} m is not positive; measures need it")
-    seen = Observed.of(record)
+    seen = Observed.of(record) if like is None else Observed.of(like).alongside(record)
     match seen.kind:
         case Manoeuvre.ZIGZAG:
             return _zigzag(seen, length, switching)
@@ -51,16 +57,19 @@ def _zigzag(seen: Observed, length: float, switching: float | None) -> dict[str,
     times, hold = list(seen.executes), seen.holds[0]
     first = Swing(seen, times[0], float(np.sign(hold.angle)))
     made = _start(seen, first, hold.angle)
-    for k, value in enumerate(_overshoots(seen, switching), start=1):
-        made[f"overshoot_{k}_deg"] = float(np.degrees(value))
+    peaks = _peaks(seen)
+    for k, (_, beyond) in peaks.items():
+        counted = beyond if switching is None else beyond + _off_course(seen, k) - abs(switching)
+        made[f"overshoot_{k}_deg"] = float(np.degrees(counted))
     reached = first.time_of(TEN)
     if reached is not None and (len(times) < 3 or reached < times[2]):
         made["initial_turning_time_s"] = reached - times[0]
         travelled = _travelled(seen.record, times[0], reached)
         if travelled is not None:
             made["initial_turning_L"] = travelled / length
-    if len(times) >= 4:
-        made["period_s"] = float(np.mean(np.array(times[3:]) - np.array(times[1:-2])))
+    periods = [peaks[k + 2][0] - at for k, (at, _) in peaks.items() if k + 2 in peaks]
+    if periods:
+        made["period_s"] = float(np.mean(periods))
     return made
 
 
@@ -71,22 +80,28 @@ def _start(seen: Observed, swing: Swing, angle: float) -> dict[str, float]:
     return made if before is None else {**made, "approach_speed": before}
 
 
-def _overshoots(seen: Observed, switching: float | None) -> list[float]:
-    """Heading [rad] beyond the switching heading after the second, third, … execute, as far as the ship turned back."""
-    times, record = seen.executes, seen.record
-    course, made = seen.psi_at(times[0]), []
+def _peaks(seen: Observed) -> dict[int, tuple[float, float]]:
+    """Extremes of heading by the number of the overshoot: time [s], and angle [rad] beyond the heading at the execute.
+
+    Overshoot k follows execute k + 1; it is absent where the ship did not turn back before the next execute.
+    """
+    times, record, made = seen.executes, seen.record, {}
     for k in range(1, len(times)):
-        side = float(np.sign(seen.holds[k - 1].angle))
         stop = times[k + 1] if k + 1 < len(times) else float(record.time[seen.holds[k].last - 1])
-        peak = _peak(record.time, side * (seen.psi - course), times[k], stop)
-        if peak is None:
-            break
-        made.append(peak - (side * (seen.psi_at(times[k]) - course) if switching is None else abs(switching)))
+        side = float(np.sign(seen.holds[k - 1].angle))
+        peak = _peak(record.time, side * (seen.psi - seen.psi_at(times[k])), times[k], stop)
+        if peak is not None:
+            made[k] = peak
     return made
 
 
-def _peak(time: Array, heading: Array, start: float, stop: float) -> float | None:
-    """Largest heading between two times by a parabola through the samples about it; None if it lies at the end."""
+def _off_course(seen: Observed, k: int) -> float:
+    """Heading [rad] off the first course at execute k + 1, positive to the side of the hold before it."""
+    return float(np.sign(seen.holds[k - 1].angle)) * (seen.psi_at(seen.executes[k]) - seen.psi_at(seen.executes[0]))
+
+
+def _peak(time: Array, heading: Array, start: float, stop: float) -> tuple[float, float] | None:
+    """Time and size of the largest heading between two times, by a parabola about it; None if it lies at the end."""
     rows = np.flatnonzero((time >= start) & (time <= stop))
     if len(rows) < 5:
         return None
@@ -94,13 +109,14 @@ def _peak(time: Array, heading: Array, start: float, stop: float) -> float | Non
     half = max(2, round(PEAK * len(rows)))
     if top + half >= len(rows):
         return None
-    about = rows[max(top - half, 0) : top + half + 1]
+    about, highest = rows[max(top - half, 0) : top + half + 1], rows[top]
+    sampled = float(time[highest]), float(heading[highest])
     if len(about) < 4:
-        return float(heading[rows[top]])
-    t = time[about] - time[rows[top]]
+        return sampled
+    t = time[about] - time[highest]
     c, b, a = np.polynomial.polynomial.polyfit(t, heading[about], 2)
     at = -b / (2.0 * a) if a < 0.0 else 0.0
-    return float(c + at * (b + at * a)) if t[0] <= at <= t[-1] else float(heading[rows[top]])
+    return (sampled[0] + float(at), float(c + at * (b + at * a))) if t[0] <= at <= t[-1] else sampled
 
 
 def _travelled(record: Record, start: float, stop: float) -> float | None:

@@ -52,9 +52,21 @@ class Observed:
         Raises:
             InputError: channel psi or delta is missing or holds fewer than two values.
         """
-        psi, delta = to_starboard(record, "psi"), to_starboard(record, "delta")
-        known = np.isfinite(psi)
-        return cls(record, np.interp(record.time, record.time[known], np.unwrap(psi[known])), _bridged(record, delta))
+        return cls(record, _heading(record), _bridged(record, to_starboard(record, "delta")))
+
+    def alongside(self, record: Record) -> "Observed":
+        """Another record of the same rudder history, e.g. this run simulated: its own heading, this one's executes.
+
+        Raises:
+            InputError: its channel psi is missing or holds fewer than two values, or its times are not this one's.
+        """
+        time = self.record.time
+        if len(record) != len(time) or not np.allclose(record.time, time, rtol=0.0, atol=1e-3 * self.record.dt):
+            raise InputError(
+                f"record '{record.name}' is not sampled at the times of '{self.record.name}', at whose executes it is "
+                "to be measured; resample it"
+            )
+        return _Alongside(record, _heading(record), self.delta, self)
 
     @cached_property
     def holds(self) -> tuple[Hold, ...]:
@@ -160,6 +172,25 @@ class Observed:
         return Manoeuvre.PULL_OUT if long else Manoeuvre.TURNING_CIRCLE
 
 
+@dataclass(frozen=True, eq=False)
+class _Alongside(Observed):
+    """A record whose manoeuvre was made out on another one, row by row."""
+
+    pattern: Observed
+
+    @cached_property
+    def holds(self) -> tuple[Hold, ...]:
+        return self.pattern.holds
+
+    @cached_property
+    def executes(self) -> tuple[float, ...]:
+        return self.pattern.executes
+
+    @cached_property
+    def kind(self) -> Manoeuvre:
+        return self.pattern.kind
+
+
 def recognise(record: Record) -> Manoeuvre:
     """Which manoeuvre a record shows, from its channels ``delta`` and ``psi`` alone.
 
@@ -175,6 +206,13 @@ def to_starboard(record: Record, symbol: str) -> Array:
     if np.count_nonzero(np.isfinite(channel.values)) < 2:
         raise InputError(f"record '{record.name}': channel '{symbol}' holds fewer than two values")
     return -channel.values if channel.positive == "port" else channel.values
+
+
+def _heading(record: Record) -> Array:
+    """Heading [rad], positive to starboard, unwrapped and bridged, shape (n,)."""
+    psi = to_starboard(record, "psi")
+    known = np.isfinite(psi)
+    return np.interp(record.time, record.time[known], np.unwrap(psi[known]))
 
 
 def _bridged(record: Record, values: Array) -> Array:
