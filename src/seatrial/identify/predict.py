@@ -72,7 +72,9 @@ def prediction(
 ) -> Prediction:
     """One run open loop beside its measurement, with rms and manoeuvring measures, both at the measured executes."""
     simulated = open_loop(template, model, record, own, seconds)
-    of_measured, of_simulated = measures(record, length), measures(simulated, length, like=record)
+    steered = {"psi", "delta"} <= set(record.channels) and "psi" in simulated
+    of_measured = measures(record, length) if steered else {}
+    of_simulated = measures(simulated, length, like=record) if steered else {}
     pairs = {k: Measure(of_measured.get(k), of_simulated.get(k)) for k in dict.fromkeys([*of_measured, *of_simulated])}
     return Prediction(record.name, role, record, simulated, rms(record, simulated), pairs, seconds)
 

@@ -106,8 +106,8 @@ def standards(predictions: Sequence[Prediction], length: float, scale: float) ->
     """Rows of the standards the records can be held against, and the notes about them."""
     rows, notes = [], []
     for p in predictions:
-        measured = _criteria(p.measured, length, scale)
-        simulated = {c.name: c for c in _criteria(p.simulated, length, scale)}
+        measured = _criteria(p.measured, length, scale, p.measured)
+        simulated = {c.name: c for c in _criteria(p.simulated, length, scale, p.measured)}
         for c in measured:
             label, unit = words.measure(c.name)
             other = simulated.get(c.name)
@@ -122,9 +122,9 @@ def standards(predictions: Sequence[Prediction], length: float, scale: float) ->
     return {"rows": rows, "notes": list(dict.fromkeys(notes))}
 
 
-def _criteria(record: Record, length: float, scale: float) -> tuple[Criterion, ...]:
-    """The record's criteria; none where its manoeuvre cannot be judged."""
+def _criteria(record: Record, length: float, scale: float, like: Record) -> tuple[Criterion, ...]:
+    """The record's criteria, its manoeuvre as in `like`; none where that cannot be judged."""
     try:
-        return criteria(record, length, scale) if length > 0 else ()
+        return criteria(record, length, scale, like=like) if length > 0 else ()
     except InputError:
         return ()
