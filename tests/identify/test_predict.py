@@ -1,0 +1,30 @@
+"""Predictions of what a model has: one without a heading is compared, but has no manoeuvring measures."""
+
+import numpy as np
+
+from seatrial.equations import Sheet
+from seatrial.identify import identified
+from seatrial.identify.predict import prediction, session_means
+from seatrial.simulate import replay
+from seatrial.values import Record
+
+
+def test_a_model_of_yaw_rate_alone_is_predicted_without_measures(rng: np.random.Generator) -> None:
+    sheet = Sheet("yaw_rate")
+    (r,) = sheet.states("r")
+    delta = sheet.input("delta")
+    T = sheet.parameter("T", 8.0, "s", free=True, lower=0.1, upper=100.0)
+    K = sheet.parameter("K", 0.2, "1/s", free=True)
+    sheet.rate(r, (K * delta - r) / T)
+    model = sheet.model()
+    time = 0.2 * np.arange(1500)
+    rudder = 0.2 * np.sign(np.sin(0.1 * time))
+    truth = replay(model, Record.of("run", time, {"delta": rudder, "u": np.ones(1500)}), {"r": 0.0})
+    noisy = truth["r"] + 1e-3 * rng.standard_normal(1500)
+    record = Record.of("run", time, {"r": noisy, "delta": rudder, "u": np.ones(1500)})
+    found = identified(model.with_values({"T": 3.0, "K": 0.1}), [record], ["run"], 10.0)
+    made = prediction(found.made.problem, found.model, record, "validation",
+                      session_means(found.made.problem, found.made.shared), 10.0, 10.0)  # fmt: skip
+    assert made.measures == {}
+    assert set(made.rms) == {"r"}
+    assert made.rms["r"] < 1.1e-3
