@@ -259,3 +259,15 @@ def test_pinned_unknowns_stay_while_local_ones_move(rng: np.random.Generator) ->
     decay, line = own[0] * np.exp(-own[1] * problem.t), np.stack([np.ones(25), problem.t], axis=1)
     expected = np.linalg.lstsq(line, (problem.y - decay).T)[0].T
     np.testing.assert_allclose(found.local, expected, rtol=1e-8)
+
+
+def test_a_curved_valley_is_followed_without_overreaching_at_every_step() -> None:
+    """Rosenbrock's valley with a residual that cannot vanish: bold steps only after steps that needed no damping."""
+    valley = Curve(
+        lambda p: np.array([100.0 * (p[1] - p[0] ** 2), 1.0 - p[0], 0.3 * (p[0] + 2.0)]),
+        lambda p: np.array([[-200.0 * p[0], 100.0], [-1.0, 0.0], [0.3, 0.0]]),
+    )
+    found = solved(valley, [-1.2, 1.0], evaluations=1000).solution
+    assert found.status is Status.CONVERGED
+    assert found.point[0] == pytest.approx((1.0 - 0.3 * 0.6) / 1.09, abs=1e-6)
+    assert found.evaluations < 200

@@ -199,7 +199,8 @@ def levenberg_marquardt(
             shared, local = trial, trial_local
             normal = problem.normal(shared, local)
             count += 1
-            damping *= 0.01 if gain > 0.8 else max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0) ** 3)
+            bold = gain > 0.8 and rejected == 0
+            damping *= 0.01 if bold else max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0) ** 3)
             damping, growth, rejected = max(damping, 1e-14), 2.0, 0
         else:
             damping, growth, rejected = max(damping, 1e-8) * growth, growth * 2.0, rejected + 1
