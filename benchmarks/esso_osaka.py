@@ -6,16 +6,19 @@ training and in validation, whatever its role there.
 
 import os
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 from seatrial.identify.cross_validation import (
     CrossValidation,
+    Fold,
     Pooled,
     Protocol,
     cross_validated,
     fitted_folds,
     unfitted,
 )
+from seatrial.identify.fit import identified
 from seatrial.identify.identify import settings_of
 from seatrial.models import model_named
 from seatrial.models.published import parameter_set
@@ -39,7 +42,7 @@ def show(title: str, made: CrossValidation, *, judged: bool = False) -> None:
     print("             windows   mean of rms          scatter over folds    rms of all samples")
     for label in made.labels:
         p, (metres, degrees) = made.pooled(label), made.scatter(label)
-        scatter = f"{metres:6.3f} m {degrees:5.2f} deg" if made.elapsed_s else f"{'-':>18}"
+        scatter = f"{metres:6.3f} m {degrees:5.2f} deg" if len(made.elapsed_s) > 1 else f"{'-':>18}"
         print(f"  {label:<10} {p.windows:>6}   {p.position_m:6.3f} m {p.heading_deg:5.2f} deg   {scatter}   "
               f"{p.rms_position_m:6.3f} m {p.rms_heading_deg:5.2f} deg{_verdict(p) if judged else ''}")  # fmt: skip
         for fold in sorted({w.fold for w in made.windows if w.label == label} if judged else ()):
@@ -73,9 +76,15 @@ def main() -> int:
         show(f"fitted, {len(records)} runs, all windows, initial state from the first {protocol.initial_s:g} s",
              made, judged=True)  # fmt: skip
         print(f"  a fit takes {min(made.elapsed_s):.1f} to {max(made.elapsed_s):.1f} s")
-        show("published coefficients, the same windows", unfitted(published, records, labels, protocol, settings))
+        problem = folds[0].found.made.problem
+        plain = replace(settings, noise=dict(zip(problem.data.outputs, problem.noise.tolist(), strict=True)))
+        everything = identified(trial.model, records, sessions, trial.ship.length, settings)
+        within = Fold(tuple(range(len(records))), everything)
+        show("fitted on all runs, nothing held out: what the model class and the wind leave",
+             cross_validated((within,), records, sessions, labels, protocol))  # fmt: skip
+        show("published coefficients, the same windows", unfitted(published, records, labels, protocol, plain))
         show("fitted, first two windows of a run, started from the first sample", raw)
-        show("published coefficients, the same windows", unfitted(published, records, labels, ANCHOR, settings))
+        show("published coefficients, the same windows", unfitted(published, records, labels, ANCHOR, plain))
     except InputError as error:
         print(error, file=sys.stderr)
         return 2

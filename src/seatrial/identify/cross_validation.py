@@ -296,12 +296,15 @@ def unfitted(
 ) -> CrossValidation:
     """The same windows by a model as it is, without nuisances: what published coefficients predict. One fold.
 
+    Of the settings count channels, noise (weights for initial states; otherwise their spread), substeps and workers.
+
     Raises:
         InputError: as `window_errors`.
     """
     settings = settings or Settings()
     data = cut(model, records, compared_outputs(model, records, settings.channels), None)
-    template = OutputError(model, data, np.maximum(np.nanstd(data.measured, axis=0), 1e-9), substeps=settings.substeps,
-                           workers=settings.workers)  # fmt: skip
+    spread = np.maximum(np.nanstd(data.measured, axis=0), 1e-9)
+    noise = np.array([settings.noise.get(o, size) for o, size in zip(data.outputs, spread, strict=True)])
+    template = OutputError(model, data, noise, substeps=settings.substeps, workers=settings.workers)
     owns = [np.empty(0)] * len(records)
     return CrossValidation(tuple(window_errors(template, model, records, owns, labels, protocol or Protocol())))
