@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from seatrial.identify.settings import WHITE_INFLATION
 from seatrial.information.autocorrelation import autocorrelation, variance_inflation
 from seatrial.optimise import Optimum, levenberg_marquardt
 from seatrial.problem.output_error import OutputError
@@ -14,6 +15,7 @@ from seatrial.values import Array
 Progress = Callable[[str], None]
 
 _NEGLIGIBLE = 1e-8
+_SHORT = 12
 _ROUNDING = 1e-9
 
 
@@ -61,21 +63,39 @@ def estimate(
     local: Array,
     known_noise: dict[str, float],
     *,
-    rounds: int = 6,
+    rounds: int = 8,
     evaluations: int = 60,
     progress: Progress | None = None,
 ) -> Estimate:
-    """Alternate searches and noise estimates until the noise settles within 2 %."""
+    """Alternate short searches with estimates of the noise and its colour until both settle, then search to the end.
+
+    Coloured channels count as their effective number of samples throughout (`OutputError.inflation`).
+    """
     known = np.array([known_noise.get(o, np.nan) for o in problem.data.outputs])
     problem = replace(problem, noise=np.where(np.isfinite(known), known, problem.noise))
-    made = _search(problem, shared, local, min(12, evaluations), progress)
+    made = _search(problem, shared, local, min(_SHORT, evaluations), progress)
     for _ in range(rounds):
         noise = np.where(np.isfinite(known), known, residual_spread(made.problem, made.residuals()))
-        change = np.max(np.abs(np.log(noise / made.problem.noise)))
-        made = _search(replace(problem, noise=noise), made.shared, made.optimum.local, evaluations, progress)
-        if change < 0.02 or np.all(np.isfinite(known)):
+        again = replace(problem, noise=noise, inflation=_counted(colour(made)[1]))
+        settled = _settled(made.problem, again)
+        made = _search(again, made.shared, made.optimum.local, evaluations if settled else _SHORT, progress)
+        if settled:
             break
     return made
+
+
+def _counted(inflation: Array) -> Array | None:
+    """Inflation of the channels that are not white; None where all are."""
+    coloured = inflation > WHITE_INFLATION
+    return np.where(coloured, inflation, 1.0) if np.any(coloured) else None
+
+
+def _settled(before: OutputError, after: OutputError) -> bool:
+    """Noise within 2 % and effective numbers of samples within 10 %."""
+    ratio = np.log(after.noise / before.noise)
+    ones = np.ones(len(before.noise))
+    colours = [ones if p.inflation is None else p.inflation for p in (before, after)]
+    return bool(np.max(np.abs(ratio)) < 0.02 and np.max(np.abs(np.log(colours[1] / colours[0]))) < 0.1)
 
 
 def _search(problem: OutputError, shared: Array, local: Array, evaluations: int, progress: Progress | None) -> Estimate:
@@ -103,9 +123,3 @@ def colour(made: Estimate) -> tuple[list[Array], Array]:
     rho = [autocorrelation(pieces(made.problem, residuals[:, i]), lags) for i in range(residuals.shape[1])]
     silent = made.problem.noise <= rounding_level(made.problem)
     return rho, np.where(silent, 1.0, [variance_inflation(r) for r in rho])
-
-
-def tempered(made: Estimate, inflation: Array, evaluations: int, progress: Progress | None = None) -> Estimate:
-    """The same noise with correlated samples counted as their effective number; one more search."""
-    problem = replace(made.problem, inflation=np.maximum(inflation, 1.0))
-    return _search(problem, made.shared, made.optimum.local, evaluations, progress)

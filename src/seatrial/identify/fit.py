@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.identify.estimate import Estimate, colour, estimate, residual_spread, tempered
+from seatrial.identify.estimate import Estimate, colour, estimate, residual_spread
 from seatrial.identify.intervals import intervals
 from seatrial.identify.settings import HUBER, SEGMENT_SHIP_LENGTHS, WHITE_INFLATION, WINDOW_SHIP_LENGTHS, Settings
 from seatrial.identify.start import weak_start
@@ -171,7 +171,6 @@ def identified(
     else:
         reasons.append("coloured residuals mean model error or process noise: short segments keep it from accumulating")
     if np.max(inflation) > WHITE_INFLATION:
-        made = tempered(made, inflation, settings.evaluations, progress)
         reasons.append("correlated samples count as their effective number, so that priors keep their weight")
     if settings.robust:
         criterion += ", Huber loss"

@@ -21,7 +21,14 @@ def _problem(template: OutputError, model: Model, record: Record, own: Array, ou
     held = model.with_parameters(model.parameters.fixed(*model.parameters.names))
     noise = dict(zip(template.data.outputs, template.noise, strict=True))
     data = cut(held, [record], outputs, None)
-    return replace(template, model=held, data=data, noise=np.array([noise.get(o, 1.0) for o in outputs]), pinned=own)
+    return replace(
+        template,
+        model=held,
+        data=data,
+        noise=np.array([noise.get(o, 1.0) for o in outputs]),
+        pinned=own,
+        inflation=None,
+    )
 
 
 def initial_state(template: OutputError, model: Model, record: Record, own: Array, seconds: float) -> dict[str, float]:
