@@ -81,7 +81,7 @@ def identify(
     Example: seatrial identify examples/kvlcc2_hsva.toml --out results/kvlcc2
     """
     from seatrial import verbs
-    from seatrial.trial.files import writable_folder
+    from seatrial.values.files import writable_folder
 
     writable_folder(out)
     with _progress() as progress:
@@ -120,8 +120,8 @@ def simulate(
     """
     from seatrial import verbs
     from seatrial.read import read_table, write_record
-    from seatrial.trial.files import writable_folder
     from seatrial.values import InputError
+    from seatrial.values.files import writable_folder
 
     if (manoeuvre is None) == (inputs is None):
         raise InputError("give either --manoeuvre or --inputs")
@@ -178,7 +178,7 @@ def demo(
     Example: seatrial demo --out demo
     """
     from seatrial import verbs
-    from seatrial.trial.files import writable_folder
+    from seatrial.values.files import writable_folder
 
     writable_folder(out)
     with _progress() as progress:
@@ -201,7 +201,7 @@ def reproduce(
     Example: seatrial reproduce alexandersson2022 --quick --out results/alexandersson2022
     """
     from seatrial import verbs
-    from seatrial.trial.files import writable_folder
+    from seatrial.values.files import writable_folder
 
     if out is not None:
         writable_folder(out)
@@ -246,8 +246,8 @@ def _fit_json(fit: "Fit") -> dict[str, Any]:
 
 def _write_json(path: Path | None, table: Callable[[], Mapping[str, Any]]) -> None:
     if path is not None:
-        from seatrial.trial.files import write_whole
         from seatrial.trial.fit_json import strict_json
+        from seatrial.values.files import write_whole
 
         write_whole(path, strict_json(table()).encode())
 

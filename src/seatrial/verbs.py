@@ -177,7 +177,7 @@ def demo(folder: str | Path, seed: int = 0, progress: Progress | None = None) ->
         InputError: the folder cannot be written.
     """
     from seatrial.studies.demo import write_demo
-    from seatrial.trial.files import writable_folder
+    from seatrial.values.files import writable_folder
 
     tell = progress or (lambda _: None)
     place = writable_folder(Path(folder))
@@ -209,8 +209,8 @@ def save_study(study: "Study", folder: str | Path) -> Path:
         InputError: the folder cannot be written.
     """
     from seatrial.report.study import write_study
-    from seatrial.trial.files import writable_folder, write_whole
     from seatrial.trial.fit_json import strict_json
+    from seatrial.values.files import writable_folder, write_whole
 
     place = writable_folder(Path(folder))
     write_whole(place / "study.json", strict_json(study.as_table()).encode())

@@ -76,8 +76,9 @@ def test_the_general_reader_takes_it_too(tmp_path: Path) -> None:
 
 
 def test_refusals(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="cannot write"):
-        write_record(example(), tmp_path / "none" / "run.csv")
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(InputError, match="cannot be written"):
+        write_record(example(), tmp_path / "file" / "run.csv")
     with pytest.raises(InputError, match="does not exist"):
         read_table(tmp_path / "none.csv")
     (tmp_path / "other.csv").write_text("a,b\n1,2\n")

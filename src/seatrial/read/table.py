@@ -2,8 +2,6 @@
 
 import hashlib
 import json
-import os
-import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +9,7 @@ import numpy as np
 from seatrial.read.layout import Column, Layout
 from seatrial.read.text import TABLE_MARK, decoded, read_text
 from seatrial.values import Array, Channel, InputError, Kind, Provenance, Record, frozen, quantity
+from seatrial.values.files import write_whole
 
 
 def write_record(record: Record, path: Path) -> None:
@@ -19,24 +18,13 @@ def write_record(record: Record, path: Path) -> None:
     Numbers in shortest exact form, NaN as an empty cell; the file appears whole or not at all.
 
     Raises:
-        InputError: the folder cannot be written.
+        InputError: the place cannot be written.
     """
     header = ["time [s]", *(f"{symbol} [{channel.unit}]" for symbol, channel in record.channels.items())]
     columns = [record.time, *(channel.values for channel in record.channels.values())]
     rows = (",".join(map(_cell, row)) for row in np.stack(columns, axis=1).tolist())
     text = "\n".join([f"{TABLE_MARK} {json.dumps(_metadata(record))}", ",".join(header), *rows]) + "\n"
-    try:
-        handle, draft = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror}; choose a folder that can be written") from None
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
-        Path(draft).chmod(0o644)
-        Path(draft).replace(path)
-    except BaseException:
-        Path(draft).unlink(missing_ok=True)
-        raise
+    write_whole(path, text.encode())
 
 
 def read_table(path: Path) -> Record:

@@ -12,7 +12,7 @@ from seatrial.report.figures import channels, correlation, forest, tracks, white
 from seatrial.report.figures.plot import common_prefix
 from seatrial.report.mathml import inline, pieces
 from seatrial.results import Fit
-from seatrial.trial.files import write_whole
+from seatrial.values.files import write_whole
 
 if TYPE_CHECKING:
     from jinja2 import Environment

@@ -11,7 +11,7 @@ from seatrial.report.numbers import DASH, significant
 from seatrial.report.page import environment
 from seatrial.report.words import counted
 from seatrial.results import Check, Study, Table, Verdict
-from seatrial.trial.files import write_whole
+from seatrial.values.files import write_whole
 
 INPUTS = ("delta", "n", "v_j", "wind_speed", "wind_direction")
 TITLES = {

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from seatrial.studies.series import HELD_OUT, demo_series, file_name, write_csv
+from seatrial.values.files import write_whole
 
 _TRIAL = """\
 # Simulated trials of a waterjet craft with known coefficients (Song et al. 2025), seed {seed}.
@@ -44,14 +45,13 @@ def write_demo(folder: Path, seed: int) -> Path:
     """Make the trial series and write it to `folder`; returns the trial file.
 
     Raises:
-        OSError: the folder cannot be written.
+        InputError: the folder cannot be written.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     records, craft = demo_series(seed)
     for record in records:
         write_csv(record, folder / f"{record.name}.csv")
     validate = ", ".join(f'"{file_name(text)}"' for text in HELD_OUT)
     truth = "\n".join(f"{p.name} = {p.value!r}" for p in craft.parameters.free)
     path = folder / "trial.toml"
-    path.write_text(_TRIAL.format(seed=seed, validate=validate, truth=truth), encoding="utf-8")
+    write_whole(path, _TRIAL.format(seed=seed, validate=validate, truth=truth).encode())
     return path

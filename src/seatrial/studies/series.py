@@ -4,8 +4,6 @@
 """
 
 import math
-import os
-import tempfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,6 +14,7 @@ from seatrial.manoeuvres import programme
 from seatrial.models.waterjet import waterjet
 from seatrial.simulate import manoeuvre
 from seatrial.values import Record, display
+from seatrial.values.files import write_whole
 
 # standard deviations in SI units: log, gyro and GNSS of a small craft
 SENSOR_NOISE = {"u": 0.02, "v": 0.02, "r": math.radians(0.1), "psi": math.radians(0.2), "x0": 0.5, "y0": 0.5}
@@ -79,15 +78,15 @@ def file_name(text: str) -> str:
 
 
 def write_csv(record: Record, path: Path) -> None:
-    """Time and `EXAMPLE_COLUMNS` in the units people read, header ``symbol [unit]``; whole or not at all."""
+    """Time and `EXAMPLE_COLUMNS` in the units people read, header ``symbol [unit]``; whole or not at all.
+
+    Raises:
+        InputError: the place cannot be written.
+    """
     header = ",".join(["time [s]", *(f"{s} [{display(record.channel(s).unit)[1]}]" for s in EXAMPLE_COLUMNS)])
     columns = [record.time, *(record[s] * display(record.channel(s).unit)[0] for s in EXAMPLE_COLUMNS)]
     rows = [",".join(_number(value) for value in row) for row in zip(*columns, strict=True)]
-    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
-    with os.fdopen(handle, "w", encoding="utf-8") as file:
-        file.write("\n".join([header, *rows]) + "\n")
-    Path(temporary).chmod(0o644)
-    Path(temporary).replace(path)
+    write_whole(path, ("\n".join([header, *rows]) + "\n").encode())
 
 
 def _number(value: float) -> str:
@@ -97,7 +96,6 @@ def _number(value: float) -> str:
 def main(folder: str) -> None:
     """Write the example series to `folder`."""
     place = Path(folder)
-    place.mkdir(parents=True, exist_ok=True)
     records, _ = demo_series(EXAMPLE_SEED)
     for record in records:
         path = place / f"{record.name}.csv"

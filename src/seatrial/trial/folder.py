@@ -13,11 +13,11 @@ from seatrial.equations import Model
 from seatrial.results import Fit
 from seatrial.trial.approach import approach_of
 from seatrial.trial.archive import distinct, npz_arrays, npz_bytes, record_arrays
-from seatrial.trial.files import writable_folder
 from seatrial.trial.fit_json import fit_json, strict_json
 from seatrial.trial.fit_table import detail_table, fit_from
 from seatrial.trial.model_file import ModelFile, model_text, parsed_model, provenance_of
 from seatrial.values import Array, InputError
+from seatrial.values.files import writable_folder
 
 FORMAT = 1
 

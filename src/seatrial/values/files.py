@@ -1,10 +1,10 @@
-"""Writing files whole or not at all."""
+"""Files written whole or not at all."""
 
 import os
 import tempfile
 from pathlib import Path
 
-from seatrial.values import InputError
+from seatrial.values.errors import InputError
 
 
 def write_whole(path: Path, content: bytes) -> None:
