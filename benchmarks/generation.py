@@ -21,7 +21,7 @@ import numpy, sympy, numba, seatrial.kernels.integrate, seatrial.equations.gener
 from seatrial.models.mmg import mmg
 t = [time.perf_counter()]
 model = mmg(); t.append(time.perf_counter())
-generate.source_text(model); t.append(time.perf_counter())
+generate.source_text(model.equations); t.append(time.perf_counter())
 model.compiled; t.append(time.perf_counter())
 print(json.dumps({"write": t[1] - t[0], "generate": t[2] - t[1], "compile": t[3] - t[2]}))
 """

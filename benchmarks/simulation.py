@@ -18,7 +18,8 @@ DT = 0.1
 
 def without_pose(model: Model) -> Model:
     """The same dynamics alone: surge, sway and yaw, which know neither heading nor place."""
-    return replace(model, name=f"{model.name}_dynamics", rates=model.rates[:3])
+    equations = replace(model.equations, name=f"{model.name}_dynamics", rates=model.equations.rates[:3])
+    return replace(model, equations=equations)
 
 
 def batch(model: Model, *, sensitivities: bool) -> Batch:

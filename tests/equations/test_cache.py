@@ -24,7 +24,8 @@ model = sheet.model()
 out = np.empty(2)
 model.compiled.rates(0.0, np.ones(2), np.ones(1), np.ones(3), out)
 from seatrial.kernels.cache import cache_folder
-print(hashlib.sha256(source_text(model).encode()).hexdigest(), model.equation_hash, out, cache_folder(), sep="|")
+text = source_text(model.equations)
+print(hashlib.sha256(text.encode()).hexdigest(), model.equation_hash, out, cache_folder(), sep="|")
 """
 
 

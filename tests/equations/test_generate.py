@@ -42,7 +42,7 @@ def any_model(request: pytest.FixtureRequest, model: Model) -> Model:
 
 @pytest.mark.parametrize("kind", ["rates", "outputs", "bindings"])
 def test_values_equal_the_lambdified_expressions(any_model: Model, kind: str, rng: np.random.Generator) -> None:
-    wanted = {"rates": any_model.rates, "outputs": outputs(any_model), "bindings": any_model.bindings}[kind]
+    wanted = {"rates": any_model.equations.rates, "outputs": outputs(any_model), "bindings": any_model.bindings}[kind]
     reference = sp.lambdify(base(any_model), expanded(any_model, wanted), "numpy")
     function = getattr(any_model.compiled, kind)
     for x, u, p in points(any_model, rng):
@@ -53,7 +53,7 @@ def test_values_equal_the_lambdified_expressions(any_model: Model, kind: str, rn
 
 @pytest.mark.parametrize("kind", ["rates", "outputs"])
 def test_jacobians_equal_the_full_expansion(any_model: Model, kind: str, rng: np.random.Generator) -> None:
-    wanted = {"rates": any_model.rates, "outputs": outputs(any_model)}[kind]
+    wanted = {"rates": any_model.equations.rates, "outputs": outputs(any_model)}[kind]
     pattern = {"rates": any_model.compiled.rates_pattern, "outputs": any_model.compiled.outputs_pattern}[kind]
     symbols = base(any_model)
     full = [[partial(e, s) for s in symbols] for e in expanded(any_model, wanted)]
@@ -82,7 +82,7 @@ def test_the_breakdown_of_forces_names_every_binding(model: Model, rng: np.rando
 
 
 def test_unused_bindings_cost_the_rates_nothing(model: Model) -> None:
-    rates = source_text(model).split("def rates_tangent")[0]
+    rates = source_text(model.equations).split("def rates_tangent")[0]
     assert "unused_" not in rates
 
 

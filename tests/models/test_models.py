@@ -168,7 +168,7 @@ from seatrial.equations.latex import equations
 from seatrial.models import MODELS
 for name in MODELS:
     model = MODELS[name]()
-    text = source_text(model) + repr(equations(model))
+    text = source_text(model.equations) + repr(equations(model))
     print(name, model.equation_hash, hashlib.sha256(text.encode()).hexdigest())
 """
 
@@ -193,7 +193,7 @@ def test_every_equation_names_its_source() -> None:
 
     for name in MODELS:
         model = model_named(name)
-        assert all(b.source for b in (*model.bindings, *model.rates)), name
+        assert all(b.source for b in (*model.bindings, *model.equations.rates)), name
         lines = equations(model)
         assert len(lines) == len(model.bindings) + len(model.states)
         assert all(line.latex.count("{") == line.latex.count("}") for line in lines)

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from seatrial.equations.model import Binding, Model
+from seatrial.equations.bindings import Binding
+from seatrial.equations.model import Model
 from seatrial.values.notation import NOTATION
 
 _GREEK = {
@@ -55,4 +56,4 @@ def equations(model: Model) -> list[Equation]:
         return Equation(binding.name, f"{left} = {right}", binding.source, binding.unit, is_rate)
 
     lines = [line(b, known[b.name], is_rate=False) for b in model.bindings]
-    return lines + [line(b, f"\\dot{{{known[b.name]}}}", is_rate=True) for b in model.rates]
+    return lines + [line(b, f"\\dot{{{known[b.name]}}}", is_rate=True) for b in model.equations.rates]

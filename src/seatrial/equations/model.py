@@ -1,93 +1,68 @@
-"""A model: states, inputs, outputs, parameters and equations, written once."""
+"""A model: equations, written once, and the values of their parameters."""
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
 import numpy as np
-import sympy as sp
 
+from seatrial.equations.bindings import Binding, Equations, Input
+from seatrial.equations.compiled import Compiled, compiled
 from seatrial.kernels.integrate import evaluate
-from seatrial.values import Array, InputError, Parameters, Ship, quantity
-from seatrial.values.notation import NOTATION
-
-if TYPE_CHECKING:
-    from seatrial.equations.generate import Compiled
-
-
-@dataclass(frozen=True)
-class Binding:
-    """A named expression with its source; a rate is a binding named after its state."""
-
-    name: str
-    expression: sp.Expr
-    source: str = ""
-    unit: str = "1"
-
-
-@dataclass(frozen=True)
-class Input:
-    """An input channel; `positive` is its positive direction where it differs from the notation table's."""
-
-    name: str
-    positive: str = ""
-
-    @property
-    def direction(self) -> str:
-        """The positive direction in force."""
-        return self.positive or (quantity(self.name).positive if self.name in NOTATION else "none")
+from seatrial.values import Array, InputError, Parameters, Ship
 
 
 @dataclass(frozen=True)
 class Model:
-    """Equations with their parameters. Everything numeric is generated from `bindings` and `rates`.
+    """Equations with the parameters, free and fixed, in the equations' order."""
 
-    Attributes:
-        inputs, bindings, rates: the equations; `rates` in the order of the states.
-        outputs: names of bindings that can be measured, besides the states.
-        parameters: all parameters, free and fixed.
-    """
-
-    name: str
-    source: str
-    inputs: tuple[Input, ...]
-    bindings: tuple[Binding, ...]
-    rates: tuple[Binding, ...]
-    outputs: tuple[str, ...]
+    equations: Equations
     parameters: Parameters
-    meaning: str = ""
+
+    @property
+    def name(self) -> str:
+        """What the registry and model files call it."""
+        return self.equations.name
 
     @property
     def states(self) -> tuple[str, ...]:
         """Names of the states."""
-        return tuple(rate.name for rate in self.rates)
+        return self.equations.states
+
+    @property
+    def inputs(self) -> tuple[Input, ...]:
+        """The input channels."""
+        return self.equations.inputs
 
     @property
     def input_names(self) -> tuple[str, ...]:
         """Names of the inputs."""
-        return tuple(i.name for i in self.inputs)
+        return self.equations.input_names
+
+    @property
+    def bindings(self) -> tuple[Binding, ...]:
+        """The named expressions, in order."""
+        return self.equations.bindings
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of bindings that can be measured, besides the states."""
+        return self.equations.outputs
 
     @property
     def observables(self) -> tuple[str, ...]:
         """Everything a record can be compared with: states, then measurable outputs."""
         return (*self.states, *self.outputs)
 
-    @cached_property
+    @property
     def equation_hash(self) -> str:
         """SHA-256 over names and expressions: what the equations are, whatever the parameter values."""
-        lines = [self.name, *self.input_names, *self.outputs, *self.parameters.names]
-        lines += [f"{b.name} = {sp.srepr(b.expression)}" for b in self.bindings]
-        lines += [f"d{b.name} = {sp.srepr(b.expression)}" for b in self.rates]
-        return hashlib.sha256("\n".join(lines).encode()).hexdigest()
+        return self.equations.digest
 
-    @cached_property
-    def compiled(self) -> "Compiled":
+    @property
+    def compiled(self) -> Compiled:
         """The generated machine code: rates, outputs, bindings and exact Jacobians (cached between processes)."""
-        from seatrial.equations.generate import compiled
-
-        return compiled(self)
+        return compiled(self.equations)
 
     def with_parameters(self, parameters: Parameters) -> Self:
         """The same equations with other parameters (same names, same order).
@@ -97,11 +72,7 @@ class Model:
         """
         if parameters.names != self.parameters.names:
             raise InputError(f"the parameters do not belong to model '{self.name}'")
-        changed = replace(self, parameters=parameters)
-        for name in ("equation_hash", "compiled"):
-            if name in self.__dict__:
-                changed.__dict__[name] = self.__dict__[name]
-        return changed
+        return replace(self, parameters=parameters)
 
     def with_values(self, values: Mapping[str, float], source: str | None = None) -> Self:
         """Other parameter values."""
@@ -123,12 +94,6 @@ class Model:
     def forces(self, states: Array, inputs: Array) -> dict[str, Array]:
         """Every binding along a record: states (n, nx), inputs (n, nu) -> name -> (n,)."""
         out = np.empty((len(states), max(1, len(self.bindings))))
-        evaluate(
-            self.compiled.bindings,
-            np.ascontiguousarray(states),
-            np.ascontiguousarray(inputs),
-            self.parameters.values,
-            0.0,
-            out,
-        )
+        x, u = np.ascontiguousarray(states), np.ascontiguousarray(inputs)
+        evaluate(self.compiled.bindings, x, u, self.parameters.values, 0.0, out)
         return {b.name: out[:, i] for i, b in enumerate(self.bindings)}

@@ -13,11 +13,12 @@ It reads like the paper:
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import sympy as sp
 
-from seatrial.equations.model import Binding, Input, Model
+from seatrial.equations.bindings import Binding, Equations, Input
+from seatrial.equations.model import Model
 from seatrial.values import InputError, Parameter, Parameters
 
 
@@ -43,16 +44,14 @@ class Sheet:
         self._rates: dict[str, _Rate] = {}
         self._outputs: list[str] = []
 
+    @property
+    def _known(self) -> set[str]:
+        return {*self._states, *(item.name for item in (*self._inputs, *self._parameters, *self._bindings))}
+
     def _new(self, name: str) -> sp.Symbol:
-        taken = (
-            *self._states,
-            *(i.name for i in self._inputs),
-            *(p.name for p in self._parameters),
-            *(b.name for b in self._bindings),
-        )
         if not name.isidentifier():
             raise InputError(f"model '{self.name}': '{name}' is no ASCII identifier")
-        if name in taken:
+        if name in self._known:
             raise InputError(f"model '{self.name}': the name '{name}' is used twice")
         return sp.Symbol(name, real=True)
 
@@ -114,13 +113,7 @@ class Sheet:
         return symbol
 
     def _check(self, expression: sp.Expr, where: str) -> None:
-        known = {
-            *self._states,
-            *(i.name for i in self._inputs),
-            *(p.name for p in self._parameters),
-            *(b.name for b in self._bindings),
-        }
-        strangers = sorted(str(s) for s in expression.free_symbols if str(s) not in known)
+        strangers = sorted({str(s) for s in expression.free_symbols} - self._known)
         if strangers:
             raise InputError(f"model '{self.name}', {where}: unknown symbol '{strangers[0]}'; declare it first")
 
@@ -130,13 +123,15 @@ class Sheet:
         if absent:
             raise InputError(f"model '{self.name}': no rate given for state '{absent[0]}'")
         rates = tuple(Binding(s, self._rates[s].expression, self._rates[s].source) for s in self._states)
-        return Model(
+        parameters = Parameters(tuple(self._parameters))
+        equations = Equations(
             self.name,
             self.source,
             tuple(self._inputs),
             tuple(self._bindings),
             rates,
             tuple(self._outputs),
-            Parameters(tuple(replace(p) for p in self._parameters)),
+            parameters.names,
             self.meaning,
         )
+        return Model(equations, parameters)

@@ -15,8 +15,8 @@ import tomli_w
 
 from seatrial.equations import Model
 from seatrial.models import model_named
-from seatrial.trial.files import write_whole
 from seatrial.values import Array, InputError, Parameter, Parameters, Prior, Record, Ship, frozen
+from seatrial.values.files import write_whole
 
 FORMAT = 1
 CONVENTIONS = (
@@ -72,7 +72,7 @@ def model_text(file: ModelFile) -> str:
     free = model.parameters.free_names
     if covariance.size and covariance.shape != (len(free), len(free)):
         raise ValueError(f"covariance of shape {covariance.shape} for {len(free)} free parameters")
-    about = {"name": model.name, "equation_hash": model.equation_hash, "source": model.source}
+    about = {"name": model.name, "equation_hash": model.equation_hash, "source": model.equations.source}
     table: dict[str, Any] = {"format": FORMAT, "model": about | {"conventions": CONVENTIONS}}
     if file.ship is not None:
         ship = file.ship

@@ -1,0 +1,99 @@
+"""Machine code of a set of equations: one generated module, compiled once a machine.
+
+The module holds four functions with the project's fixed signatures: `rates`, `rates_tangent`, `outputs` and
+`outputs_tangent`; `bindings`, for the breakdown of forces, is a module of its own, compiled when it is asked for.
+They lie in the cache folder under the hash of their text.
+"""
+
+import hashlib
+import importlib.util
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatrial.equations.bindings import Equations
+from seatrial.equations.generate import bindings_text, source_text
+from seatrial.kernels.cache import cache_folder
+from seatrial.values.files import write_whole
+
+Pattern = NDArray[np.int64]
+
+# of everything that decides how the text comes about: a changed generator finds no old index
+_GENERATOR = hashlib.sha256(b"".join(p.read_bytes() for p in sorted(Path(__file__).parent.glob("*.py")))).hexdigest()
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """Functions of one set of equations.
+
+    Attributes:
+        rates_pattern, outputs_pattern: structural nonzeros of their Jacobians, (row, column) with columns [x | u | p].
+    """
+
+    equations: Equations
+    rates: Callable[..., None]
+    rates_tangent: Callable[..., None]
+    outputs: Callable[..., None]
+    outputs_tangent: Callable[..., None]
+    rates_pattern: Pattern
+    outputs_pattern: Pattern
+
+    @cached_property
+    def bindings(self) -> Callable[..., None]:
+        """Every binding in order: the breakdown of forces."""
+        return _module(self.equations, "bindings", bindings_text).bindings
+
+
+def _written(text: str) -> Path:
+    path = cache_folder() / "generated" / f"model_{hashlib.sha256(text.encode()).hexdigest()[:24]}.py"
+    if not path.exists():
+        write_whole(path, text.encode())
+    return path
+
+
+@lru_cache(maxsize=64)
+def _load(path: Path) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[path.stem] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def _module(equations: Equations, kind: str, text: Callable[[Equations], str]) -> ModuleType:
+    """The generated module; the index from equation hash to module spares generating the text again."""
+    folder = cache_folder() / "generated"
+    index = folder / f"{kind}_{_GENERATOR[:12]}_{equations.digest[:24]}.txt"
+    if index.exists():
+        path = folder / index.read_text(encoding="utf-8").strip()
+        if path.exists():
+            return _load(path)
+    path = _written(text(equations))
+    write_whole(index, path.name.encode())
+    return _load(path)
+
+
+@lru_cache(maxsize=64)
+def compiled(equations: Equations) -> Compiled:
+    """Generate, load and compile the functions of a set of equations."""
+    module = _module(equations, "index", source_text)
+
+    def table(pairs: list[tuple[int, int]]) -> Pattern:
+        return np.array(pairs, dtype=np.int64).reshape(-1, 2)
+
+    return Compiled(
+        equations,
+        module.rates,
+        module.rates_tangent,
+        module.outputs,
+        module.outputs_tangent,
+        table(module.RATES_PATTERN),
+        table(module.OUTPUTS_PATTERN),
+    )
