@@ -6,8 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 REPOSITORY = Path(__file__).parents[1]
+
+# the first example may import pandas or compile a kernel; times are for benchmarks
+settings.register_profile("untimed", deadline=None)
+settings.load_profile("untimed")
+
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
 

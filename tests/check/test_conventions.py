@@ -34,7 +34,7 @@ def conventions(draw: st.DrawFn) -> Record:
 
 
 @given(conventions(), st.floats(-3, 3))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_twice_is_once(record: Record, point: float) -> None:
     once = canonical(record, point)
     twice = canonical(once, point)
@@ -58,7 +58,7 @@ def test_signs_are_turned_as_declared(symbol: str, positive: str) -> None:
 
 
 @given(st.floats(-5, 5), st.floats(-5, 5))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_reference_points_there_and_back(there: float, back: float) -> None:
     moved = canonical(canonical(zigzag(count=200), there), back)
     direct = canonical(zigzag(count=200), back)

@@ -24,7 +24,7 @@ def test_a_sound_record_is_untouched(noise: float) -> None:
 
 
 @given(st.integers(20, 2980), st.sampled_from([("x0", 5.0), ("psi", 0.5), ("u", -0.8), ("r", 0.2)]))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_single_wild_samples_are_interpolated(row: int, what: tuple[str, float]) -> None:
     symbol, size = what
     record, findings = repair(spoilt(symbol, [row], size))

@@ -23,7 +23,7 @@ def test_an_even_record_is_returned_as_it_is() -> None:
 
 
 @given(st.sampled_from([0.03, 0.05, 1 / 3, 0.04]), st.sampled_from([1, 2]), st.integers(60, 300))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_rounded_stamps_are_spread(dt: float, decimals: int, count: int) -> None:
     exact = dt * np.arange(count)
     values = np.cos(exact)
