@@ -6,18 +6,8 @@ import numpy as np
 
 from seatrial.check.signal import unwrapped
 from seatrial.values import Array, Channel, InputError, Record, quantity
+from seatrial.values.notation import OPPOSITE, positive_direction
 
-_OPPOSITE = {
-    "starboard": "port",
-    "north": "south",
-    "east": "west",
-    "forward": "aft",
-    "up": "down",
-    "bow up": "bow down",
-    "ahead": "astern",
-}
-_OPPOSITES = _OPPOSITE | {b: a for a, b in _OPPOSITE.items()}
-_EARTH_POSITIVE = {"u": "north", "v": "east", "u_dot": "north", "v_dot": "east"}
 _PAIRS = (("u", "v"), ("u_dot", "v_dot"))
 _TURNING = ("psi", "wind_direction", "wind_direction_relative")
 
@@ -47,18 +37,12 @@ def signed(record: Record) -> Record:
     return replace(record, channels=channels, provenance=provenance)
 
 
-def _wanted(symbol: str, channel: Channel) -> str:
-    if channel.frame == "earth" and symbol in _EARTH_POSITIVE:
-        return _EARTH_POSITIVE[symbol]
-    return quantity(symbol).positive
-
-
 def _is_flipped(symbol: str, channel: Channel, record: str) -> bool:
-    wanted = _wanted(symbol, channel)
+    wanted = positive_direction(symbol, channel.frame)
     if channel.positive == wanted:
         return False
-    if channel.positive != _OPPOSITES.get(wanted):
-        either = f"'{wanted}' or '{_OPPOSITES[wanted]}'" if wanted in _OPPOSITES else f"'{wanted}'"
+    if channel.positive != OPPOSITE.get(wanted):
+        either = f"'{wanted}' or '{OPPOSITE[wanted]}'" if wanted in OPPOSITE else f"'{wanted}'"
         raise InputError(f"record '{record}', channel '{symbol}': positive must be {either}, not '{channel.positive}'")
     return True
 
@@ -67,7 +51,7 @@ def _pointed(symbol: str, channel: Channel, *, flip: bool) -> Channel:
     values = -channel.values if flip else channel.values
     if symbol in _TURNING:
         values = unwrapped(values)
-    return replace(channel.with_values(values), positive=_wanted(symbol, channel))
+    return replace(channel.with_values(values), positive=positive_direction(symbol, channel.frame))
 
 
 def _in_body_axes(record: Record) -> Record:

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 from seatrial.values import InputError, quantity, si
+from seatrial.values.notation import positive_direction
 
 Format = Literal["text", "mat", "parquet", "netcdf"]
 Separator = Literal["auto", ",", ";", "tab", "whitespace"]
 
-_EARTH_POSITIVE = {"u": "north", "v": "east", "u_dot": "north", "v_dot": "east"}
 _FRAMES = ("body", "earth", "none")
 
 
@@ -54,11 +54,7 @@ class Column:
     @property
     def declared_positive(self) -> str:
         """The positive direction in force."""
-        if self.positive:
-            return self.positive
-        if self.declared_frame == "earth" and self.symbol in _EARTH_POSITIVE:
-            return _EARTH_POSITIVE[self.symbol]
-        return quantity(self.symbol).positive
+        return self.positive or positive_direction(self.symbol, self.declared_frame)
 
     def factor(self, wanted: str) -> float:
         """Factor from the file's unit to the SI unit `wanted`.

@@ -6,9 +6,9 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.values import NOTATION, Array, InputError, nearest, quantity
+from seatrial.simulate.channels import STILL_AIR
+from seatrial.values import Array, InputError, nearest
 
-_STILL_AIR = ("wind_speed", "wind_direction")
 _FASTEST = 100.0
 
 
@@ -25,9 +25,8 @@ def held_inputs(model: Model, given: Mapping[str, float], rudder: str) -> Array:
     values = np.zeros(len(model.inputs))
     for j, item in enumerate(model.inputs):
         if item.name in given:
-            turned = item.name in NOTATION and item.direction != quantity(item.name).positive
-            values[j] = -given[item.name] if turned else given[item.name]
-        elif item.name != rudder and item.name not in _STILL_AIR:
+            values[j] = -given[item.name] if item.is_turned else given[item.name]
+        elif item.name != rudder and item.name not in STILL_AIR:
             raise InputError(f"model '{model.name}' needs the input '{item.name}'; give the value it is held at")
     return values
 

@@ -1,20 +1,18 @@
-"""Between records and a model's arrays: the one place where an input's sign is turned."""
+"""Between records and a model's arrays: where inputs take the model's signs, and lose them again."""
 
 import numpy as np
 
 from seatrial.equations import Input, Model
-from seatrial.values import NOTATION, Array, Channel, InputError, Kind, Record, frozen, quantity
+from seatrial.values import NOTATION, Array, Channel, InputError, Kind, Record, frozen
+from seatrial.values.notation import OPPOSITE
 
-_STILL_AIR = {"wind_speed": 0.0, "wind_direction": 0.0}
-
-
-_OPPOSITES = [{"starboard", "port"}, {"forward", "aft"}, {"ahead", "astern"}]
+STILL_AIR = ("wind_speed", "wind_direction")
 
 
 def inputs_of(model: Model, record: Record) -> Array:
     """Inputs in the model's own signs, shape (n, nu); absent wind channels mean still air.
 
-    A channel whose positive direction is the opposite of the input's is turned here and nowhere else.
+    A channel whose positive direction is the opposite of the input's is turned.
 
     Raises:
         InputError: an input channel is missing, holds NaN, or points in a direction that has nothing to do with the
@@ -26,8 +24,8 @@ def inputs_of(model: Model, record: Record) -> Array:
 
 def _input(model: Model, record: Record, item: Input) -> Array:
     if item.name not in record:
-        if item.name in _STILL_AIR:
-            return np.full(len(record), _STILL_AIR[item.name])
+        if item.name in STILL_AIR:
+            return np.zeros(len(record))
         raise InputError(f"record '{record.name}' has no channel '{item.name}', an input of model '{model.name}'")
     channel = record.channel(item.name)
     if not np.all(np.isfinite(channel.values)):
@@ -38,7 +36,7 @@ def _input(model: Model, record: Record, item: Input) -> Array:
         )
     if item.direction in (channel.positive, "none"):
         return channel.values
-    if {item.direction, channel.positive} in _OPPOSITES:
+    if OPPOSITE.get(item.direction) == channel.positive:
         return -channel.values
     raise InputError(
         f"record '{record.name}': input channel '{item.name}' is positive to '{channel.positive}', "
@@ -53,8 +51,7 @@ def record_of(
     channels = {s: _channel(s, states[:, i]) for i, s in enumerate(model.states)}
     channels |= {s: _channel(s, outputs[:, i]) for i, s in enumerate(model.outputs)}
     for j, item in enumerate(model.inputs):
-        turned = item.name in NOTATION and item.direction != quantity(item.name).positive
-        channels[item.name] = _channel(item.name, -inputs[:, j] if turned else inputs[:, j])
+        channels[item.name] = _channel(item.name, -inputs[:, j] if item.is_turned else inputs[:, j])
     return Record(name, frozen(time), channels, kind)
 
 

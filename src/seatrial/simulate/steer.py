@@ -60,9 +60,10 @@ def manoeuvre(
         start[model.states.index("u")] = approach_speed(model, held) if speed is None else speed
     unit = time_unit(model, start, known=speed)
     longest = approach + programme.lengths * unit if duration is None else duration
+    rudder = model.input_names.index(RUDDER)
     steering = Steering(
         model.states.index("psi"), model.states.index("r") if "r" in model.states else -1,
-        model.input_names.index(RUDDER), _sign(model), slew_rate, dt, approach, unit,
+        rudder, -1.0 if model.inputs[rudder].is_turned else 1.0, slew_rate, dt, approach, unit,
     )  # fmt: skip
     used, finished = _steered(model, programme, steering, start, held, longest)
     time = frozen(dt * np.arange(len(used)))
@@ -82,10 +83,6 @@ def _demand_steerable(model: Model, dt: float, slew_rate: float) -> None:
         raise InputError(f"model '{model.name}' has no value for {', '.join(model.parameters.missing)}")
     if not (dt > 0.0 and slew_rate > 0.0):
         raise InputError(f"step {dt:g} s and slew rate {slew_rate:g} rad/s must be positive")
-
-
-def _sign(model: Model) -> float:
-    return -1.0 if model.inputs[model.input_names.index(RUDDER)].direction == "port" else 1.0
 
 
 def _steered(

@@ -62,6 +62,19 @@ _TABLE = [
     ),
 ]
 
+# positive direction -> its opposite, both ways
+_PAIRS = {
+    "starboard": "port",
+    "north": "south",
+    "east": "west",
+    "forward": "aft",
+    "up": "down",
+    "bow up": "bow down",
+    "ahead": "astern",
+}
+OPPOSITE: dict[str, str] = _PAIRS | {other: one for one, other in _PAIRS.items()}
+_POSITIVE_ON_EARTH = {"u": "north", "v": "east", "u_dot": "north", "v_dot": "east"}
+
 NOTATION: dict[str, Quantity] = {quantity.symbol: quantity for quantity in _TABLE}
 
 
@@ -74,3 +87,14 @@ def quantity(symbol: str) -> Quantity:
     if symbol not in NOTATION:
         raise InputError(f"unknown channel '{symbol}'{nearest(symbol, sorted(NOTATION))}")
     return NOTATION[symbol]
+
+
+def positive_direction(symbol: str, frame: str) -> str:
+    """The positive direction of a channel in that frame: the table's, but north and east for earth-fixed velocities.
+
+    Raises:
+        InputError: as `quantity`.
+    """
+    if frame == "earth" and symbol in _POSITIVE_ON_EARTH:
+        return _POSITIVE_ON_EARTH[symbol]
+    return quantity(symbol).positive
