@@ -22,7 +22,7 @@ def examine(record: Record) -> tuple[Finding, ...]:
     they may. Includes the findings of `timebase` and `repair`.
 
     Raises:
-        InputError: time runs backwards, a channel holds no value, or a positive direction is unknown.
+        InputError: a channel holds no value, or a positive direction is unknown.
     """
     clean, mended = mended_record(record)
     declared = signed(clean)

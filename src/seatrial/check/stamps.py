@@ -45,9 +45,8 @@ def timebase(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     gaps become NaN rows (`repair` closes short ones); truly uneven sampling is interpolated linearly.
 
     Raises:
-        InputError: time runs backwards, or fewer than two samples remain.
+        InputError: fewer than two samples remain, or fewer than two have a stamp.
     """
-    demand_forward(record)
     record, findings = trimmed(record)
     record, more = _stamped(record)
     record, again = _without_duplicates(record)
@@ -62,22 +61,6 @@ def timebase(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     else:
         rebuilt = _interpolated(record, grid)
     return rebuilt, findings + _findings(record, grid)
-
-
-def demand_forward(record: Record) -> None:
-    """Refuse time that runs backwards.
-
-    Raises:
-        InputError: naming the first sample that does.
-    """
-    known = np.flatnonzero(np.isfinite(record.time))
-    back = np.flatnonzero(np.diff(record.time[known]) < 0)
-    if back.size:
-        row = known[back[0] + 1]
-        raise InputError(
-            f"record '{record.name}': time runs backwards at sample {row + 1} "
-            f"({record.time[known[back[0]]]:g} s to {record.time[row]:g} s); sort or split the file"
-        )
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ def write_record(record: Record, path: Path) -> None:
     header = ["time [s]", *(f"{symbol} [{channel.unit}]" for symbol, channel in record.channels.items())]
     columns = [record.time, *(channel.values for channel in record.channels.values())]
     rows = (",".join(map(_cell, row)) for row in np.stack(columns, axis=1).tolist())
-    text = "\n".join([f"{TABLE_MARK} {json.dumps(_metadata(record))}", ",".join(header), *rows]) + "\n"
+    text = "\n".join([f"{TABLE_MARK} {json.dumps(record.metadata)}", ",".join(header), *rows]) + "\n"
     write_whole(path, text.encode())
 
 
@@ -51,8 +51,7 @@ def read_table(path: Path) -> Record:
     }
     provenance = Provenance(path.name, hashlib.sha256(path.read_bytes()).hexdigest())
     if metadata:
-        stored = metadata["provenance"]
-        provenance = Provenance(stored["source"], stored["sha256"], tuple(stored["steps"]))
+        provenance = Provenance.of(metadata["provenance"])
     return Record(
         metadata.get("name", path.stem), columns[0], channels, Kind(metadata.get("kind", "measured")), provenance
     )
@@ -60,17 +59,6 @@ def read_table(path: Path) -> Record:
 
 def _cell(value: float) -> str:
     return "" if value != value else repr(value)
-
-
-def _metadata(record: Record) -> dict:
-    keys = ("frame", "positive", "reference_point", "label")
-    provenance = record.provenance
-    return {
-        "name": record.name,
-        "kind": record.kind.value,
-        "provenance": {"source": provenance.source, "sha256": provenance.sha256, "steps": list(provenance.steps)},
-        "channels": {s: {key: getattr(c, key) for key in keys} for s, c in record.channels.items()},
-    }
 
 
 def _parsed(line: str, file: str) -> dict:
@@ -89,7 +77,7 @@ def _symbol_unit(cell: str, file: str) -> tuple[str, str]:
 
 def _channel(symbol: str, unit: str, values: Array, described: dict) -> Channel:
     if described:
-        return Channel(frozen(values), unit, **described)
+        return Channel(frozen(values), **{**described, "unit": unit})
     q = quantity(symbol)
     column = Column(symbol, symbol, unit)
     return Channel(frozen(values * column.factor(q.unit)), q.unit, q.frame, q.positive)

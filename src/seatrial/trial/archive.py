@@ -2,7 +2,6 @@
 
 import io
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -23,30 +22,15 @@ def npz_arrays(content: bytes) -> dict[str, Array]:
         return {name: frozen(file[name]) for name in file.files}
 
 
-def record_table(record: Record) -> dict[str, Any]:
-    """Everything of a record but its numbers."""
-    channels = {
-        symbol: {key: getattr(c, key) for key in ("unit", "frame", "positive", "reference_point", "label")}
-        for symbol, c in record.channels.items()
-    }
-    return {
-        "name": record.name,
-        "kind": record.kind.value,
-        "provenance": asdict(record.provenance),
-        "channels": channels,
-    }
-
-
 def record_arrays(record: Record, prefix: str) -> dict[str, Array]:
     """The record's numbers under `prefix/symbol`."""
     return {f"{prefix}/t": record.time} | {f"{prefix}/{s}": c.values for s, c in record.channels.items()}
 
 
 def record_from(table: Mapping[str, Any], arrays: Mapping[str, Array], prefix: str) -> Record:
-    """The inverse of `record_table` and `record_arrays`."""
+    """The inverse of `Record.metadata` and `record_arrays`."""
     channels = {s: Channel(arrays[f"{prefix}/{s}"], **about) for s, about in table["channels"].items()}
-    origin = table["provenance"]
-    provenance = Provenance(origin["source"], origin["sha256"], tuple(origin["steps"]))
+    provenance = Provenance.of(table["provenance"])
     return Record(table["name"], arrays[f"{prefix}/t"], channels, Kind(table["kind"]), provenance)
 
 

@@ -6,7 +6,7 @@ from dataclasses import asdict, is_dataclass
 from typing import Any, TypeVar, get_type_hints
 
 from seatrial.results import Coefficient, Fit, Measure, Method, Noise, Offset, Prediction, Residuals, Solution, Status
-from seatrial.trial.archive import record_from, record_table
+from seatrial.trial.archive import record_from
 from seatrial.trial.model_file import ModelFile
 from seatrial.values import Array, Finding, Record, Severity, Ship
 
@@ -41,7 +41,7 @@ def detail_table(fit: Fit, records: list[Record], place: Mapping[int, int]) -> d
         "noise": [_plain(n) for n in fit.noise],
         "residuals": [{"channel": r.channel, "rate": r.rate} for r in fit.residuals],
         "findings": [_plain(f) for f in fit.findings],
-        "records": [record_table(r) for r in records],
+        "records": [r.metadata for r in records],
         "used": [place[id(r)] for r in fit.records],
         "predictions": [
             {

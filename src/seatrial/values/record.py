@@ -1,10 +1,10 @@
 """A record: one run on one time base, named channels with unit, frame, sign and reference point."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -51,6 +51,12 @@ class Channel:
         q = quantity(symbol)
         return cls(frozen(values), q.unit, q.frame, q.positive)
 
+    @property
+    def metadata(self) -> dict[str, str | float]:
+        """Everything but the values: ``Channel(values, **channel.metadata)`` is the channel again."""
+        keys = ("unit", "frame", "positive", "reference_point", "label")
+        return {key: getattr(self, key) for key in keys}
+
     def with_values(self, values: Array) -> Self:
         """The same channel with other values."""
         return replace(self, values=frozen(values))
@@ -64,6 +70,11 @@ class Provenance:
     sha256: str = ""
     steps: tuple[str, ...] = ()
 
+    @classmethod
+    def of(cls, metadata: Mapping[str, Any]) -> Self:
+        """The inverse of `dataclasses.asdict`, by way of JSON."""
+        return cls(metadata["source"], metadata["sha256"], tuple(metadata["steps"]))
+
     def then(self, step: str) -> Self:
         """The same with one more step."""
         return replace(self, steps=(*self.steps, step))
@@ -71,12 +82,13 @@ class Provenance:
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """One run: times in s, shape (n,), strictly increasing; channels of the same length.
+    """One run: times in s, shape (n,), never running backwards; channels of the same length.
 
-    `record["u"]` gives the values. A parsed record may have an uneven time base; `dt` demands an even one.
+    `record["u"]` gives the values. The stamps of a record as it was read may be uneven, repeated or empty (NaN), which
+    `check.timebase` mends; `dt` demands that they increase evenly.
 
     Raises:
-        InputError: lengths differ or time does not increase.
+        InputError: no sample, lengths differ, or time runs backwards.
     """
 
     name: str
@@ -95,11 +107,22 @@ class Record:
                 raise InputError(
                     f"record '{self.name}': channel '{symbol}' has {len(channel.values)} samples, time {len(self.time)}"
                 )
+        _demand_forward(self.name, self.time)
 
     @classmethod
     def of(cls, name: str, time: Array, values: Mapping[str, Array], kind: Kind = Kind.MEASURED) -> Self:
         """A record of channels in the notation table's own units, frames and signs."""
         return cls(name, time, {symbol: Channel.of(symbol, array) for symbol, array in values.items()}, kind)
+
+    @property
+    def metadata(self) -> dict[str, Any]:
+        """Everything but the numbers, ready for JSON."""
+        return {
+            "name": self.name,
+            "kind": self.kind.value,
+            "provenance": asdict(self.provenance),
+            "channels": {symbol: channel.metadata for symbol, channel in self.channels.items()},
+        }
 
     def __len__(self) -> int:
         return len(self.time)
@@ -127,9 +150,9 @@ class Record:
 
     @property
     def is_uniform(self) -> bool:
-        """Whether all time steps agree within a thousandth."""
+        """Whether time increases in steps that agree within a thousandth."""
         steps = np.diff(self.time)
-        return len(steps) > 0 and bool(np.ptp(steps) <= 1e-3 * np.mean(steps))
+        return len(steps) > 0 and bool(np.ptp(steps) <= 1e-3 * np.mean(steps)) and self.duration > 0.0
 
     @property
     def dt(self) -> float:
@@ -201,7 +224,7 @@ class Record:
         import pandas as pd
 
         frame = pd.DataFrame({s: c.values for s, c in self.channels.items()}, index=pd.Index(self.time, name="time"))
-        frame.attrs = {"name": self.name, "channels": _metadata(self)}
+        frame.attrs = {**self.metadata}
         return frame
 
     @classmethod
@@ -215,8 +238,7 @@ class Record:
         """A dataset over `time`, channel metadata as attributes (needs the extra `formats`)."""
         import xarray as xr
 
-        metadata = _metadata(self)
-        variables = {s: ("time", np.array(c.values), metadata[s]) for s, c in self.channels.items()}
+        variables = {s: ("time", np.array(c.values), c.metadata) for s, c in self.channels.items()}
         return xr.Dataset(variables, {"time": ("time", np.array(self.time), {"units": "s"})}, {"name": self.name})
 
     @classmethod
@@ -226,9 +248,15 @@ class Record:
         return cls(str(dataset.attrs.get("name", "record")), dataset["time"].to_numpy().astype(float), channels)
 
 
-def _metadata(record: Record) -> dict[str, dict[str, str | float]]:
-    keys = ("unit", "frame", "positive", "reference_point", "label")
-    return {s: {key: getattr(c, key) for key in keys} for s, c in record.channels.items()}
+def _demand_forward(name: str, time: Array) -> None:
+    known = np.flatnonzero(np.isfinite(time))
+    back = np.flatnonzero(np.diff(time[known]) < 0)
+    if back.size:
+        row = known[back[0] + 1]
+        raise InputError(
+            f"record '{name}': time runs backwards at sample {row + 1} "
+            f"({time[known[back[0]]]:g} s to {time[row]:g} s); sort or split the file"
+        )
 
 
 def _channel(symbol: str, values: Array, metadata: dict | None) -> Channel:
