@@ -3,7 +3,8 @@
 import numpy as np
 
 from seatrial.check.signal import smoothed, window
-from seatrial.values import Array, Finding, Record, Severity
+from seatrial.manoeuvres.track import speed
+from seatrial.values import Finding, Record, Severity
 
 STOPPED, SLOW, RUNNING = 0.05, 0.5, 0.8
 LASTING_S = 2.0
@@ -12,13 +13,6 @@ LASTING_S = 2.0
 def phase_findings(record: Record) -> tuple[Finding, ...]:
     """Acceleration at the beginning, a stopped propeller at the beginning or end, of a clean, signed record."""
     return (*_acceleration(record), *_propeller(record))
-
-
-def speed(record: Record) -> Array | None:
-    """Speed sqrt(u^2 + v^2) [m/s], whatever the frame; None without u."""
-    if "u" not in record:
-        return None
-    return np.hypot(record["u"], record["v"]) if "v" in record else np.abs(record["u"])
 
 
 def acceleration_end(record: Record) -> float | None:

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from seatrial.check.phases import speed
 from seatrial.check.rates import heading_rate
 from seatrial.check.signal import Mask, jackknifed, slope, smoothed, window
+from seatrial.manoeuvres.track import speed
 from seatrial.values import Array, Finding, Record, Severity
 
 STILL = math.radians(0.2)
@@ -15,7 +15,7 @@ ANGLES = "run a zigzag, for example 10/10 or 20/20"
 
 
 def is_excited(record: Record) -> bool:
-    """Whether the rudder moves by more than .2 degrees between its 1 % and 99 % quantiles (or extremes, if short)."""
+    """Whether the rudder moves by more than 0.2 degrees in all; False without a rudder."""
     if "delta" not in record:
         return False
     delta = record["delta"][np.isfinite(record["delta"])]

@@ -15,14 +15,12 @@ from pathlib import Path
 from types import ModuleType
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatrial.equations.bindings import Equations
 from seatrial.equations.generate import bindings_text, source_text
 from seatrial.kernels.cache import cache_folder
+from seatrial.values import Index
 from seatrial.values.files import write_whole
-
-Pattern = NDArray[np.int64]
 
 # of everything that decides how the text comes about: a changed generator finds no old index
 _GENERATOR = hashlib.sha256(b"".join(p.read_bytes() for p in sorted(Path(__file__).parent.glob("*.py")))).hexdigest()
@@ -41,8 +39,8 @@ class Compiled:
     rates_tangent: Callable[..., None]
     outputs: Callable[..., None]
     outputs_tangent: Callable[..., None]
-    rates_pattern: Pattern
-    outputs_pattern: Pattern
+    rates_pattern: Index
+    outputs_pattern: Index
 
     @cached_property
     def bindings(self) -> Callable[..., None]:
@@ -85,7 +83,7 @@ def compiled(equations: Equations) -> Compiled:
     """Generate, load and compile the functions of a set of equations."""
     module = _module(equations, "index", source_text)
 
-    def table(pairs: list[tuple[int, int]]) -> Pattern:
+    def table(pairs: list[tuple[int, int]]) -> Index:
         return np.array(pairs, dtype=np.int64).reshape(-1, 2)
 
     return Compiled(

@@ -12,9 +12,9 @@ import numpy as np
 
 from seatrial.equations import Model
 from seatrial.optimise import Normal
-from seatrial.problem.segments import Index, Segments
+from seatrial.problem.segments import Segments
 from seatrial.simulate.batch import Batch, InputCorrection
-from seatrial.values import Array, Prior
+from seatrial.values import Array, Index, Prior
 from seatrial.workers import mapped
 
 _ROWS_A_PIECE = 4000
@@ -87,22 +87,20 @@ class OutputError:
         """Number of shared unknowns."""
         return len(self.free) + self.kinds * len(self.data.sessions)
 
-    def _bound(self, side: str) -> Array:
+    def _edge(self, of_free: list[float], elsewhere: float) -> Array:
         if self.pinned is not None:
             return self.pinned
-        edge = np.full(self.size, np.inf if side == "upper" else -np.inf)
-        edge[: len(self.free)] = [getattr(self.model.parameters[n], side) for n in self.free]
-        return edge
+        return np.concatenate([of_free, np.full(self.size - len(self.free), elsewhere)])
 
     @property
     def lower(self) -> Array:
         """Lower bounds of the shared unknowns."""
-        return self._bound("lower")
+        return self._edge([self.model.parameters[n].lower for n in self.free], -np.inf)
 
     @property
     def upper(self) -> Array:
         """Upper bounds of the shared unknowns."""
-        return self._bound("upper")
+        return self._edge([self.model.parameters[n].upper for n in self.free], np.inf)
 
     @cached_property
     def priors(self) -> tuple[Array, Array]:

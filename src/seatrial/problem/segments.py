@@ -5,13 +5,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatrial.equations import Model
 from seatrial.simulate.channels import inputs_of
-from seatrial.values import Array, InputError, Record, nearest
-
-Index = NDArray[np.int64]
+from seatrial.values import Array, Index, InputError, Record, nearest
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,14 +5,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatrial.equations import Model
 from seatrial.kernels.integrate import replay
 from seatrial.kernels.sensitivity import DELAY, GAIN, OFFSET, replay_tangent
-from seatrial.values import Array
+from seatrial.values import Array, Index
 
-Index = NDArray[np.int64]
 INPUT_KINDS = {"zero": OFFSET, "gain": GAIN, "delay": DELAY}
 
 

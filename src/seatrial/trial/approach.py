@@ -7,10 +7,20 @@ import numpy as np
 from seatrial.equations import Model
 from seatrial.values import Record
 
-# how much of each record before its first rudder execution is taken for the approach, s; an execution is what
-# passes this part of the record's largest rudder angle
+# how much of each record before its first rudder execution is taken for the approach, s
 APPROACH_SECONDS = 2.0
+# an execution is what reaches this part of the record's largest rudder angle
 EXECUTION = 0.2
+
+
+def first_execution(record: Record) -> int:
+    """The row at which the rudder is first put over; 0 where it never is.
+
+    Raises:
+        InputError: the record has no channel delta.
+    """
+    rudder = np.abs(record["delta"])
+    return int(np.argmax(rudder >= EXECUTION * np.max(rudder)))
 
 
 def approach_of(records: Sequence[Record], model: Model) -> dict[str, float]:
@@ -27,8 +37,7 @@ def approach_of(records: Sequence[Record], model: Model) -> dict[str, float]:
 def _approach(record: Record, symbol: str) -> float:
     stop = float(record.time[0])
     if "delta" in record:
-        rudder = np.abs(record["delta"])
-        stop = float(record.time[int(np.argmax(rudder >= EXECUTION * np.max(rudder)))])
+        stop = float(record.time[first_execution(record)])
     stop = max(stop, float(record.time[0]) + APPROACH_SECONDS)
     within = (record.time >= stop - APPROACH_SECONDS) & (record.time <= stop)
     return float(np.mean(record[symbol][within]))

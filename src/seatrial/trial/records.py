@@ -6,12 +6,12 @@ import numpy as np
 
 from seatrial.check import examine, prepared
 from seatrial.read import read_record
+from seatrial.trial.approach import first_execution
 from seatrial.trial.trial import Role, Run, Trial, Trimming
 from seatrial.values import Finding, InputError, Record, Severity
 
-# speed at the end of an acceleration run as a part of the speed at the first execution, and the rudder angle,
-# as a part of the largest, that counts as an execution
-_ACCELERATED, _EXECUTED = 0.9, 0.2
+# speed at the end of an acceleration run as a part of the speed at the first execution
+_ACCELERATED = 0.9
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,9 +61,8 @@ def trimmed(record: Record, rules: Trimming) -> Record:
 
 
 def _accelerated(record: Record) -> int:
-    rudder, speed = np.abs(record["delta"]), record["u"]
-    execution = int(np.argmax(rudder > _EXECUTED * np.max(rudder)))
-    return int(np.argmax(speed >= _ACCELERATED * speed[execution]))
+    speed = record["u"]
+    return int(np.argmax(speed >= _ACCELERATED * speed[first_execution(record)]))
 
 
 def refuse_errors(findings: tuple[Finding, ...], accept: tuple[str, ...]) -> tuple[Finding, ...]:

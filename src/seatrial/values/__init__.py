@@ -1,6 +1,6 @@
 """The nouns everybody knows: records, channels, parameters, ships, findings, units, notation."""
 
-from seatrial.values.arrays import Array, frozen
+from seatrial.values.arrays import Array, Index, frozen
 from seatrial.values.errors import InputError, nearest
 from seatrial.values.finding import Finding, Severity
 from seatrial.values.notation import NOTATION, Quantity, quantity
@@ -14,6 +14,7 @@ __all__ = [
     "Array",
     "Channel",
     "Finding",
+    "Index",
     "InputError",
     "Kind",
     "Parameter",

@@ -1,9 +1,10 @@
-"""The array type of the house and how it is frozen."""
+"""The array types of the house, and how numbers are frozen."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 
 
 def frozen(values: ArrayLike) -> Array:
