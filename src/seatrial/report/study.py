@@ -13,6 +13,7 @@ from seatrial.report.words import counted
 from seatrial.results import Check, Study, Table, Verdict
 from seatrial.values.files import write_whole
 
+# channels a run is given rather than predicted
 INPUTS = ("delta", "n", "v_j", "wind_speed", "wind_direction")
 TITLES = {
     "outcome": "Outcome",
@@ -24,9 +25,6 @@ TITLES = {
     "findings": "Findings",
     "versions": "Versions",
 }
-
-# channels a run is given rather than predicted
-INPUTS = ("delta", "n", "v_j")
 
 
 @dataclass(frozen=True)
