@@ -10,10 +10,11 @@ from seatrial.identify.estimate import Estimate
 from seatrial.identify.intervals import intervals
 from seatrial.models.nomoto import nomoto
 from seatrial.optimise import levenberg_marquardt
-from seatrial.problem.output_error import OutputError
+from seatrial.problem.output_error import Nuisance, OutputError
 from seatrial.problem.segments import cut
 from seatrial.simulate import replay
-from seatrial.values import Record
+from seatrial.simulate.batch import InputCorrection
+from seatrial.values import Prior, Record
 
 WHITE, COLOURED = np.array([1.0, 1.1]), np.array([1.0, 16.0])
 
@@ -75,3 +76,16 @@ def test_effective_samples_leave_the_optimum_without_priors(model: Model) -> Non
     again = counted(one, np.array([4.0, 4.0]))
     np.testing.assert_allclose(again.shared, one.shared, rtol=1e-8)
     assert again.optimum.solution.value == pytest.approx(one.optimum.solution.value / 4.0, rel=1e-9)
+
+
+def test_offsets_of_a_run_get_the_information_of_that_run(model: Model) -> None:
+    """A run left out moves its own offset back to the prior mean: that is no error of the offset."""
+    one = made(model, 6, 30.0)
+    zero = Nuisance(InputCorrection("delta", "zero"), Prior(0.0, 0.05), "rad")
+    problem = replace(one.problem, nuisances=(zero,))
+    start = np.concatenate([one.shared, np.zeros(6)])
+    freed = Estimate(problem, levenberg_marquardt(problem, start, one.optimum.local))
+    interval = intervals(freed, COLOURED)
+    of_offsets = np.linalg.inv(freed.optimum.normal.reduced()[1])[-6:, -6:]
+    np.testing.assert_allclose(interval.covariance[-6:, -6:], of_offsets, rtol=1e-6, atol=1e-12)
+    assert "jackknife" in interval.meaning
