@@ -74,6 +74,6 @@ def test_a_hidden_state_leaves_the_start_to_the_model() -> None:
     start = nomoto2().with_values({"U": 1.0})
     np.testing.assert_array_equal(weak_start(start, [record], 10.0), [p.value for p in start.parameters.free])
     found = identified(start, [record], ["a"], 7.0)
-    assert any("r_rest" in reason for reason in found.reasons)
+    assert "r_rest" in found.start
     values = [found.model.parameters[n].value for n in ("K", "T_1", "T_2", "T_3")]
     np.testing.assert_allclose(values, [0.15, 15.0, 3.0, 5.0], rtol=1e-6)

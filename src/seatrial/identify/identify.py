@@ -9,7 +9,7 @@ import numpy as np
 from seatrial.identify.estimate import pieces
 from seatrial.identify.fit import Identified, identified, ship_length_seconds
 from seatrial.identify.predict import prediction, session_means
-from seatrial.identify.settings import START_SECONDS_LENGTHS, Settings
+from seatrial.identify.settings import SEGMENT_SHIP_LENGTHS, START_SECONDS_LENGTHS, Settings
 from seatrial.identify.singular import refuse_singular
 from seatrial.information.autocorrelation import whiteness_p
 from seatrial.results import Coefficient, Fit, Method, Noise, Offset, Prediction, Residuals
@@ -29,8 +29,8 @@ def settings_of(trial: Trial, records: Sequence[Record]) -> Settings:
     seconds = wishes.segment_s
     if wishes.criterion == "output-error":
         seconds = np.inf
-    elif wishes.segment_lengths is not None:
-        seconds = wishes.segment_lengths * ship_length_seconds(records, trial.ship.length)
+    elif seconds is None and (wishes.segment_lengths or wishes.criterion == "multiple-shooting"):
+        seconds = (wishes.segment_lengths or SEGMENT_SHIP_LENGTHS) * ship_length_seconds(records, trial.ship.length)
     units = {name: NOTATION[name].unit for name in wishes.offsets}
     zeros = [(name, "zero", spread or _OFFSET_SPREAD.get(units[name], 0.1), units[name])
              for name, spread in wishes.offsets.items()]  # fmt: skip
@@ -156,9 +156,7 @@ def _method(found: Identified) -> Method:
         "free coefficients": len(problem.free),
         "Huber limit (standard deviations)": problem.huber if np.isfinite(problem.huber) else "none",
     }
-    return Method(
-        found.criterion, "weak form of the equations, no guess", found.interval.meaning, found.reasons, settings
-    )
+    return Method(found.criterion, found.start, found.interval.meaning, found.reasons, settings)
 
 
 def _predictions(

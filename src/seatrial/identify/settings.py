@@ -25,7 +25,7 @@ class Settings:
     Attributes:
         segment_seconds: length of multiple-shooting segments; infinite for whole runs.
         channels: observables that are compared; empty: all that the records hold.
-        robust: Huber loss.
+        robust: whether the loss is Huber's.
         noise: known standard deviations by channel, SI; others are estimated.
         corrections: nuisances estimated once a session: (input, kind, prior standard deviation SI, unit).
         current: whether a uniform current is estimated for each run, prior standard deviation in m/s (0: no).
@@ -35,7 +35,7 @@ class Settings:
 
     segment_seconds: float | None = None
     channels: tuple[str, ...] = ()
-    robust: bool | None = None
+    robust: bool = False
     noise: dict[str, float] = field(default_factory=dict)
     corrections: tuple[tuple[str, str, float, str], ...] = ()
     current: float = 0.0

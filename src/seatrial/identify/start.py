@@ -1,16 +1,55 @@
-"""A start without a guess: the weak form of the equations, its spread re-estimated."""
+"""Where a search begins: without a guess, by the weak form of the equations; else at the model's own values."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatrial.equations import Model
+from seatrial.identify.estimate import residual_spread
 from seatrial.identify.states import hidden_states, measured_states
 from seatrial.optimise import levenberg_marquardt
+from seatrial.problem.output_error import OutputError
 from seatrial.regress.weak import WeakForm
 from seatrial.simulate.channels import inputs_of
 from seatrial.values import Array, Record
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """Unknowns from which to search, the problem with the noise they leave, and where they come from in words."""
+
+    problem: OutputError
+    shared: Array
+    local: Array
+    how: str
+
+
+def start(problem: OutputError, records: Sequence[Record], seconds: float) -> Start:
+    """Coefficients by the weak form with windows of half width `seconds`, initial states as measured.
+
+    The model's own values take their place where a state is hidden, or where the weak form's diverge.
+    """
+    local = problem.measured_starts()
+    hidden, how = hidden_states(problem.model, records), "weak form of the equations, no guess"
+    if hidden:
+        how = f"the model's own values: nobody measures {', '.join(hidden)}, a state of the weak form"
+    shared = _with_coefficients(problem, weak_start(problem.model, records, seconds))
+    simulated = problem.simulated(shared, local)
+    if not np.all(np.isfinite(simulated)):
+        shared, how = problem.start(), "the model's own values: those of the weak form diverge"
+        simulated = problem.simulated(shared, local)
+    if np.all(np.isfinite(simulated)):
+        left = simulated - problem.data.measured
+        problem = replace(problem, noise=residual_spread(replace(problem, huber=1.0), left))
+    return Start(problem, shared, local, how)
+
+
+def _with_coefficients(problem: OutputError, point: Array) -> Array:
+    shared = problem.start()
+    names = problem.model.parameters.free_names
+    shared[: len(problem.free)] = [point[names.index(n)] for n in problem.free]
+    return shared
 
 
 def weak_start(model: Model, records: Sequence[Record], seconds: float, rounds: int = 3) -> Array:

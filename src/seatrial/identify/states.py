@@ -8,12 +8,12 @@ from scipy.signal import savgol_filter
 from seatrial.equations import Model
 from seatrial.values import NOTATION, Array, InputError, Record
 
-_SMOOTHING_SECONDS_PER_SAMPLE = 15
+_SMOOTHING_SAMPLES = 15
 
 
 def _slope(values: Array, dt: float) -> Array:
     """Derivative by local cubic polynomials (Savitzky & Golay 1964) over 15 samples."""
-    width = min(_SMOOTHING_SECONDS_PER_SAMPLE, len(values) - 1 + len(values) % 2)
+    width = min(_SMOOTHING_SAMPLES, len(values) - 1 + len(values) % 2)
     return savgol_filter(values, width, min(3, width - 1), deriv=1, delta=dt)
 
 

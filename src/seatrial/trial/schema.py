@@ -183,7 +183,7 @@ class EstimateTable(Strict):
     segment_s: Annotated[float, Field(gt=0)] | None = None
     segment_lengths: Annotated[float, Field(gt=0)] | None = None
     rate: Annotated[float, Field(gt=0)] | None = None
-    robust: bool | None = None
+    robust: bool = False
     offsets: Nuisances = {}
     gains: Nuisances = {}
     current: Annotated[float, Field(ge=0)] = 0.0

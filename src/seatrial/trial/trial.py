@@ -78,7 +78,7 @@ class Estimate:
     segment_s: float | None = None
     segment_lengths: float | None = None
     rate: float | None = None
-    robust: bool | None = None
+    robust: bool = False
     offsets: Mapping[str, float | None] = field(default_factory=dict)
     gains: Mapping[str, float | None] = field(default_factory=dict)
     current: float = 0.0

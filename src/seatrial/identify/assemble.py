@@ -1,0 +1,41 @@
+"""Records and settings put together as an output-error problem."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from seatrial.equations import Model
+from seatrial.identify.settings import Settings
+from seatrial.problem.output_error import Nuisance, OutputError
+from seatrial.problem.segments import compared_outputs, cut
+from seatrial.simulate.batch import InputCorrection
+from seatrial.values import Prior, Record
+
+
+def _nuisances(settings: Settings) -> tuple[Nuisance, ...]:
+    return tuple(
+        Nuisance(InputCorrection(i, kind), Prior(1.0 if kind == "gain" else 0.0, spread, "house default"), unit)
+        for i, kind, spread, unit in settings.corrections
+    )
+
+
+def _current(settings: Settings) -> tuple[tuple[str, Prior], ...]:
+    if settings.current <= 0:
+        return ()
+    prior = Prior(0.0, settings.current, "house default")
+    return (("current_north", prior), ("current_east", prior))
+
+
+def output_error(
+    model: Model, records: Sequence[Record], sessions: Sequence[str], seconds: float, settings: Settings
+) -> OutputError:
+    """The records in segments of `seconds` (infinite: whole runs); each channel's noise a tenth of its spread.
+
+    Raises:
+        InputError: outputs that cannot be compared, time steps that differ, or a record of fewer than three samples.
+    """
+    outputs = compared_outputs(model, records, settings.channels)
+    data = cut(model, records, outputs, None if np.isinf(seconds) else seconds, sessions)
+    spread = np.nanstd(data.measured, axis=0)
+    return OutputError(model, data, np.maximum(0.1 * spread, 1e-9), _nuisances(settings), _current(settings),
+                          substeps=settings.substeps, workers=settings.workers)  # fmt: skip
