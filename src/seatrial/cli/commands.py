@@ -1,18 +1,16 @@
-"""The command line: parse, call, print, exit code. Everything heavy is imported inside the commands."""
+"""The commands: parse, call the function of the same name, print. Everything heavy is imported inside them."""
 
 import math
-import sys
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from seatrial.cli.output import print_findings, print_fit, print_study, progress, write_json
+
 if TYPE_CHECKING:
     from seatrial.equations import Model
     from seatrial.results import Fit
-    from seatrial.values import Finding
 
 app = typer.Typer(
     name="seatrial",
@@ -28,9 +26,7 @@ Seed = Annotated[int, typer.Option("--seed", help="Of everything drawn at random
 TrialPath = Annotated[Path, typer.Argument(metavar="TRIAL.toml", help="Trial file.")]
 OwnModel = Annotated[Path | None, typer.Option("--model", metavar="FILE.py", help="A model of your own (is executed).")]
 
-INTERRUPTED = 130
 OF_A_KIND = 2
-SEVERITY_MARK = {"error": "ERROR  ", "warning": "warning", "info": "note   "}
 
 
 def _version(wanted: bool) -> None:
@@ -64,8 +60,8 @@ def check(
     from seatrial.trial.fit_json import findings_json
 
     findings = verbs.check(verbs.load_trial(trial, _own(model)))
-    _print_findings(findings, len(findings) if everything else OF_A_KIND)
-    _write_json(json, lambda: findings_json(findings))
+    print_findings(findings, len(findings) if everything else OF_A_KIND)
+    write_json(json, lambda: findings_json(findings))
 
 
 @app.command()
@@ -84,12 +80,12 @@ def identify(
     from seatrial.values.files import writable_folder
 
     writable_folder(out)
-    with _progress() as progress:
-        fit = verbs.identify(verbs.load_trial(trial, _own(model)), seed=seed, progress=progress)
-        progress("report")
+    with progress() as tell:
+        fit = verbs.identify(verbs.load_trial(trial, _own(model)), seed=seed, progress=tell)
+        tell("report")
         page = verbs.save(fit, out)
-    _print_fit(fit)
-    _write_json(json, lambda: _fit_json(fit))
+    print_fit(fit)
+    write_json(json, lambda: _fit_json(fit))
     print(f"report: {page}")
 
 
@@ -144,7 +140,7 @@ def simulate(
     measures = verbs.measures(file, record)
     for name, value in measures.items():
         print(f"  {name:28s} {value:10.4g}")
-    _write_json(json, lambda: {"record": str(out), "measures": measures, "seed": seed})
+    write_json(json, lambda: {"record": str(out), "measures": measures, "seed": seed})
     print(f"record: {out}")
 
 
@@ -163,7 +159,7 @@ def report(
 
     fit = verbs.load_fit(folder, _own(model))
     page = verbs.report(fit, folder / "report.html")
-    _write_json(json, lambda: _fit_json(fit))
+    write_json(json, lambda: _fit_json(fit))
     print(f"report: {page}")
 
 
@@ -181,10 +177,10 @@ def demo(
     from seatrial.values.files import writable_folder
 
     writable_folder(out)
-    with _progress() as progress:
-        fit = verbs.demo(out, seed=seed, progress=progress)
-    _print_fit(fit)
-    _write_json(json, lambda: _fit_json(fit))
+    with progress() as tell:
+        fit = verbs.demo(out, seed=seed, progress=tell)
+    print_fit(fit)
+    write_json(json, lambda: _fit_json(fit))
     print(f"report: {out / 'report.html'}")
 
 
@@ -205,15 +201,11 @@ def reproduce(
 
     if out is not None:
         writable_folder(out)
-    with _progress() as progress:
-        made = verbs.reproduce(study, quick=quick, seed=seed, progress=progress)
+    with progress() as tell:
+        made = verbs.reproduce(study, quick=quick, seed=seed, progress=tell)
         page = None if out is None else verbs.save_study(made, out)
-    for claim in made.claims:
-        print(f"  {claim.verdict:10s} {claim.claim}: {claim.evidence}")
-    for one in made.checks:
-        limit = one.limit if isinstance(one.limit, str) else f"{one.limit:.4g}"
-        print(f"  {'holds' if one.holds else 'FAILS':10s} {one.name}: {one.value:.4g} (limit {limit})")
-    _write_json(json, made.as_table)
+    print_study(made)
+    write_json(json, made.as_table)
     if page is not None:
         print(f"report: {page}")
 
@@ -242,75 +234,3 @@ def _fit_json(fit: "Fit") -> dict[str, Any]:
     from seatrial.trial.fit_json import fit_json
 
     return fit_json(fit)
-
-
-def _write_json(path: Path | None, table: Callable[[], Mapping[str, Any]]) -> None:
-    if path is not None:
-        from seatrial.trial.fit_json import strict_json
-        from seatrial.values.files import write_whole
-
-        write_whole(path, strict_json(table()).encode())
-
-
-def _print_findings(findings: "tuple[Finding, ...]", of_a_kind: int) -> None:
-    """Findings by kind, errors first; of each kind the first few."""
-    order = list(SEVERITY_MARK)
-    kinds = {
-        (f.severity.value, f.code): [g for g in findings if g.code == f.code and g.severity is f.severity]
-        for f in findings
-    }
-    for (severity, code), alike in sorted(kinds.items(), key=lambda item: order.index(item[0][0])):
-        for finding in alike[:of_a_kind]:
-            print(f"{SEVERITY_MARK[severity]} [{code}] {finding.text}")
-        if len(alike) > of_a_kind:
-            print(f"        ... and {len(alike) - of_a_kind} more of this kind; --all shows them")
-        if alike[0].advice:
-            print(f"        advice: {alike[0].advice}")
-    errors = sum(finding.severity.value == "error" for finding in findings)
-    print(f"{len(findings)} finding{'s' * (len(findings) != 1)}, {errors} of them error{'s' * (errors != 1)}")
-
-
-def _print_fit(fit: "Fit") -> None:
-    with_truth = any(c.truth is not None for c in fit.coefficients)
-    print(f"{'coefficient':14s} {'estimate':>12s} {'std. error':>11s}" + (f" {'truth':>12s}" if with_truth else ""))
-    for c in fit.coefficients:
-        if not c.fixed:
-            error = "" if c.standard_error is None else f"{c.standard_error:11.2g}"
-            truth = f" {c.truth:12.5g}" if c.truth is not None else ""
-            print(f"{c.name:14s} {c.estimate:12.5g} {error:>11s}{truth} {c.unit if c.unit != '1' else ''}".rstrip())
-    for p in fit.validation():
-        errors = ", ".join(f"{name} {value:.3g}" for name, value in p.rms.items())
-        print(f"validation {p.record}: rms {errors}")
-    print(f"{fit.method.criterion}; {fit.elapsed_s:.1f} s")
-
-
-@contextmanager
-def _progress() -> Iterator[Callable[[str], None]]:
-    """A spinner on a terminal, plain lines otherwise; both on standard error."""
-    if not sys.stderr.isatty():
-        yield lambda text: print(text, file=sys.stderr, flush=True)
-        return
-    from rich.console import Console
-
-    with Console(stderr=True).status("starting") as status:
-        yield status.update
-
-
-def main() -> None:
-    """Run the command line; bad input is one line on standard error and exit code 2."""
-    try:
-        app()
-    except ValueError as error:
-        from seatrial.values import InputError
-
-        if not isinstance(error, InputError):
-            raise
-        print(f"seatrial: {' '.join(str(error).split())}", file=sys.stderr)
-        sys.exit(2)
-    except SystemExit as ending:
-        if ending.code == INTERRUPTED:
-            print("seatrial: interrupted; files are written whole or not at all", file=sys.stderr)
-        raise
-    except KeyboardInterrupt:
-        print("seatrial: interrupted; files are written whole or not at all", file=sys.stderr)
-        sys.exit(INTERRUPTED)

@@ -1,0 +1,80 @@
+"""What the commands print and write: findings, fits and studies as text, progress, JSON."""
+
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from seatrial.results import Fit, Study
+    from seatrial.values import Finding
+
+SEVERITY_MARK = {"error": "ERROR  ", "warning": "warning", "info": "note   "}
+
+
+def print_findings(findings: "tuple[Finding, ...]", of_a_kind: int) -> None:
+    """Findings by kind, errors first; of each kind the first few."""
+    order = list(SEVERITY_MARK)
+    kinds = {
+        (f.severity.value, f.code): [g for g in findings if g.code == f.code and g.severity is f.severity]
+        for f in findings
+    }
+    for (severity, code), alike in sorted(kinds.items(), key=lambda item: order.index(item[0][0])):
+        for finding in alike[:of_a_kind]:
+            print(f"{SEVERITY_MARK[severity]} [{code}] {finding.text}")
+        if len(alike) > of_a_kind:
+            print(f"        ... and {len(alike) - of_a_kind} more of this kind; --all shows them")
+        if alike[0].advice:
+            print(f"        advice: {alike[0].advice}")
+    errors = sum(finding.severity.value == "error" for finding in findings)
+    print(f"{len(findings)} finding{'s' * (len(findings) != 1)}, {errors} of them error{'s' * (errors != 1)}")
+
+
+def print_fit(fit: "Fit") -> None:
+    """Free coefficients, then how well the runs that were kept out are predicted."""
+    with_truth = any(c.truth is not None for c in fit.coefficients)
+    print(f"{'coefficient':14s} {'estimate':>12s} {'std. error':>11s}" + (f" {'truth':>12s}" if with_truth else ""))
+    for c in fit.coefficients:
+        if not c.fixed:
+            error = "" if c.standard_error is None else f"{c.standard_error:11.2g}"
+            truth = f" {c.truth:12.5g}" if c.truth is not None else ""
+            print(f"{c.name:14s} {c.estimate:12.5g} {error:>11s}{truth} {c.unit if c.unit != '1' else ''}".rstrip())
+    for p in fit.validation():
+        errors = ", ".join(f"{name} {value:.3g}" for name, value in p.rms.items())
+        print(f"validation {p.record}: rms {errors}")
+    print(f"{fit.method.criterion}; {fit.elapsed_s:.1f} s")
+
+
+def print_study(study: "Study") -> None:
+    """Claims with their verdicts, then checks with their limits."""
+    for claim in study.claims:
+        print(f"  {claim.verdict:10s} {claim.claim}: {claim.evidence}")
+    for check in study.checks:
+        limit = check.limit if isinstance(check.limit, str) else f"{check.limit:.4g}"
+        print(f"  {'holds' if check.holds else 'FAILS':10s} {check.name}: {check.value:.4g} (limit {limit})")
+
+
+@contextmanager
+def progress() -> Iterator[Callable[[str], None]]:
+    """A spinner on a terminal, plain lines otherwise; both on standard error."""
+    if not sys.stderr.isatty():
+        yield lambda text: print(text, file=sys.stderr, flush=True)
+        return
+    from rich.console import Console
+
+    with Console(stderr=True).status("starting") as status:
+        yield status.update
+
+
+def write_json(path: Path | None, table: Callable[[], Mapping[str, Any]]) -> None:
+    """Write `table()` as JSON where a file is wanted.
+
+    Raises:
+        InputError: the place cannot be written.
+    """
+    if path is not None:
+        from seatrial.trial.fit_json import strict_json
+        from seatrial.values.files import write_whole
+
+        write_whole(path, strict_json(table()).encode())
