@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from seatrial.identify.cross_validation import own_nuisances
 from seatrial.identify.estimate import pieces
 from seatrial.identify.fit import Identified, identified, ship_length_seconds
 from seatrial.identify.predict import prediction, session_means
@@ -163,19 +164,14 @@ def _predictions(
     found: Identified, records: Sequence[TrialRecord], seconds: float, length: float, progress: Progress | None
 ) -> tuple[Prediction, ...]:
     """Every run open loop: training runs with their own session's offsets, the others with the training mean."""
-    problem, shared = found.made.problem, found.made.shared
-    mean = session_means(problem, shared)
+    problem, mean = found.made.problem, session_means(found.made.problem, found.made.shared)
     made = []
     for item in records:
         if progress:
             progress(f"predicting {item.record.name}")
-        known = item.role is Role.TRAIN and item.session in problem.data.sessions
-        own = (
-            shared[problem.columns_of(problem.data.sessions.index(item.session))[len(problem.free) :]]
-            if known
-            else mean
-        )
-        role = "training" if item.role is Role.TRAIN else "validation"
+        trained = item.role is Role.TRAIN
+        own = own_nuisances(found, item.session) if trained else mean
+        role = "training" if trained else "validation"
         made.append(prediction(problem, found.model, item.record, role, own, seconds, length))
     return tuple(made)
 
