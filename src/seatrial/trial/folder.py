@@ -30,6 +30,7 @@ def save_fit(fit: Fit, folder: str | Path) -> Path:
     """
     folder = writable_folder(Path(folder))
     contents = _contents(fit)
+    folder.mkdir(parents=True, exist_ok=True)
     staging = Path(tempfile.mkdtemp(dir=folder, prefix=".writing-"))
     try:
         for name, content in contents.items():

@@ -28,14 +28,18 @@ def write_whole(path: Path, content: bytes) -> None:
 
 
 def writable_folder(folder: Path) -> Path:
-    """The folder, made if absent, after a test of writing to it: before the work, not after.
+    """The folder, after a test of writing to it: before the work, not after. One that was absent is absent again.
 
     Raises:
         InputError: it cannot be made or written.
     """
+    absent = [place for place in (folder, *folder.parents) if not place.exists()]
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=folder, prefix=".writing-"):
-            return folder
+            pass
+        for place in absent:
+            place.rmdir()
     except OSError as error:
         raise InputError(f"folder '{folder}' cannot be written ({error.strerror}); choose another with --out") from None
+    return folder
