@@ -44,3 +44,35 @@ def test_measures_need_a_ship(repository: Path) -> None:
     with pytest.raises(InputError, match=r"no \[ship\]"):
         sea.measures(ModelFile(trial.model), record)
     assert sea.measures(ModelFile(trial.model, ship=trial.ship), record)["overshoot_1_deg"] > 0.0
+
+
+def test_the_seed_draws_the_random_binary_sequence(repository: Path) -> None:
+    trial = sea.load_trial(repository / "examples" / "waterjet.toml")
+    file = ModelFile(trial.model, ship=trial.ship)
+
+    def rudder(text: str, seed: int) -> list[float]:
+        return sea.simulate(file, text, inputs={"v_j": 1.866}, duration=100.0, seed=seed)["delta"].tolist()
+
+    for text in ("prbs", "prbs:15", "prbs:15:4"):
+        assert rudder(text, 1) == rudder(text, 1)
+        assert rudder(text, 1) != rudder(text, 2)
+    assert rudder("prbs:20:5:1", 2) == rudder("prbs:20:5:1", 3)
+    assert rudder("prbs", 0) == rudder("prbs:20", 0)
+
+
+@pytest.mark.parametrize("rate", [0.0, -0.1, float("nan")])
+def test_a_rudder_that_cannot_move_is_refused(rate: float, repository: Path) -> None:
+    trial = sea.load_trial(repository / "examples" / "waterjet.toml")
+    with pytest.raises(InputError, match=r"rudder rate .* is not positive"):
+        sea.simulate(ModelFile(trial.model, ship=trial.ship), "zigzag:20/20", rudder_rate=rate)
+
+
+def test_the_readmes_own_model_replaces_the_examples(repository: Path, tmp_path: Path) -> None:
+    from seatrial.models import model_from_file
+
+    page = (repository / "README.md").read_text(encoding="utf-8").split("## A model of your own")[1]
+    file = tmp_path / "yaw.py"
+    file.write_text(page.split("```python\n")[1].split("```")[0], encoding="utf-8")
+    trial = sea.load_trial(repository / "examples" / "waterjet.toml", model_from_file(file))
+    assert trial.truth == {}
+    assert set(trial.model.parameters.free_names) == {"T", "K"}

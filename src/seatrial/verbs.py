@@ -120,12 +120,18 @@ def simulate(
         seed: of a random binary sequence.
 
     Raises:
-        InputError: unknown manoeuvre, an input or the speed is known to nobody, or the simulation diverges.
+        InputError: unknown manoeuvre, an input or the speed is known to nobody, a rudder that cannot move, or the
+            simulation diverges.
     """
     from seatrial.manoeuvres import programme
     from seatrial.simulate.steer import SOLAS_SLEW_RATE
     from seatrial.simulate.steer import manoeuvre as steered
+    from seatrial.values import InputError
 
+    if rudder_rate is not None and not 0.0 < rudder_rate < math.inf:
+        raise InputError(
+            f"the rudder rate {math.degrees(rudder_rate):g} deg/s is not positive; leave it out for SOLAS's"
+        )
     scale = model.ship.scale if model.ship else 1.0
     held = {name: value for name, value in model.approach.items() if name in model.model.input_names}
     known = model.approach.get("u") if "u" not in model.model.states else None
@@ -140,9 +146,11 @@ def simulate(
 
 
 def _with_seed(manoeuvre: str, seed: int) -> str:
-    """The programme's text; a random binary sequence that names amplitude and time but no seed gets this one."""
-    fields = manoeuvre.split(":")
-    return f"{manoeuvre}:{seed}" if fields[0] == "prbs" and len(fields) == 3 else manoeuvre
+    """The programme's text; a random binary sequence that names no seed of its own gets this one."""
+    kind, *fields = manoeuvre.strip().split(":")
+    if kind != "prbs" or len(fields) > 2:
+        return manoeuvre
+    return ":".join(["prbs", *fields, *["20", ""][len(fields) :], str(seed)])
 
 
 def replay(model: "ModelFile", record: "Record") -> "Record":

@@ -40,7 +40,8 @@ def programme(text: str) -> Programme:
 
     ``zigzag:20/10[:port]`` rudder angle / switching heading, five executes; ``consecutive-zigzags[:5]`` 10/10 to 30/30
     with so many executes each; ``turning-circle:35[:port]`` 540 deg of heading; ``pull-out:20[:port]``;
-    ``spiral[:25][:port]``; ``prbs[:amplitude[:switching time in s[:seed]]]``. Sides default to starboard.
+    ``spiral[:25][:port]``; ``prbs[:amplitude[:switching time in s[:seed]]]``, an empty
+    switching time being one ship length at approach speed. Sides default to starboard.
 
     Raises:
         InputError: the text names no programme, or its numbers cannot be read.
@@ -127,8 +128,9 @@ def _spiral(text: str, fields: list[str]) -> Programme:
 def _prbs(text: str, fields: list[str]) -> Programme:
     _at_most(fields, 3)
     amplitude = _angle(fields[0]) if fields else 20.0
-    hold = float(fields[1]) if len(fields) > 1 else 0.0
-    if len(fields) > 1 and not (math.isfinite(hold) and hold > 0.0):
+    stated = len(fields) > 1 and fields[1] != ""
+    hold = float(fields[1]) if stated else 0.0
+    if stated and not (math.isfinite(hold) and hold > 0.0):
         raise InputError(f"the switching time {fields[1]} s is not positive")
     steps = schedule.binary_sequence(amplitude, int(fields[2]) if len(fields) > 2 else 0)
 

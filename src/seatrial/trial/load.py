@@ -38,7 +38,8 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
 
     Args:
         path: the TOML file.
-        own_model: takes the place of the built-in model that `[model] name` names.
+        own_model: takes the place of the built-in model that `[model] name` names; the truth of parameters it does
+            not have is left out.
 
     Raises:
         InputError: one sentence naming file, key and what to do.
@@ -55,7 +56,8 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         _refuse_strangers("estimate.channels", list(file.estimate.channels), set(model.observables))
         _refuse_strangers("estimate.offsets", list(file.estimate.offsets), known)
         _refuse_strangers("estimate.gains", list(file.estimate.gains), known)
-        _refuse_strangers("truth", list(file.truth), set(model.parameters.names))
+        if own_model is None:
+            _refuse_strangers("truth", list(file.truth), set(model.parameters.names))
         runs = runs_of(file.records, file.data.folder, path.resolve().parent)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
@@ -65,7 +67,7 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         model=model,
         estimate=_estimate(file.estimate),
         noise={channel: spread.in_si for channel, spread in file.noise.items() if spread.in_si is not None},
-        truth=file.truth,
+        truth={name: value for name, value in file.truth.items() if name in model.parameters},
         accept=file.accept,
         reference_point=file.model.reference_point,
         question=file.question,
