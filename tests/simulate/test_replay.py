@@ -8,7 +8,7 @@ import pytest
 from seatrial.manoeuvres import programme
 from seatrial.models.nomoto import nomoto
 from seatrial.models.waterjet import waterjet
-from seatrial.simulate import forces, inputs_of, manoeuvre, replay, simulate
+from seatrial.simulate import forces, inputs_of, manoeuvre, replay
 from seatrial.values import Channel, InputError, Kind, Record, frozen
 
 JET = {"v_j": 1.866}
@@ -117,9 +117,3 @@ def test_forces_along_a_simulated_record_balance(zigzag: Record) -> None:
     assert parts["X_P"].shape == (len(zigzag),)
     with pytest.raises(InputError, match="simulate it first"):
         forces(waterjet(), zigzag.without("u"))
-
-
-def test_simulate_takes_records_and_programmes(zigzag: Record) -> None:
-    assert np.array_equal(simulate(waterjet(), zigzag)["u"], zigzag["u"])
-    steered = simulate(waterjet(), programme("zigzag:20/20"), inputs=JET, slew_rate=math.radians(4.0))
-    assert np.array_equal(steered["psi"], zigzag["psi"])

@@ -1,6 +1,5 @@
 """Output error with the noise re-estimated: the estimator behind `fit`."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -10,9 +9,7 @@ from seatrial.identify.settings import WHITE_INFLATION
 from seatrial.information.autocorrelation import autocorrelation, variance_inflation
 from seatrial.optimise import Optimum, levenberg_marquardt
 from seatrial.problem.output_error import OutputError
-from seatrial.values import Array
-
-Progress = Callable[[str], None]
+from seatrial.values import Array, Progress
 
 _NEGLIGIBLE = 1e-8
 _SHORT = 12

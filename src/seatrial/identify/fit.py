@@ -1,7 +1,7 @@
 """Records and a model in, a fit out: the decision table of the estimator (docs/estimation.md)."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,9 +13,7 @@ from seatrial.identify.intervals import intervals
 from seatrial.identify.settings import HUBER, SEGMENT_SHIP_LENGTHS, WHITE_INFLATION, WINDOW_SHIP_LENGTHS, Settings
 from seatrial.identify.start import start
 from seatrial.information.covariance import Interval
-from seatrial.values import Array, InputError, Record
-
-Progress = Callable[[str], None]
+from seatrial.values import Array, InputError, Progress, Record
 
 _STILL = float(np.radians(0.5))
 

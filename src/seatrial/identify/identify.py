@@ -1,7 +1,7 @@
 """A trial in, a fit out: read, check, estimate, predict what was not fitted."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -15,10 +15,8 @@ from seatrial.identify.singular import refuse_singular
 from seatrial.information.autocorrelation import whiteness_p
 from seatrial.results import Coefficient, Fit, Method, Noise, Offset, Prediction, Residuals
 from seatrial.trial import Role, Trial, TrialRecord, records_of, refuse_errors
-from seatrial.values import NOTATION, Array, Finding, InputError, Parameter, Record, Severity
+from seatrial.values import NOTATION, Array, Finding, InputError, Parameter, Progress, Record, Severity
 from seatrial.values.versions import versions
-
-Progress = Callable[[str], None]
 
 _OFFSET_SPREAD = {"rad": float(np.radians(2.0)), "m/s": 0.1, "rps": 0.1}
 _GAIN_SPREAD = 0.1

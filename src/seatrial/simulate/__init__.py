@@ -3,7 +3,6 @@
 from seatrial.simulate.channels import inputs_of, record_of
 from seatrial.simulate.forces import forces
 from seatrial.simulate.replay import replay
-from seatrial.simulate.simulate import simulate
 from seatrial.simulate.steer import manoeuvre
 
-__all__ = ["forces", "inputs_of", "manoeuvre", "record_of", "replay", "simulate"]
+__all__ = ["forces", "inputs_of", "manoeuvre", "record_of", "replay"]

@@ -1,11 +1,9 @@
 """Published studies repeated: one explicit registry; importing this room imports no study."""
 
-from collections.abc import Callable
 from typing import Protocol
 
 from seatrial.results import Study
-
-Progress = Callable[[str], None]
+from seatrial.values import Progress
 
 
 class Reproduction(Protocol):

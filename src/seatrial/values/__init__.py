@@ -5,6 +5,7 @@ from seatrial.values.errors import InputError, nearest
 from seatrial.values.finding import Finding, Severity
 from seatrial.values.notation import NOTATION, Quantity, quantity
 from seatrial.values.parameters import Parameter, Parameters, Prior
+from seatrial.values.progress import Progress
 from seatrial.values.record import Channel, Kind, Provenance, Record
 from seatrial.values.ship import Ship
 from seatrial.values.units import display, si
@@ -20,6 +21,7 @@ __all__ = [
     "Parameter",
     "Parameters",
     "Prior",
+    "Progress",
     "Provenance",
     "Quantity",
     "Record",

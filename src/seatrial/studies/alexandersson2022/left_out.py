@@ -15,8 +15,8 @@ from seatrial.identify.settings import START_SECONDS_LENGTHS
 from seatrial.results import Prediction
 from seatrial.studies.alexandersson2022.published import Turn
 from seatrial.trial import Trial, TrialRecord
+from seatrial.values import Progress
 
-Progress = Callable[[str], None]
 WINDOW_S = 30.0
 
 

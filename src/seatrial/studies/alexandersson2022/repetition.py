@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,9 +19,8 @@ from seatrial.studies.alexandersson2022.left_out import LeftOut, left_out
 from seatrial.studies.alexandersson2022.published import SIDES, Turn
 from seatrial.trial import Role, Trial, TrialRecord, records_of
 from seatrial.trial.approach import approach_of
-from seatrial.values import Finding, Record, Severity
+from seatrial.values import Finding, Progress, Record, Severity
 
-Progress = Callable[[str], None]
 # white noise of variance 1 has third differences of variance 1 + 9 + 9 + 1
 _THIRD = math.sqrt(20.0)
 
