@@ -154,7 +154,9 @@ def test_wrapped_heading_is_mentioned() -> None:
     record = zigzag()
     psi = record["psi"] + 3.0
     wrapped = with_values(record, psi=(psi + np.pi) % (2 * np.pi) - np.pi)
-    assert found(wrapped, "angle-wrap").severity is Severity.INFO
+    finding = found(wrapped, "angle-wrap")
+    assert finding.severity is Severity.INFO
+    assert "readings of psi jump by a whole turn" in finding.what
     np.testing.assert_allclose(np.ptp(canonical(wrapped)["psi"]), np.ptp(psi))
 
 

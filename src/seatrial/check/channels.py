@@ -30,7 +30,7 @@ def channel_findings(record: Record) -> tuple[Finding, ...]:
             wraps[symbol] = int(np.sum(np.abs(np.diff(values)) > np.pi))
     wraps = {symbol: count for symbol, count in wraps.items() if count}
     if wraps:
-        what = f"record '{record.name}': {', '.join(wraps)} wrap round at half a turn; they are unwrapped"
+        what = f"record '{record.name}': readings of {', '.join(wraps)} jump by a whole turn; they are unwrapped"
         evidence = ", ".join(f"{symbol} {count} times" for symbol, count in wraps.items())
         found.append(Finding(Severity.INFO, "angle-wrap", what, evidence, "no action needed"))
     return tuple(found)
