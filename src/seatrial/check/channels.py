@@ -6,7 +6,7 @@ from seatrial.check.frames import best_reading
 from seatrial.check.mend import INPUTS
 from seatrial.check.motion import motion_of
 from seatrial.check.rates import heading_rate
-from seatrial.check.signal import jackknifed, slope, smoothed, window
+from seatrial.check.signal import jackknifed, slope, smoothed, stretches, window
 from seatrial.values import Array, Finding, Record, Severity
 
 OUTPUTS = ("x0", "y0", "psi", "u", "v", "r", "phi", "p", "theta", "z", "u_dot", "v_dot")
@@ -47,15 +47,10 @@ def _constant(record: Record, symbol: str, value: float) -> Finding:
 
 def _stuck(record: Record, symbol: str, values: Array) -> list[Finding]:
     """The longest run of one repeated value, where it lasts over twenty samples and a fiftieth of the record."""
-    same = np.concatenate([[False], np.diff(values) == 0, [False]]).astype(int)
-    edges = np.diff(same)
-    starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
-    lengths = ends - starts
-    if lengths.size == 0 or lengths.max() < max(STUCK_SAMPLES, STUCK_PART * len(values)):
+    first, last = max(stretches(np.diff(values) == 0), key=lambda ends: ends[1] - ends[0], default=(0, 0))
+    if last - first < max(STUCK_SAMPLES, STUCK_PART * len(values)):
         return []
-    longest = int(np.argmax(lengths))
-    first, last = int(starts[longest]), int(ends[longest])
-    what = f"record '{record.name}': channel '{symbol}' is stuck for {lengths.max() + 1} samples"
+    what = f"record '{record.name}': channel '{symbol}' is stuck for {last - first + 1} samples"
     evidence = (
         f"{values[first]:.6g} from t = {record.time[first]:.6g} to {record.time[min(last, len(values) - 1)]:.6g} s"
     )

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.check.jumps import spikes, track_jumps
-from seatrial.check.signal import Rows, unwrapped
+from seatrial.check.signal import Rows, stretches, unwrapped
 from seatrial.check.stamps import trimmed
-from seatrial.values import Array, Channel, Finding, InputError, Record, Severity
+from seatrial.values import Channel, Finding, InputError, Record, Severity
 
 INPUTS = ("delta", "n", "v_j")
 SHORT_GAP_S, SHORT_GAP_SAMPLES = 1.0, 5
@@ -35,9 +35,7 @@ def repair(record: Record) -> tuple[Record, tuple[Finding, ...]]:
 def parts(record: Record) -> tuple[Record, ...]:
     """The complete stretches of a record, in order: no NaN in any channel or stamp."""
     holes = np.any([np.isnan(c.values) for c in record.channels.values()], axis=0) | np.isnan(record.time)
-    edges = np.flatnonzero(np.diff(np.concatenate([[True], holes, [True]]).astype(int)))
-    pairs = zip(edges[::2], edges[1::2], strict=True)
-    return tuple(record.rows(slice(int(first), int(last))) for first, last in pairs)
+    return tuple(record.rows(slice(first, last)) for first, last in stretches(~holes))
 
 
 def filled_in(channel: Channel, rows: Rows) -> Channel:
@@ -115,11 +113,6 @@ def _times(count: int) -> str:
     return "once" if count == 1 else f"{count} times"
 
 
-def _runs(holes: Array) -> list[tuple[int, int]]:
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], holes, [False]]).astype(int)))
-    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
-
-
 def _filled(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     """Short holes between known samples interpolated, channel by channel."""
     steps = np.diff(record.time)
@@ -127,8 +120,8 @@ def _filled(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     limit = max(SHORT_GAP_SAMPLES, round(SHORT_GAP_S / dt)) if dt > 0 else SHORT_GAP_SAMPLES
     counts: dict[str, int] = {}
     for symbol, channel in record.channels.items():
-        runs = _runs(np.isnan(channel.values))
-        short = [np.arange(a, b) for a, b in runs if b - a <= limit and a > 0 and b < len(record)]
+        empty = stretches(np.isnan(channel.values))
+        short = [np.arange(a, b) for a, b in empty if b - a <= limit and a > 0 and b < len(record)]
         if short:
             rows = np.concatenate(short)
             counts[symbol] = rows.size

@@ -1,4 +1,4 @@
-"""Arithmetic the checks share: smoothed derivatives, robust size, integrals, jackknifed least squares."""
+"""Arithmetic the checks share: smoothed derivatives, robust size, integrals, jackknifed least squares, stretches."""
 
 from itertools import pairwise
 
@@ -59,6 +59,12 @@ def jackknifed(features: Array, target: Array) -> tuple[Array, Array]:
         keep[first:last] = True
     spread = np.array(partial) - np.mean(partial, axis=0)
     return solved(features, target)[0], np.sqrt((BLOCKS - 1) / BLOCKS * np.sum(spread**2, axis=0))
+
+
+def stretches(mask: Mask) -> list[tuple[int, int]]:
+    """First row and row after the last of every unbroken stretch of a mask, in order."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(int)))
+    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
 def unwrapped(angle: Array) -> Array:

@@ -57,25 +57,9 @@ def rk4_step(f, t, x, u0, um, u1, p, h, k1, k2, k3, k4, y):
 
 @njit(
     void(
-        FUNCTION,
-        FUNCTION,
-        MATRIX,
-        INDEX,
-        I8,
-        I8,
-        F8,
-        I8,
-        MATRIX,
-        MATRIX,
-        MATRIX,
-        MATRIX,
-        MATRIX,
-        INDEX,
-        MATRIX,
-        INDEX,
-        MATRIX,
-        MATRIX,
-        VECTOR,
+        *(FUNCTION, FUNCTION, MATRIX, INDEX, I8, I8, F8, I8, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX),
+        *(INDEX, MATRIX, INDEX),
+        *(MATRIX, MATRIX, VECTOR),
     ),
     **LEAN,
 )
