@@ -32,7 +32,17 @@ def assert_same(a: Record, b: Record) -> None:
 
 
 def test_pandas_round_trip(record: Record) -> None:
-    assert_same(record, Record.from_pandas(record.to_pandas()))
+    back = Record.from_pandas(record.to_pandas())
+    assert_same(record, back)
+    assert (back.kind, back.provenance) == (record.kind, record.provenance)
+
+
+def test_time_that_runs_backwards_is_refused_and_repeated_stamps_have_no_step() -> None:
+    with pytest.raises(InputError, match="time runs backwards at sample 3"):
+        Record.of("r", np.array([0.0, 0.2, 0.1]), {"u": np.ones(3)})
+    repeated = Record.of("r", np.zeros(3), {"u": np.ones(3)})
+    with pytest.raises(InputError, match="uneven time base"):
+        _ = repeated.dt
 
 
 def test_xarray_round_trip(record: Record) -> None:

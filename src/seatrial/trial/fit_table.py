@@ -78,6 +78,7 @@ def _made(kind: type[T], table: Mapping[str, Any]) -> T:
 
 
 def fit_from(table: Mapping[str, Any], file: ModelFile, arrays: Mapping[str, Array]) -> Fit:
+    """The inverse of `detail_table`: result.json's tables, the model file and the arrays put together again."""
     detail = table["detail"]
     records = [record_from(entry, arrays, f"record{i}") for i, entry in enumerate(detail["records"])]
     solution, method = detail["solution"], detail["method"]

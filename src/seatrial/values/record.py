@@ -220,7 +220,7 @@ class Record:
         )
 
     def to_pandas(self) -> "pandas.DataFrame":
-        """Time as index, a column for each channel; metadata of channels in `attrs`."""
+        """Time as index, a column for each channel; `metadata` in `attrs`."""
         import pandas as pd
 
         frame = pd.DataFrame({s: c.values for s, c in self.channels.items()}, index=pd.Index(self.time, name="time"))
@@ -230,9 +230,12 @@ class Record:
     @classmethod
     def from_pandas(cls, frame: "pandas.DataFrame", name: str = "record") -> Self:
         """The inverse of `to_pandas`; without metadata the notation table's conventions are taken."""
-        metadata = frame.attrs.get("channels", {})
-        channels = {str(s): _channel(str(s), frame[s].to_numpy(float), metadata.get(s)) for s in frame.columns}
-        return cls(frame.attrs.get("name", name), frame.index.to_numpy(float), channels)
+        about = frame.attrs
+        known = about.get("channels", {})
+        channels = {str(s): _channel(str(s), frame[s].to_numpy(float), known.get(s)) for s in frame.columns}
+        provenance = Provenance.of(about["provenance"]) if "provenance" in about else Provenance()
+        kind = Kind(about.get("kind", Kind.MEASURED))
+        return cls(about.get("name", name), frame.index.to_numpy(float), channels, kind, provenance)
 
     def to_xarray(self) -> "xarray.Dataset":
         """A dataset over `time`, channel metadata as attributes (needs the extra `formats`)."""
@@ -243,7 +246,7 @@ class Record:
 
     @classmethod
     def from_xarray(cls, dataset: "xarray.Dataset") -> Self:
-        """The inverse of `to_xarray`."""
+        """The inverse of `to_xarray`, but for kind and provenance, which a dataset does not keep."""
         channels = {str(s): _channel(str(s), a.to_numpy().astype(float), dict(a.attrs)) for s, a in dataset.items()}
         return cls(str(dataset.attrs.get("name", "record")), dataset["time"].to_numpy().astype(float), channels)
 
