@@ -68,6 +68,16 @@ def test_a_folder_that_cannot_be_written_is_refused_before_the_work(
     assert "cannot be written" in capsys.readouterr().err
 
 
+def test_json_that_cannot_be_written_is_refused_before_the_work(
+    model_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    out = tmp_path / "out.csv"
+    arguments = ("simulate", model_file, "--manoeuvre", "zigzag:20/20", "--out", out, "--json", tmp_path)
+    assert run(monkeypatch, *arguments) == 2
+    assert "is a folder; name a file" in capsys.readouterr().err
+    assert not out.exists()
+
+
 def test_an_unknown_study_is_refused(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
     assert run(monkeypatch, "reproduce", "nobody1900") == 2
     assert "unknown study 'nobody1900'" in capsys.readouterr().err

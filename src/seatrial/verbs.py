@@ -153,6 +153,24 @@ def _with_seed(manoeuvre: str, seed: int) -> str:
     return ":".join(["prbs", *fields, *["20", ""][len(fields) :], str(seed)])
 
 
+def run_of(trial: "Trial | str | Path", name: str) -> "Record":
+    """One run of a trial as `identify` would use it: canonical, trimmed, resampled.
+
+    Raises:
+        InputError: the trial has no run of that name (the nearest is named), or it cannot be read.
+    """
+    from seatrial.trial import Trial, load_trial
+    from seatrial.trial.records import checked
+    from seatrial.values import InputError, nearest
+
+    known = trial if isinstance(trial, Trial) else load_trial(trial)
+    runs = {run.name: run for run in known.runs}
+    if name not in runs:
+        raise InputError(f"the trial has no run '{name}'{nearest(name, list(runs))}")
+    record = checked(runs[name], known.reference_point)[0]
+    return record if known.estimate.rate is None else record.resampled(known.estimate.rate)
+
+
 def replay(model: "ModelFile", record: "Record") -> "Record":
     """The model driven by the inputs of a record, from the record's first sample.
 
@@ -164,8 +182,10 @@ def replay(model: "ModelFile", record: "Record") -> "Record":
     return replay(model.model, record)
 
 
-def measures(model: "ModelFile", record: "Record") -> dict[str, float]:
+def measures(model: "ModelFile", record: "Record", like: "Record | None" = None) -> dict[str, float]:
     """Overshoots, advance, transfer, tactical diameter and the like, as far as the record shows them.
+
+    like: the measured run whose inputs `record` replays; the manoeuvre is then made out on it.
 
     Raises:
         InputError: the ship's length is not known, or the record has no heading or rudder.
@@ -175,7 +195,7 @@ def measures(model: "ModelFile", record: "Record") -> dict[str, float]:
 
     if model.ship is None:
         raise InputError("the model file has no [ship] with the length L, which measures need; add it")
-    return measures(record, model.ship.length)
+    return measures(record, model.ship.length, like=like)
 
 
 def demo(folder: str | Path, seed: int = 0, progress: Progress | None = None) -> "Fit":

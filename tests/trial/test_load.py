@@ -99,6 +99,12 @@ REFUSALS = [
     ("unknown particular", "L = 9.8", "L = 9.8\nLpp = 9.8", "unknown key 'ship.Lpp'"),
     ("no length", "L = 9.8", "", "key 'ship.L' is missing"),
     ("missing key", 'name = "craft"', "", "'ship.name' is missing"),
+    (
+        "one column for two",
+        "u = { column",
+        'v = { column = "surge", unit = "kn" }\nu = { column',
+        "column 'surge' is named for",
+    ),
     ("unknown unit", '"kn"', '"knots"', r"channels.u.unit: unknown unit 'knots'"),
     ("unit of another kind", '"kn"', '"deg"', "'deg' is no unit of surge velocity"),
     ("unknown channel", "u = { column", "uu = { column", "unknown name 'uu'"),

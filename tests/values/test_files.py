@@ -21,7 +21,7 @@ def test_a_folder_that_exists_stays(tmp_path: Path) -> None:
 
 def test_a_file_in_the_folders_place_is_said(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
-    with pytest.raises(InputError, match=r"cannot be written .File exists.; choose another with --out"):
+    with pytest.raises(InputError, match=r"cannot be written .File exists.; choose another place"):
         writable_folder(tmp_path / "file")
 
 

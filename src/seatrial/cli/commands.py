@@ -21,7 +21,22 @@ app = typer.Typer(
     rich_markup_mode="rich",
 )
 
-Json = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON.")]
+
+def _json_place(path: Path | None) -> Path | None:
+    """The place of the JSON file, tested before the work rather than after it."""
+    if path is not None:
+        from seatrial.values import InputError
+        from seatrial.values.files import writable_folder
+
+        if path.is_dir():
+            raise InputError(f"--json {path} is a folder; name a file")
+        writable_folder(path.parent)
+    return path
+
+
+Json = Annotated[
+    Path | None, typer.Option("--json", metavar="FILE", callback=_json_place, help="Write the result as JSON.")
+]
 Seed = Annotated[int, typer.Option("--seed", help="Of everything drawn at random; the same seed gives the same bits.")]
 TrialPath = Annotated[Path, typer.Argument(metavar="TRIAL.toml", help="Trial file.")]
 OwnModel = Annotated[Path | None, typer.Option("--model", metavar="FILE.py", help="A model of your own (is executed).")]
@@ -99,7 +114,10 @@ def simulate(
             "--manoeuvre", help="zigzag:20/20, zigzag:20/10, turning-circle:35, spiral, pull-out or prbs; add :port."
         ),
     ] = None,
-    inputs: Annotated[Path | None, typer.Option("--inputs", metavar="RECORD", help="Replay a record's inputs.")] = None,
+    inputs: Annotated[str | None, typer.Option("--inputs", metavar="RECORD", help="Replay a record's inputs.")] = None,
+    trial: Annotated[
+        Path | None, typer.Option("--trial", metavar="TRIAL.toml", help="RECORD is the name of one of its runs.")
+    ] = None,
     speed: Annotated[float | None, typer.Option(help="Approach speed, m/s; default: where surge balances.")] = None,
     duration: Annotated[float | None, typer.Option(help="s at most.")] = None,
     constant: Annotated[
@@ -113,6 +131,8 @@ def simulate(
     """Steer a manoeuvre with a model, or replay measured inputs, and print its measures.
 
     Example: seatrial simulate results/kvlcc2/model.toml --manoeuvre turning-circle:35 --out turn.csv
+
+    Measured inputs: --inputs table.csv, or --trial examples/kvlcc2_hsva.toml --inputs HSVA_CPMC_KVLCC2_Z_35_05
     """
     from seatrial import verbs
     from seatrial.read import read_table, write_record
@@ -123,8 +143,10 @@ def simulate(
         raise InputError("give either --manoeuvre or --inputs")
     file = verbs.load_model(model_file, _own(model))
     writable_folder(out.parent)
+    measured = None
     if inputs is not None:
-        record = verbs.replay(file, read_table(inputs))
+        measured = read_table(Path(inputs)) if trial is None else verbs.run_of(trial, inputs)
+        record = verbs.replay(file, measured)
     else:
         held = dict(_pair(text) for text in constant or [])
         record = verbs.simulate(
@@ -137,7 +159,7 @@ def simulate(
             seed=seed,
         )
     write_record(record, out)
-    measures = verbs.measures(file, record)
+    measures = verbs.measures(file, record, measured if measured is not None and "psi" in measured else None)
     for name, value in measures.items():
         print(f"  {name:28s} {value:10.4g}")
     write_json(json, lambda: {"record": str(out), "measures": measures, "seed": seed})

@@ -1,11 +1,12 @@
 """The answer in words: what was asked, what was fitted, how well held-out runs are predicted, what to mind."""
 
+from seatrial.identify.settings import WHITE_INFLATION
 from seatrial.report.numbers import duration, exact, fixed, significant
 from seatrial.report.words import counted, listed
 from seatrial.results import Coefficient, Fit, Prediction
 from seatrial.values import Severity
 
-WHITE, DISAGREES = 0.01, 3.0
+DISAGREES = 3.0
 
 
 def facts(fit: Fit) -> list[tuple[str, str]]:
@@ -118,7 +119,11 @@ def _priors(fit: Fit) -> str:
 def _residuals(fit: Fit) -> str:
     if not fit.noise:
         return ""
-    coloured = [n.channel for n in fit.noise if n.whiteness_p < WHITE]
+    coloured = [
+        n.channel
+        for n, r in zip(fit.noise, fit.residuals, strict=True)
+        if 1.0 + 2.0 * n.correlation_time * r.rate > WHITE_INFLATION
+    ]
     if not coloured:
         return "The residuals are white in all channels: the model leaves nothing but noise."
     return (

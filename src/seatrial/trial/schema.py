@@ -146,6 +146,17 @@ class RecordsTable(Strict):
             raise ValueError(f"from_s = {self.from_s:g} is not before to_s = {self.to_s:g}")
         return self
 
+    @model_validator(mode="after")
+    def _one_channel_a_column(self) -> Self:
+        owner: dict[str | int, str] = {self.time.column: "time"}
+        for symbol, channel in self.channels.items():
+            if channel.column in owner:
+                raise ValueError(
+                    f"column {channel.column!r} is named for '{owner[channel.column]}' and '{symbol}'; keep one"
+                )
+            owner[channel.column] = symbol
+        return self
+
 
 class DataTable(Strict):
     """`[data]`: where record files are sought, relative to the trial file; ${NAME} is an environment variable."""

@@ -41,5 +41,5 @@ def writable_folder(folder: Path) -> Path:
         for place in absent:
             place.rmdir()
     except OSError as error:
-        raise InputError(f"folder '{folder}' cannot be written ({error.strerror}); choose another with --out") from None
+        raise InputError(f"folder '{folder}' cannot be written ({error.strerror}); choose another place") from None
     return folder
