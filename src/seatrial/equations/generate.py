@@ -15,14 +15,14 @@ from seatrial.equations.printer import Lines, mangled
 _HEADER = '''"""Generated from the equations of model {name!r}; do not edit."""
 import math
 from numba import njit
-from seatrial.kernels.types import FUNCTION_SIGNATURE, OPTIONS, TANGENT_SIGNATURE
+from seatrial.kernels.types import FUNCTION_SIGNATURE, LEAN, TANGENT_SIGNATURE
 from seatrial.kernels.trigonometry import sincos
 
 '''
 
 
 def _signature(name: str, kind: str, arguments: str) -> list[str]:
-    return [f"@njit({kind}, **OPTIONS)", f"def {name}(t_, x, u, p, {arguments}):"]
+    return [f"@njit({kind}, **LEAN)", f"def {name}(t_, x, u, p, {arguments}):"]
 
 
 def _unpack(equations: Equations, expressions: Sequence[Binding]) -> list[str]:
