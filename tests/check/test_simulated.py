@@ -58,3 +58,11 @@ def test_the_wrong_nozzle_sign_is_an_error(clean: Record) -> None:
     wrong = replace(clean.channel("delta"), positive="starboard")
     findings = examine(noisy(clean.with_channel("delta", wrong), 1))
     assert [f.code for f in findings if f.severity is Severity.ERROR] == ["rudder-sign"]
+
+
+def test_position_noise_on_a_short_track_is_no_closure_error(clean: Record) -> None:
+    """Half a metre of position noise on a track of 80 m is noise, not another reference point or frame."""
+    short = noisy(clean.between(0.0, 100.0), 3)
+    assert [f.text for f in examine(short) if f.code == "closure"] == []
+    shifted = short.with_channel("v", short.channel("v").with_values(short["v"] + 3.0 * short["r"]))
+    assert [f.code for f in examine(shifted) if f.code == "closure"] == ["closure"]

@@ -16,7 +16,7 @@ from seatrial.studies import STUDIES
 from seatrial.studies.alexandersson2022 import published, verdicts
 from seatrial.studies.alexandersson2022.left_out import LeftOut, jackknife_error
 from seatrial.studies.alexandersson2022.published import MEASURED_TURNS, PREDICTED_TURNS, SIDES, percent
-from seatrial.studies.alexandersson2022.repetition import Repetition, sample_noise
+from seatrial.studies.alexandersson2022.repetition import Repetition, noise_of
 from seatrial.studies.alexandersson2022.tables import left_out, left_out_turns
 from seatrial.trial.fit_json import strict_json
 from seatrial.values import Finding, InputError, Record, Severity
@@ -169,6 +169,6 @@ def test_jackknife_of_a_mean_is_its_standard_error(rng: np.random.Generator) -> 
 def test_noise_from_sample_to_sample_is_found_beneath_a_motion(rng: np.random.Generator) -> None:
     time = np.arange(8000) * 0.05
     psi = 0.3 * np.sin(0.2 * time) + 1e-3 * rng.standard_normal(len(time))
-    found = sample_noise([Record.of("run", time, {"psi": psi})], ["psi", "r"])
+    found = noise_of([Record.of("run", time, {"psi": psi})], ["psi", "r"])
     assert set(found) == {"psi"}
     assert found["psi"] == pytest.approx(1e-3, rel=0.03)

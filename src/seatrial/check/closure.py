@@ -6,11 +6,11 @@ import numpy as np
 
 from seatrial.check.frames import best_reading
 from seatrial.check.motion import Motion, motion_of
-from seatrial.check.signal import integral, solved
+from seatrial.check.signal import integral, sample_noise, solved
 from seatrial.values import Array, Finding, Record, Severity
 
 CLEAR, DOUBTFUL = 4.0, 2.0
-VISIBLE, LARGE = 1e-4, 3e-3
+VISIBLE, LARGE, NOISY = 1e-4, 3e-3, 1.5
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,8 @@ def closure_findings(record: Record) -> tuple[Finding, ...]:
     ranked = sorted(explanations(motion, error), key=lambda e: e.left)
     best, second = ranked[0], ranked[1]
     gain = rms / max(best.left, 1e-12)
-    if rms < VISIBLE * motion.path or (gain < DOUBTFUL and rms < LARGE * motion.path):
+    noise = float(np.hypot(sample_noise(motion.x), sample_noise(motion.y)))
+    if rms < VISIBLE * motion.path or (gain < DOUBTFUL and rms < max(LARGE * motion.path, NOISY * noise)):
         return ()
     named = gain >= DOUBTFUL
     is_certain = best.name == "point" and gain > CLEAR and second.left > DOUBTFUL * best.left

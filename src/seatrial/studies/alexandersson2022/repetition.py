@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.check import examine
+from seatrial.check.signal import sample_noise
 from seatrial.equations import Model
 from seatrial.identify import identified, identify
 from seatrial.identify.identify import settings_of
@@ -20,9 +21,6 @@ from seatrial.studies.alexandersson2022.published import SIDES, Turn
 from seatrial.trial import Role, Trial, TrialRecord, records_of
 from seatrial.trial.approach import approach_of
 from seatrial.values import Finding, Progress, Record, Severity
-
-# white noise of variance 1 has third differences of variance 1 + 9 + 9 + 1
-_THIRD = math.sqrt(20.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +71,7 @@ def repetition(trial: Trial, *, quick: bool, seed: int, progress: Progress | Non
         turns={side: turn_of(track, side, trial.ship.length) for side, track in tracks.items()},
         tracks=tracks,
         labels=labels,
-        noise=sample_noise([r.record for r in raw], [n.channel for n in fit.noise]),
+        noise=noise_of([r.record for r in raw], [n.channel for n in fit.noise]),
         left_out=() if quick else _left_out(trial, train, approach, progress),
     )
 
@@ -125,14 +123,11 @@ def as_labelled(layout: Layout) -> Layout:
     return replace(layout, columns=(*columns, Column("r", 8, "deg/s")))
 
 
-def sample_noise(records: Sequence[Record], channels: Sequence[str]) -> dict[str, float]:
-    """Noise of each channel from its third differences, SI: median over the records as they were sampled.
-
-    What does not change within a few samples cancels (Gasser, Sroka & Jennen-Steinmetz 1986, Biometrika 73, 625-633).
-    """
+def noise_of(records: Sequence[Record], channels: Sequence[str]) -> dict[str, float]:
+    """Noise of each channel from sample to sample, SI: median over the records as they were sampled."""
     made = {}
     for channel in channels:
-        found = [np.diff(r[channel], 3) for r in records if channel in r]
+        found = [sample_noise(r[channel]) for r in records if channel in r]
         if found:
-            made[channel] = float(np.median([np.sqrt(np.nanmean(d**2)) for d in found]) / _THIRD)
+            made[channel] = float(np.median(found))
     return made
