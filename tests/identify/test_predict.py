@@ -1,12 +1,14 @@
 """Predictions of what a model has: one without a heading is compared, but has no manoeuvring measures."""
 
 import numpy as np
+import pytest
 
 from seatrial.equations import Sheet
 from seatrial.identify import identified
+from seatrial.identify.fit import ship_length_seconds
 from seatrial.identify.predict import prediction, session_means
 from seatrial.simulate import replay
-from seatrial.values import Record
+from seatrial.values import InputError, Record
 
 
 def test_a_model_of_yaw_rate_alone_is_predicted_without_measures(rng: np.random.Generator) -> None:
@@ -28,3 +30,12 @@ def test_a_model_of_yaw_rate_alone_is_predicted_without_measures(rng: np.random.
     assert made.measures == {}
     assert set(made.rms) == {"r"}
     assert made.rms["r"] < 1.1e-3
+
+
+def test_records_without_speed_take_their_time_scale_from_the_segments(rng: np.random.Generator) -> None:
+    time = 0.2 * np.arange(100)
+    silent = Record.of("run", time, {"r": rng.standard_normal(100)})
+    assert ship_length_seconds([silent], 10.0, 15.0) == 10.0
+    for length in (None, np.inf):
+        with pytest.raises(InputError, match="no forward speed"):
+            ship_length_seconds([silent], 10.0, length)

@@ -47,8 +47,10 @@ class Identified:
         return problem.model.with_values(values)
 
 
-def ship_length_seconds(records: Sequence[Record], length: float) -> float:
+def ship_length_seconds(records: Sequence[Record], length: float, segment_seconds: float | None = None) -> float:
     """L/U: the time in which the ship travels her length at the records' median speed.
+
+    Records without any speed take it from the segment length that was asked for, if it is finite.
 
     Raises:
         InputError: the records show no speed.
@@ -59,6 +61,8 @@ def ship_length_seconds(records: Sequence[Record], length: float) -> float:
             speeds.append(np.nanmedian(np.abs(record["u"])))
         elif {"x0", "y0"} <= set(record.channels):
             speeds.append(np.median(np.hypot(np.diff(record["x0"]), np.diff(record["y0"]))) / record.dt)
+    if not speeds and segment_seconds is not None and np.isfinite(segment_seconds):
+        return segment_seconds / SEGMENT_SHIP_LENGTHS
     if not speeds or np.median(speeds) <= 0:
         raise InputError("the records show no forward speed; give u or positions, or set estimate.segment_s")
     return length / float(np.median(speeds))
@@ -100,7 +104,7 @@ def identified(
     if not model.parameters.free:
         raise InputError(f"model '{model.name}' has no free parameter; free some under [model]")
     refuse_without_excitation(model, records)
-    unit = ship_length_seconds(records, length)
+    unit = ship_length_seconds(records, length, settings.segment_seconds)
     tell = progress or (lambda _: None)
     seconds = settings.segment_seconds or SEGMENT_SHIP_LENGTHS * unit
     tell("weak-form start")

@@ -66,7 +66,8 @@ def identify(trial: Trial, seed: int = 0, progress: Progress | None = None) -> F
         trial.model, runs, [r.session for r in train], trial.ship.length, settings_of(trial, runs), progress
     )
     refuse_singular(*_data_and_prior(found))
-    seconds = trial.estimate.initial_s or START_SECONDS_LENGTHS * ship_length_seconds(runs, trial.ship.length)
+    unit = ship_length_seconds(runs, trial.ship.length, trial.estimate.segment_s)
+    seconds = trial.estimate.initial_s or START_SECONDS_LENGTHS * unit
     predictions = _predictions(found, records, seconds, trial.ship.length, progress)
     return Fit(
         question=trial.question
