@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from seatrial.equations import Model
 from seatrial.optimise import Solution
+from seatrial.results.identifiability import Identifiability
 from seatrial.values import Array, Finding, Record, Ship
 
 
@@ -68,6 +69,58 @@ class Measure:
     upper: float | None = None
 
 
+@dataclass(frozen=True)
+class Disturbance:
+    """What is between model and record: process noise in the states, measurement noise in the channels.
+
+    Attributes:
+        method: ``output error`` or ``prediction error``, the criterion of the fit.
+        whiteness_p: smallest p-value over the channels that the residuals (innovations) are white.
+        process: state -> intensity, SI unit of the state over the root of a second; 0 where none is needed.
+        measurement: channel -> standard deviation, SI.
+        text: why this criterion, in words.
+    """
+
+    method: str
+    whiteness_p: float
+    process: dict[str, float]
+    measurement: dict[str, float]
+    text: str = ""
+
+
+@dataclass(frozen=True)
+class Extrapolation:
+    """How far a prediction leaves the training runs.
+
+    Attributes:
+        index: largest of the ratios; up to 1 is interpolation.
+        ratios: ``yaw_rate``, ``drift``, ``rudder``, ``speed`` of the predicted run over those of the training runs.
+    """
+
+    index: float
+    ratios: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Member:
+    """One model of the declared family, scored over whole runs left out.
+
+    Attributes:
+        name: structure, prior and segment length in words; free: number of free coefficients.
+        heading_deg, position_m: mean rms over windows of the runs left out; None where the fit failed.
+        tied: not told from the best one by its runs.
+        note: why it failed.
+    """
+
+    name: str
+    free: int
+    heading_deg: float | None
+    position_m: float | None
+    tied: bool
+    chosen: bool = False
+    note: str = ""
+
+
 @dataclass(frozen=True, eq=False)
 class Prediction:
     """One run simulated open loop beside its measurement.
@@ -77,6 +130,9 @@ class Prediction:
         rms: keys ``psi_deg``, ``position_m``, ``u``, ``v``, ``r`` (m/s, m/s, rad/s) as far as measured.
         measures: keys as in `seatrial.manoeuvres.measures`, e.g. ``overshoot_1_deg``, ``advance_L``.
         initial_seconds: from how much of the run's beginning the initial state was taken.
+        half_width: channel (psi, x0, y0) -> half width of its 95 % band at every sample, shape (n,), SI.
+        floor: rms error, keys as in `rms`, that process noise alone would leave with a perfect model.
+        spread: standard deviation over tied models, keys as in `measures` and `rms`.
     """
 
     record: str
@@ -86,6 +142,10 @@ class Prediction:
     rms: dict[str, float]
     measures: dict[str, Measure]
     initial_seconds: float
+    extrapolation: Extrapolation | None = None
+    half_width: dict[str, Array] = field(default_factory=dict)
+    floor: dict[str, float] = field(default_factory=dict)
+    spread: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -125,6 +185,7 @@ class Fit:
         covariance: of the free coefficients in the order of `model.parameters.free_names`, shape (n, n).
         records: the training and validation records as used.
         seed, elapsed_s, versions: how to get the same again.
+        identifiability: what the records can tell; disturbance: noise and criterion; family: models compared.
     """
 
     question: str
@@ -143,6 +204,9 @@ class Fit:
     seed: int
     elapsed_s: float
     versions: dict[str, str]
+    identifiability: Identifiability | None = None
+    disturbance: Disturbance | None = None
+    family: tuple[Member, ...] = ()
 
     def validation(self) -> tuple[Prediction, ...]:
         """The predictions of runs that were not fitted."""
