@@ -45,7 +45,7 @@ class Collinearity:
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """What a coefficient does: rms change of each compared output for a change of 10 %, in standard deviations of noise.
+    """What a coefficient does: rms change of the compared outputs for a change of 10 %, in units of their noise.
 
     Attributes:
         effect: over all outputs together.
