@@ -273,7 +273,8 @@ def _wind(
     return X_W, Y_W, sheet.bind("N_W", q_A * A_L * at.L * C_N, WIND, "N m")
 
 
-def _rates(sheet: Sheet, at: _Motion, X: sp.Expr, Y: sp.Expr, N: sp.Expr) -> None:
+def _rates(sheet: Sheet, at: _Motion, X: sp.Symbol, Y: sp.Symbol, N: sp.Symbol) -> None:
+    """Accelerations; X_m, Y_m, N_m are what a balance feels that holds the ship in steady motion."""
     m = sheet.parameter("m", unit="kg", meaning="mass")
     x_G = sheet.parameter("x_G", unit="m", meaning="centre of gravity forward of midship")
     I_z = sheet.parameter("I_z", unit="kg m^2", meaning="yaw inertia about the centre of gravity")
@@ -314,5 +315,8 @@ def mmg() -> Model:
     by = _propeller(sheet, at, n)
     X_R, Y_R, N_R = _rudder(sheet, at, by, n)
     X_W, Y_W, N_W = _wind(sheet, at, psi, current)
-    _rates(sheet, at, X_H + by.X_P + X_R + X_W, Y_H + by.Y_P + Y_R + Y_W, N_H + by.N_P + N_R + N_W)
+    X = sheet.bind("X_sum", X_H + by.X_P + X_R + X_W, f"{YASUKAWA}, X of the equations of motion", "N")
+    Y = sheet.bind("Y_sum", Y_H + by.Y_P + Y_R + Y_W, f"{YASUKAWA}, Y of the equations of motion", "N")
+    N = sheet.bind("N_sum", N_H + by.N_P + N_R + N_W, f"{YASUKAWA}, N_m of the equations of motion", "N m")
+    _rates(sheet, at, X, Y, N)
     return sheet.model()
