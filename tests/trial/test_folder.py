@@ -2,14 +2,17 @@
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from report.told import told
 from seatrial.models import model_named
 from seatrial.results import (
     Coefficient,
+    Disturbance,
     Fit,
     Measure,
     Method,
@@ -58,7 +61,7 @@ def fit() -> Fit:
                 second,
                 record("second", Kind.SIMULATED),
                 {"psi_deg": 1.0 / 3.0, "v": math.nan},
-                {"overshoot_1_deg": Measure(4.0, math.nan)},
+                {"overshoot_1_deg": Measure(4.0, math.nan), "overshoot_2_deg": Measure(4.1, 3.9, 3.75, 4.5)},
                 2.0,
             ),
         ),
@@ -86,9 +89,54 @@ def test_a_fit_comes_back_from_its_folder(fit: Fit, tmp_path: Path) -> None:
     assert back.predictions[0].simulated.kind is Kind.SIMULATED
 
 
+def test_what_the_records_tell_comes_back_to_the_last_bit(fit: Fit, tmp_path: Path) -> None:
+    full = told(fit)
+    back = load_fit(save_fit(full, tmp_path))
+    assert back.identifiability == full.identifiability
+    assert (back.disturbance, back.family) == (full.disturbance, full.family)
+    for p, q in zip(back.predictions, full.predictions, strict=True):
+        assert (p.extrapolation, p.floor, p.spread, p.measures.keys()) == (
+            q.extrapolation, q.floor, q.spread, q.measures.keys(),
+        )  # fmt: skip
+        assert list(p.half_width) == list(q.half_width)
+        assert all(np.array_equal(p.half_width[s], q.half_width[s]) for s in q.half_width)
+
+
+def test_numbers_that_are_none_come_back_as_such(fit: Fit, tmp_path: Path) -> None:
+    unknown = Disturbance("output error", math.nan, {"u": math.inf}, {})
+    back = load_fit(save_fit(replace(fit, disturbance=unknown), tmp_path)).disturbance
+    assert back is not None and math.isnan(back.whiteness_p) and back.process == {"u": math.inf}
+
+
+def test_a_folder_from_before_is_read(fit: Fit, tmp_path: Path) -> None:
+    path = save_fit(fit, tmp_path) / "result.json"
+    table = json.loads(path.read_text())
+    for name in ("identifiability", "disturbance", "family"):
+        del table["detail"][name]
+    for entry in table["detail"]["predictions"]:
+        for name in ("extrapolation", "half_width", "floor", "spread"):
+            del entry[name]
+    path.write_text(strict_json(table))
+    back = load_fit(tmp_path)
+    assert (back.identifiability, back.disturbance, back.family) == (None, None, ())
+    assert back.predictions[0].half_width == {}
+
+
+def test_a_damaged_entry_is_one_sentence(fit: Fit, tmp_path: Path) -> None:
+    path = save_fit(told(fit), tmp_path) / "result.json"
+    table = json.loads(path.read_text())
+    table["detail"]["disturbance"]["process"]["u"] = "much"
+    path.write_text(strict_json(table))
+    with pytest.raises(InputError, match=r"damaged \(process\.u: .*identify' again$"):
+        load_fit(tmp_path)
+
+
 def test_the_json_has_the_documented_entries_and_no_nan(fit: Fit) -> None:
     table = json.loads(strict_json(fit_json(fit)))
-    assert list(table) == ["coefficients", "validation", "findings", "elapsed_s", "versions", "seed"]
+    assert list(table) == [
+        "coefficients", "intervals", "validation", "identifiability", "noise", "family", "findings", "elapsed_s",
+        "versions", "seed",
+    ]  # fmt: skip
     assert list(table["coefficients"][0]) == [
         "name", "unit", "estimate", "standard_error", "lower", "upper", "fixed", "truth",
     ]  # fmt: skip
@@ -99,6 +147,36 @@ def test_the_json_has_the_documented_entries_and_no_nan(fit: Fit) -> None:
     assert measure == {"measured": 4.0, "simulated": None, "lower": None, "upper": None}
     assert list(table["findings"][0]) == ["severity", "code", "text", "advice"]
     FitDocument.model_validate(table)
+
+
+def test_what_was_not_examined_is_null_or_empty(fit: Fit) -> None:
+    table = fit_json(fit)
+    run = table["validation"][0]
+    assert (table["identifiability"], table["noise"], table["family"]) == (None, None, [])
+    assert (run["extrapolation_index"], run["extrapolation"], run["floor"], run["spread"]) == (None, {}, {}, {})
+
+
+def test_what_the_records_tell_stands_in_the_json(fit: Fit) -> None:
+    full = told(fit)
+    table = json.loads(strict_json(fit_json(full)))
+    FitDocument.model_validate(table)
+    known = full.identifiability
+    assert known is not None
+    said = table["identifiability"]
+    assert said["effective_parameters"] == known.effective_parameters
+    assert [s["text"] for s in said["structural"]] == [s.text for s in known.structural]
+    assert said["structural"][0]["parameters"] == list(known.structural[0].parameters)
+    assert [d["standard_deviation"] for d in said["directions"]] == [
+        None, *(d.standard_deviation for d in known.directions[1:]),
+    ]  # fmt: skip
+    assert said["directions"][1]["combination"] == known.directions[1].combination
+    assert list(table["noise"]) == ["method", "whiteness_p", "process", "measurement", "text"]
+    run = table["validation"][0]
+    assert run["extrapolation_index"] == 1.9 and run["extrapolation"]["yaw_rate"] == 1.9
+    assert run["floor"]["position_m"] == 0.19 and run["spread"]["psi_deg"] == 0.31
+    assert run["measures"]["overshoot_2_deg"]["lower"] == 3.9 * 0.96
+    assert [m["chosen"] for m in table["family"]] == [True, False, False, False]
+    assert table["family"][-1]["heading_deg"] is None
 
 
 def test_the_model_file_knows_the_approach(fit: Fit, tmp_path: Path) -> None:

@@ -1,51 +1,53 @@
 """A fit as strict JSON: the one source of the documented schema. No NaN, no infinity: null instead."""
 
 import json
-import math
 from collections.abc import Mapping
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
-from seatrial.results import Coefficient, Fit, Prediction
+from seatrial.results import Fit, Prediction
+from seatrial.trial.fit_entries import Entry, FamilyEntry, IdentifiabilityEntry, NoiseEntry, Number
 from seatrial.values import Finding
 
 
-class _Entry(BaseModel):
-    model_config = ConfigDict(extra="forbid")
-
-
-class CoefficientEntry(_Entry):
+class CoefficientEntry(Entry):
     """One parameter of the model in SI units; the interval is at 95 %. `truth` is absent unless it is known."""
 
     name: str
     unit: str
-    estimate: float | None
-    standard_error: float | None = Field(description="null for a fixed parameter")
-    lower: float | None
-    upper: float | None
+    estimate: Number
+    standard_error: Number = Field(description="null for a fixed parameter")
+    lower: Number
+    upper: Number
     fixed: bool
-    truth: float | None = None
+    truth: Number = None
 
 
-class MeasureEntry(_Entry):
-    """A manoeuvring measure; bounds are null until a method defends them."""
+class MeasureEntry(Entry):
+    """A manoeuvring measure; the bounds are those of the simulated value at 95 %, null until a method defends them."""
 
-    measured: float | None
-    simulated: float | None
-    lower: float | None
-    upper: float | None
+    measured: Number
+    simulated: Number
+    lower: Number
+    upper: Number
 
 
-class ValidationEntry(_Entry):
+class ValidationEntry(Entry):
     """One run that was not fitted, simulated open loop."""
 
     record: str
-    rms: dict[str, float | None] = Field(description="psi_deg, position_m, u and v in m/s, r in rad/s, as measured")
+    rms: dict[str, Number] = Field(description="psi_deg, position_m, u and v in m/s, r in rad/s, as measured")
     measures: dict[str, MeasureEntry] = Field(description="keys end in _L (ship lengths), _deg or _s")
+    extrapolation_index: Number = Field(description="largest of the ratios; up to 1 the run stays inside the training")
+    extrapolation: dict[str, Number] = Field(
+        description="yaw_rate, drift, rudder, speed of the run over those of the training runs; empty: not known"
+    )
+    floor: dict[str, Number] = Field(description="rms, keys as in rms, that process noise alone would leave")
+    spread: dict[str, Number] = Field(description="standard deviation over tied models, keys as in measures and rms")
 
 
-class FindingEntry(_Entry):
+class FindingEntry(Entry):
     """Something a check or an estimate has to say."""
 
     severity: str = Field(pattern="^(info|warning|error)$")
@@ -54,43 +56,32 @@ class FindingEntry(_Entry):
     advice: str
 
 
-class FitDocument(_Entry):
+class FitDocument(Entry):
     """What `--json` writes after `identify` and `demo`."""
 
     coefficients: list[CoefficientEntry]
+    intervals: str = Field(description="by what method the intervals were found, in words")
     validation: list[ValidationEntry]
+    identifiability: IdentifiabilityEntry | None = Field(description="what the records can tell; null: not examined")
+    noise: NoiseEntry | None = Field(description="criterion of the fit and the noise it allows for; null: not examined")
+    family: list[FamilyEntry] = Field(description="models compared over whole runs left out; empty: none declared")
     findings: list[FindingEntry]
     elapsed_s: float
     versions: dict[str, str]
     seed: int
 
 
-def finite(value: float | None) -> float | None:
-    """The number, or None where JSON has none."""
-    return None if value is None or not math.isfinite(value) else float(value)
-
-
-def _coefficient(c: Coefficient) -> CoefficientEntry:
-    return CoefficientEntry(
-        name=c.name,
-        unit=c.unit,
-        estimate=finite(c.estimate),
-        standard_error=finite(c.standard_error),
-        lower=finite(c.lower),
-        upper=finite(c.upper),
-        fixed=c.fixed,
-        truth=finite(c.truth),
-    )
-
-
 def _validation(p: Prediction) -> ValidationEntry:
-    measures = {
-        name: MeasureEntry(
-            measured=finite(m.measured), simulated=finite(m.simulated), lower=finite(m.lower), upper=finite(m.upper)
-        )
-        for name, m in p.measures.items()
-    }
-    return ValidationEntry(record=p.record, rms={k: finite(v) for k, v in p.rms.items()}, measures=measures)
+    reach = p.extrapolation
+    return ValidationEntry(
+        record=p.record,
+        rms=p.rms,
+        measures={name: MeasureEntry.model_validate(m) for name, m in p.measures.items()},
+        extrapolation_index=reach.index if reach else None,
+        extrapolation=reach.ratios if reach else {},
+        floor=p.floor,
+        spread=p.spread,
+    )
 
 
 def finding_entry(f: Finding) -> FindingEntry:
@@ -100,9 +91,14 @@ def finding_entry(f: Finding) -> FindingEntry:
 
 def fit_json(fit: Fit) -> dict[str, Any]:
     """The documented schema, ready for `strict_json`."""
+    known, disturbance = fit.identifiability, fit.disturbance
     document = FitDocument(
-        coefficients=[_coefficient(c) for c in fit.coefficients],
+        coefficients=[CoefficientEntry.model_validate(c) for c in fit.coefficients],
+        intervals=fit.method.intervals,
         validation=[_validation(p) for p in fit.validation()],
+        identifiability=IdentifiabilityEntry.model_validate(known) if known else None,
+        noise=NoiseEntry.model_validate(disturbance) if disturbance else None,
+        family=[FamilyEntry.model_validate(member) for member in fit.family],
         findings=[finding_entry(f) for f in fit.findings],
         elapsed_s=fit.elapsed_s,
         versions=fit.versions,

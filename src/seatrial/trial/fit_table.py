@@ -5,7 +5,24 @@ from collections.abc import Mapping
 from dataclasses import asdict, is_dataclass
 from typing import Any, TypeVar, get_type_hints
 
-from seatrial.results import Coefficient, Fit, Measure, Method, Noise, Offset, Prediction, Residuals, Solution, Status
+from pydantic import TypeAdapter, ValidationError
+
+from seatrial.results import (
+    Coefficient,
+    Disturbance,
+    Extrapolation,
+    Fit,
+    Identifiability,
+    Measure,
+    Member,
+    Method,
+    Noise,
+    Offset,
+    Prediction,
+    Residuals,
+    Solution,
+    Status,
+)
 from seatrial.trial.archive import record_from
 from seatrial.trial.model_file import ModelFile
 from seatrial.values import Array, Finding, Record, Severity, Ship
@@ -52,10 +69,52 @@ def detail_table(fit: Fit, records: list[Record], place: Mapping[int, int]) -> d
                 "rms": _plain(p.rms),
                 "measures": {name: _plain(m) for name, m in p.measures.items()},
                 "initial_seconds": p.initial_seconds,
+                "extrapolation": _nested(p.extrapolation),
+                "half_width": list(p.half_width),
+                "floor": _nested(p.floor),
+                "spread": _nested(p.spread),
             }
             for p in fit.predictions
         ],
+        "identifiability": _nested(fit.identifiability),
+        "disturbance": _nested(fit.disturbance),
+        "family": _nested(fit.family),
     }
+
+
+def band_arrays(fit: Fit) -> dict[str, Array]:
+    """Half widths of all bands under the names `fit_from` looks for."""
+    return {
+        f"{_band(k)}/{channel}": half_width
+        for k, p in enumerate(fit.predictions)
+        for channel, half_width in p.half_width.items()
+    }
+
+
+def _band(prediction: int) -> str:
+    return f"prediction{prediction}/half_width"
+
+
+def _nested(value: Any) -> Any:
+    """As `_plain`, but numbers that are none stay known by their names: ``inf``, ``-inf``, ``nan``."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return _nested(asdict(value))
+    if isinstance(value, Mapping):
+        return {str(key): _nested(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_nested(inner) for inner in value]
+    if isinstance(value, float):
+        return float(value) if math.isfinite(value) else str(float(value))
+    return value
+
+
+def _restored(kind: Any, table: Any) -> Any:
+    """The value of that type, the inverse of `_nested`; TypeError where the table is damaged."""
+    try:
+        return TypeAdapter(kind).validate_python(table)
+    except ValidationError as error:
+        first = error.errors()[0]
+        raise TypeError(f"{'.'.join(str(part) for part in first['loc'])}: {first['msg']}") from None
 
 
 def _plain(value: Any) -> Any:
@@ -105,12 +164,15 @@ def fit_from(table: Mapping[str, Any], file: ModelFile, arrays: Mapping[str, Arr
             )
             for r in detail["residuals"]
         ),
-        predictions=tuple(_prediction(p, records) for p in detail["predictions"]),
+        predictions=tuple(_prediction(p, records, arrays, k) for k, p in enumerate(detail["predictions"])),
         findings=tuple(Finding(**{**f, "severity": Severity(f["severity"])}) for f in detail["findings"]),
         records=tuple(records[i] for i in detail["used"]),
         seed=table["seed"],
         elapsed_s=table["elapsed_s"],
         versions=table["versions"],
+        identifiability=_restored(Identifiability | None, detail.get("identifiability")),
+        disturbance=_restored(Disturbance | None, detail.get("disturbance")),
+        family=_restored(tuple[Member, ...], detail.get("family", [])),
     )
 
 
@@ -118,7 +180,9 @@ def _number(value: float | None) -> float:
     return math.nan if value is None else value
 
 
-def _prediction(entry: Mapping[str, Any], records: list[Record]) -> Prediction:
+def _prediction(
+    entry: Mapping[str, Any], records: list[Record], arrays: Mapping[str, Array], number: int
+) -> Prediction:
     return Prediction(
         record=entry["record"],
         role=entry["role"],
@@ -127,4 +191,8 @@ def _prediction(entry: Mapping[str, Any], records: list[Record]) -> Prediction:
         rms={key: _number(value) for key, value in entry["rms"].items()},
         measures={name: _made(Measure, m) for name, m in entry["measures"].items()},
         initial_seconds=entry["initial_seconds"],
+        extrapolation=_restored(Extrapolation | None, entry.get("extrapolation")),
+        half_width={channel: arrays[f"{_band(number)}/{channel}"] for channel in entry.get("half_width", ())},
+        floor=_restored(dict[str, float], entry.get("floor", {})),
+        spread=_restored(dict[str, float], entry.get("spread", {})),
     )

@@ -14,7 +14,7 @@ from seatrial.results import Fit
 from seatrial.trial.approach import approach_of
 from seatrial.trial.archive import distinct, npz_arrays, npz_bytes, record_arrays
 from seatrial.trial.fit_json import fit_json, strict_json
-from seatrial.trial.fit_table import detail_table, fit_from
+from seatrial.trial.fit_table import band_arrays, detail_table, fit_from
 from seatrial.trial.model_file import ModelFile, model_text, parsed_model, provenance_of
 from seatrial.values import Array, InputError
 from seatrial.values.files import writable_folder
@@ -84,6 +84,7 @@ def _contents(fit: Fit) -> dict[str, bytes]:
     for residuals in fit.residuals:
         arrays[f"residuals/{residuals.channel}"] = residuals.values
         arrays[f"autocorrelation/{residuals.channel}"] = residuals.autocorrelation
+    arrays |= band_arrays(fit)
     arrays["solution"] = fit.solution.point
     roles = [(r, "validation" if r.name in {p.record for p in fit.validation()} else "training") for r in fit.records]
     provenance = provenance_of(roles, fit.method.criterion, fit.seed, fit.versions)

@@ -1,0 +1,118 @@
+"""What the records can tell, noise and family as entries of the JSON; numbers that are none become null."""
+
+import math
+from typing import Annotated
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+
+
+def finite(value: float | None) -> float | None:
+    """The number, or None where JSON has none."""
+    return None if value is None or not math.isfinite(value) else float(value)
+
+
+Number = Annotated[float | None, BeforeValidator(finite)]
+
+
+class Entry(BaseModel):
+    """A table with these keys and no others; made from the value of the same attributes."""
+
+    model_config = ConfigDict(extra="forbid", from_attributes=True)
+
+
+class SymmetryEntry(Entry):
+    """A change of parameters that no record of the compared outputs can show, whatever the manoeuvre."""
+
+    parameters: list[str]
+    text: str
+    change: dict[str, Number] = Field(description="relative change for a unit step; absolute where the value is zero")
+
+
+class DirectionEntry(Entry):
+    """One direction of the free coefficients, weakest first."""
+
+    combination: dict[str, Number] = Field(description="parts of a unit vector in relative changes, largest first")
+    standard_deviation: Number = Field(description="of the relative change along it, 1: 100 %; null: not determined")
+    text: str
+
+
+class CollinearityEntry(Entry):
+    """How far one coefficient can be taken for others."""
+
+    parameter: str
+    variance_inflation: Number = Field(description="null: without limit")
+    partner: str
+    correlation: Number
+
+
+class SensitivityEntry(Entry):
+    """Change of the compared outputs (rms, in units of their noise) for 10 % of a coefficient."""
+
+    parameter: str
+    effect: Number = Field(description="over all outputs together")
+    outputs: dict[str, Number]
+
+
+class ConsequenceEntry(Entry):
+    """What a wrong assumed value would do."""
+
+    parameter: str
+    change: Number = Field(description="relative")
+    moves: dict[str, Number] = Field(description="relative change of the estimates, largest first")
+    misfit: Number = Field(description="increase of chi squared by which the records would show it")
+    text: str
+
+
+class StabilityEntry(Entry):
+    """Course stability index C of a straight course, positive: stable; the interval is at 95 %."""
+
+    index: Number
+    lower: Number
+    upper: Number
+    text: str
+
+
+class ProfileEntry(Entry):
+    """Profile likelihood of one coefficient; SI."""
+
+    parameter: str
+    values: list[Number]
+    costs: list[Number] = Field(description="twice the loss above its minimum; 3.84 bounds 95 %")
+    lower: Number
+    upper: Number
+
+
+class IdentifiabilityEntry(Entry):
+    """What the records can tell of the model and what they cannot."""
+
+    structural: list[SymmetryEntry]
+    directions: list[DirectionEntry]
+    effective_parameters: Number = Field(description="number of coefficients that the data determine")
+    condition: Number = Field(description="of the information matrix scaled to unit diagonal; null: singular")
+    collinearity: list[CollinearityEntry]
+    sensitivities: list[SensitivityEntry]
+    consequences: list[ConsequenceEntry]
+    stability: StabilityEntry | None
+    profiles: list[ProfileEntry]
+
+
+class NoiseEntry(Entry):
+    """The criterion of the fit and the noise it allows for."""
+
+    method: str = Field(description="output error or prediction error")
+    whiteness_p: Number = Field(description="smallest p-value over the channels that the residuals are white")
+    process: dict[str, Number] = Field(description="state -> intensity, SI unit of the state over the root of a second")
+    measurement: dict[str, Number] = Field(description="channel -> standard deviation, SI")
+    text: str
+
+
+class FamilyEntry(Entry):
+    """One model of the family, scored over whole runs left out."""
+
+    name: str
+    free: int
+    heading_deg: Number = Field(description="rms, null where the fit failed")
+    position_m: Number
+    tied: bool = Field(description="not told from the best one by its runs")
+    chosen: bool
+    note: str
