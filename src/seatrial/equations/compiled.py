@@ -1,7 +1,8 @@
 """Machine code of a set of equations: one generated module, compiled once a machine.
 
 The module holds four functions with the project's fixed signatures: `rates`, `rates_tangent`, `outputs` and
-`outputs_tangent`; `bindings`, for the breakdown of forces, is a module of its own, compiled when it is asked for.
+`outputs_tangent`; `bindings`, for the breakdown of forces, and `tangent_of` some of them are modules of their own,
+compiled when they are asked for.
 They lie in the cache folder under the hash of their text.
 """
 
@@ -17,7 +18,7 @@ from types import ModuleType
 import numpy as np
 
 from seatrial.equations.bindings import Equations
-from seatrial.equations.generate import bindings_text, source_text
+from seatrial.equations.generate import bindings_text, source_text, tangent_text
 from seatrial.kernels.cache import cache_folder
 from seatrial.values import Index
 from seatrial.values.files import write_whole
@@ -46,6 +47,10 @@ class Compiled:
     def bindings(self) -> Callable[..., None]:
         """Every binding in order: the breakdown of forces."""
         return _module(self.equations, "bindings", bindings_text).bindings
+
+    def tangent_of(self, names: tuple[str, ...]) -> Callable[..., None]:
+        """The named bindings, in that order, with their exact Jacobians by [x | u | p]."""
+        return _module(self.equations, "_".join(("tangent", *names)), lambda e: tangent_text(e, names)).tangent
 
 
 def _written(text: str) -> Path:

@@ -129,3 +129,9 @@ def source_text(equations: Equations) -> str:
 def bindings_text(equations: Equations) -> str:
     """The module of the breakdown of forces as text."""
     return _HEADER.format(name=equations.name) + "\n".join(_function(equations, "bindings", equations.bindings))
+
+
+def tangent_text(equations: Equations, names: Sequence[str]) -> str:
+    """The module of some bindings with their exact Jacobians as text."""
+    wanted = [b for name in names for b in equations.bindings if b.name == name]
+    return _HEADER.format(name=equations.name) + "\n".join(_tangent(equations, "tangent", wanted)[0])

@@ -12,6 +12,7 @@ import numpy as np
 
 from seatrial.equations import Model
 from seatrial.optimise import Normal
+from seatrial.problem.addend import Addend
 from seatrial.problem.segments import Segments
 from seatrial.simulate.batch import Batch, InputCorrection
 from seatrial.values import Array, Index, Prior
@@ -44,6 +45,7 @@ class OutputError:
         huber: residuals beyond this many standard deviations count linearly (Huber 1964); infinite: squares only.
         session_parameters: model parameters estimated once a session (a current), with their priors.
         pinned: shared unknowns held at these values, for predictions: only initial states move.
+        others: data besides the records that say something about the model parameters (static force points).
     """
 
     model: Model
@@ -56,6 +58,7 @@ class OutputError:
     substeps: int = 1
     workers: int | None = None
     pinned: Array | None = None
+    others: tuple[Addend, ...] = ()
 
     @cached_property
     def free(self) -> tuple[str, ...]:
@@ -140,7 +143,7 @@ class OutputError:
         """Full initial states, model parameters and corrections of each segment."""
         count, parameters = self.data.count, self.model.parameters
         values = np.tile(parameters.values, (count, 1))
-        values[:, [parameters.index(n) for n in self.free]] = shared[: len(self.free)]
+        values[:, self._places] = shared[: len(self.free)]
         own = shared[len(self.free) :].reshape(len(self.data.sessions), self.kinds)[self.data.session]
         split = len(self.session_parameters)
         values[:, [parameters.index(n) for n, _ in self.session_parameters]] = own[:, :split]
@@ -180,6 +183,26 @@ class OutputError:
         mean, weight = self.priors
         return 0.5 * float(np.sum(weight * (shared - mean) ** 2))
 
+    def _parameter_values(self, shared: Array) -> Array:
+        """All model parameters as the runs share them."""
+        values = self.model.parameters.values
+        values[self._places] = shared[: len(self.free)]
+        return values
+
+    @cached_property
+    def _places(self) -> list[int]:
+        return [self.model.parameters.index(n) for n in self.free]
+
+    def known_precision(self, shared: Array) -> Array:
+        """Information (size, size) of priors and other data, which stay when runs are left out."""
+        precision, k = np.diag(self.priors[1]), len(self.free)
+        for other in self.others:
+            precision[:k, :k] += other.normal(self._parameter_values(shared), self._places).hessian
+        return precision
+
+    def _other_cost(self, shared: Array) -> float:
+        return sum(other.cost(self._parameter_values(shared)) for other in self.others)
+
     def simulated(self, shared: Array, local: Array) -> Array:
         """Simulated outputs of all segments, shape (rows, ny); NaN after a divergence."""
         start, values, corrections = self.unpacked(shared, local)
@@ -192,7 +215,7 @@ class OutputError:
         y = self.simulated(shared, local)
         if not np.all(np.isfinite(y)):
             return np.inf
-        return self._loss(self._scaled(y, slice(None)))[0] + self._prior_cost(shared)
+        return self._loss(self._scaled(y, slice(None)))[0] + self._prior_cost(shared) + self._other_cost(shared)
 
     def blocks(self, shared: Array, local: Array) -> "SegmentNormals":
         """Gauss-Newton blocks of every segment, prior left out."""
@@ -223,7 +246,10 @@ class OutputError:
         return self.assembled(self.blocks(shared, local), shared, np.arange(self.data.count), with_prior=True)
 
     def assembled(self, blocks: "SegmentNormals", shared: Array, chosen: Index, *, with_prior: bool) -> Normal:
-        """The normal equations of some segments (all for the fit, those of one run for the jackknife)."""
+        """The normal equations of some segments (all for the fit, those of one run for the jackknife).
+
+        with_prior: whether what is known besides the records is in them: priors and other data.
+        """
         n, gradient, hessian = blocks.shared, np.zeros(self.size), np.zeros((self.size, self.size))
         cross = np.zeros((len(chosen), self.size, blocks.gradients.shape[1] - n))
         for session in np.unique(self.data.session[chosen]):
@@ -239,6 +265,12 @@ class OutputError:
             cost += self._prior_cost(shared)
             gradient += weight * (shared - mean)
             hessian += np.diag(weight)
+            k = len(self.free)
+            for other in self.others:
+                more = other.normal(self._parameter_values(shared), self._places)
+                cost += more.cost
+                gradient[:k] += more.gradient
+                hessian[:k, :k] += more.hessian
         return Normal(cost, gradient, hessian, blocks.gradients[chosen, n:], blocks.hessians[chosen, n:, n:], cross)
 
 

@@ -3,6 +3,7 @@
 from seatrial.values.arrays import Array, Index, frozen
 from seatrial.values.errors import InputError, nearest
 from seatrial.values.finding import Finding, Severity
+from seatrial.values.force_points import ForcePoints, Includes
 from seatrial.values.notation import NOTATION, Quantity, quantity
 from seatrial.values.parameters import Parameter, Parameters, Prior
 from seatrial.values.progress import Progress
@@ -15,6 +16,8 @@ __all__ = [
     "Array",
     "Channel",
     "Finding",
+    "ForcePoints",
+    "Includes",
     "Index",
     "InputError",
     "Kind",
