@@ -8,6 +8,7 @@ from seatrial.equations import Model
 from seatrial.identify.settings import Settings
 from seatrial.problem.output_error import Nuisance, OutputError
 from seatrial.problem.segments import compared_outputs, cut
+from seatrial.problem.static_forces import StaticForces
 from seatrial.simulate.batch import InputCorrection
 from seatrial.values import Prior, Record
 
@@ -29,13 +30,15 @@ def _current(settings: Settings) -> tuple[tuple[str, Prior], ...]:
 def output_error(
     model: Model, records: Sequence[Record], sessions: Sequence[str], seconds: float, settings: Settings
 ) -> OutputError:
-    """The records in segments of `seconds` (infinite: whole runs); each channel's noise a tenth of its spread.
+    """The records in segments of `seconds` (infinite: whole runs); each channel's noise a tenth of its spread. Beside them the
+    settings' force points.
 
     Raises:
-        InputError: outputs that cannot be compared, time steps that differ, or a record of fewer than three samples.
+        InputError: force points of another model, outputs that cannot be compared, time steps that differ, or a record of fewer than three samples.
     """
     outputs = compared_outputs(model, records, settings.channels)
     data = cut(model, records, outputs, None if np.isinf(seconds) else seconds, sessions)
     spread = np.nanstd(data.measured, axis=0)
     return OutputError(model, data, np.maximum(0.1 * spread, 1e-9), _nuisances(settings), _current(settings),
-                          substeps=settings.substeps, workers=settings.workers)  # fmt: skip
+                       substeps=settings.substeps, workers=settings.workers,
+                       others=tuple(StaticForces(model, points) for points in settings.forces))  # fmt: skip

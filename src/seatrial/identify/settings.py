@@ -1,6 +1,7 @@
 """How a fit is made, with the defaults of the house. Defaults are frozen: never tuned for a ship."""
 
 from dataclasses import dataclass, field
+from enum import StrEnum
 
 SEGMENT_SHIP_LENGTHS = 1.5
 """Length of a multiple-shooting segment, in ship lengths travelled (1.5 L/U)."""
@@ -18,6 +19,15 @@ START_SECONDS_LENGTHS = 1.0
 """The initial state of a validation run comes from its first L/U seconds."""
 
 
+class Intervals(StrEnum):
+    """Where intervals come from; `auto` is the decision table's choice."""
+
+    AUTO = "auto"
+    JACKKNIFE = "jackknife"
+    BOOTSTRAP = "bootstrap"
+    PROFILE = "profile"
+
+
 @dataclass(frozen=True)
 class Settings:
     """Choices of one fit; None means: the decision table decides.
@@ -31,6 +41,8 @@ class Settings:
         current: whether a uniform current is estimated for each run, prior standard deviation in m/s (0: no).
         substeps: Runge-Kutta steps in one sample.
         evaluations: limit for each search.
+        forces: tables of static force points that are fitted beside the records.
+        intervals: where intervals come from; seed: of what is drawn for them.
     """
 
     segment_seconds: float | None = None
@@ -42,3 +54,6 @@ class Settings:
     substeps: int = 1
     evaluations: int = 60
     workers: int | None = None
+    forces: tuple[ForcePoints, ...] = ()
+    intervals: Intervals = Intervals.AUTO
+    seed: int = 0
