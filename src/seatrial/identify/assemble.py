@@ -30,11 +30,13 @@ def _current(settings: Settings) -> tuple[tuple[str, Prior], ...]:
 def output_error(
     model: Model, records: Sequence[Record], sessions: Sequence[str], seconds: float, settings: Settings
 ) -> OutputError:
-    """The records in segments of `seconds` (infinite: whole runs); each channel's noise a tenth of its spread. Beside them the
-    settings' force points.
+    """The records in segments of `seconds` (infinite: whole runs); each channel's noise a tenth of its spread.
+
+    Beside them stand the settings' force points.
 
     Raises:
-        InputError: force points of another model, outputs that cannot be compared, time steps that differ, or a record of fewer than three samples.
+        InputError: outputs that cannot be compared, time steps that differ, a record of fewer than three samples, or
+            force points that the model cannot be compared with.
     """
     outputs = compared_outputs(model, records, settings.channels)
     data = cut(model, records, outputs, None if np.isinf(seconds) else seconds, sessions)

@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from seatrial.values import ForcePoints
+
 SEGMENT_SHIP_LENGTHS = 1.5
 """Length of a multiple-shooting segment, in ship lengths travelled (1.5 L/U)."""
 
