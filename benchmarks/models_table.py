@@ -103,7 +103,7 @@ def kvlcc2() -> list[Row]:
             seconds, problem, own = time.perf_counter() - began, found.made.problem, own_nuisances(found, held.session)
             protocol = Protocol(window_s=WINDOW["kvlcc2_hsva"], initial_s=HELD_OUT_SECONDS)
             windows = window_errors(problem, found.model, [held.record], [own], ["zigzag"], protocol)
-            whole = rms(held.record, open_loop(problem, found.model, held.record, own, HELD_OUT_SECONDS))
+            whole = rms(held.record, open_loop(problem, found.model, held.record, own, HELD_OUT_SECONDS).record)
         except InputError as error:
             print(f"  {name}: {error}")
             continue

@@ -39,7 +39,7 @@ def made(model: Model, runs: int, seconds: float | None) -> Estimate:
 
 def test_white_residuals_get_the_information_matrix(model: Model) -> None:
     one = made(model, 6, None)
-    interval = intervals(one, WHITE)
+    interval = intervals(one, WHITE).interval
     assert interval.meaning.startswith("information matrix (residuals are white)")
     np.testing.assert_allclose(interval.covariance, np.linalg.inv(one.optimum.normal.reduced()[1]), rtol=1e-8)
 
@@ -49,9 +49,9 @@ def test_white_residuals_get_the_information_matrix(model: Model) -> None:
 )
 def test_coloured_residuals_get_what_the_runs_allow(model: Model, runs: int, seconds: float, says: str) -> None:
     one = made(model, runs, seconds)
-    interval = intervals(one, COLOURED)
+    interval = intervals(one, COLOURED).interval
     assert says in interval.meaning
-    plain = intervals(one, WHITE)
+    plain = intervals(one, WHITE).interval
     ratio = interval.standard_error / plain.standard_error
     assert np.all((ratio > 0.3) & (ratio < 3.0)), "residuals of this record are white: all intervals agree roughly"
 
@@ -65,8 +65,8 @@ def counted(one: Estimate, inflation: np.ndarray) -> Estimate:
 def test_few_runs_and_segments_count_effective_samples_once(model: Model) -> None:
     one = made(model, 1, None)
     alike = np.array([9.0, 9.0])
-    widened = intervals(counted(one, alike), alike)
-    np.testing.assert_allclose(widened.standard_error, 3.0 * intervals(one, WHITE).standard_error, rtol=1e-3)
+    widened = intervals(counted(one, alike), alike).interval
+    np.testing.assert_allclose(widened.standard_error, 3.0 * intervals(one, WHITE).interval.standard_error, rtol=1e-3)
     assert "effective number" in widened.meaning
 
 
@@ -85,7 +85,7 @@ def test_offsets_of_a_run_get_the_information_of_that_run(model: Model) -> None:
     problem = replace(one.problem, nuisances=(zero,))
     start = np.concatenate([one.shared, np.zeros(6)])
     freed = Estimate(problem, levenberg_marquardt(problem, start, one.optimum.local))
-    interval = intervals(freed, COLOURED)
+    interval = intervals(freed, COLOURED).interval
     of_offsets = np.linalg.inv(freed.optimum.normal.reduced()[1])[-6:, -6:]
     np.testing.assert_allclose(interval.covariance[-6:, -6:], of_offsets, rtol=1e-6, atol=1e-12)
     assert "jackknife" in interval.meaning

@@ -6,7 +6,7 @@ import pytest
 from seatrial.equations import Sheet
 from seatrial.identify import identified
 from seatrial.identify.fit import ship_length_seconds
-from seatrial.identify.predict import prediction, session_means
+from seatrial.identify.predict import open_loop, prediction, session_means
 from seatrial.simulate import replay
 from seatrial.values import InputError, Record
 
@@ -25,8 +25,8 @@ def test_a_model_of_yaw_rate_alone_is_predicted_without_measures(rng: np.random.
     noisy = truth["r"] + 1e-3 * rng.standard_normal(1500)
     record = Record.of("run", time, {"r": noisy, "delta": rudder, "u": np.ones(1500)})
     found = identified(model.with_values({"T": 3.0, "K": 0.1}), [record], ["run"], 10.0)
-    made = prediction(found.made.problem, found.model, record, "validation",
-                      session_means(found.made.problem, found.made.shared), 10.0, 10.0)  # fmt: skip
+    run = open_loop(found.made.problem, found.model, record, session_means(found.made.problem, found.made.shared), 10.0)
+    made = prediction(found.model, record, "validation", run, 10.0, 10.0)
     assert made.measures == {}
     assert set(made.rms) == {"r"}
     assert made.rms["r"] < 1.1e-3

@@ -9,7 +9,7 @@ import numpy as np
 from seatrial.equations import Model
 from seatrial.identify.assemble import output_error
 from seatrial.identify.estimate import Estimate, colour, estimate
-from seatrial.identify.intervals import intervals
+from seatrial.identify.intervals import Uncertainty, intervals, refuse_few_runs
 from seatrial.identify.settings import HUBER, SEGMENT_SHIP_LENGTHS, WHITE_INFLATION, WINDOW_SHIP_LENGTHS, Settings
 from seatrial.identify.start import start
 from seatrial.information.covariance import Interval
@@ -24,20 +24,25 @@ class Identified:
 
     Attributes:
         made: problem and optimum.
-        interval: of all shared unknowns.
+        uncertainty: intervals of all shared unknowns, and the estimates they rest on.
         inflation: variance inflation of each channel's residuals; rho: their autocorrelations.
         start: where the search began, in words.
         criterion, reasons: what was used, and why.
     """
 
     made: Estimate
-    interval: Interval
+    uncertainty: Uncertainty
     inflation: Array
     rho: list[Array]
     start: str
     criterion: str
     reasons: tuple[str, ...]
     elapsed_s: float
+
+    @property
+    def interval(self) -> Interval:
+        """Of all shared unknowns."""
+        return self.uncertainty.interval
 
     @property
     def model(self) -> Model:
@@ -104,6 +109,7 @@ def identified(
     if not model.parameters.free:
         raise InputError(f"model '{model.name}' has no free parameter; free some under [model]")
     refuse_without_excitation(model, records)
+    refuse_few_runs(settings.intervals, len(records))
     unit = ship_length_seconds(records, length, settings.segment_seconds)
     tell = progress or (lambda _: None)
     seconds = settings.segment_seconds or SEGMENT_SHIP_LENGTHS * unit
@@ -132,8 +138,12 @@ def identified(
         reasons.append("correlated samples count as their effective number, so that priors keep their weight")
     if settings.robust:
         criterion += ", Huber loss"
-    interval = intervals(made, inflation)
-    return Identified(made, interval, inflation, rho, begin.how, criterion, tuple(reasons), time.perf_counter() - began)
+
+    def counted(done: int, total: int) -> None:
+        tell(f"{settings.intervals}: fit {done} of {total}")
+
+    known = intervals(made, inflation, settings.intervals, np.random.default_rng(settings.seed), counted)
+    return Identified(made, known, inflation, rho, begin.how, criterion, tuple(reasons), time.perf_counter() - began)
 
 
 def _over_whole_runs(

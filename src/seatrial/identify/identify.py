@@ -6,14 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from seatrial.identify.cross_validation import own_nuisances
 from seatrial.identify.estimate import pieces
 from seatrial.identify.fit import Identified, identified, ship_length_seconds
-from seatrial.identify.predict import prediction, session_means
+from seatrial.identify.forecast import predictions
 from seatrial.identify.settings import SEGMENT_SHIP_LENGTHS, START_SECONDS_LENGTHS, Settings
 from seatrial.identify.singular import refuse_singular
 from seatrial.information.autocorrelation import whiteness_p
-from seatrial.results import Coefficient, Fit, Method, Noise, Offset, Prediction, Residuals
+from seatrial.results import Coefficient, Fit, Method, Noise, Offset, Residuals
 from seatrial.trial import Role, Trial, TrialRecord, records_of, refuse_errors
 from seatrial.values import NOTATION, Array, Finding, InputError, Parameter, Progress, Record, Severity
 from seatrial.values.versions import versions
@@ -68,7 +67,7 @@ def identify(trial: Trial, seed: int = 0, progress: Progress | None = None) -> F
     refuse_singular(*_data_and_prior(found))
     unit = ship_length_seconds(runs, trial.ship.length, trial.estimate.segment_s)
     seconds = trial.estimate.initial_s or START_SECONDS_LENGTHS * unit
-    predictions = _predictions(found, records, seconds, trial.ship.length, progress)
+    told = predictions(found, records, seconds, trial.ship.length, seed, progress)
     return Fit(
         question=trial.question
         or f"Which {trial.model.name} model explains these records, and how well does it predict?",
@@ -81,7 +80,7 @@ def identify(trial: Trial, seed: int = 0, progress: Progress | None = None) -> F
         offsets=_offsets(found),
         noise=_noise(found),
         residuals=_residuals(found),
-        predictions=predictions,
+        predictions=told,
         findings=(*findings, *_bounds_hit(found), *_unconverged(found)),
         records=tuple(r.record for r in records),
         seed=seed,
@@ -157,22 +156,6 @@ def _method(found: Identified) -> Method:
         "Huber limit (standard deviations)": problem.huber if np.isfinite(problem.huber) else "none",
     }
     return Method(found.criterion, found.start, found.interval.meaning, found.reasons, settings)
-
-
-def _predictions(
-    found: Identified, records: Sequence[TrialRecord], seconds: float, length: float, progress: Progress | None
-) -> tuple[Prediction, ...]:
-    """Every run open loop: training runs with their own session's offsets, the others with the training mean."""
-    problem, mean = found.made.problem, session_means(found.made.problem, found.made.shared)
-    made = []
-    for item in records:
-        if progress:
-            progress(f"predicting {item.record.name}")
-        trained = item.role is Role.TRAIN
-        own = own_nuisances(found, item.session) if trained else mean
-        role = "training" if trained else "validation"
-        made.append(prediction(problem, found.model, item.record, role, own, seconds, length))
-    return tuple(made)
 
 
 def _bounds_hit(found: Identified) -> list[Finding]:

@@ -1,52 +1,116 @@
 """Which interval is defensible for this fit, and the interval itself."""
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatrial.identify.estimate import Estimate
-from seatrial.identify.settings import WHITE_INFLATION
+from seatrial.identify.replicates import drawn, left_out, stepped
+from seatrial.identify.settings import WHITE_INFLATION, Intervals
 from seatrial.information.covariance import (
     Interval,
+    bootstrap,
     from_information,
     inverse,
-    one_step_jackknife,
+    jackknife,
     sandwich,
     with_prior,
 )
+from seatrial.values import Array, InputError
 
-_RUNS_FOR_JACKKNIFE = 4
+Counted = Callable[[int, int], None]
+
+RUNS_FOR_JACKKNIFE = 4
+BOOTSTRAPS = 40
 _BLOCKS_FOR_SANDWICH = 10
 
 
-def intervals(made: Estimate, inflation: np.ndarray) -> Interval:
+@dataclass(frozen=True, eq=False)
+class Uncertainty:
+    """An interval of all shared unknowns, and what it rests on.
+
+    Attributes:
+        left_out: estimates with one run left out each, shape (runs, k); None with fewer runs than a jackknife needs.
+        agreement: median over coefficients of the one-step jackknife's standard error over that of full refits; None
+            unless both were computed.
+    """
+
+    interval: Interval
+    left_out: Array | None = None
+    agreement: float | None = None
+
+
+def intervals(
+    made: Estimate,
+    inflation: Array,
+    kind: Intervals = Intervals.AUTO,
+    rng: np.random.Generator | None = None,
+    progress: Counted | None = None,
+) -> Uncertainty:
     """Information matrix where residuals are white; else one-step jackknife over runs, or a sandwich over segments.
 
     With few runs and few segments the information matrix is left, of the effective number of samples (the problem's
-    `inflation`).
+    `inflation`). A jackknife of full refits or a bootstrap over runs where `kind` asks for it; `rng` draws the runs.
+
+    Raises:
+        InputError: fewer runs than the wanted kind needs.
     """
-    problem, normal = made.problem, made.optimum.normal
-    hessian = normal.reduced()[1]
+    problem, hessian = made.problem, made.optimum.normal.reduced()[1]
+    runs = len(problem.data.runs)
+    refuse_few_runs(kind, runs)
+    steps = stepped(made) if runs >= RUNS_FOR_JACKKNIFE else None
+
+    def over_runs(interval: Interval) -> Interval:
+        return _offsets_by_information(with_prior(interval, hessian, problem.priors[1]), hessian, len(problem.free))
+
+    if kind is Intervals.JACKKNIFE:
+        points = left_out(made, problem.workers, progress)
+        full, fast = jackknife(points, f"jackknife over {runs} runs, each refitted"), jackknife(_demanded(steps), "")
+        share = fast.standard_error / np.maximum(full.standard_error, 1e-300)
+        return Uncertainty(over_runs(full), points, float(np.median(share[: len(problem.free)])))
+    if kind is Intervals.BOOTSTRAP:
+        points = drawn(made, BOOTSTRAPS, rng or np.random.default_rng(0), problem.workers, progress)
+        return Uncertainty(over_runs(bootstrap(points, runs, f"bootstrap over {runs} runs, {BOOTSTRAPS} draws")), steps)
     if np.max(inflation) <= WHITE_INFLATION:
-        return from_information(hessian)
-    blocks = problem.blocks(made.shared, made.optimum.local)
-
-    def reduced(chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return problem.assembled(blocks, made.shared, chosen, with_prior=False).reduced()
-
-    runs = [np.flatnonzero(problem.data.run == r) for r in range(len(problem.data.runs))]
-    if len(runs) >= _RUNS_FOR_JACKKNIFE:
-        parts = [reduced(chosen) for chosen in runs]
-        left_out = one_step_jackknife(hessian, np.array([g for g, _ in parts]), np.array([h for _, h in parts]))
-        return _offsets_by_information(with_prior(left_out, hessian, problem.priors[1]), hessian, len(problem.free))
+        return Uncertainty(from_information(hessian), steps)
+    if steps is not None:
+        return Uncertainty(over_runs(jackknife(steps, f"one-step jackknife over {runs} runs")), steps)
     if problem.data.count >= _BLOCKS_FOR_SANDWICH:
-        scores = np.array([reduced(np.array([s]))[0] for s in range(problem.data.count)])
-        return with_prior(sandwich(hessian, scores), hessian, problem.priors[1])
+        return Uncertainty(with_prior(sandwich(hessian, _scores(made)), hessian, problem.priors[1]))
     meaning = "information matrix, correlated samples counted as their effective number"
-    return replace(from_information(hessian), meaning=meaning)
+    return Uncertainty(replace(from_information(hessian), meaning=meaning))
 
 
-def _offsets_by_information(interval: Interval, hessian: np.ndarray, coefficients: int) -> Interval:
+def refuse_few_runs(kind: Intervals, runs: int) -> None:
+    """Raises:
+    InputError: a jackknife or bootstrap was asked for and there are too few runs.
+    """
+    if kind in (Intervals.JACKKNIFE, Intervals.BOOTSTRAP) and runs < RUNS_FOR_JACKKNIFE:
+        raise InputError(
+            f"intervals by {kind} leave whole runs out and need at least {RUNS_FOR_JACKKNIFE} training runs, the trial "
+            f"has {runs}; add runs, or leave the choice of intervals to the program"
+        )
+
+
+def _demanded(steps: Array | None) -> Array:
+    assert steps is not None
+    return steps
+
+
+def _scores(made: Estimate) -> Array:
+    """Gradient of every segment with its initial state eliminated, shape (segments, k)."""
+    problem = made.problem
+    blocks = problem.blocks(made.shared, made.optimum.local)
+    return np.array(
+        [
+            problem.assembled(blocks, made.shared, np.array([s]), with_prior=False).reduced()[0]
+            for s in range(problem.data.count)
+        ]
+    )
+
+
+def _offsets_by_information(interval: Interval, hessian: Array, coefficients: int) -> Interval:
     """Errors of a session's own unknowns from the information matrix: a run left out says nothing about its offset."""
     covariance = interval.covariance.copy()
     covariance[coefficients:, :] = covariance[:, coefficients:] = 0.0

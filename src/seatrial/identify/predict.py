@@ -1,60 +1,57 @@
 """Open-loop prediction of a run: initial state from its first seconds, nothing else taken from it."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatrial.equations import Model
+from seatrial.identify.draws import simulated
 from seatrial.manoeuvres import measures
 from seatrial.optimise import levenberg_marquardt
 from seatrial.problem.output_error import OutputError
 from seatrial.problem.segments import cut
 from seatrial.results import Measure, Prediction
-from seatrial.simulate.batch import Batch
 from seatrial.simulate.bounds import demand_bounded
-from seatrial.simulate.channels import record_of
+from seatrial.simulate.channels import inputs_of, record_of
 from seatrial.values import Array, Record
 
 
-def _problem(template: OutputError, model: Model, record: Record, own: Array, outputs: tuple[str, ...]) -> OutputError:
-    """The record as one segment with every shared unknown pinned: `own` holds the session's nuisances."""
-    held = model.with_parameters(model.parameters.fixed(*model.parameters.names))
-    noise = dict(zip(template.data.outputs, template.noise, strict=True))
-    data = cut(held, [record], outputs, None)
-    return replace(
-        template,
-        model=held,
-        data=data,
-        noise=np.array([noise.get(o, 1.0) for o in outputs]),
-        pinned=own,
-        inflation=None,
-    )
-
-
-def initial_state(template: OutputError, model: Model, record: Record, own: Array, seconds: float) -> dict[str, float]:
-    """Output-error estimate of the initial state from the first `seconds` of a record, model held."""
+def initial_state(template: OutputError, model: Model, record: Record, own: Array, seconds: float) -> Array:
+    """Output-error estimate of the initial state from the first `seconds` of a record, model held, shape (nx,)."""
     beginning = record.between(record.time[0], record.time[0] + max(seconds, 4 * record.dt))
-    problem = _problem(template, model, beginning, own, template.data.outputs)
+    held = model.with_parameters(model.parameters.fixed(*model.parameters.names))
+    data = cut(held, [beginning], template.data.outputs, None)
+    problem = replace(template, model=held, data=data, pinned=own, inflation=None)
     found = levenberg_marquardt(problem, own, problem.measured_starts(), evaluations=40)
-    return dict(zip(problem.starts, found.local[0], strict=True))
+    known = dict(zip(problem.starts, found.local[0], strict=True))
+    return np.array([known.get(s, 0.0) for s in model.states])
 
 
-def open_loop(template: OutputError, model: Model, record: Record, own: Array, seconds: float) -> Record:
-    """The record simulated over its whole length from its inputs; all observables of the model as channels.
+@dataclass(frozen=True, eq=False)
+class OpenLoop:
+    """One run simulated: all observables of the model as channels, and the initial state it began with, (nx,)."""
+
+    record: Record
+    start: Array
+
+
+def open_loop(template: OutputError, model: Model, record: Record, own: Array, seconds: float) -> OpenLoop:
+    """The record simulated over its whole length from its inputs.
 
     Raises:
         InputError: the simulation diverges (which run, which channel, when).
     """
     start = initial_state(template, model, record, own, seconds)
-    problem = _problem(template, model, record, own, model.observables)
-    local = np.array([[start.get(s, 0.0) for s in problem.starts]])
-    x0, values, corrections = problem.unpacked(own, local)
-    batch = Batch(problem.model, problem.data.inputs, problem.data.offsets, problem.data.dt, model.observables,
-                  corrections=tuple(n.correction for n in template.nuisances), substeps=template.substeps)  # fmt: skip
-    y, _ = batch.simulate(0, 1, x0, values, corrections)
+    point = np.array([[model.parameters[n].value for n in template.free]])
+    made = as_record(model, record, simulated(template, model, record, start[None], point, own[None])[0])
+    demand_bounded(model, record.time, np.stack([made[s] for s in model.states], axis=1), f"run '{record.name}'")
+    return OpenLoop(made, start)
+
+
+def as_record(model: Model, record: Record, y: Array) -> Record:
+    """Observables along a record's inputs, shape (rows, observables), as a record."""
     nx = len(model.states)
-    demand_bounded(model, record.time, y[:, :nx], f"run '{record.name}'")
-    return record_of(model, record.name, record.time, y[:, :nx], y[:, nx:], problem.data.inputs)
+    return record_of(model, record.name, record.time, y[:, :nx], y[:, nx:], inputs_of(model, record))
 
 
 def rms(measured: Record, simulated: Record) -> dict[str, float]:
@@ -74,19 +71,28 @@ def rms(measured: Record, simulated: Record) -> dict[str, float]:
     return made
 
 
-def prediction(
-    template: OutputError, model: Model, record: Record, role: str, own: Array, seconds: float, length: float
-) -> Prediction:
-    """One run open loop beside its measurement, with rms and manoeuvring measures, both at the measured executes."""
-    simulated = open_loop(template, model, record, own, seconds)
-    steered = {"psi", "delta"} <= set(record.channels) and "psi" in simulated
-    of_measured = measures(record, length) if steered else {}
-    of_simulated = measures(simulated, length, like=record) if steered else {}
-    pairs = {k: Measure(of_measured.get(k), of_simulated.get(k)) for k in dict.fromkeys([*of_measured, *of_simulated])}
-    return Prediction(record.name, role, record, simulated, rms(record, simulated), pairs, seconds)
+def is_steered(record: Record, model: Model) -> bool:
+    """Whether manoeuvring measures can be read from the record and from a simulation of it."""
+    return {"psi", "delta"} <= set(record.channels) and "psi" in model.states
+
+
+def compared(record: Record, simulated: Record, length: float) -> dict[str, Measure]:
+    """Measures of a run and of its simulation, both at the measured executes."""
+    of_measured, of_simulated = measures(record, length), measures(simulated, length, like=record)
+    return {k: Measure(of_measured.get(k), of_simulated.get(k)) for k in dict.fromkeys([*of_measured, *of_simulated])}
+
+
+def prediction(model: Model, record: Record, role: str, made: OpenLoop, seconds: float, length: float) -> Prediction:
+    """One run open loop beside its measurement, with rms and manoeuvring measures."""
+    pairs = compared(record, made.record, length) if is_steered(record, model) else {}
+    return Prediction(record.name, role, record, made.record, rms(record, made.record), pairs, seconds)
 
 
 def session_means(template: OutputError, shared: Array) -> Array:
     """Mean of each nuisance over the training sessions: what an unseen session is given."""
-    own = shared[len(template.free) :].reshape(len(template.data.sessions), template.kinds)
-    return own.mean(axis=0)
+    return offsets_of(template, shared).mean(axis=0)
+
+
+def offsets_of(template: OutputError, shared: Array) -> Array:
+    """What each training session has of its own, shape (sessions, k)."""
+    return shared[len(template.free) :].reshape(len(template.data.sessions), template.kinds)

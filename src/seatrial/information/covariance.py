@@ -43,17 +43,32 @@ def from_information(hessian: Array) -> Interval:
     return Interval(inverse(hessian), np.inf, "information matrix (residuals are white)")
 
 
-def one_step_jackknife(hessian: Array, run_gradients: Array, run_hessians: Array) -> Interval:
-    """Leave one run out, each refit replaced by one Gauss-Newton step from the stored normal equations.
+def left_out_steps(hessian: Array, run_gradients: Array, run_hessians: Array) -> Array:
+    """One Gauss-Newton step from the joint optimum for each run left out, theta_(-i) - theta = (H - H_i)^-1 g_i.
 
-    theta_(-i) - theta = (H - H_i)^-1 g_i; covariance (n - 1)/n sum of outer products about their mean
-    (Tukey 1958; Hinkley 1977). run_gradients (n, k), run_hessians (n, k, k), at the joint optimum.
+    From the stored normal equations (Hinkley 1977): run_gradients (n, k), run_hessians (n, k, k); returns (n, k).
     """
-    count = len(run_gradients)
-    moved = np.array([inverse(hessian - h) @ g for g, h in zip(run_gradients, run_hessians, strict=True)])
-    centred = moved - moved.mean(axis=0)
-    covariance = (count - 1) / count * centred.T @ centred
-    return Interval(covariance, count - 1, f"one-step jackknife over {count} runs")
+    return np.array([inverse(hessian - h) @ g for g, h in zip(run_gradients, run_hessians, strict=True)])
+
+
+def jackknife(points: Array, meaning: str) -> Interval:
+    """Covariance from estimates with one run left out each, (n, k): (n - 1)/n sum of outer products about their mean.
+
+    Tukey 1958, Ann. Math. Stat. 29, 614.
+    """
+    count = len(points)
+    centred = points - points.mean(axis=0)
+    return Interval((count - 1) / count * centred.T @ centred, count - 1, meaning)
+
+
+def bootstrap(points: Array, runs: int, meaning: str) -> Interval:
+    """Covariance of estimates from runs drawn with replacement, points (n, k) (Efron 1979, Ann. Stat. 7, 1).
+
+    The variance of a mean of `runs` drawn values is too small by (runs - 1)/runs, which is put right.
+    """
+    centred = points - points.mean(axis=0)
+    covariance = runs / (runs - 1) * centred.T @ centred / (len(points) - 1)
+    return Interval(covariance, runs - 1, meaning)
 
 
 def sandwich(hessian: Array, block_gradients: Array) -> Interval:

@@ -1,7 +1,7 @@
 """Records cut into segments: the data of an output-error problem as arrays."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -35,6 +35,23 @@ class Segments:
     def count(self) -> int:
         """Number of segments."""
         return len(self.run)
+
+    def of_run(self, run: int) -> Index:
+        """The segments of a run."""
+        return np.flatnonzero(self.run == run)
+
+    def taken(self, chosen: Index) -> "Segments":
+        """Only the chosen segments, in that order, repeated where one is chosen twice; runs and sessions stay."""
+        rows = [np.arange(self.offsets[s], self.offsets[s + 1]) for s in chosen]
+        kept = np.concatenate(rows)
+        return replace(
+            self,
+            inputs=np.ascontiguousarray(self.inputs[kept]),
+            measured=self.measured[kept],
+            offsets=np.concatenate([[0], np.cumsum([len(r) for r in rows])]).astype(np.int64),
+            run=self.run[chosen],
+            session=self.session[chosen],
+        )
 
 
 def compared_outputs(model: Model, records: Sequence[Record], wanted: Sequence[str] = ()) -> tuple[str, ...]:

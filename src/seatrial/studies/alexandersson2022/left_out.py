@@ -10,7 +10,7 @@ from seatrial.equations import Model
 from seatrial.identify.cross_validation import Protocol, cross_validated, fitted_folds, own_nuisances
 from seatrial.identify.fit import ship_length_seconds
 from seatrial.identify.identify import settings_of
-from seatrial.identify.predict import prediction
+from seatrial.identify.predict import open_loop, prediction
 from seatrial.identify.settings import START_SECONDS_LENGTHS
 from seatrial.results import Prediction
 from seatrial.studies.alexandersson2022.published import Turn
@@ -61,7 +61,8 @@ def left_out(
     for fold in folds:
         (held,) = fold.held
         own, problem = own_nuisances(fold.found, sessions[held]), fold.found.made.problem
-        whole = prediction(problem, fold.found.model, records[held], "validation", own, seconds, length)
+        run = open_loop(problem, fold.found.model, records[held], own, seconds)
+        whole = prediction(fold.found.model, records[held], "validation", run, seconds, length)
         windows = [w for w in scored.windows if w.run == records[held].name]
         made.append(
             LeftOut(

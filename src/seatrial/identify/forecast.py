@@ -1,0 +1,106 @@
+"""All runs of a trial predicted: training runs to see the fit, the others to see what it is worth, with intervals."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from seatrial.identify.cross_validation import own_nuisances
+from seatrial.identify.draws import Scatter
+from seatrial.identify.fit import Identified
+from seatrial.identify.margins import DRAWS, foreseen, missed, with_intervals
+from seatrial.identify.predict import offsets_of, open_loop, prediction, session_means
+from seatrial.information.discrepancy import NONE, Discrepancy, discrepancy
+from seatrial.information.extrapolation import extrapolation, reach
+from seatrial.results import Prediction
+from seatrial.trial import Role, TrialRecord
+from seatrial.values import Array, Progress
+from seatrial.workers import mapped
+
+
+@dataclass(frozen=True, eq=False)
+class Margin:
+    """What intervals of predictions are made of: what is foreseen, and what runs left out missed beyond it."""
+
+    scatter: Scatter
+    beyond: Discrepancy
+
+
+def scatter_of(found: Identified, process: Array | None = None) -> Scatter:
+    """Covariance of the coefficients, and of offsets between sessions (their priors' where there is one session).
+
+    process: intensities of process noise by state, where they were estimated.
+    """
+    problem = found.made.problem
+    count, kinds = len(problem.free), problem.kinds
+    offsets = np.atleast_2d(offsets_of(problem, found.made.shared))
+    if len(offsets) > 1:
+        between = np.atleast_2d(np.cov(offsets, rowvar=False))
+    else:
+        between = np.diag(1.0 / problem.priors[1][count:])
+    nothing = np.zeros(len(problem.model.states))
+    return Scatter(
+        found.interval.covariance[:count, :count],
+        between if kinds else np.zeros((0, 0)),
+        nothing if process is None else process,
+        found.interval.degrees_of_freedom,
+    )
+
+
+def margin_of(
+    found: Identified, train: Sequence[TrialRecord], seconds: float, length: float, seed: int, progress: Progress
+) -> Margin:
+    """The margin of a fit's predictions; every training run is predicted by the estimate without it, if there are any.
+
+    seconds: of a run's beginning, from which its initial state is taken.
+    """
+    scatter, left_out = scatter_of(found), found.uncertainty.left_out
+    if left_out is None:
+        return Margin(scatter, NONE)
+    problem = replace(found.made.problem, workers=1)
+    streams = np.random.SeedSequence(seed).spawn(len(train))
+
+    def one(i: int):
+        rng = np.random.default_rng(streams[i])
+        return missed(problem, left_out[i], train[i].record, train[i].session, seconds, length, scatter, rng)
+
+    progress("runs left out, predicted")
+    found_misses = mapped(one, range(len(train)), workers=found.made.problem.workers)
+    return Margin(scatter, discrepancy([m for m in found_misses if m is not None]))
+
+
+def predictions(
+    found: Identified,
+    records: Sequence[TrialRecord],
+    seconds: float,
+    length: float,
+    seed: int = 0,
+    progress: Progress | None = None,
+    tied: Mapping[str, Mapping[str, float]] | None = None,
+) -> tuple[Prediction, ...]:
+    """Every run open loop: training runs with their own session's offsets, the others with the training mean.
+
+    Runs that were not fitted get intervals; all are compared with the ground the training runs cover.
+    """
+    tell = progress or (lambda _: None)
+    problem, mean = found.made.problem, session_means(found.made.problem, found.made.shared)
+    train = [r for r in records if r.role is Role.TRAIN]
+    margin = margin_of(found, train, seconds, length, seed, tell)
+    simulated, made = [], []
+    for item in records:
+        tell(f"predicting {item.record.name}")
+        own = own_nuisances(found, item.session) if item.role is Role.TRAIN else mean
+        simulated.append(open_loop(problem, found.model, item.record, own, seconds))
+    covered = reach([s.record for s, item in zip(simulated, records, strict=True) if item.role is Role.TRAIN])
+    streams = np.random.SeedSequence((seed, 1)).spawn(len(records))
+    for item, run, stream in zip(records, simulated, streams, strict=True):
+        role = "training" if item.role is Role.TRAIN else "validation"
+        one = prediction(found.model, item.record, role, run, seconds, length)
+        one = replace(one, extrapolation=extrapolation(run.record, covered))
+        if item.role is not Role.TRAIN:
+            rng = np.random.default_rng(stream)
+            seen = foreseen(problem, found.model, item.record, run, mean, length, margin.scatter, rng, DRAWS)
+            spread = (tied or {}).get(item.record.name, {})
+            one = with_intervals(one, seen, margin.beyond, margin.scatter.degrees_of_freedom, spread)
+        made.append(one)
+    return tuple(made)

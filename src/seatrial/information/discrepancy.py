@@ -1,0 +1,104 @@
+"""What runs left out missed beyond the scatter that was foreseen: the model's own error, from cross-validation.
+
+Every training run is predicted by the model without it. Where its error exceeds what coefficients, offsets and process
+noise explain, the excess variance is the model discrepancy (Kennedy & O'Hagan 2001, J. R. Stat. Soc. B 63, 425), here
+estimated for every kind of measure and for heading and position by the time since the initial state.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.optimize import isotonic_regression
+
+from seatrial.values import Array
+
+_VALUES, _RUNS = 4, 3
+_TRACK = ("psi", "x0", "y0")
+
+
+@dataclass(frozen=True, eq=False)
+class Miss:
+    """How one run left out was missed.
+
+    Attributes:
+        run: its name; dt: s.
+        errors, foreseen: channel (psi, x0, y0) -> error and foreseen standard deviation at every sample, (n,), SI.
+        measures: measure -> (error, foreseen standard deviation), in the measure's unit.
+    """
+
+    run: str
+    dt: float
+    errors: dict[str, Array]
+    foreseen: dict[str, Array]
+    measures: dict[str, tuple[float, float]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Discrepancy:
+    """Standard deviations that come on top of the foreseen ones.
+
+    Attributes:
+        kinds: kind of measure -> standard deviation in its unit.
+        factor: by which the foreseen standard deviation of a measure is multiplied that no training run shows (the
+            ratio of Birge 1932, Phys. Rev. 40, 207, over the kinds they show).
+        dt: s; elapsed: channel -> standard deviation by time since the initial state, shape (n,), SI.
+    """
+
+    kinds: dict[str, float]
+    factor: float
+    dt: float
+    elapsed: dict[str, Array]
+
+    def of_measure(self, name: str, foreseen: float) -> float:
+        """Standard deviation of a measure, discrepancy included."""
+        extra = self.kinds.get(kind_of(name))
+        return self.factor * foreseen if extra is None else float(np.hypot(foreseen, extra))
+
+    def of_channel(self, channel: str, foreseen: Array, dt: float) -> Array:
+        """Standard deviation of a channel along a prediction, shape (n,); constant beyond the longest run left out."""
+        if channel not in self.elapsed:
+            return foreseen
+        known = self.elapsed[channel]
+        at = np.interp(dt * np.arange(len(foreseen)), self.dt * np.arange(len(known)), known)
+        return np.hypot(foreseen, at)
+
+
+NONE = Discrepancy({}, 1.0, 1.0, {})
+
+
+def kind_of(measure: str) -> str:
+    """The kind a measure belongs to: its name without numbers, so that all overshoots count together."""
+    return "_".join(part for part in measure.split("_") if not part.isdigit())
+
+
+def discrepancy(missed: Sequence[Miss]) -> Discrepancy:
+    """What these misses have in excess of what was foreseen; none where there are too few runs."""
+    if len({m.run for m in missed}) < _RUNS:
+        return NONE
+    pairs: dict[str, list[tuple[float, float]]] = {}
+    for miss in missed:
+        for name, pair in miss.measures.items():
+            pairs.setdefault(kind_of(name), []).append(pair)
+    known = {kind: np.array(values) for kind, values in pairs.items() if len(values) >= _VALUES}
+    kinds = {kind: float(np.sqrt(max(np.mean(v[:, 0] ** 2 - v[:, 1] ** 2), 0.0))) for kind, v in known.items()}
+    ratios = [np.mean(v[:, 0] ** 2) / max(np.mean(v[:, 1] ** 2), 1e-300) for v in known.values()]
+    factor = float(np.sqrt(max(np.median(ratios), 1.0))) if ratios else 1.0
+    elapsed = {c: _elapsed(missed, c) for c in _TRACK if all(c in m.errors for m in missed)}
+    if {"x0", "y0"} <= set(elapsed):
+        both = np.sqrt(0.5 * (elapsed["x0"] ** 2 + elapsed["y0"] ** 2))
+        elapsed |= {"x0": both, "y0": both}
+    return Discrepancy(kinds, factor, missed[0].dt, elapsed)
+
+
+def _elapsed(missed: Sequence[Miss], channel: str) -> Array:
+    """Excess standard deviation by elapsed time: it grows, so isotonic regression of the excess variance."""
+    longest = max(len(m.errors[channel]) for m in missed)
+    total, count = np.zeros(longest), np.zeros(longest)
+    for miss in missed:
+        excess = miss.errors[channel] ** 2 - miss.foreseen[channel] ** 2
+        good = np.isfinite(excess)
+        total[: len(excess)][good] += excess[good]
+        count[: len(excess)][good] += 1
+    mean = total / np.maximum(count, 1)
+    return np.sqrt(np.maximum(isotonic_regression(mean, weights=np.maximum(count, 1e-9)).x, 0.0))
