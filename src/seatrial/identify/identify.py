@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from seatrial.identify.agreement import agreement
 from seatrial.identify.estimate import pieces
 from seatrial.identify.fit import Identified, identified, ship_length_seconds
 from seatrial.identify.forecast import predictions
@@ -35,7 +36,7 @@ def settings_of(trial: Trial, records: Sequence[Record]) -> Settings:
     gains = [(name, "gain", spread or _GAIN_SPREAD, "1") for name, spread in wishes.gains.items()]
     return Settings(
         segment_seconds=seconds, robust=wishes.robust, noise=dict(trial.noise), channels=wishes.channels,
-        corrections=(*zeros, *gains), current=wishes.current,
+        corrections=(*zeros, *gains), current=wishes.current, forces=trial.forces,
     )  # fmt: skip
 
 
@@ -81,7 +82,7 @@ def identify(trial: Trial, seed: int = 0, progress: Progress | None = None) -> F
         noise=_noise(found),
         residuals=_residuals(found),
         predictions=told,
-        findings=(*findings, *_bounds_hit(found), *_unconverged(found)),
+        findings=(*findings, *agreement(found.made), *_bounds_hit(found), *_unconverged(found)),
         records=tuple(r.record for r in records),
         seed=seed,
         elapsed_s=time.perf_counter() - began,

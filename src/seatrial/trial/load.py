@@ -5,10 +5,13 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from seatrial.check.captive import force_findings
 from seatrial.equations import Model
 from seatrial.trial.complaints import complaint
+from seatrial.trial.forces import points_of
+from seatrial.trial.literature import range_findings
 from seatrial.trial.model_choice import chosen_model, ship_of
-from seatrial.trial.runs import runs_of
+from seatrial.trial.runs import expanded, runs_of
 from seatrial.trial.schema import EstimateTable, TrialFile
 from seatrial.trial.trial import Estimate, Trial
 from seatrial.values import NOTATION, InputError, nearest
@@ -34,7 +37,7 @@ def parse_trial(path: Path) -> TrialFile:
 
 
 def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
-    """Read and validate a trial file; record files are found but not read.
+    """Read and validate a trial file; record files are found but not read, tables of force points are read.
 
     Args:
         path: the TOML file.
@@ -58,7 +61,14 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         _refuse_strangers("estimate.gains", list(file.estimate.gains), known)
         if own_model is None:
             _refuse_strangers("truth", list(file.truth), set(model.parameters.names))
-        runs = runs_of(file.records, file.data.folder, path.resolve().parent)
+        ranges = range_findings(file.model.priors_from, ship)
+        home = path.resolve().parent
+        runs = runs_of(file.records, file.data.folder, home)
+        base = home / expanded(file.data.folder)
+        forces = tuple(
+            points_of(block, base, model, file.model.reference_point, f"forces[{i}]")
+            for i, block in enumerate(file.forces, start=1)
+        )
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     return Trial(
@@ -72,6 +82,8 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         reference_point=file.model.reference_point,
         question=file.question,
         path=path,
+        forces=forces,
+        findings=(*ranges, *(finding for points in forces for finding in force_findings(points))),
     )
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from seatrial.equations import Model
 from seatrial.models import model_named
 from seatrial.models.published import parameter_set
+from seatrial.trial.literature import LiteraturePrior, literature_priors
 from seatrial.trial.schema import Amount, ModelTable, PriorTable, ShipTable
 from seatrial.values import InputError, Parameters, Prior, Ship, nearest, si
 
@@ -28,12 +29,17 @@ def ship_of(table: ShipTable) -> Ship:
 def chosen_model(table: ModelTable, ship: Ship, own_model: Model | None = None) -> Model:
     """The model of `[model]` for this ship, ready to be estimated.
 
-    Later ones win: the model's own values, the parameter set, the ship's particulars, `start`, `fixed`.
+    Later ones win: the model's own values, those of `priors_from`, the parameter set, the ship's particulars, `start`,
+    `fixed`.
 
     Raises:
-        InputError: unknown model, parameter set, parameter or particular; a value outside its bounds or missing.
+        InputError: unknown model, parameter set, source of priors, parameter or particular; a value outside its bounds
+            or missing.
     """
     model = own_model or model_named(table.name)
+    literature = literature_priors(table.priors_from, ship, model.name)
+    for name, known in literature.items():
+        model = model.with_values({name: known.mean}, source=known.source)
     if table.parameter_set is not None:
         published = parameter_set(table.parameter_set)
         model = model.with_values(published.values, source=published.source)
@@ -42,7 +48,7 @@ def chosen_model(table: ModelTable, ship: Ship, own_model: Model | None = None) 
     parameters = _with_amounts(parameters, table.start, "model.start", "start value of the trial file")
     parameters = _with_amounts(parameters, table.fixed, "model.fixed", "fixed in the trial file")
     model = model.with_parameters(_freedom(parameters, table)).of_ship(_without(ship, (*table.start, *table.fixed)))
-    return model.with_parameters(_priors(_bounds(model.parameters, table), table))
+    return model.with_parameters(_priors(_bounds(model.parameters, table), table, literature))
 
 
 def _without(ship: Ship, names: tuple[str, ...]) -> Ship:
@@ -101,15 +107,28 @@ def _bounds(parameters: Parameters, table: ModelTable) -> Parameters:
     return parameters
 
 
-def _priors(parameters: Parameters, table: ModelTable) -> Parameters:
-    """Stated priors, and for the other free parameters `prior_sd_percent` of their characteristic scale."""
+def _priors(parameters: Parameters, table: ModelTable, literature: Mapping[str, LiteraturePrior]) -> Parameters:
+    """Stated priors; for the other free parameters `prior_sd_percent` of the literature's value, or of their start."""
     _refuse_unknown("model.priors", tuple(table.priors), parameters)
     priors = {name: _prior(parameters, name, prior) for name, prior in table.priors.items()}
-    if table.prior_sd_percent is not None:
-        for p in parameters.free:
-            spread = table.prior_sd_percent / 100.0 * p.characteristic_scale
-            priors.setdefault(p.name, Prior(p.value, spread, p.source))
-    return parameters.with_priors(priors)
+    if table.prior_sd_percent is None and table.priors_from:
+        raise InputError(
+            "model.priors_from says nothing about how far its values may be wrong; "
+            "add prior_sd_percent, for example 25 for regressions of linear coefficients"
+        )
+    for p in parameters.free if table.prior_sd_percent is not None else ():
+        known = literature.get(p.name, LiteraturePrior(p.value, p.source))
+        spread = table.prior_sd_percent / 100.0 * max(abs(known.mean), p.scale) or table.prior_sd_percent / 100.0
+        priors.setdefault(p.name, Prior(known.mean, spread, known.source))
+    return _cited(parameters.with_priors(priors), literature)
+
+
+def _cited(parameters: Parameters, literature: Mapping[str, LiteraturePrior]) -> Parameters:
+    """Free parameters that start elsewhere than at their prior from literature name both sources."""
+    for p in parameters.free:
+        if p.prior is not None and p.name in literature and p.prior.source not in p.source:
+            parameters = parameters.with_values({p.name: p.value}, f"{p.source}; prior: {p.prior.source}")
+    return parameters
 
 
 def _prior(parameters: Parameters, name: str, prior: PriorTable) -> Prior:

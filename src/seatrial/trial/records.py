@@ -24,12 +24,12 @@ class TrialRecord:
 
 
 def records_of(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ...]]:
-    """Read, repair and check every run that is not left out.
+    """Read, repair and check every run that is not left out; the trial's own findings come first.
 
     Raises:
         InputError: a file cannot be parsed; trimming leaves nothing.
     """
-    made, findings = [], []
+    made, findings = [], list(trial.findings)
     for run in trial.runs:
         if run.role is not Role.LEAVE_OUT:
             record, said = checked(run, trial.reference_point)

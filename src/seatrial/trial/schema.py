@@ -158,6 +158,66 @@ class RecordsTable(Strict):
         return self
 
 
+class MotionColumn(Strict):
+    """A motion or input of force points: a column of the table, or one value for all points.
+
+    Unit 1: v over U, r L over U. A drift angle must say which way the bow points from the course when it is positive.
+    """
+
+    column: str | Annotated[int, Field(ge=1)] | None = None
+    value: float | None = None
+    unit: Unit
+    positive: Literal["forward", "aft", "ahead", "astern", "starboard", "port", "bow to starboard",
+                      "bow to port"] | None = None  # fmt: skip
+
+    @model_validator(mode="after")
+    def _one_source(self) -> Self:
+        if (self.column is None) == (self.value is None):
+            raise ValueError("give either column or value, and not both")
+        return self
+
+
+class ForceColumn(Strict):
+    """A measured force: its column, unit (1 in a prime system), positive direction and standard deviation in it."""
+
+    column: str | Annotated[int, Field(ge=1)]
+    unit: Unit
+    positive: Literal["forward", "aft", "starboard", "port"] | None = None
+    sd: Annotated[float, Field(gt=0)] | None = None
+
+
+class ForcesTable(Strict):
+    """One `[[forces]]` block: static force points of captive tests or CFD."""
+
+    file: str
+    includes: Literal["hull", "hydrodynamic", "pressure", "balance"]
+    motion: dict[Literal["u", "v", "U", "beta", "r", "delta", "n", "v_j"], MotionColumn]
+    measured: Annotated[dict[Literal["X", "Y", "N"], ForceColumn], Field(min_length=1)]
+    prime: str = ""
+    origin: float = 0.0
+    motion_origin: float | None = None
+    sd_percent: Annotated[float, Field(gt=0)] | None = None
+    weight: Annotated[float, Field(gt=0)] = 1.0
+    scale: Annotated[float, Field(gt=0)] = 1.0
+    format: Format | None = None
+    header_lines: Annotated[int, Field(ge=0)] = 0
+    encoding: str = "utf-8"
+    separator: Separator = "auto"
+    decimal: Literal[".", ","] = "."
+    source: str = ""
+
+    @model_validator(mode="after")
+    def _motion_is_known(self) -> Self:
+        told = set(self.motion)
+        if len(told & {"u", "U"}) != 1:
+            raise ValueError("motion needs the surge velocity u or the speed U, one of them")
+        if {"beta", "v"} <= told:
+            raise ValueError("motion has both v and the drift angle beta; keep one")
+        if "v" in told and ("U" in told) != (self.motion["v"].unit == "1"):
+            raise ValueError("motion.v goes with u in m/s, or with U as v/U of unit 1")
+        return self
+
+
 class DataTable(Strict):
     """`[data]`: where record files are sought, relative to the trial file; ${NAME} is an environment variable."""
 
@@ -184,6 +244,7 @@ class ModelTable(Strict):
     bounds: dict[str, tuple[Bound, Bound]] = {}
     priors: dict[str, PriorTable] = {}
     prior_sd_percent: Annotated[float, Field(gt=0)] | None = None
+    priors_from: Words = ()
 
 
 class EstimateTable(Strict):
@@ -216,6 +277,7 @@ class TrialFile(Strict):
     data: DataTable = DataTable()
     records: Annotated[tuple[RecordsTable, ...], Field(min_length=1)]
     model: ModelTable
+    forces: tuple[ForcesTable, ...] = ()
     noise: dict[str, SiSpread] = {}
     truth: dict[str, float] = {}
     estimate: EstimateTable = EstimateTable()

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from seatrial.equations import Model
 from seatrial.read import Layout
-from seatrial.values import Ship
+from seatrial.values import Finding, ForcePoints, Ship
 
 
 class Role(StrEnum):
@@ -95,6 +95,8 @@ class Trial:
         truth: parameter -> true value where the records are simulated.
         accept: codes of error findings the user takes upon himself.
         reference_point: m forward of midship to which the model's u, v, x0, y0 refer.
+        forces: static force points that are fitted beside the runs.
+        findings: what is odd about the trial itself: priors beyond their range, force points of unexpected sign.
         path: the trial file; None for a trial made in Python.
     """
 
@@ -108,6 +110,8 @@ class Trial:
     reference_point: float = 0.0
     question: str = ""
     path: Path | None = None
+    forces: tuple[ForcePoints, ...] = ()
+    findings: tuple[Finding, ...] = ()
 
     def of_role(self, role: Role) -> tuple[Run, ...]:
         """The runs of one role, in order of their files."""
