@@ -47,7 +47,9 @@ def identifiability(fit: Fit) -> Identifiability:
                 f"{names[0]}, {fixed[0]}",
                 {names[0]: 1.0, names[1]: 1.0, names[2]: 1.0, fixed[0]: 1.0},
             ),
-            Symmetry((names[3], names[4]), f"{names[3]} and {names[4]} act only as a sum", {names[3]: 1.0, names[4]: -0.4}),
+            Symmetry(
+                (names[3], names[4]), f"{names[3]} and {names[4]} act only as a sum", {names[3]: 1.0, names[4]: -0.4}
+            ),
         ),
         directions=directions,
         effective_parameters=0.54 * len(names),
@@ -68,7 +70,9 @@ def identifiability(fit: Fit) -> Identifiability:
             for n, chi in zip(fixed, (0.2, 35.0, 3.0), strict=False)
         ),
         stability=Stability(-0.0021, -0.0094, 0.0048, "the records do not tell whether the ship is course stable"),
-        profiles=tuple(_profile(names[k], fit.coefficients[k].estimate, shape) for k, shape in enumerate((4.0, 1.0, 0.2))),
+        profiles=tuple(
+            _profile(names[k], fit.coefficients[k].estimate, shape) for k, shape in enumerate((4.0, 1.0, 0.2))
+        ),
     )  # fmt: skip
 
 
@@ -96,8 +100,8 @@ def disturbance() -> Disturbance:
         0.23,
         {"u": 0.0018, "v": 0.0023, "r": 0.0011, "psi": 0.0},
         {"u": 0.02, "psi": 0.0017, "x0": 0.5, "y0": 0.5},
-        "with output error the residuals stay coloured (p < 0.001); allowing for process noise raises the log-likelihood "
-        "by 412 with 3 further parameters",
+        "with output error the residuals stay coloured (p < 0.001); allowing for process noise raises the "
+        "log-likelihood by 412 with 3 further parameters",
     )
 
 

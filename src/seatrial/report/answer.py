@@ -2,7 +2,8 @@
 
 from seatrial.identify.settings import WHITE_INFLATION
 from seatrial.report.numbers import duration, exact, fixed, significant
-from seatrial.report.words import counted, listed
+from seatrial.report.telling import determined
+from seatrial.report.words import counted, extrapolated, interval, listed, reach, sentence
 from seatrial.results import Coefficient, Fit, Prediction
 from seatrial.values import Severity
 
@@ -30,9 +31,12 @@ def sentences(fit: Fit) -> list[str]:
     """The answer, most important first."""
     told = [
         *_held_out(fit),
+        *_extrapolated(fit),
+        _not_told(fit),
         _coefficients(fit),
         _truth(fit),
         _priors(fit),
+        _criterion(fit),
         _residuals(fit),
         _convergence(fit),
         _warnings(fit),
@@ -64,7 +68,14 @@ def _predicted(p: Prediction, fit: Fit) -> str:
     if not parts and "r" in p.rms:
         parts.append(f"{significant(p.rms['r'] * 57.29578, 2)} deg/s in yaw rate")
     said = f"{p.record}, not fitted, is predicted open loop over {duration(p.measured.duration)}"
-    return said + (f" with errors of {listed(parts)} (rms)." if parts else ".") + _first_measures(p)
+    errors = f" with errors of {listed(parts)} (rms)" if parts else ""
+    return f"{said}{errors}{_floor(p) if parts else ''}.{_first_measures(p)}"
+
+
+def _floor(p: Prediction) -> str:
+    known = {"psi_deg": "°", "position_m": " m"}
+    told = [f"{significant(p.floor[name], 2)}{unit}" for name, unit in known.items() if name in p.floor]
+    return f"; process noise alone would leave {listed(told)}" if told else ""
 
 
 def _first_measures(p: Prediction) -> str:
@@ -74,8 +85,39 @@ def _first_measures(p: Prediction) -> str:
     for name, (label, unit, decimals) in known.items():
         m = p.measures.get(name)
         if m is not None and m.measured is not None and m.simulated is not None:
-            told.append(f"{label} {fixed(m.simulated, decimals)}{unit}, measured {fixed(m.measured, decimals)}{unit}")
+            bounds = interval(m.lower, m.upper, decimals)
+            simulated = f"{fixed(m.simulated, decimals)}{unit}{' ' + bounds if bounds else ''}"
+            told.append(f"{label} {simulated}, measured {fixed(m.measured, decimals)}{unit}")
     return f" Simulated {'; '.join(told)}." if told else ""
+
+
+def _extrapolated(fit: Fit) -> list[str]:
+    """One sentence for each held-out run that goes well beyond the training runs, the first four."""
+    far = [p for p in fit.validation() if p.extrapolation and reach(p.extrapolation.index) == "beyond"]
+    return [f"{p.record} is extrapolation, index {extrapolated(p.extrapolation)}" for p in far[:4] if p.extrapolation]
+
+
+def _not_told(fit: Fit) -> str:
+    """How much the records determine and what no such record can tell."""
+    known = fit.identifiability
+    if known is None:
+        return ""
+    said = [determined(fit)]
+    if known.structural:
+        more = len(known.structural) - 1
+        further = f" ({counted(more, 'further change')} of this kind in the next section)" if more else ""
+        said.append(f"Whatever the manoeuvre, {known.structural[0].text.rstrip('.')}{further}.")
+    return " ".join(s for s in said if s)
+
+
+def _criterion(fit: Fit) -> str:
+    known = fit.disturbance
+    if known is None:
+        return ""
+    active = [state for state, q in known.process.items() if q > 0]
+    noise = f"process noise in {listed(active)}" if active else "no process noise"
+    text = f" {sentence(known.text, [c.name for c in fit.coefficients])}" if known.text else ""
+    return f"The criterion is {known.method}, with {noise}.{text}"
 
 
 def _free(fit: Fit) -> list[Coefficient]:

@@ -24,9 +24,9 @@ def fixed(value: float | None, decimals: int) -> str:
     """A number with so many decimals (negative: rounded to tens, hundreds, …); a dash where there is none."""
     if value is None or not math.isfinite(value):
         return DASH
-    rounded = round(value, decimals) + 0.0
-    text = f"{abs(rounded):,.{max(decimals, 0)}f}".replace(",", THIN)
-    return (MINUS if rounded < 0 else "") + text
+    nearest = round(value, decimals) + 0.0
+    text = f"{abs(nearest):,.{max(decimals, 0)}f}".replace(",", THIN)
+    return (MINUS if nearest < 0 else "") + text
 
 
 def significant(value: float | None, digits: int = 3) -> str:
@@ -39,6 +39,14 @@ def significant(value: float | None, digits: int = 3) -> str:
     if SMALLEST <= abs(value) < LARGEST:
         return fixed(value, digits - 1 - exponent)
     return fixed(value / 10.0**exponent, digits - 1) + power_of_ten(exponent)
+
+
+def rounded(value: float) -> str:
+    """Two significant digits; a power of ten from 10 000 on."""
+    if not math.isfinite(value) or abs(value) < 1e4:
+        return significant(value, 2)
+    exponent = _exponent(value, 2)
+    return fixed(value / 10.0**exponent, 1) + power_of_ten(exponent)
 
 
 def exact(value: float | None, digits: int = 6) -> str:

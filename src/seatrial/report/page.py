@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from seatrial.report import answer, numbers, runs, tables, words
+from seatrial.report import answer, numbers, runs, tables, telling, words
 from seatrial.report.citations import Citations
 from seatrial.report.figures import channels, correlation, forest, tracks, whiteness
 from seatrial.report.figures.plot import common_prefix
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 TITLES = {
     "answer": "Question and answer",
+    "telling": "What this record can and cannot tell",
     "records": "Records",
     "findings": "Findings",
     "coefficients": "Coefficients",
@@ -47,9 +48,11 @@ def html(fit: Fit) -> str:
     """The page as text."""
     citations = Citations()
     length = fit.ship.length if "L" in fit.ship.particulars else 0.0
+    told = telling.telling(fit)
     context: dict[str, object] = {
         "fit": fit,
-        "titles": TITLES,
+        "titles": {key: title for key, title in TITLES.items() if key != "telling" or told},
+        "told": told,
         "answer": answer.sentences(fit),
         "facts": answer.facts(fit),
         "scores": runs.scores(fit.predictions, length),

@@ -1,12 +1,13 @@
 """Runs on the page: their errors in one table, and each with its picture and its measures; IMO's standards."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from markupsafe import Markup
 
 from seatrial.manoeuvres import Criterion, criteria
 from seatrial.report import words
+from seatrial.report.figures.bands import has_band
 from seatrial.report.figures.channels import comparison
 from seatrial.report.numbers import DASH, column, fixed, significant
 from seatrial.results import Measure, Prediction
@@ -27,44 +28,107 @@ class MeasureRow:
     measured: str
     simulated: str
     difference: str
+    interval: str = ""
+    is_inside: bool | None = None
+    spread: str = ""
+
+
+@dataclass(frozen=True)
+class Measures:
+    """Rows, and which columns any of them has."""
+
+    rows: tuple[MeasureRow, ...]
+    has_interval: bool
+    has_spread: bool
+
+
+@dataclass(frozen=True)
+class Cell:
+    """An error, what process noise alone would leave of it, and its spread over tied models; empty: not known."""
+
+    value: str
+    floor: str = ""
+    spread: str = ""
+
+
+@dataclass(frozen=True)
+class Score:
+    """One run's errors; `reach`: extrapolation index, `where`: inside, edge or beyond."""
+
+    record: str
+    is_held_out: bool
+    cells: tuple[Cell, ...]
+    reach: str
+    where: str
+
+
+@dataclass(frozen=True)
+class Scores:
+    """Errors (rms) of every run; `header`: name and unit of each column."""
+
+    header: tuple[tuple[str, str], ...]
+    rows: tuple[Score, ...]
+    has_floor: bool
+    has_spread: bool
+    has_reach: bool
 
 
 @dataclass(frozen=True)
 class Run:
-    """One run: its picture and measures; `more` are later overshoots, `is_unlike`: nothing simulated can be read."""
+    """One run: its picture and measures; `more` are later overshoots, `is_unlike`: nothing simulated can be read.
+
+    `notes` say what process noise alone would leave, how far the run leaves the training, how tied models differ.
+    """
 
     name: str
     key: str
     is_held_out: bool
     summary: str
     figure: Markup
-    measures: tuple[MeasureRow, ...]
-    more: tuple[MeasureRow, ...]
+    measures: Measures
+    more: Measures
     is_unlike: bool
+    has_band: bool
+    notes: tuple[str, ...]
 
 
-def scores(predictions: Sequence[Prediction], length: float) -> dict[str, object]:
-    """Errors (rms) of every run: `header` of name and unit, `rows` of record, held out or not, texts."""
+def scores(predictions: Sequence[Prediction], length: float) -> Scores:
+    """Errors of every run, those held out first."""
     names = [name for name in _ERRORS if any(name in p.rms for p in predictions)]
     header = [_ERRORS[name] for name in names]
     if "position_m" in names and length > 0:
         header.insert(names.index("position_m") + 1, ("position", "L"))
     ordered = sorted(predictions, key=lambda p: p.role != "validation")
-    columns = [column(values) for values in zip(*(_errors(p, names, length) for p in ordered), strict=True)]
-    texts = zip(*columns, strict=True)
-    rows = [(p.record, p.role == "validation", list(cells)) for p, cells in zip(ordered, texts, strict=False)]
-    return {"header": header, "rows": rows}
+    columns = [column(values) for values in zip(*(_errors(p.rms, names, length) for p in ordered), strict=True)]
+    rows = []
+    for p, texts in zip(ordered, zip(*columns, strict=True), strict=False):
+        floors, spreads = _errors(p.floor, names, length), _errors(p.spread, names, length)
+        cells = tuple(
+            Cell(t) if unit == "L" else Cell(t, _small(f), _small(s))
+            for t, f, s, (_, unit) in zip(texts, floors, spreads, header, strict=True)
+        )
+        e = p.extrapolation
+        rows.append(Score(p.record, p.role == "validation", cells, words.times(e.index) if e else "",
+                          words.reach(e.index) if e else ""))  # fmt: skip
+    return Scores(
+        tuple(header), tuple(rows), any(c.floor for row in rows for c in row.cells),
+        any(c.spread for row in rows for c in row.cells), any(row.reach for row in rows),
+    )  # fmt: skip
 
 
-def _errors(p: Prediction, names: Sequence[str], length: float) -> list[float | None]:
-    found: list[float | None] = []
+def _small(value: float | None) -> str:
+    return "" if value is None else significant(value, 2)
+
+
+def _errors(found: Mapping[str, float], names: Sequence[str], length: float) -> list[float | None]:
+    made: list[float | None] = []
     for name in names:
-        value = p.rms.get(name)
+        value = found.get(name)
         factor = _DEGREES if name == "r" else 1.0
-        found.append(None if value is None else value * factor)
+        made.append(None if value is None else value * factor)
         if name == "position_m" and length > 0:
-            found.append(None if value is None else value / length)
-    return found
+            made.append(None if value is None else value / length)
+    return made
 
 
 def runs(predictions: Sequence[Prediction], length: float, inputs: Sequence[str]) -> list[Run]:
@@ -73,28 +137,53 @@ def runs(predictions: Sequence[Prediction], length: float, inputs: Sequence[str]
 
 
 def _run(p: Prediction, length: float, inputs: Sequence[str], key: str) -> Run:
-    rows = {name: _measure(name, m) for name, m in p.measures.items()}
+    rows = {name: _measure(name, m, p.spread.get(name)) for name, m in p.measures.items()}
     late = {name for name in rows if name.startswith("overshoot_") and int(name.split("_")[1]) > OVERSHOOTS}
     return Run(
         p.record, key, p.role == "validation", _summary(p), Markup(comparison(p, length, inputs)),
-        tuple(row for name, row in rows.items() if name not in late),
-        tuple(row for name, row in rows.items() if name in late),
+        _measures([row for name, row in rows.items() if name not in late]),
+        _measures([row for name, row in rows.items() if name in late]),
         bool(rows) and all(m.simulated is None for m in p.measures.values()),
+        has_band(p), tuple(_notes(p)),
     )  # fmt: skip
 
 
 def _summary(p: Prediction) -> str:
-    parts = [f"{_ERRORS[name][0]} {significant(p.rms[name], 2)} {_ERRORS[name][1]}"
-             for name in ("psi_deg", "position_m") if name in p.rms]  # fmt: skip
-    return ", ".join(parts)
+    return ", ".join(_told(p.rms))
 
 
-def _measure(name: str, m: Measure) -> MeasureRow:
+def _told(found: Mapping[str, float]) -> list[str]:
+    return [f"{_ERRORS[name][0]} {significant(found[name], 2)} {_ERRORS[name][1]}"
+            for name in ("psi_deg", "position_m") if name in found]  # fmt: skip
+
+
+def _notes(p: Prediction) -> list[str]:
+    said = []
+    if p.extrapolation and words.reach(p.extrapolation.index):
+        said.append(f"Extrapolation index {words.extrapolated(p.extrapolation)}")
+    if _told(p.floor):
+        said.append(f"Process noise alone would leave {words.listed(_told(p.floor))} with a perfect model.")
+    if _told(p.spread):
+        said.append(f"Models that the records cannot tell apart differ by {words.listed(_told(p.spread))} (std. dev.).")
+    return said
+
+
+def _measures(rows: Sequence[MeasureRow]) -> Measures:
+    return Measures(tuple(rows), any(row.interval for row in rows), any(row.spread for row in rows))
+
+
+def _measure(name: str, m: Measure, spread: float | None) -> MeasureRow:
     label, unit = words.measure(name)
-    digits = {"deg": 1, "L": 2, "s": 1, "m/s": 3, "deg/s": 2}.get(unit, 3)
+    digits = words.decimals(unit)
     both = m.measured is not None and m.simulated is not None
     difference = _signed(m.simulated - m.measured, digits) if both else DASH  # type: ignore[operator]
-    return MeasureRow(label, unit, fixed(m.measured, digits), fixed(m.simulated, digits), difference)
+    inside = None
+    if m.measured is not None and m.lower is not None and m.upper is not None:
+        inside = m.lower <= m.measured <= m.upper
+    return MeasureRow(
+        label, unit, fixed(m.measured, digits), fixed(m.simulated, digits), difference,
+        words.interval(m.lower, m.upper, digits), inside, _small(spread),
+    )  # fmt: skip
 
 
 def _signed(value: float, digits: int) -> str:

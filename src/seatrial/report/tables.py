@@ -96,6 +96,17 @@ def _prior(c: Coefficient) -> str:
     return f"{text.value} ± {text.error}{text.power}"
 
 
+def assumption(c: Coefficient) -> str:
+    """What is assumed of a coefficient: its fixed value or its prior, with the source; empty where nothing is."""
+    unit = words.unit(c.unit)
+    if c.fixed:
+        value = f"{c.name} = {exact(_shown(c.estimate, c.unit))} {unit}".rstrip()
+        return f"{value} (fixed{': ' + c.source if c.source else ''})"
+    if c.prior_mean is None or c.prior_standard_deviation is None:
+        return ""
+    return f"{c.name} = {_prior(c)} {unit}".rstrip() + " (prior)"
+
+
 def findings(items: Sequence[Finding]) -> list[FindingGroup]:
     """Grouped by code and advice, the serious first."""
     groups: dict[tuple[int, str, str], list[Finding]] = {}

@@ -1,12 +1,14 @@
 """Words for names and numbers: measures, channels, what correlations say."""
 
+import math
 import re
 from collections.abc import Sequence
 
 import numpy as np
 
 from seatrial.report.figures.correlation import correlation_of
-from seatrial.report.numbers import fixed
+from seatrial.report.numbers import fixed, significant
+from seatrial.results import Extrapolation
 from seatrial.values import Array, display
 from seatrial.values.notation import NOTATION
 
@@ -27,6 +29,7 @@ _MEASURES = {
 }
 _UNIT_ENDINGS = (("_deg_s", "deg/s"), ("_deg", "deg"), ("_L", "L"), ("_s", "s"))
 STRONG = 0.9
+INSIDE, EDGE = 1.0, 1.2
 
 
 def measure(name: str) -> tuple[str, str]:
@@ -40,6 +43,11 @@ def measure(name: str) -> tuple[str, str]:
         if name.endswith(ending):
             return name.removesuffix(ending).replace("_", " "), unit
     return name.replace("_", " "), ""
+
+
+def decimals(unit: str) -> int:
+    """Decimals of a measure in that unit."""
+    return {"deg": 1, "L": 2, "s": 1, "m/s": 3, "deg/s": 2}.get(unit, 3)
 
 
 def ordinal(number: int) -> str:
@@ -69,6 +77,71 @@ def listed(items: Sequence[str], most: int = 6) -> str:
 def counted(number: int, noun: str) -> str:
     """1 run, 2 runs, no runs."""
     return f"{number or 'no'} {noun}{'' if number == 1 else 's'}"
+
+
+def sentence(text: str, names: Sequence[str] = ()) -> str:
+    """The text with a capital and a full stop; a text that begins with one of the `names` keeps its letter."""
+    first = re.split(r"[\s,;:]", text, maxsplit=1)[0]
+    is_word = first.isalpha() and len(first) > 1 and first not in names
+    begun = text[:1].upper() + text[1:] if is_word or first in ("a", "A") else text
+    return begun if not begun or begun.endswith((".", "!", "?")) else f"{begun}."
+
+
+def signed_percent(share: float) -> str:
+    """+12 %, −0.8 %."""
+    if not math.isfinite(share):
+        return "without limit"
+    return f"{'+' if share > 0 else ''}{significant(100.0 * share, 2)} %"
+
+
+def interval(lower: float | None, upper: float | None, decimals: int) -> str:
+    """``[2.83, 3.27]``; empty without both ends."""
+    if lower is None or upper is None or not math.isfinite(lower + upper):
+        return ""
+    return f"[{fixed(lower, decimals)}, {fixed(upper, decimals)}]"
+
+
+_REACHES = {
+    "yaw_rate": ("turns {} times as fast as", "{} times the yaw rate"),
+    "drift": ("drifts at {} times the angle of", "{} times the drift angle"),
+    "rudder": ("uses {} times the rudder of", "{} times the rudder"),
+    "speed": ("goes {} times as fast as", "{} times the speed"),
+}
+
+
+def reach(index: float) -> str:
+    """Where a run lies: inside the training runs, at their edge, or beyond; empty where that is not known."""
+    if math.isnan(index):
+        return ""
+    if index <= INSIDE:
+        return "inside"
+    return "edge" if index <= EDGE else "beyond"
+
+
+def times(ratio: float) -> str:
+    """A ratio with two digits, ∞ where there is no bound."""
+    return "∞" if math.isinf(ratio) else significant(ratio, 2)
+
+
+def extrapolated(e: Extrapolation) -> str:
+    """How far a run leaves the training runs, and how to read its intervals."""
+    index = times(e.index)
+    if reach(e.index) == "inside":
+        return f"{index}: the run stays inside what the training runs covered."
+    outside = sorted((item for item in e.ratios.items() if item[1] > INSIDE), key=lambda item: -item[1])
+    how = _how_far(outside) if outside else "the run goes beyond the training runs"
+    if reach(e.index) == "edge":
+        return f"{index}: {how}, just beyond their edge."
+    return f"{index}: {how}. Read its intervals as lower limits."
+
+
+def _how_far(outside: Sequence[tuple[str, float]]) -> str:
+    """The first ratio as a clause, the others after it."""
+    told = [(_REACHES.get(name, (f"reaches in {name} {{}} times", f"{{}} times in {name}")), times(ratio))
+            for name, ratio in outside]  # fmt: skip
+    (clause, _), first = told[0]
+    others = [also.format(ratio) for (_, also), ratio in told[1:]]
+    return f"the run {clause.format(first)} any training run" + (f", with {listed(others)}" if others else "")
 
 
 def without(prefix: str) -> str:

@@ -75,12 +75,12 @@ def _validation(p: Prediction) -> ValidationEntry:
     reach = p.extrapolation
     return ValidationEntry(
         record=p.record,
-        rms=p.rms,
+        rms=dict(p.rms),
         measures={name: MeasureEntry.model_validate(m) for name, m in p.measures.items()},
         extrapolation_index=reach.index if reach else None,
-        extrapolation=reach.ratios if reach else {},
-        floor=p.floor,
-        spread=p.spread,
+        extrapolation=dict(reach.ratios) if reach else {},
+        floor=dict(p.floor),
+        spread=dict(p.spread),
     )
 
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from seatrial.report.figures import bands
 from seatrial.report.figures.plot import (
     GREY,
     MEASURED,
@@ -102,10 +103,13 @@ def comparison(prediction: Prediction, length: float, inputs: Sequence[str]) -> 
     measured, simulated = prediction.measured, prediction.simulated
     names = [s for s in in_order(list(measured.channels)) if s in inputs or s in simulated]
     names = [s for s in names if not is_constant(measured, s)][:MOST_PANELS]
-    parts = [legend([("measured", MEASURED), ("simulated, open loop", SIMULATED)], WIDTH - 8, 14)]
+    entries = [("measured", MEASURED), ("simulated, open loop", SIMULATED)]
+    if bands.has_band(prediction):
+        entries.append(("95 % band", bands.SAMPLE))
+    parts = [legend(entries, WIDTH - 8, 14)]
     top, columns, left, tall = 30.0, 3, 0.0, 0.0
     if has_track(measured) and has_track(simulated):
-        picture, tall, is_strip = overlay(measured, simulated, length, top, WIDTH / 3 + 20)
+        picture, tall, is_strip = overlay(prediction, length, top, WIDTH / 3 + 20)
         parts.append(picture)
         if is_strip:
             top, tall = top + tall, 0.0
@@ -116,27 +120,36 @@ def comparison(prediction: Prediction, length: float, inputs: Sequence[str]) -> 
     height = max(86.0, (tall - 48.0) / max(rows, 1) - 22.0) if tall else 96.0
     for k, name in enumerate(names):
         box = (left + tile * (k % columns) + 56, top + (height + 26) * (k // columns), tile - 66, height)
-        parts.append(_pair(box, measured, None if name in inputs else simulated, name, last=k >= len(names) - columns))
+        parts.append(_pair(box, prediction, name, is_input=name in inputs, last=k >= len(names) - columns))
     total = max(top + tall, top + rows * (height + 26) + 22)
     return drawing(parts, total, f"{prediction.record}: measured and simulated")
 
 
 def _pair(
-    box: tuple[float, float, float, float], measured: Record, simulated: Record | None, name: str, *, last: bool
+    box: tuple[float, float, float, float], prediction: Prediction, name: str, *, is_input: bool, last: bool
 ) -> str:
+    measured, simulated = prediction.measured, prediction.simulated
     unit = measured.channel(name).unit
     values = shown(name, measured[name], unit)
     others: list[Array] = []
-    if simulated is not None and name in simulated:
+    if not is_input and name in simulated:
         others = [_near(shown(name, simulated[name], unit), values, name)]
+    band = _band(prediction, name, others, unit)
     begin, end = float(measured.time[0]), float(measured.time[-1])
-    panel = Panel(*box, (begin, end if end > begin else begin + 1.0), span([values, *others]))
-    title = label(name, unit) + (", input" if simulated is None else "")
+    reach = span([values, *others, *(bands.room([values, *others], band) if band else [])])
+    panel = Panel(*box, (begin, end if end > begin else begin + 1.0), reach)
+    title = label(name, unit) + (", input" if is_input else "")
     parts = [axes(panel, y_label=title, x_label="t [s]" if last else "")]
-    parts.append(panel.curve(*decimated(measured.time, values), PLAIN if simulated is None else MEASURED))
-    if simulated is not None:
-        parts += [panel.curve(*decimated(simulated.time, other), SIMULATED) for other in others]
+    if band:
+        parts.append(bands.over_time(panel, simulated.time, band))
+    parts.append(panel.curve(*decimated(measured.time, values), PLAIN if is_input else MEASURED))
+    parts += [panel.curve(*decimated(simulated.time, other), SIMULATED) for other in others]
     return "".join(parts)
+
+
+def _band(prediction: Prediction, name: str, simulated: Sequence[Array], unit: str) -> tuple[Array, Array] | None:
+    half_width = prediction.half_width.get(name)
+    return bands.edges(simulated[0], half_width, unit) if simulated and half_width is not None else None
 
 
 def _near(simulated: Array, measured: Array, name: str) -> Array:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from seatrial.report.figures import bands
 from seatrial.report.figures.plot import (
     MEASURED,
     PLAIN,
@@ -20,6 +21,7 @@ from seatrial.report.figures.plot import (
     span,
     thinned,
 )  # fmt: skip
+from seatrial.results import Prediction
 from seatrial.values import Array, Record
 
 SHIPS, SLENDER = 7, 2.5
@@ -98,11 +100,12 @@ def _row(records: Sequence[Record], length: float, prefix: str, top: float, colu
     return parts, top + height + TOP + BELOW
 
 
-def overlay(measured: Record, simulated: Record, length: float, top: float, room: float) -> tuple[str, float, bool]:
+def overlay(prediction: Prediction, length: float, top: float, room: float) -> tuple[str, float, bool]:
     """Measured and simulated track in one panel of width `room`; the parts, their height, and whether it is a strip.
 
     Long and narrow tracks become a strip as wide as the page.
     """
+    measured, simulated = prediction.measured, prediction.simulated
     both = [measured, simulated]
     north, east = extents(both)
     slender = is_slender(both)
@@ -113,10 +116,21 @@ def overlay(measured: Record, simulated: Record, length: float, top: float, room
     names = ("x₀, north [m]", "y₀, east [m]") if view.lying else ("y₀, east [m]", "x₀, north [m]")
     parts = [
         axes(panel, x_label=names[0], y_label=names[1], x_ticks=9 if slender else 5, y_ticks=3 if slender else 5),
+        _envelope(panel, view, prediction),
         drawn(panel, view, measured, length, MEASURED, fill="#d4d4d4"),
         drawn(panel, view, simulated, length, SIMULATED),
     ]
     return "".join(parts), height + 48.0, slender
+
+
+def _envelope(panel: Panel, view: View, prediction: Prediction) -> str:
+    """The 95 % band of the simulated track; empty without half widths."""
+    north, east = (prediction.half_width.get(s) for s in ("x0", "y0"))
+    if north is None or east is None:
+        return ""
+    halves = (north, east) if view.lying else (east, north)
+    simulated = prediction.simulated
+    return bands.along_track(panel, view.across(simulated), view.along(simulated), halves)
 
 
 def fitted(records: Sequence[Record], view: View, length: float, box: tuple[float, float, float, float]) -> Panel:
