@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable
 
 import against_shipmmg
+import fusion
 import generation
 import montecarlo
 import simulation
@@ -17,6 +18,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "generation": generation.run,
     "against_shipmmg": against_shipmmg.run,
     "montecarlo": montecarlo.run,
+    "fusion": fusion.run,
 }
 
 
