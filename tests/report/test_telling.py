@@ -123,7 +123,7 @@ def test_the_answer_gives_intervals_floor_criterion_and_what_cannot_be_told(full
     assert "zigzag_25_25 is extrapolation, index 1.9" in said
 
 
-@pytest.mark.parametrize(("index", "where"), [(0.7, "inside"), (1.0, "inside"), (1.15, "edge"), (1.9, "beyond"),
+@pytest.mark.parametrize(("index", "where"), [(0.7, "inside"), (1.04, "inside"), (1.15, "edge"), (1.9, "beyond"),
                                               (math.inf, "beyond"), (math.nan, "")])  # fmt: skip
 def test_an_extrapolation_is_inside_at_the_edge_or_beyond(index: float, where: str) -> None:
     assert words.reach(index) == where

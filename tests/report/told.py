@@ -4,7 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from report.fabricated import fabricated_fit
+from seatrial.models.published import YASUKAWA, kvlcc2
 from seatrial.results import (
+    Coefficient,
     Collinearity,
     Consequence,
     Direction,
@@ -20,6 +23,7 @@ from seatrial.results import (
     Stability,
     Symmetry,
 )
+from seatrial.values import Parameter, Prior, Ship
 
 
 def told(fit: Fit) -> Fit:
@@ -33,9 +37,40 @@ def told(fit: Fit) -> Fit:
     )
 
 
+def tanker() -> Fit:
+    """A tanker with 43 free coefficients, each with a prior, dressed in the zigzags of the waterjet craft."""
+    base = kvlcc2()
+    names = [p.name for p in base.parameters if p.value and p.name not in ("L", "d", "rho", "U_0", "m")][:43]
+    parameters = base.parameters.only_free(names)
+    priors = {n: Prior(parameters[n].value, 0.1 * abs(parameters[n].value), f"{YASUKAWA}, 10 %") for n in names}
+    model = base.with_parameters(parameters.with_priors(priors))
+    fit = fabricated_fit(names=("HSVA_Z_10_05", "HSVA_Z_20_05", "HSVA_Z_30_05", "HSVA_Z_35_05"))
+    order = model.parameters.free_names
+    spread = np.array([0.05 * abs(parameters[n].value) for n in order])
+    return replace(
+        fit,
+        question="Can zigzags alone predict a 35/5 zigzag that was never fitted?",
+        ship=Ship("KVLCC2, model 1:45.7", {"L": 7.0, "B": 1.27, "d": 0.455}, YASUKAWA),
+        model=model,
+        covariance=np.diag(spread**2),
+        coefficients=tuple(_coefficient(p) for p in model.parameters),
+    )
+
+
+def _coefficient(p: Parameter) -> Coefficient:
+    if not p.free or p.prior is None:
+        return Coefficient(p.name, p.unit, p.value, None, None, None, True, source=p.source, meaning=p.meaning)
+    error = 0.5 * p.prior.standard_deviation
+    return Coefficient(
+        p.name, p.unit, p.value, error, p.value - 1.96 * error, p.value + 1.96 * error, False, None, p.prior.mean,
+        p.prior.standard_deviation, p.source, p.meaning, p.latex,
+    )  # fmt: skip
+
+
 def identifiability(fit: Fit) -> Identifiability:
     """Directions over the free coefficients from 900 % down to .3 %, one of them not reached at all."""
-    names = [c.name for c in fit.coefficients if not c.fixed]
+    free = [c for c in fit.coefficients if not c.fixed]
+    names = [c.name for c in free]
     fixed = [c.name for c in fit.coefficients if c.fixed and c.estimate]
     spread = [np.inf, *np.geomspace(9.0, 0.003, len(names) - 1)]
     directions = tuple(_direction(names, k, float(s)) for k, s in enumerate(spread))
@@ -71,7 +106,7 @@ def identifiability(fit: Fit) -> Identifiability:
         ),
         stability=Stability(-0.0021, -0.0094, 0.0048, "the records do not tell whether the ship is course stable"),
         profiles=tuple(
-            _profile(names[k], fit.coefficients[k].estimate, shape) for k, shape in enumerate((4.0, 1.0, 0.2))
+            _profile(names[k], free[k].estimate, shape) for k, shape in enumerate((4.0, 1.0, 0.2))
         ),
     )  # fmt: skip
 

@@ -7,9 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from seatrial.results import Fit, Study
+    from seatrial.results import Fit, Prediction, Study
     from seatrial.values import Finding
 
+FAR = 1.2
+BEYOND = ": beyond the training runs, read its intervals as lower limits"
 SEVERITY_MARK = {"error": "ERROR  ", "warning": "warning", "info": "note   "}
 
 
@@ -32,18 +34,49 @@ def print_findings(findings: "tuple[Finding, ...]", of_a_kind: int) -> None:
 
 
 def print_fit(fit: "Fit") -> None:
-    """Free coefficients, then how well the runs that were kept out are predicted."""
+    """Free coefficients, how well the runs that were kept out are predicted, and what the records cannot tell."""
     with_truth = any(c.truth is not None for c in fit.coefficients)
-    print(f"{'coefficient':14s} {'estimate':>12s} {'std. error':>11s}" + (f" {'truth':>12s}" if with_truth else ""))
+    print(
+        f"{'coefficient':14s} {'estimate':>12s} {'std. error':>11s} {'95 % from':>12s} {'to':>12s}"
+        + (f" {'truth':>12s}" if with_truth else "")
+    )
     for c in fit.coefficients:
         if not c.fixed:
             error = "" if c.standard_error is None else f"{c.standard_error:11.2g}"
+            lower, upper = ("" if end is None else f"{end:12.5g}" for end in (c.lower, c.upper))
             truth = f" {c.truth:12.5g}" if c.truth is not None else ""
-            print(f"{c.name:14s} {c.estimate:12.5g} {error:>11s}{truth} {c.unit if c.unit != '1' else ''}".rstrip())
+            unit = c.unit if c.unit != "1" else ""
+            print(f"{c.name:14s} {c.estimate:12.5g} {error:>11s} {lower:>12s} {upper:>12s}{truth} {unit}".rstrip())
     for p in fit.validation():
-        errors = ", ".join(f"{name} {value:.3g}" for name, value in p.rms.items())
-        print(f"validation {p.record}: rms {errors}")
+        _print_prediction(p)
+    _print_telling(fit)
     print(f"{fit.method.criterion}; {fit.elapsed_s:.1f} s")
+
+
+def _print_prediction(p: "Prediction") -> None:
+    errors = ", ".join(f"{name} {value:.3g}" for name, value in p.rms.items())
+    print(f"validation {p.record}: rms {errors}")
+    if p.floor:
+        print("  process noise alone: " + ", ".join(f"{name} {value:.3g}" for name, value in p.floor.items()))
+    if p.spread:
+        print("  tied models differ by: " + ", ".join(f"{name} {value:.3g}" for name, value in p.spread.items()))
+    if p.extrapolation is not None:
+        print(f"  extrapolation index {p.extrapolation.index:.2f}" + (BEYOND if p.extrapolation.index > FAR else ""))
+    for name, m in p.measures.items():
+        if m.simulated is not None and m.lower is not None and m.upper is not None:
+            measured = "" if m.measured is None else f", measured {m.measured:.4g}"
+            print(f"  {name}: {m.simulated:.4g} [{m.lower:.4g}, {m.upper:.4g}]{measured}")
+
+
+def _print_telling(fit: "Fit") -> None:
+    known, disturbance = fit.identifiability, fit.disturbance
+    if known is not None:
+        free = sum(not c.fixed for c in fit.coefficients)
+        print(f"the records determine about {known.effective_parameters:.0f} of {free} free coefficients")
+        for symmetry in known.structural:
+            print(f"  cannot be told: {symmetry.text}")
+    if disturbance is not None and disturbance.text:
+        print(f"{disturbance.method}: {disturbance.text}")
 
 
 def print_study(study: "Study") -> None:

@@ -10,7 +10,7 @@ from seatrial.report import words
 from seatrial.report.figures.bands import has_band
 from seatrial.report.figures.channels import comparison
 from seatrial.report.numbers import DASH, column, fixed, significant
-from seatrial.results import Measure, Prediction
+from seatrial.results import Extrapolation, Measure, Prediction
 from seatrial.values import InputError, Record
 
 _ERRORS = {"psi_deg": ("heading", "deg"), "position_m": ("position", "m"), "u": ("u", "m/s"), "v": ("v", "m/s"),
@@ -107,13 +107,19 @@ def scores(predictions: Sequence[Prediction], length: float) -> Scores:
             Cell(t) if unit == "L" else Cell(t, _small(f), _small(s))
             for t, f, s, (_, unit) in zip(texts, floors, spreads, header, strict=True)
         )
-        e = p.extrapolation
+        e = _reach(p)
         rows.append(Score(p.record, p.role == "validation", cells, words.times(e.index) if e else "",
                           words.reach(e.index) if e else ""))  # fmt: skip
     return Scores(
         tuple(header), tuple(rows), any(c.floor for row in rows for c in row.cells),
         any(c.spread for row in rows for c in row.cells), any(row.reach for row in rows),
     )  # fmt: skip
+
+
+def _reach(p: Prediction) -> Extrapolation | None:
+    """How far a run held out leaves the training runs; None where that is not known, and for training runs."""
+    e = p.extrapolation
+    return e if e and p.role == "validation" and words.reach(e.index) else None
 
 
 def _small(value: float | None) -> str:
@@ -159,8 +165,9 @@ def _told(found: Mapping[str, float]) -> list[str]:
 
 def _notes(p: Prediction) -> list[str]:
     said = []
-    if p.extrapolation and words.reach(p.extrapolation.index):
-        said.append(f"Extrapolation index {words.extrapolated(p.extrapolation)}")
+    e = _reach(p)
+    if e:
+        said.append(f"Extrapolation index {words.extrapolated(e)}")
     if _told(p.floor):
         said.append(f"Process noise alone would leave {words.listed(_told(p.floor))} with a perfect model.")
     if _told(p.spread):

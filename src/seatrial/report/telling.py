@@ -112,6 +112,7 @@ class Telling:
     profiles: Markup
     unbounded: str
     family: tuple[FamilyRow, ...]
+    has_notes: bool
 
 
 def telling(fit: Fit) -> Telling | None:
@@ -146,6 +147,7 @@ def telling(fit: Fit) -> Telling | None:
         profiles=Markup(profiles(has.profiles, {c.name: c.unit for c in fit.coefficients})),
         unbounded=_unbounded(has),
         family=tuple(_member(m) for m in fit.family),
+        has_notes=any(m.note for m in fit.family),
     )
 
 
@@ -228,7 +230,7 @@ def _stability(s: Stability, names: Sequence[str]) -> str:
 
 
 def _noise(d: Disturbance, names: Sequence[str]) -> NoiseWords:
-    p = "p < 0.001" if d.whiteness_p < 0.001 else f"p = {fixed(d.whiteness_p, 3)}"
+    p = "p < 0.001" if d.whiteness_p < 0.001 else f"p = {significant(d.whiteness_p, 2)}"
     if not math.isfinite(d.whiteness_p):
         whiteness = ""
     elif d.whiteness_p >= WHITE:

@@ -29,7 +29,7 @@ _MEASURES = {
 }
 _UNIT_ENDINGS = (("_deg_s", "deg/s"), ("_deg", "deg"), ("_L", "L"), ("_s", "s"))
 STRONG = 0.9
-INSIDE, EDGE = 1.0, 1.2
+INSIDE, EDGE = 1.05, 1.2
 
 
 def measure(name: str) -> tuple[str, str]:

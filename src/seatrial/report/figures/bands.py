@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from seatrial.report.figures.plot import Panel, Stroke, path, thinned
+from seatrial.report.figures.plot import Panel, Stroke, clipped, path, thinned
 from seatrial.results import Prediction
 from seatrial.values import Array, display
 
@@ -35,8 +35,8 @@ def room(curves: list[Array], band: tuple[Array, Array]) -> list[Array]:
 
 def over_time(panel: Panel, time: Array, band: tuple[Array, Array]) -> str:
     """The band as a pale area; it ends at the panel's edges."""
-    at, low = thinned(time, np.clip(band[0], *panel.y), POINTS)
-    high = thinned(time, np.clip(band[1], *panel.y), POINTS)[1]
+    at, low = thinned(time, band[0], POINTS)
+    high = thinned(time, band[1], POINTS)[1]
     return _area(panel, np.column_stack([at, low]), np.column_stack([at, high]))
 
 
@@ -55,16 +55,13 @@ def along_track(panel: Panel, across: Array, along: Array, halves: tuple[Array, 
     normal = np.column_stack([-step[:, 1], step[:, 0]]) / np.where(lengths > 0, lengths, 1.0)[:, None]
     half = np.hypot(normal[:, 0] * halves[0][kept], normal[:, 1] * halves[1][kept])
     middle = np.column_stack([x, y])
-    sides = [_within(panel, middle + sign * normal * half[:, None]) for sign in (-1.0, 1.0)]
+    sides = [middle + sign * normal * half[:, None] for sign in (-1.0, 1.0)]
     return _area(panel, *sides)
-
-
-def _within(panel: Panel, points: Array) -> Array:
-    return np.column_stack([np.clip(points[:, 0], *panel.x), np.clip(points[:, 1], *panel.y)])
 
 
 def _area(panel: Panel, there: Array, back: Array) -> str:
     """The closed area between two lines, shape (n, 2) each; places without a value are left out."""
     known = np.isfinite(there).all(axis=1) & np.isfinite(back).all(axis=1)
     outline = np.vstack([there[known], back[known][::-1]])
-    return path(panel.px(outline[:, 0]), panel.py(outline[:, 1]), _NONE, BAND) if known.sum() > 1 else ""
+    drawn = path(panel.px(outline[:, 0]), panel.py(outline[:, 1]), _NONE, BAND)
+    return clipped(panel, drawn) if known.sum() > 1 else ""

@@ -81,6 +81,13 @@ def segment(x1: float, y1: float, x2: float, y2: float, stroke: Stroke) -> str:
     return path(np.array([x1, x2]), np.array([y1, y2]), stroke)
 
 
+def clipped(panel: Panel, parts: str) -> str:
+    """Parts drawn inside a panel only."""
+    box = f"{panel.left:.1f} {panel.top:.1f} {panel.width:.1f} {panel.height:.1f}"
+    x, y, width, height = box.split()
+    return f'<svg x="{x}" y="{y}" width="{width}" height="{height}" viewBox="{box}">{parts}</svg>' if parts else ""
+
+
 def rectangle(left: float, top: float, width: float, height: float, fill: str) -> str:
     """A filled rectangle in px."""
     return f'<rect x="{left:.1f}" y="{top:.1f}" width="{width:.1f}" height="{height:.1f}" fill="{fill}"/>'

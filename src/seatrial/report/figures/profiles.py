@@ -10,7 +10,7 @@ from seatrial.report.words import unit as unit_of_people
 from seatrial.results import Profile
 from seatrial.values import display
 
-COLUMNS, HEIGHT, GAP, LEFT = 3, 120.0, 46.0, 34.0
+COLUMNS, HEIGHT, GAP, LEFT = 3, 120.0, 46.0, 48.0
 BOUND, HIGHEST = 3.84, 12.0
 
 
@@ -21,7 +21,7 @@ def profiles(items: Sequence[Profile], units: Mapping[str, str]) -> str:
     parts = []
     for k, profile in enumerate(usable):
         left, top = LEFT + tile * (k % COLUMNS), 20 + (HEIGHT + GAP) * (k // COLUMNS)
-        parts.append(_panel(profile, units.get(profile.parameter, "1"), (left, top, tile - LEFT - 26, HEIGHT)))
+        parts.append(_panel(profile, units.get(profile.parameter, "1"), (left, top, tile - LEFT - 16, HEIGHT)))
     height = (HEIGHT + GAP) * math.ceil(len(usable) / COLUMNS)
     return drawing(parts, height, "profile likelihoods") if parts else ""
 
@@ -38,7 +38,7 @@ def _panel(profile: Profile, unit: str, box: tuple[float, float, float, float]) 
     limit = float(panel.py(BOUND))
     ends = [end * display(unit)[0] for end in (profile.lower, profile.upper) if end is not None]
     return "".join([
-        axes(panel, x_ticks=3, y_ticks=3, title=name),
+        axes(panel, x_ticks=3, y_ticks=3, title=name, y_label="χ² lost"),
         segment(panel.left, limit, panel.left + panel.width, limit, Stroke(SECOND, 1.0, "4 2.5")),
         text(panel.left + panel.width - 2, limit - 4, "95 %", anchor="end", size=9.5, colour=SECOND),
         panel.curve(values[order], inside[order], Stroke(ACCENT, 1.6)),
