@@ -44,15 +44,30 @@ def check(trial: "Trial") -> "tuple[Finding, ...]":
     return records_of(trial)[1]
 
 
-def identify(trial: "Trial", seed: int = 0, progress: Progress | None = None) -> "Fit":
-    """Estimate the trial's model from its training runs and predict its validation runs.
+def identify(
+    trial: "Trial",
+    seed: int = 0,
+    progress: Progress | None = None,
+    *,
+    intervals: str = "auto",
+    choose: bool = False,
+) -> "Fit":
+    """Estimate the trial's model from its training runs and predict its validation runs, with intervals.
+
+    Args:
+        intervals: ``auto``, ``jackknife`` (every run left out, refitted, and the spread of tied models), ``bootstrap``
+            or ``profile``.
+        choose: compare the family of models and take the one that predicts runs left out best.
 
     Raises:
         InputError: the records do not pass the checks, show no excitation, or cannot tell the parameters apart.
     """
-    from seatrial.identify import identify
+    from seatrial.identify import Intervals, identify
+    from seatrial.values import InputError, nearest
 
-    return identify(trial, seed=seed, progress=progress)
+    if intervals not in (kinds := [kind.value for kind in Intervals]):
+        raise InputError(f"unknown kind of intervals '{intervals}'{nearest(intervals, kinds)}")
+    return identify(trial, seed=seed, progress=progress, intervals=Intervals(intervals), choose=choose)
 
 
 def save(fit: "Fit", folder: str | Path) -> Path:

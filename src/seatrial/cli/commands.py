@@ -83,20 +83,28 @@ def check(
 def identify(
     trial: TrialPath,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Result folder: model, result, report.")],
+    intervals: Annotated[
+        str, typer.Option("--intervals", metavar="KIND", help="auto, jackknife, bootstrap or profile.")
+    ] = "auto",
+    choose: Annotated[bool, typer.Option("--choose", help="Take the family's best model on runs left out.")] = False,
     model: OwnModel = None,
     json: Json = None,
     seed: Seed = 0,
 ) -> None:
-    """Estimate the ship's model from the training runs and predict the validation runs.
+    """Estimate the ship's model from the training runs and predict the validation runs, with intervals.
 
     Example: seatrial identify examples/kvlcc2_hsva.toml --out results/kvlcc2
+
+    Every run left out and refitted, and the spread of tied models: --intervals jackknife
     """
     from seatrial import verbs
     from seatrial.values.files import writable_folder
 
     writable_folder(out)
     with progress() as tell:
-        fit = verbs.identify(verbs.load_trial(trial, _own(model)), seed=seed, progress=tell)
+        fit = verbs.identify(
+            verbs.load_trial(trial, _own(model)), seed=seed, progress=tell, intervals=intervals, choose=choose
+        )
         tell("report")
         page = verbs.save(fit, out)
     print_fit(fit)

@@ -2,6 +2,6 @@
 
 from seatrial.identify.fit import Identified, identified
 from seatrial.identify.identify import identify
-from seatrial.identify.settings import Settings
+from seatrial.identify.settings import Intervals, Settings
 
-__all__ = ["Identified", "Settings", "identified", "identify"]
+__all__ = ["Identified", "Intervals", "Settings", "identified", "identify"]

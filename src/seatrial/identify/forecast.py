@@ -1,20 +1,21 @@
 """All runs of a trial predicted: training runs to see the fit, the others to see what it is worth, with intervals."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatrial.identify.cross_validation import own_nuisances
 from seatrial.identify.draws import Scatter
+from seatrial.identify.family import Tied
 from seatrial.identify.fit import Identified
 from seatrial.identify.margins import DRAWS, foreseen, missed, with_intervals
-from seatrial.identify.predict import offsets_of, open_loop, prediction, session_means
-from seatrial.information.discrepancy import NONE, Discrepancy, discrepancy
+from seatrial.identify.predict import compared, offsets_of, open_loop, prediction, rms, session_means
+from seatrial.information.discrepancy import NONE, Discrepancy, Miss, discrepancy
 from seatrial.information.extrapolation import extrapolation, reach
 from seatrial.results import Prediction
 from seatrial.trial import Role, TrialRecord
-from seatrial.values import Array, Progress
+from seatrial.values import Array, InputError, Progress
 from seatrial.workers import mapped
 
 
@@ -60,7 +61,7 @@ def margin_of(
     problem = replace(found.made.problem, workers=1)
     streams = np.random.SeedSequence(seed).spawn(len(train))
 
-    def one(i: int):
+    def one(i: int) -> Miss | None:
         rng = np.random.default_rng(streams[i])
         return missed(problem, left_out[i], train[i].record, train[i].session, seconds, length, scatter, rng)
 
@@ -76,11 +77,12 @@ def predictions(
     length: float,
     seed: int = 0,
     progress: Progress | None = None,
-    tied: Mapping[str, Mapping[str, float]] | None = None,
+    tied: Sequence[Tied] = (),
 ) -> tuple[Prediction, ...]:
     """Every run open loop: training runs with their own session's offsets, the others with the training mean.
 
-    Runs that were not fitted get intervals; all are compared with the ground the training runs cover.
+    Runs that were not fitted get intervals, for which `tied` models are asked as well; all are compared with the ground
+    the training runs cover.
     """
     tell = progress or (lambda _: None)
     problem, mean = found.made.problem, session_means(found.made.problem, found.made.shared)
@@ -100,7 +102,30 @@ def predictions(
         if item.role is not Role.TRAIN:
             rng = np.random.default_rng(stream)
             seen = foreseen(problem, found.model, item.record, run, mean, length, margin.scatter, rng, DRAWS)
-            spread = (tied or {}).get(item.record.name, {})
-            one = with_intervals(one, seen, margin.beyond, margin.scatter.degrees_of_freedom, spread)
+            one = replace(one, spread=spread_of(tied, one, seconds, length))
+            one = with_intervals(one, seen, margin.beyond, margin.scatter.degrees_of_freedom)
         made.append(one)
     return tuple(made)
+
+
+def spread_of(tied: Sequence[Tied], made: Prediction, seconds: float, length: float) -> dict[str, float]:
+    """Root-mean-square distance of tied models from a prediction: by measure, and of heading and position over the run.
+
+    A model that diverges on this run says nothing about it.
+    """
+    away: dict[str, list[float]] = {}
+    for one in tied:
+        problem = one.made.problem
+        own = session_means(problem, one.made.shared)
+        try:
+            run = open_loop(problem, one.model, made.measured, own, seconds).record
+        except InputError:
+            continue
+        told = compared(made.measured, run, length) if made.measures else {}
+        for name, m in told.items():
+            simulated = made.measures[name].simulated if name in made.measures else None
+            if m.simulated is not None and simulated is not None:
+                away.setdefault(name, []).append(m.simulated - simulated)
+        for name, value in rms(made.simulated, run).items():
+            away.setdefault(name, []).append(value)
+    return {name: float(np.sqrt(np.mean(np.square(values)))) for name, values in away.items()}

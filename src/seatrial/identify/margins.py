@@ -1,6 +1,5 @@
 """Intervals of predictions: what is foreseen by draws, and what runs left out missed beyond it."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -104,19 +103,17 @@ def missed(
     )
 
 
-def with_intervals(
-    made: Prediction, found: Foreseen, beyond: Discrepancy, degrees_of_freedom: float, tied: Mapping[str, float]
-) -> Prediction:
+def with_intervals(made: Prediction, found: Foreseen, beyond: Discrepancy, degrees_of_freedom: float) -> Prediction:
     """The prediction with 95 % intervals of its measures and bands of heading and position.
 
-    beyond: model discrepancy; tied: standard deviation over tied models, by measure.
+    beyond: model discrepancy; the spread over tied models is the prediction's own.
     """
     t = float(stats.t.ppf(0.975, degrees_of_freedom))
 
     def bounded(name: str, m: Measure) -> Measure:
         if m.simulated is None or name not in found.measures:
             return m
-        half = t * float(np.hypot(beyond.of_measure(name, found.measures[name]), tied.get(name, 0.0)))
+        half = t * float(np.hypot(beyond.of_measure(name, found.measures[name]), made.spread.get(name, 0.0)))
         return replace(m, lower=m.simulated - half, upper=m.simulated + half)
 
     bands = {c: t * beyond.of_channel(c, s, made.measured.dt) for c, s in found.channels.items()}

@@ -81,8 +81,8 @@ def discrepancy(missed: Sequence[Miss]) -> Discrepancy:
         for name, pair in miss.measures.items():
             pairs.setdefault(kind_of(name), []).append(pair)
     known = {kind: np.array(values) for kind, values in pairs.items() if len(values) >= _VALUES}
-    kinds = {kind: float(np.sqrt(max(np.mean(v[:, 0] ** 2 - v[:, 1] ** 2), 0.0))) for kind, v in known.items()}
-    ratios = [np.mean(v[:, 0] ** 2) / max(np.mean(v[:, 1] ** 2), 1e-300) for v in known.values()]
+    kinds = {kind: float(excess(v[:, :1], v[:, 1:])[0]) for kind, v in known.items()}
+    ratios = [np.mean((v[:, 0] / np.maximum(v[:, 1], 1e-300)) ** 2) for v in known.values()]
     factor = float(np.sqrt(max(np.median(ratios), 1.0))) if ratios else 1.0
     elapsed = {c: _elapsed(missed, c) for c in _TRACK if all(c in m.errors for m in missed)}
     if {"x0", "y0"} <= set(elapsed):
@@ -92,13 +92,27 @@ def discrepancy(missed: Sequence[Miss]) -> Discrepancy:
 
 
 def _elapsed(missed: Sequence[Miss], channel: str) -> Array:
-    """Excess standard deviation by elapsed time: it grows, so isotonic regression of the excess variance."""
+    """Excess standard deviation by elapsed time; it grows, so isotonic regression of the excess variance."""
     longest = max(len(m.errors[channel]) for m in missed)
-    total, count = np.zeros(longest), np.zeros(longest)
-    for miss in missed:
-        excess = miss.errors[channel] ** 2 - miss.foreseen[channel] ** 2
-        good = np.isfinite(excess)
-        total[: len(excess)][good] += excess[good]
-        count[: len(excess)][good] += 1
-    mean = total / np.maximum(count, 1)
-    return np.sqrt(np.maximum(isotonic_regression(mean, weights=np.maximum(count, 1e-9)).x, 0.0))
+    error, expected = np.full((2, len(missed), longest), np.nan)
+    for row, miss in enumerate(missed):
+        error[row, : len(miss.errors[channel])] = miss.errors[channel]
+        expected[row, : len(miss.foreseen[channel])] = miss.foreseen[channel]
+    count = np.maximum(np.isfinite(error).sum(axis=0), 1e-9)
+    return np.sqrt(np.maximum(isotonic_regression(excess(error, expected) ** 2, weights=count).x, 0.0))
+
+
+def excess(errors: Array, foreseen: Array) -> Array:
+    """Standard deviation d of each column for which errors of variance foreseen^2 + d^2 have the size they have, (n,).
+
+    Solves sum e^2 / (foreseen^2 + d^2) = number of errors (Paule & Mandel 1982, J. Res. NBS 87, 377) by bisection; 0
+    where the errors are no larger than foreseen. errors, foreseen: (m, n), NaN where there is none.
+    """
+    count = np.isfinite(errors).sum(axis=0)
+    square, expected = np.where(np.isfinite(errors), errors, 0.0) ** 2, np.nan_to_num(foreseen) ** 2
+    low, high = np.zeros(errors.shape[1]), np.max(square, axis=0) + 1e-300
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        large = np.sum(square / (expected + middle), axis=0) > count
+        low, high = np.where(large, middle, low), np.where(large, high, middle)
+    return np.sqrt(np.where(low > 0.0, high, 0.0))

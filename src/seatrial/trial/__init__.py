@@ -2,10 +2,11 @@
 
 from seatrial.trial.load import load_trial
 from seatrial.trial.records import TrialRecord, records_of, refuse_errors
-from seatrial.trial.trial import Estimate, Role, Run, Trial, Trimming
+from seatrial.trial.trial import Estimate, Family, Role, Run, Trial, Trimming
 
 __all__ = [
     "Estimate",
+    "Family",
     "Role",
     "Run",
     "Trial",

@@ -12,8 +12,8 @@ from seatrial.trial.forces import points_of
 from seatrial.trial.literature import range_findings
 from seatrial.trial.model_choice import chosen_model, ship_of
 from seatrial.trial.runs import expanded, runs_of
-from seatrial.trial.schema import EstimateTable, TrialFile
-from seatrial.trial.trial import Estimate, Trial
+from seatrial.trial.schema import EstimateTable, FamilyTable, TrialFile
+from seatrial.trial.trial import Estimate, Family, Trial
 from seatrial.values import NOTATION, InputError, nearest
 
 
@@ -59,6 +59,8 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         _refuse_strangers("estimate.channels", list(file.estimate.channels), set(model.observables))
         _refuse_strangers("estimate.offsets", list(file.estimate.offsets), known)
         _refuse_strangers("estimate.gains", list(file.estimate.gains), known)
+        for structure, names in (file.family.structures if file.family else {}).items():
+            _refuse_strangers(f"family.structures.'{structure}'", list(names), set(model.parameters.names))
         if own_model is None:
             _refuse_strangers("truth", list(file.truth), set(model.parameters.names))
         ranges = range_findings(file.model.priors_from, ship)
@@ -83,8 +85,13 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         question=file.question,
         path=path,
         forces=forces,
+        family=None if file.family is None else _family(file.family),
         findings=(*ranges, *(finding for points in forces for finding in force_findings(points))),
     )
+
+
+def _family(table: FamilyTable) -> Family:
+    return Family(table.structures, table.prior_factors, table.segment_factors)
 
 
 def _refuse_strangers(where: str, names: list[str], known: set[str]) -> None:

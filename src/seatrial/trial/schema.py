@@ -268,6 +268,14 @@ class EstimateTable(Strict):
         return self
 
 
+class FamilyTable(Strict):
+    """`[family]`: models to compare by runs left out; a structure frees further parameters."""
+
+    structures: dict[str, tuple[str, ...]] = {}
+    prior_factors: tuple[Annotated[float, Field(gt=0)], ...] = ()
+    segment_factors: tuple[Annotated[float, Field(gt=0)], ...] = ()
+
+
 class TrialFile(Strict):
     """The whole file."""
 
@@ -278,6 +286,7 @@ class TrialFile(Strict):
     records: Annotated[tuple[RecordsTable, ...], Field(min_length=1)]
     model: ModelTable
     forces: tuple[ForcesTable, ...] = ()
+    family: FamilyTable | None = None
     noise: dict[str, SiSpread] = {}
     truth: dict[str, float] = {}
     estimate: EstimateTable = EstimateTable()

@@ -85,6 +85,15 @@ class Estimate:
     initial_s: float | None = None
 
 
+@dataclass(frozen=True)
+class Family:
+    """Models to compare: structure -> parameters it frees beyond the trial's; factors on priors and segment length."""
+
+    structures: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    prior_factors: tuple[float, ...] = ()
+    segment_factors: tuple[float, ...] = ()
+
+
 @dataclass(frozen=True, eq=False)
 class Trial:
     """Ship, runs and their roles, model, assumptions.
@@ -96,6 +105,7 @@ class Trial:
         accept: codes of error findings the user takes upon himself.
         reference_point: m forward of midship to which the model's u, v, x0, y0 refer.
         forces: static force points that are fitted beside the runs.
+        family: models to compare; None: the family of the house.
         findings: what is odd about the trial itself: priors beyond their range, force points of unexpected sign.
         path: the trial file; None for a trial made in Python.
     """
@@ -111,6 +121,7 @@ class Trial:
     question: str = ""
     path: Path | None = None
     forces: tuple[ForcePoints, ...] = ()
+    family: Family | None = None
     findings: tuple[Finding, ...] = ()
 
     def of_role(self, role: Role) -> tuple[Run, ...]:

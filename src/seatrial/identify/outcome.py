@@ -1,0 +1,99 @@
+"""An estimate read in the field's terms: coefficients, offsets, noise, residuals, method, and what to warn of."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from seatrial.identify.estimate import pieces
+from seatrial.identify.fit import Identified
+from seatrial.information.autocorrelation import whiteness_p
+from seatrial.results import Coefficient, Method, Noise, Offset, Residuals
+from seatrial.values import NOTATION, Finding, Parameter, Severity
+
+
+def coefficients(found: Identified, truth: Mapping[str, float]) -> tuple[Coefficient, ...]:
+    """Every parameter of the model with its interval, prior and, where known, its true value."""
+    problem, interval = found.made.problem, found.interval
+    place = {name: i for i, name in enumerate(problem.free)}
+    half, error = interval.half_width, interval.standard_error
+
+    def one(p: Parameter) -> Coefficient:
+        prior = p.prior if p.free else None
+        common = {
+            "name": p.name, "unit": p.unit, "truth": truth.get(p.name), "source": p.source, "meaning": p.meaning,
+            "latex": p.latex, "prior_mean": prior.mean if prior else None,
+            "prior_standard_deviation": prior.standard_deviation if prior else None,
+        }  # fmt: skip
+        if p.name not in place:
+            return Coefficient(estimate=p.value, standard_error=None, lower=None, upper=None, fixed=True, **common)
+        i = place[p.name]
+        value = float(found.made.shared[i])
+        return Coefficient(estimate=value, standard_error=float(error[i]), lower=value - float(half[i]),
+                           upper=value + float(half[i]), fixed=False, **common)  # fmt: skip
+
+    return tuple(one(p) for p in problem.model.parameters)
+
+
+def offsets(found: Identified) -> tuple[Offset, ...]:
+    """What each session has of its own."""
+    problem, error = found.made.problem, found.interval.standard_error
+    names = [(name, problem.model.parameters[name].unit) for name, _ in problem.session_parameters]
+    names += [(n.correction.name, n.unit) for n in problem.nuisances]
+    made = []
+    for k, session in enumerate(problem.data.sessions):
+        for j, (name, unit) in enumerate(names):
+            i = len(problem.free) + k * problem.kinds + j
+            made.append(Offset(name, session, unit, float(found.made.shared[i]), float(error[i])))
+    return tuple(made)
+
+
+def noise(found: Identified) -> tuple[Noise, ...]:
+    """Noise of each compared channel and the colour of its residuals."""
+    problem = found.made.problem
+    samples = np.isfinite(problem.data.measured).sum(axis=0)
+    return tuple(
+        Noise(channel, NOTATION[channel].unit if channel in NOTATION else "1", float(problem.noise[i]),
+              float(0.5 * (found.inflation[i] - 1.0) * problem.data.dt), whiteness_p(found.rho[i], int(samples[i])))
+        for i, channel in enumerate(problem.data.outputs)
+    )  # fmt: skip
+
+
+def residuals(found: Identified) -> tuple[Residuals, ...]:
+    """Residuals of each compared channel, segments one after another."""
+    problem, values = found.made.problem, found.made.residuals()
+    return tuple(
+        Residuals(channel, 1.0 / problem.data.dt, np.concatenate(pieces(problem, values[:, i])), found.rho[i])
+        for i, channel in enumerate(problem.data.outputs)
+    )
+
+
+def method(found: Identified) -> Method:
+    """What was used and why."""
+    problem = found.made.problem
+    settings: dict[str, float | str] = {
+        "samples per second": 1.0 / problem.data.dt,
+        "segments": problem.data.count,
+        "free coefficients": len(problem.free),
+        "Huber limit (standard deviations)": problem.huber if np.isfinite(problem.huber) else "none",
+    }
+    return Method(found.criterion, found.start, found.interval.meaning, found.reasons, settings)
+
+
+def bounds_hit(found: Identified) -> list[Finding]:
+    """A warning for every coefficient that ends on a bound."""
+    problem, shared = found.made.problem, found.made.shared
+    hit = np.flatnonzero((shared <= problem.lower) | (shared >= problem.upper))
+    return [
+        Finding(Severity.WARNING, "bound-hit", f"coefficient {problem.free[i]} ends on its bound", f"{shared[i]:g}",
+                "widen the bound under [model.bounds], or give a prior instead")
+        for i in hit
+    ]  # fmt: skip
+
+
+def unconverged(found: Identified) -> list[Finding]:
+    """A warning where the search did not converge."""
+    status = found.made.optimum.solution.status
+    if status.is_success:
+        return []
+    return [Finding(Severity.WARNING, "not-converged", "the search did not converge", status.value,
+                    "do not use the coefficients before this is understood")]  # fmt: skip
