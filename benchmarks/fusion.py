@@ -92,7 +92,13 @@ def noisy(record: Record, rng: np.random.Generator) -> Record:
     return replace(record, channels=made)
 
 
-def captive(model: Model, rng: np.random.Generator, speed: float, percent: float = FORCE_NOISE_PERCENT) -> ForcePoints:
+def captive(
+    model: Model,
+    rng: np.random.Generator,
+    speed: float,
+    revolutions: float = REVOLUTIONS,
+    percent: float = FORCE_NOISE_PERCENT,
+) -> ForcePoints:
     """Points over drift and yaw rate with rudder amidships and over the rudder angle straight ahead and in a turn."""
     length = model.parameters["L"].value
     grid = [(b, r, 0.0) for b, r in product(DRIFT, YAW)]
@@ -101,7 +107,7 @@ def captive(model: Model, rng: np.random.Generator, speed: float, percent: float
     beta, delta = np.radians(beta), np.radians(delta)
     motion = {
         "u": speed * np.cos(beta), "v": -speed * np.sin(beta), "r": r * speed / length,
-        "delta": delta, "n": np.full(len(beta), REVOLUTIONS),
+        "delta": delta, "n": np.full(len(beta), revolutions),
     }  # fmt: skip
     blank = np.zeros(len(beta))
     empty = ForcePoints("captive", motion, {"X": blank, "Y": blank, "N": blank}, {"X": 1.0, "Y": 1.0, "N": 1.0})

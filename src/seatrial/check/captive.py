@@ -36,8 +36,8 @@ def _drag(points: ForcePoints) -> list[Finding]:
     """Without a turning propeller the ship going ahead is held back: X < 0 in the median."""
     if "X" not in points.forces:
         return []
-    rate = points.motion.get("n")
-    idle = np.full(len(points), points.includes is Includes.HULL) if rate is None else rate == 0
+    rate = points.motion.get("n", np.full(len(points), np.nan))
+    idle = (rate == 0) | (points.includes is Includes.HULL)
     chosen = idle & (points.motion["u"] > 0) & np.isfinite(points.forces["X"])
     if not chosen.any() or np.median(points.forces["X"][chosen]) <= 0:
         return []
