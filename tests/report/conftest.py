@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from report.fabricated import fabricated_fit
+from report.told import told
 from seatrial.report import write_report
 from seatrial.report.study import write_study
 from seatrial.results import Check, Claim, Curve, Figure, Fit, Study, Table, Verdict
@@ -13,8 +14,8 @@ from seatrial.results import Check, Claim, Curve, Figure, Fit, Study, Table, Ver
 
 @pytest.fixture(scope="session")
 def fit() -> Fit:
-    """The fabricated fit."""
-    return fabricated_fit()
+    """The fabricated fit with everything a page can show."""
+    return told(fabricated_fit())
 
 
 @pytest.fixture(scope="session")

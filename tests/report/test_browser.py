@@ -74,6 +74,7 @@ def test_printing_unfolds_everything(browser: "Browser", page: Path) -> None:
     assert window.locator("details:not([open])").count() > 0
     window.evaluate("dispatchEvent(new Event('beforeprint'))")
     assert window.locator("details:not([open])").count() == 0
+    assert window.locator("#telling ~ h3:visible").count() >= 8
     assert len(window.pdf(format="A4", prefer_css_page_size=True)) > 50_000
 
 

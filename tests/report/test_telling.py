@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from report.fabricated import fabricated_fit
-from report.told import told
+from report.told import tanker, told
 from seatrial.report import answer, words, write_report
 from seatrial.report.figures import bands, decades
 from seatrial.report.figures.plot import Panel
@@ -23,8 +23,8 @@ HOSTILE = "<script>alert(1)</script>"
 
 
 @pytest.fixture(scope="module")
-def full() -> Fit:
-    return told(fabricated_fit())
+def full(fit: Fit) -> Fit:
+    return fit
 
 
 @pytest.fixture(scope="module")
@@ -153,6 +153,14 @@ def test_the_number_of_determined_coefficients_is_said_of_the_free_ones(full: Fi
     assert determined(whole) == "The records determine all 11 free coefficients."
     without = tuple(replace(c, prior_mean=None) for c in full.coefficients)
     assert determined(replace(full, coefficients=without)).endswith("the rest is left open.")
+
+
+def test_a_tanker_with_many_coefficients_folds_what_is_long() -> None:
+    fit = told(tanker())
+    text = html(fit)
+    assert "The records determine about 23 of 43 free coefficients; the rest comes from the priors." in text
+    assert "27 further combinations not drawn" in text and "23 further coefficients with smaller effects" in text
+    assert len(text.encode()) < 1_500_000
 
 
 def test_directions_are_sorted_into_zones(full: Fit) -> None:

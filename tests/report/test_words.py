@@ -33,7 +33,9 @@ def test_strong_correlations_are_named() -> None:
     assert correlated(("a", "b", "c"), covariance).startswith(
         "1 pair at 0.9 or above in size; the strongest: b and a (−0.95)"
     )
-    assert correlated(("a", "b"), np.eye(2)).startswith("The strongest is 0.00")
+    weak = np.array([[1.0, 0.4], [0.4, 1.0]])
+    assert correlated(("a", "b"), weak) == "The strongest is 0.40, between b and a."
+    assert correlated(("a", "b"), np.eye(2)) == "None is correlated with another."
     assert correlated(("a",), np.eye(1)) == ""
 
 

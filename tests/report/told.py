@@ -52,7 +52,7 @@ def tanker() -> Fit:
         question="Can zigzags alone predict a 35/5 zigzag that was never fitted?",
         ship=Ship("KVLCC2, model 1:45.7", {"L": 7.0, "B": 1.27, "d": 0.455}, YASUKAWA),
         model=model,
-        covariance=np.diag(spread**2),
+        covariance=np.corrcoef(np.random.default_rng(6).standard_normal((43, 60))) * np.outer(spread, spread),
         coefficients=tuple(_coefficient(p) for p in model.parameters),
     )
 

@@ -160,6 +160,8 @@ def correlated(names: Sequence[str], covariance: Array) -> str:
     count = int(np.sum(np.abs(matrix) >= STRONG))
     if not strong:
         i, j = pairs[0]
+        if i == j:
+            return "None is correlated with another."
         return f"The strongest is {fixed(matrix[i, j], 2)}, between {names[i]} and {names[j]}."
     told = listed([f"{names[i]} and {names[j]} ({fixed(matrix[i, j], 2)})" for i, j in strong])
     return (

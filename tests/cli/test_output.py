@@ -1,0 +1,32 @@
+"""What identify prints of a fit: intervals, what the records cannot tell, and nothing of what was not examined."""
+
+from dataclasses import replace
+
+import pytest
+
+from report.fabricated import fabricated_fit
+from report.told import told
+from seatrial.cli.output import print_fit
+
+
+def printed(capsys: pytest.CaptureFixture[str]) -> str:
+    return capsys.readouterr().out
+
+
+def test_intervals_floor_extrapolation_and_what_cannot_be_told_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    fit = told(fabricated_fit())
+    print_fit(fit)
+    text = printed(capsys)
+    assert "overshoot_1_deg: 8.42 [8.083, 8.715], measured 8.31" in text
+    assert "process noise alone: psi_deg 1.4" in text and "extrapolation index 1.90: beyond" in text
+    assert "the records determine about 6 of 11 free coefficients" in text
+    assert fit.identifiability is not None and fit.identifiability.structural[0].text in text
+    assert fit.disturbance is not None and fit.disturbance.text in text
+
+
+def test_what_was_not_examined_is_not_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    fit = fabricated_fit()
+    print_fit(replace(fit, predictions=tuple(replace(p, measures={}) for p in fit.predictions)))
+    text = printed(capsys)
+    assert "validation zigzag_25_25: rms" in text
+    assert not any(word in text for word in ("determine", "cannot be told", "noise alone", "extrapolation", "tied"))
