@@ -1,0 +1,132 @@
+"""A Kalman filter over many segments of one model: innovations, and innovations with sensitivities."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from seatrial.kernels.innovations import innovate
+from seatrial.kernels.sensitivity import DELAY, GAIN, OFFSET
+from seatrial.simulate.batch import Batch
+from seatrial.values import Array, Index
+
+
+@dataclass(frozen=True, eq=False)
+class Noisy:
+    """What a filter has to know besides the model, for one point.
+
+    Attributes:
+        start, start_variance: initial states and their variances, (segments, nx).
+        parameters: all of the model's, (segments, np); corrections (segments, n).
+        intensity: of each state that is `driven`, SI over the root of a second; deviation: of each output, SI.
+    """
+
+    start: Array
+    start_variance: Array
+    parameters: Array
+    corrections: Array
+    intensity: Array
+    deviation: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Filter(Batch):
+    """Segments to be filtered; columns: parameters, corrections, log intensities, log deviations of the outputs.
+
+    Attributes:
+        driven: states with white process noise.
+    """
+
+    driven: tuple[str, ...] = ()
+
+    @property
+    def noises(self) -> int:
+        """Number of intensities and deviations."""
+        return len(self.driven) + len(self.outputs)
+
+    @cached_property
+    def _driven(self) -> Index:
+        return np.array([self.model.states.index(s) for s in self.driven], dtype=np.int64)
+
+    @cached_property
+    def _moved_links(self) -> tuple[Index, ...]:
+        """Links with columns counted from behind the transition matrix."""
+        chain, link_p, link_u, _, g_link_p, g_link_u = self._links
+        return (chain, *(_shifted(link, len(self.model.states)) for link in (link_p, link_u, g_link_p, g_link_u)))
+
+    @cached_property
+    def _bare_links(self) -> tuple[Index, ...]:
+        none = np.zeros((0, 3), np.int64), np.zeros((0, 4), np.int64)
+        return (self._links[0], *none, *none)
+
+    def innovations(self, segment: int, measured: Array, at: Noisy) -> tuple[Array, Array, bool]:
+        """Innovations e (measured - predicted) and variances v of one segment, (rows, ny); whether it diverged.
+
+        measured: of all segments, NaN where there is none; there e = 0 and v = 1.
+        """
+        e, v, _, _, _, failed = self._run(segment, measured, at, self._bare_links, 0, 0)
+        return e, v, failed
+
+    def sensitivities(self, segment: int, measured: Array, at: Noisy) -> tuple[Array, Array, Array, Array, bool]:
+        """`innovations` with de by all columns, (rows, ny, columns), and dv by the noise's, (rows, ny, noises).
+
+        The gain counts as independent of parameters and corrections.
+        """
+        width = len(self.parameters) + len(self.corrections) + self.noises
+        e, v, de, dv, _, failed = self._run(segment, measured, at, self._moved_links, width, self.noises)
+        return e, v, de, dv, failed
+
+    def variances(self, segment: int, at: Noisy) -> Array:
+        """Variance of each state where nothing is measured, (rows, nx): how far a run may stray from its prediction."""
+        nothing = np.full((int(self.offsets[-1]), len(self.outputs)), np.nan)
+        return self._run(segment, nothing, at, self._bare_links, 0, 0, recorded=True)[4]
+
+    def _run(
+        self, segment: int, measured: Array, at: Noisy, links: tuple[Index, ...], width: int, noises: int,
+        *, recorded: bool = False,
+    ) -> tuple[Array, Array, Array, Array, Array, bool]:  # fmt: skip
+        nx, ny = len(self.model.states), len(self.outputs)
+        chain, link_p, link_u, g_link_p, g_link_u = links
+        nx, ny, (a, b) = len(self.model.states), len(self.outputs), self.offsets[segment : segment + 2]
+        gain, zero, delay = (c[segment] for c in self._corrected(at.corrections))
+        inputs, weights = corrected(self.inputs[a:b], self.dt, gain, zero, delay)
+        if not len(link_u) + len(g_link_u):
+            weights = np.empty((b - a, 0))
+        process = np.zeros(nx)
+        process[self._driven] = at.intensity**2
+        e, v = np.empty((b - a, ny)), np.empty((b - a, ny))
+        de, dv = np.empty((b - a, ny, width)), np.empty((b - a, ny, noises))
+        variance = np.empty((b - a if recorded else 0, nx))
+        compiled = self.model.compiled
+        failed = innovate(
+            compiled.rates_tangent, compiled.outputs_tangent, inputs, weights, self.dt, self.substeps,
+            at.start[segment], at.start_variance[segment], at.parameters[segment],
+            chain, link_p, link_u, g_link_p, g_link_u, self._select, len(self.model.outputs), self._driven, process,
+            at.deviation**2, np.ascontiguousarray(measured[a:b]), e, v, de, dv, variance,
+        )  # fmt: skip
+        return e, v, de, dv, variance, failed >= 0
+
+
+def corrected(inputs: Array, dt: float, gain: Array, zero: Array, delay: Array) -> tuple[Array, Array]:
+    """Inputs as `kernels.integrate.effective_input` corrects them, (rows, nu), and their derivatives (rows, 3 nu).
+
+    The derivatives by zero, gain and delay stand in that order for every input (`kernels.sensitivity`).
+    """
+    rows, nu = inputs.shape
+    made, weights = np.empty((rows, nu)), np.empty((rows, 3 * nu))
+    for j in range(nu):
+        delayed = np.arange(rows) - delay[j] / dt
+        place = np.clip(delayed, 0.0, rows - 1.0)
+        left = np.minimum(place.astype(np.int64), rows - 2)
+        rise = inputs[left + 1, j] - inputs[left, j]
+        raw = inputs[left, j] + (place - left) * rise
+        made[:, j] = gain[j] * raw + zero[j]
+        weights[:, 3 * j + OFFSET], weights[:, 3 * j + GAIN] = 1.0, raw
+        weights[:, 3 * j + DELAY] = np.where(place == delayed, -gain[j] * rise / dt, 0.0)
+    return made, weights
+
+
+def _shifted(link: Index, by: int) -> Index:
+    moved = link.copy()
+    moved[:, -1] += by
+    return moved
