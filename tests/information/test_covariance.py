@@ -99,5 +99,5 @@ def test_a_coefficient_held_by_its_prior_keeps_the_priors_error() -> None:
     prior = np.array([1e6, 1e-12])
     hessian = np.diag(prior) + np.diag([1e-6, 1e3])
     silent = Interval(np.zeros((2, 2)), 11, "one-step jackknife over 12 runs")
-    assert with_prior(silent, hessian, prior).standard_error[0] == pytest.approx(1e-3, rel=1e-6)
-    assert with_prior(silent, hessian, prior).standard_error[1] < 1e-6
+    assert with_prior(silent, hessian, np.diag(prior)).standard_error[0] == pytest.approx(1e-3, rel=1e-6)
+    assert with_prior(silent, hessian, np.diag(prior)).standard_error[1] < 1e-6

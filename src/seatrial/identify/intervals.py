@@ -62,7 +62,8 @@ def intervals(
     steps = stepped(made) if runs >= RUNS_FOR_JACKKNIFE else None
 
     def over_runs(interval: Interval) -> Interval:
-        return _offsets_by_information(with_prior(interval, hessian, problem.priors[1]), hessian, len(problem.free))
+        known = with_prior(interval, hessian, problem.known_precision(made.shared))
+        return _offsets_by_information(known, hessian, len(problem.free))
 
     if kind is Intervals.JACKKNIFE:
         points = left_out(made, problem.workers, progress)
@@ -77,7 +78,7 @@ def intervals(
     if steps is not None:
         return Uncertainty(over_runs(jackknife(steps, f"one-step jackknife over {runs} runs")), steps)
     if problem.data.count >= _BLOCKS_FOR_SANDWICH:
-        return Uncertainty(with_prior(sandwich(hessian, _scores(made)), hessian, problem.priors[1]))
+        return Uncertainty(with_prior(sandwich(hessian, _scores(made)), hessian, problem.known_precision(made.shared)))
     meaning = "information matrix, correlated samples counted as their effective number"
     return Uncertainty(replace(from_information(hessian), meaning=meaning))
 
