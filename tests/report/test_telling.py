@@ -15,7 +15,7 @@ from seatrial.report.figures import bands, decades
 from seatrial.report.figures.plot import Panel
 from seatrial.report.page import html
 from seatrial.report.telling import determined, telling
-from seatrial.results import Direction, Disturbance, Extrapolation, Fit, Identifiability
+from seatrial.results import Direction, Disturbance, Extrapolation, Fit, Identifiability, Symmetry
 from seatrial.trial.folder import load_fit, save_fit
 
 TITLE = "What this record can and cannot tell"
@@ -121,6 +121,15 @@ def test_the_answer_gives_intervals_floor_criterion_and_what_cannot_be_told(full
     assert "Whatever the manoeuvre, all coefficients, thrust and inertias can be scaled together" in said
     assert "The criterion is prediction error, with process noise in u, v and r." in said
     assert "zigzag_25_25 is extrapolation, index 1.9" in said
+
+
+def test_a_long_change_is_shortened_in_the_answer(full: Fit) -> None:
+    known = full.identifiability
+    assert known is not None
+    names = tuple("abcdefgh")
+    long = Symmetry(names, f"{', '.join(names)} can " + "very " * 60 + "well be scaled", {})
+    said = " ".join(answer.sentences(replace(full, identifiability=replace(known, structural=(long,)))))
+    assert "Whatever the manoeuvre, a, b, c, d, e and 3 more can change together without showing" in said
 
 
 @pytest.mark.parametrize(("index", "where"), [(0.7, "inside"), (1.04, "inside"), (1.15, "edge"), (1.9, "beyond"),

@@ -4,10 +4,11 @@ from seatrial.identify.settings import WHITE_INFLATION
 from seatrial.report.numbers import duration, exact, fixed, significant
 from seatrial.report.telling import determined
 from seatrial.report.words import counted, extrapolated, interval, listed, reach, sentence
-from seatrial.results import Coefficient, Fit, Prediction
+from seatrial.results import Coefficient, Fit, Prediction, Symmetry
 from seatrial.values import Severity
 
 DISAGREES = 3.0
+LONGEST = 200
 
 
 def facts(fit: Fit) -> list[tuple[str, str]]:
@@ -106,8 +107,15 @@ def _not_told(fit: Fit) -> str:
     if known.structural:
         more = len(known.structural) - 1
         further = f" ({counted(more, 'further change')} of this kind in the next section)" if more else ""
-        said.append(f"Whatever the manoeuvre, {known.structural[0].text.rstrip('.')}{further}.")
+        said.append(f"Whatever the manoeuvre, {_hidden(known.structural[0])}{further}.")
     return " ".join(s for s in said if s)
+
+
+def _hidden(s: Symmetry) -> str:
+    """A change no record shows: its text, or where that is long what it is about."""
+    if len(s.text) <= LONGEST:
+        return s.text.rstrip(".")
+    return f"{listed(s.parameters)} can change together without showing in any such record"
 
 
 def _criterion(fit: Fit) -> str:
