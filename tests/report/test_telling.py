@@ -15,7 +15,7 @@ from seatrial.report.figures import bands, decades
 from seatrial.report.figures.plot import Panel
 from seatrial.report.page import html
 from seatrial.report.telling import determined, telling
-from seatrial.results import Direction, Disturbance, Extrapolation, Fit, Identifiability, Symmetry
+from seatrial.results import Direction, Disturbance, Extrapolation, Fit, Identifiability, Measure, Symmetry
 from seatrial.trial.folder import load_fit, save_fit
 
 TITLE = "What this record can and cannot tell"
@@ -113,9 +113,18 @@ def test_intervals_of_measures_say_whether_they_hold(full: Fit) -> None:
     assert html(replace(full, predictions=(missed,))).count("✗ outside") == 1
 
 
+def test_a_value_outside_is_seen_to_be_outside() -> None:
+    """14.08 against [14.09, 14.38]: with one decimal it would read 14.1 in [14.1, 14.4]."""
+    assert words.decimals("deg", Measure(14.08, 14.23, 14.09, 14.38)) == 2
+    assert words.decimals("deg", Measure(12.9, 11.5, 9.9, 13.2)) == 1
+    assert words.decimals("deg", Measure(35.0, 35.0, 35.0, 35.0)) == 1
+    assert words.decimals("L", Measure(3.1, 3.05)) == 2
+
+
 def test_the_answer_gives_intervals_floor_criterion_and_what_cannot_be_told(full: Fit) -> None:
     said = " ".join(answer.sentences(full))
-    assert "first overshoot 8.4° [8.1, 8.7], measured 8.3°" in said
+    assert "first overshoot 8.42° [8.08, 8.71], measured 8.31°" in said
+    assert "4 of 4 measured manoeuvring values lie inside" in said
     assert "process noise alone would leave 1.4° and 0.19 m" in said
     assert "The records determine about 6 of 11 free coefficients; the rest comes from the priors." in said
     assert "Whatever the manoeuvre, all coefficients, thrust and inertias can be scaled together" in said

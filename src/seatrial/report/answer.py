@@ -3,7 +3,17 @@
 from seatrial.identify.settings import WHITE_INFLATION
 from seatrial.report.numbers import duration, exact, fixed, significant
 from seatrial.report.telling import determined
-from seatrial.report.words import counted, extrapolated, interval, listed, reach, sentence
+from seatrial.report.words import (
+    counted,
+    decimals,
+    extrapolated,
+    interval,
+    is_inside,
+    listed,
+    measure,
+    reach,
+    sentence,
+)
 from seatrial.results import Coefficient, Fit, Prediction, Symmetry
 from seatrial.values import Severity
 
@@ -32,6 +42,7 @@ def sentences(fit: Fit) -> list[str]:
     """The answer, most important first."""
     told = [
         *_held_out(fit),
+        _covered(fit),
         *_extrapolated(fit),
         _not_told(fit),
         _coefficients(fit),
@@ -80,16 +91,26 @@ def _floor(p: Prediction) -> str:
 
 
 def _first_measures(p: Prediction) -> str:
-    known = {"overshoot_1_deg": ("first overshoot", "°", 1), "advance_L": ("advance", " L", 2),
-             "tactical_diameter_L": ("tactical diameter", " L", 2)}  # fmt: skip
+    known = {"overshoot_1_deg": ("first overshoot", "°"), "advance_L": ("advance", " L"),
+             "tactical_diameter_L": ("tactical diameter", " L")}  # fmt: skip
     told = []
-    for name, (label, unit, decimals) in known.items():
+    for name, (label, unit) in known.items():
         m = p.measures.get(name)
         if m is not None and m.measured is not None and m.simulated is not None:
-            bounds = interval(m.lower, m.upper, decimals)
-            simulated = f"{fixed(m.simulated, decimals)}{unit}{' ' + bounds if bounds else ''}"
-            told.append(f"{label} {simulated}, measured {fixed(m.measured, decimals)}{unit}")
+            digits = decimals(measure(name)[1], m)
+            bounds = interval(m.lower, m.upper, digits)
+            simulated = f"{fixed(m.simulated, digits)}{unit}{' ' + bounds if bounds else ''}"
+            told.append(f"{label} {simulated}, measured {fixed(m.measured, digits)}{unit}")
     return f" Simulated {'; '.join(told)}." if told else ""
+
+
+def _covered(fit: Fit) -> str:
+    """How many measured values lie inside their predicted intervals; those without a width are no prediction."""
+    judged = [is_inside(m) for p in fit.validation() for m in p.measures.values() if m.lower != m.upper]
+    known = [inside for inside in judged if inside is not None]
+    if not known:
+        return ""
+    return f"{sum(known)} of {len(known)} measured manoeuvring values lie inside their predicted 95 % intervals."
 
 
 def _extrapolated(fit: Fit) -> list[str]:

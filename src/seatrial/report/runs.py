@@ -181,15 +181,12 @@ def _measures(rows: Sequence[MeasureRow]) -> Measures:
 
 def _measure(name: str, m: Measure, spread: float | None) -> MeasureRow:
     label, unit = words.measure(name)
-    digits = words.decimals(unit)
+    digits = words.decimals(unit, m)
     both = m.measured is not None and m.simulated is not None
     difference = _signed(m.simulated - m.measured, digits) if both else DASH  # type: ignore[operator]
-    inside = None
-    if m.measured is not None and m.lower is not None and m.upper is not None:
-        inside = m.lower <= m.measured <= m.upper
     return MeasureRow(
         label, unit, fixed(m.measured, digits), fixed(m.simulated, digits), difference,
-        words.interval(m.lower, m.upper, digits), inside, _small(spread),
+        words.interval(m.lower, m.upper, digits), words.is_inside(m), _small(spread),
     )  # fmt: skip
 
 

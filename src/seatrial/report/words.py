@@ -8,7 +8,7 @@ import numpy as np
 
 from seatrial.report.figures.correlation import correlation_of
 from seatrial.report.numbers import fixed, significant
-from seatrial.results import Extrapolation
+from seatrial.results import Extrapolation, Measure
 from seatrial.values import Array, display
 from seatrial.values.notation import NOTATION
 
@@ -30,6 +30,7 @@ _MEASURES = {
 _UNIT_ENDINGS = (("_deg_s", "deg/s"), ("_deg", "deg"), ("_L", "L"), ("_s", "s"))
 STRONG = 0.9
 INSIDE, EDGE = 1.05, 1.2
+FINER = 2
 
 
 def measure(name: str) -> tuple[str, str]:
@@ -45,9 +46,20 @@ def measure(name: str) -> tuple[str, str]:
     return name.replace("_", " "), ""
 
 
-def decimals(unit: str) -> int:
-    """Decimals of a measure in that unit."""
-    return {"deg": 1, "L": 2, "s": 1, "m/s": 3, "deg/s": 2}.get(unit, 3)
+def decimals(unit: str, m: Measure) -> int:
+    """Decimals of a measure in that unit, so many that two digits of its interval's width are seen."""
+    usual = {"deg": 1, "L": 2, "s": 1, "m/s": 3, "deg/s": 2}.get(unit, 3)
+    width = m.upper - m.lower if m.upper is not None and m.lower is not None else 0.0
+    if not 0.0 < width < math.inf:
+        return usual
+    return min(usual + FINER, max(usual, 1 - math.floor(math.log10(width))))
+
+
+def is_inside(m: Measure) -> bool | None:
+    """Whether the measured value lies in the interval; None where one of them is not known."""
+    if m.measured is None or m.lower is None or m.upper is None:
+        return None
+    return m.lower <= m.measured <= m.upper
 
 
 def ordinal(number: int) -> str:
