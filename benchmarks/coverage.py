@@ -17,7 +17,7 @@ from measure import Line, machine
 from seatrial.equations import Model
 from seatrial.identify import Settings, identified
 from seatrial.identify.fit import ship_length_seconds
-from seatrial.identify.forecast import predictions
+from seatrial.identify.forecast import forecast
 from seatrial.identify.settings import Intervals
 from seatrial.information.discrepancy import kind_of
 from seatrial.results import Prediction
@@ -65,7 +65,7 @@ def judged(model: Model, train: Sequence[Record], held: Sequence[Record], number
     records = [TrialRecord(r, Role.TRAIN, r.name) for r in train] + [
         TrialRecord(r, Role.VALIDATE, r.name) for r in held
     ]
-    told = predictions(found, records, ship_length_seconds(train, length), length, number)
+    told = forecast(found, records, ship_length_seconds(train, length), length, number).predictions
     return [entry for p in told if p.role == "validation" for entry in _told(p, number)]
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from seatrial.equations import Model
-    from seatrial.results import Fit, Study
+    from seatrial.results import Extrapolation, Fit, Study
     from seatrial.trial import Trial
     from seatrial.trial.model_file import ModelFile
     from seatrial.values import Finding, Record
@@ -115,7 +115,10 @@ def load_model(path: str | Path, own_model: "Model | None" = None) -> "ModelFile
     return read_model_file(path, own_model)
 
 
-def simulate(
+Steering = Callable[["Model"], "Record"]
+
+
+def steering(
     model: "ModelFile",
     manoeuvre: str,
     *,
@@ -124,8 +127,8 @@ def simulate(
     duration: float | None = None,
     rudder_rate: float | None = None,
     seed: int = 0,
-) -> "Record":
-    """A manoeuvre such as ``zigzag:20/20`` steered by the model, as a record.
+) -> Steering:
+    """What steers a manoeuvre such as ``zigzag:20/20`` with any model of these equations, under the file's conditions.
 
     Args:
         speed: approach speed, m/s; without it the speed at which surge balances.
@@ -135,8 +138,7 @@ def simulate(
         seed: of a random binary sequence.
 
     Raises:
-        InputError: unknown manoeuvre, an input or the speed is known to nobody, a rudder that cannot move, or the
-            simulation diverges.
+        InputError: unknown manoeuvre, or a rudder that cannot move.
     """
     from seatrial.manoeuvres import programme
     from seatrial.simulate.steer import SOLAS_SLEW_RATE
@@ -150,14 +152,62 @@ def simulate(
     scale = model.ship.scale if model.ship else 1.0
     held = {name: value for name, value in model.approach.items() if name in model.model.input_names}
     known = model.approach.get("u") if "u" not in model.model.states else None
-    return steered(
-        model.model,
-        programme(_with_seed(manoeuvre, seed)),
-        duration=duration,
-        speed=known if speed is None else speed,
-        inputs={**held, **(inputs or {})},
-        slew_rate=rudder_rate or SOLAS_SLEW_RATE * math.sqrt(scale),
+    orders = programme(_with_seed(manoeuvre, seed))
+
+    def steer(ship: "Model") -> "Record":
+        return steered(
+            ship,
+            orders,
+            duration=duration,
+            speed=known if speed is None else speed,
+            inputs={**held, **(inputs or {})},
+            slew_rate=rudder_rate or SOLAS_SLEW_RATE * math.sqrt(scale),
+        )
+
+    return steer
+
+
+def simulate(
+    model: "ModelFile",
+    manoeuvre: str,
+    *,
+    speed: float | None = None,
+    inputs: Mapping[str, float] | None = None,
+    duration: float | None = None,
+    rudder_rate: float | None = None,
+    seed: int = 0,
+) -> "Record":
+    """A manoeuvre steered by the model, as a record; arguments as in `steering`.
+
+    Raises:
+        InputError: as `steering`; an input or the speed is known to nobody, or the simulation diverges.
+    """
+    steer = steering(
+        model, manoeuvre, speed=speed, inputs=inputs, duration=duration, rudder_rate=rudder_rate, seed=seed
     )
+    return steer(model.model)
+
+
+def measure_intervals(model: "ModelFile", steer: Steering, seed: int = 0) -> dict[str, tuple[float, float]]:
+    """95 % interval of each measure of the manoeuvre; empty where the model file says nothing of its own uncertainty.
+
+    Raises:
+        InputError: most of the ships that the fit allows cannot be steered through the manoeuvre.
+    """
+    import numpy as np
+
+    from seatrial.identify.steered import measure_intervals
+
+    if model.margin is None or model.ship is None:
+        return {}
+    return measure_intervals(model.model, model.margin, steer, model.ship.length, np.random.default_rng(seed))
+
+
+def extrapolation(model: "ModelFile", record: "Record") -> "Extrapolation | None":
+    """How far a simulated run leaves what the training runs cover; None where the model file does not say it."""
+    from seatrial.information.extrapolation import extrapolation
+
+    return None if model.margin is None else extrapolation(record, model.margin.covered)
 
 
 def _with_seed(manoeuvre: str, seed: int) -> str:

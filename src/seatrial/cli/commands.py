@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from seatrial.cli.output import print_findings, print_fit, print_study, progress, write_json
+from seatrial.cli.output import print_findings, print_fit, print_measures, print_study, progress, write_json
 
 if TYPE_CHECKING:
     from seatrial.equations import Model
@@ -151,13 +151,13 @@ def simulate(
         raise InputError("give either --manoeuvre or --inputs")
     file = verbs.load_model(model_file, _own(model))
     writable_folder(out.parent)
-    measured = None
+    measured, intervals = None, {}
     if inputs is not None:
         measured = read_table(Path(inputs)) if trial is None else verbs.run_of(trial, inputs)
         record = verbs.replay(file, measured)
     else:
         held = dict(_pair(text) for text in constant or [])
-        record = verbs.simulate(
+        steer = verbs.steering(
             file,
             manoeuvre or "",
             speed=speed,
@@ -166,11 +166,22 @@ def simulate(
             rudder_rate=None if rudder_rate is None else math.radians(rudder_rate),
             seed=seed,
         )
+        record = steer(file.model)
+        intervals = verbs.measure_intervals(file, steer, seed)
     write_record(record, out)
     measures = verbs.measures(file, record, measured if measured is not None and "psi" in measured else None)
-    for name, value in measures.items():
-        print(f"  {name:28s} {value:10.4g}")
-    write_json(json, lambda: {"record": str(out), "measures": measures, "seed": seed})
+    reach = verbs.extrapolation(file, record)
+    print_measures(measures, intervals, reach)
+    write_json(
+        json,
+        lambda: {
+            "record": str(out),
+            "measures": measures,
+            "intervals": {name: list(pair) for name, pair in intervals.items()},
+            "extrapolation_index": None if reach is None else reach.index,
+            "seed": seed,
+        },
+    )
     print(f"record: {out}")
 
 

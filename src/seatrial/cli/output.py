@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from seatrial.results import Fit, Prediction, Study
+    from seatrial.results import Extrapolation, Fit, Prediction, Study
     from seatrial.values import Finding
 
 FAR = 1.2
@@ -77,6 +77,19 @@ def _print_telling(fit: "Fit") -> None:
             print(f"  cannot be told: {symmetry.text}")
     if disturbance is not None and disturbance.text:
         print(f"{disturbance.method}: {disturbance.text}")
+
+
+def print_measures(
+    measures: Mapping[str, float],
+    intervals: Mapping[str, tuple[float, float]],
+    extrapolation: "Extrapolation | None",
+) -> None:
+    """Measures of a simulated manoeuvre with their 95 % intervals, and how far it leaves the training runs."""
+    for name, value in measures.items():
+        lower, upper = intervals.get(name, (None, None))
+        print(f"  {name:28s} {value:10.4g}" + ("" if lower is None else f"  [{lower:.4g}, {upper:.4g}]"))
+    if extrapolation is not None:
+        print(f"  extrapolation index {extrapolation.index:.2f}" + (BEYOND if extrapolation.index > FAR else ""))
 
 
 def print_study(study: "Study") -> None:

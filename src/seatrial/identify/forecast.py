@@ -13,14 +13,14 @@ from seatrial.identify.margins import DRAWS, foreseen, missed, with_intervals
 from seatrial.identify.predict import compared, offsets_of, open_loop, prediction, rms, session_means
 from seatrial.information.discrepancy import NONE, Discrepancy, Miss, discrepancy
 from seatrial.information.extrapolation import extrapolation, reach
-from seatrial.results import Prediction
+from seatrial.results import Margin, Prediction
 from seatrial.trial import Role, TrialRecord
 from seatrial.values import Array, InputError, Progress
 from seatrial.workers import mapped
 
 
 @dataclass(frozen=True, eq=False)
-class Margin:
+class Calibration:
     """What intervals of predictions are made of: what is foreseen, and what runs left out missed beyond it."""
 
     scatter: Scatter
@@ -48,16 +48,16 @@ def scatter_of(found: Identified, process: Array | None = None) -> Scatter:
     )
 
 
-def margin_of(
+def calibrated(
     found: Identified, train: Sequence[TrialRecord], seconds: float, length: float, seed: int, progress: Progress
-) -> Margin:
-    """The margin of a fit's predictions; every training run is predicted by the estimate without it, if there are any.
+) -> Calibration:
+    """What intervals of a fit's predictions rest on: every training run is predicted by the estimate without it.
 
     seconds: of a run's beginning, from which its initial state is taken.
     """
     scatter, left_out = scatter_of(found), found.uncertainty.left_out
     if left_out is None:
-        return Margin(scatter, NONE)
+        return Calibration(scatter, NONE)
     problem = replace(found.made.problem, workers=1)
     streams = np.random.SeedSequence(seed).spawn(len(train))
 
@@ -67,10 +67,18 @@ def margin_of(
 
     progress("runs left out, predicted")
     found_misses = mapped(one, range(len(train)), workers=found.made.problem.workers)
-    return Margin(scatter, discrepancy([m for m in found_misses if m is not None]))
+    return Calibration(scatter, discrepancy([m for m in found_misses if m is not None]))
 
 
-def predictions(
+@dataclass(frozen=True, eq=False)
+class Forecast:
+    """All runs predicted, and what intervals of further predictions are made of."""
+
+    predictions: tuple[Prediction, ...]
+    margin: Margin
+
+
+def forecast(
     found: Identified,
     records: Sequence[TrialRecord],
     seconds: float,
@@ -78,34 +86,54 @@ def predictions(
     seed: int = 0,
     progress: Progress | None = None,
     tied: Sequence[Tied] = (),
-) -> tuple[Prediction, ...]:
+) -> Forecast:
     """Every run open loop: training runs with their own session's offsets, the others with the training mean.
 
     Runs that were not fitted get intervals, for which `tied` models are asked as well; all are compared with the ground
-    the training runs cover.
+    the training runs cover. seconds: of a run's beginning, from which its initial state is taken.
+
+    Raises:
+        InputError: a simulation diverges.
     """
     tell = progress or (lambda _: None)
     problem, mean = found.made.problem, session_means(found.made.problem, found.made.shared)
-    train = [r for r in records if r.role is Role.TRAIN]
-    margin = margin_of(found, train, seconds, length, seed, tell)
-    simulated, made = [], []
+    known = calibrated(found, [r for r in records if r.role is Role.TRAIN], seconds, length, seed, tell)
+    runs = []
     for item in records:
         tell(f"predicting {item.record.name}")
         own = own_nuisances(found, item.session) if item.role is Role.TRAIN else mean
-        simulated.append(open_loop(problem, found.model, item.record, own, seconds))
-    covered = reach([s.record for s, item in zip(simulated, records, strict=True) if item.role is Role.TRAIN])
+        runs.append(open_loop(problem, found.model, item.record, own, seconds))
+    covered = reach([run.record for run, item in zip(runs, records, strict=True) if item.role is Role.TRAIN])
     streams = np.random.SeedSequence((seed, 1)).spawn(len(records))
-    for item, run, stream in zip(records, simulated, streams, strict=True):
+    made = []
+    for item, run, stream in zip(records, runs, streams, strict=True):
         role = "training" if item.role is Role.TRAIN else "validation"
         one = prediction(found.model, item.record, role, run, seconds, length)
         one = replace(one, extrapolation=extrapolation(run.record, covered))
         if item.role is not Role.TRAIN:
             rng = np.random.default_rng(stream)
-            seen = foreseen(problem, found.model, item.record, run, mean, length, margin.scatter, rng, DRAWS)
+            seen = foreseen(problem, found.model, item.record, run, mean, length, known.scatter, rng, DRAWS)
             one = replace(one, spread=spread_of(tied, one, seconds, length))
-            one = with_intervals(one, seen, margin.beyond, margin.scatter.degrees_of_freedom)
+            one = with_intervals(one, seen, known.beyond, known.scatter.degrees_of_freedom)
         made.append(one)
-    return tuple(made)
+    return Forecast(tuple(made), _margin(found, known, covered, tied))
+
+
+def _margin(found: Identified, known: Calibration, covered: dict[str, float], tied: Sequence[Tied]) -> Margin:
+    problem, scatter = found.made.problem, known.scatter
+    names = [name for name, _ in problem.session_parameters] + [n.correction.name for n in problem.nuisances]
+    base = found.model.parameters
+    changed = [{p.name: p.value for p in t.model.parameters if p.value != base[p.name].value} for t in tied]
+    return Margin(
+        scatter.coefficients,
+        scatter.degrees_of_freedom,
+        known.beyond.factor,
+        known.beyond.kinds,
+        dict(zip(names, np.sqrt(np.diag(scatter.offsets)).tolist(), strict=True)),
+        {s: float(q) for s, q in zip(found.model.states, scatter.process, strict=True) if q > 0},
+        covered,
+        tuple(changed),
+    )
 
 
 def spread_of(tied: Sequence[Tied], made: Prediction, seconds: float, length: float) -> dict[str, float]:

@@ -11,7 +11,7 @@ from seatrial.identify.agreement import agreement
 from seatrial.identify.family import WINDOW_SHIP_LENGTHS as FAMILY_WINDOW
 from seatrial.identify.family import Tied, chosen, compared, table, tied_models, with_ensemble
 from seatrial.identify.fit import Identified, identified, ship_length_seconds
-from seatrial.identify.forecast import predictions
+from seatrial.identify.forecast import forecast
 from seatrial.identify.settings import SEGMENT_SHIP_LENGTHS, START_SECONDS_LENGTHS, Intervals, Settings
 from seatrial.identify.singular import refuse_singular
 from seatrial.results import Fit, Member
@@ -86,7 +86,7 @@ def identify(
         tied = tied_models(fitted, family)
         found = chosen(found, fitted, family, runs, sessions, length, settings, progress)
     seconds = trial.estimate.initial_s or START_SECONDS_LENGTHS * unit
-    told = predictions(found, records, seconds, length, seed, progress, tied)
+    told = forecast(found, records, seconds, length, seed, progress, tied)
     found = with_ensemble(found, tied)
     return Fit(
         question=trial.question
@@ -100,13 +100,14 @@ def identify(
         offsets=outcome.offsets(found),
         noise=outcome.noise(found),
         residuals=outcome.residuals(found),
-        predictions=told,
+        predictions=told.predictions,
         findings=(*findings, *agreement(found.made), *outcome.bounds_hit(found), *outcome.unconverged(found)),
         records=tuple(r.record for r in records),
         seed=seed,
         elapsed_s=time.perf_counter() - began,
         versions=versions(),
         family=family,
+        margin=told.margin,
     )
 
 

@@ -101,6 +101,31 @@ class Extrapolation:
     ratios: dict[str, float]
 
 
+@dataclass(frozen=True, eq=False)
+class Margin:
+    """What intervals of any further prediction of a fit are made of.
+
+    Attributes:
+        covariance: of the free coefficients, without the spread of tied models, shape (n, n).
+        degrees_of_freedom: of Student's t.
+        factor: by which a foreseen standard deviation is multiplied where no training run shows that kind of measure.
+        kinds: kind of measure -> standard deviation that comes on top, in its unit.
+        offsets: offset (``delta zero``) -> standard deviation between sessions, SI.
+        process: state -> intensity of process noise, SI over the root of a second.
+        covered: what the training runs reach, SI (see `seatrial.information.extrapolation.reach`).
+        tied: parameter -> value of each tied model.
+    """
+
+    covariance: Array
+    degrees_of_freedom: float
+    factor: float = 1.0
+    kinds: dict[str, float] = field(default_factory=dict)
+    offsets: dict[str, float] = field(default_factory=dict)
+    process: dict[str, float] = field(default_factory=dict)
+    covered: dict[str, float] = field(default_factory=dict)
+    tied: tuple[dict[str, float], ...] = ()
+
+
 @dataclass(frozen=True)
 class Member:
     """One model of the declared family, scored over whole runs left out.
@@ -186,6 +211,7 @@ class Fit:
         records: the training and validation records as used.
         seed, elapsed_s, versions: how to get the same again.
         identifiability: what the records can tell; disturbance: noise and criterion; family: models compared.
+        margin: what intervals of further predictions are made of.
     """
 
     question: str
@@ -207,6 +233,7 @@ class Fit:
     identifiability: Identifiability | None = None
     disturbance: Disturbance | None = None
     family: tuple[Member, ...] = ()
+    margin: Margin | None = None
 
     def validation(self) -> tuple[Prediction, ...]:
         """The predictions of runs that were not fitted."""

@@ -147,6 +147,7 @@ def fit_from(table: Mapping[str, Any], file: ModelFile, arrays: Mapping[str, Arr
         model=file.model,
         coefficients=tuple(_made(Coefficient, c) for c in detail["coefficients"]),
         covariance=file.covariance,
+        margin=file.margin,
         solution=Solution(
             arrays["solution"],
             _number(solution["value"]),

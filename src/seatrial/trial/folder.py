@@ -89,7 +89,7 @@ def _contents(fit: Fit) -> dict[str, bytes]:
     roles = [(r, "validation" if r.name in {p.record for p in fit.validation()} else "training") for r in fit.records]
     provenance = provenance_of(roles, fit.method.criterion, fit.seed, fit.versions)
     approach = approach_of([r for r, role in roles if role == "training"], fit.model)
-    model = model_text(ModelFile(fit.model, fit.covariance, provenance, fit.ship, approach)).encode()
+    model = model_text(ModelFile(fit.model, fit.covariance, provenance, fit.ship, approach, fit.margin)).encode()
     contents = {"model.toml": model, "arrays.npz": npz_bytes(arrays)}
     digests = {name: hashlib.sha256(content).hexdigest() for name, content in contents.items()}
     detail = detail_table(fit, records, place)

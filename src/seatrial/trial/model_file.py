@@ -15,10 +15,13 @@ import tomli_w
 
 from seatrial.equations import Model
 from seatrial.models import model_named
+from seatrial.results import Margin
 from seatrial.values import Array, InputError, Parameter, Parameters, Prior, Record, Ship, frozen
 from seatrial.values.files import write_whole
 
 FORMAT = 1
+_ROUNDING = 1e-8
+_TABLES_OF_MARGIN = ("kinds", "offsets", "process", "covered")
 CONVENTIONS = (
     "SI units and radians; x forward, y starboard, z down, psi clockwise; "
     "unit '1' marks a coefficient made nondimensional as its model's source says"
@@ -49,6 +52,7 @@ class ModelFile:
     Attributes:
         covariance: of the free parameters in order, shape (n, n), or empty (0, 0).
         approach: steady state and inputs from which a manoeuvre starts by default, symbol -> SI value.
+        margin: what intervals of predictions are made of; None where nobody estimated any.
     """
 
     model: Model
@@ -56,6 +60,7 @@ class ModelFile:
     provenance: ModelProvenance = ModelProvenance()
     ship: Ship | None = None
     approach: Mapping[str, float] = field(default_factory=dict)
+    margin: Margin | None = None
 
 
 def provenance_of(
@@ -85,8 +90,38 @@ def model_text(file: ModelFile) -> str:
     table["approach"] = _floats(file.approach)
     table["parameters"] = {p.name: _parameter_table(p) for p in model.parameters}
     if covariance.size:
-        table["covariance"] = {"of": list(free), "rows": [[float(c) for c in row] for row in covariance]}
+        table["covariance"] = {"of": list(free), "rows": _rows(covariance)}
+    if file.margin is not None:
+        table["margin"] = _margin_table(file.margin)
     return tomli_w.dumps(table | {"provenance": _provenance_table(file.provenance)})
+
+
+def _rows(matrix: Array) -> list[list[float]]:
+    return [[float(c) for c in row] for row in matrix]
+
+
+def _margin_table(margin: Margin) -> dict[str, Any]:
+    return {
+        "degrees_of_freedom": float(margin.degrees_of_freedom),
+        "factor": float(margin.factor),
+        "covariance": _rows(margin.covariance),
+        "tied": [_floats(one) for one in margin.tied],
+        **{name: _floats(getattr(margin, name)) for name in _TABLES_OF_MARGIN},
+    }
+
+
+def _margin(table: Mapping[str, Any], where: str) -> Margin | None:
+    if "margin" not in table:
+        return None
+    entry = table["margin"]
+    tables = {name: {k: float(v) for k, v in entry[name].items()} for name in _TABLES_OF_MARGIN}
+    return Margin(
+        _matrix(entry["covariance"], f"{where}': margin.covariance"),
+        float(entry["degrees_of_freedom"]),
+        float(entry["factor"]),
+        tied=tuple({k: float(v) for k, v in one.items()} for one in entry["tied"]),
+        **tables,
+    )
 
 
 def _floats(numbers: Mapping[str, float]) -> dict[str, float]:
@@ -140,10 +175,11 @@ def parsed_model(text: str, where: str, own_model: Model | None = None) -> Model
         items = tuple(_parameter(name, entry) for name, entry in table["parameters"].items())
         if tuple(p.name for p in items) != model.parameters.names:
             raise InputError(f"model file '{where}': its parameters are not those of model '{model.name}'")
-        covariance = _covariance(table)
+        covariance = _matrix(table.get("covariance", {}).get("rows", []), f"{where}': covariance")
         provenance = _provenance(table["provenance"])
         approach = {name: float(value) for name, value in table["approach"].items()}
-        return ModelFile(model.with_parameters(Parameters(items)), covariance, provenance, _ship(table), approach)
+        made = model.with_parameters(Parameters(items))
+        return ModelFile(made, covariance, provenance, _ship(table), approach, _margin(table, where))
     except (KeyError, TypeError, AttributeError, ValueError) as error:
         if isinstance(error, InputError):
             raise
@@ -157,9 +193,17 @@ def _ship(table: Mapping[str, Any]) -> Ship | None:
     return Ship(table["ship"]["name"], particulars, table["ship"]["source"], float(table["ship"]["scale"]))
 
 
-def _covariance(table: Mapping[str, Any]) -> Array:
-    rows = table.get("covariance", {}).get("rows", [])
-    return frozen(np.array(rows, dtype=float).reshape(len(rows), len(rows)))
+def _matrix(rows: Sequence[Sequence[float]], where: str) -> Array:
+    """A covariance; a negative variance in any direction, beyond rounding, is refused."""
+    matrix = np.array(rows, dtype=float).reshape(len(rows), len(rows))
+    scale = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
+    smallest = float(np.min(np.linalg.eigvalsh(matrix / np.outer(scale, scale)))) if len(rows) else 0.0
+    if not smallest > -_ROUNDING:
+        raise InputError(
+            f"model file '{where} is not positive definite (smallest eigenvalue {smallest:.3g} of its correlation "
+            "matrix); write the file again with 'seatrial identify'"
+        )
+    return frozen(matrix)
 
 
 def _equations(entry: Mapping[str, Any], where: str, own_model: Model | None) -> Model:
