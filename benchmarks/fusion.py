@@ -6,26 +6,34 @@ added masses are free; their prior means lie 10-20 % off the truth, to either si
 predicted with priors of 10, 30 and 100 %, without and with a table of captive points of 3 % noise, everything over
 several draws. (With zigzags 20/20 as well the records alone tell enough: the diameter moves by some 1 point only.)
 `python benchmarks/fusion.py` alone; `--draws 3` for a quicker look.
+
+Where SEATRIAL_DATA is set, the same with the recorded zigzags of the 7 m KVLCC2 (examples/kvlcc2_hsva.toml) and points
+simulated from the published coefficients, about which the priors are centred too: what real model error does.
 """
 
 import argparse
 import math
+import os
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 from measure import Line, at_most, machine
 
 from seatrial.equations import Model
 from seatrial.identify import Settings, identified
+from seatrial.identify.identify import settings_of
 from seatrial.manoeuvres import programme
 from seatrial.manoeuvres.measures import measures
 from seatrial.models.mmg import HULL, mmg
 from seatrial.models.published import esso_osaka, kvlcc2_full
 from seatrial.problem.static_forces import StaticForces
 from seatrial.simulate import manoeuvre, replay
+from seatrial.simulate.steer import SOLAS_SLEW_RATE
+from seatrial.trial import Role, load_trial, records_of
 from seatrial.values import ForcePoints, Prior, Record
 
 SEED, DRAWS, RATE, REVOLUTIONS = 11, 8, 1.0, 1.54
@@ -128,8 +136,8 @@ def off_centre(model: Model, rng: np.random.Generator) -> dict[str, float]:
 
 
 def with_priors(model: Model, means: Mapping[str, float], percent: float) -> Model:
-    """The model free in `FREE`, starting from the prior means."""
-    parameters = model.parameters.only_free(FREE).with_values(means)
+    """The model free in these parameters, starting from the prior means."""
+    parameters = model.parameters.only_free(means).with_values(means)
     priors = {n: Prior(m, percent / 100.0 * parameters[n].characteristic_scale, "off-centre") for n, m in means.items()}
     return model.with_parameters(parameters.with_priors(priors))
 
@@ -160,6 +168,47 @@ def compared(seed: int = SEED, training: tuple[str, ...] = TRAINING) -> tuple[Mo
     return moved(runs, means, truth, ()), moved(runs, means, truth, (points,))
 
 
+RECORDED = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"
+
+
+def recorded(seed: int = SEED) -> tuple[Moved, Moved]:
+    """Without and with simulated captive points, from the recorded zigzags; errors are against the published turn."""
+    trial = load_trial(RECORDED)
+    found = [r for r in records_of(trial)[0] if r.role is Role.TRAIN]
+    runs, sessions = [r.record.resampled(trial.estimate.rate or RATE) for r in found], [r.session for r in found]
+    published, length = trial.model.with_parameters(trial.model.parameters.without_priors()), trial.ship.length
+    speed, n = (float(np.median(np.concatenate([r[s][:10] for r in runs]))) for s in ("u", "n"))
+    points = captive(published, np.random.default_rng(seed), speed, revolutions=n)
+    means = {p.name: p.value for p in published.parameters.free}
+
+    def turn(model: Model) -> float:
+        slew = SOLAS_SLEW_RATE * math.sqrt(trial.ship.scale)
+        made = manoeuvre(model, programme(TURN), dt=0.1, inputs={"n": n}, slew_rate=slew)
+        return measures(made, length)["tactical_diameter_L"]
+
+    def over(forces: tuple[ForcePoints, ...]) -> Moved:
+        settings = replace(settings_of(trial, runs), forces=forces)
+        models = {p: with_priors(published, means, p) for p in SPREADS}
+        return Moved(
+            {p: turn(identified(m, runs, sessions, length, settings).model) for p, m in models.items()}, turn(published)
+        )
+
+    return over(()), over((points,))
+
+
+def recorded_lines(pair: tuple[Moved, Moved]) -> list[Line]:
+    """The table of the recorded zigzags."""
+    alone, fused = pair
+    table = [Line("recorded zigzags: the published coefficients' diameter", fused.truth, "L")]
+    for label, made in (("alone", alone), ("with captive points", fused)):
+        table += [Line(f"recorded zigzags {label}, prior {p:g} %", v, "L") for p, v in made.predicted.items()]
+    return [
+        *table,
+        Line("recorded zigzags alone: diameter moves", alone.points, "points"),
+        at_most("recorded zigzags with captive points: diameter moves", fused.points, "points", LIMIT),
+    ]
+
+
 def lines(pairs: list[tuple[Moved, Moved]]) -> list[Line]:
     """The table over all draws; the target holds for the largest move."""
     table = [Line("true tactical diameter", pairs[0][0].truth, "L")]
@@ -185,7 +234,8 @@ def lines(pairs: list[tuple[Moved, Moved]]) -> list[Line]:
 
 def run(draws: int = DRAWS, seed: int = SEED) -> list[Line]:
     """All draws of noise, wind, prior means and points."""
-    return lines([compared(seed + i) for i in range(draws)])
+    table = lines([compared(seed + i) for i in range(draws)])
+    return [*table, *recorded_lines(recorded(seed))] if os.environ.get("SEATRIAL_DATA") else table
 
 
 def main(arguments: list[str]) -> int:

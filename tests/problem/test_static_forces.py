@@ -142,6 +142,8 @@ def test_the_problem_adds_points_to_all_runs_and_to_no_run_left_out() -> None:
     assert with_points.cost == pytest.approx(fused.cost(shared, local))
     assert fused.cost(shared, local) == pytest.approx(plain.cost(shared, local) + own.cost)
     np.testing.assert_allclose(fused.known_precision(shared), own.hessian)
+    pinned = replace(fused, pinned=shared)
+    assert pinned.cost(shared, local) == replace(plain, pinned=shared).cost(shared, local), "only initial states move"
     one, other = (p.assembled(p.blocks(shared, local), shared, np.arange(1), with_prior=False) for p in (fused, plain))
     np.testing.assert_array_equal(one.hessian, other.hessian)
 

@@ -193,15 +193,20 @@ class OutputError:
     def _places(self) -> list[int]:
         return [self.model.parameters.index(n) for n in self.free]
 
+    @property
+    def _told_by(self) -> tuple[Addend, ...]:
+        """The other data; none where only initial states move, which they say nothing about."""
+        return () if self.pinned is not None else self.others
+
     def known_precision(self, shared: Array) -> Array:
         """Information (size, size) of priors and other data, which stay when runs are left out."""
         precision, k = np.diag(self.priors[1]), len(self.free)
-        for other in self.others:
+        for other in self._told_by:
             precision[:k, :k] += other.normal(self._parameter_values(shared), self._places).hessian
         return precision
 
     def _other_cost(self, shared: Array) -> float:
-        return sum(other.cost(self._parameter_values(shared)) for other in self.others)
+        return sum(other.cost(self._parameter_values(shared)) for other in self._told_by)
 
     def simulated(self, shared: Array, local: Array) -> Array:
         """Simulated outputs of all segments, shape (rows, ny); NaN after a divergence."""
@@ -266,7 +271,7 @@ class OutputError:
             gradient += weight * (shared - mean)
             hessian += np.diag(weight)
             k = len(self.free)
-            for other in self.others:
+            for other in self._told_by:
                 more = other.normal(self._parameter_values(shared), self._places)
                 cost += more.cost
                 gradient[:k] += more.gradient
