@@ -67,6 +67,17 @@ def test_drag_that_drives_is_named() -> None:
     assert force_findings(turned(table(), "X")) == (), "with a turning propeller nobody knows"
 
 
+def test_forces_of_another_prime_system_are_noticed() -> None:
+    unit, length_over_draught = 500.0 * 7.0 * 0.46, 7.0 / 0.46
+    assert force_findings(table(), unit) == ()
+    for factor in (length_over_draught, 1 / length_over_draught):
+        points = table()
+        points = replace(points, forces={f: factor * x for f, x in points.forces.items()})
+        (finding,) = force_findings(points, unit)
+        assert finding.code == "force-size"
+        assert "check the prime system" in finding.advice
+
+
 def test_few_points_or_a_single_force_do_not_stumble() -> None:
     points = table()
     few = replace(

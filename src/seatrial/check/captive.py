@@ -1,4 +1,4 @@
-"""Force points against what every ship does: which column looks turned."""
+"""Force points against what every ship does: which column looks turned, and whether forces are of a ship's size."""
 
 from dataclasses import dataclass
 from itertools import product
@@ -13,6 +13,7 @@ from seatrial.values import Array, Finding, ForcePoints, Includes, Severity
 LAWS = {("Y", "v"): -1, ("N", "r"): -1, ("Y", "delta"): -1, ("N", "delta"): 1}
 _HELPING = {("N", "v"): -1}
 _CERTAIN = 4.0
+_SIDE_FORCE = (0.05, 2.5)
 _SIDES = {"X": ("forward", "aft"), "beta": ("bow to starboard", "bow to port")}
 
 
@@ -27,9 +28,30 @@ class _Slope:
         return int(np.sign(self.value)) if abs(self.value) > _CERTAIN * self.error else 0
 
 
-def force_findings(points: ForcePoints) -> tuple[Finding, ...]:
-    """Errors `force-sign` where drag drives, a side force follows the drift, or a moment its own turning."""
-    return (*_drag(points), *_turned(points))
+def force_findings(points: ForcePoints, unit: float | None = None) -> tuple[Finding, ...]:
+    """Errors `force-sign` where drag drives, a side force follows the drift, or a moment its own turning; `force-size`.
+
+    unit: rho/2 L d of the ship [kg/m^2], with which the size of the side force is judged.
+    """
+    slopes = {(f, m): s for f in ("Y", "N") if f in points.forces for m, s in _slopes(points, f).items()}
+    return (*_drag(points), *_turned(points, slopes), *([] if unit is None else _size(points, slopes, unit)))
+
+
+def _size(points: ForcePoints, slopes: dict[tuple[str, str], _Slope], unit: float) -> list[Finding]:
+    """Y_v' by slender bodies is -pi d/L - 1.4 C_b B/L (Kijima et al. 1990), -.2 to -.7; else another system."""
+    slope = slopes.get(("Y", "v"))
+    low, high = _SIDE_FORCE
+    if slope is None or slope.sign == 0 or low <= abs(slope.value) / unit <= high:
+        return []
+    return [
+        Finding(
+            Severity.ERROR,
+            "force-size",
+            f"force points '{points.name}': {points.label('Y')} is not of the size of this ship's side force",
+            f"|Y_v'| is {abs(slope.value) / unit:.2g} over rho/2 L d U^2, ships have {low:g} to {high:g}",
+            "check the prime system, the unit and the scale declared under forces",
+        )
+    ]
 
 
 def _drag(points: ForcePoints) -> list[Finding]:
@@ -45,8 +67,7 @@ def _drag(points: ForcePoints) -> list[Finding]:
     return [_finding(points, "X", f"X is {level:+.3g} N in the median of {int(chosen.sum())} points without propeller")]
 
 
-def _turned(points: ForcePoints) -> list[Finding]:
-    slopes = {(f, m): s for f in ("Y", "N") if f in points.forces for m, s in _slopes(points, f).items()}
+def _turned(points: ForcePoints, slopes: dict[tuple[str, str], _Slope]) -> list[Finding]:
     wrong = [key for key, law in LAWS.items() if key in slopes and slopes[key].sign == -law]
     if not wrong:
         return []

@@ -14,7 +14,7 @@ from seatrial.trial.model_choice import chosen_model, ship_of
 from seatrial.trial.runs import expanded, runs_of
 from seatrial.trial.schema import EstimateTable, FamilyTable, TrialFile
 from seatrial.trial.trial import Estimate, Family, Trial
-from seatrial.values import NOTATION, InputError, nearest
+from seatrial.values import NOTATION, InputError, Ship, nearest
 
 
 def parse_trial(path: Path) -> TrialFile:
@@ -63,6 +63,7 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
             _refuse_strangers(f"family.structures.'{structure}'", list(names), set(model.parameters.names))
         if own_model is None:
             _refuse_strangers("truth", list(file.truth), set(model.parameters.names))
+        unit = _force_unit(model, ship)
         ranges = range_findings(file.model.priors_from, ship)
         home = path.resolve().parent
         runs = runs_of(file.records, file.data.folder, home)
@@ -86,12 +87,18 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         path=path,
         forces=forces,
         family=None if file.family is None else _family(file.family),
-        findings=(*ranges, *(finding for points in forces for finding in force_findings(points))),
+        findings=(*ranges, *(finding for points in forces for finding in force_findings(points, unit))),
     )
 
 
 def _family(table: FamilyTable) -> Family:
     return Family(table.structures, table.prior_factors, table.segment_factors)
+
+
+def _force_unit(model: Model, ship: Ship) -> float | None:
+    """rho/2 L d [kg/m^2], where ship or model know them."""
+    known = {p.name: p.value for p in model.parameters} | dict(ship.particulars)
+    return known["rho"] / 2 * known["L"] * known["d"] if {"rho", "L", "d"} <= set(known) else None
 
 
 def _refuse_strangers(where: str, names: list[str], known: set[str]) -> None:
