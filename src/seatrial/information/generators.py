@@ -1,0 +1,284 @@
+"""Exact changes of parameters that leave the compared outputs as they are, with their law for finite steps.
+
+The vectors come from `null_space`. Where a vector depends affinely on the parameters that it moves it is a scaling
+(Castro & de Boer 2020, PLoS Comput. Biol. 16, e1008248), about zero or another centre, or a shift.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from math import gcd, lcm
+
+import numpy as np
+
+from seatrial.equations import Model
+from seatrial.information.null_space import Conditions, conditions, null_space, sparse_basis
+from seatrial.values import Array
+
+_DRAWS, _EXACT, _LARGEST_DENOMINATOR = 5, 1e-7, 12
+
+
+@dataclass(frozen=True)
+class Generator:
+    """One exact change: d theta_i / d s = power_i theta_i + shift_i leaves every compared output as it is.
+
+    Attributes:
+        power: by parameter, small integers; with a shift of 0 the parameter is multiplied by e^(power s).
+        shift: by parameter, SI.
+        is_finite: whether that holds for finite steps; if not, `shift` is the direction at the model's values.
+        needs_hidden: whether states that nobody measures have to change as well.
+        names: parameter -> how it is written where it scales about another centre than 0, ``m + m_x``.
+    """
+
+    power: dict[str, int]
+    shift: dict[str, float]
+    is_finite: bool
+    needs_hidden: bool
+    names: dict[str, str]
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Those that change, in the order of the model."""
+        return tuple(self.power)
+
+    def centre(self, name: str) -> float:
+        """The value about which a parameter scales."""
+        return -self.shift[name] / self.power[name] if self.shift[name] else 0.0
+
+    def moved(self, model: Model, step: float) -> Model:
+        """The model after a finite step s, with the same outputs if the hidden states start where they now belong."""
+        values = {}
+        for name in self.parameters:
+            value, power = model.parameters[name].value, self.power[name]
+            centre = self.centre(name) if power else 0.0
+            growth = np.exp(power * step)
+            values[name] = centre + (value - centre) * growth if power else value + self.shift[name] * step
+        return model.with_values(values)
+
+    def change(self, model: Model) -> dict[str, float]:
+        """Parameter -> relative change for a unit step; absolute where the value is zero and is not multiplied."""
+        made = {}
+        for name in self.parameters:
+            value, power, shift = model.parameters[name].value, self.power[name], self.shift[name]
+            made[name] = float(power + shift / value) if value else float(shift or power)
+        return made
+
+    @property
+    def length(self) -> int:
+        """How long it takes to say: factors that differ, shifts, members, centres."""
+        factors = {p for p in self.power.values() if p}
+        shifts = sum(1 for p in self.power.values() if not p)
+        centres = sum(1 for n, p in self.power.items() if p and self.shift[n])
+        return 10 * (len(factors) + shifts) + len(self.power) + 3 * centres
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """The point about which is asked: free parameters at random near their values, the others where they are.
+
+    Attributes:
+        at: values, SI; sizes: the unit of each change.
+    """
+
+    conditions: Conditions
+    at: Array
+    sizes: Array
+
+    @property
+    def model(self) -> Model:
+        """The model in question."""
+        return self.conditions.model
+
+    @cached_property
+    def effects(self) -> Array:
+        """Conditions by parameter at `at`."""
+        return self.conditions.effects(self.at, self.sizes)
+
+    @cached_property
+    def unset(self) -> tuple[int, ...]:
+        """Free parameters whose value is zero, as they are before any fit: no law may rest on that."""
+        return tuple(i for i, p in enumerate(self.model.parameters) if p.free and not p.value)
+
+    def null(self, members: Sequence[int]) -> Array:
+        """Null vectors over all parameters with these members only, (parameters, nullity)."""
+        inner = null_space(self.effects[:, list(members)])
+        whole = np.zeros((len(self.at), inner.shape[1]))
+        whole[list(members)] = inner
+        return whole
+
+    def drawn(self, about: Array, members: Sequence[int], rng: np.random.Generator) -> Array:
+        """The values `about` with these parameters elsewhere, inside their bounds and with their signs."""
+        values = about.copy()
+        for i in members:
+            p = self.model.parameters.items[i]
+            value = values[i] * rng.uniform(0.6, 1.6) if values[i] else self.sizes[i] * rng.normal()
+            values[i] = float(np.clip(value, p.lower, p.upper))
+        return values
+
+    def independent(self, stages: Sequence[Sequence[int]]) -> list[list[Generator]]:
+        """For each stage the generators among its members (indices) that the stages before do not imply."""
+        given: list[Array] = []
+        found = []
+        for members in stages:
+            inside = [g for g in given if not np.delete(g, list(members)).any()]
+            supports = sparse_basis(self.null(members), inside)
+            given += [self.null(support)[:, 0] for support in supports]
+            found.append([self.generator(support) for support in supports])
+        return found
+
+    def generator(self, members: list[int]) -> Generator:
+        """The change of these members in the simplest form that holds wherever they are, the others at their values."""
+        names = [self.model.parameters.names[i] for i in members]
+        law = self._affine(members, self.model.parameters.values)
+        if law is None:
+            elsewhere = self._affine(members, self.at)
+            law = elsewhere if elsewhere is not None and not any(elsewhere[1]) else None
+        if law is None:
+            return self._local(members, names)
+        power, shift = dict(zip(names, law[0], strict=True)), dict(zip(names, law[1], strict=True))
+        made = Generator(power, shift, True, False, {})
+        made = replace(made, needs_hidden=self._shows(made)[1] > _EXACT)
+        return replace(made, names=self._named_centres(made, members))
+
+    def _local(self, members: list[int], names: Sequence[str]) -> Generator:
+        """The direction at the model's own values where there is just one, else near them; as large as the values."""
+        values = self.model.parameters.values
+        vector = self.conditions.null_vector(values, self.sizes, members)
+        if vector is None:
+            values, vector = self.at, self.conditions.weakest(self.at, self.sizes, members)[0]
+        largest = int(np.argmax(np.abs(vector) / self.sizes[members]))
+        slopes = vector / vector[largest] * (values[members[largest]] or self.sizes[members[largest]])
+        made = Generator(
+            dict.fromkeys(names, 0), {n: float(x) for n, x in zip(names, slopes, strict=True)}, False, False, {}
+        )
+        return replace(made, needs_hidden=self.conditions.residual(values, self._step(made, values))[1] > _EXACT)
+
+    def _step(self, generator: Generator, values: Array) -> Array:
+        """d theta / d s over all parameters, SI."""
+        step = np.zeros(len(values))
+        for name in generator.parameters:
+            i = self.model.parameters.index(name)
+            step[i] = generator.power[name] * values[i] + generator.shift[name]
+        return step
+
+    def _shows(self, generator: Generator) -> tuple[float, float]:
+        """Worst residual of the law at several points, with and without help of hidden states."""
+        rng = np.random.default_rng(5)
+        members = [self.model.parameters.index(n) for n in generator.parameters]
+        points = [self.drawn(self.model.parameters.values, [*members, *self.unset], rng) for _ in range(_DRAWS)]
+        residuals = [self.conditions.residual(p, self._step(generator, p)) for p in points]
+        return max(r[0] for r in residuals), max(r[1] for r in residuals)
+
+    def _affine(self, members: list[int], about: Array) -> tuple[list[int], list[float]] | None:
+        """Powers and shifts that give the null vector at several points; None where no such law holds."""
+        rng = np.random.default_rng(2)
+        points = [self.drawn(about, [*members, *self.unset], rng) for _ in range(_DRAWS)]
+        vectors = [v for p in points if (v := self.conditions.null_vector(p, self.sizes, members)) is not None]
+        theta = np.array(points)[:, members]
+        if len(vectors) < _DRAWS or not np.abs(vectors).min() > 0.0:
+            return None
+        delta = np.array(vectors)
+        laws = []
+        for r in range(len(members)):
+            scaling, shift = theta[:, r] / delta[:, r], 1.0 / delta[:, r]
+            laws += [law for unit in (scaling, shift) if (law := _law(theta, delta * unit[:, None])) is not None]
+        return min(laws, key=lambda law: (sum(1 for s in law[1] if s), len({*law[0]})), default=None)
+
+    def _named_centres(self, made: Generator, members: list[int]) -> dict[str, str]:
+        """Terms like ``m + m_x``: the centre is the value of a parameter that does not move, and follows it."""
+        words = {}
+        for name in (n for n in made.parameters if made.power[n] and made.shift[n]):
+            own = self.model.parameters[name]
+            words[name] = _about(made.centre(name), name, own.value)
+            for i, p in enumerate(self.model.parameters):
+                if i not in members and p.unit == own.unit and self._is_centre(i, made, name, members):
+                    words[name] = f"{p.name} + {name}"
+        return words
+
+    def _is_centre(self, held: int, made: Generator, name: str, members: list[int]) -> bool:
+        other = self.model.parameters.values
+        if not other[held] or abs(made.centre(name) / other[held] + 1.0) > _EXACT:
+            return False
+        other[held] *= 1.17
+        law = self._affine(members, other)
+        k = made.parameters.index(name)
+        return law is not None and bool(law[0][k]) and abs(law[1][k] / law[0][k] / other[held] - 1.0) < _EXACT
+
+    def shortened(self, found: Sequence[Generator]) -> list[Generator]:
+        """The same span, said in fewer words: a generator gives way to its sum or difference with another."""
+        made = list(found)
+        for k in range(len(made)):
+            for j, other in enumerate(made):
+                if j != k and made[k].is_finite and other.is_finite:
+                    sums = [_combined(made[k], other, sign, self.model.parameters.names) for sign in (1, -1)]
+                    shorter = [s for s in sums if s.parameters and s.length < made[k].length]
+                    true = [s for s in shorter if self._shows(s)[0] < _EXACT]
+                    made[k] = min((made[k], *true), key=lambda g: g.length)
+        return made
+
+
+def search(model: Model, outputs: Sequence[str]) -> Search:
+    """The search about a random point near the model's values.
+
+    Raises:
+        InputError: an output the model does not have, or a parameter without a value.
+    """
+    sizes = np.array([p.characteristic_scale for p in model.parameters])
+    plain = Search(conditions(model, outputs), model.parameters.values, sizes)
+    free = [i for i, p in enumerate(model.parameters) if p.free]
+    return replace(plain, at=plain.drawn(plain.at, free, np.random.default_rng(3)))
+
+
+def generators(model: Model, outputs: Sequence[str], among: Sequence[str] = ()) -> tuple[Generator, ...]:
+    """A basis of all exact changes of the named parameters (none named: all) that leave the outputs as they are.
+
+    The named parameters may have any value, the others have theirs: what is exactly zero switches its factors off.
+
+    Raises:
+        InputError: an output the model does not have, or a parameter without a value.
+    """
+    model = model.with_parameters(model.parameters.only_free(among or model.parameters.names))
+    where = search(model, outputs)
+    members = [i for i, p in enumerate(model.parameters) if p.free]
+    return tuple(where.shortened(where.independent([members])[0]))
+
+
+def _about(centre: float, name: str, value: float) -> str:
+    if centre < 0.0:
+        return f"{-centre:.4g} + {name}"
+    return f"{centre:.4g} - {name}" if value < centre else f"{name} - {centre:.4g}"
+
+
+def _law(theta: Array, delta: Array) -> tuple[list[int], list[float]] | None:
+    """delta_i = power_i theta_i + shift_i at all points, with integer powers after multiplication by one number."""
+    powers, shifts = [], []
+    for x, y in zip(theta.T, delta.T, strict=True):
+        about, scale = x - np.mean(x), np.abs(y).max()
+        slope = float(about @ y / (about @ about)) if about.any() else 0.0
+        power = Fraction(slope).limit_denominator(_LARGEST_DENOMINATOR)
+        level = float(np.mean(y - float(power) * x))
+        if np.abs(y - float(power) * x - level).max() > _EXACT * scale:
+            return None
+        powers.append(power)
+        shifts.append(0.0 if abs(level) < _EXACT * scale else level)
+    return _whole(powers, shifts)
+
+
+def _whole(powers: Sequence[Fraction], shifts: Sequence[float]) -> tuple[list[int], list[float]]:
+    """Integer powers without a common divisor, the majority positive."""
+    many = lcm(*(p.denominator for p in powers))
+    numbers = [int(p * many) for p in powers]
+    factor = many / (gcd(*numbers) or 1) * (-1.0 if sum(np.sign(numbers)) < 0 else 1.0)
+    return [round(float(p) * factor) for p in powers], [s * factor if s else 0.0 for s in shifts]
+
+
+def _combined(one: Generator, other: Generator, sign: int, order: Sequence[str]) -> Generator:
+    """Both at once."""
+    power = {n: one.power.get(n, 0) + sign * other.power.get(n, 0) for n in order}
+    parts = {n: (one.shift.get(n, 0.0), sign * other.shift.get(n, 0.0)) for n in order}
+    shift = {n: 0.0 if abs(a + b) < _EXACT * max(abs(a), abs(b)) else a + b for n, (a, b) in parts.items()}
+    kept = [n for n in order if power[n] or shift[n]]
+    names = {n: w for n, w in (other.names | one.names).items() if n in kept and power[n] and shift[n]}
+    return Generator({n: power[n] for n in kept}, {n: shift[n] for n in kept}, True,
+                     one.needs_hidden or other.needs_hidden, names)  # fmt: skip

@@ -1,0 +1,240 @@
+"""Which changes of parameters leave the equations of the compared outputs as they are: numbers without words.
+
+A change d(theta) hides from every record if it leaves the right-hand sides as they are for all states and inputs; a
+state that nobody measures may be changed with it, x -> x + xi(x), as long as it moves on as before (a Lie symmetry of
+the equations: Yates, Evans & Chappell 2009, Automatica 45, 2585-2591, doi 10.1016/j.automatica.2009.07.009):
+
+    df/dtheta d(theta) + df/dx xi - dxi/dx f = 0     for the rates of all states that reach a compared output,
+    dg/dtheta d(theta) + dg/dx xi = 0                for the compared outputs.
+
+xi of a hidden state is affine in the states here. At many random states and inputs the conditions are linear equations
+with the exact Jacobians of the generated code; their null space has a gap of some ten decades in singular values.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from seatrial.equations import Model
+from seatrial.kernels.sensitivity import evaluate_tangent
+from seatrial.values import NOTATION, Array, InputError
+
+SINGULAR = 1e-11
+"""Singular values below this, of columns with unit norm, count as zero: rounding gives 1e-15, real ones 1e-6 and up."""
+
+_POINTS = 300
+_RANGES = {"m/s": (0.03, 10.0), "rad/s": (1e-3, 0.3), "rps": (0.1, 30.0)}
+_ORDINARY = (0.05, 20.0)
+_PRESENT, _PIVOT, _ORDERS = 1e-8, 1e-4, 40
+
+
+@dataclass(frozen=True, eq=False)
+class Conditions:
+    """The conditions at random states and inputs, for one model and one set of compared outputs.
+
+    Attributes:
+        seen, hidden: indices of states that reach a compared output, compared themselves or not.
+        compared: indices of compared outputs that are no states.
+        states, inputs: (points, nx), (points, nu), SI.
+    """
+
+    model: Model
+    seen: tuple[int, ...]
+    hidden: tuple[int, ...]
+    compared: tuple[int, ...]
+    states: Array
+    inputs: Array
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """What is compared."""
+        return (*(self.model.states[i] for i in self.seen), *(self.model.outputs[i] for i in self.compared))
+
+    @property
+    def hidden_names(self) -> tuple[str, ...]:
+        """States that matter and are not compared."""
+        return tuple(self.model.states[i] for i in self.hidden)
+
+    @cached_property
+    def entering(self) -> frozenset[int]:
+        """Indices of the parameters that stand in an equation which reaches a compared output."""
+        first = len(self.model.states) + len(self.model.inputs)
+        code = self.model.compiled
+        rows, rates = (*self.seen, *self.hidden), code.rates_pattern
+        pairs = [
+            *rates[np.isin(rates[:, 0], rows)],
+            *code.outputs_pattern[np.isin(code.outputs_pattern[:, 0], self.compared)],
+        ]
+        return frozenset(int(c) - first for _, c in pairs if c >= first)
+
+    def effects(self, values: Array, sizes: Array) -> Array:
+        """The conditions as columns of unit norm, one a parameter, shape (rows, parameters); silent ones stay zero.
+
+        sizes: (parameters,), the unit of each change, SI. What a change of hidden states can make up for is projected
+        out, so that the null space holds parameters only.
+        """
+        return self._columns(values, sizes)[0]
+
+    def null_vector(self, values: Array, sizes: Array, members: Sequence[int]) -> Array | None:
+        """The change of the members, SI, that nothing shows; None where there is none, or more than one."""
+        vector, count = self.weakest(values, sizes, members)
+        return vector if count == 1 else None
+
+    def weakest(self, values: Array, sizes: Array, members: Sequence[int]) -> tuple[Array, int]:
+        """The change of the members, SI, that shows least, and how many independent ones do not show at all."""
+        effects, norms = self._columns(values, sizes)
+        own = list(members)
+        _, singular, vectors = np.linalg.svd(effects[:, own], full_matrices=False)
+        scale = sizes[own] / np.where(norms[own] > 0.0, norms[own], 1.0)
+        return vectors[-1] * scale, int(np.count_nonzero(singular < SINGULAR))
+
+    def residual(self, values: Array, change: Array) -> tuple[float, float]:
+        """How far a change (parameters,), SI, breaks the conditions, relative: with hidden states' help and without."""
+        raw, moved = self._stacked(values)
+        parts = raw * change
+        usable = np.isfinite(parts).all(axis=1) & np.isfinite(moved).all(axis=1)
+        parts, span = parts[usable], _span(moved[usable])
+        size, left = np.linalg.norm(parts), parts.sum(axis=1)
+        if size == 0.0:
+            return 0.0, 0.0
+        return float(np.linalg.norm(left - span @ (span.T @ left)) / size), float(np.linalg.norm(left) / size)
+
+    def _columns(self, values: Array, sizes: Array) -> tuple[Array, Array]:
+        raw, moved = self._stacked(values)
+        raw = raw * sizes
+        length = np.sqrt(np.sum(raw**2, axis=1) + np.sum(moved**2, axis=1))
+        usable = np.isfinite(length) & (length > 0.0)
+        raw, moved = raw[usable] / length[usable, None], moved[usable] / length[usable, None]
+        norms = np.linalg.norm(raw, axis=0)
+        unit = raw / np.where(norms > 0.0, norms, 1.0)
+        span = _span(moved)
+        return unit - span @ (span.T @ unit), norms
+
+    def _stacked(self, values: Array) -> tuple[Array, Array]:
+        """Conditions by parameters (rows, P) and by coefficients of xi (rows, hidden * (1 + states))."""
+        code, (n, nx), nu = self.model.compiled, self.states.shape, self.inputs.shape[1]
+        ng, reaching = len(self.model.outputs), (*self.seen, *self.hidden)
+        f, p = np.empty((n, nx)), np.tile(values, (n, 1))
+        f_jac, g, g_jac = (
+            np.zeros(s)
+            for s in ((n, nx, nx + nu + len(values)), (n, max(ng, 1)), (n, max(ng, 1), nx + nu + len(values)))
+        )
+        evaluate_tangent(code.rates_tangent, self.states, self.inputs, p, 0.0, f, f_jac)
+        if self.compared:
+            evaluate_tangent(code.outputs_tangent, self.states, self.inputs, p, 0.0, g, g_jac)
+        jac = np.concatenate([f_jac[:, reaching], g_jac[:, self.compared]], axis=1)
+        by_hidden = []
+        for h in self.hidden:
+            for j in (None, *reaching):
+                column = jac[:, :, h] * (1.0 if j is None else self.states[:, j, None])
+                if j is not None:
+                    column[:, reaching.index(h)] -= f[:, j]
+                by_hidden.append(column.ravel())
+        rows = jac.shape[0] * jac.shape[1]
+        return jac[:, :, nx + nu :].reshape(rows, -1), np.array(by_hidden).reshape(-1, rows).T
+
+
+def conditions(model: Model, outputs: Sequence[str]) -> Conditions:
+    """The conditions for these compared outputs (states or outputs of the model).
+
+    Raises:
+        InputError: an output the model does not have, none at all, or a parameter without a value.
+    """
+    if not outputs:
+        raise InputError(
+            f"model '{model.name}': no output is compared; name at least one of {', '.join(model.observables)}"
+        )
+    for name in outputs:
+        if name not in model.observables:
+            raise InputError(f"model '{model.name}' has no output '{name}'; it has {', '.join(model.observables)}")
+    if model.parameters.missing:
+        raise InputError(
+            f"model '{model.name}' needs values of {', '.join(model.parameters.missing)}; "
+            "give them under [ship] or [model.fixed]"
+        )
+    seen = {model.states.index(n) for n in outputs if n in model.states}
+    compared = tuple(sorted(model.outputs.index(n) for n in outputs if n in model.outputs))
+    reaching = _reaching(model, seen, compared)
+    rng = np.random.default_rng(0)
+    return Conditions(model, tuple(sorted(seen)), tuple(sorted(reaching - seen)), compared,
+                      _drawn(model.states, rng), _drawn(model.input_names, rng))  # fmt: skip
+
+
+def _reaching(model: Model, seen: set[int], compared: tuple[int, ...]) -> set[int]:
+    nx, code = len(model.states), model.compiled
+    found = seen | {int(c) for r, c in code.outputs_pattern if r in compared and c < nx}
+    while more := {int(c) for r, c in code.rates_pattern if r in found and c < nx} - found:
+        found |= more
+    return found
+
+
+def _drawn(names: Sequence[str], rng: np.random.Generator) -> Array:
+    """Random values over the decades of each channel, both signs; angles all round."""
+    columns = [np.empty((_POINTS, 0))]
+    for name in names:
+        unit = NOTATION[name].unit if name in NOTATION else "1"
+        low, high = np.log(_RANGES.get(unit, _ORDINARY))
+        turn, size = rng.uniform(-np.pi, np.pi, _POINTS), np.exp(rng.uniform(low, high, _POINTS))
+        columns.append((turn if unit == "rad" else np.copysign(size, turn))[:, None])
+    return np.ascontiguousarray(np.concatenate(columns, axis=1))
+
+
+def _span(columns: Array) -> Array:
+    """Orthonormal basis of the columns."""
+    norms = np.linalg.norm(columns, axis=0)
+    vectors, singular, _ = np.linalg.svd(columns[:, norms > 0.0] / norms[norms > 0.0], full_matrices=False)
+    return vectors[:, singular > SINGULAR]
+
+
+def null_space(effects: Array) -> Array:
+    """Orthonormal null vectors of columns of unit norm, shape (columns, nullity)."""
+    if effects.shape[1] == 0:
+        return np.empty((0, 0))
+    triangle = np.linalg.qr(effects, mode="r")
+    singular, vectors = np.linalg.svd(triangle)[1:]
+    return vectors[np.concatenate([singular, np.zeros(len(vectors) - len(singular))]) < SINGULAR].T
+
+
+def sparse_basis(null: Array, given: Sequence[Array] = ()) -> list[list[int]]:
+    """Supports of null vectors with few members that complete `given` ones to a basis of the null space.
+
+    Rows of reduced echelon forms for many orders of the columns have minimal support (circuits of the column matroid,
+    Oxley 2011, Matroid Theory, section 1.2); the shortest independent ones are taken.
+    """
+    nullity = null.shape[1]
+    taken = [null.T @ g for g in given]
+    chosen: list[list[int]] = []
+    rank = np.linalg.matrix_rank(np.array(taken), tol=_PIVOT) if taken else 0
+    for vector in _circuits(null):
+        if rank == nullity:
+            break
+        trial = [*taken, null.T @ vector]
+        if np.linalg.matrix_rank(np.array(trial), tol=_PIVOT) > rank:
+            taken, rank = trial, rank + 1
+            chosen.append([int(i) for i in np.flatnonzero(np.abs(vector) > _PRESENT * np.abs(vector).max())])
+    return chosen
+
+
+def _circuits(null: Array) -> list[Array]:
+    """Distinct null vectors of minimal support and unit norm, shortest first, then in the order of the columns."""
+    rng, found = np.random.default_rng(1), {}
+    count = len(null)
+    for k in range(_ORDERS if null.shape[1] > 1 else 1):
+        rows, at = null.T.copy(), 0
+        for column in np.arange(count) if k == 0 else rng.permutation(count):
+            if at == len(rows):
+                break
+            best = at + int(np.argmax(np.abs(rows[at:, column])))
+            if abs(rows[best, column]) < _PIVOT * np.abs(rows[at:]).max():
+                continue
+            rows[[at, best]] = rows[[best, at]]
+            rows[at] /= rows[at, column]
+            others = np.arange(len(rows)) != at
+            rows[others] -= np.outer(rows[others, column], rows[at])
+            at += 1
+        for row in rows[:at]:
+            members = np.flatnonzero(np.abs(row) > _PRESENT * np.abs(row).max())
+            found.setdefault(tuple(members), row / np.linalg.norm(row))
+    return [found[key] for key in sorted(found, key=lambda members: (len(members), members))]

@@ -1,0 +1,106 @@
+"""What no record of the compared outputs can tell about the parameters, found in the equations before any fit.
+
+Structural identifiability: Pohjanpalo 1978, Math. Biosciences 41, 21-33; Walter & Pronzato 1997, Identification of
+Parametric Models, chapter 2. The changes come from `generators`; here they are put in order and in words.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from seatrial.equations import Model
+from seatrial.information.generators import Generator, Search, search
+from seatrial.information.symmetry_words import Silence, sentence, silence
+from seatrial.results import Symmetry
+from seatrial.trial.model_choice import COMMON_PARTICULARS
+from seatrial.values import InputError
+
+_ALIVE = 1e-7
+
+
+def structural(model: Model, outputs: Sequence[str]) -> tuple[Symmetry, ...]:
+    """What no record of these outputs can tell about the free parameters, whatever the manoeuvre, in words.
+
+    Beside the free parameters those count as unknown that are fixed at an assumed value other than zero; particulars
+    of the ship (length, mass, ...) are known, and a term that is fixed at zero is not there. First come parameters
+    without any influence and changes of free parameters alone, which a fit needs priors for; then those changes in
+    which an assumed value decides.
+
+    Raises:
+        InputError: an output the model does not have, or a parameter without a value.
+    """
+    where = search(model, outputs)
+    free = [i for i, p in enumerate(model.parameters) if p.free]
+    assumed = [i for i, p in enumerate(model.parameters) if not p.free and p.value and p.name not in COMMON_PARTICULARS]
+    alone, _, together = where.independent([free, assumed, sorted((*free, *assumed))])
+    return (*_told(where, alone), *_told(where, together))
+
+
+def refuse_structural(model: Model, outputs: Sequence[str]) -> None:
+    """Refuse free parameters without a prior that can change together without changing any compared output.
+
+    Raises:
+        InputError: which, and what to do.
+    """
+    loose = [i for i, p in enumerate(model.parameters) if p.free and p.prior is None]
+    where = search(model, outputs)
+    (found,) = where.independent([loose])
+    if found:
+        told = "; and ".join(s.text for s in _told(where, found))
+        raise InputError(f"no record can tell the free parameters apart: {told} (under [model.fixed], [model.priors])")
+
+
+def _told(where: Search, found: Sequence[Generator]) -> tuple[Symmetry, ...]:
+    """With their sentences; parameters that are silent for the same reason share one."""
+    parameters, outputs = where.model.parameters, where.conditions.outputs
+    silent: dict[Silence, list[str]] = {}
+    for g in (g for g in found if len(g.parameters) == 1):
+        silent.setdefault(_reason(where, g), []).append(g.parameters[0])
+    told = [Symmetry(tuple(s), silence(s, reason, outputs), dict.fromkeys(s, 1.0)) for reason, s in silent.items()]
+    for g, decisive in _in_order(where.model, where.shortened([g for g in found if len(g.parameters) > 1])):
+        hidden = where.conditions.hidden_names if g.needs_hidden else ()
+        text = sentence(g, parameters, decisive, outputs, hidden)
+        told.append(Symmetry(g.parameters, text, g.change(where.model)))
+    return tuple(told)
+
+
+def _in_order(model: Model, found: Sequence[Generator]) -> list[tuple[Generator, tuple[str, ...]]]:
+    """Each with the parameters of which one settles it: whoever fixes one for each has settled all (triangular)."""
+    left, made = list(found), []
+    while left:
+        own = [_own(g, left) for g in left]
+        best = max(range(len(left)), key=lambda k: (bool(own[k]), len(left[k].parameters)))
+        decisive = own[best] or left[best].parameters
+        dimensional = tuple(n for n in decisive if model.parameters[n].unit != "1")
+        made.append((left.pop(best), dimensional or tuple(decisive)))
+    return made
+
+
+def _own(generator: Generator, others: Sequence[Generator]) -> list[str]:
+    """Parameters that no other generator changes."""
+    shared = {n for g in others if g is not generator for n in g.parameters}
+    return [n for n in generator.parameters if n not in shared]
+
+
+def _reason(where: Search, silent: Generator) -> Silence:
+    """Why a parameter has no influence of its own."""
+    i = where.model.parameters.names.index(silent.parameters[0])
+    if i not in where.conditions.entering:
+        return Silence(enters=False)
+    if silent.needs_hidden:
+        return Silence(hidden=where.conditions.hidden_names)
+    held = [k for k, p in enumerate(where.model.parameters) if k != i and not p.free]
+    off = _switches(where, i, [k for k in held if not where.at[k]])
+    return Silence(switches=off or _switches(where, i, [k for k in held if where.at[k]]))
+
+
+def _switches(where: Search, silent: int, held: Sequence[int]) -> tuple[str, ...]:
+    """Those held parameters which give the silent one an influence when they alone are changed."""
+    rng = np.random.default_rng(4)
+    found = []
+    for k in held:
+        effects = where.conditions.effects(where.drawn(where.at, [k], rng), where.sizes)
+        if np.linalg.norm(effects[:, silent]) > _ALIVE:
+            p = where.model.parameters.items[k]
+            found.append(f"{p.name} is {p.value:.4g}")
+    return tuple(found)
