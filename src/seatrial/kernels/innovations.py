@@ -64,12 +64,12 @@ def _innovate(
     f, g, inputs, weights, dt, substeps, x0, variance0, p,
     chain, link_p, link_u, g_link_p, g_link_u, select, noisy, process, measurement, measured,
     e_out, v_out, de_out, dv_out, variance_out,
-    work_x, work_s, work_u, work_w, jac, g_jac, g_value, spread, work, b_all,
+    work_x, work_s, work_u, work_w, jac, g_jac, g_value, spread, work, across,
 ):  # fmt: skip
     nx, ny, rows = x0.size, select.size, measured.shape[0]
     width, covs = de_out.shape[2], spread.shape[0]
     quiet = width - (covs - 1)
-    x, k, y, acc, ahead, h = work_x[0], work_x[1], work_x[2], work_x[3], work_x[4], work_x[5]
+    x, k, y, acc, ahead, h, gain = work_x[0], work_x[1], work_x[2], work_x[3], work_x[4], work_x[5], work_x[6]
     s, sk, sy, sacc = work_s[0], work_s[1], work_s[2], work_s[3]
     step = dt / substeps
     for i in range(nx):
@@ -93,24 +93,26 @@ def _innovate(
                 for m in range(1, covs):
                     dv_out[row, channel, m - 1] = 0.0
                 continue
-            expected = 0.0 if here < 0 else g_value[here]
-            for i in range(nx):
-                if here < 0:
-                    h[i] = 1.0 if i == select[channel] else 0.0
-                    expected += h[i] * x[i]
-                else:
+            e, v = measured[row, channel], measurement[channel]
+            if here < 0:
+                e -= x[here + nx]
+                for i in range(nx):
+                    h[i] = 1.0 if i == here + nx else 0.0
+            else:
+                e -= g_value[here]
+                for i in range(nx):
                     h[i] = g_jac[here, i]
-                    expected += h[i] * (x[i] - ahead[i])
-            e = measured[row, channel] - expected
+                    e -= h[i] * (x[i] - ahead[i])
             for m in range(covs):
                 for i in range(nx):
                     total = 0.0
                     for j in range(nx):
                         total += spread[m, i, j] * h[j]
-                    b_all[m, i] = total
-            v = measurement[channel]
+                    across[m, i] = total
             for i in range(nx):
-                v += h[i] * b_all[0, i]
+                v += h[i] * across[0, i]
+            for i in range(nx):
+                gain[i] = across[0, i] / v
             e_out[row, channel], v_out[row, channel] = e, v
             size += e * e / v
             for c in range(width):
@@ -128,24 +130,23 @@ def _innovate(
                             g_jac[here, g_link_u[m, 1]] * weights[row, g_link_u[m, 2]]
                         )
             for i in range(nx):
-                x[i] += b_all[0, i] / v * e
+                x[i] += gain[i] * e
                 for c in range(width):
-                    s[i, nx + c] += b_all[0, i] / v * de_out[row, channel, c]
+                    s[i, nx + c] += gain[i] * de_out[row, channel, c]
             for m in range(1, covs):
                 dv = 2.0 * measurement[channel] if m - 1 - noisy.size == channel else 0.0
                 for i in range(nx):
-                    dv += h[i] * b_all[m, i]
+                    dv += h[i] * across[m, i]
                 dv_out[row, channel, m - 1] = dv
                 for i in range(nx):
-                    s[i, nx + quiet + m - 1] += (b_all[m, i] - b_all[0, i] * dv / v) / v * e
-                    for j in range(nx):
-                        spread[m, i, j] -= (
-                            b_all[m, i] * b_all[0, j] + b_all[0, i] * b_all[m, j]
-                            - b_all[0, i] * b_all[0, j] * dv / v
-                        ) / v  # fmt: skip
+                    s[i, nx + quiet + m - 1] += (across[m, i] - gain[i] * dv) * (e / v)
+                    across[m, i] -= 0.5 * gain[i] * dv
             for i in range(nx):
-                for j in range(nx):
-                    spread[0, i, j] -= b_all[0, i] * b_all[0, j] / v
+                across[0, i] *= 0.5
+            for m in range(covs):
+                for i in range(nx):
+                    for j in range(nx):
+                        spread[m, i, j] -= across[m, i] * gain[j] + gain[i] * across[m, j]
         if row == rows - 1:
             break
         for i in range(nx):
@@ -208,6 +209,6 @@ def innovate(
     return _innovate(f, g, inputs, weights, dt, substeps, x0, variance0, p,
                      chain, link_p, link_u, g_link_p, g_link_u, select, noisy, process, measurement, measured,
                      e_out, v_out, de_out, dv_out, variance_out,
-                     np.empty((6, nx)), np.zeros((4, nx, nx + width)), np.empty((3, nu)), np.empty((3, 3 * nu)),
+                     np.empty((7, nx)), np.zeros((4, nx, nx + width)), np.empty((3, nu)), np.empty((3, 3 * nu)),
                      np.zeros((nx, whole)), np.zeros((outputs, whole)), np.empty(outputs), np.zeros((covs, nx, nx)),
                      np.empty((nx, nx)), np.empty((covs, nx)))  # fmt: skip
