@@ -9,13 +9,13 @@ from seatrial.identify.cross_validation import own_nuisances
 from seatrial.identify.draws import Scatter
 from seatrial.identify.family import Tied
 from seatrial.identify.fit import Identified
-from seatrial.identify.margins import DRAWS, foreseen, missed, with_intervals
+from seatrial.identify.margins import DRAWS, foreseen, missed, with_intervals, without
 from seatrial.identify.predict import compared, offsets_of, open_loop, prediction, rms, session_means
 from seatrial.information.discrepancy import NONE, Discrepancy, Miss, discrepancy
-from seatrial.information.extrapolation import extrapolation, reach
+from seatrial.information.extrapolation import extrapolation, index_of, reach
 from seatrial.results import Margin, Prediction
 from seatrial.trial import Role, TrialRecord
-from seatrial.values import Array, InputError, Progress
+from seatrial.values import Array, InputError, Progress, Record
 from seatrial.workers import mapped
 
 
@@ -49,11 +49,16 @@ def scatter_of(found: Identified, process: Array | None = None) -> Scatter:
 
 
 def calibrated(
-    found: Identified, train: Sequence[TrialRecord], seconds: float, length: float, seed: int, progress: Progress
+    found: Identified,
+    train: Sequence[TrialRecord],
+    simulated: Sequence[Record],
+    seconds: float,
+    length: float,
+    seed: int,
 ) -> Calibration:
     """What intervals of a fit's predictions rest on: every training run is predicted by the estimate without it.
 
-    seconds: of a run's beginning, from which its initial state is taken.
+    simulated: the training runs as the fit has them; seconds: of a run's beginning, for its initial state.
     """
     scatter, left_out = scatter_of(found), found.uncertainty.left_out
     if left_out is None:
@@ -62,12 +67,13 @@ def calibrated(
     streams = np.random.SeedSequence(seed).spawn(len(train))
 
     def one(i: int) -> Miss | None:
-        rng = np.random.default_rng(streams[i])
-        return missed(problem, left_out[i], train[i].record, train[i].session, seconds, length, scatter, rng)
+        by = without(problem, left_out[i], train[i].session)
+        miss = missed(problem, by, train[i].record, seconds, length, scatter, np.random.default_rng(streams[i]))
+        others = [*simulated[:i], *simulated[i + 1 :]]
+        return None if miss is None else replace(miss, index=index_of(simulated[i], others))
 
-    progress("runs left out, predicted")
-    found_misses = mapped(one, range(len(train)), workers=found.made.problem.workers)
-    return Calibration(scatter, discrepancy([m for m in found_misses if m is not None]))
+    misses = mapped(one, range(len(train)), workers=found.made.problem.workers)
+    return Calibration(scatter, discrepancy([m for m in misses if m is not None]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,13 +103,16 @@ def forecast(
     """
     tell = progress or (lambda _: None)
     problem, mean = found.made.problem, session_means(found.made.problem, found.made.shared)
-    known = calibrated(found, [r for r in records if r.role is Role.TRAIN], seconds, length, seed, tell)
     runs = []
     for item in records:
         tell(f"predicting {item.record.name}")
         own = own_nuisances(found, item.session) if item.role is Role.TRAIN else mean
         runs.append(open_loop(problem, found.model, item.record, own, seconds))
-    covered = reach([run.record for run, item in zip(runs, records, strict=True) if item.role is Role.TRAIN])
+    train = [item for item in records if item.role is Role.TRAIN]
+    fitted = [run.record for run, item in zip(runs, records, strict=True) if item.role is Role.TRAIN]
+    covered = reach(fitted)
+    tell("runs left out, predicted")
+    known = calibrated(found, train, fitted, seconds, length, seed)
     streams = np.random.SeedSequence((seed, 1)).spawn(len(records))
     made = []
     for item, run, stream in zip(records, runs, streams, strict=True):

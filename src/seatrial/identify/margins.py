@@ -47,11 +47,23 @@ def foreseen(
     """Scatter of `count` drawn runs about the simulated one; measures include the noise with which they are read."""
     runs = drawn(template, model, record, made.start, own, scatter, rng, count)
     runs = runs[np.all(np.isfinite(runs), axis=(1, 2))]
+    spreads = _of_measures(model, record, made, runs, length, rng) if is_steered(record, model) else {}
+    return Foreseen(_of_track(model, made, runs), spreads)
+
+
+def _of_track(model: Model, made: OpenLoop, runs: Array) -> dict[str, Array]:
     place = {o: i for i, o in enumerate(model.observables)}
-    channels = {c: np.sqrt(np.mean((runs[:, :, place[c]] - made.record[c]) ** 2, axis=0))
-                for c in _TRACK if c in place and len(runs)}  # fmt: skip
-    if not is_steered(record, model):
-        return Foreseen(channels, {})
+    return {
+        c: np.sqrt(np.mean((runs[:, :, place[c]] - made.record[c]) ** 2, axis=0))
+        for c in _TRACK
+        if c in place and len(runs)
+    }
+
+
+def _of_measures(
+    model: Model, record: Record, made: OpenLoop, runs: Array, length: float, rng: np.random.Generator
+) -> dict[str, float]:
+    place = {o: i for i, o in enumerate(model.observables)}
     noise = {c: sample_noise(record[c]) for c in _OF_MEASURES if c in record and c in place}
     centre = measures(made.record, length, like=record)
     found: dict[str, list[float]] = {name: [] for name in centre}
@@ -62,45 +74,64 @@ def foreseen(
         for name, value in measures(as_record(model, record, read), length, like=record).items():
             if name in found:
                 found[name].append(value - centre[name])
-    spreads = {n: float(np.sqrt(np.mean(np.square(d)))) for n, d in found.items() if len(d) >= max(4, len(runs) // 2)}
-    return Foreseen(channels, spreads)
+    enough = max(4, len(runs) // 2)
+    return {n: float(np.sqrt(np.mean(np.square(d)))) for n, d in found.items() if len(d) >= enough}
+
+
+@dataclass(frozen=True, eq=False)
+class Without:
+    """A model fitted without a session, and what a run of that session is given: the mean of the other sessions."""
+
+    model: Model
+    own: Array
+
+
+def without(template: OutputError, point: Array, session: str) -> Without:
+    """The model at the shared unknowns `point`, which were estimated without the session's run."""
+    others = [s != session for s in template.data.sessions]
+    own = offsets_of(template, point)[others if any(others) else slice(None)].mean(axis=0)
+    return Without(template.model.with_values(dict(zip(template.free, point, strict=False))), own)
 
 
 def missed(
     template: OutputError,
-    point: Array,
-    piece: Record,
-    session: str,
+    by: Without,
+    record: Record,
     seconds: float,
     length: float,
     scatter: Scatter,
     rng: np.random.Generator,
 ) -> Miss | None:
-    """How a run, or a piece of one, is missed by a model that was fitted without it; None where that diverges.
-
-    point: shared unknowns without the run. Its own offsets count as unknown: it gets the mean of the other sessions.
-    """
-    model = template.model.with_values(dict(zip(template.free, point, strict=False)))
-    others = [s != session for s in template.data.sessions]
-    own = offsets_of(template, point)[others if any(others) else slice(None)].mean(axis=0)
+    """How a run is missed by a model that was fitted without it; None where the simulation diverges."""
     try:
-        made = open_loop(template, model, piece, own, seconds)
+        made = open_loop(template, by.model, record, by.own, seconds)
     except InputError:
         return None
-    found = foreseen(template, model, piece, made, own, length, scatter, rng, DRAWS_LEFT_OUT)
-    errors = {c: made.record[c] - piece[c] for c in found.channels if c in piece}
-    pairs = compared(piece, made.record, length) if is_steered(piece, model) else {}
-    return Miss(
-        piece.name,
-        piece.dt,
-        errors,
-        {c: found.channels[c] for c in errors},
-        {
-            n: (m.simulated - m.measured, found.measures[n])
-            for n, m in pairs.items()
-            if n in found.measures and m.measured is not None and m.simulated is not None
-        },
-    )
+    found = foreseen(template, by.model, record, made, by.own, length, scatter, rng, DRAWS_LEFT_OUT)
+    pairs = compared(record, made.record, length) if is_steered(record, by.model) else {}
+    of_measures = {
+        n: (m.simulated - m.measured, found.measures[n])
+        for n, m in pairs.items()
+        if n in found.measures and m.measured is not None and m.simulated is not None
+    }
+    return replace(_miss(record, made, found.channels), measures=of_measures)
+
+
+def missed_track(
+    template: OutputError, by: Without, piece: Record, seconds: float, scatter: Scatter, rng: np.random.Generator
+) -> Miss | None:
+    """`missed` for a piece of a run, heading and track only."""
+    try:
+        made = open_loop(template, by.model, piece, by.own, seconds)
+    except InputError:
+        return None
+    runs = drawn(template, by.model, piece, made.start, by.own, scatter, rng, DRAWS_LEFT_OUT)
+    return _miss(piece, made, _of_track(by.model, made, runs[np.all(np.isfinite(runs), axis=(1, 2))]))
+
+
+def _miss(record: Record, made: OpenLoop, channels: dict[str, Array]) -> Miss:
+    errors = {c: made.record[c] - record[c] for c in channels if c in record}
+    return Miss(record.name, record.dt, errors, {c: channels[c] for c in errors})
 
 
 def with_intervals(made: Prediction, found: Foreseen, beyond: Discrepancy, degrees_of_freedom: float) -> Prediction:
@@ -109,12 +140,13 @@ def with_intervals(made: Prediction, found: Foreseen, beyond: Discrepancy, degre
     beyond: model discrepancy; the spread over tied models is the prediction's own.
     """
     t = float(stats.t.ppf(0.975, degrees_of_freedom))
+    index = made.extrapolation.index if made.extrapolation else 1.0
 
     def bounded(name: str, m: Measure) -> Measure:
         if m.simulated is None or name not in found.measures:
             return m
-        half = t * float(np.hypot(beyond.of_measure(name, found.measures[name]), made.spread.get(name, 0.0)))
+        half = t * float(np.hypot(beyond.of_measure(name, found.measures[name], index), made.spread.get(name, 0.0)))
         return replace(m, lower=m.simulated - half, upper=m.simulated + half)
 
-    bands = {c: t * beyond.of_channel(c, s, made.measured.dt) for c, s in found.channels.items()}
+    bands = {c: t * beyond.of_channel(c, s, made.measured.dt, index) for c, s in found.channels.items()}
     return replace(made, measures={n: bounded(n, m) for n, m in made.measures.items()}, half_width=bands)

@@ -8,6 +8,7 @@ from scipy import stats
 from seatrial.equations import Model
 from seatrial.identify.draws import root
 from seatrial.information.discrepancy import Discrepancy
+from seatrial.information.extrapolation import extrapolation
 from seatrial.manoeuvres import measures
 from seatrial.results import Margin
 from seatrial.values import Array, InputError, Record
@@ -28,7 +29,10 @@ def measure_intervals(
     Raises:
         InputError: more than half of the drawn ships diverge.
     """
-    centre = measures(steer(model), length)
+    sailed = steer(model)
+    centre = measures(sailed, length)
+    reached = extrapolation(sailed, margin.covered)
+    index = reached.index if reached else 1.0
     drawn = [m for point in _drawn(model, margin, rng) if (m := _measured(point, steer, length)) is not None]
     if len(drawn) < DRAWS // 2:
         raise InputError(
@@ -42,7 +46,7 @@ def measure_intervals(
     for name, value in centre.items():
         away = [m[name] - value for m in drawn if name in m]
         if len(away) >= DRAWS // 2:
-            spread = beyond.of_measure(name, float(np.sqrt(np.mean(np.square(away)))))
+            spread = beyond.of_measure(name, float(np.sqrt(np.mean(np.square(away)))), index)
             apart = [m[name] - value for m in tied if name in m]
             half = t * float(np.hypot(spread, np.sqrt(np.mean(np.square(apart))) if apart else 0.0))
             made[name] = (value - half, value + half)

@@ -49,3 +49,9 @@ def extrapolation(predicted: Record, covered: Mapping[str, float]) -> Extrapolat
         slow = both["slowest"][1] / max(both["slowest"][0], 1e-3)
         ratios["speed"] = max(both["fastest"][0] / both["fastest"][1], slow)
     return Extrapolation(max(ratios.values()), ratios) if ratios else None
+
+
+def index_of(predicted: Record, training: Sequence[Record]) -> float:
+    """Extrapolation index of a run against others; 1 where nothing can be compared."""
+    found = extrapolation(predicted, reach(training))
+    return found.index if found else 1.0
