@@ -157,7 +157,7 @@ class ProcessNoise:
         return Estimate(runs, Optimum(solution, self.problem.start[:, states], normal))
 
     @cached_property
-    def _blocks(self):
+    def _blocks(self) -> SegmentNormals:
         return replace(self.problem, steps=None).blocks(self.optimum.solution.point)
 
     @cached_property
