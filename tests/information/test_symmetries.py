@@ -206,7 +206,7 @@ def test_finite_steps_leave_every_compared_output_as_it_is(case: str, step: floa
 def test_a_hidden_state_starts_where_it_then_belongs() -> None:
     model = hidden_shift()
     (g,) = generators(model, ("thrust",), model.parameters.free_names)
-    assert g.needs_hidden
+    assert g.hidden == ("state",)
     moved = g.moved(model, 0.3)
     start = begin(model) - (moved.parameters["zero"].value - model.parameters["zero"].value)
     assert worst_difference(model, moved, ("thrust",), start) < 1e-9
@@ -379,10 +379,47 @@ def test_fixing_one_of_those_named_for_each_settles_everything() -> None:
             refuse_structural(model.with_parameters(model.parameters.fixed(one, two)), MOTION)
 
 
-def test_heading_alone_tells_the_same_symmetries() -> None:
-    """u, v, r are then hidden; scaling of forces still leaves everything as it is, and more may be lost."""
-    told = structural(waterjet(), ("psi",))
-    assert {"A_j", "m_x", "m_y"} <= set(told[0].parameters) | set(told[-1].parameters)
+def test_heading_alone_leaves_the_unit_of_speed_open() -> None:
+    """u and v are hidden then: speeds over k, with forces and inertias to fit, turn the ship as before."""
+    model = waterjet()
+    among = [p.name for p in model.parameters if p.free or p.name in ("m_x", "m_y", "alpha")]
+    (g,) = generators(model, ("psi",), among)
+    assert g.hidden == ("u", "v")
+    assert g.power["alpha"] == 1
+    start = begin(model)
+    start[:2] /= 1.3
+    moved = g.moved(model, np.log(1.3))
+    assert worst_difference(model, moved, ("psi",), start) < 1e-9
+    assert worst_difference(model, moved, ("psi",), begin(model)) > 1e-3
+    told = [set(s.parameters) for s in structural(model, ("psi",))]
+    assert len(told) == 3
+    assert set(g.parameters) in told
+
+
+def test_a_state_behind_a_zero_reaches_nothing() -> None:
+    """Without a speed the first-order model moves nobody: its positions tell nothing."""
+    (told,) = structural(nomoto(), ("x0", "y0"))
+    assert told.text == "K and T have no influence on x0 or y0 while U is 0: fix them, or change that value"
+    assert structural(nomoto().with_values({"U": 2.0}), ("x0", "y0")) == ()
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_products_of_powers_obey_the_rank_of_their_exponents(seed: int) -> None:
+    """Three monomials in six parameters: what hides is what no exponent sees (Buckingham's theorem)."""
+    rng = np.random.default_rng(seed)
+    exponents = rng.integers(-2, 3, size=(3, 6)) * rng.integers(0, 2, size=(3, 6))
+    sheet, r, delta = yaw()
+    symbols = free(sheet, "a b c d e f")
+    one, two, three = (sp.Mul(*(s ** int(p) for s, p in zip(symbols, row, strict=True))) for row in exponents)
+    sheet.rate(r, one * delta - two * r - three * r**3)
+    model = sheet.model()
+    found = generators(model, ("r",))
+    assert len(found) == 6 - np.linalg.matrix_rank(exponents)
+    for g in found:
+        powers = np.array([g.power.get(n, 0) for n in model.parameters.names])
+        silent = not exponents[:, powers != 0].any()
+        assert silent or not (exponents @ powers).any()
+        assert silent or not any(g.shift.values())
 
 
 def test_a_start_at_zero_is_no_knowledge() -> None:

@@ -14,9 +14,9 @@ import numpy as np
 
 from seatrial.equations import Model
 from seatrial.information.null_space import Conditions, conditions, null_space, sparse_basis
-from seatrial.values import Array
+from seatrial.values import Array, Parameter
 
-_DRAWS, _EXACT, _LARGEST_DENOMINATOR = 5, 1e-7, 12
+_DRAWS, _EXACT, _SMALL, _LARGEST_DENOMINATOR = 5, 1e-7, 1e-5, 12
 
 
 @dataclass(frozen=True)
@@ -27,14 +27,14 @@ class Generator:
         power: by parameter, small integers; with a shift of 0 the parameter is multiplied by e^(power s).
         shift: by parameter, SI.
         is_finite: whether that holds for finite steps; if not, `shift` is the direction at the model's values.
-        needs_hidden: whether states that nobody measures have to change as well.
+        hidden: states that nobody measures and that have to change as well.
         names: parameter -> how it is written where it scales about another centre than 0, ``m + m_x``.
     """
 
     power: dict[str, int]
     shift: dict[str, float]
     is_finite: bool
-    needs_hidden: bool
+    hidden: tuple[str, ...]
     names: dict[str, str]
 
     @property
@@ -108,12 +108,10 @@ class Search:
         return whole
 
     def drawn(self, about: Array, members: Sequence[int], rng: np.random.Generator) -> Array:
-        """The values `about` with these parameters elsewhere, inside their bounds and with their signs."""
+        """The values `about` with these parameters elsewhere."""
         values = about.copy()
         for i in members:
-            p = self.model.parameters.items[i]
-            value = values[i] * rng.uniform(0.6, 1.6) if values[i] else self.sizes[i] * rng.normal()
-            values[i] = float(np.clip(value, p.lower, p.upper))
+            values[i] = _elsewhere(self.model.parameters.items[i], values[i], rng)
         return values
 
     def independent(self, stages: Sequence[Sequence[int]]) -> list[list[Generator]]:
@@ -122,10 +120,16 @@ class Search:
         found = []
         for members in stages:
             inside = [g for g in given if not np.delete(g, list(members)).any()]
-            supports = sparse_basis(self.null(members), inside)
+            supports = [self.least(s) for s in sparse_basis(self.null(members), inside)]
             given += [self.null(support)[:, 0] for support in supports]
             found.append([self.generator(support) for support in supports])
         return found
+
+    def least(self, members: list[int]) -> list[int]:
+        """The members without those that rounding put there: small ones that the null vector can do without."""
+        weights = np.abs(self.null(members)[members, 0])
+        kept = [i for i, w in zip(members, weights, strict=True) if w > _SMALL * weights.max()]
+        return kept if len(kept) < len(members) and self.null(kept).shape[1] == 1 else members
 
     def generator(self, members: list[int]) -> Generator:
         """The change of these members in the simplest form that holds wherever they are, the others at their values."""
@@ -137,8 +141,8 @@ class Search:
         if law is None:
             return self._local(members, names)
         power, shift = dict(zip(names, law[0], strict=True)), dict(zip(names, law[1], strict=True))
-        made = Generator(power, shift, True, False, {})
-        made = replace(made, needs_hidden=self._shows(made)[1] > _EXACT)
+        made = Generator(power, shift, True, (), {})
+        made = replace(made, hidden=self._shows(made)[1])
         return replace(made, names=self._named_centres(made, members))
 
     def _local(self, members: list[int], names: Sequence[str]) -> Generator:
@@ -150,9 +154,9 @@ class Search:
         largest = int(np.argmax(np.abs(vector) / self.sizes[members]))
         slopes = vector / vector[largest] * (values[members[largest]] or self.sizes[members[largest]])
         made = Generator(
-            dict.fromkeys(names, 0), {n: float(x) for n, x in zip(names, slopes, strict=True)}, False, False, {}
+            dict.fromkeys(names, 0), {n: float(x) for n, x in zip(names, slopes, strict=True)}, False, (), {}
         )
-        return replace(made, needs_hidden=self.conditions.residual(values, self._step(made, values))[1] > _EXACT)
+        return replace(made, hidden=self.conditions.residual(values, self._step(made, values))[1])
 
     def _step(self, generator: Generator, values: Array) -> Array:
         """d theta / d s over all parameters, SI."""
@@ -162,13 +166,13 @@ class Search:
             step[i] = generator.power[name] * values[i] + generator.shift[name]
         return step
 
-    def _shows(self, generator: Generator) -> tuple[float, float]:
-        """Worst residual of the law at several points, with and without help of hidden states."""
+    def _shows(self, generator: Generator) -> tuple[float, tuple[str, ...]]:
+        """Worst residual of the law at several points, and the hidden states that have to help it."""
         rng = np.random.default_rng(5)
         members = [self.model.parameters.index(n) for n in generator.parameters]
         points = [self.drawn(self.model.parameters.values, [*members, *self.unset], rng) for _ in range(_DRAWS)]
         residuals = [self.conditions.residual(p, self._step(generator, p)) for p in points]
-        return max(r[0] for r in residuals), max(r[1] for r in residuals)
+        return max(r for r, _ in residuals), max((helping for _, helping in residuals), key=len)
 
     def _affine(self, members: list[int], about: Array) -> tuple[list[int], list[float]] | None:
         """Powers and shifts that give the null vector at several points; None where no such law holds."""
@@ -213,7 +217,8 @@ class Search:
                 if j != k and made[k].is_finite and other.is_finite:
                     sums = [_combined(made[k], other, sign, self.model.parameters.names) for sign in (1, -1)]
                     shorter = [s for s in sums if s.parameters and s.length < made[k].length]
-                    true = [s for s in shorter if self._shows(s)[0] < _EXACT]
+                    shown = [(s, *self._shows(s)) for s in shorter]
+                    true = [replace(s, hidden=helping) for s, residual, helping in shown if residual < _EXACT]
                     made[k] = min((made[k], *true), key=lambda g: g.length)
         return made
 
@@ -224,10 +229,16 @@ def search(model: Model, outputs: Sequence[str]) -> Search:
     Raises:
         InputError: an output the model does not have, or a parameter without a value.
     """
+    rng = np.random.default_rng(3)
+    at = np.array([_elsewhere(p, p.value, rng) if p.free else p.value for p in model.parameters])
     sizes = np.array([p.characteristic_scale for p in model.parameters])
-    plain = Search(conditions(model, outputs), model.parameters.values, sizes)
-    free = [i for i, p in enumerate(model.parameters) if p.free]
-    return replace(plain, at=plain.drawn(plain.at, free, np.random.default_rng(3)))
+    return Search(conditions(model, outputs, at), at, sizes)
+
+
+def _elsewhere(p: Parameter, value: float, rng: np.random.Generator) -> float:
+    """Another value of a parameter, inside its bounds and with its sign."""
+    other = value * rng.uniform(0.6, 1.6) if value else p.characteristic_scale * rng.normal()
+    return float(np.clip(other, p.lower, p.upper))
 
 
 def generators(model: Model, outputs: Sequence[str], among: Sequence[str] = ()) -> tuple[Generator, ...]:
@@ -280,5 +291,4 @@ def _combined(one: Generator, other: Generator, sign: int, order: Sequence[str])
     shift = {n: 0.0 if abs(a + b) < _EXACT * max(abs(a), abs(b)) else a + b for n, (a, b) in parts.items()}
     kept = [n for n in order if power[n] or shift[n]]
     names = {n: w for n, w in (other.names | one.names).items() if n in kept and power[n] and shift[n]}
-    return Generator({n: power[n] for n in kept}, {n: shift[n] for n in kept}, True,
-                     one.needs_hidden or other.needs_hidden, names)  # fmt: skip
+    return Generator({n: power[n] for n in kept}, {n: shift[n] for n in kept}, True, (), names)

@@ -13,13 +13,12 @@ with the exact Jacobians of the generated code; their null space has a gap of so
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from seatrial.equations import Model
 from seatrial.kernels.sensitivity import evaluate_tangent
-from seatrial.values import NOTATION, Array, InputError
+from seatrial.values import NOTATION, Array, Index, InputError
 
 SINGULAR = 1e-11
 """Singular values below this, of columns with unit norm, count as zero: rounding gives 1e-15, real ones 1e-6 and up."""
@@ -27,7 +26,7 @@ SINGULAR = 1e-11
 _POINTS = 300
 _RANGES = {"m/s": (0.03, 10.0), "rad/s": (1e-3, 0.3), "rps": (0.1, 30.0)}
 _ORDINARY = (0.05, 20.0)
-_PRESENT, _PIVOT, _ORDERS = 1e-8, 1e-4, 40
+_PRESENT, _PIVOT, _ORDERS, _HELPING = 1e-8, 1e-4, 40, 1e-7
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +36,7 @@ class Conditions:
     Attributes:
         seen, hidden: indices of states that reach a compared output, compared themselves or not.
         compared: indices of compared outputs that are no states.
+        entering: indices of the parameters that stand in an equation which reaches a compared output.
         states, inputs: (points, nx), (points, nu), SI.
     """
 
@@ -44,6 +44,7 @@ class Conditions:
     seen: tuple[int, ...]
     hidden: tuple[int, ...]
     compared: tuple[int, ...]
+    entering: frozenset[int]
     states: Array
     inputs: Array
 
@@ -56,18 +57,6 @@ class Conditions:
     def hidden_names(self) -> tuple[str, ...]:
         """States that matter and are not compared."""
         return tuple(self.model.states[i] for i in self.hidden)
-
-    @cached_property
-    def entering(self) -> frozenset[int]:
-        """Indices of the parameters that stand in an equation which reaches a compared output."""
-        first = len(self.model.states) + len(self.model.inputs)
-        code = self.model.compiled
-        rows, rates = (*self.seen, *self.hidden), code.rates_pattern
-        pairs = [
-            *rates[np.isin(rates[:, 0], rows)],
-            *code.outputs_pattern[np.isin(code.outputs_pattern[:, 0], self.compared)],
-        ]
-        return frozenset(int(c) - first for _, c in pairs if c >= first)
 
     def effects(self, values: Array, sizes: Array) -> Array:
         """The conditions as columns of unit norm, one a parameter, shape (rows, parameters); silent ones stay zero.
@@ -90,16 +79,20 @@ class Conditions:
         scale = sizes[own] / np.where(norms[own] > 0.0, norms[own], 1.0)
         return vectors[-1] * scale, int(np.count_nonzero(singular < SINGULAR))
 
-    def residual(self, values: Array, change: Array) -> tuple[float, float]:
-        """How far a change (parameters,), SI, breaks the conditions, relative: with hidden states' help and without."""
+    def residual(self, values: Array, change: Array) -> tuple[float, tuple[str, ...]]:
+        """How far a change (parameters,), SI, breaks the conditions, relative, and the hidden states that help it."""
         raw, moved = self._stacked(values)
         parts = raw * change
         usable = np.isfinite(parts).all(axis=1) & np.isfinite(moved).all(axis=1)
-        parts, span = parts[usable], _span(moved[usable])
+        parts, moved = parts[usable], moved[usable]
         size, left = np.linalg.norm(parts), parts.sum(axis=1)
         if size == 0.0:
-            return 0.0, 0.0
-        return float(np.linalg.norm(left - span @ (span.T @ left)) / size), float(np.linalg.norm(left) / size)
+            return 0.0, ()
+        norms = np.maximum(np.linalg.norm(moved, axis=0), 1e-300)
+        weights = np.linalg.lstsq(moved / norms, left, rcond=SINGULAR)[0]
+        share = np.abs(weights).reshape(len(self.hidden), 1 + len(self.seen) + len(self.hidden)).max(axis=1) / size
+        helping = tuple(n for n, s in zip(self.hidden_names, share, strict=True) if s > _HELPING)
+        return float(np.linalg.norm(left - moved / norms @ weights) / size), helping
 
     def _columns(self, values: Array, sizes: Array) -> tuple[Array, Array]:
         raw, moved = self._stacked(values)
@@ -114,17 +107,10 @@ class Conditions:
 
     def _stacked(self, values: Array) -> tuple[Array, Array]:
         """Conditions by parameters (rows, P) and by coefficients of xi (rows, hidden * (1 + states))."""
-        code, (n, nx), nu = self.model.compiled, self.states.shape, self.inputs.shape[1]
-        ng, reaching = len(self.model.outputs), (*self.seen, *self.hidden)
-        f, p = np.empty((n, nx)), np.tile(values, (n, 1))
-        f_jac, g, g_jac = (
-            np.zeros(s)
-            for s in ((n, nx, nx + nu + len(values)), (n, max(ng, 1)), (n, max(ng, 1), nx + nu + len(values)))
-        )
-        evaluate_tangent(code.rates_tangent, self.states, self.inputs, p, 0.0, f, f_jac)
-        if self.compared:
-            evaluate_tangent(code.outputs_tangent, self.states, self.inputs, p, 0.0, g, g_jac)
+        reaching = (*self.seen, *self.hidden)
+        f, f_jac, g_jac = _jacobians(self.model, self.states, self.inputs, values)
         jac = np.concatenate([f_jac[:, reaching], g_jac[:, self.compared]], axis=1)
+        rows, first = jac.shape[0] * jac.shape[1], len(self.model.states) + len(self.model.inputs)
         by_hidden = []
         for h in self.hidden:
             for j in (None, *reaching):
@@ -132,20 +118,20 @@ class Conditions:
                 if j is not None:
                     column[:, reaching.index(h)] -= f[:, j]
                 by_hidden.append(column.ravel())
-        rows = jac.shape[0] * jac.shape[1]
-        return jac[:, :, nx + nu :].reshape(rows, -1), np.array(by_hidden).reshape(-1, rows).T
+        return jac[:, :, first:].reshape(rows, -1), np.array(by_hidden).reshape(-1, rows).T
 
 
-def conditions(model: Model, outputs: Sequence[str]) -> Conditions:
+def conditions(model: Model, outputs: Sequence[str], values: Array) -> Conditions:
     """The conditions for these compared outputs (states or outputs of the model).
+
+    values: (parameters,), SI; a factor that is zero there lets nothing through, so a state behind it reaches no output.
 
     Raises:
         InputError: an output the model does not have, none at all, or a parameter without a value.
     """
     if not outputs:
-        raise InputError(
-            f"model '{model.name}': no output is compared; name at least one of {', '.join(model.observables)}"
-        )
+        names = ", ".join(model.observables)
+        raise InputError(f"model '{model.name}': no output is compared; name at least one of {names}")
     for name in outputs:
         if name not in model.observables:
             raise InputError(f"model '{model.name}' has no output '{name}'; it has {', '.join(model.observables)}")
@@ -154,18 +140,37 @@ def conditions(model: Model, outputs: Sequence[str]) -> Conditions:
             f"model '{model.name}' needs values of {', '.join(model.parameters.missing)}; "
             "give them under [ship] or [model.fixed]"
         )
-    seen = {model.states.index(n) for n in outputs if n in model.states}
-    compared = tuple(sorted(model.outputs.index(n) for n in outputs if n in model.outputs))
-    reaching = _reaching(model, seen, compared)
+    seen = tuple(i for i, n in enumerate(model.states) if n in outputs)
+    compared = tuple(i for i, n in enumerate(model.outputs) if n in outputs)
     rng = np.random.default_rng(0)
-    return Conditions(model, tuple(sorted(seen)), tuple(sorted(reaching - seen)), compared,
-                      _drawn(model.states, rng), _drawn(model.input_names, rng))  # fmt: skip
+    states, inputs = _drawn(model.states, rng), _drawn(model.input_names, rng)
+    code, nx = model.compiled, len(model.states)
+    f_jac, g_jac = _jacobians(model, states, inputs, values)[1:]
+    written = _reaching(seen, compared, code.rates_pattern, code.outputs_pattern, nx)
+    felt = _reaching(seen, compared, np.argwhere(f_jac.any(axis=0)), np.argwhere(g_jac.any(axis=0)), nx)
+    first = nx + len(model.inputs)
+    rates = code.rates_pattern[np.isin(code.rates_pattern[:, 0], list(written))]
+    made = code.outputs_pattern[np.isin(code.outputs_pattern[:, 0], compared)]
+    entering = frozenset(int(c) - first for _, c in (*rates, *made) if c >= first)
+    return Conditions(model, seen, tuple(sorted(felt - {*seen})), compared, entering, states, inputs)
 
 
-def _reaching(model: Model, seen: set[int], compared: tuple[int, ...]) -> set[int]:
-    nx, code = len(model.states), model.compiled
-    found = seen | {int(c) for r, c in code.outputs_pattern if r in compared and c < nx}
-    while more := {int(c) for r, c in code.rates_pattern if r in found and c < nx} - found:
+def _jacobians(model: Model, states: Array, inputs: Array, values: Array) -> tuple[Array, Array, Array]:
+    """Rates (points, nx), their Jacobian (points, nx, columns) and that of the outputs, columns [x | u | p]."""
+    code, n, ng = model.compiled, len(states), len(model.outputs)
+    width = len(model.states) + len(model.inputs) + len(values)
+    p, f, f_jac = np.tile(values, (n, 1)), np.empty_like(states), np.zeros((n, states.shape[1], width))
+    g_jac = np.zeros((n, ng, width))
+    evaluate_tangent(code.rates_tangent, states, inputs, p, 0.0, f, f_jac)
+    if ng:
+        evaluate_tangent(code.outputs_tangent, states, inputs, p, 0.0, np.empty((n, ng)), g_jac)
+    return f, f_jac, g_jac
+
+
+def _reaching(seen: Sequence[int], compared: Sequence[int], rates: Index, outputs: Index, nx: int) -> set[int]:
+    """States that reach a compared output by the (row, column) pairs of rates and outputs."""
+    found = {*seen} | {int(c) for r, c in outputs if r in compared and c < nx}
+    while more := {int(c) for r, c in rates if r in found and c < nx} - found:
         found |= more
     return found
 
@@ -213,7 +218,7 @@ def sparse_basis(null: Array, given: Sequence[Array] = ()) -> list[list[int]]:
         trial = [*taken, null.T @ vector]
         if np.linalg.matrix_rank(np.array(trial), tol=_PIVOT) > rank:
             taken, rank = trial, rank + 1
-            chosen.append([int(i) for i in np.flatnonzero(np.abs(vector) > _PRESENT * np.abs(vector).max())])
+            chosen.append([int(i) for i in np.flatnonzero(vector)])
     return chosen
 
 
@@ -235,6 +240,6 @@ def _circuits(null: Array) -> list[Array]:
             rows[others] -= np.outer(rows[others, column], rows[at])
             at += 1
         for row in rows[:at]:
-            members = np.flatnonzero(np.abs(row) > _PRESENT * np.abs(row).max())
-            found.setdefault(tuple(members), row / np.linalg.norm(row))
+            kept = np.where(np.abs(row) > _PRESENT * np.abs(row).max(), row, 0.0)
+            found.setdefault(tuple(np.flatnonzero(kept)), kept / np.linalg.norm(kept))
     return [found[key] for key in sorted(found, key=lambda members: (len(members), members))]

@@ -10,6 +10,7 @@ import numpy as np
 
 from seatrial.equations import Model
 from seatrial.information.generators import Generator, Search, search
+from seatrial.information.null_space import conditions
 from seatrial.information.symmetry_words import Silence, sentence, silence
 from seatrial.results import Symmetry
 from seatrial.trial.model_choice import COMMON_PARTICULARS
@@ -57,22 +58,19 @@ def _told(where: Search, found: Sequence[Generator]) -> tuple[Symmetry, ...]:
     for g in (g for g in found if len(g.parameters) == 1):
         silent.setdefault(_reason(where, g), []).append(g.parameters[0])
     told = [Symmetry(tuple(s), silence(s, reason, outputs), dict.fromkeys(s, 1.0)) for reason, s in silent.items()]
-    for g, decisive in _in_order(where.model, where.shortened([g for g in found if len(g.parameters) > 1])):
-        hidden = where.conditions.hidden_names if g.needs_hidden else ()
-        text = sentence(g, parameters, decisive, outputs, hidden)
-        told.append(Symmetry(g.parameters, text, g.change(where.model)))
+    for g, decisive in _in_order(where.shortened([g for g in found if len(g.parameters) > 1])):
+        told.append(Symmetry(g.parameters, sentence(g, parameters, decisive, outputs), g.change(where.model)))
     return tuple(told)
 
 
-def _in_order(model: Model, found: Sequence[Generator]) -> list[tuple[Generator, tuple[str, ...]]]:
+def _in_order(found: Sequence[Generator]) -> list[tuple[Generator, tuple[str, ...]]]:
     """Each with the parameters of which one settles it: whoever fixes one for each has settled all (triangular)."""
     left, made = list(found), []
     while left:
         own = [_own(g, left) for g in left]
         best = max(range(len(left)), key=lambda k: (bool(own[k]), len(left[k].parameters)))
-        decisive = own[best] or left[best].parameters
-        dimensional = tuple(n for n in decisive if model.parameters[n].unit != "1")
-        made.append((left.pop(best), dimensional or tuple(decisive)))
+        decisive = tuple(own[best]) or left[best].parameters
+        made.append((left.pop(best), decisive))
     return made
 
 
@@ -87,8 +85,8 @@ def _reason(where: Search, silent: Generator) -> Silence:
     i = where.model.parameters.names.index(silent.parameters[0])
     if i not in where.conditions.entering:
         return Silence(enters=False)
-    if silent.needs_hidden:
-        return Silence(hidden=where.conditions.hidden_names)
+    if silent.hidden:
+        return Silence(hidden=silent.hidden)
     held = [k for k, p in enumerate(where.model.parameters) if k != i and not p.free]
     off = _switches(where, i, [k for k in held if not where.at[k]])
     return Silence(switches=off or _switches(where, i, [k for k in held if where.at[k]]))
@@ -99,7 +97,8 @@ def _switches(where: Search, silent: int, held: Sequence[int]) -> tuple[str, ...
     rng = np.random.default_rng(4)
     found = []
     for k in held:
-        effects = where.conditions.effects(where.drawn(where.at, [k], rng), where.sizes)
+        values = where.drawn(where.at, [k], rng)
+        effects = conditions(where.model, where.conditions.outputs, values).effects(values, where.sizes)
         if np.linalg.norm(effects[:, silent]) > _ALIVE:
             p = where.model.parameters.items[k]
             found.append(f"{p.name} is {p.value:.4g}")

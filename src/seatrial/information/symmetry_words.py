@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from seatrial.information.generators import Generator
 from seatrial.values import Parameters
 
-_MOST_NAMED = 8
+_MOST_NAMED, _MOST_LISTED = 8, 24
 
 
 @dataclass(frozen=True)
@@ -45,16 +45,11 @@ def silence(names: Sequence[str], why: Silence, outputs: Sequence[str]) -> str:
     return f"{who} {has} no influence on {seen}: fix {them}"
 
 
-def sentence(
-    generator: Generator, parameters: Parameters, decisive: Sequence[str], outputs: Sequence[str], hidden: Sequence[str]
-) -> str:
-    """What can change together without any change of the outputs, and which parameters settle it.
-
-    hidden: states that have to change as well, none measured.
-    """
-    follow = f", with {listed(hidden)}, not measured, changed to fit," if hidden else ""
+def sentence(g: Generator, parameters: Parameters, decisive: Sequence[str], outputs: Sequence[str]) -> str:
+    """What can change together without any change of the outputs, and which parameters settle it."""
+    follow = f", with {listed(g.hidden)}, not measured, changed to fit," if g.hidden else ""
     same = f"without any change of {listed(outputs, 'or')}"
-    return f"{_change(generator, parameters)}{follow} {same}: {_advice(generator, parameters, decisive)}"
+    return f"{_change(g, parameters)}{follow} {same}: {_advice(g, parameters, decisive)}"
 
 
 def _change(g: Generator, parameters: Parameters) -> str:
@@ -67,7 +62,7 @@ def _change(g: Generator, parameters: Parameters) -> str:
     if not shifted:
         return _scaling(g, scaled)
     steps = listed([f"{n} by {g.shift[n]:+.4g} s" for n in shifted])
-    return f"{_powers(g, scaled, 'e^s')} and, at the same time, {steps} added"
+    return f"{_powers(g, scaled, 'e^s')} and, for any s, {steps} shifted"
 
 
 def _free_first(g: Generator, parameters: Parameters) -> list[str]:
@@ -98,8 +93,14 @@ def _scaling(g: Generator, names: Sequence[str]) -> str:
 
 
 def _powers(g: Generator, names: Sequence[str], factor: str) -> str:
-    parts = [f"{_written(g, members)} by {factor}{'' if p == 1 else f'^{p}'}" for p, members in _groups(g, names)]
-    return f"for any {factor[-1]}, {listed(parts)} can be multiplied"
+    (power, lead), *others = sorted(_groups(g, names), key=lambda item: (item[0] != 1, -len(item[1])))
+    rest = listed([f"{_written(g, members)} by {_power(factor, p)}" for p, members in others])
+    by = f"{_written(g, lead)} can be multiplied by any factor {_power(factor, power)}"
+    return f"{by} together with {rest}" if others else by
+
+
+def _power(factor: str, power: int) -> str:
+    return factor if power == 1 else f"{factor}^{power}"
 
 
 def _be(names: Sequence[str]) -> str:
@@ -121,22 +122,27 @@ def _shifting(g: Generator, names: Sequence[str]) -> str:
 
 
 def _near(g: Generator, parameters: Parameters) -> str:
-    """A change without a simple law: relative to the values, where all of them are there."""
+    """A change without a simple law: relative to the values, where these are there and few."""
     count = len(g.parameters) - 1
-    text = f"{listed(_free_first(g, parameters))} are felt in {count} combination{'' if count == 1 else 's'} only"
+    text = f"{_some(_free_first(g, parameters))} are felt in {count} combination{'' if count == 1 else 's'} only"
     values = [parameters[n].value for n in g.parameters]
-    if not all(values):
+    if len(values) > _MOST_NAMED or not all(values):
         return f"{text} and can change together"
     steps = [f"{n} {g.shift[n] / value:+.2g} %" for n, value in zip(g.parameters, values, strict=True)]
     return f"{text} and can change together (near their values in proportion {listed(steps)})"
 
 
+def _some(names: Sequence[str], most: int = _MOST_LISTED) -> str:
+    return listed(names) if len(names) <= most else f"{', '.join(names[: most - 1])} and {len(names) - most + 1} more"
+
+
 def _advice(g: Generator, parameters: Parameters, decisive: Sequence[str]) -> str:
-    offered = [n for n in decisive if not parameters[n].free] or list(decisive)
-    more = "" if len(offered) <= _MOST_NAMED else f" or {len(offered) - _MOST_NAMED} others"
-    text = f"fix or give a prior for one of {', '.join(offered[:_MOST_NAMED])}{more}"
     fixed = [n for n in g.parameters if not parameters[n].free]
     known = [n for n in g.parameters if parameters[n].free and parameters[n].prior is not None]
+    dimensional = [n for n in decisive if parameters[n].unit != "1"]
+    offered = [n for n in decisive if n in fixed] or dimensional or list(decisive)
+    more = "" if len(offered) <= _MOST_NAMED else f" or {len(offered) - _MOST_NAMED} others"
+    text = f"fix or give a prior for one of {', '.join(offered[:_MOST_NAMED])}{more}"
     if fixed:
-        text += f"; fixed here: {listed(fixed)}, and what is wrong with one of them goes into all"
-    return f"{text}; prior here for {listed(known)}" if known else text
+        text += f"; fixed here: {_some(fixed, _MOST_NAMED)}, whose errors spread to all"
+    return f"{text}; prior here for {_some(known, _MOST_NAMED)}" if known else text
