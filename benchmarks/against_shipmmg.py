@@ -11,9 +11,9 @@ import numpy as np
 import shipmmg_equations as peer
 from measure import Line, at_least, at_most, fastest
 
-from seatrial.kernels.integrate import steer
-from seatrial.manoeuvres import Steering, programme
-from seatrial.manoeuvres.steering import rudder_angles
+from seatrial.kernels.steering import steer
+from seatrial.manoeuvres.programme import programme
+from seatrial.manoeuvres.steering import Steering, rudder_angles
 from seatrial.simulate.batch import Batch
 
 HERE = Path(__file__).parent

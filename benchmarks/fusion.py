@@ -26,13 +26,13 @@ from measure import Line, at_most, machine
 from seatrial.equations import Model
 from seatrial.identify import Settings, identified
 from seatrial.identify.identify import settings_of
-from seatrial.manoeuvres import programme
 from seatrial.manoeuvres.measures import measures
+from seatrial.manoeuvres.programme import programme
 from seatrial.models.mmg import HULL, mmg
 from seatrial.models.published import esso_osaka, kvlcc2_full
 from seatrial.problem.static_forces import StaticForces
-from seatrial.simulate import manoeuvre, replay
-from seatrial.simulate.steer import SOLAS_SLEW_RATE
+from seatrial.simulate import replay
+from seatrial.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
 from seatrial.trial import Role, load_trial, records_of
 from seatrial.values import ForcePoints, Prior, Record
 

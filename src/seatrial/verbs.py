@@ -140,7 +140,7 @@ def steering(
     Raises:
         InputError: unknown manoeuvre, or a rudder that cannot move.
     """
-    from seatrial.manoeuvres import programme
+    from seatrial.manoeuvres.programme import programme
     from seatrial.simulate.steer import SOLAS_SLEW_RATE
     from seatrial.simulate.steer import manoeuvre as steered
     from seatrial.values import InputError

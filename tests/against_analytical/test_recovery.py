@@ -9,13 +9,13 @@ import pytest
 from seatrial.equations import Model
 from seatrial.identify import identified
 from seatrial.identify.fit import Identified
-from seatrial.manoeuvres import programme
+from seatrial.manoeuvres.programme import programme
 from seatrial.models.abkowitz import STANDARD, abkowitz
 from seatrial.models.mmg import HULL
 from seatrial.models.nomoto import nomoto, nomoto2
 from seatrial.models.published import kvlcc2, kvlcc2_l7
 from seatrial.models.waterjet import COEFFICIENTS, waterjet
-from seatrial.simulate import manoeuvre
+from seatrial.simulate.steer import manoeuvre
 from seatrial.values import Record
 
 MODEL_SCALE_SLEW = math.radians(15.8)

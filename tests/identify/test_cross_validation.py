@@ -20,9 +20,9 @@ from seatrial.identify.cross_validation import (
     windows,
 )
 from seatrial.identify.settings import Settings
-from seatrial.manoeuvres import programme
+from seatrial.manoeuvres.programme import programme
 from seatrial.models.nomoto import nomoto
-from seatrial.simulate import manoeuvre
+from seatrial.simulate.steer import manoeuvre
 from seatrial.values import InputError, Record
 
 RUNS = ("zigzag:20/20", "zigzag:10/10", "turning-circle:20", "turning-circle:15:port")

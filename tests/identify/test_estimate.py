@@ -7,11 +7,11 @@ import pytest
 
 from seatrial.equations import Model
 from seatrial.identify.estimate import Estimate, colour, estimate, residual_spread, rounding_level
-from seatrial.manoeuvres import programme
+from seatrial.manoeuvres.programme import programme
 from seatrial.models.nomoto import nomoto
 from seatrial.problem.output_error import OutputError
 from seatrial.problem.segments import cut
-from seatrial.simulate import manoeuvre
+from seatrial.simulate.steer import manoeuvre
 from seatrial.values import Record
 
 

@@ -7,11 +7,11 @@ import pytest
 
 from seatrial.equations import Model
 from seatrial.identify.singular import refuse_singular, weakest
-from seatrial.manoeuvres import programme
+from seatrial.manoeuvres.programme import programme
 from seatrial.models.waterjet import waterjet
 from seatrial.problem.output_error import OutputError
 from seatrial.problem.segments import cut
-from seatrial.simulate import manoeuvre
+from seatrial.simulate.steer import manoeuvre
 from seatrial.studies.series import SENSOR_NOISE, noisy
 from seatrial.values import InputError, Record
 

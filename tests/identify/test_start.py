@@ -9,10 +9,10 @@ from identify.conftest import TRUTH, square, steered
 from seatrial.identify import identified
 from seatrial.identify.start import weak_start
 from seatrial.identify.states import measured_states
-from seatrial.manoeuvres import programme
+from seatrial.manoeuvres.programme import programme
 from seatrial.models.nomoto import nomoto, nomoto2
 from seatrial.models.waterjet import COEFFICIENTS, waterjet
-from seatrial.simulate import manoeuvre
+from seatrial.simulate.steer import manoeuvre
 from seatrial.values import InputError, Record
 
 

@@ -7,7 +7,7 @@ from scipy.linalg import expm
 
 from kernels.case import Case
 from seatrial.equations import Model
-from seatrial.kernels.integrate import steer
+from seatrial.kernels.steering import steer
 from seatrial.kernels.types import COMMAND_SIGNATURE
 
 K, C, B = 1.5, 0.3, 0.8

@@ -7,9 +7,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from seatrial.manoeuvres import Manoeuvre, criteria, measures, programme, recognise
+from seatrial.manoeuvres import Manoeuvre, criteria, measures, recognise
+from seatrial.manoeuvres.programme import programme
 from seatrial.models.nomoto import nomoto
-from seatrial.simulate import manoeuvre
+from seatrial.simulate.steer import manoeuvre
 from seatrial.values import InputError, Record, frozen
 
 LENGTH = 10.0

@@ -6,10 +6,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from seatrial.manoeuvres import Manoeuvre, criteria, measures, programme, recognise
+from seatrial.manoeuvres import Manoeuvre, criteria, measures, recognise
 from seatrial.manoeuvres.imo import first_overshoot_limit, second_overshoot_limit
+from seatrial.manoeuvres.programme import programme
 from seatrial.models.nomoto import nomoto
-from seatrial.simulate import manoeuvre
+from seatrial.simulate.steer import manoeuvre
 from seatrial.values import InputError, Record
 
 LENGTH = 10.0

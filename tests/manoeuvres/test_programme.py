@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from seatrial.manoeuvres import Steering, programme
-from seatrial.manoeuvres.steering import COUNT, TABLE, rudder_angles
+from seatrial.manoeuvres.programme import programme
+from seatrial.manoeuvres.steering import COUNT, TABLE, Steering, rudder_angles
 from seatrial.values import InputError
 
 STEERING = Steering(psi=0, r=1, delta=0, sign=1.0, slew_rate=0.05, dt=0.1, approach=0.0, time_unit=10.0)

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from seatrial.manoeuvres import programme
+from seatrial.manoeuvres.programme import programme
 from seatrial.models.abkowitz import abkowitz
 from seatrial.models.mmg import HULL, mmg
 from seatrial.models.nomoto import nomoto
@@ -16,7 +16,7 @@ from seatrial.optimise import Normal, levenberg_marquardt
 from seatrial.problem.output_error import OutputError
 from seatrial.problem.segments import cut
 from seatrial.problem.static_forces import StaticForces
-from seatrial.simulate import manoeuvre
+from seatrial.simulate.steer import manoeuvre
 from seatrial.values import Array, ForcePoints, Includes, InputError
 
 SPEED, LENGTH = 1.2, 7.0

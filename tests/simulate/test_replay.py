@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.manoeuvres import programme
+from seatrial.manoeuvres.programme import programme
 from seatrial.models.nomoto import nomoto
 from seatrial.models.waterjet import waterjet
-from seatrial.simulate import forces, inputs_of, manoeuvre, replay
+from seatrial.simulate import forces, inputs_of, replay
+from seatrial.simulate.steer import manoeuvre
 from seatrial.values import Channel, InputError, Kind, Record, frozen
 
 JET = {"v_j": 1.866}

@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.manoeuvres import measures, programme
+from seatrial.manoeuvres import measures
+from seatrial.manoeuvres.programme import programme
 from seatrial.models.nomoto import nomoto
 from seatrial.models.waterjet import waterjet
-from seatrial.simulate import manoeuvre
+from seatrial.simulate.steer import manoeuvre
 from seatrial.values import InputError, Record
 
 JET, SLEW = {"v_j": 1.866}, math.radians(4.0)

@@ -1,7 +1,6 @@
-"""Fixed-step Runge-Kutta integration of any model: replayed inputs, or a command in the loop.
+"""Fixed-step Runge-Kutta integration of any model with replayed inputs, which run linearly between samples.
 
-Classical fourth-order scheme (Hairer, Norsett & Wanner 1993, table II.1.2). Replayed inputs run linearly
-between samples; a command is held over its step.
+Classical fourth-order scheme (Hairer, Norsett & Wanner 1993, table II.1.2).
 """
 
 import math
@@ -9,7 +8,7 @@ import math
 import numpy as np
 from numba import njit, void
 
-from seatrial.kernels.types import COMMAND, F8, FUNCTION, I8, INDEX, LEAN, MATRIX, OPTIONS, VECTOR
+from seatrial.kernels.types import F8, FUNCTION, I8, INDEX, LEAN, MATRIX, OPTIONS, VECTOR
 
 DIVERGED = 1e9
 
@@ -118,30 +117,6 @@ def replay(
     nx, nu = x0.shape[1], inputs.shape[1]
     _replay(f, g, inputs, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay, select, y_out, failed,
             np.empty((6, nx)), np.empty((4, nu)), np.empty(max(ng, 1)))  # fmt: skip
-
-
-@njit(I8(FUNCTION, COMMAND, VECTOR, VECTOR, VECTOR, VECTOR, F8, MATRIX, MATRIX), **OPTIONS)
-def steer(f, command, x0, u_start, p, memory, dt, x_out, u_out):
-    """Integrate with a command in the loop; returns the step at which it diverged, or -1.
-
-    x_out, u_out: states and the input held from that sample on, one row a step.
-    """
-    nx = x0.size
-    x, y = x0.copy(), np.empty(nx)
-    k1, k2, k3, k4 = np.empty(nx), np.empty(nx), np.empty(nx), np.empty(nx)
-    u = u_start.copy()
-    size = 0.0
-    for row in range(x_out.shape[0]):
-        t = row * dt
-        command(t, x, memory, u)
-        for i in range(nx):
-            x_out[row, i] = x[i]
-        for j in range(u.size):
-            u_out[row, j] = u[j]
-        if not size < DIVERGED:
-            return row
-        size = rk4_step(f, t, x, u, u, u, p, dt, k1, k2, k3, k4, y)
-    return -1
 
 
 @njit(void(FUNCTION, MATRIX, MATRIX, VECTOR, F8, MATRIX), **OPTIONS)

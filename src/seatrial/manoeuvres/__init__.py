@@ -1,9 +1,10 @@
-"""Programmes with their helmsmen, the measures of a manoeuvre, and the criteria they are held against."""
+"""Programmes with their helmsmen, the measures of a manoeuvre, and the criteria they are held against.
+
+`programme` is in `seatrial.manoeuvres.programme`, apart because its helmsmen are compiled when they are imported.
+"""
 
 from seatrial.manoeuvres.imo import Criterion, criteria
 from seatrial.manoeuvres.measures import measures
 from seatrial.manoeuvres.observed import Manoeuvre, recognise
-from seatrial.manoeuvres.programme import Programme, programme
-from seatrial.manoeuvres.steering import Steering
 
-__all__ = ["Criterion", "Manoeuvre", "Programme", "Steering", "criteria", "measures", "programme", "recognise"]
+__all__ = ["Criterion", "Manoeuvre", "criteria", "measures", "recognise"]

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.kernels import integrate
-from seatrial.manoeuvres import Programme, Steering
-from seatrial.manoeuvres.steering import FINISHED, NOT_FINISHED, rudder_angles
+from seatrial.kernels.steering import steer
+from seatrial.manoeuvres.programme import Programme
+from seatrial.manoeuvres.steering import FINISHED, NOT_FINISHED, Steering, rudder_angles
 from seatrial.simulate.approach import approach_speed, held_inputs, time_unit
 from seatrial.simulate.bounds import demand_bounded
 from seatrial.simulate.channels import record_of
@@ -94,7 +94,7 @@ def _steered(
         raise InputError(f"a manoeuvre of {longest:g} s is shorter than one step of {dt:g} s")
     states, inputs = np.empty((count, len(start))), np.empty((count, len(held)))
     memory = programme.memory(steering)
-    diverged = integrate.steer(
+    diverged = steer(
         model.compiled.rates,
         programme.helmsman,
         start,

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.manoeuvres import programme
+from seatrial.manoeuvres.programme import programme
 from seatrial.models.waterjet import waterjet
-from seatrial.simulate import manoeuvre
+from seatrial.simulate.steer import manoeuvre
 from seatrial.values import Record, display
 from seatrial.values.files import write_whole
 

@@ -12,7 +12,8 @@ from seatrial.check.signal import sample_noise
 from seatrial.equations import Model
 from seatrial.identify import identified, identify
 from seatrial.identify.identify import settings_of
-from seatrial.manoeuvres import measures, programme
+from seatrial.manoeuvres import measures
+from seatrial.manoeuvres.programme import programme
 from seatrial.read import Column, Layout, read_record
 from seatrial.results import Fit
 from seatrial.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
