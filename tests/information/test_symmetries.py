@@ -403,6 +403,36 @@ def test_a_state_behind_a_zero_reaches_nothing() -> None:
     assert structural(nomoto().with_values({"U": 2.0}), ("x0", "y0")) == ()
 
 
+def test_a_centre_that_is_another_parameter_is_named() -> None:
+    """The rudder's lever counts from the point of the additional force: x_R - x_H scales with 1 + a_H."""
+    model = kvlcc2()
+    model = model.with_parameters(model.parameters.only_free(["f_alpha", "t_R", "a_H"]))
+    told = structural(model, MOTION)
+    (rudder,) = [s for s in told if "f_alpha" in s.parameters]
+    assert rudder.text.startswith(
+        "1 - t_R, 1 + a_H and x_R_prime - x_H_prime can be multiplied by any factor if f_alpha is divided by it without"
+    )
+    assert "fix or give a prior for x_R_prime; it is fixed here, and its error spreads to all" in rudder.text
+
+
+def test_roots_of_negative_states_are_not_asked_for() -> None:
+    sheet = Sheet("tank", "made up")
+    (level,) = sheet.states("level")
+    inflow = sheet.input("inflow")
+    a, b = free(sheet, "a b")
+    sheet.rate(level, inflow - a * b * sp.sqrt(level))
+    assert [s.parameters for s in structural(sheet.model(), ("level",))] == [("a", "b")]
+
+
+def test_rates_that_are_never_finite_are_refused() -> None:
+    sheet = Sheet("broken", "made up")
+    (level,) = sheet.states("level")
+    (a,) = free(sheet, "a")
+    sheet.rate(level, a * sp.sqrt(-1 - level**2))
+    with pytest.raises(InputError, match="gives no finite rates"):
+        structural(sheet.model(), ("level",))
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_products_of_powers_obey_the_rank_of_their_exponents(seed: int) -> None:
     """Three monomials in six parameters: what hides is what no exponent sees (Buckingham's theorem)."""

@@ -16,7 +16,8 @@ from seatrial.equations import Model
 from seatrial.information.null_space import Conditions, conditions, null_space, sparse_basis
 from seatrial.values import Array, Parameter
 
-_DRAWS, _EXACT, _SMALL, _LARGEST_DENOMINATOR = 5, 1e-7, 1e-5, 12
+_DRAWS, _EXACT, _LARGEST_DENOMINATOR = 5, 1e-7, 12
+_SMALL = (1e-5, 1e-8, 1e-10)
 
 
 @dataclass(frozen=True)
@@ -119,17 +120,19 @@ class Search:
         given: list[Array] = []
         found = []
         for members in stages:
-            inside = [g for g in given if not np.delete(g, list(members)).any()]
-            supports = [self.least(s) for s in sparse_basis(self.null(members), inside)]
-            given += [self.null(support)[:, 0] for support in supports]
-            found.append([self.generator(support) for support in supports])
+            inside = [g for g in given if np.abs(np.delete(g, list(members))).max(initial=0.0) < _EXACT]
+            vectors = sparse_basis(self.null(members), inside)
+            given += vectors
+            found.append([self.generator(self.least(v)) for v in vectors])
         return found
 
-    def least(self, members: list[int]) -> list[int]:
-        """The members without those that rounding put there: small ones that the null vector can do without."""
-        weights = np.abs(self.null(members)[members, 0])
-        kept = [i for i, w in zip(members, weights, strict=True) if w > _SMALL * weights.max()]
-        return kept if len(kept) < len(members) and self.null(kept).shape[1] == 1 else members
+    def least(self, vector: Array) -> list[int]:
+        """The members of a null vector without those that only rounding put there."""
+        for small in _SMALL:
+            members = [int(i) for i in np.flatnonzero(np.abs(vector) > small * np.abs(vector).max())]
+            if self.null(members).shape[1] > 0:
+                return members
+        return [int(i) for i in np.flatnonzero(vector)]
 
     def generator(self, members: list[int]) -> Generator:
         """The change of these members in the simplest form that holds wherever they are, the others at their values."""
@@ -196,18 +199,22 @@ class Search:
             own = self.model.parameters[name]
             words[name] = _about(made.centre(name), name, own.value)
             for i, p in enumerate(self.model.parameters):
-                if i not in members and p.unit == own.unit and self._is_centre(i, made, name, members):
-                    words[name] = f"{p.name} + {name}"
+                sign = self._follows(i, made, name, members) if i not in members and p.unit == own.unit else 0
+                if sign:
+                    words[name] = f"{name} - {p.name}" if sign > 0 else f"{p.name} + {name}"
         return words
 
-    def _is_centre(self, held: int, made: Generator, name: str, members: list[int]) -> bool:
+    def _follows(self, held: int, made: Generator, name: str, members: list[int]) -> int:
+        """Sign with which the centre of a parameter is the value of a held one; 0 where it is not."""
         other = self.model.parameters.values
-        if not other[held] or abs(made.centre(name) / other[held] + 1.0) > _EXACT:
-            return False
+        sign = int(np.sign(made.centre(name) * other[held]))
+        if not sign or abs(made.centre(name) / (sign * other[held]) - 1.0) > _EXACT:
+            return 0
         other[held] *= 1.17
-        law = self._affine(members, other)
-        k = made.parameters.index(name)
-        return law is not None and bool(law[0][k]) and abs(law[1][k] / law[0][k] / other[held] - 1.0) < _EXACT
+        law, k = self._affine(members, other), made.parameters.index(name)
+        if law is None or not law[0][k]:
+            return 0
+        return sign if abs(law[1][k] / law[0][k] / (-sign * other[held]) - 1.0) < _EXACT else 0
 
     def shortened(self, found: Sequence[Generator]) -> list[Generator]:
         """The same span, said in fewer words: a generator gives way to its sum or difference with another."""

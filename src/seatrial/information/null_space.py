@@ -23,10 +23,10 @@ from seatrial.values import NOTATION, Array, Index, InputError
 SINGULAR = 1e-11
 """Singular values below this, of columns with unit norm, count as zero: rounding gives 1e-15, real ones 1e-6 and up."""
 
-_POINTS = 300
+_POINTS, _ATTEMPTS = 300, 6
 _RANGES = {"m/s": (0.03, 10.0), "rad/s": (1e-3, 0.3), "rps": (0.1, 30.0)}
 _ORDINARY = (0.05, 20.0)
-_PRESENT, _PIVOT, _ORDERS, _HELPING = 1e-8, 1e-4, 40, 1e-7
+_PRESENT, _PIVOT, _LAST_PIVOT, _DISTINCT, _ORDERS, _HELPING = 1e-8, 1e-4, 1e-9, 1e-6, 40, 1e-7
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,8 +96,9 @@ class Conditions:
 
     def _columns(self, values: Array, sizes: Array) -> tuple[Array, Array]:
         raw, moved = self._stacked(values)
-        raw = raw * sizes
-        length = np.sqrt(np.sum(raw**2, axis=1) + np.sum(moved**2, axis=1))
+        with np.errstate(over="ignore", invalid="ignore"):
+            raw = raw * sizes
+            length = np.sqrt(np.sum(raw**2, axis=1) + np.sum(moved**2, axis=1))
         usable = np.isfinite(length) & (length > 0.0)
         raw, moved = raw[usable] / length[usable, None], moved[usable] / length[usable, None]
         norms = np.linalg.norm(raw, axis=0)
@@ -116,7 +117,8 @@ class Conditions:
             for j in (None, *reaching):
                 column = jac[:, :, h] * (1.0 if j is None else self.states[:, j, None])
                 if j is not None:
-                    column[:, reaching.index(h)] -= f[:, j]
+                    with np.errstate(invalid="ignore"):
+                        column[:, reaching.index(h)] -= f[:, j]
                 by_hidden.append(column.ravel())
         return jac[:, :, first:].reshape(rows, -1), np.array(by_hidden).reshape(-1, rows).T
 
@@ -142,8 +144,7 @@ def conditions(model: Model, outputs: Sequence[str], values: Array) -> Condition
         )
     seen = tuple(i for i, n in enumerate(model.states) if n in outputs)
     compared = tuple(i for i, n in enumerate(model.outputs) if n in outputs)
-    rng = np.random.default_rng(0)
-    states, inputs = _drawn(model.states, rng), _drawn(model.input_names, rng)
+    states, inputs = _points(model, values)
     code, nx = model.compiled, len(model.states)
     f_jac, g_jac = _jacobians(model, states, inputs, values)[1:]
     written = _reaching(seen, compared, code.rates_pattern, code.outputs_pattern, nx)
@@ -175,6 +176,33 @@ def _reaching(seen: Sequence[int], compared: Sequence[int], rates: Index, output
     return found
 
 
+def _points(model: Model, values: Array) -> tuple[Array, Array]:
+    """Random states and inputs at which everything is finite; positive ones where roots or logarithms demand it.
+
+    Raises:
+        InputError: hardly any can be found.
+    """
+    rng = np.random.default_rng(0)
+    kept_x, kept_u, count = [], [], 0
+    for attempt in range(_ATTEMPTS):
+        x, u = _drawn(model.states, rng), _drawn(model.input_names, rng)
+        if attempt >= _ATTEMPTS // 2:
+            x = np.abs(x)
+        f, f_jac, g_jac = _jacobians(model, x, u, values)
+        good = np.isfinite(f).all(axis=1) & np.isfinite(f_jac).all(axis=(1, 2)) & np.isfinite(g_jac).all(axis=(1, 2))
+        kept_x.append(x[good])
+        kept_u.append(u[good])
+        count += int(np.count_nonzero(good))
+        if count >= _POINTS:
+            break
+    if count < _POINTS // 10:
+        raise InputError(
+            f"model '{model.name}' gives no finite rates at ordinary states and inputs; "
+            "guard its roots, logarithms and denominators"
+        )
+    return np.concatenate(kept_x)[:_POINTS], np.concatenate(kept_u)[:_POINTS]
+
+
 def _drawn(names: Sequence[str], rng: np.random.Generator) -> Array:
     """Random values over the decades of each channel, both signs; angles all round."""
     columns = [np.empty((_POINTS, 0))]
@@ -202,44 +230,49 @@ def null_space(effects: Array) -> Array:
     return vectors[np.concatenate([singular, np.zeros(len(vectors) - len(singular))]) < SINGULAR].T
 
 
-def sparse_basis(null: Array, given: Sequence[Array] = ()) -> list[list[int]]:
-    """Supports of null vectors with few members that complete `given` ones to a basis of the null space.
+def sparse_basis(null: Array, given: Sequence[Array] = ()) -> list[Array]:
+    """Null vectors with few members that complete `given` ones to a basis of the null space; rounding in the others.
 
     Rows of reduced echelon forms for many orders of the columns have minimal support (circuits of the column matroid,
     Oxley 2011, Matroid Theory, section 1.2); the shortest independent ones are taken.
     """
-    nullity = null.shape[1]
     taken = [null.T @ g for g in given]
-    chosen: list[list[int]] = []
-    rank = np.linalg.matrix_rank(np.array(taken), tol=_PIVOT) if taken else 0
+    chosen: list[Array] = []
+    rank = np.linalg.matrix_rank(np.array(taken), tol=_DISTINCT) if taken else 0
     for vector in _circuits(null):
-        if rank == nullity:
+        if rank == null.shape[1]:
             break
         trial = [*taken, null.T @ vector]
-        if np.linalg.matrix_rank(np.array(trial), tol=_PIVOT) > rank:
+        if np.linalg.matrix_rank(np.array(trial), tol=_DISTINCT) > rank:
             taken, rank = trial, rank + 1
-            chosen.append([int(i) for i in np.flatnonzero(vector)])
+            chosen.append(vector)
     return chosen
 
 
 def _circuits(null: Array) -> list[Array]:
     """Distinct null vectors of minimal support and unit norm, shortest first, then in the order of the columns."""
-    rng, found = np.random.default_rng(1), {}
-    count = len(null)
+    rng = np.random.default_rng(1)
+    found: dict[tuple[int, ...], Array] = {}
     for k in range(_ORDERS if null.shape[1] > 1 else 1):
-        rows, at = null.T.copy(), 0
-        for column in np.arange(count) if k == 0 else rng.permutation(count):
+        for row in _reduced(null.T, np.arange(len(null)) if k == 0 else rng.permutation(len(null))):
+            members = np.flatnonzero(np.abs(row) > _PRESENT * np.abs(row).max())
+            found.setdefault(tuple(int(i) for i in members), row / np.linalg.norm(row))
+    return [found[key] for key in sorted(found, key=lambda members: (len(members), members))]
+
+
+def _reduced(matrix: Array, order: Index) -> Array:
+    """Reduced echelon form with pivots in this order of the columns, as far as they are not small."""
+    rows, at = matrix.copy(), 0
+    for threshold in (_PIVOT, _LAST_PIVOT):
+        for column in order:
             if at == len(rows):
-                break
+                return rows
             best = at + int(np.argmax(np.abs(rows[at:, column])))
-            if abs(rows[best, column]) < _PIVOT * np.abs(rows[at:]).max():
+            if abs(rows[best, column]) < threshold * np.abs(rows[at:]).max():
                 continue
             rows[[at, best]] = rows[[best, at]]
             rows[at] /= rows[at, column]
             others = np.arange(len(rows)) != at
             rows[others] -= np.outer(rows[others, column], rows[at])
             at += 1
-        for row in rows[:at]:
-            kept = np.where(np.abs(row) > _PRESENT * np.abs(row).max(), row, 0.0)
-            found.setdefault(tuple(np.flatnonzero(kept)), kept / np.linalg.norm(kept))
-    return [found[key] for key in sorted(found, key=lambda members: (len(members), members))]
+    return rows[:at]

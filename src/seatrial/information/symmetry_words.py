@@ -142,7 +142,10 @@ def _advice(g: Generator, parameters: Parameters, decisive: Sequence[str]) -> st
     dimensional = [n for n in decisive if parameters[n].unit != "1"]
     offered = [n for n in decisive if n in fixed] or dimensional or list(decisive)
     more = "" if len(offered) <= _MOST_NAMED else f" or {len(offered) - _MOST_NAMED} others"
-    text = f"fix or give a prior for one of {', '.join(offered[:_MOST_NAMED])}{more}"
-    if fixed:
+    one = "one of " if len(offered) > 1 else ""
+    text = f"fix or give a prior for {one}{', '.join(offered[:_MOST_NAMED])}{more}"
+    if fixed == offered and len(fixed) == 1:
+        text += "; it is fixed here, and its error spreads to all"
+    elif fixed:
         text += f"; fixed here: {_some(fixed, _MOST_NAMED)}, whose errors spread to all"
     return f"{text}; prior here for {_some(known, _MOST_NAMED)}" if known else text
