@@ -9,7 +9,8 @@ import pytest
 import sympy as sp
 
 from seatrial.equations import Model, Sheet
-from seatrial.information.generators import Generator, generators, search
+from seatrial.information.generator import Generator
+from seatrial.information.generators import generators, search
 from seatrial.information.symmetries import refuse_structural, structural
 from seatrial.models.abkowitz import abkowitz
 from seatrial.models.mmg import mmg

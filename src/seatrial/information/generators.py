@@ -1,77 +1,19 @@
-"""Exact changes of parameters that leave the compared outputs as they are, with their law for finite steps.
-
-The vectors come from `null_space`. Where a vector depends affinely on the parameters that it moves it is a scaling
-(Castro & de Boer 2020, PLoS Comput. Biol. 16, e1008248), about zero or another centre, or a shift.
-"""
+"""Exact changes of parameters that leave the compared outputs as they are: found, reduced to few members, named."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from functools import cached_property
-from math import gcd, lcm
 
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.information.null_space import Conditions, conditions, null_space, sparse_basis
+from seatrial.information.conditions import Conditions, conditions
+from seatrial.information.generator import EXACT, Generator, about_centre, affine_law, combined
+from seatrial.information.null_space import null_space, sparse_basis
 from seatrial.values import Array, Parameter
 
-_DRAWS, _EXACT, _LARGEST_DENOMINATOR = 5, 1e-7, 12
+_DRAWS = 5
 _SMALL = (1e-5, 1e-8, 1e-10)
-
-
-@dataclass(frozen=True)
-class Generator:
-    """One exact change: d theta_i / d s = power_i theta_i + shift_i leaves every compared output as it is.
-
-    Attributes:
-        power: by parameter, small integers; with a shift of 0 the parameter is multiplied by e^(power s).
-        shift: by parameter, SI.
-        is_finite: whether that holds for finite steps; if not, `shift` is the direction at the model's values.
-        hidden: states that nobody measures and that have to change as well.
-        names: parameter -> how it is written where it scales about another centre than 0, ``m + m_x``.
-    """
-
-    power: dict[str, int]
-    shift: dict[str, float]
-    is_finite: bool
-    hidden: tuple[str, ...]
-    names: dict[str, str]
-
-    @property
-    def parameters(self) -> tuple[str, ...]:
-        """Those that change, in the order of the model."""
-        return tuple(self.power)
-
-    def centre(self, name: str) -> float:
-        """The value about which a parameter scales."""
-        return -self.shift[name] / self.power[name] if self.shift[name] else 0.0
-
-    def moved(self, model: Model, step: float) -> Model:
-        """The model after a finite step s, with the same outputs if the hidden states start where they now belong."""
-        values = {}
-        for name in self.parameters:
-            value, power = model.parameters[name].value, self.power[name]
-            centre = self.centre(name) if power else 0.0
-            growth = np.exp(power * step)
-            values[name] = centre + (value - centre) * growth if power else value + self.shift[name] * step
-        return model.with_values(values)
-
-    def change(self, model: Model) -> dict[str, float]:
-        """Parameter -> relative change for a unit step; absolute where the value is zero and is not multiplied."""
-        made = {}
-        for name in self.parameters:
-            value, power, shift = model.parameters[name].value, self.power[name], self.shift[name]
-            made[name] = float(power + shift / value) if value else float(shift or power)
-        return made
-
-    @property
-    def length(self) -> int:
-        """How long it takes to say: factors that differ, shifts, members, centres."""
-        factors = {p for p in self.power.values() if p}
-        shifts = sum(1 for p in self.power.values() if not p)
-        centres = sum(1 for n, p in self.power.items() if p and self.shift[n])
-        return 10 * (len(factors) + shifts) + len(self.power) + 3 * centres
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +62,7 @@ class Search:
         given: list[Array] = []
         found = []
         for members in stages:
-            inside = [g for g in given if np.abs(np.delete(g, list(members))).max(initial=0.0) < _EXACT]
+            inside = [g for g in given if np.abs(np.delete(g, list(members))).max(initial=0.0) < EXACT]
             vectors = sparse_basis(self.null(members), inside)
             given += vectors
             found.append([self.generator(self.least(v)) for v in vectors])
@@ -189,7 +131,7 @@ class Search:
         laws = []
         for r in range(len(members)):
             scaling, shift = theta[:, r] / delta[:, r], 1.0 / delta[:, r]
-            laws += [law for unit in (scaling, shift) if (law := _law(theta, delta * unit[:, None])) is not None]
+            laws += [law for unit in (scaling, shift) if (law := affine_law(theta, delta * unit[:, None])) is not None]
         return min(laws, key=lambda law: (sum(1 for s in law[1] if s), len({*law[0]})), default=None)
 
     def _named_centres(self, made: Generator, members: list[int]) -> dict[str, str]:
@@ -197,7 +139,7 @@ class Search:
         words = {}
         for name in (n for n in made.parameters if made.power[n] and made.shift[n]):
             own = self.model.parameters[name]
-            words[name] = _about(made.centre(name), name, own.value)
+            words[name] = about_centre(made.centre(name), name, own.value)
             for i, p in enumerate(self.model.parameters):
                 sign = self._follows(i, made, name, members) if i not in members and p.unit == own.unit else 0
                 if sign:
@@ -208,13 +150,13 @@ class Search:
         """Sign with which the centre of a parameter is the value of a held one; 0 where it is not."""
         other = self.model.parameters.values
         sign = int(np.sign(made.centre(name) * other[held]))
-        if not sign or abs(made.centre(name) / (sign * other[held]) - 1.0) > _EXACT:
+        if not sign or abs(made.centre(name) / (sign * other[held]) - 1.0) > EXACT:
             return 0
         other[held] *= 1.17
         law, k = self._affine(members, other), made.parameters.index(name)
         if law is None or not law[0][k]:
             return 0
-        return sign if abs(law[1][k] / law[0][k] / (-sign * other[held]) - 1.0) < _EXACT else 0
+        return sign if abs(law[1][k] / law[0][k] / (-sign * other[held]) - 1.0) < EXACT else 0
 
     def shortened(self, found: Sequence[Generator]) -> list[Generator]:
         """The same span, said in fewer words: a generator gives way to its sum or difference with another."""
@@ -222,10 +164,10 @@ class Search:
         for k in range(len(made)):
             for j, other in enumerate(made):
                 if j != k and made[k].is_finite and other.is_finite:
-                    sums = [_combined(made[k], other, sign, self.model.parameters.names) for sign in (1, -1)]
+                    sums = [combined(made[k], other, sign, self.model.parameters.names) for sign in (1, -1)]
                     shorter = [s for s in sums if s.parameters and s.length < made[k].length]
                     shown = [(s, *self._shows(s)) for s in shorter]
-                    true = [replace(s, hidden=helping) for s, residual, helping in shown if residual < _EXACT]
+                    true = [replace(s, hidden=helping) for s, residual, helping in shown if residual < EXACT]
                     made[k] = min((made[k], *true), key=lambda g: g.length)
         return made
 
@@ -260,42 +202,3 @@ def generators(model: Model, outputs: Sequence[str], among: Sequence[str] = ()) 
     where = search(model, outputs)
     members = [i for i, p in enumerate(model.parameters) if p.free]
     return tuple(where.shortened(where.independent([members])[0]))
-
-
-def _about(centre: float, name: str, value: float) -> str:
-    if centre < 0.0:
-        return f"{-centre:.4g} + {name}"
-    return f"{centre:.4g} - {name}" if value < centre else f"{name} - {centre:.4g}"
-
-
-def _law(theta: Array, delta: Array) -> tuple[list[int], list[float]] | None:
-    """delta_i = power_i theta_i + shift_i at all points, with integer powers after multiplication by one number."""
-    powers, shifts = [], []
-    for x, y in zip(theta.T, delta.T, strict=True):
-        about, scale = x - np.mean(x), np.abs(y).max()
-        slope = float(about @ y / (about @ about)) if about.any() else 0.0
-        power = Fraction(slope).limit_denominator(_LARGEST_DENOMINATOR)
-        level = float(np.mean(y - float(power) * x))
-        if np.abs(y - float(power) * x - level).max() > _EXACT * scale:
-            return None
-        powers.append(power)
-        shifts.append(0.0 if abs(level) < _EXACT * scale else level)
-    return _whole(powers, shifts)
-
-
-def _whole(powers: Sequence[Fraction], shifts: Sequence[float]) -> tuple[list[int], list[float]]:
-    """Integer powers without a common divisor, the majority positive."""
-    many = lcm(*(p.denominator for p in powers))
-    numbers = [int(p * many) for p in powers]
-    factor = many / (gcd(*numbers) or 1) * (-1.0 if sum(np.sign(numbers)) < 0 else 1.0)
-    return [round(float(p) * factor) for p in powers], [s * factor if s else 0.0 for s in shifts]
-
-
-def _combined(one: Generator, other: Generator, sign: int, order: Sequence[str]) -> Generator:
-    """Both at once."""
-    power = {n: one.power.get(n, 0) + sign * other.power.get(n, 0) for n in order}
-    parts = {n: (one.shift.get(n, 0.0), sign * other.shift.get(n, 0.0)) for n in order}
-    shift = {n: 0.0 if abs(a + b) < _EXACT * max(abs(a), abs(b)) else a + b for n, (a, b) in parts.items()}
-    kept = [n for n in order if power[n] or shift[n]]
-    names = {n: w for n, w in (other.names | one.names).items() if n in kept and power[n] and shift[n]}
-    return Generator({n: power[n] for n in kept}, {n: shift[n] for n in kept}, True, (), names)

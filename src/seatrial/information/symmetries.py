@@ -9,8 +9,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.information.generators import Generator, Search, search
-from seatrial.information.null_space import conditions
+from seatrial.information.conditions import conditions
+from seatrial.information.generator import Generator
+from seatrial.information.generators import Search, search
 from seatrial.information.symmetry_words import Silence, sentence, silence
 from seatrial.results import Symmetry
 from seatrial.trial.model_choice import COMMON_PARTICULARS

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from seatrial.information.generators import Generator
+from seatrial.information.generator import Generator
 from seatrial.values import Parameters
 
 _MOST_NAMED, _MOST_LISTED = 8, 24
