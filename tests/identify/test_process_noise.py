@@ -9,13 +9,9 @@ from numpy.typing import NDArray
 from seatrial.equations import Model
 from seatrial.identify.draws import Scatter, drawn
 from seatrial.identify.estimate import Estimate, estimate
-from seatrial.identify.process_noise import (
-    ProcessNoise,
-    boundary_quantile,
-    floor,
-    is_worthwhile,
-    prediction_error,
-)
+from seatrial.identify.floor import floor
+from seatrial.identify.gate import boundary_quantile
+from seatrial.identify.process_noise import ProcessNoise, is_worthwhile, prediction_error
 from seatrial.models.nomoto import nomoto
 from seatrial.problem.output_error import OutputError
 from seatrial.problem.segments import cut

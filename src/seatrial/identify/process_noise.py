@@ -8,85 +8,26 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from math import comb
 
 import numpy as np
-from scipy import optimize, stats
 
 from seatrial.check.signal import sample_noise
-from seatrial.equations import Model
 from seatrial.identify.estimate import Estimate, rounding_level
-from seatrial.identify.settings import WHITE_INFLATION
-from seatrial.information.autocorrelation import autocorrelation, variance_inflation, whiteness_p
+from seatrial.identify.gate import Gate, colour, gate
 from seatrial.information.covariance import Interval, from_information, left_out_steps
-from seatrial.optimise import Normal, Optimum, levenberg_marquardt
+from seatrial.optimise import Normal, Optimum, Solution, Status, levenberg_marquardt
 from seatrial.problem.output_error import OutputError, SegmentNormals
 from seatrial.problem.prediction_error import PredictionError, whole_runs
-from seatrial.problem.segments import Segments
-from seatrial.simulate.channels import inputs_of
-from seatrial.simulate.filtering import Filter, Noisy
-from seatrial.values import Array, Index, Progress, Record
+from seatrial.values import Array, Index, Progress
 
 KINEMATIC = ("psi", "phi", "theta", "x0", "y0", "z0")
-LEVEL = 0.999
 _DIFFUSE = 10.0
 _SCANNED = 10.0 ** np.arange(-3.0, 0.5, 0.5)
 _NOTHING = 3e-5
 _ROUGH, _NEGLIGIBLE, _EXACT = 1.0, 1e-3, 1e-4
 _NO_LOCAL = np.zeros((0, 0))
-_LAGS = 400
-_QUIET = 24
-
-
-@dataclass(frozen=True, eq=False)
-class Gate:
-    """Whether process noise is needed to explain the records, and whether white noise in the states suffices.
-
-    Attributes:
-        ratio: 2 (log-likelihood with process noise - without), both at their own optimum; infinite where the model
-            without it diverges or fits no run.
-        limit: what chance alone exceeds once in a thousand cases.
-        inflation_without, inflation: variance inflation of each channel's normalised innovations without and with
-            process noise, (ny,); NaN where the model without it diverges.
-        whiteness_p: smallest p-value over the channels that the innovations are white (Ljung & Box 1978), times ny.
-        text: the verdict in words.
-    """
-
-    ratio: float
-    limit: float
-    inflation_without: Array
-    inflation: Array
-    whiteness_p: float
-
-    @property
-    def is_needed(self) -> bool:
-        """The records are explained better than chance allows."""
-        return self.ratio > self.limit
-
-    @property
-    def is_white(self) -> bool:
-        """Innovations are white: nothing is left to explain."""
-        return bool(np.max(self.inflation) <= WHITE_INFLATION)
-
-    @property
-    def holds(self) -> bool:
-        """Prediction error is the criterion to use."""
-        return self.is_needed and self.is_white
-
-    @property
-    def text(self) -> str:
-        """The verdict in words."""
-        before, after = float(np.max(self.inflation_without)), float(np.max(self.inflation))
-        if not self.is_needed:
-            return (
-                f"no process noise: it raises twice the log-likelihood by {self.ratio:.3g} only, "
-                f"chance alone by {self.limit:.3g}"
-            )
-        seen = f"residuals of whole runs inflate variances by {before:.3g}" if np.isfinite(before) else "no run fits"
-        why = f"without process noise {seen}, and twice the log-likelihood is {self.ratio:.3g} lower"
-        if self.is_white:
-            return f"process noise: {why}; with it innovations are white (inflation {after:.3g})"
-        return f"{why}; with it innovations stay coloured (inflation {after:.3g}): model error or coloured disturbances"
+_SHORT = 24
+_HOPELESS = 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +36,8 @@ class ProcessNoise:
 
     Attributes:
         problem: gives exact gradients; optimum: point, normal equations with expected information, history.
-        slope: Newton decrement of the exact gradient at the point: how far above the minimum the cost still is.
+        slope: Newton decrement of the exact gradient at the point: how far above the minimum the cost still is; NaN
+            where the coefficients were not searched.
     """
 
     problem: PredictionError
@@ -199,12 +141,15 @@ def prediction_error(
         driven: states with process noise; empty: all that are no kinematics.
 
     Returns:
-        The optimum with its gate, however that decides.
+        The optimum with its gate, however that decides. Where innovations stay strongly coloured with intensities that
+        suit the given coefficients, these are kept: the gate is shut already, and the intensities serve the floor.
     """
     tell = progress or (lambda _: None)
     problem, begin = _begun(made, known or {}, driven)
     tell("process noise: intensities")
-    point = np.concatenate([begin, _intensities(problem, begin, evaluations)])
+    point = np.concatenate([begin, _intensities(problem, begin)])
+    if np.max(colour(problem, point)[1]) > _HOPELESS:
+        return _unfinished(problem, point)
 
     def counted(count: int, cost: float) -> None:
         tell(f"prediction error, evaluation {count}: {cost:.6g}")
@@ -213,47 +158,18 @@ def prediction_error(
         problem, point, _NO_LOCAL, negligible=_NEGLIGIBLE, evaluations=evaluations, progress=counted
     )
     tell("prediction error: exact gradient")
-    exact, found, slope = _polished(problem, found, evaluations)
-    without = _without(problem, made, found.solution.point, evaluations)
-    return ProcessNoise(exact, found, slope, _gate(exact, found, without))
+    exact, found, slope = _polished(problem, found)
+    cost, before = _without(problem, made, found.solution.point)
+    return ProcessNoise(exact, found, slope, gate(exact, found.solution.point, found.normal.cost, cost, before))
 
 
-def floor(
-    template: OutputError,
-    model: Model,
-    record: Record,
-    start: Array,
-    own: Array,
-    intensity: Mapping[str, float],
-) -> dict[str, float]:
-    """Rms error over time of an open-loop prediction that process noise alone causes, to first order.
-
-    Args:
-        template: the problem whose nuisances `own` (k,) are; model: at the estimate.
-        record: the run that is predicted, for its inputs; start: its initial state, (nx,).
-        intensity: of states, SI over the root of a second.
-
-    Returns:
-        psi_deg in degrees, position_m in m, u, v in m/s, r in rad/s, as far as the model has them.
-    """
-    split, parameters = len(template.session_parameters), model.parameters
-    values = parameters.values
-    values[[parameters.index(n) for n, _ in template.session_parameters]] = own[:split]
-    inputs = inputs_of(model, record)
-    run = Filter(
-        model, inputs, np.array([0, len(inputs)]), record.dt, template.data.outputs,
-        corrections=tuple(n.correction for n in template.nuisances), substeps=template.substeps,
-        driven=tuple(intensity),
-    )  # fmt: skip
-    at = Noisy(start[None], np.zeros((1, len(start))), values[None], own[None, split:],
-               np.array(list(intensity.values())), np.ones(len(template.data.outputs)))  # fmt: skip
-    mean = dict(zip(model.states, run.variances(0, at).mean(axis=0), strict=True))
-    made = {}
-    if "psi" in mean:
-        made["psi_deg"] = float(np.degrees(np.sqrt(mean["psi"])))
-    if {"x0", "y0"} <= set(mean):
-        made["position_m"] = float(np.sqrt(mean["x0"] + mean["y0"]))
-    return made | {s: float(np.sqrt(mean[s])) for s in ("u", "v", "r") if s in mean}
+def _unfinished(problem: PredictionError, point: Array) -> ProcessNoise:
+    """Intensities alone, the coefficients as they were: no search can make these innovations white."""
+    normal = problem.normal(point, _NO_LOCAL)
+    found = Optimum(Solution(point, normal.cost, Status.STALLED, 1), _NO_LOCAL, normal)
+    quiet = replace(problem, process=(), least=np.zeros(0))
+    held = np.concatenate([point[: problem.runs.size], point[problem.runs.size + len(problem.process) :]])
+    return ProcessNoise(problem, found, np.nan, gate(problem, point, normal.cost, quiet.cost(held, _NO_LOCAL), None))
 
 
 def _begun(made: Estimate, known: Mapping[str, float], driven: tuple[str, ...]) -> tuple[PredictionError, Array]:
@@ -294,7 +210,7 @@ def _spread(made: Estimate, states: tuple[str, ...]) -> Array:
     return np.maximum(spread, 1e-6)
 
 
-def _intensities(problem: PredictionError, begin: Array, evaluations: int) -> Array:
+def _intensities(problem: PredictionError, begin: Array) -> Array:
     """Logarithms of intensities and deviations that suit the coefficients as they are: a scan, then a search."""
     runs = problem.runs
     held = runs.model.with_values(dict(zip(runs.free, begin[: len(runs.free)], strict=True)))
@@ -306,21 +222,37 @@ def _intensities(problem: PredictionError, begin: Array, evaluations: int) -> Ar
         for i in range(len(runs.noise))
     ]
     deviation = np.log(np.clip(quiet, 1e-2 * runs.noise, runs.noise))
-    scanned = [np.concatenate([own, np.log(share / _NOTHING * problem.least), deviation]) for share in _SCANNED]
-    points = [np.clip(p, alone.lower, alone.upper) for p in scanned]
-    best = points[int(np.argmin([alone.cost(p, _NO_LOCAL) for p in points]))]
-    found = levenberg_marquardt(alone, best, _NO_LOCAL, negligible=_ROUGH, evaluations=evaluations)
+    scanned = [
+        _balanced(alone, np.concatenate([own, np.log(share / _NOTHING * problem.least), deviation]))
+        for share in _SCANNED
+    ]
+    best = min(scanned, key=lambda one: one[0])[1]
+    found = levenberg_marquardt(alone, best, _NO_LOCAL, negligible=_ROUGH, evaluations=_SHORT)
     return found.solution.point[len(own) :]
 
 
-def _polished(problem: PredictionError, found: Optimum, evaluations: int) -> tuple[PredictionError, Optimum, float]:
+def _balanced(problem: PredictionError, point: Array) -> tuple[float, Array]:
+    """Cost and point after two rounds of setting each channel's deviation by its innovations' size."""
+    ny = len(problem.runs.noise)
+    for _ in range(2):
+        squares = np.nanmean(problem.innovations(point).normalised ** 2, axis=0)
+        if not np.all(np.isfinite(squares)):
+            return np.inf, point
+        point = point.copy()
+        point[-ny:] += 0.5 * np.log(np.clip(squares, 1e-4, 1e4))
+        point[-ny - len(problem.process) : -ny] += 0.5 * np.log(np.clip(np.median(squares), 1e-2, 1e2))
+        point = np.clip(point, problem.lower, problem.upper)
+    return problem.cost(point, _NO_LOCAL), point
+
+
+def _polished(problem: PredictionError, found: Optimum) -> tuple[PredictionError, Optimum, float]:
     """Newton steps by the exact gradient, none where it vanishes already; with the decrement that is left."""
     exact = replace(problem, steps=problem.difference_steps(found.normal.hessian))
     point = found.solution.point
     normal = exact.normal(point, _NO_LOCAL)
     slope = _decrement(exact, point, normal)
     if slope > _EXACT:
-        again = levenberg_marquardt(exact, point, _NO_LOCAL, negligible=0.1 * _EXACT, evaluations=evaluations)
+        again = levenberg_marquardt(exact, point, _NO_LOCAL, negligible=0.1 * _EXACT, evaluations=_SHORT)
         count = found.solution.evaluations + again.solution.evaluations
         found = replace(again, solution=replace(again.solution, evaluations=count))
         return exact, found, _decrement(exact, found.solution.point, found.normal)
@@ -336,7 +268,7 @@ def _decrement(problem: PredictionError, point: Array, normal: Normal) -> float:
     return float(0.5 * (scale * gradient) @ solved)
 
 
-def _without(problem: PredictionError, made: Estimate, point: Array, evaluations: int) -> tuple[float, Array | None]:
+def _without(problem: PredictionError, made: Estimate, point: Array) -> tuple[float, Array | None]:
     """Minus the log-likelihood without process noise at its own optimum, and innovations there."""
     quiet = replace(problem, process=(), least=np.zeros(0))
     k = problem.runs.size
@@ -346,45 +278,5 @@ def _without(problem: PredictionError, made: Estimate, point: Array, evaluations
     if not np.any(np.isfinite(costs)):
         return np.inf, None
     begin = begins[int(np.argmin(costs))]
-    found = levenberg_marquardt(quiet, begin, _NO_LOCAL, negligible=1e-2, evaluations=min(_QUIET, evaluations))
+    found = levenberg_marquardt(quiet, begin, _NO_LOCAL, negligible=1e-2, evaluations=_SHORT)
     return found.normal.cost, quiet.innovations(found.solution.point).normalised
-
-
-def _gate(problem: PredictionError, found: Optimum, without: tuple[float, Array | None]) -> Gate:
-    innovations = problem.innovations(found.solution.point)
-    data, ny = problem.runs.data, len(problem.runs.data.outputs)
-    rho = _correlations(data, innovations.normalised)
-    samples = np.isfinite(innovations.e).sum(axis=0)
-    cost, before = without
-    blank = np.full(ny, np.nan)
-    return Gate(
-        ratio=max(2.0 * (cost - found.normal.cost), 0.0),
-        limit=boundary_quantile(len(problem.process), LEVEL),
-        inflation_without=blank if before is None else _inflation(_correlations(data, before)),
-        inflation=_inflation(rho),
-        whiteness_p=min(1.0, ny * min(whiteness_p(r, int(n)) for r, n in zip(rho, samples, strict=True))),
-    )
-
-
-def _correlations(data: Segments, normalised: Array) -> list[Array]:
-    lags = min(int(np.max(np.diff(data.offsets))) // 2, _LAGS)
-    pieces = [normalised[a:b] for a, b in pairwise(data.offsets)]
-    return [autocorrelation([p[:, i] for p in pieces], lags) for i in range(normalised.shape[1])]
-
-
-def _inflation(rho: list[Array]) -> Array:
-    return np.array([variance_inflation(r) for r in rho])
-
-
-def boundary_quantile(count: int, level: float) -> float:
-    """Quantile of a likelihood ratio whose `count` unknowns lie on their lower bounds if there is no effect.
-
-    A mixture of chi squared with 0..count degrees of freedom and binomial weights (Self & Liang 1987, case 9, for
-    unknowns of uncorrelated estimates).
-    """
-    weights = np.array([comb(count, j) for j in range(count + 1)]) / 2.0**count
-
-    def excess(value: float) -> float:
-        return float(sum(w * stats.chi2.sf(value, j) for j, w in enumerate(weights) if j)) - (1.0 - level)
-
-    return float(np.asarray(optimize.brentq(excess, 0.0, 200.0))) if count else 0.0
