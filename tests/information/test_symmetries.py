@@ -380,6 +380,20 @@ def test_fixing_one_of_those_named_for_each_settles_everything() -> None:
             refuse_structural(model.with_parameters(model.parameters.fixed(one, two)), MOTION)
 
 
+def test_measured_forces_tell_what_records_cannot() -> None:
+    """Captive tests give the scale of all forces (S1) and of the yaw moment (S2); still air tells nothing of wind."""
+    model = freed(waterjet(), "A_j", "m_x", "m_y", "J_z", "x_T")
+    with pytest.raises(InputError, match="no record can tell"):
+        refuse_structural(model, MOTION)
+    refuse_structural(model, MOTION, ("X_sum", "Y_sum", "N_sum"))
+    with pytest.raises(InputError, match="apart: x_T, N_v, N_r, N_rr and I_z"):
+        refuse_structural(model, MOTION, ("X_sum", "Y_sum"))
+    tanker = esso_osaka().applied(mmg())
+    tanker = tanker.with_parameters(tanker.parameters.only_free(["C_X0", "C_X1", "C_X3", "C_Y1", "rho_air"]))
+    told = structural(tanker, MOTION, ("X_sum", "Y_sum", "N_sum"))
+    assert any("rho_air" in s.parameters for s in told)
+
+
 def test_heading_alone_leaves_the_unit_of_speed_open() -> None:
     """u and v are hidden then: speeds over k, with forces and inertias to fit, turn the ship as before."""
     model = waterjet()

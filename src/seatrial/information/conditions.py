@@ -25,6 +25,7 @@ _POINTS, _ATTEMPTS = 300, 6
 _RANGES = {"m/s": (0.03, 10.0), "rad/s": (1e-3, 0.3), "rps": (0.1, 30.0)}
 _ORDINARY = (0.05, 20.0)
 _HELPING = 1e-7
+_MOTION, _STILL = ("u", "v", "r"), ("wind_speed", "wind_direction")
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +35,7 @@ class Conditions:
     Attributes:
         seen, hidden: indices of states that reach a compared output, compared themselves or not.
         compared: indices of compared outputs that are no states.
+        forces: bindings that captive tests measure at motions that are known.
         entering: indices of the parameters that stand in an equation which reaches a compared output.
         states, inputs: (points, nx), (points, nu), SI.
     """
@@ -42,6 +44,7 @@ class Conditions:
     seen: tuple[int, ...]
     hidden: tuple[int, ...]
     compared: tuple[int, ...]
+    forces: tuple[str, ...]
     entering: frozenset[int]
     states: Array
     inputs: Array
@@ -50,6 +53,11 @@ class Conditions:
     def outputs(self) -> tuple[str, ...]:
         """What is compared."""
         return (*(self.model.states[i] for i in self.seen), *(self.model.outputs[i] for i in self.compared))
+
+    @property
+    def shown(self) -> tuple[str, ...]:
+        """What is compared, forces included."""
+        return (*self.outputs, *self.forces)
 
     @property
     def hidden_names(self) -> tuple[str, ...]:
@@ -118,12 +126,16 @@ class Conditions:
                     with np.errstate(invalid="ignore"):
                         column[:, reaching.index(h)] -= f[:, j]
                 by_hidden.append(column.ravel())
-        return jac[:, :, first:].reshape(rows, -1), np.array(by_hidden).reshape(-1, rows).T
+        captive = _captive(self.model, self.forces, self.states, self.inputs, values)
+        moved = np.array(by_hidden).reshape(-1, rows).T
+        still = np.zeros((len(captive), moved.shape[1]))
+        return np.concatenate([jac[:, :, first:].reshape(rows, -1), captive]), np.concatenate([moved, still])
 
 
-def conditions(model: Model, outputs: Sequence[str], values: Array) -> Conditions:
+def conditions(model: Model, outputs: Sequence[str], values: Array, forces: Sequence[str] = ()) -> Conditions:
     """The conditions for these compared outputs (states or outputs of the model).
 
+    forces: bindings that captive tests measure as well.
     values: (parameters,), SI; a factor that is zero there lets nothing through, so a state behind it reaches no output.
 
     Raises:
@@ -150,8 +162,23 @@ def conditions(model: Model, outputs: Sequence[str], values: Array) -> Condition
     first = nx + len(model.inputs)
     rates = code.rates_pattern[np.isin(code.rates_pattern[:, 0], list(written))]
     made = code.outputs_pattern[np.isin(code.outputs_pattern[:, 0], compared)]
-    entering = frozenset(int(c) - first for _, c in (*rates, *made) if c >= first)
-    return Conditions(model, seen, tuple(sorted(felt - {*seen})), compared, entering, states, inputs)
+    entering = {int(c) - first for _, c in (*rates, *made) if c >= first}
+    entering |= {int(i) for i in np.flatnonzero(_captive(model, forces, states, inputs, values).any(axis=0))}
+    hidden = tuple(sorted(felt - {*seen}))
+    return Conditions(model, seen, hidden, compared, tuple(forces), frozenset(entering), states, inputs)
+
+
+def _captive(model: Model, forces: Sequence[str], states: Array, inputs: Array, values: Array) -> Array:
+    """Forces by parameters (rows, parameters) of a captive ship: at these u, v, r, heading north, in still air."""
+    if not forces:
+        return np.empty((0, len(values)))
+    x = np.where([n in _MOTION for n in model.states], states, 0.0)
+    u = np.where([n in _STILL for n in model.input_names], 0.0, inputs)
+    n, first = len(x), len(model.states) + len(model.inputs)
+    jac = np.zeros((n, len(forces), first + len(values)))
+    tangent = model.compiled.tangent_of(tuple(forces))
+    evaluate_tangent(tangent, x, u, np.tile(values, (n, 1)), 0.0, np.empty((n, len(forces))), jac)
+    return jac[:, :, first:].reshape(-1, len(values))
 
 
 def _jacobians(model: Model, states: Array, inputs: Array, values: Array) -> tuple[Array, Array, Array]:

@@ -172,8 +172,8 @@ class Search:
         return made
 
 
-def search(model: Model, outputs: Sequence[str]) -> Search:
-    """The search about a random point near the model's values.
+def search(model: Model, outputs: Sequence[str], forces: Sequence[str] = ()) -> Search:
+    """The search about a random point near the model's values; forces: bindings that captive tests measure as well.
 
     Raises:
         InputError: an output the model does not have, or a parameter without a value.
@@ -181,7 +181,7 @@ def search(model: Model, outputs: Sequence[str]) -> Search:
     rng = np.random.default_rng(3)
     at = np.array([_elsewhere(p, p.value, rng) if p.free else p.value for p in model.parameters])
     sizes = np.array([p.characteristic_scale for p in model.parameters])
-    return Search(conditions(model, outputs, at), at, sizes)
+    return Search(conditions(model, outputs, at, forces), at, sizes)
 
 
 def _elsewhere(p: Parameter, value: float, rng: np.random.Generator) -> float:

@@ -20,32 +20,33 @@ from seatrial.values import InputError
 _ALIVE = 1e-7
 
 
-def structural(model: Model, outputs: Sequence[str]) -> tuple[Symmetry, ...]:
+def structural(model: Model, outputs: Sequence[str], forces: Sequence[str] = ()) -> tuple[Symmetry, ...]:
     """What no record of these outputs can tell about the free parameters, whatever the manoeuvre, in words.
 
     Beside the free parameters those count as unknown that are fixed at an assumed value other than zero; particulars
     of the ship (length, mass, ...) are known, and a term that is fixed at zero is not there. First come parameters
     without any influence and changes of free parameters alone, which a fit needs priors for; then those changes in
     which an assumed value decides.
+    forces: bindings that captive tests or CFD give at known motions, ``X_sum``; what they tell is not hidden.
 
     Raises:
         InputError: an output the model does not have, or a parameter without a value.
     """
-    where = search(model, outputs)
+    where = search(model, outputs, forces)
     free = [i for i, p in enumerate(model.parameters) if p.free]
     assumed = [i for i, p in enumerate(model.parameters) if not p.free and p.value and p.name not in COMMON_PARTICULARS]
     alone, _, together = where.independent([free, assumed, sorted((*free, *assumed))])
     return (*_told(where, alone), *_told(where, together))
 
 
-def refuse_structural(model: Model, outputs: Sequence[str]) -> None:
-    """Refuse free parameters without a prior that can change together without changing any compared output.
+def refuse_structural(model: Model, outputs: Sequence[str], forces: Sequence[str] = ()) -> None:
+    """Refuse free parameters without a prior that can change together without changing any compared output or force.
 
     Raises:
         InputError: which, and what to do.
     """
     loose = [i for i, p in enumerate(model.parameters) if p.free and p.prior is None]
-    where = search(model, outputs)
+    where = search(model, outputs, forces)
     (found,) = where.independent([loose])
     if found:
         told = "; and ".join(s.text for s in _told(where, found))
@@ -54,7 +55,7 @@ def refuse_structural(model: Model, outputs: Sequence[str]) -> None:
 
 def _told(where: Search, found: Sequence[Generator]) -> tuple[Symmetry, ...]:
     """With their sentences; parameters that are silent for the same reason share one."""
-    parameters, outputs = where.model.parameters, where.conditions.outputs
+    parameters, outputs = where.model.parameters, where.conditions.shown
     silent: dict[Silence, list[str]] = {}
     for g in (g for g in found if len(g.parameters) == 1):
         silent.setdefault(_reason(where, g), []).append(g.parameters[0])
@@ -99,8 +100,8 @@ def _switches(where: Search, silent: int, held: Sequence[int]) -> tuple[str, ...
     found = []
     for k in held:
         values = where.drawn(where.at, [k], rng)
-        effects = conditions(where.model, where.conditions.outputs, values).effects(values, where.sizes)
-        if np.linalg.norm(effects[:, silent]) > _ALIVE:
+        now = conditions(where.model, where.conditions.outputs, values, where.conditions.forces)
+        if np.linalg.norm(now.effects(values, where.sizes)[:, silent]) > _ALIVE:
             p = where.model.parameters.items[k]
             found.append(f"{p.name} is {p.value:.4g}")
     return tuple(found)
