@@ -69,7 +69,7 @@ def test_rounding_is_no_noise_and_has_no_colour(model: Model, clean: Record) -> 
     made = made_from(model, clean)
     np.testing.assert_allclose(made.shared, [0.15, 8.0], rtol=1e-10)
     np.testing.assert_array_equal(made.problem.noise, rounding_level(made.problem))
-    np.testing.assert_array_equal(colour(made)[1], 1.0)
+    np.testing.assert_array_equal(colour(made.problem, made.residuals())[1], 1.0)
     assert made.optimum.solution.evaluations < 20
 
 
@@ -84,5 +84,6 @@ def test_unknowns_count_against_the_samples(model: Model, clean: Record, rng: np
 def test_coloured_residuals_are_seen(model: Model, clean: Record, rng: np.random.Generator) -> None:
     shaky = clean.channel("psi").with_values(clean["psi"] + np.convolve(
         1e-2 * rng.standard_normal(len(clean) + 19), np.ones(20) / 20, "valid"))  # fmt: skip
-    inflation = colour(made_from(model, clean.with_channel("psi", shaky)))[1]
+    made = made_from(model, clean.with_channel("psi", shaky))
+    inflation = colour(made.problem, made.residuals())[1]
     assert inflation[1] > 5.0

@@ -125,7 +125,6 @@ def test_a_turned_force_is_refused_with_the_way_to_declare_it(tmp_path: Path, fu
 def test_the_predicted_turn_hardly_moves_with_the_prior(fusion: ModuleType) -> None:
     alone, together = fusion.compared(seed=13)
     assert together.points <= fusion.LIMIT
-    assert together.points < alone.points
     assert together.error < alone.error
 
 

@@ -8,6 +8,7 @@ import pytest
 from identify.conftest import NOISE, TRUTH, WriteTrial
 from seatrial.identify import identify
 from seatrial.identify.identify import settings_of
+from seatrial.identify.settings import Criterion
 from seatrial.trial import load_trial
 from seatrial.values import Record
 
@@ -86,7 +87,7 @@ current = 0.2
     trial = load_trial(trial_of({"a": 0.0}, more=more))
     record = Record.of("a", np.arange(5.0), {"u": np.full(5, 2.0)})
     settings = settings_of(trial, [record])
-    assert settings.segment_seconds == math.inf
+    assert settings.criterion is Criterion.OUTPUT_ERROR
     assert settings.robust is True
     assert settings.channels == ("psi",)
     assert settings.noise == pytest.approx({"psi": math.radians(1.0)})

@@ -73,7 +73,7 @@ def estimate(
     made = _search(problem, shared, local, min(_SHORT, evaluations), progress)
     for _ in range(rounds):
         noise = np.where(np.isfinite(known), known, residual_spread(made.problem, made.residuals()))
-        again = replace(problem, noise=noise, inflation=_counted(colour(made)[1]))
+        again = replace(problem, noise=noise, inflation=_counted(colour(made.problem, made.residuals())[1]))
         settled = _settled(made.problem, again)
         made = _search(again, made.shared, made.optimum.local, evaluations if settled else _SHORT, progress)
         if settled:
@@ -109,14 +109,13 @@ def pieces(problem: OutputError, column: Array) -> list[Array]:
     return [column[a:b] for a, b in pairwise(problem.data.offsets)]
 
 
-def colour(made: Estimate) -> tuple[list[Array], Array]:
+def colour(problem: OutputError, residuals: Array) -> tuple[list[Array], Array]:
     """Autocorrelation of each channel's residuals within segments, and its variance inflation, shape (ny,).
 
     Residuals of the size of rounding count as white (inflation 1): their colour says nothing about the ship.
     """
-    residuals = made.residuals()
-    longest = int(np.max(np.diff(made.problem.data.offsets)))
+    longest = int(np.max(np.diff(problem.data.offsets)))
     lags = min(longest // 2, 400)
-    rho = [autocorrelation(pieces(made.problem, residuals[:, i]), lags) for i in range(residuals.shape[1])]
-    silent = made.problem.noise <= rounding_level(made.problem)
+    rho = [autocorrelation(pieces(problem, residuals[:, i]), lags) for i in range(residuals.shape[1])]
+    silent = problem.noise <= rounding_level(problem)
     return rho, np.where(silent, 1.0, [variance_inflation(r) for r in rho])

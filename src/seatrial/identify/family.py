@@ -104,7 +104,7 @@ def compared(
     Raises:
         InputError: there is but one member, or none can be fitted.
     """
-    base = found.made
+    base = found.shooting
     steps = np.diff(base.problem.data.offsets) - 1
     seconds = float(np.median(steps)) * base.problem.data.dt
     is_segmented = base.problem.data.count > len(base.problem.data.runs)

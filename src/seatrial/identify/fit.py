@@ -1,7 +1,7 @@
 """Records and a model in, a fit out: the decision table of the estimator (docs/estimation.md)."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,12 +9,23 @@ import numpy as np
 from seatrial.equations import Model
 from seatrial.identify.assemble import output_error
 from seatrial.identify.estimate import Estimate, colour, estimate
-from seatrial.identify.intervals import Uncertainty, intervals, refuse_few_runs
-from seatrial.identify.settings import HUBER, SEGMENT_SHIP_LENGTHS, WHITE_INFLATION, WINDOW_SHIP_LENGTHS, Settings
+from seatrial.identify.intervals import Uncertainty, intervals, of_innovations, refuse_few_runs
+from seatrial.identify.process_noise import ProcessNoise, is_worthwhile, prediction_error
+from seatrial.identify.settings import (
+    HUBER,
+    SEGMENT_SHIP_LENGTHS,
+    WHITE_INFLATION,
+    WINDOW_SHIP_LENGTHS,
+    Criterion,
+    Settings,
+)
 from seatrial.identify.start import start
+from seatrial.information.autocorrelation import whiteness_p
 from seatrial.information.covariance import Interval
+from seatrial.results import Disturbance
 from seatrial.values import Array, InputError, Progress, Record
 
+PREDICTION_ERROR, WHOLE_RUNS = "prediction error", "output error over whole runs"
 _STILL = float(np.radians(0.5))
 
 
@@ -24,16 +35,22 @@ class Identified:
 
     Attributes:
         made: problem and optimum.
+        shooting: the estimate over segments that came first, by which models are compared.
         uncertainty: intervals of all shared unknowns, and the estimates they rest on.
+        residuals: simulated minus measured, under prediction error one step ahead, (rows, ny), SI.
         inflation: variance inflation of each channel's residuals; rho: their autocorrelations.
+        disturbance: what is between model and records, and why this criterion.
         start: where the search began, in words.
         criterion, reasons: what was used, and why.
     """
 
     made: Estimate
+    shooting: Estimate
     uncertainty: Uncertainty
+    residuals: Array
     inflation: Array
     rho: list[Array]
+    disturbance: Disturbance
     start: str
     criterion: str
     reasons: tuple[str, ...]
@@ -50,6 +67,11 @@ class Identified:
         problem = self.made.problem
         values = dict(zip(problem.free, self.made.shared[: len(problem.free)], strict=True))
         return problem.model.with_values(values)
+
+    @property
+    def has_process_noise(self) -> bool:
+        """Whether the coefficients come from prediction error, with noise in the states."""
+        return self.disturbance.method == PREDICTION_ERROR
 
 
 def ship_length_seconds(records: Sequence[Record], length: float, segment_seconds: float | None = None) -> float:
@@ -87,6 +109,19 @@ def refuse_without_excitation(model: Model, records: Sequence[Record]) -> None:
         )
 
 
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """A criterion's optimum, what it leaves, and why it is used."""
+
+    made: Estimate
+    residuals: Array
+    inflation: Array
+    rho: list[Array]
+    criterion: str
+    reasons: tuple[str, ...]
+    noise: ProcessNoise | None = None
+
+
 def identified(
     model: Model,
     records: Sequence[Record],
@@ -97,8 +132,8 @@ def identified(
 ) -> Identified:
     """Estimate the free parameters of `model` from training records.
 
-    Start by the weak form, then multiple shooting with re-estimated noise; whole runs if the residuals are white and
-    nobody asked for a segment length.
+    Start by the weak form, then multiple shooting with re-estimated noise; then, by the decision table, output error
+    over whole runs or prediction error with process noise, unless a criterion or a segment length was asked for.
     length: ship length in m, which sets the segment length. Sessions name the group of each record's nuisances.
 
     Raises:
@@ -112,38 +147,107 @@ def identified(
     refuse_few_runs(settings.intervals, len(records))
     unit = ship_length_seconds(records, length, settings.segment_seconds)
     tell = progress or (lambda _: None)
-    seconds = settings.segment_seconds or SEGMENT_SHIP_LENGTHS * unit
     tell("weak-form start")
+    seconds = settings.segment_seconds or SEGMENT_SHIP_LENGTHS * unit
+    if settings.criterion is Criterion.OUTPUT_ERROR:
+        seconds = np.inf
     begin = start(output_error(model, records, sessions, seconds, settings), records, WINDOW_SHIP_LENGTHS * unit)
     problem = replace(begin.problem, huber=HUBER) if settings.robust else begin.problem
-    made = estimate(
+    shooting = estimate(
         problem, begin.shared, begin.local, settings.noise, evaluations=settings.evaluations, progress=progress
     )
-    rho, inflation = colour(made)
-    reasons = [f"segments of {seconds:.3g} s: the residuals' correlation inflates variances by {np.max(inflation):.3g}"]
-    criterion = f"output error, multiple shooting with segments of {seconds:.3g} s"
-    if np.isinf(seconds):
-        criterion = "output error over whole runs"
-    elif np.max(inflation) > WHITE_INFLATION:
-        reasons.append("coloured residuals mean model error or process noise: short segments keep it from accumulating")
-    elif settings.segment_seconds is not None:
-        reasons.append("residuals within segments are white; their length was asked for")
-    elif (whole := _over_whole_runs(made, model, records, sessions, settings, progress)) is not None:
-        made, criterion = whole, "output error over whole runs"
-        rho, inflation = colour(made)
-        reasons.append("residuals are white within segments and over whole runs: no process noise to guard against")
-    else:
-        reasons.append("whole runs do not fit within the noise of the segments")
-    if np.max(inflation) > WHITE_INFLATION:
-        reasons.append("correlated samples count as their effective number, so that priors keep their weight")
-    if settings.robust:
-        criterion += ", Huber loss"
 
+    def whole_runs() -> Estimate | None:
+        return _over_whole_runs(shooting, model, records, sessions, settings, progress)
+
+    found = _decided(_shot(shooting, seconds), settings, whole_runs, progress)
+    criterion = f"{found.criterion}, Huber loss" if settings.robust else found.criterion
+    known = _uncertainty(found, settings, tell)
+    return Identified(
+        found.made, shooting, known, found.residuals, found.inflation, found.rho, _disturbance(found), begin.how,
+        criterion, found.reasons, time.perf_counter() - began,
+    )  # fmt: skip
+
+
+def _decided(
+    shot: _Found, settings: Settings, whole_runs: Callable[[], Estimate | None], progress: Progress | None
+) -> _Found:
+    """The decision table: which criterion the estimate over segments leads to."""
+    white = bool(np.max(shot.inflation) <= WHITE_INFLATION)
+    match settings.criterion:
+        case Criterion.OUTPUT_ERROR | Criterion.MULTIPLE_SHOOTING:
+            return _with_reason(shot, "residuals are white" if white else "the criterion was asked for")
+        case Criterion.PREDICTION_ERROR:
+            return _predicted(prediction_error(shot.made, settings.noise, progress=progress), "it was asked for")
+        case Criterion.AUTO:
+            pass
+    if settings.segment_seconds is not None:
+        why = "residuals within segments are white; their length was asked for"
+        return _with_reason(shot, why if white else COLOURED)
+    if white and (whole := whole_runs()) is not None:
+        reason = "residuals are white within segments and over whole runs: no process noise to guard against"
+        return _with_reason(_left(whole, WHOLE_RUNS, shot.reasons), reason)
+    if white:
+        shot = _with_reason(shot, "whole runs do not fit within the noise of the segments")
+    if settings.robust or not is_worthwhile(shot.made):
+        return _with_reason(shot, COLOURED)
+    noise = prediction_error(shot.made, settings.noise, progress=progress)
+    if noise.gate.holds:
+        return _predicted(noise, *shot.reasons, noise.gate.text)
+    return replace(_with_reason(shot, noise.gate.text, COLOURED), noise=noise)
+
+
+COLOURED = "coloured residuals mean model error or process noise: short segments keep it from accumulating"
+
+
+def _shot(made: Estimate, seconds: float) -> _Found:
+    if np.isinf(seconds):
+        return _left(made, WHOLE_RUNS, ())
+    return _left(made, f"output error, multiple shooting with segments of {seconds:.3g} s", ())
+
+
+def _left(made: Estimate, criterion: str, reasons: tuple[str, ...]) -> _Found:
+    residuals = made.residuals()
+    rho, inflation = colour(made.problem, residuals)
+    where = "over whole runs" if criterion == WHOLE_RUNS else "within segments"
+    said = f"the residuals' correlation {where} inflates variances by {np.max(inflation):.3g}"
+    if np.max(inflation) > WHITE_INFLATION:
+        said += ", and correlated samples count as their effective number, so that priors keep their weight"
+    return _Found(made, residuals, inflation, rho, criterion, (*reasons, said))
+
+
+def _with_reason(found: _Found, *reasons: str) -> _Found:
+    return replace(found, reasons=(*found.reasons, *reasons))
+
+
+def _predicted(noise: ProcessNoise, *reasons: str) -> _Found:
+    made, innovations = noise.as_estimate(), noise.problem.innovations(noise.optimum.solution.point)
+    rho, inflation = colour(made.problem, innovations.normalised)
+    return _Found(made, -innovations.e, inflation, rho, PREDICTION_ERROR, reasons, noise)
+
+
+def _uncertainty(found: _Found, settings: Settings, tell: Progress) -> Uncertainty:
     def counted(done: int, total: int) -> None:
         tell(f"{settings.intervals}: fit {done} of {total}")
 
-    known = intervals(made, inflation, settings.intervals, np.random.default_rng(settings.seed), counted)
-    return Identified(made, known, inflation, rho, begin.how, criterion, tuple(reasons), time.perf_counter() - began)
+    if found.noise is None or found.criterion != PREDICTION_ERROR:
+        rng = np.random.default_rng(settings.seed)
+        return intervals(found.made, found.inflation, settings.intervals, rng, counted)
+    return of_innovations(found.noise, settings.intervals)
+
+
+def _disturbance(found: _Found) -> Disturbance:
+    """Noise in states and channels; intensities that do not make the innovations white bound the process noise."""
+    data, noise = found.made.problem.data, found.noise
+    samples = np.isfinite(data.measured).sum(axis=0)
+    tests = [whiteness_p(r, int(n)) for r, n in zip(found.rho, samples, strict=True)]
+    return Disturbance(
+        PREDICTION_ERROR if found.criterion == PREDICTION_ERROR else "output error",
+        float(min(1.0, len(tests) * min(tests))),
+        {} if noise is None else noise.process,
+        dict(zip(data.outputs, map(float, found.made.problem.noise), strict=True)),
+        "; ".join(found.reasons),
+    )
 
 
 def _over_whole_runs(

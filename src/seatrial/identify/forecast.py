@@ -15,7 +15,7 @@ from seatrial.information.discrepancy import NONE, Discrepancy, Miss, discrepanc
 from seatrial.information.extrapolation import extrapolation, index_of, reach
 from seatrial.results import Margin, Prediction
 from seatrial.trial import Role, TrialRecord
-from seatrial.values import Array, InputError, Progress, Record
+from seatrial.values import InputError, Progress, Record
 from seatrial.workers import mapped
 
 
@@ -27,10 +27,10 @@ class Calibration:
     beyond: Discrepancy
 
 
-def scatter_of(found: Identified, process: Array | None = None) -> Scatter:
+def scatter_of(found: Identified) -> Scatter:
     """Covariance of the coefficients, and of offsets between sessions (their priors' where there is one session).
 
-    process: intensities of process noise by state, where they were estimated.
+    Process noise counts where the coefficients come from prediction error: elsewhere model error is in its intensities.
     """
     problem = found.made.problem
     count, kinds = len(problem.free), problem.kinds
@@ -39,11 +39,11 @@ def scatter_of(found: Identified, process: Array | None = None) -> Scatter:
         between = np.atleast_2d(np.cov(offsets, rowvar=False))
     else:
         between = np.diag(1.0 / problem.priors[1][count:])
-    nothing = np.zeros(len(problem.model.states))
+    intensity = found.disturbance.process if found.has_process_noise else {}
     return Scatter(
         found.interval.covariance[:count, :count],
         between if kinds else np.zeros((0, 0)),
-        nothing if process is None else process,
+        np.array([intensity.get(s, 0.0) for s in problem.model.states]),
         found.interval.degrees_of_freedom,
     )
 

@@ -12,7 +12,7 @@ from seatrial.identify.family import WINDOW_SHIP_LENGTHS as FAMILY_WINDOW
 from seatrial.identify.family import Tied, chosen, compared, table, tied_models, with_ensemble
 from seatrial.identify.fit import Identified, identified, ship_length_seconds
 from seatrial.identify.forecast import forecast
-from seatrial.identify.settings import SEGMENT_SHIP_LENGTHS, START_SECONDS_LENGTHS, Intervals, Settings
+from seatrial.identify.settings import START_SECONDS_LENGTHS, Criterion, Intervals, Settings
 from seatrial.identify.singular import refuse_singular
 from seatrial.results import Fit, Member
 from seatrial.trial import Role, Trial, TrialRecord, records_of, refuse_errors
@@ -27,17 +27,15 @@ def settings_of(trial: Trial, records: Sequence[Record]) -> Settings:
     """The trial's wishes as settings; offsets without a stated spread get the house's."""
     wishes = trial.estimate
     seconds = wishes.segment_s
-    if wishes.criterion == "output-error":
-        seconds = np.inf
-    elif seconds is None and (wishes.segment_lengths or wishes.criterion == "multiple-shooting"):
-        seconds = (wishes.segment_lengths or SEGMENT_SHIP_LENGTHS) * ship_length_seconds(records, trial.ship.length)
+    if seconds is None and wishes.segment_lengths:
+        seconds = wishes.segment_lengths * ship_length_seconds(records, trial.ship.length)
     units = {name: NOTATION[name].unit for name in wishes.offsets}
     zeros = [(name, "zero", spread or _OFFSET_SPREAD.get(units[name], 0.1), units[name])
              for name, spread in wishes.offsets.items()]  # fmt: skip
     gains = [(name, "gain", spread or _GAIN_SPREAD, "1") for name, spread in wishes.gains.items()]
     return Settings(
-        segment_seconds=seconds, robust=wishes.robust, noise=dict(trial.noise), channels=wishes.channels,
-        corrections=(*zeros, *gains), current=wishes.current, forces=trial.forces,
+        criterion=Criterion(wishes.criterion), segment_seconds=seconds, robust=wishes.robust,
+        noise=dict(trial.noise), channels=wishes.channels, corrections=(*zeros, *gains), current=wishes.current, forces=trial.forces,
     )  # fmt: skip
 
 

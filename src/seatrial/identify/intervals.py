@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.identify.estimate import Estimate
+from seatrial.identify.process_noise import ProcessNoise
 from seatrial.identify.replicates import drawn, left_out, stepped
 from seatrial.identify.settings import WHITE_INFLATION, Intervals
 from seatrial.information.covariance import (
@@ -81,6 +82,22 @@ def intervals(
         return Uncertainty(with_prior(sandwich(hessian, _scores(made)), hessian, problem.known_precision(made.shared)))
     meaning = "information matrix, correlated samples counted as their effective number"
     return Uncertainty(replace(from_information(hessian), meaning=meaning))
+
+
+def of_innovations(noise: ProcessNoise, kind: Intervals) -> Uncertainty:
+    """Intervals of a prediction-error estimate: its information matrix, or runs left out in one Newton step.
+
+    Full refits and a bootstrap would cost a search each and are not offered: one step stands for them, and says so.
+    """
+    runs = len(noise.problem.runs.data.runs)
+    steps = noise.left_out if runs >= RUNS_FOR_JACKKNIFE else None
+    if kind in (Intervals.JACKKNIFE, Intervals.BOOTSTRAP):
+        made = jackknife(_demanded(steps), f"one-step jackknife over {runs} runs, prediction error")
+        precision = noise.problem.runs.known_precision(noise.shared)
+        widened = with_prior(made, noise.information, precision)
+        count = len(noise.problem.runs.free)
+        return Uncertainty(_offsets_by_information(widened, noise.information, count), steps)
+    return Uncertainty(noise.interval, steps)
 
 
 def refuse_few_runs(kind: Intervals, runs: int) -> None:

@@ -60,7 +60,7 @@ def noise(found: Identified) -> tuple[Noise, ...]:
 
 def residuals(found: Identified) -> tuple[Residuals, ...]:
     """Residuals of each compared channel, segments one after another."""
-    problem, values = found.made.problem, found.made.residuals()
+    problem, values = found.made.problem, found.residuals
     return tuple(
         Residuals(channel, 1.0 / problem.data.dt, np.concatenate(pieces(problem, values[:, i])), found.rho[i])
         for i, channel in enumerate(problem.data.outputs)

@@ -21,6 +21,15 @@ START_SECONDS_LENGTHS = 1.0
 """The initial state of a validation run comes from its first L/U seconds."""
 
 
+class Criterion(StrEnum):
+    """What is minimised; `auto` is the decision table's choice."""
+
+    AUTO = "auto"
+    OUTPUT_ERROR = "output-error"
+    MULTIPLE_SHOOTING = "multiple-shooting"
+    PREDICTION_ERROR = "prediction-error"
+
+
 class Intervals(StrEnum):
     """Where intervals come from; `auto` is the decision table's choice."""
 
@@ -35,7 +44,8 @@ class Settings:
     """Choices of one fit; None means: the decision table decides.
 
     Attributes:
-        segment_seconds: length of multiple-shooting segments; infinite for whole runs.
+        criterion: what is minimised.
+        segment_seconds: length of multiple-shooting segments; None: 1.5 L/U.
         channels: observables that are compared; empty: all that the records hold.
         robust: whether the loss is Huber's.
         noise: known standard deviations by channel, SI; others are estimated.
@@ -47,6 +57,7 @@ class Settings:
         intervals: where intervals come from; seed: of what is drawn for them.
     """
 
+    criterion: Criterion = Criterion.AUTO
     segment_seconds: float | None = None
     channels: tuple[str, ...] = ()
     robust: bool = False

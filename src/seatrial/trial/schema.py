@@ -250,7 +250,7 @@ class ModelTable(Strict):
 class EstimateTable(Strict):
     """`[estimate]`: settings of the estimator; what is not given follows the decision table."""
 
-    criterion: Literal["auto", "output-error", "multiple-shooting"] = "auto"
+    criterion: Literal["auto", "output-error", "multiple-shooting", "prediction-error"] = "auto"
     channels: tuple[str, ...] = ()
     segment_s: Annotated[float, Field(gt=0)] | None = None
     segment_lengths: Annotated[float, Field(gt=0)] | None = None

@@ -61,7 +61,7 @@ class Estimate:
     """Settings of the estimator; None, empty or ``auto`` leaves the choice to the decision table.
 
     Attributes:
-        criterion: ``auto``, ``output-error`` or ``multiple-shooting``.
+        criterion: ``auto``, ``output-error``, ``multiple-shooting`` or ``prediction-error``.
         channels: observables that are fitted; empty: all that the records measure.
         segment_s: length of a segment in s.
         segment_lengths: the same in ship lengths travelled at the run's mean speed.
