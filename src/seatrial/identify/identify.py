@@ -14,6 +14,9 @@ from seatrial.identify.fit import Identified, identified, ship_length_seconds
 from seatrial.identify.forecast import forecast
 from seatrial.identify.settings import START_SECONDS_LENGTHS, Criterion, Intervals, Settings
 from seatrial.identify.singular import refuse_singular
+from seatrial.information.symmetries import refuse_structural
+from seatrial.problem.segments import compared_outputs
+from seatrial.problem.static_forces import StaticForces
 from seatrial.results import Fit, Member
 from seatrial.trial import Role, Trial, TrialRecord, records_of, refuse_errors
 from seatrial.values import NOTATION, Array, InputError, Progress, Record
@@ -73,6 +76,9 @@ def identify(
         raise InputError("the trial has no training run; leave at least one file out of 'validate' and 'leave_out'")
     runs, sessions, length = [r.record for r in train], [r.session for r in train], trial.ship.length
     settings = replace(settings_of(trial, runs), intervals=intervals, seed=seed)
+    forces = tuple(name for points in trial.forces for name in StaticForces(trial.model, points).names)
+    outputs = compared_outputs(trial.model, runs, settings.channels)
+    refuse_structural(trial.model, outputs, forces)
     found = identified(trial.model, runs, sessions, length, settings, progress)
     refuse_singular(*_data_and_prior(found))
     unit = ship_length_seconds(runs, length, trial.estimate.segment_s)
