@@ -84,11 +84,14 @@ def test_sensitivities_leave_the_innovations_as_they_are(oscillator: Model, meas
 def test_noise_sensitivities_are_those_of_matrices(oscillator: Model, measured: Array, column: int) -> None:
     _, _, de, dv, _ = filter_of(oscillator).sensitivities(0, measured, point(oscillator))
     sides = []
+    squares = np.concatenate([INTENSITY, DEVIATION]) ** 2
     for step in (1e-5, -1e-5):
-        factor = np.exp(step * (np.arange(4) == column))
-        sides.append(Matrices().filtered(measured, INTENSITY * factor[:2], DEVIATION * factor[2:]))
-    np.testing.assert_allclose(de[:, :, 5 + column], (sides[0][0] - sides[1][0]) / 2e-5, atol=1e-7)
-    np.testing.assert_allclose(dv[:, :, column], (sides[0][1] - sides[1][1]) / 2e-5, atol=1e-8)
+        moved = np.sqrt(squares * (1.0 + step * (np.arange(4) == column)))
+        sides.append(Matrices().filtered(measured, moved[:2], moved[2:]))
+    by = 2e-5 * squares[column]
+    size = np.abs(sides[0][0] - sides[1][0]).max() / by, np.abs(sides[0][1] - sides[1][1]).max() / by
+    np.testing.assert_allclose(de[:, :, 5 + column], (sides[0][0] - sides[1][0]) / by, atol=1e-6 * size[0])
+    np.testing.assert_allclose(dv[:, :, column], (sides[0][1] - sides[1][1]) / by, atol=1e-6 * size[1])
 
 
 def test_an_input_moves_the_mean_alone(oscillator: Model, measured: Array) -> None:

@@ -23,7 +23,6 @@ from seatrial.values import Array, Index, Progress
 KINEMATIC = ("psi", "phi", "theta", "x0", "y0", "z0")
 _DIFFUSE = 10.0
 _SCANNED = 10.0 ** np.arange(-3.0, 0.5, 0.5)
-_NOTHING = 3e-5
 _ROUGH, _NEGLIGIBLE, _EXACT = 1.0, 1e-3, 1e-4
 _NO_LOCAL = np.zeros((0, 0))
 _SHORT = 24
@@ -52,10 +51,9 @@ class ProcessNoise:
 
     @property
     def process(self) -> dict[str, float]:
-        """Intensity of each state's process noise, SI over the root of a second; 0 on the lower bound."""
+        """Intensity of each state's process noise, SI over the root of a second; 0 where there is none."""
         q = self.problem.split(self.optimum.solution.point)[1]
-        present = q > 1.001 * self.problem.least
-        return {s: float(v) if p else 0.0 for s, v, p in zip(self.problem.process, q, present, strict=True)}
+        return dict(zip(self.problem.process, map(float, q), strict=True))
 
     @property
     def measurement(self) -> dict[str, float]:
@@ -145,9 +143,9 @@ def prediction_error(
         suit the given coefficients, these are kept: the gate is shut already, and the intensities serve the floor.
     """
     tell = progress or (lambda _: None)
-    problem, begin = _begun(made, known or {}, driven)
+    problem = _begun(made, known or {}, driven)
     tell("process noise: intensities")
-    point = np.concatenate([begin, _intensities(problem, begin)])
+    point = np.concatenate([made.shared, _intensities(problem, made)])
     if np.max(colour(problem, point)[1]) > _HOPELESS:
         return _unfinished(problem, point)
 
@@ -167,13 +165,13 @@ def _unfinished(problem: PredictionError, point: Array) -> ProcessNoise:
     """Intensities alone, the coefficients as they were: no search can make these innovations white."""
     normal = problem.normal(point, _NO_LOCAL)
     found = Optimum(Solution(point, normal.cost, Status.STALLED, 1), _NO_LOCAL, normal)
-    quiet = replace(problem, process=(), least=np.zeros(0))
+    quiet = replace(problem, process=())
     held = np.concatenate([point[: problem.runs.size], point[problem.runs.size + len(problem.process) :]])
     return ProcessNoise(problem, found, np.nan, gate(problem, point, normal.cost, quiet.cost(held, _NO_LOCAL), None))
 
 
-def _begun(made: Estimate, known: Mapping[str, float], driven: tuple[str, ...]) -> tuple[PredictionError, Array]:
-    """The problem with its initial states, and where the search for the runs' unknowns begins."""
+def _begun(made: Estimate, known: Mapping[str, float], driven: tuple[str, ...]) -> PredictionError:
+    """The problem with its initial states."""
     problem, first = whole_runs(made.problem)
     measured, local = problem.measured_starts(), made.optimum.local[first]
     model, outputs = problem.model, problem.data.outputs
@@ -189,9 +187,8 @@ def _begun(made: Estimate, known: Mapping[str, float], driven: tuple[str, ...]) 
             start[:, i] = local[:, m]
             variance[:, i] = max(np.std(column), 0.1 * np.max(np.abs(column)), 1e-3) ** 2
     chosen = driven or tuple(s for s in problem.starts if s not in KINEMATIC)
-    least = _NOTHING * _spread(made, chosen) / np.sqrt(_longest(problem))
     held = np.array([known.get(o, np.nan) for o in outputs])
-    return PredictionError(problem, chosen, start, variance, least, held), made.shared
+    return PredictionError(problem, chosen, start, variance, held)
 
 
 def _longest(problem: OutputError) -> float:
@@ -210,9 +207,9 @@ def _spread(made: Estimate, states: tuple[str, ...]) -> Array:
     return np.maximum(spread, 1e-6)
 
 
-def _intensities(problem: PredictionError, begin: Array) -> Array:
-    """Logarithms of intensities and deviations that suit the coefficients as they are: a scan, then a search."""
-    runs = problem.runs
+def _intensities(problem: PredictionError, made: Estimate) -> Array:
+    """Squared intensities and variances that suit the coefficients as they are: a scan, then a search."""
+    runs, begin = problem.runs, made.shared
     held = runs.model.with_values(dict(zip(runs.free, begin[: len(runs.free)], strict=True)))
     held = held.with_parameters(held.parameters.fixed(*held.parameters.names))
     own = begin[len(runs.free) :]
@@ -221,33 +218,31 @@ def _intensities(problem: PredictionError, begin: Array) -> Array:
         np.median([sample_noise(runs.data.measured[a:b, i]) for a, b in pairwise(runs.data.offsets)])
         for i in range(len(runs.noise))
     ]
-    deviation = np.log(np.clip(quiet, 1e-2 * runs.noise, runs.noise))
-    scanned = [
-        _balanced(alone, np.concatenate([own, np.log(share / _NOTHING * problem.least), deviation]))
-        for share in _SCANNED
-    ]
+    deviation = np.clip(quiet, 1e-2 * runs.noise, runs.noise)
+    whole = _spread(made, problem.process) / np.sqrt(_longest(runs))
+    scanned = [_balanced(alone, np.concatenate([own, (share * whole) ** 2, deviation**2])) for share in _SCANNED]
     best = min(scanned, key=lambda one: one[0])[1]
     found = levenberg_marquardt(alone, best, _NO_LOCAL, negligible=_ROUGH, evaluations=_SHORT)
     return found.solution.point[len(own) :]
 
 
 def _balanced(problem: PredictionError, point: Array) -> tuple[float, Array]:
-    """Cost and point after two rounds of setting each channel's deviation by its innovations' size."""
+    """Cost and point after two rounds of setting each channel's variance by its innovations' size."""
     ny = len(problem.runs.noise)
     for _ in range(2):
         squares = np.nanmean(problem.innovations(point).normalised ** 2, axis=0)
         if not np.all(np.isfinite(squares)):
             return np.inf, point
         point = point.copy()
-        point[-ny:] += 0.5 * np.log(np.clip(squares, 1e-4, 1e4))
-        point[-ny - len(problem.process) : -ny] += 0.5 * np.log(np.clip(np.median(squares), 1e-2, 1e2))
+        point[-ny:] *= np.clip(squares, 1e-4, 1e4)
+        point[-ny - len(problem.process) : -ny] *= np.clip(np.median(squares), 1e-2, 1e2)
         point = np.clip(point, problem.lower, problem.upper)
     return problem.cost(point, _NO_LOCAL), point
 
 
 def _polished(problem: PredictionError, found: Optimum) -> tuple[PredictionError, Optimum, float]:
     """Newton steps by the exact gradient, none where it vanishes already; with the decrement that is left."""
-    exact = replace(problem, steps=problem.difference_steps(found.normal.hessian))
+    exact = replace(problem, steps=problem.difference_steps(found.solution.point, found.normal.hessian))
     point = found.solution.point
     normal = exact.normal(point, _NO_LOCAL)
     slope = _decrement(exact, point, normal)
@@ -270,7 +265,7 @@ def _decrement(problem: PredictionError, point: Array, normal: Normal) -> float:
 
 def _without(problem: PredictionError, made: Estimate, point: Array) -> tuple[float, Array | None]:
     """Minus the log-likelihood without process noise at its own optimum, and innovations there."""
-    quiet = replace(problem, process=(), least=np.zeros(0))
+    quiet = replace(problem, process=())
     k = problem.runs.size
     deviation = point[k + len(problem.process) :]
     begins = [np.concatenate([p, deviation]) for p in (point[:k], made.shared)]

@@ -22,8 +22,8 @@ from seatrial.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, T
 def carried(s, spread, process, noisy, dt, work):
     """spread <- Phi (spread + Q/2) Phi' + Q/2, Phi the first columns of s, Q = diag(process) dt.
 
-    spread[0] is the covariance, spread[1:] its derivatives by the logarithms of the intensities of the noisy states,
-    then by those of the measurements.
+    spread[0] is the covariance, spread[1:] its derivatives by the process variances of the noisy states, then by those
+    of the measurements.
     """
     nx = spread.shape[1]
     for m in range(spread.shape[0]):
@@ -33,7 +33,7 @@ def carried(s, spread, process, noisy, dt, work):
                     spread[m, i, i] += 0.5 * process[i] * dt
             elif m <= noisy.size:
                 i = noisy[m - 1]
-                spread[m, i, i] += process[i] * dt
+                spread[m, i, i] += 0.5 * dt
             if half == 1:
                 break
             for i in range(nx):
@@ -134,7 +134,7 @@ def _innovate(
                 for c in range(width):
                     s[i, nx + c] += gain[i] * de_out[row, channel, c]
             for m in range(1, covs):
-                dv = 2.0 * measurement[channel] if m - 1 - noisy.size == channel else 0.0
+                dv = 1.0 if m - 1 - noisy.size == channel else 0.0
                 for i in range(nx):
                     dv += h[i] * across[m, i]
                 dv_out[row, channel, m - 1] = dv
@@ -199,8 +199,8 @@ def innovate(
     no column needs them; x0, variance0 (nx,): mean and variance of the initial state.
     process: variance a second of each state's white noise, (nx,); measurement: variance of each channel, (ny,).
     de_out (rows, ny, columns): sensitivities of e, columns as the links say (counted from nx, the first nx being the
-    transition matrix), the last ones by log sqrt(process) of the `noisy` states and log sqrt(measurement); dv_out
-    (rows, ny, noise columns) those of v. With no columns there is no noise column either: the likelihood alone.
+    transition matrix), the last ones by process of the `noisy` states and by measurement; dv_out (rows, ny, noise
+    columns) those of v. With no columns there is no noise column either: the likelihood alone.
     variance_out (rows or 0, nx): of the states before each sample. A missing sample has e = 0 and v = 1.
     """
     nx, nu, width = x0.size, inputs.shape[1], de_out.shape[2]

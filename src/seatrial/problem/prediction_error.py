@@ -18,8 +18,6 @@ from seatrial.simulate.filtering import Filter, Noisy
 from seatrial.values import Array, Index
 from seatrial.workers import mapped
 
-_LARGEST_STEP = 0.05
-
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
@@ -48,13 +46,14 @@ class Innovations:
 
 @dataclass(frozen=True, eq=False)
 class PredictionError:
-    """Unknowns: those of `runs`, then log intensity of each process noise, then log standard deviation of each channel.
+    """Unknowns: those of `runs`, then the squared intensity of each process noise, then the variance of each channel.
+
+    Squares, because the likelihood is smooth in them where there is none.
 
     Attributes:
         runs: an output-error problem over whole runs; gives model, data, nuisances, priors, bounds.
         process: states driven by white noise.
         start, start_variance: mean and variance of the initial state of each run, both (runs, nx).
-        least: intensities that count as none, the lower bounds, (len(process),), SI over the root of a second.
         measurement: known standard deviations of channels, SI, NaN where unknown, (ny,).
         steps: steps of the central differences by which the exact gradient is taken, (size,); None: gain frozen.
     """
@@ -63,7 +62,6 @@ class PredictionError:
     process: tuple[str, ...]
     start: Array
     start_variance: Array
-    least: Array
     measurement: Array
     steps: Array | None = field(default=None)
 
@@ -79,22 +77,22 @@ class PredictionError:
 
     @property
     def lower(self) -> Array:
-        """Lower bounds."""
-        known = np.log(self.measurement)
-        free = np.log(1e-3 * self.runs.noise)
-        return np.concatenate([self.runs.lower, np.log(self.least), np.where(np.isfinite(known), known, free)])
+        """Lower bounds: no process noise."""
+        return self._edge(self.runs.lower, 0.0, (1e-4 * self.runs.noise) ** 2)
 
     @property
     def upper(self) -> Array:
         """Upper bounds."""
-        known = np.log(self.measurement)
-        free = np.log(1e3 * self.runs.noise)
-        return np.concatenate([self.runs.upper, np.log(1e6 * self.least), np.where(np.isfinite(known), known, free)])
+        return self._edge(self.runs.upper, np.inf, (1e4 * self.runs.noise) ** 2)
+
+    def _edge(self, own: Array, process: float, unknown: Array) -> Array:
+        known = np.where(np.isfinite(self.measurement), self.measurement**2, unknown)
+        return np.concatenate([own, np.full(len(self.process), process), known])
 
     def split(self, shared: Array) -> tuple[Array, Array, Array]:
         """Unknowns of the runs, intensities of `process`, standard deviations of the channels, the latter two SI."""
         first, second = self.runs.size, self.runs.size + len(self.process)
-        return shared[:first], np.exp(shared[first:second]), np.exp(shared[second:])
+        return shared[:first], np.sqrt(shared[first:second]), np.sqrt(shared[second:])
 
     def columns_of(self, session: int) -> Index:
         """Positions among the unknowns of what a session's runs depend on."""
@@ -170,30 +168,32 @@ class PredictionError:
 
     def _exact(self, shared: Array, runs: Sequence[int]) -> list[tuple[float, Array, Array]]:
         """The same from central differences of the innovations themselves, whatever they depend on."""
-        steps, session = self.steps, self.runs.data.session
-        assert steps is not None
-        items = [(s, column, sign) for s in runs for column in self.columns_of(int(session[s])) for sign in (1, -1)]
+        session = self.runs.data.session
+        ahead, behind = self._sides(shared)
+        items = [(s, c, side) for s in runs for c in self.columns_of(int(session[s])) for side in (ahead, behind)]
 
-        def moved(item: tuple[int, int, int]) -> tuple[Array, Array]:
-            segment, column, sign = item
+        def moved(item: tuple[int, int, Array]) -> tuple[Array, Array]:
+            segment, column, side = item
             point = shared.copy()
-            point[column] += sign * steps[column]
+            point[column] = side[column]
             return self._loss(point, segment)[1:]
 
-        sides = self._mapped(moved, items)
-        made, place = [], 0
+        sides, made = iter(self._mapped(moved, items)), []
         for segment in runs:
             cost, e, v = self._loss(shared, segment)
             columns = self.columns_of(int(session[segment]))
             de, dv = np.empty((*e.shape, len(columns))), np.empty((*e.shape, len(columns)))
             for c, column in enumerate(columns):
-                ahead, behind = sides[place + 2 * c], sides[place + 2 * c + 1]
-                de[:, :, c] = (ahead[0] - behind[0]) / (2.0 * steps[column])
-                dv[:, :, c] = (ahead[1] - behind[1]) / (2.0 * steps[column])
-            place += 2 * len(columns)
+                (e_1, v_1), (e_0, v_0), way = next(sides), next(sides), ahead[column] - behind[column]
+                de[:, :, c], dv[:, :, c] = ((e_1 - e_0) / way, (v_1 - v_0) / way) if way > 0 else (0.0, 0.0)
             mean, spread = _projected(e, v, de), _varied(e, v, dv)
             made.append((cost, mean[0] + spread[0], mean[1] + spread[1]))
         return made
+
+    def _sides(self, shared: Array) -> tuple[Array, Array]:
+        """Every unknown a step ahead and a step behind, within its bounds."""
+        assert self.steps is not None
+        return np.minimum(shared + self.steps, self.upper), np.maximum(shared - self.steps, self.lower)
 
     def normal(self, shared: Array, local: Array) -> Normal:  # noqa: ARG002
         """The Gauss-Newton model at a point: gradient and expected information."""
@@ -214,10 +214,14 @@ class PredictionError:
             hessian[:k, :k] += known.hessian
         return Normal(cost, gradient, hessian, np.zeros((0, 0)), np.zeros((0, 0, 0)), np.zeros((0, self.size, 0)))
 
-    def difference_steps(self, hessian: Array, share: float = 0.02) -> Array:
-        """Steps for an exact gradient: a share of what each unknown may move with the others held, (size,)."""
-        steps = share / np.sqrt(np.maximum(np.diag(hessian), 1e-300))
-        steps[self.runs.size :] = np.minimum(steps[self.runs.size :], _LARGEST_STEP)
+    def difference_steps(self, shared: Array, hessian: Array, share: float = 0.02) -> Array:
+        """Steps for an exact gradient, (size,): a share of what each unknown may move with the others held.
+
+        Of variances no more than a tenth of themselves, unless they are zero.
+        """
+        steps, noise = share / np.sqrt(np.maximum(np.diag(hessian), 1e-300)), slice(self.runs.size, None)
+        tenth = np.where(shared > 0, 0.1 * shared, steps)
+        steps[noise] = np.minimum(steps, tenth)[noise]
         return steps
 
 

@@ -31,7 +31,7 @@ class Noisy:
 
 @dataclass(frozen=True, eq=False)
 class Filter(Batch):
-    """Segments to be filtered; columns: parameters, corrections, log intensities, log deviations of the outputs.
+    """Segments to be filtered; columns: parameters, corrections, squares of intensities, squares of deviations.
 
     Attributes:
         driven: states with white process noise.

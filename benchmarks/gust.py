@@ -1,0 +1,229 @@
+"""A gust of 1 N, one percent of thrust: output error believes it is certain and is wrong, prediction error knows.
+
+The craft of Song et al. 2025 in consecutive zigzags of 2075 s at 10 Hz with sensor noise, pushed by random forces on
+surge and sway and by the same force at a quarter of her length in yaw. The force is drawn anew every .1 s, or is a
+first-order Gauss-Markov process with a memory of 5 s. The helmsman steers the pushed craft; steps of .01 s, of which
+the record keeps every tenth. Every run is identified from coefficients zero. `python benchmarks/gust.py --runs 50`.
+"""
+
+import argparse
+import math
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import sympy as sp
+from measure import Line, at_most, machine
+from numba import njit
+from numpy.typing import NDArray
+from scipy.signal import lfilter
+
+from seatrial.equations import Model
+from seatrial.equations.bindings import Input
+from seatrial.identify.assemble import output_error
+from seatrial.identify.estimate import estimate
+from seatrial.identify.process_noise import prediction_error
+from seatrial.identify.settings import SEGMENT_SHIP_LENGTHS, WINDOW_SHIP_LENGTHS, Settings
+from seatrial.identify.start import start
+from seatrial.information.covariance import from_information
+from seatrial.kernels.steering import steer
+from seatrial.kernels.types import COMMAND_SIGNATURE, OPTIONS
+from seatrial.manoeuvres import zigzag
+from seatrial.manoeuvres.programme import programme
+from seatrial.manoeuvres.steering import FINISHED, Steering, rudder_angles
+from seatrial.simulate.approach import approach_speed
+from seatrial.simulate.channels import record_of
+from seatrial.studies.series import APPROACH, FINE_STEP, JET_VELOCITY, RATE, SLEW_RATE, noisy, truth
+from seatrial.values import Record
+from seatrial.workers import mapped_in_processes
+
+Array = NDArray[np.float64]
+FORCE, LEVER_LENGTHS, HELD, MEMORY = 1.0, 0.25, 0.1, 5.0
+EXECUTES, RUNS, SEED = 5, 50, 11
+KINDS = ("white", "coloured", "calm")
+WITHIN, WRONG, SECONDS = 0.4, 2.0, 10.0
+_STEP, _BASE = -2, -1
+
+
+@njit(COMMAND_SIGNATURE, **OPTIONS)
+def pushed(t, x, memory, u):
+    """The zigzag helmsman; behind his memory lie the forces of every step, which become inputs."""
+    zigzag.helmsman(t, x, memory, u)
+    first = int(memory[_BASE]) + 3 * round(t / memory[_STEP])
+    for j in range(3):
+        u[2 + j] = memory[first + j]
+
+
+def gusty_craft() -> Model:
+    """The craft with three more inputs: forces on surge and sway [N], moment in yaw [N m]."""
+    craft = truth()
+    inertia = {"u": ("gust_x", "m", "m_x"), "v": ("gust_y", "m", "m_y"), "r": ("gust_n", "I_z", "J_z")}
+
+    def rate(state: str) -> sp.Expr:
+        force, mass, added = (sp.Symbol(n, real=True) for n in inertia[state])
+        return force / (mass + added)
+
+    rates = tuple(
+        replace(b, expression=b.expression + rate(b.name)) if b.name in inertia else b for b in craft.equations.rates
+    )
+    inputs = (*craft.equations.inputs, *(Input(force) for force, _, _ in inertia.values()))
+    return Model(replace(craft.equations, name="waterjet in gusts", rates=rates, inputs=inputs), craft.parameters)
+
+
+def forces(kind: str, rows: int, length: float, rng: np.random.Generator) -> Array:
+    """Forces [N, N, N m] of every fine step, (rows, 3)."""
+    if kind == "white":
+        hold = round(HELD / FINE_STEP)
+        unit = np.repeat(rng.standard_normal((rows // hold + 1, 3)), hold, axis=0)[:rows]
+    else:
+        keep = math.exp(-FINE_STEP / MEMORY)
+        kicks = rng.standard_normal((rows, 3))
+        kicks[1:] *= math.sqrt(1.0 - keep**2)
+        unit = np.asarray(lfilter([1.0], [1.0, -keep], kicks, axis=0))
+    return FORCE * unit * [1.0, 1.0, LEVER_LENGTHS * length]
+
+
+def sailed(kind: str, executes: int, rng: np.random.Generator) -> Record:
+    """One run of the series with the helmsman in the loop, without sensor noise."""
+    craft, pushed_craft = truth(), gusty_craft()
+    plan, length = programme(f"consecutive-zigzags:{executes}"), craft.parameters["L"].value
+    begin = np.zeros(len(craft.states))
+    begin[0] = approach_speed(craft, np.array([0.0, JET_VELOCITY]))
+    unit = length / begin[0]
+    rows = int((APPROACH + plan.lengths * unit) / FINE_STEP) + 1
+    push = np.zeros((rows, 3)) if kind == "calm" else forces(kind, rows, length, rng)
+    memory = plan.memory(Steering(3, 2, 0, -1.0, SLEW_RATE, FINE_STEP, APPROACH, unit))
+    memory = np.concatenate([memory, push.ravel(), [FINE_STEP, len(memory)]])
+    states, inputs = np.empty((rows, len(begin))), np.empty((rows, 5))
+    held = np.array([0.0, JET_VELOCITY, 0.0, 0.0, 0.0])
+    rates, values = pushed_craft.compiled.rates, pushed_craft.parameters.values
+    steer(rates, pushed, begin, held, values, memory, FINE_STEP, states, inputs)
+    last, kept = round(memory[FINISHED] / FINE_STEP) + 1, round(1.0 / (FINE_STEP * RATE))
+    angles = rudder_angles(inputs[:last, 0])[::kept]
+    used = np.stack([angles, np.full(len(angles), JET_VELOCITY)], axis=1)
+    time_axis = np.linspace(0.0, (len(used) - 1) / RATE, len(used))
+    return record_of(craft, kind, time_axis, np.ascontiguousarray(states[:last:kept]), np.empty((len(used), 0)), used)
+
+
+@dataclass(frozen=True)
+class Item:
+    """One run to be made and identified."""
+
+    kind: str
+    stream: np.random.SeedSequence
+    executes: int
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """Errors and predicted standard errors of both criteria, (coefficients,), what the gate said, times in s."""
+
+    whole: tuple[Array, Array]
+    innovations: tuple[Array, Array]
+    is_needed: bool
+    is_white: bool
+    ratio: float
+    samples: int
+    cpu: float
+    wall: float
+
+
+def outcome(item: Item) -> Outcome:
+    """Make one run; fit it by output error over the whole run, and by prediction error from nothing."""
+    model, rng = truth(), np.random.default_rng(item.stream)
+    record = noisy(sailed(item.kind, item.executes, rng), rng, SEED)
+    names, settings = model.parameters.free_names, Settings(workers=1)
+    values = np.array([model.parameters[n].value for n in names])
+    blank = model.with_values(dict.fromkeys(names, 0.0))
+    unit = model.parameters["L"].value / float(np.median(record["u"]))
+    begin = start(
+        output_error(blank, [record], [record.name], SEGMENT_SHIP_LENGTHS * unit, settings), [record],
+        WINDOW_SHIP_LENGTHS * unit,
+    )  # fmt: skip
+    segments = estimate(begin.problem, begin.shared, begin.local, {})
+    cpu, wall = time.process_time(), time.perf_counter()
+    found = prediction_error(segments)
+    cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
+    problem = output_error(model, [record], [record.name], np.inf, settings)
+    whole = estimate(problem, problem.start(), problem.measured_starts(), {})
+    # the information matrix of white residuals: what a user of output error is told
+    told = from_information(
+        replace(whole.problem, inflation=None).normal(whole.shared, whole.optimum.local).reduced()[1]
+    )
+    return Outcome(
+        (whole.shared - values, told.standard_error), (found.shared - values, found.interval.standard_error),
+        found.gate.is_needed, found.gate.is_white, found.gate.ratio, len(record), cpu, wall,
+    )  # fmt: skip
+
+
+def outcomes(kind: str, runs: int, executes: int, seed: int, workers: int | None) -> list[Outcome]:
+    """`runs` runs of one kind."""
+    streams = np.random.SeedSequence([seed, KINDS.index(kind)]).spawn(runs)
+    return mapped_in_processes(outcome, [Item(kind, s, executes) for s in streams], workers=workers)
+
+
+def ratios(pairs: Sequence[tuple[Array, Array]]) -> Array:
+    """Root-mean-square error over the root-mean-square predicted one, each coefficient."""
+    errors, told = np.array([e for e, _ in pairs]), np.array([s for _, s in pairs])
+    return np.sqrt(np.mean(errors**2, axis=0) / np.mean(told**2, axis=0))
+
+
+def lines(kind: str, made: Sequence[Outcome]) -> list[Line]:
+    """The table of one kind against its targets."""
+    model, runs = truth(), len(made)
+    names = model.parameters.free_names
+    values = np.array([model.parameters[n].value for n in names])
+    whole, best = ratios([o.whole for o in made]), ratios([o.innovations for o in made])
+    share = np.sqrt(np.mean([(o.whole[0] / values) ** 2 for o in made], axis=0))
+    shut = sum(not o.is_needed for o in made)
+    gate = Line("gate: process noise needed", runs - shut, "", f"{runs} of {runs}", shut == 0)
+    if kind == "calm":
+        gate = Line("gate: no process noise", shut, "", f"{runs} of {runs}", shut == runs)
+    table = [
+        gate,
+        Line("innovations white", sum(o.is_white for o in made), f"of {runs}"),
+        Line("twice the log-likelihood gained, median", float(np.median([o.ratio for o in made])), ""),
+        Line("prediction error, samples", float(np.median([o.samples for o in made])), ""),
+        at_most("prediction error, one core's time, median", float(np.median([o.cpu for o in made])), "s", SECONDS),
+        Line("prediction error, one core's time, largest", max(o.cpu for o in made), "s"),
+    ]
+    wrong = int(np.argmax(whole))
+    worst = Line(f"output error, RMSE / predicted, worst ({names[wrong]})", float(whole[wrong]), "")
+    if kind != "calm":
+        worst = replace(worst, target=f"> {WRONG:g}", holds=bool(whole[wrong] > WRONG))
+    table += [
+        worst,
+        Line(f"output error, RMSE / value, worst ({names[int(np.argmax(share))]})", float(share.max()), ""),
+    ]
+    limits = f"{1 - WITHIN:g} to {1 + WITHIN:g}"
+    for i, name in enumerate(names):
+        error = np.sqrt(np.mean([o.innovations[1][i] ** 2 for o in made])) / abs(values[i])
+        what = f"{name}: prediction error, RMSE / predicted ({error:.2%} of the value; output error {whole[i]:.3g})"
+        table.append(Line(what, float(best[i]), "", limits, bool(abs(best[i] - 1.0) <= WITHIN)))
+    return table
+
+
+def main(arguments: list[str]) -> int:
+    """Print a table for each kind of run; 1 if a target is missed."""
+    parser = argparse.ArgumentParser(description="output error and prediction error under a gust of 1 N")
+    parser.add_argument("--runs", type=int, default=RUNS)
+    parser.add_argument("--seed", type=int, default=SEED)
+    parser.add_argument("--executes", type=int, default=EXECUTES, help="of each zigzag angle; 5: 2075 s")
+    parser.add_argument("--workers", type=int, default=None, help="processes; default: all cores")
+    parser.add_argument("--kinds", nargs="+", choices=KINDS, default=KINDS)
+    given = parser.parse_args(arguments)
+    print(machine())
+    missed = False
+    for kind in given.kinds:
+        print(f"{kind} gust, {given.runs} runs:" if kind != "calm" else f"calm, {given.runs} runs:")
+        table = lines(kind, outcomes(kind, given.runs, given.executes, given.seed, given.workers))
+        for line in table:
+            print(f"  {line.what:<90} {line.value:>10.4g} {line.unit:<6} {line.verdict}", flush=True)
+        missed = missed or any(line.holds is False for line in table)
+    return int(missed)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
