@@ -12,13 +12,16 @@ from seatrial.identify.family import WINDOW_SHIP_LENGTHS as FAMILY_WINDOW
 from seatrial.identify.family import Tied, chosen, compared, table, tied_models, with_ensemble
 from seatrial.identify.fit import Identified, identified, ship_length_seconds
 from seatrial.identify.forecast import forecast
+from seatrial.identify.identifiability import identifiability
+from seatrial.identify.profile import profiles
 from seatrial.identify.settings import START_SECONDS_LENGTHS, Criterion, Intervals, Settings
 from seatrial.identify.singular import refuse_singular
-from seatrial.information.symmetries import refuse_structural
+from seatrial.information.symmetries import refuse_structural, structural
 from seatrial.problem.segments import compared_outputs
 from seatrial.problem.static_forces import StaticForces
 from seatrial.results import Fit, Member
 from seatrial.trial import Role, Trial, TrialRecord, records_of, refuse_errors
+from seatrial.trial.approach import approach_of
 from seatrial.values import NOTATION, Array, InputError, Progress, Record
 from seatrial.values.versions import versions
 
@@ -38,7 +41,8 @@ def settings_of(trial: Trial, records: Sequence[Record]) -> Settings:
     gains = [(name, "gain", spread or _GAIN_SPREAD, "1") for name, spread in wishes.gains.items()]
     return Settings(
         criterion=Criterion(wishes.criterion), segment_seconds=seconds, robust=wishes.robust,
-        noise=dict(trial.noise), channels=wishes.channels, corrections=(*zeros, *gains), current=wishes.current, forces=trial.forces,
+        noise=dict(trial.noise), channels=wishes.channels, corrections=(*zeros, *gains), current=wishes.current,
+        forces=trial.forces,
     )  # fmt: skip
 
 
@@ -79,6 +83,7 @@ def identify(
     forces = tuple(name for points in trial.forces for name in StaticForces(trial.model, points).names)
     outputs = compared_outputs(trial.model, runs, settings.channels)
     refuse_structural(trial.model, outputs, forces)
+    symmetries = structural(trial.model, outputs, forces)
     found = identified(trial.model, runs, sessions, length, settings, progress)
     refuse_singular(*_data_and_prior(found))
     unit = ship_length_seconds(runs, length, trial.estimate.segment_s)
@@ -92,12 +97,16 @@ def identify(
     seconds = trial.estimate.initial_s or START_SECONDS_LENGTHS * unit
     told = forecast(found, records, seconds, length, seed, progress, tied)
     found = with_ensemble(found, tied)
+    known = identifiability(found, symmetries, approach_of(runs, found.model), length)
+    if intervals is Intervals.PROFILE:
+        drawn = profiles(found.made, found.interval.standard_error, found.made.problem.free, progress)
+        known = replace(known, profiles=drawn)
     return Fit(
         question=trial.question
         or f"Which {trial.model.name} model explains these records, and how well does it predict?",
         ship=trial.ship,
         model=found.model,
-        coefficients=outcome.coefficients(found, trial.truth),
+        coefficients=outcome.coefficients(found, trial.truth, known.profiles),
         covariance=found.interval.covariance[: len(found.made.problem.free), : len(found.made.problem.free)],
         solution=found.made.optimum.solution,
         method=outcome.method(found),
@@ -110,6 +119,8 @@ def identify(
         seed=seed,
         elapsed_s=time.perf_counter() - began,
         versions=versions(),
+        identifiability=known,
+        disturbance=found.disturbance,
         family=family,
         margin=told.margin,
     )

@@ -1,21 +1,24 @@
 """An estimate read in the field's terms: coefficients, offsets, noise, residuals, method, and what to warn of."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from seatrial.identify.estimate import pieces
 from seatrial.identify.fit import Identified
 from seatrial.information.autocorrelation import whiteness_p
-from seatrial.results import Coefficient, Method, Noise, Offset, Residuals
+from seatrial.results import Coefficient, Method, Noise, Offset, Profile, Residuals
 from seatrial.values import NOTATION, Finding, Parameter, Severity
 
 
-def coefficients(found: Identified, truth: Mapping[str, float]) -> tuple[Coefficient, ...]:
-    """Every parameter of the model with its interval, prior and, where known, its true value."""
+def coefficients(
+    found: Identified, truth: Mapping[str, float], profiles: Sequence[Profile] = ()
+) -> tuple[Coefficient, ...]:
+    """Every parameter with its interval (a profile's where there is one), prior and, if known, true value."""
     problem, interval = found.made.problem, found.interval
     place = {name: i for i, name in enumerate(problem.free)}
     half, error = interval.half_width, interval.standard_error
+    limits = {q.parameter: (q.lower, q.upper) for q in profiles}
 
     def one(p: Parameter) -> Coefficient:
         prior = p.prior if p.free else None
@@ -28,8 +31,10 @@ def coefficients(found: Identified, truth: Mapping[str, float]) -> tuple[Coeffic
             return Coefficient(estimate=p.value, standard_error=None, lower=None, upper=None, fixed=True, **common)
         i = place[p.name]
         value = float(found.made.shared[i])
-        return Coefficient(estimate=value, standard_error=float(error[i]), lower=value - float(half[i]),
-                           upper=value + float(half[i]), fixed=False, **common)  # fmt: skip
+        lower, upper = limits.get(p.name, (value - float(half[i]), value + float(half[i])))
+        return Coefficient(
+            estimate=value, standard_error=float(error[i]), lower=lower, upper=upper, fixed=False, **common
+        )
 
     return tuple(one(p) for p in problem.model.parameters)
 

@@ -246,6 +246,19 @@ class OutputError:
         costs, gradients, hessians = (np.concatenate([p[i] for p in parts]) for i in range(3))
         return SegmentNormals(costs, gradients, hessians, n)
 
+    def sensitivities(self, shared: Array, local: Array) -> Array:
+        """Rms slope of each output, in units of its noise, by each free parameter, (ny, free); initial states held."""
+        start, values, corrections = self.unpacked(shared, local)
+        known = np.isfinite(self.data.measured)
+
+        def piece(bounds: tuple[int, int]) -> Array:
+            _, s, _ = self._batch.differentiate(*bounds, start, values, corrections)
+            rows = slice(self.data.offsets[bounds[0]], self.data.offsets[bounds[1]])
+            return np.einsum("tyf,ty->yf", s[:, :, : len(self.free)] ** 2, known[rows].astype(float))
+
+        total = np.sum(mapped(piece, self._pieces(), workers=self.workers), axis=0)
+        return np.sqrt(total / np.maximum(known.sum(axis=0), 1)[:, None]) / self.noise[:, None]
+
     def normal(self, shared: Array, local: Array) -> Normal:
         """The Gauss-Newton model at a point."""
         return self.assembled(self.blocks(shared, local), shared, np.arange(self.data.count), with_prior=True)

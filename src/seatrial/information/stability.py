@@ -1,0 +1,81 @@
+"""Course stability of a model on a straight course, with the interval its coefficients leave it.
+
+The index C = Y_v'(N_r' - m' x_G') - N_v'(Y_r' - m') (Clarke, Gedling & Hine 1983, eq. (13); Abkowitz 1964) is the
+determinant of the linearised sway-yaw equations times the determinant of inertia; what is given here is the first
+factor, det(A) (L/U)^2 with d(v, r)/dt = A (v, r), which has C's sign for every model.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy import stats
+
+from seatrial.equations import Model
+from seatrial.kernels.sensitivity import evaluate_tangent
+from seatrial.results import Stability
+from seatrial.values import Array
+
+_STEP = 1e-4
+
+
+def straight_course(model: Model, speed: float, inputs: Array) -> Array:
+    """Linearised rates of sway and yaw (or yaw alone) on a straight course, shape (2, 2) or (1, 1), SI.
+
+    speed: m/s; inputs (nu,) in the model's signs, rudder amidships.
+    """
+    states = np.array([[speed if s == "u" else 0.0 for s in model.states]])
+    nx, width = len(model.states), len(model.states) + len(model.inputs) + len(model.parameters)
+    out, jacobian = np.empty((1, nx)), np.zeros((1, nx, width))
+    evaluate_tangent(
+        model.compiled.rates_tangent, states, inputs[None], model.parameters.values[None], 1.0, out, jacobian
+    )
+    place = [model.states.index(s) for s in lateral(model)]
+    return jacobian[0][np.ix_(place, place)]
+
+
+def lateral(model: Model) -> tuple[str, ...]:
+    """States that decide on course stability: sway and yaw, or yaw and what nobody measures; empty without yaw rate."""
+    if "r" not in model.states:
+        return ()
+    return ("v", "r") if "v" in model.states else tuple(s for s in model.states if s not in ("psi", "x0", "y0", "u"))
+
+
+def stability(
+    model: Model, covariance: Array, degrees_of_freedom: float, speed: float, inputs: Array, length: float
+) -> Stability | None:
+    """Index and 95 % interval by the delta method over the free coefficients; None where the model has no yaw rate.
+
+    covariance: of the free coefficients, (n, n); length in m.
+    """
+    if not lateral(model):
+        return None
+    unit = length / speed
+
+    def index_of(one: Model) -> float:
+        rates = straight_course(one, speed, inputs)
+        return float(np.linalg.det(-rates) * unit ** len(rates))
+
+    centre = index_of(model)
+    slope = _gradient(model, index_of)
+    half = float(stats.t.ppf(0.975, degrees_of_freedom)) * float(np.sqrt(max(slope @ covariance @ slope, 0.0)))
+    slowest = float(np.max(np.linalg.eigvals(straight_course(model, speed, inputs)).real)) * unit
+    return Stability(centre, centre - half, centre + half, _words(centre, half, slowest))
+
+
+def _gradient(model: Model, index_of: Callable[[Model], float]) -> Array:
+    made = []
+    for p in model.parameters.free:
+        step = _STEP * p.characteristic_scale
+        up, down = (index_of(model.with_values({p.name: p.value + s})) for s in (step, -step))
+        made.append((up - down) / (2.0 * step))
+    return np.array(made)
+
+
+def _words(index: float, half: float, slowest: float) -> str:
+    told = "cannot be told from neutral"
+    if abs(index) > half:
+        told = "stable on her course" if index > 0 else "unstable on her course"
+    if slowest == 0.0:
+        return f"the ship is {told}"
+    grown = "dies out" if slowest < 0 else "grows"
+    return f"the ship is {told}: a disturbance {grown} by a factor e in {abs(1.0 / slowest):.2g} ship lengths"
