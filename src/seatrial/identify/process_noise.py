@@ -12,6 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.check.signal import sample_noise
+from seatrial.equations.augment import MEMORY, gust_of
 from seatrial.identify.estimate import Estimate, rounding_level
 from seatrial.identify.gate import Gate, colour, gate
 from seatrial.information.covariance import Interval, from_information, left_out_steps
@@ -37,29 +38,52 @@ class ProcessNoise:
         problem: gives exact gradients; optimum: point, normal equations with expected information, history.
         slope: Newton decrement of the exact gradient at the point: how far above the minimum the cost still is; NaN
             where the coefficients were not searched.
+        runs: the output-error problem over whole runs that it was made from; `problem.runs` is another one where the
+            model has more states (gusts with a memory, biases, lags), whose parameters stand behind the free ones.
+        colours: what was added to the model, in words; empty: nothing.
     """
 
     problem: PredictionError
     optimum: Optimum
     slope: float
     gate: Gate
+    runs: OutputError
+    colours: str = ""
 
     @property
     def shared(self) -> Array:
         """Coefficients and what the sessions have of their own, as in the output-error problem."""
-        return self.problem.split(self.optimum.solution.point)[0]
+        return self.optimum.solution.point[self._places]
 
     @property
     def process(self) -> dict[str, float]:
-        """Intensity of each state's process noise, SI over the root of a second; 0 where there is none."""
-        q = self.problem.split(self.optimum.solution.point)[1]
-        return dict(zip(self.problem.process, map(float, q), strict=True))
+        """Intensity of each state's process noise, SI over the root of a second; 0 where there is none.
+
+        Of a gust with a memory that of the white noise with the same effect over longer times.
+        """
+        names, q = self.problem.process, self.problem.split(self.optimum.solution.point)[1]
+        found = dict(zip(names, map(float, q), strict=True))
+        memory = self.added.get(MEMORY, 1.0)
+        found |= {s: found[gust_of(s)] * memory for s in self.runs.model.states if gust_of(s) in found}
+        return {s: v for s, v in found.items() if s in self.runs.model.states}
+
+    @property
+    def added(self) -> dict[str, float]:
+        """Parameters the model has beyond the caller's: time constants [s]."""
+        free, point = self.problem.runs.free, self.optimum.solution.point
+        return {n: float(point[i]) for i, n in enumerate(free) if n not in self.runs.free}
 
     @property
     def measurement(self) -> dict[str, float]:
         """Standard deviation of each channel's noise, SI."""
         r = self.problem.split(self.optimum.solution.point)[2]
-        return dict(zip(self.problem.runs.data.outputs, map(float, r), strict=True))
+        return dict(zip(self.runs.data.outputs, map(float, r), strict=True))
+
+    @cached_property
+    def _places(self) -> Index:
+        """Positions of `shared` among the unknowns."""
+        first, last = len(self.runs.free), self.problem.runs.size
+        return np.concatenate([np.arange(first), np.arange(len(self.problem.runs.free), last)])
 
     @cached_property
     def information(self) -> Array:
@@ -84,11 +108,11 @@ class ProcessNoise:
         steps = left_out_steps(self.optimum.normal.hessian[np.ix_(free, free)], gradients, hessians)
         moved = np.tile(point, (len(parts), 1))
         moved[:, free] += steps
-        return moved[:, : self.problem.runs.size]
+        return moved[:, self._places]
 
     def as_estimate(self) -> Estimate:
         """The same point as an estimate over whole runs: noise levels, initial states, and the reduced information."""
-        runs = replace(self.problem.runs, noise=np.array(list(self.measurement.values())))
+        runs = replace(self.runs, noise=np.array(list(self.measurement.values())))
         states = [runs.model.states.index(s) for s in runs.starts]
         gradient, hessian = self._reduced(self.optimum.normal)
         normal = Normal(self.optimum.normal.cost, gradient, hessian, _NO_LOCAL, np.zeros((0, 0, 0)),
@@ -108,11 +132,10 @@ class ProcessNoise:
         return np.flatnonzero(inside)
 
     def _reduced(self, normal: Normal) -> tuple[Array, Array]:
-        k = self.problem.runs.size
-        noise = self._free[k:]
-        cross = normal.hessian[:k, noise]
-        solved = np.linalg.solve(normal.hessian[np.ix_(noise, noise)], cross.T)
-        return normal.gradient[:k], normal.hessian[:k, :k] - cross @ solved
+        kept, others = self._places, np.setdiff1d(self._free, self._places)
+        cross = normal.hessian[np.ix_(kept, others)]
+        solved = np.linalg.solve(normal.hessian[np.ix_(others, others)], cross.T)
+        return normal.gradient[kept], normal.hessian[np.ix_(kept, kept)] - cross @ solved
 
 
 def is_worthwhile(made: Estimate) -> bool:
@@ -125,6 +148,7 @@ def prediction_error(
     known: Mapping[str, float] | None = None,
     driven: tuple[str, ...] = (),
     *,
+    thorough: bool = False,
     evaluations: int = 60,
     progress: Progress | None = None,
 ) -> ProcessNoise:
@@ -137,6 +161,7 @@ def prediction_error(
         made: over segments or whole runs; its robust loss is not kept, outliers must be gone.
         known: standard deviations of channels that are not estimated, SI.
         driven: states with process noise; empty: all that are no kinematics.
+        thorough: search the coefficients even where the innovations cannot become white.
 
     Returns:
         The optimum with its gate, however that decides. Where innovations stay strongly coloured with intensities that
@@ -146,8 +171,18 @@ def prediction_error(
     problem = _begun(made, known or {}, driven)
     tell("process noise: intensities")
     point = np.concatenate([made.shared, _intensities(problem, made)])
-    if np.max(colour(problem, point)[1]) > _HOPELESS:
+    if not thorough and np.max(colour(problem, point)[1]) > _HOPELESS:
         return _unfinished(problem, point)
+    exact, found, slope = searched(problem, point, evaluations, tell)
+    cost, before = _without(problem, made, found.solution.point)
+    verdict = gate(exact, found.solution.point, found.normal.cost, cost, before)
+    return ProcessNoise(exact, found, slope, verdict, problem.runs)
+
+
+def searched(
+    problem: PredictionError, point: Array, evaluations: int, tell: Progress
+) -> tuple[PredictionError, Optimum, float]:
+    """The problem with steps for exact gradients, its optimum, and the Newton decrement left there."""
 
     def counted(count: int, cost: float) -> None:
         tell(f"prediction error, evaluation {count}: {cost:.6g}")
@@ -156,9 +191,7 @@ def prediction_error(
         problem, point, _NO_LOCAL, negligible=_NEGLIGIBLE, evaluations=evaluations, progress=counted
     )
     tell("prediction error: exact gradient")
-    exact, found, slope = _polished(problem, found)
-    cost, before = _without(problem, made, found.solution.point)
-    return ProcessNoise(exact, found, slope, gate(exact, found.solution.point, found.normal.cost, cost, before))
+    return _polished(problem, found)
 
 
 def _unfinished(problem: PredictionError, point: Array) -> ProcessNoise:
@@ -167,7 +200,8 @@ def _unfinished(problem: PredictionError, point: Array) -> ProcessNoise:
     found = Optimum(Solution(point, normal.cost, Status.STALLED, 1), _NO_LOCAL, normal)
     quiet = replace(problem, process=())
     held = np.concatenate([point[: problem.runs.size], point[problem.runs.size + len(problem.process) :]])
-    return ProcessNoise(problem, found, np.nan, gate(problem, point, normal.cost, quiet.cost(held, _NO_LOCAL), None))
+    verdict = gate(problem, point, normal.cost, quiet.cost(held, _NO_LOCAL), None)
+    return ProcessNoise(problem, found, np.nan, verdict, problem.runs)
 
 
 def _begun(made: Estimate, known: Mapping[str, float], driven: tuple[str, ...]) -> PredictionError:
