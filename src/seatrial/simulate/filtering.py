@@ -5,7 +5,6 @@ from functools import cached_property
 
 import numpy as np
 
-from seatrial.kernels.innovations import innovate
 from seatrial.kernels.sensitivity import DELAY, GAIN, OFFSET
 from seatrial.simulate.batch import Batch
 from seatrial.values import Array, Index
@@ -86,6 +85,8 @@ class Filter(Batch):
         *, recorded: bool = False,
     ) -> tuple[Array, Array, Array, Array, Array, bool]:  # fmt: skip
         nx, ny = len(self.model.states), len(self.outputs)
+        from seatrial.kernels.innovations import innovate  # compiled when it is first wanted
+
         chain, link_p, link_u, g_link_p, g_link_u = links
         nx, ny, (a, b) = len(self.model.states), len(self.outputs), self.offsets[segment : segment + 2]
         gain, zero, delay = (c[segment] for c in self._corrected(at.corrections))
