@@ -15,7 +15,7 @@ from seatrial.identify.process_noise import ProcessNoise, is_worthwhile, predict
 from seatrial.models.nomoto import nomoto
 from seatrial.problem.output_error import OutputError
 from seatrial.problem.segments import cut
-from seatrial.values import Record
+from seatrial.values import InputError, Record
 
 Array = NDArray[np.float64]
 K, T, INTENSITY = 0.15, 8.0, 2e-3
@@ -98,6 +98,19 @@ def test_sensor_noise_is_no_process_noise(model: Model, seed: int) -> None:
 def test_a_known_deviation_is_kept(model: Model) -> None:
     held = prediction_error(made_of(model, INTENSITY, 5), {"psi": 3.1e-3})
     assert held.measurement["psi"] == pytest.approx(3.1e-3, rel=1e-12)
+
+
+def test_a_channel_that_only_one_run_has(model: Model) -> None:
+    made = made_of(model, INTENSITY, 6, runs=2)
+    measured = made.problem.data.measured.copy()
+    measured[np.isin(np.repeat(made.problem.data.run, np.diff(made.problem.data.offsets)), [1]), 0] = np.nan
+    gappy = replace(made, problem=replace(made.problem, data=replace(made.problem.data, measured=measured)))
+    assert prediction_error(gappy).process["r"] == pytest.approx(INTENSITY, rel=0.15)
+
+
+def test_a_state_that_is_not_seen_is_refused(model: Model) -> None:
+    with pytest.raises(InputError, match="'x0' would move nothing"):
+        prediction_error(made_of(model, 0.0, 0), driven=("x0",))
 
 
 def test_runs_left_out_by_one_step(found: ProcessNoise) -> None:

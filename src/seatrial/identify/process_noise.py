@@ -19,7 +19,7 @@ from seatrial.information.covariance import Interval, from_information, left_out
 from seatrial.optimise import Normal, Optimum, Solution, Status, levenberg_marquardt
 from seatrial.problem.output_error import OutputError, SegmentNormals
 from seatrial.problem.prediction_error import PredictionError, whole_runs
-from seatrial.values import Array, Index, Progress
+from seatrial.values import Array, Index, InputError, Progress, nearest
 
 KINEMATIC = ("psi", "phi", "theta", "x0", "y0", "z0")
 _DIFFUSE = 10.0
@@ -166,6 +166,9 @@ def prediction_error(
     Returns:
         The optimum with its gate, however that decides. Where innovations stay strongly coloured with intensities that
         suit the given coefficients, these are kept: the gate is shut already, and the intensities serve the floor.
+
+    Raises:
+        InputError: a driven state is none of the model's, or reaches no compared channel.
     """
     tell = progress or (lambda _: None)
     problem = _begun(made, known or {}, driven)
@@ -221,6 +224,11 @@ def _begun(made: Estimate, known: Mapping[str, float], driven: tuple[str, ...]) 
             start[:, i] = local[:, m]
             variance[:, i] = max(np.std(column), 0.1 * np.max(np.abs(column)), 1e-3) ** 2
     chosen = driven or tuple(s for s in problem.starts if s not in KINEMATIC)
+    for state in chosen:
+        if state not in problem.starts:
+            raise InputError(
+                f"process noise on '{state}' would move nothing that is measured{nearest(state, list(problem.starts))}"
+            )
     held = np.array([known.get(o, np.nan) for o in outputs])
     return PredictionError(problem, chosen, start, variance, held)
 
@@ -248,16 +256,19 @@ def _intensities(problem: PredictionError, made: Estimate) -> Array:
     held = held.with_parameters(held.parameters.fixed(*held.parameters.names))
     own = begin[len(runs.free) :]
     alone = replace(problem, runs=replace(runs, model=held, pinned=own, others=()))
-    quiet = [
-        np.median([sample_noise(runs.data.measured[a:b, i]) for a, b in pairwise(runs.data.offsets)])
-        for i in range(len(runs.noise))
-    ]
-    deviation = np.clip(quiet, 1e-2 * runs.noise, runs.noise)
+    deviation = np.clip(_sample_noise(runs), 1e-2 * runs.noise, runs.noise)
     whole = _spread(made, problem.process) / np.sqrt(_longest(runs))
     scanned = [_balanced(alone, np.concatenate([own, (share * whole) ** 2, deviation**2])) for share in _SCANNED]
     best = min(scanned, key=lambda one: one[0])[1]
     found = levenberg_marquardt(alone, best, _NO_LOCAL, negligible=_ROUGH, evaluations=_SHORT)
     return found.solution.point[len(own) :]
+
+
+def _sample_noise(runs: OutputError) -> Array:
+    """White noise on each channel from third differences, median over runs; infinite where none can be computed."""
+    pieces = [runs.data.measured[a:b] for a, b in pairwise(runs.data.offsets)]
+    columns = [[p[:, i] for p in pieces if np.any(np.isfinite(np.diff(p[:, i], 3)))] for i in range(len(runs.noise))]
+    return np.array([np.median([sample_noise(c) for c in mine]) if mine else np.inf for mine in columns])
 
 
 def _balanced(problem: PredictionError, point: Array) -> tuple[float, Array]:
