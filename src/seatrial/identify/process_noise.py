@@ -24,7 +24,8 @@ from seatrial.values import Array, Index, InputError, Progress, nearest
 KINEMATIC = ("psi", "phi", "theta", "x0", "y0", "z0")
 _DIFFUSE = 10.0
 _SCANNED = 10.0 ** np.arange(-3.0, 0.5, 0.5)
-_ROUGH, _NEGLIGIBLE, _EXACT = 1.0, 1e-3, 1e-4
+_ROUGH, _NEGLIGIBLE, _EXACT = 1.0, 1e-3, 1e-3
+_NEWTON_STEPS = 6
 _NO_LOCAL = np.zeros((0, 0))
 _SHORT = 24
 _HOPELESS = 3.0
@@ -287,25 +288,35 @@ def _balanced(problem: PredictionError, point: Array) -> tuple[float, Array]:
 
 def _polished(problem: PredictionError, found: Optimum) -> tuple[PredictionError, Optimum, float]:
     """Newton steps by the exact gradient, none where it vanishes already; with the decrement that is left."""
-    exact = replace(problem, steps=problem.difference_steps(found.solution.point, found.normal.hessian))
-    point = found.solution.point
+    point, count = found.solution.point, found.solution.evaluations
+    exact = replace(problem, steps=problem.difference_steps(point, found.normal.hessian))
     normal = exact.normal(point, _NO_LOCAL)
-    slope = _decrement(exact, point, normal)
-    if slope > _EXACT:
-        again = levenberg_marquardt(exact, point, _NO_LOCAL, negligible=0.1 * _EXACT, evaluations=_SHORT)
-        count = found.solution.evaluations + again.solution.evaluations
-        found = replace(again, solution=replace(again.solution, evaluations=count))
-        return exact, found, _decrement(exact, found.solution.point, found.normal)
-    return exact, replace(found, normal=normal), slope
+    for _ in range(_NEWTON_STEPS):
+        step, slope = _newton(exact, point, normal)
+        trials = (np.clip(point + share * step, exact.lower, exact.upper) for share in (1.0, 0.5, 0.25, 0.125))
+        better = next((p for p in trials if exact.cost(p, _NO_LOCAL) < normal.cost), None) if slope > _EXACT else None
+        if better is None:
+            break
+        point, normal, count = better, exact.normal(better, _NO_LOCAL), count + 1
+    slope = _newton(exact, point, normal)[1]
+    status = Status.CONVERGED if slope <= _EXACT else Status.STALLED
+    history = (*found.solution.history, normal.cost)
+    solution = replace(
+        found.solution, point=point, value=normal.cost, status=status, evaluations=count, history=history
+    )
+    return exact, Optimum(solution, _NO_LOCAL, normal), slope
 
 
-def _decrement(problem: PredictionError, point: Array, normal: Normal) -> float:
-    """Half the gradient's square in the metric of the information, over unknowns that no bound holds."""
-    inside = (point > problem.lower) & (point < problem.upper)
-    gradient, hessian = normal.gradient[inside], normal.hessian[np.ix_(inside, inside)]
+def _newton(problem: PredictionError, point: Array, normal: Normal) -> tuple[Array, float]:
+    """Newton step of the unknowns that no bound holds, and half the squared gradient in the information's metric."""
+    low, high, slope = problem.lower, problem.upper, normal.gradient
+    free = (low < high) & ~((point <= low) & (slope > 0)) & ~((point >= high) & (slope < 0))
+    gradient, hessian = slope[free], normal.hessian[np.ix_(free, free)]
     scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-300))
-    solved = np.linalg.lstsq(hessian * scale[:, None] * scale, scale * gradient, rcond=1e-12)[0]
-    return float(0.5 * (scale * gradient) @ solved)
+    solved = scale * np.linalg.lstsq(hessian * scale[:, None] * scale, scale * gradient, rcond=1e-12)[0]
+    step = np.zeros_like(point)
+    step[free] = -solved
+    return step, float(0.5 * gradient @ solved)
 
 
 def _without(problem: PredictionError, made: Estimate, point: Array) -> tuple[float, Array | None]:
