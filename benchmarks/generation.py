@@ -9,7 +9,7 @@ import tempfile
 import numpy as np
 from measure import Line, at_most, fastest
 
-from seatrial.kernels.integrate import evaluate
+from seatrial.kernels.evaluate import evaluate
 from seatrial.kernels.sensitivity import evaluate_tangent
 from seatrial.models.mmg import mmg
 from seatrial.models.published import kvlcc2_l7

@@ -62,9 +62,13 @@ def identify(
     Raises:
         InputError: the records do not pass the checks, show no excitation, or cannot tell the parameters apart.
     """
+    from seatrial.models.ahead import Ahead
+
+    compiling = Ahead(trial.model.name)
     from seatrial.identify import Intervals, identify
     from seatrial.values import InputError, nearest
 
+    compiling.finish()
     if intervals not in (kinds := [kind.value for kind in Intervals]):
         raise InputError(f"unknown kind of intervals '{intervals}'{nearest(intervals, kinds)}")
     return identify(trial, seed=seed, progress=progress, intervals=Intervals(intervals), choose=choose)

@@ -70,12 +70,20 @@ def _load(path: Path) -> ModuleType:
     return module
 
 
+def is_cached(equations: Equations) -> bool:
+    """Whether the generated module lies in the cache folder, and so its machine code."""
+    return _index(equations, "index").exists()
+
+
+def _index(equations: Equations, kind: str) -> Path:
+    return cache_folder() / "generated" / f"{kind}_{_GENERATOR[:12]}_{equations.digest[:24]}.txt"
+
+
 def _module(equations: Equations, kind: str, text: Callable[[Equations], str]) -> ModuleType:
     """The generated module; the index from equation hash to module spares generating the text again."""
-    folder = cache_folder() / "generated"
-    index = folder / f"{kind}_{_GENERATOR[:12]}_{equations.digest[:24]}.txt"
+    index = _index(equations, kind)
     if index.exists():
-        path = folder / index.read_text(encoding="utf-8").strip()
+        path = index.parent / index.read_text(encoding="utf-8").strip()
         if path.exists():
             return _load(path)
     path = _written(text(equations))

@@ -8,7 +8,7 @@ import numpy as np
 
 from seatrial.equations.bindings import Binding, Equations, Input
 from seatrial.equations.compiled import Compiled, compiled
-from seatrial.kernels.integrate import evaluate
+from seatrial.kernels.evaluate import evaluate
 from seatrial.values import Array, InputError, Parameters, Ship
 
 

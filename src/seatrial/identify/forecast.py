@@ -9,13 +9,14 @@ from seatrial.identify.cross_validation import own_nuisances
 from seatrial.identify.draws import Scatter
 from seatrial.identify.family import Tied
 from seatrial.identify.fit import Identified
+from seatrial.identify.floor import floor
 from seatrial.identify.margins import DRAWS, foreseen, missed, with_intervals, without
 from seatrial.identify.predict import compared, offsets_of, open_loop, prediction, rms, session_means
 from seatrial.information.discrepancy import NONE, Discrepancy, Miss, discrepancy
 from seatrial.information.extrapolation import extrapolation, index_of, reach
 from seatrial.results import Margin, Prediction
 from seatrial.trial import Role, TrialRecord
-from seatrial.values import InputError, Progress, Record
+from seatrial.values import Array, InputError, Progress, Record
 from seatrial.workers import mapped
 
 
@@ -118,7 +119,9 @@ def forecast(
     for item, run, stream in zip(records, runs, streams, strict=True):
         role = "training" if item.role is Role.TRAIN else "validation"
         one = prediction(found.model, item.record, role, run, seconds, length)
-        one = replace(one, extrapolation=extrapolation(run.record, covered))
+        own = own_nuisances(found, item.session) if item.role is Role.TRAIN else mean
+        alone = _floor(found, item.record, run.start, own)
+        one = replace(one, extrapolation=extrapolation(run.record, covered), floor=alone)
         if item.role is not Role.TRAIN:
             rng = np.random.default_rng(stream)
             seen = foreseen(problem, found.model, item.record, run, mean, length, known.scatter, rng, DRAWS)
@@ -126,6 +129,13 @@ def forecast(
             one = with_intervals(one, seen, known.beyond, known.scatter.degrees_of_freedom)
         made.append(one)
     return Forecast(tuple(made), _margin(found, known, covered, tied))
+
+
+def _floor(found: Identified, record: Record, start: Array, own: Array) -> dict[str, float]:
+    """What process noise alone would leave of the errors, as far as its intensities are known."""
+    if not any(found.disturbance.process.values()):
+        return {}
+    return floor(found.made.problem, found.model, record, start, own, found.disturbance.process)
 
 
 def _margin(found: Identified, known: Calibration, covered: dict[str, float], tied: Sequence[Tied]) -> Margin:

@@ -117,10 +117,3 @@ def replay(
     nx, nu = x0.shape[1], inputs.shape[1]
     _replay(f, g, inputs, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay, select, y_out, failed,
             np.empty((6, nx)), np.empty((4, nu)), np.empty(max(ng, 1)))  # fmt: skip
-
-
-@njit(void(FUNCTION, MATRIX, MATRIX, VECTOR, F8, MATRIX), **OPTIONS)
-def evaluate(f, states, inputs, p, dt, out):
-    """f at every row of states and inputs: rates, outputs or bindings along a record."""
-    for row in range(states.shape[0]):
-        f(row * dt, states[row], inputs[row], p, out[row])

@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.kernels.integrate import evaluate
+from seatrial.kernels.evaluate import evaluate
 from seatrial.kernels.sensitivity import evaluate_tangent
 from seatrial.problem.addend import Contribution
 from seatrial.values import NOTATION, Array, ForcePoints, Includes, InputError
