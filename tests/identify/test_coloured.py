@@ -1,5 +1,7 @@
 """Disturbances with a memory, biases and lags are found where they are, and not where white noise suffices."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -83,6 +85,12 @@ def test_white_noise_needs_no_more(model: Model) -> None:
     white = found_in(model, 3)
     assert white.gate.is_white
     assert coloured(white) is white
+
+
+def test_what_was_not_searched_stays(model: Model) -> None:
+    white = found_in(model, 3)
+    shut = replace(white, slope=float("nan"))
+    assert coloured(shut) is shut
 
 
 def test_intervals_have_room_for_what_was_added(model: Model) -> None:

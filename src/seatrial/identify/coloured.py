@@ -44,7 +44,10 @@ def coloured(found: ProcessNoise, *, evaluations: int = 60, progress: Progress |
     Each has its own unknowns estimated; the likelihood decides, less one for every unknown more
     (Akaike 1974), and an alternative must gain more than chance does once in a thousand cases. The coefficients,
     intervals and intensities of the result are those of the caller's model; `colours` says what was added.
+    `found` itself comes back where its coefficients were not searched: nothing can make such innovations white.
     """
+    if np.isnan(found.slope):
+        return found
     tell = progress or (lambda _: None)
     best, score = found, 2.0 * found.optimum.normal.cost
     for one in alternatives(found):
