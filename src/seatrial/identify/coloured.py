@@ -67,17 +67,20 @@ def coloured(found: ProcessNoise, *, evaluations: int = 60, progress: Progress |
 
 
 def alternatives(found: ProcessNoise) -> Iterator[Alternative]:
-    """Every augmented problem that the model and the compared channels admit."""
+    """Every augmented problem that the model and the compared channels admit.
+
+    Force points know the caller's parameters only, so beside them no time constant is added.
+    """
     states, outputs = found.runs.model.states, found.runs.data.outputs
     driven = tuple(s for s in found.problem.process if found.process.get(s, 0.0) > 0.0)
-    if driven:
+    if driven and not found.runs.others:
         for multiple in _MEMORIES:
             yield _gusts(found, driven, multiple * found.runs.data.dt)
     positions = tuple(c for c in POSITIONS if c in outputs and c in states)
     if positions:
         yield _biases(found, positions)
     velocities = tuple(c for c in VELOCITIES if c in outputs and c in states)
-    if velocities:
+    if velocities and not found.runs.others:
         yield _lags(found, velocities, _LAG * found.runs.data.dt)
 
 
