@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from seatrial.equations import Model
 from seatrial.identify.assemble import output_error
 from seatrial.identify.estimate import Estimate, colour, estimate
 from seatrial.identify.intervals import Uncertainty, intervals, of_innovations, refuse_few_runs
-from seatrial.identify.process_noise import ProcessNoise, is_worthwhile, prediction_error
+from seatrial.identify.process_noise import ProcessNoise, intensities, is_worthwhile, prediction_error
 from seatrial.identify.settings import (
     HUBER,
     SEGMENT_SHIP_LENGTHS,
@@ -119,6 +119,7 @@ class _Found:
     rho: list[Array]
     criterion: str
     reasons: tuple[str, ...]
+    process: dict[str, float] = field(default_factory=dict)
     noise: ProcessNoise | None = None
 
 
@@ -176,14 +177,13 @@ def _decided(
     white = bool(np.max(shot.inflation) <= WHITE_INFLATION)
     match settings.criterion:
         case Criterion.OUTPUT_ERROR | Criterion.MULTIPLE_SHOOTING:
-            return _with_reason(shot, "residuals are white" if white else "the criterion was asked for")
+            return _asked_for(shot, settings, "the criterion was asked for")
         case Criterion.PREDICTION_ERROR:
             return _predicted(prediction_error(shot.made, settings.noise, progress=progress), "it was asked for")
         case Criterion.AUTO:
             pass
     if settings.segment_seconds is not None:
-        why = "residuals within segments are white; their length was asked for"
-        return _with_reason(shot, why if white else COLOURED)
+        return _asked_for(shot, settings, "the length of segments was asked for")
     if white and (whole := whole_runs()) is not None:
         reason = "residuals are white within segments and over whole runs: no process noise to guard against"
         return _with_reason(_left(whole, WHOLE_RUNS, shot.reasons), reason)
@@ -194,7 +194,14 @@ def _decided(
     noise = prediction_error(shot.made, settings.noise, progress=progress)
     if noise.gate.holds:
         return _predicted(noise, *shot.reasons, noise.gate.text)
-    return replace(_with_reason(shot, noise.gate.text, COLOURED), noise=noise)
+    return replace(_with_reason(shot, noise.gate.text, COLOURED), process=noise.process)
+
+
+def _asked_for(shot: _Found, settings: Settings, reason: str) -> _Found:
+    """The user's own choice; what it leaves coloured is measured as process noise, for the floor of predictions."""
+    if np.max(shot.inflation) <= WHITE_INFLATION or not is_worthwhile(shot.made):
+        return _with_reason(shot, reason)
+    return replace(_with_reason(shot, reason, COLOURED), process=intensities(shot.made, settings.noise))
 
 
 COLOURED = "coloured residuals mean model error or process noise: short segments keep it from accumulating"
@@ -223,14 +230,14 @@ def _with_reason(found: _Found, *reasons: str) -> _Found:
 def _predicted(noise: ProcessNoise, *reasons: str) -> _Found:
     made, innovations = noise.as_estimate(), noise.problem.innovations(noise.optimum.solution.point)
     rho, inflation = colour(made.problem, innovations.normalised)
-    return _Found(made, -innovations.e, inflation, rho, PREDICTION_ERROR, reasons, noise)
+    return _Found(made, -innovations.e, inflation, rho, PREDICTION_ERROR, reasons, noise.process, noise)
 
 
 def _uncertainty(found: _Found, settings: Settings, tell: Progress) -> Uncertainty:
     def counted(done: int, total: int) -> None:
         tell(f"{settings.intervals}: fit {done} of {total}")
 
-    if found.noise is None or found.criterion != PREDICTION_ERROR:
+    if found.noise is None:
         rng = np.random.default_rng(settings.seed)
         return intervals(found.made, found.inflation, settings.intervals, rng, counted)
     return of_innovations(found.noise, settings.intervals)
@@ -238,13 +245,13 @@ def _uncertainty(found: _Found, settings: Settings, tell: Progress) -> Uncertain
 
 def _disturbance(found: _Found) -> Disturbance:
     """Noise in states and channels; intensities that do not make the innovations white bound the process noise."""
-    data, noise = found.made.problem.data, found.noise
+    data = found.made.problem.data
     samples = np.isfinite(data.measured).sum(axis=0)
     tests = [whiteness_p(r, int(n)) for r, n in zip(found.rho, samples, strict=True)]
     return Disturbance(
-        PREDICTION_ERROR if found.criterion == PREDICTION_ERROR else "output error",
+        "output error" if found.noise is None else PREDICTION_ERROR,
         float(min(1.0, len(tests) * min(tests))),
-        {} if noise is None else noise.process,
+        found.process,
         dict(zip(data.outputs, map(float, found.made.problem.noise), strict=True)),
         "; ".join(found.reasons),
     )

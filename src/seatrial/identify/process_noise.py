@@ -28,6 +28,7 @@ _ROUGH, _NEGLIGIBLE, _EXACT = 1.0, 1e-3, 1e-3
 _NEWTON_STEPS = 6
 _NO_LOCAL = np.zeros((0, 0))
 _SHORT = 24
+_SAMPLES = 3000
 _HOPELESS = 3.0
 
 
@@ -142,6 +143,23 @@ class ProcessNoise:
 def is_worthwhile(made: Estimate) -> bool:
     """Whether the records have noise at all: rounding errors have no likelihood."""
     return bool(np.all(made.problem.noise > 2.0 * rounding_level(made.problem)))
+
+
+def intensities(made: Estimate, known: Mapping[str, float]) -> dict[str, float]:
+    """Intensity of each state's process noise that suits the estimate as it is, from some of its runs.
+
+    What the model does not explain counts as noise here, so this bounds the process noise from above. Runs are taken
+    evenly until they have some thousand samples.
+    """
+    data = made.problem.data
+    count = min(len(data.runs), max(1, round(len(data.runs) * _SAMPLES / len(data.inputs))))
+    runs = np.unique(np.linspace(0, len(data.runs) - 1, count).round().astype(int))
+    chosen = np.concatenate([data.of_run(int(r)) for r in runs])
+    problem = replace(made.problem, data=data.taken(chosen))
+    part = Estimate(problem, replace(made.optimum, local=made.optimum.local[chosen]))
+    begun = _begun(part, known, ())
+    squares = _intensities(begun, part)[: len(begun.process)]
+    return dict(zip(begun.process, np.sqrt(squares).tolist(), strict=True))
 
 
 def prediction_error(
