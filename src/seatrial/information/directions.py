@@ -12,7 +12,7 @@ from seatrial.results import Direction
 from seatrial.values import Array
 
 _NAMED, _SHARE = 5, 0.25
-_KNOWN, _VAGUE = 0.1, 1.0
+_KNOWN, _VAGUE, _ANYTHING = 0.1, 1.0, 10.0
 _LEAST = 1e-24
 
 
@@ -44,7 +44,7 @@ def _direction(vector: Array, deviation: float, names: Sequence[str]) -> Directi
 def words(combination: dict[str, float], deviation: float) -> str:
     """A direction in words: who moves with whom, and how well that is known."""
     large = [n for n, c in combination.items() if abs(c) >= _SHARE * max(map(abs, combination.values()))][:_NAMED]
-    known = f"{100 * deviation:.2g} %" if np.isfinite(deviation) else "any amount"
+    known = f"{float(f'{100 * deviation:.2g}'):g} %" if deviation < _ANYTHING else "any amount"
     if len(large) == 1:
         (name,) = large
         if deviation <= _KNOWN:
