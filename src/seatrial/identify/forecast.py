@@ -119,13 +119,12 @@ def forecast(
     for item, run, stream in zip(records, runs, streams, strict=True):
         role = "training" if item.role is Role.TRAIN else "validation"
         one = prediction(found.model, item.record, role, run, seconds, length)
-        own = own_nuisances(found, item.session) if item.role is Role.TRAIN else mean
-        alone = _floor(found, item.record, run.start, own)
-        one = replace(one, extrapolation=extrapolation(run.record, covered), floor=alone)
+        one = replace(one, extrapolation=extrapolation(run.record, covered))
         if item.role is not Role.TRAIN:
             rng = np.random.default_rng(stream)
             seen = foreseen(problem, found.model, item.record, run, mean, length, known.scatter, rng, DRAWS)
-            one = replace(one, spread=spread_of(tied, one, seconds, length))
+            alone = _floor(found, item.record, run.start, mean)
+            one = replace(one, spread=spread_of(tied, one, seconds, length), floor=alone)
             one = with_intervals(one, seen, known.beyond, known.scatter.degrees_of_freedom)
         made.append(one)
     return Forecast(tuple(made), _margin(found, known, covered, tied))

@@ -72,10 +72,10 @@ def _gradient(model: Model, index_of: Callable[[Model], float]) -> Array:
 
 
 def _words(index: float, half: float, slowest: float) -> str:
-    told = "cannot be told from neutral"
+    told = "whether the ship is stable on her course cannot be told"
     if abs(index) > half:
-        told = "stable on her course" if index > 0 else "unstable on her course"
+        told = f"the ship is {'stable' if index > 0 else 'unstable'} on her course"
     if slowest == 0.0:
-        return f"the ship is {told}"
+        return told
     grown = "dies out" if slowest < 0 else "grows"
-    return f"the ship is {told}: a disturbance {grown} by a factor e in {abs(1.0 / slowest):.2g} ship lengths"
+    return f"{told}: at the estimate a disturbance {grown} by a factor e in {abs(1.0 / slowest):.2g} ship lengths"
