@@ -49,6 +49,7 @@ def print_fit(fit: "Fit") -> None:
             print(f"{c.name:14s} {c.estimate:12.5g} {error:>11s} {lower:>12s} {upper:>12s}{truth} {unit}".rstrip())
     for p in fit.validation():
         _print_prediction(p)
+    _print_family(fit)
     _print_telling(fit)
     print(f"{fit.method.criterion}; {fit.elapsed_s:.1f} s")
 
@@ -66,6 +67,15 @@ def _print_prediction(p: "Prediction") -> None:
         if m.simulated is not None and m.lower is not None and m.upper is not None:
             measured = "" if m.measured is None else f", measured {m.measured:.4g}"
             print(f"  {name}: {m.simulated:.4g} [{m.lower:.4g}, {m.upper:.4g}]{measured}")
+
+
+def _print_family(fit: "Fit") -> None:
+    if fit.family:
+        print(f"{'family, runs left out':28s} {'free':>5s} {'heading deg':>12s} {'position m':>11s}")
+    for m in fit.family:
+        scores = "  ".join("-" if x is None else f"{x:.3g}" for x in (m.heading_deg, m.position_m))
+        marks = ", ".join(word for word, holds in (("used", m.chosen), ("tied", m.tied), (m.note, m.note)) if holds)
+        print(f"{m.name:28s} {m.free:5d} {scores:>24s}  {marks}".rstrip())
 
 
 def _print_telling(fit: "Fit") -> None:
