@@ -8,6 +8,7 @@ import numpy as np
 
 from seatrial.equations import Model
 from seatrial.identify.assemble import output_error
+from seatrial.identify.coloured import coloured
 from seatrial.identify.estimate import Estimate, colour, estimate
 from seatrial.identify.intervals import Uncertainty, intervals, of_innovations, refuse_few_runs
 from seatrial.identify.process_noise import ProcessNoise, intensities, is_worthwhile, prediction_error
@@ -179,7 +180,8 @@ def _decided(
         case Criterion.OUTPUT_ERROR | Criterion.MULTIPLE_SHOOTING:
             return _asked_for(shot, settings, "the criterion was asked for")
         case Criterion.PREDICTION_ERROR:
-            return _predicted(prediction_error(shot.made, settings.noise, progress=progress), "it was asked for")
+            noise = prediction_error(shot.made, settings.noise, thorough=True, progress=progress)
+            return _predicted(noise, "it was asked for", noise.gate.text)
         case Criterion.AUTO:
             pass
     if settings.segment_seconds is not None:
@@ -192,8 +194,11 @@ def _decided(
     if settings.robust or not is_worthwhile(shot.made):
         return _with_reason(shot, COLOURED)
     noise = prediction_error(shot.made, settings.noise, progress=progress)
+    if noise.gate.is_needed and not noise.gate.is_white:
+        noise = coloured(noise, progress=progress)
     if noise.gate.holds:
-        return _predicted(noise, *shot.reasons, noise.gate.text)
+        added = (f"added to the model: {noise.colours}",) if noise.colours else ()
+        return _predicted(noise, *shot.reasons, noise.gate.text, *added)
     return replace(_with_reason(shot, noise.gate.text, COLOURED), process=noise.process)
 
 

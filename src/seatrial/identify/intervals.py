@@ -85,17 +85,18 @@ def intervals(
 
 
 def of_innovations(noise: ProcessNoise, kind: Intervals) -> Uncertainty:
-    """Intervals of a prediction-error estimate: its information matrix, or runs left out in one Newton step.
+    """Intervals of a prediction-error estimate: its information matrix; runs left out where innovations are not white.
 
     Full refits and a bootstrap would cost a search each and are not offered: one step stands for them, and says so.
     """
-    runs = len(noise.problem.runs.data.runs)
+    runs = len(noise.runs.data.runs)
     steps = noise.left_out if runs >= RUNS_FOR_JACKKNIFE else None
-    if kind in (Intervals.JACKKNIFE, Intervals.BOOTSTRAP):
-        made = jackknife(_demanded(steps), f"one-step jackknife over {runs} runs, prediction error")
-        precision = noise.problem.runs.known_precision(noise.shared)
+    wanted = kind in (Intervals.JACKKNIFE, Intervals.BOOTSTRAP)
+    if steps is not None and (wanted or not noise.gate.is_white):
+        made = jackknife(steps, f"one-step jackknife over {runs} runs, prediction error")
+        precision = noise.runs.known_precision(noise.shared)
         widened = with_prior(made, noise.information, precision)
-        count = len(noise.problem.runs.free)
+        count = len(noise.runs.free)
         return Uncertainty(_offsets_by_information(widened, noise.information, count), steps)
     return Uncertainty(noise.interval, steps)
 
