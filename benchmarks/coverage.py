@@ -15,11 +15,11 @@ from disturbed import HELD_OUT, TRAINING, sail, ships
 from measure import Line, machine
 
 from seatrial.equations import Model
+from seatrial.estimate.fit import ship_length_seconds
+from seatrial.estimate.settings import Intervals
 from seatrial.identify import Settings, identified
-from seatrial.identify.fit import ship_length_seconds
-from seatrial.identify.forecast import forecast
-from seatrial.identify.settings import Intervals
 from seatrial.information.discrepancy import kind_of
+from seatrial.predict.forecast import forecast
 from seatrial.results import Prediction
 from seatrial.trial import Role, TrialRecord
 from seatrial.values import Prior, Record

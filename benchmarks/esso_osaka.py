@@ -9,7 +9,11 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from seatrial.identify.cross_validation import (
+from seatrial.estimate.fit import identified
+from seatrial.identify.identify import settings_of
+from seatrial.models import model_named
+from seatrial.models.published import parameter_set
+from seatrial.predict.cross_validation import (
     CrossValidation,
     Fold,
     Pooled,
@@ -18,10 +22,6 @@ from seatrial.identify.cross_validation import (
     fitted_folds,
     unfitted,
 )
-from seatrial.identify.fit import identified
-from seatrial.identify.identify import settings_of
-from seatrial.models import model_named
-from seatrial.models.published import parameter_set
 from seatrial.trial import load_trial, records_of
 from seatrial.values import InputError
 

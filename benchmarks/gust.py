@@ -22,11 +22,11 @@ from scipy.signal import lfilter
 
 from seatrial.equations import Model
 from seatrial.equations.bindings import Input
-from seatrial.identify.assemble import output_error
-from seatrial.identify.estimate import estimate
-from seatrial.identify.process_noise import prediction_error
-from seatrial.identify.settings import SEGMENT_SHIP_LENGTHS, WINDOW_SHIP_LENGTHS, Settings
-from seatrial.identify.start import start
+from seatrial.estimate.assemble import output_error
+from seatrial.estimate.estimate import estimate
+from seatrial.estimate.process_noise import prediction_error
+from seatrial.estimate.settings import SEGMENT_SHIP_LENGTHS, WINDOW_SHIP_LENGTHS, Settings
+from seatrial.estimate.start import start
 from seatrial.information.covariance import from_information
 from seatrial.kernels.steering import steer
 from seatrial.kernels.types import COMMAND_SIGNATURE, OPTIONS

@@ -19,11 +19,11 @@ from measure import machine
 
 from seatrial.equations import Model
 from seatrial.identify import Settings, identified
-from seatrial.identify.cross_validation import Protocol, cross_validated, fitted_folds, own_nuisances, window_errors
 from seatrial.identify.identify import settings_of
-from seatrial.identify.predict import open_loop, rms
 from seatrial.models.abkowitz import STANDARD, abkowitz
 from seatrial.models.nomoto import nomoto2
+from seatrial.predict.cross_validation import Protocol, cross_validated, fitted_folds, own_nuisances, window_errors
+from seatrial.predict.open_loop import open_loop, rms
 from seatrial.trial import Role, Trial, TrialRecord, load_trial, records_of
 from seatrial.values import InputError, Prior, Record
 

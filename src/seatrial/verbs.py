@@ -200,7 +200,7 @@ def measure_intervals(model: "ModelFile", steer: Steering, seed: int = 0) -> dic
     """
     import numpy as np
 
-    from seatrial.identify.steered import measure_intervals
+    from seatrial.predict.steered import measure_intervals
 
     if model.margin is None or model.ship is None:
         return {}

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from seatrial.equations import Model
+from seatrial.estimate.fit import Identified
 from seatrial.identify import identified
-from seatrial.identify.fit import Identified
 from seatrial.manoeuvres.programme import programme
 from seatrial.models.abkowitz import STANDARD, abkowitz
 from seatrial.models.mmg import HULL

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from seatrial.estimate.fit import Identified
+from seatrial.estimate.settings import Criterion
 from seatrial.identify import Settings, identified
-from seatrial.identify.fit import Identified
 from seatrial.identify.identifiability import consequences, identifiability, sensitivities
 from seatrial.identify.profile import LIMIT, profiles
-from seatrial.identify.settings import Criterion
 from seatrial.results import Identifiability
 from seatrial.simulate import replay
 from seatrial.studies.series import noisy, run, truth

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from identify.conftest import NOISE, TRUTH, WriteTrial
+from seatrial.estimate.settings import Criterion
 from seatrial.identify import identify
 from seatrial.identify.identify import settings_of
-from seatrial.identify.settings import Criterion
 from seatrial.trial import load_trial
 from seatrial.values import Record
 

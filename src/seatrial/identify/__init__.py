@@ -1,7 +1,6 @@
-"""Start, fit, intervals, prediction: from a trial to a fit."""
+"""From a trial to a fit: estimate, compare models, predict, and say what the records tell."""
 
-from seatrial.identify.fit import Identified, identified
+from seatrial.estimate import Identified, Intervals, Settings, identified
 from seatrial.identify.identify import identify
-from seatrial.identify.settings import Intervals, Settings
 
 __all__ = ["Identified", "Intervals", "Settings", "identified", "identify"]

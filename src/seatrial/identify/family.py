@@ -12,14 +12,15 @@ import numpy as np
 from scipy import stats
 
 from seatrial.equations import Model
-from seatrial.identify.assemble import output_error
-from seatrial.identify.cross_validation import Protocol, window_errors
-from seatrial.identify.estimate import Estimate, estimate
-from seatrial.identify.fit import Identified, identified
-from seatrial.identify.predict import offsets_of
-from seatrial.identify.replicates import stepped
-from seatrial.identify.settings import Settings
+from seatrial.estimate.assemble import output_error
+from seatrial.estimate.estimate import Estimate, estimate
+from seatrial.estimate.fit import Identified, identified
+from seatrial.estimate.replicates import stepped
+from seatrial.estimate.settings import Settings
 from seatrial.models.families import PRIOR_FACTORS, SEGMENT_FACTORS, STRUCTURES
+from seatrial.predict.cross_validation import Protocol, window_errors
+from seatrial.predict.forecast import Tied
+from seatrial.predict.open_loop import offsets_of
 from seatrial.results import Member
 from seatrial.trial import Family
 from seatrial.values import Array, InputError, Prior, Progress, Record
@@ -208,14 +209,6 @@ def chosen(
     if used.variant.segment != 1.0 and settings.segment_seconds is not None:
         own = replace(settings, segment_seconds=settings.segment_seconds * used.variant.segment)
     return identified(used.model, records, sessions, length, own, progress)
-
-
-@dataclass(frozen=True, eq=False)
-class Tied:
-    """A model that the runs cannot tell from the best one: its estimate, and the model there."""
-
-    made: Estimate
-    model: Model
 
 
 def tied_models(fitted: Sequence[Fitted], rows: Sequence[Member]) -> tuple[Tied, ...]:

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from seatrial.identify.estimate import Estimate
-from seatrial.identify.fit import Identified
+from seatrial.estimate.estimate import Estimate
+from seatrial.estimate.fit import Identified
 from seatrial.information.collinearity import collinearity, condition
 from seatrial.information.directions import directions, effective_parameters, relative
 from seatrial.information.stability import stability

@@ -6,17 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from seatrial.estimate.agreement import agreement
+from seatrial.estimate.fit import Identified, identified, ship_length_seconds
+from seatrial.estimate.settings import START_SECONDS_LENGTHS, Criterion, Intervals, Settings
+from seatrial.estimate.singular import refuse_singular
 from seatrial.identify import outcome
-from seatrial.identify.agreement import agreement
 from seatrial.identify.family import WINDOW_SHIP_LENGTHS as FAMILY_WINDOW
-from seatrial.identify.family import Tied, chosen, compared, table, tied_models, with_ensemble
-from seatrial.identify.fit import Identified, identified, ship_length_seconds
-from seatrial.identify.forecast import forecast
+from seatrial.identify.family import chosen, compared, table, tied_models, with_ensemble
 from seatrial.identify.identifiability import identifiability
 from seatrial.identify.profile import profiles
-from seatrial.identify.settings import START_SECONDS_LENGTHS, Criterion, Intervals, Settings
-from seatrial.identify.singular import refuse_singular
 from seatrial.information.symmetries import refuse_structural, structural
+from seatrial.predict.forecast import Tied, forecast
 from seatrial.problem.segments import compared_outputs
 from seatrial.problem.static_forces import StaticForces
 from seatrial.results import Fit, Member

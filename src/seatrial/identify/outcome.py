@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from seatrial.identify.estimate import pieces
-from seatrial.identify.fit import Identified
+from seatrial.estimate.estimate import pieces
+from seatrial.estimate.fit import Identified
 from seatrial.information.autocorrelation import whiteness_p
 from seatrial.results import Coefficient, Method, Noise, Offset, Profile, Residuals
 from seatrial.values import NOTATION, Finding, Parameter, Severity

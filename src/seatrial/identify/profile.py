@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from seatrial.identify.estimate import Estimate
+from seatrial.estimate.estimate import Estimate
 from seatrial.optimise import levenberg_marquardt
 from seatrial.problem.output_error import OutputError
 from seatrial.results import Profile

@@ -1,6 +1,6 @@
 """The answer in words: what was asked, what was fitted, how well held-out runs are predicted, what to mind."""
 
-from seatrial.identify.settings import WHITE_INFLATION
+from seatrial.estimate.settings import WHITE_INFLATION
 from seatrial.report.numbers import duration, exact, fixed, significant
 from seatrial.report.telling import determined
 from seatrial.report.words import (

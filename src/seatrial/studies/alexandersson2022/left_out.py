@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.identify.cross_validation import Protocol, cross_validated, fitted_folds, own_nuisances
-from seatrial.identify.fit import ship_length_seconds
+from seatrial.estimate.fit import ship_length_seconds
+from seatrial.estimate.settings import START_SECONDS_LENGTHS
 from seatrial.identify.identify import settings_of
-from seatrial.identify.predict import open_loop, prediction
-from seatrial.identify.settings import START_SECONDS_LENGTHS
+from seatrial.predict.cross_validation import Protocol, cross_validated, fitted_folds, own_nuisances
+from seatrial.predict.open_loop import open_loop, prediction
 from seatrial.results import Prediction
 from seatrial.studies.alexandersson2022.published import Turn
 from seatrial.trial import Trial, TrialRecord

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.identify.settings import Settings
+from seatrial.estimate.settings import Settings
 from seatrial.problem.output_error import Nuisance, OutputError
 from seatrial.problem.segments import compared_outputs, cut
 from seatrial.problem.static_forces import StaticForces

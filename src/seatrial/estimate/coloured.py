@@ -16,8 +16,8 @@ from seatrial.equations.augment import (
     with_gusts,
     with_lags,
 )
-from seatrial.identify.gate import LEVEL, gate
-from seatrial.identify.process_noise import ProcessNoise, searched
+from seatrial.estimate.gate import LEVEL, gate
+from seatrial.estimate.process_noise import ProcessNoise, searched
 from seatrial.problem.prediction_error import PredictionError
 from seatrial.values import Array, Progress
 

@@ -5,19 +5,28 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from seatrial.identify.cross_validation import own_nuisances
-from seatrial.identify.draws import Scatter
-from seatrial.identify.family import Tied
-from seatrial.identify.fit import Identified
-from seatrial.identify.floor import floor
-from seatrial.identify.margins import DRAWS, foreseen, missed, with_intervals, without
-from seatrial.identify.predict import compared, offsets_of, open_loop, prediction, rms, session_means
+from seatrial.equations import Model
+from seatrial.estimate.estimate import Estimate
+from seatrial.estimate.fit import Identified
 from seatrial.information.discrepancy import NONE, Discrepancy, Miss, discrepancy
 from seatrial.information.extrapolation import extrapolation, index_of, reach
+from seatrial.predict.cross_validation import own_nuisances
+from seatrial.predict.draws import Scatter
+from seatrial.predict.floor import floor
+from seatrial.predict.margins import DRAWS, foreseen, missed, with_intervals, without
+from seatrial.predict.open_loop import compared, offsets_of, open_loop, prediction, rms, session_means
 from seatrial.results import Margin, Prediction
 from seatrial.trial import Role, TrialRecord
 from seatrial.values import Array, InputError, Progress, Record
 from seatrial.workers import mapped
+
+
+@dataclass(frozen=True, eq=False)
+class Tied:
+    """A model that the runs cannot tell from the best one: its estimate, and the model there."""
+
+    made: Estimate
+    model: Model
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,10 +11,10 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.identify.fit import Identified, identified
-from seatrial.identify.predict import session_means
-from seatrial.identify.settings import Settings
+from seatrial.estimate.fit import Identified, identified
+from seatrial.estimate.settings import Settings
 from seatrial.optimise import levenberg_marquardt
+from seatrial.predict.open_loop import session_means
 from seatrial.problem.output_error import OutputError
 from seatrial.problem.segments import compared_outputs, cut
 from seatrial.values import Array, InputError, Record

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.equations import Model
-from seatrial.identify.singular import refuse_singular, weakest
+from seatrial.estimate.singular import refuse_singular, weakest
 from seatrial.manoeuvres.programme import programme
 from seatrial.models.waterjet import waterjet
 from seatrial.problem.output_error import OutputError

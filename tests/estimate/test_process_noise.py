@@ -7,12 +7,12 @@ import pytest
 from numpy.typing import NDArray
 
 from seatrial.equations import Model
-from seatrial.identify.draws import Scatter, drawn
-from seatrial.identify.estimate import Estimate, estimate
-from seatrial.identify.floor import floor
-from seatrial.identify.gate import boundary_quantile
-from seatrial.identify.process_noise import ProcessNoise, is_worthwhile, prediction_error
+from seatrial.estimate.estimate import Estimate, estimate
+from seatrial.estimate.gate import boundary_quantile
+from seatrial.estimate.process_noise import ProcessNoise, is_worthwhile, prediction_error
 from seatrial.models.nomoto import nomoto
+from seatrial.predict.draws import Scatter, drawn
+from seatrial.predict.floor import floor
 from seatrial.problem.output_error import OutputError
 from seatrial.problem.segments import cut
 from seatrial.values import InputError, Record

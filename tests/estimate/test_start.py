@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from identify.conftest import TRUTH, square, steered
+from seatrial.estimate.start import weak_start
+from seatrial.estimate.states import measured_states
 from seatrial.identify import identified
-from seatrial.identify.start import weak_start
-from seatrial.identify.states import measured_states
 from seatrial.manoeuvres.programme import programme
 from seatrial.models.nomoto import nomoto, nomoto2
 from seatrial.models.waterjet import COEFFICIENTS, waterjet

@@ -7,12 +7,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.identify.assemble import output_error
-from seatrial.identify.coloured import coloured
-from seatrial.identify.estimate import Estimate, colour, estimate
-from seatrial.identify.intervals import Uncertainty, intervals, of_innovations, refuse_few_runs
-from seatrial.identify.process_noise import ProcessNoise, intensities, is_worthwhile, prediction_error
-from seatrial.identify.settings import (
+from seatrial.estimate.assemble import output_error
+from seatrial.estimate.coloured import coloured
+from seatrial.estimate.estimate import Estimate, colour, estimate
+from seatrial.estimate.intervals import Uncertainty, intervals, of_innovations, refuse_few_runs
+from seatrial.estimate.process_noise import ProcessNoise, intensities, is_worthwhile, prediction_error
+from seatrial.estimate.settings import (
     HUBER,
     SEGMENT_SHIP_LENGTHS,
     WHITE_INFLATION,
@@ -20,7 +20,7 @@ from seatrial.identify.settings import (
     Criterion,
     Settings,
 )
-from seatrial.identify.start import start
+from seatrial.estimate.start import start
 from seatrial.information.autocorrelation import whiteness_p
 from seatrial.information.covariance import Interval
 from seatrial.results import Disturbance

@@ -6,10 +6,10 @@ import numpy as np
 from scipy import stats
 
 from seatrial.equations import Model
-from seatrial.identify.draws import root
 from seatrial.information.discrepancy import Discrepancy
 from seatrial.information.extrapolation import extrapolation
 from seatrial.manoeuvres import measures
+from seatrial.predict.draws import root
 from seatrial.results import Margin
 from seatrial.values import Array, InputError, Record
 

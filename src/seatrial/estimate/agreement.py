@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from seatrial.identify.estimate import Estimate
+from seatrial.estimate.estimate import Estimate
 from seatrial.problem.static_forces import StaticForces
 from seatrial.values import Finding, Severity
 

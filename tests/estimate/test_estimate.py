@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.equations import Model
-from seatrial.identify.estimate import Estimate, colour, estimate, residual_spread, rounding_level
+from seatrial.estimate.estimate import Estimate, colour, estimate, residual_spread, rounding_level
 from seatrial.manoeuvres.programme import programme
 from seatrial.models.nomoto import nomoto
 from seatrial.problem.output_error import OutputError

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from seatrial.equations import Model
-from seatrial.identify.estimate import Estimate
-from seatrial.identify.intervals import intervals
+from seatrial.estimate.estimate import Estimate
+from seatrial.estimate.intervals import intervals
 from seatrial.models.nomoto import nomoto
 from seatrial.optimise import levenberg_marquardt
 from seatrial.problem.output_error import Nuisance, OutputError

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from seatrial.identify.estimate import Estimate
+from seatrial.estimate.estimate import Estimate
 from seatrial.information.covariance import left_out_steps
 from seatrial.optimise import levenberg_marquardt
 from seatrial.values import Array, Index

@@ -13,8 +13,8 @@ import numpy as np
 
 from seatrial.check.signal import sample_noise
 from seatrial.equations.augment import MEMORY, gust_of
-from seatrial.identify.estimate import Estimate, rounding_level
-from seatrial.identify.gate import Gate, colour, gate
+from seatrial.estimate.estimate import Estimate, rounding_level
+from seatrial.estimate.gate import Gate, colour, gate
 from seatrial.information.covariance import Interval, from_information, left_out_steps
 from seatrial.optimise import Normal, Optimum, Solution, Status, levenberg_marquardt
 from seatrial.problem.output_error import OutputError, SegmentNormals

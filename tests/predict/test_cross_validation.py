@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 from seatrial.equations import Model
-from seatrial.identify.cross_validation import (
+from seatrial.estimate.settings import Settings
+from seatrial.manoeuvres.programme import programme
+from seatrial.models.nomoto import nomoto
+from seatrial.predict.cross_validation import (
     CrossValidation,
     Fold,
     Protocol,
@@ -19,9 +22,6 @@ from seatrial.identify.cross_validation import (
     window_errors,
     windows,
 )
-from seatrial.identify.settings import Settings
-from seatrial.manoeuvres.programme import programme
-from seatrial.models.nomoto import nomoto
 from seatrial.simulate.steer import manoeuvre
 from seatrial.values import InputError, Record
 

@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import stats
 
-from seatrial.identify.cross_validation import Protocol, windows
-from seatrial.identify.fit import Identified
-from seatrial.identify.forecast import scatter_of
-from seatrial.identify.margins import missed_track, without
+from seatrial.estimate.fit import Identified
 from seatrial.information.discrepancy import Miss, discrepancy
 from seatrial.information.extrapolation import index_of
+from seatrial.predict.cross_validation import Protocol, windows
+from seatrial.predict.forecast import scatter_of
+from seatrial.predict.margins import missed_track, without
 from seatrial.trial import TrialRecord
 from seatrial.values import InputError
 

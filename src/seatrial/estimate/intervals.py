@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from seatrial.identify.estimate import Estimate
-from seatrial.identify.process_noise import ProcessNoise
-from seatrial.identify.replicates import drawn, left_out, stepped
-from seatrial.identify.settings import WHITE_INFLATION, Intervals
+from seatrial.estimate.estimate import Estimate
+from seatrial.estimate.process_noise import ProcessNoise
+from seatrial.estimate.replicates import drawn, left_out, stepped
+from seatrial.estimate.settings import WHITE_INFLATION, Intervals
 from seatrial.information.covariance import (
     Interval,
     bootstrap,

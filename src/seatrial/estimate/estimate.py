@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from seatrial.identify.settings import WHITE_INFLATION
+from seatrial.estimate.settings import WHITE_INFLATION
 from seatrial.information.autocorrelation import autocorrelation, variance_inflation
 from seatrial.optimise import Optimum, levenberg_marquardt
 from seatrial.problem.output_error import OutputError

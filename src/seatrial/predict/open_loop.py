@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.identify.draws import simulated
 from seatrial.manoeuvres import measures
 from seatrial.optimise import levenberg_marquardt
+from seatrial.predict.draws import simulated
 from seatrial.problem.output_error import OutputError
 from seatrial.problem.segments import cut
 from seatrial.results import Measure, Prediction

@@ -7,7 +7,7 @@ from math import comb
 import numpy as np
 from scipy import optimize, stats
 
-from seatrial.identify.settings import WHITE_INFLATION
+from seatrial.estimate.settings import WHITE_INFLATION
 from seatrial.information.autocorrelation import autocorrelation, variance_inflation, whiteness_p
 from seatrial.problem.prediction_error import PredictionError
 from seatrial.problem.segments import Segments

@@ -7,9 +7,9 @@ import pytest
 from numpy.typing import NDArray
 
 from seatrial.equations import Model
-from seatrial.identify.coloured import coloured
-from seatrial.identify.estimate import estimate
-from seatrial.identify.process_noise import ProcessNoise, prediction_error
+from seatrial.estimate.coloured import coloured
+from seatrial.estimate.estimate import estimate
+from seatrial.estimate.process_noise import ProcessNoise, prediction_error
 from seatrial.models.nomoto import nomoto
 from seatrial.problem.output_error import OutputError
 from seatrial.problem.segments import cut

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from seatrial.equations import Sheet
+from seatrial.estimate.fit import ship_length_seconds
 from seatrial.identify import identified
-from seatrial.identify.fit import ship_length_seconds
-from seatrial.identify.predict import open_loop, prediction, session_means
+from seatrial.predict.open_loop import open_loop, prediction, session_means
 from seatrial.simulate import replay
 from seatrial.values import InputError, Record
 

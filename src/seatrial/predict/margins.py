@@ -7,10 +7,10 @@ from scipy import stats
 
 from seatrial.check.signal import sample_noise
 from seatrial.equations import Model
-from seatrial.identify.draws import Scatter, drawn
-from seatrial.identify.predict import OpenLoop, as_record, compared, is_steered, offsets_of, open_loop
 from seatrial.information.discrepancy import Discrepancy, Miss
 from seatrial.manoeuvres import measures
+from seatrial.predict.draws import Scatter, drawn
+from seatrial.predict.open_loop import OpenLoop, as_record, compared, is_steered, offsets_of, open_loop
 from seatrial.problem.output_error import OutputError
 from seatrial.results import Measure, Prediction
 from seatrial.values import Array, InputError, Record

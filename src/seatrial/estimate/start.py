@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.identify.estimate import residual_spread
-from seatrial.identify.states import hidden_states, measured_states
+from seatrial.estimate.estimate import residual_spread
+from seatrial.estimate.states import hidden_states, measured_states
 from seatrial.optimise import levenberg_marquardt
 from seatrial.problem.output_error import OutputError
 from seatrial.regress.weak import WeakForm

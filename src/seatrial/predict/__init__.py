@@ -1,0 +1,1 @@
+"""Runs predicted open loop, with what their intervals are made of."""
