@@ -129,7 +129,7 @@ def consequences(found: Identified) -> tuple[Consequence, ...]:
 def _consequence(name: str, moves: Array, free: Sequence[str], misfit: float, left: float) -> Consequence:
     """In words; misfit is compared with the sum of squares that is left anyhow."""
     order = np.argsort(-np.abs(moves), kind="stable")
-    ranked = {free[i]: float(moves[i]) for i in order}
+    ranked = {free[int(i)]: float(moves[i]) for i in order}
     listed = [f"{n} {float(f'{100 * m:.2g}'):+g} %" for n, m in list(ranked.items())[:_MOVES] if abs(m) >= 0.005]
     grown = 100.0 * (np.sqrt(1.0 + misfit / left) - 1.0) if left > 0 else np.inf
     text = (

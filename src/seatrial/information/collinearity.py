@@ -29,7 +29,7 @@ def collinearity(information: Array, names: Sequence[str]) -> tuple[Collinearity
     if len(names) < 2:
         return ()
     return tuple(
-        Collinearity(name, float(factors[j]), names[partners[j]], float(correlation[j, partners[j]]))
+        Collinearity(name, float(factors[j]), names[int(partners[j])], float(correlation[j, partners[j]]))
         for j, name in enumerate(names)
     )
 

@@ -37,7 +37,7 @@ def directions(information: Array, names: Sequence[str], sizes: Array) -> tuple[
 def _direction(vector: Array, deviation: float, names: Sequence[str]) -> Direction:
     order = np.argsort(-np.abs(vector), kind="stable")
     signed = vector * np.sign(vector[order[0]])
-    combination = {names[i]: float(signed[i]) for i in order}
+    combination = {names[int(i)]: float(signed[i]) for i in order}
     return Direction(combination, deviation, words(combination, deviation))
 
 

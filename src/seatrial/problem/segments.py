@@ -42,7 +42,7 @@ class Segments:
 
     def taken(self, chosen: Index) -> "Segments":
         """Only the chosen segments, in that order, repeated where one is chosen twice; runs and sessions stay."""
-        rows = [np.arange(self.offsets[s], self.offsets[s + 1]) for s in chosen]
+        rows = [np.arange(int(self.offsets[s]), int(self.offsets[s + 1])) for s in chosen]
         kept = np.concatenate(rows)
         return replace(
             self,

@@ -116,10 +116,12 @@ def _priors(parameters: Parameters, table: ModelTable, literature: Mapping[str, 
             "model.priors_from says nothing about how far its values may be wrong; "
             "add prior_sd_percent, for example 25 for regressions of linear coefficients"
         )
-    for p in parameters.free if table.prior_sd_percent is not None else ():
-        known = literature.get(p.name, LiteraturePrior(p.value, p.source))
-        spread = table.prior_sd_percent / 100.0 * max(abs(known.mean), p.scale) or table.prior_sd_percent / 100.0
-        priors.setdefault(p.name, Prior(known.mean, spread, known.source))
+    if table.prior_sd_percent is not None:
+        share = table.prior_sd_percent / 100.0
+        for p in parameters.free:
+            known = literature.get(p.name, LiteraturePrior(p.value, p.source))
+            spread = share * max(abs(known.mean), p.scale) or share
+            priors.setdefault(p.name, Prior(known.mean, spread, known.source))
     return _cited(parameters.with_priors(priors), literature)
 
 
