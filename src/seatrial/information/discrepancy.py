@@ -17,7 +17,9 @@ from seatrial.values import Array
 
 _VALUES, _RUNS = 4, 3
 _TRACK = ("psi", "x0", "y0")
-_GROWTH = 2.0
+
+GROWTH = 2.0
+"""Power of the extrapolation index with which the discrepancy grows (benchmarks/extrapolation.py)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +76,7 @@ NONE = Discrepancy({}, 1.0, 1.0, {})
 
 def growth(index: float) -> float:
     """How much larger the discrepancy is of a run that extrapolates: the index squared, never less than one."""
-    return max(index, 1.0) ** _GROWTH
+    return max(index, 1.0) ** GROWTH
 
 
 def kind_of(measure: str) -> str:

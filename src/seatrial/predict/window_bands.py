@@ -13,7 +13,7 @@ from seatrial.predict.cross_validation import Protocol, windows
 from seatrial.predict.forecast import scatter_of
 from seatrial.predict.margins import missed_track, without
 from seatrial.trial import TrialRecord
-from seatrial.values import InputError
+from seatrial.values import Array, InputError
 
 
 @dataclass(frozen=True)
@@ -25,12 +25,19 @@ class Covered:
     shares: dict[str, float]
 
 
-def covered(
-    found: Identified, train: Sequence[TrialRecord], held: Sequence[TrialRecord], protocol: Protocol, seed: int = 0
-) -> tuple[tuple[Covered, ...], tuple[Covered, ...]]:
-    """How much of the training runs, each left out in turn, and of the runs held out lies within their bands.
+@dataclass(frozen=True, eq=False)
+class Missed:
+    """How windows were missed, for each training run by the estimate without it, and for each run held out."""
 
-    A training run is predicted without it, and its model discrepancy is that of the other training runs.
+    trained: tuple[tuple[Miss, ...], ...]
+    held: tuple[tuple[Miss, ...], ...]
+    degrees_of_freedom: float
+
+
+def missed_windows(
+    found: Identified, train: Sequence[TrialRecord], held: Sequence[TrialRecord], protocol: Protocol, seed: int = 0
+) -> Missed:
+    """Every window of the training runs predicted without its run, and of the runs held out with all.
 
     Raises:
         InputError: fewer runs than a jackknife needs.
@@ -40,29 +47,34 @@ def covered(
         raise InputError("bands are judged by runs left out; the trial has too few training runs, add some")
     problem, scatter, rng = found.made.problem, scatter_of(found), np.random.default_rng(seed)
 
-    def of(item: TrialRecord, point: np.ndarray, others: Sequence[TrialRecord]) -> list[Miss]:
+    def of(item: TrialRecord, point: Array, others: Sequence[TrialRecord]) -> tuple[Miss, ...]:
         index = index_of(item.record, [o.record for o in others])
         by = without(problem, point, item.session)
         pieces = windows(item.record, protocol)
         made = [missed_track(problem, by, piece, protocol.initial_s, scatter, rng) for piece in pieces]
-        return [replace(m, index=index) for m in made if m is not None]
+        return tuple(replace(m, index=index) for m in made if m is not None)
 
-    trained = [of(item, left_out[i], [*train[:i], *train[i + 1 :]]) for i, item in enumerate(train)]
-    t = float(stats.t.ppf(0.975, scatter.degrees_of_freedom))
-    within = []
-    for i, item in enumerate(train):
-        others = [m for j, mine in enumerate(trained) if j != i for m in mine]
-        within.append(_share(item.record.name, trained[i], others, t))
+    trained = tuple(of(item, left_out[i], [*train[:i], *train[i + 1 :]]) for i, item in enumerate(train))
+    return Missed(trained, tuple(of(item, found.made.shared, train) for item in held), scatter.degrees_of_freedom)
+
+
+def covered(missed: Missed) -> tuple[tuple[Covered, ...], tuple[Covered, ...]]:
+    """How much of the training runs and of the runs held out lies within their bands.
+
+    The discrepancy of a training run is that of the other training runs.
+    """
+    t, trained = float(stats.t.ppf(0.975, missed.degrees_of_freedom)), missed.trained
     everything = [m for mine in trained for m in mine]
-    beyond = tuple(_share(item.record.name, of(item, found.made.shared, train), everything, t) for item in held)
-    return tuple(within), beyond
+    within = tuple(_share(own, [m for other in trained if other is not own for m in other], t) for own in trained)
+    return within, tuple(_share(own, everything, t) for own in missed.held)
 
 
-def _share(run: str, own: Sequence[Miss], others: Sequence[Miss], t: float) -> Covered:
+def _share(own: Sequence[Miss], others: Sequence[Miss], t: float) -> Covered:
     known = discrepancy(others)
     inside: dict[str, list[float]] = {}
     for miss in own:
         for channel, error in miss.errors.items():
             half = t * known.of_channel(channel, miss.foreseen[channel], miss.dt, miss.index)
             inside.setdefault(channel, []).append(float(np.nanmean(np.abs(error) <= half)))
-    return Covered(run, len(own), {channel: float(np.mean(shares)) for channel, shares in inside.items()})
+    shares = {channel: float(np.mean(each)) for channel, each in inside.items()}
+    return Covered(own[0].run if own else "", len(own), shares)

@@ -1,0 +1,71 @@
+"""How fast the model's error grows beyond the training runs: KVLCC2 at large rudder angles predicted from small ones.
+
+`SEATRIAL_DATA=folder python benchmarks/extrapolation.py` fits the training zigzags up to each limit of rudder angle,
+predicts 30 s windows of the larger ones, and prints the share of headings inside the 95 % band if the discrepancy grows
+with the extrapolation index to the power 0, 1, 2 or 3. The run held out in the example trial is not read.
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from measure import machine
+
+from seatrial.estimate import identified
+from seatrial.estimate.settings import Settings
+from seatrial.identify.identify import settings_of
+from seatrial.information.discrepancy import GROWTH, Miss
+from seatrial.predict.cross_validation import Protocol
+from seatrial.predict.window_bands import Missed, covered, missed_windows
+from seatrial.trial import Role, Trial, TrialRecord, load_trial, records_of
+
+TRIAL = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"
+LIMITS, POWERS, WINDOW_S = (10, 15, 20, 25), (0.0, 1.0, 2.0, 3.0), 30.0
+
+
+def angle(item: TrialRecord) -> int:
+    """Rudder angle of a zigzag from its name [deg]."""
+    found = re.search(r"_Z_(\d\d)", item.record.name)
+    assert found is not None
+    return int(found.group(1))
+
+
+def shares(trial: Trial, settings: Settings, train: Sequence[TrialRecord], limit: int) -> dict[float, list[float]]:
+    """Power -> share of headings inside the band, one number for each run beyond the limit."""
+    known = [r for r in train if angle(r) <= limit]
+    beyond = [r for r in train if angle(r) > limit]
+    found = identified(trial.model, [r.record for r in known], [r.session for r in known], trial.ship.length, settings)
+    missed = missed_windows(found, known, beyond, Protocol(window_s=WINDOW_S))
+    return {power: [one.shares["psi"] for one in covered(to_the_power(missed, power))[1]] for power in POWERS}
+
+
+def to_the_power(missed: Missed, power: float) -> Missed:
+    """The same misses with indices so changed that their growth is the given power of the true ones."""
+
+    def changed(runs: tuple[tuple[Miss, ...], ...]) -> tuple[tuple[Miss, ...], ...]:
+        return tuple(tuple(replace(m, index=max(m.index, 1.0) ** (power / GROWTH)) for m in run) for run in runs)
+
+    return replace(missed, trained=changed(missed.trained), held=changed(missed.held))
+
+
+def main() -> None:
+    """Print the table."""
+    trial = load_trial(TRIAL)
+    rate = trial.estimate.rate
+    train = [replace(r, record=r.record.resampled(rate)) for r in records_of(trial)[0] if r.role is Role.TRAIN]
+    settings = settings_of(trial, [r.record for r in train])
+    print(machine())
+    print(f"{'trained up to':<16}{'runs beyond':>12}" + "".join(f"{f'power {p:g}':>10}" for p in POWERS))
+    pooled: dict[float, list[float]] = {p: [] for p in POWERS}
+    for limit in LIMITS:
+        made = shares(trial, settings, train, limit)
+        print(f"{limit:>4} deg{'':<8}{len(made[0.0]):>12}" + "".join(f"{np.mean(made[p]):>10.2f}" for p in POWERS))
+        for power in POWERS:
+            pooled[power] += made[power]
+    print(f"{'pooled':<16}{len(pooled[0.0]):>12}" + "".join(f"{np.mean(pooled[p]):>10.2f}" for p in POWERS))
+
+
+if __name__ == "__main__":
+    main()
