@@ -11,10 +11,12 @@ import pytest
 
 from report.fabricated import fabricated_fit
 from seatrial import cli, verbs
+from seatrial.predict.window_bands import Covered
 from seatrial.results import Study, Verdict
 from seatrial.studies import STUDIES
 from seatrial.studies.alexandersson2022 import published, verdicts
 from seatrial.studies.alexandersson2022.left_out import LeftOut, jackknife_error
+from seatrial.studies.alexandersson2022.margins import Margins, TurnMargin
 from seatrial.studies.alexandersson2022.published import MEASURED_TURNS, PREDICTED_TURNS, SIDES, percent
 from seatrial.studies.alexandersson2022.repetition import Repetition, noise_of
 from seatrial.studies.alexandersson2022.tables import left_out, left_out_turns
@@ -34,8 +36,8 @@ def test_quick_run_has_the_promised_keys(quick: Study) -> None:
     assert table["study"] == "alexandersson2022" and "112940" in table["source"]
     assert all(set(c) == {"claim", "verdict", "evidence"} for c in table["claims"])
     assert {c["verdict"] for c in table["claims"]} <= set(Verdict)
-    assert [set(c) for c in table["checks"]] == [{"name", "value", "limit", "holds"}] * 8
-    assert len(table["tables"]) == 4 and quick.elapsed_s < 30
+    assert [set(c) for c in table["checks"]] == [{"name", "value", "limit", "holds"}] * 12
+    assert len(table["tables"]) == 6 and quick.elapsed_s < 30
 
 
 def test_the_headers_labels_are_refuted(quick: Study) -> None:
@@ -99,7 +101,15 @@ def made(heading: float = 8.0, position: float = 4.0, factor: float = 1.0, warm:
     predictions = tuple(replace(p, rms=rms) for p in fit.predictions)
     turns = {s: replace(t, advance=factor * t.advance, diameter=factor * t.diameter) for s, t in MEASURED_TURNS.items()}
     noise = {n.channel: 0.01 * n.standard_deviation for n in fit.noise}
-    return Repetition(replace(fit, predictions=predictions), warm, turns, {}, {}, noise, ())
+    return Repetition(replace(fit, predictions=predictions), warm, turns, {}, {}, noise, (), margins())
+
+
+def margins(width: float = 0.2, share: float = 0.95) -> Margins:
+    """Intervals of the tactical diameter of this half width about MARIN's, in ship lengths, and shares inside bands."""
+    measured = {s: t.diameter for s, t in MEASURED_TURNS.items()}
+    turns = tuple(TurnMargin(s, "tactical diameter", d - width, d + width, d) for s, d in measured.items())
+    run = Covered("run", 5, {"psi": share, "x0": share, "y0": share})
+    return Margins(turns, (run, run), (run,))
 
 
 def held(repetition: Repetition) -> list[bool]:
@@ -107,10 +117,25 @@ def held(repetition: Repetition) -> list[bool]:
 
 
 def test_checks_hold_and_fail() -> None:
-    assert held(made()) == [True] * 8
+    assert held(made()) == [True] * 12
     assert held(made(heading=11.1, position=6.1, warm=5.1))[:3] == [False] * 3
-    assert held(made(factor=1.2))[4:] == [False] * 4
-    assert held(made(factor=math.nan, heading=math.nan)) == [False, True, True, True] + [False] * 4
+    assert held(made(factor=1.2))[4:8] == [False] * 4
+    assert held(made(factor=math.nan, heading=math.nan)) == [False, True, True, True] + [False] * 4 + [True] * 4
+
+
+def test_checks_of_intervals_hold_and_fail() -> None:
+    wide, sure = (replace(made(), margins=m) for m in (margins(width=0.4), margins(share=1.0)))
+    assert held(wide)[8:] == [False, False, True, True]
+    assert held(sure)[8:] == [True, True, False, True]
+    assert held(replace(made(), margins=margins(share=0.7)))[8:] == [True, True, False, False]
+    assert margins().turns[0].half_width == pytest.approx(100 * 0.2 / MEASURED_TURNS["port"].diameter)
+    assert margins().turns[0].holds and "hold 2 of 2" in verdicts.certainty(certain()).evidence
+
+
+def certain() -> Repetition:
+    """A repetition with one run left out."""
+    base = made()
+    return replace(base, left_out=(LeftOut("run", base.fit.validation()[0], 3, 1.5, 0.2, base.turns),) * 2)
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from seatrial.read import Column, Layout, read_record
 from seatrial.results import Fit
 from seatrial.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
 from seatrial.studies.alexandersson2022.left_out import LeftOut, left_out
+from seatrial.studies.alexandersson2022.margins import Margins, margins
 from seatrial.studies.alexandersson2022.published import SIDES, Turn
 from seatrial.trial import Role, Trial, TrialRecord, records_of
 from seatrial.trial.approach import approach_of
@@ -35,6 +36,7 @@ class Repetition:
         labels: run -> errors the checks find when the columns are declared as the headers name them.
         noise: channel -> noise from sample to sample, SI, median over runs.
         left_out: one entry a training run; empty in the quick version.
+        margins: what the intervals are worth.
     """
 
     fit: Fit
@@ -44,6 +46,7 @@ class Repetition:
     labels: Mapping[str, tuple[Finding, ...]]
     noise: Mapping[str, float]
     left_out: tuple[LeftOut, ...]
+    margins: Margins
 
 
 def repetition(trial: Trial, *, quick: bool, seed: int, progress: Progress | None) -> Repetition:
@@ -56,12 +59,14 @@ def repetition(trial: Trial, *, quick: bool, seed: int, progress: Progress | Non
     fit = identify(trial, seed, progress)
     raw = records_of(trial)[0]
     rate = trial.estimate.rate
-    train = [replace(r, record=r.record.resampled(rate) if rate else r.record) for r in raw if r.role is Role.TRAIN]
+    used = [replace(r, record=r.record.resampled(rate) if rate else r.record) for r in raw]
+    train, held = ([r for r in used if r.role is role] for role in (Role.TRAIN, Role.VALIDATE))
     records = [r.record for r in train]
     approach = approach_of(records, trial.model)
     tell("the fit once more, warm")
     began = time.perf_counter()
-    identified(trial.model, records, [r.session for r in train], trial.ship.length, settings_of(trial, records))
+    sessions, settings = [r.session for r in train], settings_of(trial, records)
+    found = identified(trial.model, records, sessions, trial.ship.length, settings)
     warm = time.perf_counter() - began
     tell("the headers' labels")
     labels = mislabelled(trial)
@@ -74,6 +79,7 @@ def repetition(trial: Trial, *, quick: bool, seed: int, progress: Progress | Non
         labels=labels,
         noise=noise_of([r.record for r in raw], [n.channel for n in fit.noise]),
         left_out=() if quick else _left_out(trial, train, approach, progress),
+        margins=margins(fit, found, train, held, approach, seed),
     )
 
 

@@ -5,7 +5,7 @@ import statistics
 import numpy as np
 
 from seatrial.results import Curve, Figure, Prediction, Table
-from seatrial.studies.alexandersson2022 import published
+from seatrial.studies.alexandersson2022 import margins, published
 from seatrial.studies.alexandersson2022.left_out import WINDOW_S, LeftOut, jackknife_error
 from seatrial.studies.alexandersson2022.published import MEASURED_TURNS, OTHER_TURNS, PREDICTED_TURNS, SIDES, percent
 from seatrial.studies.alexandersson2022.repetition import Repetition
@@ -14,7 +14,7 @@ from seatrial.values import NOTATION, Record, display
 
 def tables(made: Repetition) -> tuple[Table, ...]:
     """All tables; those of leave-one-run-out only where it was done."""
-    always = (beside(made), turns(made), offsets(made), noise(made))
+    always = (beside(made), turns(made), *margins.tables(made.margins), offsets(made), noise(made))
     return (*always, left_out(made.left_out), left_out_turns(made.left_out)) if made.left_out else always
 
 
