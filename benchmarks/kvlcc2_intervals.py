@@ -1,0 +1,79 @@
+"""What the intervals of KVLCC2 cost and are worth: run jackknife, spread of tied models, bootstrap.
+
+`SEATRIAL_DATA=folder python benchmarks/kvlcc2_intervals.py`. Coverage of windows and the default intervals of the turns
+are in `seatrial reproduce alexandersson2022`.
+"""
+
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from measure import Line, at_most, machine
+
+from seatrial.estimate.fit import identified
+from seatrial.estimate.intervals import intervals
+from seatrial.estimate.settings import Intervals
+from seatrial.identify.identify import identify, settings_of
+from seatrial.results import Fit
+from seatrial.studies.alexandersson2022.margins import HALF_WIDTH_LIMIT, turn_margins
+from seatrial.studies.alexandersson2022.published import SIDES
+from seatrial.trial import Role, load_trial, records_of
+from seatrial.trial.approach import approach_of
+
+TRIAL = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"
+SECONDS = 60.0
+
+
+def turned(fit: Fit, kind: str) -> Iterator[Line]:
+    """Half widths of the turns, and whether MARIN's values lie inside."""
+    train = [p.measured for p in fit.predictions if p.role == "training"]
+    made = [m for side in SIDES for m in turn_margins(fit, side, approach_of(train, fit.model), 0)]
+    for m in made:
+        what = f"{kind}: {m.measure} to {m.side}, half width"
+        is_limited = m.measure == "tactical diameter"
+        yield at_most(what, m.half_width, "%", HALF_WIDTH_LIMIT) if is_limited else Line(what, m.half_width, "%")
+    yield Line(f"{kind}: MARIN's values inside", sum(m.holds for m in made), f"of {len(made)}")
+    told = [m for p in fit.validation() for m in p.measures.values() if None not in (m.measured, m.lower, m.upper)]
+    told = [m for m in told if m.upper != m.lower]
+    inside = sum(m.lower <= m.measured <= m.upper for m in told)  # type: ignore[operator]
+    yield Line(f"{kind}: measures of Z_35_05 inside", inside, f"of {len(told)}")
+
+
+def lines() -> Iterator[Line]:
+    """Agreement, times, widths."""
+    trial = load_trial(TRIAL)
+    rate = trial.estimate.rate
+    train = [replace(r, record=r.record.resampled(rate)) for r in records_of(trial)[0] if r.role is Role.TRAIN]
+    records = [r.record for r in train]
+    settings = settings_of(trial, records)
+    found = identified(trial.model, records, [r.session for r in train], trial.ship.length, settings)
+    full = intervals(found.made, found.inflation, Intervals.JACKKNIFE)
+    yield Line("one-step over full jackknife, standard error, median", full.agreement or np.nan, "")
+    count = len(found.made.problem.free)
+    share = found.interval.standard_error[:count] / full.interval.standard_error[:count]
+    yield Line("one-step over full jackknife, smallest and largest", float(share.min()), f"to {share.max():.3f}")
+    yield from turned(identify(trial), "one-step jackknife")
+    began = time.perf_counter()
+    fit = identify(trial, intervals=Intervals.JACKKNIFE)
+    intervals(found.made, found.inflation, Intervals.BOOTSTRAP, np.random.default_rng(0))
+    yield at_most("full jackknife, family, 40 bootstraps, two cores", time.perf_counter() - began, "s", SECONDS)
+    yield from turned(fit, "jackknife and ensemble")
+    for m in fit.family:
+        yield Line(f"family: {m.name}{', tied' if m.tied else ''}", m.heading_deg or np.nan, "deg")
+
+
+def main() -> int:
+    """Print the table; 1 if a target is missed."""
+    print(machine())
+    table = []
+    for line in lines():
+        table.append(line)
+        print(f"  {line.what:<64} {line.value:>9.4g} {line.unit:<10} {line.verdict}", flush=True)
+    return int(any(line.holds is False for line in table))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
