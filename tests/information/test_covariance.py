@@ -8,6 +8,7 @@ from scipy.signal import lfilter
 
 from seatrial.information.covariance import (
     Interval,
+    bootstrap,
     from_information,
     inverse,
     jackknife,
@@ -101,3 +102,17 @@ def test_a_coefficient_held_by_its_prior_keeps_the_priors_error() -> None:
     silent = Interval(np.zeros((2, 2)), 11, "one-step jackknife over 12 runs")
     assert with_prior(silent, hessian, np.diag(prior)).standard_error[0] == pytest.approx(1e-3, rel=1e-6)
     assert with_prior(silent, hessian, np.diag(prior)).standard_error[1] < 1e-6
+
+
+def test_the_jackknife_of_a_mean_is_its_variance(rng: np.random.Generator) -> None:
+    values = rng.standard_normal((15, 2)) * [1.0, 30.0]
+    without = np.array([np.delete(values, k, 0).mean(axis=0) for k in range(15)])
+    np.testing.assert_allclose(jackknife(without, "").covariance, np.cov(values.T) / 15, rtol=1e-9)
+
+
+def test_the_bootstrap_of_a_mean_is_its_variance(rng: np.random.Generator) -> None:
+    values = rng.standard_normal((8, 1))
+    drawn = values[rng.integers(0, 8, (20000, 8))].mean(axis=1)
+    interval = bootstrap(drawn, 8, "")
+    np.testing.assert_allclose(interval.covariance, np.atleast_2d(np.cov(values.T)) / 8, rtol=0.04)
+    assert interval.degrees_of_freedom == 7
