@@ -1,5 +1,6 @@
 """Records cut into segments."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 from seatrial.equations import Model
 from seatrial.models.nomoto import nomoto
+from seatrial.problem.output_error import OutputError
 from seatrial.problem.segments import compared_outputs, cut
 from seatrial.values import Channel, InputError, Record
 
@@ -74,3 +76,24 @@ def test_rates_that_differ_and_short_records_are_refused(model: Model) -> None:
         cut(model, [record("a", 21), record("b", 21, dt=0.25)], ("r",), None)
     with pytest.raises(InputError, match="record 'a' has 2 samples; at least three"):
         cut(model, [record("a", 2)], ("r",), None)
+
+
+def test_segments_are_taken_in_any_order_and_number(model: Model) -> None:
+    data = cut(model, [record("a", 41), record("b", 61)], ("r", "psi"), 10.0)
+    taken = data.taken(np.array([3, 0, 3]))
+    assert taken.count == 3 and taken.runs == data.runs
+    np.testing.assert_array_equal(taken.run, [1, 0, 1])
+    for place, chosen in enumerate((3, 0, 3)):
+        one = slice(*taken.offsets[place : place + 2])
+        other = slice(*data.offsets[chosen : chosen + 2])
+        np.testing.assert_array_equal(taken.measured[one], data.measured[other])
+        np.testing.assert_array_equal(taken.inputs[one], data.inputs[other])
+
+
+def test_a_segment_taken_twice_costs_twice(model: Model) -> None:
+    data = cut(model, [record("a", 41)], ("r", "psi"), 10.0)
+    problem = OutputError(model, data, np.array([0.1, 0.1]), workers=1)
+    shared, local = problem.start(), problem.measured_starts()
+    single = replace(problem, data=data.taken(np.array([1]))).cost(shared, local[[1]])
+    double = replace(problem, data=data.taken(np.array([1, 1]))).cost(shared, local[[1, 1]])
+    assert double == pytest.approx(2.0 * single, rel=1e-12)
