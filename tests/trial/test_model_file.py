@@ -1,6 +1,7 @@
 """The model file: exact both ways, refused when its equations have changed, never executed."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from hypothesis import strategies as st
 
 from seatrial.equations import Model, Sheet
 from seatrial.models import model_named
+from seatrial.results import Margin
 from seatrial.trial.model_file import ModelFile, ModelProvenance, model_text, parsed_model, read_model, write_model
 from seatrial.values import InputError, Prior, Ship
 
@@ -93,3 +95,29 @@ def test_a_damaged_file_is_refused() -> None:
     text = model_text(whole_file()).replace("value = 9.8", "worth = 9.8")
     with pytest.raises(InputError, match="damaged"):
         parsed_model(text, "model.toml")
+
+
+def margin(count: int) -> Margin:
+    return Margin(
+        np.diag(np.linspace(0.1, 1.0, count)), math.inf, 2.5, {"overshoot_deg": 1.2}, {"delta zero": 0.005},
+        {"r": 1e-4}, {"rudder": 0.5}, ({"Y_v": -0.3}, {"Y_v": -0.2, "N_v": -0.1}),
+    )  # fmt: skip
+
+
+def test_what_intervals_are_made_of_reads_back_to_the_last_bit() -> None:
+    file = whole_file()
+    given = margin(len(file.model.parameters.free))
+    back = parsed_model(model_text(replace(file, margin=given)), "model.toml").margin
+    assert back is not None
+    assert np.array_equal(back.covariance, given.covariance)
+    assert vars(back) | {"covariance": 0} == vars(given) | {"covariance": 0}
+
+
+def test_a_covariance_that_is_none_is_refused(tmp_path: Path) -> None:
+    file = whole_file()
+    broken = file.covariance.copy()
+    broken[0, 1] = broken[1, 0] = 3.0 * math.sqrt(broken[0, 0] * broken[1, 1])
+    path = tmp_path / "model.toml"
+    path.write_text(model_text(replace(file, covariance=broken)))
+    with pytest.raises(InputError, match=r"model\.toml': covariance is not positive definite \(smallest eigenvalue -"):
+        read_model(path)
