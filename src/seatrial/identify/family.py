@@ -15,6 +15,7 @@ from seatrial.equations import Model
 from seatrial.estimate.assemble import output_error
 from seatrial.estimate.estimate import Estimate, estimate
 from seatrial.estimate.fit import Identified, identified
+from seatrial.estimate.intervals import RUNS_FOR_JACKKNIFE
 from seatrial.estimate.replicates import stepped
 from seatrial.estimate.settings import Settings
 from seatrial.models.families import PRIOR_FACTORS, SEGMENT_FACTORS, STRUCTURES
@@ -23,7 +24,7 @@ from seatrial.predict.forecast import Tied
 from seatrial.predict.open_loop import offsets_of
 from seatrial.results import Member
 from seatrial.trial import Family
-from seatrial.values import Array, InputError, Prior, Progress, Record
+from seatrial.values import Array, Finding, InputError, Prior, Progress, Record, Severity
 from seatrial.workers import mapped
 
 WINDOW_SHIP_LENGTHS = 4.0
@@ -57,6 +58,46 @@ class Fitted:
     made: Estimate | None
     scores: Array
     note: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Considered:
+    """The fit that is used after the family was compared, the family's table, and the models tied with it."""
+
+    found: Identified
+    rows: tuple[Member, ...]
+    tied: tuple[Tied, ...]
+    findings: tuple[Finding, ...] = ()
+
+
+def considered(
+    found: Identified,
+    model: Model,
+    records: Sequence[Record],
+    sessions: Sequence[str],
+    length: float,
+    window_s: float,
+    settings: Settings,
+    family: Family | None,
+    *,
+    choose: bool,
+    progress: Progress | None = None,
+) -> Considered:
+    """Compare the family and take its best where it is to be chosen; where it cannot be compared, say why.
+
+    Raises:
+        InputError: a member is to be chosen and the family cannot be compared.
+    """
+    try:
+        fitted = compared(found, model, records, sessions, window_s, settings, family, progress)
+    except InputError as error:
+        if choose:
+            raise
+        what = "intervals are without the spread of tied models: the family of models cannot be compared"
+        return Considered(found, (), (), (Finding(Severity.INFO, "no-family", what, str(error)),))
+    rows = table(fitted, choose=choose)
+    used = chosen(found, fitted, rows, records, sessions, length, settings, progress)
+    return Considered(used, rows, tied_models(fitted, rows))
 
 
 def variants(model: Model, family: Family | None, is_segmented: bool) -> tuple[Variant, ...]:
@@ -103,9 +144,14 @@ def compared(
     """Every member fitted and scored, the trial's own first.
 
     Raises:
-        InputError: there is but one member, or none can be fitted.
+        InputError: too few runs, but one member, or none that can be fitted.
     """
     base = found.shooting
+    if len(records) < RUNS_FOR_JACKKNIFE:
+        raise InputError(
+            f"models are compared on whole runs left out, which needs at least {RUNS_FOR_JACKKNIFE} training runs; the "
+            f"trial has {len(records)}, add runs"
+        )
     steps = np.diff(base.problem.data.offsets) - 1
     seconds = float(np.median(steps)) * base.problem.data.dt
     is_segmented = base.problem.data.count > len(base.problem.data.runs)

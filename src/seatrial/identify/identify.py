@@ -12,14 +12,14 @@ from seatrial.estimate.settings import START_SECONDS_LENGTHS, Criterion, Interva
 from seatrial.estimate.singular import refuse_singular
 from seatrial.identify import outcome
 from seatrial.identify.family import WINDOW_SHIP_LENGTHS as FAMILY_WINDOW
-from seatrial.identify.family import chosen, compared, table, tied_models, with_ensemble
+from seatrial.identify.family import Considered, considered, with_ensemble
 from seatrial.identify.identifiability import identifiability
 from seatrial.identify.profile import profiles
 from seatrial.information.symmetries import refuse_structural, structural
-from seatrial.predict.forecast import Tied, forecast
+from seatrial.predict.forecast import forecast
 from seatrial.problem.segments import compared_outputs
 from seatrial.problem.static_forces import StaticForces
-from seatrial.results import Fit, Member
+from seatrial.results import Fit
 from seatrial.trial import Role, Trial, TrialRecord, records_of, refuse_errors
 from seatrial.trial.approach import approach_of
 from seatrial.values import NOTATION, Array, InputError, Progress, Record
@@ -87,13 +87,13 @@ def identify(
     found = identified(trial.model, runs, sessions, length, settings, progress)
     refuse_singular(*_data_and_prior(found))
     unit = ship_length_seconds(runs, length, trial.estimate.segment_s)
-    family: tuple[Member, ...] = ()
-    tied: tuple[Tied, ...] = ()
+    others = Considered(found, (), ())
     if choose or intervals is Intervals.JACKKNIFE:
-        fitted = compared(found, trial.model, runs, sessions, FAMILY_WINDOW * unit, settings, trial.family, progress)
-        family = table(fitted, choose=choose)
-        tied = tied_models(fitted, family)
-        found = chosen(found, fitted, family, runs, sessions, length, settings, progress)
+        others = considered(
+            found, trial.model, runs, sessions, length, FAMILY_WINDOW * unit, settings, trial.family,
+            choose=choose, progress=progress,
+        )  # fmt: skip
+    found, tied = others.found, others.tied
     seconds = trial.estimate.initial_s or START_SECONDS_LENGTHS * unit
     told = forecast(found, records, seconds, length, seed, progress, tied)
     found = with_ensemble(found, tied)
@@ -101,6 +101,9 @@ def identify(
     if intervals is Intervals.PROFILE:
         drawn = profiles(found.made, found.interval.standard_error, found.made.problem.free, progress)
         known = replace(known, profiles=drawn)
+    unprofiled = intervals is Intervals.PROFILE and not known.profiles
+    said = (*agreement(found.made), *outcome.bounds_hit(found), *outcome.unconverged(found))
+    said += (outcome.NO_PROFILE,) if unprofiled else ()
     return Fit(
         question=trial.question
         or f"Which {trial.model.name} model explains these records, and how well does it predict?",
@@ -114,14 +117,14 @@ def identify(
         noise=outcome.noise(found),
         residuals=outcome.residuals(found),
         predictions=told.predictions,
-        findings=(*findings, *agreement(found.made), *outcome.bounds_hit(found), *outcome.unconverged(found)),
+        findings=(*findings, *others.findings, *said),
         records=tuple(r.record for r in records),
         seed=seed,
         elapsed_s=time.perf_counter() - began,
         versions=versions(),
         identifiability=known,
         disturbance=found.disturbance,
-        family=family,
+        family=others.rows,
         margin=told.margin,
     )
 

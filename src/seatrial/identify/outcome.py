@@ -11,6 +11,15 @@ from seatrial.results import Coefficient, Method, Noise, Offset, Profile, Residu
 from seatrial.values import NOTATION, Finding, Parameter, Severity
 
 
+NO_PROFILE = Finding(
+    Severity.INFO,
+    "no-profile",
+    "no profile likelihood: the coefficients come from prediction error, which has no outputs to fit again",
+    "",
+    "intervals are those of the innovations' information; ask for another criterion under [estimate] to have profiles",
+)
+
+
 def coefficients(
     found: Identified, truth: Mapping[str, float], profiles: Sequence[Profile] = ()
 ) -> tuple[Coefficient, ...]:
