@@ -112,9 +112,7 @@ def test_a_family_of_one_is_refused(found: Identified, model: Model, records: li
 
 def test_a_family_whose_members_all_fail_is_refused(found: Identified, model: Model, records: list[Record]) -> None:
     """Windows longer than any run: nobody can be judged."""
-    with pytest.raises(
-        InputError, match=r"no member of the family can be fitted; the first fails because no run"
-    ):
+    with pytest.raises(InputError, match=r"no member of the family can be fitted; the first fails because no run"):
         compared(found, model, records, [r.name for r in records], 500.0, SETTINGS, Family({}, (2.0,)))
 
 

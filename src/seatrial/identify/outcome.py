@@ -10,7 +10,6 @@ from seatrial.information.autocorrelation import whiteness_p
 from seatrial.results import Coefficient, Method, Noise, Offset, Profile, Residuals
 from seatrial.values import NOTATION, Finding, Parameter, Severity
 
-
 NO_PROFILE = Finding(
     Severity.INFO,
     "no-profile",
