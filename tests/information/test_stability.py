@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from seatrial.information.stability import stability, straight_course
+from seatrial.models.abkowitz import abkowitz
 from seatrial.models.nomoto import nomoto
-from seatrial.models.published import kvlcc2
+from seatrial.models.published import kvlcc2, kvlcc2_l7
 from seatrial.models.waterjet import waterjet
 
 SPEED = 0.8
@@ -45,6 +46,77 @@ def test_the_interval_is_that_of_drawn_ships(rng: np.random.Generator) -> None:
     assert found is not None
     half = 1.96 * float(np.std(drawn)) * (9.8 / SPEED) ** 2
     assert found.upper - found.index == pytest.approx(half, rel=0.1)
+
+
+def clarke(masses: tuple[float, float, float], rows: tuple[float, float, float, float], unit: float) -> float:
+    """C = Y_v (N_r - m x_G u) - N_v (Y_r - m u) over the determinant of inertia, times (L/U)^2.
+
+    masses: M_vv, M_vr, M_rr; rows: Y_v, Y_r - m u, N_v, N_r - m x_G u, all SI.
+    """
+    (vv, vr, rr), (Y_v, Y_r, N_v, N_r) = masses, rows
+    return (Y_v * N_r - N_v * Y_r) / (vv * rr - vr**2) * unit**2
+
+
+def test_the_index_of_abkowitz_is_that_of_clarke() -> None:
+    """Clarke, Gedling & Hine 1983: index from linear derivatives in rho/2 L^2 U^2."""
+    linear = {"Y_v": -0.0207, "Y_r": 0.004, "N_v": -0.0090, "N_r": -0.0042}
+    added = {"X_udot": -0.00145, "Y_vdot": -0.01465, "N_rdot": -0.0007, "U_n": 1.18}
+    model = abkowitz().with_values(linear | added).of_ship(kvlcc2_l7().ship)
+    p, u = {q.name: q.value for q in model.parameters}, 1.18
+    found = stability(model, np.zeros((len(model.parameters.free),) * 2), np.inf, u, np.zeros(1), p["L"])
+    force = 0.5 * p["rho"] * p["L"] ** 2 * u
+    mass = 0.5 * p["rho"] * p["L"] ** 3
+    masses = (
+        p["m"] - p["Y_vdot"] * mass,
+        p["m"] * p["x_G"],
+        p["I_z"] + p["m"] * p["x_G"] ** 2 - p["N_rdot"] * mass * p["L"] ** 2,
+    )
+    rows = (
+        force * p["Y_v"],
+        force * p["L"] * p["Y_r"] - p["m"] * u,
+        force * p["L"] * p["N_v"],
+        force * p["L"] ** 2 * p["N_r"] - p["m"] * p["x_G"] * u,
+    )
+    assert found is not None
+    assert found.index == pytest.approx(clarke(masses, rows, p["L"] / u), rel=1e-6)
+    assert "the sides differ" not in found.text
+
+
+def kvlcc2_by_hand(gamma: float, u: float, n: float) -> float:
+    """Hull, propeller and rudder of Yasukawa & Yoshimura 2015 linearised about v = r = delta = 0."""
+    p = {q.name: q.value for q in kvlcc2().parameters}
+    L, q = p["L"], 0.5 * p["rho"] * p["L"] * p["d"]
+    u_P = (1 - p["w_P0"]) * u
+    J = u_P / (n * p["D_P"])
+    K_T = p["k_0"] + p["k_1"] * J + p["k_2"] * J**2
+    eta, slip = p["D_P"] / p["H_R"], 1 + p["kappa"] * (np.sqrt(1 + 8 * K_T / (np.pi * J**2)) - 1)
+    u_R = p["epsilon"] * u_P * np.sqrt(eta * slip**2 + 1 - eta)
+    lift = 0.5 * p["rho"] * p["A_R"] * p["f_alpha"] * u_R * gamma
+    side, moment = (1 + p["a_H"]) * lift, (p["x_R_prime"] + p["a_H"] * p["x_H_prime"]) * L * lift
+    arm, unit = p["l_R_prime"] * L, q * L
+    masses = (
+        p["m"] + p["m_y_prime"] * unit,
+        p["m"] * p["x_G"],
+        p["I_z"] + p["m"] * p["x_G"] ** 2 + p["J_z_prime"] * unit * L**2,
+    )
+    rows = (
+        q * p["Y_v"] * u - side,
+        q * L * p["Y_r"] * u - side * arm - (p["m"] + p["m_x_prime"] * unit) * u,
+        q * L * p["N_v"] * u - moment,
+        q * L**2 * p["N_r"] * u - moment * arm - p["m"] * p["x_G"] * u,
+    )
+    return clarke(masses, rows, L / u)
+
+
+def test_the_index_of_kvlcc2_counts_both_sides_of_the_rudder_s_inflow() -> None:
+    """gamma_R is .640 and .395: stable to one side, unstable to the other, the index is the mean."""
+    model, u, n = kvlcc2(), 1.18, 10.4
+    found = stability(model, np.zeros((len(model.parameters.free),) * 2), np.inf, u, np.array([0.0, n, 0.0, 0.0]), 7.0)
+    starboard, port = (kvlcc2_by_hand(g, u, n) for g in (0.640, 0.395))
+    assert found is not None
+    assert starboard > 0 > port
+    assert found.index == pytest.approx(0.5 * (starboard + port), abs=1e-4)
+    assert f"C is {starboard:+.2g} beginning a turn to starboard and {port:+.2g} to port" in found.text
 
 
 def test_words_follow_the_sign_and_the_interval() -> None:

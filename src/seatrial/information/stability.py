@@ -16,21 +16,30 @@ from seatrial.results import Stability
 from seatrial.values import Array
 
 _STEP = 1e-4
+_ASIDE, _ALIKE = 1e-12, 0.01
 
 
 def straight_course(model: Model, speed: float, inputs: Array) -> Array:
     """Linearised rates of sway and yaw (or yaw alone) on a straight course, shape (2, 2) or (1, 1), SI.
 
-    speed: m/s; inputs (nu,) in the model's signs, rudder amidships.
+    The mean over both sides (`begun_turns`). speed: m/s; inputs (nu,) in the model's signs, rudder amidships.
     """
-    states = np.array([[speed if s == "u" else 0.0 for s in model.states]])
+    return begun_turns(model, speed, inputs).mean(axis=0)
+
+
+def begun_turns(model: Model, speed: float, inputs: Array) -> Array:
+    """The same for a turn just begun to starboard (r > 0 > v) and one to port, shape (2, n, n).
+
+    They differ where a coefficient does (gamma_R): such a model has a kink on the straight course itself.
+    """
+    aside = {s: _ASIDE * speed * (-1.0 if s == "v" else 1.0) for s in lateral(model)}
+    states = np.array([[speed if s == "u" else side * aside.get(s, 0.0) for s in model.states] for side in (1.0, -1.0)])
     nx, width = len(model.states), len(model.states) + len(model.inputs) + len(model.parameters)
-    out, jacobian = np.empty((1, nx)), np.zeros((1, nx, width))
-    evaluate_tangent(
-        model.compiled.rates_tangent, states, inputs[None], model.parameters.values[None], 1.0, out, jacobian
-    )
+    out, jacobian = np.empty((2, nx)), np.zeros((2, nx, width))
+    both = np.tile(inputs, (2, 1)), np.tile(model.parameters.values, (2, 1))
+    evaluate_tangent(model.compiled.rates_tangent, states, *both, 1.0, out, jacobian)
     place = [model.states.index(s) for s in lateral(model)]
-    return jacobian[0][np.ix_(place, place)]
+    return jacobian[np.ix_([0, 1], place, place)]
 
 
 def lateral(model: Model) -> tuple[str, ...]:
@@ -52,14 +61,19 @@ def stability(
     unit = length / speed
 
     def index_of(one: Model) -> float:
-        rates = straight_course(one, speed, inputs)
-        return float(np.linalg.det(-rates) * unit ** len(rates))
+        return _index(straight_course(one, speed, inputs), unit)
 
     centre = index_of(model)
     slope = _gradient(model, index_of)
     half = float(stats.t.ppf(0.975, degrees_of_freedom)) * float(np.sqrt(max(slope @ covariance @ slope, 0.0)))
     slowest = float(np.max(np.linalg.eigvals(straight_course(model, speed, inputs)).real)) * unit
-    return Stability(centre, centre - half, centre + half, _words(centre, half, slowest))
+    starboard, port = (_index(rates, unit) for rates in begun_turns(model, speed, inputs))
+    text = _words(centre, half, slowest) + _of_sides(starboard, port)
+    return Stability(centre, centre - half, centre + half, text)
+
+
+def _index(rates: Array, unit: float) -> float:
+    return float(np.linalg.det(-rates) * unit ** len(rates))
 
 
 def _gradient(model: Model, index_of: Callable[[Model], float]) -> Array:
@@ -79,3 +93,10 @@ def _words(index: float, half: float, slowest: float) -> str:
         return told
     grown = "dies out" if slowest < 0 else "grows"
     return f"{told}: at the estimate a disturbance {grown} by a factor e in {abs(1.0 / slowest):.2g} ship lengths"
+
+
+def _of_sides(starboard: float, port: float) -> str:
+    """What is said where turns to both sides do not begin alike."""
+    if abs(starboard - port) <= _ALIKE * max(abs(starboard), abs(port)):
+        return ""
+    return f"; the sides differ: C is {starboard:+.2g} beginning a turn to starboard and {port:+.2g} to port"
