@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from seatrial.information.directions import together
 from seatrial.values import Array, InputError
 
 _SINGULAR = 1e-11
@@ -26,8 +27,8 @@ def weakest(hessian: Array, names: tuple[str, ...], values: Array) -> tuple[floa
     order = [i for i in np.argsort(-np.abs(influence)) if abs(influence[i]) > _INVOLVED][:_NAMED]
     change = influence[order] * scale[order] / np.copysign(size, values)[order]
     change = change / (np.sign(change[0]) * np.median(np.abs(change)))
-    terms = [f"{c:+.2g} {names[i]}" for i, c in zip(order, change, strict=True)]
-    return float(curvature[0] / curvature[-1]), " ".join(terms).lstrip("+")
+    terms = together({names[i]: float(c) for i, c in zip(order, change, strict=True)}, "+.2g")
+    return float(curvature[0] / curvature[-1]), terms.removeprefix("+")
 
 
 def refuse_singular(hessian: Array, names: tuple[str, ...], values: Array) -> None:

@@ -5,20 +5,24 @@ from dataclasses import replace
 
 import numpy as np
 
+from seatrial.equations import Model
 from seatrial.estimate.estimate import Estimate
 from seatrial.estimate.fit import Identified
 from seatrial.information.collinearity import collinearity, condition
+from seatrial.information.consequences import answer, words
 from seatrial.information.directions import directions, effective_parameters, relative
 from seatrial.information.stability import stability
+from seatrial.problem.output_error import OutputError
 from seatrial.results import Consequence, Identifiability, Sensitivity, Stability, Symmetry
 from seatrial.trial.model_choice import COMMON_PARTICULARS
-from seatrial.values import Array
+from seatrial.values import Array, Prior
 
 CHANGE = 0.1
-_SHOWN, _MOVES = 8, 4
+_SHOWN = 8
 _ASSUMED = ("I_z", "x_G")
+# what defines the coefficients, chosen with the equations: nothing that could be wrong
+_CONVENTIONS = ("prime", "U_n", "U_0")
 _FELT = 1e-9
-_SEEN = 5.0
 
 
 def identifiability(
@@ -34,7 +38,7 @@ def identifiability(
     scaled = relative(data, sizes)
     return Identifiability(
         structural=tuple(structural),
-        directions=directions(data, names, sizes),
+        directions=directions(data, names, sizes, precision),
         effective_parameters=effective_parameters(scaled, relative(precision, sizes)),
         condition=condition(data),
         collinearity=collinearity(data, names),
@@ -88,55 +92,47 @@ def sensitivities(found: Identified) -> tuple[Sensitivity, ...]:
 
 
 def consequences(found: Identified) -> tuple[Consequence, ...]:
-    """What the estimates would do were an assumed value 10 % off, by one Gauss-Newton step; the worst first.
-
-    d theta = -H_ff^-1 H_fp dp; chi squared grows by dp (H_pp - H_pf H_ff^-1 H_fp) dp (implicit function theorem).
-    """
+    """What the estimates would do were an assumed value 10 % off, by one Gauss-Newton step; the worst first."""
     estimate, model = _simulated(found), found.model
-    assumed = [
-        p.name
-        for p in model.parameters
-        if not p.free and p.value and (p.name in _ASSUMED or p.name not in COMMON_PARTICULARS)
-    ]
-    own = {n for n, _ in estimate.problem.session_parameters}
-    freed = model.parameters.freed(*(n for n in assumed if n not in own))
-    problem = replace(estimate.problem, model=model.with_parameters(freed), others=())
-    shared = np.concatenate([problem.start()[: len(problem.free)], estimate.shared[len(estimate.problem.free) :]])
+    problem, names = _with_assumed_free(estimate.problem, model)
+    own, size = estimate.problem.free, len(problem.free)
     place = {n: i for i, n in enumerate(problem.free)}
-    fitted = [place[n] for n in estimate.problem.free]
-    shared[fitted] = estimate.shared[: len(fitted)]
-    hessian = problem.normal(shared, estimate.optimum.local).reduced()[1]
-    moving = [*fitted, *range(len(problem.free), len(shared))]
-    deviation = np.maximum(found.interval.standard_error[: len(fitted)], 1e-300)
+    fitted = [place[n] for n in own]
+    shared = np.concatenate([problem.start()[:size], estimate.shared[len(own) :]])
+    shared[fitted] = estimate.shared[: len(own)]
+    information = problem.normal(shared, estimate.optimum.local).reduced()[1]
+    moving = np.array([*fitted, *range(size, len(shared))])
+    deviation = np.maximum(found.interval.standard_error[: len(own)], 1e-300)
     sizes = _sizes(found)
-    felt = _FELT * np.max(np.diag(hessian)[fitted] * sizes**2)
-    left = 2.0 * float(problem.cost(shared, estimate.optimum.local))
+    felt = _FELT * np.max(np.diag(information)[fitted] * sizes**2)
+    left = 2.0 * problem.cost(shared, estimate.optimum.local)
     made: list[tuple[float, Consequence]] = []
-    for name in assumed:
-        p = place.get(name)
-        if p is None or hessian[p, p] * model.parameters[name].value ** 2 < felt:
+    for name in names:
+        p, value = place[name], model.parameters[name].value
+        if information[p, p] * value**2 < felt:
             continue
-        step = CHANGE * model.parameters[name].value
-        answer = -np.linalg.solve(hessian[np.ix_(moving, moving)], hessian[moving, p]) * step
-        misfit = float(step * (hessian[p, p] * step + hessian[p, moving] @ answer))
-        move = answer[: len(fitted)]
-        told = _consequence(name, move / sizes, estimate.problem.free, max(misfit, 0.0), left)
-        made.append((float(np.max(np.abs(move) / deviation)), told))
+        moves, misfit = answer(information, moving, p, CHANGE * value)
+        worst = float(np.max(np.abs(moves[: len(own)]) / deviation))
+        made.append((worst, _consequence(name, moves[: len(own)] / sizes, own, misfit, left)))
     made.sort(key=lambda pair: -pair[0])
     return tuple(one for _, one in made[:_SHOWN])
 
 
+def _with_assumed_free(problem: OutputError, model: Model) -> tuple[OutputError, list[str]]:
+    """The problem with the assumed values free too, their priors put aside, and which they are."""
+    own = {n for n, _ in problem.session_parameters}
+    known = {*_CONVENTIONS, *own, *(n for n in COMMON_PARTICULARS if n not in _ASSUMED)}
+    if problem.others:  # measured forces may have been corrected with it
+        known.add("x_G")
+    names = [p.name for p in model.parameters if not p.free and p.value and p.name not in known]
+    loose = {n: Prior(0.0, np.inf) for n in names}
+    return replace(problem, model=model.with_parameters(model.parameters.freed(*names).with_priors(loose))), names
+
+
 def _consequence(name: str, moves: Array, free: Sequence[str], misfit: float, left: float) -> Consequence:
-    """In words; misfit is compared with the sum of squares that is left anyhow."""
     order = np.argsort(-np.abs(moves), kind="stable")
     ranked = {free[int(i)]: float(moves[i]) for i in order}
-    listed = [f"{n} {float(f'{100 * m:.2g}'):+g} %" for n, m in list(ranked.items())[:_MOVES] if abs(m) >= 0.005]
-    grown = 100.0 * (np.sqrt(1.0 + misfit / left) - 1.0) if left > 0 else np.inf
-    text = (
-        f"were {name} {100 * CHANGE:.0f} % larger, {', '.join(listed) or 'no estimate'} would move, "
-        f"while the residuals would grow by {grown:.2g} %" + (" only" if grown < _SEEN else "")
-    )
-    return Consequence(name, CHANGE, ranked, misfit, text)
+    return Consequence(name, CHANGE, ranked, misfit, words(name, CHANGE, ranked, misfit, left))
 
 
 def _stability(found: Identified, approach: Mapping[str, float], length: float) -> Stability | None:

@@ -4,14 +4,16 @@ Everything is in relative changes, parameter over its characteristic size, so th
 compare (eigen-directions of the scaled information: Belsley, Kuh & Welsch 1980, Regression Diagnostics, section 3.2).
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from seatrial.information.covariance import inverse
 from seatrial.results import Direction
 from seatrial.values import Array
 
 _NAMED, _SHARE = 5, 0.25
+_HELD = 0.9
 _KNOWN, _VAGUE, _ANYTHING = 0.1, 1.0, 10.0
 _LEAST = 1e-24
 
@@ -21,30 +23,48 @@ def relative(information: Array, sizes: Array) -> Array:
     return information * sizes[:, None] * sizes[None, :]
 
 
-def directions(information: Array, names: Sequence[str], sizes: Array) -> tuple[Direction, ...]:
+def directions(
+    information: Array, names: Sequence[str], sizes: Array, precision: Array | None = None
+) -> tuple[Direction, ...]:
     """All eigen-directions, the least determined first, each with the standard deviation along it and its words.
 
-    information: of the data alone, shape (n, n), other unknowns eliminated.
+    information: of the data alone, shape (n, n), other unknowns eliminated; precision: what is known besides (priors,
+    force points), which the words mention where it narrows a direction that the data leave open.
     """
-    values, vectors = np.linalg.eigh(relative(information, sizes))
+    scaled = relative(information, sizes)
+    values, vectors = np.linalg.eigh(scaled)
     least = _LEAST * max(float(values[-1]), 1e-300)
-    return tuple(
-        _direction(vectors[:, k], float(1.0 / np.sqrt(value)) if value > least else np.inf, names)
-        for k, value in enumerate(values)
-    )
+    deviations = [float(1.0 / np.sqrt(value)) if value > least else np.inf for value in values]
+    held = deviations
+    if precision is not None and np.any(precision):
+        posterior = inverse(scaled + relative(precision, sizes))
+        held = [float(np.sqrt(v @ posterior @ v)) for v in vectors.T]
+    return tuple(_direction(vectors[:, k], deviations[k], held[k], names) for k in range(len(values)))
 
 
-def _direction(vector: Array, deviation: float, names: Sequence[str]) -> Direction:
+def _direction(vector: Array, deviation: float, held: float, names: Sequence[str]) -> Direction:
     order = np.argsort(-np.abs(vector), kind="stable")
     signed = vector * np.sign(vector[order[0]])
     combination = {names[int(i)]: float(signed[i]) for i in order}
-    return Direction(combination, deviation, words(combination, deviation))
+    text = words(combination, deviation)
+    if deviation > _KNOWN and held < _HELD * deviation:
+        text += f"; what is known besides the records holds it to {_percent(held)}"
+    return Direction(combination, deviation, text)
 
 
-def words(combination: dict[str, float], deviation: float) -> str:
+def together(changes: Mapping[str, float], form: str = "+.2f") -> str:
+    """Parameters with their relative changes, e.g. ``+0.91 X_rr -0.34 X_vv``."""
+    return " ".join(f"{change:{form}} {name}" for name, change in changes.items())
+
+
+def _percent(deviation: float) -> str:
+    return f"{float(f'{100 * deviation:.2g}'):g} %" if deviation < _ANYTHING else "any amount"
+
+
+def words(combination: Mapping[str, float], deviation: float) -> str:
     """A direction in words: who moves with whom, and how well that is known."""
     large = [n for n, c in combination.items() if abs(c) >= _SHARE * max(map(abs, combination.values()))][:_NAMED]
-    known = f"{float(f'{100 * deviation:.2g}'):g} %" if deviation < _ANYTHING else "any amount"
+    known = _percent(deviation)
     if len(large) == 1:
         (name,) = large
         if deviation <= _KNOWN:
@@ -52,7 +72,7 @@ def words(combination: dict[str, float], deviation: float) -> str:
         if deviation <= _VAGUE:
             return f"{name} is determined vaguely, to {known}"
         return f"{name} is not determined: it may be wrong by {known}"
-    terms = " ".join(f"{combination[n]:+.2f} {n}" for n in large)
+    terms = together({n: combination[n] for n in large})
     if deviation <= _KNOWN:
         return f"the combination {terms} (relative changes) is determined to {known}"
     if deviation <= _VAGUE:
