@@ -51,6 +51,7 @@ def print_fit(fit: "Fit") -> None:
         _print_prediction(p)
     _print_family(fit)
     _print_telling(fit)
+    print(f"intervals: {fit.method.intervals}")
     print(f"{fit.method.criterion}; {fit.elapsed_s:.1f} s")
 
 

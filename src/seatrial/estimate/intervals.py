@@ -68,9 +68,11 @@ def intervals(
 
     if kind is Intervals.JACKKNIFE:
         points = left_out(made, problem.workers, progress)
-        full, fast = jackknife(points, f"jackknife over {runs} runs, each refitted"), jackknife(_demanded(steps), "")
+        full, fast = jackknife(points, ""), jackknife(_demanded(steps), "")
         share = fast.standard_error / np.maximum(full.standard_error, 1e-300)
-        return Uncertainty(over_runs(full), points, float(np.median(share[: len(problem.free)])))
+        agreement = float(np.median(share[: len(problem.free)]))
+        meaning = f"jackknife over {runs} runs, each refitted (one step would give {agreement:.2f} of these errors)"
+        return Uncertainty(over_runs(replace(full, meaning=meaning)), points, agreement)
     if kind is Intervals.BOOTSTRAP:
         points = drawn(made, BOOTSTRAPS, rng or np.random.default_rng(0), problem.workers, progress)
         return Uncertainty(over_runs(bootstrap(points, runs, f"bootstrap over {runs} runs, {BOOTSTRAPS} draws")), steps)
