@@ -19,11 +19,12 @@ from seatrial.models.published import kvlcc2_l7
 from seatrial.optimise import Optimum, levenberg_marquardt
 from seatrial.problem.output_error import OutputError
 from seatrial.problem.segments import cut
+from seatrial.problem.static_forces import StaticForces
 from seatrial.results import Identifiability
 from seatrial.simulate import replay
 from seatrial.simulate.steer import manoeuvre
 from seatrial.studies.series import SENSOR_NOISE, noisy, run, truth
-from seatrial.values import Prior, Record
+from seatrial.values import ForcePoints, Includes, Prior, Record
 
 RATE, EXECUTES = 2.0, 5
 # a course-stable ship of moderate turning, in the L^2 prime system
@@ -119,6 +120,34 @@ def test_the_misfit_is_the_growth_of_chi_squared_apart_from_what_noise_favours(f
     least = found.made.optimum.solution.value
     both = [2.0 * (_fitted_with(found, "x_T", 1.0 + s).solution.value - least) for s in (0.02, -0.02)]
     assert np.mean(both) == pytest.approx(0.04 * foretold.misfit, rel=0.1)
+
+
+def _towed(percent: float) -> StaticForces:
+    """Hull and jet forces of the craft in drift and rotation, exact, of a stated standard deviation."""
+    drift, turn = (a.ravel() for a in np.meshgrid(np.radians([-12.0, -6.0, 0.0, 6.0, 12.0]), [-0.06, 0.0, 0.06]))
+    motion = {
+        "u": 0.8 * np.cos(drift),
+        "v": -0.8 * np.sin(drift),
+        "r": turn,
+        "delta": 0.0 * turn,
+        "v_j": 1.866 + 0 * turn,
+    }
+    points = ForcePoints("towed", motion, {"N": 0.0 * turn}, {"N": 1.0}, Includes.HYDRODYNAMIC, source="simulated")
+    moment = StaticForces(truth(), points).forces(truth().parameters.values)[:, 2]
+    deviation = 0.01 * percent * float(np.max(np.abs(moment)))
+    return StaticForces(truth(), replace(points, forces={"N": moment}, sd={"N": deviation}))
+
+
+def test_force_points_hold_what_a_wrong_assumption_would_move(found: Identified) -> None:
+    problem = replace(found.made.problem, others=(_towed(1.0),))
+    optimum = levenberg_marquardt(problem, found.made.shared, found.made.optimum.local)
+    fused = replace(found, made=replace(found.made, problem=problem, optimum=optimum))
+    alone, foretold = (next(c for c in consequences(f) if c.parameter == "A_j") for f in (found, fused))
+    again = _fitted_with(fused, "A_j", 1.02)
+    i = problem.free.index("N_v")
+    moved = again.solution.point[i] / optimum.solution.point[i] - 1.0
+    assert abs(foretold.moves["N_v"]) < 0.5 * abs(alone.moves["N_v"])
+    assert 0.2 * foretold.moves["N_v"] == pytest.approx(moved, rel=0.1)
 
 
 def test_what_defines_the_coefficients_is_not_assumed() -> None:
