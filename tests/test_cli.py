@@ -5,6 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from seatrial import cli
@@ -132,3 +133,18 @@ def test_simulate_refuses_in_one_sentence(
 ) -> None:
     assert run(monkeypatch, "simulate", model_file, *arguments, "--out", tmp_path / "out.csv") == 2
     assert says in capsys.readouterr().err
+
+
+def test_a_model_file_whose_covariance_is_none_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    model = model_named("waterjet")
+    broken = np.eye(len(model.parameters.free))
+    broken[0, 1] = broken[1, 0] = 2.0
+    write_model(ModelFile(model, broken, ship=Ship("craft", {"L": 9.8})), tmp_path / "model.toml")
+    out = tmp_path / "z.csv"
+    assert run(monkeypatch, "simulate", tmp_path / "model.toml", "--manoeuvre", "zigzag:20/20", "--out", out) == 2
+    said = capsys.readouterr().err
+    assert "covariance is not positive definite (smallest eigenvalue -1 " in said
+    assert said.count("\n") == 1
+    assert not out.exists()

@@ -1,6 +1,7 @@
 """The model file: exact both ways, refused when its equations have changed, never executed."""
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -121,3 +122,21 @@ def test_a_covariance_that_is_none_is_refused(tmp_path: Path) -> None:
     path.write_text(model_text(replace(file, covariance=broken)))
     with pytest.raises(InputError, match=r"model\.toml': covariance is not positive definite \(smallest eigenvalue -"):
         read_model(path)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "says"),
+    [
+        (lambda m, n: replace(m, covariance=np.eye(n - 1)), "margin.covariance has [0-9]+ rows for [0-9]+ free"),
+        (lambda m, n: replace(m, covariance=np.diag([-1.0, *[1.0] * (n - 1)])), "margin.covariance is not positive"),
+        (lambda m, n: replace(m, covariance=np.eye(n) + np.eye(n, k=1)), "margin.covariance is not a symmetric"),
+        (lambda m, n: replace(m, covariance=np.full((n, n), math.nan)), "margin.covariance is not a symmetric"),
+        (lambda m, _: replace(m, degrees_of_freedom=math.nan), "margin.degrees_of_freedom is nan"),
+        (lambda m, _: replace(m, tied=({"Y_w": 1.0},)), "margin.tied names 'Y_w'"),
+    ],
+)
+def test_a_margin_that_cannot_be_is_refused(wrong: Callable[[Margin, int], Margin], says: str) -> None:
+    file = whole_file()
+    count = len(file.model.parameters.free)
+    with pytest.raises(InputError, match=rf"model file 'model\.toml'.*{says}"):
+        parsed_model(model_text(replace(file, margin=wrong(margin(count), count))), "model.toml")

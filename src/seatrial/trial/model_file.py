@@ -20,7 +20,7 @@ from seatrial.values import Array, InputError, Parameter, Parameters, Prior, Rec
 from seatrial.values.files import write_whole
 
 FORMAT = 1
-_ROUNDING = 1e-8
+_ROUNDING, _ASYMMETRY = 1e-8, 1e-6
 _TABLES_OF_MARGIN = ("kinds", "offsets", "process", "covered")
 CONVENTIONS = (
     "SI units and radians; x forward, y starboard, z down, psi clockwise; "
@@ -110,18 +110,20 @@ def _margin_table(margin: Margin) -> dict[str, Any]:
     }
 
 
-def _margin(table: Mapping[str, Any], where: str) -> Margin | None:
+def _margin(table: Mapping[str, Any], where: str, parameters: Parameters) -> Margin | None:
     if "margin" not in table:
         return None
     entry = table["margin"]
-    tables = {name: {k: float(v) for k, v in entry[name].items()} for name in _TABLES_OF_MARGIN}
-    return Margin(
-        _matrix(entry["covariance"], f"{where}': margin.covariance"),
-        float(entry["degrees_of_freedom"]),
-        float(entry["factor"]),
-        tied=tuple({k: float(v) for k, v in one.items()} for one in entry["tied"]),
-        **tables,
-    )
+    degrees, tied = float(entry["degrees_of_freedom"]), tuple(_floats(one) for one in entry["tied"])
+    covariance = _matrix(entry["covariance"], f"{where}': margin.covariance")
+    if len(covariance) != len(parameters.free):
+        raise ValueError(f"margin.covariance has {len(covariance)} rows for {len(parameters.free)} free parameters")
+    if not degrees > 0.0:
+        raise ValueError(f"margin.degrees_of_freedom is {degrees:g}")
+    if strangers := [name for one in tied for name in one if name not in parameters]:
+        raise ValueError(f"margin.tied names '{strangers[0]}', which is no parameter of the model")
+    tables = {name: _floats(entry[name]) for name in _TABLES_OF_MARGIN}
+    return Margin(covariance, degrees, float(entry["factor"]), tied=tied, **tables)
 
 
 def _floats(numbers: Mapping[str, float]) -> dict[str, float]:
@@ -179,7 +181,9 @@ def parsed_model(text: str, where: str, own_model: Model | None = None) -> Model
         provenance = _provenance(table["provenance"])
         approach = {name: float(value) for name, value in table["approach"].items()}
         made = model.with_parameters(Parameters(items))
-        return ModelFile(made, covariance, provenance, _ship(table), approach, _margin(table, where))
+        if covariance.size and len(covariance) != len(made.parameters.free):
+            raise ValueError(f"covariance has {len(covariance)} rows for {len(made.parameters.free)} free parameters")
+        return ModelFile(made, covariance, provenance, _ship(table), approach, _margin(table, where, made.parameters))
     except (KeyError, TypeError, AttributeError, ValueError) as error:
         if isinstance(error, InputError):
             raise
@@ -194,10 +198,16 @@ def _ship(table: Mapping[str, Any]) -> Ship | None:
 
 
 def _matrix(rows: Sequence[Sequence[float]], where: str) -> Array:
-    """A covariance; a negative variance in any direction, beyond rounding, is refused."""
+    """A covariance; one that is not finite, not symmetric, or negative in any direction beyond rounding is refused."""
     matrix = np.array(rows, dtype=float).reshape(len(rows), len(rows))
     scale = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
-    smallest = float(np.min(np.linalg.eigvalsh(matrix / np.outer(scale, scale)))) if len(rows) else 0.0
+    size = np.outer(scale, scale)
+    if not np.all(np.isfinite(matrix)) or np.any(np.abs(matrix - matrix.T) > _ASYMMETRY * size):
+        raise InputError(
+            f"model file '{where} is not a symmetric matrix of finite numbers; "
+            "write the file again with 'seatrial identify'"
+        )
+    smallest = float(np.min(np.linalg.eigvalsh(matrix / size))) if len(rows) else 0.0
     if not smallest > -_ROUNDING:
         raise InputError(
             f"model file '{where} is not positive definite (smallest eigenvalue {smallest:.3g} of its correlation "
