@@ -68,9 +68,9 @@ def identify(
     from seatrial.identify import Intervals, identify
     from seatrial.values import InputError, nearest
 
-    compiling.finish()
     if intervals not in (kinds := [kind.value for kind in Intervals]):
         raise InputError(f"unknown kind of intervals '{intervals}'{nearest(intervals, kinds)}")
+    compiling.finish()
     return identify(trial, seed=seed, progress=progress, intervals=Intervals(intervals), choose=choose)
 
 

@@ -9,11 +9,12 @@ import pytest
 from seatrial.equations import Model
 from seatrial.manoeuvres import measures
 from seatrial.manoeuvres.programme import programme
+from seatrial.models.nomoto import nomoto
 from seatrial.models.waterjet import waterjet
-from seatrial.predict.steered import measure_intervals
+from seatrial.predict.steered import DRAWS, measure_intervals
 from seatrial.results import Margin
 from seatrial.simulate.steer import manoeuvre
-from seatrial.values import Record
+from seatrial.values import InputError, Record
 
 LENGTH = 9.8
 NAME = "tactical_diameter_L"
@@ -69,3 +70,27 @@ def test_tied_models_widen_the_interval(model: Model, steer: Callable[[Model], R
     apart = measures(steer(model.with_values(other)), LENGTH)[NAME] - measures(steer(model), LENGTH)[NAME]
     told = measure_intervals(model, replace(margin(1e-9), tied=(other,)), steer, LENGTH, np.random.default_rng(0))[NAME]
     assert np.ptp(told) / 2 == pytest.approx(1.96 * abs(apart), rel=1e-3)
+
+
+def test_ships_that_cannot_be_steered_are_no_interval(model: Model, steer: Callable[[Model], Record]) -> None:
+    """Damping in yaw whose sign is open: drawn ships that spin faster and faster."""
+    sd = 100.0 * abs(model.parameters["N_r"].value)
+    with pytest.raises(InputError, match=r"5\d of 60 ships drawn from the fit's covariance cannot be steered"):
+        measure_intervals(model, margin(sd), steer, LENGTH, np.random.default_rng(0))
+
+
+def test_a_free_rudder_zero_scatters_as_it_was_estimated_and_as_runs_differ() -> None:
+    """A first-order ship on a turn, whose heading answers the rudder's zero linearly."""
+    base = nomoto().with_values({"K": 0.15, "T": 8.0, "U": 2.0})
+    ship = base.with_parameters(base.parameters.only_free(["delta_0"]))
+    seen: list[float] = []
+
+    def steer(one: Model) -> Record:
+        seen.append(one.parameters["delta_0"].value)
+        return manoeuvre(one, programme("turning-circle:20"), dt=0.5, speed=2.0)
+
+    sd, between = 0.008, 0.006
+    measure_intervals(ship, replace(margin(sd), offsets={"delta zero": between}), steer, 8.0, np.random.default_rng(0))
+    drawn = np.array(seen[1:])
+    assert len(drawn) == DRAWS
+    assert np.std(drawn) == pytest.approx(np.hypot(sd, between), rel=0.2), "60 draws: 9 % of chance, twice"

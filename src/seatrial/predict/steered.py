@@ -61,8 +61,10 @@ def _drawn(model: Model, margin: Margin, rng: np.random.Generator) -> list[Model
     made = [model.with_values(dict(zip(free, point, strict=True))) for point in points]
     if "delta_0" not in model.parameters:
         return made
-    at = model.parameters["delta_0"].value
-    return [one.with_values({"delta_0": at + zero}) for one, zero in zip(made, zeros, strict=True)]
+    return [
+        one.with_values({"delta_0": one.parameters["delta_0"].value + zero})
+        for one, zero in zip(made, zeros, strict=True)
+    ]
 
 
 def _measured(model: Model, steer: Callable[[Model], Record], length: float) -> dict[str, float] | None:
