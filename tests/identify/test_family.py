@@ -7,7 +7,18 @@ import pytest
 
 from seatrial.equations import Model
 from seatrial.estimate import Identified, Settings, identified
-from seatrial.identify.family import Fitted, Variant, compared, modelled, table, tied_models, variants, with_ensemble
+from seatrial.estimate.settings import Criterion
+from seatrial.identify.family import (
+    Fitted,
+    Variant,
+    chosen,
+    compared,
+    modelled,
+    table,
+    tied_models,
+    variants,
+    with_ensemble,
+)
 from seatrial.models.abkowitz import abkowitz
 from seatrial.models.nomoto import nomoto
 from seatrial.predict.forecast import Tied
@@ -124,3 +135,35 @@ def test_the_scatter_of_tied_models_is_added(found: Identified) -> None:
     assert added == pytest.approx(0.02**2)
     assert widened.interval.meaning.endswith("with the spread of 1 tied model")
     assert with_ensemble(found, []) is found
+
+
+def test_the_trials_own_model_stays_where_it_cannot_be_judged(found: Identified, records: list[Record]) -> None:
+    members = [fitted(found, "own", None), fitted(found, "other", [1.0, 2.0, 3.0])]
+    rows = table(members, choose=False)
+    assert [(r.chosen, r.tied, r.note) for r in rows] == [(True, False, "it diverges"), (False, True, "")]
+    names = [r.name for r in records]
+    assert chosen(found, members, rows, records, names, 8.0, SETTINGS) is found
+    assert [t.made for t in tied_models(members, rows)] == [found.made]
+
+
+def test_a_structure_may_be_called_like_another_member(found: Identified) -> None:
+    members = [fitted(found, "as in the trial", [2.0, 3.0, 4.0]), fitted(found, "as in the trial", [1.0, 2.0, 3.0])]
+    for choose in (False, True):
+        rows = table(members, choose=choose)
+        assert [r.chosen for r in rows] == [not choose, choose]
+        assert [r.tied for r in rows] == [False, True]
+
+
+@pytest.mark.parametrize("seconds", [20.0, None])
+def test_a_chosen_segment_length_is_that_which_was_compared(
+    model: Model, records: list[Record], seconds: float | None
+) -> None:
+    """Also where the trial leaves the length to the house."""
+    names = [r.name for r in records]
+    settings = Settings(segment_seconds=seconds, criterion=Criterion.MULTIPLE_SHOOTING, workers=1)
+    own = identified(model, records, names, 8.0, settings)
+    members = compared(own, model, records, names, 20.0, settings, Family({}, (), (0.5,)))
+    rows = [replace(row, chosen=row.name == "segments x 0.5") for row in table(members, choose=False)]
+    used = chosen(own, members, rows, records, names, 8.0, settings)
+    assert members[1].made is not None
+    assert used.made.problem.data.count == members[1].made.problem.data.count > own.made.problem.data.count

@@ -152,8 +152,7 @@ def compared(
             f"models are compared on whole runs left out, which needs at least {RUNS_FOR_JACKKNIFE} training runs; the "
             f"trial has {len(records)}, add runs"
         )
-    steps = np.diff(base.problem.data.offsets) - 1
-    seconds = float(np.median(steps)) * base.problem.data.dt
+    seconds = _segment_seconds(base)
     is_segmented = base.problem.data.count > len(base.problem.data.runs)
     members = variants(model, family, is_segmented)
     if len(members) < 2:
@@ -184,6 +183,11 @@ def compared(
     return fitted
 
 
+def _segment_seconds(made: Estimate) -> float:
+    data = made.problem.data
+    return float(np.median(np.diff(data.offsets) - 1)) * data.dt
+
+
 def _carried_over(base: Estimate, free: Sequence[str], start: Array) -> Array:
     known = dict(zip(base.problem.free, base.shared, strict=False))
     own = [known.get(n, start[i]) for i, n in enumerate(free)]
@@ -210,13 +214,13 @@ def scored(made: Estimate, model: Model, records: Sequence[Record], window_s: fl
 
 def table(fitted: Sequence[Fitted], *, choose: bool) -> tuple[Member, ...]:
     """Mean errors and ties; used is the best member where it is to be chosen, else the trial's own, which is first."""
-    known = [f for f in fitted if f.made is not None]
-    unit = np.mean(np.concatenate([f.scores for f in known]), axis=0)
-    single = {f.variant.name: np.mean(f.scores / unit, axis=1) for f in known}
-    best = min(single, key=lambda name: float(single[name].mean()))
-    tied = {name for name, score in single.items() if _is_tied(score - single[best])}
-    used = best if choose else fitted[0].variant.name
-    return tuple(_member(f, tied=f.variant.name in tied, used=f.variant.name == used) for f in fitted)
+    known = [i for i, f in enumerate(fitted) if f.made is not None]
+    unit = np.mean(np.concatenate([fitted[i].scores for i in known]), axis=0)
+    single = {i: np.mean(fitted[i].scores / unit, axis=1) for i in known}
+    best = min(single, key=lambda i: float(single[i].mean()))
+    tied = {i for i, score in single.items() if _is_tied(score - single[best])}
+    used = best if choose else 0
+    return tuple(_member(f, tied=i in tied, used=i == used) for i, f in enumerate(fitted))
 
 
 def _is_tied(worse: Array) -> bool:
@@ -228,7 +232,7 @@ def _is_tied(worse: Array) -> bool:
 def _member(f: Fitted, *, tied: bool, used: bool) -> Member:
     free = len(f.model.parameters.free)
     if f.made is None:
-        return Member(f.variant.name, free, None, None, tied=False, note=f.note)
+        return Member(f.variant.name, free, None, None, tied=False, chosen=used, note=f.note)
     heading, position = f.scores.mean(axis=0)
     return Member(f.variant.name, free, float(heading), float(position), tied, used)
 
@@ -252,8 +256,9 @@ def chosen(
     if used is fitted[0]:
         return found
     own = settings
-    if used.variant.segment != 1.0 and settings.segment_seconds is not None:
-        own = replace(settings, segment_seconds=settings.segment_seconds * used.variant.segment)
+    if used.variant.segment != 1.0:
+        seconds = settings.segment_seconds or _segment_seconds(found.shooting)
+        own = replace(settings, segment_seconds=seconds * used.variant.segment)
     return identified(used.model, records, sessions, length, own, progress)
 
 

@@ -18,7 +18,7 @@ from seatrial.values import Array, InputError
 
 @dataclass(frozen=True)
 class Covered:
-    """Share of a run's samples, over all its windows, that lie in the 95 % band of each channel (psi, x0, y0)."""
+    """Share of the measured samples, over all windows of a run, in the 95 % band of each channel (psi, x0, y0)."""
 
     run: str
     windows: int
@@ -75,6 +75,8 @@ def _share(own: Sequence[Miss], others: Sequence[Miss], t: float) -> Covered:
     for miss in own:
         for channel, error in miss.errors.items():
             half = t * known.of_channel(channel, miss.foreseen[channel], miss.dt, miss.index)
-            inside.setdefault(channel, []).append(float(np.nanmean(np.abs(error) <= half)))
+            seen = np.isfinite(error)
+            if seen.any():
+                inside.setdefault(channel, []).append(float(np.mean((np.abs(error) <= half)[seen])))
     shares = {channel: float(np.mean(each)) for channel, each in inside.items()}
     return Covered(own[0].run if own else "", len(own), shares)
