@@ -1,12 +1,13 @@
 """How fast the model's error grows beyond the training runs: KVLCC2 at large rudder angles predicted from small ones.
 
 `SEATRIAL_DATA=folder python benchmarks/extrapolation.py` fits the training zigzags up to each limit of rudder angle,
-predicts 30 s windows of the larger ones, and prints the share of headings inside the 95 % band if the discrepancy grows
-with the extrapolation index to the power 0, 1, 2 or 3. The run held out in the example trial is not read.
+predicts 30 s windows of the larger ones, and prints the share of headings and of positions (x0 and y0) inside the 95 %
+band if the discrepancy grows with the extrapolation index to the power 0, 1, 2 or 3. The file of the run held out in
+the example trial is not opened. A run that lies beyond several limits counts once for each.
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +15,6 @@ import numpy as np
 from measure import machine
 
 from seatrial.estimate import identified
-from seatrial.estimate.settings import Settings
 from seatrial.identify.identify import settings_of
 from seatrial.information.discrepancy import GROWTH, Miss
 from seatrial.predict.cross_validation import Protocol
@@ -32,13 +32,20 @@ def angle(item: TrialRecord) -> int:
     return int(found.group(1))
 
 
-def shares(trial: Trial, settings: Settings, train: Sequence[TrialRecord], limit: int) -> dict[float, list[float]]:
-    """Power -> share of headings inside the band, one number for each run beyond the limit."""
+def shares(trial: Trial, train: Sequence[TrialRecord], limit: int) -> dict[float, list[tuple[float, float]]]:
+    """Power -> shares of headings and of positions inside the band, one pair for each run beyond the limit."""
     known = [r for r in train if angle(r) <= limit]
     beyond = [r for r in train if angle(r) > limit]
-    found = identified(trial.model, [r.record for r in known], [r.session for r in known], trial.ship.length, settings)
+    records, sessions = [r.record for r in known], [r.session for r in known]
+    found = identified(trial.model, records, sessions, trial.ship.length, settings_of(trial, records))
     missed = missed_windows(found, known, beyond, Protocol(window_s=WINDOW_S))
-    return {power: [one.shares["psi"] for one in covered(to_the_power(missed, power))[1]] for power in POWERS}
+    return {
+        power: [
+            (one.shares["psi"], 0.5 * (one.shares["x0"] + one.shares["y0"]))
+            for one in covered(to_the_power(missed, power))[1]
+        ]
+        for power in POWERS
+    }
 
 
 def to_the_power(missed: Missed, power: float) -> Missed:
@@ -50,21 +57,27 @@ def to_the_power(missed: Missed, power: float) -> Missed:
     return replace(missed, trained=changed(missed.trained), held=changed(missed.held))
 
 
+def row(name: str, made: Mapping[float, Sequence[tuple[float, float]]]) -> str:
+    """Means over runs: heading / position for each power."""
+    means = [np.mean(made[power], axis=0) for power in POWERS]
+    return f"{name:<16}{len(made[0.0]):>12}" + "".join(f"{f'{h:.2f} / {p:.2f}':>15}" for h, p in means)
+
+
 def main() -> None:
     """Print the table."""
     trial = load_trial(TRIAL)
+    trial = replace(trial, runs=tuple(run for run in trial.runs if run.role is Role.TRAIN))
     rate = trial.estimate.rate
-    train = [replace(r, record=r.record.resampled(rate)) for r in records_of(trial)[0] if r.role is Role.TRAIN]
-    settings = settings_of(trial, [r.record for r in train])
+    train = [replace(r, record=r.record.resampled(rate) if rate else r.record) for r in records_of(trial)[0]]
     print(machine())
-    print(f"{'trained up to':<16}{'runs beyond':>12}" + "".join(f"{f'power {p:g}':>10}" for p in POWERS))
-    pooled: dict[float, list[float]] = {p: [] for p in POWERS}
+    print(f"{'trained up to':<16}{'runs beyond':>12}" + "".join(f"{f'power {p:g}':>15}" for p in POWERS))
+    pooled: dict[float, list[tuple[float, float]]] = {p: [] for p in POWERS}
     for limit in LIMITS:
-        made = shares(trial, settings, train, limit)
-        print(f"{limit:>4} deg{'':<8}{len(made[0.0]):>12}" + "".join(f"{np.mean(made[p]):>10.2f}" for p in POWERS))
+        made = shares(trial, train, limit)
+        print(row(f"{limit:>4} deg", made), flush=True)
         for power in POWERS:
             pooled[power] += made[power]
-    print(f"{'pooled':<16}{len(pooled[0.0]):>12}" + "".join(f"{np.mean(pooled[p]):>10.2f}" for p in POWERS))
+    print(row("pooled", pooled))
 
 
 if __name__ == "__main__":

@@ -12,11 +12,12 @@ import pytest
 from report.fabricated import fabricated_fit
 from seatrial import cli, verbs
 from seatrial.predict.window_bands import Covered
-from seatrial.results import Study, Verdict
+from seatrial.results import Member, Study, Verdict
 from seatrial.studies import STUDIES
 from seatrial.studies.alexandersson2022 import published, verdicts
 from seatrial.studies.alexandersson2022.left_out import LeftOut, jackknife_error
 from seatrial.studies.alexandersson2022.margins import Margins, TurnMargin
+from seatrial.studies.alexandersson2022.margins import tables as margin_tables
 from seatrial.studies.alexandersson2022.published import MEASURED_TURNS, PREDICTED_TURNS, SIDES, percent
 from seatrial.studies.alexandersson2022.repetition import Repetition, noise_of
 from seatrial.studies.alexandersson2022.tables import left_out, left_out_turns
@@ -112,6 +113,19 @@ def margins(width: float = 0.2, share: float = 0.95) -> Margins:
     return Margins(turns, (run, run), (run,))
 
 
+def test_full_refits_and_the_family_are_judged_and_shown_where_they_were_made() -> None:
+    wide = margins(width=0.4).turns
+    members = (Member("own", 9, 1.4, 0.2, tied=False, chosen=True), Member("other", 11, 1.2, 0.2, tied=True))
+    with_tied = replace(margins(), with_tied=wide, family=members)
+    assert held(replace(made(), margins=with_tied))[8:] == [True, True, False, False, True, True]
+    shown, _, family = margin_tables(with_tied)
+    assert [row[1] for row in shown.rows] == ["one-step jackknife"] * 2 + ["jackknife, tied models"] * 2
+    assert [row[-1] for row in family.rows] == ["the trial's", "tied"]
+    assert len(margin_tables(margins())) == 2
+    evidence = verdicts.certainty(replace(certain(), margins=with_tied)).evidence
+    assert evidence.count("hold 2 of 2") == 2 and "tied models" in evidence
+
+
 def held(repetition: Repetition) -> list[bool]:
     return [check.holds for check in verdicts.checks(repetition)]
 
@@ -129,6 +143,7 @@ def test_checks_of_intervals_hold_and_fail() -> None:
     assert held(sure)[8:] == [True, True, False, True]
     assert held(replace(made(), margins=margins(share=0.7)))[8:] == [True, True, False, False]
     assert margins().turns[0].half_width == pytest.approx(100 * 0.2 / MEASURED_TURNS["port"].diameter)
+    assert TurnMargin("port", "advance", 2.0, 4.0, 3.9).reach == pytest.approx(0.9)
     assert margins().turns[0].holds and "hold 2 of 2" in verdicts.certainty(certain()).evidence
 
 

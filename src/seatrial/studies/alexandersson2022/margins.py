@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.estimate import Identified
+from seatrial.identify.family import WINDOW_SHIP_LENGTHS
 from seatrial.manoeuvres.programme import programme
 from seatrial.predict.cross_validation import Protocol
-from seatrial.predict.steered import measure_intervals
+from seatrial.predict.steered import DRAWS, measure_intervals
 from seatrial.predict.window_bands import Covered, covered, missed_windows
-from seatrial.results import Check, Fit, Table
+from seatrial.results import Check, Fit, Member, Table
 from seatrial.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
 from seatrial.studies.alexandersson2022.published import MEASURED_TURNS, SIDES
 from seatrial.trial import TrialRecord
@@ -19,6 +20,7 @@ from seatrial.values import InputError
 
 WINDOW_S = 30.0
 HALF_WIDTH_LIMIT, SHARE_LIMITS, HELD_OUT_SHARE = 10.0, (0.88, 0.99), 0.80
+_LIMITED = ("tactical diameter",)
 _MEASURES = {"advance_L": ("advance", "advance"), "tactical_diameter_L": ("tactical diameter", "diameter")}
 
 
@@ -38,6 +40,11 @@ class TurnMargin:
         return 100.0 * (self.upper - self.lower) / (self.upper + self.lower)
 
     @property
+    def reach(self) -> float:
+        """Distance of MARIN's value from the middle over the half width; 1 at the interval's end."""
+        return abs(2.0 * self.measured - self.lower - self.upper) / (self.upper - self.lower)
+
+    @property
     def holds(self) -> bool:
         """Whether the measured value lies inside."""
         return self.lower <= self.measured <= self.upper
@@ -45,11 +52,17 @@ class TurnMargin:
 
 @dataclass(frozen=True)
 class Margins:
-    """Intervals of the turns, and shares of headings inside their bands: runs left out, and held out."""
+    """Intervals of the turns, and shares of samples inside their bands: runs left out, and held out.
+
+    with_tied: intervals of the turns by full refits and the spread of tied models; family: those models; both empty in
+    the quick version.
+    """
 
     turns: tuple[TurnMargin, ...]
     left_out: tuple[Covered, ...]
     held_out: tuple[Covered, ...]
+    with_tied: tuple[TurnMargin, ...] = ()
+    family: tuple[Member, ...] = ()
 
     @property
     def share(self) -> float:
@@ -59,19 +72,24 @@ class Margins:
 
 def margins(
     fit: Fit,
+    wide: Fit | None,
     found: Identified,
     train: Sequence[TrialRecord],
     held: Sequence[TrialRecord],
     approach: Mapping[str, float],
     seed: int,
 ) -> Margins:
-    """Steer the turns with ships drawn from the fit; predict all windows.
+    """Steer the turns with ships drawn from the fit, and from the one with the spread of tied models; predict windows.
 
     Raises:
         InputError: the turns diverge, or there are too few runs to leave any out.
     """
     within, beyond = covered(missed_windows(found, train, held, Protocol(window_s=WINDOW_S), seed))
-    return Margins(tuple(m for side in SIDES for m in turn_margins(fit, side, approach, seed)), within, beyond)
+    turns, with_tied = (
+        tuple(m for side in SIDES for m in turn_margins(one, side, approach, seed)) if one else ()
+        for one in (fit, wide)
+    )
+    return Margins(turns, within, beyond, with_tied, wide.family if wide else ())
 
 
 def turn_margins(fit: Fit, side: str, approach: Mapping[str, float], seed: int) -> list[TurnMargin]:
@@ -99,11 +117,12 @@ def turn_margins(fit: Fit, side: str, approach: Mapping[str, float], seed: int) 
     ]
 
 
-def tables(made: Margins) -> tuple[Table, Table]:
-    """The intervals of the turns, and the shares of samples inside their bands."""
+def tables(made: Margins) -> tuple[Table, ...]:
+    """The intervals of the turns, the shares of samples inside their bands, and the family where it was fitted."""
     turned = tuple(
-        (f"{m.measure}, {m.side}", m.lower, m.upper, m.half_width, m.measured, "inside" if m.holds else "outside")
-        for m in made.turns
+        (f"{m.measure}, {m.side}", how, m.lower, m.upper, m.half_width, m.measured, "inside" if m.holds else "outside")
+        for how, turns in (("one-step jackknife", made.turns), ("jackknife, tied models", made.with_tied))
+        for m in turns
     )
     rows: list[tuple[str | float | None, ...]] = [
         (c.run, c.windows, *(100.0 * c.shares[s] for s in ("psi", "x0", "y0")))
@@ -113,10 +132,12 @@ def tables(made: Margins) -> tuple[Table, Table]:
     return (
         Table(
             "Intervals of the 35 deg turns",
-            ("measure", "from [L]", "to [L]", "half width [%]", "MARIN [L]", "MARIN's value"),
+            ("measure", "interval by", "from [L]", "to [L]", "half width [%]", "MARIN [L]", "MARIN's value"),
             turned,
-            "95 % intervals: scatter of runs left out times the factor by which their errors exceed it (one-step "
-            "jackknife); --intervals jackknife of seatrial identify adds the spread of tied models.",
+            "95 % intervals: scatter of runs left out times the factor by which their errors exceed it (the default of "
+            "seatrial identify); with full refits and the spread of tied models (--intervals jackknife) unless quick. "
+            f"They rest on {DRAWS} drawn ships: another seed changes a half width by a tenth or more, and may move a "
+            "value near an end in or out.",
         ),
         Table(
             f"Samples inside their 95 % bands, windows of {WINDOW_S:g} s",
@@ -125,14 +146,31 @@ def tables(made: Margins) -> tuple[Table, Table]:
             "Each training run is predicted by the model without it (one-step jackknife), and its model discrepancy is "
             "that of the others; the last row is the run held out from everything.",
         ),
+        *((family(made.family),) if made.family else ()),
+    )
+
+
+def family(members: Sequence[Member]) -> Table:
+    """What each model of the family misses of runs left out."""
+    rows = tuple(
+        (m.name, m.free, m.heading_deg, m.position_m, "the trial's" if m.chosen else "tied" if m.tied else m.note)
+        for m in members
+    )
+    return Table(
+        "The family of models on runs left out",
+        ("model", "free coefficients", "heading rms [deg]", "position rms [m]", "standing"),
+        rows,
+        f"Windows of {WINDOW_SHIP_LENGTHS:g} ship lengths, one-step jackknife. Tied models are not worse than the best "
+        "one beyond the scatter over runs; the trial's own model need not be among them, and none is chosen here.",
     )
 
 
 def checks(made: Margins) -> tuple[Check, ...]:
     """Half widths of the tactical diameters, shares inside the bands."""
     low, high = SHARE_LIMITS
-    widths = [(m.side, m.half_width) for m in made.turns if m.measure == "tactical diameter"]
+    widths = [(m.side, m.half_width) for m in made.turns if m.measure in _LIMITED]
     held = float(np.mean([c.shares["psi"] for c in made.held_out]))
+    widths += [(f"{m.side}, with tied models", m.half_width) for m in made.with_tied if m.measure in _LIMITED]
     return (
         *(
             Check(f"tactical diameter to {side}, half width [%]", width, HALF_WIDTH_LIMIT, width <= HALF_WIDTH_LIMIT)

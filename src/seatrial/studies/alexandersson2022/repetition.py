@@ -10,6 +10,7 @@ import numpy as np
 from seatrial.check import examine
 from seatrial.check.signal import sample_noise
 from seatrial.equations import Model
+from seatrial.estimate.settings import Intervals
 from seatrial.identify import identified, identify
 from seatrial.identify.identify import settings_of
 from seatrial.manoeuvres import measures
@@ -68,6 +69,7 @@ def repetition(trial: Trial, *, quick: bool, seed: int, progress: Progress | Non
     sessions, settings = [r.session for r in train], settings_of(trial, records)
     found = identified(trial.model, records, sessions, trial.ship.length, settings)
     warm = time.perf_counter() - began
+    wide = None if quick else identify(trial, seed, progress, intervals=Intervals.JACKKNIFE)
     tell("the headers' labels")
     labels = mislabelled(trial)
     tracks = {side: turn_record(fit.model, side, approach, trial.ship.scale) for side in SIDES}
@@ -79,7 +81,7 @@ def repetition(trial: Trial, *, quick: bool, seed: int, progress: Progress | Non
         labels=labels,
         noise=noise_of([r.record for r in raw], [n.channel for n in fit.noise]),
         left_out=() if quick else _left_out(trial, train, approach, progress),
-        margins=margins(fit, found, train, held, approach, seed),
+        margins=margins(fit, wide, found, train, held, approach, seed),
     )
 
 

@@ -16,8 +16,8 @@ def study(*, quick: bool, seed: int, progress: Callable[[str], None] | None) -> 
     """Identify KVLCC2 from twelve HSVA zigzags, predict the thirteenth and the 35 deg turns; the paper beside it.
 
     Args:
-        quick: leaves out the leave-one-run-out tables.
-        seed: kept with the result; nothing is drawn at random.
+        quick: leaves out the leave-one-run-out tables and the family of models.
+        seed: of the draws behind the intervals of the turns and of the windows' bands.
 
     Raises:
         InputError: SEATRIAL_DATA does not lead to the records, or what `identify` raises.

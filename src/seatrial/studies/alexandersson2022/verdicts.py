@@ -163,14 +163,17 @@ def checks(made: Repetition) -> tuple[Check, ...]:
 
 
 def _intervals(made: Repetition) -> str:
-    turns = made.margins.turns
-    if not turns:
-        return "Our own intervals could not be had"
-    return (
-        "Our own intervals, which count what runs left out missed, hold "
-        f"{sum(m.holds for m in turns)} of {len(turns)} of MARIN's values at half widths up to "
-        f"{max(m.half_width for m in turns):.1f} %"
+    kinds = (
+        ("which count what runs left out missed", made.margins.turns),
+        ("with the spread of tied models as well", made.margins.with_tied),
     )
+    told = [
+        f"{how}, hold {sum(m.holds for m in turns)} of {len(turns)} of MARIN's values at half widths up to "
+        f"{max(m.half_width for m in turns):.1f} %, the farthest at {max(m.reach for m in turns):.2f} of its half width"
+        for how, turns in kinds
+        if turns
+    ]
+    return f"Our own intervals, {'; '.join(told)}" if told else "Our own intervals could not be had"
 
 
 def _windows(made: Repetition) -> float:
