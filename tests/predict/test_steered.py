@@ -94,3 +94,12 @@ def test_a_free_rudder_zero_scatters_as_it_was_estimated_and_as_runs_differ() ->
     drawn = np.array(seen[1:])
     assert len(drawn) == DRAWS
     assert np.std(drawn) == pytest.approx(np.hypot(sd, between), rel=0.2), "60 draws: 9 % of chance, twice"
+
+
+def test_few_degrees_of_freedom_widen_by_students_t(model: Model, steer: Callable[[Model], Record]) -> None:
+    """Quantiles of Student's t at 97.5 %: 2.776 with four degrees of freedom, 1.960 with any number."""
+    wide, narrow = (
+        measure_intervals(model, replace(margin(1e-4), degrees_of_freedom=d), steer, LENGTH, np.random.default_rng(0))
+        for d in (4.0, np.inf)
+    )
+    assert np.ptp(wide[NAME]) / np.ptp(narrow[NAME]) == pytest.approx(2.776 / 1.960, rel=1e-3)
