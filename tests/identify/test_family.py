@@ -14,6 +14,7 @@ from seatrial.identify.family import (
     chosen,
     compared,
     modelled,
+    scored,
     table,
     tied_models,
     variants,
@@ -167,3 +168,23 @@ def test_a_chosen_segment_length_is_that_which_was_compared(
     used = chosen(own, members, rows, records, names, 8.0, settings)
     assert members[1].made is not None
     assert used.made.problem.data.count == members[1].made.problem.data.count > own.made.problem.data.count
+
+
+def with_gap(record: Record, rows: slice) -> Record:
+    """Heading not measured in these rows."""
+    channel = record.channel("psi")
+    values = channel.values.copy()
+    values[rows] = np.nan
+    return record.with_channel("psi", channel.with_values(values))
+
+
+def test_windows_without_heading_judge_nobody(model: Model, records: list[Record]) -> None:
+    """A gap over a whole window of 20 s leaves the run's other windows; a run without any is named."""
+    names = [r.name for r in records]
+    gappy = [with_gap(records[0], slice(50, 100)), *records[1:]]
+    found = identified(model, gappy, names, 8.0, SETTINGS)
+    scores = scored(found.made, model, gappy, 20.0)
+    assert np.all(np.isfinite(scores))
+    assert np.all(scores < 2.0)
+    with pytest.raises(InputError, match="'run 0' has no window in which both position and heading"):
+        scored(found.made, model, [with_gap(records[0], slice(None)), *records[1:]], 20.0)

@@ -19,9 +19,9 @@ from seatrial.estimate.intervals import RUNS_FOR_JACKKNIFE
 from seatrial.estimate.replicates import stepped
 from seatrial.estimate.settings import Settings
 from seatrial.models.families import PRIOR_FACTORS, SEGMENT_FACTORS, STRUCTURES
-from seatrial.predict.cross_validation import Protocol, window_errors
+from seatrial.predict.cross_validation import Protocol, window_errors, windows
 from seatrial.predict.forecast import Tied
-from seatrial.predict.open_loop import offsets_of
+from seatrial.predict.margins import without
 from seatrial.results import Member
 from seatrial.trial import Family
 from seatrial.values import Array, Finding, InputError, Prior, Progress, Record, Severity
@@ -197,17 +197,20 @@ def _carried_over(base: Estimate, free: Sequence[str], start: Array) -> Array:
 def scored(made: Estimate, model: Model, records: Sequence[Record], window_s: float) -> Array:
     """Mean window error of each run by the estimate without it, (runs, 2): heading [deg], position [m].
 
+    Runs shorter than a window are left out, unless all are.
+
     Raises:
-        InputError: a window diverges, or a run lacks position or heading.
+        InputError: a window diverges, or a run lacks position or heading in all of its windows.
     """
     problem, points = made.problem, stepped(made)
     protocol, scores = Protocol(window_s=window_s), []
-    for r, record in enumerate(records):
-        own_session = problem.data.sessions[problem.data.session[problem.data.of_run(r)[0]]]
-        others = [s != own_session for s in problem.data.sessions]
-        own = offsets_of(problem, points[r])[others if any(others) else slice(None)].mean(axis=0)
-        without = model.with_values(dict(zip(problem.free, points[r], strict=False)))
-        errors = window_errors(problem, without, [record], [own], ["run"], protocol)
+    judged = [r for r, record in enumerate(records) if windows(record, protocol)] or range(len(records))
+    for r in judged:
+        record, session = records[r], problem.data.sessions[problem.data.session[problem.data.of_run(r)[0]]]
+        by = without(replace(problem, model=model), points[r], session)
+        errors = window_errors(problem, by.model, [record], [by.own], ["run"], protocol)
+        if not errors:
+            raise InputError(f"run '{record.name}' has no window in which both position and heading are measured")
         scores.append((np.mean([e.heading_deg for e in errors]), np.mean([e.position_m for e in errors])))
     return np.array(scores)
 

@@ -182,6 +182,7 @@ def window_errors(
 ) -> list[WindowError]:
     """Errors of all windows of `records`, simulated open loop with the nuisances `owns`, shape (kinds,) a record.
 
+    A window in which position or heading is never measured has no error and is left out.
     template: the problem whose outputs, noise and nuisances are used to estimate initial states.
 
     Raises:
@@ -199,6 +200,8 @@ def window_errors(
                 f"the simulation of run '{piece.name}' from {piece.time[0]:g} s diverges; check the bounds"
             )
         error = simulated[a:b] - problem.data.measured[a:b]
+        if not np.all(np.any(np.isfinite(error), axis=0)):
+            continue
         position = float(np.sqrt(np.nanmean(error[:, 0] ** 2 + error[:, 1] ** 2)))
         heading = float(np.degrees(np.sqrt(np.nanmean(error[:, 2] ** 2))))
         made.append(WindowError(piece.name, labels[index], fold, float(piece.time[0]), position, heading))
