@@ -192,19 +192,17 @@ def simulate(
     return steer(model.model)
 
 
-def measure_intervals(model: "ModelFile", steer: Steering, seed: int = 0) -> dict[str, tuple[float, float]]:
+def measure_intervals(model: "ModelFile", steer: Steering) -> dict[str, tuple[float, float]]:
     """95 % interval of each measure of the manoeuvre; empty where the model file says nothing of its own uncertainty.
 
     Raises:
         InputError: most of the ships that the fit allows cannot be steered through the manoeuvre.
     """
-    import numpy as np
-
     from seatrial.predict.steered import measure_intervals
 
     if model.margin is None or model.ship is None:
         return {}
-    return measure_intervals(model.model, model.margin, steer, model.ship.length, np.random.default_rng(seed))
+    return measure_intervals(model.model, model.margin, steer, model.ship.length)
 
 
 def extrapolation(model: "ModelFile", record: "Record") -> "Extrapolation | None":

@@ -10,7 +10,7 @@ import pytest
 
 from seatrial.estimate.settings import Intervals
 
-SERIES = 4
+SERIES = 3
 
 
 @pytest.fixture(scope="module")

@@ -5,15 +5,18 @@ import pytest
 
 from seatrial.equations import Model
 from seatrial.estimate import Identified, Settings, identified
+from seatrial.manoeuvres.programme import programme
 from seatrial.models.nomoto import nomoto
 from seatrial.predict.cross_validation import Protocol
 from seatrial.predict.forecast import Forecast, forecast
 from seatrial.predict.window_bands import covered, missed_windows
 from seatrial.simulate import replay
+from seatrial.simulate.steer import manoeuvre
 from seatrial.trial import Role, TrialRecord
 from seatrial.values import InputError, Record
 
-K, T, RUNS, REPEATS, ZERO = 0.15, 8.0, 7, 30, 0.01
+K, T, RUNS, REPEATS, ZERO = 0.15, 8.0, 7, 14, 0.01
+ANGLES = (10, 12, 14, 16, 18, 20, 15)
 
 
 @pytest.fixture(scope="module")
@@ -21,19 +24,19 @@ def model() -> Model:
     return nomoto().with_values({"K": K, "T": T})
 
 
-def sailed(model: Model, name: str, phase: float, rng: np.random.Generator) -> Record:
-    """A zigzag-like run with a rudder zero of its own, which the record does not show."""
-    time = 0.5 * np.arange(201)
-    delta, zero = 0.3 * np.sign(np.sin(0.12 * time + phase)), ZERO * rng.standard_normal()
-    truth = replay(model, Record.of(name, time, {"delta": delta + zero}), {"r": 0.0})
+def sailed(model: Model, name: str, angle: int, rng: np.random.Generator) -> Record:
+    """A zigzag whose rudder has a zero of its own, which the record does not show."""
+    plan = manoeuvre(model, programme(f"zigzag:{angle}/{angle}"), dt=0.5, speed=2.0, approach=5.0, duration=100.0)
+    delta, zero = plan["delta"], ZERO * rng.standard_normal()
+    truth = replay(model, Record.of(name, plan.time, {"delta": delta + zero}), {"r": 0.0})
     noise = {"psi": 2e-3, "r": 1e-3}
-    read = {s: truth[s] + sd * rng.standard_normal(len(time)) for s, sd in noise.items()}
-    return Record.of(name, time, {"delta": delta, "u": np.full(len(time), 2.0), **read})
+    read = {s: truth[s] + sd * rng.standard_normal(len(delta)) for s, sd in noise.items()}
+    return Record.of(name, plan.time, {"delta": delta, "u": np.full(len(delta), 2.0), **read})
 
 
 def fitted(model: Model, number: int) -> tuple[Identified, list[TrialRecord]]:
     rng = np.random.default_rng(number)
-    runs = [sailed(model, f"run {i}", 0.4 * i, rng) for i in range(RUNS)]
+    runs = [sailed(model, f"run {i}", ANGLES[i], rng) for i in range(RUNS)]
     records = [TrialRecord(r, Role.VALIDATE if i == RUNS - 1 else Role.TRAIN, r.name) for i, r in enumerate(runs)]
     train = runs[:-1]
     settings = Settings(segment_seconds=20.0, workers=1)
@@ -46,7 +49,7 @@ def told(model: Model, number: int) -> Forecast:
 
 
 def test_bands_and_intervals_hold_what_happens(model: Model) -> None:
-    """Samples of a run go together, so the share over repeats scatters by some 4 %."""
+    """Fourteen runs: gross errors show, no more; the coverage benchmark counts a hundred series."""
     inside, measures = [], []
     for number in range(REPEATS):
         p = told(model, number).predictions[-1]
@@ -55,7 +58,7 @@ def test_bands_and_intervals_hold_what_happens(model: Model) -> None:
         measures += [m.lower <= m.measured <= m.upper for m in p.measures.values()
                      if None not in (m.measured, m.lower, m.upper) and m.upper != m.lower]  # fmt: skip
     assert 0.84 <= np.mean(inside) <= 1.0
-    assert len(measures) > REPEATS
+    assert len(measures) >= 3 * REPEATS
     assert 0.85 <= np.mean(measures) <= 1.0
     assert np.mean(inside) < 0.999, "a band that never fails is too wide"
 
@@ -91,7 +94,7 @@ def test_windows_of_runs_left_out_lie_in_their_bands(model: Model) -> None:
 
 def test_bands_cannot_be_judged_with_few_runs(model: Model) -> None:
     rng = np.random.default_rng(0)
-    runs = [sailed(model, f"run {i}", 0.4 * i, rng) for i in range(2)]
+    runs = [sailed(model, f"run {i}", ANGLES[i], rng) for i in range(2)]
     found = identified(model, runs, ["a", "b"], 8.0, Settings(segment_seconds=20.0, workers=1))
     with pytest.raises(InputError, match="too few training runs"):
         missed_windows(found, [TrialRecord(r, Role.TRAIN, r.name) for r in runs], [], Protocol(window_s=25.0))

@@ -1,6 +1,7 @@
 """The commands: parse, call the function of the same name, print. Everything heavy is imported inside them."""
 
 import math
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -167,7 +168,10 @@ def simulate(
             seed=seed,
         )
         record = steer(file.model)
-        intervals = verbs.measure_intervals(file, steer, seed)
+        try:
+            intervals = verbs.measure_intervals(file, steer)
+        except InputError as error:
+            print(f"seatrial: {error}", file=sys.stderr)
     write_record(record, out)
     measures = verbs.measures(file, record, measured if measured is not None and "psi" in measured else None)
     reach = verbs.extrapolation(file, record)

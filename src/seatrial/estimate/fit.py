@@ -1,21 +1,19 @@
 """Records and a model in, a fit out: the decision table of the estimator (docs/estimation.md)."""
 
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatrial.equations import Model
 from seatrial.estimate.assemble import output_error
-from seatrial.estimate.coloured import coloured
-from seatrial.estimate.estimate import Estimate, colour, estimate
+from seatrial.estimate.decide import PREDICTION_ERROR, Found, decided
+from seatrial.estimate.estimate import Estimate, estimate
 from seatrial.estimate.intervals import Uncertainty, intervals, of_innovations, refuse_few_runs
-from seatrial.estimate.process_noise import ProcessNoise, intensities, is_worthwhile, prediction_error
 from seatrial.estimate.settings import (
     HUBER,
     SEGMENT_SHIP_LENGTHS,
-    WHITE_INFLATION,
     WINDOW_SHIP_LENGTHS,
     Criterion,
     Settings,
@@ -26,7 +24,6 @@ from seatrial.information.covariance import Interval
 from seatrial.results import Disturbance
 from seatrial.values import Array, InputError, Progress, Record
 
-PREDICTION_ERROR, WHOLE_RUNS = "prediction error", "output error over whole runs"
 _STILL = float(np.radians(0.5))
 
 
@@ -110,20 +107,6 @@ def refuse_without_excitation(model: Model, records: Sequence[Record]) -> None:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class _Found:
-    """A criterion's optimum, what it leaves, and why it is used."""
-
-    made: Estimate
-    residuals: Array
-    inflation: Array
-    rho: list[Array]
-    criterion: str
-    reasons: tuple[str, ...]
-    process: dict[str, float] = field(default_factory=dict)
-    noise: ProcessNoise | None = None
-
-
 def identified(
     model: Model,
     records: Sequence[Record],
@@ -162,7 +145,7 @@ def identified(
     def whole_runs() -> Estimate | None:
         return _over_whole_runs(shooting, model, records, sessions, settings, progress)
 
-    found = _decided(_shot(shooting, seconds), settings, whole_runs, progress)
+    found = decided(shooting, seconds, settings, whole_runs, progress)
     criterion = f"{found.criterion}, Huber loss" if settings.robust else found.criterion
     known = _uncertainty(found, settings, tell)
     return Identified(
@@ -171,74 +154,7 @@ def identified(
     )  # fmt: skip
 
 
-def _decided(
-    shot: _Found, settings: Settings, whole_runs: Callable[[], Estimate | None], progress: Progress | None
-) -> _Found:
-    """The decision table: which criterion the estimate over segments leads to."""
-    white = bool(np.max(shot.inflation) <= WHITE_INFLATION)
-    match settings.criterion:
-        case Criterion.OUTPUT_ERROR | Criterion.MULTIPLE_SHOOTING:
-            return _asked_for(shot, settings, "the criterion was asked for")
-        case Criterion.PREDICTION_ERROR:
-            noise = prediction_error(shot.made, settings.noise, thorough=True, progress=progress)
-            return _predicted(noise, "it was asked for", noise.gate.text)
-        case Criterion.AUTO:
-            pass
-    if settings.segment_seconds is not None:
-        return _asked_for(shot, settings, "the length of segments was asked for")
-    if white and (whole := whole_runs()) is not None:
-        reason = "residuals are white within segments and over whole runs: no process noise to guard against"
-        return _with_reason(_left(whole, WHOLE_RUNS, shot.reasons), reason)
-    if white:
-        shot = _with_reason(shot, "whole runs do not fit within the noise of the segments")
-    if settings.robust or not is_worthwhile(shot.made):
-        return _with_reason(shot, COLOURED)
-    noise = prediction_error(shot.made, settings.noise, progress=progress)
-    if noise.gate.is_needed and not noise.gate.is_white:
-        noise = coloured(noise, progress=progress)
-    if noise.gate.holds:
-        added = (f"added to the model: {noise.colours}",) if noise.colours else ()
-        return _predicted(noise, *shot.reasons, noise.gate.text, *added)
-    return replace(_with_reason(shot, noise.gate.text, COLOURED), process=noise.process)
-
-
-def _asked_for(shot: _Found, settings: Settings, reason: str) -> _Found:
-    """The user's own choice; what it leaves coloured is measured as process noise, for the floor of predictions."""
-    if np.max(shot.inflation) <= WHITE_INFLATION or not is_worthwhile(shot.made):
-        return _with_reason(shot, reason)
-    return replace(_with_reason(shot, reason, COLOURED), process=intensities(shot.made, settings.noise))
-
-
-COLOURED = "coloured residuals mean model error or process noise: short segments keep it from accumulating"
-
-
-def _shot(made: Estimate, seconds: float) -> _Found:
-    if np.isinf(seconds):
-        return _left(made, WHOLE_RUNS, ())
-    return _left(made, f"output error, multiple shooting with segments of {seconds:.3g} s", ())
-
-
-def _left(made: Estimate, criterion: str, reasons: tuple[str, ...]) -> _Found:
-    residuals = made.residuals()
-    rho, inflation = colour(made.problem, residuals)
-    where = "over whole runs" if criterion == WHOLE_RUNS else "within segments"
-    said = f"the residuals' correlation {where} inflates variances by {np.max(inflation):.3g}"
-    if np.max(inflation) > WHITE_INFLATION:
-        said += ", and correlated samples count as their effective number, so that priors keep their weight"
-    return _Found(made, residuals, inflation, rho, criterion, (*reasons, said))
-
-
-def _with_reason(found: _Found, *reasons: str) -> _Found:
-    return replace(found, reasons=(*found.reasons, *reasons))
-
-
-def _predicted(noise: ProcessNoise, *reasons: str) -> _Found:
-    made, innovations = noise.as_estimate(), noise.problem.innovations(noise.optimum.solution.point)
-    rho, inflation = colour(made.problem, innovations.normalised)
-    return _Found(made, -innovations.e, inflation, rho, PREDICTION_ERROR, reasons, noise.process, noise)
-
-
-def _uncertainty(found: _Found, settings: Settings, tell: Progress) -> Uncertainty:
+def _uncertainty(found: Found, settings: Settings, tell: Progress) -> Uncertainty:
     def counted(done: int, total: int) -> None:
         tell(f"{settings.intervals}: fit {done} of {total}")
 
@@ -248,7 +164,7 @@ def _uncertainty(found: _Found, settings: Settings, tell: Progress) -> Uncertain
     return of_innovations(found.noise, settings.intervals)
 
 
-def _disturbance(found: _Found) -> Disturbance:
+def _disturbance(found: Found) -> Disturbance:
     """Noise in states and channels; intensities that do not make the innovations white bound the process noise."""
     data = found.made.problem.data
     samples = np.isfinite(data.measured).sum(axis=0)
@@ -270,7 +186,7 @@ def _over_whole_runs(
     settings: Settings,
     progress: Progress | None,
 ) -> Estimate | None:
-    """Whole runs from the segments' optimum, if their residuals are no larger (5 %) than within segments."""
+    """Whole runs from the segments' optimum; None where they diverge there."""
     problem = replace(
         output_error(model, records, sessions, np.inf, settings), noise=made.problem.noise, huber=made.problem.huber
     )
@@ -278,5 +194,4 @@ def _over_whole_runs(
     local = made.optimum.local[firsts]
     if not np.isfinite(problem.cost(made.shared, local)):
         return None
-    whole = estimate(problem, made.shared, local, settings.noise, evaluations=settings.evaluations, progress=progress)
-    return whole if np.all(whole.problem.noise <= 1.05 * made.problem.noise) else None
+    return estimate(problem, made.shared, local, settings.noise, evaluations=settings.evaluations, progress=progress)

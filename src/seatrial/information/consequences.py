@@ -21,7 +21,7 @@ def answer(information: Array, fitted: Index, assumed: int, step: float) -> tupl
     information: shape (n, n); fitted, assumed: positions in it.
     """
     cross = information[fitted, assumed]
-    moves: Array = -np.linalg.solve(information[np.ix_(fitted, fitted)], cross) * step
+    moves = np.asarray(-step * np.linalg.solve(information[np.ix_(fitted, fitted)], cross), dtype=np.float64)
     return moves, max(float(step * (information[assumed, assumed] * step + cross @ moves)), 0.0)
 
 

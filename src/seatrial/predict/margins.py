@@ -44,11 +44,19 @@ def foreseen(
     rng: np.random.Generator,
     count: int,
 ) -> Foreseen:
-    """Scatter of `count` drawn runs about the simulated one; measures include the noise with which they are read."""
-    runs = drawn(template, model, record, made.start, own, scatter, rng, count)
-    runs = runs[np.all(np.isfinite(runs), axis=(1, 2))]
+    """Scatter of `count` drawn runs about the simulated one; measures include the noise with which they are read.
+
+    Nothing is foreseen where half of the draws or more diverge: what is left of them would look too certain.
+    """
+    runs = _finite(drawn(template, model, record, made.start, own, scatter, rng, count))
     spreads = _of_measures(model, record, made, runs, length, rng) if is_steered(record, model) else {}
     return Foreseen(_of_track(model, made, runs), spreads)
+
+
+def _finite(runs: Array) -> Array:
+    """The draws that do not diverge; none where they are fewer than half."""
+    kept = runs[np.all(np.isfinite(runs), axis=(1, 2))]
+    return kept if 2 * len(kept) > len(runs) else kept[:0]
 
 
 def _of_track(model: Model, made: OpenLoop, runs: Array) -> dict[str, Array]:
@@ -108,6 +116,8 @@ def missed(
     except InputError:
         return None
     found = foreseen(template, by.model, record, made, by.own, length, scatter, rng, DRAWS_LEFT_OUT)
+    if not found.channels:
+        return None
     pairs = compared(record, made.record, length) if is_steered(record, by.model) else {}
     of_measures = {
         n: (m.simulated - m.measured, found.measures[n])
@@ -125,8 +135,8 @@ def missed_track(
         made = open_loop(template, by.model, piece, by.own, seconds)
     except InputError:
         return None
-    runs = drawn(template, by.model, piece, made.start, by.own, scatter, rng, DRAWS_LEFT_OUT)
-    return _miss(piece, made, _of_track(by.model, made, runs[np.all(np.isfinite(runs), axis=(1, 2))]))
+    runs = _finite(drawn(template, by.model, piece, made.start, by.own, scatter, rng, DRAWS_LEFT_OUT))
+    return _miss(piece, made, _of_track(by.model, made, runs)) if len(runs) else None
 
 
 def _miss(record: Record, made: OpenLoop, channels: dict[str, Array]) -> Miss:

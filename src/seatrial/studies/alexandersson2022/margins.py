@@ -10,7 +10,7 @@ from seatrial.estimate import Identified
 from seatrial.identify.family import WINDOW_SHIP_LENGTHS
 from seatrial.manoeuvres.programme import programme
 from seatrial.predict.cross_validation import Protocol
-from seatrial.predict.steered import DRAWS, measure_intervals
+from seatrial.predict.steered import measure_intervals
 from seatrial.predict.window_bands import Covered, covered, missed_windows
 from seatrial.results import Check, Fit, Member, Table
 from seatrial.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
@@ -79,24 +79,23 @@ def margins(
     approach: Mapping[str, float],
     seed: int,
 ) -> Margins:
-    """Steer the turns with ships drawn from the fit, and from the one with the spread of tied models; predict windows.
+    """Steer the turns with ships beside the fit, and beside the one with the spread of tied models; predict windows.
 
     Raises:
         InputError: the turns diverge, or there are too few runs to leave any out.
     """
     within, beyond = covered(missed_windows(found, train, held, Protocol(window_s=WINDOW_S), seed))
     turns, with_tied = (
-        tuple(m for side in SIDES for m in turn_margins(one, side, approach, seed)) if one else ()
-        for one in (fit, wide)
+        tuple(m for side in SIDES for m in turn_margins(one, side, approach)) if one else () for one in (fit, wide)
     )
     return Margins(turns, within, beyond, with_tied, wide.family if wide else ())
 
 
-def turn_margins(fit: Fit, side: str, approach: Mapping[str, float], seed: int) -> list[TurnMargin]:
+def turn_margins(fit: Fit, side: str, approach: Mapping[str, float]) -> list[TurnMargin]:
     """Advance and tactical diameter of the 35 deg turn to one side.
 
     Raises:
-        InputError: the fit has no margin, or most drawn ships cannot be steered through the turn.
+        InputError: the fit has no margin, or most ships beside it cannot be steered through the turn.
     """
     if fit.margin is None:
         raise InputError("this fit says nothing of its predictions' uncertainty; identify again")
@@ -108,7 +107,6 @@ def turn_margins(fit: Fit, side: str, approach: Mapping[str, float], seed: int) 
         fit.margin,
         lambda ship: manoeuvre(ship, orders, inputs=held, slew_rate=slew),
         fit.ship.length,
-        np.random.default_rng(seed),
     )
     return [
         TurnMargin(side, name, *told[key], float(getattr(MEASURED_TURNS[side], field)))
@@ -135,9 +133,7 @@ def tables(made: Margins) -> tuple[Table, ...]:
             ("measure", "interval by", "from [L]", "to [L]", "half width [%]", "MARIN [L]", "MARIN's value"),
             turned,
             "95 % intervals: scatter of runs left out times the factor by which their errors exceed it (the default of "
-            "seatrial identify); with full refits and the spread of tied models (--intervals jackknife) unless quick. "
-            f"They rest on {DRAWS} drawn ships: another seed changes a half width by a tenth or more, and may move a "
-            "value near an end in or out.",
+            "seatrial identify); with full refits and the spread of tied models (--intervals jackknife) unless quick.",
         ),
         Table(
             f"Samples inside their 95 % bands, windows of {WINDOW_S:g} s",

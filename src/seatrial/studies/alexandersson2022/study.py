@@ -17,7 +17,7 @@ def study(*, quick: bool, seed: int, progress: Callable[[str], None] | None) -> 
 
     Args:
         quick: leaves out the leave-one-run-out tables and the family of models.
-        seed: of the draws behind the intervals of the turns and of the windows' bands.
+        seed: of the draws behind intervals of predictions and the bands of windows.
 
     Raises:
         InputError: SEATRIAL_DATA does not lead to the records, or what `identify` raises.
