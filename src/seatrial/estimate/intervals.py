@@ -1,13 +1,12 @@
 """Which interval is defensible for this fit, and the interval itself."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatrial.estimate.estimate import Estimate
 from seatrial.estimate.process_noise import ProcessNoise
-from seatrial.estimate.replicates import drawn, left_out, stepped
+from seatrial.estimate.replicates import Counted, drawn, left_out, stepped
 from seatrial.estimate.settings import WHITE_INFLATION, Intervals
 from seatrial.information.covariance import (
     Interval,
@@ -19,8 +18,6 @@ from seatrial.information.covariance import (
     with_prior,
 )
 from seatrial.values import Array, InputError
-
-Counted = Callable[[int, int], None]
 
 RUNS_FOR_JACKKNIFE = 4
 BOOTSTRAPS = 40

@@ -4,7 +4,7 @@ Whole runs are held out, never pieces of them: neighbouring samples share wind a
 (Stone 1974, J. R. Stat. Soc. B 36, 111-147, for runs instead of observations).
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -17,10 +17,9 @@ from seatrial.optimise import levenberg_marquardt
 from seatrial.predict.open_loop import session_means
 from seatrial.problem.output_error import OutputError
 from seatrial.problem.segments import compared_outputs, cut
-from seatrial.values import Array, InputError, Record
+from seatrial.values import Array, InputError, Progress, Record
 from seatrial.workers import mapped
 
-Progress = Callable[[str], None]
 _TRACK = ("x0", "y0", "psi")
 
 

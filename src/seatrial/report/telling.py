@@ -17,7 +17,6 @@ from seatrial.values import display
 
 WELL, VAGUE = 0.1, 1.0
 STANDS_IN = 10.0
-SEEN = 3.84
 WHITE = 0.01
 MOVES, FIRST_TEXTS, FIRST_ROWS, FIRST_DIRECTIONS, FIRST_BARS = 5, 5, 10, 16, 20
 
@@ -43,13 +42,12 @@ class Zone:
 
 @dataclass(frozen=True)
 class ConsequenceRow:
-    """What a wrong assumed value would do; `shows` says whether the records would tell."""
+    """What a wrong assumed value would do."""
 
     parameter: str
     change: str
     moves: str
     misfit: str
-    shows: str
 
 
 @dataclass(frozen=True)
@@ -219,9 +217,7 @@ def _small(rest: int) -> str:
 def _consequence(c: Consequence) -> ConsequenceRow:
     largest = list(c.moves.items())[:MOVES]
     moves = ", ".join(f"{name} {words.signed_percent(move)}" for name, move in largest)
-    shows = "yes" if c.misfit > SEEN else "no"
-    return ConsequenceRow(c.parameter, words.signed_percent(c.change), moves or DASH,
-                          significant(c.misfit, 2), shows)  # fmt: skip
+    return ConsequenceRow(c.parameter, words.signed_percent(c.change), moves or DASH, significant(c.misfit, 2))
 
 
 def _stability(s: Stability, names: Sequence[str]) -> str:
