@@ -11,6 +11,7 @@ from seatrial.estimate.settings import Criterion
 from seatrial.identify.family import (
     Fitted,
     Variant,
+    _better,
     chosen,
     compared,
     modelled,
@@ -188,3 +189,10 @@ def test_windows_without_heading_judge_nobody(model: Model, records: list[Record
     assert np.all(scores < 2.0)
     with pytest.raises(InputError, match="'run 0' has no window in which both position and heading"):
         scored(found.made, model, [with_gap(records[0], slice(None)), *records[1:]], 20.0)
+
+
+def test_a_model_that_is_worse_than_another_is_said(found: Identified) -> None:
+    rows = table([fitted(found, "own", [2.0, 3.1, 4.0]), fitted(found, "better", [1.0, 2.0, 3.0])], choose=False)
+    (said,) = _better(rows)
+    assert said.code == "better-model" and "'better'" in said.what and "2 deg against 3.03 deg" in said.evidence
+    assert _better(table([fitted(found, "own", [1.0, 2.0]), fitted(found, "other", [1.1, 1.9])], choose=False)) == ()

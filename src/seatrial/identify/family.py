@@ -97,7 +97,19 @@ def considered(
         return Considered(found, (), (), (Finding(Severity.INFO, "no-family", what, str(error)),))
     rows = table(fitted, choose=choose)
     used = chosen(found, fitted, rows, records, sessions, length, settings, progress)
-    return Considered(used, rows, tied_models(fitted, rows))
+    return Considered(used, rows, tied_models(fitted, rows), _better(rows))
+
+
+def _better(rows: Sequence[Member]) -> tuple[Finding, ...]:
+    """A warning where the model that is used is worse than the best beyond the scatter over runs."""
+    used = next(r for r in rows if r.chosen)
+    judged = [r for r in rows if r.tied and r.heading_deg is not None]
+    if used.tied or used.heading_deg is None or not judged:
+        return ()
+    best = min(judged, key=lambda r: r.heading_deg or 0.0)
+    what = f"the runs left out are predicted better by another member of the family, '{best.name}'"
+    evidence = f"heading {best.heading_deg:.3g} deg against {used.heading_deg:.3g} deg in windows"
+    return (Finding(Severity.WARNING, "better-model", what, evidence, "--choose takes the best member"),)
 
 
 def variants(model: Model, family: Family | None, is_segmented: bool) -> tuple[Variant, ...]:

@@ -74,7 +74,7 @@ class NoiseWords:
 
 @dataclass(frozen=True)
 class FamilyRow:
-    """One model of the family; `standing`: chosen, tied, worse or failed."""
+    """One model of the family; `standing`: tied, worse or failed, and whether it is used."""
 
     name: str
     free: int
@@ -264,6 +264,7 @@ def _unbounded(known: Identifiability) -> str:
 
 def _member(m: Member) -> FamilyRow:
     failed = m.heading_deg is None and m.position_m is None
-    standing = "chosen" if m.chosen else "failed" if failed else "tied" if m.tied else "worse"
+    standing = "failed" if failed else "tied" if m.tied else "worse"
+    standing = f"used, {standing}" if m.chosen else standing
     return FamilyRow(m.name, m.free, significant(m.heading_deg, 3), significant(m.position_m, 3), standing, m.note,
                      m.chosen)  # fmt: skip
