@@ -18,6 +18,12 @@ def _alexandersson2022(*, quick: bool, seed: int, progress: Progress | None) -> 
     return study(quick=quick, seed=seed, progress=progress)
 
 
-STUDIES: dict[str, Reproduction] = {"alexandersson2022": _alexandersson2022}
+def _section2d(*, quick: bool, seed: int, progress: Progress | None) -> Study:
+    from seatrial.studies.section2d import study
+
+    return study(quick=quick, seed=seed, progress=progress)
+
+
+STUDIES: dict[str, Reproduction] = {"alexandersson2022": _alexandersson2022, "section2d": _section2d}
 
 __all__ = ["STUDIES", "Reproduction"]

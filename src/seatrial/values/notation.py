@@ -36,6 +36,16 @@ _TABLE = [
     Quantity("z_dot", "heave velocity", "m/s", "body", "down", r"\dot z", "platform_heave_rate"),
     Quantity("theta_dot", "pitch rate", "rad/s", "body", "bow up", r"\dot\theta", "platform_pitch_rate"),
     Quantity("zeta", "wave elevation at the ship's origin", "m", "earth", "up", r"\zeta", "sea_surface_height"),
+    *(
+        Quantity(f"zeta_{k}", f"wave elevation at probe {k}", "m", "earth", "up", rf"\zeta_{k}", f"wave_elevation_{k}")
+        for k in range(1, 7)
+    ),
+    Quantity("x_wm", "position of the wave maker", "m", "earth", "forward", "x_{wm}", "wave_maker_position"),
+    Quantity("F_y", "sway force of the holding on the model", "N", "body", "starboard", "F_y", "holding_sway_force"),
+    Quantity("S_1", "tension of the starboard spring", "N", "none", "tension", "S_1", "spring_tension_1"),
+    Quantity("S_2", "tension of the port spring", "N", "none", "tension", "S_2", "spring_tension_2"),
+    Quantity("z_ddot_1", "heave acceleration starboard", "m/s^2", "body", "down", r"\ddot z_1", "heave_acceleration_1"),
+    Quantity("z_ddot_2", "heave acceleration port", "m/s^2", "body", "down", r"\ddot z_2", "heave_acceleration_2"),
     Quantity("F3", "heave force of the waves", "N", "body", "up", "F_3", "wave_heave_force"),
     Quantity("M5", "pitch moment of the waves", "N m", "body", "bow down", "M_5", "wave_pitch_moment"),
     Quantity("delta_f1", "angle of the first fin, lifting up", "rad", "body", "up", r"\delta_{f1}", "fin_angle_1"),

@@ -1,0 +1,252 @@
+"""Tables and figures of the study."""
+
+import numpy as np
+
+from seatrial.hydro.multipoles import haskind_damping
+from seatrial.results import Curve, Figure, Table
+from seatrial.studies.section2d import tank
+from seatrial.studies.section2d.instruments import clock_table, probe_table, spring_table, wave_table
+from seatrial.studies.section2d.modes import HEAVE, ModeFit, observed, theory_at
+from seatrial.studies.section2d.numbers import Numbers
+from seatrial.studies.section2d.responses import Response
+from seatrial.studies.section2d.runs import STEADY
+
+Row = tuple[str | float | None, ...]
+UNITS = {
+    "heave": {"gain": "", "delay": "s", "distance": "m", "added": "kg", "linear": "kg/s", "quadratic": "kg/m"},
+    "roll": {"gain": "m", "delay": "s", "added": "kg m^2", "linear": "kg m^2/s", "quadratic": "kg m^2"},
+}
+MEANING = {
+    "gain": "gain",
+    "delay": "delay of the accelerometers against the probes",
+    "distance": "the model beyond its nominal place",
+    "added": "added mass beside the computed one",
+    "linear": "linear damping beside the wave damping",
+    "quadratic": "quadratic damping",
+}
+TWO_SIDED_95 = 1.96
+
+
+def tables(made: Numbers) -> tuple[Table, ...]:
+    """All tables, in the order of the page."""
+    return (
+        scores(made.heave),
+        scores(made.roll),
+        coefficients(made),
+        by_period(made.heave),
+        by_period(made.roll),
+        separability(made),
+        repeatability(made),
+        coupled(made),
+        *((timings(made),) if made.timings else ()),
+        clock_table(made),
+        spring_table(made),
+        probe_table(made),
+        wave_table(made),
+    )
+
+
+def name(fit: ModeFit) -> str:
+    """heave or roll."""
+    return fit.mode.motion.value
+
+
+def scores(fit: ModeFit) -> Table:
+    """Measured and predicted responses, trained and held out."""
+    rows: list[Row] = []
+    for s in sorted(fit.scores, key=lambda s: -s.response.run.period):
+        value = fit.mode.measured(s.response)
+        standing = "trained" if s.trained else "held out" if s.between else "held out, beyond the trained"
+        rows.append(
+            (s.response.run.name, s.response.run.period, standing, abs(value), float(np.degrees(np.angle(value))),
+             s.amplitude, s.phase)
+        )  # fmt: skip
+    unit = "m/m" if fit.mode is HEAVE else "m/m, difference of both accelerometers"
+    return Table(
+        f"{name(fit).capitalize()}: half of the periods train, the others are predicted",
+        (
+            "run",
+            "period [s]",
+            "standing",
+            f"measured [{unit}]",
+            "phase [deg]",
+            "amplitude error [%]",
+            "phase error [deg]",
+        ),
+        tuple(rows),
+        "Per m of the onward wave at the model. Trained are half of the periods, from the longest to the shortest, "
+        "evenly spread; probes, gain, delay, distance and coefficients are frozen before the others are scored, and "
+        "the amplitude that sets the quadratic damping is the predicted one. Below .9 s heave is small "
+        "and what the accelerometers feel of sway counts.",
+    )
+
+
+def coefficients(made: Numbers) -> Table:
+    """Estimates on all periods with both kinds of intervals."""
+    rows: list[Row] = []
+    for fit in (made.heave, made.roll):
+        for key in fit.mode.free:
+            value, jack, white = getattr(fit.whole.oscillator, key), fit.errors[key], fit.whole.errors[key]
+            rows.append(_estimate(f"{name(fit)}: {MEANING[key]} [{UNITS[name(fit)][key] or '1'}]", value, jack, white))
+        added = theory_at(fit.mode.motion, 2.0 * np.pi / fit.period).added + fit.whole.oscillator.added
+        rows.append(
+            _estimate(f"{name(fit)}: added mass at the natural period [{UNITS[name(fit)]['added']}]", added,
+                      fit.errors["added"], fit.whole.errors["added"])
+        )  # fmt: skip
+        rows.append(_estimate(f"{name(fit)}: natural period [s]", fit.period, fit.period_error, None))
+    both = made.both_dampings
+    for key in ("linear", "quadratic"):
+        value, white = getattr(both.oscillator, key), both.errors[key]
+        rows.append(_estimate(f"heave, both dampings free: {MEANING[key]} [{UNITS['heave'][key]}]", value, None, white))
+    return Table(
+        "Coefficients from all periods",
+        ("coefficient", "estimate", "95 % from", "to", "standard error, periods left out", "from residuals"),
+        tuple(rows),
+        "Intervals by leaving each wave period out (jackknife) where there is one, else from residuals. Documented: "
+        f"natural periods {tank.HEAVE_PERIOD:g} and {tank.ROLL_PERIOD:g} s; an earlier fit of others to these records: "
+        f"heave added mass 32.0 kg, extra damping 11 to 13 kg/s beside {tank.RIG_DAMPING:g} of the rig. Stiffness is "
+        f"hydrostatic: {tank.HEAVE_STIFFNESS:.0f} N/m and {tank.ROLL_STIFFNESS:.2f} N m.",
+    )
+
+
+def _estimate(label: str, value: float, jack: float | None, white: float | None) -> Row:
+    error = jack if jack is not None else white or 0.0
+    return (label, value, value - TWO_SIDED_95 * error, value + TWO_SIDED_95 * error, jack, white)
+
+
+def by_period(fit: ModeFit) -> Table:
+    """Added mass, dampings and excitation at each wave period."""
+    rows: list[Row] = []
+    seen: set[int] = set()
+    for s in sorted(fit.scores, key=lambda s: -s.response.run.period):
+        run = s.response.run
+        if run.index in seen:
+            continue
+        seen.add(run.index)
+        one, shaped = observed(fit.mode, s.response), fit.whole.oscillator
+        excitation = abs(one.theory.excitation)
+        haskind = haskind_damping(excitation / tank.LENGTH, run.omega) * tank.LENGTH
+        rows.append(
+            (run.period, one.theory.added + shaped.added, one.theory.damping, haskind,
+             shaped.equivalent_damping(one.theory, run.omega, s.response.wave), excitation,
+             float(np.degrees(np.angle(one.theory.excitation))))
+        )  # fmt: skip
+    mass, damping, force = ("kg", "kg/s", "N/m") if fit.mode is HEAVE else ("kg m^2", "kg m^2/s", "N m/m")
+    return Table(
+        f"{name(fit).capitalize()}: coefficients by wave period",
+        ("period [s]", f"added mass [{mass}]", f"wave damping [{damping}]", f"by Haskind [{damping}]",
+         f"damping beside it [{damping}]", f"excitation [{force}]", "phase [deg]"),
+        tuple(rows),
+        "Potential theory of the documented Lewis form in deep water (Ursell 1949, Tasai 1959 and 1961), added mass "
+        "with the fitted constant; damping beside it is the fitted quadratic one at the run's amplitude. Haskind's "
+        "relation in two dimensions, b = |X|^2 / (2 rho g c_g) per length, ties wave damping to excitation.",
+    )  # fmt: skip
+
+
+def separability(made: Numbers) -> Table:
+    """Standard error of the added mass without ties."""
+    names = ("constant", "linear in frequency", "quadratic in frequency")
+    rows: list[Row] = [
+        (names[order], *(None if not np.isfinite(e) else e for e in errors)) for order, errors in made.untied.items()
+    ]
+    rows.append(
+        ("tied by theory (Haskind's relation and the shape)", made.heave.errors["added"], made.roll.errors["added"])
+    )
+    return Table(
+        "Added mass without a tie",
+        ("added mass, damping, log excitation and its phase are", "heave, standard error [kg]", "roll [kg m^2]"),
+        tuple(rows),
+        "At one period two numbers are measured and four wanted: nothing separates them. Over all periods it depends "
+        "on what is assumed of their course; a dash: not determined at all.",
+    )
+
+
+def repeatability(made: Numbers) -> Table:
+    """Largest deviation from the mean of repeated runs."""
+    rows: list[Row] = [(", ".join(r.names), *r.heave, *r.roll) for r in made.repeats]
+    return Table(
+        "Repeated runs",
+        ("runs", "heave [%]", "[deg]", "difference of accelerometers [%]", "[deg]"),
+        tuple(rows),
+        "Largest deviation from the mean. In the sway-heave runs (4...) the difference is no roll but the holding's "
+        "compliance and what the accelerometers feel of sway.",
+    )
+
+
+def coupled(made: Numbers) -> Table:
+    """Runs of the other holdings; heave as the sway-heave runs predict it."""
+    arm = abs(made.roll.whole.oscillator.gain)
+    rows: list[Row] = [
+        (r.run.name, r.run.period, abs(r.heave), float(np.degrees(np.angle(r.heave))), amplitude, phase,
+         abs(r.roll) / arm, float(np.degrees(np.angle(r.roll * np.sign(made.roll.whole.oscillator.gain)))),
+         r.camera_sway or None)
+        for r, amplitude, phase in sorted(made.coupled, key=lambda c: (c[0].run.scenario, -c[0].run.period))
+    ]  # fmt: skip
+    return Table(
+        "Coupled runs: sway-heave-roll (3...), and heave in the heave-roll runs (6...)",
+        ("run", "period [s]", "heave [m/m]", "phase [deg]", "predicted from sway-heave runs [%]", "[deg]",
+         "roll [rad/m]", "phase [deg]", "sway by the camera [m/m]"),
+        tuple(rows),
+        "Reported, not fitted. Roll is the accelerometers' difference over the fitted gain. Sway by the camera is "
+        "low where its clock drifts through the stretch; a dash: the camera is dead.",
+    )  # fmt: skip
+
+
+def timings(made: Numbers) -> Table:
+    """Worst held-out errors had the stretch been another."""
+    rows: list[Row] = []
+    for timing, heave, roll in ((STEADY, made.heave, made.roll), *made.timings):
+        rows.append((timing.settling, timing.allowed, *worst(heave), *worst(roll)))
+    return Table(
+        "Other steady stretches",
+        ("settling [s]", "of the reflection allowed [s]", "heave [%]", "[deg]", "roll [%]", "[deg]"),
+        tuple(rows),
+        "Largest errors at held-out periods between trained ones from .9 s on; the first row is the choice in force.",
+    )
+
+
+def worst(fit: ModeFit, shortest: float = 0.9) -> tuple[float, float]:
+    """Largest amplitude and phase error at held-out periods between trained ones; NaN if there are none."""
+    held = [s for s in fit.scores if s.between and not s.trained and s.response.run.period >= shortest]
+    if not held:
+        return float("nan"), float("nan")
+    return max(abs(s.amplitude) for s in held), max(abs(s.phase) for s in held)
+
+
+def figures(made: Numbers) -> tuple[Figure, ...]:
+    """Responses over the period, and the waves of one run."""
+    run, waves = made.example
+    start, stop = run.window(STEADY)
+    edge = 1.1 * float(np.max(np.abs(waves.onward)))
+    window = Curve("steady stretch", np.array([start, start, stop, stop]), 1e3 * np.array([-edge, edge, edge, -edge]))
+    time = run.record.time
+    return (
+        _response_figure(made.heave, made.responses),
+        _response_figure(made.roll, made.responses),
+        Figure(
+            f"Waves at the model, run {run.name}",
+            "time [s]",
+            "elevation [mm]",
+            (Curve("onward", time, 1e3 * waves.onward), Curve("back", time, 1e3 * waves.back), window),
+            "Separated over the whole record from four probes.",
+        ),
+    )
+
+
+def _response_figure(fit: ModeFit, responses: tuple[Response, ...]) -> Figure:
+    mean: dict[float, list[tuple[float, float]]] = {}
+    for r in responses:
+        if r.run.scenario == fit.mode.scenario:
+            seen = abs(fit.trained.oscillator.seen(observed(fit.mode, r)))
+            mean.setdefault(round(r.run.period, 3), []).append((abs(fit.mode.measured(r)), seen))
+    periods = np.array(sorted(mean))
+    measured, predicted = (
+        np.array([sum(v[k] for v in mean[p]) / len(mean[p]) for p in periods], dtype=np.float64) for k in (0, 1)
+    )
+    return Figure(
+        f"{name(fit).capitalize()} over the wave period",
+        "wave period [s]",
+        "response over wave amplitude [m/m]",
+        (Curve("measured", periods, measured), Curve("trained on half", periods, predicted)),
+        "Straight lines between the measured periods.",
+    )
