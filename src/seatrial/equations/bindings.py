@@ -6,6 +6,7 @@ from functools import cached_property
 
 import sympy as sp
 
+from seatrial.equations.differentiate import partials
 from seatrial.values import NOTATION, quantity
 
 
@@ -21,10 +22,14 @@ class Binding:
 
 @dataclass(frozen=True)
 class Input:
-    """An input channel; `positive` is its positive direction where it differs from the notation table's."""
+    """An input channel; `positive` is its positive direction where it differs from the notation table's.
+
+    `is_held`: constant from sample to sample in the exact propagation of linear models.
+    """
 
     name: str
     positive: str = ""
+    is_held: bool = False
 
     @property
     def direction(self) -> str:
@@ -73,9 +78,22 @@ class Equations:
         return tuple(by_name[name] for name in self.outputs)
 
     @cached_property
+    def is_affine(self) -> bool:
+        """Whether rates and outputs are affine in states and inputs, so that exact propagators serve."""
+        moving = {*self.states, *self.input_names}
+        for binding in (*self.bindings, *self.rates):
+            slopes = {name: slope for name, slope in partials(binding.expression).items() if name in moving}
+            if any({str(s) for s in slope.free_symbols} & moving for slope in slopes.values()):
+                return False
+            if slopes and binding.name not in self.states:
+                moving.add(binding.name)
+        return True
+
+    @cached_property
     def digest(self) -> str:
         """SHA-256 over names and expressions."""
-        lines = [self.name, *self.input_names, *self.outputs, *self.parameters]
+        inputs = [f"{i.name} held" if i.is_held else i.name for i in self.inputs]
+        lines = [self.name, *inputs, *self.outputs, *self.parameters]
         lines += [f"{b.name} = {sp.srepr(b.expression)}" for b in self.bindings]
         lines += [f"d{b.name} = {sp.srepr(b.expression)}" for b in self.rates]
         return hashlib.sha256("\n".join(lines).encode()).hexdigest()

@@ -60,6 +60,11 @@ class Model:
         return self.equations.digest
 
     @property
+    def is_affine(self) -> bool:
+        """Whether it is affine in states and inputs, so that exact propagators serve."""
+        return self.equations.is_affine
+
+    @property
     def compiled(self) -> Compiled:
         """The generated machine code: rates, outputs, bindings and exact Jacobians (cached between processes)."""
         return compiled(self.equations)

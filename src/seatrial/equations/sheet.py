@@ -63,10 +63,13 @@ class Sheet:
             self._states.append(name)
         return tuple(symbols)
 
-    def input(self, name: str, positive: str = "") -> sp.Symbol:
-        """Declare an input; `positive` names its positive direction where it differs from the notation table's."""
+    def input(self, name: str, positive: str = "", *, is_held: bool = False) -> sp.Symbol:
+        """Declare an input; `positive` names its positive direction where it differs from the notation table's.
+
+        is_held: linear models keep it constant from sample to sample (a command); else it runs on between them.
+        """
         symbol = self._new(name)
-        self._inputs.append(Input(name, positive))
+        self._inputs.append(Input(name, positive, is_held))
         return symbol
 
     def parameter(

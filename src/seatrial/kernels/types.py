@@ -7,6 +7,7 @@ I8 = types.int64
 VECTOR = types.Array(F8, 1, "C")
 MATRIX = types.Array(F8, 2, "C")
 CUBE = types.Array(F8, 3, "C")
+QUARTIC = types.Array(F8, 4, "C")
 INDEX = types.Array(I8, 1, "C")
 TABLE = types.Array(I8, 2, "C")
 

@@ -49,12 +49,26 @@ def _mmg() -> "Model":
     return mmg()
 
 
+def _heave_pitch() -> "Model":
+    from seatrial.models.heave_pitch import heave_pitch
+
+    return heave_pitch()
+
+
+def _heave_pitch_held() -> "Model":
+    from seatrial.models.heave_pitch import heave_pitch_held
+
+    return heave_pitch_held()
+
+
 MODELS: dict[str, Callable[[], "Model"]] = {
     "waterjet": _waterjet,
     "nomoto": _nomoto,
     "nomoto2": _nomoto2,
     "abkowitz": _abkowitz,
     "mmg": _mmg,
+    "heave_pitch": _heave_pitch,
+    "heave_pitch_held": _heave_pitch_held,
 }
 
 

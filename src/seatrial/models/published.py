@@ -130,10 +130,19 @@ def esso_osaka() -> ParameterSet:
     return ParameterSet("esso-osaka", "mmg", ship, {**_ESSO, **converted}, MIYAUCHI, _ESSO_NOTE)
 
 
+def _qi2025(heading: int) -> ParameterSet:
+    from seatrial.models.qi2025 import theory
+
+    return theory(heading)
+
+
 PARAMETER_SETS: dict[str, Callable[[], ParameterSet]] = {
     "kvlcc2": kvlcc2_l7,
     "kvlcc2-full": kvlcc2_full,
     "esso-osaka": esso_osaka,
+    "qi2025-90": lambda: _qi2025(90),
+    "qi2025-135": lambda: _qi2025(135),
+    "qi2025-180": lambda: _qi2025(180),
 }
 
 

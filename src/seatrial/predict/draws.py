@@ -9,8 +9,8 @@ import numpy as np
 
 from seatrial.equations import Model
 from seatrial.problem.output_error import OutputError
-from seatrial.simulate.batch import Batch
 from seatrial.simulate.channels import inputs_of
+from seatrial.simulate.linear import batch_for
 from seatrial.values import Array, Record
 
 _KICK_S = 0.5
@@ -88,7 +88,7 @@ def _carried(
     values = np.tile(parameters.values, (count, 1))
     values[:, [parameters.index(n) for n in template.free]] = points
     values[:, [parameters.index(n) for n, _ in template.session_parameters]] = owns[:, :split]
-    batch = Batch(
+    batch = batch_for(model)(
         model,
         np.tile(inputs, (count, 1)),
         np.arange(count + 1) * len(inputs),

@@ -15,6 +15,7 @@ from seatrial.optimise import Normal
 from seatrial.problem.addend import Addend
 from seatrial.problem.segments import Segments
 from seatrial.simulate.batch import Batch, InputCorrection
+from seatrial.simulate.linear import batch_for
 from seatrial.values import Array, Index, Prior
 from seatrial.workers import mapped
 
@@ -68,7 +69,7 @@ class OutputError:
 
     @cached_property
     def _batch(self) -> Batch:
-        batch = Batch(
+        batch = batch_for(self.model)(
             self.model, self.data.inputs, self.data.offsets, self.data.dt, self.data.outputs,
             (*self.free, *(name for name, _ in self.session_parameters)),
             tuple(n.correction for n in self.nuisances), (), self.substeps,

@@ -6,23 +6,23 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.kernels import integrate
 from seatrial.simulate.bounds import demand_bounded
 from seatrial.simulate.channels import inputs_of, record_of
+from seatrial.simulate.linear import batch_for
 from seatrial.values import NOTATION, Array, InputError, Provenance, Record, nearest
 
 ZERO_STARTS = ("x0", "y0", "psi")
 
 
 def replay(model: Model, record: Record, initial: Mapping[str, float] | None = None, substeps: int = 1) -> Record:
-    """Simulate `model` from the record's inputs, linear between samples (classical Runge-Kutta, `substeps` a sample).
+    """Simulate `model` from the record's inputs: classical Runge-Kutta, inputs linear between samples; exact if affine.
 
     Args:
         model: all parameters must have values.
         record: its input channels are used, whatever their sign; absent wind channels mean still air.
         initial: state -> value in SI units and notation signs; the others start at the record's first sample where it
             has the channel, x0, y0 and psi otherwise at zero.
-        substeps: Runge-Kutta steps in each sample.
+        substeps: Runge-Kutta steps, or pieces of a smooth input of an affine model, in each sample.
 
     Returns:
         A simulated record on the same time base: states, measurable outputs, inputs.
@@ -48,13 +48,9 @@ def trajectory(model: Model, inputs: Array, dt: float, start: Array, substeps: i
         raise InputError(f"model '{model.name}' has no value for {', '.join(model.parameters.missing)}")
     if substeps < 1:
         raise InputError(f"{substeps} sub-steps are less than one")
-    nx, nu, ny = len(model.states), len(model.inputs), len(model.outputs)
-    y = np.empty((len(inputs), nx + ny))
-    one, none = np.ones((1, nu)), np.zeros((1, nu))
-    integrate.replay(
-        model.compiled.rates, model.compiled.outputs, inputs, np.array([0, len(inputs)]), 0, 1, dt, substeps,
-        start[None], model.parameters.values[None], one, none, none, np.arange(nx + ny), ny, y, np.full(1, -1),
-    )  # fmt: skip
+    nx = len(model.states)
+    batch = batch_for(model)(model, inputs, np.array([0, len(inputs)]), dt, model.observables, substeps=substeps)
+    y, _ = batch.simulate(0, 1, start[None], model.parameters.values[None], np.empty((1, 0)))
     return np.ascontiguousarray(y[:, :nx]), y[:, nx:]
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from seatrial.equations import Model
 from seatrial.models import model_named
 from seatrial.models.published import parameter_set
+from seatrial.models.starts import started
 from seatrial.trial.literature import LiteraturePrior, literature_priors
 from seatrial.trial.schema import Amount, ModelTable, PriorTable, ShipTable
 from seatrial.values import InputError, Parameters, Prior, Ship, nearest, si
@@ -47,7 +48,8 @@ def chosen_model(table: ModelTable, ship: Ship, own_model: Model | None = None) 
     parameters = model.parameters
     parameters = _with_amounts(parameters, table.start, "model.start", "start value of the trial file")
     parameters = _with_amounts(parameters, table.fixed, "model.fixed", "fixed in the trial file")
-    model = model.with_parameters(_freedom(parameters, table)).of_ship(_without(ship, (*table.start, *table.fixed)))
+    own_ship = _without(ship, (*table.start, *table.fixed))
+    model = started(model.with_parameters(_freedom(parameters, table)), own_ship).of_ship(own_ship)
     return model.with_parameters(_priors(_bounds(model.parameters, table), table, literature))
 
 
