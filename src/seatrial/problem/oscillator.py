@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from seatrial.values import Array, InputError
 
 Complex = NDArray[np.complex128]
-NAMES = ("gain", "delay", "distance", "added", "linear", "quadratic")
+NAMES = ("gain", "delay", "distance", "added", "linear", "quadratic", "stiffness")
 _ROUNDS = 60
 
 

@@ -110,8 +110,8 @@ def wave_table(made: Numbers) -> Table:
     ]  # fmt: skip
     return Table(
         "Waves at the model",
-        ("run", "period [s]", "whole periods used", "height [mm]", "over the nominal", "amplitude / paddle's stroke",
-         "back / onward", "beyond / onward"),
+        ("run", "period [s]", "periods used", "height [mm]", "/ nominal", "amplitude / stroke", "back / onward",
+         "beyond / onward"),
         tuple(rows),
         "The onward wave is what excites the model; the nominal heights are .024 and .040 m.",
     )  # fmt: skip

@@ -11,6 +11,7 @@ from seatrial.studies.section2d import tank
 from seatrial.studies.section2d.responses import Response, difference
 
 REPEATABILITY, CROSS_AXIS = 0.005, 0.02
+FREED = ("linear", "stiffness")
 _ROUNDS = 30
 
 
@@ -21,8 +22,9 @@ class Mode:
     Attributes:
         scenario: of the runs it is fitted on.
         sign: of the response's axis against the theory's.
-        free: for the fit that predicts.
+        free: for the fit that predicts; scales: their typical sizes.
         cross: share of the sway acceleration that the accelerometers' mean may feel.
+        documented: natural period, s.
     """
 
     motion: Motion
@@ -52,15 +54,25 @@ class Score:
 
 @dataclass(frozen=True, eq=False)
 class ModeFit:
-    """Trained on half of the periods, scored on all; then fitted on all with a jackknife over periods."""
+    """Trained on half of the periods, scored on all; then fitted on all with a jackknife over periods.
+
+    Attributes:
+        period: natural period, s.
+        beside: damping beside the wave damping at that period in waves of the nominal height, kg/s (kg m^2/s).
+        errors, period_error, beside_error: standard errors by leaving each wave period out.
+        freed: name -> the fit on all periods with that coefficient free as well.
+    """
 
     mode: Mode
     trained: OscillatorFit
     scores: tuple[Score, ...]
     whole: OscillatorFit
     period: float
+    beside: float
     errors: dict[str, float]
     period_error: float
+    beside_error: float
+    freed: dict[str, OscillatorFit]
 
 
 HEAVE = Mode(
@@ -69,7 +81,15 @@ HEAVE = Mode(
     -1.0,
     Oscillator(tank.MASS, tank.HEAVE_STIFFNESS, gain=1.1, quadratic=100.0),
     ("gain", "delay", "distance", "added", "quadratic"),
-    {"gain": 1.0, "delay": 0.02, "distance": 0.02, "added": 2.0, "linear": 10.0, "quadratic": 100.0},
+    {
+        "gain": 1.0,
+        "delay": 0.02,
+        "distance": 0.02,
+        "added": 2.0,
+        "linear": 10.0,
+        "quadratic": 100.0,
+        "stiffness": 100.0,
+    },
     CROSS_AXIS,
     tank.HEAVE_PERIOD,
 )
@@ -79,7 +99,7 @@ ROLL = Mode(
     1.0,
     Oscillator(tank.ROLL_INERTIA, tank.ROLL_STIFFNESS, gain=0.3, delay=-0.02, quadratic=0.3),
     ("gain", "delay", "added", "quadratic"),
-    {"gain": 0.1, "delay": 0.02, "added": 0.02, "linear": 0.1, "quadratic": 0.1},
+    {"gain": 0.1, "delay": 0.02, "added": 0.02, "linear": 0.1, "quadratic": 0.1, "stiffness": 1.0},
     0.0,
     tank.ROLL_PERIOD,
 )
@@ -129,8 +149,11 @@ def mode_fit(mode: Mode, responses: Sequence[Response]) -> ModeFit:
         tuple(_score(mode, trained, r, train) for r in runs),
         whole,
         natural_period(mode, whole.oscillator),
+        beside(mode, whole.oscillator),
         spread,
         jackknife([natural_period(mode, f.oscillator) for f in left]),
+        jackknife([beside(mode, f.oscillator) for f in left]),
+        {name: freed(mode, whole.oscillator, [observed(mode, r) for r in runs], name) for name in FREED},
     )
 
 
@@ -147,6 +170,18 @@ def natural_period(mode: Mode, oscillator: Oscillator) -> float:
         added = theory_at(mode.motion, 2.0 * np.pi / period).added + oscillator.added
         period = tank.natural_period(oscillator.inertia + added, oscillator.stiffness)
     return period
+
+
+def beside(mode: Mode, oscillator: Oscillator) -> float:
+    """Damping beside the wave damping at the documented natural period, waves of the smaller nominal height."""
+    omega = 2.0 * np.pi / mode.documented
+    theory = theory_at(mode.motion, omega, mode.sign)
+    return oscillator.equivalent_damping(theory, omega, 0.5 * min(tank.HEIGHTS.values()))
+
+
+def freed(mode: Mode, start: Oscillator, used: Sequence[Observed], name: str) -> OscillatorFit:
+    """One coefficient more."""
+    return fitted(start, used, (*mode.free, name), mode.scales)
 
 
 def jackknife(values: Sequence[float]) -> float:

@@ -9,7 +9,6 @@ import numpy as np
 
 from seatrial.check.conventions import signed
 from seatrial.check.instruments import Clocks, clocks, dead_channels
-from seatrial.problem.oscillator import OscillatorFit, fitted
 from seatrial.problem.separation import Probes, Waves
 from seatrial.studies.section2d.modes import HEAVE, ROLL, Mode, ModeFit, halves, mode_fit, observed
 from seatrial.studies.section2d.responses import (
@@ -45,7 +44,6 @@ class Numbers:
 
     Attributes:
         probes: calibrated on the runs whose periods train heave.
-        both_dampings: heave on all periods with a linear damping free as well.
         untied: order -> standard error of heave's and roll's added mass without any tie.
         coupled: sway-heave-roll and heave-roll runs' heave against the oscillator trained on sway-heave ones.
         timings: held-out errors had other stretches been chosen; empty in the quick version.
@@ -57,7 +55,6 @@ class Numbers:
     responses: tuple[Response, ...]
     heave: ModeFit
     roll: ModeFit
-    both_dampings: OscillatorFit
     untied: Mapping[int, tuple[float, float]]
     repeats: tuple[Repeat, ...]
     coupled: tuple[tuple[Response, float, float], ...]
@@ -81,8 +78,6 @@ def numbers(folder: Path, *, quick: bool, progress: Progress | None) -> Numbers:
     probes = calibrated_probes([r for r in runs if r.scenario == HEAVE.scenario and r.index in train])
     tell("waves and motions at the model")
     responses, heave, roll = both(runs, probes, STEADY)
-    used = {m.motion: [observed(m, r) for r in responses if r.run.scenario == m.scenario] for m in (HEAVE, ROLL)}
-    damped = fitted(heave.whole.oscillator, used[HEAVE.motion], (*HEAVE.free, "linear"), HEAVE.scales)
     untied = {order: (_untied(HEAVE, responses, order), _untied(ROLL, responses, order)) for order in ORDERS}
     dead = tuple(f for r in runs for f in dead_channels(r.record, CAMERA))
     tell("instruments against one another")
@@ -93,7 +88,6 @@ def numbers(folder: Path, *, quick: bool, progress: Progress | None) -> Numbers:
         responses=responses,
         heave=heave,
         roll=roll,
-        both_dampings=damped,
         untied=untied,
         repeats=repeats(responses),
         coupled=tuple((r, *_predicted(heave, r)) for r in responses if r.run.scenario != HEAVE.scenario),

@@ -3,10 +3,11 @@
 import time
 
 from seatrial.results import Study
+from seatrial.studies.section2d.figures import figures
 from seatrial.studies.section2d.instruments import findings
 from seatrial.studies.section2d.numbers import numbers
 from seatrial.studies.section2d.runs import data_folder
-from seatrial.studies.section2d.tables import figures, tables
+from seatrial.studies.section2d.tables import tables
 from seatrial.studies.section2d.tank import SOURCE
 from seatrial.studies.section2d.verdicts import checks, claims
 from seatrial.values import Progress

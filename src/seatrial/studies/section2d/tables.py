@@ -1,20 +1,34 @@
-"""Tables and figures of the study."""
+"""Tables of the study."""
 
 import numpy as np
 
 from seatrial.hydro.multipoles import haskind_damping
-from seatrial.results import Curve, Figure, Table
+from seatrial.results import Table
 from seatrial.studies.section2d import tank
 from seatrial.studies.section2d.instruments import clock_table, probe_table, spring_table, wave_table
 from seatrial.studies.section2d.modes import HEAVE, ModeFit, observed, theory_at
 from seatrial.studies.section2d.numbers import Numbers
-from seatrial.studies.section2d.responses import Response
 from seatrial.studies.section2d.runs import STEADY
 
 Row = tuple[str | float | None, ...]
 UNITS = {
-    "heave": {"gain": "", "delay": "s", "distance": "m", "added": "kg", "linear": "kg/s", "quadratic": "kg/m"},
-    "roll": {"gain": "m", "delay": "s", "added": "kg m^2", "linear": "kg m^2/s", "quadratic": "kg m^2"},
+    "heave": {
+        "gain": "",
+        "delay": "s",
+        "distance": "m",
+        "added": "kg",
+        "linear": "kg/s",
+        "quadratic": "kg/m",
+        "stiffness": "N/m",
+    },
+    "roll": {
+        "gain": "m",
+        "delay": "s",
+        "added": "kg m^2",
+        "linear": "kg m^2/s",
+        "quadratic": "kg m^2",
+        "stiffness": "N m",
+    },
 }
 MEANING = {
     "gain": "gain",
@@ -23,7 +37,9 @@ MEANING = {
     "added": "added mass beside the computed one",
     "linear": "linear damping beside the wave damping",
     "quadratic": "quadratic damping",
+    "stiffness": "stiffness",
 }
+DAMPING = {"heave": f"{tank.RIG_DAMPING:g} (rig)", "roll": None}
 TWO_SIDED_95 = 1.96
 
 
@@ -61,14 +77,14 @@ def scores(fit: ModeFit) -> Table:
             (s.response.run.name, s.response.run.period, standing, abs(value), float(np.degrees(np.angle(value))),
              s.amplitude, s.phase)
         )  # fmt: skip
-    unit = "m/m" if fit.mode is HEAVE else "m/m, difference of both accelerometers"
+    what = "measured" if fit.mode is HEAVE else "accelerometers' difference"
     return Table(
         f"{name(fit).capitalize()}: half of the periods train, the others are predicted",
         (
             "run",
             "period [s]",
             "standing",
-            f"measured [{unit}]",
+            f"{what} [m/m]",
             "phase [deg]",
             "amplitude error [%]",
             "phase error [deg]",
@@ -82,36 +98,44 @@ def scores(fit: ModeFit) -> Table:
 
 
 def coefficients(made: Numbers) -> Table:
-    """Estimates on all periods with both kinds of intervals."""
+    """Estimates on all periods with both kinds of intervals, beside what is documented."""
     rows: list[Row] = []
     for fit in (made.heave, made.roll):
+        units, first = UNITS[name(fit)], f"{name(fit)}: "
         for key in fit.mode.free:
-            value, jack, white = getattr(fit.whole.oscillator, key), fit.errors[key], fit.whole.errors[key]
-            rows.append(_estimate(f"{name(fit)}: {MEANING[key]} [{UNITS[name(fit)][key] or '1'}]", value, jack, white))
+            label = f"{first}{MEANING[key]} [{units[key] or '1'}]"
+            rows.append(_row(label, getattr(fit.whole.oscillator, key), fit.errors[key], fit.whole.errors[key]))
         added = theory_at(fit.mode.motion, 2.0 * np.pi / fit.period).added + fit.whole.oscillator.added
-        rows.append(
-            _estimate(f"{name(fit)}: added mass at the natural period [{UNITS[name(fit)]['added']}]", added,
-                      fit.errors["added"], fit.whole.errors["added"])
-        )  # fmt: skip
-        rows.append(_estimate(f"{name(fit)}: natural period [s]", fit.period, fit.period_error, None))
-    both = made.both_dampings
-    for key in ("linear", "quadratic"):
-        value, white = getattr(both.oscillator, key), both.errors[key]
-        rows.append(_estimate(f"heave, both dampings free: {MEANING[key]} [{UNITS['heave'][key]}]", value, None, white))
+        label = f"{first}added mass at the natural period [{units['added']}]"
+        rows.append(_row(label, added, fit.errors["added"], fit.whole.errors["added"]))
+        off, told = 1e3 * (fit.period - fit.mode.documented), f"{fit.mode.documented:g} s"
+        rows.append(_row(f"{first}natural period, ms over the documented", off, 1e3 * fit.period_error, None, told))
+        label = f"{first}damping beside the wave damping, there, waves .024 m high [{units['linear']}]"
+        rows.append(_row(label, fit.beside, fit.beside_error, None, DAMPING[name(fit)]))
+        for key, free in fit.freed.items():
+            told = f"{fit.mode.start.stiffness:.4g} (hydrostatic)" if key == "stiffness" else DAMPING[name(fit)]
+            label = f"{first}{MEANING[key]}, freed as well [{units[key]}]"
+            rows.append(_row(label, getattr(free.oscillator, key), None, free.errors[key], told))
+    low, high = tank.SWAY_STIFFNESS
+    rows.append(
+        _row(
+            "sway: stiffness of the springs [N/m]", made.springs.mean, made.springs.error, None, f"{low:g} to {high:g}"
+        )
+    )
     return Table(
         "Coefficients from all periods",
-        ("coefficient", "estimate", "95 % from", "to", "standard error, periods left out", "from residuals"),
+        ("coefficient", "estimate", "95 % from", "to", "s.e., left out", "s.e., residuals", "documented"),
         tuple(rows),
-        "Intervals by leaving each wave period out (jackknife) where there is one, else from residuals. Documented: "
-        f"natural periods {tank.HEAVE_PERIOD:g} and {tank.ROLL_PERIOD:g} s; an earlier fit of others to these records: "
-        f"heave added mass 32.0 kg, extra damping 11 to 13 kg/s beside {tank.RIG_DAMPING:g} of the rig. Stiffness is "
-        f"hydrostatic: {tank.HEAVE_STIFFNESS:.0f} N/m and {tank.ROLL_STIFFNESS:.2f} N m.",
+        "Intervals by leaving each wave period (for the springs each run) out where there is one (jackknife), else "
+        "from residuals. The rig's documented damping "
+        "is one of sway. Heave's gain is that of the accelerometers against the wave; the camera shows what part of it "
+        "is theirs.",
     )
 
 
-def _estimate(label: str, value: float, jack: float | None, white: float | None) -> Row:
+def _row(label: str, value: float, jack: float | None, white: float | None, documented: str | None = None) -> Row:
     error = jack if jack is not None else white or 0.0
-    return (label, value, value - TWO_SIDED_95 * error, value + TWO_SIDED_95 * error, jack, white)
+    return (label, value, value - TWO_SIDED_95 * error, value + TWO_SIDED_95 * error, jack, white, documented)
 
 
 def by_period(fit: ModeFit) -> Table:
@@ -134,8 +158,8 @@ def by_period(fit: ModeFit) -> Table:
     mass, damping, force = ("kg", "kg/s", "N/m") if fit.mode is HEAVE else ("kg m^2", "kg m^2/s", "N m/m")
     return Table(
         f"{name(fit).capitalize()}: coefficients by wave period",
-        ("period [s]", f"added mass [{mass}]", f"wave damping [{damping}]", f"by Haskind [{damping}]",
-         f"damping beside it [{damping}]", f"excitation [{force}]", "phase [deg]"),
+        ("period [s]", f"added mass [{mass}]", f"wave damping [{damping}]", "by Haskind", "beside it",
+         f"excitation [{force}]", "phase [deg]"),
         tuple(rows),
         "Potential theory of the documented Lewis form in deep water (Ursell 1949, Tasai 1959 and 1961), added mass "
         "with the fitted constant; damping beside it is the fitted quadratic one at the run's amplitude. Haskind's "
@@ -184,11 +208,11 @@ def coupled(made: Numbers) -> Table:
     ]  # fmt: skip
     return Table(
         "Coupled runs: sway-heave-roll (3...), and heave in the heave-roll runs (6...)",
-        ("run", "period [s]", "heave [m/m]", "phase [deg]", "predicted from sway-heave runs [%]", "[deg]",
-         "roll [rad/m]", "phase [deg]", "sway by the camera [m/m]"),
+        ("run", "period [s]", "heave [m/m]", "[deg]", "predicted [%]", "[deg]", "roll [rad/m]", "[deg]", "sway [m/m]"),
         tuple(rows),
-        "Reported, not fitted. Roll is the accelerometers' difference over the fitted gain. Sway by the camera is "
-        "low where its clock drifts through the stretch; a dash: the camera is dead.",
+        "Reported, not fitted; predicted is heave, by the oscillator trained on the sway-heave runs. Roll is the "
+        "accelerometers' difference over the fitted gain. Sway is the camera's, low where its clock drifts through the "
+        "stretch; a dash: the camera is dead.",
     )  # fmt: skip
 
 
@@ -211,42 +235,3 @@ def worst(fit: ModeFit, shortest: float = 0.9) -> tuple[float, float]:
     if not held:
         return float("nan"), float("nan")
     return max(abs(s.amplitude) for s in held), max(abs(s.phase) for s in held)
-
-
-def figures(made: Numbers) -> tuple[Figure, ...]:
-    """Responses over the period, and the waves of one run."""
-    run, waves = made.example
-    start, stop = run.window(STEADY)
-    edge = 1.1 * float(np.max(np.abs(waves.onward)))
-    window = Curve("steady stretch", np.array([start, start, stop, stop]), 1e3 * np.array([-edge, edge, edge, -edge]))
-    time = run.record.time
-    return (
-        _response_figure(made.heave, made.responses),
-        _response_figure(made.roll, made.responses),
-        Figure(
-            f"Waves at the model, run {run.name}",
-            "time [s]",
-            "elevation [mm]",
-            (Curve("onward", time, 1e3 * waves.onward), Curve("back", time, 1e3 * waves.back), window),
-            "Separated over the whole record from four probes.",
-        ),
-    )
-
-
-def _response_figure(fit: ModeFit, responses: tuple[Response, ...]) -> Figure:
-    mean: dict[float, list[tuple[float, float]]] = {}
-    for r in responses:
-        if r.run.scenario == fit.mode.scenario:
-            seen = abs(fit.trained.oscillator.seen(observed(fit.mode, r)))
-            mean.setdefault(round(r.run.period, 3), []).append((abs(fit.mode.measured(r)), seen))
-    periods = np.array(sorted(mean))
-    measured, predicted = (
-        np.array([sum(v[k] for v in mean[p]) / len(mean[p]) for p in periods], dtype=np.float64) for k in (0, 1)
-    )
-    return Figure(
-        f"{name(fit).capitalize()} over the wave period",
-        "wave period [s]",
-        "response over wave amplitude [m/m]",
-        (Curve("measured", periods, measured), Curve("trained on half", periods, predicted)),
-        "Straight lines between the measured periods.",
-    )
