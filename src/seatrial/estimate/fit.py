@@ -25,6 +25,7 @@ from seatrial.results import Disturbance
 from seatrial.values import Array, InputError, Progress, Record
 
 _STILL = float(np.radians(0.5))
+_GRAVITY = 9.81
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,12 +94,29 @@ def ship_length_seconds(records: Sequence[Record], length: float, segment_second
     return length / float(np.median(speeds))
 
 
+def unit_of_time(model: Model, records: Sequence[Record], length: float, segment_seconds: float | None = None) -> float:
+    """s in which the ship changes her motion: L/U where she is steered, sqrt(L/g) for a linear model in waves.
+
+    Raises:
+        InputError: a ship is steered and the records show no speed.
+    """
+    if model.is_affine:
+        return float(np.sqrt(length / _GRAVITY))
+    return ship_length_seconds(records, length, segment_seconds)
+
+
 def refuse_without_excitation(model: Model, records: Sequence[Record]) -> None:
-    """Refuse records in which the rudder never moves.
+    """Refuse records in which the rudder never moves, or no input of a linear model does.
 
     Raises:
         InputError: which records, and what manoeuvre is needed.
     """
+    held = [n for n in model.input_names if any(n in r and np.ptp(r[n]) > 0.0 for r in records)]
+    if model.is_affine and not held:
+        raise InputError(
+            f"no excitation: none of {', '.join(model.input_names)} moves in {', '.join(r.name for r in records)}; "
+            "give wave forces or fin angles, or the wave elevation with [excitation]"
+        )
     still = all("delta" in r and np.ptp(r["delta"]) < _STILL for r in records)
     if "delta" in model.input_names and still:
         raise InputError(
@@ -130,12 +148,13 @@ def identified(
         raise InputError(f"model '{model.name}' has no free parameter; free some under [model]")
     refuse_without_excitation(model, records)
     refuse_few_runs(settings.intervals, len(records))
-    unit = ship_length_seconds(records, length, settings.segment_seconds)
+    unit = unit_of_time(model, records, length, settings.segment_seconds)
     tell = progress or (lambda _: None)
     tell("weak-form start")
     seconds = settings.segment_seconds or SEGMENT_SHIP_LENGTHS * unit
-    if settings.criterion is Criterion.OUTPUT_ERROR:
-        seconds = np.inf
+    chosen = settings.criterion is Criterion.AUTO and settings.segment_seconds is None
+    if settings.criterion is Criterion.OUTPUT_ERROR or (model.is_affine and chosen):
+        seconds = np.inf  # a linear ship in waves is stable: nothing to cut short
     begin = start(output_error(model, records, sessions, seconds, settings), records, WINDOW_SHIP_LENGTHS * unit)
     problem = replace(begin.problem, huber=HUBER) if settings.robust else begin.problem
     shooting = estimate(
@@ -143,6 +162,8 @@ def identified(
     )
 
     def whole_runs() -> Estimate | None:
+        if np.isinf(seconds):
+            return shooting
         return _over_whole_runs(shooting, model, records, sessions, settings, progress)
 
     found = decided(shooting, seconds, settings, whole_runs, progress)

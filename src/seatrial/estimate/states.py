@@ -38,6 +38,9 @@ def measured_states(model: Model, record: Record) -> Array:
         north, east, psi = _slope(record["x0"], dt), _slope(record["y0"], dt), record["psi"]
         found.setdefault("u", north * np.cos(psi) + east * np.sin(psi))
         found.setdefault("v", -north * np.sin(psi) + east * np.cos(psi))
+    for rate in model.states:
+        if rate.endswith("_dot") and rate not in found and rate.removesuffix("_dot") in record:
+            found[rate] = _slope(record[rate.removesuffix("_dot")], dt)
     for unused in ("x0", "y0"):
         found.setdefault(unused, np.zeros(len(record)))
     missing = [s for s in model.states if s not in found]

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.estimate.agreement import agreement
-from seatrial.estimate.fit import Identified, identified, ship_length_seconds
+from seatrial.estimate.fit import Identified, identified, unit_of_time
 from seatrial.estimate.settings import START_SECONDS_LENGTHS, Criterion, Intervals, Settings
 from seatrial.estimate.singular import refuse_singular
 from seatrial.identify import outcome
@@ -34,7 +34,7 @@ def settings_of(trial: Trial, records: Sequence[Record]) -> Settings:
     wishes = trial.estimate
     seconds = wishes.segment_s
     if seconds is None and wishes.segment_lengths:
-        seconds = wishes.segment_lengths * ship_length_seconds(records, trial.ship.length)
+        seconds = wishes.segment_lengths * unit_of_time(trial.model, records, trial.ship.length)
     units = {name: NOTATION[name].unit for name in wishes.offsets}
     zeros = [(name, "zero", spread or _OFFSET_SPREAD.get(units[name], 0.1), units[name])
              for name, spread in wishes.offsets.items()]  # fmt: skip
@@ -86,7 +86,7 @@ def identify(
     symmetries = structural(trial.model, outputs, forces)
     found = identified(trial.model, runs, sessions, length, settings, progress)
     refuse_singular(*_data_and_prior(found))
-    unit = ship_length_seconds(runs, length, trial.estimate.segment_s)
+    unit = unit_of_time(trial.model, runs, length, trial.estimate.segment_s)
     others = Considered(found, (), ())
     if choose or intervals is Intervals.JACKKNIFE:
         others = considered(

@@ -55,7 +55,7 @@ def as_record(model: Model, record: Record, y: Array) -> Record:
 
 
 def rms(measured: Record, simulated: Record) -> dict[str, float]:
-    """Root-mean-square differences: heading in degrees, position in m, u, v in m/s, r in rad/s, as far as measured."""
+    """Root-mean-square differences: angles in degrees, position and heave in m, u, v in m/s, r in rad/s."""
 
     def difference(symbol: str) -> Array:
         return simulated[symbol] - measured[symbol]
@@ -65,7 +65,10 @@ def rms(measured: Record, simulated: Record) -> dict[str, float]:
         made["psi_deg"] = float(np.degrees(np.sqrt(np.nanmean(difference("psi") ** 2))))
     if {"x0", "y0"} <= set(measured.channels) & set(simulated.channels):
         made["position_m"] = float(np.sqrt(np.nanmean(difference("x0") ** 2 + difference("y0") ** 2)))
-    for symbol in ("u", "v", "r"):
+    for symbol, name in (("theta", "theta_deg"), ("phi", "phi_deg")):
+        if symbol in measured and symbol in simulated:
+            made[name] = float(np.degrees(np.sqrt(np.nanmean(difference(symbol) ** 2))))
+    for symbol in ("z", "u", "v", "r"):
         if symbol in measured and symbol in simulated:
             made[symbol] = float(np.sqrt(np.nanmean(difference(symbol) ** 2)))
     return made

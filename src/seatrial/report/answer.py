@@ -77,6 +77,10 @@ def _predicted(p: Prediction, fit: Fit) -> str:
         length = fit.ship.particulars.get("L", 0.0)
         share = f" ({significant(p.rms['position_m'] / length, 2)} L)" if length > 0 else ""
         parts.append(f"{significant(p.rms['position_m'], 2)} m in position{share}")
+    if "z" in p.rms:
+        parts.append(f"{significant(p.rms['z'], 2)} m in heave")
+    if "theta_deg" in p.rms:
+        parts.append(f"{significant(p.rms['theta_deg'], 2)}° in pitch")
     if not parts and "r" in p.rms:
         parts.append(f"{significant(p.rms['r'] * 57.29578, 2)} deg/s in yaw rate")
     said = f"{p.record}, not fitted, is predicted open loop over {duration(p.measured.duration)}"

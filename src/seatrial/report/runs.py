@@ -14,7 +14,7 @@ from seatrial.results import Extrapolation, Measure, Prediction
 from seatrial.values import InputError, Record
 
 _ERRORS = {"psi_deg": ("heading", "deg"), "position_m": ("position", "m"), "u": ("u", "m/s"), "v": ("v", "m/s"),
-           "r": ("r", "deg/s")}  # fmt: skip
+           "r": ("r", "deg/s"), "z": ("heave", "m"), "theta_deg": ("pitch", "deg"), "phi_deg": ("roll", "deg")}  # fmt: skip
 _DEGREES = 57.29577951308232
 OVERSHOOTS = 6
 
@@ -160,7 +160,7 @@ def _summary(p: Prediction) -> str:
 
 def _told(found: Mapping[str, float]) -> list[str]:
     return [f"{_ERRORS[name][0]} {significant(found[name], 2)} {_ERRORS[name][1]}"
-            for name in ("psi_deg", "position_m") if name in found]  # fmt: skip
+            for name in ("psi_deg", "position_m", "z", "theta_deg", "phi_deg") if name in found]  # fmt: skip
 
 
 def _notes(p: Prediction) -> list[str]:

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.simulate.channels import STILL_AIR
+from seatrial.simulate.channels import AT_REST
 from seatrial.values import Array, InputError, nearest
 
 _FASTEST = 100.0
@@ -26,7 +26,7 @@ def held_inputs(model: Model, given: Mapping[str, float], rudder: str) -> Array:
     for j, item in enumerate(model.inputs):
         if item.name in given:
             values[j] = -given[item.name] if item.is_turned else given[item.name]
-        elif item.name != rudder and item.name not in STILL_AIR:
+        elif item.name != rudder and item.name not in AT_REST:
             raise InputError(f"model '{model.name}' needs the input '{item.name}'; give the value it is held at")
     return values
 

@@ -6,11 +6,11 @@ from seatrial.equations import Input, Model
 from seatrial.values import NOTATION, Array, Channel, InputError, Kind, Record, frozen
 from seatrial.values.notation import OPPOSITE
 
-STILL_AIR = ("wind_speed", "wind_direction")
+AT_REST = ("wind_speed", "wind_direction", "F3", "M5", "delta_f1", "delta_f2")
 
 
 def inputs_of(model: Model, record: Record) -> Array:
-    """Inputs in the model's own signs, shape (n, nu); absent wind channels mean still air.
+    """Inputs in the model's own signs, shape (n, nu); absent wind, waves and fins are at rest.
 
     A channel whose positive direction is the opposite of the input's is turned.
 
@@ -24,7 +24,7 @@ def inputs_of(model: Model, record: Record) -> Array:
 
 def _input(model: Model, record: Record, item: Input) -> Array:
     if item.name not in record:
-        if item.name in STILL_AIR:
+        if item.name in AT_REST:
             return np.zeros(len(record))
         raise InputError(f"record '{record.name}' has no channel '{item.name}', an input of model '{model.name}'")
     channel = record.channel(item.name)
