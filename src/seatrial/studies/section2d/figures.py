@@ -71,8 +71,8 @@ def _computed(fit: ModeFit, period: float) -> complex:
 
 
 def _marks(label: str, x: Array, y: Array, room: tuple[float, float]) -> Curve:
-    """A cross at each point."""
+    """A diamond about each point."""
     gap = np.full(len(x), np.nan)
-    across = np.stack([x - room[0], x + room[0], gap, x, x, gap], axis=1).ravel()
-    upward = np.stack([y, y, gap, y - room[1], y + room[1], gap], axis=1).ravel()
+    across = np.stack([x - room[0], x, x + room[0], x, x - room[0], gap], axis=1).ravel()
+    upward = np.stack([y, y + room[1], y, y - room[1], y, gap], axis=1).ravel()
     return Curve(label, across, upward)

@@ -12,10 +12,10 @@ DRIFT_LIMIT, LEAST_PERIOD_S = 0.001, 0.9
 
 
 def camera_gain(made: Numbers) -> tuple[float, float, float]:
-    """Median, smallest and largest ratio of the accelerometers' heave to the camera's, periods from .9 s on."""
+    """Median, smallest, largest ratio of the accelerometers' heave to the camera's from .9 s on; NaN without a camera."""
     long = {r.name for r in made.runs if r.period >= LEAST_PERIOD_S}
     gains = [c.gain for name, c in made.clocks.items() if name in long]
-    return float(np.median(gains)), min(gains), max(gains)
+    return (float(np.median(gains)), min(gains), max(gains)) if gains else (np.nan, np.nan, np.nan)
 
 
 def findings(made: Numbers) -> tuple[Finding, ...]:
@@ -37,7 +37,7 @@ def findings(made: Numbers) -> tuple[Finding, ...]:
         f"factor {median:.3f}, from {least:.3f} to {most:.3f} over runs with periods from .9 s on",
         "estimate one gain along with the coefficients",
     )
-    return (*made.dead, *((clock,) if drifting else ()), gain, *_short(made))
+    return (*made.dead, *((clock,) if drifting else ()), *((gain,) if np.isfinite(median) else ()), *_short(made))
 
 
 def _short(made: Numbers) -> list[Finding]:

@@ -46,7 +46,7 @@ class Numbers:
         probes: calibrated on the runs whose periods train heave.
         untied: order -> standard error of heave's and roll's added mass without any tie.
         coupled: sway-heave-roll and heave-roll runs' heave against the oscillator trained on sway-heave ones.
-        timings: held-out errors had other stretches been chosen; empty in the quick version.
+        timings, dampings: fits had other stretches or laws of damping been chosen; empty in the quick version.
         example: the two waves of one run.
     """
 
@@ -62,6 +62,7 @@ class Numbers:
     dead: tuple[Finding, ...]
     springs: Stiffness
     timings: tuple[tuple[Timing, ModeFit, ModeFit], ...]
+    dampings: tuple[tuple[str, ModeFit, ModeFit], ...]
     example: tuple[Run, Waves]
 
 
@@ -74,8 +75,9 @@ def numbers(folder: Path, *, quick: bool, progress: Progress | None) -> Numbers:
     tell = progress or (lambda _: None)
     tell("reading the records")
     runs = runs_of(folder)
-    train, _ = halves([r.index for r in runs if r.scenario == HEAVE.scenario])
-    probes = calibrated_probes([r for r in runs if r.scenario == HEAVE.scenario and r.index in train])
+    used = [r for r in runs if r.scenario == HEAVE.scenario and is_long_enough(r)]
+    train, _ = halves([r.index for r in used])
+    probes = calibrated_probes([r for r in used if r.index in train])
     tell("waves and motions at the model")
     responses, heave, roll = both(runs, probes, STEADY)
     untied = {order: (_untied(HEAVE, responses, order), _untied(ROLL, responses, order)) for order in ORDERS}
@@ -95,6 +97,7 @@ def numbers(folder: Path, *, quick: bool, progress: Progress | None) -> Numbers:
         dead=dead,
         springs=stiffness(alive),
         timings=() if quick else tuple((t, *both(runs, probes, t)[1:]) for t in OTHER_TIMINGS),
+        dampings=() if quick else _other_dampings(responses, heave, roll),
         example=_example(runs, probes),
     )
 
@@ -139,6 +142,21 @@ def camera_clocks(run: Run) -> Clocks:
     part = record.between(start - _AROUND_S[0], min(stop + _AROUND_S[1], float(record.time[-1])))
     lifted = -0.5 * (part["z_ddot_1"] + part["z_ddot_2"]) / run.omega**2
     return clocks(part.time, part["z"], lifted, run.omega)
+
+
+def _other_dampings(
+    responses: Sequence[Response], heave: ModeFit, roll: ModeFit
+) -> tuple[tuple[str, ModeFit, ModeFit], ...]:
+    def made(free: str) -> tuple[ModeFit, ModeFit]:
+        one, two = (_damped(fit.mode, free) for fit in (heave, roll))
+        return mode_fit(one, responses), mode_fit(two, responses)
+
+    return (("linear", *made("linear")), ("none but of waves", *made("")))
+
+
+def _damped(mode: Mode, free: str) -> Mode:
+    kept = tuple(name for name in mode.free if name != "quadratic") + ((free,) if free else ())
+    return replace(mode, start=replace(mode.start, quadratic=0.0), free=kept)
 
 
 def _untied(mode: Mode, responses: Sequence[Response], order: int) -> float:

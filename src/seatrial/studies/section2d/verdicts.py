@@ -113,8 +113,8 @@ def metacentric_height(made: Numbers) -> Claim:
         f"GM of {tank.GM:g} m goes with the documented beam, draught and KG",
         Verdict.CONFIRMED if abs(gm / tank.GM - 1.0) <= 0.05 else Verdict.REFUTED,
         f"with KG {tank.KG:g} m they give {gm:.4f} m for the Lewis form; freed, the roll runs give {seen:.4f} "
-        f"±{half:.4f} m (95 %), too wide to judge, for they tell little more than stiffness over inertia. The documented GM is "
-        "kept, and the fitted inertia goes with it",
+        f"±{half:.4f} m (95 %), too wide to judge, for they tell little more than stiffness over inertia. The "
+        "documented GM is kept, and the fitted inertia goes with it",
     )
 
 

@@ -1,0 +1,146 @@
+"""The section in waves on the real records: held-out periods, natural periods, stiffness, dead channels."""
+
+import importlib
+import json
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from seatrial import cli, verbs
+from seatrial.results import Verdict
+from seatrial.studies.section2d import tank, verdicts
+from seatrial.studies.section2d.modes import halves, jackknife
+from seatrial.studies.section2d.numbers import Numbers, numbers
+from seatrial.studies.section2d.runs import STEADY, periods
+from seatrial.studies.section2d.study import study
+from seatrial.studies.section2d.tables import tables, worst
+from seatrial.trial.fit_json import strict_json
+from seatrial.values import InputError
+
+
+@pytest.fixture(scope="module")
+def made(data_folder: Path) -> Iterator[Numbers]:
+    folder = data_folder / "section2d_waves"
+    if not folder.is_dir():
+        pytest.skip("the section's records are not here")
+    yield numbers(folder, quick=True, progress=None)
+
+
+def test_periods_held_out_between_trained_ones_are_predicted(made: Numbers) -> None:
+    for fit in (made.heave, made.roll):
+        amplitude, phase = worst(fit)
+        assert amplitude <= 1.5 and phase <= 1.5
+        held = [s for s in fit.scores if not s.trained]
+        assert len({s.response.run.index for s in held}) >= 2
+
+
+def test_natural_periods_are_the_documented_ones(made: Numbers) -> None:
+    assert made.heave.period == pytest.approx(tank.HEAVE_PERIOD, rel=0.01)
+    assert made.roll.period == pytest.approx(tank.ROLL_PERIOD, rel=0.01)
+
+
+def test_nothing_of_a_held_out_period_trains(made: Numbers) -> None:
+    """Changing what was measured there leaves the trained oscillator as it is."""
+    from seatrial.studies.section2d.modes import HEAVE, mode_fit
+
+    held = {s.response.run.name for s in made.heave.scores if not s.trained}
+    bent = [replace(r, heave=1.1 * r.heave) if r.run.name in held else r for r in made.responses]
+    again = mode_fit(HEAVE, bent)
+    assert again.trained.oscillator == made.heave.trained.oscillator
+    assert worst(again)[0] > 5.0
+
+
+def test_sway_stiffness_meets_the_documented_range(made: Numbers) -> None:
+    low, high = tank.SWAY_STIFFNESS
+    assert made.springs.mean - 2.0 * made.springs.error <= high and made.springs.mean + 2.0 * made.springs.error >= low
+    assert made.springs.error < 1.0
+
+
+def test_dead_camera_channels_are_found_and_no_others(made: Numbers) -> None:
+    assert {f.what.split(":")[0] for f in made.dead} == {"3102_4", "4061_2"}
+
+
+def test_the_waves_have_their_nominal_height(made: Numbers) -> None:
+    ratios = [2.0 * r.wave / tank.HEIGHTS[r.run.height] for r in made.responses if r.run.period > 0.85]
+    assert np.mean(ratios) == pytest.approx(1.0, abs=0.03) and np.ptp(ratios) < 0.06
+
+
+def test_energy_is_not_made_by_the_section(made: Numbers) -> None:
+    assert all(r.back**2 + r.beyond**2 < 1.05 for r in made.responses)
+
+
+def test_the_stretch_lies_between_ramp_and_reflection(made: Numbers) -> None:
+    for r in made.responses:
+        start, stop = r.run.window(STEADY)
+        assert r.run.strokes[1] < start < stop <= r.run.record.time[-1]
+
+
+def test_accelerometers_and_camera_differ_by_the_known_gain(made: Numbers) -> None:
+    from seatrial.studies.section2d.instruments import camera_gain
+
+    assert camera_gain(made)[0] == pytest.approx(1.13, abs=0.03)
+
+
+def test_without_a_tie_the_added_mass_is_open(made: Numbers) -> None:
+    plain, linear, quadratic = (made.untied[k][0] for k in (0, 1, 2))
+    assert plain < 1.0 < 20.0 < linear < quadratic
+
+
+def test_claims_and_checks_can_come_out_the_other_way(made: Numbers) -> None:
+    off = replace(made, heave=replace(made.heave, period=1.25), dead=())
+    assert verdicts.natural(off.heave).verdict is Verdict.REFUTED
+    assert [c.name for c in verdicts.checks(off) if not c.holds] == [
+        "heave, natural period off the documented [%]",
+        "runs with dead camera channels",
+    ]
+    assert verdicts.one_clock(replace(made, dead=(), clocks={})).verdict is Verdict.CONFIRMED
+    assert all(c.holds for c in verdicts.checks(made))
+
+
+def test_every_table_has_as_many_cells_as_its_header(made: Numbers) -> None:
+    for table in tables(made):
+        assert table.rows and all(len(row) == len(table.header) for row in table.rows), table.title
+
+
+def test_half_of_the_periods_train_and_the_extremes_are_among_them() -> None:
+    assert halves([2, 4, 6, 8, 10, 11, 13, 4]) == ((2, 6, 10, 13), (4, 8, 11))
+    assert halves([4, 6, 9, 11, 11]) == ((4, 11), (6, 9))
+
+
+def test_the_jackknife_of_a_mean_is_its_standard_error(rng: np.random.Generator) -> None:
+    x = rng.standard_normal(12)
+    left = [float(np.mean(np.delete(x, k))) for k in range(12)]
+    assert jackknife(left) == pytest.approx(float(np.std(x, ddof=1) / np.sqrt(12)))
+
+
+def test_the_command_writes_a_page(made: Numbers, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    module = importlib.import_module("seatrial.studies.section2d.study")
+    monkeypatch.setattr(module, "data_folder", lambda: tmp_path)
+    monkeypatch.setattr(module, "numbers", lambda *_, **__: made)
+    done = study(quick=True, seed=0, progress=None)
+    page = verbs.save_study(done, tmp_path / "out")
+    table = json.loads(strict_json(done.as_table()))
+    assert table["study"] == "section2d" and len(table["checks"]) == 8 and "Haskind" in page.read_text()
+
+
+@pytest.mark.parametrize("folder", [None, "nowhere"])
+def test_without_the_records_it_says_one_sentence(
+    folder: str | None, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    monkeypatch.delenv("SEATRIAL_DATA", raising=False)
+    if folder:
+        monkeypatch.setenv("SEATRIAL_DATA", folder)
+    monkeypatch.setattr("sys.argv", ["seatrial", "reproduce", "section2d"])
+    with pytest.raises(SystemExit) as ending:
+        cli.main()
+    said = capsys.readouterr().err
+    assert ending.value.code == 2 and "set it to their folder" in said and len(said.strip().splitlines()) == 1
+
+
+def test_a_broken_list_of_periods_is_named(tmp_path: Path) -> None:
+    (tmp_path / "periods.csv").write_text("index,period_s\n1,abc\n")
+    with pytest.raises(InputError, match="index and a period"):
+        periods(tmp_path / "periods.csv")
