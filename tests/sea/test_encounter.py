@@ -1,0 +1,47 @@
+"""Encounter: the three waves of a following sea, and energy that no heading loses."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from seatrial.sea.encounter import encounter_density, encounter_frequency, wave_of, waves_met
+from seatrial.sea.spectrum import ittc, jonswap
+from seatrial.values import InputError
+
+
+@pytest.mark.parametrize("heading", range(0, 181, 15))
+@pytest.mark.parametrize("spectrum", [ittc(2.27), jonswap(3.0, 9.0)], ids=["ittc", "jonswap"])
+def test_no_energy_is_lost_at_any_heading(spectrum, heading: int) -> None:
+    edges = np.concatenate([[0.0], np.geomspace(1e-4, 1e6, 3000)])
+    density = encounter_density(spectrum, 9.26, math.radians(heading), edges)
+    assert density.min() >= -1e-12
+    assert float(density @ np.diff(edges)) == pytest.approx(spectrum.moment(0), rel=1e-6)
+
+
+@given(omega_e=st.floats(0.01, 5.0), U=st.floats(0.0, 20.0), beta=st.floats(0.0, math.pi))
+def test_every_wave_met_has_that_frequency_of_encounter(omega_e: float, U: float, beta: float) -> None:
+    found = np.array(waves_met(omega_e, U, beta))
+    assert 1 <= len(found) <= 3
+    np.testing.assert_allclose(np.abs(encounter_frequency(found, U, beta)), omega_e, rtol=1e-6, atol=1e-9)
+
+
+def test_a_following_sea_has_three_waves_below_the_turning_point_and_one_above() -> None:
+    q = 9.26 / 9.81
+    assert len(waves_met(0.9 / (4 * q), 9.26, 0.0)) == 3
+    assert len(waves_met(1.1 / (4 * q), 9.26, 0.0)) == 1
+
+
+def test_the_wave_of_a_head_sea_is_found_and_that_of_a_following_sea_refused() -> None:
+    omega = np.array([0.5, 1.0, 2.5])
+    np.testing.assert_allclose(wave_of(encounter_frequency(omega, 9.26, 2.4), 9.26, 2.4), omega)
+    with pytest.raises(InputError, match="three waves"):
+        wave_of(omega, 9.26, 0.5)
+
+
+@pytest.mark.parametrize(("U", "beta", "said"), [(-1.0, 1.0, "knots"), (60.0, 1.0, "knots"), (9.0, 90.0, "degrees")])
+def test_speed_and_heading_out_of_sense_are_refused(U: float, beta: float, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        waves_met(1.0, U, beta)

@@ -1,0 +1,66 @@
+"""Spectra against their analytic moments, and the published band."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from seatrial.sea.sea_state import sea_state
+from seatrial.sea.spectrum import Spectrum, bretschneider, ittc, ittc_two_parameter, jonswap
+from seatrial.values import InputError
+
+ALL = [ittc(2.27), ittc_two_parameter(3.0, 8.0), bretschneider(3.0, 9.0), jonswap(3.0, 9.0), jonswap(1.0, 5.0, 1.0)]
+
+
+@pytest.mark.parametrize("spectrum", ALL, ids=lambda s: s.name)
+def test_moments_equal_the_integral(spectrum: Spectrum) -> None:
+    omega = spectrum.modal_frequency * np.geomspace(0.25, 1e4, 200_001)
+    for order in (-1, 0, 1, 2):
+        integral = np.trapezoid(omega**order * spectrum.density(omega), omega)
+        assert spectrum.moment(order) == pytest.approx(integral, rel=2e-7)
+
+
+@given(height=st.floats(0.1, 15.0), period=st.floats(2.0, 20.0), gamma=st.floats(1.0, 7.0))
+def test_height_and_period_come_back(height: float, period: float, gamma: float) -> None:
+    assert jonswap(height, period, gamma).significant_height == pytest.approx(height, rel=1e-9)
+    assert 2 * math.pi / bretschneider(height, period).modal_frequency == pytest.approx(period, rel=1e-12)
+    two = ittc_two_parameter(height, period)
+    assert two.significant_height == pytest.approx(height, rel=1e-12)
+    assert two.mean_period == pytest.approx(period, rel=1e-12)
+
+
+def test_the_band_of_the_paper_is_found() -> None:
+    low, high = ittc(2.27).band()
+    assert low == pytest.approx(0.544, abs=5e-4)
+    assert high == pytest.approx(2.784, abs=5e-4)
+
+
+def test_the_constants_of_the_towing_tank_conference_are_rounded() -> None:
+    assert pytest.approx(691.0, rel=3e-4) == ittc_two_parameter(1.0, 1.0).B
+    assert pytest.approx(173.0, rel=2e-3) == ittc_two_parameter(1.0, 1.0).A
+
+
+@pytest.mark.parametrize("spectrum", ALL, ids=lambda s: s.name)
+def test_shares_of_energy_and_their_inverse(spectrum: Spectrum) -> None:
+    shares = np.array([0.01, 0.3, 0.9, 0.99])
+    np.testing.assert_allclose(spectrum.share_below(spectrum.frequency_of_share(shares)), shares, rtol=1e-8)
+
+
+@pytest.mark.parametrize("made", [lambda: ittc(0.0), lambda: bretschneider(2.0, -1.0), lambda: jonswap(2.0, 8.0, 0.5)])
+def test_seas_out_of_sense_are_refused(made: object) -> None:
+    with pytest.raises(InputError):
+        made()  # type: ignore[operator]
+
+
+def test_the_fourth_moment_does_not_exist() -> None:
+    with pytest.raises(InputError, match="infinite"):
+        ittc(2.0).moment(4)
+
+
+def test_sea_state_four_has_the_height_between_its_limits() -> None:
+    four = sea_state(4)
+    assert four.lowest <= 2.27 <= four.highest
+    with pytest.raises(InputError, match="no sea state 12"):
+        sea_state(12)
