@@ -59,6 +59,15 @@ def test_sway_stiffness_meets_the_documented_range(made: Numbers) -> None:
     assert made.springs.error < 1.0
 
 
+def test_friction_in_the_guide_is_dry(made: Numbers) -> None:
+    assert made.guide.exponent + 2.0 * made.guide.error < -0.5
+    near = [f for f in made.guide.runs if f.run.startswith("3102")]
+    assert all(7.0 < f.damping < 9.0 and f.third == pytest.approx(1.0 / 3.0, abs=0.08) for f in near)
+    assert verdicts.rig_damping(made).verdict is Verdict.REFUTED
+    linear = replace(made, guide=replace(made.guide, exponent=0.05, error=0.2))
+    assert verdicts.rig_damping(linear).verdict is Verdict.CONFIRMED
+
+
 def test_dead_camera_channels_are_found_and_no_others(made: Numbers) -> None:
     assert {f.what.split(":")[0] for f in made.dead} == {"3102_4", "4061_2"}
 
@@ -141,6 +150,6 @@ def test_without_the_records_it_says_one_sentence(
 
 
 def test_a_broken_list_of_periods_is_named(tmp_path: Path) -> None:
-    (tmp_path / "periods.csv").write_text("index,period_s\n1,abc\n")
-    with pytest.raises(InputError, match="index and a period"):
+    (tmp_path / "periods.csv").write_text("index,period_s\n1,1.2\n")
+    with pytest.raises(InputError, match="index, period in s"):
         periods(tmp_path / "periods.csv")

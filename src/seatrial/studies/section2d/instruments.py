@@ -12,7 +12,7 @@ DRIFT_LIMIT, LEAST_PERIOD_S = 0.001, 0.9
 
 
 def camera_gain(made: Numbers) -> tuple[float, float, float]:
-    """Median, smallest, largest ratio of the accelerometers' heave to the camera's from .9 s on; NaN without a camera."""
+    """Median, smallest, largest ratio of accelerometers' to camera's heave, periods from .9 s on; NaN without."""
     long = {r.name for r in made.runs if r.period >= LEAST_PERIOD_S}
     gains = [c.gain for name, c in made.clocks.items() if name in long]
     return (float(np.median(gains)), min(gains), max(gains)) if gains else (np.nan, np.nan, np.nan)
@@ -80,6 +80,21 @@ def spring_table(made: Numbers) -> Table:
         f"Documented {tank.SWAY_STIFFNESS[0]:g} to {tank.SWAY_STIFFNESS[1]:g} N/m. Used are runs with more than nine "
         "tenths explained; noise on the camera lowers the first regression and not the second, so the mean is that of "
         "their geometric means.",
+    )
+
+
+def guide_table(made: Numbers) -> Table:
+    """The force in the sway guide run by run."""
+    rows: list[Row] = [
+        (f.run, f.velocity, f.damping, f.force, f.third) for f in sorted(made.guide.runs, key=lambda f: -f.velocity)
+    ]
+    return Table(
+        "The sway guide: holding force in phase with sway velocity",
+        ("run", "velocity [m/s]", "as linear damping [N s/m]", "force [N]", "third harmonic / first"),
+        tuple(rows),
+        f"The damping goes with velocity to the power {made.guide.exponent:.2f} ±{1.96 * made.guide.error:.2f} (95 %, "
+        "runs left out): 0 would be linear, -1 is dry friction, whose third harmonic is a third of the first. Sway is "
+        "taken from the springs.",
     )
 
 

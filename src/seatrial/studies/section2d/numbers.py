@@ -10,6 +10,7 @@ import numpy as np
 from seatrial.check.conventions import signed
 from seatrial.check.instruments import Clocks, clocks, dead_channels
 from seatrial.problem.separation import Probes, Waves
+from seatrial.studies.section2d.guide import Guide, guide
 from seatrial.studies.section2d.modes import HEAVE, ROLL, Mode, ModeFit, halves, mode_fit, observed
 from seatrial.studies.section2d.responses import (
     Response,
@@ -61,6 +62,7 @@ class Numbers:
     clocks: Mapping[str, Clocks]
     dead: tuple[Finding, ...]
     springs: Stiffness
+    guide: Guide
     timings: tuple[tuple[Timing, ModeFit, ModeFit], ...]
     dampings: tuple[tuple[str, ModeFit, ModeFit], ...]
     example: tuple[Run, Waves]
@@ -84,6 +86,7 @@ def numbers(folder: Path, *, quick: bool, progress: Progress | None) -> Numbers:
     dead = tuple(f for r in runs for f in dead_channels(r.record, CAMERA))
     tell("instruments against one another")
     alive = [r for r in runs if not dead_channels(r.record, CAMERA)]
+    springs = stiffness(alive)
     return Numbers(
         runs=runs,
         probes=probes,
@@ -95,7 +98,8 @@ def numbers(folder: Path, *, quick: bool, progress: Progress | None) -> Numbers:
         coupled=tuple((r, *_predicted(heave, r)) for r in responses if r.run.scenario != HEAVE.scenario),
         clocks={r.name: camera_clocks(r) for r in alive},
         dead=dead,
-        springs=stiffness(alive),
+        springs=springs,
+        guide=guide([r for r in runs if is_long_enough(r)], springs.known),
         timings=() if quick else tuple((t, *both(runs, probes, t)[1:]) for t in OTHER_TIMINGS),
         dampings=() if quick else _other_dampings(responses, heave, roll),
         example=_example(runs, probes),

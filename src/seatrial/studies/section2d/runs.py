@@ -39,7 +39,7 @@ class Run:
     """One run SPPH_rep: scenario S, period PP, height H."""
 
     record: Record
-    nominal: float
+    listed: "Listed"
 
     @property
     def name(self) -> str:
@@ -74,7 +74,7 @@ class Run:
         """rad/s, of the paddle at full stroke."""
         _, full, left = self.strokes
         stretch = self.record.between(full + _TRIM_S, left - _TRIM_S)
-        return frequency_near(stretch.time, stretch["x_wm"], self.nominal)
+        return frequency_near(stretch.time, stretch["x_wm"], self.listed.omega)
 
     @property
     def period(self) -> float:
@@ -116,17 +116,25 @@ def data_folder() -> Path:
     return folder
 
 
-def periods(path: Path) -> dict[int, float]:
-    """Index -> omega [rad/s].
+@dataclass(frozen=True)
+class Listed:
+    """A row of periods.csv: rad/s, and the wave number listed beside it, rad/m."""
+
+    omega: float
+    wavenumber: float
+
+
+def periods(path: Path) -> dict[int, Listed]:
+    """Index -> wave period as listed.
 
     Raises:
         InputError: a row is no pair of numbers.
     """
     rows = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines() if line[:1].isdigit()]
     try:
-        return {int(row[0]): 2.0 * np.pi / float(row[1]) for row in rows}
+        return {int(row[0]): Listed(2.0 * np.pi / float(row[1]), float(row[3])) for row in rows}
     except (ValueError, IndexError, ZeroDivisionError):
-        raise InputError(f"{path}: each row must begin with an index and a period in s") from None
+        raise InputError(f"{path}: each row must hold index, period in s, frequency and wave number") from None
 
 
 def runs_of(folder: Path, scenarios: tuple[int, ...] = (3, 4, 6)) -> tuple[Run, ...]:

@@ -7,6 +7,7 @@ import numpy as np
 
 from seatrial.studies.section2d.modes import jackknife
 from seatrial.studies.section2d.runs import Run
+from seatrial.studies.section2d.tank import SWAY_STIFFNESS
 from seatrial.values import Array
 
 LEAST_SWAY_M, LEAST_SHARE = 0.003, 0.9
@@ -45,6 +46,11 @@ class Stiffness:
     runs: tuple[Spring, ...]
     mean: float
     error: float
+
+    @property
+    def known(self) -> float:
+        """N/m; the middle of the documented range where no run tells."""
+        return self.mean if np.isfinite(self.mean) else sum(SWAY_STIFFNESS) / 2.0
 
 
 def stiffness(runs: Sequence[Run]) -> Stiffness:

@@ -5,7 +5,7 @@ import numpy as np
 from seatrial.hydro.multipoles import haskind_damping
 from seatrial.results import Table
 from seatrial.studies.section2d import tank
-from seatrial.studies.section2d.instruments import clock_table, probe_table, spring_table, wave_table
+from seatrial.studies.section2d.instruments import clock_table, guide_table, probe_table, spring_table, wave_table
 from seatrial.studies.section2d.modes import HEAVE, ModeFit, observed, theory_at
 from seatrial.studies.section2d.numbers import Numbers
 from seatrial.studies.section2d.runs import STEADY
@@ -59,6 +59,7 @@ def tables(made: Numbers) -> tuple[Table, ...]:
         *((dampings(made),) if made.dampings else ()),
         clock_table(made),
         spring_table(made),
+        guide_table(made),
         probe_table(made),
         wave_table(made),
     )
