@@ -80,6 +80,10 @@ def scores(fit: ModeFit) -> Table:
             (s.response.run.name, s.response.run.period, standing, abs(value), float(np.degrees(np.angle(value))),
              s.amplitude, s.phase)
         )  # fmt: skip
+    numbers = 2 * len({s.response.run.index for s in fit.scores if s.trained})
+    exactly = " Its unknowns are as many as the trained numbers, which are met exactly." * (
+        len(fit.mode.free) == numbers
+    )
     what = "measured" if fit.mode is HEAVE else "accelerometers' difference"
     return Table(
         f"{name(fit).capitalize()}: half of the periods train, the others are predicted",
@@ -96,7 +100,7 @@ def scores(fit: ModeFit) -> Table:
         "Per m of the onward wave at the model. Trained are half of the periods, from the longest to the shortest, "
         "evenly spread; probes, gain, delay, distance and coefficients are frozen before the others are scored, and "
         "the amplitude that sets the quadratic damping is the predicted one. Below .9 s heave is small "
-        "and what the accelerometers feel of sway counts.",
+        f"and what the accelerometers feel of sway counts.{exactly}",
     )
 
 
@@ -184,7 +188,9 @@ def separability(made: Numbers) -> Table:
         ("added mass, damping, log excitation and its phase are", "heave, standard error [kg]", "roll [kg m^2]"),
         tuple(rows),
         "At one period two numbers are measured and four wanted: nothing separates them. Over all periods it depends "
-        "on what is assumed of their course; a dash: not determined at all.",
+        "on what is assumed of their course; a dash: not determined at all. "
+        "To call everything constant is a tie of its own, and a false one: theory has added mass and damping vary by "
+        "tens of per cent.",
     )
 
 
