@@ -189,8 +189,8 @@ def separability(made: Numbers) -> Table:
         tuple(rows),
         "At one period two numbers are measured and four wanted: nothing separates them. Over all periods it depends "
         "on what is assumed of their course; a dash: not determined at all. "
-        "To call everything constant is a tie of its own, and a false one: theory has added mass and damping vary by "
-        "tens of per cent.",
+        "To call everything constant is a tie of its own, and a false one: over these periods theory has added mass "
+        "vary by a third and wave damping tenfold.",
     )
 
 
