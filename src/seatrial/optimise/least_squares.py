@@ -104,6 +104,9 @@ def _step(normal: Normal, damping: float, low: Array, high: Array) -> tuple[Arra
 
 def _boxed(hessian: Array, gradient: Array, low: Array, high: Array) -> Array:
     """Minimiser of the quadratic model in a box that holds zero (active sets; Stark & Parker 1995, BVLS)."""
+    free = _solve(hessian, -gradient)
+    if np.all((free >= low) & (free <= high)):
+        return free
     step = np.zeros_like(gradient)
     held = ((low >= 0) & (gradient > 0)) | ((high <= 0) & (gradient < 0)) | (low >= high)
     for _ in range(3 * len(step) + 3):

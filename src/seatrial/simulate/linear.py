@@ -40,10 +40,9 @@ class Matrices:
 def matrices(model: Model, parameters: Array, h: float, select: Index, wanted: Index) -> Matrices:
     """Exact discrete matrices over a step h [s] for each row of `parameters`, differentiated by those in `wanted`."""
     made = [_of_one(model, row, h, select, wanted) for row in parameters]
-    values = [np.ascontiguousarray(np.stack([m[0][i] for m in made])) for i in range(5)]
-    slopes = [np.ascontiguousarray(np.moveaxis(np.stack([m[1][i] for m in made]), 1, -1)) for i in range(5)]
-    return Matrices(values[0], values[1], values[2], values[3], values[4],
-                    (slopes[0], slopes[1], slopes[2], slopes[3], slopes[4]))  # fmt: skip
+    e, g0, g1, c, d = (np.array([values[i] for values, _ in made]) for i in range(5))
+    de, dg0, dg1, dc, dd = (np.array([slopes[i].transpose(1, 2, 0) for _, slopes in made], order="C") for i in range(5))
+    return Matrices(e, g0, g1, c, d, (de, dg0, dg1, dc, dd))
 
 
 def _of_one(model: Model, p: Array, h: float, select: Index, wanted: Index) -> tuple[list[Array], list[Array]]:
@@ -104,9 +103,11 @@ class LinearBatch(Batch):
         return max(self.substeps, SUBSTEPS) if any(moving) else 1
 
     def _matrices(self, parameters: Array, wanted: Index) -> tuple[Matrices, Index]:
-        distinct, which = np.unique(parameters, axis=0, return_inverse=True)
-        made = matrices(self.model, distinct, self.dt / self._pieces, self._select, wanted)
-        return made, np.ascontiguousarray(which.reshape(-1), dtype=np.int64)
+        distinct, which = parameters[:1], np.zeros(len(parameters), dtype=np.int64)
+        if np.any(parameters != distinct):
+            distinct, found = np.unique(parameters, axis=0, return_inverse=True)
+            which = np.ascontiguousarray(found.reshape(-1), dtype=np.int64)
+        return matrices(self.model, distinct, self.dt / self._pieces, self._select, wanted), which
 
     def _prepared(self, first: int, last: int, corrections: Array) -> tuple[Index, Index, Array, Array, Array]:
         """Offsets, failures, room for y, fine inputs with the constant 1, and their slopes by the corrections."""

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Self
 
 import numpy as np
@@ -76,12 +77,16 @@ class Parameters:
         return len(self.items)
 
     def __contains__(self, name: str) -> bool:
-        return any(p.name == name for p in self.items)
+        return name in self._places
 
     def __getitem__(self, name: str) -> Parameter:
         return self.items[self.index(name)]
 
-    @property
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        return {p.name: i for i, p in enumerate(self.items)}
+
+    @cached_property
     def names(self) -> tuple[str, ...]:
         """All names in order."""
         return tuple(p.name for p in self.items)
@@ -108,9 +113,9 @@ class Parameters:
 
     def index(self, name: str) -> int:
         """Position of a name."""
-        if name not in self.names:
+        if name not in self._places:
             raise InputError(f"unknown parameter '{name}'{nearest(name, list(self.names))}")
-        return self.names.index(name)
+        return self._places[name]
 
     def _changed(self, changes: Mapping[str, Mapping[str, object]]) -> Self:
         for name in changes:
