@@ -27,6 +27,7 @@ from seatrial.values.versions import versions
 
 _OFFSET_SPREAD = {"rad": float(np.radians(2.0)), "m/s": 0.1, "rps": 0.1}
 _GAIN_SPREAD = 0.1
+_DELAY_SPREAD = 0.2
 
 
 def settings_of(trial: Trial, records: Sequence[Record]) -> Settings:
@@ -39,10 +40,11 @@ def settings_of(trial: Trial, records: Sequence[Record]) -> Settings:
     zeros = [(name, "zero", spread or _OFFSET_SPREAD.get(units[name], 0.1), units[name])
              for name, spread in wishes.offsets.items()]  # fmt: skip
     gains = [(name, "gain", spread or _GAIN_SPREAD, "1") for name, spread in wishes.gains.items()]
+    delays = [(name, "delay", spread or _DELAY_SPREAD, "s") for name, spread in wishes.delays.items()]
     return Settings(
         criterion=Criterion(wishes.criterion), segment_seconds=seconds, robust=wishes.robust,
-        noise=dict(trial.noise), channels=wishes.channels, corrections=(*zeros, *gains), current=wishes.current,
-        forces=trial.forces,
+        noise=dict(trial.noise), channels=wishes.channels, current=wishes.current,
+        corrections=(*zeros, *gains, *delays), forces=trial.forces,
     )  # fmt: skip
 
 

@@ -8,6 +8,7 @@ from pydantic import ValidationError
 from seatrial.check.captive import force_findings
 from seatrial.equations import Model
 from seatrial.trial.complaints import complaint
+from seatrial.trial.excitation import excitation_of
 from seatrial.trial.forces import points_of
 from seatrial.trial.literature import range_findings
 from seatrial.trial.model_choice import chosen_model, ship_of
@@ -59,6 +60,7 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         _refuse_strangers("estimate.channels", list(file.estimate.channels), set(model.observables))
         _refuse_strangers("estimate.offsets", list(file.estimate.offsets), known)
         _refuse_strangers("estimate.gains", list(file.estimate.gains), known)
+        _refuse_strangers("estimate.delays", list(file.estimate.delays), set(model.input_names))
         for structure, names in (file.family.structures if file.family else {}).items():
             _refuse_strangers(f"family.structures.'{structure}'", list(names), set(model.parameters.names))
         if own_model is None:
@@ -66,8 +68,9 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         unit = _force_unit(model, ship)
         ranges = range_findings(file.model.priors_from, ship)
         home = path.resolve().parent
-        runs = runs_of(file.records, file.data.folder, home)
         base = home / expanded(file.data.folder)
+        excitation = excitation_of(file.excitation, ship, model, base)
+        runs = runs_of(file.records, file.data.folder, home, excitation)
         forces = tuple(
             points_of(block, base, model, file.model.reference_point, f"forces[{i}]")
             for i, block in enumerate(file.forces, start=1)
@@ -117,6 +120,7 @@ def _estimate(table: EstimateTable) -> Estimate:
         robust=table.robust,
         offsets={channel: spread.in_si for channel, spread in table.offsets.items()},
         gains={channel: spread.in_si for channel, spread in table.gains.items()},
+        delays={channel: spread.in_si for channel, spread in table.delays.items()},
         current=table.current,
         initial_s=table.initial_s,
     )

@@ -6,6 +6,7 @@ import numpy as np
 
 from seatrial.check import examine, prepared
 from seatrial.read import read_record
+from seatrial.sea.felt import with_wave_forces
 from seatrial.trial.approach import first_execution
 from seatrial.trial.trial import Role, Run, Trial, Trimming
 from seatrial.values import Finding, InputError, Record, Severity
@@ -39,9 +40,11 @@ def records_of(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ..
 
 
 def checked(run: Run, reference_point: float) -> tuple[Record, list[Finding]]:
-    """One run read, examined as it is, repaired, made canonical, trimmed and resampled."""
+    """One run read, examined as it is, repaired, made canonical, given its wave forces, trimmed and resampled."""
     raw = read_record(run.path, run.layout).named(run.name)
     record, _ = prepared(raw, reference_point)
+    if run.waves is not None:
+        record = with_wave_forces(record, run.waves.excitation, run.waves.U, run.waves.beta)
     return trimmed(record, run.trimming), list(examine(raw))
 
 

@@ -6,7 +6,9 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
+from seatrial.hydro.excitation import Excitation
 from seatrial.read import Column, Layout, format_of
+from seatrial.trial.excitation import waves_of
 from seatrial.trial.schema import ChannelColumn, RecordsTable
 from seatrial.trial.trial import Role, Run, Trimming, run_name
 from seatrial.values import InputError, nearest, quantity, si
@@ -32,14 +34,18 @@ def expanded(text: str) -> str:
     return _VARIABLE.sub(value, text)
 
 
-def runs_of(blocks: Sequence[RecordsTable], folder: str, home: Path) -> tuple[Run, ...]:
-    """Every run of every block, each with one role; files in sorted order.
+def runs_of(
+    blocks: Sequence[RecordsTable], folder: str, home: Path, excitation: Excitation | None = None
+) -> tuple[Run, ...]:
+    """Every run of every block, each with one role; files in sorted order. excitation: of those that met waves.
 
     Raises:
         InputError: a glob or a role pattern that matches nothing, a run with two roles, a name used twice.
     """
     base = home / expanded(folder)
-    runs = [run for i, block in enumerate(blocks, start=1) for run in _block_runs(block, base, f"records[{i}]")]
+    runs = [
+        run for i, block in enumerate(blocks, start=1) for run in _block_runs(block, base, f"records[{i}]", excitation)
+    ]
     names = [run.name for run in runs]
     for name in names:
         if names.count(name) > 1:
@@ -49,12 +55,13 @@ def runs_of(blocks: Sequence[RecordsTable], folder: str, home: Path) -> tuple[Ru
     return tuple(runs)
 
 
-def _block_runs(block: RecordsTable, base: Path, where: str) -> list[Run]:
+def _block_runs(block: RecordsTable, base: Path, where: str, excitation: Excitation | None) -> list[Run]:
     paths = sorted({path for text in block.files for path in _found(text, base, where)})
     trimming = Trimming(block.from_s, block.to_s, block.skip_acceleration, block.rate)
     roles = _roles(block, [run_name(p) for p in paths], where)
+    met = waves_of(block.waves, excitation, where)
     return [
-        Run(path, layout_of(block, path, where), role, session_of(path, block.session), trimming, block.source)
+        Run(path, layout_of(block, path, where), role, session_of(path, block.session), trimming, block.source, met)
         for path, role in zip(paths, roles, strict=True)
     ]
 

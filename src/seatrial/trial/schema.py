@@ -118,6 +118,13 @@ class ChannelColumn(Strict):
     reference_point: float = 0.0
 
 
+class WavesTable(Strict):
+    """`[records.waves]`: heading to the waves (0 following, 180 degrees head; rad without a unit) and ship speed."""
+
+    heading: SiAmount
+    speed: SiAmount
+
+
 class RecordsTable(Strict):
     """One `[[records]]` block: files of one layout, their roles and trimming."""
 
@@ -139,6 +146,7 @@ class RecordsTable(Strict):
     from_s: float | None = None
     to_s: float | None = None
     skip_acceleration: bool = False
+    waves: WavesTable | None = None
 
     @model_validator(mode="after")
     def _times_in_order(self) -> Self:
@@ -247,6 +255,23 @@ class ModelTable(Strict):
     priors_from: Words = ()
 
 
+class ExcitationTable(Strict):
+    """`[excitation]`: how an elevation becomes a wave force.
+
+    `box`: closed form for the ship's L, B, d and stiffness; `table`: complex transfer functions in a CSV or NetCDF
+    file; `capytaine`: a dataset of Capytaine at rest, speed terms by strip theory.
+    """
+
+    source: Literal["box", "table", "capytaine"]
+    file: str | None = None
+
+    @model_validator(mode="after")
+    def _file_where_needed(self) -> Self:
+        if (self.file is None) != (self.source == "box"):
+            raise ValueError("a box needs no file" if self.file else f"source = '{self.source}' needs a file")
+        return self
+
+
 class EstimateTable(Strict):
     """`[estimate]`: settings of the estimator; what is not given follows the decision table."""
 
@@ -258,6 +283,7 @@ class EstimateTable(Strict):
     robust: bool = False
     offsets: Nuisances = {}
     gains: Nuisances = {}
+    delays: Nuisances = {}
     current: Annotated[float, Field(ge=0)] = 0.0
     initial_s: Annotated[float, Field(gt=0)] | None = None
 
@@ -286,6 +312,7 @@ class TrialFile(Strict):
     records: Annotated[tuple[RecordsTable, ...], Field(min_length=1)]
     model: ModelTable
     forces: tuple[ForcesTable, ...] = ()
+    excitation: ExcitationTable | None = None
     family: FamilyTable | None = None
     noise: dict[str, SiSpread] = {}
     truth: dict[str, float] = {}

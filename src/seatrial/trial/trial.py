@@ -6,6 +6,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from seatrial.equations import Model
+from seatrial.hydro.excitation import Excitation
 from seatrial.read import Layout
 from seatrial.values import Finding, ForcePoints, Ship
 
@@ -40,6 +41,15 @@ class Trimming:
 
 
 @dataclass(frozen=True)
+class Waves:
+    """How a run met the waves: ship speed [m/s], heading [rad, 0 following, pi head], and what they do to her."""
+
+    excitation: Excitation
+    U: float
+    beta: float
+
+
+@dataclass(frozen=True)
 class Run:
     """One record file of the trial: where it lies, how to parse it, what it is for, what it shares offsets with."""
 
@@ -49,6 +59,7 @@ class Run:
     session: str
     trimming: Trimming = Trimming()
     source: str = ""
+    waves: Waves | None = None
 
     @property
     def name(self) -> str:
@@ -69,6 +80,7 @@ class Estimate:
         robust: whether a robust loss is used.
         offsets: channel -> prior standard deviation (SI, None where not stated) of its zero per session.
         gains: channel -> prior standard deviation (None where not stated) of its gain per session.
+        delays: input -> prior standard deviation [s] (None where not stated) of its delay per session.
         current: prior standard deviation of a uniform current for each run, m/s; 0: none.
         initial_s: s of a validation run from which its initial state is taken.
     """
@@ -81,6 +93,7 @@ class Estimate:
     robust: bool = False
     offsets: Mapping[str, float | None] = field(default_factory=dict)
     gains: Mapping[str, float | None] = field(default_factory=dict)
+    delays: Mapping[str, float | None] = field(default_factory=dict)
     current: float = 0.0
     initial_s: float | None = None
 

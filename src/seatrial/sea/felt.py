@@ -1,0 +1,81 @@
+"""Wave forces from a record of the elevation at the ship's origin: the excitation as a filter of what is met."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatrial.hydro.excitation import Excitation
+from seatrial.sea.encounter import wave_of
+from seatrial.values import Array, Channel, InputError, Record, frozen
+
+# frequencies that hold this share of the elevation's energy pass the filter, from either end
+_NEGLIGIBLE = 1e-4
+# periods of the slowest of them that are lost at each end, and that the record must have besides
+_LOST, _NEEDED = 1.0, 6.0
+
+
+def with_wave_forces(record: Record, excitation: Excitation, U: float, beta: float) -> Record:
+    """The record with F3 [N, up] and M5 [N m, bow down] computed from its channel zeta [m, up].
+
+    U in m/s, beta in rad (0 following, pi head). The ends, where the filter knows only half of what it needs, are cut
+    off. A record that has F3 and M5 already is returned as it is.
+
+    Raises:
+        InputError: no elevation, gaps in it, a following sea (one frequency of encounter has three waves there), or a
+            record too short for its longest waves.
+    """
+    if {"F3", "M5"} <= set(record.channels):
+        return record
+    if "zeta" not in record:
+        raise InputError(f"record '{record.name}' has neither wave forces F3 and M5 nor an elevation zeta; add either")
+    zeta = record["zeta"]
+    if not np.all(np.isfinite(zeta)):
+        row = int(np.argmin(np.isfinite(zeta)))
+        raise InputError(
+            f"record '{record.name}': the elevation zeta has no value at sample {row} (t = {record.time[row]:g} s); "
+            "fill the gap or cut the record there"
+        )
+    if np.ptp(zeta) == 0.0:
+        raise InputError(f"record '{record.name}': the elevation zeta never moves; check the wave sensor")
+    level = zeta - np.mean(zeta)
+    band = _band(level, record.dt)
+    lost = _LOST * 2.0 * np.pi / band[0]
+    if record.duration < _NEEDED * lost:
+        raise InputError(
+            f"record '{record.name}' of {record.duration:.3g} s is too short for its longest waves, met every "
+            f"{2.0 * np.pi / band[0]:.3g} s; record at least {_NEEDED * lost:.0f} s"
+        )
+    forces = _filtered(level, record.dt, band, excitation, U, beta)
+    made = {name: Channel.of(name, frozen(forces[:, j])) for j, name in enumerate(("F3", "M5"))}
+    whole = Record(
+        record.name, record.time, {**record.channels, **made}, record.kind,
+        record.provenance.then("wave forces from the elevation"),
+    )  # fmt: skip
+    return whole.between(float(record.time[0]) + lost, float(record.time[-1]) - lost)
+
+
+def _band(level: Array, dt: float) -> tuple[float, float]:
+    """Frequencies of encounter [rad/s] that hold nearly all of the energy."""
+    power = np.abs(np.fft.rfft(level * np.hanning(len(level)))) ** 2
+    share = np.cumsum(power) / np.sum(power)
+    step = 2.0 * np.pi / (len(level) * dt)
+    first = max(1, int(np.searchsorted(share, _NEGLIGIBLE)))
+    last = int(np.searchsorted(share, 1.0 - _NEGLIGIBLE))
+    return first * step, min(last + 1, len(power) - 1) * step
+
+
+def _filtered(
+    level: Array, dt: float, band: tuple[float, float], excitation: Excitation, U: float, beta: float
+) -> Array:
+    """F3 and M5 along the record, (n, 2); both ends continued by reflection and faded out."""
+    n = len(level)
+    fade = np.cos(np.linspace(0.0, 0.5 * np.pi, n)) ** 2
+    before = (2.0 * level[0] - level[::-1]) * fade[::-1]
+    after = (2.0 * level[-1] - level[::-1]) * fade
+    padded = np.concatenate([before[:-1], level, after[1:]])
+    omega_e = 2.0 * np.pi * np.fft.rfftfreq(len(padded), dt)
+    inside = (omega_e >= 0.5 * band[0]) & (omega_e <= 1.2 * band[1])
+    transfer: NDArray[np.complex128] = np.zeros((len(omega_e), 2), dtype=np.complex128)
+    F3, M5 = excitation.forces(wave_of(omega_e[inside], U, beta), U, beta)
+    transfer[inside, 0], transfer[inside, 1] = F3, M5
+    made = np.fft.irfft(np.fft.rfft(padded)[:, None] * transfer, len(padded), axis=0)
+    return made[n - 1 : 2 * n - 1]
