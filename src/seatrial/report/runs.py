@@ -13,8 +13,9 @@ from seatrial.report.numbers import DASH, column, fixed, significant
 from seatrial.results import Extrapolation, Measure, Prediction
 from seatrial.values import InputError, Record
 
-_ERRORS = {"psi_deg": ("heading", "deg"), "position_m": ("position", "m"), "u": ("u", "m/s"), "v": ("v", "m/s"), "r": ("r", "deg/s"),
-           "z": ("heave", "m"), "theta_deg": ("pitch", "deg"), "phi_deg": ("roll", "deg")}  # fmt: skip
+_ERRORS = {"psi_deg": ("heading", "deg"), "position_m": ("position", "m"), "u": ("u", "m/s"), "v": ("v", "m/s"),
+           "r": ("r", "deg/s"), "z": ("heave", "m"), "theta_deg": ("pitch", "deg"),
+           "phi_deg": ("roll", "deg")}  # fmt: skip
 _DEGREES = 57.29577951308232
 OVERSHOOTS = 6
 

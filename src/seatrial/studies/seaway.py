@@ -81,7 +81,7 @@ def sailed(voyage: Voyage, rng: np.random.Generator, truth: Model | None = None)
     """
     model = truth or ship(voyage.heading)
     count = round(voyage.duration / voyage.dt) + 1
-    time = np.arange(count) * voyage.dt
+    time = np.arange(count, dtype=np.float64) * voyage.dt
     lines = realise(ittc(voyage.height), SPEED, math.radians(voyage.heading), rng, count=LINES, spacing=voyage.spacing)
     amplitude = -lines.forces(box()) * float(voyage.has_waves)  # z down, theta bow up
     angle = -_commands(count, voyage.dt, rng) * float(voyage.has_fin)
