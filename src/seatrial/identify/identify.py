@@ -10,6 +10,7 @@ from seatrial.estimate.agreement import agreement
 from seatrial.estimate.fit import Identified, identified, unit_of_time
 from seatrial.estimate.settings import START_SECONDS_LENGTHS, Criterion, Intervals, Settings
 from seatrial.estimate.singular import refuse_singular
+from seatrial.estimate.unmeasured import refuse_unmeasured_waves
 from seatrial.identify import outcome
 from seatrial.identify.family import WINDOW_SHIP_LENGTHS as FAMILY_WINDOW
 from seatrial.identify.family import Considered, considered, with_ensemble
@@ -87,6 +88,7 @@ def identify(
     refuse_structural(trial.model, outputs, forces)
     symmetries = structural(trial.model, outputs, forces)
     found = identified(trial.model, runs, sessions, length, settings, progress)
+    refuse_unmeasured_waves(found, runs)
     refuse_singular(*_data_and_prior(found))
     unit = unit_of_time(trial.model, runs, length, trial.estimate.segment_s)
     others = Considered(found, (), ())
