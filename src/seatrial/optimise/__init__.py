@@ -2,26 +2,35 @@
 
 from seatrial.optimise.ask_tell import Box, Optimiser, SearchError, fitness_of, search
 from seatrial.optimise.cloud_particle_swarm import CloudParticleSwarm, CloudSettings
+from seatrial.optimise.cma_es import AdaptationSettings, CovarianceAdaptation
+from seatrial.optimise.differential_evolution import DifferentialEvolution, EvolutionSettings
 from seatrial.optimise.improved_wild_horse import ImprovedHerdSettings, ImprovedWildHorse
 from seatrial.optimise.least_squares import LeastSquares, Normal, Optimum, levenberg_marquardt
+from seatrial.optimise.multistart import Multistart, Restarts, multistart
 from seatrial.optimise.population import Memory
 from seatrial.optimise.pso import ParticleSwarm, SwarmSettings
 from seatrial.optimise.solution import Solution, Status
 from seatrial.optimise.wild_horse import HerdSettings, Variant, WildHorse
 
 __all__ = [
+    "AdaptationSettings",
     "Box",
     "CloudParticleSwarm",
     "CloudSettings",
+    "CovarianceAdaptation",
+    "DifferentialEvolution",
+    "EvolutionSettings",
     "HerdSettings",
     "ImprovedHerdSettings",
     "ImprovedWildHorse",
     "LeastSquares",
     "Memory",
+    "Multistart",
     "Normal",
     "Optimiser",
     "Optimum",
     "ParticleSwarm",
+    "Restarts",
     "SearchError",
     "Solution",
     "Status",
@@ -30,5 +39,6 @@ __all__ = [
     "WildHorse",
     "fitness_of",
     "levenberg_marquardt",
+    "multistart",
     "search",
 ]
