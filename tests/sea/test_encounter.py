@@ -45,3 +45,35 @@ def test_the_wave_of_a_head_sea_is_found_and_that_of_a_following_sea_refused() -
 def test_speed_and_heading_out_of_sense_are_refused(U: float, beta: float, said: str) -> None:
     with pytest.raises(InputError, match=said):
         waves_met(1.0, U, beta)
+
+
+@pytest.mark.parametrize("beta", [0.0, 0.4, math.pi / 2, 2.5, math.pi])
+def test_bins_hold_the_energy_of_the_waves_that_are_met_in_them(beta: float) -> None:
+    """Against brute force: narrow intervals of waves, each put whole into the bin of its own |omega_e|.
+
+    The two edges of a bin cut at most three of them each.
+    """
+    spectrum, edges = ittc(2.27), np.linspace(0.0, 4.0, 41)
+    cuts = np.linspace(0.2, 60.0, 2_000_001)
+    energy = spectrum.energy_between(cuts[:-1], cuts[1:])
+    felt = np.abs(encounter_frequency(0.5 * (cuts[1:] + cuts[:-1]), 9.26, beta))
+    counted, _ = np.histogram(felt, edges, weights=energy)
+    density = encounter_density(spectrum, 9.26, beta, edges)
+    np.testing.assert_allclose(density * np.diff(edges), counted, atol=6 * energy.max())
+
+
+def test_at_the_turning_point_two_waves_are_met() -> None:
+    assert waves_met(0.25, 9.81, 0.0) == pytest.approx((0.5, 0.5 + math.sqrt(0.5)))
+    assert len(waves_met(0.25, 9.81, 0.0)) == 2
+
+
+@pytest.mark.parametrize("edges", [[1.0], [0.0, 2.0, 1.0], [-1.0, 1.0], [0.0, math.inf], [0.0, math.nan]])
+def test_edges_out_of_order_are_refused(edges: list[float]) -> None:
+    with pytest.raises(InputError, match="rising from zero"):
+        encounter_density(ittc(2.0), 5.0, 1.0, np.array(edges))
+
+
+@pytest.mark.parametrize("omega_e", [0.0, -1.0, math.nan, math.inf])
+def test_a_frequency_of_encounter_that_is_none_is_refused(omega_e: float) -> None:
+    with pytest.raises(InputError, match="must be positive"):
+        waves_met(omega_e, 5.0, 1.0)

@@ -1,11 +1,13 @@
 """Spectra against their analytic moments, and the published band."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.integrate import quad
 
 from seatrial.sea.sea_state import sea_state
 from seatrial.sea.spectrum import Spectrum, bretschneider, ittc, ittc_two_parameter, jonswap
@@ -57,6 +59,50 @@ def test_seas_out_of_sense_are_refused(made: object) -> None:
 def test_the_fourth_moment_does_not_exist() -> None:
     with pytest.raises(InputError, match="infinite"):
         ittc(2.0).moment(4)
+
+
+def test_moments_of_the_published_spectrum_are_those_on_paper() -> None:
+    """m0 = A / (4 B), m2 = A sqrt(pi / B) / 4; the height is 4 sqrt(8.1e-3 g^2 / 12.44) times the one put in."""
+    A, B = 8.1e-3 * 9.81**2, 3.11 / 2.27**2
+    assert ittc(2.27).moment(0) == pytest.approx(A / (4 * B), rel=1e-14)
+    assert ittc(2.27).moment(2) == pytest.approx(A * math.sqrt(math.pi / B) / 4, rel=1e-14)
+    assert ittc(2.27).significant_height == pytest.approx(2.27 * 4 * math.sqrt(8.1e-3 * 9.81**2 / 12.44), rel=1e-14)
+
+
+@pytest.mark.parametrize("spectrum", ALL, ids=lambda s: s.name)
+def test_energy_between_adds_up(spectrum: Spectrum) -> None:
+    edges = spectrum.modal_frequency * np.array([0.0, 0.7, 0.99, 1.0, 1.2, 3.0, 1e4])
+    parts = spectrum.energy_between(edges[:-1], edges[1:])
+    assert (parts >= 0.0).all()
+    assert parts.sum() == pytest.approx(spectrum.moment(0), rel=1e-14)
+
+
+@pytest.mark.parametrize("gamma", [3.3, 7.0, 20.0])
+def test_a_raised_peak_is_integrated_to_rounding(gamma: float) -> None:
+    """Against adaptive quadrature between the peak's flanks."""
+    spectrum = jonswap(3.0, 9.0, gamma)
+    peak = spectrum.modal_frequency
+    for start, stop in ((0.7, 0.93), (0.93, 1.0), (1.0, 1.1), (1.1, 2.5)):
+        integral, _ = quad(lambda w: float(spectrum.density(w)), start * peak, stop * peak, epsabs=0.0, epsrel=1e-12)
+        assert float(spectrum.energy_between(start * peak, stop * peak)) == pytest.approx(integral, rel=1e-10)
+
+
+@pytest.mark.parametrize("shares", [(0.5, 0.2), (0.0, 0.9), (0.1, 1.0)])
+def test_bands_without_sense_are_refused(shares: tuple[float, float]) -> None:
+    with pytest.raises(InputError, match="share"):
+        ittc(2.0).band(*shares)
+
+
+def test_every_sea_state_begins_where_the_last_ended() -> None:
+    states = [sea_state(number) for number in range(10)]
+    assert all(low.highest == high.lowest for low, high in pairwise(states))
+    for state in states[2:9]:
+        assert state.lowest < state.significant_height < state.highest
+        assert state.spectrum().significant_height == pytest.approx(state.significant_height)
+        assert 2 * math.pi / state.spectrum().modal_frequency == pytest.approx(state.modal_period)
+    for number in (0, 1, 9):
+        with pytest.raises(InputError, match="no typical height and period"):
+            sea_state(number).spectrum()
 
 
 def test_sea_state_four_has_the_height_between_its_limits() -> None:

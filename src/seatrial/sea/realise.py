@@ -1,16 +1,16 @@
 """One sea out of a spectrum: harmonic lines with random phases, and what a ship meets of them."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
-from numpy.typing import NDArray
+from scipy.special import betaincinv
 
 from seatrial.hydro.excitation import Complex, Excitation
 from seatrial.sea.encounter import encounter_frequency, speed_factor
 from seatrial.sea.spectrum import Spectrum
-from seatrial.values import Array, Channel, InputError, Kind, Provenance, Record, frozen
+from seatrial.values import Array, Channel, Index, InputError, Kind, Provenance, Record, frozen
 
 LINES = 30
 
@@ -18,6 +18,9 @@ LINES = 30
 @dataclass(frozen=True, eq=False)
 class Lines:
     """Harmonics of a sea: elevation at the ship's origin Re sum amplitude exp(i omega_e t), metres up.
+
+    Each line has a frequency of its own, so that its energy is |amplitude|^2 / 2 in every realisation; two lines of one
+    frequency would stand in a fixed phase to one another (Jefferys 1987).
 
     Attributes:
         omega: rad/s, of the waves; amplitude: complex, m; direction: heading of the ship to each, rad; all (n,).
@@ -28,6 +31,11 @@ class Lines:
     amplitude: Complex
     direction: Array
     U: float = 0.0
+
+    @property
+    def variance(self) -> float:
+        """Of the elevation, sum |amplitude|^2 / 2, m^2."""
+        return float(0.5 * np.sum(np.abs(self.amplitude) ** 2))
 
     @property
     def encounter(self) -> Array:
@@ -45,11 +53,11 @@ class Lines:
 
 
 def harmonic_sum(omega: Array, amplitude: Complex, time: Array) -> Array:
-    """Re sum_k amplitude_k exp(i omega_k t), shape of `time`."""
-    return (
-        np.exp(1j * np.outer(time, omega)).real @ amplitude.real
-        - np.exp(1j * np.outer(time, omega)).imag @ amplitude.imag
-    )
+    """Re sum_k amplitude_k exp(i omega_k t), shape of `time`; line by line, so that memory stays that of the record."""
+    total = np.zeros(np.shape(time))
+    for frequency, part in zip(omega, amplitude, strict=True):
+        total += np.abs(part) * np.cos(frequency * time + np.angle(part))
+    return total
 
 
 class Spacing(Enum):
@@ -114,69 +122,93 @@ def realise(
     return Lines(omega, height * _phases(rng, count), np.full(count, float(beta)), U)
 
 
-def short_crested(lines: Lines, rng: np.random.Generator, exponent: int = 1, directions: int = 9) -> Lines:
-    """Every line spread by cos^2s about its heading, over +- 90 degrees, each part with a phase of its own.
+def short_crested(lines: Lines, rng: np.random.Generator, exponent: float = 1.0) -> Lines:
+    """The lines spread about their heading by cos^2s over +- 90 deg, whose integral is one.
 
-    Weights integrate to one, so that the energy stays (ITTC 2002, directional spectra).
+    D = Gamma(s + 1) / (sqrt(pi) Gamma(s + 1/2)) cos^2s(chi); s = 1 is the 2 / pi cos^2 of the ITTC (St. Denis & Pierson
+    1953). Each line gets one direction: the middles of equal shares of D, shuffled, so that the energy stays in every
+    realisation. Give some hundred lines.
 
     Raises:
-        InputError: exponent or number of directions is less than one.
+        InputError: the exponent s is not positive.
     """
-    if exponent < 1 or directions < 1:
-        raise InputError("spreading needs an exponent and a number of directions of at least one")
-    away = (np.arange(directions) + 0.5) / directions * np.pi - 0.5 * np.pi
-    weight = np.cos(away) ** (2 * exponent)
-    weight /= weight.sum()
-    amplitude = np.abs(lines.amplitude)[:, None] * np.sqrt(weight)
-    turned = amplitude * _phases(rng, amplitude.shape)
-    heading = np.abs(np.arccos(np.cos(lines.direction[:, None] + away)))
-    return Lines(np.repeat(lines.omega, directions), turned.ravel(), heading.ravel(), lines.U)
+    if not exponent > 0.0:
+        raise InputError(f"the spreading exponent s of a short-crested sea must be positive, not {exponent:g}")
+    shares = rng.permutation((np.arange(len(lines.omega)) + 0.5) / len(lines.omega))
+    heading = lines.direction + spread_angle(shares, exponent)
+    return replace(lines, direction=np.arccos(np.cos(heading)))
+
+
+def spread_angle(share: Array, exponent: float) -> Array:
+    """chi [rad] from the main direction below which that share of cos^2s lies; sin^2 chi has a beta distribution."""
+    sine = np.sqrt(betaincinv(0.5, exponent + 0.5, np.abs(2.0 * share - 1.0)))
+    return np.sign(share - 0.5) * np.arcsin(sine)
+
+
+def above_nyquist(lines: Lines, dt: float) -> Index:
+    """Which lines are met at more than half the sampling rate of a step of `dt` [s]."""
+    return np.flatnonzero(np.abs(lines.encounter) > np.pi / dt)
 
 
 def refuse_above_nyquist(lines: Lines, dt: float) -> None:
     """Refuse a time step that cannot show all lines.
 
     Raises:
-        InputError: which line is beyond half the sampling rate.
+        InputError: how many lines are beyond half the sampling rate, and the furthest of them.
     """
-    met = np.abs(lines.encounter)
-    worst = int(np.argmax(met))
-    if met[worst] > np.pi / dt:
+    beyond = above_nyquist(lines, dt)
+    if beyond.size:
+        met = np.abs(lines.encounter)
+        worst = int(np.argmax(met))
+        count = "one line lies" if beyond.size == 1 else f"{beyond.size} lines lie"
         raise InputError(
-            f"the wave of {lines.omega[worst]:.3g} rad/s is met at {met[worst]:.3g} rad/s, above the Nyquist frequency "
-            f"{np.pi / dt:.3g} rad/s of a step of {dt:g} s; shorten the step or the band"
+            f"{count} above the Nyquist frequency {np.pi / dt:.3g} rad/s of a step of {dt:g} s: the wave of "
+            f"{lines.omega[worst]:.3g} rad/s is met at {met[worst]:.3g} rad/s; shorten the step or the band"
         )
 
 
 def refuse_short(lines: Lines, duration: float) -> None:
-    """Refuse a record that does not last one period of the slowest line.
+    """Refuse a record that does not last one period of its longest wave, as met.
+
+    In following seas shorter waves may run along with the ship for any time; they are not asked for.
 
     Raises:
         InputError: how long it would have to be.
     """
-    slowest = float(np.min(np.abs(lines.encounter)))
-    period = 2.0 * np.pi / max(slowest, 1e-12)
-    if duration < period:
+    longest = int(np.argmin(lines.omega))
+    met = abs(float(lines.encounter[longest]))
+    if duration * met < 2.0 * np.pi:
+        needed = f"needs {2.0 * np.pi / met:.3g} s" if met > 0.0 else "runs along with the ship for ever"
         raise InputError(
-            f"the record of {duration:g} s is shorter than the longest period met, {period:.3g} s; record longer"
+            f"the record of {duration:g} s is too short for its longest wave: that of {lines.omega[longest]:.3g} rad/s "
+            f"{needed} to pass; record longer, or raise the lower end of the band"
         )
 
 
 def repetition_period(lines: Lines) -> float:
-    """s after which the envelope of equally spaced lines repeats in beam seas, 2 pi / d omega."""
-    return float(2.0 * np.pi / np.min(np.diff(np.sort(lines.omega))))
+    """s after which the envelope of the elevation repeats, 2 pi / d omega_e; infinite where lines lie unevenly.
+
+    Finite for `Spacing.EQUAL_INTERVAL` at rest and in beam seas; elsewhere headway shifts the lines unevenly.
+    """
+    met = np.sort(lines.encounter)
+    gaps = np.diff(met)
+    if gaps.size == 0 or np.ptp(gaps) > 1e-9 * np.abs(met).max():
+        return math.inf
+    return float(2.0 * np.pi / gaps.mean())
 
 
-def wave_record(lines: Lines, time: NDArray[np.float64], excitation: Excitation | None = None) -> Record:
+def wave_record(lines: Lines, time: Array, excitation: Excitation | None = None) -> Record:
     """The sea as a planned record: zeta [m, up], and with an excitation F3 [N, up] and M5 [N m, bow down].
 
     Raises:
-        InputError: the time step cannot show all lines.
+        InputError: the time step cannot show all lines, or the time is too short for the longest wave.
     """
-    refuse_above_nyquist(lines, float(time[1] - time[0]))
-    channels = {"zeta": Channel.of("zeta", frozen(lines.elevation(time)))}
+    plan = Record.of("sea", time, {"zeta": lines.elevation(time)}, Kind.PLANNED)
+    refuse_above_nyquist(lines, plan.dt)
+    refuse_short(lines, plan.duration)
+    channels = dict(plan.channels)
     if excitation is not None:
         amplitude = lines.forces(excitation)
         for j, symbol in enumerate(("F3", "M5")):
             channels[symbol] = Channel.of(symbol, frozen(harmonic_sum(lines.encounter, amplitude[:, j], time)))
-    return Record("sea", frozen(time), channels, Kind.PLANNED, Provenance("sum of harmonics"))
+    return replace(plan, channels=channels, provenance=Provenance("sum of harmonics"))

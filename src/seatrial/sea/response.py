@@ -8,21 +8,21 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from seatrial.sea.spectrum import G, Spectrum
+from seatrial.hydro.dispersion import G
+from seatrial.hydro.excitation import Complex
+from seatrial.sea.realise import Lines
+from seatrial.sea.spectrum import Spectrum
 from seatrial.values import Array, InputError
-
-Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
 class Statistics:
-    """Of one motion in a sea, SI: variance of the motion and of its rate, its velocity and acceleration.
+    """Of one motion in a sea, SI.
 
     Attributes:
-        m0, m2, m4: spectral moments over the frequency of encounter.
+        m0, m2, m4: moments over the frequency of encounter: variances of the motion, its velocity, its acceleration.
     """
 
     m0: float
@@ -46,12 +46,27 @@ class Statistics:
 
     @property
     def zero_crossing_period(self) -> float:
-        """Mean period between upward zero crossings, 2 pi sqrt(m0 / m2), s (Rice 1944)."""
-        return 2.0 * math.pi * math.sqrt(self.m0 / self.m2)
+        """Mean period between upward zero crossings, 2 pi sqrt(m0 / m2), s (Rice 1944); infinite without motion."""
+        return 2.0 * math.pi * math.sqrt(self.m0 / self.m2) if self.m2 > 0.0 else math.inf
 
     def exceedance(self, amplitude: float) -> float:
         """Probability that an amplitude exceeds this one, exp(-a^2 / (2 m0)) (Rayleigh; Longuet-Higgins 1952)."""
+        if self.m0 == 0.0:
+            return 0.0
         return math.exp(-(amplitude**2) / (2.0 * self.m0))
+
+    def most_probable_maximum(self, duration: float) -> float:
+        """Most probable largest amplitude in `duration` [s], sqrt(2 m0 ln N), N = duration / T_z (same source).
+
+        Raises:
+            InputError: the duration holds no whole period.
+        """
+        count = duration / self.zero_crossing_period
+        if not count > 1.0:
+            raise InputError(
+                f"{duration:g} s hold no whole period of {self.zero_crossing_period:.3g} s; ask for a longer time"
+            )
+        return math.sqrt(2.0 * self.m0 * math.log(count))
 
 
 def response_spectrum(spectrum: Spectrum, omega: Array, operator: Complex) -> Array:
@@ -63,10 +78,17 @@ def statistics(spectrum: Spectrum, omega: Array, omega_e: Array, operator: Compl
     """Statistics of the motion `operator`, all arrays (n,), rad/s; trapezoids over rising omega.
 
     Raises:
-        InputError: omega does not rise, or the sea has no energy between its ends.
+        InputError: omega does not rise, an operator is not finite, or the sea has no energy between the ends.
     """
     if len(omega) < 2 or np.any(np.diff(omega) <= 0.0):
-        raise InputError("wave frequencies of a response must rise")
+        raise InputError("the wave frequencies of a response must be two or more, and rise")
+    _demand_finite(omega, operator)
+    share = float(spectrum.energy_between(omega[0], omega[-1])) / spectrum.moment(0)
+    if share < 1e-3:
+        raise InputError(
+            f"the sea has no energy between {omega[0]:.3g} and {omega[-1]:.3g} rad/s; it peaks at "
+            f"{spectrum.modal_frequency:.3g} rad/s"
+        )
     density = response_spectrum(spectrum, omega, operator)
     if np.trapezoid(spectrum.density(omega), omega) < 1e-3 * spectrum.moment(0):
         raise InputError(
@@ -77,9 +99,26 @@ def statistics(spectrum: Spectrum, omega: Array, omega_e: Array, operator: Compl
     return Statistics(m0, m2, m4)
 
 
+def statistics_of_lines(lines: Lines, operator: Complex) -> Statistics:
+    """The same of one realisation, long- or short-crested: sums of |H a|^2 / 2 over its lines, `operator` (n,).
+
+    Raises:
+        InputError: an operator is not finite.
+    """
+    _demand_finite(lines.omega, operator)
+    energy = 0.5 * np.abs(operator * lines.amplitude) ** 2
+    m0, m2, m4 = (float(np.sum(lines.encounter**n * energy)) for n in (0, 2, 4))
+    return Statistics(m0, m2, m4)
+
+
 def vertical_motion(heave: Complex, pitch: Complex, x: float) -> Complex:
-    """Upward motion at x [m, forward] from heave [up] and pitch [rad, bow down]: z - x theta."""
+    """Upward motion at x [m, forward of midship] from heave [up] and pitch [rad, bow down]: z - x theta."""
     return heave - x * pitch
+
+
+def vertical_acceleration(heave: Complex, pitch: Complex, omega_e: Array, x: float) -> Complex:
+    """Upward acceleration at x, -omega_e^2 (z - x theta) [m/s^2 per m]; the root of `Statistics.m4` is its rms."""
+    return -(omega_e**2) * vertical_motion(heave, pitch, x)
 
 
 def motion_sickness(motion: Statistics) -> float:
@@ -93,3 +132,34 @@ def motion_sickness(motion: Statistics) -> float:
     mean_absolute = 0.798 * motion.acceleration
     mu = -0.819 + 2.32 * math.log10(math.sqrt(motion.m4 / motion.m2)) ** 2
     return float(ndtr((math.log10(mean_absolute / G) - mu) / 0.4))
+
+
+def motion_sickness_after(motion: Statistics, minutes: float) -> float:
+    """Share of people sick within that time in a vertical motion, 0 to 1 (McCauley et al. 1976, HFR report 1733-2).
+
+    Phi(z_a) Phi(z_t'), z_a = 2.128 log10(a) - 9.277 log10(f) - 5.809 log10(f)^2 - 1.851,
+    z_t' = 1.134 z_a + 1.989 log10(t) - 2.904: a the rms acceleration in g, f in Hz, t in minutes. Measured on young men
+    in sines of up to two hours; a sea enters by its rms and mean frequency sqrt(m4 / m2) / (2 pi). The report was not
+    at hand; the constants follow from those of a public program that cites it.
+
+    Raises:
+        InputError: the time is not positive.
+    """
+    if not minutes > 0.0:
+        raise InputError(f"sickness needs a positive time of exposure, not {minutes:g} min")
+    if motion.m4 <= 0.0:
+        return 0.0
+    f = math.log10(math.sqrt(motion.m4 / motion.m2) / (2.0 * math.pi))
+    z_a = 2.128 * math.log10(motion.acceleration / G) - 9.277 * f - 5.809 * f**2 - 1.851
+    z_t = 1.134 * z_a + 1.989 * math.log10(minutes) - 2.904
+    return float(ndtr(z_a) * ndtr(z_t))
+
+
+def _demand_finite(omega: Array, operator: Complex) -> None:
+    if np.shape(operator) != np.shape(omega):
+        raise InputError(
+            f"give one operator for each of the {np.size(omega)} wave frequencies, not {np.size(operator)}"
+        )
+    broken = np.flatnonzero(~np.isfinite(operator))
+    if broken.size:
+        raise InputError(f"the response operator at {omega[broken[0]]:.4g} rad/s is not a finite number")
