@@ -1,6 +1,6 @@
 """JONSWAP and Pierson-Moskowitz as wavespectra 4.9.0 has them: values of `benchmarks/against_wavespectra.py`.
 
-`construct.frequency.jonswap` and `pierson_moskowitz`, 299 001 frequencies from .01 to 3 Hz, scaled to the height by their sum.
+`construct.frequency.jonswap` and `pierson_moskowitz`, 299 001 frequencies from .01 to 3 Hz, scaled by their sum.
 """
 
 import math

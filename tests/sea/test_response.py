@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
-from seatrial.sea.encounter import encounter_frequency
+from seatrial.sea.encounter import encounter_density, encounter_frequency
 from seatrial.sea.realise import Spacing, realise, short_crested
 from seatrial.sea.response import (
     Statistics,
     motion_sickness,
     motion_sickness_after,
+    response_over_encounter,
     response_spectrum,
     statistics,
     statistics_of_lines,
@@ -57,6 +58,18 @@ def test_a_band_beside_the_sea_is_refused() -> None:
 
 def test_the_operator_decides_the_spectrum_of_the_response() -> None:
     np.testing.assert_allclose(response_spectrum(SEA, OMEGA, np.full(len(OMEGA), 2j)), 4.0 * SEA.density(OMEGA))
+
+
+@pytest.mark.parametrize("beta", [0.0, 0.6, np.pi / 2, 2.0, np.pi])
+def test_a_cork_over_encounter_has_the_spectrum_of_the_sea(beta: float) -> None:
+    """As the exact energies of the branches have it, within the trapezoids of a fine grid; and nothing is lost."""
+    omega, edges = np.linspace(0.3, 40.0, 200_001), np.linspace(0.0, 4.0, 31)
+    felt = encounter_frequency(omega, 9.26, beta)
+    binned = response_over_encounter(SEA.density(omega), omega, felt, edges)
+    np.testing.assert_allclose(binned, encounter_density(SEA, 9.26, beta, edges), rtol=2e-3, atol=1e-6)
+    wide = np.array([0.0, np.abs(felt).max()])
+    whole = np.trapezoid(SEA.density(omega), omega)
+    assert response_over_encounter(SEA.density(omega), omega, felt, wide)[0] * wide[1] == pytest.approx(whole, rel=1e-9)
 
 
 def test_lines_have_the_statistics_of_their_spectrum() -> None:

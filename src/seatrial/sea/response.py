@@ -74,6 +74,26 @@ def response_spectrum(spectrum: Spectrum, omega: Array, operator: Complex) -> Ar
     return np.abs(operator) ** 2 * spectrum.density(omega)
 
 
+def response_over_encounter(density: Array, omega: Array, omega_e: Array, edges: Array) -> Array:
+    """Mean density over |omega_e| between `edges` (n + 1,) of a response whose `density` over omega is given, (n,).
+
+    Each interval of omega gives its energy evenly to what lies between the frequencies at which its ends are met, so
+    that a following sea has no singularity and no energy is lost.
+
+    Raises:
+        InputError: omega or the edges do not rise.
+    """
+    if len(edges) < 2 or np.any(np.diff(edges) <= 0.0) or len(omega) < 2 or np.any(np.diff(omega) <= 0.0):
+        raise InputError("a response spectrum needs two or more frequencies, and edges, that rise")
+    energy = 0.5 * (density[1:] + density[:-1]) * np.diff(omega)
+    met = np.sort(np.abs(np.stack([omega_e[1:], omega_e[:-1]])), axis=0)
+    # waves that keep up with the ship between two of omega: met from nothing on
+    met[0] = np.where(omega_e[1:] * omega_e[:-1] < 0.0, 0.0, met[0])
+    width = np.maximum(met[1] - met[0], 1e-12)
+    within = np.clip((np.asarray(edges)[:, None] - met[0]) / width, 0.0, 1.0) @ energy
+    return np.diff(within) / np.diff(edges)
+
+
 def statistics(spectrum: Spectrum, omega: Array, omega_e: Array, operator: Complex) -> Statistics:
     """Statistics of the motion `operator`, all arrays (n,), rad/s; trapezoids over rising omega.
 
