@@ -22,11 +22,11 @@ SAMPLES = round(DURATION / DT) + 1
 COARSE = 5  # samples a step in a steady turn, where shipmmg's adaptive steps are long too
 
 
-def peers_python(folder: Path) -> Path:
+def peers_python(folder: Path, packages: str = "peers.txt") -> Path:
     """A Python with the peers' packages, made in `folder`."""
     subprocess.run([sys.executable, "-m", "venv", folder], check=True)
     python = folder / ("Scripts" if os.name == "nt" else "bin") / "python"
-    install = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", HERE / "peers.txt"]
+    install = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", HERE / packages]
     subprocess.run(install, check=True, stderr=subprocess.DEVNULL)
     return python
 

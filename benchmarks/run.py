@@ -6,6 +6,7 @@
 import sys
 from collections.abc import Callable
 
+import against_optimisers
 import against_shipmmg
 import fusion
 import generation
@@ -17,6 +18,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "simulation": simulation.run,
     "generation": generation.run,
     "against_shipmmg": against_shipmmg.run,
+    "against_optimisers": against_optimisers.run,
     "montecarlo": montecarlo.run,
     "fusion": fusion.run,
 }

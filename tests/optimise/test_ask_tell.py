@@ -12,15 +12,16 @@ EVERY = pytest.mark.parametrize("kind", KINDS)
 
 
 @EVERY
-def test_asked_again_it_gives_the_same_points_and_they_cannot_be_written(kind: str) -> None:
+def test_asked_again_it_gives_the_same_points_whatever_was_done_to_them(kind: str) -> None:
     optimiser = made(kind, BOX, 1)
     for _ in range(3):
         points = optimiser.ask()
+        kept = points.copy()
         assert points.shape[1] == BOX.size
-        assert np.array_equal(points, optimiser.ask())
-        with pytest.raises(ValueError, match="read-only"):
-            points[0, 0] = 0.0
-        optimiser.tell(SQUARE(points))
+        points[:] = 0.0
+        assert np.array_equal(optimiser.ask(), kept)
+        optimiser.tell(SQUARE(kept))
+        assert SQUARE(optimiser.best[0][None])[0] == pytest.approx(optimiser.best[1], rel=1e-13)
 
 
 @EVERY

@@ -53,12 +53,10 @@ class Population(ABC):
         """The point that would be returned now, shape (d,), and its fitness; before the first tell infinite."""
 
     def ask(self) -> Array:
-        """Points to evaluate next, shape (n, d), read-only; asked again, the same until told."""
+        """Points to evaluate next, shape (n, d), the caller's own; asked again, the same until told."""
         if self._asked is None:
             self._asked = np.clip(self._propose(), self.box.lower, self.box.upper)
-        points = self._asked.view()
-        points.flags.writeable = False
-        return points
+        return self._asked.copy()
 
     def tell(self, fitness: Array) -> None:
         """Fitness of the points asked about, shape (n,).
