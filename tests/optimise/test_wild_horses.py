@@ -1,5 +1,7 @@
 """Wild horses against a plain reading of the print, one horse after another, and their laws by hand."""
 
+from copy import deepcopy
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -37,6 +39,7 @@ def one_after_another(landscape: Landscape, box: Box, variant: Variant, seed: in
     x = box.drawn(r, horses)
     leaders = [(f(p), p) for p in x[:groups]]
     herd = [[(f(p), p) for p in x[groups + g :: groups]] for g in range(groups)]
+    step = np.zeros(d)
     for t in range(1, tmax + 1):
         if t > 1:
             hole = min(leaders, key=lambda horse: horse[0])[1]
@@ -111,6 +114,26 @@ def test_the_waterholes_weight_by_hand() -> None:
     """Eq. 22 with least 1, mean 5: leaders at 1, 3 and (worse than the mean) 6."""
     weights = herd([5.0, 5.0, 7.0, 5.0, 6.0, 7.0, 1.0, 3.0, 6.0]).weights()
     assert weights.tolist() == [0.1, pytest.approx(0.1 + 0.8 * 2.0 / 4.0), 0.9]
+
+
+def test_leaders_of_the_improved_herd_by_hand() -> None:
+    """Eq. 25: a leader draws towards the weighted waterhole (eq. 23) or is driven off it by a rival (eq. 24)."""
+    horses = herd([5.0, 5.0, 7.0, 5.0, 6.0, 7.0, 1.0, 3.0, 6.0])
+    leaders, weights, hole = horses._leaders.copy(), horses.weights(), horses.best[0]
+    z, stride = horses.strides(3)
+    draw = deepcopy(horses._generator)
+    laws = set()
+    for _ in range(8):
+        moved = horses._led(z, stride)
+        side, q = draw.random(3), draw.uniform(-1, 1, (2, 3))
+        for i in range(3):
+            laws.add(bool(side[i] >= 0.5))
+            if side[i] >= 0.5:
+                expected = stride[i] * (hole - leaders[i]) + hole * weights[i]
+            else:
+                expected = hole - z[i] * (leaders[i] * q[0, i] - leaders[i] * q[1, i])
+            assert np.allclose(moved[i], expected, rtol=1e-13, atol=1e-13)
+    assert laws == {True, False}
 
 
 def test_equal_horses_have_the_smallest_weight_and_lost_ones_the_largest() -> None:
