@@ -16,6 +16,7 @@ from seatrial.identify.family import WINDOW_SHIP_LENGTHS as FAMILY_WINDOW
 from seatrial.identify.family import Considered, considered, with_ensemble
 from seatrial.identify.identifiability import identifiability
 from seatrial.identify.profile import profiles
+from seatrial.identify.spectral import spectral_fit
 from seatrial.information.symmetries import refuse_structural, structural
 from seatrial.predict.forecast import forecast
 from seatrial.problem.segments import compared_outputs
@@ -81,6 +82,8 @@ def identify(
     train = _by_role(records, Role.TRAIN)
     if not train:
         raise InputError("the trial has no training run; leave at least one file out of 'validate' and 'leave_out'")
+    if any(r.waves is not None and r.waves.spectrum is not None for r in train):
+        return spectral_fit(trial, train, findings, seed, began)
     runs, sessions, length = [r.record for r in train], [r.session for r in train], trial.ship.length
     settings = replace(settings_of(trial, runs), intervals=intervals, seed=seed)
     forces = tuple(name for points in trial.forces for name in StaticForces(trial.model, points).names)

@@ -1,14 +1,16 @@
 """An estimate read in the field's terms: coefficients, offsets, noise, residuals, method, and what to warn of."""
 
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 
 from seatrial.estimate.estimate import pieces
 from seatrial.estimate.fit import Identified
 from seatrial.information.autocorrelation import whiteness_p
+from seatrial.information.covariance import Interval
 from seatrial.results import Coefficient, Method, Noise, Offset, Profile, Residuals
-from seatrial.values import NOTATION, Finding, Parameter, Severity
+from seatrial.values import NOTATION, Array, Finding, Parameter, Parameters, Severity
 
 NO_PROFILE = Finding(
     Severity.INFO,
@@ -23,10 +25,21 @@ def coefficients(
     found: Identified, truth: Mapping[str, float], profiles: Sequence[Profile] = ()
 ) -> tuple[Coefficient, ...]:
     """Every parameter with its interval (a profile's where there is one), prior and, if known, true value."""
-    problem, interval = found.made.problem, found.interval
-    place = {name: i for i, name in enumerate(problem.free)}
+    problem, limits = found.made.problem, {q.parameter: (q.lower, q.upper) for q in profiles}
+    return estimated(problem.model.parameters, problem.free, found.made.shared, found.interval, truth, limits)
+
+
+def estimated(
+    parameters: Parameters,
+    free: Sequence[str],
+    point: Array,
+    interval: Interval,
+    truth: Mapping[str, float],
+    limits: Mapping[str, tuple[float | None, float | None]] = MappingProxyType({}),
+) -> tuple[Coefficient, ...]:
+    """All parameters as coefficients; those named `free` stand first in `point` and `interval`, in that order."""
+    place = {name: i for i, name in enumerate(free)}
     half, error = interval.half_width, interval.standard_error
-    limits = {q.parameter: (q.lower, q.upper) for q in profiles}
 
     def one(p: Parameter) -> Coefficient:
         prior = p.prior if p.free else None
@@ -38,13 +51,13 @@ def coefficients(
         if p.name not in place:
             return Coefficient(estimate=p.value, standard_error=None, lower=None, upper=None, fixed=True, **common)
         i = place[p.name]
-        value = float(found.made.shared[i])
+        value = float(point[i])
         lower, upper = limits.get(p.name, (value - float(half[i]), value + float(half[i])))
         return Coefficient(
             estimate=value, standard_error=float(error[i]), lower=lower, upper=upper, fixed=False, **common
         )
 
-    return tuple(one(p) for p in problem.model.parameters)
+    return tuple(one(p) for p in parameters)
 
 
 def offsets(found: Identified) -> tuple[Offset, ...]:

@@ -114,9 +114,14 @@ class PredictionError:
         return Noisy(self.start, self.start_variance, values, corrections, intensity, deviation)
 
     def innovations(self, shared: Array) -> Innovations:
-        """Of all runs, one after the other."""
+        """Of all runs, one after the other; infinite for a run that diverges."""
         at, measured = self.noisy(shared), self.runs.data.measured
-        parts = self._mapped(lambda s: self._filter.innovations(s, measured, at), range(self.runs.data.count))
+
+        def one(segment: int) -> tuple[Array, Array]:
+            e, v, failed = self._filter.innovations(segment, measured, at)
+            return (np.full_like(e, np.inf), np.ones_like(v)) if failed else (e, v)
+
+        parts = self._mapped(one, range(self.runs.data.count))
         e, v = (np.concatenate([p[i] for p in parts]) for i in range(2))
         missing = np.isnan(self.runs.data.measured)
         return Innovations(np.where(missing, np.nan, e), np.where(missing, np.nan, v))
@@ -186,6 +191,9 @@ class PredictionError:
             for c, column in enumerate(columns):
                 (e_1, v_1), (e_0, v_0), way = next(sides), next(sides), ahead[column] - behind[column]
                 de[:, :, c], dv[:, :, c] = ((e_1 - e_0) / way, (v_1 - v_0) / way) if way > 0 else (0.0, 0.0)
+            if not np.isfinite(cost):
+                made.append((cost, np.zeros(len(columns)), np.eye(len(columns))))
+                continue
             mean, spread = _projected(e, v, de), _varied(e, v, dv)
             made.append((cost, mean[0] + spread[0], mean[1] + spread[1]))
         return made

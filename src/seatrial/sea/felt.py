@@ -11,6 +11,10 @@ from seatrial.values import Array, Channel, InputError, Record, frozen
 _NEGLIGIBLE = 1e-4
 # periods of the slowest of them that are lost at each end, and that the record must have besides
 _LOST, _NEEDED = 1.0, 6.0
+# bins of the transform that drift and the window's own leakage fill
+_DRIFT = 4
+# periods of the slowest waves by which the record is continued, and from which; ridge of the predictor
+_CONTINUED, _MEMORY, _RIDGE = 2.0, 1.5, 1e-7
 
 
 def with_wave_forces(record: Record, excitation: Excitation, U: float, beta: float) -> Record:
@@ -55,10 +59,12 @@ def with_wave_forces(record: Record, excitation: Excitation, U: float, beta: flo
 
 def _band(level: Array, dt: float) -> tuple[float, float]:
     """Frequencies of encounter [rad/s] that hold nearly all of the energy."""
-    power = np.abs(np.fft.rfft(level * np.hanning(len(level)))) ** 2
+    window = np.hanning(len(level))
+    power = np.abs(np.fft.rfft((level - np.average(level, weights=window)) * window)) ** 2
+    power[:_DRIFT] = 0.0
     share = np.cumsum(power) / np.sum(power)
     step = 2.0 * np.pi / (len(level) * dt)
-    first = max(1, int(np.searchsorted(share, _NEGLIGIBLE)))
+    first = int(np.searchsorted(share, _NEGLIGIBLE))
     last = int(np.searchsorted(share, 1.0 - _NEGLIGIBLE))
     return first * step, min(last + 1, len(power) - 1) * step
 
@@ -66,16 +72,34 @@ def _band(level: Array, dt: float) -> tuple[float, float]:
 def _filtered(
     level: Array, dt: float, band: tuple[float, float], excitation: Excitation, U: float, beta: float
 ) -> Array:
-    """F3 and M5 along the record, (n, 2); both ends continued by reflection and faded out."""
-    n = len(level)
-    fade = np.cos(np.linspace(0.0, 0.5 * np.pi, n)) ** 2
-    before = (2.0 * level[0] - level[::-1]) * fade[::-1]
-    after = (2.0 * level[-1] - level[::-1]) * fade
-    padded = np.concatenate([before[:-1], level, after[1:]])
+    """F3 and M5 along the record, (n, 2); both ends continued as the waves would have gone on, and faded out."""
+    n, more = len(level), round(_CONTINUED * 2.0 * np.pi / band[0] / dt)
+    fade = np.cos(np.linspace(0.0, 0.5 * np.pi, more)) ** 2
+    after = continued(level, more, band, dt) * fade
+    before = (continued(level[::-1], more, band, dt) * fade)[::-1]
+    padded = np.concatenate([before, level, after])
     omega_e = 2.0 * np.pi * np.fft.rfftfreq(len(padded), dt)
-    inside = (omega_e >= 0.5 * band[0]) & (omega_e <= 1.2 * band[1])
+    inside = (omega_e >= 0.8 * band[0]) & (omega_e <= 1.2 * band[1])
     transfer: NDArray[np.complex128] = np.zeros((len(omega_e), 2), dtype=np.complex128)
     F3, M5 = excitation.forces(wave_of(omega_e[inside], U, beta), U, beta)
     transfer[inside, 0], transfer[inside, 1] = F3, M5
     made = np.fft.irfft(np.fft.rfft(padded)[:, None] * transfer, len(padded), axis=0)
-    return made[n - 1 : 2 * n - 1]
+    return made[more : more + n]
+
+
+def continued(level: Array, count: int, band: tuple[float, float], dt: float) -> Array:
+    """`count` samples beyond the end by linear prediction (Kay 1988, section 7.3), fitted where the waves are coarse.
+
+    The predictor works on every k-th sample, so that its steps are a fifth of the shortest period.
+    """
+    k = max(1, int(2.0 * np.pi / band[1] / dt / 5.0))
+    order = min(round(_MEMORY * 2.0 * np.pi / band[0] / (k * dt)), len(level) // (4 * k))
+    windows = np.lib.stride_tricks.sliding_window_view(level, order * k + 1)[:, ::k]
+    past, present = windows[:, :-1], windows[:, -1]
+    gram = past.T @ past
+    gram += _RIDGE * np.trace(gram) / order * np.eye(order)
+    predictor = np.linalg.solve(gram, past.T @ present)
+    made = np.concatenate([level[-order * k :], np.zeros(count)])
+    for i in range(order * k, len(made)):
+        made[i] = predictor @ made[i - order * k : i : k]
+    return made[order * k :]

@@ -48,6 +48,7 @@ class Voyage:
     has_fin: bool = True
     noise: tuple[float, float] = (HEAVE_NOISE, PITCH_NOISE)
     spacing: Spacing = Spacing.EQUAL_INTERVAL
+    lines: int = LINES
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +83,8 @@ def sailed(voyage: Voyage, rng: np.random.Generator, truth: Model | None = None)
     model = truth or ship(voyage.heading)
     count = round(voyage.duration / voyage.dt) + 1
     time = np.arange(count, dtype=np.float64) * voyage.dt
-    lines = realise(ittc(voyage.height), SPEED, math.radians(voyage.heading), rng, count=LINES, spacing=voyage.spacing)
+    beta = math.radians(voyage.heading)
+    lines = realise(ittc(voyage.height), SPEED, beta, rng, count=voyage.lines, spacing=voyage.spacing)
     amplitude = -lines.forces(box()) * float(voyage.has_waves)  # z down, theta bow up
     angle = -_commands(count, voyage.dt, rng) * float(voyage.has_fin)
     inputs = np.zeros((count, 4))

@@ -5,7 +5,8 @@ from pathlib import Path
 from seatrial.equations import Model
 from seatrial.hydro.excitation import BoxHull, Excitation
 from seatrial.sea.encounter import speed_factor
-from seatrial.trial.schema import ExcitationTable, WavesTable
+from seatrial.sea.spectrum import Spectrum, bretschneider, ittc, ittc_two_parameter, jonswap
+from seatrial.trial.schema import ExcitationTable, SeaTable, WavesTable
 from seatrial.trial.trial import Waves
 from seatrial.values import InputError, Ship
 
@@ -22,9 +23,7 @@ def excitation_of(table: ExcitationTable | None, ship: Ship, model: Model, base:
     if table is None:
         return None
     if not {"F3", "M5"} <= set(model.input_names):
-        raise InputError(
-            f"[excitation]: model '{model.name}' has no inputs F3 and M5; remove the table"
-        )
+        raise InputError(f"[excitation]: model '{model.name}' has no inputs F3 and M5; remove the table")
     if table.source == "table":
         from seatrial.hydro.transfer_file import read_transfer
 
@@ -59,4 +58,18 @@ def waves_of(table: WavesTable | None, excitation: Excitation | None, where: str
         speed_factor(table.speed.in_si, table.heading.in_si)
     except InputError as error:
         raise InputError(f"{where}.waves: {error}") from None
-    return Waves(excitation, table.speed.in_si, table.heading.in_si)
+    spectrum = None if table.sea is None else _spectrum(table.sea)
+    return Waves(excitation, table.speed.in_si, table.heading.in_si, spectrum)
+
+
+def _spectrum(table: SeaTable) -> Spectrum:
+    height, period = table.height.in_si, 0.0 if table.period is None else table.period.in_si
+    match table.spectrum:
+        case "ittc":
+            return ittc(height)
+        case "ittc2":
+            return ittc_two_parameter(height, period)
+        case "bretschneider":
+            return bretschneider(height, period)
+        case "jonswap":
+            return jonswap(height, period, table.gamma)

@@ -8,7 +8,7 @@ from seatrial.check import examine, prepared
 from seatrial.read import read_record
 from seatrial.sea.felt import with_wave_forces
 from seatrial.trial.approach import first_execution
-from seatrial.trial.trial import Role, Run, Trial, Trimming
+from seatrial.trial.trial import Role, Run, Trial, Trimming, Waves
 from seatrial.values import Finding, InputError, Record, Severity
 
 # speed at the end of an acceleration run as a part of the speed at the first execution
@@ -22,6 +22,7 @@ class TrialRecord:
     record: Record
     role: Role
     session: str
+    waves: Waves | None = None
 
 
 def records_of(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ...]]:
@@ -34,7 +35,7 @@ def records_of(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ..
     for run in trial.runs:
         if run.role is not Role.LEAVE_OUT:
             record, said = checked(run, trial.reference_point)
-            made.append(TrialRecord(record, run.role, run.session))
+            made.append(TrialRecord(record, run.role, run.session, run.waves))
             findings += said
     return tuple(made), tuple(findings)
 
@@ -43,7 +44,7 @@ def checked(run: Run, reference_point: float) -> tuple[Record, list[Finding]]:
     """One run read, examined as it is, repaired, made canonical, given its wave forces, trimmed and resampled."""
     raw = read_record(run.path, run.layout).named(run.name)
     record, _ = prepared(raw, reference_point)
-    if run.waves is not None:
+    if run.waves is not None and run.waves.spectrum is None:
         record = with_wave_forces(record, run.waves.excitation, run.waves.U, run.waves.beta)
     return trimmed(record, run.trimming), list(examine(raw))
 

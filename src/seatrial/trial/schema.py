@@ -118,11 +118,30 @@ class ChannelColumn(Strict):
     reference_point: float = 0.0
 
 
+class SeaTable(Strict):
+    """The spectrum of a sea whose elevation nobody recorded; `period`: mean T_1 for ittc2, else of the peak."""
+
+    spectrum: Literal["ittc", "ittc2", "bretschneider", "jonswap"]
+    height: SiAmount
+    period: SiAmount | None = None
+    gamma: float = 3.3
+
+    @model_validator(mode="after")
+    def _period_where_needed(self) -> Self:
+        if (self.period is None) != (self.spectrum == "ittc"):
+            raise ValueError(f"spectrum '{self.spectrum}' {'has no' if self.period else 'needs a'} period")
+        return self
+
+
 class WavesTable(Strict):
-    """`[records.waves]`: heading to the waves (0 following, 180 degrees head; rad without a unit) and ship speed."""
+    """`[records.waves]`: heading to the waves (0 following, 180 degrees head; rad without a unit) and ship speed.
+
+    `sea`: where neither the elevation nor the wave forces were recorded.
+    """
 
     heading: SiAmount
     speed: SiAmount
+    sea: SeaTable | None = None
 
 
 class RecordsTable(Strict):

@@ -8,6 +8,7 @@ from pathlib import Path
 from seatrial.equations import Model
 from seatrial.hydro.excitation import Excitation
 from seatrial.read import Layout
+from seatrial.sea.spectrum import Spectrum
 from seatrial.values import Finding, ForcePoints, Ship
 
 
@@ -42,11 +43,15 @@ class Trimming:
 
 @dataclass(frozen=True)
 class Waves:
-    """How a run met the waves: ship speed [m/s], heading [rad, 0 following, pi head], and what they do to her."""
+    """How a run met the waves: ship speed [m/s], heading [rad, 0 following, pi head], and what they do to her.
+
+    `spectrum`: of the sea, where its elevation was not recorded.
+    """
 
     excitation: Excitation
     U: float
     beta: float
+    spectrum: Spectrum | None = None
 
 
 @dataclass(frozen=True)
