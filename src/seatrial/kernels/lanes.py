@@ -1,0 +1,91 @@
+"""Vector instructions on slots: a slot is LANES numbers side by side in a flat float64 array, one for each candidate.
+
+Written for LLVM directly: left to itself it takes loops of eight apart into scalars before it looks for vectors. All
+lanes undergo the same instructions; a product and its sum may contract to a fused multiply-add, nothing is reordered.
+"""
+
+from collections.abc import Callable
+
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+LANES = 8
+_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+_CONTRACT = ("contract",)
+
+
+def _instruction(definition: Callable[..., object]) -> Callable[..., None]:
+    """As compiled code sees it: without Numba's context, which is its first argument here."""
+    return intrinsic(definition)
+
+
+class _Slots:
+    """Loads and stores of slots of the array that is the first argument."""
+
+    def __init__(self, context, builder, signature, arguments) -> None:
+        self.builder = builder
+        self.data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
+
+    def _place(self, slot):
+        first = self.builder.mul(slot, ir.Constant(slot.type, LANES))
+        return self.builder.bitcast(self.builder.gep(self.data, [first]), _VECTOR.as_pointer())
+
+    def load(self, slot):
+        return self.builder.load(self._place(slot), align=8, typ=_VECTOR)
+
+    def store(self, value, slot) -> None:
+        self.builder.store(value, self._place(slot), align=8)
+
+    def spread(self, number):
+        one = self.builder.insert_element(ir.Constant(_VECTOR, ir.Undefined), number, ir.Constant(ir.IntType(32), 0))
+        mask = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
+        return self.builder.shuffle_vector(one, ir.Constant(_VECTOR, ir.Undefined), mask)
+
+
+@_instruction
+def dot(_context, w, out, a, b, stride, count):  # noqa: ARG001
+    """w[out] = sum over k < count of w[a + k] w[b + k stride], k ascending."""
+
+    def generate(context, builder, signature, arguments):
+        _, out, a, b, stride, count = arguments
+        slots = _Slots(context, builder, signature, arguments)
+        total = cgutils.alloca_once_value(builder, ir.Constant(_VECTOR, [0.0] * LANES))
+        builder.store(ir.Constant(_VECTOR, [0.0] * LANES), total)
+        with cgutils.for_range(builder, count) as loop:
+            left = slots.load(builder.add(a, loop.index))
+            right = slots.load(builder.add(b, builder.mul(loop.index, stride)))
+            product = builder.fmul(left, right, flags=_CONTRACT)
+            builder.store(builder.fadd(builder.load(total), product, flags=_CONTRACT), total)
+        slots.store(builder.load(total), out)
+        return context.get_dummy_value()
+
+    return types.void(w, *[types.int64] * 5), generate
+
+
+@_instruction
+def spread(_context, w, out, number):  # noqa: ARG001
+    """w[out] = number in every lane."""
+
+    def generate(context, builder, signature, arguments):
+        slots = _Slots(context, builder, signature, arguments)
+        slots.store(slots.spread(arguments[2]), arguments[1])
+        return context.get_dummy_value()
+
+    return types.void(w, types.int64, types.float64), generate
+
+
+@_instruction
+def add_squared_difference(_context, w, out, a, number, factor):  # noqa: ARG001
+    """w[out] += factor (w[a] - number)^2."""
+
+    def generate(context, builder, signature, arguments):
+        slots = _Slots(context, builder, signature, arguments)
+        off = builder.fsub(slots.load(arguments[2]), slots.spread(arguments[3]))
+        scaled = builder.fmul(slots.spread(arguments[4]), off)
+        product = builder.fmul(scaled, off, flags=_CONTRACT)
+        slots.store(builder.fadd(slots.load(arguments[1]), product, flags=_CONTRACT), arguments[1])
+        return context.get_dummy_value()
+
+    return types.void(w, types.int64, types.int64, types.float64, types.float64), generate
