@@ -16,6 +16,7 @@ from seatrial.identify.family import WINDOW_SHIP_LENGTHS as FAMILY_WINDOW
 from seatrial.identify.family import Considered, considered, with_ensemble
 from seatrial.identify.identifiability import identifiability
 from seatrial.identify.profile import profiles
+from seatrial.identify.seakeeping import seakeeping
 from seatrial.identify.spectral import spectral_fit
 from seatrial.information.symmetries import refuse_structural, structural
 from seatrial.predict.forecast import forecast
@@ -133,6 +134,7 @@ def identify(
         disturbance=found.disturbance,
         family=others.rows,
         margin=told.margin,
+        seakeeping=seakeeping(found.model, train, length),
     )
 
 

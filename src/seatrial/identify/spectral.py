@@ -9,6 +9,7 @@ import numpy as np
 from seatrial.equations import Model
 from seatrial.estimate.singular import weakest
 from seatrial.identify.outcome import estimated
+from seatrial.identify.seakeeping import seakeeping
 from seatrial.information.covariance import from_information
 from seatrial.optimise import Optimum, levenberg_marquardt
 from seatrial.problem.segments import compared_outputs
@@ -62,6 +63,7 @@ def spectral_fit(
                       "worse than they are", interval.meaning, (reason,), {"frequencies": len(problem.omega)}),
         offsets=(), noise=(), residuals=(), predictions=(), findings=findings, records=(record,), seed=seed,
         elapsed_s=time.perf_counter() - began, versions=versions(),
+        seakeeping=seakeeping(model, records, trial.ship.length),
     )  # fmt: skip
 
 

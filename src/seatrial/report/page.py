@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from seatrial.report import answer, numbers, runs, tables, telling, words
+from seatrial.report import answer, numbers, runs, tables, telling, waves, words
 from seatrial.report.citations import Citations
 from seatrial.report.figures import channels, correlation, forest, tracks, whiteness
 from seatrial.report.figures.plot import common_prefix
@@ -26,6 +26,7 @@ TITLES = {
     "prediction": "Prediction of held-out runs",
     "training": "Fit of the training runs",
     "residuals": "Residuals",
+    "waves": "Motions in waves",
     "offsets": "Offsets",
     "standards": "IMO standards",
     "model": "Equations of the model",
@@ -48,10 +49,14 @@ def html(fit: Fit) -> str:
     """The page as text."""
     citations = Citations()
     length = fit.ship.length if "L" in fit.ship.particulars else 0.0
-    told = telling.telling(fit)
+    told, known = telling.telling(fit), fit.seakeeping
+    is_steered = "psi" in fit.model.states or "delta" in fit.model.input_names
+    shown = {"telling": bool(told), "waves": known is not None, "standards": is_steered}
     context: dict[str, object] = {
         "fit": fit,
-        "titles": {key: title for key, title in TITLES.items() if key != "telling" or told},
+        "titles": {key: title for key, title in TITLES.items() if shown.get(key, True)},
+        "is_steered": is_steered,
+        "waves": None if known is None else {"sheets": waves.sheets(known), "figures": waves.figures(known)},
         "told": told,
         "answer": answer.sentences(fit),
         "facts": answer.facts(fit),

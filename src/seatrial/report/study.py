@@ -7,10 +7,11 @@ from markupsafe import Markup
 
 from seatrial.report import runs, tables
 from seatrial.report.figures.curves import curves
-from seatrial.report.numbers import DASH, significant
+from seatrial.report.numbers import significant
 from seatrial.report.page import environment
+from seatrial.report.sheets import sheet
 from seatrial.report.words import counted
-from seatrial.results import Check, Study, Table, Verdict
+from seatrial.results import Check, Study, Verdict
 from seatrial.values.files import write_whole
 
 # channels a run is given rather than predicted
@@ -25,17 +26,6 @@ TITLES = {
     "findings": "Findings",
     "versions": "Versions",
 }
-
-
-@dataclass(frozen=True)
-class Sheet:
-    """A table as text; `numeric` says which columns stand to the right."""
-
-    title: str
-    header: tuple[str, ...]
-    numeric: tuple[bool, ...]
-    rows: tuple[tuple[str, ...], ...]
-    note: str
 
 
 @dataclass(frozen=True)
@@ -63,7 +53,7 @@ def html(study: Study) -> str:
     content: dict[str, object] = {
         "claims": study.claims,
         "checks": [_check(c) for c in study.checks],
-        "tables": [_sheet(t) for t in study.tables],
+        "tables": [sheet(t) for t in study.tables],
         "figures": [(Markup(curves(f)), f) for f in study.figures],
         "runs": runs.runs(study.predictions, 0.0, INPUTS),
         "findings": tables.findings(study.findings),
@@ -99,19 +89,3 @@ def outcome(study: Study) -> list[str]:
 def _check(c: Check) -> CheckRow:
     limit = c.limit if isinstance(c.limit, str) else significant(c.limit)
     return CheckRow(c.name, significant(c.value), limit, c.holds)
-
-
-def _sheet(table: Table) -> Sheet:
-    numeric = tuple(
-        all(not isinstance(row[k], str) for row in table.rows if k < len(row)) for k in range(len(table.header))
-    )
-    rows = tuple(tuple(_cell(cell) for cell in row) for row in table.rows)
-    return Sheet(table.title, table.header, numeric, rows, table.note)
-
-
-def _cell(cell: str | float | None) -> str:
-    if cell is None:
-        return DASH
-    if isinstance(cell, (str, int)):
-        return str(cell)
-    return significant(cell)

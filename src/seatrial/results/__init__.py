@@ -25,6 +25,7 @@ from seatrial.results.identifiability import (
     Stability,
     Symmetry,
 )
+from seatrial.results.seakeeping import PointMotion, Seakeeping
 from seatrial.results.study import Check, Claim, Curve, Figure, Study, Table, Verdict
 
 __all__ = [
@@ -46,9 +47,11 @@ __all__ = [
     "Method",
     "Noise",
     "Offset",
+    "PointMotion",
     "Prediction",
     "Profile",
     "Residuals",
+    "Seakeeping",
     "Sensitivity",
     "Solution",
     "Stability",

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from seatrial.equations import Model
 from seatrial.optimise import Solution
 from seatrial.results.identifiability import Identifiability
+from seatrial.results.seakeeping import Seakeeping
 from seatrial.values import Array, Finding, Record, Ship
 
 
@@ -212,6 +213,7 @@ class Fit:
         seed, elapsed_s, versions: how to get the same again.
         identifiability: what the records can tell; disturbance: noise and criterion; family: models compared.
         margin: what intervals of further predictions are made of.
+        seakeeping: what the ship does in the waves of her trial; None where she met none that are known.
     """
 
     question: str
@@ -234,6 +236,7 @@ class Fit:
     disturbance: Disturbance | None = None
     family: tuple[Member, ...] = ()
     margin: Margin | None = None
+    seakeeping: Seakeeping | None = None
 
     def validation(self) -> tuple[Prediction, ...]:
         """The predictions of runs that were not fitted."""

@@ -106,6 +106,38 @@ class NoiseEntry(Entry):
     text: str
 
 
+class PointMotionEntry(Entry):
+    """Vertical motion at one place of the ship."""
+
+    place: str
+    x: Number = Field(description="m forward of the origin")
+    significant: Number = Field(description="amplitude, m")
+    acceleration: Number = Field(description="rms, m/s^2")
+    sickness: Number = Field(description="share of people sick within two hours")
+
+
+class SeakeepingEntry(Entry):
+    """Heave [up] and pitch [bow down] per wave at the speed and heading of the trial, and in a sea."""
+
+    run: str
+    speed: Number = Field(description="m/s")
+    heading: Number = Field(description="degrees, 0 following, 180 head")
+    sea: str
+    omega: list[Number] = Field(description="rad/s, of the wave")
+    omega_e: list[Number] = Field(description="rad/s, of encounter, negative where the ship overtakes the wave")
+    heave: list[Number] = Field(description="m per m of wave")
+    heave_phase: list[Number] = Field(description="degrees ahead of the crest at the origin")
+    pitch: list[Number] = Field(description="rad per rad of wave slope")
+    pitch_phase: list[Number]
+    sea_density: list[Number] = Field(description="m^2 s/rad over omega")
+    heave_density: list[Number] = Field(description="m^2 s/rad over omega")
+    pitch_density: list[Number] = Field(description="deg^2 s/rad over omega")
+    heave_significant: Number = Field(description="amplitude, m")
+    pitch_significant: Number = Field(description="amplitude, degrees")
+    periods: list[Number] = Field(description="mean zero crossing of heave and pitch, s")
+    points: list[PointMotionEntry]
+
+
 class FamilyEntry(Entry):
     """One model of the family, scored over whole runs left out."""
 

@@ -7,7 +7,14 @@ from typing import Any
 from pydantic import Field
 
 from seatrial.results import Fit, Prediction
-from seatrial.trial.fit_entries import Entry, FamilyEntry, IdentifiabilityEntry, NoiseEntry, Number
+from seatrial.trial.fit_entries import (
+    Entry,
+    FamilyEntry,
+    IdentifiabilityEntry,
+    NoiseEntry,
+    Number,
+    SeakeepingEntry,
+)
 from seatrial.values import Finding
 
 
@@ -65,6 +72,7 @@ class FitDocument(Entry):
     identifiability: IdentifiabilityEntry | None = Field(description="what the records can tell; null: not examined")
     noise: NoiseEntry | None = Field(description="criterion of the fit and the noise it allows for; null: not examined")
     family: list[FamilyEntry] = Field(description="models compared over whole runs left out; empty: none declared")
+    seakeeping: SeakeepingEntry | None = Field(description="the ship in the waves of the trial; null: none known")
     findings: list[FindingEntry]
     elapsed_s: float
     versions: dict[str, str]
@@ -99,6 +107,7 @@ def fit_json(fit: Fit) -> dict[str, Any]:
         identifiability=IdentifiabilityEntry.model_validate(known) if known else None,
         noise=NoiseEntry.model_validate(disturbance) if disturbance else None,
         family=[FamilyEntry.model_validate(member) for member in fit.family],
+        seakeeping=SeakeepingEntry.model_validate(fit.seakeeping) if fit.seakeeping else None,
         findings=[finding_entry(f) for f in fit.findings],
         elapsed_s=fit.elapsed_s,
         versions=fit.versions,

@@ -20,6 +20,7 @@ from seatrial.results import (
     Offset,
     Prediction,
     Residuals,
+    Seakeeping,
     Solution,
     Status,
 )
@@ -79,6 +80,7 @@ def detail_table(fit: Fit, records: list[Record], place: Mapping[int, int]) -> d
         "identifiability": _nested(fit.identifiability),
         "disturbance": _nested(fit.disturbance),
         "family": _nested(fit.family),
+        "seakeeping": _nested(fit.seakeeping),
     }
 
 
@@ -174,6 +176,7 @@ def fit_from(table: Mapping[str, Any], file: ModelFile, arrays: Mapping[str, Arr
         identifiability=_restored(Identifiability | None, detail.get("identifiability")),
         disturbance=_restored(Disturbance | None, detail.get("disturbance")),
         family=_restored(tuple[Member, ...], detail.get("family", [])),
+        seakeeping=_restored(Seakeeping | None, detail.get("seakeeping")),
     )
 
 
