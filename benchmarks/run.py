@@ -11,6 +11,7 @@ import against_shipmmg
 import fusion
 import generation
 import montecarlo
+import population
 import simulation
 from measure import Line, machine
 
@@ -21,6 +22,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "against_optimisers": against_optimisers.run,
     "montecarlo": montecarlo.run,
     "fusion": fusion.run,
+    "population": population.run,
 }
 
 

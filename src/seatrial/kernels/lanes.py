@@ -6,6 +6,7 @@ lanes undergo the same instructions; a product and its sum may contract to a fus
 
 from collections.abc import Callable
 
+import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
@@ -14,6 +15,14 @@ from numba.extending import intrinsic
 LANES = 8
 _VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _CONTRACT = ("contract",)
+
+
+def scratch(slots: int) -> np.ndarray:
+    """Uninitialised slots, each on a boundary of its own size: loads across cache lines are slow (measured)."""
+    size = 8 * LANES
+    room = np.empty((slots + 1) * LANES)
+    skip = -room.__array_interface__["data"][0] % size // 8
+    return room[skip : skip + slots * LANES]
 
 
 def _instruction(definition: Callable[..., object]) -> Callable[..., None]:
@@ -89,3 +98,17 @@ def add_squared_difference(_context, w, out, a, number, factor):  # noqa: ARG001
         return context.get_dummy_value()
 
     return types.void(w, types.int64, types.int64, types.float64, types.float64), generate
+
+
+@_instruction
+def keep(_context, w, out, a, counts, done):  # noqa: ARG001
+    """w[out] = w[a] in the lanes where w[counts] > done."""
+
+    def generate(context, builder, signature, arguments):
+        _, out, a, counts, done = arguments
+        slots = _Slots(context, builder, signature, arguments)
+        wanted = builder.fcmp_ordered(">", slots.load(counts), slots.spread(done))
+        slots.store(builder.select(wanted, slots.load(a), slots.load(out)), out)
+        return context.get_dummy_value()
+
+    return types.void(w, types.int64, types.int64, types.int64, types.float64), generate

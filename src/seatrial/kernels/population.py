@@ -10,10 +10,9 @@ doubling as in `propagate`, applied to B). Either way x_{k+1} = Phi x_k + Gamma 
 
 import math
 
-import numpy as np
 from numba import njit, void
 
-from seatrial.kernels.lanes import LANES, add_squared_difference, dot, spread
+from seatrial.kernels.lanes import LANES, add_squared_difference, dot, keep, scratch, spread
 from seatrial.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, VECTOR
 
 _SMALL = 0.25
@@ -95,12 +94,13 @@ def _discretise(a, b, h, phi, gamma, w):
             _product(w, e, p, held, nx, nx, nu)
             _product(w, e, r, slope, nx, nx, nu)
             for m in range(nb * LANES):
-                if w[halvings * LANES + m % LANES] > done:
-                    w[r * LANES + m] = 0.25 * (w[slope * LANES + m] + w[p * LANES + m] + w[r * LANES + m])
-                    w[p * LANES + m] = 0.5 * (w[held * LANES + m] + w[p * LANES + m])
-            for m in range(nn * LANES):
-                if w[halvings * LANES + m % LANES] > done:
-                    w[e * LANES + m] = w[square * LANES + m]
+                w[slope * LANES + m] = 0.25 * (w[slope * LANES + m] + w[p * LANES + m] + w[r * LANES + m])
+                w[held * LANES + m] = 0.5 * (w[held * LANES + m] + w[p * LANES + m])
+            for m in range(nb):
+                keep(w, r + m, slope + m, halvings, done)
+                keep(w, p + m, held + m, halvings, done)
+            for m in range(nn):
+                keep(w, e + m, square + m, halvings, done)
         for lane in range(min(LANES, a.shape[0] - first)):
             for i in range(nx):
                 for j in range(nx):
@@ -119,7 +119,7 @@ def discretise(a, b, h, phi, gamma):
     a: (count, nx, nx), 1/s; b: (count, nx, nu); h: step, s. NaN where a matrix is not finite or too large to be scaled.
     """
     nx, nu = a.shape[1], b.shape[2]
-    _discretise(a, b, h, phi, gamma, np.empty((4 * nx * nx + 5 * nx * nu + 1) * LANES))
+    _discretise(a, b, h, phi, gamma, scratch(4 * nx * nx + 5 * nx * nu + 1))
 
 
 @njit(inline="always", **OPTIONS)
@@ -171,7 +171,7 @@ def trajectories(phi, gamma, v, every, x0, select, y):
 
     phi, gamma: of `discretise`; v: (rows, nu or 2 nu), what gamma multiplies; x0: (count, nx).
     """
-    _trajectories(phi, gamma, v, every, x0, select, y, np.empty(_room(gamma)))
+    _trajectories(phi, gamma, v, every, x0, select, y, _room(gamma))
 
 
 @njit(void(CUBE, CUBE, MATRIX, I8, MATRIX, MATRIX, VECTOR, VECTOR, VECTOR), **LEAN)
@@ -198,9 +198,9 @@ def misfit(phi, gamma, v, every, x0, measured, weight, cost):
 
     measured: (samples, nx), NaN where there is none; weight: (nx,). Otherwise as `trajectories`; keeps none.
     """
-    _misfit(phi, gamma, v, every, x0, measured, weight, cost, np.empty(_room(gamma)))
+    _misfit(phi, gamma, v, every, x0, measured, weight, cost, _room(gamma))
 
 
 def _room(gamma):
     _, nx, nv = gamma.shape
-    return ((nx + 2) * (nx + nv) + 1) * LANES
+    return scratch((nx + 2) * (nx + nv) + 1)

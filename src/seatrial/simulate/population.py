@@ -121,7 +121,7 @@ def fitness(
     _within(channels, nx)
     if measured.shape != (forcing.samples, len(channels)):
         raise InputError(
-            f"measured has shape {measured.shape}; give {forcing.samples} samples as in the forcing, {len(channels)} channels"
+            f"measured has shape {measured.shape}; the forcing wants ({forcing.samples}, {len(channels)})"
         )
     if np.shape(sigma) != (len(channels),) or not np.all(np.asarray(sigma) > 0.0):
         raise InputError(f"sigma must be positive, one for each of {len(channels)} channels; got {sigma}")
