@@ -120,9 +120,7 @@ def fitness(
     nx = phi.shape[1]
     _within(channels, nx)
     if measured.shape != (forcing.samples, len(channels)):
-        raise InputError(
-            f"measured has shape {measured.shape}; the forcing wants ({forcing.samples}, {len(channels)})"
-        )
+        raise InputError(f"measured has shape {measured.shape}; the forcing wants ({forcing.samples}, {len(channels)})")
     if np.shape(sigma) != (len(channels),) or not np.all(np.asarray(sigma) > 0.0):
         raise InputError(f"sigma must be positive, one for each of {len(channels)} channels; got {sigma}")
     seen, weight = np.full((forcing.samples, nx), np.nan), np.zeros(nx)
