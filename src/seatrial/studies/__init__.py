@@ -24,6 +24,16 @@ def _section2d(*, quick: bool, seed: int, progress: Progress | None) -> Study:
     return study(quick=quick, seed=seed, progress=progress)
 
 
-STUDIES: dict[str, Reproduction] = {"alexandersson2022": _alexandersson2022, "section2d": _section2d}
+def _qi2025(*, quick: bool, seed: int, progress: Progress | None) -> Study:
+    from seatrial.studies.qi2025 import study
+
+    return study(quick=quick, seed=seed, progress=progress)
+
+
+STUDIES: dict[str, Reproduction] = {
+    "alexandersson2022": _alexandersson2022,
+    "section2d": _section2d,
+    "qi2025": _qi2025,
+}
 
 __all__ = ["STUDIES", "Reproduction"]

@@ -86,7 +86,7 @@ def sailed(voyage: Voyage, rng: np.random.Generator, truth: Model | None = None)
     beta = math.radians(voyage.heading)
     lines = realise(ittc(voyage.height), SPEED, beta, rng, count=voyage.lines, spacing=voyage.spacing)
     amplitude = -lines.forces(box()) * float(voyage.has_waves)  # z down, theta bow up
-    angle = -_commands(count, voyage.dt, rng) * float(voyage.has_fin)
+    angle = -fin_commands(count, voyage.dt, rng) * float(voyage.has_fin)
     inputs = np.zeros((count, 4))
     inputs[:, 2] = angle
     forces = np.zeros((len(lines.omega), 4), complex)
@@ -103,7 +103,7 @@ def sailed(voyage: Voyage, rng: np.random.Generator, truth: Model | None = None)
     return Sailed(Record(name, frozen(time), made, Kind.SIMULATED, Provenance("simulated sea")), model, lines)
 
 
-def _commands(count: int, dt: float, rng: np.random.Generator) -> Array:
+def fin_commands(count: int, dt: float, rng: np.random.Generator) -> Array:
     """Fin angles lifting up [rad]: a random binary sequence."""
     hold = max(1, round(FIN_HOLD / dt))
     return FIN_ANGLE * np.repeat(rng.choice([-1.0, 1.0], count // hold + 1), hold)[:count]

@@ -1,0 +1,45 @@
+"""The study: search as published, audit the print, estimate with our own method, judge."""
+
+import time
+
+from seatrial.models.qi2025 import HEADINGS
+from seatrial.results import Study
+from seatrial.studies.qi2025.audit import audit
+from seatrial.studies.qi2025.figures import figures
+from seatrial.studies.qi2025.ours import hold_bias, ours
+from seatrial.studies.qi2025.published import SOURCE
+from seatrial.studies.qi2025.repetition import repetition
+from seatrial.studies.qi2025.tables import tables
+from seatrial.studies.qi2025.verdicts import checks, claims
+from seatrial.values import Progress
+from seatrial.values.versions import versions
+
+QUESTION = "Do wild horses identify heave and pitch coefficients from motions in waves, and how well need it be done?"
+
+
+def study(*, quick: bool, seed: int, progress: Progress | None) -> Study:
+    """PSO, WHO and IWHO at 90, 135 and 180 degrees as published and otherwise; the print audited; our fit beside it.
+
+    Args:
+        quick: three runs of each search instead of ten.
+        seed: of seas, boxes and searches.
+    """
+    began = time.perf_counter()
+    made = repetition(quick=quick, seed=seed, progress=progress)
+    if progress:
+        progress("audit and our own fits")
+    audited, bias = audit(seed), hold_bias(seed)
+    own = {h: ours(made.seas[h], seed) for h in HEADINGS}
+    return Study(
+        name="qi2025",
+        source=SOURCE,
+        title="Wild horses and heave-pitch coefficients: a published search repeated",
+        question=QUESTION,
+        claims=claims(made, audited, own, bias),
+        checks=checks(made, own),
+        tables=tables(made, own, bias),
+        figures=figures(made, audited),
+        seed=seed,
+        elapsed_s=time.perf_counter() - began,
+        versions=versions(),
+    )
