@@ -96,6 +96,10 @@ class LinearBatch(Batch):
                        weights, starts, y, s, failed)  # fmt: skip
         return y, s, failed
 
+    def fine(self, segment: int) -> tuple[Array, int]:
+        """Inputs of a segment as recorded at the fine step, (rows, nu + 1), the last one 1; and the steps a sample."""
+        return self._plain[segment][0], self._pieces
+
     @cached_property
     def _pieces(self) -> int:
         """Steps in a sample: one where every input is held or none moves."""
