@@ -42,7 +42,8 @@ def _coefficients(made: Repetition, own: Ours, heading: int) -> Table:
     rows = tuple((name, *(float(c[k]) for c in columns)) for k, name in enumerate(COEFFICIENTS))
     means = [None if k in (0, *range(1, 16, 5), *range(3, 16, 5)) else float(np.mean(c)) for k, c in enumerate(columns)]
     note = (
-        f"Table {2 + HEADINGS.index(heading)} of the paper: {made.runs} runs, {Setting.PAPER.value}. Printed errors are "
+        f"Table {2 + HEADINGS.index(heading)} of the paper: {made.runs} runs, {Setting.PAPER.value}. Printed errors "
+        f"are "
         "those of the mean of ten runs; errors of single runs are larger. Ours: mean over the runs' seas."
     )
     return Table(f"Coefficients at {heading}\u00b0", tuple(header), (*rows, ("mean", *means)), note)
