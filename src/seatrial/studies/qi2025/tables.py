@@ -51,7 +51,7 @@ def _coefficients(made: Repetition, own: Ours, heading: int) -> Table:
 
 def _settings(made: Repetition) -> Table:
     rows = []
-    for setting in Setting:
+    for setting in dict.fromkeys(s for s, _, _ in made.searches):
         for heading in HEADINGS:
             found = [made.searches[setting, heading, a] for a in Algorithm]
             cells = [100.0 * float(np.mean(v)) for f in found for v in (f.error_of_mean, f.mean_error)]
