@@ -84,28 +84,25 @@ def _guarded(blocks: Array) -> Array:
 
 def _step(normal: Normal, damping: float, low: Array, high: Array) -> tuple[Array, Array]:
     """The damped Gauss-Newton step with low <= shared step <= high."""
-    diagonal = np.diag(normal.hessian).copy()
-    diagonal[diagonal <= 0] = 1.0
-    hessian = normal.hessian + damping * np.diag(diagonal)
-    gradient = normal.gradient.copy()
-    solved = np.zeros((len(normal.local_gradient), 0, len(gradient) + 1))
-    if normal.local_gradient.size:
-        local = _guarded(normal.local_hessian)
-        local = local + damping * np.einsum("sii,ij->sij", local, np.eye(local.shape[1]))
-        right = np.concatenate([np.swapaxes(normal.cross, 1, 2), normal.local_gradient[:, :, None]], axis=2)
-        solved = np.linalg.solve(local, right)
-        hessian = hessian - np.einsum("sij,sjk->ik", normal.cross, solved[:, :, :-1])
-        gradient = gradient - np.einsum("sij,sj->i", normal.cross, solved[:, :, -1])
-    step = _boxed(hessian, gradient, low, high)
+    hessian = normal.hessian.copy()
+    diagonal = hessian.reshape(-1)[:: len(hessian) + 1]
+    diagonal += damping * np.where(diagonal > 0, diagonal, 1.0)
     if not normal.local_gradient.size:
-        return step, np.zeros_like(normal.local_gradient)
+        return _boxed(hessian, normal.gradient, low, high), normal.local_gradient
+    local = _guarded(normal.local_hessian)
+    local = local + damping * np.einsum("sii,ij->sij", local, np.eye(local.shape[1]))
+    right = np.concatenate([np.swapaxes(normal.cross, 1, 2), normal.local_gradient[:, :, None]], axis=2)
+    solved = np.linalg.solve(local, right)
+    hessian = hessian - np.einsum("sij,sjk->ik", normal.cross, solved[:, :, :-1])
+    gradient = normal.gradient - np.einsum("sij,sj->i", normal.cross, solved[:, :, -1])
+    step = _boxed(hessian, gradient, low, high)
     return step, -solved[:, :, -1] - solved[:, :, :-1] @ step
 
 
 def _boxed(hessian: Array, gradient: Array, low: Array, high: Array) -> Array:
     """Minimiser of the quadratic model in a box that holds zero (active sets; Stark & Parker 1995, BVLS)."""
     free = _solve(hessian, -gradient)
-    if np.all((free >= low) & (free <= high)):
+    if ((free >= low) & (free <= high)).all():
         return free
     step = np.zeros_like(gradient)
     held = ((low >= 0) & (gradient > 0)) | ((high <= 0) & (gradient < 0)) | (low >= high)
@@ -134,8 +131,8 @@ def _boxed(hessian: Array, gradient: Array, low: Array, high: Array) -> Array:
 
 def _solve(matrix: Array, right: Array) -> Array:
     """Symmetric solve in the unknowns' own scales; least squares where the matrix is singular to rounding."""
-    scale = 1.0 / np.sqrt(np.maximum(np.abs(np.diag(matrix)), 1e-300))
-    scaled = matrix * scale[:, None] * scale[None, :]
+    scale = 1.0 / np.sqrt(np.maximum(np.abs(matrix.diagonal()), 1e-300))
+    scaled = matrix * scale[:, None] * scale
     try:
         factor = np.linalg.cholesky(scaled)
         return scale * np.linalg.solve(factor.T, np.linalg.solve(factor, scale * right))
@@ -145,9 +142,10 @@ def _solve(matrix: Array, right: Array) -> Array:
 
 def _predicted(normal: Normal, step: Array, local_step: Array) -> float:
     """Decrease of the quadratic model along a step."""
-    linear = normal.gradient @ step + np.sum(normal.local_gradient * local_step)
+    linear = normal.gradient @ step
     curved = step @ normal.hessian @ step
     if local_step.size:
+        linear += np.sum(normal.local_gradient * local_step)
         curved += 2.0 * np.einsum("i,sij,sj->", step, normal.cross, local_step)
         curved += np.einsum("si,sij,sj->", local_step, normal.local_hessian, local_step)
     return float(-linear - 0.5 * curved)

@@ -11,6 +11,7 @@ import numpy as np
 
 from seatrial.equations import Model
 from seatrial.kernels.linear_fit import discrete, misfit, slopes
+from seatrial.kernels.pointer import TangentPointer
 from seatrial.optimise import Normal
 from seatrial.problem.segments import Segments
 from seatrial.simulate.linear import LinearBatch
@@ -111,8 +112,8 @@ class LinearRecord:
         return begin
 
     @cached_property
-    def _rates(self):
-        return self.model.compiled.rates_tangent
+    def _rates(self) -> TangentPointer:
+        return TangentPointer(self.model.compiled.rates_tangent)
 
     @cached_property
     def _values(self) -> Array:
