@@ -6,6 +6,7 @@ Numba looks it up at every call that takes one: 20 us, more than a small kernel 
 from collections.abc import Callable
 
 from numba.core import types
+from numba.core.typing.templates import Signature
 from numba.experimental.function_type import _get_wrapper_address
 
 from seatrial.kernels.types import TANGENT, TANGENT_SIGNATURE
@@ -24,6 +25,6 @@ class TangentPointer(types.WrapperAddressProtocol):
         """Of the compiled code."""
         return self._address
 
-    def signature(self) -> object:
+    def signature(self) -> Signature:
         """As all functions with Jacobians have it."""
         return TANGENT_SIGNATURE
