@@ -12,7 +12,7 @@ from seatrial.equations import Model
 from seatrial.models import MODELS, model_named
 from seatrial.models.abkowitz import TERMS
 from seatrial.models.published import esso_osaka, kvlcc2
-from seatrial.models.qi2025 import theory
+from seatrial.models.qi2025 import SHIP, theory
 from seatrial.values import Array
 
 MIRRORED = {"v", "r", "r_rest", "psi", "y0", "delta", "wind_direction"}
@@ -30,6 +30,9 @@ def filled(name: str, rng: np.random.Generator) -> Model:
     if name == "abkowitz":
         terms = {t: float(rng.normal(scale=0.01)) for t in TERMS}
         return model.with_values(ABKOWITZ_SHIP | INERTIA | {"prime": 0.7} | terms)
+    if name == "heave_pitch_strip":
+        at_rest = {"a33": 6e5, "b33": 8e5, "a35_0": 5e6, "b35_0": 3e6, "a55_0": 1e8, "b55_0": 1.5e8}
+        return model.with_values({**at_rest, "lift_1": 2e6, "x_f1": -25.0}).of_ship(SHIP)
     if name.startswith("heave_pitch"):
         return theory(135).applied(model).with_values({"lift_1": 2e6, "x_f1": -25.0, "lift_2": 1e6, "x_f2": 20.0})
     small = {p.name: float(rng.normal(scale=0.01)) for p in model.parameters if p.value == 0.0}
@@ -47,7 +50,7 @@ def call(model: Model, x: Array, u: Array, p: Array) -> Array:
 
 def point(model: Model, rng: np.random.Generator) -> tuple[Array, Array]:
     """States and inputs of ordinary size; surge ahead or astern, propeller either way."""
-    size = {"F3": 1e5, "M5": 1e6, "u": 1.0, "v": 0.3, "r": 0.1, "n": 8.0, "wind_speed": 3.0, "v_j": 2.0}
+    size = {"omega_e": 2.0, "F3": 1e5, "M5": 1e6, "u": 1.0, "v": 0.3, "r": 0.1, "n": 8.0, "wind_speed": 3.0, "v_j": 2.0}
     x = rng.normal(size=len(model.states)) * [size.get(s, 1.0) for s in model.states]
     return x, rng.normal(size=len(model.inputs)) * [size.get(i, 0.4) for i in model.input_names]
 

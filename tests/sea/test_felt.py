@@ -26,7 +26,9 @@ def test_forces_from_the_elevation_equal_those_of_the_lines(heading: int) -> Non
 
 def test_a_record_with_forces_keeps_them() -> None:
     made = sailed(Voyage(135), np.random.default_rng(1)).record
-    assert with_wave_forces(made, box(), SPEED, 2.0) is made
+    kept = with_wave_forces(made, box(), SPEED, 2.0)
+    assert np.array_equal(kept["F3"], made["F3"])
+    assert kept["u"][0] == SPEED
 
 
 @pytest.mark.parametrize(("change", "said"), [("short", "too short"), ("gap", "no value at sample 7"),

@@ -61,6 +61,12 @@ def _heave_pitch_held() -> "Model":
     return heave_pitch_held()
 
 
+def _heave_pitch_strip() -> "Model":
+    from seatrial.models.heave_pitch import heave_pitch_strip
+
+    return heave_pitch_strip()
+
+
 MODELS: dict[str, Callable[[], "Model"]] = {
     "waterjet": _waterjet,
     "nomoto": _nomoto,
@@ -69,6 +75,7 @@ MODELS: dict[str, Callable[[], "Model"]] = {
     "mmg": _mmg,
     "heave_pitch": _heave_pitch,
     "heave_pitch_held": _heave_pitch_held,
+    "heave_pitch_strip": _heave_pitch_strip,
 }
 
 

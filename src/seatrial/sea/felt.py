@@ -21,14 +21,14 @@ def with_wave_forces(record: Record, excitation: Excitation, U: float, beta: flo
     """The record with F3 [N, up] and M5 [N m, bow down] computed from its channel zeta [m, up].
 
     U in m/s, beta in rad (0 following, pi head). The ends, where the filter knows only half of what it needs, are cut
-    off. A record that has F3 and M5 already is returned as it is.
+    off. A record that has F3 and M5 already keeps them. Speed and mean frequency of encounter come along as channels.
 
     Raises:
         InputError: no elevation, gaps in it, a following sea (one frequency of encounter has three waves there), or a
             record too short for its longest waves.
     """
     if {"F3", "M5"} <= set(record.channels):
-        return record
+        return _with_meeting(record, U)
     if "zeta" not in record:
         raise InputError(f"record '{record.name}' has neither wave forces F3 and M5 nor an elevation zeta; add either")
     zeta = record["zeta"]
@@ -54,7 +54,22 @@ def with_wave_forces(record: Record, excitation: Excitation, U: float, beta: flo
         record.name, record.time, {**record.channels, **made}, record.kind,
         record.provenance.then("wave forces from the elevation"),
     )  # fmt: skip
-    return whole.between(float(record.time[0]) + lost, float(record.time[-1]) - lost)
+    return _with_meeting(whole.between(float(record.time[0]) + lost, float(record.time[-1]) - lost), U)
+
+
+def _with_meeting(record: Record, U: float) -> Record:
+    """Speed u and mean frequency of encounter omega_e of the motions as constant channels, where they are absent.
+
+    omega_e is that of the zero crossings of heave, as the record's differences have them.
+    """
+    added = {"u": U}
+    if "z" in record:
+        z = record["z"] - np.nanmean(record["z"])
+        rising = np.flatnonzero((z[:-1] < 0.0) & (z[1:] >= 0.0))
+        if len(rising) > 2:
+            added["omega_e"] = 2.0 * np.pi * (len(rising) - 1) / (record.dt * float(rising[-1] - rising[0]))
+    made = {n: Channel.of(n, frozen(np.full(len(record), v))) for n, v in added.items() if n not in record}
+    return Record(record.name, record.time, {**record.channels, **made}, record.kind, record.provenance)
 
 
 def _band(level: Array, dt: float) -> tuple[float, float]:

@@ -46,6 +46,7 @@ _TABLE = [
     Quantity("S_2", "tension of the port spring", "N", "none", "tension", "S_2", "spring_tension_2"),
     Quantity("z_ddot_1", "heave acceleration starboard", "m/s^2", "body", "down", r"\ddot z_1", "heave_acceleration_1"),
     Quantity("z_ddot_2", "heave acceleration port", "m/s^2", "body", "down", r"\ddot z_2", "heave_acceleration_2"),
+    Quantity("omega_e", "frequency of encounter", "rad/s", "none", "none", r"\omega_e", "encounter_frequency"),
     Quantity("F3", "heave force of the waves", "N", "body", "up", "F_3", "wave_heave_force"),
     Quantity("M5", "pitch moment of the waves", "N m", "body", "bow down", "M_5", "wave_pitch_moment"),
     Quantity("delta_f1", "angle of the first fin, lifting up", "rad", "body", "up", r"\delta_{f1}", "fin_angle_1"),
