@@ -80,7 +80,7 @@ class Study:
     Attributes:
         name: as in ``seatrial reproduce NAME``, e.g. ``alexandersson2022``.
         source: the paper, with doi.
-        title, question: for the head of the page.
+        title, question, kind: for the head of the page.
         predictions: measured runs beside simulated ones, as in a fit.
         seed, elapsed_s, versions: how to get the same again.
     """
@@ -93,6 +93,7 @@ class Study:
     elapsed_s: float = 0.0
     title: str = ""
     question: str = ""
+    kind: str = "A published study repeated"
     tables: tuple[Table, ...] = ()
     figures: tuple[Figure, ...] = ()
     predictions: tuple[Prediction, ...] = ()

@@ -36,6 +36,7 @@ def study(*, quick: bool, seed: int, progress: Progress | None) -> Study:
         source=SOURCE,
         title="A ship section in regular beam waves: heave and roll from measured records",
         question=QUESTION,
+        kind="Measured records worked through",
         claims=claims(made),
         checks=checks(made),
         tables=tables(made),
