@@ -1,12 +1,26 @@
 """The contract every optimiser keeps: points in the box, order of ask and tell, refusals, same seed same bits."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from optimise.landscapes import BOX, KINDS, REMEMBERING, SQUARE, Array, made
-from seatrial.optimise import Box, Memory, SearchError, Status, search
+from seatrial.optimise import (
+    AdaptationSettings,
+    Box,
+    CloudSettings,
+    EvolutionSettings,
+    HerdSettings,
+    ImprovedHerdSettings,
+    Memory,
+    SearchError,
+    Status,
+    SwarmSettings,
+    search,
+)
 
 EVERY = pytest.mark.parametrize("kind", KINDS)
 
@@ -31,6 +45,20 @@ def test_same_seed_same_bits_another_seed_others(kind: str) -> None:
     assert first.history == again.history
     assert first.history != other.history
     assert first.seed == 5
+
+
+@EVERY
+def test_a_callers_array_may_be_used_again(kind: str) -> None:
+    """Kernels write every population's fitness into one array."""
+    kept, reused = made(kind, BOX, 5, iterations=20), made(kind, BOX, 5, iterations=20)
+    buffer = np.empty(40)
+    while not kept.done:
+        kept.tell(SQUARE(kept.ask()))
+        buffer[:] = SQUARE(reused.ask())
+        reused.tell(buffer)
+        buffer[:] = np.nan
+    assert kept.trace.tobytes() == reused.trace.tobytes()
+    assert kept.history == reused.history
 
 
 @EVERY
@@ -118,6 +146,24 @@ def test_too_small_a_search_is_refused(kind: str, population: int, iterations: i
         made(kind, BOX, 1, population, iterations)
 
 
+@pytest.mark.parametrize(
+    ("settings_made", "says"),
+    [
+        (lambda: SwarmSettings(omega=np.nan), "Setting omega is nan"),
+        (lambda: SwarmSettings(c2=np.inf), "Setting c2 is inf"),
+        (lambda: HerdSettings(stallions=np.nan), "Setting stallions is nan"),
+        (lambda: ImprovedHerdSettings(omega_max=np.inf), "Setting omega_max is inf"),
+        (lambda: CloudSettings(w1=np.nan), "Setting w1 is nan"),
+        (lambda: CloudSettings(spread=-0.1), "Setting spread is the width of a normal law, not -0.1"),
+        (lambda: EvolutionSettings(F=np.nan), "Setting F is nan"),
+        (lambda: AdaptationSettings(step=np.inf), "Setting step is inf"),
+    ],
+)
+def test_settings_without_a_value_are_refused(settings_made: Callable[[], object], says: str) -> None:
+    with pytest.raises(SearchError, match=says):
+        settings_made()
+
+
 @pytest.mark.parametrize("kind", REMEMBERING)
 @pytest.mark.parametrize("memory", Memory)
 def test_under_a_changing_fitness_only_re_evaluated_memories_are_comparable(kind: str, memory: Memory) -> None:
@@ -139,6 +185,7 @@ def test_under_a_changing_fitness_only_re_evaluated_memories_are_comparable(kind
         ([0.0, 2.0], [1.0, 2.0], "Bound 1 runs from 2.0 to 2.0"),
         ([0.0, np.nan], [1.0, 2.0], "Bound 1 runs from nan"),
         ([0.0, 0.0], [1.0, np.inf], "finite"),
+        ([-1e308], [1e308], "finite"),
         ([0.0], [1.0, 2.0], "one shape"),
         ([], [], "one shape"),
     ],

@@ -76,6 +76,7 @@ def test_restarts_leave_a_local_minimum_that_one_start_does_not() -> None:
     assert np.allclose(found.solution.point, TRUTH, rtol=1e-9)
     again = multistart(PROBLEM, TRAP, BOX, np.random.default_rng(0), Restarts(1e-12, most=60))
     assert again.solution.history == found.solution.history
+    assert again.solution.seed == 0
 
 
 def test_spent_restarts_return_the_best_and_say_so() -> None:
@@ -95,6 +96,24 @@ def test_a_start_that_cannot_be_evaluated_is_left() -> None:
     found = multistart(PROBLEM, np.array([1.0, 9.9]), BOX, np.random.default_rng(0), Restarts(1e-12, most=60))
     assert found.accepted
     assert found.restarts >= 1
+
+
+@dataclass(frozen=True)
+class Holed(Sine):
+    """Not a number at low frequencies, where a model's own check would be missing."""
+
+    def cost(self, shared: Array, local: Array) -> float:
+        return np.nan if shared[1] < 3.5 else super().cost(shared, local)
+
+
+def test_a_start_without_a_value_neither_ends_the_search_nor_takes_the_place_of_one() -> None:
+    holed = Holed(BOX.lower, BOX.upper)
+    left = multistart(holed, np.array([1.0, 2.0]), BOX, np.random.default_rng(0), Restarts(1e-12, most=60))
+    assert left.accepted
+    low = Box(np.array([0.2, 0.5]), np.array([5.0, 3.0]))
+    kept = multistart(holed, TRAP, low, np.random.default_rng(0), Restarts(1e-12, most=3))
+    alone = levenberg_marquardt(holed, TRAP, NONE).solution
+    assert (kept.restarts, kept.solution.value) == (3, alone.value)
 
 
 def test_senseless_restarts_are_refused() -> None:

@@ -71,5 +71,7 @@ def test_only_particles_that_are_not_good_become_drops_round_the_best() -> None:
 
 def test_a_negative_fitness_has_no_ratio() -> None:
     swarm = CloudParticleSwarm(BOX, np.random.default_rng(2))
+    points = swarm.ask()
     with pytest.raises(SearchError, match="row 3 has -1"):
-        swarm.tell(np.where(np.arange(len(swarm.ask())) == 3, -1.0, 1.0))
+        swarm.tell(np.where(np.arange(len(points)) == 3, -1.0, 1.0))
+    assert np.array_equal(swarm.ask(), points)

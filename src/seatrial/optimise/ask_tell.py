@@ -23,7 +23,7 @@ class Box:
     """Bounds of a search, shapes (d,), in whatever unit the fitness takes.
 
     Raises:
-        SearchError: bounds that are not finite, not of one shape, or not in order.
+        SearchError: bounds that are not finite, not of one shape, not in order, or too far apart for a number.
     """
 
     lower: Array
@@ -33,11 +33,12 @@ class Box:
         lower, upper = (np.array(bound, dtype=np.float64, ndmin=1) for bound in (self.lower, self.upper))
         if lower.ndim != 1 or lower.shape != upper.shape or not lower.size:
             raise SearchError(f"Bounds need one shape (d,), but they have {lower.shape} and {upper.shape}.")
-        wrong = np.flatnonzero(~(np.isfinite(lower) & np.isfinite(upper) & (lower < upper)))
+        with np.errstate(over="ignore", invalid="ignore"):
+            wrong = np.flatnonzero(~(np.isfinite(lower) & np.isfinite(upper - lower) & (lower < upper)))
         if wrong.size:
             low, high = lower[wrong[0]], upper[wrong[0]]
             raise SearchError(
-                f"Bound {wrong[0]} runs from {low} to {high}; give two finite numbers, the smaller first."
+                f"Bound {wrong[0]} runs from {low} to {high}; give two numbers a finite way apart, the smaller first."
             )
         for name, bound in (("lower", lower), ("upper", upper)):
             bound.flags.writeable = False

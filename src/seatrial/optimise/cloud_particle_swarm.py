@@ -46,6 +46,9 @@ class CloudSettings(SwarmSettings):
             raise SearchError(f"The mutation probability lies between 0 and 1, not at {self.mutation}.")
         if not self.a <= self.b:
             raise SearchError(f"Threshold a = {self.a} must not exceed threshold b = {self.b}.")
+        for name, value in (("hyper_entropy", self.hyper_entropy), ("spread", self.spread)):
+            if value < 0:
+                raise SearchError(f"Setting {name} is the width of a normal law, not {value}; give 0 or more.")
 
 
 class CloudParticleSwarm(ParticleSwarm):

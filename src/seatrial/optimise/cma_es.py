@@ -6,7 +6,7 @@ from math import floor, log
 import numpy as np
 
 from seatrial.optimise.ask_tell import Box, SearchError
-from seatrial.optimise.population import Population
+from seatrial.optimise.population import Population, refuse_settings_without_value
 from seatrial.optimise.solution import Array, Status
 
 
@@ -27,6 +27,7 @@ class AdaptationSettings:
     resampling: int = 20
 
     def __post_init__(self) -> None:
+        refuse_settings_without_value(self)
         if self.population is not None and self.population < 4:
             raise SearchError(f"The evolution strategy needs at least 4 points a generation, not {self.population}.")
         if not self.step > 0:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.optimise.ask_tell import Box, SearchError
-from seatrial.optimise.population import Memory, Population
+from seatrial.optimise.population import Memory, Population, refuse_settings_without_value
 from seatrial.optimise.solution import Array
 
 
@@ -28,6 +28,7 @@ class EvolutionSettings:
     memory: Memory = Memory.KEEP
 
     def __post_init__(self) -> None:
+        refuse_settings_without_value(self)
         if self.population < 4:
             raise SearchError(f"Differential evolution needs at least 4 vectors, not {self.population}.")
         if not 0 <= self.CR <= 1:

@@ -7,6 +7,7 @@ import numpy as np
 
 from seatrial.optimise.ask_tell import Box, SearchError
 from seatrial.optimise.least_squares import LeastSquares, Optimum, levenberg_marquardt
+from seatrial.optimise.population import seed_of
 from seatrial.optimise.solution import Array, Solution
 
 
@@ -84,16 +85,16 @@ def multistart(
     best: Optimum | None = None
     evaluations, history, count = 0, [], -1
     at = start
-    while best is None or (best.solution.value > restarts.acceptable and count < restarts.most):
+    while best is None or (not best.solution.value <= restarts.acceptable and count < restarts.most):
         if best is not None:
             drawn = box.drawn(generator, 1)[0]
             at = scaled(drawn) if scaled else drawn
         found = levenberg_marquardt(problem, at, held, evaluations=restarts.evaluations, negligible=restarts.negligible)
         count += 1
         evaluations += found.solution.evaluations
-        if best is None or not found.solution.value >= best.solution.value:
+        if best is None or found.solution.value < best.solution.value or np.isnan(best.solution.value):
             best = found
         history.append(best.solution.value)
     s = best.solution
-    solution = Solution(s.point, s.value, s.status, evaluations, tuple(history))
+    solution = Solution(s.point, s.value, s.status, evaluations, tuple(history), seed_of(generator))
     return Multistart(Optimum(solution, best.local, best.normal), count, s.value <= restarts.acceptable)

@@ -1,12 +1,18 @@
 """What the population optimisers share: the order of ask and tell, what is refused, the record of the best."""
 
 from abc import ABC, abstractmethod
+from dataclasses import fields
 from enum import Enum
+from math import isfinite
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from seatrial.optimise.ask_tell import Box, SearchError
 from seatrial.optimise.solution import Array, Status
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 
 class Memory(Enum):
@@ -34,7 +40,7 @@ class Population(ABC):
         self.box = box
         self.iterations = iterations
         self._generator = generator
-        self._seed = _seed(generator)
+        self._seed = seed_of(generator)
         self._asked: Array | None = None
         self._history: list[float] = []
         self._trace: list[Array] = []
@@ -66,14 +72,14 @@ class Population(ABC):
         """
         if self._asked is None:
             raise SearchError("A fitness was told before anything was asked; call ask() first.")
-        told = np.asarray(fitness, dtype=np.float64)
+        told = np.array(fitness, dtype=np.float64)
         if told.shape != (len(self._asked),):
             raise SearchError(
                 f"A fitness for {len(self._asked)} points has shape {told.shape}; give one number a point."
             )
         self._refuse_unordered(told)
-        points, self._asked = self._asked, None
-        self._learn(points, told)
+        self._learn(self._asked, told)
+        self._asked = None
         point, value = self.best
         self._history.append(value)
         self._trace.append(point)
@@ -119,7 +125,16 @@ class Population(ABC):
         return self._seed
 
 
-def _seed(generator: np.random.Generator) -> int | None:
+def refuse_settings_without_value(settings: "DataclassInstance") -> None:
+    """Raise SearchError where a number among the settings is NaN or infinite: it would move points nowhere."""
+    for field in fields(settings):
+        value = getattr(settings, field.name)
+        if isinstance(value, float) and not isfinite(value):
+            raise SearchError(f"Setting {field.name} is {value}; give a finite number.")
+
+
+def seed_of(generator: np.random.Generator) -> int | None:
+    """Seed of a generator, where it is one whole number and the generator is not a descendant."""
     sequence = generator.bit_generator.seed_seq
     if isinstance(sequence, np.random.SeedSequence) and not sequence.spawn_key and isinstance(sequence.entropy, int):
         return sequence.entropy

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.optimise.ask_tell import Box, SearchError
-from seatrial.optimise.population import Memory, Population
+from seatrial.optimise.population import Memory, Population, refuse_settings_without_value
 from seatrial.optimise.solution import Array
 
 
@@ -34,6 +34,7 @@ class SwarmSettings:
     memory: Memory = Memory.KEEP
 
     def __post_init__(self) -> None:
+        refuse_settings_without_value(self)
         if self.population < 2:
             raise SearchError(f"A particle swarm needs at least 2 particles, not {self.population}.")
         if not self.velocity_limit > 0:

@@ -6,7 +6,7 @@ from enum import Enum
 import numpy as np
 
 from seatrial.optimise.ask_tell import Box, SearchError
-from seatrial.optimise.population import Memory, Population
+from seatrial.optimise.population import Memory, Population, refuse_settings_without_value
 from seatrial.optimise.solution import Array
 
 
@@ -43,6 +43,7 @@ class HerdSettings:
     memory: Memory = Memory.KEEP
 
     def __post_init__(self) -> None:
+        refuse_settings_without_value(self)
         groups = self.groups
         if groups < 3 or self.population < 2 * groups:
             raise SearchError(
