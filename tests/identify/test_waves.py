@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 from seatrial.identify import identify
+from seatrial.models.heave_pitch import heave_pitch_held
 from seatrial.results import Fit
 from seatrial.sea.realise import Spacing
-from seatrial.studies.seaway import Voyage
+from seatrial.simulate.linear import LinearBatch
+from seatrial.studies.seaway import Voyage, ship
 from seatrial.trial import load_trial
 from seatrial.values import InputError
 from waves import WITH_BOX, met, written
@@ -141,3 +143,20 @@ def test_waves_out_of_sense_are_one_sentence(tmp_path: Path, change: tuple[str, 
     path.write_text(path.read_text().replace(*change))
     with pytest.raises(InputError, match=said):
         identify(load_trial(path))
+
+
+def test_unmeasured_disturbances_beside_measured_waves_become_process_noise(tmp_path: Path) -> None:
+    path, rng = written(tmp_path, [Voyage(135)], FORCES), np.random.default_rng(0)
+    table = np.loadtxt(tmp_path / "run0.csv", delimiter=",", skiprows=1)
+    model, count = ship(135), len(table)
+    pushed = np.zeros((count, 4))
+    pushed[:, :2] = rng.normal(size=(count, 2)) * [2e5, 2e6]
+    batch = LinearBatch(heave_pitch_held().with_parameters(model.parameters), pushed, np.array([0, count]), 0.1,
+                        ("z", "theta"))  # fmt: skip
+    table[:, 4:] += batch.simulate(0, 1, np.zeros((1, 4)), model.parameters.values[None], np.empty((1, 0)))[0]
+    np.savetxt(tmp_path / "run0.csv", table, delimiter=",", header=",".join(["time", *FORCES]), comments="", fmt="%.9g")
+    fit = identify(load_trial(path))
+    assert fit.disturbance is not None
+    assert fit.disturbance.method == "prediction error"
+    assert set(fit.disturbance.process) <= {"z_dot", "theta_dot"}
+    assert np.abs(errors(fit)).max() < 4.0

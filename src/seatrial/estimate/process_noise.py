@@ -21,7 +21,7 @@ from seatrial.problem.output_error import OutputError, SegmentNormals
 from seatrial.problem.prediction_error import PredictionError, whole_runs
 from seatrial.values import Array, Index, InputError, Progress, nearest
 
-KINEMATIC = ("psi", "phi", "theta", "x0", "y0", "z0")
+KINEMATIC = ("psi", "phi", "theta", "x0", "y0", "z0", "z")
 _DIFFUSE = 10.0
 _SCANNED = 10.0 ** np.arange(-3.0, 0.5, 0.5)
 _ROUGH, _NEGLIGIBLE, _EXACT = 1.0, 1e-3, 1e-3
