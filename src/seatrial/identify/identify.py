@@ -18,6 +18,7 @@ from seatrial.identify.identifiability import identifiability
 from seatrial.identify.profile import profiles
 from seatrial.identify.seakeeping import seakeeping
 from seatrial.identify.spectral import spectral_fit
+from seatrial.information.frequency_range import frequency_range, represented
 from seatrial.information.symmetries import refuse_structural, structural
 from seatrial.predict.forecast import forecast
 from seatrial.problem.segments import compared_outputs
@@ -112,6 +113,7 @@ def identify(
     unprofiled = intervals is Intervals.PROFILE and not known.profiles
     said = (*agreement(found.made), *outcome.bounds_hit(found), *outcome.unconverged(found))
     said += (outcome.NO_PROFILE,) if unprofiled else ()
+    said += (represented(frequency_range(runs, outputs)),) if trial.model.is_affine else ()
     return Fit(
         question=trial.question
         or f"Which {trial.model.name} model explains these records, and how well does it predict?",

@@ -11,6 +11,7 @@ from seatrial.estimate.singular import weakest
 from seatrial.identify.outcome import estimated
 from seatrial.identify.seakeeping import seakeeping
 from seatrial.information.covariance import from_information
+from seatrial.information.frequency_range import frequency_range, represented
 from seatrial.optimise import Optimum, levenberg_marquardt
 from seatrial.problem.segments import compared_outputs
 from seatrial.problem.spectral import Spectral, fine_grid, transformed
@@ -61,7 +62,8 @@ def spectral_fit(
         covariance=interval.covariance, solution=optimum.solution,
         method=Method("likelihood of the motions' spectra (Whittle)", "the model's own values, sensors first taken as "
                       "worse than they are", interval.meaning, (reason,), {"frequencies": len(problem.omega)}),
-        offsets=(), noise=(), residuals=(), predictions=(), findings=findings, records=(record,), seed=seed,
+        offsets=(), noise=(), residuals=(), predictions=(),
+        findings=(*findings, represented(frequency_range([record], problem.outputs))), records=(record,), seed=seed,
         elapsed_s=time.perf_counter() - began, versions=versions(),
         seakeeping=seakeeping(model, records, trial.ship.length),
     )  # fmt: skip

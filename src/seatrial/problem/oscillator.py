@@ -150,6 +150,7 @@ def fitted(
     found = least_squares(residuals, first, x_scale="jac")
     degrees = max(1, 2 * len(frequencies) - len(free))
     variance = float(found.fun @ found.fun) / degrees
-    covariance = variance * np.linalg.pinv(found.jac.T @ found.jac)
+    jacobian = np.asarray(found.jac)
+    covariance = variance * np.linalg.pinv(jacobian.T @ jacobian)
     errors = {name: float(s * e) for name, s, e in zip(free, sizes, np.sqrt(np.diag(covariance)), strict=True)}
     return OscillatorFit(at(found.x), tuple(free), errors, float(np.sqrt(np.mean(found.fun**2))))
