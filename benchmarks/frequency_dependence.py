@@ -115,9 +115,7 @@ def judged(data: HullData, memory: Memory, model: Model, U: float, heading: int,
     # a hull alike fore and aft does not pitch abeam
     for j, motion in enumerate(("heave", "pitch") if heading != 90 else ("heave",)):
         error = np.abs(found[j] - true[j]) / np.max(np.abs(true[j]))
-        made.append(
-            Line(f"{name}: {motion} per wave off inside, largest", 100.0 * float(error[within].max()), "% of max")
-        )
+        made.append(Line(f"{name}: {motion} off inside", 100.0 * float(error[within].max()), "% of max"))
         if np.any(~within):
             made.append(Line(f"{name}: {motion} off outside", 100.0 * float(error[~within].max()), "% of max"))
     return made

@@ -4,9 +4,10 @@ import time
 
 from seatrial.models.qi2025 import HEADINGS
 from seatrial.results import Study
+from seatrial.studies.own_fit import ours
 from seatrial.studies.qi2025.audit import audit
 from seatrial.studies.qi2025.figures import figures
-from seatrial.studies.qi2025.ours import hold_bias, ours
+from seatrial.studies.qi2025.hold import hold_bias
 from seatrial.studies.qi2025.published import SOURCE
 from seatrial.studies.qi2025.repetition import repetition
 from seatrial.studies.qi2025.tables import tables

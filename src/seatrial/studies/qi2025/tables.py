@@ -5,7 +5,7 @@ import numpy as np
 from seatrial.models.heave_pitch import COEFFICIENTS
 from seatrial.models.qi2025 import HEADINGS
 from seatrial.results import Table
-from seatrial.studies.qi2025.ours import Ours
+from seatrial.studies.own_fit import Ours
 from seatrial.studies.qi2025.published import (
     SECONDS,
     Algorithm,

@@ -4,8 +4,8 @@ import numpy as np
 
 from seatrial.models.qi2025 import HEADINGS, SPEED
 from seatrial.results import Check, Claim, Verdict
+from seatrial.studies.own_fit import Ours
 from seatrial.studies.qi2025.audit import Audit
-from seatrial.studies.qi2025.ours import Ours
 from seatrial.studies.qi2025.published import FIGURES_1_2, FIGURES_6_7, SECONDS, Algorithm, misprinted, printed_error
 from seatrial.studies.qi2025.repetition import Repetition, Setting
 from seatrial.studies.qi2025.tables import mean_recomputed
@@ -151,7 +151,6 @@ def checks(made: Repetition, own: dict[int, Ours]) -> tuple[Check, ...]:
     iwho = np.mean([made.searches[Setting.PAPER, h, Algorithm.IWHO].seconds for h in HEADINGS])
     ratio = float(iwho / np.mean([o.seconds for o in own.values()]))
     found.append(Check("IWHO's time over ours", ratio, ">= 50", ratio >= 50))
-    spread = np.concatenate([o.noisy / o.bound for o in own.values()])
-    size = float(np.sqrt(np.mean(spread**2)))
+    size = float(np.sqrt(np.mean([own[h].ratio ** 2 for h in HEADINGS])))
     found.append(Check("our errors in noise over the Cramer-Rao bound", size, "0.7 to 1.3", 0.7 <= size <= 1.3))
     return tuple(found)
