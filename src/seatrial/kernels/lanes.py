@@ -74,6 +74,28 @@ def dot(_context, w, out, a, b, stride, count):  # noqa: ARG001
 
 
 @_instruction
+def add_scaled(_context, w, out, a, a_stride, numbers, at, at_stride, count):  # noqa: ARG001
+    """w[out] += sum over k < count of numbers[at + k at_stride] w[a + k a_stride], k ascending."""
+
+    def generate(context, builder, signature, arguments):
+        _, out, a, a_stride, numbers, at, at_stride, count = arguments
+        slots = _Slots(context, builder, signature, arguments)
+        data = context.make_array(signature.args[4])(context, builder, numbers).data
+        total = cgutils.alloca_once(builder, _VECTOR)
+        builder.store(slots.load(out), total)
+        with cgutils.for_range(builder, count) as loop:
+            place = builder.gep(data, [builder.add(at, builder.mul(loop.index, at_stride))])
+            left = slots.spread(builder.load(place))
+            right = slots.load(builder.add(a, builder.mul(loop.index, a_stride)))
+            product = builder.fmul(left, right, flags=_CONTRACT)
+            builder.store(builder.fadd(builder.load(total), product, flags=_CONTRACT), total)
+        slots.store(builder.load(total), out)
+        return context.get_dummy_value()
+
+    return types.void(w, *[types.int64] * 3, numbers, *[types.int64] * 3), generate
+
+
+@_instruction
 def spread(_context, w, out, number):  # noqa: ARG001
     """w[out] = number in every lane."""
 

@@ -1,7 +1,7 @@
 """One run of an affine model from parameters to residuals in one call, with or without their slopes.
 
-The march of `linear` for one segment, its matrices made on the spot by `affine` and `propagators`. Sensitivities go
-side by side through vector registers, eight columns a pass: s_i <- dGamma_i v + dE_i x + E_i s.
+The march of `linear` for one segment, its matrices made on the spot. Slopes go side by side through vector registers,
+eight columns a pass: s <- dGamma v + dE x + E s, with the derivatives of `propagate` taken along in the same lanes.
 v holds the inputs that act at all: [u_k | u_{k+1} of those that run straight].
 """
 
@@ -11,180 +11,353 @@ import numpy as np
 from numba import njit, void
 
 from seatrial.kernels.integrate import DIVERGED
-from seatrial.kernels.lanes import LANES, dot, scratch, spread
+from seatrial.kernels.lanes import LANES, add_scaled, scratch, spread
 from seatrial.kernels.linear import _affine
-from seatrial.kernels.propagate import _propagators
-from seatrial.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, QUARTIC, TANGENT, VECTOR
+from seatrial.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TANGENT, VECTOR
+
+_SMALL = 0.25
+_TERMS = 11
+_MOST = 60
 
 
 @njit(inline="always", **OPTIONS)
-def _add_driven(hold, ramp, b, used, straight, gamma):
-    """gamma += [hold b - ramp b | ramp b], the ramp only in columns that run straight."""
-    nx = hold.shape[0]
-    for i in range(nx):
-        for k in range(used.size):
-            for m in range(nx):
-                gamma[i, k] += hold[i, m] * b[m, nx + used[k]]
-        for k in range(straight.size):
-            late = 0.0
-            for m in range(nx):
-                late += ramp[i, m] * b[m, nx + used[straight[k]]]
-            gamma[i, used.size + k] += late
-            gamma[i, straight[k]] -= late
-
-
-@njit(
-    void(
-        *(TANGENT, I8, INDEX, INDEX, INDEX, VECTOR, F8, CUBE, QUARTIC, MATRIX, CUBE),
-        *(MATRIX, CUBE, MATRIX, CUBE, CUBE, CUBE, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX),
-    ),
-    **LEAN,
-)
-def _discrete(
-    f, nu, wanted, used, straight, p, h, value, slope, gamma, dgamma,
-    plant, dplant, a, da, power, dpower, x, u, out, jac, rest,
-):  # fmt: skip
-    nx = a.shape[0]
-    _affine(f, nx, nu, wanted, p, plant, dplant, x, u, out, jac, rest)
-    for i in range(nx):
-        for k in range(nx):
-            a[i, k] = plant[i, k]
-            for q in range(wanted.size):
-                da[q, i, k] = dplant[q, i, k]
-    _propagators(a, da, h, value, slope, power, dpower)
-    _add_driven(value[1], value[2], plant, used, straight, gamma)
-    for q in range(wanted.size):
-        _add_driven(slope[q, 1], slope[q, 2], plant, used, straight, dgamma[q])
-        _add_driven(value[1], value[2], dplant[q], used, straight, dgamma[q])
-
-
-def discrete(f, nx, nu, wanted, used, straight, p, h):
-    """E (nx, nx) and Gamma (nx, nv) over a step h [s], then their derivatives by the parameters of index `wanted`.
-
-    f: rates with Jacobian; used: columns of [u | 1] that act; straight: places in `used` of inputs that are not held.
-    Derivatives (wanted, nx, nx) and (wanted, nx, nv). NaN where the plant is too fast to be scaled.
-    """
-    count, nv, width = len(wanted), len(used) + len(straight), nx + nu + 1
-    value, slope = np.empty((3, nx, nx)), np.empty((count, 3, nx, nx))
-    gamma, dgamma = np.zeros((nx, nv)), np.zeros((count, nx, nv))
-    _discrete(f, nu, wanted, used, straight, p, h, value, slope, gamma, dgamma,
-              np.empty((nx, width)), np.empty((count, nx, width)), np.empty((nx, nx)), np.empty((count, nx, nx)),
-              np.empty((2, nx, nx)), np.empty((count, nx, nx)), np.empty(nx), np.empty(max(nu, 1)), np.empty(nx),
-              np.zeros((nx, nx + nu + len(p))), np.empty((nx, max(count, 1))))  # fmt: skip
-    return value[0], gamma, slope[:, 0], dgamma
+def _product(z, out, a, b, rows, inner, columns):
+    """out = a b, matrices row by row in z."""
+    for i in range(rows):
+        for j in range(columns):
+            total = 0.0
+            for k in range(inner):
+                total += z[a + i * inner + k] * z[b + k * columns + j]
+            z[out + i * columns + j] = total
 
 
 @njit(inline="always", **OPTIONS)
-def _advance(e, gamma, v, x, y):
-    """x <- e x + gamma v; y is scratch. Returns the size of the new state."""
+def _slope_of_product(w, z, out, a, da, b, db, rows, inner, columns):
+    """out = da b + a db in lanes; da, db, out in w, a, b in z."""
+    for i in range(rows):
+        for j in range(columns):
+            slot = out + i * columns + j
+            spread(w, slot, 0.0)
+            add_scaled(w, slot, da + i * inner, 1, z, b + j, columns, inner)
+            add_scaled(w, slot, db + j, columns, z, a + i * inner, 1, inner)
+
+
+@njit(inline="always", **OPTIONS)
+def _halved(z, a, n, h):
+    """A <- A h / 2^k until it is small. Returns k, or the most if it stays large or is not finite."""
     size = 0.0
-    for i in range(x.size):
+    for i in range(n):
+        row = 0.0
+        for j in range(n):
+            row += abs(z[a + i * n + j])
+        size = max(size, row)
+    size *= h
+    count, step = 0, h
+    while not size <= _SMALL and count < _MOST:
+        size *= 0.5
+        step *= 0.5
+        count += 1
+    for m in range(n * n):
+        z[a + m] *= step
+    return count
+
+
+@njit(inline="always", **OPTIONS)
+def _blend(z, out, factor, a, b, c, size):
+    for m in range(size):
+        z[out + m] = factor * (z[a + m] + z[b + m] + (z[c + m] if c >= 0 else 0.0))
+
+
+@njit(inline="always", **OPTIONS)
+def _propagate(z, w, n, h, with_slopes):
+    """E, P/h, R/h of `propagators` at z[n^2 ...], from A at z[0], and slopes at the same slots from dA at w[0].
+
+    Both are laid out [A | E | P | R | power | new | newer], n^2 each. Returns whether A could be scaled.
+    """
+    nn, wide = n * n, n * n * LANES
+    e, p, r, power, new, newer = nn, 2 * nn, 3 * nn, 4 * nn, 5 * nn, 6 * nn
+    halvings = _halved(z, 0, n, h)
+    if halvings == _MOST:
+        return False
+    for m in range(nn):
+        one = 1.0 if m % (n + 1) == 0 else 0.0
+        z[e + m], z[p + m], z[r + m], z[power + m] = one, one, 0.5 * one, one
+    if with_slopes:
+        step = h * 0.5**halvings
+        for m in range(wide):
+            w[m] *= step
+            w[e * LANES + m] = w[p * LANES + m] = w[r * LANES + m] = w[power * LANES + m] = 0.0
+    for k in range(1, _TERMS + 1):
+        over, first, second = 1.0 / k, 1.0 / (k + 1), 1.0 / ((k + 1) * (k + 2))
+        if with_slopes:
+            _slope_of_product(w, z, new, power, power, 0, 0, n, n, n)
+            for m in range(wide):
+                d = over * w[new * LANES + m]
+                w[power * LANES + m] = d
+                w[e * LANES + m] += d
+                w[p * LANES + m] += first * d
+                w[r * LANES + m] += second * d
+        _product(z, new, power, 0, n, n, n)
+        for m in range(nn):
+            d = over * z[new + m]
+            z[power + m] = d
+            z[e + m] += d
+            z[p + m] += first * d
+            z[r + m] += second * d
+    for _ in range(halvings):
+        if with_slopes:
+            _slope_of_product(w, z, new, e, e, r, r, n, n, n)
+            _slope_of_product(w, z, newer, e, e, p, p, n, n, n)
+            _slope_of_product(w, z, power, e, e, e, e, n, n, n)
+            _blend(w, r * LANES, 0.25, new * LANES, p * LANES, r * LANES, wide)
+            _blend(w, p * LANES, 0.5, newer * LANES, p * LANES, -1, wide)
+            for m in range(wide):
+                w[e * LANES + m] = w[power * LANES + m]
+        _product(z, new, e, r, n, n, n)
+        _product(z, newer, e, p, n, n, n)
+        _product(z, power, e, e, n, n, n)
+        _blend(z, r, 0.25, new, p, r, nn)
+        _blend(z, p, 0.5, newer, p, -1, nn)
+        for m in range(nn):
+            z[e + m] = z[power + m]
+    return True
+
+
+@njit(inline="always", **OPTIONS)
+def _drive(z, n, h, used, straight, at_b, at_gamma):
+    """Gamma from P, R and B (n, used): [h P B - h R B | h R B], the ramp R only in columns that run straight."""
+    nb, nn = used.size, n * n
+    nv = nb + straight.size
+    for i in range(n):
+        for j in range(nb):
+            total = 0.0
+            for m in range(n):
+                total += z[2 * nn + i * n + m] * z[at_b + m * nb + j]
+            z[at_gamma + i * nv + j] = h * total
+        for k in range(straight.size):
+            j, total = straight[k], 0.0
+            for m in range(n):
+                total += z[3 * nn + i * n + m] * z[at_b + m * nb + j]
+            z[at_gamma + i * nv + nb + k] = h * total
+            z[at_gamma + i * nv + j] -= h * total
+
+
+@njit(inline="always", **OPTIONS)
+def _slope_of_drive(w, z, n, h, used, straight, at_b, at_gamma):
+    """The slope of `_drive`, B and its slope at the same places of z and w."""
+    nb, nn = used.size, n * n
+    nv = nb + straight.size
+    for i in range(n):
+        for j in range(nb):
+            out = at_gamma + i * nv + j
+            spread(w, out, 0.0)
+            add_scaled(w, out, 2 * nn + i * n, 1, z, at_b + j, nb, n)
+            add_scaled(w, out, at_b + j, nb, z, 2 * nn + i * n, 1, n)
+            for lane in range(LANES):
+                w[out * LANES + lane] *= h
+        for k in range(straight.size):
+            j, out = straight[k], at_gamma + i * nv + nb + k
+            spread(w, out, 0.0)
+            add_scaled(w, out, 3 * nn + i * n, 1, z, at_b + j, nb, n)
+            add_scaled(w, out, at_b + j, nb, z, 3 * nn + i * n, 1, n)
+            for lane in range(LANES):
+                w[out * LANES + lane] *= h
+                w[(at_gamma + i * nv + j) * LANES + lane] -= w[out * LANES + lane]
+
+
+@njit(inline="always", **OPTIONS)
+def _placed(z, n, plant, used):
+    """A and B of the plant into z; returns where B begins."""
+    at_b = 7 * n * n
+    for i in range(n):
+        for j in range(n):
+            z[i * n + j] = plant[i, j]
+        for j in range(used.size):
+            z[at_b + i * used.size + j] = plant[i, n + used[j]]
+    return at_b
+
+
+@njit(inline="always", **OPTIONS)
+def _advance(z, n, nv, at_gamma, at):
+    """The state behind [v | x] at `at` moves one step; returns its size."""
+    size, new = 0.0, at + nv + n
+    for i in range(n):
         total = 0.0
-        for j in range(v.size):
-            total += gamma[i, j] * v[j]
-        for k in range(x.size):
-            total += e[i, k] * x[k]
-        y[i] = total
-    for i in range(x.size):
-        x[i] = y[i]
-        size += abs(y[i])
+        for j in range(nv):
+            total += z[at_gamma + i * nv + j] * z[at + j]
+        for j in range(n):
+            total += z[n * n + i * n + j] * z[at + nv + j]
+        z[new + i] = total
+    for i in range(n):
+        z[at + nv + i] = z[new + i]
+        size += abs(z[new + i])
     return size
 
 
-@njit(F8(MATRIX, MATRIX, MATRIX, I8, VECTOR, INDEX, MATRIX, VECTOR, VECTOR), **LEAN)
-def _misfit(e, gamma, v, fine, x, select, measured, weight, y):
-    total = 0.0
-    samples = measured.shape[0]
+@njit(inline="always", **OPTIONS)
+def _misfit(n, plant, used, straight, h, v, fine, x0, select, measured, weight, z):
+    nb, nv = used.size, v.shape[1]
+    at_b = _placed(z, n, plant, used)
+    at_gamma = at_b + n * nb
+    at = at_gamma + n * nv
+    if not _propagate(z, z, n, h, False):
+        return math.inf
+    _drive(z, n, h, used, straight, at_b, at_gamma)
+    for i in range(n):
+        z[at + nv + i] = x0[i]
+    total, samples = 0.0, measured.shape[0]
     for k in range(samples):
         for i in range(select.size):
             if not math.isnan(measured[k, i]):
-                off = (x[select[i]] - measured[k, i]) * weight[i]
+                off = (z[at + nv + select[i]] - measured[k, i]) * weight[i]
                 total += off * off
         if k < samples - 1:
             size = 0.0
             for step in range(k * fine, k * fine + fine):
-                size = _advance(e, gamma, v[step], x, y)
+                for j in range(nv):
+                    z[at + j] = v[step, j]
+                size = _advance(z, n, nv, at_gamma, at)
             if not size < DIVERGED:
                 return math.inf
     return 0.5 * total
 
 
-def misfit(e, gamma, v, fine, x0, select, measured, weight):
-    """Half the sum of squares of weight (x - measured); infinite if the run leaves all bounds.
-
-    v: ((samples - 1) fine, nv); select: states that are compared, (ny,); measured: (samples, ny), NaN where nothing
-    was measured; weight: (ny,), 1 over the noise.
-    """
-    return _misfit(e, gamma, v, fine, x0.copy(), select, measured, weight, np.empty_like(x0))
+@njit(
+    F8(
+        *(TANGENT, I8, INDEX, INDEX, INDEX, VECTOR, F8, MATRIX, I8, VECTOR, INDEX, MATRIX, VECTOR),
+        *(MATRIX, CUBE, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, VECTOR),
+    ),
+    **LEAN,
+)
+def _cost(
+    f, nu, wanted, used, straight, p, h, v, fine, x0, select, measured, weight,
+    plant, dplant, x, u, out, jac, rest, z,
+):  # fmt: skip
+    n = x0.size
+    _affine(f, n, nu, wanted, p, plant, dplant, x, u, out, jac, rest)
+    if n == 4:  # a constant lets loops be taken apart
+        return _misfit(4, plant, used, straight, h, v, fine, x0, select, measured, weight, z)
+    return _misfit(n, plant, used, straight, h, v, fine, x0, select, measured, weight, z)
 
 
 @njit(inline="always", **OPTIONS)
-def _load(w, e, gamma, de, dgamma, starts, first, here):
-    """Slots: rows [dGamma | dE | E] of the columns from `first` on, then [v | x | s] at `here`."""
-    nx, nv = gamma.shape
-    width = nv + 2 * nx
-    for i in range(nx):
-        for lane in range(LANES):
-            q = first + lane
-            for j in range(nv):
-                w[(i * width + j) * LANES + lane] = dgamma[q, i, j] if q < de.shape[0] else 0.0
-            for j in range(nx):
-                w[(i * width + nv + j) * LANES + lane] = de[q, i, j] if q < de.shape[0] else 0.0
-            w[(here + nv + nx + i) * LANES + lane] = 1.0 if starts[i] == q else 0.0
-        for j in range(nx):
-            spread(w, i * width + nv + nx + j, e[i, j])
+def _loaded(w, n, dplant, first, used, at_b):
+    """Slopes of A and B by the parameters from `first` on; zero in lanes beyond the last."""
+    for lane in range(LANES):
+        q = first + lane
+        is_parameter = q < dplant.shape[0]
+        for i in range(n):
+            for j in range(n):
+                w[(i * n + j) * LANES + lane] = dplant[q, i, j] if is_parameter else 0.0
+            for j in range(used.size):
+                w[(at_b + i * used.size + j) * LANES + lane] = dplant[q, i, n + used[j]] if is_parameter else 0.0
 
 
-@njit(
-    I8(MATRIX, MATRIX, CUBE, CUBE, MATRIX, I8, MATRIX, INDEX, INDEX, MATRIX, VECTOR, VECTOR, MATRIX, VECTOR, VECTOR,
-       VECTOR),
-    **LEAN,
-)  # fmt: skip
-def _slopes(e, gamma, de, dgamma, v, fine, x0, starts, select, measured, weight, residual, jacobian, x, y, w):
-    nx, nv = gamma.shape
-    width, samples, ny = nv + 2 * nx, measured.shape[0], select.size
-    here, next_s = nx * width, nx * width + width
+@njit(inline="always", **OPTIONS)
+def _marched(
+    n, plant, dplant, used, straight, h, v, fine, x0, starts, select, measured, weight, residual, jacobian, z, w,
+):  # fmt: skip
+    nb, nv, nn, ny = used.size, v.shape[1], n * n, select.size
+    samples = measured.shape[0]
     for first in range(0, jacobian.shape[1], LANES):
-        _load(w, e, gamma, de, dgamma, starts, first, here)
-        for i in range(nx):
-            x[i] = x0[0, i]
+        at_b = _placed(z, n, plant, used)
+        at_gamma = at_b + n * nb
+        at = at_gamma + n * nv
+        _loaded(w, n, dplant, first, used, at_b)
+        if not _propagate(z, w, n, h, True):
+            return False
+        _drive(z, n, h, used, straight, at_b, at_gamma)
+        _slope_of_drive(w, z, n, h, used, straight, at_b, at_gamma)
+        here, there = at, at + n
+        for i in range(n):
+            z[at + nv + i] = x0[i]
+            for lane in range(LANES):
+                w[(here + i) * LANES + lane] = 1.0 if starts[i] == first + lane else 0.0
         for k in range(samples):
             for i in range(ny):
                 row, state = k * ny + i, select[i]
                 factor, off = 0.0, 0.0
                 if not math.isnan(measured[k, i]):
-                    factor, off = weight[i], weight[i] * (x[state] - measured[k, i])
+                    factor, off = weight[i], weight[i] * (z[at + nv + state] - measured[k, i])
                 residual[row] = off
                 for lane in range(LANES):
-                    jacobian[row, first + lane] = factor * w[(here + nv + nx + state) * LANES + lane]
+                    jacobian[row, first + lane] = factor * w[(here + state) * LANES + lane]
             if k == samples - 1:
                 break
             size = 0.0
             for step in range(k * fine, k * fine + fine):
                 for j in range(nv):
-                    spread(w, here + j, v[step, j])
-                for j in range(nx):
-                    spread(w, here + nv + j, x[j])
-                for i in range(nx):
-                    dot(w, next_s + i, i * width, here, 1, width)
-                for i in range(nx * LANES):
-                    w[(here + nv + nx) * LANES + i] = w[next_s * LANES + i]
-                size = _advance(e, gamma, v[step], x, y)
+                    z[at + j] = v[step, j]
+                for i in range(n):
+                    spread(w, there + i, 0.0)
+                    add_scaled(w, there + i, at_gamma + i * nv, 1, z, at, 1, nv)
+                    add_scaled(w, there + i, nn + i * n, 1, z, at + nv, 1, n)
+                    add_scaled(w, there + i, here, 1, z, nn + i * n, 1, n)
+                here, there = there, here
+                size = _advance(z, n, nv, at_gamma, at)
             if not size < DIVERGED:
-                return k + 1
-    return -1
+                return False
+    return True
 
 
-def slopes(e, gamma, de, dgamma, v, fine, x0, starts, columns, select, measured, weight):
+@njit(
+    I8(
+        *(TANGENT, I8, INDEX, INDEX, INDEX, VECTOR, F8, MATRIX, I8, VECTOR, INDEX, INDEX, MATRIX, VECTOR, VECTOR),
+        *(MATRIX, MATRIX, CUBE, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, VECTOR, VECTOR),
+    ),
+    **LEAN,
+)
+def _slopes(
+    f, nu, wanted, used, straight, p, h, v, fine, x0, starts, select, measured, weight, residual,
+    jacobian, plant, dplant, x, u, out, jac, rest, z, w,
+):  # fmt: skip
+    n = x0.size
+    _affine(f, n, nu, wanted, p, plant, dplant, x, u, out, jac, rest)
+    if n == 4:
+        return _marched(
+            4, plant, dplant, used, straight, h, v, fine, x0, starts, select, measured, weight, residual, jacobian, z, w
+        )  # fmt: skip
+    return _marched(
+        n, plant, dplant, used, straight, h, v, fine, x0, starts, select, measured, weight, residual, jacobian, z, w
+    )  # fmt: skip
+
+
+def _room(nx, nu, count, used, straight, p):
+    """Scratch of `_affine`, and the length of z."""
+    width, rows = nx + nu + 1, max(count, 1)
+    size = 7 * nx * nx + nx * (2 * len(used) + len(straight)) + 2 * nx + len(used) + len(straight) + nx
+    plant, jacobian = np.empty((nx, width)), np.zeros((nx, nx + nu + len(p)))
+    return (
+        plant,
+        np.empty((count, nx, width)),
+        np.empty(nx),
+        np.empty(nu),
+        np.empty(nx),
+        jacobian,
+        np.empty((nx, rows)),
+    ), size
+
+
+def misfit(f, nu, used, straight, p, h, v, fine, x0, select, measured, weight):
+    """Half the sum of squares of weight (x - measured); infinite if the run leaves all bounds.
+
+    f: rates with Jacobian, nu inputs; used: columns of [u | 1] that act; straight: places in `used` of inputs that are
+    not held; h: fine step, s; v: ((samples - 1) fine, nv). select: states that are compared, (ny,); measured:
+    (samples, ny), NaN where nothing was measured; weight: (ny,), 1 over the noise.
+    """
+    none = np.empty(0, dtype=np.int64)
+    room, size = _room(len(x0), nu, 0, used, straight, p)
+    return _cost(f, nu, none, used, straight, p, h, v, fine, x0, select, measured, weight, *room, np.empty(size))
+
+
+def slopes(f, nu, wanted, used, straight, p, h, v, fine, x0, starts, columns, select, measured, weight):
     """Residuals (samples ny,) of `misfit` and their Jacobian (samples ny, columns), zero where nothing was measured.
 
-    Columns: parameters as in `de`, then initial states; starts: (nx,), column of each initial state or -1.
+    Columns: the parameters of index `wanted`, then initial states; starts: (nx,), column of each initial state or -1.
     None in place of both if the run leaves all bounds.
     """
-    nx, nv = gamma.shape
-    rows, padded = measured.size, -(-columns // LANES) * LANES
-    residual, jacobian = np.empty(rows), np.empty((rows, padded))
-    room = scratch((nx + 1) * (nv + 2 * nx) + nx)
-    failed = _slopes(e, gamma, np.ascontiguousarray(de), dgamma, v, fine, x0[None], starts, select, measured, weight,
-                     residual, jacobian, np.empty(nx), np.empty(nx), room)  # fmt: skip
-    return None if failed >= 0 else (residual, jacobian[:, :columns])
+    residual, jacobian = np.empty(measured.size), np.empty((measured.size, -(-columns // LANES) * LANES))
+    room, size = _room(len(x0), nu, len(wanted), used, straight, p)
+    is_fine = _slopes(f, nu, wanted, used, straight, p, h, v, fine, x0, starts, select, measured, weight, residual,
+                      jacobian, *room, np.empty(size), scratch(size))  # fmt: skip
+    return (residual, jacobian[:, :columns]) if is_fine else None

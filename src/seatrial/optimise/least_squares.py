@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+from scipy.linalg.lapack import dposv
 
 from seatrial.optimise.solution import Array, Solution, Status
 
@@ -131,13 +132,12 @@ def _boxed(hessian: Array, gradient: Array, low: Array, high: Array) -> Array:
 
 def _solve(matrix: Array, right: Array) -> Array:
     """Symmetric solve in the unknowns' own scales; least squares where the matrix is singular to rounding."""
+    if not len(right):
+        return right
     scale = 1.0 / np.sqrt(np.maximum(np.abs(matrix.diagonal()), 1e-300))
     scaled = matrix * scale[:, None] * scale
-    try:
-        factor = np.linalg.cholesky(scaled)
-        return scale * np.linalg.solve(factor.T, np.linalg.solve(factor, scale * right))
-    except np.linalg.LinAlgError:
-        return scale * np.linalg.lstsq(scaled, scale * right, rcond=1e-13)[0]
+    _, found, failed = dposv(scaled.T, scale * right)
+    return scale * (np.linalg.lstsq(scaled, scale * right, rcond=1e-13)[0] if failed else found)
 
 
 def _predicted(normal: Normal, step: Array, local_step: Array) -> float:
@@ -149,6 +149,10 @@ def _predicted(normal: Normal, step: Array, local_step: Array) -> float:
         curved += 2.0 * np.einsum("i,sij,sj->", step, normal.cross, local_step)
         curved += np.einsum("si,sij,sj->", local_step, normal.local_hessian, local_step)
     return float(-linear - 0.5 * curved)
+
+
+def _clipped(point: Array, problem: LeastSquares) -> Array:
+    return np.minimum(np.maximum(point, problem.lower), problem.upper)
 
 
 def levenberg_marquardt(
@@ -168,7 +172,7 @@ def levenberg_marquardt(
 
     Deterministic. The result's status says how it ended; bounds of the shared unknowns are never left.
     """
-    shared = np.clip(shared, problem.lower, problem.upper)
+    shared = _clipped(shared, problem)
     normal = problem.normal(shared, local)
     count, damping, growth = 1, 1e-4, 2.0
     history = [normal.cost]
@@ -178,21 +182,22 @@ def levenberg_marquardt(
     rejected = 0
     while count < evaluations:
         low, high = problem.lower - shared, problem.upper - shared
-        newton, local_newton = _step(normal, 0.0, low, high)
-        promised = _predicted(normal, newton, local_newton)
-        if promised <= max(tolerance * normal.cost, negligible):
-            trial = np.clip(shared + newton, problem.lower, problem.upper)
-            last = problem.normal(trial, local + local_newton)
-            count += 1
-            if last.cost <= normal.cost:
-                shared, local, normal = trial, local + local_newton, last
-            history.append(normal.cost)
-            status = Status.CONVERGED
-            break
         step, local_step = _step(normal, damping, low, high)
-        trial = np.clip(shared + step, problem.lower, problem.upper)
+        trial = _clipped(shared + step, problem)
         trial_local = local + local_step
         predicted = _predicted(normal, trial - shared, local_step)
+        enough = max(tolerance * normal.cost, negligible)
+        if predicted <= enough:  # else the undamped step, the model's minimum, promises more than enough too
+            newton, local_newton = _step(normal, 0.0, low, high)
+            if _predicted(normal, newton, local_newton) <= enough:
+                trial = _clipped(shared + newton, problem)
+                last = problem.normal(trial, local + local_newton)
+                count += 1
+                if last.cost <= normal.cost:
+                    shared, local, normal = trial, local + local_newton, last
+                history.append(normal.cost)
+                status = Status.CONVERGED
+                break
         cost = problem.cost(trial, trial_local)
         count += 1
         gain = (normal.cost - cost) / predicted if predicted > 0 else -1.0
@@ -207,6 +212,7 @@ def levenberg_marquardt(
             damping, growth, rejected = max(damping, 1e-8) * growth, growth * 2.0, rejected + 1
             if predicted <= 1e-14 * normal.cost or rejected > 25:
                 rounding = max(_ROUNDING * normal.cost, _EXHAUSTED * history[0])
+                promised = _predicted(normal, *_step(normal, 0.0, low, high))
                 status = Status.CONVERGED if promised <= rounding else Status.STALLED
                 break
         history.append(normal.cost)

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.kernels.linear_fit import discrete, misfit, slopes
+from seatrial.kernels.linear_fit import misfit, slopes
 from seatrial.kernels.pointer import TangentPointer
 from seatrial.optimise import Normal
 from seatrial.problem.segments import Segments
@@ -80,14 +80,17 @@ class LinearRecord:
 
     def cost(self, shared: Array, local: Array) -> float:
         """Half the sum of squares; infinite if the run diverges."""
-        e, gamma, _, _ = self._discrete(shared, self._none)
-        return misfit(e, gamma, self._v, self._fine, self._begun(local), *self._compared)
+        used, straight = self._acting
+        return misfit(self._rates, len(self.model.inputs), used, straight, self._completed(shared), self._step, self._v,
+                      self._fine, self._begun(local), *self._compared)  # fmt: skip
 
     def normal(self, shared: Array, local: Array) -> Normal:
         """The Gauss-Newton model at a point; its cost infinite if the run diverges."""
         n, m = len(self._wanted), len(self.starts)
-        made = slopes(*self._discrete(shared, self._wanted), self._v, self._fine, self._begun(local), self._columns,
-                      n + m, *self._compared)  # fmt: skip
+        used, straight = self._acting
+        made = slopes(self._rates, len(self.model.inputs), self._wanted, used, straight, self._completed(shared),
+                      self._step, self._v, self._fine, self._begun(local), self._columns, n + m,
+                      *self._compared)  # fmt: skip
         if made is None:
             return Normal(np.inf, np.full(n, np.nan), np.full((n, n), np.nan), np.full((1, m), np.nan),
                           np.full((1, m, m), np.nan), np.full((1, n, m), np.nan))  # fmt: skip
@@ -97,12 +100,10 @@ class LinearRecord:
         return Normal(cost, gradient[:n], hessian[:n, :n], gradient[None, n:], hessian[None, n:, n:],
                       hessian[None, :n, n:])  # fmt: skip
 
-    def _discrete(self, shared: Array, wanted: Index) -> tuple[Array, Array, Array, Array]:
+    def _completed(self, shared: Array) -> Array:
         values = self._values.copy()
         values[self._wanted] = shared
-        used, straight = self._acting
-        nx, nu = len(self.begin), len(self.model.inputs)
-        return discrete(self._rates, nx, nu, wanted, used, straight, values, self._step)
+        return values
 
     def _begun(self, local: Array) -> Array:
         if not self.starts:
@@ -128,10 +129,6 @@ class LinearRecord:
     def _bounds(self) -> tuple[Array, Array]:
         free = self.model.parameters.free
         return np.array([p.lower for p in free]), np.array([p.upper for p in free])
-
-    @cached_property
-    def _none(self) -> Index:
-        return np.empty(0, dtype=np.int64)
 
     @cached_property
     def _places(self) -> Index:
