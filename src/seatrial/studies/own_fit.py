@@ -61,6 +61,13 @@ def fitted(made: LinearRecord, negligible: float = 1e-6) -> Optimum:
     return levenberg_marquardt(made, made.start(), made.known_starts(), negligible=negligible)
 
 
+def _noisy(data: Data, rng: np.random.Generator) -> Array:
+    """What was measured; with a draw of noise where the sensors had none."""
+    if np.array_equal(data.measured, data.states[:, [0, 2]]):
+        return data.measured + NOISE * rng.standard_normal(data.measured.shape)
+    return data.measured
+
+
 def ours(seas: Sequence[Data], seed: int) -> Ours:
     """All seas of one heading, without noise and with a draw of it."""
     exact, noisy, bound, seconds, evaluations = [], [], [], [], 0
@@ -73,8 +80,7 @@ def ours(seas: Sequence[Data], seed: int) -> Ours:
         evaluations = found.solution.evaluations
         exact.append(found.solution.point / data.truth - 1.0)
         bound.append(np.sqrt(np.diag(np.linalg.inv(found.normal.hessian))) / np.abs(data.truth))
-        rng = np.random.default_rng([seed, 11, data.heading, run])
-        measured = clean.data.measured + NOISE * rng.standard_normal((len(data.states), 2))
+        measured = _noisy(data, np.random.default_rng([seed, 11, data.heading, run]))
         disturbed = replace(clean, data=replace(clean.data, measured=measured))
         noisy.append(fitted(disturbed).solution.point / data.truth - 1.0)
     return Ours(np.array(exact), np.array(noisy), np.array(bound), float(np.median(seconds)), evaluations)

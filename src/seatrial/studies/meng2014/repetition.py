@@ -1,0 +1,89 @@
+"""The paper's searches made again, beside plain particle swarms, in boxes about the truth and beside it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum, StrEnum
+from functools import partial
+
+import numpy as np
+
+from seatrial.optimise import Box, CloudParticleSwarm, CloudSettings, ParticleSwarm, SwarmSettings
+from seatrial.optimise.population import Population
+from seatrial.studies.seaway import HEAVE_NOISE, PITCH_NOISE
+from seatrial.studies.swarm_search import Data, Searches, centred, off_centre, sailed, searched, whole_record
+from seatrial.values import Progress
+
+SOURCE = (
+    "Meng Fei, Xu Hongyang, Xie Zhibin: Parameter identification of ship longitudinal motions based on cloud particle "
+    "swarm optimization algorithm (in Chinese), Ship Science and Technology 2014(7), 37-40, "
+    "doi 10.3404/j.issn.1672-7649.2014.07.0083"
+)
+HEADINGS = (0, 45, 90, 135, 180)
+SEA_STATE_3 = 0.88
+NOISE = (HEAVE_NOISE, PITCH_NOISE)
+ITERATIONS, QUICK_ITERATIONS, RUNS, QUICK_RUNS = 1000, 400, 5, 3
+NARROW, WIDE = 0.1, 0.5
+
+
+class Algorithm(StrEnum):
+    """The paper's swarm, and the plain one with inertia that it springs from."""
+
+    ICPSO = "ICPSO"
+    PSO = "PSO"
+
+
+class Setting(Enum):
+    """Where is searched; the paper's box is not printed."""
+
+    OFF_CENTRE = "+-50 %, truth off centre"
+    CENTRED = "+-10 % about the truth"
+
+
+def optimisers(iterations: int) -> dict[Algorithm, Callable[[Box, np.random.Generator], Population]]:
+    """As the paper sets them: 60 particles, c1 = c2 = 2.05, A .15, B .93, p_m .2; PSO with the constriction's "
+    "values."""
+    return {
+        Algorithm.ICPSO: partial(CloudParticleSwarm, settings=CloudSettings(iterations=iterations)),
+        Algorithm.PSO: partial(ParticleSwarm, settings=SwarmSettings(population=60, iterations=iterations)),
+    }
+
+
+@dataclass(frozen=True, eq=False)
+class Repetition:
+    """Searches by setting, heading and algorithm; the seas by heading."""
+
+    searches: dict[tuple[Setting, int, Algorithm], Searches]
+    seas: dict[int, list[Data]]
+    iterations: int
+
+
+def repetition(*, quick: bool, seed: int, progress: Progress | None) -> Repetition:
+    """Five runs of 1000 iterations; `quick`: three of 400."""
+    runs, iterations = (QUICK_RUNS, QUICK_ITERATIONS) if quick else (RUNS, ITERATIONS)
+    seas = {
+        heading: [
+            sailed(heading, np.random.default_rng([seed, heading, run]), height=SEA_STATE_3, has_fin=True, noise=NOISE)
+            for run in range(runs)
+        ]
+        for heading in HEADINGS
+    }
+    found = {}
+    for setting in Setting:
+        if progress:
+            progress(f"searches: {setting.value}")
+        for heading, met in seas.items():
+            for algorithm, made in optimisers(iterations).items():
+                boxes = _boxes(setting, met, seed)
+                found[setting, heading, algorithm] = searched(met, boxes, made, _judged, seed)
+    return Repetition(found, seas, iterations)
+
+
+def _boxes(setting: Setting, seas: list[Data], seed: int) -> list[Box]:
+    truth = seas[0].truth
+    if setting is Setting.OFF_CENTRE:
+        return [off_centre(truth, WIDE, np.random.default_rng([seed, 7, run])) for run in range(len(seas))]
+    return [centred(truth, NARROW)] * len(seas)
+
+
+def _judged(data: Data, _: Population) -> Callable[[np.ndarray], np.ndarray]:
+    return whole_record(data)
