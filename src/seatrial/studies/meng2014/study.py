@@ -1,7 +1,6 @@
 """The study: search as published, fit the same records with our method, judge what can be judged."""
 
 import time
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -9,10 +8,10 @@ from seatrial.models.heave_pitch import STIFFNESSES
 from seatrial.results import Study
 from seatrial.studies.meng2014.repetition import HEADINGS, SEA_STATE_3, SOURCE, repetition
 from seatrial.studies.meng2014.tables import figures, tables
-from seatrial.studies.meng2014.verdicts import Evidence, checks, claims
+from seatrial.studies.meng2014.verdicts import Evidence, Following, checks, claims
 from seatrial.studies.own_fit import NOISE, ours, problem
 from seatrial.studies.swarm_search import Data, sailed
-from seatrial.values import Array, Progress
+from seatrial.values import Progress
 from seatrial.values.versions import versions
 
 QUESTION = "Does a cloud particle swarm identify heave and pitch coefficients from motions in waves with a moving fin?"
@@ -68,17 +67,7 @@ def _flattest(data: Data) -> float:
     return float(abs(values[0]) / values[-1])
 
 
-@dataclass(frozen=True, eq=False)
-class Insensitive:
-    """Coefficients that follow the record closely and are wrong: relative changes (8,), rms of heave [m], pitch "
-    "[deg]."""
-
-    change: Array
-    heave: float
-    pitch: float
-
-
-def insensitive(data: Data) -> Insensitive:
+def insensitive(data: Data) -> Following:
     """A step along the flattest direction of the eight, so long that the motions differ by no more than the noise."""
     clean = problem(data, data.states[:, [0, 2]])
     size = np.abs(data.truth)
@@ -87,4 +76,4 @@ def insensitive(data: Data) -> Insensitive:
     change = vectors[:, 0] * np.sqrt(len(data.states) / values[0])
     moved = data.truth + change * size
     rms = np.sqrt(2.0 * clean.cost(moved, clean.known_starts()) / (2.0 * len(data.states)))
-    return Insensitive(change, float(rms * NOISE[0]), float(np.degrees(rms * NOISE[1])))
+    return Following(change, float(rms * NOISE[0]), float(np.degrees(rms * NOISE[1])))

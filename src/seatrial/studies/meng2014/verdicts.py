@@ -1,7 +1,6 @@
 """Claims of the paper with their evidence, and checks of our own numbers."""
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -15,8 +14,9 @@ SINGULAR = 1e-11
 STUCK = 0.05
 
 
-class Following(Protocol):
-    """Wrong coefficients that follow the record: relative changes (8,), rms of heave [m] and pitch [deg]."""
+@dataclass(frozen=True, eq=False)
+class Following:
+    """Wrong coefficients that follow the record: relative changes (8,), rms of heave [m] and of pitch [deg]."""
 
     change: Array
     heave: float
