@@ -10,6 +10,7 @@ import against_optimisers
 import against_shipmmg
 import fusion
 import generation
+import heave_pitch
 import montecarlo
 import population
 import simulation
@@ -23,6 +24,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "montecarlo": montecarlo.run,
     "fusion": fusion.run,
     "population": population.run,
+    "heave_pitch": heave_pitch.run,
 }
 
 

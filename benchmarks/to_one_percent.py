@@ -2,8 +2,8 @@
 
 Ours and SciPy's least squares start in the middle of the box and may leave it; population searches stay in it and stop
 where they first know better than 1 %, or at their limit. All are given what is fastest in this package: SciPy the
-simulation of one candidate, populations the fitness of all candidates at once. Time is that of the search until it first asks
-about a point within 1 %, the package's own work included, on one thread.
+simulation of one candidate, populations the fitness of all candidates at once. Time is that of the search until it
+first asks about a point within 1 %, the package's own work included, on one thread.
 """
 
 import subprocess

@@ -1,4 +1,4 @@
-"""One run of an affine model from parameters to residuals in one call, with or without their slopes.
+"""One run of an affine model from parameters to residuals and their slopes in one call.
 
 The march of `linear` for one segment, its matrices made on the spot. Slopes go side by side through vector registers,
 eight columns a pass: s <- dGamma v + dE x + E s, with the derivatives of `propagate` taken along in the same lanes.
@@ -8,7 +8,7 @@ v holds the inputs that act at all: [u_k | u_{k+1} of those that run straight].
 import math
 
 import numpy as np
-from numba import njit, void
+from numba import njit
 
 from seatrial.kernels.integrate import DIVERGED
 from seatrial.kernels.lanes import LANES, add_scaled, scratch, spread
@@ -69,7 +69,7 @@ def _blend(z, out, factor, a, b, c, size):
 
 
 @njit(inline="always", **OPTIONS)
-def _propagate(z, w, n, h, with_slopes):
+def _propagate(z, w, n, h):
     """E, P/h, R/h of `propagators` at z[n^2 ...], from A at z[0], and slopes at the same slots from dA at w[0].
 
     Both are laid out [A | E | P | R | power | new | newer], n^2 each. Returns whether A could be scaled.
@@ -82,21 +82,19 @@ def _propagate(z, w, n, h, with_slopes):
     for m in range(nn):
         one = 1.0 if m % (n + 1) == 0 else 0.0
         z[e + m], z[p + m], z[r + m], z[power + m] = one, one, 0.5 * one, one
-    if with_slopes:
-        step = h * 0.5**halvings
-        for m in range(wide):
-            w[m] *= step
-            w[e * LANES + m] = w[p * LANES + m] = w[r * LANES + m] = w[power * LANES + m] = 0.0
+    step = h * 0.5**halvings
+    for m in range(wide):
+        w[m] *= step
+        w[e * LANES + m] = w[p * LANES + m] = w[r * LANES + m] = w[power * LANES + m] = 0.0
     for k in range(1, _TERMS + 1):
         over, first, second = 1.0 / k, 1.0 / (k + 1), 1.0 / ((k + 1) * (k + 2))
-        if with_slopes:
-            _slope_of_product(w, z, new, power, power, 0, 0, n, n, n)
-            for m in range(wide):
-                d = over * w[new * LANES + m]
-                w[power * LANES + m] = d
-                w[e * LANES + m] += d
-                w[p * LANES + m] += first * d
-                w[r * LANES + m] += second * d
+        _slope_of_product(w, z, new, power, power, 0, 0, n, n, n)
+        for m in range(wide):
+            d = over * w[new * LANES + m]
+            w[power * LANES + m] = d
+            w[e * LANES + m] += d
+            w[p * LANES + m] += first * d
+            w[r * LANES + m] += second * d
         _product(z, new, power, 0, n, n, n)
         for m in range(nn):
             d = over * z[new + m]
@@ -105,14 +103,13 @@ def _propagate(z, w, n, h, with_slopes):
             z[p + m] += first * d
             z[r + m] += second * d
     for _ in range(halvings):
-        if with_slopes:
-            _slope_of_product(w, z, new, e, e, r, r, n, n, n)
-            _slope_of_product(w, z, newer, e, e, p, p, n, n, n)
-            _slope_of_product(w, z, power, e, e, e, e, n, n, n)
-            _blend(w, r * LANES, 0.25, new * LANES, p * LANES, r * LANES, wide)
-            _blend(w, p * LANES, 0.5, newer * LANES, p * LANES, -1, wide)
-            for m in range(wide):
-                w[e * LANES + m] = w[power * LANES + m]
+        _slope_of_product(w, z, new, e, e, r, r, n, n, n)
+        _slope_of_product(w, z, newer, e, e, p, p, n, n, n)
+        _slope_of_product(w, z, power, e, e, e, e, n, n, n)
+        _blend(w, r * LANES, 0.25, new * LANES, p * LANES, r * LANES, wide)
+        _blend(w, p * LANES, 0.5, newer * LANES, p * LANES, -1, wide)
+        for m in range(wide):
+            w[e * LANES + m] = w[power * LANES + m]
         _product(z, new, e, r, n, n, n)
         _product(z, newer, e, p, n, n, n)
         _product(z, power, e, e, n, n, n)
@@ -195,52 +192,6 @@ def _advance(z, n, nv, at_gamma, at):
 
 
 @njit(inline="always", **OPTIONS)
-def _misfit(n, plant, used, straight, h, v, fine, x0, select, measured, weight, z):
-    nb, nv = used.size, v.shape[1]
-    at_b = _placed(z, n, plant, used)
-    at_gamma = at_b + n * nb
-    at = at_gamma + n * nv
-    if not _propagate(z, z, n, h, False):
-        return math.inf
-    _drive(z, n, h, used, straight, at_b, at_gamma)
-    for i in range(n):
-        z[at + nv + i] = x0[i]
-    total, samples = 0.0, measured.shape[0]
-    for k in range(samples):
-        for i in range(select.size):
-            if not math.isnan(measured[k, i]):
-                off = (z[at + nv + select[i]] - measured[k, i]) * weight[i]
-                total += off * off
-        if k < samples - 1:
-            size = 0.0
-            for step in range(k * fine, k * fine + fine):
-                for j in range(nv):
-                    z[at + j] = v[step, j]
-                size = _advance(z, n, nv, at_gamma, at)
-            if not size < DIVERGED:
-                return math.inf
-    return 0.5 * total
-
-
-@njit(
-    F8(
-        *(TANGENT, I8, INDEX, INDEX, INDEX, VECTOR, F8, MATRIX, I8, VECTOR, INDEX, MATRIX, VECTOR),
-        *(MATRIX, CUBE, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, VECTOR),
-    ),
-    **LEAN,
-)
-def _cost(
-    f, nu, wanted, used, straight, p, h, v, fine, x0, select, measured, weight,
-    plant, dplant, x, u, out, jac, rest, z,
-):  # fmt: skip
-    n = x0.size
-    _affine(f, n, nu, wanted, p, plant, dplant, x, u, out, jac, rest)
-    if n == 4:  # a constant lets loops be taken apart
-        return _misfit(4, plant, used, straight, h, v, fine, x0, select, measured, weight, z)
-    return _misfit(n, plant, used, straight, h, v, fine, x0, select, measured, weight, z)
-
-
-@njit(inline="always", **OPTIONS)
 def _loaded(w, n, dplant, first, used, at_b):
     """Slopes of A and B by the parameters from `first` on; zero in lanes beyond the last."""
     for lane in range(LANES):
@@ -264,7 +215,7 @@ def _marched(
         at_gamma = at_b + n * nb
         at = at_gamma + n * nv
         _loaded(w, n, dplant, first, used, at_b)
-        if not _propagate(z, w, n, h, True):
+        if not _propagate(z, w, n, h):
             return False
         _drive(z, n, h, used, straight, at_b, at_gamma)
         _slope_of_drive(w, z, n, h, used, straight, at_b, at_gamma)
@@ -338,21 +289,12 @@ def _room(nx, nu, count, used, straight, p):
     ), size
 
 
-def misfit(f, nu, used, straight, p, h, v, fine, x0, select, measured, weight):
-    """Half the sum of squares of weight (x - measured); infinite if the run leaves all bounds.
+def slopes(f, nu, wanted, used, straight, p, h, v, fine, x0, starts, columns, select, measured, weight):
+    """Residuals weight (x - measured), (samples ny,), and their Jacobian (samples ny, columns); zero where unmeasured.
 
     f: rates with Jacobian, nu inputs; used: columns of [u | 1] that act; straight: places in `used` of inputs that are
     not held; h: fine step, s; v: ((samples - 1) fine, nv). select: states that are compared, (ny,); measured:
     (samples, ny), NaN where nothing was measured; weight: (ny,), 1 over the noise.
-    """
-    none = np.empty(0, dtype=np.int64)
-    room, size = _room(len(x0), nu, 0, used, straight, p)
-    return _cost(f, nu, none, used, straight, p, h, v, fine, x0, select, measured, weight, *room, np.empty(size))
-
-
-def slopes(f, nu, wanted, used, straight, p, h, v, fine, x0, starts, columns, select, measured, weight):
-    """Residuals (samples ny,) of `misfit` and their Jacobian (samples ny, columns), zero where nothing was measured.
-
     Columns: the parameters of index `wanted`, then initial states; starts: (nx,), column of each initial state or -1.
     None in place of both if the run leaves all bounds.
     """
