@@ -35,8 +35,8 @@ class Algorithm(StrEnum):
 class Setting(Enum):
     """Where is searched; the paper's box is not printed."""
 
-    OFF_CENTRE = "+-50 %, truth off centre"
-    CENTRED = "+-10 % about the truth"
+    OFF_CENTRE = "±50 %, truth off centre"
+    CENTRED = "±10 % about the truth"
 
 
 def optimisers(iterations: int) -> dict[Algorithm, Callable[[Box, np.random.Generator], Population]]:

@@ -41,12 +41,12 @@ NARROW, WIDE = 0.1, 0.5
 class Setting(Enum):
     """What is searched: box, fitness, unit of pitch, and whether remembered points are judged again."""
 
-    PAPER = "+-10 % about the truth, one sample an iteration, pitch in rad"
+    PAPER = "±10 % about the truth, one sample an iteration, pitch in rad"
     DEGREES = "the same, pitch in degrees"
     REMEMBERED = "the same in rad, remembered fitness never renewed"
-    OFF_CENTRE = "+-50 %, truth off centre, one sample an iteration, pitch in rad"
-    WHOLE = "+-10 % about the truth, whole record, pitch in degrees"
-    WHOLE_OFF_CENTRE = "+-50 %, truth off centre, whole record, pitch in degrees"
+    OFF_CENTRE = "±50 %, truth off centre, one sample an iteration, pitch in rad"
+    WHOLE = "±10 % about the truth, whole record, pitch in degrees"
+    WHOLE_OFF_CENTRE = "±50 %, truth off centre, whole record, pitch in degrees"
 
 
 # what the claims rest on

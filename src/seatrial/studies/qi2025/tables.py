@@ -18,47 +18,58 @@ from seatrial.studies.qi2025.published import (
 from seatrial.studies.qi2025.repetition import Repetition, Setting
 from seatrial.values import Array
 
+PAPER = Setting.PAPER.value
+_GUESS = "Means over the coefficients. A guess at random in a box of \u00b110 % about the truth has 5 %."
+
 
 def tables(made: Repetition, own: dict[int, Ours], bias: dict[int, tuple[Array, Array]]) -> tuple[Table, ...]:
     """All of them."""
-    return (
-        *(_coefficients(made, own[h], h) for h in HEADINGS),
-        _settings(made), _times(made, own), _misprints(), _hold(bias),
-    )  # fmt: skip
+    values = (table for h in HEADINGS for table in (_values(made, h), _errors(made, own[h], h)))
+    return (*values, *_settings(made), _times(made, own), _misprints(), _hold(bias))
 
 
-def _coefficients(made: Repetition, own: Ours, heading: int) -> Table:
-    header = ["", "theory"]
-    columns: list[Array] = [true_values(heading)]
+def _values(made: Repetition, heading: int) -> Table:
+    header, columns = ["", "theory"], [true_values(heading)]
+    for a in Algorithm:
+        header += [f"{a} printed", f"{a} here"]
+        columns += [
+            estimate(heading, a),
+            np.abs(made.searches[Setting.PAPER, heading, a].points.mean(axis=0)),
+        ]
+    rows = tuple((name, *(float(c[k]) for c in columns)) for k, name in enumerate(COEFFICIENTS))
+    note = f"Table {2 + HEADINGS.index(heading)} of the paper, SI units. Here: mean of {made.runs} runs, {PAPER}."
+    return Table(f"Coefficients at {heading}\u00b0", tuple(header), rows, note)
+
+
+def _errors(made: Repetition, own: Ours, heading: int) -> Table:
+    header, columns = [""], []
     for a in Algorithm:
         found = made.searches[Setting.PAPER, heading, a]
-        header += [f"{a} printed", "error %", f"{a} here", "error of mean %", "mean error %"]
-        columns += [
-            estimate(heading, a), printed_error(heading, a), np.abs(found.points.mean(axis=0)),
-            100.0 * found.error_of_mean, 100.0 * found.mean_error,
-        ]  # fmt: skip
-    header += ["ours, noise-free, %", "ours, 1 cm / .02 deg, %"]
+        header += [f"{a} printed", "of mean", "single"]
+        columns += [printed_error(heading, a), 100.0 * found.error_of_mean, 100.0 * found.mean_error]
+    header += ["ours", "ours, noise"]
     columns += [100.0 * np.abs(own.exact).mean(axis=0), 100.0 * np.abs(own.noisy).mean(axis=0)]
     rows = tuple((name, *(float(c[k]) for c in columns)) for k, name in enumerate(COEFFICIENTS))
-    means = [None if k in (0, *range(1, 16, 5), *range(3, 16, 5)) else float(np.mean(c)) for k, c in enumerate(columns)]
+    mean = ("mean", *(float(np.mean(c)) for c in columns))
     note = (
-        f"Table {2 + HEADINGS.index(heading)} of the paper: {made.runs} runs, {Setting.PAPER.value}. Printed errors "
-        f"are "
-        "those of the mean of ten runs; errors of single runs are larger. Ours: mean over the runs' seas."
+        "Printed errors are those of the mean of ten runs, as 'of mean' here; 'single': mean error of single runs. "
+        "Ours: single fits, without noise and with 1 cm / .02\u00b0."
     )
-    return Table(f"Coefficients at {heading}\u00b0", tuple(header), (*rows, ("mean", *means)), note)
+    return Table(f"Errors at {heading}\u00b0, %", tuple(header), (*rows, mean), note)
 
 
-def _settings(made: Repetition) -> Table:
-    rows = []
+def _settings(made: Repetition) -> list[Table]:
+    """One table a setting: what box, fitness and unit decide."""
+    tables_ = []
     for setting in dict.fromkeys(s for s, _, _ in made.searches):
+        rows = []
         for heading in HEADINGS:
             found = [made.searches[setting, heading, a] for a in Algorithm]
             cells = [100.0 * float(np.mean(v)) for f in found for v in (f.error_of_mean, f.mean_error)]
-            rows.append((setting.value, f"{heading}\u00b0", *cells))
-    header = ["Setting", "Heading", *(f"{a} {what} %" for a in Algorithm for what in ("error of mean", "mean error"))]
-    note = "Means over the eight coefficients. A guess at random in a +-10 % box about the truth has 5 %."
-    return Table("What the setting decides", tuple(header), tuple(rows), note)
+            rows.append((f"{heading}\u00b0", *cells))
+        header = ("Heading", *(f"{a}, {what}" for a in Algorithm for what in ("of mean", "single")))
+        tables_.append(Table(f"Errors in %: {setting.value}", header, tuple(rows), _GUESS if not tables_ else ""))
+    return tables_
 
 
 def _times(made: Repetition, own: dict[int, Ours]) -> Table:

@@ -1,0 +1,41 @@
+"""meng2014 repeated quickly: assumed inputs said, claims with evidence, our fit near its bound."""
+
+import numpy as np
+import pytest
+
+from seatrial.results import Study, Verdict
+from seatrial.studies import STUDIES
+from seatrial.studies.meng2014.study import insensitive, twelve_unknowns
+from seatrial.studies.swarm_search import sailed
+
+
+@pytest.fixture(scope="module")
+def study() -> Study:
+    return STUDIES["meng2014"](quick=True, seed=0, progress=None)
+
+
+def test_twelve_unknowns_are_singular_in_beam_waves_and_not_with_a_fin() -> None:
+    known = twelve_unknowns(0)
+    assert known["beam waves alone"] < 1e-11
+    assert known["waves and fin"] > 1e-6
+
+
+def test_wrong_coefficients_follow_the_record_within_the_noise() -> None:
+    found = insensitive(sailed(135, np.random.default_rng(0), has_fin=True))
+    assert np.abs(found.change).max() > 0.2
+    assert found.heave < 0.02
+    assert found.pitch < 0.04
+
+
+def test_what_is_not_printed_is_said_to_be_assumed(study: Study) -> None:
+    unknowable = [c for c in study.claims if c.verdict is Verdict.UNKNOWABLE]
+    assert any("lost" in c.evidence for c in unknowable)
+    assert any("assumed" in c.evidence.lower() for c in unknowable)
+    assert sum("assumed" in t.note for t in study.tables) == 2
+
+
+def test_our_fit_reaches_its_bound(study: Study) -> None:
+    held = {c.name: c.holds for c in study.checks}
+    assert held["our errors over the Cramer-Rao bound"]
+    assert held["our largest relative error, noise-free"]
+    assert held["flattest direction of twelve unknowns in beam waves alone"]
