@@ -75,6 +75,15 @@ def test_the_truth_is_found_from_the_physics_start():
     np.testing.assert_allclose(found.solution.point, wanted, rtol=1e-9)
 
 
+def test_slopes_kept_from_a_trial_step_are_those_of_the_point_asked_about():
+    problem, wanted = from_rest()
+    local, other = problem.known_starts(), 1.1 * wanted
+    expected = problem.normal(wanted, local)
+    problem.cost(other, local)
+    np.testing.assert_array_equal(problem.normal(wanted, local).hessian, expected.hessian)
+    assert problem.normal(other, local).cost == problem.cost(other, local) > 0.0
+
+
 def test_a_run_beyond_all_bounds_costs_infinitely_much():
     problem, wanted = from_rest()
     wild = wanted * [1, 1, 1, 1, -1e3, 1, -1e3, 1]
