@@ -9,13 +9,16 @@ from seatrial.estimate.coloured import coloured
 from seatrial.estimate.estimate import Estimate, colour, residual_spread
 from seatrial.estimate.process_noise import ProcessNoise, intensities, is_worthwhile, prediction_error
 from seatrial.estimate.settings import WHITE_INFLATION, Criterion, Settings
+from seatrial.problem.output_error import OutputError
 from seatrial.values import Array, Progress
 
 PREDICTION_ERROR, WHOLE_RUNS = "prediction error", "output error over whole runs"
 _COLOURED = "coloured residuals mean model error or process noise"
 _KEPT_SHORT = "segments keep it from accumulating"
+_TOO_COARSE = "samples too far apart for prediction error, which takes inputs as straight between them"
 _WHITE = "residuals are white within segments and over whole runs: no process noise to guard against"
 _NO_LARGER = 1.05
+_TURN = 0.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +78,8 @@ def decided(
         shot = shot.because("whole runs do not fit within the noise of the segments")
     if settings.robust or not is_worthwhile(shooting):
         return shot.because(_COLOURED, _KEPT_SHORT)
+    if is_coarse(shooting.problem):
+        return shot.because(_COLOURED, _TOO_COARSE)
     noise = prediction_error(shooting, settings.noise, progress=progress)
     if noise.gate.is_needed and not noise.gate.is_white:
         noise = coloured(noise, progress=progress)
@@ -84,6 +89,24 @@ def decided(
     if whole is not None and not noise.gate.is_needed:
         return whole.because(noise.gate.text)
     return replace(shot.because(noise.gate.text, _KEPT_SHORT), process=noise.process)
+
+
+def is_coarse(problem: OutputError) -> bool:
+    """Whether a continuous input of a linear model turns by more than .3 rad from sample to sample.
+
+    Its power lies below that frequency but for 5 %; straight lines between samples then flatten it by (w dt)^2 / 12.
+    """
+    model, data = problem.model, problem.data
+    if not model.is_affine:
+        return False
+    for j, channel in enumerate(model.inputs):
+        values = data.inputs[:, j]
+        if not channel.is_held and np.ptp(values) > 0.0:
+            power = np.abs(np.fft.rfft(values - np.mean(values))) ** 2
+            place = int(np.searchsorted(np.cumsum(power), 0.95 * np.sum(power)))
+            if 2.0 * np.pi * place / len(values) > _TURN:
+                return True
+    return False
 
 
 def _asked_for(shot: Found, settings: Settings, reason: str) -> Found:

@@ -5,6 +5,7 @@ Waves act through their exact harmonic response, the fin holds its angle between
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from seatrial.sea.realise import LINES, Lines, Spacing, harmonic_sum, realise
 from seatrial.sea.spectrum import ittc
 from seatrial.simulate.harmonics import harmonic_motion, plant
 from seatrial.simulate.linear import LinearBatch
+from seatrial.studies.series import write_csv
 from seatrial.values import Array, Channel, Kind, Provenance, Record, frozen
 
 # assumed, printed nowhere: lift slope rho/2 U^2 A C_L_alpha with 6 m^2 and 3/rad, 25 m aft, +-10 degrees for 1 s each
@@ -107,3 +109,31 @@ def fin_commands(count: int, dt: float, rng: np.random.Generator) -> Array:
     """Fin angles lifting up [rad]: a random binary sequence."""
     hold = max(1, round(FIN_HOLD / dt))
     return FIN_ANGLE * np.repeat(rng.choice([-1.0, 1.0], count // hold + 1), hold)[:count]
+
+
+EXAMPLE_COLUMNS = ("zeta", "delta_f1", "z", "theta")
+_VOYAGE = Voyage(135, duration=150.0)
+EXAMPLES = {
+    "voyage_1": _VOYAGE,
+    "voyage_2": _VOYAGE,
+    "voyage_held_out": _VOYAGE,
+    "sea_unrecorded": Voyage(135, dt=0.2, duration=400.0, spacing=Spacing.JITTERED, lines=300),
+}
+
+
+def main(folder: str) -> None:
+    """Write the example voyages to `folder`; the sea of `sea_unrecorded` is known by its spectrum alone."""
+    for number, (name, voyage) in enumerate(EXAMPLES.items()):
+        record = sailed(voyage, np.random.default_rng([2025, number])).noisy(np.random.default_rng([7, number]), voyage)
+        columns = EXAMPLE_COLUMNS[1:] if name == "sea_unrecorded" else EXAMPLE_COLUMNS
+        path = Path(folder) / f"{name}.csv"
+        write_csv(record, path, columns)
+        print(f"{path}: {record.duration:.0f} s, {path.stat().st_size / 1000:.0f} kB")
+
+
+if __name__ == "__main__":
+    import sys
+
+    if len(sys.argv) != 2:
+        sys.exit("usage: python -m seatrial.studies.seaway FOLDER")
+    main(sys.argv[1])

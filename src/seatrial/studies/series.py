@@ -4,6 +4,7 @@
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -77,15 +78,15 @@ def file_name(text: str) -> str:
     return text.replace(":", "_").replace("/", "_")
 
 
-def write_csv(record: Record, path: Path) -> None:
-    """Time and `EXAMPLE_COLUMNS` in the units people read, header ``symbol [unit]``; whole or not at all.
+def write_csv(record: Record, path: Path, columns: Sequence[str] = EXAMPLE_COLUMNS) -> None:
+    """Time and `columns` in the units people read, header ``symbol [unit]``; whole or not at all.
 
     Raises:
         InputError: the place cannot be written.
     """
-    header = ",".join(["time [s]", *(f"{s} [{display(record.channel(s).unit)[1]}]" for s in EXAMPLE_COLUMNS)])
-    columns = [record.time, *(record[s] * display(record.channel(s).unit)[0] for s in EXAMPLE_COLUMNS)]
-    rows = [",".join(_number(value) for value in row) for row in zip(*columns, strict=True)]
+    header = ",".join(["time [s]", *(f"{s} [{display(record.channel(s).unit)[1]}]" for s in columns)])
+    values = [record.time, *(record[s] * display(record.channel(s).unit)[0] for s in columns)]
+    rows = [",".join(_number(value) for value in row) for row in zip(*values, strict=True)]
     write_whole(path, ("\n".join([header, *rows]) + "\n").encode())
 
 
