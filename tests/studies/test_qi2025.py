@@ -29,11 +29,14 @@ def test_the_mean_printed_errors_of_the_improved_herd_recompute() -> None:
 
 
 def test_the_speed_behind_the_tables_is_eighteen_knots_if_b53_is_negative() -> None:
-    audited = audit(0)
+    audited = audit([sailed(45, np.random.default_rng(0))], 0)
     for right, wrong in audited.speeds.values():
         assert right == pytest.approx(9.26, abs=0.01)
         assert 5.0 < wrong < 5.8
     assert audited.saturated == (11, 16)
+    assert audited.heights == pytest.approx((3.42, 2.27), abs=0.005)
+    assert audited.step_rank == 2
+    assert audited.beyond[:2] == (14, 24)
     assert all(0.05 < change < 0.5 for pair in audited.sign_effect.values() for change in pair)
 
 
@@ -75,5 +78,5 @@ def test_every_table_and_figure_of_the_paper_is_there(study: Study) -> None:
     for heading in HEADINGS:
         assert f"Coefficients at {heading}°" in titles
     assert "Time of a run" in titles
-    assert sum(title.startswith("Figure") for title in titles) == 9
+    assert sum(title.startswith("Figure") for title in titles) == 10
     assert all(np.all(np.isfinite(c.y)) for f in study.figures for c in f.curves)

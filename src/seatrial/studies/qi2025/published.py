@@ -51,7 +51,10 @@ SECONDS = {
 }
 # motions at 45 degrees that figures 1, 2 and figures 6, 7 show of the same condition: heave m, pitch degrees
 FIGURES_1_2, FIGURES_6_7 = (0.3, 0.3), (0.15, 0.15)
+# where figure 5 ends upwards, and the iterations at which its curve rises again
+FIGURE_5_TOP = 0.010
 REBOUNDS = (50, 150)
+PRINTED = sum(len(errors) for errors in _ERRORS.values())
 
 
 def estimate(heading: int, algorithm: Algorithm) -> Array:
@@ -73,6 +76,16 @@ def true_values(heading: int) -> Array:
 def recomputed_error(heading: int, algorithm: Algorithm) -> Array:
     """Relative errors of the printed estimates, per cent, (8,), with their sign."""
     return 100.0 * (estimate(heading, algorithm) / true_values(heading) - 1.0)
+
+
+def mean_recomputed(heading: int, algorithm: Algorithm) -> float:
+    """Mean absolute error of the printed estimates, per cent."""
+    return float(np.mean(np.abs(recomputed_error(heading, algorithm))))
+
+
+def printed_means() -> list[float]:
+    """Mean printed error of IWHO at each heading, per cent."""
+    return [float(np.mean(printed_error(heading, Algorithm.IWHO))) for heading in HEADINGS]
 
 
 def misprinted() -> list[tuple[int, Algorithm, str, float, float]]:

@@ -16,9 +16,11 @@ from seatrial.optimise import (
     Memory,
     ParticleSwarm,
     SwarmSettings,
+    Variant,
     WildHorse,
 )
 from seatrial.optimise.population import Population
+from seatrial.studies.qi2025.carried import carried_sample
 from seatrial.studies.qi2025.published import Algorithm
 from seatrial.studies.swarm_search import (
     Angle,
@@ -35,6 +37,8 @@ from seatrial.studies.swarm_search import (
 from seatrial.values import Progress
 
 ITERATIONS, RUNS = 200, 10
+# the heading of the paper's figures, whose coefficients it does not print
+SHOWN = 45
 NARROW, WIDE = 0.1, 0.5
 
 
@@ -42,50 +46,76 @@ class Setting(Enum):
     """What is searched: box, fitness, unit of pitch, and whether remembered points are judged again."""
 
     PAPER = "±10 % about the truth, one sample an iteration, pitch in rad"
-    DEGREES = "the same, pitch in degrees"
-    REMEMBERED = "the same in rad, remembered fitness never renewed"
+    DEGREES = "±10 %, one sample, pitch in degrees"
+    CARRIED = "±10 %, one sample from the identified model's own state, pitch in degrees"
+    CARRIED_RADIANS = "±10 %, one sample from the identified model's own state, pitch in rad"
+    REFERENCE = "±10 %, one sample, pitch in rad, strides as in the program of WHO's authors"
+    REMEMBERED = "±10 %, one sample, pitch in rad, remembered fitness never renewed"
     OFF_CENTRE = "±50 %, truth off centre, one sample an iteration, pitch in rad"
     WHOLE = "±10 % about the truth, whole record, pitch in degrees"
     WHOLE_OFF_CENTRE = "±50 %, truth off centre, whole record, pitch in degrees"
 
 
 # what the claims rest on
-JUDGED = (Setting.PAPER, Setting.DEGREES, Setting.OFF_CENTRE, Setting.WHOLE_OFF_CENTRE)
+JUDGED = (Setting.PAPER, Setting.DEGREES, Setting.CARRIED, Setting.OFF_CENTRE, Setting.WHOLE_OFF_CENTRE)
+DRAWN = (Setting.PAPER, Setting.DEGREES, Setting.CARRIED, Setting.REMEMBERED)
 Made = Callable[[Box, np.random.Generator], Population]
 
 
-def optimisers(iterations: int, memory: Memory) -> dict[Algorithm, Made]:
+def optimisers(iterations: int, memory: Memory, variant: Variant = Variant.PAPER) -> dict[Algorithm, Made]:
     """The three of the paper; PSO's omega, c1, c2 are not printed, ours are the constriction's."""
+    plain = HerdSettings(iterations=iterations, memory=memory, variant=variant)
+    improved = ImprovedHerdSettings(iterations=iterations, memory=memory, variant=variant)
     return {
         Algorithm.PSO: partial(ParticleSwarm, settings=SwarmSettings(iterations=iterations, memory=memory)),
-        Algorithm.WHO: partial(WildHorse, settings=HerdSettings(iterations=iterations, memory=memory)),
-        Algorithm.IWHO: partial(ImprovedWildHorse, settings=ImprovedHerdSettings(iterations=iterations, memory=memory)),
+        Algorithm.WHO: partial(WildHorse, settings=plain),
+        Algorithm.IWHO: partial(ImprovedWildHorse, settings=improved),
     }
 
 
 @dataclass(frozen=True, eq=False)
 class Repetition:
-    """Searches by setting, heading and algorithm, and the seas they met, by heading."""
+    """Searches by setting, heading and algorithm, and the seas they met, by heading.
+
+    At 45 degrees one run of the settings of the figures, with the coefficients of 90 degrees, assumed.
+    """
 
     searches: dict[tuple[Setting, int, Algorithm], Searches]
     seas: dict[int, list[Data]]
     runs: int
+    is_quick: bool
+
+    @property
+    def settings(self) -> tuple[Setting, ...]:
+        """Those searched at the headings of the tables."""
+        return tuple(s for s in Setting if (s, HEADINGS[0], Algorithm.IWHO) in self.searches)
 
 
 def repetition(*, quick: bool, seed: int, progress: Progress | None) -> Repetition:
     """Ten runs of every setting; `quick` leaves out those that no claim rests on."""
-    seas = {h: [sailed(h, np.random.default_rng([seed, h, run])) for run in range(RUNS)] for h in HEADINGS}
+    headings = (*HEADINGS, SHOWN)
+    seas = {h: [sailed(h, np.random.default_rng([seed, h, run])) for run in range(RUNS)] for h in headings}
     found = {}
-    for setting in JUDGED if quick else tuple(Setting):
-        if progress:
+    for setting in Setting:
+        met = (*(HEADINGS if setting in JUDGED or not quick else ()), *((SHOWN,) if setting in DRAWN else ()))
+        if progress and met:
             progress(f"searches: {setting.value}")
-        for heading in HEADINGS:
-            boxes = _boxes(setting, seas[heading], seed)
-            memory = Memory.KEEP if setting is Setting.REMEMBERED else Memory.RE_EVALUATE
-            for algorithm, made in optimisers(ITERATIONS, memory).items():
-                judge = partial(_judged, setting)
-                found[setting, heading, algorithm] = searched(seas[heading], boxes, made, judge, seed)
-    return Repetition(found, seas, RUNS)
+        for heading in met:
+            found |= _searched(setting, heading, seas[heading][: 1 if heading == SHOWN else RUNS], seed)
+    return Repetition(found, seas, RUNS, quick)
+
+
+def _searched(
+    setting: Setting, heading: int, seas: list[Data], seed: int
+) -> dict[tuple[Setting, int, Algorithm], Searches]:
+    boxes = _boxes(setting, seas, seed)
+    memory = Memory.KEEP if setting is Setting.REMEMBERED else Memory.RE_EVALUATE
+    variant = Variant.REFERENCE if setting is Setting.REFERENCE else Variant.PAPER
+    judge = partial(_judged, setting)
+    return {
+        (setting, heading, algorithm): searched(seas, boxes, made, judge, seed)
+        for algorithm, made in optimisers(ITERATIONS, memory, variant).items()
+    }
 
 
 def _boxes(setting: Setting, seas: list[Data], seed: int) -> list[Box]:
@@ -98,4 +128,6 @@ def _boxes(setting: Setting, seas: list[Data], seed: int) -> list[Box]:
 def _judged(setting: Setting, data: Data, optimiser: Population) -> Fitness:
     if setting in (Setting.WHOLE, Setting.WHOLE_OFF_CENTRE):
         return whole_record(data, Angle.DEGREES)
+    if setting in (Setting.CARRIED, Setting.CARRIED_RADIANS):
+        return carried_sample(data, optimiser, Angle.DEGREES if setting is Setting.CARRIED else Angle.RADIANS)
     return one_sample(data, optimiser, Angle.DEGREES if setting is Setting.DEGREES else Angle.RADIANS)

@@ -6,10 +6,12 @@ from seatrial.models.qi2025 import HEADINGS
 from seatrial.results import Study
 from seatrial.studies.own_fit import ours
 from seatrial.studies.qi2025.audit import audit
+from seatrial.studies.qi2025.centre import centre_bias
+from seatrial.studies.qi2025.evidence import Evidence
 from seatrial.studies.qi2025.figures import figures
 from seatrial.studies.qi2025.hold import hold_bias
 from seatrial.studies.qi2025.published import SOURCE
-from seatrial.studies.qi2025.repetition import repetition
+from seatrial.studies.qi2025.repetition import SHOWN, repetition
 from seatrial.studies.qi2025.tables import tables
 from seatrial.studies.qi2025.verdicts import checks, claims
 from seatrial.values import Progress
@@ -29,17 +31,17 @@ def study(*, quick: bool, seed: int, progress: Progress | None) -> Study:
     made = repetition(quick=quick, seed=seed, progress=progress)
     if progress:
         progress("audit and our own fits")
-    audited, bias = audit(seed), hold_bias(seed)
     own = {h: ours(made.seas[h], seed) for h in HEADINGS}
+    seen = Evidence(made, audit(made.seas[SHOWN], seed), own, hold_bias(seed), centre_bias(made.seas, seed))
     return Study(
         name="qi2025",
         source=SOURCE,
         title="Wild horses and heave-pitch coefficients: a published search repeated",
         question=QUESTION,
-        claims=claims(made, audited, own, bias),
-        checks=checks(made, own),
-        tables=tables(made, own, bias),
-        figures=figures(made, audited),
+        claims=claims(seen),
+        checks=checks(seen),
+        tables=tables(seen),
+        figures=figures(made),
         seed=seed,
         elapsed_s=time.perf_counter() - began,
         versions=versions(),
