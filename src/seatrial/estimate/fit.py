@@ -19,13 +19,13 @@ from seatrial.estimate.settings import (
     Settings,
 )
 from seatrial.estimate.start import start
+from seatrial.hydro.dispersion import G
 from seatrial.information.autocorrelation import whiteness_p
 from seatrial.information.covariance import Interval
 from seatrial.results import Disturbance
 from seatrial.values import Array, InputError, Progress, Record
 
 _STILL = float(np.radians(0.5))
-_GRAVITY = 9.81
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +101,7 @@ def unit_of_time(model: Model, records: Sequence[Record], length: float, segment
         InputError: a ship is steered and the records show no speed.
     """
     if model.is_affine:
-        return float(np.sqrt(length / _GRAVITY))
+        return float(np.sqrt(length / G))
     return ship_length_seconds(records, length, segment_seconds)
 
 

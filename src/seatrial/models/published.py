@@ -4,44 +4,15 @@ Numbers were compared with several independent transcriptions of the same table;
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from functools import cache
-from types import MappingProxyType
+from functools import cache, partial
 
 from seatrial.equations import Model
+from seatrial.models.parameter_set import ParameterSet
+from seatrial.models.qi2025 import HEADINGS, theory
 from seatrial.values import InputError, Ship, nearest
 
 YASUKAWA = "Yasukawa & Yoshimura 2015, J Mar Sci Technol 20, 37-52, doi 10.1007/s00773-014-0293-y"
 MIYAUCHI = "Miyauchi et al. 2022, J Mar Sci Technol 27, 1065-1083, doi 10.1007/s00773-022-00889-3, captive tests"
-
-
-@dataclass(frozen=True)
-class ParameterSet:
-    """Values of one model's parameters, their source, and the ship they belong to.
-
-    Attributes:
-        model: name of the model in the registry.
-        values: parameter -> value in the model's units and signs.
-        note: what was converted, chosen or doubtful.
-    """
-
-    name: str
-    model: str
-    ship: Ship
-    values: Mapping[str, float] = field(default_factory=dict)
-    source: str = ""
-    note: str = ""
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "values", MappingProxyType(dict(self.values)))
-
-    def applied(self, model: Model) -> Model:
-        """`model` with the ship's particulars and these values.
-
-        Raises:
-            InputError: the model lacks one of the parameters, or still misses a value.
-        """
-        return model.with_values(self.values, source=self.source).of_ship(self.ship)
 
 
 # principal particulars of the 7 m model and of the ship; radius of gyration 0.25 L
@@ -130,19 +101,11 @@ def esso_osaka() -> ParameterSet:
     return ParameterSet("esso-osaka", "mmg", ship, {**_ESSO, **converted}, MIYAUCHI, _ESSO_NOTE)
 
 
-def _qi2025(heading: int) -> ParameterSet:
-    from seatrial.models.qi2025 import theory
-
-    return theory(heading)
-
-
 PARAMETER_SETS: dict[str, Callable[[], ParameterSet]] = {
     "kvlcc2": kvlcc2_l7,
     "kvlcc2-full": kvlcc2_full,
     "esso-osaka": esso_osaka,
-    "qi2025-90": lambda: _qi2025(90),
-    "qi2025-135": lambda: _qi2025(135),
-    "qi2025-180": lambda: _qi2025(180),
+    **{f"qi2025-{heading}": partial(theory, heading) for heading in HEADINGS},
 }
 
 

@@ -5,12 +5,12 @@ model is fitted to those amplitudes, with the information that the samples gave 
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from seatrial.equations import Model
 from seatrial.optimise import Normal
+from seatrial.problem.free import OfFreeParameters
 from seatrial.problem.response import response
 from seatrial.simulate.harmonics import Complex
 from seatrial.values import Array, InputError
@@ -19,7 +19,7 @@ _APART = 1e10
 
 
 @dataclass(frozen=True, eq=False)
-class KnownLines:
+class KnownLines(OfFreeParameters):
     """Unknowns: the free parameters of an affine model. It is a `LeastSquares` problem without local unknowns.
 
     Attributes:
@@ -28,41 +28,15 @@ class KnownLines:
         information: of those parts in units of each output's noise, (ny, 2 h, 2 h).
     """
 
-    model: Model
     omega: Array
     forces: Complex
     outputs: tuple[str, ...]
     amplitudes: Array
     information: Array
 
-    @property
-    def free(self) -> tuple[str, ...]:
-        """Names of the unknowns."""
-        return self.model.parameters.free_names
-
-    @property
-    def lower(self) -> Array:
-        """Lower bounds."""
-        return np.array([p.lower for p in self.model.parameters.free])
-
-    @property
-    def upper(self) -> Array:
-        """Upper bounds."""
-        return np.array([p.upper for p in self.model.parameters.free])
-
-    def start(self) -> Array:
-        """The model's own values."""
-        return np.array([p.value for p in self.model.parameters.free])
-
-    @cached_property
-    def _places(self) -> list[int]:
-        return [self.model.parameters.index(n) for n in self.free]
-
     def _residuals(self, shared: Array) -> tuple[Array, Array]:
         """Model minus measured parts, (2 h, ny), and their derivatives, (q, 2 h, ny)."""
-        values = self.model.parameters.values
-        values[self._places] = shared
-        found = response(self.model, values, self.omega, self.outputs, self.free)
+        found = response(self.model, self._values(shared), self.omega, self.outputs, self.free)
         motion = np.einsum("hyu,hu->hy", found.H, self.forces)
         slopes = np.einsum("qhyu,hu->qhy", found.dH, self.forces)
         parts = np.concatenate([motion.real, -motion.imag])

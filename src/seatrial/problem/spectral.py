@@ -10,8 +10,8 @@ from functools import cached_property
 
 import numpy as np
 
-from seatrial.equations import Model
 from seatrial.optimise import Normal
+from seatrial.problem.free import OfFreeParameters
 from seatrial.problem.response import Response, response
 from seatrial.simulate.harmonics import Complex
 from seatrial.values import Array
@@ -24,7 +24,7 @@ _REACH = 8
 
 
 @dataclass(frozen=True, eq=False)
-class Spectral:
+class Spectral(OfFreeParameters):
     """Unknowns: the free parameters of an affine model. It is a `LeastSquares` problem without local unknowns.
 
     Attributes:
@@ -36,7 +36,6 @@ class Spectral:
         noise: standard deviation of each output, (ny,), SI; dt: s.
     """
 
-    model: Model
     omega: Array
     outputs: tuple[str, ...]
     motions: Complex
@@ -45,29 +44,6 @@ class Spectral:
     waves: Complex
     noise: Array
     dt: float
-
-    @property
-    def free(self) -> tuple[str, ...]:
-        """Names of the unknowns."""
-        return self.model.parameters.free_names
-
-    @property
-    def lower(self) -> Array:
-        """Lower bounds."""
-        return np.array([p.lower for p in self.model.parameters.free])
-
-    @property
-    def upper(self) -> Array:
-        """Upper bounds."""
-        return np.array([p.upper for p in self.model.parameters.free])
-
-    def start(self) -> Array:
-        """The model's own values."""
-        return np.array([p.value for p in self.model.parameters.free])
-
-    @cached_property
-    def _places(self) -> list[int]:
-        return [self.model.parameters.index(n) for n in self.free]
 
     @cached_property
     def _hold(self) -> Complex:
@@ -114,11 +90,6 @@ class Spectral:
         found, spread = (response(self.model, values, w, self.outputs, ()) for w in (self.omega, self.fine))
         left, _, S = self._expected(found, spread, self._inputs())
         return np.einsum("kx,kxy,ky->k", left.conj(), np.linalg.inv(S), left).real / len(self.outputs)
-
-    def _values(self, shared: Array) -> Array:
-        values = self.model.parameters.values
-        values[self._places] = shared
-        return values
 
     def _expected(self, found: Response, spread: Response, inputs: Complex) -> tuple[Complex, Complex, Complex]:
         """Motions less their mean, S_F H* on the fine grid, and the covariance S."""
