@@ -11,7 +11,7 @@ from seatrial.optimise import Box, CloudParticleSwarm, CloudSettings, ParticleSw
 from seatrial.optimise.population import Population
 from seatrial.studies.seaway import HEAVE_NOISE, PITCH_NOISE
 from seatrial.studies.swarm_search import Data, Searches, centred, off_centre, sailed, searched, whole_record
-from seatrial.values import Progress
+from seatrial.values import Array, Progress
 
 SOURCE = (
     "Meng Fei, Xu Hongyang, Xie Zhibin: Parameter identification of ship longitudinal motions based on cloud particle "
@@ -22,6 +22,7 @@ HEADINGS = (0, 45, 90, 135, 180)
 SEA_STATE_3 = 0.88
 NOISE = (HEAVE_NOISE, PITCH_NOISE)
 ITERATIONS, QUICK_ITERATIONS, RUNS, QUICK_RUNS = 1000, 400, 5, 3
+SHORTER = (0.2, 0.5)
 NARROW, WIDE = 0.1, 0.5
 
 
@@ -40,8 +41,7 @@ class Setting(Enum):
 
 
 def optimisers(iterations: int) -> dict[Algorithm, Callable[[Box, np.random.Generator], Population]]:
-    """As the paper sets them: 60 particles, c1 = c2 = 2.05, A .15, B .93, p_m .2; PSO with the constriction's "
-    "values."""
+    """As the paper sets them: 60 particles, c1 = c2 = 2.05, A .15, B .93, p_m .2; PSO with the constriction's."""
     return {
         Algorithm.ICPSO: partial(CloudParticleSwarm, settings=CloudSettings(iterations=iterations)),
         Algorithm.PSO: partial(ParticleSwarm, settings=SwarmSettings(population=60, iterations=iterations)),
@@ -50,11 +50,28 @@ def optimisers(iterations: int) -> dict[Algorithm, Callable[[Box, np.random.Gene
 
 @dataclass(frozen=True, eq=False)
 class Repetition:
-    """Searches by setting, heading and algorithm; the seas by heading."""
+    """Searches by setting, heading and algorithm; the seas by heading.
+
+    `shorter`: searches of ICPSO off centre with fewer iterations, by their number and heading.
+    """
 
     searches: dict[tuple[Setting, int, Algorithm], Searches]
     seas: dict[int, list[Data]]
+    shorter: dict[tuple[int, int], Searches]
     iterations: int
+
+    def above_best(self, heading: int, algorithm: Algorithm) -> Array:
+        """Fitness at each run's end off centre, over the better of both swarms in its sea and box, less 1; (runs,)."""
+        ends = {
+            a: np.array([
+                float(whole_record(sea)(point[None])[0])
+                for sea, point in zip(
+                    self.seas[heading], self.searches[Setting.OFF_CENTRE, heading, a].points, strict=True
+                )
+            ])
+            for a in Algorithm
+        }  # fmt: skip
+        return ends[algorithm] / np.min(list(ends.values()), axis=0) - 1.0
 
 
 def repetition(*, quick: bool, seed: int, progress: Progress | None) -> Repetition:
@@ -75,7 +92,13 @@ def repetition(*, quick: bool, seed: int, progress: Progress | None) -> Repetiti
             for algorithm, made in optimisers(iterations).items():
                 boxes = _boxes(setting, met, seed)
                 found[setting, heading, algorithm] = searched(met, boxes, made, _judged, seed)
-    return Repetition(found, seas, iterations)
+    shorter = {}
+    for few in (round(share * iterations) for share in SHORTER):
+        made = optimisers(few)[Algorithm.ICPSO]
+        for heading, met in seas.items():
+            boxes = _boxes(Setting.OFF_CENTRE, met, seed)
+            shorter[few, heading] = searched(met, boxes, made, _judged, seed)
+    return Repetition(found, seas, shorter, iterations)
 
 
 def _boxes(setting: Setting, seas: list[Data], seed: int) -> list[Box]:
