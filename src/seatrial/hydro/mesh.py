@@ -108,7 +108,7 @@ def capytaine_dataset(
             panels too coarse for the highest frequency.
     """
     try:
-        import capytaine as cpt
+        import capytaine as cpt  # pyright: ignore[reportMissingImports]
         import xarray as xr
     except ImportError:
         raise InputError(MISSING) from None
@@ -139,7 +139,7 @@ def capytaine_dataset(
 
 def _body(hull: Panels | str | Path, centre_of_mass: tuple[float, float, float]) -> Any:
     """The floating body with heave, pitch and a lid against irregular frequencies."""
-    import capytaine as cpt
+    import capytaine as cpt  # pyright: ignore[reportMissingImports]
 
     if isinstance(hull, Panels):
         mesh = cpt.Mesh(hull.vertices, hull.faces, name="hull")
