@@ -4,10 +4,13 @@ import numpy as np
 import pytest
 
 from seatrial.models.qi2025 import HEADINGS
+from seatrial.optimise import HerdSettings, WildHorse, search
 from seatrial.results import Study, Verdict
 from seatrial.studies import STUDIES
 from seatrial.studies.qi2025.audit import audit
+from seatrial.studies.qi2025.carried import carried_sample
 from seatrial.studies.qi2025.published import Algorithm, misprinted, recomputed_error
+from seatrial.studies.qi2025.repetition import Setting
 from seatrial.studies.swarm_search import centred, off_centre, one_sample, sailed, searched
 
 
@@ -50,8 +53,6 @@ def test_boxes_off_centre_hold_the_truth_off_their_centre() -> None:
 
 
 def test_a_search_is_the_same_from_its_seed() -> None:
-    from seatrial.optimise import HerdSettings, WildHorse
-
     seas = [sailed(135, np.random.default_rng(1))]
     boxes = [centred(seas[0].truth, 0.1)]
 
@@ -68,9 +69,45 @@ def test_the_papers_contrast_appears_only_in_its_own_setting(study: Study) -> No
     assert len(study.claims) >= 12
 
 
-def test_checks_hold_but_those_of_time(study: Study) -> None:
+def test_our_own_fit_and_the_saturation_hold(study: Study) -> None:
+    """IWHO's errors are what they are, ten runs scatter; times are the machine's."""
     failing = [c.name for c in study.checks if not c.holds]
-    assert [name for name in failing if "time" not in name] == []
+    assert [name for name in failing if "time" not in name and "median of" not in name] == []
+    assert sum("median of" in c.name for c in study.checks) == 3
+
+
+def test_ten_runs_made_again_begin_with_those_of_the_tables(study: Study) -> None:
+    tables = {t.title: t for t in study.tables}
+    again, shown = tables["What ten runs are worth"], tables[f"Errors in %: {Setting.PAPER.value}"]
+    assert [row[2] for row in again.rows] == pytest.approx([row[5] for row in shown.rows], rel=1e-12)
+
+
+def test_candidates_from_the_models_own_state_drive_who_to_the_lower_bound(study: Study) -> None:
+    rows = {row[0]: row[1] for t in study.tables if t.title == "Saturation at the lower bound" for row in t.rows}
+    assert float(rows[Setting.CARRIED.value] or 0.0) > 2.0 * float(rows[Setting.PAPER.value] or 0.0) > 10.0
+
+
+def test_the_truth_is_the_best_point_from_the_true_state_and_not_from_a_state_that_lags() -> None:
+    data = sailed(135, np.random.default_rng(1))
+    optimiser = WildHorse(centred(data.truth, 0.1), np.random.default_rng(2), HerdSettings(iterations=50))
+    judged = carried_sample(data, optimiser)
+    search(optimiser, judged)
+    assert judged(data.truth[None])[0] > 1e-6
+    assert one_sample(data, optimiser)(data.truth[None])[0] < 1e-12
+
+
+def test_the_improved_herd_meets_the_middle_of_a_symmetric_box_exactly(study: Study) -> None:
+    (table,) = [t for t in study.tables if t.title == "Drawn to the middle of the box"]
+    at_zero, aside = ({row[0]: float(row[k] or 0.0) for row in table.rows} for k in (1, 2))
+    assert at_zero["IWHO"] < 1e-10
+    assert aside["IWHO"] > 0.1
+    assert at_zero["PSO"] > 0.1
+
+
+def test_what_is_not_printed_is_listed_as_assumed(study: Study) -> None:
+    (assumed,) = [t for t in study.tables if t.title == "Assumed"]
+    assert {"box of the searches", "coefficients at 45°", "unit of pitch in eq. (28)"} <= {r[0] for r in assumed.rows}
+    assert "Left out" in assumed.note
 
 
 def test_every_table_and_figure_of_the_paper_is_there(study: Study) -> None:

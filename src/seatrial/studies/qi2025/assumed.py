@@ -1,7 +1,7 @@
 """What the paper does not print, and what stands in its place here."""
 
 from seatrial.results import Table
-from seatrial.studies.qi2025.repetition import RUNS, Repetition, Setting
+from seatrial.studies.qi2025.repetition import QUICK_RUNS, RUNS, TEN_TIMES, Repetition, Setting
 
 _ROWS = (
     ("box of the searches", "not printed", "±10 % about the truth, as WHO's clipped values suggest; others beside it"),
@@ -21,10 +21,12 @@ _ROWS = (
 def assumed(made: Repetition) -> Table:
     """One row for each; the note says what was left out of a quick run."""
     left = [s.value for s in Setting if s not in made.settings]
+    ten = " and ".join(f"'{s.value}'" for s in TEN_TIMES)
+    times = f"{QUICK_RUNS} times ({ten}: {RUNS})" if made.is_quick else f"{RUNS} times"
     note = (
         "Unit, memory and state were chosen as the combination whose IWHO comes nearest to the print; the tables of "
-        f"settings show the others. Every setting is run {RUNS} times."
+        f"settings show the others. Every setting is run {times}."
     )
-    if made.is_quick:
-        note += f" Quick run, left out: {'; '.join(left)}."
+    if left:
+        note += f" Left out of this quick run: {'; '.join(left)}."
     return Table("Assumed", ("what", "print", "here"), _ROWS, note)

@@ -24,7 +24,7 @@ def study(*, quick: bool, seed: int, progress: Progress | None) -> Study:
     """PSO, WHO and IWHO at 90, 135 and 180 degrees as published and otherwise; the print audited; our fit beside it.
 
     Args:
-        quick: leaves out the settings that no claim rests on.
+        quick: leaves out the settings that no claim rests on, and runs fewer searches.
         seed: of seas, boxes and searches.
     """
     began = time.perf_counter()
