@@ -33,6 +33,14 @@ def test_what_is_not_printed_is_said_to_be_assumed(study: Study) -> None:
     assert any("lost" in c.evidence for c in unknowable)
     assert any("assumed" in c.evidence.lower() for c in unknowable)
     assert sum("assumed" in t.note for t in study.tables) == 2
+    (listed,) = [t for t in study.tables if t.title == "Assumed"]
+    assert {"table 1: coefficients and errors", "fitness, eq. (7)"} <= {row[0] for row in listed.rows}
+    assert "quick version" in listed.note
+
+
+def test_the_law_without_an_inertia_weight_does_not_converge(study: Study) -> None:
+    (law,) = [c for c in study.claims if "velocity law" in c.claim]
+    assert law.verdict is Verdict.REFUTED
 
 
 def test_our_fit_reaches_its_bound(study: Study) -> None:

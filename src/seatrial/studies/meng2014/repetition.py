@@ -53,25 +53,30 @@ class Repetition:
     """Searches by setting, heading and algorithm; the seas by heading.
 
     `shorter`: searches of ICPSO off centre with fewer iterations, by their number and heading.
+    `unweighted`: searches off centre by eq. (4) as it is printed, without an inertia weight, by heading.
     """
 
     searches: dict[tuple[Setting, int, Algorithm], Searches]
     seas: dict[int, list[Data]]
     shorter: dict[tuple[int, int], Searches]
+    unweighted: dict[int, Searches]
     iterations: int
 
     def above_best(self, heading: int, algorithm: Algorithm) -> Array:
         """Fitness at each run's end off centre, over the better of both swarms in its sea and box, less 1; (runs,)."""
-        ends = {
-            a: np.array([
-                float(whole_record(sea)(point[None])[0])
-                for sea, point in zip(
-                    self.seas[heading], self.searches[Setting.OFF_CENTRE, heading, a].points, strict=True
-                )
-            ])
-            for a in Algorithm
-        }  # fmt: skip
-        return ends[algorithm] / np.min(list(ends.values()), axis=0) - 1.0
+        return self._above(heading, self.searches[Setting.OFF_CENTRE, heading, algorithm])
+
+    def unweighted_above_best(self, heading: int) -> Array:
+        """The same of the law as printed."""
+        return self._above(heading, self.unweighted[heading])
+
+    def _above(self, heading: int, found: Searches) -> Array:
+        swarms = [self._ends(heading, self.searches[Setting.OFF_CENTRE, heading, a]) for a in Algorithm]
+        return self._ends(heading, found) / np.min(swarms, axis=0) - 1.0
+
+    def _ends(self, heading: int, found: Searches) -> Array:
+        pairs = zip(self.seas[heading], found.points, strict=True)
+        return np.array([float(whole_record(sea)(point[None])[0]) for sea, point in pairs])
 
 
 def repetition(*, quick: bool, seed: int, progress: Progress | None) -> Repetition:
@@ -92,13 +97,26 @@ def repetition(*, quick: bool, seed: int, progress: Progress | None) -> Repetiti
             for algorithm, made in optimisers(iterations).items():
                 boxes = _boxes(setting, met, seed)
                 found[setting, heading, algorithm] = searched(met, boxes, made, _judged, seed)
+    if progress:
+        progress("fewer iterations, and the law as printed")
     shorter = {}
     for few in (round(share * iterations) for share in SHORTER):
         made = optimisers(few)[Algorithm.ICPSO]
         for heading, met in seas.items():
             boxes = _boxes(Setting.OFF_CENTRE, met, seed)
             shorter[few, heading] = searched(met, boxes, made, _judged, seed)
-    return Repetition(found, seas, shorter, iterations)
+    unweighted = {
+        heading: searched(met, _boxes(Setting.OFF_CENTRE, met, seed), _unweighted(iterations), _judged, seed)
+        for heading, met in seas.items()
+    }
+    return Repetition(found, seas, shorter, unweighted, iterations)
+
+
+def _unweighted(iterations: int) -> Callable[[Box, np.random.Generator], Population]:
+    """Eq. (4) as printed: the velocity counts whole; velocities limited as ICPSO's."""
+    cloud = CloudSettings()
+    plain = SwarmSettings(cloud.population, iterations, 1.0, cloud.c1, cloud.c2, cloud.velocity_limit)
+    return partial(ParticleSwarm, settings=plain)
 
 
 def _boxes(setting: Setting, seas: list[Data], seed: int) -> list[Box]:

@@ -5,6 +5,7 @@ import numpy as np
 from seatrial.models.heave_pitch import COEFFICIENTS
 from seatrial.results import Curve, Figure, Table
 from seatrial.simulate.population import trajectories
+from seatrial.studies.meng2014.assumed import assumed
 from seatrial.studies.meng2014.repetition import HEADINGS, Algorithm, Setting
 from seatrial.studies.meng2014.verdicts import Evidence
 from seatrial.studies.swarm_search import STEP, heave_pitch_candidates
@@ -13,8 +14,8 @@ SHOWN = 135
 
 
 def tables(seen: Evidence) -> tuple[Table, ...]:
-    """One a heading, their means, and times."""
-    return (*(_coefficients(seen, h) for h in HEADINGS), _means(seen), _times(seen))
+    """One a heading, their means, times, and what is assumed."""
+    return (*(_coefficients(seen, h) for h in HEADINGS), _means(seen), _times(seen), assumed(seen.made))
 
 
 def _coefficients(seen: Evidence, heading: int) -> Table:
