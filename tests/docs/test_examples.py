@@ -6,7 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import seatrial.verbs as sea
+from seatrial.identify import identify
 from seatrial.models import model_from_file
+from seatrial.trial import load_trial
+from seatrial.trial.folder import save_fit
 
 REPOSITORY = Path(__file__).parents[2]
 PAGES = sorted([REPOSITORY / "README.md", *(REPOSITORY / "docs").rglob("*.md")])
@@ -40,3 +44,21 @@ def test_the_model_of_one_s_own_is_a_file_that_can_be_loaded(page: str, tmp_path
     states = np.full(len(model.states), 0.1)
     model.compiled.rates_tangent(0.0, states, np.array([0.3]), model.parameters.values, out, jacobian)
     assert np.isfinite(out).all() and jacobian.any()
+
+
+@pytest.mark.parametrize("name", ["heave_pitch", "heave_pitch_spectrum"])
+def test_the_examples_in_waves_give_their_coefficients_back(name: str) -> None:
+    fit = identify(load_trial(REPOSITORY / "examples" / f"{name}.toml"))
+    free = [c for c in fit.coefficients if not c.fixed]
+    assert len(free) == 8
+    assert all(abs(c.estimate - c.truth) < 3.5 * c.standard_error for c in free)  # type: ignore[operator]
+
+
+def test_a_voyage_in_waves_is_replayed(tmp_path: Path) -> None:
+    trial = REPOSITORY / "examples" / "heave_pitch.toml"
+    folder = save_fit(identify(load_trial(trial)), tmp_path)
+    record = sea.run_of(trial, "voyage_held_out")
+    simulated = sea.replay(sea.load_model(folder / "model.toml"), record)
+    settled = slice(300, None)
+    for channel, noise in (("z", 0.01), ("theta", np.radians(0.02))):
+        assert np.std((simulated[channel] - record[channel])[settled]) < 1.3 * noise

@@ -131,7 +131,7 @@ def errors_of_eight(fit: Fit) -> np.ndarray:
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (("18, unit", "180, unit"), "is it in knots"),
+        (("18, unit", "180, unit"), "in knots"),
         (("value = 135", "value = 200"), "is it in degrees"),
         (('source = "box"', 'source = "table"'), "needs a file"),
         (('[excitation]\nsource = "box"', ""), "nothing turns the elevation into forces"),

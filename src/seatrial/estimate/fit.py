@@ -195,7 +195,7 @@ def _disturbance(found: Found) -> Disturbance:
         float(min(1.0, len(tests) * min(tests))),
         found.process,
         dict(zip(data.outputs, map(float, found.made.problem.noise), strict=True)),
-        "; ".join(found.reasons),
+        "; ".join(dict.fromkeys(found.reasons)),
     )
 
 

@@ -102,7 +102,7 @@ def method(found: Identified) -> Method:
         "free coefficients": len(problem.free),
         "Huber limit (standard deviations)": problem.huber if np.isfinite(problem.huber) else "none",
     }
-    return Method(found.criterion, found.start, found.interval.meaning, found.reasons, settings)
+    return Method(found.criterion, found.start, found.interval.meaning, tuple(dict.fromkeys(found.reasons)), settings)
 
 
 def bounds_hit(found: Identified) -> list[Finding]:

@@ -66,10 +66,22 @@ def initial_state(model: Model, record: Record, initial: Mapping[str, float]) ->
     return np.array([float(initial[s]) if s in initial else _measured(model, record, s) for s in model.states])
 
 
+def _first_slope(record: Record, symbol: str) -> float:
+    """Rate of a channel at its first sample, by a cubic through its first second or five samples."""
+    count = min(len(record), max(6, round(1.0 / record.dt)))
+    time, values = record.time[:count] - record.time[0], record[symbol][:count]
+    good = np.isfinite(values)
+    if np.count_nonzero(good) < 4:
+        raise InputError(f"record '{record.name}': channel '{symbol}' has too few values at its start for a rate")
+    return float(np.polynomial.polynomial.polyfit(time[good], values[good], 3)[1])
+
+
 def _measured(model: Model, record: Record, state: str) -> float:
     if state not in record:
         if state in ZERO_STARTS:
             return 0.0
+        if state.endswith("_dot") and state.removesuffix("_dot") in record:
+            return _first_slope(record, state.removesuffix("_dot"))
         raise InputError(
             f"record '{record.name}' has no channel '{state}', a state of model '{model.name}': give its initial value"
         )

@@ -1,8 +1,10 @@
 """`[excitation]` and `[records.waves]` of a trial file: what the waves do to the ship, and how she meets them."""
 
+import math
 from pathlib import Path
 
 from seatrial.equations import Model
+from seatrial.hydro.dispersion import G
 from seatrial.hydro.excitation import BoxHull, Excitation
 from seatrial.sea.encounter import speed_factor
 from seatrial.sea.spectrum import Spectrum, bretschneider, ittc, ittc_two_parameter, jonswap
@@ -10,6 +12,7 @@ from seatrial.trial.schema import ExcitationTable, SeaTable, WavesTable
 from seatrial.trial.trial import Waves
 from seatrial.values import InputError, Ship
 
+_FASTEST_FROUDE = 1.0
 _BOX = ("L", "B", "d", "c33", "c35", "c53", "c55")
 
 
@@ -44,14 +47,20 @@ def _box(ship: Ship, model: Model) -> BoxHull:
     return BoxHull(L, B, T, c33, c35, c53, c55)
 
 
-def waves_of(table: WavesTable | None, excitation: Excitation | None, where: str) -> Waves | None:
-    """How a block's runs met the waves; None for records that carry their wave forces themselves.
+def waves_of(table: WavesTable | None, excitation: Excitation | None, length: float, where: str) -> Waves | None:
+    """How a block's runs met the waves; None for records that carry their wave forces themselves. length: m.
 
     Raises:
         InputError: waves without an excitation, or a speed or heading out of sense.
     """
     if table is None:
         return None
+    froude = table.speed.in_si / math.sqrt(G * length)
+    if froude > _FASTEST_FROUDE:
+        raise InputError(
+            f"{where}.waves: {table.speed.in_si:.3g} m/s is a Froude number of {froude:.2g} at L = {length:g} m, where "
+            "no strip theory holds; is the speed in knots?"
+        )
     if excitation is None:
         raise InputError(f"{where}.waves: nothing turns the elevation into forces; add [excitation] source = 'box'")
     try:

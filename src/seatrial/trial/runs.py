@@ -35,16 +35,25 @@ def expanded(text: str) -> str:
 
 
 def runs_of(
-    blocks: Sequence[RecordsTable], folder: str, home: Path, excitation: Excitation | None = None
+    blocks: Sequence[RecordsTable],
+    folder: str,
+    home: Path,
+    excitation: Excitation | None = None,
+    length: float = 1.0,
 ) -> tuple[Run, ...]:
-    """Every run of every block, each with one role; files in sorted order. excitation: of those that met waves.
+    """Every run of every block, each with one role; files in sorted order.
+
+    excitation, length [m]: of the ships that met waves.
+
 
     Raises:
         InputError: a glob or a role pattern that matches nothing, a run with two roles, a name used twice.
     """
     base = home / expanded(folder)
     runs = [
-        run for i, block in enumerate(blocks, start=1) for run in _block_runs(block, base, f"records[{i}]", excitation)
+        run
+        for i, block in enumerate(blocks, start=1)
+        for run in _block_runs(block, base, f"records[{i}]", excitation, length)
     ]
     names = [run.name for run in runs]
     for name in names:
@@ -55,11 +64,11 @@ def runs_of(
     return tuple(runs)
 
 
-def _block_runs(block: RecordsTable, base: Path, where: str, excitation: Excitation | None) -> list[Run]:
+def _block_runs(block: RecordsTable, base: Path, where: str, excitation: Excitation | None, length: float) -> list[Run]:
     paths = sorted({path for text in block.files for path in _found(text, base, where)})
     trimming = Trimming(block.from_s, block.to_s, block.skip_acceleration, block.rate)
     roles = _roles(block, [run_name(p) for p in paths], where)
-    met = waves_of(block.waves, excitation, where)
+    met = waves_of(block.waves, excitation, length, where)
     return [
         Run(path, layout_of(block, path, where), role, session_of(path, block.session), trimming, block.source, met)
         for path, role in zip(paths, roles, strict=True)
