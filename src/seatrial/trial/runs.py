@@ -45,7 +45,6 @@ def runs_of(
 
     excitation, length [m]: of the ships that met waves.
 
-
     Raises:
         InputError: a glob or a role pattern that matches nothing, a run with two roles, a name used twice.
     """
