@@ -102,13 +102,13 @@ def _hold(bias: dict[int, HoldBias]) -> Table:
         (f"{h}°", *(100.0 * float(f(np.abs(e))) for e in (b.held, b.sampled, b.fine) for f in (np.mean, np.max)))
         for h, b in bias.items()
     )
-    taken = ("held", "samples of .5 s", "samples of .1 s")
-    header = ("Heading", *(f"{name}: {what} %" for name in taken for what in ("mean", "largest")))
+    taken = ("held", "every .5 s", "every .1 s")
+    header = ("Heading", *(f"{name}, {what}" for name in taken for what in ("mean", "largest")))
     note = (
         "Errors of our fit; data from continuous waves without noise, motions every .5 s. Force held as in eq. (8), or "
-        "continuous between its samples."
+        "continuous and known every .5 s or .1 s."
     )
-    return Table("What holding the wave force costs", header, rows, note)
+    return Table("What holding the wave force costs, %", header, rows, note)
 
 
 def _middle(centre: CentreBias) -> Table:
