@@ -73,6 +73,7 @@ def _histories(made: Repetition) -> list[Figure]:
     drawn = []
     for number, pair in enumerate((("a33", "b33"), ("a35", "b35"), ("a55", "b55"), ("a53", "b53")), start=8):
         curves = tuple(Curve(name, time, errors[:, COEFFICIENTS.index(name)]) for name in pair)
-        drawn.append(Figure(f"Figure {number}: {pair[0]} and {pair[1]}", TIME, "error, %", curves,
-                            "IWHO's first run at 45°, box ±10 % about the truth; coefficients of 90° assumed."))  # fmt: skip
+        title = f"Figure {number}: {pair[0]} and {pair[1]}"
+        note = "IWHO's first run at 45°, box ±10 % about the truth; coefficients of 90° assumed."
+        drawn.append(Figure(title, TIME, "error, %", curves, note))
     return drawn
