@@ -148,3 +148,15 @@ def test_a_model_file_whose_covariance_is_none_is_refused(
     assert "covariance is not positive definite (smallest eigenvalue -1 " in said
     assert said.count("\n") == 1
     assert not out.exists()
+
+
+def test_a_voyage_in_waves_is_replayed_beside_its_record(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, repository: Path
+) -> None:
+    trial = repository / "examples" / "heave_pitch.toml"
+    assert run(monkeypatch, "identify", trial, "--out", tmp_path / "fit") == 0
+    model = tmp_path / "fit" / "model.toml"
+    replayed = ("--trial", trial, "--inputs", "voyage_held_out", "--out", tmp_path / "run.csv")
+    assert run(monkeypatch, "simulate", model, *replayed, "--json", tmp_path / "run.json") == 0
+    assert "against voyage_held_out: rms theta_deg" in capsys.readouterr().out
+    assert json.loads((tmp_path / "run.json").read_text())["rms"]["z"] < 0.015

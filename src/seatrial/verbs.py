@@ -249,6 +249,13 @@ def replay(model: "ModelFile", record: "Record") -> "Record":
     return replay(model.model, record)
 
 
+def differences(measured: "Record", simulated: "Record") -> dict[str, float]:
+    """Root-mean-square differences of two runs on one time base: keys as in `Prediction.rms`."""
+    from seatrial.predict.open_loop import rms
+
+    return rms(measured, simulated)
+
+
 def measures(model: "ModelFile", record: "Record", like: "Record | None" = None) -> dict[str, float]:
     """Overshoots, advance, transfer, tactical diameter and the like, as far as the record shows them.
 

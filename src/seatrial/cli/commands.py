@@ -173,9 +173,13 @@ def simulate(
         except InputError as error:
             print(f"seatrial: {error}", file=sys.stderr)
     write_record(record, out)
-    measures = verbs.measures(file, record, measured if measured is not None and "psi" in measured else None)
+    like = measured if measured is not None and "psi" in measured else None
+    measures = verbs.measures(file, record, like) if "psi" in record else {}
     reach = verbs.extrapolation(file, record)
     print_measures(measures, intervals, reach)
+    rms = {} if measured is None else verbs.differences(measured, record)
+    if measured is not None and rms:
+        print(f"against {measured.name}: rms {', '.join(f'{name} {value:.3g}' for name, value in rms.items())}")
     write_json(
         json,
         lambda: {
@@ -183,6 +187,7 @@ def simulate(
             "measures": measures,
             "intervals": {name: list(pair) for name, pair in intervals.items()},
             "extrapolation_index": None if reach is None else reach.index,
+            "rms": rms,
             "seed": seed,
         },
     )
