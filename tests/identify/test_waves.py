@@ -8,6 +8,7 @@ import pytest
 
 from seatrial.identify import identify
 from seatrial.models.heave_pitch import heave_pitch_held
+from seatrial.report.page import html
 from seatrial.results import Fit
 from seatrial.sea.realise import Spacing
 from seatrial.simulate.linear import LinearBatch
@@ -69,6 +70,9 @@ def test_the_spectrum_of_the_sea_will_do_with_a_fin(tmp_path: Path, heading: int
     fit = identify(load_trial(path))
     assert np.abs(errors(fit)).max() < 4.0
     assert np.abs(shares(fit)).max() < 0.25
+    page = html(fit)
+    assert "Motions in waves" in page
+    assert 'id="residuals"' not in page
 
 
 def test_beam_seas_known_by_their_spectrum_are_refused(tmp_path: Path) -> None:

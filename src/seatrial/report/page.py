@@ -51,7 +51,10 @@ def html(fit: Fit) -> str:
     length = fit.ship.length if "L" in fit.ship.particulars else 0.0
     told, known = telling.telling(fit), fit.seakeeping
     is_steered = "psi" in fit.model.states or "delta" in fit.model.input_names
-    shown = {"telling": bool(told), "waves": known is not None, "standards": is_steered}
+    shown = {
+        "telling": bool(told), "waves": known is not None, "standards": is_steered,
+        "training": bool(fit.predictions), "residuals": bool(fit.residuals),
+    }  # fmt: skip
     context: dict[str, object] = {
         "fit": fit,
         "titles": {key: title for key, title in TITLES.items() if shown.get(key, True)},
