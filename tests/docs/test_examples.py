@@ -46,7 +46,7 @@ def test_the_model_of_one_s_own_is_a_file_that_can_be_loaded(page: str, tmp_path
     assert np.isfinite(out).all() and jacobian.any()
 
 
-@pytest.mark.parametrize("name", ["heave_pitch", "heave_pitch_spectrum"])
+@pytest.mark.parametrize("name", ["heave_pitch", "heave_pitch_forces", "heave_pitch_spectrum"])
 def test_the_examples_in_waves_give_their_coefficients_back(name: str) -> None:
     fit = identify(load_trial(REPOSITORY / "examples" / f"{name}.toml"))
     free = [c for c in fit.coefficients if not c.fixed]

@@ -111,23 +111,25 @@ def fin_commands(count: int, dt: float, rng: np.random.Generator) -> Array:
     return FIN_ANGLE * np.repeat(rng.choice([-1.0, 1.0], count // hold + 1), hold)[:count]
 
 
-EXAMPLE_COLUMNS = ("zeta", "delta_f1", "z", "theta")
+MOTIONS = ("delta_f1", "z", "theta")
 _VOYAGE = Voyage(135, duration=150.0)
+_UNRECORDED = Voyage(135, dt=0.2, duration=400.0, spacing=Spacing.JITTERED, lines=300)
+# file -> voyage and what was recorded of the waves: their elevation, nothing, or the force
 EXAMPLES = {
-    "voyage_1": _VOYAGE,
-    "voyage_2": _VOYAGE,
-    "voyage_held_out": _VOYAGE,
-    "sea_unrecorded": Voyage(135, dt=0.2, duration=400.0, spacing=Spacing.JITTERED, lines=300),
+    "voyage_1": (_VOYAGE, ("zeta",)),
+    "voyage_2": (_VOYAGE, ("zeta",)),
+    "voyage_held_out": (_VOYAGE, ("zeta",)),
+    "sea_unrecorded": (_UNRECORDED, ()),
+    "forces_recorded": (_VOYAGE, ("F3", "M5")),
 }
 
 
 def main(folder: str) -> None:
-    """Write the example voyages to `folder`; the sea of `sea_unrecorded` is known by its spectrum alone."""
-    for number, (name, voyage) in enumerate(EXAMPLES.items()):
+    """Write the example voyages to `folder`."""
+    for number, (name, (voyage, waves)) in enumerate(EXAMPLES.items()):
         record = sailed(voyage, np.random.default_rng([2025, number])).noisy(np.random.default_rng([7, number]), voyage)
-        columns = EXAMPLE_COLUMNS[1:] if name == "sea_unrecorded" else EXAMPLE_COLUMNS
         path = Path(folder) / f"{name}.csv"
-        write_csv(record, path, columns)
+        write_csv(record, path, (*waves, *MOTIONS))
         print(f"{path}: {record.duration:.0f} s, {path.stat().st_size / 1000:.0f} kB")
 
 
