@@ -35,8 +35,8 @@ def figures(known: Seakeeping) -> list[tuple[Markup, Figure]]:
     pitch, sea = np.array(known.pitch_density), np.array(known.sea_density)
     share = float(np.max(sea) / max(np.max(pitch), 1e-300))
     return [
-        drawn("Response amplitude operators", "per wave", "Heave per wave amplitude, pitch per wave slope: in long "
-              "waves heave goes to 1, pitch to the cosine of the heading.",
+        drawn("Response amplitude operators", "per wave", "Heave per wave amplitude, pitch per wave slope. A hull "
+              "that the wave carries has 1, and in pitch the cosine of the heading; constant damping keeps pitch from it.",
               {"heave": known.heave, "pitch / slope": known.pitch}),
         drawn("Phases", "degrees ahead of the crest", "At the ship's origin; pitch against the slope, bow down.",
               {"heave": known.heave_phase, "pitch": known.pitch_phase}),
