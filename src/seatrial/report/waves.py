@@ -36,7 +36,7 @@ def figures(known: Seakeeping) -> list[tuple[Markup, Figure]]:
     share = float(np.max(sea) / max(np.max(pitch), 1e-300))
     return [
         drawn("Response amplitude operators", "per wave", "Heave per wave amplitude, pitch per wave slope. A hull "
-              "that the wave carries has 1, and in pitch the cosine of the heading; constant damping keeps pitch from it.",
+              "that the wave carries has 1, in pitch the heading's cosine; constant damping keeps pitch from it.",
               {"heave": known.heave, "pitch / slope": known.pitch}),
         drawn("Phases", "degrees ahead of the crest", "At the ship's origin; pitch against the slope, bow down.",
               {"heave": known.heave_phase, "pitch": known.pitch_phase}),
