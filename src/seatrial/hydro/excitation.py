@@ -38,7 +38,8 @@ class BoxHull:
     F and G of `box_wave` are compared there with the effective elevation and slope of the wave; a restoring matrix C
     turns them into forces. The box stands at the centre of flotation, x_f = -c35 / c33 from midship, so that midship
     sees the phase k cos(beta) x_f and the moment of the lever x_f. As omega goes to zero, F3 -> c33 + i q c35 and
-    M5 -> c53 + i q c55 with q = k cos(beta): heave becomes the elevation and pitch the slope for any such plant.
+    M5 -> c53 + i q c55 with q = k cos(beta): the static answer of any such plant is the elevation and the slope. With
+    constant damping pitch itself does not become the slope: what it turns heave into is of lower order in omega.
     Giving M5 the term c35 F and F3 none would leave the pitch of the long wave wrong by
     1 / (1 - c35 c53 / (c33 c55)).
 

@@ -113,7 +113,8 @@ def identify(
     unprofiled = intervals is Intervals.PROFILE and not known.profiles
     said = (*agreement(found.made), *outcome.bounds_hit(found), *outcome.unconverged(found))
     said += (outcome.NO_PROFILE,) if unprofiled else ()
-    said += (represented(frequency_range(runs, outputs)),) if trial.model.is_affine else ()
+    shown = frequency_range(runs, outputs) if trial.model.is_affine else {}
+    said += (represented(shown),) if shown else ()
     return Fit(
         question=trial.question
         or f"Which {trial.model.name} model explains these records, and how well does it predict?",
