@@ -71,9 +71,7 @@ def decided(
         return _asked_for(shot, settings, "the length of segments was asked for")
     whole = _fitting(shot, whole_runs()) if shot.is_white else None
     if whole is not None and whole.is_white:
-        return whole.because(
-            "residuals are white within segments and over whole runs: no process noise to guard against"
-        )
+        return whole.because(_WHITE)
     if shot.is_white and whole is None:
         shot = shot.because("whole runs do not fit within the noise of the segments")
     if settings.robust or not is_worthwhile(shooting):

@@ -49,11 +49,6 @@ class Spectrum:
         """T1 = 2 pi m0 / m1, s."""
         return 2.0 * math.pi * self.moment(0) / self.moment(1)
 
-    @property
-    def zero_upcrossing_period(self) -> float:
-        """T2 = 2 pi sqrt(m0 / m2), s."""
-        return 2.0 * math.pi * math.sqrt(self.moment(0) / self.moment(2))
-
     def density(self, omega: ArrayLike) -> Array:
         """S [m^2 s/rad] at `omega` [rad/s], any shape; zero where omega is not positive."""
         x = np.asarray(omega, dtype=np.float64) / self.modal_frequency
