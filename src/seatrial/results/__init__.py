@@ -1,6 +1,7 @@
 """Solutions, fits and studies read in the field's terms."""
 
 from seatrial.optimise import Solution, Status
+from seatrial.results.design import Actuator, Confirmation, Design, Limits, Order, Worth
 from seatrial.results.fit import (
     Coefficient,
     Disturbance,
@@ -29,24 +30,29 @@ from seatrial.results.seakeeping import PointMotion, Seakeeping
 from seatrial.results.study import Check, Claim, Curve, Figure, Study, Table, Verdict
 
 __all__ = [
+    "Actuator",
     "Check",
     "Claim",
     "Coefficient",
     "Collinearity",
+    "Confirmation",
     "Consequence",
     "Curve",
+    "Design",
     "Direction",
     "Disturbance",
     "Extrapolation",
     "Figure",
     "Fit",
     "Identifiability",
+    "Limits",
     "Margin",
     "Measure",
     "Member",
     "Method",
     "Noise",
     "Offset",
+    "Order",
     "PointMotion",
     "Prediction",
     "Profile",
@@ -60,4 +66,5 @@ __all__ = [
     "Symmetry",
     "Table",
     "Verdict",
+    "Worth",
 ]

@@ -1,0 +1,1 @@
+"""Optimal manoeuvres: the input sequence that tells the coefficients best within limits."""
