@@ -8,6 +8,7 @@ from pydantic import ValidationError
 from seatrial.check.captive import force_findings
 from seatrial.equations import Model
 from seatrial.trial.complaints import complaint
+from seatrial.trial.design_table import brief_of
 from seatrial.trial.excitation import excitation_of
 from seatrial.trial.forces import points_of
 from seatrial.trial.literature import range_findings
@@ -32,9 +33,12 @@ def parse_trial(path: Path) -> TrialFile:
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(f"trial file '{path}' is no valid TOML: {error}") from None
     try:
-        return TrialFile.model_validate(table)
+        file = TrialFile.model_validate(table)
     except ValidationError as error:
         raise complaint(error, TrialFile, str(path)) from None
+    if not file.records and file.design is None:
+        raise InputError(f"{path}: key 'records' is missing; add it, or a [design] table for 'seatrial design'")
+    return file
 
 
 def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
@@ -70,7 +74,8 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         home = path.resolve().parent
         base = home / expanded(file.data.folder)
         excitation = excitation_of(file.excitation, ship, model, base)
-        runs = runs_of(file.records, file.data.folder, home, excitation, ship.length)
+        runs = runs_of(file.records, file.data.folder, home, excitation, ship.length) if file.records else ()
+        brief = None if file.design is None else brief_of(file.design, model)
         forces = tuple(
             points_of(block, base, model, file.model.reference_point, f"forces[{i}]")
             for i, block in enumerate(file.forces, start=1)
@@ -90,6 +95,7 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         path=path,
         forces=forces,
         family=None if file.family is None else _family(file.family),
+        design=brief,
         findings=(*ranges, *(finding for points in forces for finding in force_findings(points, unit))),
     )
 

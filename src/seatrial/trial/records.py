@@ -29,8 +29,11 @@ def records_of(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ..
     """Read, repair and check every run that is not left out; the trial's own findings come first.
 
     Raises:
-        InputError: a file cannot be parsed; trimming leaves nothing.
+        InputError: the trial has no records; a file cannot be parsed; trimming leaves nothing.
     """
+    if not trial.runs:
+        where = f"{trial.path}: " if trial.path else ""
+        raise InputError(f"{where}there are no [[records]] to read; add them, or plan a trial with 'seatrial design'")
     made, findings = [], list(trial.findings)
     for run in trial.runs:
         if run.role is not Role.LEAVE_OUT:

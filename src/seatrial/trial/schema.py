@@ -321,14 +321,45 @@ class FamilyTable(Strict):
     segment_factors: tuple[Annotated[float, Field(gt=0)], ...] = ()
 
 
+class InputTable(Strict):
+    """`[design.inputs.NAME]`: what may be done with an input, in `unit`; `rate` in it per second, `hold` in s."""
+
+    lower: float
+    upper: float
+    unit: Unit
+    rate: Annotated[float, Field(gt=0)] | None = None
+    hold: Annotated[float, Field(gt=0)]
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        if not self.lower < self.upper:
+            raise ValueError(f"lower = {self.lower:g} is not below upper = {self.upper:g}; swap them")
+        return self
+
+
+class DesignTable(Strict):
+    """`[design]`: the manoeuvre that is sought: how long, with which inputs, within which limits."""
+
+    duration: SiAmount
+    rate: Annotated[float, Field(gt=0)]
+    inputs: Annotated[dict[str, InputTable], Field(min_length=1)]
+    held: dict[str, SiAmount] = {}
+    speed: SiAmount | None = None
+    criterion: Literal["worst", "mean"] = "worst"
+    draws: Annotated[int, Field(ge=0)] = 12
+    prior_percent: Annotated[float, Field(gt=0)] = 30.0
+    drift: SiAmount | None = None
+    sea_room: SiAmount | None = None
+
+
 class TrialFile(Strict):
-    """The whole file."""
+    """The whole file; the records may be missing where a manoeuvre is only to be designed."""
 
     question: str = ""
     accept: tuple[str, ...] = ()
     ship: ShipTable
     data: DataTable = DataTable()
-    records: Annotated[tuple[RecordsTable, ...], Field(min_length=1)]
+    records: tuple[RecordsTable, ...] = ()
     model: ModelTable
     forces: tuple[ForcesTable, ...] = ()
     excitation: ExcitationTable | None = None
@@ -336,6 +367,7 @@ class TrialFile(Strict):
     noise: dict[str, SiSpread] = {}
     truth: dict[str, float] = {}
     estimate: EstimateTable = EstimateTable()
+    design: DesignTable | None = None
 
 
 def trial_schema() -> dict[str, Any]:

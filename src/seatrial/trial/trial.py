@@ -8,6 +8,7 @@ from pathlib import Path
 from seatrial.equations import Model
 from seatrial.hydro.excitation import Excitation
 from seatrial.read import Layout
+from seatrial.results import Actuator, Limits
 from seatrial.sea.spectrum import Spectrum
 from seatrial.values import Finding, ForcePoints, Ship
 
@@ -112,6 +113,30 @@ class Family:
     segment_factors: tuple[float, ...] = ()
 
 
+@dataclass(frozen=True)
+class Brief:
+    """What a manoeuvre that is to be designed must keep to, SI.
+
+    Attributes:
+        duration: s; rate: Hz at which the sensors are recorded.
+        actuators: inputs that may be moved; held: the other inputs, constant, in the record's signs.
+        limits: what the trial may not leave.
+        speed: approach speed u [m/s]; None: where surge balances.
+        criterion: ``worst`` or ``mean`` relative standard error.
+        draws: ships drawn from the prior; prior: relative standard deviation of coefficients without a prior.
+    """
+
+    duration: float
+    rate: float
+    actuators: tuple[Actuator, ...]
+    held: Mapping[str, float] = field(default_factory=dict)
+    limits: Limits = field(default_factory=Limits)
+    speed: float | None = None
+    criterion: str = "worst"
+    draws: int = 12
+    prior: float = 0.3
+
+
 @dataclass(frozen=True, eq=False)
 class Trial:
     """Ship, runs and their roles, model, assumptions.
@@ -124,6 +149,7 @@ class Trial:
         reference_point: m forward of midship to which the model's u, v, x0, y0 refer.
         forces: static force points that are fitted beside the runs.
         family: models to compare; None: the family of the house.
+        design: the manoeuvre that is to be designed; None: none is.
         findings: what is odd about the trial itself: priors beyond their range, force points of unexpected sign.
         path: the trial file; None for a trial made in Python.
     """
@@ -140,6 +166,7 @@ class Trial:
     path: Path | None = None
     forces: tuple[ForcePoints, ...] = ()
     family: Family | None = None
+    design: Brief | None = None
     findings: tuple[Finding, ...] = ()
 
     def of_role(self, role: Role) -> tuple[Run, ...]:
