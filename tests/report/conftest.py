@@ -9,7 +9,7 @@ from report.fabricated import fabricated_fit
 from report.told import told
 from seatrial.report import write_report
 from seatrial.report.study import write_study
-from seatrial.results import Check, Claim, Curve, Figure, Fit, Study, Table, Verdict
+from seatrial.results import Bars, Check, Claim, Curve, Figure, Fit, Matrix, Study, Table, Verdict
 
 
 @pytest.fixture(scope="session")
@@ -45,6 +45,9 @@ def study(fit: Fit) -> Study:
         tables=(Table("Turning circle", ("source", "advance [L]"), (("paper", 3.25), ("ours", None)), "35° to port."),),
         figures=(
             Figure("Heading", "t [s]", "ψ [deg]", (Curve("ours", at, np.sin(at)), Curve("theirs", at, np.cos(at)))),
+            Bars("Errors", ("Y_v", "N_r"), {"theirs": (12.0, -40.0), "ours": (0.3, None)}, "error [%]", "Dash: none."),
+            Bars("Effects", ("Y_v", "N_r"), {"one": (1e-3, 0.0), "all": (30.0, 2.0)}, "effect [1]", "", True),
+            Matrix("Correlations", ("Y_v", "Y_r"), ("v", "r"), np.array([[1.0, -0.97], [np.nan, 0.2]]), "Of terms."),
         ),
         predictions=fit.predictions[:1],
         findings=fit.findings[:1],

@@ -32,3 +32,10 @@ def test_table_for_json(study: Study) -> None:
         "claim": "The model predicts a turn within 5 %", "verdict": "confirmed", "evidence": "advance −1.6 %",
     }  # fmt: skip
     assert set(table["checks"][0]) == {"name", "value", "limit", "holds"}
+
+
+def test_figures_of_every_kind_have_title_and_note(study_page: Path, study: Study) -> None:
+    text = study_page.read_text()
+    assert text.count("<figure") >= len(study.figures) == 4
+    for figure in study.figures:
+        assert f"<h3>{figure.title}</h3>" in text and f'aria-label="{figure.title}"' in text and figure.note in text

@@ -6,12 +6,14 @@ from pathlib import Path
 from markupsafe import Markup
 
 from seatrial.report import runs, tables
+from seatrial.report.figures.bars import bars
 from seatrial.report.figures.curves import curves
+from seatrial.report.figures.matrix import matrix
 from seatrial.report.numbers import significant
 from seatrial.report.page import environment
 from seatrial.report.sheets import sheet
 from seatrial.report.words import counted
-from seatrial.results import Check, Study, Verdict
+from seatrial.results import Bars, Check, Figure, Matrix, Study, Verdict
 from seatrial.values.files import write_whole
 
 # channels a run is given rather than predicted
@@ -54,7 +56,7 @@ def html(study: Study) -> str:
         "claims": study.claims,
         "checks": [_check(c) for c in study.checks],
         "tables": [sheet(t) for t in study.tables],
-        "figures": [(Markup(curves(f)), f) for f in study.figures],
+        "figures": [(Markup(_drawn(f)), f) for f in study.figures],
         "runs": runs.runs(study.predictions, 0.0, INPUTS),
         "findings": tables.findings(study.findings),
     }
@@ -67,6 +69,16 @@ def html(study: Study) -> str:
         "scores": runs.scores(study.predictions, 0.0),
     }
     return environment().get_template("study.html").render(context)
+
+
+def _drawn(figure: Figure | Bars | Matrix) -> str:
+    match figure:
+        case Bars():
+            return bars(figure)
+        case Matrix():
+            return matrix(figure)
+        case Figure():
+            return curves(figure)
 
 
 def outcome(study: Study) -> list[str]:

@@ -27,10 +27,11 @@ from seatrial.results.identifiability import (
     Symmetry,
 )
 from seatrial.results.seakeeping import PointMotion, Seakeeping
-from seatrial.results.study import Check, Claim, Curve, Figure, Study, Table, Verdict
+from seatrial.results.study import Bars, Check, Claim, Curve, Figure, Matrix, Study, Table, Verdict
 
 __all__ = [
     "Actuator",
+    "Bars",
     "Check",
     "Claim",
     "Coefficient",
@@ -47,6 +48,7 @@ __all__ = [
     "Identifiability",
     "Limits",
     "Margin",
+    "Matrix",
     "Measure",
     "Member",
     "Method",

@@ -1,12 +1,13 @@
 """A study: a published paper worked through again, its claims judged. Plain values only."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from enum import StrEnum
 from typing import Any
 
 from seatrial.results.fit import Prediction
-from seatrial.values import Array, Finding
+from seatrial.values import Array, Finding, InputError
 
 
 class Verdict(StrEnum):
@@ -74,6 +75,62 @@ class Figure:
 
 
 @dataclass(frozen=True, eq=False)
+class Bars:
+    """Grouped bars: a group for each label, in it one bar for each series.
+
+    Attributes:
+        series: name -> one value for each label; None where there is none.
+        unit: what the axis says, the quantity with its unit.
+
+    Raises:
+        InputError: a series has not one value for each label, or a value on a logarithmic axis is negative.
+    """
+
+    title: str
+    labels: tuple[str, ...]
+    series: Mapping[str, tuple[float | None, ...]]
+    unit: str
+    note: str = ""
+    is_logarithmic: bool = False
+
+    def __post_init__(self) -> None:
+        for name, values in self.series.items():
+            if len(values) != len(self.labels):
+                raise InputError(
+                    f"bars '{self.title}': series '{name}' has {len(values)} values for {len(self.labels)} labels"
+                )
+            if self.is_logarithmic and any(v is not None and v < 0.0 for v in values):
+                raise InputError(
+                    f"bars '{self.title}': series '{name}' has a negative value, which a logarithmic axis cannot show"
+                )
+
+
+@dataclass(frozen=True, eq=False)
+class Matrix:
+    """A matrix as coloured cells with numbers, one colour above zero, another below.
+
+    Attributes:
+        values: shape (rows, columns); NaN leaves a cell empty.
+        limit: magnitude at which the colour is full, 1 for correlations; None for the largest of `values`.
+
+    Raises:
+        InputError: `values` has another shape than its names.
+    """
+
+    title: str
+    rows: tuple[str, ...]
+    columns: tuple[str, ...]
+    values: Array
+    note: str = ""
+    limit: float | None = 1.0
+
+    def __post_init__(self) -> None:
+        wanted = (len(self.rows), len(self.columns))
+        if self.values.shape != wanted:
+            raise InputError(f"matrix '{self.title}': values of shape {self.values.shape} have names for {wanted}")
+
+
+@dataclass(frozen=True, eq=False)
 class Study:
     """A published study repeated, with everything its page shows.
 
@@ -95,7 +152,7 @@ class Study:
     question: str = ""
     kind: str = "A published study repeated"
     tables: tuple[Table, ...] = ()
-    figures: tuple[Figure, ...] = ()
+    figures: tuple[Figure | Bars | Matrix, ...] = ()
     predictions: tuple[Prediction, ...] = ()
     findings: tuple[Finding, ...] = ()
     versions: dict[str, str] = field(default_factory=dict)
