@@ -7,7 +7,7 @@ import pytest
 
 from identify.conftest import TRUTH, square, steered
 from seatrial.estimate.start import weak_start
-from seatrial.estimate.states import measured_states
+from seatrial.simulate.states import measured_states
 from seatrial.identify import identified
 from seatrial.manoeuvres.programme import programme
 from seatrial.models.nomoto import nomoto, nomoto2

@@ -7,11 +7,11 @@ import numpy as np
 
 from seatrial.equations import Model
 from seatrial.estimate.estimate import residual_spread
-from seatrial.estimate.states import hidden_states, measured_states
 from seatrial.optimise import levenberg_marquardt
 from seatrial.problem.output_error import OutputError
 from seatrial.regress.weak import WeakForm
 from seatrial.simulate.channels import inputs_of
+from seatrial.simulate.states import hidden_states, measured_states
 from seatrial.values import Array, Record
 
 

@@ -1,4 +1,4 @@
-"""States of a model along a record, as measured: for the weak form and for starting values."""
+"""States of a model along a record, as measured: for regression and for starting values."""
 
 from collections.abc import Sequence
 
@@ -11,10 +11,11 @@ from seatrial.values import NOTATION, Array, InputError, Record
 _SMOOTHING_SAMPLES = 15
 
 
-def _slope(values: Array, dt: float) -> Array:
+def _slope(record: Record, symbol: str) -> Array:
     """Derivative by local cubic polynomials (Savitzky & Golay 1964) over 15 samples."""
+    values = record[symbol]
     width = min(_SMOOTHING_SAMPLES, len(values) - 1 + len(values) % 2)
-    return savgol_filter(values, width, min(3, width - 1), deriv=1, delta=dt)
+    return savgol_filter(values, width, min(3, width - 1), deriv=1, delta=record.dt)
 
 
 def hidden_states(model: Model, records: Sequence[Record]) -> tuple[str, ...]:
@@ -29,18 +30,17 @@ def measured_states(model: Model, record: Record) -> Array:
         InputError: a state is neither measured nor derivable.
     """
     found: dict[str, Array] = {s: record[s] for s in model.states if s in record}
-    dt = record.dt
     if "r" not in found and "psi" in record:
-        found["r"] = _slope(record["psi"], dt)
+        found["r"] = _slope(record, "psi")
     if "psi" not in found and "r" in found:
-        found["psi"] = np.concatenate([[0.0], np.cumsum(0.5 * dt * (found["r"][1:] + found["r"][:-1]))])
+        found["psi"] = np.concatenate([[0.0], np.cumsum(0.5 * record.dt * (found["r"][1:] + found["r"][:-1]))])
     if not {"u", "v"} <= set(found) and {"x0", "y0", "psi"} <= set(record.channels):
-        north, east, psi = _slope(record["x0"], dt), _slope(record["y0"], dt), record["psi"]
+        north, east, psi = _slope(record, "x0"), _slope(record, "y0"), record["psi"]
         found.setdefault("u", north * np.cos(psi) + east * np.sin(psi))
         found.setdefault("v", -north * np.sin(psi) + east * np.cos(psi))
     for rate in model.states:
         if rate.endswith("_dot") and rate not in found and rate.removesuffix("_dot") in record:
-            found[rate] = _slope(record[rate.removesuffix("_dot")], dt)
+            found[rate] = _slope(record, rate.removesuffix("_dot"))
     for unused in ("x0", "y0"):
         found.setdefault(unused, np.zeros(len(record)))
     missing = [s for s in model.states if s not in found]

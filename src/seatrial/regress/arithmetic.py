@@ -1,0 +1,209 @@
+"""How the coefficients of a linear system are found: least squares, shrinkage, selection, instruments.
+
+Every method works on columns and target in units of their own root mean square and gives the coefficients back in
+theirs, so that a penalty means the same for all. Cross-validation is over contiguous blocks: neighbouring samples of a
+time series are no independent data.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Protocol
+
+import numpy as np
+
+from seatrial.regress.system import System
+from seatrial.values import Array, Finding, Severity
+
+FOLDS = 10
+PENALTIES = np.logspace(-6.0, 6.0, 49)
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """Coefficients (k,) of a system, the constant the method allowed itself besides, and what to say of it."""
+
+    coefficients: Array
+    bias: float = 0.0
+    findings: tuple[Finding, ...] = ()
+    settings: dict[str, float] = field(default_factory=dict)
+
+
+class Arithmetic(Protocol):
+    """From a system to its coefficients."""
+
+    def solve(self, system: System) -> Solved:
+        """The coefficients in the system's order."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Scales:
+    """Root mean squares of columns (k,) and target, and the system in these units."""
+
+    columns: Array
+    target: float
+    matrix: Array
+    values: Array
+
+    def back(self, coefficients: Array) -> Array:
+        """Coefficients in the system's own units."""
+        return self.target * coefficients / self.columns
+
+
+def scales(system: System) -> Scales:
+    """The system in units of the root mean squares of its columns and target."""
+    columns = np.sqrt(np.mean(system.matrix**2, axis=0))
+    columns = np.where(columns > 0.0, columns, 1.0)
+    target = float(np.sqrt(np.mean(system.target**2))) or 1.0
+    return Scales(columns, target, system.matrix / columns, system.target / target)
+
+
+@dataclass(frozen=True)
+class LeastSquares:
+    """Ordinary least squares (Gauss 1809)."""
+
+    def solve(self, system: System) -> Solved:
+        """By orthogonal decomposition."""
+        scaled = scales(system)
+        return Solved(scaled.back(_least_squares(scaled.matrix, scaled.values)))
+
+
+@dataclass(frozen=True)
+class Ridge:
+    """Least squares with a penalty on the coefficients' squares (Hoerl & Kennard 1970).
+
+    penalty: lambda of |residual|^2 + lambda |coefficients|^2; None takes the best over contiguous folds.
+    """
+
+    penalty: float | None = None
+
+    def solve(self, system: System) -> Solved:
+        """By the normal equations."""
+        scaled = scales(system)
+        penalty = _chosen(scaled, _ridge) if self.penalty is None else self.penalty
+        return Solved(scaled.back(_ridge(scaled.matrix, scaled.values, penalty)), settings={"penalty": penalty})
+
+
+@dataclass(frozen=True)
+class TruncatedSvd:
+    """Least squares in the directions whose singular value exceeds `share` of the largest (Hansen 1987)."""
+
+    share: float = 0.03
+
+    def solve(self, system: System) -> Solved:
+        """By the singular values of the scaled matrix."""
+        scaled = scales(system)
+        left, values, right = np.linalg.svd(scaled.matrix, full_matrices=False)
+        kept = values > self.share * values[0]
+        inverse = np.where(kept, 1.0 / np.where(kept, values, 1.0), 0.0)
+        found = right.T @ (inverse * (left.T @ scaled.values))
+        return Solved(scaled.back(found), settings={"directions": float(kept.sum())})
+
+
+@dataclass(frozen=True)
+class LeastSquaresSvm:
+    """Least-squares support vector machine with linear kernel (Suykens & Vandewalle 1999).
+
+    That is ridge regression with penalty 1/gamma and a constant that is not penalised. gamma: None takes the best over
+    contiguous folds.
+    """
+
+    gamma: float | None = None
+
+    def solve(self, system: System) -> Solved:
+        """By the normal equations about the means."""
+        scaled = scales(system)
+        penalty = _chosen(scaled, _with_constant) if self.gamma is None else 1.0 / self.gamma
+        found = _with_constant(scaled.matrix, scaled.values, penalty)
+        bias = float(np.mean(scaled.values - scaled.matrix @ found))
+        return Solved(scaled.back(found), scaled.target * bias, settings={"gamma": 1.0 / penalty})
+
+
+@dataclass(frozen=True)
+class Lasso:
+    """Least squares with a penalty on the coefficients' magnitudes (Tibshirani 1996; Song et al. 2025, eq. (11)).
+
+    Attributes:
+        penalties: lambda of eq. (11), of which the best over contiguous folds is taken (eq. (12): 1e-6 to 1e6).
+        refit: whether the chosen coefficients are then found by least squares, without the penalty's pull to zero.
+    """
+
+    penalties: tuple[float, ...] = tuple(PENALTIES)
+    refit: bool = False
+
+    def solve(self, system: System) -> Solved:
+        """Coefficients that the best penalty leaves; 0 for those it drops."""
+        scaled, penalties = scales(system), np.sort(self.penalties)
+        missed = _missed(scaled, lambda matrix, target: _lasso(matrix, target, penalties))
+        best = int(np.argmin(missed))
+        found = _lasso(scaled.matrix, scaled.values, penalties[best : best + 1])[0]
+        kept = found != 0.0
+        if self.refit and kept.any():
+            found[kept] = _least_squares(scaled.matrix[:, kept], scaled.values)
+        settings = {"penalty": float(penalties[best]), "coefficients kept": float(kept.sum())}
+        return Solved(scaled.back(found), findings=_dropped(system, kept), settings=settings)
+
+
+def instrumental(system: System, instruments: System) -> Solved:
+    """(Z' Phi)^-1 Z' y with the features Z of a motion free of the measurement's noise (Soderstrom & Stoica 1983).
+
+    Noise in the features pulls least squares towards zero; instruments that share the motion but not its noise do not.
+    """
+    scaled = scales(system)
+    z = instruments.matrix / scaled.columns
+    return Solved(scaled.back(_solved(z.T @ scaled.matrix, z.T @ scaled.values)))
+
+
+def _dropped(system: System, kept: Array) -> tuple[Finding, ...]:
+    names = [n for n, k in zip(system.names, kept, strict=True) if not k]
+    if not names:
+        return ()
+    return (
+        Finding(Severity.INFO, "lasso-dropped", f"Lasso drops {', '.join(names)} from the {system.title} equation", "",
+                "dropped is not small: Lasso drops what the other coefficients can stand for"),
+    )  # fmt: skip
+
+
+def _lasso(matrix: Array, target: Array, penalties: Array) -> Array:
+    """Coefficients for each penalty, ascending, shape (penalties, k): exact, along the path (Efron et al. 2004)."""
+    from sklearn.linear_model import lars_path_gram
+
+    count = len(target)
+    # the path's alpha is that of |residual|^2 / 2n + alpha |coefficients|_1: lambda / 2n
+    alphas, _, path = lars_path_gram(matrix.T @ target, matrix.T @ matrix, n_samples=count, method="lasso")[:3]
+    wanted = penalties / (2.0 * count)
+    return np.stack([np.interp(wanted, alphas[::-1], one[::-1]) for one in path], axis=1)
+
+
+def _solved(matrix: Array, target: Array) -> Array:
+    return np.asarray(np.linalg.solve(matrix, target), dtype=np.float64)
+
+
+def _least_squares(matrix: Array, target: Array) -> Array:
+    return np.asarray(np.linalg.lstsq(matrix, target)[0], dtype=np.float64)
+
+
+def _ridge(matrix: Array, target: Array, penalty: float) -> Array:
+    return _solved(matrix.T @ matrix + penalty * np.eye(matrix.shape[1]), matrix.T @ target)
+
+
+def _with_constant(matrix: Array, target: Array, penalty: float) -> Array:
+    return _ridge(matrix - matrix.mean(axis=0), target - target.mean(), penalty)
+
+
+def _chosen(scaled: Scales, solve: Callable[[Array, Array, float], Array]) -> float:
+    """The penalty that predicts contiguous blocks left out best."""
+    missed = _missed(scaled, lambda matrix, target: np.array([solve(matrix, target, float(p)) for p in PENALTIES]))
+    return float(PENALTIES[int(np.argmin(missed))])
+
+
+def _missed(scaled: Scales, path: Callable[[Array, Array], Array]) -> Array:
+    """Sum of squares over contiguous blocks left out, for each of the coefficients (n, k) that `path` gives."""
+    edges = np.linspace(0, len(scaled.values), FOLDS + 1).round().astype(int)
+    missed = []
+    for first, last in pairwise(edges):
+        rest = np.r_[0:first, last : len(scaled.values)]
+        found = path(scaled.matrix[rest], scaled.values[rest])
+        missed.append(np.sum((scaled.values[first:last] - found @ scaled.matrix[first:last].T) ** 2, axis=1))
+    return np.sum(missed, axis=0)
