@@ -17,7 +17,7 @@ from seatrial.regress.arithmetic import (
     instrumental,
     scales,
 )
-from seatrial.regress.machines import SupportVectors
+from seatrial.regress.support_vectors import SupportVectors
 from seatrial.regress.system import System
 
 METHODS = [LeastSquares(), Ridge(), TruncatedSvd(), LeastSquaresSvm(), Lasso(), SupportVectors(1000.0, 1e-4)]

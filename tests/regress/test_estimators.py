@@ -5,7 +5,7 @@ import pytest
 
 from regress.linear import zigzags
 from seatrial.models.waterjet import TABLE_2, waterjet
-from seatrial.regress.estimators import regressions
+from seatrial.regress.named import regressions
 from seatrial.studies.series import noisy
 from seatrial.values import InputError
 

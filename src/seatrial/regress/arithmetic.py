@@ -7,11 +7,11 @@ time series are no independent data.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
 
+from seatrial.regress.split import folds
 from seatrial.regress.system import System
 from seatrial.values import Array, Finding, Severity
 
@@ -200,10 +200,8 @@ def _chosen(scaled: Scales, solve: Callable[[Array, Array, float], Array]) -> fl
 
 def _missed(scaled: Scales, path: Callable[[Array, Array], Array]) -> Array:
     """Sum of squares over contiguous blocks left out, for each of the coefficients (n, k) that `path` gives."""
-    edges = np.linspace(0, len(scaled.values), FOLDS + 1).round().astype(int)
     missed = []
-    for first, last in pairwise(edges):
-        rest = np.r_[0:first, last : len(scaled.values)]
-        found = path(scaled.matrix[rest], scaled.values[rest])
-        missed.append(np.sum((scaled.values[first:last] - found @ scaled.matrix[first:last].T) ** 2, axis=1))
+    for fold in folds(len(scaled.values), min(FOLDS, len(scaled.values))):
+        found = path(np.delete(scaled.matrix, fold, axis=0), np.delete(scaled.values, fold))
+        missed.append(np.sum((scaled.values[fold] - found @ scaled.matrix[fold].T) ** 2, axis=1))
     return np.sum(missed, axis=0)

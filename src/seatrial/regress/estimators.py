@@ -1,4 +1,4 @@
-"""Named regressions: an operator and an arithmetic, through one door, so that they can be compared on one record."""
+"""Estimators by regression: an operator and an arithmetic, through one door."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -7,19 +7,9 @@ from typing import Protocol
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.regress.arithmetic import (
-    Arithmetic,
-    Lasso,
-    LeastSquares,
-    LeastSquaresSvm,
-    Ridge,
-    Solved,
-    TruncatedSvd,
-    instrumental,
-)
+from seatrial.regress.arithmetic import Arithmetic, LeastSquares, Solved, instrumental
 from seatrial.regress.features import Motion
-from seatrial.regress.machines import SupportVectors
-from seatrial.regress.operators import Central, Centred, Differenced, Euler, Operator, Smoothed, Weak
+from seatrial.regress.operators import Operator
 from seatrial.regress.system import System, systems
 from seatrial.simulate.replay import replay
 from seatrial.values import Array, Finding, Record
@@ -106,23 +96,3 @@ def gathered(model: Model, made: Sequence[System], solve: Callable[[System], Sol
         findings += solved.findings
         settings |= {f"{system.title}: {key}": value for key, value in solved.settings.items()}
     return Regressed(values, bias, tuple(findings), settings)
-
-
-def regressions(seconds: float) -> tuple[Estimator, ...]:
-    """The estimators of a comparison; windows of half width `seconds`."""
-    least_squares = LeastSquares()
-    return (
-        Regression("Euler differences, least squares", Euler(), least_squares),
-        Regression("Euler, differenced", Differenced(Euler()), least_squares),
-        Regression("Euler, differenced and centred", Centred(Differenced(Euler())), least_squares),
-        Regression("central differences, least squares", Central(), least_squares),
-        Regression("central differences, ridge", Central(), Ridge()),
-        Regression("central differences, truncated SVD", Central(), TruncatedSvd()),
-        Regression("central differences, Lasso", Central(), Lasso()),
-        Regression("central differences, least-squares SVM", Central(), LeastSquaresSvm()),
-        Regression("central differences, support vectors", Central(), SupportVectors()),
-        Regression("smoothed derivative, least squares", Smoothed(0.5 * seconds), least_squares),
-        Regression("weak form, least squares", Weak(seconds), least_squares),
-        Regression("weak form, ridge", Weak(seconds), Ridge()),
-        InstrumentalVariables("weak form, instrumental variables", Weak(seconds)),
-    )

@@ -38,6 +38,11 @@ class System:
         """The same equation in other units: coefficients stay, a tube or penalty means something else."""
         return replace(self, matrix=factor * self.matrix, target=factor * self.target)
 
+    def of(self, names: Sequence[str]) -> Self:
+        """Only these of its coefficients; the others are zero."""
+        kept = [self.names.index(n) for n in names]
+        return replace(self, names=tuple(names), matrix=self.matrix[:, kept])
+
     def in_units_of(self, column: Array) -> Self:
         """Columns over `column` (k,), so that the solution is multiplied by it."""
         return replace(self, matrix=self.matrix / column)
