@@ -1,0 +1,41 @@
+"""What the paper prints, held against itself and against the model's truth."""
+
+import pytest
+
+from seatrial.models.waterjet import COEFFICIENTS, TABLE_2, waterjet
+from seatrial.studies.song2025.crafts import MENDED, PRINTED, TRUTH
+from seatrial.studies.song2025.published import (
+    DRAUGHT,
+    LENGTH,
+    MASS,
+    MISPRINTED,
+    Column,
+    coefficients,
+    errors,
+)
+
+
+def test_the_cfd_column_with_n_v_turned_is_the_model_s_truth():
+    assert TRUTH.craft().parameters.values == pytest.approx(waterjet().parameters.values, abs=0.0)
+    differing = [n for n in COEFFICIENTS if coefficients(Column.CFD)[n] != TABLE_2[n]]
+    assert differing == ["N_v"]
+
+
+def test_particulars_are_the_model_s():
+    p = waterjet().parameters
+    assert [p[n].value for n in ("L", "d", "m")] == [LENGTH, DRAUGHT, MASS]
+
+
+def test_mending_turns_only_the_signs_named():
+    for printed, mended in zip(PRINTED, MENDED, strict=True):
+        turned = tuple(
+            n for n in COEFFICIENTS if printed.craft().parameters[n].value == -mended.craft().parameters[n].value
+        )
+        assert turned == tuple(n for n in COEFFICIENTS if n in MISPRINTED[printed.column])
+
+
+def test_improved_is_nearer_than_original_but_for_y_vv():
+    original, improved = errors(Column.ORIGINAL), errors(Column.IMPROVED)
+    farther = [n for n in COEFFICIENTS if abs(improved[n]) > abs(original[n])]
+    assert farther == ["Y_vv"]
+    assert improved["Y_vv"] == pytest.approx(-160.4, abs=0.1)
