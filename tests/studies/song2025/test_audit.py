@@ -9,13 +9,14 @@ from seatrial.studies.song2025 import audited_equations as equations
 from seatrial.studies.song2025 import audited_motions as motions
 from seatrial.studies.song2025 import audited_tables as tables
 from seatrial.studies.song2025.audit import audit
+from seatrial.studies.song2025.choices import choices
 from seatrial.studies.song2025.crafts import TRUTH, reference
 from seatrial.studies.song2025.published import APPROACH_SPEED, TABLE_3, Equation, Run
 
 
 @pytest.fixture(scope="module")
 def seen():
-    return audit()
+    return audit(choices()[1:3])
 
 
 def test_with_the_printed_n_v_the_turn_reverses_and_no_zigzag_finishes(seen):
@@ -33,6 +34,20 @@ def test_with_the_printed_y_vv_sway_is_driven_and_every_run_diverges(seen):
 def test_with_y_vv_turned_table_4_s_correlations_come_back(seen):
     for run in (Run.ZIGZAG_35, Run.TURN_35):
         assert all(cc > 0.995 for cc in seen.undamped.mended[run].cc.values())
+
+
+def test_the_signs_are_misprints_whatever_was_chosen(seen):
+    assert [h.choice for h in seen.held] == ["fresh water", "m_x 0.67 times"]
+    for of in seen.held:
+        assert of.confirms
+        assert min(of.cc.values()) > 0.995
+
+
+def test_choices_move_one_parameter_each():
+    values = [dict(c.values) for c in choices()]
+    assert values[0] == {}
+    assert all(len(v) == 1 for v in values[1:])
+    assert len({tuple(v.items()) for v in values}) == len(values)
 
 
 def test_alpha_v_makes_turns_differ_by_side(seen):

@@ -39,6 +39,12 @@ def test_the_mended_column_replayed_has_table_4_s_correlations(series):
     assert seen.replayed_accuracy.rmse["v"] == pytest.approx(printed.rmse["v"], abs=0.0015)
 
 
+def test_with_the_helmsman_in_the_loop_those_correlations_are_out_of_reach(series):
+    seen = outcome(IMPROVED, Run.CONSECUTIVE, series)
+    assert seen.steered_accuracy is not None
+    assert seen.steered_accuracy.cc["r"] < 0.0
+
+
 def test_no_printed_column_finishes_a_zigzag():
     for seen in outcomes(PRINTED, (Run.ZIGZAG_20,)):
         assert not seen.sailed.finished

@@ -1,5 +1,6 @@
 """What the paper's own equations and numbers say when they are worked through again: every misprint with evidence."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from seatrial.studies.song2025.audited_equations import (
@@ -29,6 +30,7 @@ from seatrial.studies.song2025.audited_tables import (
     implied_by_table_4,
     mass,
 )
+from seatrial.studies.song2025.choices import Choice, Held, held
 from seatrial.studies.song2025.crafts import reference
 from seatrial.studies.song2025.published import Equation, Run
 
@@ -51,6 +53,7 @@ class Audit:
         masses: table 1, in fresh and in salt water.
         thrust: the balance at the stated speed.
         implied: table 4.
+        held: the signs of N_v and Y_vv again, under other choices.
     """
 
     turn: ReversedTurn
@@ -64,10 +67,11 @@ class Audit:
     masses: tuple[Mass, Mass]
     thrust: Thrust
     implied: tuple[Implied, ...]
+    held: tuple[Held, ...]
 
 
-def audit() -> Audit:
-    """Everything (some 4 s)."""
+def audit(others: Sequence[Choice]) -> Audit:
+    """Everything: some 3 s, and .4 s for each of the `others` (`choices()` or some of them)."""
     series = reference(Run.CONSECUTIVE)
     of_features = conditions(series)
     return Audit(
@@ -82,4 +86,5 @@ def audit() -> Audit:
         (mass(FRESH), mass(SALT)),
         thrust(),
         implied_by_table_4(),
+        tuple(held(choice) for choice in others),
     )
