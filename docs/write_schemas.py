@@ -3,10 +3,11 @@
 import json
 from pathlib import Path
 
+from seatrial.trial.design_json import design_schema
 from seatrial.trial.fit_json import fit_schema
 from seatrial.trial.schema import trial_schema
 
 if __name__ == "__main__":
-    for name, schema in (("result", fit_schema()), ("trial", trial_schema())):
+    for name, schema in (("design", design_schema()), ("result", fit_schema()), ("trial", trial_schema())):
         path = Path(__file__).with_name(f"{name}.schema.json")
         path.write_text(json.dumps(schema, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The commands as functions that take and give values: check, identify, simulate, report, demo, reproduce.
+"""The commands as functions of values: check, identify, design, simulate, report, demo, reproduce.
 
 import seatrial.verbs as sea
 
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from seatrial.equations import Model
-    from seatrial.results import Extrapolation, Fit, Study
+    from seatrial.results import Design, Extrapolation, Fit, Study
     from seatrial.trial import Trial
     from seatrial.trial.model_file import ModelFile
     from seatrial.values import Finding, Record
@@ -117,6 +117,55 @@ def load_model(path: str | Path, own_model: "Model | None" = None) -> "ModelFile
     from seatrial.trial.model_file import read_model_file
 
     return read_model_file(path, own_model)
+
+
+def design(
+    trial: "Trial",
+    seed: int = 0,
+    progress: Progress | None = None,
+    prior: "ModelFile | None" = None,
+) -> "Design":
+    """The manoeuvre that tells the trial's coefficients best within its limits, beside the standard ones.
+
+    Args:
+        seed: of the search, of the ships drawn from the prior, and of the noise that confirms the design.
+        prior: a model file of `identify`; its values and their covariance take the place of the trial's.
+
+    Raises:
+        InputError: the trial has no [design], its sensors or inputs do not fit the model, the model file holds another
+            model, or nothing keeps within the limits.
+    """
+    from seatrial.models.ahead import Ahead
+
+    compiling = Ahead(trial.model.name)
+    from seatrial.design.asked import task_of
+    from seatrial.design.design import design
+
+    task = task_of(trial, prior)
+    compiling.finish()
+    return design(task, seed=seed, progress=progress or (lambda _: None))
+
+
+def save_design(design: "Design", folder: str | Path) -> Path:
+    """Write ``report.html``, ``orders.csv``, ``plan.csv`` and ``design.json`` of a design; returns the report's path.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    from seatrial.read.table import record_text
+    from seatrial.report.design import html
+    from seatrial.trial.design_json import design_json
+    from seatrial.trial.fit_json import strict_json
+    from seatrial.trial.orders import orders_text
+    from seatrial.values.files import write_together
+
+    texts = {
+        "orders.csv": orders_text(design),
+        "plan.csv": record_text(design.plan),
+        "design.json": strict_json(design_json(design)),
+        "report.html": html(design),
+    }
+    return write_together(Path(folder), {name: text.encode() for name, text in texts.items()}) / "report.html"
 
 
 Steering = Callable[["Model"], "Record"]
@@ -238,15 +287,21 @@ def run_of(trial: "Trial | str | Path", name: str) -> "Record":
     return record if known.estimate.rate is None else record.resampled(known.estimate.rate)
 
 
-def replay(model: "ModelFile", record: "Record") -> "Record":
-    """The model driven by the inputs of a record, from the record's first sample.
+def replay(model: "ModelFile", record: "Record", speed: float | None = None) -> "Record":
+    """The model driven by the inputs of a record, from the record's first sample; a planned one from a straight run.
+
+    Args:
+        speed: approach speed of a planned record, m/s; without it the speed at which surge balances.
 
     Raises:
         InputError: an input channel is missing, or the simulation diverges.
     """
     from seatrial.simulate import replay
+    from seatrial.simulate.approach import straight_run
+    from seatrial.values import Kind
 
-    return replay(model.model, record)
+    start = straight_run(model.model, record, speed) if record.kind is Kind.PLANNED else None
+    return replay(model.model, record, start)
 
 
 def differences(measured: "Record", simulated: "Record") -> dict[str, float]:

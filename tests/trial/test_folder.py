@@ -23,6 +23,7 @@ from seatrial.results import (
     Solution,
     Status,
 )
+from seatrial.trial.design_json import design_schema
 from seatrial.trial.fit_json import FitDocument, fit_json, fit_schema, strict_json
 from seatrial.trial.folder import load_fit, save_fit
 from seatrial.trial.schema import trial_schema
@@ -220,7 +221,9 @@ def test_a_folder_without_a_result_is_refused(tmp_path: Path) -> None:
         load_fit(tmp_path)
 
 
-@pytest.mark.parametrize(("name", "schema"), [("result", fit_schema), ("trial", trial_schema)])
+@pytest.mark.parametrize(
+    ("name", "schema"), [("design", design_schema), ("result", fit_schema), ("trial", trial_schema)]
+)
 def test_the_published_schemas_are_those_in_force(name: str, schema, repository: Path) -> None:
     published = json.loads((repository / "docs" / f"{name}.schema.json").read_text())
     assert published == schema(), f"write docs/{name}.schema.json again: python docs/write_schemas.py"

@@ -7,11 +7,19 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from seatrial.cli.output import print_findings, print_fit, print_measures, print_study, progress, write_json
+from seatrial.cli.output import (
+    print_design,
+    print_findings,
+    print_fit,
+    print_measures,
+    print_study,
+    progress,
+    write_json,
+)
 
 if TYPE_CHECKING:
     from seatrial.equations import Model
-    from seatrial.results import Fit
+    from seatrial.results import Design, Fit
 
 app = typer.Typer(
     name="seatrial",
@@ -114,6 +122,40 @@ def identify(
 
 
 @app.command()
+def design(
+    trial: TrialPath,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where report, orders, plan and design.json go.")],
+    prior: Annotated[
+        Path | None, typer.Option("--from", metavar="MODEL.toml", help="Design for what identify found before.")
+    ] = None,
+    model: OwnModel = None,
+    json: Json = None,
+    seed: Seed = 0,
+) -> None:
+    """Find the manoeuvre that tells the coefficients best within the limits of the trial's [design] table.
+
+    Example: seatrial design examples/waterjet_design.toml --out results/plan
+
+    After a first trial: --from results/waterjet/model.toml designs for the coefficients it gave.
+    """
+    from seatrial import verbs
+    from seatrial.values.files import writable_folder
+
+    writable_folder(out)
+    own = _own(model)
+    asked = verbs.load_trial(trial, own)
+    known = None if prior is None else verbs.load_model(prior, own)
+    with progress() as tell:
+        found = verbs.design(asked, seed=seed, progress=tell, prior=known)
+        tell("report")
+        page = verbs.save_design(found, out)
+    print_design(found)
+    write_json(json, lambda: _design_json(found))
+    print(f"orders: {out / 'orders.csv'}")
+    print(f"report: {page}")
+
+
+@app.command()
 def simulate(
     model_file: Annotated[Path, typer.Argument(metavar="MODEL.toml", help="Model file, as identify writes it.")],
     out: Annotated[Path, typer.Option("--out", metavar="FILE", help="Simulated record (CSV).")],
@@ -155,7 +197,7 @@ def simulate(
     measured, intervals = None, {}
     if inputs is not None:
         measured = read_table(Path(inputs)) if trial is None else verbs.run_of(trial, inputs)
-        record = verbs.replay(file, measured)
+        record = verbs.replay(file, measured, speed)
     else:
         held = dict(_pair(text) for text in constant or [])
         steer = verbs.steering(
@@ -284,3 +326,9 @@ def _fit_json(fit: "Fit") -> dict[str, Any]:
     from seatrial.trial.fit_json import fit_json
 
     return fit_json(fit)
+
+
+def _design_json(found: "Design") -> dict[str, Any]:
+    from seatrial.trial.design_json import design_json
+
+    return design_json(found)

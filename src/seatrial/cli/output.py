@@ -7,11 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from seatrial.results import Extrapolation, Fit, Prediction, Study
+    from seatrial.results import Design, Extrapolation, Fit, Prediction, Study, Worth
     from seatrial.values import Finding
 
 FAR = 1.2
 BEYOND = ": beyond the training runs, read its intervals as lower limits"
+FIRST_ORDERS = 8
 SEVERITY_MARK = {"error": "ERROR  ", "warning": "warning", "info": "note   "}
 
 
@@ -110,6 +111,44 @@ def print_study(study: "Study") -> None:
     for check in study.checks:
         limit = check.limit if isinstance(check.limit, str) else f"{check.limit:.4g}"
         print(f"  {'holds' if check.holds else 'FAILS':10s} {check.name}: {check.value:.4g} (limit {limit})")
+
+
+def print_design(design: "Design") -> None:
+    """What the manoeuvre found is worth beside the standard ones, and how the helmsman's table begins."""
+    from seatrial.trial.orders import heads, row
+
+    print(
+        f"{'relative std. error, %':24s} {'worst':>8s} {'mean':>8s} {'any ship':>9s} {'drift deg':>10s} {'room m':>8s}"
+    )
+    for worth in (design.designed, *sorted(design.rivals, key=lambda one: one.worst)):
+        _print_worth(worth, design)
+    if design.confirmation is not None:
+        known = design.confirmation
+        pairs = (100.0 * max(values) for values in (known.error, known.bound))
+        print("{} of {} fits of simulated trials succeed: worst error {:.3g} %, {:.3g} % foretold".format(
+            known.converged, known.runs, *pairs))  # fmt: skip
+    for finding in design.findings:
+        print(f"{SEVERITY_MARK[finding.severity.value]} [{finding.code}] {finding.text}")
+    lines = [heads(design.actuators), *(row(order, design.actuators) for order in design.orders[:FIRST_ORDERS])]
+    print("\n".join("".join(f"{cell:>12s}" for cell in line) for line in lines))
+    if len(design.orders) > FIRST_ORDERS:
+        print(f"  ... and {len(design.orders) - FIRST_ORDERS} more orders in orders.csv")
+    print(f"{design.solution.status.value}; {design.elapsed_s:.1f} s")
+
+
+def _print_worth(worth: "Worth", design: "Design") -> None:
+    import math
+
+    from seatrial.results.worths import diverged, keeps, worst_drawn
+
+    drawn = worst_drawn(worth)
+    cells = [f"{100.0 * value:8.3g}" for value in (worth.worst, worth.mean)]
+    cells.append(f"{'' if math.isnan(drawn) else f'{100.0 * drawn:.3g}':>9s}")
+    cells += [f"{math.degrees(worth.drift):10.3g}", f"{worth.room:8.4g}"]
+    notes = [f"{diverged(worth)} ships lost"] * bool(diverged(worth)) + ["leaves the limits"] * (
+        not keeps(worth, design.limits)
+    )
+    print(f"{worth.name:24s} {' '.join(cells)}  {', '.join(notes)}".rstrip())
 
 
 @contextmanager

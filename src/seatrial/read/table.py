@@ -13,18 +13,23 @@ from seatrial.values.files import write_whole
 
 
 def write_record(record: Record, path: Path) -> None:
-    """Write `record` as CSV: a comment line with the metadata, ``time [s],u [m/s],...``, then one line a sample.
-
-    Numbers in shortest exact form, NaN as an empty cell; the file appears whole or not at all.
+    """Write `record_text` to a file, whole or not at all.
 
     Raises:
         InputError: the place cannot be written.
     """
+    write_whole(path, record_text(record).encode())
+
+
+def record_text(record: Record) -> str:
+    """The record as CSV: a comment line with the metadata, ``time [s],u [m/s],...``, then one line a sample.
+
+    Numbers in shortest exact form, NaN as an empty cell.
+    """
     header = ["time [s]", *(f"{symbol} [{channel.unit}]" for symbol, channel in record.channels.items())]
     columns = [record.time, *(channel.values for channel in record.channels.values())]
     rows = (",".join(map(_cell, row)) for row in np.stack(columns, axis=1).tolist())
-    text = "\n".join([f"{TABLE_MARK} {json.dumps(record.metadata)}", ",".join(header), *rows]) + "\n"
-    write_whole(path, text.encode())
+    return "\n".join([f"{TABLE_MARK} {json.dumps(record.metadata)}", ",".join(header), *rows]) + "\n"
 
 
 def read_table(path: Path) -> Record:

@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.simulate.channels import AT_REST
-from seatrial.values import Array, InputError, nearest
+from seatrial.simulate.channels import AT_REST, inputs_of
+from seatrial.values import Array, InputError, Record, nearest
 
 _FASTEST = 100.0
 
@@ -52,6 +52,18 @@ def approach_speed(model: Model, held: Array) -> float:
         if surge(low) > 0.0 >= surge(high):
             return float(brentq(surge, low, high, xtol=1e-12))
     raise InputError(f"model '{model.name}' has no steady speed ahead with these inputs; give the approach speed")
+
+
+def straight_run(model: Model, plan: Record, speed: float | None = None) -> dict[str, float]:
+    """Where a planned record starts: on a straight course at u = `speed`, or where surge balances; all else zero.
+
+    Raises:
+        InputError: as `inputs_of` and `approach_speed`.
+    """
+    start = dict.fromkeys(model.states, 0.0)
+    if "u" in start:
+        start["u"] = approach_speed(model, inputs_of(model, plan)[0]) if speed is None else speed
+    return start
 
 
 def time_unit(model: Model, start: Array, known: float | None) -> float:

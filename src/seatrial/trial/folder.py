@@ -5,8 +5,6 @@ Its schema is documented in docs/result-folder.md.
 
 import hashlib
 import json
-import shutil
-import tempfile
 from pathlib import Path
 
 from seatrial.equations import Model
@@ -17,7 +15,7 @@ from seatrial.trial.fit_json import fit_json, strict_json
 from seatrial.trial.fit_table import band_arrays, detail_table, fit_from
 from seatrial.trial.model_file import ModelFile, model_text, parsed_model, provenance_of
 from seatrial.values import Array, InputError
-from seatrial.values.files import writable_folder
+from seatrial.values.files import write_together
 
 FORMAT = 1
 
@@ -28,20 +26,7 @@ def save_fit(fit: Fit, folder: str | Path) -> Path:
     Raises:
         InputError: the folder cannot be written.
     """
-    folder = writable_folder(Path(folder))
-    contents = _contents(fit)
-    folder.mkdir(parents=True, exist_ok=True)
-    staging = Path(tempfile.mkdtemp(dir=folder, prefix=".writing-"))
-    try:
-        for name, content in contents.items():
-            (staging / name).write_bytes(content)
-        for name in contents:
-            (staging / name).replace(folder / name)
-    except OSError as error:
-        raise InputError(f"folder '{folder}' cannot be written ({error.strerror}); choose another with --out") from None
-    finally:
-        shutil.rmtree(staging, ignore_errors=True)
-    return folder
+    return write_together(Path(folder), _contents(fit))
 
 
 def load_fit(folder: str | Path, own_model: Model | None = None) -> Fit:

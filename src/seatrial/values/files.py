@@ -1,7 +1,9 @@
 """Files written whole or not at all."""
 
 import os
+import shutil
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 from seatrial.values.errors import InputError
@@ -25,6 +27,27 @@ def write_whole(path: Path, content: bytes) -> None:
         if temporary:
             Path(temporary).unlink(missing_ok=True)
         raise InputError(f"'{path}' cannot be written ({error.strerror}); choose another place") from None
+
+
+def write_together(folder: Path, contents: Mapping[str, bytes]) -> Path:
+    """Write files of a folder beside it first, then move them in; others in it are left alone. Returns the folder.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    folder = writable_folder(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    staging = Path(tempfile.mkdtemp(dir=folder, prefix=".writing-"))
+    try:
+        for name, content in contents.items():
+            (staging / name).write_bytes(content)
+        for name in contents:
+            (staging / name).replace(folder / name)
+    except OSError as error:
+        raise InputError(f"folder '{folder}' cannot be written ({error.strerror}); choose another place") from None
+    finally:
+        shutil.rmtree(staging, ignore_errors=True)
+    return folder
 
 
 def writable_folder(folder: Path) -> Path:

@@ -38,14 +38,14 @@ def directions(items: Sequence[Direction]) -> str:
         return ""
     spreads = [100.0 * d.standard_deviation for d in items]
     names = [combination(d) for d in items]
-    panel = _panel(names, [s for s in spreads if math.isfinite(s) and s > 0], (1.0, 1000.0))
+    panel = decade_panel(names, [s for s in spreads if math.isfinite(s) and s > 0], (1.0, 1000.0))
     ends = (panel.x[0], math.log10(WELL), math.log10(NOT), panel.x[1])
     parts = []
     for k, (zone, label) in enumerate(zip(_ZONES, ("told well", "told vaguely", "not told"), strict=True)):
         left, right = float(panel.px(ends[k])), float(panel.px(ends[k + 1]))
         parts.append(rectangle(left, panel.top, right - left, panel.height, zone))
         parts.append(text((left + right) / 2, panel.top - 7, label, anchor="middle", colour=_colour(k), size=10.5))
-    parts.append(_axis(panel, " %", "standard deviation along the combination, per cent of the coefficients"))
+    parts.append(decade_axis(panel, " %", "standard deviation along the combination, per cent of the coefficients"))
     parts += [_edge(panel, limit) for limit in (WELL, NOT)]
     for k, (name, spread) in enumerate(zip(names, spreads, strict=True)):
         y = float(panel.py(k))
@@ -59,8 +59,10 @@ def sensitivities(items: Sequence[Sensitivity]) -> str:
     known = [s for s in items if math.isfinite(s.effect) and s.effect > 0]
     if not known:
         return ""
-    panel = _panel([s.parameter for s in known], [s.effect for s in known], (0.1, 10.0))
-    parts = [_axis(panel, "", "change of the compared outputs for 10 % of the coefficient, in units of their noise")]
+    panel = decade_panel([s.parameter for s in known], [s.effect for s in known], (0.1, 10.0))
+    parts = [
+        decade_axis(panel, "", "change of the compared outputs for 10 % of the coefficient, in units of their noise")
+    ]
     for k, s in enumerate(known):
         y = float(panel.py(k))
         parts.append(text(panel.left - 8, y + 4, s.parameter, anchor="end", size=10.5))
@@ -85,15 +87,16 @@ def _part(part: float) -> str:
     return "" if rounded == "1.00" else rounded.removeprefix("0") + " "
 
 
-def _panel(names: Sequence[str], values: Sequence[float], least: tuple[float, float]) -> Panel:
+def decade_panel(names: Sequence[str], values: Sequence[float], least: tuple[float, float], top: float = TOP) -> Panel:
     """Whole decades about the values, at least those of `least`; room for the names at the left."""
     low = math.floor(math.log10(min([*values, least[0]])))
     high = math.ceil(math.log10(max([*values, least[1]])))
     margin = min(0.45 * WIDTH, _LETTER * max(len(name) for name in names) + 14)
-    return Panel(margin, TOP, WIDTH - margin - 24, ROW * len(names), (low, high), (-0.5, len(names) - 0.5), down=True)
+    return Panel(margin, top, WIDTH - margin - 24, ROW * len(names), (low, high), (-0.5, len(names) - 0.5), down=True)
 
 
-def _axis(panel: Panel, unit: str, name: str) -> str:
+def decade_axis(panel: Panel, unit: str, name: str) -> str:
+    """Decades as grid lines with their numbers, the name below."""
     bottom = panel.top + panel.height
     parts = []
     for decade in range(int(panel.x[0]), int(panel.x[1]) + 1):

@@ -1,0 +1,46 @@
+"""Manoeuvres compared: what a worth is over the ships drawn from the prior, and which standard one is best."""
+
+import math
+
+import numpy as np
+
+from seatrial.results.design import Design, Limits, Worth
+
+ROUNDING = 1e-6
+
+
+def error_of(worth: Worth, criterion: str) -> float:
+    """The relative standard error that the criterion ``worst`` or ``mean`` looks at."""
+    return worth.worst if criterion == "worst" else worth.mean
+
+
+def drawn_errors(worth: Worth, criterion: str) -> list[float]:
+    """The same for each ship drawn from the prior; NaN where the simulation diverges."""
+    if criterion == "worst":
+        return [float(row.max()) for row in worth.drawn]
+    return [float((row**2).mean() ** 0.5) for row in worth.drawn]
+
+
+def worst_drawn(worth: Worth) -> float:
+    """Largest relative standard error over all drawn ships that do not diverge; NaN where there is none."""
+    known = worth.drawn[~np.isnan(worth.drawn).any(axis=1)] if worth.drawn.size else worth.drawn
+    return float(known.max()) if known.size else math.nan
+
+
+def diverged(worth: Worth) -> int:
+    """How many of the drawn ships the simulation loses."""
+    return sum(bool(np.isnan(row).any()) for row in worth.drawn)
+
+
+def best_rival(design: Design) -> Worth | None:
+    """The standard manoeuvre with the smallest error by the design's criterion, of those within its limits if any are.
+
+    None where none was tried.
+    """
+    within = [rival for rival in design.rivals if keeps(rival, design.limits)]
+    return min(within or design.rivals, key=lambda rival: error_of(rival, design.criterion), default=None)
+
+
+def keeps(worth: Worth, limits: Limits) -> bool:
+    """Whether drift angle and distance stay within the limits for all ships that were simulated."""
+    return worth.drift <= limits.drift * (1.0 + ROUNDING) and worth.room <= limits.room * (1.0 + ROUNDING)
