@@ -13,7 +13,7 @@ from seatrial.models import model_named
 from seatrial.trial.model_file import ModelFile, write_model
 from seatrial.values import Ship
 
-COMMANDS = ("check", "identify", "simulate", "report", "demo", "reproduce")
+COMMANDS = ("check", "identify", "design", "simulate", "report", "demo", "reproduce")
 HEAVY = ("numpy", "numba", "sympy", "pandas", "pydantic", "matplotlib", "scipy")
 
 

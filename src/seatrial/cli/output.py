@@ -117,9 +117,7 @@ def print_design(design: "Design") -> None:
     """What the manoeuvre found is worth beside the standard ones, and how the helmsman's table begins."""
     from seatrial.trial.orders import heads, row
 
-    print(
-        f"{'relative std. error, %':24s} {'worst':>8s} {'mean':>8s} {'any ship':>9s} {'drift deg':>10s} {'room m':>8s}"
-    )
+    print(f"{'relative std. error, %':24s} {'worst':>8s} {'mean':>8s} {'drawn':>9s} {'drift deg':>10s} {'room m':>8s}")
     for worth in (design.designed, *sorted(design.rivals, key=lambda one: one.worst)):
         _print_worth(worth, design)
     if design.confirmation is not None:
@@ -133,7 +131,7 @@ def print_design(design: "Design") -> None:
     print("\n".join("".join(f"{cell:>12s}" for cell in line) for line in lines))
     if len(design.orders) > FIRST_ORDERS:
         print(f"  ... and {len(design.orders) - FIRST_ORDERS} more orders in orders.csv")
-    print(f"{design.solution.status.value}; {design.elapsed_s:.1f} s")
+    print(f"{design.solution.evaluations} manoeuvres tried; {design.elapsed_s:.1f} s")
 
 
 def _print_worth(worth: "Worth", design: "Design") -> None:
@@ -145,9 +143,9 @@ def _print_worth(worth: "Worth", design: "Design") -> None:
     cells = [f"{100.0 * value:8.3g}" for value in (worth.worst, worth.mean)]
     cells.append(f"{'' if math.isnan(drawn) else f'{100.0 * drawn:.3g}':>9s}")
     cells += [f"{math.degrees(worth.drift):10.3g}", f"{worth.room:8.4g}"]
-    notes = [f"{diverged(worth)} ships lost"] * bool(diverged(worth)) + ["leaves the limits"] * (
-        not keeps(worth, design.limits)
-    )
+    lost = diverged(worth)
+    notes = [f"{lost} ship{'s' * (lost != 1)} lost"] if lost else []
+    notes += [] if keeps(worth, design.limits) else ["leaves the limits"]
     print(f"{worth.name:24s} {' '.join(cells)}  {', '.join(notes)}".rstrip())
 
 

@@ -9,6 +9,7 @@ from seatrial.equations import Model
 from seatrial.simulate.channels import AT_REST, inputs_of
 from seatrial.values import Array, InputError, Record, nearest
 
+RUDDER = "delta"
 _FASTEST = 100.0
 
 
@@ -55,14 +56,20 @@ def approach_speed(model: Model, held: Array) -> float:
 
 
 def straight_run(model: Model, plan: Record, speed: float | None = None) -> dict[str, float]:
-    """Where a planned record starts: on a straight course at u = `speed`, or where surge balances; all else zero.
+    """Where a planned record starts: on a straight course at u = `speed`, all else zero.
+
+    Without a speed it is the one at which surge balances with the plan's first inputs, rudder amidships.
 
     Raises:
         InputError: as `inputs_of` and `approach_speed`.
     """
     start = dict.fromkeys(model.states, 0.0)
-    if "u" in start:
-        start["u"] = approach_speed(model, inputs_of(model, plan)[0]) if speed is None else speed
+    if "u" in start and speed is not None:
+        start["u"] = speed
+    elif "u" in start:
+        first = inputs_of(model, plan)[0].copy()
+        first[[name == RUDDER for name in model.input_names]] = 0.0
+        start["u"] = approach_speed(model, first)
     return start
 
 

@@ -10,13 +10,12 @@ from seatrial.equations import Model
 from seatrial.kernels.steering import steer
 from seatrial.manoeuvres.programme import Programme
 from seatrial.manoeuvres.steering import FINISHED, NOT_FINISHED, Steering, rudder_angles
-from seatrial.simulate.approach import approach_speed, held_inputs, time_unit
+from seatrial.simulate.approach import RUDDER, approach_speed, held_inputs, time_unit
 from seatrial.simulate.bounds import demand_bounded
 from seatrial.simulate.channels import record_of
 from seatrial.simulate.replay import trajectory
 from seatrial.values import Array, InputError, Provenance, Record, frozen
 
-RUDDER = "delta"
 # 35 deg to 30 deg on the other side in 28 s: SOLAS, chapter II-1, regulation 29.3.2
 SOLAS_SLEW_RATE = math.radians(65.0 / 28.0)
 

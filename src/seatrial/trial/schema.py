@@ -346,7 +346,7 @@ class DesignTable(Strict):
     held: dict[str, SiAmount] = {}
     speed: SiAmount | None = None
     criterion: Literal["worst", "mean"] = "worst"
-    draws: Annotated[int, Field(ge=0)] = 12
+    draws: Annotated[int, Field(ge=0)] = 16
     prior_percent: Annotated[float, Field(gt=0)] = 30.0
     drift: SiAmount | None = None
     sea_room: SiAmount | None = None

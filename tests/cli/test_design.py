@@ -1,0 +1,146 @@
+"""`seatrial design`: the folder whole or not at all, tables people read, a plan that replays, JSON as documented."""
+
+import csv
+import json
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from report.designed import fabricated_design
+from seatrial import cli, verbs
+from seatrial.models import model_named
+from seatrial.read import read_table
+from seatrial.results import Order
+from seatrial.trial.design_json import DesignDocument
+from seatrial.trial.model_file import ModelFile, write_model
+from seatrial.trial.orders import orders_text
+from seatrial.values import InputError, Kind, Ship
+
+TRIAL = """
+[ship]
+name = "craft"
+L = 9.8
+[model]
+name = "waterjet"
+[noise]
+u = 0.02
+[design]
+duration = 120
+rate = 5
+[design.inputs.delta]
+lower = -35
+upper = 35
+unit = "deg"
+hold = 6
+[design.held]
+v_j = 1.866
+"""
+
+
+def run(monkeypatch: pytest.MonkeyPatch, *arguments: str | Path) -> int:
+    monkeypatch.setattr(sys, "argv", ["seatrial", *map(str, arguments)])
+    with pytest.raises(SystemExit) as ending:
+        cli.main()
+    return int(ending.value.code or 0)
+
+
+@pytest.fixture
+def trial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A trial file; the search is replaced by a design nobody searched."""
+    monkeypatch.setattr("seatrial.verbs.design", lambda *_, **__: fabricated_design())
+    path = tmp_path / "trial.toml"
+    path.write_text(TRIAL)
+    return path
+
+
+def test_it_writes_four_files_and_prints_what_they_say(
+    trial: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    out = tmp_path / "new" / "plan"
+    assert run(monkeypatch, "design", trial, "--out", out, "--json", tmp_path / "d.json") == 0
+    assert sorted(p.name for p in out.iterdir()) == ["design.json", "orders.csv", "plan.csv", "report.html"]
+    said = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in said[1:5]] == ["designed", "prbs:35:10", "zigzag:20/20", "turning-circle:35"]
+    assert said[2].endswith("1 ship lost") and said[4].endswith("leaves the limits")
+    assert "39 of 40 fits of simulated trials succeed: worst error 10 %, 9 % foretold" in said
+    assert any("and 12 more orders" in line for line in said)
+    assert json.loads((tmp_path / "d.json").read_text()) == json.loads((out / "design.json").read_text())
+
+
+def test_the_plan_replays(trial: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    model, run_file = tmp_path / "model.toml", tmp_path / "run.csv"
+    write_model(ModelFile(model_named("waterjet"), ship=Ship("craft", {"L": 9.8})), model)
+    assert run(monkeypatch, "design", trial, "--out", tmp_path / "plan") == 0
+    assert run(monkeypatch, "simulate", model, "--inputs", tmp_path / "plan" / "plan.csv", "--out", run_file) == 0
+    plan, sailed = read_table(tmp_path / "plan" / "plan.csv"), read_table(run_file)
+    assert plan.kind is Kind.PLANNED
+    assert np.array_equal(sailed["delta"], plan["delta"])
+    assert (sailed["v"][0], sailed["r"][0], sailed["psi"][0]) == (0.0, 0.0, 0.0)
+    straight = verbs.simulate(verbs.load_model(model), "zigzag:20/20", inputs={"v_j": 1.866}, duration=1.0)
+    assert sailed["u"][0] == straight["u"][0]
+
+
+def test_a_plan_starts_at_the_speed_that_is_said() -> None:
+    file = ModelFile(model_named("waterjet"), ship=Ship("craft", {"L": 9.8}))
+    assert verbs.replay(file, fabricated_design().plan, 1.25)["u"][0] == 1.25
+
+
+def test_orders_are_in_people_s_units() -> None:
+    design = fabricated_design()
+    rows = list(csv.reader(orders_text(design).splitlines()))
+    assert rows[0] == ["time [s]", "delta [deg]"]
+    assert [float(cell) for cell in rows[2]] == [6.0, pytest.approx(np.degrees(design.orders[1].values["delta"]))]
+    assert orders_text(replace(design, orders=(Order(3.0, {}),))).splitlines()[1] == "3,"
+
+
+def test_json_is_as_documented_and_holds_no_infinity(tmp_path: Path) -> None:
+    design = fabricated_design()
+    blind = replace(design.designed, relative=np.full(11, np.inf))
+    verbs.save_design(replace(design, designed=blind), tmp_path)
+    table = json.loads((tmp_path / "design.json").read_text())
+    assert DesignDocument.model_validate(table).designed.worst is None
+    assert table["rivals"][1]["diverged"] == 1 and table["rivals"][1]["drawn"][2]["X_uu"] is None
+    assert table["orders"][0] == {"time": 0.0, "values": {"delta": pytest.approx(-0.50614548)}}
+    assert list(table["designed"]["relative"]) == list(design.coefficients)
+
+
+def test_a_search_that_refuses_leaves_nothing_behind(
+    trial: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    def refused(*_: object, **__: object) -> None:
+        raise InputError("design.drift: even a straight run leaves it; allow more")
+
+    monkeypatch.setattr("seatrial.verbs.design", refused)
+    assert run(monkeypatch, "design", trial, "--out", tmp_path / "plan") == 2
+    assert capsys.readouterr().err.endswith("seatrial: design.drift: even a straight run leaves it; allow more\n")
+    assert not (tmp_path / "plan").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("--from", "absent.toml"), "model file 'absent.toml' cannot be read"),
+        (("--model", "absent.py"), "absent.py"),
+    ],
+)
+def test_files_that_are_not_there_are_said(
+    trial: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture,
+    arguments: tuple[str, ...], says: str,
+) -> None:  # fmt: skip
+    assert run(monkeypatch, "design", trial, "--out", tmp_path / "plan", *arguments) == 2
+    assert says in capsys.readouterr().err
+    assert not (tmp_path / "plan").exists()
+
+
+@pytest.mark.parametrize("command", ["check", "identify"])
+def test_a_trial_without_records_is_only_designed(
+    command: str, trial: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    out = ("--out", tmp_path / "fit") if command == "identify" else ()
+    assert run(monkeypatch, command, trial, *out) == 2
+    said = capsys.readouterr().err.strip()
+    assert said.endswith("there are no [[records]] to read; add them, or plan a trial with 'seatrial design'")
+    assert said.count("\n") == 0
