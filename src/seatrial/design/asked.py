@@ -14,7 +14,7 @@ def task_of(trial: Trial, known: ModelFile | None = None) -> Task:
         known: its values, freedom and covariance take the place of the trial's.
 
     Raises:
-        InputError: the trial has no [design], the model file holds other equations, a coefficient is zero, or what
+        InputError: the trial has no [design], the model file holds other equations, a coefficient has no size, or what
             `Task` refuses; the sentence begins with the trial file.
     """
     where = f"{trial.path}: " if trial.path else ""
@@ -57,7 +57,7 @@ def _of_same_equations(known: Model, model: Model) -> Model:
 
 def _demand_sizes(model: Model) -> None:
     for p in model.parameters.free:
-        if p.value == 0.0:
+        if p.value == 0.0 and p.scale == 0.0:
             raise InputError(
                 f"coefficient '{p.name}' is zero, so that nothing can be relative to it; "
                 "give it a likely value under [model.start], or leave it out of model.free"

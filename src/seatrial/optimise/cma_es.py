@@ -35,20 +35,26 @@ class AdaptationSettings:
 
 
 class CovarianceAdaptation(Population):
-    """The package's strategy in the unit box, started from the box's centre; done when it says so, too.
+    """The package's strategy in the unit box, from `start` or the box's centre; done when it says so, too.
 
     It remembers no fitness from one generation to the next but that of the best point, so there is nothing to
     re-evaluate. Points of infinite fitness rank last.
     """
 
-    def __init__(self, box: Box, generator: np.random.Generator, settings: AdaptationSettings | None = None) -> None:
+    def __init__(
+        self,
+        box: Box,
+        generator: np.random.Generator,
+        settings: AdaptationSettings | None = None,
+        start: Array | None = None,
+    ) -> None:
         from cmaes import CMA
 
         self.settings = settings or AdaptationSettings()
         super().__init__(box, generator, self.settings.iterations)
         unit = np.stack([np.zeros(box.size), np.ones(box.size)], axis=1)
         self._strategy = CMA(
-            mean=np.full(box.size, 0.5),
+            mean=np.full(box.size, 0.5) if start is None else (start - box.lower) / box.width,
             sigma=self.settings.step,
             bounds=unit,
             n_max_resampling=self.settings.resampling,

@@ -1,0 +1,107 @@
+"""A task in, a design out: standard manoeuvres measured, orders searched, both scored finely, the best confirmed."""
+
+import math
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from seatrial.design.confirm import confirmed
+from seatrial.design.orders import inputs, plan, split, table
+from seatrial.design.rivals import rivals
+from seatrial.design.search import GENERATIONS, Yardstick, coarse, finer, search
+from seatrial.design.ships import ships, spread
+from seatrial.design.task import Task
+from seatrial.design.worth import Bench, executed, worth
+from seatrial.information.symmetries import refuse_structural
+from seatrial.results import Design, Worth
+from seatrial.values import Array, Finding, Severity
+from seatrial.values.versions import versions
+
+CONFIRMED_WITH = 20
+_FAR_DRIFT = math.radians(45.0)
+
+
+def design(
+    task: Task,
+    seed: int = 0,
+    progress: Callable[[str], None] = lambda _: None,
+    confirming: int = CONFIRMED_WITH,
+    generations: int = GENERATIONS,
+) -> Design:
+    """The manoeuvre that tells the task's coefficients best within its limits, beside the standard ones.
+
+    Args:
+        seed: of the ships, the search and the noise; the same seed gives the same bits.
+        confirming: simulated trials that are fitted to confirm the bound; 0: none.
+        generations: of the evolution strategy.
+
+    Raises:
+        InputError: no record of these sensors could tell the coefficients apart, or the limits cannot be kept.
+    """
+    began = time.perf_counter()
+    refuse_structural(task.model, tuple(task.sensors), ())
+    seeds = np.random.SeedSequence(seed).generate_state(3)
+    bench = Bench(task, ships(task, int(seeds[0])), coarse(task))
+    progress("standard manoeuvres")
+    yardstick = Yardstick.of(bench, rivals(bench))
+    found = search(yardstick, int(seeds[1]), progress, generations)
+    fine, orders = finer(bench), split(task, found.solution.point)
+    made = inputs(task, orders, fine.dt)
+    planned = plan(task, made, fine.dt)
+    progress("scoring at the sensors' rate")
+    designed = worth("designed", fine, made, executed(task, planned, "designed"))
+    others = tuple(_scored(task, fine, rival.name, rival.made) for rival in rivals(fine))
+    tried = None
+    if confirming and not found.is_interrupted:
+        tried = confirmed(task, made, planned, ships(task, int(seeds[2]), confirming - 1), int(seeds[2]), progress)
+    return Design(
+        question=task.question or f"Which manoeuvre tells the coefficients of {task.ship.name} best?",
+        ship=task.ship.name,
+        model=task.model,
+        coefficients=task.model.parameters.free_names,
+        sensors=dict(task.sensors),
+        rate=task.rate,
+        duration=task.duration,
+        actuators=task.actuators,
+        limits=task.limits,
+        criterion=task.criterion.value,
+        spread=spread(task),
+        designed=designed,
+        rivals=others,
+        orders=table(task, orders),
+        plan=planned,
+        solution=found.solution,
+        confirmation=tried,
+        findings=_findings(task, designed, is_interrupted=found.is_interrupted),
+        seed=seed,
+        elapsed_s=time.perf_counter() - began,
+        versions=versions(),
+    )
+
+
+def _scored(task: Task, fine: Bench, name: str, made: Array) -> Worth:
+    own = made[0] if made.ndim == 3 else made
+    return worth(name, fine, made, executed(task, plan(task, own, fine.dt), name))
+
+
+def _findings(task: Task, designed: Worth, *, is_interrupted: bool) -> tuple[Finding, ...]:
+    found = []
+    if is_interrupted:
+        found.append(Finding(Severity.WARNING, "interrupted", "the search was interrupted; this is its best so far", "",
+                             "let it finish for a better manoeuvre"))  # fmt: skip
+    if designed.drift > min(_FAR_DRIFT, task.limits.drift * (1.0 + 1e-6)):
+        found.append(Finding(Severity.WARNING, "drift", f"the manoeuvre reaches a drift angle of "
+                             f"{math.degrees(designed.drift):.0f} deg for some ship of the prior", "",
+                             "few models hold so far; give a smaller design.drift"))  # fmt: skip
+    if designed.room > task.limits.room * (1.0 + 1e-6):
+        found.append(Finding(Severity.WARNING, "sea-room", f"some ship of the prior goes {designed.room:.0f} m away, "
+                             f"beyond the {task.limits.room:.0f} m allowed", "",
+                             "abort there, or give a larger margin"))  # fmt: skip
+    untold = np.flatnonzero(designed.relative > 1.0)
+    if len(untold):
+        names = ", ".join(task.model.parameters.free_names[i] for i in untold)
+        found.append(Finding(Severity.WARNING, "not-identifiable",
+                             f"even this manoeuvre cannot tell {names}: the standard error exceeds the value", "",
+                             "better sensors, a longer trial, wider limits, or give a prior for them"))  # fmt: skip
+    return tuple(found)
