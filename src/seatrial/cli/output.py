@@ -115,38 +115,47 @@ def print_study(study: "Study") -> None:
 
 def print_design(design: "Design") -> None:
     """What the manoeuvre found is worth beside the standard ones, and how the helmsman's table begins."""
-    from seatrial.trial.orders import heads, row
+    from seatrial.results.worths import has_track, ranked
 
-    print(f"{'relative std. error, %':24s} {'worst':>8s} {'mean':>8s} {'drawn':>9s} {'drift deg':>10s} {'room m':>8s}")
-    for worth in (design.designed, *sorted(design.rivals, key=lambda one: one.worst)):
+    track = f" {'drift deg':>10s} {'room m':>8s}" if has_track(design) else ""
+    print(f"{'relative std. error, %':24s} {'worst':>8s} {'mean':>8s} {'drawn':>9s}{track}")
+    for worth in (design.designed, *ranked(design)):
         _print_worth(worth, design)
-    if design.confirmation is not None:
-        known = design.confirmation
-        pairs = (100.0 * max(values) for values in (known.error, known.bound))
-        print("{} of {} fits of simulated trials succeed: worst error {:.3g} %, {:.3g} % foretold".format(
-            known.converged, known.runs, *pairs))  # fmt: skip
+    known = design.confirmation
+    if known is not None:
+        error, bound = (100.0 * max(values) for values in (known.error, known.bound))
+        fits = f"{known.converged} of {known.runs} fits of simulated trials succeed"
+        print(f"{fits}: worst error {error:.3g} %, {bound:.3g} % foretold" if known.converged else fits)
     for finding in design.findings:
         print(f"{SEVERITY_MARK[finding.severity.value]} [{finding.code}] {finding.text}")
-    lines = [heads(design.actuators), *(row(order, design.actuators) for order in design.orders[:FIRST_ORDERS])]
-    print("\n".join("".join(f"{cell:>12s}" for cell in line) for line in lines))
-    if len(design.orders) > FIRST_ORDERS:
-        print(f"  ... and {len(design.orders) - FIRST_ORDERS} more orders in orders.csv")
+    _print_orders(design)
     print(f"{design.solution.evaluations} manoeuvres tried; {design.elapsed_s:.1f} s")
 
 
 def _print_worth(worth: "Worth", design: "Design") -> None:
     import math
 
-    from seatrial.results.worths import diverged, keeps, worst_drawn
+    from seatrial.results.worths import diverged, has_track, keeps, worst_drawn
 
     drawn = worst_drawn(worth)
     cells = [f"{100.0 * value:8.3g}" for value in (worth.worst, worth.mean)]
     cells.append(f"{'' if math.isnan(drawn) else f'{100.0 * drawn:.3g}':>9s}")
-    cells += [f"{math.degrees(worth.drift):10.3g}", f"{worth.room:8.4g}"]
+    cells += [f"{math.degrees(worth.drift):10.3g}", f"{worth.room:8.4g}"] if has_track(design) else []
     lost = diverged(worth)
     notes = [f"{lost} ship{'s' * (lost != 1)} lost"] if lost else []
     notes += [] if keeps(worth, design.limits) else ["leaves the limits"]
     print(f"{worth.name:24s} {' '.join(cells)}  {', '.join(notes)}".rstrip())
+
+
+def _print_orders(design: "Design") -> None:
+    from seatrial.trial.orders import heads, row
+
+    lines = [heads(design.actuators), *(row(order, design.actuators) for order in design.orders[:FIRST_ORDERS])]
+    widths = [len(head) + 3 for head in lines[0]]
+    for line in lines:
+        print("".join(f"{cell:>{width}s}" for cell, width in zip(line, widths, strict=True)))
+    if len(design.orders) > FIRST_ORDERS:
+        print(f"  ... and {len(design.orders) - FIRST_ORDERS} more orders in orders.csv")
 
 
 @contextmanager

@@ -13,8 +13,9 @@ from seatrial.report.mathml import inline
 from seatrial.report.numbers import DASH, exact, fixed, significant
 from seatrial.report.page import environment
 from seatrial.report.tables import findings
+from seatrial.report.told_design import NOTHING
 from seatrial.results import Actuator, Design, Worth
-from seatrial.results.worths import best_rival, drawn_errors, error_of, keeps, worst_drawn
+from seatrial.results.worths import best_rival, drawn_errors, error_of, has_track, keeps, ranked, worst_drawn
 from seatrial.trial.orders import row, shown_unit
 from seatrial.values import NOTATION
 
@@ -28,7 +29,7 @@ TITLES = {
     "findings": "Findings",
     "method": "How it was made",
 }
-MOST_COLUMNS, FEW = 3, 12
+MOST_COLUMNS, FEW, MOST_RIVALS = 3, 12, 4
 
 
 @dataclass(frozen=True)
@@ -80,8 +81,10 @@ def html(design: Design) -> str:
         "order_columns": order_columns(design),
         "over_time": Markup(steered.over_time(design)),
         "channels": [Markup(figure) for figure in channels.overview([design.designed.executed])],
-        "rivals": [w.name for w in rivals],
-        "coefficients": _coefficients(design, rivals),
+        "has_track": has_track(design),
+        "rivals": [w.name for w in rivals[:MOST_RIVALS]],
+        "coefficients": _coefficients(design, rivals[:MOST_RIVALS]),
+        "speed": _approach(design),
         "errors": Markup(_errors(design)),
         "track": Markup(track),
         "ships": Markup(_ships(design, rivals)),
@@ -90,14 +93,11 @@ def html(design: Design) -> str:
     return environment().get_template("design.html").render(context)
 
 
-def ranked(design: Design) -> tuple[Worth, ...]:
-    """The standard manoeuvres, the best by the design's criterion first."""
-    return tuple(sorted(design.rivals, key=lambda w: error_of(w, design.criterion)))
-
-
 def per_cent(share: float) -> str:
-    """Per cent with two digits; infinite where a manoeuvre tells nothing."""
-    return "∞" if math.isinf(share) else significant(100.0 * share, 2 if share < 10.0 else 1)
+    """Per cent with two digits, as far as they mean anything."""
+    if math.isnan(share):
+        return DASH
+    return significant(100.0 * share, 2) if share < NOTHING else f"> {significant(100.0 * NOTHING, 1)}"
 
 
 def clock(seconds: float) -> str:
@@ -125,6 +125,12 @@ def order_columns(design: Design) -> list[list[list[str]]]:
     count = min(MOST_COLUMNS, max(1, math.ceil(len(rows) / FEW)))
     each = math.ceil(len(rows) / count) if rows else 1
     return [rows[k : k + each] for k in range(0, len(rows), each)]
+
+
+def _approach(design: Design) -> str:
+    """The option of `simulate` that starts a replay as the design did; empty for a model without surge."""
+    executed = design.designed.executed
+    return f" --speed {float(executed['u'][0]):.7g}" if "u" in design.model.states and "u" in executed else ""
 
 
 def _worth(worth: Worth, design: Design) -> WorthRow:

@@ -7,10 +7,11 @@ import numpy as np
 from seatrial.report.numbers import duration, exact, fixed, significant
 from seatrial.report.words import counted, listed, unit
 from seatrial.results import Actuator, Design, Worth
-from seatrial.results.worths import best_rival, diverged, drawn_errors, error_of, keeps
+from seatrial.results.worths import best_rival, diverged, drawn_errors, error_of, has_track, keeps
 from seatrial.trial.orders import shown_unit
 from seatrial.values import NOTATION, display
 
+NOTHING = 100.0
 _KIND = {"worst": "worst relative standard error", "mean": "mean relative standard error"}
 
 
@@ -21,7 +22,7 @@ def sentences(design: Design) -> list[str]:
 
 
 def _percent(share: float) -> str:
-    return "∞" if math.isinf(share) else f"{significant(100.0 * share, 2)} %"
+    return f"{significant(100.0 * share, 2)} %" if share < NOTHING else f"more than {significant(100.0 * NOTHING, 1)} %"
 
 
 def _weakest(worth: Worth, design: Design) -> str:
@@ -44,7 +45,7 @@ def _comparison(design: Design) -> str:
         against += ", which leaves the limits"
     if found >= theirs:
         return f"{begin}, no better than the {against}."
-    ratio = f": {significant(theirs / found, 2)} times smaller" if math.isfinite(theirs) else ""
+    ratio = f": {significant(theirs / found, 2)} times smaller" if theirs < NOTHING else ""
     return f"{begin} against {against}{ratio}."
 
 
@@ -79,7 +80,9 @@ def _confirmed(design: Design) -> str:
 
 def _limits(design: Design) -> str:
     limits, worth = design.limits, design.designed
-    told = []
+    told: list[str] = []
+    if not has_track(design):
+        return ""
     if math.isfinite(limits.drift):
         told.append(f"a drift angle of {_degrees(worth.drift)} ({_degrees(limits.drift)} allowed)")
     if math.isfinite(limits.room):
@@ -117,12 +120,10 @@ def actuator(a: Actuator) -> str:
 
 def settings(design: Design) -> list[tuple[str, str]]:
     """How it was made."""
-    spread = sorted({f"{significant(100.0 * float(s), 2)} %" for s in design.spread}, key=len)
     sensors = [f"{name} {_deviation(name, sd)}" for name, sd in design.sensors.items()]
     return [
         ("Criterion", _KIND[design.criterion]),
         ("Sensors", f"{', '.join(sensors)} (standard deviations) at {exact(design.rate)} Hz"),
-        ("Prior", f"standard deviations of {spread[0]}" if len(spread) == 1 else "standard deviations as in the table"),
         ("Ships drawn", str(len(design.designed.drawn))),
         ("Manoeuvres tried", str(design.solution.evaluations)),
         ("Seed", str(design.seed)),

@@ -32,15 +32,21 @@ def diverged(worth: Worth) -> int:
     return sum(bool(np.isnan(row).any()) for row in worth.drawn)
 
 
-def best_rival(design: Design) -> Worth | None:
-    """The standard manoeuvre with the smallest error by the design's criterion, of those within its limits if any are.
+def ranked(design: Design) -> tuple[Worth, ...]:
+    """The standard manoeuvres: those within the limits before the others, the smaller error first."""
+    return tuple(sorted(design.rivals, key=lambda w: (not keeps(w, design.limits), error_of(w, design.criterion))))
 
-    None where none was tried.
-    """
-    within = [rival for rival in design.rivals if keeps(rival, design.limits)]
-    return min(within or design.rivals, key=lambda rival: error_of(rival, design.criterion), default=None)
+
+def best_rival(design: Design) -> Worth | None:
+    """The best standard manoeuvre within the design's limits, or of all where none is; None where none was tried."""
+    return next(iter(ranked(design)), None)
 
 
 def keeps(worth: Worth, limits: Limits) -> bool:
     """Whether drift angle and distance stay within the limits for all ships that were simulated."""
     return worth.drift <= limits.drift * (1.0 + ROUNDING) and worth.room <= limits.room * (1.0 + ROUNDING)
+
+
+def has_track(design: Design) -> bool:
+    """Whether the model has positions, so that drift angle and distance mean something."""
+    return {"x0", "y0"} <= set(design.designed.executed.channels)

@@ -1,9 +1,13 @@
 """The helmsman's table in the units people read: as columns of text, and as the file that is taken on board."""
 
+import math
+
 from seatrial.results import Actuator, Design, Order
 from seatrial.values import NOTATION, display
 
-DIGITS = 6
+_TIME_DECIMALS = 3
+# an order is said to so many decimals that its last digit is less than a hundredth of the range
+_FINENESS = 2
 
 
 def shown_unit(name: str) -> tuple[float, str]:
@@ -18,10 +22,7 @@ def heads(actuators: tuple[Actuator, ...]) -> list[str]:
 
 def row(order: Order, actuators: tuple[Actuator, ...]) -> list[str]:
     """Time and orders as text; an input that the order leaves alone stays empty."""
-    return [
-        _text(order.time),
-        *(_text(order.values[a.name] * shown_unit(a.name)[0]) if a.name in order.values else "" for a in actuators),
-    ]
+    return [_text(order.time, _TIME_DECIMALS), *(_order(order, a) for a in actuators)]
 
 
 def orders_text(design: Design) -> str:
@@ -30,5 +31,14 @@ def orders_text(design: Design) -> str:
     return "\n".join(",".join(cells) for cells in rows) + "\n"
 
 
-def _text(value: float) -> str:
-    return f"{round(value, DIGITS) + 0.0:.{DIGITS}g}"
+def _order(order: Order, actuator: Actuator) -> str:
+    if actuator.name not in order.values:
+        return ""
+    factor = shown_unit(actuator.name)[0]
+    reach = (actuator.upper - actuator.lower) * factor
+    return _text(order.values[actuator.name] * factor, max(0, _FINENESS - math.floor(math.log10(reach))))
+
+
+def _text(value: float, decimals: int) -> str:
+    text = f"{round(value, decimals) + 0.0:.{decimals}f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text

@@ -9,6 +9,8 @@ from seatrial.report.figures.plot import ACCENT, FAINT, GREY, INK, WIDTH, Panel,
 
 LEAST = (1.0, 10.0)
 LEGEND = 22.0
+# per cent from which on a dot says no more than that nothing is told
+NOTHING = 1e4
 
 
 @dataclass(frozen=True)
@@ -22,7 +24,7 @@ class Dots:
 
 def dots(names: Sequence[str], series: Sequence[Dots], axis_name: str) -> str:
     """A row for each name with the dots of every series, a legend above; empty for none."""
-    known = [v for one in series for row in one.rows for v in row if math.isfinite(v) and v > 0]
+    known = [v for one in series for row in one.rows for v in row if 0.0 < v < NOTHING]
     if not names or not known:
         return ""
     panel = decade_panel(names, known, LEAST, LEGEND)
@@ -49,7 +51,7 @@ def _legend(series: Sequence[Dots]) -> str:
 def _at(panel: Panel, value: float, y: float, mark: str) -> str:
     if math.isnan(value) or value <= 0:
         return ""
-    if math.isinf(value):
+    if value >= NOTHING:
         return text(panel.left + panel.width - 6, y + 4, "no information ▸", anchor="end", size=10.5, colour=GREY)
     return _mark(float(panel.px(math.log10(value))), y, mark)
 
