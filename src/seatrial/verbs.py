@@ -51,6 +51,7 @@ def identify(
     *,
     intervals: str = "auto",
     choose: bool = False,
+    compare: bool = False,
 ) -> "Fit":
     """Estimate the trial's model from its training runs and predict its validation runs, with intervals.
 
@@ -58,6 +59,7 @@ def identify(
         intervals: ``auto``, ``jackknife`` (every run left out, refitted, and the spread of tied models), ``bootstrap``
             or ``profile``.
         choose: compare the family of models and take the one that predicts runs left out best.
+        compare: put other estimators (regressions) on the same records beside the fit.
 
     Raises:
         InputError: the records do not pass the checks, show no excitation, or cannot tell the parameters apart.
@@ -71,7 +73,8 @@ def identify(
     if intervals not in (kinds := [kind.value for kind in Intervals]):
         raise InputError(f"unknown kind of intervals '{intervals}'{nearest(intervals, kinds)}")
     compiling.finish()
-    return identify(trial, seed=seed, progress=progress, intervals=Intervals(intervals), choose=choose)
+    kind = Intervals(intervals)
+    return identify(trial, seed=seed, progress=progress, intervals=kind, choose=choose, compare=compare)
 
 
 def save(fit: "Fit", folder: str | Path) -> Path:

@@ -96,6 +96,9 @@ def identify(
         str, typer.Option("--intervals", metavar="KIND", help="auto, jackknife, bootstrap or profile.")
     ] = "auto",
     choose: Annotated[bool, typer.Option("--choose", help="Take the family's best model on runs left out.")] = False,
+    compare: Annotated[
+        bool, typer.Option("--compare", help="Other estimators on the same records, beside it.")
+    ] = False,
     model: OwnModel = None,
     json: Json = None,
     seed: Seed = 0,
@@ -112,7 +115,12 @@ def identify(
     writable_folder(out)
     with progress() as tell:
         fit = verbs.identify(
-            verbs.load_trial(trial, _own(model)), seed=seed, progress=tell, intervals=intervals, choose=choose
+            verbs.load_trial(trial, _own(model)),
+            seed=seed,
+            progress=tell,
+            intervals=intervals,
+            choose=choose,
+            compare=compare,
         )
         tell("report")
         page = verbs.save(fit, out)

@@ -51,6 +51,7 @@ def print_fit(fit: "Fit") -> None:
     for p in fit.validation():
         _print_prediction(p)
     _print_family(fit)
+    _print_rivals(fit)
     _print_telling(fit)
     print(f"intervals: {fit.method.intervals}")
     print(f"{fit.method.criterion}; {fit.elapsed_s:.1f} s")
@@ -78,6 +79,31 @@ def _print_family(fit: "Fit") -> None:
         scores = "  ".join("-" if x is None else f"{x:.3g}" for x in (m.heading_deg, m.position_m))
         marks = ", ".join(word for word, holds in (("used", m.chosen), ("tied", m.tied), (m.note, m.note)) if holds)
         print(f"{m.name:28s} {m.free:5d} {scores:>24s}  {marks}".rstrip())
+
+
+def _print_rivals(fit: "Fit") -> None:
+    """How far each estimator is from the fit, or from the truth where it is known, and how it predicts."""
+    if not fit.rivals:
+        return
+    is_known = any(r.error for r in fit.rivals)
+    away = "error, % of the truth" if is_known else "gap, std. errors"
+    print(
+        f"{'other estimators':46s} {away:>22s}  {'worst':>8s}   {'heading deg':>11s} {'position m':>10s}   CC u, v, r"
+    )
+    for r in fit.rivals:
+        sizes = [100.0 * abs(e) for e in r.error.values()] if is_known else [abs(g) for g in r.gap.values()]
+        runs = r.validation if fit.validation() else r.training
+        if r.note or r.diverged:
+            lost = f"diverges in {len(r.diverged)} of {len(fit.predictions)} runs: {', '.join(r.diverged[:1])} ..."
+            why = f"failed: {r.note}" if r.note else lost
+        else:
+            rms = [f"{runs.rms[key]:.3g}" if key in runs.rms else "-" for key in ("psi_deg", "position_m")]
+            why = f"{rms[0]:>11s} {rms[1]:>10s}   {', '.join(f'{cc:.3f}' for cc in runs.correlation.values())}"
+        numbers = f"{sum(sizes) / len(sizes):22.3g}  {max(sizes):8.3g}" if sizes else " " * 32
+        print(f"{r.name:46s} {numbers}   {why}".rstrip())
+        for finding in r.findings:
+            print(f"  {SEVERITY_MARK[finding.severity.value]} [{finding.code}] {finding.text}")
+    print("  good trajectories and CC prove nothing about coefficients: read the errors")
 
 
 def _print_telling(fit: "Fit") -> None:

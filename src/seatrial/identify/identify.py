@@ -8,10 +8,11 @@ import numpy as np
 
 from seatrial.estimate.agreement import agreement
 from seatrial.estimate.fit import Identified, identified, unit_of_time
-from seatrial.estimate.settings import START_SECONDS_LENGTHS, Criterion, Intervals, Settings
+from seatrial.estimate.settings import START_SECONDS_LENGTHS, WINDOW_SHIP_LENGTHS, Criterion, Intervals, Settings
 from seatrial.estimate.singular import refuse_singular
 from seatrial.estimate.unmeasured import refuse_unmeasured_waves
 from seatrial.identify import outcome
+from seatrial.identify.compare import with_rivals
 from seatrial.identify.family import WINDOW_SHIP_LENGTHS as FAMILY_WINDOW
 from seatrial.identify.family import Considered, considered, with_ensemble
 from seatrial.identify.identifiability import identifiability
@@ -63,6 +64,7 @@ def identify(
     *,
     intervals: Intervals = Intervals.AUTO,
     choose: bool = False,
+    compare: bool = False,
 ) -> Fit:
     """Estimate the trial's model from its training runs and predict its validation runs open loop, with intervals.
 
@@ -70,6 +72,7 @@ def identify(
         seed: of the draws behind the intervals of predictions, and of a bootstrap.
         intervals: where intervals of coefficients come from; a jackknife brings the spread of tied models with it.
         choose: take the member of the family that predicts runs left out best, not the model as the trial has it.
+        compare: put other estimators on the same training runs beside the fit.
 
     Raises:
         InputError: the records do not pass the checks, show no excitation, cannot tell the parameters apart, or are too
@@ -84,9 +87,11 @@ def identify(
     train = _by_role(records, Role.TRAIN)
     if not train:
         raise InputError("the trial has no training run; leave at least one file out of 'validate' and 'leave_out'")
-    if any(r.waves is not None and r.waves.spectrum is not None for r in train):
-        return spectral_fit(trial, train, findings, seed, began)
     runs, sessions, length = [r.record for r in train], [r.session for r in train], trial.ship.length
+    if any(r.waves is not None and r.waves.spectrum is not None for r in train):
+        fit = spectral_fit(trial, train, findings, seed, began)
+        window = WINDOW_SHIP_LENGTHS * unit_of_time(trial.model, runs, length)
+        return with_rivals(fit, runs, window) if compare else fit
     settings = replace(settings_of(trial, runs), intervals=intervals, seed=seed)
     forces = tuple(name for points in trial.forces for name in StaticForces(trial.model, points).names)
     outputs = compared_outputs(trial.model, runs, settings.channels)
@@ -115,7 +120,7 @@ def identify(
     said += (outcome.NO_PROFILE,) if unprofiled else ()
     shown = frequency_range(runs, outputs) if trial.model.is_affine else {}
     said += (represented(shown),) if shown else ()
-    return Fit(
+    fit = Fit(
         question=trial.question
         or f"Which {trial.model.name} model explains these records, and how well does it predict?",
         ship=trial.ship,
@@ -139,6 +144,7 @@ def identify(
         margin=told.margin,
         seakeeping=seakeeping(found.model, train, length),
     )
+    return with_rivals(fit, runs, WINDOW_SHIP_LENGTHS * unit, progress) if compare else fit
 
 
 def _data_and_prior(found: Identified) -> tuple[Array, tuple[str, ...], Array]:

@@ -26,6 +26,7 @@ from seatrial.results.identifiability import (
     Stability,
     Symmetry,
 )
+from seatrial.results.rival import Rival, Sailed
 from seatrial.results.seakeeping import PointMotion, Seakeeping
 from seatrial.results.study import Bars, Check, Claim, Curve, Figure, Matrix, Study, Table, Verdict
 
@@ -59,6 +60,8 @@ __all__ = [
     "Prediction",
     "Profile",
     "Residuals",
+    "Rival",
+    "Sailed",
     "Seakeeping",
     "Sensitivity",
     "Solution",

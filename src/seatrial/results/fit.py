@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from seatrial.equations import Model
 from seatrial.optimise import Solution
 from seatrial.results.identifiability import Identifiability
+from seatrial.results.rival import Rival
 from seatrial.results.seakeeping import Seakeeping
 from seatrial.values import Array, Finding, Record, Ship
 
@@ -214,6 +215,7 @@ class Fit:
         identifiability: what the records can tell; disturbance: noise and criterion; family: models compared.
         margin: what intervals of further predictions are made of.
         seakeeping: what the ship does in the waves of her trial; None where she met none that are known.
+        rivals: other estimators on the same records, the fit itself first; empty where none were asked for.
     """
 
     question: str
@@ -237,6 +239,7 @@ class Fit:
     family: tuple[Member, ...] = ()
     margin: Margin | None = None
     seakeeping: Seakeeping | None = None
+    rivals: tuple[Rival, ...] = ()
 
     def validation(self) -> tuple[Prediction, ...]:
         """The predictions of runs that were not fitted."""

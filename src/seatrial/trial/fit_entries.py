@@ -138,6 +138,37 @@ class SeakeepingEntry(Entry):
     points: list[PointMotionEntry]
 
 
+class FindingEntry(Entry):
+    """Something a check or an estimate has to say."""
+
+    severity: str = Field(pattern="^(info|warning|error)$")
+    code: str
+    text: str
+    advice: str
+
+
+class SailedEntry(Entry):
+    """Runs simulated open loop, together; rms and correlation are empty where one diverges."""
+
+    rms: dict[str, Number] = Field(description="keys as in validation, root mean square over the runs")
+    correlation: dict[str, Number] = Field(description="u, v, r: Pearson's coefficient, mean over the runs")
+    diverged: list[str] = Field(description="names of the runs whose simulation diverges")
+
+
+class RivalEntry(Entry):
+    """An estimator on the same training runs; the first is the fit itself."""
+
+    name: str
+    values: dict[str, Number] = Field(description="SI; empty where the estimator failed")
+    gap: dict[str, Number] = Field(description="difference from the fit's estimates in their standard errors")
+    error: dict[str, Number] = Field(description="relative, where the true value is known and not zero")
+    training: SailedEntry
+    validation: SailedEntry
+    bias: dict[str, Number] = Field(description="equations -> constant the estimator allowed itself besides")
+    findings: list[FindingEntry]
+    note: str = Field(description="why the estimator failed; empty where it did not")
+
+
 class FamilyEntry(Entry):
     """One model of the family, scored over whole runs left out."""
 

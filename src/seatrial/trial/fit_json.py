@@ -10,9 +10,11 @@ from seatrial.results import Fit, Prediction
 from seatrial.trial.fit_entries import (
     Entry,
     FamilyEntry,
+    FindingEntry,
     IdentifiabilityEntry,
     NoiseEntry,
     Number,
+    RivalEntry,
     SeakeepingEntry,
 )
 from seatrial.values import Finding
@@ -54,15 +56,6 @@ class ValidationEntry(Entry):
     spread: dict[str, Number] = Field(description="standard deviation over tied models, keys as in measures and rms")
 
 
-class FindingEntry(Entry):
-    """Something a check or an estimate has to say."""
-
-    severity: str = Field(pattern="^(info|warning|error)$")
-    code: str
-    text: str
-    advice: str
-
-
 class FitDocument(Entry):
     """What `--json` writes after `identify` and `demo`."""
 
@@ -73,6 +66,7 @@ class FitDocument(Entry):
     noise: NoiseEntry | None = Field(description="criterion of the fit and the noise it allows for; null: not examined")
     family: list[FamilyEntry] = Field(description="models compared over whole runs left out; empty: none declared")
     seakeeping: SeakeepingEntry | None = Field(description="the ship in the waves of the trial; null: none known")
+    rivals: list[RivalEntry] = Field(description="estimators on the same runs, the fit first; empty: not compared")
     findings: list[FindingEntry]
     elapsed_s: float
     versions: dict[str, str]
@@ -108,6 +102,7 @@ def fit_json(fit: Fit) -> dict[str, Any]:
         noise=NoiseEntry.model_validate(disturbance) if disturbance else None,
         family=[FamilyEntry.model_validate(member) for member in fit.family],
         seakeeping=SeakeepingEntry.model_validate(fit.seakeeping) if fit.seakeeping else None,
+        rivals=[RivalEntry.model_validate(rival) for rival in fit.rivals],
         findings=[finding_entry(f) for f in fit.findings],
         elapsed_s=fit.elapsed_s,
         versions=fit.versions,

@@ -20,6 +20,7 @@ from seatrial.results import (
     Offset,
     Prediction,
     Residuals,
+    Rival,
     Seakeeping,
     Solution,
     Status,
@@ -81,6 +82,7 @@ def detail_table(fit: Fit, records: list[Record], place: Mapping[int, int]) -> d
         "disturbance": _nested(fit.disturbance),
         "family": _nested(fit.family),
         "seakeeping": _nested(fit.seakeeping),
+        "rivals": _nested(fit.rivals),
     }
 
 
@@ -177,6 +179,7 @@ def fit_from(table: Mapping[str, Any], file: ModelFile, arrays: Mapping[str, Arr
         disturbance=_restored(Disturbance | None, detail.get("disturbance")),
         family=_restored(tuple[Member, ...], detail.get("family", [])),
         seakeeping=_restored(Seakeeping | None, detail.get("seakeeping")),
+        rivals=_restored(tuple[Rival, ...], detail.get("rivals", [])),
     )
 
 
