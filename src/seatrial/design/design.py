@@ -8,14 +8,14 @@ import numpy as np
 
 from seatrial.design.confirm import confirmed
 from seatrial.design.orders import inputs, plan, split, table
-from seatrial.design.rivals import rivals
+from seatrial.design.rivals import Rival, rivals
 from seatrial.design.search import GENERATIONS, Yardstick, coarse, finer, search
 from seatrial.design.ships import ships, spread
 from seatrial.design.task import Task
 from seatrial.design.worth import Bench, executed, worth
 from seatrial.information.symmetries import refuse_structural
 from seatrial.results import Design, Worth
-from seatrial.values import Array, Finding, Severity
+from seatrial.values import Finding, Severity
 from seatrial.values.versions import versions
 
 CONFIRMED_WITH = 20
@@ -44,14 +44,15 @@ def design(
     seeds = np.random.SeedSequence(seed).generate_state(3)
     bench = Bench(task, ships(task, int(seeds[0])), coarse(task))
     progress("standard manoeuvres")
-    yardstick = Yardstick.of(bench, rivals(bench))
+    standard = rivals(bench)
+    yardstick = Yardstick.of(bench, standard)
     found = search(yardstick, int(seeds[1]), progress, generations)
     fine, orders = finer(bench), split(task, found.solution.point)
     made = inputs(task, orders, fine.dt)
     planned = plan(task, made, fine.dt)
     progress("scoring at the sensors' rate")
     designed = worth("designed", fine, made, executed(task, planned, "designed"))
-    others = tuple(_scored(task, fine, rival.name, rival.made) for rival in rivals(fine))
+    others = tuple(_scored(fine, rival) for rival in standard)
     tried = None
     if confirming and not found.is_interrupted:
         tried = confirmed(task, made, planned, ships(task, int(seeds[2]), confirming - 1), int(seeds[2]), progress)
@@ -80,9 +81,10 @@ def design(
     )
 
 
-def _scored(task: Task, fine: Bench, name: str, made: Array) -> Worth:
+def _scored(fine: Bench, rival: Rival) -> Worth:
+    made = rival.made(fine)
     own = made[0] if made.ndim == 3 else made
-    return worth(name, fine, made, executed(task, plan(task, own, fine.dt), name))
+    return worth(rival.name, fine, made, executed(fine.task, plan(fine.task, own, fine.dt), rival.name))
 
 
 def _findings(task: Task, designed: Worth, *, is_interrupted: bool) -> tuple[Finding, ...]:

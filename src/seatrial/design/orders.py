@@ -34,8 +34,11 @@ def followed(actuator: Actuator, orders: Array, neutral: float, dt: float, count
 
 
 def split(task: Task, point: Array) -> list[Array]:
-    """A point of the unit box as orders of each actuator, SI in the record's signs."""
-    pieces = np.split(point, np.cumsum(counts(task))[:-1])
+    """A point as orders of each actuator, SI in the record's signs: 0 the lower end of its range, 1 the upper one.
+
+    What lies beyond an end means that end.
+    """
+    pieces = np.split(np.clip(point, 0.0, 1.0), np.cumsum(counts(task))[:-1])
     return [a.lower + (a.upper - a.lower) * piece for a, piece in zip(task.actuators, pieces, strict=True)]
 
 

@@ -1,12 +1,12 @@
 """The standard manoeuvres a design is measured by: equal duration, the same inputs, ranges, rates and ships."""
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from seatrial.design.orders import followed, inputs, plan, rows
-from seatrial.design.ships import Ships
+from seatrial.design.orders import followed, inputs, rows
 from seatrial.design.task import Task
 from seatrial.design.worth import Bench
 from seatrial.manoeuvres.programme import programme
@@ -14,7 +14,7 @@ from seatrial.manoeuvres.schedule import binary_sequence
 from seatrial.results import Actuator
 from seatrial.simulate.channels import inputs_of
 from seatrial.simulate.steer import RUDDER, SOLAS_SLEW_RATE, manoeuvre
-from seatrial.values import Array, InputError, Record
+from seatrial.values import Array, InputError
 
 # switching times as shares of the designed one's hold; amplitudes as shares of the range, the first that keeps within
 SWITCHING = (1.0 / 3.0, 2.0 / 3.0, 1.0, 4.0 / 3.0)
@@ -26,21 +26,23 @@ _WHOLE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Rival:
-    """A standard manoeuvre: inputs in the model's signs at the bench's step, one for all ships or one each."""
+    """A standard manoeuvre; `made` gives its inputs for the ships and step of a bench, in the model's signs.
+
+    One course (rows, nu) for all ships, or one each (ships, rows, nu) where a helmsman steers them.
+    """
 
     name: str
-    made: Array
+    made: Callable[[Bench], Array]
 
 
 def rivals(bench: Bench) -> list[Rival]:
     """Random binary sequences and, by the model, zigzags and turning circles or steps and a sweep."""
     task = bench.task
     found = [_largest_within(bench, share, seed) for share in SWITCHING for seed in SEQUENCES]
-    if _is_steered(task):
-        found += [r for text in _programmes(task) if (r := _steered(bench, text)) is not None]
-    else:
-        found += [_sweep(bench), _steps(bench)]
-    return found
+    if not _is_steered(task):
+        return [*found, Rival("sine sweep", _sweep), Rival("steps", _steps)]
+    steered = [Rival(text, partial(_steered, text)) for text in _programmes(task)]
+    return [*found, *(r for r in steered if _can_be_steered(bench, r))]
 
 
 def is_random(rival: Rival) -> bool:
@@ -48,35 +50,28 @@ def is_random(rival: Rival) -> bool:
     return rival.name.startswith("prbs")
 
 
-def alone(task: Task) -> Bench:
-    """The model itself at the sensors' rate, for pictures of what is sailed."""
-    return Bench(task, Ships(task.model.parameters.values[None], np.zeros(len(task.model.parameters.free))),
-                 1.0 / task.rate)  # fmt: skip
-
-
-def binary(task: Task, dt: float, hold: float, share: float, seed: int) -> Array:
+def binary(hold: float, share: float, seed: int, bench: Bench) -> Array:
     """Every actuator between its ends, or `share` of the way to them, by maximum length sequences of their own."""
-    orders = []
+    task, orders = bench.task, list[Array]()
     switched = replace(task, actuators=tuple(replace(a, hold=hold) for a in task.actuators))
     for j, actuator in enumerate(task.actuators):
         count = int(np.ceil(task.duration / hold - _WHOLE))
         signs = np.sign(np.resize(binary_sequence(1.0, seed + 10 * j), count))
         orders.append(_middle(actuator) + signs * share * 0.5 * (actuator.upper - actuator.lower))
-    return inputs(switched, orders, dt)
+    return inputs(switched, orders, bench.dt)
 
 
 def _largest_within(bench: Bench, switching: float, seed: int) -> Rival:
     """The largest amplitude whose drift and distance keep within the limits for every ship; else the smallest tried."""
     task, limits = bench.task, bench.task.limits
     hold = max(switching * task.shortest_hold, 2.0 / task.rate)
-    name, made = "", np.zeros((0, 0))
+    rival = Rival("", _steps)
     for share in AMPLITUDES:
-        name = f"prbs:{100 * share:.0f}%:{hold:.3g} s:{seed}"
-        made = binary(task, bench.dt, hold, share, seed)
-        told = bench.told(made)
+        rival = Rival(f"prbs:{100 * share:.0f}%:{hold:.3g} s:{seed}", partial(binary, hold, share, seed))
+        told = bench.told(rival.made(bench))
         if told.drift.max() <= limits.drift and told.room.max() <= limits.room and np.isfinite(told.relative).all():
             break
-    return Rival(name, made)
+    return rival
 
 
 def _middle(actuator: Actuator) -> float:
@@ -98,13 +93,18 @@ def _programmes(task: Task) -> list[str]:
     return [*texts, f"turning-circle:{most:.4g}"] if most > 0.0 else texts
 
 
-def _steered(bench: Bench, text: str) -> Rival | None:
-    """Each ship under the helmsman; after the last execute the rudder stays. None where a ship cannot be steered."""
+def _can_be_steered(bench: Bench, rival: Rival) -> bool:
+    """Whether no ship is lost under the helmsman."""
     try:
-        made = [_sailed(bench, row, text) for row in bench.ships.parameters]
+        rival.made(bench)
     except InputError:
-        return None
-    return Rival(text, np.stack(made))
+        return False
+    return True
+
+
+def _steered(text: str, bench: Bench) -> Array:
+    """Each ship under the helmsman; after the last execute the rudder stays."""
+    return np.stack([_sailed(bench, row, text) for row in bench.ships.parameters])
 
 
 def _sailed(bench: Bench, parameters: Array, text: str) -> Array:
@@ -129,24 +129,22 @@ def _sailed(bench: Bench, parameters: Array, text: str) -> Array:
     return np.concatenate([held, np.repeat(held[-1:], max(0, count - len(held)), axis=0)])[:count]
 
 
-def _sweep(bench: Bench) -> Rival:
+def _sweep(bench: Bench) -> Array:
     """All actuators swing between their ends, from one swing in the trial to one in four holds, evenly faster."""
     task, time = bench.task, bench.dt * np.arange(rows(bench.task, bench.dt))
     first, last = 1.0 / task.duration, 0.25 / task.shortest_hold
-    swing = np.sin(2.0 * np.pi * (first * time + 0.5 * (last - first) * time**2 / task.duration))
-    return Rival("sine sweep", _all(task, bench.dt, swing))
+    return _all(bench, np.sin(2.0 * np.pi * (first * time + 0.5 * (last - first) * time**2 / task.duration)))
 
 
-def _steps(bench: Bench) -> Rival:
-    """From end to end four times."""
+def _steps(bench: Bench) -> Array:
+    """From end to end eight times."""
     time = bench.dt * np.arange(rows(bench.task, bench.dt))
-    return Rival(
-        "steps", _all(bench.task, bench.dt, np.where((8.0 * time / bench.task.duration).astype(int) % 2, 1.0, -1.0))
-    )
+    return _all(bench, np.where((8.0 * time / bench.task.duration).astype(int) % 2, 1.0, -1.0))
 
 
-def _all(task: Task, dt: float, course: Array) -> Array:
+def _all(bench: Bench, course: Array) -> Array:
     """Every actuator along a course between -1 and 1, at its own rate."""
+    task, dt = bench.task, bench.dt
     made = np.tile(task.quiet, (len(course), 1))
     for a in task.actuators:
         j = task.model.input_names.index(a.name)
@@ -154,14 +152,3 @@ def _all(task: Task, dt: float, course: Array) -> Array:
         wanted = followed(free, _middle(a) + 0.5 * (a.upper - a.lower) * course, task.neutral[a.name], dt, len(course))
         made[:, j] = -wanted if task.model.inputs[j].is_turned else wanted
     return made
-
-
-def sailed_by_the_model(task: Task, rival_name: str, made: Array) -> Record:
-    """A rival's inputs, the model's own where each ship has its own, as a planned record at the sensors' rate."""
-    own = made[0] if made.ndim == 3 else made
-    return plan(task, own, 1.0 / task.rate).named(rival_name)
-
-
-def named(found: Sequence[Rival], name: str) -> Rival:
-    """The rival of that name."""
-    return next(r for r in found if r.name == name)

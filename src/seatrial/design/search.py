@@ -19,7 +19,8 @@ LOST = 50.0
 EXCESS = 20.0
 DRAWN_STARTS = 96
 GENERATIONS = 200
-STEP = 0.2
+# the search's box: a point beyond an end means that end, so that full deflection is no corner to be hit
+LOWEST, HIGHEST, STEP = -1.0, 2.0, 0.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +33,7 @@ class Yardstick:
     @classmethod
     def of(cls, bench: Bench, standard: list[Rival]) -> "Yardstick":
         """From the standard manoeuvres that keep within the limits, or all where none does."""
-        told = [bench.told(r.made) for r in standard]
+        told = [bench.told(r.made(bench)) for r in standard]
         errors = np.array([errors_of(bench.task, t) for t in told])
         within = np.array([_excess(bench.task, t) <= 0.0 for t in told])
         chosen = errors[within] if within.any() else errors
@@ -74,8 +75,8 @@ def search(yardstick: Yardstick, seed: int, progress: Callable[[str], None], gen
         costs = np.array(mapped(yardstick.cost, points))
         best, value, evaluations = points[int(np.argmin(costs))], float(costs.min()), len(points)
         history.append(value)
-        box = Box(np.zeros(len(best)), np.ones(len(best)))
-        settings = AdaptationSettings(iterations=generations, step=STEP, resampling=5)
+        box = Box(np.full(len(best), LOWEST), np.full(len(best), HIGHEST))
+        settings = AdaptationSettings(iterations=generations, step=STEP / (HIGHEST - LOWEST), resampling=5)
         strategy = CovarianceAdaptation(box, generator, settings, best)
         while not strategy.done:
             asked = strategy.ask()
