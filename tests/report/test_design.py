@@ -48,8 +48,8 @@ def test_the_same_design_gives_the_same_bytes(page: str) -> None:
 def test_the_answer_compares_with_the_best_that_keeps_the_limits(design: Design) -> None:
     first, drawn, confirmed, limits = sentences(design)
     ratio = design.rivals[1].worst / design.designed.worst
-    assert "prbs:35:10" in first and f"{ratio:.1f} times smaller" in first
-    assert drawn.endswith("smaller than with any of the standard manoeuvres on 5 of 5.")
+    assert "prbs:35:10" in first and f"{ratio:.1f} times as much" in first
+    assert drawn.endswith("smaller than with any standard manoeuvre within the limits on 5 of 5.")
     assert confirmed == "39 of 40 simulated trials could be fitted; their errors are 0.91 to 1.11 of those foretold."
     assert limits.startswith("All ships simulated reach at most a drift angle of 18.0° (20.0° allowed) and ")
 

@@ -29,7 +29,8 @@ TITLES = {
     "findings": "Findings",
     "method": "How it was made",
 }
-MOST_COLUMNS, FEW, MOST_RIVALS = 3, 12, 4
+MOST_COLUMNS, FEW, MOST_RIVALS = 4, 12, 3
+_TOWARDS = {"starboard": "to starboard", "port": "to port"}
 
 
 @dataclass(frozen=True)
@@ -78,6 +79,7 @@ def html(design: Design) -> str:
         "settings": told_design.settings(design),
         "worths": [_worth(w, design) for w in (design.designed, *rivals)],
         "heads": order_heads(design.actuators),
+        "meanings": order_meanings(design.actuators),
         "order_columns": order_columns(design),
         "over_time": Markup(steered.over_time(design)),
         "channels": [Markup(figure) for figure in channels.overview([design.designed.executed])],
@@ -106,14 +108,24 @@ def clock(seconds: float) -> str:
     return f"{int(minutes)}:{exact(rest, 4).rjust(2, '0') if rest >= 10 else '0' + exact(rest, 4)}"
 
 
-def order_heads(actuators: tuple[Actuator, ...]) -> list[tuple[str, str]]:
-    """Name and unit of each column of the helmsman's table after the time, the positive direction with an angle."""
-    heads = []
-    for a in actuators:
-        unit = shown_unit(a.name)[1]
-        direction = NOTATION[a.name].positive if a.name in NOTATION else ""
-        heads.append((words.channel(a.name), f"{unit}, + {direction}" if unit == "deg" else unit))
-    return heads
+def order_heads(actuators: tuple[Actuator, ...]) -> list[tuple[Markup, str]]:
+    """Symbol and unit of each column of the helmsman's table after the time."""
+    return [(Markup(inline(_latex(a.name))), shown_unit(a.name)[1]) for a in actuators]
+
+
+def order_meanings(actuators: tuple[Actuator, ...]) -> list[tuple[Markup, str]]:
+    """Symbol and meaning of each input, with its positive direction."""
+    return [(Markup(inline(_latex(a.name))), _meaning(a.name)) for a in actuators]
+
+
+def _latex(name: str) -> str:
+    return NOTATION[name].latex if name in NOTATION else symbol(name)
+
+
+def _meaning(name: str) -> str:
+    if name not in NOTATION or NOTATION[name].positive == "none":
+        return words.channel(name)
+    return f"{NOTATION[name].meaning}, positive {_TOWARDS.get(NOTATION[name].positive, NOTATION[name].positive)}"
 
 
 def order_columns(design: Design) -> list[list[list[str]]]:

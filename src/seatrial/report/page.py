@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from seatrial.report import answer, numbers, runs, tables, telling, waves, words
+from seatrial.report import answer, numbers, rivals, runs, tables, telling, waves, words
 from seatrial.report.citations import Citations
 from seatrial.report.figures import channels, correlation, forest, tracks, whiteness
 from seatrial.report.figures.plot import common_prefix
@@ -25,6 +25,7 @@ TITLES = {
     "coefficients": "Coefficients",
     "prediction": "Prediction of held-out runs",
     "training": "Fit of the training runs",
+    "rivals": "Other estimators on the same records",
     "residuals": "Residuals",
     "waves": "Motions in waves",
     "offsets": "Offsets",
@@ -49,11 +50,11 @@ def html(fit: Fit) -> str:
     """The page as text."""
     citations = Citations()
     length = fit.ship.length if "L" in fit.ship.particulars else 0.0
-    told, known = telling.telling(fit), fit.seakeeping
+    told, known, compared = telling.telling(fit), fit.seakeeping, rivals.rivals(fit)
     is_steered = "psi" in fit.model.states or "delta" in fit.model.input_names
     shown = {
         "telling": bool(told), "waves": known is not None, "standards": is_steered,
-        "training": bool(fit.predictions), "residuals": bool(fit.residuals),
+        "training": bool(fit.predictions), "residuals": bool(fit.residuals), "rivals": compared is not None,
     }  # fmt: skip
     context: dict[str, object] = {
         "fit": fit,
@@ -61,6 +62,7 @@ def html(fit: Fit) -> str:
         "is_steered": is_steered,
         "waves": None if known is None else {"sheets": waves.sheets(known), "figures": waves.figures(known)},
         "told": told,
+        "rivals": compared,
         "answer": answer.sentences(fit),
         "facts": answer.facts(fit),
         "scores": runs.scores(fit.predictions, length),

@@ -45,7 +45,7 @@ def _comparison(design: Design) -> str:
         against += ", which leaves the limits"
     if found >= theirs:
         return f"{begin}, no better than the {against}."
-    ratio = f": {significant(theirs / found, 2)} times smaller" if theirs < NOTHING else ""
+    ratio = f" ({significant(theirs / found, 2)} times as much)" if theirs < NOTHING else ""
     return f"{begin} against {against}{ratio}."
 
 
@@ -54,15 +54,21 @@ def _drawn(design: Design) -> str:
     own = drawn_errors(design.designed, design.criterion)
     if not own:
         return ""
-    others = [drawn_errors(rival, design.criterion) for rival in design.rivals]
+    within = [rival for rival in design.rivals if keeps(rival, design.limits)]
+    others = [drawn_errors(rival, design.criterion) for rival in within or design.rivals]
     wins = sum(all(not ours >= theirs[k] for theirs in others) for k, ours in enumerate(own) if not math.isnan(ours))
     known = [x for x in own if not math.isnan(x)]
     reach = f"from {_percent(min(known))} to {_percent(max(known))}" if known else "not known"
     told = f"On {counted(len(own), 'ship')} drawn from the prior it is {reach}"
     if others:
-        told += f", smaller than with any of the standard manoeuvres on {wins} of {len(own)}"
+        which = "any standard manoeuvre within the limits" if _are_limited(design) else "any standard manoeuvre"
+        told += f", smaller than with {which} on {wins} of {len(own)}"
     lost = diverged(design.designed)
     return told + (f"; {counted(lost, 'ship')} cannot be simulated." if lost else ".")
+
+
+def _are_limited(design: Design) -> bool:
+    return math.isfinite(design.limits.drift) or math.isfinite(design.limits.room)
 
 
 def _confirmed(design: Design) -> str:

@@ -31,6 +31,8 @@ from seatrial.values import Array, Record, display
 LEFT, HEIGHT, GAP = 64.0, 120.0, 26.0
 ORDERED, EXECUTED, LIMIT = Stroke(GREY, 2.6), Stroke(ACCENT, 1.3), Stroke(SECOND, 1.0, "6 3")
 POINTS = 700
+# a sea room larger than the track by this is not drawn
+NEAR = 2.0
 
 
 def over_time(design: Design) -> str:
@@ -66,7 +68,8 @@ def track(design: Design) -> str:
     north, east = tracks.extents([executed])
     view = tracks.View(lying=tracks.is_slender([executed]) and north > east)
     room = design.limits.room
-    shape = [executed, _circle(room)] if math.isfinite(room) else [executed]
+    is_near = room < NEAR * float(np.hypot(executed["x0"], executed["y0"]).max())
+    shape = [executed, _circle(room)] if is_near else [executed]
     slender = tracks.is_slender(shape)
     width = WIDTH - LEFT - 12 if slender else 0.62 * WIDTH
     n, e = tracks.extents(shape)
@@ -76,9 +79,9 @@ def track(design: Design) -> str:
     parts = [axes(panel, x_label=names[0], y_label=names[1], x_ticks=7, y_ticks=3 if slender else 7)]
     if math.isfinite(room):
         edge = _circle(room)
-        parts.append(path(panel.px(view.across(edge)), panel.py(view.along(edge)), LIMIT))
-        parts.append(text(panel.left + panel.width - 4, panel.top + 12, f"sea room {room:.4g} m", anchor="end",
-                          colour=SECOND, size=10))  # fmt: skip
+        parts.append(clipped(panel, path(panel.px(view.across(edge)), panel.py(view.along(edge)), LIMIT)))
+        words = f"sea room {room:.4g} m" + ("" if is_near else ", beyond the picture")
+        parts.append(text(panel.left + panel.width - 4, panel.top + 12, words, anchor="end", colour=SECOND, size=10))
     parts.append(tracks.drawn(panel, view, executed, length, EXECUTED))
     return drawing(parts, panel.top + panel.height + 40, "track of the designed manoeuvre", panel.left + width + 12)
 
