@@ -14,6 +14,7 @@ import heave_pitch
 import montecarlo
 import population
 import simulation
+import waterjet_rivals
 from measure import Line, machine
 
 BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
@@ -22,6 +23,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "against_shipmmg": against_shipmmg.run,
     "against_optimisers": against_optimisers.run,
     "montecarlo": montecarlo.run,
+    "waterjet_rivals": waterjet_rivals.run,
     "fusion": fusion.run,
     "population": population.run,
     "heave_pitch": heave_pitch.run,

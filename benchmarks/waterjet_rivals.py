@@ -1,0 +1,228 @@
+"""Output error against every regression on the same noisy records of the waterjet craft, known truth, many runs.
+
+The runs of `montecarlo`: consecutive zigzags of 2075 s at 10 Hz with sensor noise. `--runs 200` prints the whole table.
+"""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import cache, partial
+
+import numpy as np
+from measure import Line, at_least, at_most, machine
+from montecarlo import EXECUTES, SEED, Series, series
+from numpy.typing import NDArray
+from stronger_regressions import OnSmoothed, Weighted
+
+from seatrial.identify import Settings, identified
+from seatrial.manoeuvres.programme import programme
+from seatrial.regress.arithmetic import LeastSquares
+from seatrial.regress.estimators import Estimator, InstrumentalVariables, Regression
+from seatrial.regress.named import regressions
+from seatrial.regress.operators import Central, Smoothed, Weak
+from seatrial.regress.pipeline import Pipeline
+from seatrial.simulate.steer import manoeuvre
+from seatrial.studies.series import JET_VELOCITY, SLEW_RATE, noisy, truth
+from seatrial.studies.series import run as steered
+from seatrial.values import InputError, Record
+
+Array = NDArray[np.float64]
+RUNS = 20
+SECONDS = 20.0
+WELL_SEEN = ("X_uu", "Y_v", "Y_r", "N_v", "N_r", "N_rr")
+PUBLISHED = tuple(e.name for e in regressions(SECONDS) if isinstance(e, Pipeline))
+CENTRAL = "central differences, least squares"
+TARGETS = {"bound": 1.2, "well seen": 0.01, "best": 5.0, "published": 100.0, "central": 1e-3, "exact": 1e-8}
+
+
+def plain() -> tuple[Estimator, ...]:
+    """What the package compares with, its windows in other widths besides."""
+    least_squares = LeastSquares()
+    return (
+        *regressions(SECONDS),
+        *(Regression(f"smoothed derivative, {s:g} s", Smoothed(s), least_squares) for s in (2.0, 5.0, 20.0, 40.0)),
+        *(Regression(f"weak form, {s:g} s", Weak(s), least_squares) for s in (5.0, 10.0, 40.0, 60.0)),
+        *(InstrumentalVariables(f"weak form, instruments, {s:g} s", Weak(s)) for s in (5.0, 10.0, 40.0, 60.0)),
+    )
+
+
+def strong() -> tuple[Estimator, ...]:
+    """The strongest that could be made: told the true noise, all six channels used."""
+    by = LeastSquares()
+    return (
+        OnSmoothed("smoother, central differences", Regression("", Central(), by), 3.0),
+        OnSmoothed("smoother, weak form, 20 s", Regression("", Weak(20.0), by), 30.0),
+        OnSmoothed("smoother, instruments, central differences", InstrumentalVariables("", Central()), 30.0),
+        OnSmoothed("smoother, weak form, instruments, 5 s", InstrumentalVariables("", Weak(5.0)), 30.0),
+        Weighted("weighted weak form, 10 s (WENDy)", 10.0),
+        Weighted("weighted, corrected, 10 s", 10.0, corrected=True),
+        Weighted("weighted, instruments, 10 s", 10.0, instrumented=True),
+        Weighted("weighted, corrected, instruments, 10 s", 10.0, corrected=True, instrumented=True),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Output error's series and every rival's errors (runs, coefficients), NaN where it gave up."""
+
+    own: Series
+    rivals: dict[str, Array]
+
+    def error(self, name: str) -> Array:
+        """Root-mean-square error of a rival, each coefficient, of the runs it did not give up; else infinite."""
+        kept = self.rivals[name][~np.isnan(self.rivals[name]).any(axis=1)]
+        return np.sqrt(np.mean(kept**2, axis=0)) if len(kept) else np.full(len(self.own.names), np.inf)
+
+    @property
+    def own_error(self) -> Array:
+        """The same of output error."""
+        return self.own.ratio * self.own.bound
+
+    def ratio(self, name: str) -> Array:
+        """A rival's error over output error's, each coefficient."""
+        return self.error(name) / self.own_error
+
+    def best(self, names: list[str]) -> tuple[list[str], Array]:
+        """The rival nearest to output error for each coefficient, and its ratio."""
+        ratios = np.array([self.ratio(n) for n in names])
+        return [names[i] for i in ratios.argmin(axis=0)], ratios.min(axis=0)
+
+    def single(self, names: Sequence[str]) -> tuple[str, float]:
+        """The rival whose ratio is the smallest at the median of the coefficients."""
+        medians = [float(np.median(self.ratio(n))) for n in names]
+        return names[int(np.argmin(medians))], min(medians)
+
+
+def compared(runs: int, seed: int, executes: int, workers: int) -> Comparison:
+    """Output error, then every rival, on the same noisy records."""
+    own = series(runs, seed, executes)
+    errors = partial(_errors, executes, own.values)
+    streams = np.random.SeedSequence(seed).spawn(runs)
+    if workers > 1:
+        with ProcessPoolExecutor(workers) as pool:
+            made = list(pool.map(errors, streams))
+    else:
+        made = [errors(s) for s in streams]
+    return Comparison(own, {name: np.array([m[name] for m in made]) for name in made[0]})
+
+
+@cache
+def _clean(executes: int) -> Record:
+    return steered(truth(), f"consecutive-zigzags:{executes}")
+
+
+def _errors(executes: int, values: Array, stream: np.random.SeedSequence) -> dict[str, Array]:
+    record = noisy(_clean(executes), np.random.default_rng(stream), SEED)
+    return {e.name: _error(e, record, values) for e in (*plain(), *strong())}
+
+
+def _error(estimator: Estimator, record: Record, values: Array) -> Array:
+    try:
+        return estimator.estimate(truth(), [record]).values - values
+    except InputError:
+        return np.full(len(values), np.nan)
+
+
+def without_noise(executes: int) -> tuple[float, float]:
+    """Largest relative errors without noise: least squares on central differences; output error.
+
+    Output error's record is generated with the step it is fitted with, so that the truth is within its reach.
+    """
+    model = truth()
+    names = model.parameters.free_names
+    values = np.array([model.parameters[n].value for n in names])
+    (central,) = [e for e in regressions(SECONDS) if e.name == CENTRAL]
+    record = manoeuvre(
+        model,
+        programme(f"consecutive-zigzags:{executes}"),
+        inputs={"v_j": JET_VELOCITY},
+        slew_rate=SLEW_RATE,
+        approach=10.0,
+    )
+    blank = model.with_values(dict.fromkeys(names, 0.0))
+    found = identified(blank, [record], [record.name], model.parameters["L"].value, Settings(workers=1))
+    shared = found.made.shared[: len(names)]
+    return _largest(central.estimate(model, [_clean(executes)]).values, values), _largest(shared, values)
+
+
+def _largest(found: Array, values: Array) -> float:
+    return float(np.max(np.abs(found / values - 1.0)))
+
+
+def lines(made: Comparison, executes: int = EXECUTES) -> list[Line]:
+    """The table against its targets."""
+    own = made.own
+    usual = [e.name for e in plain()]
+    every = [*usual, *(e.name for e in strong())]
+    table = [
+        at_most(f"{n}: RMSE / bound", float(r), "", TARGETS["bound"]) for n, r in zip(own.names, own.ratio, strict=True)
+    ]
+    share = made.own_error / np.abs(own.values)
+    table += [
+        at_most(f"{n}: RMSE / value", float(share[own.names.index(n)]), "", TARGETS["well seen"]) for n in WELL_SEEN
+    ]
+    for names, who in ((usual, "regressions"), (every, "regressions, the strongest made for it too")):
+        each = made.best(names)[1]
+        one, median = made.single(names)
+        table.append(
+            at_least(
+                f"best of each coefficient / output error, median: {who}", float(np.median(each)), "", TARGETS["best"]
+            )
+        )
+        table.append(at_least(f"{one} / output error, median", median, "", TARGETS["best"]))
+    published, median = made.single(PUBLISHED)
+    table.append(at_least(f"{published} / output error, median", median, "", TARGETS["published"]))
+    central, exact = without_noise(executes)
+    table.append(at_most("noise-free: central differences, largest error / value", central, "", TARGETS["central"]))
+    table.append(at_most("noise-free: output error, largest error / value", exact, "", TARGETS["exact"]))
+    return table
+
+
+def tell(made: Comparison) -> None:
+    """Every coefficient, then every rival."""
+    own = made.own
+    usual = [e.name for e in plain()]
+    every = [*usual, *(e.name for e in strong())]
+    (best, ratio), (usual_best, usual_ratio) = made.best(every), made.best(usual)
+    published = made.ratio(made.single(PUBLISHED)[0])
+    print(
+        "  coefficient: bound and RMSE in % of the value, RMSE / bound; RMSE over output error's: published pipeline,"
+    )
+    print("  best regression, best of all those made strong for it too")
+    for i, name in enumerate(own.names):
+        value = abs(own.values[i]) / 100.0
+        shares = f"{own.bound[i] / value:8.3f}{made.own_error[i] / value:8.3f}{own.ratio[i]:6.2f}{published[i]:10.3g}"
+        print(f"  {name:<5}{shares}  {usual_ratio[i]:5.2f} {usual_best[i]}; {ratio[i]:5.2f} {best[i]}")
+    print("  rival: runs given up; error over output error's, median and each coefficient")
+    for name in sorted(every, key=lambda n: float(np.median(made.ratio(n)))):
+        lost = int(np.isnan(made.rivals[name]).any(axis=1).sum())
+        each = " ".join(f"{r:7.3g}" for r in made.ratio(name))
+        print(f"  {name:<48}{lost:4d}{np.median(made.ratio(name)):9.3g}  {each}")
+
+
+def run() -> list[Line]:
+    """Twenty runs; some minutes."""
+    return lines(compared(RUNS, SEED, EXECUTES, workers=1))
+
+
+def main(arguments: list[str]) -> int:
+    """Print the tables; 1 if a target is missed."""
+    parser = argparse.ArgumentParser(description="output error against regressions over repeated simulated trials")
+    parser.add_argument("--runs", type=int, default=RUNS)
+    parser.add_argument("--seed", type=int, default=SEED)
+    parser.add_argument("--executes", type=int, default=EXECUTES, help="of each zigzag angle; 5: 2075 s")
+    parser.add_argument("--workers", type=int, default=1, help="processes for the regressions")
+    given = parser.parse_args(arguments)
+    print(machine())
+    made = compared(given.runs, given.seed, given.executes, given.workers)
+    tell(made)
+    table = lines(made, given.executes)
+    for line in table:
+        print(f"  {line.what:<72} {line.value:>10.4g} {line.unit:<4} {line.verdict}")
+    return int(any(line.holds is False for line in table))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
