@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from seatrial.results import Design, Extrapolation, Fit, Prediction, Study, Worth
+    from seatrial.results import Design, Extrapolation, Fit, Prediction, Rival, Study, Worth
     from seatrial.values import Finding
 
 FAR = 1.2
@@ -85,25 +85,33 @@ def _print_rivals(fit: "Fit") -> None:
     """How far each estimator is from the fit, or from the truth where it is known, and how it predicts."""
     if not fit.rivals:
         return
-    is_known = any(r.error for r in fit.rivals)
-    away = "error, % of the truth" if is_known else "gap, std. errors"
-    print(
-        f"{'other estimators':46s} {away:>22s}  {'worst':>8s}   {'heading deg':>11s} {'position m':>10s}   CC u, v, r"
-    )
+    first = fit.rivals[0]
+    what = "errors, %" if first.error else "from this fit, %"
+    heads = f"{'worst':>8s} {'heading deg':>12s} {'position m':>11s}  CC u, v, r"
+    print(f"{'other estimators':46s} {what:>17s}: median {heads}")
     for r in fit.rivals:
-        sizes = [100.0 * abs(e) for e in r.error.values()] if is_known else [abs(g) for g in r.gap.values()]
-        runs = r.validation if fit.validation() else r.training
-        if r.note or r.diverged:
-            lost = f"diverges in {len(r.diverged)} of {len(fit.predictions)} runs: {', '.join(r.diverged[:1])} ..."
-            why = f"failed: {r.note}" if r.note else lost
-        else:
-            rms = [f"{runs.rms[key]:.3g}" if key in runs.rms else "-" for key in ("psi_deg", "position_m")]
-            why = f"{rms[0]:>11s} {rms[1]:>10s}   {', '.join(f'{cc:.3f}' for cc in runs.correlation.values())}"
-        numbers = f"{sum(sizes) / len(sizes):22.3g}  {max(sizes):8.3g}" if sizes else " " * 32
-        print(f"{r.name:46s} {numbers}   {why}".rstrip())
+        print(f"{r.name[:60]:62s} {_off(r, first)} {_sails(r, fit)}".rstrip())
         for finding in r.findings:
             print(f"  {SEVERITY_MARK[finding.severity.value]} [{finding.code}] {finding.text}")
-    print("  good trajectories and CC prove nothing about coefficients: read the errors")
+    print("  good trajectories and correlations (CC) prove nothing about coefficients")
+
+
+def _off(rival: "Rival", first: "Rival") -> str:
+    from statistics import median
+
+    sizes = [100.0 * abs(away) for away in rival.away(first).values()]
+    return f"{median(sizes):10.3g} {max(sizes):8.3g}" if sizes else " " * 19
+
+
+def _sails(rival: "Rival", fit: "Fit") -> str:
+    """Errors and correlations of the runs held out, or of the training runs where there are none; or why none."""
+    if rival.note:
+        return f"failed: {rival.note}"
+    if rival.diverged:
+        return f"diverges in {len(rival.diverged)} of {len(fit.predictions)} runs, {rival.diverged[0]} first"
+    runs = rival.validation if fit.validation() else rival.training
+    cells = [f"{runs.rms[key]:.3g}" if key in runs.rms else "-" for key in ("psi_deg", "position_m")]
+    return f"{cells[0]:>12s} {cells[1]:>11s}  {', '.join(f'{cc:.3f}' for cc in runs.correlation.values())}"
 
 
 def _print_telling(fit: "Fit") -> None:

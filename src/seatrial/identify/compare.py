@@ -15,10 +15,10 @@ from seatrial.regress.estimators import Estimator
 from seatrial.regress.features import Motion, features
 from seatrial.regress.named import regressions
 from seatrial.results import Coefficient, Fit, Prediction, Rival, Sailed
+from seatrial.results.rival import NO_COMPARISON
 from seatrial.simulate.replay import replay
 from seatrial.values import Finding, InputError, Progress, Record, Severity
 
-NO_RIVALS = "no-comparison"
 _CORRELATED = ("u", "v", "r")
 
 
@@ -27,7 +27,7 @@ def with_rivals(fit: Fit, train: Sequence[Record], seconds: float, progress: Pro
     try:
         return replace(fit, rivals=compared(fit, train, regressions(seconds), progress))
     except InputError as error:
-        said = Finding(Severity.INFO, NO_RIVALS, f"no other estimators to compare: {error}", "")
+        said = Finding(Severity.INFO, NO_COMPARISON, f"no other estimators to compare: {error}", "")
         return replace(fit, findings=(*fit.findings, said))
 
 
@@ -36,13 +36,15 @@ def compared(
 ) -> tuple[Rival, ...]:
     """The fit, then each estimator on the training runs; one that fails says why and stops none of the others.
 
+    A fit with offsets stands there again without them: the others have none, so that this is like for like.
+
     Raises:
         InputError: the model is not linear in its free coefficients, or the runs do not show every state of it.
     """
     for record in train:
         features(fit.model, Motion.of(fit.model, record))
     tell = progress or (lambda _: None)
-    made = [_itself(fit)]
+    made = _itself(fit)
     for estimator in estimators:
         tell(f"comparing: {estimator.name}")
         made.append(_rival(fit, train, estimator))
@@ -86,13 +88,18 @@ def _keys(tables: Sequence[dict[str, float]]) -> list[str]:
     return list(dict.fromkeys(key for table in tables for key in table))
 
 
-def _itself(fit: Fit) -> Rival:
-    training, validation = (
-        told([(p.measured, p.simulated) for p in _of_role(fit, role)]) for role in ("training", "validation")
-    )
+def _itself(fit: Fit) -> list[Rival]:
+    """The fit as it stands, and with offsets at zero where it has any."""
+    train, held = _of_role(fit, "training"), _of_role(fit, "validation")
+    as_it_stands = [told([(p.measured, p.simulated) for p in runs]) for runs in (train, held)]
+    pairs = {f"this fit: {fit.method.criterion}": as_it_stands}
+    if fit.offsets:
+        pairs["this fit, its offsets set to zero"] = [sailed(fit.model, runs) for runs in (train, held)]
     values = {c.name: c.estimate for c in _free(fit)}
-    name = f"this fit: {fit.method.criterion}"
-    return _beside(fit, Rival(name, values, training=training, validation=validation))
+    return [
+        _beside(fit, Rival(name, values, training=fitted, validation=kept, is_fit=True))
+        for name, (fitted, kept) in pairs.items()
+    ]
 
 
 def _rival(fit: Fit, train: Sequence[Record], estimator: Estimator) -> Rival:

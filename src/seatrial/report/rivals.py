@@ -1,4 +1,4 @@
-"""The chapter on other estimators: coefficients beside the fit's, the runs they sail, and one sentence on what counts."""
+"""The chapter on other estimators: coefficients beside the fit's, the runs they sail, and what they prove."""
 
 import math
 from collections.abc import Sequence
@@ -61,67 +61,85 @@ def rivals(fit: Fit) -> Compared | None:
         why = [f.text for f in fit.findings if f.code == NO_COMPARISON]
         return Compared((sentence(why[0]),)) if why else None
     known = [c for c in fit.coefficients if not c.fixed]
-    first, others = fit.rivals[0], fit.rivals[1:]
+    first = fit.rivals[0]
     held, fitted = _sailed(fit.rivals, "validation"), _sailed(fit.rivals, "training")
     return Compared(
         said(fit),
         tuple((c.name, unit(c.unit)) for c in known),
         tuple(exact(_shown(c.truth, c), 4) for c in known) if first.error else (),
-        tuple(_row(r, first, known) for r in fit.rivals if r.values),
+        tuple(_row(r, first, known) for r in fit.rivals if r.values and (r is first or not r.is_fit)),
         Markup(scatter(_dots(fit.rivals), _axis(first))),
         tuple(sheet(t) for t in (_table("Held-out runs", held), _table("Training runs", fitted)) if t.header[1:]),
-        tuple(note for r in others for note in _notes(r)),
+        tuple(note for r in fit.rivals for note in _notes(r)),
     )
 
 
 def said(fit: Fit) -> tuple[str, ...]:
     """Which regression comes nearest, which fail, and what trajectories tell of it."""
-    first, others = fit.rivals[0], fit.rivals[1:]
+    first, others = fit.rivals[0], [r for r in fit.rivals if not r.is_fit]
     solved = [r for r in others if r.values]
-    failed = [r.name for r in others if not r.values]
-    lost = [r.name for r in solved if r.diverged]
-    told = [f"{counted(len(others), 'regression').capitalize()} on the same training runs, as recorded: without offsets, "
-            "priors or bounds."]  # fmt: skip
+    failed = [f"“{r.name}”" for r in others if not r.values]
+    lost = [f"“{r.name}”" for r in solved if r.diverged]
+    told = [f"{counted(len(others), 'regression').capitalize()} on the same training runs, as recorded."]
     if failed:
-        told.append(f"{len(failed)} of them {'fails' if len(failed) == 1 else 'fail'}: {listed(failed)}.")
+        told.append(f"{_many(failed)} of them {'fails' if len(failed) == 1 else 'fail'}: {listed(failed)}.")
     if lost:
         verb = "gives" if len(lost) == 1 else "give"
-        told.append(f"{len(lost)} {verb} coefficients with which a simulated run diverges: {listed(lost)}.")
+        told.append(f"{_many(lost)} {verb} coefficients with which a simulated run diverges: {listed(lost)}.")
     if solved:
         told.append(_nearest(first, solved))
+    held = sum(c.prior_mean is not None for c in fit.coefficients if not c.fixed)
+    if held:
+        told.append(f"The fit has priors for {counted(held, 'coefficient')} and the regressions have none, so that "
+                    "differences show what the priors do as well.")  # fmt: skip
     return tuple(t for t in (" ".join(told), _of_trajectories(fit, solved)) if t)
+
+
+def _many(items: Sequence[str]) -> str:
+    return "One" if len(items) == 1 else str(len(items))
 
 
 def _nearest(first: Rival, solved: Sequence[Rival]) -> str:
     best = min(solved, key=lambda r: _middle(r, first))
-    numbers = f"{_share(_middle(best, first))} % off in the median, {_share(_worst(best, first))} % at worst"
     if not first.error:
-        return f"Nearest to the fit comes {best.name}: {numbers}."
+        return f"Nearest to the fit comes “{best.name}”: {_differs(best, first)}."
     own = f"{_share(_middle(first, first))} % and {_share(_worst(first, first))} %"
-    return f"Nearest to the known values comes {best.name}: {numbers}; the fit is {own} off."
+    return f"Nearest to the known values comes “{best.name}”: {_differs(best, first)}; the fit is {own} off."
+
+
+def _differs(rival: Rival, first: Rival) -> str:
+    off = "off" if first.error else "from the fit"
+    return f"{_share(_middle(rival, first))} % {off} in the median, {_share(_worst(rival, first))} % at worst"
 
 
 def _of_trajectories(fit: Fit, solved: Sequence[Rival]) -> str:
     """How well coefficients that are wrong can sail."""
-    role = "validation" if fit.validation() else "training"
-    runs = "held-out runs" if role == "validation" else "training runs"
-    told, own = [], _of(fit.rivals[0], role).rms.get("psi_deg")
-    headings = [_of(r, role).rms["psi_deg"] for r in solved if "psi_deg" in _of(r, role).rms]
-    if own is not None and headings:
-        better = sum(h < own for h in headings)
-        number = {0: "None", len(headings): "All"}.get(better, f"{better} of {len(headings)}")
-        told.append(f"{number} of those that sail the {runs} predict their heading better than the fit.")
+    first, role = fit.rivals[0], "validation" if fit.validation() else "training"
+    alone = [r for r in fit.rivals if r.is_fit][-1]
+    counts = [_better(alone, solved, one) for one in dict.fromkeys((role, "training"))]
+    told = []
+    without = "" if alone is first else ", its offsets set to zero"
+    if all(counts):
+        told.append(f"Heading nearer the measured one than the fit’s{without}: {' and '.join(counts)}.")
     alike = [r for r in solved if min(_of(r, role).correlation.values(), default=0.0) > ALIKE]
     if alike:
-        worst = max(alike, key=lambda r: _middle(r, fit.rivals[0]))
-        least = min(_of(worst, role).correlation.values())
-        told.append(
-            f"Good trajectories prove nothing about coefficients: with {worst.name} measured and simulated u, v and r "
-            f"correlate by {fixed(least, 3)} or better (CC), and its coefficients are "
-            f"{_share(_middle(worst, fit.rivals[0]))} % off in the median, {_share(_worst(worst, fit.rivals[0]))} % "
-            "at worst."
-        )
+        worst = max(alike, key=lambda r: _middle(r, first))
+        least = fixed(min(_of(worst, role).correlation.values()), 3)
+        told.append(f"Good trajectories prove nothing about coefficients: those of “{worst.name}” are "
+                    f"{_differs(worst, first)}, and yet its u, v and r correlate with the measured ones by {least} or "
+                    "better (CC).")  # fmt: skip
     return " ".join(told)
+
+
+def _better(fit: Rival, solved: Sequence[Rival], role: str) -> str:
+    """How many sail runs of a role with a smaller error of heading than the fit; empty where nothing is known."""
+    own = _of(fit, role).rms.get("psi_deg")
+    headings = [_of(r, role).rms["psi_deg"] for r in solved if "psi_deg" in _of(r, role).rms]
+    if own is None or not headings:
+        return ""
+    runs = "held-out" if role == "validation" else "training"
+    number = sum(h < own for h in headings) or "none"
+    return f"{number} of the {len(headings)} that sail the {runs} runs"
 
 
 def _of(rival: Rival, role: str) -> Sailed:
@@ -181,7 +199,9 @@ def _axis(first: Rival) -> str:
 def _dots(items: Sequence[Rival]) -> dict[str, dict[str, tuple[float, bool]]]:
     """Estimator -> coefficient -> size in per cent, and whether it is within two standard errors of the fit."""
     first, made = items[0], {}
-    for r in items if items[0].error else items[1:]:
+    for r in items if first.error else items[1:]:
+        if r.is_fit and r is not first:
+            continue
         away = r.away(first)
         near = {n: abs(r.gap.get(n, math.inf)) <= NEAR for n in away}
         if away:
@@ -196,7 +216,7 @@ def _table(title: str, items: Sequence[tuple[str, Sailed]]) -> Table:
     rows = []
     for name, s in items:
         errors = [s.rms[k] * _COLUMNS[k][1] if k in s.rms else None for k in keys]
-        rows.append((name, *errors, *(f"{s.correlation[c]:.3f}" if c in s.correlation else None for c in channels)))
+        rows.append((name, *errors, *(s.correlation.get(c) for c in channels)))
     return Table(title, ("Estimator", *header) if header else ("Estimator",), tuple(rows))
 
 

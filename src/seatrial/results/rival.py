@@ -4,6 +4,9 @@ from dataclasses import dataclass, field
 
 from seatrial.values import Finding
 
+NO_COMPARISON = "no-comparison"
+"""Code of the finding that says why other estimators could not be asked."""
+
 
 @dataclass(frozen=True)
 class Sailed:
@@ -23,7 +26,7 @@ class Sailed:
 
 @dataclass(frozen=True)
 class Rival:
-    """An estimator on the records of a fit; the fit itself stands first.
+    """An estimator on the records of a fit; the fit itself stands first, then, if it has any, without its offsets.
 
     Attributes:
         values: coefficient -> SI; empty where the estimator failed.
@@ -32,6 +35,7 @@ class Rival:
         training, validation: runs open loop with these values, from the initial states that the fit gives them.
         bias: equations -> constant the estimator allowed itself besides.
         note: why it failed; empty where it did not.
+        is_fit: whether these are the coefficients of the fit.
     """
 
     name: str
@@ -43,8 +47,15 @@ class Rival:
     bias: dict[str, float] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
     note: str = ""
+    is_fit: bool = False
 
     @property
     def diverged(self) -> tuple[str, ...]:
         """All runs whose simulation diverges."""
         return (*self.training.diverged, *self.validation.diverged)
+
+    def away(self, fit: "Rival") -> dict[str, float]:
+        """Relative error of each coefficient where the truth is known, else its relative difference from the fit."""
+        if fit.error:
+            return self.error
+        return {n: value / fit.values[n] - 1.0 for n, value in self.values.items() if fit.values.get(n)}

@@ -156,7 +156,7 @@ class SailedEntry(Entry):
 
 
 class RivalEntry(Entry):
-    """An estimator on the same training runs; the first is the fit itself."""
+    """An estimator on the same training runs; first the fit itself, as it stands and without offsets."""
 
     name: str
     values: dict[str, Number] = Field(description="SI; empty where the estimator failed")
@@ -167,6 +167,7 @@ class RivalEntry(Entry):
     bias: dict[str, Number] = Field(description="equations -> constant the estimator allowed itself besides")
     findings: list[FindingEntry]
     note: str = Field(description="why the estimator failed; empty where it did not")
+    is_fit: bool = Field(description="whether these are the coefficients of the fit")
 
 
 class FamilyEntry(Entry):

@@ -6,7 +6,7 @@ from dataclasses import replace
 from statistics import median
 
 from seatrial.report.figures.decades import decade_axis, decade_panel
-from seatrial.report.figures.plot import ACCENT, FAINT, GREY, INK, SECOND, Stroke, drawing, rectangle, segment, text
+from seatrial.report.figures.plot import ACCENT, FAINT, GREY, INK, SECOND, Stroke, drawing, segment, text
 
 LEAST = 0.1
 _ROOM = 56.0
