@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from report.fabricated import fabricated_fit
-from report.told import told
+from report.told import rivals, told
 from seatrial.cli.output import print_fit
 
 
@@ -30,3 +30,18 @@ def test_what_was_not_examined_is_not_printed(capsys: pytest.CaptureFixture[str]
     text = printed(capsys)
     assert "validation zigzag_25_25: rms" in text
     assert not any(word in text for word in ("determine", "cannot be told", "noise alone", "extrapolation", "tied"))
+
+
+def test_other_estimators_stand_in_one_table(capsys: pytest.CaptureFixture[str]) -> None:
+    plain = fabricated_fit()
+    print_fit(plain)
+    assert "other estimators" not in printed(capsys)
+    print_fit(replace(plain, rivals=rivals(plain)))
+    lines = printed(capsys).splitlines()
+    (head,) = [k for k, line in enumerate(lines) if line.startswith("other estimators")]
+    assert "errors, %" in lines[head]
+    assert lines[head + 2].split()[:5] == ["weak", "form", "5", "5", "0.8"]
+    assert "[lasso-dropped]" in lines[head + 4]
+    assert lines[head + 5].endswith("diverges in 1 of 4 runs, zigzag_25_25 first")
+    assert lines[head + 6].endswith("failed: run a is too short")
+    assert "prove nothing about coefficients" in lines[head + 7]

@@ -19,11 +19,13 @@ from seatrial.results import (
     Member,
     Prediction,
     Profile,
+    Rival,
+    Sailed,
     Sensitivity,
     Stability,
     Symmetry,
 )
-from seatrial.values import Parameter, Prior, Ship
+from seatrial.values import Finding, Parameter, Prior, Severity, Ship
 
 
 def told(fit: Fit) -> Fit:
@@ -34,6 +36,7 @@ def told(fit: Fit) -> Fit:
         identifiability=identifiability(fit),
         disturbance=disturbance(),
         family=family(),
+        rivals=rivals(fit),
     )
 
 
@@ -147,6 +150,26 @@ def family() -> tuple[Member, ...]:
         Member("full, priors 30 %, segments of 10 s", 43, 1.49, 0.66, tied=True),
         Member("without even terms, priors 10 %", 37, 2.31, 0.92, tied=False),
         Member("full, no priors", 43, None, None, tied=False, note="run Z_20_05 diverged after 41 s"),
+    )
+
+
+def rivals(fit: Fit) -> tuple[Rival, ...]:
+    """The fit 1 % off, an estimator near it, one farther off that sails well, one that diverges, one that failed."""
+    free = [c for c in fit.coefficients if not c.fixed]
+    dropped = Finding(Severity.INFO, "lasso-dropped", "Lasso drops N_r from the r equation")
+
+    def at(name: str, off: float, gap: float, heading: float, cc: float) -> Rival:
+        sails = Sailed({"psi_deg": heading, "position_m": 2.0, "r": 0.002}, {"u": cc, "v": cc, "r": 0.999})
+        values = {c.name: (1.0 + off) * c.estimate for c in free}
+        return Rival(name, values, dict.fromkeys(values, gap), dict.fromkeys(values, off), sails, sails)
+
+    lost = Sailed(diverged=(fit.predictions[-1].record,))
+    return (
+        replace(at(f"this fit: {fit.method.criterion}", 0.01, 0.0, 0.5, 0.99), is_fit=True),
+        at("weak form", 0.05, 1.5, 0.8, 0.99),
+        replace(at("ridge", 0.6, -7.0, 1.1, 0.98), findings=(dropped,), bias={"u": 0.003}),
+        replace(at("Euler", 9.0, 450.0, 0.0, 0.0), training=Sailed(), validation=lost),
+        Rival("pipeline", note="run a is too short"),
     )
 
 

@@ -95,6 +95,7 @@ def test_what_the_records_tell_comes_back_to_the_last_bit(fit: Fit, tmp_path: Pa
     back = load_fit(save_fit(full, tmp_path))
     assert back.identifiability == full.identifiability
     assert (back.disturbance, back.family) == (full.disturbance, full.family)
+    assert back.rivals == full.rivals and len(back.rivals) == 5
     for p, q in zip(back.predictions, full.predictions, strict=True):
         assert (p.extrapolation, p.floor, p.spread, p.measures.keys()) == (
             q.extrapolation, q.floor, q.spread, q.measures.keys(),
@@ -112,14 +113,14 @@ def test_numbers_that_are_none_come_back_as_such(fit: Fit, tmp_path: Path) -> No
 def test_a_folder_from_before_is_read(fit: Fit, tmp_path: Path) -> None:
     path = save_fit(fit, tmp_path) / "result.json"
     table = json.loads(path.read_text())
-    for name in ("identifiability", "disturbance", "family"):
+    for name in ("identifiability", "disturbance", "family", "rivals"):
         del table["detail"][name]
     for entry in table["detail"]["predictions"]:
         for name in ("extrapolation", "half_width", "floor", "spread"):
             del entry[name]
     path.write_text(strict_json(table))
     back = load_fit(tmp_path)
-    assert (back.identifiability, back.disturbance, back.family) == (None, None, ())
+    assert (back.identifiability, back.disturbance, back.family, back.rivals) == (None, None, (), ())
     assert back.predictions[0].half_width == {}
 
 
@@ -135,9 +136,8 @@ def test_a_damaged_entry_is_one_sentence(fit: Fit, tmp_path: Path) -> None:
 def test_the_json_has_the_documented_entries_and_no_nan(fit: Fit) -> None:
     table = json.loads(strict_json(fit_json(fit)))
     assert list(table) == [
-        "coefficients", "intervals", "validation", "identifiability", "noise", "family", "seakeeping", "rivals", "findings",
-        "elapsed_s",
-        "versions", "seed",
+        "coefficients", "intervals", "validation", "identifiability", "noise", "family", "seakeeping", "rivals",
+        "findings", "elapsed_s", "versions", "seed",
     ]  # fmt: skip
     assert list(table["coefficients"][0]) == [
         "name", "unit", "estimate", "standard_error", "lower", "upper", "fixed", "truth",
