@@ -6,6 +6,7 @@ that served it best.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 from numba import njit
@@ -26,6 +27,7 @@ SMOOTHED = ("u", "v", "r", "psi", "x0", "y0")
 # mean squares of the second derivatives of u, v, r along this manoeuvre without noise
 JERK = np.array([2.82e-8, 4.50e-8, 5.53e-9])
 ROUNDS = 4
+NODES, WEIGHTS = np.polynomial.hermite_e.hermegauss(3)
 
 
 @dataclass(frozen=True)
@@ -52,8 +54,9 @@ class Weighted:
     least squares. What no publication has but makes it stronger:
 
     Attributes:
-        corrected: features less the bias that the variance of the noise gives them, to second order.
-        instrumented: features of the simulated motion as instruments and in the weights.
+        corrected: features less the bias that the variance of the noise gives them.
+        instrumented: features of the simulated motion as instruments, in the weights and for that bias. That is a step
+            of Gauss and Newton from the simulation to the record, all but output error by another way.
     """
 
     name: str
@@ -64,20 +67,24 @@ class Weighted:
     def estimate(self, model: Model, records: Sequence[Record]) -> Regressed:
         """The coefficients after `ROUNDS` of reweighting."""
         (record,) = records
-        motion, found = Motion.of(model, record), np.zeros(len(model.parameters.free_names))
-        at = _tangent(model, motion, found)
-        weak = _rows(model, at.without_bias(model, motion) if self.corrected else at, motion, self.seconds)
-        matrix, target = weak.slope, -weak.residual
-        found = np.asarray(np.linalg.lstsq(matrix, target)[0], dtype=np.float64)
+        motion = Motion.of(model, record)
+        at = _tangent(model, motion, np.zeros(len(model.parameters.free_names)))
+        weak = _rows(model, self._less_bias(model, at, motion), motion, self.seconds)
+        found = np.asarray(np.linalg.lstsq(weak.slope, -weak.residual)[0], dtype=np.float64)
         for _ in range(ROUNDS):
             ship = Regressed(found).in_model(model)
             seen = Motion.of(model, replay(ship, record)) if self.instrumented else motion
             known = _rows(model, _tangent(model, seen, found), seen, self.seconds)
-            # without instruments these are the noisy features, corrected or not
-            left = known.slope if self.instrumented else matrix
+            if self.instrumented:
+                weak = _rows(model, self._less_bias(model, at, seen), motion, self.seconds)
+            left = known.slope if self.instrumented else weak.slope
             weighted = solveh_banded(known.covariance(), left, lower=True)
-            found = np.asarray(np.linalg.solve(weighted.T @ matrix, weighted.T @ target), dtype=np.float64)
+            normal, target = weighted.T @ weak.slope, weighted.T @ -weak.residual
+            found = np.asarray(np.linalg.solve(normal, target), dtype=np.float64)
         return Regressed(found)
+
+    def _less_bias(self, model: Model, at: "_Tangent", motion: Motion) -> "_Tangent":
+        return at.without_bias(model, motion) if self.corrected else at
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,15 +102,17 @@ class _Tangent:
     values: Array
 
     def without_bias(self, model: Model, motion: Motion) -> "_Tangent":
-        """E f(x + n) - f(x) taken off, by the nodes 0 and +-sqrt(3) sigma of Gauss and Hermite in each state."""
+        """E f(x + n) - f(x) at the states x of a motion taken off, by Gauss-Hermite quadrature in each state."""
+        centre = _tangent(model, motion, self.values)
         rates, slope = self.rates.copy(), self.slope.copy()
-        for i, deviation in enumerate(_deviations(model)):
-            shift = np.zeros(len(model.states))
-            shift[i] = np.sqrt(3.0) * deviation
-            up = _tangent(model, replace(motion, states=motion.states + shift), self.values)
-            down = _tangent(model, replace(motion, states=motion.states - shift), self.values)
-            rates -= (up.rates + down.rates - 2.0 * self.rates) / 6.0
-            slope -= (up.slope + down.slope - 2.0 * self.slope) / 6.0
+        acting = np.flatnonzero(np.any(centre.states, axis=(0, 1)))
+        for i, (node, weight) in product(acting, zip(NODES, WEIGHTS / WEIGHTS.sum(), strict=True)):
+            if node:
+                shift = np.zeros(len(model.states))
+                shift[i] = node * _deviations(model)[i]
+                moved = _tangent(model, replace(motion, states=motion.states + shift), self.values)
+                rates -= weight * (moved.rates - centre.rates)
+                slope -= weight * (moved.slope - centre.slope)
         return replace(self, rates=rates, slope=slope)
 
 
@@ -111,21 +120,21 @@ class _Tangent:
 class _Rows:
     """Residuals (windows * nx,), features (windows * nx, k); what noise of each sample adds, (windows, nx, rows * nx).
 
-    `shared` is how many numbers of the last axis two neighbouring windows do not share.
+    `step` is how many numbers of the last axis two neighbouring windows do not share.
     """
 
     residual: Array
     slope: Array
     noise: Array
-    shared: int
+    step: int
 
     def covariance(self) -> Array:
         """Of the residuals, as the lower bands that `scipy.linalg.solveh_banded` takes."""
         count, nx, width = self.noise.shape
-        apart = -(-width // self.shared)
+        apart = -(-width // self.step)
         bands = np.zeros((nx * (apart + 1), count * nx))
         for d in range(apart):
-            first, second = self.noise[: count - d, :, d * self.shared :], self.noise[d:, :, : width - d * self.shared]
+            first, second = self.noise[: count - d, :, d * self.step :], self.noise[d:, :, : width - d * self.step]
             blocks = second @ np.swapaxes(first, 1, 2)
             for row in range(nx):
                 for column in range(nx):

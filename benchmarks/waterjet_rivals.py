@@ -59,7 +59,7 @@ def strong() -> tuple[Estimator, ...]:
         Weighted("weighted weak form, 10 s (WENDy)", 10.0),
         Weighted("weighted, corrected, 10 s", 10.0, corrected=True),
         Weighted("weighted, instruments, 10 s", 10.0, instrumented=True),
-        Weighted("weighted, corrected, instruments, 10 s", 10.0, corrected=True, instrumented=True),
+        Weighted("weighted, corrected, instruments, 5 s", 5.0, corrected=True, instrumented=True),
     )
 
 
