@@ -81,8 +81,9 @@ class Ridge:
     def solve(self, system: System) -> Solved:
         """By the normal equations."""
         scaled = scales(system)
-        penalty = _chosen(scaled, _ridge) if self.penalty is None else self.penalty
-        return Solved(scaled.back(_ridge(scaled.matrix, scaled.values, penalty)), settings={"penalty": penalty})
+        penalty = _chosen(scaled, _ridges) if self.penalty is None else self.penalty
+        found = _ridges(scaled.matrix, scaled.values, np.array([penalty]))[0]
+        return Solved(scaled.back(found), settings={"penalty": penalty})
 
 
 @dataclass(frozen=True)
@@ -115,7 +116,7 @@ class LeastSquaresSvm:
         """By the normal equations about the means."""
         scaled = scales(system)
         penalty = _chosen(scaled, _with_constant) if self.gamma is None else 1.0 / self.gamma
-        found = _with_constant(scaled.matrix, scaled.values, penalty)
+        found = _with_constant(scaled.matrix, scaled.values, np.array([penalty]))[0]
         bias = float(np.mean(scaled.values - scaled.matrix @ found))
         return Solved(scaled.back(found), scaled.target * bias, settings={"gamma": 1.0 / penalty})
 
@@ -184,17 +185,19 @@ def _least_squares(matrix: Array, target: Array) -> Array:
     return np.asarray(np.linalg.lstsq(matrix, target)[0], dtype=np.float64)
 
 
-def _ridge(matrix: Array, target: Array, penalty: float) -> Array:
-    return _solved(matrix.T @ matrix + penalty * np.eye(matrix.shape[1]), matrix.T @ target)
+def _ridges(matrix: Array, target: Array, penalties: Array) -> Array:
+    """Coefficients for each penalty, shape (penalties, k)."""
+    gram, moment = matrix.T @ matrix, matrix.T @ target
+    return np.array([_solved(gram + penalty * np.eye(len(gram)), moment) for penalty in penalties])
 
 
-def _with_constant(matrix: Array, target: Array, penalty: float) -> Array:
-    return _ridge(matrix - matrix.mean(axis=0), target - target.mean(), penalty)
+def _with_constant(matrix: Array, target: Array, penalties: Array) -> Array:
+    return _ridges(matrix - matrix.mean(axis=0), target - target.mean(), penalties)
 
 
-def _chosen(scaled: Scales, solve: Callable[[Array, Array, float], Array]) -> float:
+def _chosen(scaled: Scales, path: Callable[[Array, Array, Array], Array]) -> float:
     """The penalty that predicts contiguous blocks left out best."""
-    missed = _missed(scaled, lambda matrix, target: np.array([solve(matrix, target, float(p)) for p in PENALTIES]))
+    missed = _missed(scaled, lambda matrix, target: path(matrix, target, PENALTIES))
     return float(PENALTIES[int(np.argmin(missed))])
 
 

@@ -36,11 +36,18 @@ def _meng2014(*, quick: bool, seed: int, progress: Progress | None) -> Study:
     return study(quick=quick, seed=seed, progress=progress)
 
 
+def _song2025(*, quick: bool, seed: int, progress: Progress | None) -> Study:
+    from seatrial.studies.song2025 import study
+
+    return study(quick=quick, seed=seed, progress=progress)
+
+
 STUDIES: dict[str, Reproduction] = {
     "alexandersson2022": _alexandersson2022,
     "section2d": _section2d,
     "qi2025": _qi2025,
     "meng2014": _meng2014,
+    "song2025": _song2025,
 }
 
 __all__ = ["STUDIES", "Reproduction"]

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 import sympy as sp
@@ -66,6 +67,7 @@ def sailed(craft: Model, text: str) -> Sailed:
     return Sailed(record, ending.startswith(FINISHED), ending)
 
 
+@cache
 def reference(run: Run) -> Record:
     """The truth's run: CFD column, N_v mended, helmsman in the loop, 10 Hz."""
     return whole(TRUTH.craft(), run)
