@@ -111,6 +111,7 @@ WRONG = [
     ("drift", '{ value = 20, unit = "deg" }', "-0.1", r"design.drift = -0.1 is not positive"),
     ("kind of amount", "sea_room = 500", 'sea_room = { value = 5, unit = "s" }', r"design.sea_room: 's' is no unit"),
     ("sea room", "sea_room = 500", "sea_room = 0", r"design.sea_room = 0 is not positive"),
+    ("sea room of a bathtub", "sea_room = 500", "sea_room = 9", "9 m are less than the ship's length of 9.8 m"),
     ("duration", '{ value = 10, unit = "min" }', "1", "are fewer than 20 samples"),
     ("criterion", '"mean"', '"best"', r"design.criterion = 'best'"),
     ("not a number", "sea_room = 500", "sea_room = nan", r"design.sea_room"),

@@ -64,7 +64,7 @@ class CoefficientRow:
 def html(design: Design) -> str:
     """The page as text; sections without content are left out."""
     rivals = ranked(design)
-    track = steered.track(design)
+    track = steered.track(design) if has_track(design) else ""
     shown = {
         "track": bool(track),
         "ships": bool(len(design.designed.drawn)),

@@ -48,5 +48,5 @@ def keeps(worth: Worth, limits: Limits) -> bool:
 
 
 def has_track(design: Design) -> bool:
-    """Whether the model has positions, so that drift angle and distance mean something."""
-    return {"x0", "y0"} <= set(design.designed.executed.channels)
+    """Whether the ship goes somewhere, so that drift angle and distance mean something."""
+    return {"x0", "y0"} <= set(design.designed.executed.channels) and design.designed.room > 0.0

@@ -13,8 +13,8 @@ _HALF_TURN = math.pi
 _FEWEST_SAMPLES = 20
 
 
-def brief_of(table: DesignTable, model: Model) -> Brief:
-    """The brief that the table describes.
+def brief_of(table: DesignTable, model: Model, length: float) -> Brief:
+    """The brief that the table describes, for a ship of that length [m].
 
     Raises:
         InputError: an amount of another kind, an unknown input, one both moved and held, a limit that cannot be kept.
@@ -30,7 +30,7 @@ def brief_of(table: DesignTable, model: Model) -> Brief:
         rate=table.rate,
         actuators=tuple(_actuator(name, entry, model, duration) for name, entry in table.inputs.items()),
         held=_held(table.held, tuple(table.inputs), model),
-        limits=_limits(table),
+        limits=_limits(table, length),
         speed=_speed(table.speed, model),
         criterion=table.criterion,
         draws=table.draws,
@@ -56,13 +56,17 @@ def _held(amounts: Mapping[str, Amount], moved: tuple[str, ...], model: Model) -
     return {name: _amount(amount, _unit_of(name), f"design.held.{name}") for name, amount in amounts.items()}
 
 
-def _limits(table: DesignTable) -> Limits:
+def _limits(table: DesignTable, length: float) -> Limits:
     drift = math.inf if table.drift is None else _positive(table.drift, "rad", "design.drift")
     room = math.inf if table.sea_room is None else _positive(table.sea_room, "m", "design.sea_room")
     if math.isfinite(drift) and drift >= _HALF_TURN:
         raise InputError(
             f"design.drift: {math.degrees(drift):g} degrees are no limit of a drift angle; write it with its unit, "
             'such as { value = 20, unit = "deg" }, or leave it out'
+        )
+    if room < length:
+        raise InputError(
+            f"design.sea_room: {room:g} m are less than the ship's length of {length:g} m; no manoeuvre keeps within"
         )
     return Limits(drift, room)
 

@@ -75,7 +75,7 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         base = home / expanded(file.data.folder)
         excitation = excitation_of(file.excitation, ship, model, base)
         runs = runs_of(file.records, file.data.folder, home, excitation, ship.length) if file.records else ()
-        brief = None if file.design is None else brief_of(file.design, model)
+        brief = None if file.design is None else brief_of(file.design, model, ship.length)
         forces = tuple(
             points_of(block, base, model, file.model.reference_point, f"forces[{i}]")
             for i, block in enumerate(file.forces, start=1)
