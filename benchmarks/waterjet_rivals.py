@@ -180,7 +180,8 @@ def lines(made: Comparison, executes: int = EXECUTES) -> list[Line]:
     one, median = made.single(_names(stronger()))
     table.append(Line(f"{one} / output error, median: seen nowhere", median, ""))
     published, median = made.single(PUBLISHED)
-    table.append(at_least(f"{published} / output error, median", median, "", TARGETS["published"]))
+    held = TARGETS["published"] <= median < np.inf  # one that gave up every run proves nothing
+    table.append(Line(f"{published} / output error, median", median, "", f">= {TARGETS['published']:g}", held))
     central, exact = without_noise(executes)
     table.append(at_most("noise-free: central differences, largest error / value", central, "", TARGETS["central"]))
     table.append(at_most("noise-free: output error, largest error / value", exact, "", TARGETS["exact"]))
