@@ -11,6 +11,8 @@ import pytest
 
 from report.designed import fabricated_design
 from seatrial import cli, verbs
+from seatrial.design.asked import task_of
+from seatrial.information.symmetries import refuse_structural
 from seatrial.models import model_named
 from seatrial.read import read_table
 from seatrial.results import Order
@@ -144,3 +146,50 @@ def test_a_trial_without_records_is_only_designed(
     said = capsys.readouterr().err.strip()
     assert said.endswith("there are no [[records]] to read; add them, or plan a trial with 'seatrial design'")
     assert said.count("\n") == 0
+
+
+YAWING = """
+[ship]
+name = "a yawing ship"
+L = 100.0
+[model]
+name = "nomoto"
+start = { K = 0.08, T = 12.0 }
+[noise]
+psi = { sd = 0.5, unit = "deg" }
+[design]
+duration = 120
+rate = 1
+draws = 2
+[design.inputs.delta]
+lower = -20
+upper = 20
+unit = "deg"
+rate = 3
+hold = 20
+"""
+
+
+def test_the_search_itself_beats_the_standard_and_repeats_to_the_bit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    path = tmp_path / "yawing.toml"
+    path.write_text(YAWING)
+    tables = []
+    for name in ("one", "two"):
+        assert run(monkeypatch, "design", path, "--out", tmp_path / name, "--seed", "3") == 0
+        table = json.loads((tmp_path / name / "design.json").read_text())
+        tables.append({key: value for key, value in table.items() if key != "elapsed_s"})
+    assert tables[0] == tables[1]
+    assert (tmp_path / "one" / "plan.csv").read_bytes() == (tmp_path / "two" / "plan.csv").read_bytes()
+    assert tables[0]["designed"]["worst"] < min(rival["worst"] for rival in tables[0]["rivals"])
+    assert "standard manoeuvres" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["waterjet", "kvlcc2", "heave_pitch"])
+def test_the_examples_ask_for_what_can_be_told(name: str, repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("SEATRIAL_DATA", raising=False)
+    task = task_of(verbs.load_trial(repository / "examples" / f"{name}_design.toml"))
+    assert task.draws > 0
+    assert np.isfinite(task.start).all()
+    refuse_structural(task.model, tuple(task.sensors), ())

@@ -75,7 +75,9 @@ class DesignDocument(Entry):
     actuators: list[ActuatorEntry]
     limits: LimitsEntry
     values: dict[str, Number] = Field(description="coefficient -> the value it is designed for")
-    spread: dict[str, Number] = Field(description="coefficient -> relative standard deviation of the prior")
+    spread: dict[str, Number] = Field(
+        description="coefficient -> share by which drawn ships differ; standard deviation where it has a prior"
+    )
     designed: WorthEntry
     rivals: list[WorthEntry] = Field(description="standard manoeuvres of equal duration")
     orders: list[OrderEntry]
