@@ -7,11 +7,11 @@ import pytest
 
 from identify.conftest import TRUTH, square, steered
 from seatrial.estimate.start import weak_start
-from seatrial.simulate.states import measured_states
 from seatrial.identify import identified
 from seatrial.manoeuvres.programme import programme
 from seatrial.models.nomoto import nomoto, nomoto2
 from seatrial.models.waterjet import COEFFICIENTS, waterjet
+from seatrial.simulate.states import measured_states
 from seatrial.simulate.steer import manoeuvre
 from seatrial.values import InputError, Record
 

@@ -69,4 +69,5 @@ def _worth(name: str, plan: Record, error: float, rng: np.random.Generator) -> W
     relative = error * np.geomspace(1.0, 10.0, len(COEFFICIENTS)) * rng.uniform(0.7, 1.4, len(COEFFICIENTS))
     drawn = relative * rng.uniform(0.8, 1.8, (DRAWS, len(COEFFICIENTS)))
     distance = np.hypot(executed["x0"], executed["y0"])
-    return Worth(name, relative, drawn, math.radians(18.0), float(distance.max()), executed)
+    none = np.zeros(len(drawn))
+    return Worth(name, relative, drawn, math.radians(18.0), float(distance.max()), none, none, executed)

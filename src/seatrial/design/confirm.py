@@ -1,4 +1,4 @@
-"""A design tried on simulated trials: noisy records of ships the prior allows, fitted as `identify` fits them."""
+"""A design tried on simulated trials: noisy records of ships the prior allows, fitted by output error."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -9,12 +9,18 @@ from seatrial.design.ships import Ships
 from seatrial.design.task import Task
 from seatrial.design.worth import Bench
 from seatrial.equations import Model
-from seatrial.estimate.fit import identified
-from seatrial.estimate.settings import Settings
+from seatrial.estimate.start import start
+from seatrial.optimise import Solution, levenberg_marquardt
+from seatrial.problem.output_error import OutputError
+from seatrial.problem.segments import cut
 from seatrial.results import Confirmation
 from seatrial.simulate.replay import replay
 from seatrial.values import Array, InputError, Record
 from seatrial.workers import mapped
+
+WINDOW_HOLDS = 1.5
+# of the criterion: a move of some 1e-4 standard errors
+NEGLIGIBLE = 1e-8
 
 
 def confirmed(
@@ -23,18 +29,11 @@ def confirmed(
     """One noisy record and one fit for every ship; `made` are the plan's inputs at the sensors' rate."""
     foretold = Bench(task, ships, 1.0 / task.rate).told(made).relative
     streams = np.random.SeedSequence(seed).spawn(ships.count)
-    length = task.ship.particulars.get("L", 1.0)
 
-    def fitted(number: int) -> tuple[Array, bool] | None:
+    def fitted(number: int) -> Solution | None:
         ship = _with(task.model, ships.parameters[number])
         record = _noisy(task, ship, planned, np.random.default_rng(streams[number]))
-        if record is None:
-            return None
-        try:
-            found = identified(task.model, [record], [record.name], length, Settings(workers=1))
-        except InputError:
-            return None
-        return found.made.shared[: len(task.model.parameters.free)], found.made.optimum.solution.status.is_success
+        return None if record is None else _fitted(task, record)
 
     progress(f"confirming: {ships.count} simulated trials")
     results = mapped(fitted, list(range(ships.count)))
@@ -42,12 +41,26 @@ def confirmed(
     scale = np.array([p.characteristic_scale for p in task.model.parameters.free])
     errors, bounds = [], []
     for number, result in enumerate(results):
-        if result is not None and result[1]:
+        if result is not None and result.status.is_success:
             true = ships.parameters[number, places]
-            errors.append((result[0] - true) / np.where(np.abs(true) > 1e-3 * scale, np.abs(true), scale))
+            errors.append((result.point - true) / np.where(np.abs(true) > 1e-3 * scale, np.abs(true), scale))
             bounds.append(foretold[number])
     none = np.full((1, len(places)), np.nan)
     return Confirmation(ships.count, len(errors), _rms(errors or none), _rms(bounds or none))
+
+
+def _fitted(task: Task, record: Record) -> Solution:
+    """Output error from the weak form's start and from the model's own values; the better of the two."""
+    outputs = tuple(task.sensors)
+    problem = OutputError(
+        task.model, cut(task.model, [record], outputs, None), np.array(list(task.sensors.values())), workers=1
+    )
+    weak = start(problem, [record], WINDOW_HOLDS * task.shortest_hold)
+    found = [
+        levenberg_marquardt(problem, shared, problem.measured_starts(), negligible=NEGLIGIBLE).solution
+        for shared in (weak.shared, problem.start())
+    ]
+    return min(found, key=lambda solution: solution.value)
 
 
 def _with(model: Model, values: Array) -> Model:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from seatrial.design.confirm import confirmed
-from seatrial.design.orders import inputs, plan, split, table
+from seatrial.design.orders import inputs, plan, rows, split, table
 from seatrial.design.rivals import Rival, rivals
 from seatrial.design.search import GENERATIONS, Yardstick, coarse, finer, search
 from seatrial.design.ships import ships, spread
@@ -15,7 +15,8 @@ from seatrial.design.task import Task
 from seatrial.design.worth import Bench, executed, worth
 from seatrial.information.symmetries import refuse_structural
 from seatrial.results import Design, Worth
-from seatrial.values import Finding, Severity
+from seatrial.results.worths import keeps, leaving
+from seatrial.values import Finding, InputError, Severity
 from seatrial.values.versions import versions
 
 CONFIRMED_WITH = 20
@@ -44,6 +45,7 @@ def design(
     seeds = np.random.SeedSequence(seed).generate_state(3)
     bench = Bench(task, ships(task, int(seeds[0])), coarse(task))
     progress("standard manoeuvres")
+    _refuse_unkept(bench)
     standard = rivals(bench)
     yardstick = Yardstick.of(bench, standard)
     found = search(yardstick, int(seeds[1]), progress, generations)
@@ -81,6 +83,21 @@ def design(
     )
 
 
+def _refuse_unkept(bench: Bench) -> None:
+    """Refuse limits that a ship leaves although no order is given."""
+    task = bench.task
+    told = bench.told(np.tile(task.quiet, (rows(task, bench.dt), 1)))
+    for what, value, limit, unit in (
+        ("drift angle", np.degrees(told.drift[0]), np.degrees(task.limits.drift), "deg"),
+        ("distance", told.room[0], task.limits.room, "m"),
+    ):
+        if value > limit:
+            raise InputError(
+                f"[design] cannot be kept: without any order the ship reaches a {what} of {value:.3g} {unit}, "
+                f"{limit:.3g} {unit} are allowed; widen that limit or shorten the trial"
+            )
+
+
 def _scored(fine: Bench, rival: Rival) -> Worth:
     made = rival.made(fine)
     own = made[0] if made.ndim == 3 else made
@@ -92,14 +109,18 @@ def _findings(task: Task, designed: Worth, *, is_interrupted: bool) -> tuple[Fin
     if is_interrupted:
         found.append(Finding(Severity.WARNING, "interrupted", "the search was interrupted; this is its best so far", "",
                              "let it finish for a better manoeuvre"))  # fmt: skip
-    if designed.drift > min(_FAR_DRIFT, task.limits.drift * (1.0 + 1e-6)):
+    farthest = max([designed.drift, *designed.drawn_drift.tolist()])
+    if farthest > _FAR_DRIFT:
         found.append(Finding(Severity.WARNING, "drift", f"the manoeuvre reaches a drift angle of "
-                             f"{math.degrees(designed.drift):.0f} deg for some ship of the prior", "",
-                             "few models hold so far; give a smaller design.drift"))  # fmt: skip
-    if designed.room > task.limits.room * (1.0 + 1e-6):
-        found.append(Finding(Severity.WARNING, "sea-room", f"some ship of the prior goes {designed.room:.0f} m away, "
-                             f"beyond the {task.limits.room:.0f} m allowed", "",
-                             "abort there, or give a larger margin"))  # fmt: skip
+                             f"{math.degrees(farthest):.0f} deg for some ship of the prior", "",
+                             "few models hold so far; give a smaller design.drift, or abort there"))  # fmt: skip
+    if not keeps(designed, task.limits):
+        found.append(Finding(Severity.WARNING, "leaves-limits", "no orders were found that keep the limits", "",
+                             "widen them, shorten the trial, or narrow the inputs' ranges"))  # fmt: skip
+    elif straying := leaving(designed, task.limits):
+        found.append(Finding(Severity.INFO, "straying", f"{straying} of {len(designed.drawn)} ships drawn from the "
+                             "prior leave the limits under these orders", "",
+                             "abort there; design.every_ship = true binds them, too"))  # fmt: skip
     untold = np.flatnonzero(designed.relative > 1.0)
     if len(untold):
         names = ", ".join(task.model.parameters.free_names[i] for i in untold)

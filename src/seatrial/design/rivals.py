@@ -8,7 +8,7 @@ import numpy as np
 
 from seatrial.design.orders import followed, inputs, rows
 from seatrial.design.task import Task
-from seatrial.design.worth import Bench
+from seatrial.design.worth import Bench, leaves
 from seatrial.manoeuvres.programme import programme
 from seatrial.manoeuvres.schedule import binary_sequence
 from seatrial.results import Actuator
@@ -62,14 +62,14 @@ def binary(hold: float, share: float, seed: int, bench: Bench) -> Array:
 
 
 def _largest_within(bench: Bench, switching: float, seed: int) -> Rival:
-    """The largest amplitude whose drift and distance keep within the limits for every ship; else the smallest tried."""
-    task, limits = bench.task, bench.task.limits
+    """The largest amplitude whose drift and distance keep within the limits; else the smallest tried."""
+    task = bench.task
     hold = max(switching * task.shortest_hold, 2.0 / task.rate)
     rival = Rival("", _steps)
     for share in AMPLITUDES:
         rival = Rival(f"prbs:{100 * share:.0f}%:{hold:.3g} s:{seed}", partial(binary, hold, share, seed))
         told = bench.told(rival.made(bench))
-        if told.drift.max() <= limits.drift and told.room.max() <= limits.room and np.isfinite(told.relative).all():
+        if not leaves(task, told) and np.isfinite(told.relative).all():
             break
     return rival
 

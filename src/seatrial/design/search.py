@@ -8,7 +8,7 @@ import numpy as np
 from seatrial.design.orders import counts, inputs, split
 from seatrial.design.rivals import Rival
 from seatrial.design.task import Criterion, Task
-from seatrial.design.worth import Bench, Told
+from seatrial.design.worth import Bench, Told, excess, leaves
 from seatrial.optimise import AdaptationSettings, Box, CovarianceAdaptation, Solution, Status
 from seatrial.values import Array
 from seatrial.workers import mapped
@@ -16,7 +16,9 @@ from seatrial.workers import mapped
 # the mean over ships of (error / error of the best standard sequence)^4: near the worst ship's, and smooth
 POWER = 4.0
 LOST = 50.0
-EXCESS = 20.0
+EXCESS, STRAYING = 20.0, 5.0
+# kept from the limits during the search, so that finer steps and other ships do not cross them
+MARGIN = 0.02
 DRAWN_STARTS = 96
 GENERATIONS = 200
 # the search's box: a point beyond an end means that end, so that full deflection is no corner to be hit
@@ -35,7 +37,7 @@ class Yardstick:
         """From the standard manoeuvres that keep within the limits, or all where none does."""
         told = [bench.told(r.made(bench)) for r in standard]
         errors = np.array([errors_of(bench.task, t) for t in told])
-        within = np.array([_excess(bench.task, t) <= 0.0 for t in told])
+        within = np.array([not leaves(bench.task, t) for t in told])
         chosen = errors[within] if within.any() else errors
         return cls(bench, np.nanmin(np.where(np.isfinite(chosen), chosen, LOST), axis=0))
 
@@ -44,7 +46,7 @@ class Yardstick:
         task = self.bench.task
         told = self.bench.told(inputs(task, split(task, point), self.bench.dt))
         ratio = np.minimum(np.nan_to_num(errors_of(task, told) / self.reference, nan=LOST), LOST)
-        return float(np.log(np.mean(ratio**POWER)) / POWER + EXCESS * _excess(task, told))
+        return float(np.log(np.mean(ratio**POWER)) / POWER + _price(task, told))
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,10 +100,12 @@ def search(yardstick: Yardstick, seed: int, progress: Callable[[str], None], gen
     return Found(Solution(best, value, status, evaluations, tuple(history), seed), interrupted)
 
 
-def _excess(task: Task, told: Told) -> float:
-    """By how much drift and distance leave the limits, in parts of these, mean over ships."""
-    over = np.maximum(told.drift / task.limits.drift - 1.0, 0.0) + np.maximum(told.room / task.limits.room - 1.0, 0.0)
-    return float(np.mean(over))
+def _price(task: Task, told: Told) -> float:
+    """What leaving the limits costs: dear for the ships they bind, less for the others."""
+    over = excess(task, told, MARGIN)
+    if task.limits.for_every_ship:
+        return EXCESS * float(over.max())
+    return EXCESS * float(over[0]) + STRAYING * float(over.mean())
 
 
 def _drawn(task: Task, generator: np.random.Generator) -> list[Array]:

@@ -100,10 +100,24 @@ class Bench:
         return drift, room
 
 
+def excess(task: Task, told: Told, margin: float = 0.0) -> Array:
+    """By how much drift and distance of each ship leave the limits less a margin, in parts of these, (ships,)."""
+    allowed = 1.0 - margin
+    over = [told.drift / (allowed * task.limits.drift) - 1.0, told.room / (allowed * task.limits.room) - 1.0]
+    return np.maximum(over, 0.0).sum(axis=0)
+
+
+def leaves(task: Task, told: Told) -> bool:
+    """Whether a ship that the limits bind leaves them; the first ship is the one assumed."""
+    over = excess(task, told)
+    return bool(over.max() > 0.0 if task.limits.for_every_ship else over[0] > 0.0)
+
+
 def worth(name: str, fine: Bench, made: Array, executed: Record) -> Worth:
     """A manoeuvre's worth for all ships of the bench, the model itself first."""
     told = fine.told(made)
-    return Worth(name, told.relative[0], told.relative[1:], float(told.drift.max()), float(told.room.max()), executed)
+    own = float(told.drift[0]), float(told.room[0])
+    return Worth(name, told.relative[0], told.relative[1:], *own, told.drift[1:], told.room[1:], executed)
 
 
 def executed(task: Task, planned: Record, name: str) -> Record:

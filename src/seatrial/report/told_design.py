@@ -7,7 +7,7 @@ import numpy as np
 from seatrial.report.numbers import duration, exact, fixed, significant
 from seatrial.report.words import counted, listed, unit
 from seatrial.results import Actuator, Design, Worth
-from seatrial.results.worths import best_rival, diverged, drawn_errors, error_of, has_track, keeps
+from seatrial.results.worths import best_rival, diverged, drawn_errors, error_of, has_track, keeps, leaving
 from seatrial.trial.orders import shown_unit
 from seatrial.values import NOTATION, display
 
@@ -95,8 +95,10 @@ def _limits(design: Design) -> str:
         told.append(f"{significant(worth.room)} m from the start ({significant(limits.room)} m allowed)")
     if not told:
         return ""
-    verb = "reach" if keeps(worth, limits) else "leave the limits: they reach"
-    return f"All ships simulated {verb} at most {listed(told)}."
+    verb = "reaches" if keeps(worth, limits) else "leaves the limits: she reaches"
+    straying = leaving(worth, limits)
+    others = f"; {straying} of {len(worth.drawn)} drawn ships leave the limits" if straying else ""
+    return f"The ship as assumed {verb} at most {listed(told)}{others}."
 
 
 def _degrees(angle: float) -> str:

@@ -23,10 +23,14 @@ class Actuator:
 
 @dataclass(frozen=True)
 class Limits:
-    """What the trial may not leave: drift angle [rad] and distance from where it begins [m]; infinite: free."""
+    """What the trial may not leave: drift angle [rad] and distance from where it begins [m]; infinite: free.
+
+    They bind the ship as assumed; `for_every_ship`: each one drawn from the prior, too.
+    """
 
     drift: float = float("inf")
     room: float = float("inf")
+    for_every_ship: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +41,8 @@ class Worth:
         name: ``designed``, ``zigzag:20/20``, ``prbs:35:10`` and the like.
         relative: standard error over the magnitude of the coefficient at the model's own values, shape (k,).
         drawn: the same for each ship drawn from the prior, shape (draws, k); NaN where the simulation diverges.
-        drift, room: largest drift angle [rad] and distance [m] over all these ships.
+        drift, room: largest drift angle [rad] and distance [m] of the ship as assumed.
+        drawn_drift, drawn_room: those of each ship drawn, shape (draws,).
         executed: simulated by the model's own values, sensors' rate; its track is the plan's.
     """
 
@@ -46,6 +51,8 @@ class Worth:
     drawn: Array
     drift: float
     room: float
+    drawn_drift: Array
+    drawn_room: Array
     executed: Record
 
     @property

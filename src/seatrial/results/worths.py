@@ -43,8 +43,15 @@ def best_rival(design: Design) -> Worth | None:
 
 
 def keeps(worth: Worth, limits: Limits) -> bool:
-    """Whether drift angle and distance stay within the limits for all ships that were simulated."""
-    return worth.drift <= limits.drift * (1.0 + ROUNDING) and worth.room <= limits.room * (1.0 + ROUNDING)
+    """Whether drift angle and distance stay within the limits for the ships these bind."""
+    own = worth.drift <= limits.drift * (1.0 + ROUNDING) and worth.room <= limits.room * (1.0 + ROUNDING)
+    return own and not (limits.for_every_ship and leaving(worth, limits))
+
+
+def leaving(worth: Worth, limits: Limits) -> int:
+    """How many of the drawn ships leave the limits."""
+    beyond = worth.drawn_drift > limits.drift * (1.0 + ROUNDING)
+    return int(np.sum(beyond | (worth.drawn_room > limits.room * (1.0 + ROUNDING))))
 
 
 def has_track(design: Design) -> bool:

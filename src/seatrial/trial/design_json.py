@@ -28,6 +28,7 @@ class LimitsEntry(Entry):
 
     drift: Number
     room: Number
+    for_every_ship: bool = Field(description="whether they bind the drawn ships, too")
 
 
 class WorthEntry(Entry):
@@ -40,8 +41,10 @@ class WorthEntry(Entry):
     diverged: int = Field(description="drawn ships that the simulation loses")
     relative: dict[str, Number] = Field(description="coefficient -> relative standard error, by the model's own values")
     drawn: list[dict[str, Number]] = Field(description="the same for each drawn ship; null where it diverges")
-    drift: Number = Field(description="largest drift angle over all ships, rad")
-    room: Number = Field(description="largest distance from the beginning over all ships, m")
+    drift: Number = Field(description="largest drift angle of the ship as assumed, rad")
+    room: Number = Field(description="largest distance of the ship as assumed from the beginning, m")
+    drawn_drift: list[Number] = Field(description="the same for each drawn ship")
+    drawn_room: list[Number]
 
 
 class OrderEntry(Entry):
@@ -141,6 +144,8 @@ def _worth(worth: Worth, names: tuple[str, ...]) -> WorthEntry:
         drawn=[_by_name(names, row) for row in worth.drawn],
         drift=worth.drift,
         room=worth.room,
+        drawn_drift=[float(angle) for angle in worth.drawn_drift],
+        drawn_room=[float(distance) for distance in worth.drawn_room],
     )
 
 

@@ -68,7 +68,7 @@ def _limits(table: DesignTable, length: float) -> Limits:
         raise InputError(
             f"design.sea_room: {room:g} m are less than the ship's length of {length:g} m; no manoeuvre keeps within"
         )
-    return Limits(drift, room)
+    return Limits(drift, room, table.every_ship)
 
 
 def _speed(amount: Amount | None, model: Model) -> float | None:

@@ -350,6 +350,7 @@ class DesignTable(Strict):
     prior_percent: Annotated[float, Field(gt=0)] = 30.0
     drift: SiAmount | None = None
     sea_room: SiAmount | None = None
+    every_ship: bool = False
 
 
 class TrialFile(Strict):
