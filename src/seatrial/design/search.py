@@ -16,7 +16,7 @@ from seatrial.workers import mapped
 # the mean over ships of (error / error of the best standard sequence)^4: near the worst ship's, and smooth
 POWER = 4.0
 LOST = 50.0
-EXCESS, STRAYING = 20.0, 5.0
+EXCESS = 20.0
 # kept from the limits during the search, so that finer steps and other ships do not cross them
 MARGIN = 0.02
 DRAWN_STARTS = 96
@@ -101,11 +101,9 @@ def search(yardstick: Yardstick, seed: int, progress: Callable[[str], None], gen
 
 
 def _price(task: Task, told: Told) -> float:
-    """What leaving the limits costs: dear for the ships they bind, less for the others."""
+    """What it costs that ships which the limits bind leave them."""
     over = excess(task, told, MARGIN)
-    if task.limits.for_every_ship:
-        return EXCESS * float(over.max())
-    return EXCESS * float(over[0]) + STRAYING * float(over.mean())
+    return EXCESS * float(over.max() if task.limits.for_every_ship else over[0])
 
 
 def _drawn(task: Task, generator: np.random.Generator) -> list[Array]:
