@@ -27,7 +27,7 @@ from seatrial.problem.static_forces import StaticForces
 from seatrial.results import Fit
 from seatrial.trial import Role, Trial, TrialRecord, records_of, refuse_errors
 from seatrial.trial.approach import approach_of
-from seatrial.values import NOTATION, Array, InputError, Progress, Record
+from seatrial.values import NOTATION, Array, DivergedError, InputError, Progress, Record
 from seatrial.values.versions import versions
 
 _OFFSET_SPREAD = {"rad": float(np.radians(2.0)), "m/s": 0.1, "rps": 0.1}
@@ -100,6 +100,7 @@ def identify(
     found = identified(trial.model, runs, sessions, length, settings, progress)
     refuse_unmeasured_waves(found, runs)
     refuse_singular(*_data_and_prior(found))
+    untold = outcome.untold(found)
     unit = unit_of_time(trial.model, runs, length, trial.estimate.segment_s)
     others = Considered(found, (), ())
     if choose or intervals is Intervals.JACKKNIFE:
@@ -109,14 +110,17 @@ def identify(
         )  # fmt: skip
     found, tied = others.found, others.tied
     seconds = trial.estimate.initial_s or START_SECONDS_LENGTHS * unit
-    told = forecast(found, records, seconds, length, seed, progress, tied)
+    try:
+        told = forecast(found, records, seconds, length, seed, progress, tied)
+    except DivergedError as error:
+        raise InputError(outcome.not_sailed(found, error)) from None
     found = with_ensemble(found, tied)
     known = identifiability(found, symmetries, approach_of(runs, found.model), length)
     if intervals is Intervals.PROFILE:
         drawn = profiles(found.made, found.interval.standard_error, found.made.problem.free, progress)
         known = replace(known, profiles=drawn)
     unprofiled = intervals is Intervals.PROFILE and not known.profiles
-    said = (*agreement(found.made), *outcome.bounds_hit(found), *outcome.unconverged(found))
+    said = (*agreement(found.made), *untold, *outcome.bounds_hit(found), *outcome.unconverged(found))
     said += (outcome.NO_PROFILE,) if unprofiled else ()
     shown = frequency_range(runs, outputs) if trial.model.is_affine else {}
     said += (represented(shown),) if shown else ()

@@ -10,7 +10,7 @@ from seatrial.estimate.fit import Identified
 from seatrial.information.autocorrelation import whiteness_p
 from seatrial.information.covariance import Interval
 from seatrial.results import Coefficient, Method, Noise, Offset, Profile, Residuals
-from seatrial.values import NOTATION, Array, Finding, Parameter, Parameters, Severity
+from seatrial.values import NOTATION, Array, DivergedError, Finding, InputError, Parameter, Parameters, Severity
 
 NO_PROFILE = Finding(
     Severity.INFO,
@@ -114,6 +114,40 @@ def bounds_hit(found: Identified) -> list[Finding]:
                 "widen the bound under [model.bounds], or give a prior instead")
         for i in hit
     ]  # fmt: skip
+
+
+def untold(found: Identified) -> list[Finding]:
+    """A warning with the coefficients whose standard error exceeds their value, though no prior holds them.
+
+    Raises:
+        InputError: that is true of all free coefficients.
+    """
+    problem = found.made.problem
+    estimates, errors = found.made.shared, found.interval.standard_error
+    own = [i for i, name in enumerate(problem.free) if problem.model.parameters[name].prior is None]
+    names = [problem.free[i] for i in own if errors[i] > abs(estimates[i])]
+    if names and len(names) == len(problem.free):
+        noise = ", ".join(f"{c} {s:.2g}" for c, s in zip(problem.data.outputs, problem.noise, strict=True))
+        raise InputError(
+            f"the records tell none of the free coefficients {', '.join(names)}: every standard error exceeds the "
+            f"value (what the model leaves unexplained, SI: {noise}); take better sensors, longer or harder manoeuvres, or "
+            "give priors under [model.priors]"
+        )
+    if not names:
+        return []
+    return [Finding(Severity.WARNING, "not-identifiable", f"the records do not tell {', '.join(names)}: the standard "
+                    "error exceeds the value", "", "do not use them alone; seatrial design finds a manoeuvre that "
+                    "tells them, or give a prior")]  # fmt: skip
+
+
+def not_sailed(found: Identified, error: DivergedError) -> str:
+    """What to say where the fitted model cannot sail the records' own runs."""
+    problem, values = found.made.problem, found.made.shared
+    named = ", ".join(f"{name} {values[i]:.2g}" for i, name in enumerate(problem.free))
+    return (
+        f"the records lead to no model that can be sailed ({str(error).partition(';')[0]}): too noisy, too short or "
+        f"too calm to tell {named}; fix or give priors for some of these, or take other records"
+    )
 
 
 def unconverged(found: Identified) -> list[Finding]:

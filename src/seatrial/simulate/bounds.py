@@ -3,7 +3,7 @@
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.values import NOTATION, Array, InputError
+from seatrial.values import NOTATION, Array, DivergedError
 
 # by SI unit: beyond these no ship is believable (and nothing is, beyond 1e9)
 _LIMITS = {"m": 1e7, "m/s": 150.0, "rad": 1e4, "rad/s": 20.0}
@@ -20,14 +20,14 @@ def demand_bounded(model: Model, time: Array, states: Array, what: str) -> None:
     """Accept states (n, nx) that stay within their bounds.
 
     Raises:
-        InputError: they do not; the first time [s] and channel are named.
+        DivergedError: they do not; the first time [s] and channel are named.
     """
     inside = np.abs(states) <= limits(model)
     if inside.all():
         return
     row = int(np.argmin(inside.all(axis=1)))
     state = model.states[_culprit(states, row, limits(model))]
-    raise InputError(
+    raise DivergedError(
         f"the simulation of {what} with model '{model.name}' diverges: '{state}' left its bounds at "
         f"t = {time[row]:g} s; check the model's coefficients and initial state, or take a smaller step"
     )

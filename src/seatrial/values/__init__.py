@@ -1,7 +1,7 @@
 """The nouns everybody knows: records, channels, parameters, ships, findings, units, notation."""
 
 from seatrial.values.arrays import Array, Index, frozen
-from seatrial.values.errors import InputError, nearest
+from seatrial.values.errors import DivergedError, InputError, nearest
 from seatrial.values.finding import Finding, Severity
 from seatrial.values.force_points import ForcePoints, Includes
 from seatrial.values.notation import NOTATION, Quantity, quantity
@@ -15,6 +15,7 @@ __all__ = [
     "NOTATION",
     "Array",
     "Channel",
+    "DivergedError",
     "Finding",
     "ForcePoints",
     "Includes",

@@ -5,6 +5,10 @@ class InputError(ValueError):
     """What is wrong, where, and what to do; the command line prints it and exits with code 2."""
 
 
+class DivergedError(InputError):
+    """A simulation that leaves all bounds."""
+
+
 def nearest(name: str, known: list[str]) -> str:
     """A hint naming the known word most like `name`, or an empty string."""
     import difflib
