@@ -130,8 +130,8 @@ def untold(found: Identified) -> list[Finding]:
         noise = ", ".join(f"{c} {s:.2g}" for c, s in zip(problem.data.outputs, problem.noise, strict=True))
         raise InputError(
             f"the records tell none of the free coefficients {', '.join(names)}: every standard error exceeds the "
-            f"value (what the model leaves unexplained, SI: {noise}); take better sensors, longer or harder manoeuvres, or "
-            "give priors under [model.priors]"
+            f"value (what the model leaves unexplained, SI: {noise}); take better sensors, longer or harder "
+            "manoeuvres, or give priors under [model.priors]"
         )
     if not names:
         return []
