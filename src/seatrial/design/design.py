@@ -55,9 +55,12 @@ def design(
     progress("scoring at the sensors' rate")
     designed = worth("designed", fine, made, executed(task, planned, "designed"))
     others = tuple(_scored(fine, rival) for rival in standard)
-    tried = None
-    if confirming and not found.is_interrupted:
-        tried = confirmed(task, made, planned, ships(task, int(seeds[2]), confirming - 1), int(seeds[2]), progress)
+    tried, interrupted = None, found.is_interrupted
+    if confirming and not interrupted:
+        try:
+            tried = confirmed(task, made, planned, ships(task, int(seeds[2]), confirming - 1), int(seeds[2]), progress)
+        except KeyboardInterrupt:
+            interrupted = True
     return Design(
         question=task.question or f"Which manoeuvre tells the coefficients of {task.ship.name} best?",
         ship=task.ship.name,
@@ -76,7 +79,7 @@ def design(
         plan=planned,
         solution=found.solution,
         confirmation=tried,
-        findings=_findings(task, designed, is_interrupted=found.is_interrupted),
+        findings=_findings(task, designed, is_interrupted=interrupted),
         seed=seed,
         elapsed_s=time.perf_counter() - began,
         versions=versions(),
@@ -107,7 +110,7 @@ def _scored(fine: Bench, rival: Rival) -> Worth:
 def _findings(task: Task, designed: Worth, *, is_interrupted: bool) -> tuple[Finding, ...]:
     found = []
     if is_interrupted:
-        found.append(Finding(Severity.WARNING, "interrupted", "the search was interrupted; this is its best so far", "",
+        found.append(Finding(Severity.WARNING, "interrupted", "the work was interrupted; this is the best so far", "",
                              "let it finish for a better manoeuvre"))  # fmt: skip
     farthest = max([designed.drift, *designed.drawn_drift.tolist()])
     if farthest > _FAR_DRIFT:
