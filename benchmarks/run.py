@@ -17,6 +17,8 @@ import simulation
 import waterjet_rivals
 from measure import Line, machine
 
+import design
+
 BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "simulation": simulation.run,
     "generation": generation.run,
@@ -27,6 +29,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "fusion": fusion.run,
     "population": population.run,
     "heave_pitch": heave_pitch.run,
+    "design": design.run,
 }
 
 

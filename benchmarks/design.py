@@ -1,0 +1,202 @@
+"""Designed manoeuvres against standard ones, on ships the search never saw: worst relative standard error, time.
+
+The craft of Song et al. 2025 for ten minutes at 10 Hz with sensor noise; the nozzle alone, and with thrust, each free
+and within 30 deg of drift. Fifty test ships differ by up to 30 % in every coefficient. Above 1: the standard one is
+worse. `python benchmarks/design.py --confirming 100` alone; `--cases nozzle` some of them.
+"""
+
+import argparse
+import math
+import sys
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+from measure import Line, at_least, at_most, machine
+from numpy.typing import NDArray
+
+from seatrial.design.design import CONFIRMED_WITH, design
+from seatrial.design.rivals import Rival, is_random, rivals
+from seatrial.design.search import GENERATIONS, coarse
+from seatrial.design.ships import Ships, ships
+from seatrial.design.task import Task
+from seatrial.design.worth import Bench, leaves
+from seatrial.results import Actuator, Design, Limits
+from seatrial.simulate.channels import inputs_of
+from seatrial.studies.series import JET_VELOCITY, RATE, SENSOR_NOISE, SLEW_RATE, truth
+from seatrial.values import InputError, Ship
+
+Array = NDArray[np.float64]
+DURATION, HOLD, RANGE = 600.0, 15.0, math.radians(35.0)
+TEST_SHIPS, TEST_SEED, SEED = 50, 20261, 0
+FACTOR, SECONDS = 3.0, 60.0
+NOZZLE = Actuator("delta", -RANGE, RANGE, SLEW_RATE, HOLD)
+THRUST = Actuator("v_j", 1.4, 2.4, 0.2, 30.0)
+TIGHT = Limits(drift=math.radians(30.0))
+COMPRESSED = ("consecutive-zigzags:1", "consecutive-zigzags:2")
+_CHUNK = 17
+
+
+def task(actuators: tuple[Actuator, ...] = (NOZZLE,), limits: Limits | None = None) -> Task:
+    """The craft, her sensors and what may be moved; thrust is held where it is not moved."""
+    craft = truth()
+    held = {} if THRUST in actuators else {"v_j": JET_VELOCITY}
+    return Task(
+        question="",
+        ship=Ship("waterjet craft", {"L": craft.parameters["L"].value}),
+        model=craft,
+        sensors=SENSOR_NOISE,
+        rate=RATE,
+        duration=DURATION,
+        actuators=actuators,
+        limits=limits or Limits(),
+        held=held,
+    )
+
+
+CASES = {
+    "nozzle": task(),
+    "nozzle, drift to 30 deg": task(limits=TIGHT),
+    "nozzle and thrust": task((NOZZLE, THRUST)),
+    "nozzle and thrust, drift to 30 deg": task((NOZZLE, THRUST), TIGHT),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Ratios:
+    """A standard manoeuvre's worst error over the designed one's, of the model itself and of each test ship."""
+
+    nominal: float
+    drawn: Array
+
+    @classmethod
+    def of(cls, standard: Array, designed: Array) -> "Ratios":
+        """From worst errors of all ships, the model itself first; a ship that is lost counts as infinitely bad."""
+        each = np.where(np.isfinite(standard), standard, np.inf) / np.where(np.isfinite(designed), designed, np.inf)
+        return cls(float(each[0]), each[1:])
+
+    @property
+    def least(self) -> float:
+        """Of the nominal model and every ship."""
+        return min(self.nominal, float(self.drawn.min()))
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """One case: the design, its worst error for all ships (nominal first), standards' (name -> the same)."""
+
+    made: Design
+    designed: Array
+    standard: dict[str, Array]
+    random: frozenset[str]
+    within: frozenset[str]
+    cpu_s: float
+
+    def against(self, names: "frozenset[str] | set[str]") -> Ratios:
+        """The best of these manoeuvres for each ship."""
+        errors = np.array([self.standard[n] for n in sorted(names)])
+        return Ratios.of(np.where(np.isfinite(errors), errors, np.inf).min(axis=0), self.designed)
+
+
+def outcome(given: Task, seed: int = SEED, confirming: int = CONFIRMED_WITH, generations: int = GENERATIONS) -> Outcome:
+    """Design it, then measure it and the standard manoeuvres with test ships of another seed."""
+    began = time.process_time()
+    made = design(given, seed, confirming=confirming, generations=generations)
+    cpu = time.process_time() - began
+    test = Bench(given, ships(given, TEST_SEED + seed, TEST_SHIPS), coarse(given))
+    standard = rivals(test)
+    plan = inputs_of(given.model, made.plan)
+    errors = {r.name: worst(test, r) for r in standard}
+    within = [r.name for r in standard if not leaves(given, _first(test).told(r.made(_first(test))))]
+    return Outcome(
+        made,
+        worst(test, Rival("designed", lambda _: plan)),
+        errors,
+        frozenset(r.name for r in standard if is_random(r)),
+        frozenset(within),
+        cpu,
+    )
+
+
+def worst(test: Bench, manoeuvre: Rival) -> Array:
+    """The least well told coefficient's relative standard error of every ship, at the sensors' rate, (ships,)."""
+    found = []
+    for first in range(0, test.ships.count, _CHUNK):
+        few = Ships(test.ships.parameters[first : first + _CHUNK], test.ships.precision)
+        fine = Bench(test.task, few, 1.0 / test.task.rate)
+        try:
+            found.append(fine.told(manoeuvre.made(fine)).relative.max(axis=1))
+        except InputError:
+            found.append(np.full(few.count, np.nan))
+    return np.concatenate(found)
+
+
+def _first(test: Bench) -> Bench:
+    """The same bench with the model itself alone."""
+    return replace(test, ships=Ships(test.ships.parameters[:1], test.ships.precision))
+
+
+def lines(name: str, found: Outcome) -> list[Line]:
+    """The table of one case against its targets."""
+    zigzag, random = found.against(set(COMPRESSED)), found.against(found.random)
+    keeping = found.within or frozenset(found.standard)
+    table = [
+        Line(f"{name}: worst error designed, nominal", 100.0 * float(found.designed[0]), "%"),
+        Line(f"{name}: worst error designed, median ship", 100.0 * float(np.median(found.designed[1:])), "%"),
+        Line(f"{name}: ships lost under it", float(np.sum(~np.isfinite(found.designed))), ""),
+        Line(f"{name}: largest drift, nominal", math.degrees(found.made.designed.drift), "deg"),
+        at_least(f"{name}: compressed zigzag / designed, nominal", zigzag.nominal, "", FACTOR),
+        at_least(f"{name}: compressed zigzag / designed, median", float(np.median(zigzag.drawn)), "", FACTOR),
+        Line(f"{name}: compressed zigzag / designed, least", zigzag.least, ""),
+        Line(f"{name}: best PRBS / designed, nominal", random.nominal, ""),
+        Line(f"{name}: best PRBS / designed, median", float(np.median(random.drawn)), ""),
+        Line(f"{name}: best PRBS / designed, least", random.least, "", "> 1", random.least > 1.0),
+    ]
+    best = found.against(keeping)
+    table += [
+        Line(f"{name}: best standard within limits / designed, median", float(np.median(best.drawn)), ""),
+        Line(f"{name}: best standard within limits / designed, least", best.least, ""),
+        at_most(f"{name}: time of the design", found.made.elapsed_s, "s", SECONDS),
+        Line(f"{name}: processor time of it", found.cpu_s, "s"),
+    ]
+    return [*table, *_confirmed(name, found.made)]
+
+
+def _confirmed(name: str, made: Design) -> list[Line]:
+    tried = made.confirmation
+    if tried is None:
+        return []
+    ratio = tried.error / tried.bound
+    what = f"{name}: error / bound of {tried.runs} trials"
+    return [
+        Line(f"{name}: trials converged", tried.converged, "", f"{tried.runs}", tried.converged == tried.runs),
+        Line(f"{what}, least", float(ratio.min()), ""),
+        Line(f"{what}, root mean square", float(np.sqrt(np.mean(ratio**2))), ""),
+        Line(f"{what}, most", float(ratio.max()), ""),
+    ]
+
+
+def run() -> list[Line]:
+    """All cases; some minutes."""
+    return [line for name, given in CASES.items() for line in lines(name, outcome(given))]
+
+
+def main(arguments: list[str]) -> int:
+    """Print the table; 1 if a target is missed."""
+    parser = argparse.ArgumentParser(description="designed manoeuvres against standard ones on ships never seen")
+    parser.add_argument("--cases", nargs="*", default=list(CASES), choices=list(CASES))
+    parser.add_argument("--seed", type=int, default=SEED)
+    parser.add_argument("--confirming", type=int, default=CONFIRMED_WITH, help="simulated trials that are fitted")
+    parser.add_argument("--generations", type=int, default=GENERATIONS)
+    given = parser.parse_args(arguments)
+    print(machine())
+    missed = False
+    for name in given.cases:
+        for line in lines(name, outcome(CASES[name], given.seed, given.confirming, given.generations)):
+            print(f"  {line.what:<74} {line.value:>10.4g} {line.unit:<5} {line.verdict}", flush=True)
+            missed |= line.holds is False
+    return int(missed)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
