@@ -78,3 +78,10 @@ def _turn_of_a_positive_record_angle(task: Task) -> float:
 
     circle = manoeuvre(task.model, programme("turning-circle:10"), dt=0.2, duration=60.0, inputs=dict(task.held))
     return float(np.sign(circle.channel("psi").values[-1] * circle.channel("delta").values[-1]))
+
+
+@pytest.mark.parametrize("hold", [1.0 / 3.0, 2.0 / 7.0, 0.7, 1.2])
+def test_no_order_is_left_out_of_the_table_whatever_the_hold(craft: Task, hold: float) -> None:
+    task = replace(craft, actuators=(replace(craft.actuators[0], hold=hold),))
+    wanted = np.linspace(-0.5, 0.5, counts(task)[0])
+    assert [line.values["delta"] for line in table(task, [wanted])] == wanted.tolist()

@@ -50,6 +50,16 @@ def test_limits_that_the_straight_run_leaves_are_refused(craft: Task, limits: Li
         design(replace(craft, limits=limits), confirming=0, generations=1)
 
 
+def test_a_sea_room_that_only_turning_keeps_is_kept(craft: Task) -> None:
+    """The straight run leaves it, so that a straight run alone proves nothing about it."""
+    made = design(replace(craft, limits=Limits(room=0.7 * _straight(craft))), confirming=0, generations=2)
+    assert made.designed.room <= made.limits.room
+
+
+def _straight(task: Task) -> float:
+    return float(task.start[task.model.states.index("u")]) * task.duration
+
+
 def test_a_trial_begins_straight_ahead_where_surge_balances(craft: Task) -> None:
     """Without any order the craft stays at her first speed and on her course."""
     quiet = plan(craft, np.tile(craft.quiet, (rows(craft, 0.2), 1)), 0.2)

@@ -3,6 +3,7 @@
 import math
 import time
 from collections.abc import Callable
+from operator import attrgetter
 
 import numpy as np
 
@@ -45,8 +46,8 @@ def design(
     seeds = np.random.SeedSequence(seed).generate_state(3)
     bench = Bench(task, ships(task, int(seeds[0])), coarse(task))
     progress("standard manoeuvres")
-    _refuse_unkept(bench)
     standard = rivals(bench)
+    _refuse_unkept(bench, standard)
     yardstick = Yardstick.of(bench, standard)
     found = search(yardstick, int(seeds[1]), progress, generations)
     fine, orders = finer(bench), split(task, found.solution.point)
@@ -86,18 +87,20 @@ def design(
     )
 
 
-def _refuse_unkept(bench: Bench) -> None:
-    """Refuse limits that a ship leaves although no order is given."""
+def _refuse_unkept(bench: Bench, standard: list[Rival]) -> None:
+    """Refuse a limit that the ship assumed leaves without any order and under every standard manoeuvre."""
     task = bench.task
     told = bench.told(np.tile(task.quiet, (rows(task, bench.dt), 1)))
-    for what, value, limit, unit in (
-        ("drift angle", np.degrees(told.drift[0]), np.degrees(task.limits.drift), "deg"),
-        ("distance", told.room[0], task.limits.room, "m"),
+    for what, reached, limit, factor, unit in (
+        ("drift angle", attrgetter("drift"), task.limits.drift, math.degrees(1.0), "deg"),
+        ("distance", attrgetter("room"), task.limits.room, 1.0, "m"),
     ):
-        if value > limit:
+        value = reached(told)[0]
+        if value > limit and all(reached(bench.told(r.made(bench)))[0] > limit for r in standard):
             raise InputError(
-                f"[design] cannot be kept: without any order the ship reaches a {what} of {value:.3g} {unit}, "
-                f"{limit:.3g} {unit} are allowed; widen that limit or shorten the trial"
+                f"[design] cannot be kept: without any order the ship reaches a {what} of {factor * value:.3g} {unit}, "
+                f"and more than the {factor * limit:.3g} {unit} allowed under every standard manoeuvre, too; "
+                "widen that limit or shorten the trial"
             )
 
 

@@ -8,6 +8,8 @@ from seatrial.simulate.channels import record_of
 from seatrial.values import Array, Kind, Record, frozen
 
 _SAME = 1e-9
+# of a hold: what rounding may take from a time
+_LATE = 1e-6
 
 
 def counts(task: Task) -> tuple[int, ...]:
@@ -59,7 +61,7 @@ def table(task: Task, orders: list[Array]) -> tuple[Order, ...]:
     lines: list[Order] = []
     for time in times:
         values = {
-            a.name: float(wanted[min(int(time / a.hold + _SAME), len(wanted) - 1)])
+            a.name: float(wanted[min(int(time / a.hold + _LATE), len(wanted) - 1)])
             for a, wanted in zip(task.actuators, orders, strict=True)
         }
         if not lines or any(abs(values[n] - lines[-1].values[n]) > _SAME for n in values):
