@@ -140,7 +140,7 @@ def design(
     json: Json = None,
     seed: Seed = 0,
 ) -> None:
-    """Find the manoeuvre that tells the coefficients best within the limits of the trial's [design] table.
+    """Find the manoeuvre that tells the coefficients best within the limits of the trial file's table 'design'.
 
     Example: seatrial design examples/waterjet_design.toml --out results/plan
 
