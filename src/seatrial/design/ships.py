@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import qmc
 
 from seatrial.design.task import Task
 from seatrial.values import Array
@@ -34,7 +33,7 @@ def ships(task: Task, seed: int, draws: int | None = None) -> Ships:
     parameters = task.model.parameters
     free = parameters.free
     count = task.draws if draws is None else draws
-    unit = qmc.LatinHypercube(len(free), seed=np.random.default_rng(seed)).random(count) if count else np.zeros((0, 0))
+    unit = _hypercube(count, len(free), np.random.default_rng(seed))
     drawn = np.tile(parameters.values, (count + 1, 1))
     if count:
         values = np.clip(_around(task, unit), [p.lower for p in free], [p.upper for p in free])
@@ -52,6 +51,12 @@ def spread(task: Task) -> Array:
     return np.array(
         [task.spread if p.prior is None else p.prior.standard_deviation / p.characteristic_scale for p in free]
     )
+
+
+def _hypercube(count: int, size: int, generator: np.random.Generator) -> Array:
+    """One point in every `count`-th part of each side of the unit cube, (count, size)."""
+    parts = np.array([generator.permutation(count) for _ in range(size)]).T
+    return (parts + generator.random((count, size))) / max(count, 1)
 
 
 def _around(task: Task, unit: Array) -> Array:

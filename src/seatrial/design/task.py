@@ -49,7 +49,7 @@ class Task:
     held: Mapping[str, float] = field(default_factory=dict)
     speed: float | None = None
     criterion: Criterion = Criterion.WORST
-    draws: int = 16
+    draws: int = 24
     spread: float = 0.3
     covariance: Array | None = None
 
