@@ -150,7 +150,7 @@ def design(
 
 
 def save_design(design: "Design", folder: str | Path) -> Path:
-    """Write ``report.html``, ``orders.csv``, ``plan.csv`` and ``design.json`` of a design; returns the report's path.
+    """Write report, orders, plan, model and ``design.json`` of a design to `folder`; returns the report's path.
 
     Raises:
         InputError: the folder cannot be written.
@@ -159,6 +159,7 @@ def save_design(design: "Design", folder: str | Path) -> Path:
     from seatrial.report.design import html
     from seatrial.trial.design_json import design_json
     from seatrial.trial.fit_json import strict_json
+    from seatrial.trial.model_file import ModelFile, model_text
     from seatrial.trial.orders import orders_text
     from seatrial.values.files import write_together
 
@@ -166,6 +167,7 @@ def save_design(design: "Design", folder: str | Path) -> Path:
         "orders.csv": orders_text(design),
         "plan.csv": record_text(design.plan),
         "design.json": strict_json(design_json(design)),
+        "model.toml": model_text(ModelFile(design.model)),
         "report.html": html(design),
     }
     return write_together(Path(folder), {name: text.encode() for name, text in texts.items()}) / "report.html"

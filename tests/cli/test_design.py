@@ -63,11 +63,17 @@ def test_it_writes_four_files_and_prints_what_they_say(
 ) -> None:
     out = tmp_path / "new" / "plan"
     assert run(monkeypatch, "design", trial, "--out", out, "--json", tmp_path / "d.json") == 0
-    assert sorted(p.name for p in out.iterdir()) == ["design.json", "orders.csv", "plan.csv", "report.html"]
+    assert sorted(p.name for p in out.iterdir()) == [
+        "design.json",
+        "model.toml",
+        "orders.csv",
+        "plan.csv",
+        "report.html",
+    ]
     said = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in said[1:5]] == ["designed", "prbs:35:10", "zigzag:20/20", "turning-circle:35"]
     assert said[2].endswith("1 ship lost") and said[4].endswith("leaves the limits")
-    assert "39 of 40 fits of simulated trials succeed: worst error 10 %, 9 % foretold" in said
+    assert "39 of 40 fits of simulated trials succeed: worst error over them 10 %, 9 % foretold" in said
     assert any("and 12 more orders" in line for line in said)
     assert json.loads((tmp_path / "d.json").read_text()) == json.loads((out / "design.json").read_text())
 

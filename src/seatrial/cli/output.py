@@ -159,9 +159,9 @@ def print_design(design: "Design") -> None:
     if known is not None:
         error, bound = (100.0 * max(values) for values in (known.error, known.bound))
         fits = f"{known.converged} of {known.runs} fits of simulated trials succeed"
-        print(f"{fits}: worst error {error:.3g} %, {bound:.3g} % foretold" if known.converged else fits)
+        print(f"{fits}: worst error over them {error:.3g} %, {bound:.3g} % foretold" if known.converged else fits)
     for finding in design.findings:
-        print(f"{SEVERITY_MARK[finding.severity.value]} [{finding.code}] {finding.text}")
+        print(f"{SEVERITY_MARK[finding.severity.value]} [{finding.code}] {finding.text}: {finding.advice}")
     _print_orders(design)
     print(f"{design.solution.evaluations} manoeuvres tried; {design.elapsed_s:.1f} s")
 

@@ -55,12 +55,20 @@ def _fitted(task: Task, record: Record) -> Solution:
     problem = OutputError(
         task.model, cut(task.model, [record], outputs, None), np.array(list(task.sensors.values())), workers=1
     )
-    weak = start(problem, [record], WINDOW_HOLDS * task.shortest_hold)
+    local = np.array([[task.start[task.model.states.index(s)] for s in problem.starts]])
     found = [
-        levenberg_marquardt(problem, shared, problem.measured_starts(), negligible=NEGLIGIBLE).solution
-        for shared in (weak.shared, problem.start())
+        levenberg_marquardt(problem, shared, local, negligible=NEGLIGIBLE).solution
+        for shared in (*_without_guess(task, problem, record), problem.start())
     ]
     return min(found, key=lambda solution: solution.value)
+
+
+def _without_guess(task: Task, problem: OutputError, record: Record) -> list[Array]:
+    """The weak form's start; none where the sensors do not show every state."""
+    try:
+        return [start(problem, [record], WINDOW_HOLDS * task.shortest_hold).shared]
+    except InputError:
+        return []
 
 
 def _with(model: Model, values: Array) -> Model:

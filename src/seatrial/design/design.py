@@ -8,6 +8,7 @@ from operator import attrgetter
 import numpy as np
 
 from seatrial.design.confirm import confirmed
+from seatrial.design.findings import findings, refuse_left
 from seatrial.design.orders import inputs, plan, rows, split, table
 from seatrial.design.rivals import Rival, rivals
 from seatrial.design.search import GENERATIONS, Yardstick, coarse, finer, search
@@ -16,12 +17,10 @@ from seatrial.design.task import Task
 from seatrial.design.worth import Bench, executed, worth
 from seatrial.information.symmetries import refuse_structural
 from seatrial.results import Design, Worth
-from seatrial.results.worths import keeps, leaving
-from seatrial.values import Finding, InputError, Severity
+from seatrial.values import InputError
 from seatrial.values.versions import versions
 
 CONFIRMED_WITH = 20
-_FAR_DRIFT = math.radians(45.0)
 
 
 def design(
@@ -55,6 +54,8 @@ def design(
     planned = plan(task, made, fine.dt)
     progress("scoring at the sensors' rate")
     designed = worth("designed", fine, made, executed(task, planned, "designed"))
+    if not found.is_interrupted:
+        refuse_left(task, designed)
     others = tuple(_scored(fine, rival) for rival in standard)
     tried, interrupted = None, found.is_interrupted
     if confirming and not interrupted:
@@ -80,7 +81,7 @@ def design(
         plan=planned,
         solution=found.solution,
         confirmation=tried,
-        findings=_findings(task, designed, is_interrupted=interrupted),
+        findings=findings(task, designed, tried, is_interrupted=interrupted),
         seed=seed,
         elapsed_s=time.perf_counter() - began,
         versions=versions(),
@@ -108,29 +109,3 @@ def _scored(fine: Bench, rival: Rival) -> Worth:
     made = rival.made(fine)
     own = made[0] if made.ndim == 3 else made
     return worth(rival.name, fine, made, executed(fine.task, plan(fine.task, own, fine.dt), rival.name))
-
-
-def _findings(task: Task, designed: Worth, *, is_interrupted: bool) -> tuple[Finding, ...]:
-    found = []
-    if is_interrupted:
-        found.append(Finding(Severity.WARNING, "interrupted", "the work was interrupted; this is the best so far", "",
-                             "let it finish for a better manoeuvre"))  # fmt: skip
-    farthest = max([designed.drift, *designed.drawn_drift.tolist()])
-    if farthest > _FAR_DRIFT:
-        found.append(Finding(Severity.WARNING, "drift", f"the manoeuvre reaches a drift angle of "
-                             f"{math.degrees(farthest):.0f} deg for some ship of the prior", "",
-                             "few models hold so far; give a smaller design.drift, or abort there"))  # fmt: skip
-    if not keeps(designed, task.limits):
-        found.append(Finding(Severity.WARNING, "leaves-limits", "no orders were found that keep the limits", "",
-                             "widen them, shorten the trial, or narrow the inputs' ranges"))  # fmt: skip
-    elif straying := leaving(designed, task.limits):
-        found.append(Finding(Severity.INFO, "straying", f"{straying} of {len(designed.drawn)} ships drawn from the "
-                             "prior leave the limits under these orders", "",
-                             "abort there; design.every_ship = true binds them, too"))  # fmt: skip
-    untold = np.flatnonzero(designed.relative > 1.0)
-    if len(untold):
-        names = ", ".join(task.model.parameters.free_names[i] for i in untold)
-        found.append(Finding(Severity.WARNING, "not-identifiable",
-                             f"even this manoeuvre cannot tell {names}: the standard error exceeds the value", "",
-                             "better sensors, a longer trial, wider limits, or give a prior for them"))  # fmt: skip
-    return tuple(found)

@@ -11,9 +11,10 @@ from typing import Protocol
 
 import numpy as np
 
+from seatrial.regress.features import demand_positive
 from seatrial.regress.split import folds
 from seatrial.regress.system import System
-from seatrial.values import Array, Finding, Severity
+from seatrial.values import Array, Finding, InputError, Severity
 
 FOLDS = 10
 PENALTIES = np.logspace(-6.0, 6.0, 49)
@@ -78,6 +79,10 @@ class Ridge:
 
     penalty: float | None = None
 
+    def __post_init__(self) -> None:
+        if self.penalty is not None and not 0.0 <= self.penalty < np.inf:
+            raise InputError(f"a ridge penalty of {self.penalty:g} is none; give 0 or more, or None")
+
     def solve(self, system: System) -> Solved:
         """By the normal equations."""
         scaled = scales(system)
@@ -91,6 +96,10 @@ class TruncatedSvd:
     """Least squares in the directions whose singular value exceeds `share` of the largest (Hansen 1987)."""
 
     share: float = 0.03
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.share < 1.0:
+            raise InputError(f"a share of {self.share:g} of the largest singular value is none; give one from 0 to 1")
 
     def solve(self, system: System) -> Solved:
         """By the singular values of the scaled matrix."""
@@ -112,6 +121,10 @@ class LeastSquaresSvm:
 
     gamma: float | None = None
 
+    def __post_init__(self) -> None:
+        if self.gamma is not None:
+            demand_positive("gamma of the least-squares support vectors", self.gamma)
+
     def solve(self, system: System) -> Solved:
         """By the normal equations about the means."""
         scaled = scales(system)
@@ -132,6 +145,10 @@ class Lasso:
 
     penalties: tuple[float, ...] = tuple(PENALTIES)
     refit: bool = False
+
+    def __post_init__(self) -> None:
+        if not self.penalties or not all(0.0 <= p < np.inf for p in self.penalties):
+            raise InputError(f"Lasso penalties {self.penalties} are none to choose from; give numbers from 0")
 
     def solve(self, system: System) -> Solved:
         """Coefficients that the best penalty leaves; 0 for those it drops."""

@@ -16,6 +16,16 @@ _PROBE = 1.37
 _EVEN = 1e-3
 
 
+def demand_positive(what: str, value: float) -> None:
+    """Refuse a setting that is not a positive number.
+
+    Raises:
+        InputError: naming it.
+    """
+    if not 0.0 < value < np.inf:
+        raise InputError(f"{what} is {value:g}; give a positive number")
+
+
 @dataclass(frozen=True, eq=False)
 class Motion:
     """What a record says of a model: times (n,) [s], states (n, nx), inputs (n, nu) in the model's signs.
@@ -32,13 +42,21 @@ class Motion:
         """The motion of a record; velocities that were not measured are derived where that can be done.
 
         Raises:
-            InputError: a state is hidden, neither measured nor derivable, or an input is missing.
+            InputError: a state is hidden, not derivable or without a value; an input is missing; too few samples.
         """
         if hidden := hidden_states(model, [record]):
             raise InputError(
                 f"record '{record.name}' does not show {', '.join(hidden)}, states of model '{model.name}': "
                 "regression needs every state; use output error (seatrial identify)"
             )
+        if len(record) < 3:
+            raise InputError(f"record '{record.name}' has {len(record)} samples; regression needs at least three")
+        for state in model.states:
+            if state in record and not np.isfinite(record[state]).all():
+                raise InputError(
+                    f"record '{record.name}': channel '{state}' has no value at sample "
+                    f"{int(np.argmin(np.isfinite(record[state]))) + 1}; use regress.cleaning.without_missing first"
+                )
         return cls(record.time, measured_states(model, record), inputs_of(model, record))
 
     @property

@@ -12,9 +12,9 @@ import numpy as np
 from scipy.signal import savgol_filter
 
 from seatrial.equations import Model
-from seatrial.regress.features import Features, Motion, features
+from seatrial.regress.features import Features, Motion, demand_positive, features
 from seatrial.regress.weak import shape, windows
-from seatrial.values import Array
+from seatrial.values import Array, InputError
 
 _ROUNDING = 1e-12
 
@@ -59,9 +59,16 @@ class Central:
 
 @dataclass(frozen=True)
 class Smoothed:
-    """States and slopes by local cubic polynomials over `seconds` (Savitzky & Golay 1964), then as `Central`."""
+    """States and slopes by local cubic polynomials over `seconds` (Savitzky & Golay 1964), then as `Central`.
+
+    Raises:
+        InputError: a window that is not positive.
+    """
 
     seconds: float
+
+    def __post_init__(self) -> None:
+        demand_positive("the smoothing window in s", self.seconds)
 
     def rows(self, model: Model, motion: Motion) -> Rows:
         """All rows of stretches longer than the window."""
@@ -80,9 +87,16 @@ class Smoothed:
 
 @dataclass(frozen=True)
 class Weak:
-    """Means over smooth windows of half width `seconds`, by parts: no derivative of data is taken (see `weak`)."""
+    """Means over smooth windows of half width `seconds`, by parts: no derivative of data is taken (see `weak`).
+
+    Raises:
+        InputError: a window that is not positive.
+    """
 
     seconds: float
+
+    def __post_init__(self) -> None:
+        demand_positive("the half width of the weak form's window in s", self.seconds)
 
     def rows(self, model: Model, motion: Motion) -> Rows:
         """One row a window."""
@@ -108,6 +122,10 @@ class Differenced:
 
     of: Operator
     rho: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not np.isfinite(self.rho):
+            raise InputError(f"rho = {self.rho:g} of a quasi-difference is no number; give one from 0 to 1")
 
     def rows(self, model: Model, motion: Motion) -> Rows:
         """All rows whose predecessor is there."""

@@ -103,7 +103,7 @@ def manoeuvre_seconds(record: Record) -> float:
 
     The longest of: the time between successive executes of the rudder; between successive extremes of heading to the
     same side; of a turning circle from the execute to 360 deg, and of a circle or pull-out that does not get there from
-    the execute to the record's end.
+    the execute to the record's end. A swing still under way at the end counts for nothing.
 
     Raises:
         InputError: stamps are missing, or channel ``delta`` or ``psi`` holds fewer than two values.

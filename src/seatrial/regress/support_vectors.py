@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.regress.arithmetic import Solved, scales
+from seatrial.regress.features import demand_positive
 from seatrial.regress.system import System
-from seatrial.values import Finding, Severity
+from seatrial.values import Finding, InputError, Severity
 
 _MANY_ROWS = 3000
 _STEPS = 500_000
@@ -28,6 +29,11 @@ class SupportVectors:
     tube: float = 0.1
     standardised: bool = True
     rows: int = _MANY_ROWS
+
+    def __post_init__(self) -> None:
+        demand_positive("penalty C of the support vectors", self.penalty)
+        if not 0.0 <= self.tube < np.inf:
+            raise InputError(f"a tube of {self.tube:g} is none; give 0 or more")
 
     def solve(self, system: System) -> Solved:
         """The weights and the bias b of eq. (26), which should be near zero for the weights to count."""

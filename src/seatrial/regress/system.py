@@ -86,7 +86,7 @@ def refuse_degenerate(system: System) -> None:
     absent = [n for n, s in zip(system.names, size, strict=True) if not s > 0.0]
     if absent:
         raise InputError(
-            f"the feature of {', '.join(absent)} is constant in these rows, so that regression cannot see it: "
+            f"the feature of {', '.join(absent)} is zero in these rows, so that regression cannot see it: "
             "record a manoeuvre in which it acts, or fix it under [model]"
         )
     _, values, directions = np.linalg.svd(system.matrix / size, full_matrices=False)

@@ -44,6 +44,11 @@ def _actuator(name: str, table: InputTable, model: Model, duration: float) -> Ac
     factor = _factor(table.unit, _unit_of(name), f"{where}.unit")
     if table.hold > duration:
         raise InputError(f"{where}.hold = {table.hold:g} s is longer than the trial of {duration:g} s; shorten it")
+    if _unit_of(name) == "rad" and max(abs(table.lower), abs(table.upper)) * factor >= _HALF_TURN:
+        raise InputError(
+            f"{where}: {math.degrees(max(abs(table.lower), abs(table.upper)) * factor):g} degrees are no angle to "
+            f'order; write the range with its unit, such as unit = "deg"'
+        )
     rate = math.inf if table.rate is None else table.rate * factor
     return Actuator(name, table.lower * factor, table.upper * factor, rate, table.hold)
 

@@ -333,7 +333,9 @@ class InputTable(Strict):
     @model_validator(mode="after")
     def _in_order(self) -> Self:
         if not self.lower < self.upper:
-            raise ValueError(f"lower = {self.lower:g} is not below upper = {self.upper:g}; swap them")
+            raise ValueError(
+                f"lower = {self.lower:g} is not below upper = {self.upper:g}; give a range, the smaller first"
+            )
         return self
 
 
@@ -346,8 +348,8 @@ class DesignTable(Strict):
     held: dict[str, SiAmount] = {}
     speed: SiAmount | None = None
     criterion: Literal["worst", "mean"] = "worst"
-    draws: Annotated[int, Field(ge=0)] = 16
-    prior_percent: Annotated[float, Field(gt=0)] = 30.0
+    draws: Annotated[int, Field(ge=0, le=1000)] = 24
+    prior_percent: Annotated[float, Field(gt=0, lt=100)] = 30.0
     drift: SiAmount | None = None
     sea_room: SiAmount | None = None
     every_ship: bool = False

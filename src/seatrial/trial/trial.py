@@ -133,7 +133,7 @@ class Brief:
     limits: Limits = field(default_factory=Limits)
     speed: float | None = None
     criterion: str = "worst"
-    draws: int = 16
+    draws: int = 24
     prior: float = 0.3
 
 

@@ -37,4 +37,5 @@ class Evidence:
 
 def per_cent(value: float) -> str:
     """A share as text."""
-    return f"{100.0 * value:.3g} %"
+    share = 100.0 * value
+    return f"{share:.0f} %" if share >= 1000.0 else f"{share:.3g} %"

@@ -4,10 +4,22 @@ import numpy as np
 
 from seatrial.results import Check, Claim, Verdict
 from seatrial.studies.song2025.evidence import Evidence, per_cent
-from seatrial.studies.song2025.published import DROPPED, INSENSITIVE, STATEMENTS, TABLE_3, Column, Equation, Run
+from seatrial.studies.song2025.published import (
+    DROPPED,
+    INSENSITIVE,
+    SENSITIVE,
+    STATEMENTS,
+    TABLE_3,
+    Column,
+    Equation,
+    Run,
+    coefficients,
+)
 from seatrial.studies.song2025.repetition import Row, truth
 
 CENTRAL, EXACT, NEAR, GOOD, UNSEEN = 1e-3, 1e-8, 0.05, 0.98, 1e-4
+# a condition number that is severe (Belsley, Kuh & Welsch 1980: 30 squared), a sensitivity that is slight
+SEVERE, SLIGHT = 900.0, 0.05
 RATIO = (0.5, 1.6)
 
 
@@ -42,8 +54,6 @@ def _accurate(seen: Evidence) -> Claim:
 
 
 def _pairs() -> list[tuple[float, float]]:
-    from seatrial.studies.song2025.published import coefficients
-
     return list(zip(coefficients(Column.IMPROVED).values(), truth().tolist(), strict=True))
 
 
@@ -57,12 +67,17 @@ def _named(rows: tuple[Row, ...], name: str) -> Row:
 
 def _improved(seen: Evidence) -> Claim:
     original, improved, noisy_original, noisy_improved = seen.made.published
+    plain = _named(seen.made.clean, "Euler differences, least squares")
+    differenced = _named(seen.made.clean, "Euler, differenced and centred")
+    nearer, by_rows = improved.median < original.median, differenced.median < plain.median
     return Claim(
         _words("improved"),
-        Verdict.CONFIRMED if improved.median < original.median else Verdict.REFUTED,
-        f"without noise the median error falls from {per_cent(original.median)} to {per_cent(improved.median)}, as "
-        f"published; with the noise of sensors it is {per_cent(noisy_original.median)} before and "
-        f"{per_cent(noisy_improved.median)} after differencing. Ten micrometres a second are enough (table)",
+        (Verdict.CONFIRMED if by_rows else Verdict.UNKNOWABLE) if nearer else Verdict.REFUTED,
+        f"without noise the machine's median error falls from {per_cent(original.median)} to "
+        f"{per_cent(improved.median)}, as in the paper; but least squares on the same rows goes from "
+        f"{per_cent(plain.median)} to {per_cent(differenced.median)}, so that the gain is one of tube and scale. "
+        f"With the noise of sensors it is {per_cent(noisy_original.median)} before and "
+        f"{per_cent(noisy_improved.median)} after differencing; ten micrometres a second are enough (table)",
     )
 
 
@@ -81,23 +96,24 @@ def _lasso(seen: Evidence) -> Claim:
 def _sensitive(seen: Evidence) -> Claim:
     total = dict(zip(seen.indirect.names, seen.indirect.total.tolist(), strict=True))
     kept = [n for n in INSENSITIVE if n in total]
+    small = [n for n in SENSITIVE if total[n] < SLIGHT * max(total.values())]
     return Claim(
         _words("sensitive"),
-        Verdict.REFUTED,
+        Verdict.REFUTED if kept or small else Verdict.CONFIRMED,
         f"the text calls {', '.join(INSENSITIVE)} insensitive, yet eq. (13) keeps {', '.join(kept)}; here X_vv has "
         f"{total['X_vv']:.2g} and X_rr, which the text calls sensitive, {total['X_rr']:.2g}, against "
         f"{max(total.values()):.2g} of the largest. Y_vr does {total['Y_vr'] / total['X_vv']:.0f} times as much as "
-        f"X_vv "
-        "alone, and still no record of these zigzags can tell it (variance inflation in the table)",
+        "X_vv alone, and still no record of these zigzags can tell it (variance inflation in the table)",
     )
 
 
 def _collinear(seen: Evidence) -> Claim:
     changes = {n: c for n, c in seen.lost.changes.items() if abs(c) > 0.2}
     known = seen.audited.conditions
+    severe = known.plain[Equation.SWAY] > SEVERE and max(seen.lost.lost.values()) < UNSEEN
     return Claim(
         _words("collinear"),
-        Verdict.CONFIRMED,
+        Verdict.CONFIRMED if severe else Verdict.REFUTED,
         f"sway's condition number is {known.plain[Equation.SWAY]:.3g} (printed {TABLE_3[Equation.SWAY]:g}, under a "
         f"label that cannot be), differenced {known.improved[Equation.SWAY]:.3g}. That validity is not affected means "
         "only that motions do not show it: "
@@ -114,8 +130,7 @@ def _predicts(seen: Evidence) -> Claim:
         _words("predicts"),
         Verdict.CONFIRMED if least > GOOD and sees else Verdict.UNKNOWABLE,
         f"with both signs mended the improved column gives CC of at least {least:.3f} on the truth's nozzle history; "
-        f"as "
-        "printed no column finishes a zigzag. But CC and RMSE do not see coefficients that are 100 % off, and "
+        "as printed no column finishes a zigzag. But CC and RMSE do not see coefficients that are 100 % off, and "
         "prediction was judged on the craft and model that made the data",
     )
 
@@ -126,8 +141,8 @@ def _robust(seen: Evidence) -> Claim:
         _words("robust"),
         Verdict.REFUTED if noisy.median > 1.0 else Verdict.CONFIRMED,
         f"the paper tests no noise; with a craft's sensors the pipeline's median error is {per_cent(noisy.median)}, "
-        f"the best regression's {per_cent(seen.best_rival().median)} ({seen.best_rival().name}), output error's "
-        f"{per_cent(seen.made.ours.median)}",
+        f"the best regression's in this series {per_cent(seen.best_rival().median)} ({seen.best_rival().name}), "
+        f"output error's {per_cent(seen.made.ours.median)}",
     )
 
 
@@ -157,11 +172,12 @@ def checks(seen: Evidence) -> tuple[Check, ...]:
         Check("output error in noise, rms of errors over standard errors", made.ratio, f"{RATIO[0]} to {RATIO[1]}",
               RATIO[0] <= made.ratio <= RATIO[1]),
         Check("coefficients within 1 % in sensor noise, this series", below, "at least 5", below >= 5),
-        Check(f"error of the best regression ({best}) over the standard error of output error", gain, "at least 5",
+        Check(f"rms error of the best regression ({best}) in six series over output error's standard error, median",
+              gain, "at least 5",
               gain >= 5.0),
         Check("median error of the published pipeline over output error's", pipeline.median / made.ours.median,
               "at least 100", pipeline.median >= 100.0 * made.ours.median),
-        Check("choices of what is not printed under which both signs are misprints",
+        Check("choices of what is not printed, of those tried, under which both signs are misprints",
               sum(h.confirms for h in seen.audited.held), f"{len(seen.audited.held)}",
               all(h.confirms for h in seen.audited.held)),
     )  # fmt: skip
