@@ -1,5 +1,7 @@
 """Each method recovers what it should, scales with its columns, and shrinks, selects or swallows as it says."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -17,8 +19,10 @@ from seatrial.regress.arithmetic import (
     instrumental,
     scales,
 )
+from seatrial.regress.operators import Differenced, Euler, Smoothed, Weak
 from seatrial.regress.support_vectors import SupportVectors
 from seatrial.regress.system import System
+from seatrial.values import InputError
 
 METHODS = [LeastSquares(), Ridge(), TruncatedSvd(), LeastSquaresSvm(), Lasso(), SupportVectors(1000.0, 1e-4)]
 
@@ -34,7 +38,8 @@ def test_without_noise_the_truth_is_found(method: Arithmetic) -> None:
 def test_units_do_not_matter(method: Arithmetic, factor: float) -> None:
     """A column in other units gives the coefficient in its own; the target's units go out of everything."""
     system = drawn(2, 0.3, rows=100)
-    other = system.in_units_of(np.array([1.0, factor, 1.0])).scaled(factor)
+    columns = np.array([1.0, factor, 1.0])
+    other = System(system.equations, system.names, factor * system.matrix / columns, factor * system.target)
     found, again = method.solve(system).coefficients, method.solve(other).coefficients
     np.testing.assert_allclose(again, found * [1.0, factor, 1.0], rtol=1e-4, atol=1e-9 * np.abs(found).max())
 
@@ -100,8 +105,29 @@ def test_instruments_free_of_noise_take_the_attenuation_away() -> None:
 
 def test_a_tube_wider_than_the_target_returns_zeros_and_is_said_so() -> None:
     """scikit-learn's default tube of .1 against targets of .03."""
-    system = drawn(9).scaled(1e-3)
+    big = drawn(9)
+    system = System(big.equations, big.names, 1e-3 * big.matrix, 1e-3 * big.target)
     solved = SupportVectors(standardised=False).solve(system)
     assert not solved.coefficients.any()
     assert "returns zeros only: its tube of 0.1 is wider than its target" in solved.findings[0].text
     assert SupportVectors(100.0, 0.01).solve(system).coefficients.all()
+
+
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        (lambda: Ridge(-1.0), "ridge penalty of -1"),
+        (lambda: TruncatedSvd(1.5), "share of 1.5"),
+        (lambda: LeastSquaresSvm(0.0), "gamma of the least-squares support vectors is 0"),
+        (lambda: Lasso(()), "Lasso penalties"),
+        (lambda: SupportVectors(-1.0), "penalty C of the support vectors is -1"),
+        (lambda: SupportVectors(1.0, float("nan")), "tube of nan"),
+        (lambda: Weak(-1.0), "half width of the weak form's window in s is -1"),
+        (lambda: Smoothed(0.0), "smoothing window in s is 0"),
+        (lambda: Differenced(Euler(), float("nan")), "rho = nan"),
+    ],
+)
+def test_settings_that_mean_nothing_are_refused(made: Callable[[], object], said: str) -> None:
+    """One sentence each, before any record is looked at."""
+    with pytest.raises(InputError, match=said):
+        made()

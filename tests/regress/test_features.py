@@ -51,3 +51,14 @@ def test_stretches_end_where_samples_were_taken_away() -> None:
     kept = np.r_[0:40, 42:90]
     cut = Motion(motion.time[kept], motion.states[kept], motion.inputs[kept])
     assert cut.stretches() == [slice(0, 40), slice(40, 88)]
+
+
+def test_a_sample_without_a_value_is_named_and_two_samples_are_too_few() -> None:
+    """Cleaning takes it away; regression does not guess."""
+    record = zigzags()
+    v = record["v"].copy()
+    v[30] = np.nan
+    with pytest.raises(InputError, match=r"channel .v. has no value at sample 31; use regress\.cleaning"):
+        Motion.of(waterjet(), record.with_channel("v", record.channel("v").with_values(v)))
+    with pytest.raises(InputError, match="has 2 samples; regression needs at least three"):
+        Motion.of(waterjet(), record.rows(slice(0, 2)))

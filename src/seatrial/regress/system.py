@@ -34,18 +34,10 @@ class System:
         """What reports call it."""
         return ", ".join(self.equations)
 
-    def scaled(self, factor: float) -> Self:
-        """The same equation in other units: coefficients stay, a tube or penalty means something else."""
-        return replace(self, matrix=factor * self.matrix, target=factor * self.target)
-
     def of(self, names: Sequence[str]) -> Self:
         """Only these of its coefficients; the others are zero."""
         kept = [self.names.index(n) for n in names]
         return replace(self, names=tuple(names), matrix=self.matrix[:, kept])
-
-    def in_units_of(self, column: Array) -> Self:
-        """Columns over `column` (k,), so that the solution is multiplied by it."""
-        return replace(self, matrix=self.matrix / column)
 
 
 def systems(model: Model, motions: Sequence[Motion], operator: Operator) -> tuple[System, ...]:
