@@ -16,9 +16,9 @@ from measure import Line, at_least, at_most, machine
 from numpy.typing import NDArray
 
 from seatrial.design.design import CONFIRMED_WITH, design
-from seatrial.design.rivals import Rival, is_random, rivals
 from seatrial.design.search import GENERATIONS, coarse
 from seatrial.design.ships import Ships, ships
+from seatrial.design.standards import Standard, standards
 from seatrial.design.task import Task
 from seatrial.design.worth import Bench, leaves
 from seatrial.results import Actuator, Design, Limits
@@ -104,21 +104,21 @@ def outcome(given: Task, seed: int = SEED, confirming: int = CONFIRMED_WITH, gen
     made = design(given, seed, confirming=confirming, generations=generations)
     cpu = time.process_time() - began
     test = Bench(given, ships(given, TEST_SEED + seed, TEST_SHIPS), coarse(given))
-    standard = rivals(test)
+    standard = standards(test)
     plan = inputs_of(given.model, made.plan)
     errors = {r.name: worst(test, r) for r in standard}
     within = [r.name for r in standard if not leaves(given, _first(test).told(r.made(_first(test))))]
     return Outcome(
         made,
-        worst(test, Rival("designed", lambda _: plan)),
+        worst(test, Standard("designed", lambda _: plan)),
         errors,
-        frozenset(r.name for r in standard if is_random(r)),
+        frozenset(r.name for r in standard if r.is_random),
         frozenset(within),
         cpu,
     )
 
 
-def worst(test: Bench, manoeuvre: Rival) -> Array:
+def worst(test: Bench, manoeuvre: Standard) -> Array:
     """The least well told coefficient's relative standard error of every ship, at the sensors' rate, (ships,)."""
     found = []
     for first in range(0, test.ships.count, _CHUNK):

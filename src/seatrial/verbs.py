@@ -9,6 +9,7 @@ sea.report(fit, "report.html")
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -361,7 +362,7 @@ def reproduce(study: str, *, quick: bool = False, seed: int = 0, progress: Progr
 
     if study not in STUDIES:
         raise InputError(f"unknown study '{study}'{nearest(study, sorted(STUDIES))}")
-    return STUDIES[study](quick=quick, seed=seed, progress=progress)
+    return replace(STUDIES[study](quick=quick, seed=seed, progress=progress), quick=quick)
 
 
 def save_study(study: "Study", folder: str | Path) -> Path:

@@ -9,9 +9,9 @@ import pytest
 from design.conftest import JET, NOZZLE
 from seatrial.design.design import design
 from seatrial.design.orders import inputs, split
-from seatrial.design.rivals import is_random, rivals
 from seatrial.design.search import Yardstick, coarse, errors_of, search
 from seatrial.design.ships import ships
+from seatrial.design.standards import standards
 from seatrial.design.task import Criterion, Task
 from seatrial.design.worth import Bench, Told, leaves
 from seatrial.results import Design, Limits
@@ -30,10 +30,10 @@ def quiet(_: str) -> None: ...
 def test_standard_manoeuvres_keep_range_rate_and_where_they_can_the_limits(craft: Task) -> None:
     task = replace(craft, actuators=(NOZZLE, JET), held={}, limits=Limits(drift=math.radians(10.0)))
     at = bench(task)
-    found = rivals(at)
+    found = standards(at)
     assert {"zigzag:10/10", "zigzag:20/20", "consecutive-zigzags:1", "turning-circle:35"} <= {r.name for r in found}
-    for rival in found:
-        made = np.atleast_3d(rival.made(at)).reshape(-1, *rival.made(at).shape[-2:])
+    for one in found:
+        made = np.atleast_3d(one.made(at)).reshape(-1, *one.made(at).shape[-2:])
         for actuator in task.actuators:
             j = task.model.input_names.index(actuator.name)
             sign = -1.0 if task.model.inputs[j].is_turned else 1.0
@@ -41,17 +41,17 @@ def test_standard_manoeuvres_keep_range_rate_and_where_they_can_the_limits(craft
             assert course.min() >= actuator.lower - 1e-9
             assert course.max() <= actuator.upper + 1e-9
             assert np.abs(np.diff(course, axis=1)).max() <= actuator.rate * at.dt * (1.0 + 1e-9)
-        if is_random(rival):
-            assert not leaves(task, at.told(rival.made(at)))
+        if one.is_random:
+            assert not leaves(task, at.told(one.made(at)))
             assert np.ptp(made[0], axis=0).min() > 0.0
 
 
 def test_the_yardstick_of_a_standard_manoeuvre_is_never_below_one(craft: Task) -> None:
     at = bench(craft)
-    standard = rivals(at)
+    standard = standards(at)
     reference = Yardstick.of(at, standard).reference
-    for rival in standard:
-        assert np.all(errors_of(craft, at.told(rival.made(at))) >= reference * (1.0 - 1e-12))
+    for one in standard:
+        assert np.all(errors_of(craft, at.told(one.made(at))) >= reference * (1.0 - 1e-12))
 
 
 def test_leaving_the_limits_costs_more_than_any_worth(craft: Task) -> None:
@@ -65,7 +65,7 @@ def test_leaving_the_limits_costs_more_than_any_worth(craft: Task) -> None:
 
 def test_the_search_improves_and_repeats_itself_to_the_bit(craft: Task) -> None:
     at = bench(craft)
-    yardstick = Yardstick.of(at, rivals(at))
+    yardstick = Yardstick.of(at, standards(at))
     first, again = (search(yardstick, 7, quiet, GENERATIONS) for _ in range(2))
     other = search(yardstick, 8, quiet, GENERATIONS)
     assert np.array_equal(first.solution.point, again.solution.point)
@@ -78,7 +78,7 @@ def test_the_search_improves_and_repeats_itself_to_the_bit(craft: Task) -> None:
 
 def test_one_worker_finds_the_same_bits(craft: Task, monkeypatch: pytest.MonkeyPatch) -> None:
     at = bench(craft)
-    yardstick = Yardstick.of(at, rivals(at))
+    yardstick = Yardstick.of(at, standards(at))
     many = search(yardstick, 7, quiet, GENERATIONS)
     monkeypatch.setattr("seatrial.design.search.mapped", lambda function, items: [function(i) for i in items])
     assert np.array_equal(search(yardstick, 7, quiet, GENERATIONS).solution.point, many.solution.point)

@@ -10,9 +10,9 @@ import numpy as np
 from seatrial.design.confirm import confirmed
 from seatrial.design.findings import findings, refuse_left
 from seatrial.design.orders import inputs, plan, rows, split, table
-from seatrial.design.rivals import Rival, rivals
 from seatrial.design.search import GENERATIONS, Yardstick, coarse, finer, search
 from seatrial.design.ships import ships, spread
+from seatrial.design.standards import Standard, standards
 from seatrial.design.task import Task
 from seatrial.design.worth import Bench, executed, worth
 from seatrial.information.symmetries import refuse_structural
@@ -45,7 +45,7 @@ def design(
     seeds = np.random.SeedSequence(seed).generate_state(3)
     bench = Bench(task, ships(task, int(seeds[0])), coarse(task))
     progress("standard manoeuvres")
-    standard = rivals(bench)
+    standard = standards(bench)
     _refuse_unkept(bench, standard)
     yardstick = Yardstick.of(bench, standard)
     found = search(yardstick, int(seeds[1]), progress, generations)
@@ -56,7 +56,7 @@ def design(
     designed = worth("designed", fine, made, executed(task, planned, "designed"))
     if not found.is_interrupted:
         refuse_left(task, designed)
-    others = tuple(_scored(fine, rival) for rival in standard)
+    others = tuple(_scored(fine, one) for one in standard)
     tried, interrupted = None, found.is_interrupted
     if confirming and not interrupted:
         try:
@@ -88,7 +88,7 @@ def design(
     )
 
 
-def _refuse_unkept(bench: Bench, standard: list[Rival]) -> None:
+def _refuse_unkept(bench: Bench, standard: list[Standard]) -> None:
     """Refuse a limit that the ship assumed leaves without any order and under every standard manoeuvre."""
     task = bench.task
     told = bench.told(np.tile(task.quiet, (rows(task, bench.dt), 1)))
@@ -105,7 +105,7 @@ def _refuse_unkept(bench: Bench, standard: list[Rival]) -> None:
             )
 
 
-def _scored(fine: Bench, rival: Rival) -> Worth:
-    made = rival.made(fine)
+def _scored(fine: Bench, standard: Standard) -> Worth:
+    made = standard.made(fine)
     own = made[0] if made.ndim == 3 else made
-    return worth(rival.name, fine, made, executed(fine.task, plan(fine.task, own, fine.dt), rival.name))
+    return worth(standard.name, fine, made, executed(fine.task, plan(fine.task, own, fine.dt), standard.name))

@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.design.exchange import exchanged
 from seatrial.design.orders import counts, inputs, split
-from seatrial.design.rivals import Rival
+from seatrial.design.standards import Standard
 from seatrial.design.task import Criterion, Task
 from seatrial.design.worth import Bench, Told, excess, leaves
 from seatrial.optimise import AdaptationSettings, Box, CovarianceAdaptation, Solution, Status
@@ -36,7 +36,7 @@ class Yardstick:
     reference: Array
 
     @classmethod
-    def of(cls, bench: Bench, standard: list[Rival]) -> "Yardstick":
+    def of(cls, bench: Bench, standard: list[Standard]) -> "Yardstick":
         """From the standard manoeuvres that keep within the limits, or all where none does."""
         told = [bench.told(r.made(bench)) for r in standard]
         errors = np.array([errors_of(bench.task, t) for t in told])

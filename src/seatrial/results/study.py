@@ -139,7 +139,7 @@ class Study:
         source: the paper, with doi.
         title, question, kind: for the head of the page.
         predictions: measured runs beside simulated ones, as in a fit.
-        seed, elapsed_s, versions: how to get the same again.
+        seed, quick, elapsed_s, versions: how to get the same again.
     """
 
     name: str
@@ -156,6 +156,7 @@ class Study:
     predictions: tuple[Prediction, ...] = ()
     findings: tuple[Finding, ...] = ()
     versions: dict[str, str] = field(default_factory=dict)
+    quick: bool = False
 
     def as_table(self) -> dict[str, Any]:
         """As ``reproduce --json`` writes it: study, source, tables, claims, checks, seed, elapsed_s, versions."""

@@ -25,7 +25,7 @@ _WHOLE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Rival:
+class Standard:
     """A standard manoeuvre; `made` gives its inputs for the ships and step of a bench, in the model's signs.
 
     One course (rows, nu) for all ships, or one each (ships, rows, nu) where a helmsman steers them.
@@ -33,21 +33,17 @@ class Rival:
 
     name: str
     made: Callable[[Bench], Array]
+    is_random: bool = False
 
 
-def rivals(bench: Bench) -> list[Rival]:
+def standards(bench: Bench) -> list[Standard]:
     """Random binary sequences and, by the model, zigzags and turning circles or steps and a sweep."""
     task = bench.task
     found = [_largest_within(bench, share, seed) for share in SWITCHING for seed in SEQUENCES]
     if not _is_steered(task):
-        return [*found, Rival("sine sweep", _sweep), Rival("steps", _steps)]
-    steered = [Rival(text, partial(_steered, text)) for text in _programmes(task)]
+        return [*found, Standard("sine sweep", _sweep), Standard("steps", _steps)]
+    steered = [Standard(text, partial(_steered, text)) for text in _programmes(task)]
     return [*found, *(r for r in steered if _can_be_steered(bench, r))]
-
-
-def is_random(rival: Rival) -> bool:
-    """Whether it is a random binary sequence."""
-    return rival.name.startswith("prbs")
 
 
 def binary(hold: float, share: float, seed: int, bench: Bench) -> Array:
@@ -61,17 +57,19 @@ def binary(hold: float, share: float, seed: int, bench: Bench) -> Array:
     return inputs(switched, orders, bench.dt)
 
 
-def _largest_within(bench: Bench, switching: float, seed: int) -> Rival:
+def _largest_within(bench: Bench, switching: float, seed: int) -> Standard:
     """The largest amplitude whose drift and distance keep within the limits; else the smallest tried."""
     task = bench.task
     hold = max(switching * task.shortest_hold, 2.0 / task.rate)
-    rival = Rival("", _steps)
+    standard = Standard("", _steps)
     for share in AMPLITUDES:
-        rival = Rival(f"prbs:{100 * share:.0f}%:{hold:.3g} s:{seed}", partial(binary, hold, share, seed))
-        told = bench.told(rival.made(bench))
+        standard = Standard(
+            f"prbs:{100 * share:.0f}%:{hold:.3g} s:{seed}", partial(binary, hold, share, seed), is_random=True
+        )
+        told = bench.told(standard.made(bench))
         if not leaves(task, told) and np.isfinite(told.relative).all():
             break
-    return rival
+    return standard
 
 
 def _middle(actuator: Actuator) -> float:
@@ -93,10 +91,10 @@ def _programmes(task: Task) -> list[str]:
     return [*texts, f"turning-circle:{most:.4g}"] if most > 0.0 else texts
 
 
-def _can_be_steered(bench: Bench, rival: Rival) -> bool:
+def _can_be_steered(bench: Bench, standard: Standard) -> bool:
     """Whether no ship is lost under the helmsman."""
     try:
-        rival.made(bench)
+        standard.made(bench)
     except InputError:
         return False
     return True
