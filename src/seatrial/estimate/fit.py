@@ -25,6 +25,8 @@ from seatrial.information.covariance import Interval
 from seatrial.results import Disturbance
 from seatrial.values import Array, InputError, Progress, Record
 
+# of the period seen: windows of the start then have a half width of some .6 periods
+PERIOD_SHARE = 0.4
 _STILL = float(np.radians(0.5))
 
 
@@ -97,12 +99,34 @@ def ship_length_seconds(records: Sequence[Record], length: float, segment_second
 def unit_of_time(model: Model, records: Sequence[Record], length: float, segment_seconds: float | None = None) -> float:
     """s in which the ship changes her motion: L/U where she is steered, sqrt(L/g) for a linear model in waves.
 
+    Where she only swings about a rest (a model without heading that is not linear) it is a share of the period seen.
+
     Raises:
         InputError: a ship is steered and the records show no speed.
     """
     if model.is_affine:
         return float(np.sqrt(length / G))
+    if swings(model):
+        return PERIOD_SHARE * float(np.median([swing_period(r[model.states[0]], r.dt) for r in records]))
     return ship_length_seconds(records, length, segment_seconds)
+
+
+def swings(model: Model) -> bool:
+    """Whether the ship swings about a rest, with no heading and no speed of her own."""
+    return not {"psi", "u"} & {*model.states, *model.input_names}
+
+
+def swing_period(values: Array, dt: float) -> float:
+    """Period [s] at which the motion (n,) about its mean has most power,.
+
+    Raises:
+        InputError: it does not move, or never swings.
+    """
+    power = np.abs(np.fft.rfft(values - values.mean(), 4 * len(values)))
+    peak = int(np.argmax(power))
+    if not power[peak] > 0.0 or peak < 4:
+        raise InputError("the motion never swings about its mean; give a longer record, from the release on")
+    return 4 * len(values) * dt / peak
 
 
 def refuse_without_excitation(model: Model, records: Sequence[Record]) -> None:
@@ -153,8 +177,8 @@ def identified(
     tell("weak-form start")
     seconds = settings.segment_seconds or SEGMENT_SHIP_LENGTHS * unit
     chosen = settings.criterion is Criterion.AUTO and settings.segment_seconds is None
-    if settings.criterion is Criterion.OUTPUT_ERROR or (model.is_affine and chosen):
-        seconds = np.inf  # a linear ship in waves is stable: nothing to cut short
+    if settings.criterion is Criterion.OUTPUT_ERROR or ((model.is_affine or swings(model)) and chosen):
+        seconds = np.inf  # a ship in waves, or rolling out, is stable: nothing to cut short
     begin = start(output_error(model, records, sessions, seconds, settings), records, WINDOW_SHIP_LENGTHS * unit)
     problem = replace(begin.problem, huber=HUBER) if settings.robust else begin.problem
     shooting = estimate(

@@ -67,6 +67,12 @@ def _heave_pitch_strip() -> "Model":
     return heave_pitch_strip()
 
 
+def _roll() -> "Model":
+    from seatrial.models.roll import roll
+
+    return roll()
+
+
 MODELS: dict[str, Callable[[], "Model"]] = {
     "waterjet": _waterjet,
     "nomoto": _nomoto,
@@ -76,6 +82,7 @@ MODELS: dict[str, Callable[[], "Model"]] = {
     "heave_pitch": _heave_pitch,
     "heave_pitch_held": _heave_pitch_held,
     "heave_pitch_strip": _heave_pitch_strip,
+    "roll": _roll,
 }
 
 

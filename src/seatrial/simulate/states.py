@@ -32,6 +32,8 @@ def measured_states(model: Model, record: Record) -> Array:
     found: dict[str, Array] = {s: record[s] for s in model.states if s in record}
     if "r" not in found and "psi" in record:
         found["r"] = _slope(record, "psi")
+    if "p" not in found and "phi" in record:
+        found["p"] = _slope(record, "phi")
     if "psi" not in found and "r" in found:
         found["psi"] = np.concatenate([[0.0], np.cumsum(0.5 * record.dt * (found["r"][1:] + found["r"][:-1]))])
     if not {"u", "v"} <= set(found) and {"x0", "y0", "psi"} <= set(record.channels):

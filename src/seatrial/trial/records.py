@@ -8,6 +8,7 @@ from seatrial.check import examine, prepared
 from seatrial.read import read_record
 from seatrial.sea.felt import with_wave_forces
 from seatrial.trial.approach import first_execution
+from seatrial.trial.release import released
 from seatrial.trial.trial import Role, Run, Trial, Trimming, Waves
 from seatrial.values import Finding, InputError, Record, Severity
 
@@ -64,6 +65,8 @@ def trimmed(record: Record, rules: Trimming) -> Record:
         record = record.between(float(start), float(stop))
     if rules.skip_acceleration:
         record = record.rows(slice(_accelerated(record), None))
+    if rules.from_release:
+        record = released(record)
     return record if rules.rate is None else record.resampled(rules.rate)
 
 

@@ -65,7 +65,7 @@ def runs_of(
 
 def _block_runs(block: RecordsTable, base: Path, where: str, excitation: Excitation | None, length: float) -> list[Run]:
     paths = sorted({path for text in block.files for path in _found(text, base, where)})
-    trimming = Trimming(block.from_s, block.to_s, block.skip_acceleration, block.rate)
+    trimming = Trimming(block.from_s, block.to_s, block.skip_acceleration, block.rate, block.from_release)
     roles = _roles(block, [run_name(p) for p in paths], where)
     met = waves_of(block.waves, excitation, length, where)
     return [

@@ -165,6 +165,7 @@ class RecordsTable(Strict):
     from_s: float | None = None
     to_s: float | None = None
     skip_acceleration: bool = False
+    from_release: bool = False
     waves: WavesTable | None = None
 
     @model_validator(mode="after")

@@ -33,6 +33,7 @@ class Trimming:
     Attributes:
         from_s, to_s: s on the record's own clock; None keeps the end.
         skip_acceleration: drop what lies before 90 % of the speed at the first rudder execution.
+        from_release: drop what lies before the largest roll angle of a decay.
         rate: Hz after resampling; None keeps the record's own.
     """
 
@@ -40,6 +41,7 @@ class Trimming:
     to_s: float | None = None
     skip_acceleration: bool = False
     rate: float | None = None
+    from_release: bool = False
 
 
 @dataclass(frozen=True)
