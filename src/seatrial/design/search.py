@@ -54,7 +54,7 @@ class Yardstick:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """The best point of the unit box; whether the search was cut short by the keyboard."""
+    """The best point of the search's box; whether the search was cut short by the keyboard."""
 
     solution: Solution
     is_interrupted: bool
@@ -82,7 +82,7 @@ def search(yardstick: Yardstick, seed: int, progress: Callable[[str], None], gen
         costs = np.array(mapped(yardstick.cost, points))
         best, value, evaluations = points[int(np.argmin(costs))], float(costs.min()), len(points)
         history.append(value)
-        progress(f"search: orders exchanged one by one, error {np.exp(value):.3f} of the standard")
+        progress(f"search: orders exchanged one by one, {_told(value)}")
         drawn = evaluations
         for step in exchanged(yardstick.cost, best, value, generator, EXCHANGES * generations):
             best, value, evaluations = step[0], step[1], drawn + step[2]
@@ -99,15 +99,18 @@ def search(yardstick: Yardstick, seed: int, progress: Callable[[str], None], gen
                 best, value = point, cost
             history.append(value)
             if len(history) % 10 == 0:
-                progress(
-                    f"search: {len(history)} of {generations} generations, error {np.exp(value):.3f} of the standard"
-                )
+                progress(f"search: {len(history)} of {generations} generations, {_told(value)}")
     except KeyboardInterrupt:
         if not len(best):
             raise
         interrupted = True
     status = Status.EXHAUSTED
     return Found(Solution(best, value, status, evaluations, tuple(history), seed), interrupted)
+
+
+def _told(value: float) -> str:
+    """A cost in words."""
+    return f"error {np.exp(value):.3f} of the standard" if value < np.log(LOST) else "the limits are not kept yet"
 
 
 def _price(task: Task, told: Told) -> float:

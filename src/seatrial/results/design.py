@@ -100,7 +100,8 @@ class Design:
         designed: the manoeuvre found; rivals: standard manoeuvres of equal duration under the same limits.
         plan: inputs only, `Kind.PLANNED`, at the sensors' rate; orders: the helmsman's table.
         criterion: ``worst`` or ``mean``.
-        spread: relative standard deviation of the prior the draws come from, shape (k,).
+        spread: by what share of its size each coefficient of a drawn ship may differ, shape (k,): evenly up to it, or a
+            standard deviation where a prior or a fit's covariance is known.
     """
 
     question: str

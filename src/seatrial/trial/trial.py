@@ -125,7 +125,7 @@ class Brief:
         limits: what the trial may not leave.
         speed: approach speed u [m/s]; None: where surge balances.
         criterion: ``worst`` or ``mean`` relative standard error.
-        draws: ships drawn from the prior; prior: relative standard deviation of coefficients without a prior.
+        draws: ships drawn from the prior; prior: by what share coefficients without a prior may differ.
     """
 
     duration: float

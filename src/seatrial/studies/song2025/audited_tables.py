@@ -7,7 +7,8 @@ import numpy as np
 
 from seatrial.models.waterjet import waterjet
 from seatrial.regress.features import Motion
-from seatrial.regress.operators import Centred, Differenced, Euler, Operator
+from seatrial.regress.operators import Euler, Operator
+from seatrial.regress.pipeline import IMPROVED
 from seatrial.regress.system import systems
 from seatrial.studies.song2025.crafts import reference
 from seatrial.studies.song2025.published import (
@@ -23,7 +24,6 @@ from seatrial.studies.song2025.published import (
 )
 from seatrial.values import Array, Record
 
-PUBLISHED_IMPROVEMENT = Centred(Differenced(Euler()))
 SWAPPED = {Equation.SURGE: Equation.SWAY, Equation.SWAY: Equation.SURGE, Equation.YAW: Equation.YAW}
 
 
@@ -65,7 +65,7 @@ class Conditions:
 
 def conditions(series: Record) -> Conditions:
     """Of the consecutive zigzags, noise-free, at the record's own rate."""
-    plain, improved = correlations(series, Euler()), correlations(series, PUBLISHED_IMPROVEMENT)
+    plain, improved = correlations(series, Euler()), correlations(series, IMPROVED)
     swapped = {equation: TABLE_3[SWAPPED[equation]] for equation in Equation}
     return Conditions(
         dict(TABLE_3),
