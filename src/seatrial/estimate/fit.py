@@ -117,7 +117,7 @@ def swings(model: Model) -> bool:
 
 
 def swing_period(values: Array, dt: float) -> float:
-    """Period [s] at which the motion (n,) about its mean has most power,.
+    """Period [s] at which the motion (n,) about its mean has most power.
 
     Raises:
         InputError: it does not move, or never swings.

@@ -6,7 +6,7 @@ from seatrial.equations import Input, Model
 from seatrial.values import NOTATION, Array, Channel, InputError, Kind, Record, frozen
 from seatrial.values.notation import OPPOSITE
 
-AT_REST = ("wind_speed", "wind_direction", "F3", "M5", "delta_f1", "delta_f2")
+AT_REST = ("wind_speed", "wind_direction", "F3", "M5", "delta_f1", "delta_f2", "alpha_w", "alpha_f")
 
 
 def inputs_of(model: Model, record: Record) -> Array:

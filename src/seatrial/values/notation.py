@@ -51,6 +51,8 @@ _TABLE = [
     Quantity("M5", "pitch moment of the waves", "N m", "body", "bow down", "M_5", "wave_pitch_moment"),
     Quantity("delta_f1", "angle of the first fin, lifting up", "rad", "body", "up", r"\delta_{f1}", "fin_angle_1"),
     Quantity("delta_f2", "angle of the second fin, lifting up", "rad", "body", "up", r"\delta_{f2}", "fin_angle_2"),
+    Quantity("alpha_w", "effective wave slope across the ship", "rad", "body", "starboard", r"\alpha_w", "wave_slope"),
+    Quantity("alpha_f", "angle of the roll fins", "rad", "body", "starboard", r"\alpha_f", "roll_fin_angle"),
     Quantity("delta", "rudder or nozzle angle", "rad", "body", "starboard", r"\delta", "rudder_angle"),
     Quantity("n", "propeller rate", "rps", "none", "ahead", "n", "propeller_rate"),
     Quantity("v_j", "jet velocity", "m/s", "body", "aft", "v_j", "waterjet_velocity"),
