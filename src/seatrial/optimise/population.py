@@ -30,8 +30,9 @@ class Memory(Enum):
 class Population(ABC):
     """An optimiser that moves a population inside a box; one ask and one tell make an iteration.
 
-    A kind says where the points go (`_propose`), what it makes of their fitness (`_learn`), and its best point. The
-    first population counts as the first of the `iterations`.
+    A kind says where the points go (`_propose`), what it makes of their fitness (`_learn`), and its best point; one of
+    several objectives also what it refuses to be told (`_refuse`). The first population counts as the first of the
+    `iterations`.
     """
 
     def __init__(self, box: Box, generator: np.random.Generator, iterations: int) -> None:
@@ -73,24 +74,23 @@ class Population(ABC):
         if self._asked is None:
             raise SearchError("A fitness was told before anything was asked; call ask() first.")
         told = np.array(fitness, dtype=np.float64)
-        if told.shape != (len(self._asked),):
-            raise SearchError(
-                f"A fitness for {len(self._asked)} points has shape {told.shape}; give one number a point."
-            )
-        self._refuse_unordered(told)
+        self._refuse(self._asked, told)
         self._learn(self._asked, told)
         self._asked = None
         point, value = self.best
         self._history.append(value)
         self._trace.append(point)
 
-    def _refuse_unordered(self, told: Array) -> None:
+    def _refuse(self, points: Array, told: Array) -> None:
+        """Raise SearchError where what was told about the points (n, d) cannot be a fitness (n,)."""
+        if told.shape != (len(points),):
+            raise SearchError(f"A fitness for {len(points)} points has shape {told.shape}; give one number a point.")
         wrong = np.flatnonzero(np.isnan(told) | (told == -np.inf))
-        if wrong.size and self._asked is not None:
+        if wrong.size:
             row = wrong[0]
             raise SearchError(
                 f"The fitness of row {row} in iteration {self.iteration} is {told[row]} "
-                f"at {np.array2string(self._asked[row], precision=6)}; "
+                f"at {np.array2string(points[row], precision=6)}; "
                 "return infinity where the model cannot be evaluated."
             )
 
