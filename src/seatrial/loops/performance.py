@@ -1,0 +1,105 @@
+"""A loop in a sea, ready to be evaluated at any gains: objectives, sensitivity peak, stability, gradients.
+
+Variances are sums over the nodes of the exposure, |S|^2 for the output and |L S|^2 for the actuator; no linear system
+is solved. An unstable loop, whose variances would be finite all the same, gets infinity everywhere.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from seatrial.kernels.loop import evaluate_loops, slopes_of_loop
+from seatrial.loops.exposure import Exposure
+from seatrial.loops.loop import TransferLoop
+from seatrial.loops.margins import band
+from seatrial.loops.objective import Objective, Row, Seen
+from seatrial.values import Array, InputError
+
+_WIDE = 192
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluation:
+    """Loops evaluated, m of them.
+
+    Attributes:
+        variances: of the rows, (m, r); infinite where unstable.
+        peak: Ms, the largest |S| (m,), by a parabola of L through samples; infinite where unstable.
+    """
+
+    variances: Array
+    peak: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Performance:
+    """The loop in one exposure, or a mean over several that weigh alike.
+
+    Attributes:
+        rows: variances computed, in this order; those on the output must stand first.
+
+    Raises:
+        InputError: the plant is zero somewhere, or rows on the actuator precede rows on the output.
+    """
+
+    loop: TransferLoop
+    exposure: Exposure
+    rows: tuple[Row, ...]
+
+    def __post_init__(self) -> None:
+        seen = [row.seen is Seen.ACTUATOR for row in self.rows]
+        if seen != sorted(seen):
+            raise InputError("rows on the output must precede rows on the actuator")
+
+    @cached_property
+    def _weights(self) -> tuple[Array, Array]:
+        """What |S|^2 and |L S|^2 weigh at each node: |W D|^2 and |W D / P|^2 times the energy."""
+        w = self.exposure.omega_e
+        free = np.abs(self.loop.disturbance.at(w)) ** 2 * self.exposure.energy
+        moved = free / np.abs(self.loop.plant.at(w)) ** 2
+        outputs = [row.size(w) ** 2 * free for row in self.rows if row.seen is Seen.OUTPUT]
+        actuators = [row.size(w) ** 2 * moved for row in self.rows if row.seen is Seen.ACTUATOR]
+        shape = (-1, len(w))
+        return np.ascontiguousarray(np.reshape(outputs, shape)), np.ascontiguousarray(np.reshape(actuators, shape))
+
+    @cached_property
+    def _tables(self) -> tuple[Array, Array, Array, Array]:
+        seen = self.loop.open_terms(self.exposure.omega_e)
+        wide = self.loop.open_terms(np.geomspace(*band(self.loop), _WIDE))
+        return tuple(np.ascontiguousarray(part) for part in (seen.real, seen.imag, wide.real, wide.imag))  # type: ignore[return-value]
+
+    def of(self, gains: Array, *, with_peak: bool = True) -> Evaluation:
+        """Loops with the gains (m, g); without the peak, `peak` tells only whether a loop is stable (zero)."""
+        k = np.ascontiguousarray(np.atleast_2d(gains), dtype=np.float64)
+        d, n = self.loop.polynomials
+        re, im, wide_re, wide_im = self._tables
+        if not with_peak:
+            wide_re, wide_im = wide_re[:, :0].copy(), wide_im[:, :0].copy()
+        peak, out = np.zeros(len(k)), np.empty((len(k), len(self.rows)))
+        evaluate_loops(k, np.array(d), np.array(n), re, im, *self._weights, wide_re, wide_im, peak, out)
+        return Evaluation(out, peak)
+
+    def slopes(self, gains: Array) -> Array:
+        """d variances / d gains at one point (g,), shape (r, g); the loop must be stable."""
+        re, im, _, _ = self._tables
+        out = np.empty((len(self.rows), len(gains)))
+        slopes_of_loop(np.ascontiguousarray(gains, dtype=np.float64), re, im, *self._weights, out)
+        return out
+
+    @property
+    def uncontrolled(self) -> Array:
+        """The variances with all gains at zero, (r,): those on the actuator vanish."""
+        on_s, on_t = self._weights
+        return np.concatenate([on_s.sum(axis=1), np.zeros(len(on_t))])
+
+
+def rows_of(objectives: tuple[Objective, ...]) -> tuple[tuple[Row, ...], list[list[int]]]:
+    """All rows of some objectives, outputs first, and for each objective where its own stand."""
+    rows = [row for objective in objectives for row in objective.rows]
+    order = sorted(range(len(rows)), key=lambda i: rows[i].seen is Seen.ACTUATOR)
+    place = {old: new for new, old in enumerate(order)}
+    starts = np.cumsum([0, *(len(objective.rows) for objective in objectives)])
+    places = [[place[i] for i in range(a, b)] for a, b in pairwise(starts)]
+    return tuple(rows[i] for i in order), places

@@ -1,0 +1,1 @@
+"""Controllers tuned on a model: front, choice, schedule, nonlinear check, autopilots, bounds."""
