@@ -164,9 +164,9 @@ def test_a_known_front_is_found_from_end_to_end() -> None:
     assert np.max(np.diff(roots[:, 0])) < 0.15
 
 
-@given(st.lists(st.tuples(*[st.integers(0, 5)] * 3), min_size=1, max_size=40))
-def test_dominance_is_the_definition(rows: list[tuple[int, int, int]]) -> None:
-    objectives = np.array(rows, dtype=float)
+@given(st.integers(1, 5), st.integers(1, 40), st.integers(0, 2**32))
+def test_dominance_is_the_definition(count: int, rows: int, seed: int) -> None:
+    objectives = np.random.default_rng(seed).integers(0, 6, (rows, count)).astype(float)
     kept = non_dominated(objectives)
     better = (objectives[:, None] <= objectives).all(axis=2) & (objectives[:, None] < objectives).any(axis=2)
     wanted = np.unique(objectives[~better.any(axis=0)], axis=0)
