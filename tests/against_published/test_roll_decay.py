@@ -47,6 +47,16 @@ def test_one_run_predicts_the_other_without_being_refitted(fits: dict[str, Fit])
     assert r_squared(fits[RUNS[1]], RUNS[0]) >= 0.998
 
 
+def test_intervals_of_the_two_runs_overlap(fits: dict[str, Fit]) -> None:
+    """Of all coefficients; the angle of rest is each run's own. White-noise intervals would not overlap."""
+    one, other = ({c.name: (c.lower, c.upper) for c in fits[run].coefficients} for run in RUNS)
+    for name in ("b_1", "b_2", "b_3", "c_1", "c_3", "c_5"):
+        (a, b), (c, d) = one[name], other[name]
+        assert None not in (a, b, c, d)
+        assert max(a or 0.0, c or 0.0) <= min(b or 0.0, d or 0.0), name
+    assert all("process noise" in fit.method.intervals for fit in fits.values())
+
+
 def test_both_find_the_same_natural_period(fits: dict[str, Fit]) -> None:
     """Within a tenth of a per cent: 2.551 and 2.550 s at model scale."""
     periods = []

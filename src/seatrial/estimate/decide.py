@@ -7,7 +7,8 @@ import numpy as np
 
 from seatrial.estimate.coloured import coloured
 from seatrial.estimate.estimate import Estimate, colour, residual_spread
-from seatrial.estimate.process_noise import ProcessNoise, intensities, is_worthwhile, prediction_error
+from seatrial.estimate.intervals import RUNS_FOR_JACKKNIFE
+from seatrial.estimate.process_noise import ProcessNoise, intensities, is_worthwhile, prediction_error, suited
 from seatrial.estimate.settings import WHITE_INFLATION, Criterion, Settings
 from seatrial.problem.output_error import OutputError
 from seatrial.values import Array, Progress
@@ -16,9 +17,11 @@ PREDICTION_ERROR, WHOLE_RUNS = "prediction error", "output error over whole runs
 _COLOURED = "coloured residuals mean model error or process noise"
 _KEPT_SHORT = "segments keep it from accumulating"
 _TOO_COARSE = "samples too far apart for prediction error, which takes inputs as straight between them"
+_DECAY = "a free decay, which its initial state explains: whole runs tell what one decay has in common with the next"
 _WHITE = "residuals are white within segments and over whole runs: no process noise to guard against"
 _NO_LARGER = 1.05
 _TURN = 0.3
+_EXPLAINED = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +32,7 @@ class Found:
         residuals: simulated minus measured, under prediction error one step ahead, (rows, ny), SI.
         inflation: variance inflation of each channel's residuals, (ny,); rho: their autocorrelations.
         process: intensities of process noise that suit the estimate; noise: the prediction-error optimum, if used.
+        beside: what suits an output-error estimate over a few whole runs, where it makes one-step residuals white.
     """
 
     made: Estimate
@@ -39,6 +43,7 @@ class Found:
     reasons: tuple[str, ...]
     process: dict[str, float] = field(default_factory=dict)
     noise: ProcessNoise | None = None
+    beside: ProcessNoise | None = None
 
     @property
     def is_white(self) -> bool:
@@ -56,8 +61,13 @@ def decided(
     settings: Settings,
     whole_runs: Callable[[], Estimate | None],
     progress: Progress | None,
+    *,
+    is_undriven: bool = False,
 ) -> Found:
-    """The criterion to use; `shooting` is the estimate over segments of `seconds`, `whole_runs` makes the other one."""
+    """The criterion to use; `shooting` is the estimate over segments of `seconds`, `whole_runs` makes the other one.
+
+    is_undriven: nothing moves the ship but her initial state.
+    """
     shot = _left(shooting, _named(seconds))
     match settings.criterion:
         case Criterion.OUTPUT_ERROR | Criterion.MULTIPLE_SHOOTING:
@@ -65,6 +75,8 @@ def decided(
         case Criterion.PREDICTION_ERROR:
             noise = prediction_error(shooting, settings.noise, thorough=True, progress=progress)
             return _predicted(noise, "it was asked for", noise.gate.text)
+        case Criterion.AUTO if is_undriven and _explains(shot):
+            return _asked_for(shot, settings, _DECAY)
         case Criterion.AUTO:
             pass
     if settings.segment_seconds is not None:
@@ -111,8 +123,18 @@ def _asked_for(shot: Found, settings: Settings, reason: str) -> Found:
     """The user's own choice; what it leaves coloured is measured as process noise, for the floor of predictions."""
     if shot.is_white or not is_worthwhile(shot.made):
         return shot.because(reason)
+    if shot.criterion == WHOLE_RUNS and len(shot.made.problem.data.runs) < RUNS_FOR_JACKKNIFE and not settings.robust:
+        noise = suited(shot.made, settings.noise)
+        beside = noise if noise.gate.is_white else None
+        return replace(shot.because(reason, _COLOURED), process=noise.process, beside=beside)
     told = (_COLOURED,) if shot.criterion == WHOLE_RUNS else (_COLOURED, _KEPT_SHORT)
     return replace(shot.because(reason, *told), process=intensities(shot.made, settings.noise))
+
+
+def _explains(shot: Found) -> bool:
+    """Whether a tenth of each channel's spread or less is left."""
+    measured = np.nanstd(shot.made.problem.data.measured, axis=0)
+    return bool(np.all(np.nanstd(shot.residuals, axis=0) <= _EXPLAINED * measured))
 
 
 def _fitting(shot: Found, whole: Estimate | None) -> Found | None:

@@ -9,6 +9,7 @@ import numpy as np
 from seatrial.equations import Model
 from seatrial.estimate.assemble import output_error
 from seatrial.estimate.decide import PREDICTION_ERROR, Found, decided
+from seatrial.estimate.disturbed import disturbed
 from seatrial.estimate.estimate import Estimate, estimate
 from seatrial.estimate.intervals import Uncertainty, intervals, of_innovations, refuse_few_runs
 from seatrial.estimate.settings import (
@@ -16,6 +17,7 @@ from seatrial.estimate.settings import (
     SEGMENT_SHIP_LENGTHS,
     WINDOW_SHIP_LENGTHS,
     Criterion,
+    Intervals,
     Settings,
 )
 from seatrial.estimate.start import start
@@ -129,14 +131,18 @@ def swing_period(values: Array, dt: float) -> float:
     return 4 * len(values) * dt / peak
 
 
+def _moving(model: Model, records: Sequence[Record]) -> list[str]:
+    """The inputs that move in any of the records."""
+    return [n for n in model.input_names if any(n in r and np.ptp(r[n]) > 0.0 for r in records)]
+
+
 def refuse_without_excitation(model: Model, records: Sequence[Record]) -> None:
     """Refuse records in which the rudder never moves, or no input of a linear model does.
 
     Raises:
         InputError: which records, and what manoeuvre is needed.
     """
-    held = [n for n in model.input_names if any(n in r and np.ptp(r[n]) > 0.0 for r in records)]
-    if model.is_affine and not held:
+    if model.is_affine and not _moving(model, records):
         raise InputError(
             f"no excitation: none of {', '.join(model.input_names)} moves in {', '.join(r.name for r in records)}; "
             "give wave forces or fin angles, or the wave elevation with [excitation]"
@@ -190,7 +196,8 @@ def identified(
             return shooting
         return _over_whole_runs(shooting, model, records, sessions, settings, progress)
 
-    found = decided(shooting, seconds, settings, whole_runs, progress)
+    is_undriven = swings(model) and not _moving(model, records)
+    found = decided(shooting, seconds, settings, whole_runs, progress, is_undriven=is_undriven)
     criterion = f"{found.criterion}, Huber loss" if settings.robust else found.criterion
     known = _uncertainty(found, settings, tell)
     return Identified(
@@ -203,6 +210,8 @@ def _uncertainty(found: Found, settings: Settings, tell: Progress) -> Uncertaint
     def counted(done: int, total: int) -> None:
         tell(f"{settings.intervals}: fit {done} of {total}")
 
+    if found.beside is not None and settings.intervals in (Intervals.AUTO, Intervals.PROFILE):
+        return Uncertainty(disturbed(found.made, found.beside))
     if found.noise is None:
         rng = np.random.default_rng(settings.seed)
         return intervals(found.made, found.inflation, settings.intervals, rng, counted)

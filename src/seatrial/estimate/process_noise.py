@@ -162,6 +162,12 @@ def intensities(made: Estimate, known: Mapping[str, float]) -> dict[str, float]:
     return dict(zip(begun.process, np.sqrt(squares).tolist(), strict=True))
 
 
+def suited(made: Estimate, known: Mapping[str, float]) -> ProcessNoise:
+    """Noise in the states and in the channels that suits the estimate as it is, over all its runs, with its gate."""
+    problem = _begun(made, known, ())
+    return _unfinished(problem, np.concatenate([made.shared, _intensities(problem, made)]))
+
+
 def prediction_error(
     made: Estimate,
     known: Mapping[str, float] | None = None,

@@ -247,6 +247,13 @@ class OutputError:
         costs, gradients, hessians = (np.concatenate([p[i] for p in parts]) for i in range(3))
         return SegmentNormals(costs, gradients, hessians, n)
 
+    def slopes(self, shared: Array, local: Array) -> Array:
+        """Derivatives of the outputs by a session's columns (`columns_of`), then by initial states, (rows, ny, n)."""
+        start, values, corrections = self.unpacked(shared, local)
+        parts = mapped(lambda p: self._batch.differentiate(*p, start, values, corrections)[1], self._pieces(),
+                       workers=self.workers)  # fmt: skip
+        return np.concatenate(parts)
+
     def sensitivities(self, shared: Array, local: Array) -> Array:
         """Rms slope of each output, in units of its noise, by each free parameter, (ny, free); initial states held."""
         start, values, corrections = self.unpacked(shared, local)

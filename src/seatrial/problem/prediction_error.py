@@ -113,6 +113,14 @@ class PredictionError:
         _, values, corrections = self.runs.unpacked(own, np.zeros((self.runs.data.count, len(self.runs.starts))))
         return Noisy(self.start, self.start_variance, values, corrections, intensity, deviation)
 
+    def transitions(self, run: int, shared: Array, local: Array) -> tuple[Array, Array]:
+        """Transition matrices of a run from sample to sample, (rows - 1, nx, nx), outputs by states (rows, ny, nx).
+
+        Along the motion without noise from initial states `local`; shared: the unknowns of `runs`.
+        """
+        start, values, corrections = self.runs.unpacked(shared, local)
+        return self._filter.transitions(run, start, values, corrections)
+
     def innovations(self, shared: Array) -> Innovations:
         """Of all runs, one after the other; infinite for a run that diverges."""
         at, measured = self.noisy(shared), self.runs.data.measured

@@ -1,6 +1,6 @@
 """A Kalman filter over many segments of one model: innovations, and innovations with sensitivities."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -79,6 +79,25 @@ class Filter(Batch):
         """Variance of each state where nothing is measured, (rows, nx): how far a run may stray from its prediction."""
         nothing = np.full((int(self.offsets[-1]), len(self.outputs)), np.nan)
         return self._run(segment, nothing, at, self._bare_links, 0, 0, recorded=True)[4]
+
+    def transitions(self, segment: int, start: Array, parameters: Array, corrections: Array) -> tuple[Array, Array]:
+        """Transition matrices from sample to sample, (rows - 1, nx, nx), and outputs by states, (rows, ny, nx).
+
+        Along the motion without noise; start, parameters, corrections: as in `simulate`, of all segments.
+        """
+        a, b = self.offsets[segment : segment + 2]
+        gain, zero, delay = (c[segment] for c in self._corrected(corrections))
+        inputs, rows, nx = corrected(self.inputs[a:b], self.dt, gain, zero, delay)[0], b - a, len(self.model.states)
+        whole = Batch(self.model, inputs, np.array([0, rows]), self.dt, self.model.states, substeps=self.substeps)
+        one = parameters[segment : segment + 1]
+        states = whole.simulate(0, 1, start[segment : segment + 1], one, np.zeros((1, 0)))[0]
+        ahead = np.minimum(np.column_stack([np.arange(rows), np.arange(1, rows + 1)]), rows - 1).ravel()
+        steps = replace(
+            whole, inputs=np.ascontiguousarray(inputs[ahead]), offsets=2 * np.arange(rows + 1, dtype=np.int64),
+            outputs=(*self.model.states, *self.outputs), starts=self.model.states,
+        )  # fmt: skip
+        slopes = steps.differentiate(0, rows, states, np.repeat(one, rows, axis=0), np.zeros((rows, 0)))[1]
+        return slopes[1:-1:2, :nx], slopes[::2, nx:]
 
     def _run(
         self, segment: int, measured: Array, at: Noisy, links: tuple[Index, ...], width: int, noises: int,
