@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import bernoulli
 
 from seatrial.hydro.dispersion import G
 from seatrial.hydro.excitation import encounter_frequency
@@ -18,9 +19,13 @@ from seatrial.sea.spectrum import Spectrum
 from seatrial.values import Array, InputError
 
 _DIRECTIONS = 16
-_FEWEST, _MOST = 48, 1536
+_FEWEST, _MOST = 48, 12288
 _ACCURACY = 1e-10
 _FAINT = 36.0
+# rad/s: a wave that keeps up with the ship
+_SLOWEST = 1e-9
+# a spectrum may be cut where it is not faint yet: trapezoids that are of order 8 there (Euler-Maclaurin by differences)
+_ENDS = 1.0 + np.linalg.solve(np.vander(np.arange(8.0), increasing=True).T, bernoulli(8)[1:] / np.arange(1.0, 9.0))
 
 
 @dataclass(frozen=True)
@@ -145,9 +150,10 @@ def _settled(
     while True:
         u, step = np.linspace(math.log(lower), math.log(upper), count, retstep=True)
         omega = np.exp(u)
-        omega_e, energy = met(omega), density(omega) * omega * step
-        size = np.abs(response.at(np.maximum(omega_e, 1e-9))) ** 2 * energy
+        omega_e, energy = np.maximum(met(omega), _SLOWEST), density(omega) * omega * step
+        energy[: -len(_ENDS) - 1 : -1] *= _ENDS
+        size = np.abs(response.at(omega_e)) ** 2 * energy
         now = np.array([size.sum(), (omega_e**2 * size).sum()])
         if np.all(np.abs(now - before) <= _ACCURACY * now) or count > _MOST:
-            return np.maximum(omega_e, 1e-9), energy
+            return omega_e, energy
         before, count = now, 2 * count

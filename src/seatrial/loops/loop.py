@@ -100,6 +100,13 @@ class TransferLoop:
         return self.values @ self.open_terms(omega)
 
     @property
+    def controlled(self) -> Block:
+        """D S at the loop's gains, from the disturbance to the output; nothing cancels."""
+        d, n = self.polynomials
+        num, den = np.polymul(self.disturbance.num, d), np.polymul(self.disturbance.den, d + self.values @ n)
+        return Block("controlled", tuple(num), tuple(den))
+
+    @property
     def closed_poles(self) -> Complex:
         """Roots of the characteristic polynomial at the loop's gains, rad/s."""
         d, n = self.polynomials
