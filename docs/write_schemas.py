@@ -6,8 +6,10 @@ from pathlib import Path
 from seatrial.trial.design_json import design_schema
 from seatrial.trial.fit_json import fit_schema
 from seatrial.trial.schema import trial_schema
+from seatrial.trial.tuning_json import tuning_schema
 
 if __name__ == "__main__":
-    for name, schema in (("design", design_schema()), ("result", fit_schema()), ("trial", trial_schema())):
+    schemas = {"design": design_schema(), "result": fit_schema(), "trial": trial_schema(), "tuning": tuning_schema()}
+    for name, schema in schemas.items():
         path = Path(__file__).with_name(f"{name}.schema.json")
         path.write_text(json.dumps(schema, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
