@@ -136,8 +136,8 @@ def test_a_damaged_entry_is_one_sentence(fit: Fit, tmp_path: Path) -> None:
 def test_the_json_has_the_documented_entries_and_no_nan(fit: Fit) -> None:
     table = json.loads(strict_json(fit_json(fit)))
     assert list(table) == [
-        "coefficients", "intervals", "validation", "identifiability", "noise", "family", "seakeeping", "rivals",
-        "findings", "elapsed_s", "versions", "seed",
+        "coefficients", "intervals", "validation", "identifiability", "noise", "family", "seakeeping", "rolling",
+        "rivals", "findings", "elapsed_s", "versions", "seed",
     ]  # fmt: skip
     assert list(table["coefficients"][0]) == [
         "name", "unit", "estimate", "standard_error", "lower", "upper", "fixed", "truth",

@@ -23,7 +23,7 @@ from seatrial.estimate.settings import (
 from seatrial.estimate.start import start
 from seatrial.hydro.dispersion import G
 from seatrial.information.autocorrelation import whiteness_p
-from seatrial.information.covariance import Interval
+from seatrial.information.covariance import Interval, inverse
 from seatrial.results import Disturbance
 from seatrial.values import Array, InputError, Progress, Record
 
@@ -63,6 +63,12 @@ class Identified:
     def interval(self) -> Interval:
         """Of all shared unknowns."""
         return self.uncertainty.interval
+
+    @property
+    def information(self) -> Array:
+        """Of all shared unknowns, as the interval has it where that comes from one."""
+        known = self.uncertainty.information
+        return self.made.optimum.normal.reduced()[1] if known is None else known
 
     @property
     def model(self) -> Model:
@@ -211,7 +217,8 @@ def _uncertainty(found: Found, settings: Settings, tell: Progress) -> Uncertaint
         tell(f"{settings.intervals}: fit {done} of {total}")
 
     if found.beside is not None and settings.intervals in (Intervals.AUTO, Intervals.PROFILE):
-        return Uncertainty(disturbed(found.made, found.beside))
+        interval = disturbed(found.made, found.beside)
+        return Uncertainty(interval, information=inverse(interval.covariance))
     if found.noise is None:
         rng = np.random.default_rng(settings.seed)
         return intervals(found.made, found.inflation, settings.intervals, rng, counted)

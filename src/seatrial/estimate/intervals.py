@@ -32,11 +32,13 @@ class Uncertainty:
         left_out: estimates with one run left out each, shape (runs, k); None with fewer runs than a jackknife needs.
         agreement: median over coefficients of the one-step jackknife's standard error over that of full refits; None
             unless both were computed.
+        information: inverse of the covariance where that is another one than the criterion's, shape (k, k).
     """
 
     interval: Interval
     left_out: Array | None = None
     agreement: float | None = None
+    information: Array | None = None
 
 
 def intervals(

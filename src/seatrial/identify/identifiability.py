@@ -65,7 +65,7 @@ def of_data(found: Identified) -> tuple[Array, Array]:
     Everything else (initial states, offsets with their own priors) is eliminated at its optimum.
     """
     problem = found.made.problem
-    count, hessian = len(problem.free), found.made.optimum.normal.reduced()[1].copy()
+    count, hessian = len(problem.free), found.information.copy()
     known = problem.known_precision(found.made.shared)
     hessian[:count, :count] -= known[:count, :count]
     return _eliminated(hessian, count), known[:count, :count]

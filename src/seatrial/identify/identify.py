@@ -17,6 +17,7 @@ from seatrial.identify.family import WINDOW_SHIP_LENGTHS as FAMILY_WINDOW
 from seatrial.identify.family import Considered, considered, with_ensemble
 from seatrial.identify.identifiability import identifiability
 from seatrial.identify.profile import profiles
+from seatrial.identify.rolling import rolling
 from seatrial.identify.seakeeping import seakeeping
 from seatrial.identify.spectral import spectral_fit
 from seatrial.information.frequency_range import frequency_range, represented
@@ -147,6 +148,7 @@ def identify(
         family=others.rows,
         margin=told.margin,
         seakeeping=seakeeping(found.model, train, length),
+        rolling=rolling(found.model, found.interval, found.made.problem.free, runs, trial.ship),
     )
     return with_rivals(fit, runs, WINDOW_SHIP_LENGTHS * unit, progress) if compare else fit
 

@@ -1,7 +1,7 @@
 """The answer in words: what was asked, what was fitted, how well held-out runs are predicted, what to mind."""
 
 from seatrial.estimate.settings import WHITE_INFLATION
-from seatrial.report.numbers import duration, exact, fixed, significant
+from seatrial.report.numbers import duration, estimate, exact, fixed, significant
 from seatrial.report.telling import determined
 from seatrial.report.words import (
     counted,
@@ -19,6 +19,7 @@ from seatrial.values import Severity
 
 DISAGREES = 3.0
 LONGEST = 200
+_ANGLES = (("theta", "pitch"), ("phi", "roll"))
 
 
 def facts(fit: Fit) -> list[tuple[str, str]]:
@@ -44,6 +45,7 @@ def sentences(fit: Fit) -> list[str]:
         *_held_out(fit),
         _covered(fit),
         *_extrapolated(fit),
+        _rolling(fit),
         _not_told(fit),
         _coefficients(fit),
         _truth(fit),
@@ -79,8 +81,7 @@ def _predicted(p: Prediction, fit: Fit) -> str:
         parts.append(f"{significant(p.rms['position_m'], 2)} m in position{share}")
     if "z" in p.rms:
         parts.append(f"{significant(p.rms['z'], 2)} m in heave")
-    if "theta_deg" in p.rms:
-        parts.append(f"{significant(p.rms['theta_deg'], 2)}° in pitch")
+    parts += [f"{significant(p.rms[f'{name}_deg'], 2)}° in {said}" for name, said in _ANGLES if f"{name}_deg" in p.rms]
     if not parts and "r" in p.rms:
         parts.append(f"{significant(p.rms['r'] * 57.29578, 2)} deg/s in yaw rate")
     said = f"{p.record}, not fitted, is predicted open loop over {duration(p.measured.duration)}"
@@ -134,6 +135,24 @@ def _not_told(fit: Fit) -> str:
         further = f" ({counted(more, 'further change')} of this kind in the next section)" if more else ""
         said.append(f"Whatever the manoeuvre, {_hidden(known.structural[0])}{further}.")
     return " ".join(s for s in said if s)
+
+
+def _rolling(fit: Fit) -> str:
+    """Period, damping and metacentric height."""
+    known = fit.rolling
+    if known is None:
+        return ""
+    period, ratio = (estimate(e.value, 0.5 * (e.upper - e.lower), e.lower, e.upper)
+                     for e in (known.natural_period, known.damping_ratio.times(100.0)))  # fmt: skip
+    said = (
+        f"The natural period at small angles is {period.value} s ({period.lower} to {period.upper} s), the linear "
+        f"damping {ratio.value} % of critical ({ratio.lower} to {ratio.upper} %)"
+    )
+    height = known.metacentric_height
+    if height is None:
+        return f"{said}."
+    gm = estimate(height.value, 0.5 * (height.upper - height.lower), height.lower, height.upper)
+    return f"{said}; GM would be {gm.value} m ({gm.lower} to {gm.upper} m) with {known.assumed.partition(',')[0]}."
 
 
 def _hidden(s: Symmetry) -> str:

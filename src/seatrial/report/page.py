@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from seatrial.report import answer, numbers, rivals, runs, tables, telling, waves, words
+from seatrial.report import answer, numbers, rivals, rolling, runs, tables, telling, waves, words
 from seatrial.report.citations import Citations
 from seatrial.report.figures import channels, correlation, forest, tracks, whiteness
 from seatrial.report.figures.plot import common_prefix
@@ -23,6 +23,7 @@ TITLES = {
     "records": "Records",
     "findings": "Findings",
     "coefficients": "Coefficients",
+    "rolling": "Roll: period, damping, metacentric height",
     "prediction": "Prediction of held-out runs",
     "training": "Fit of the training runs",
     "rivals": "Other estimators on the same records",
@@ -53,7 +54,7 @@ def html(fit: Fit) -> str:
     told, known, compared = telling.telling(fit), fit.seakeeping, rivals.rivals(fit)
     is_steered = "psi" in fit.model.states or "delta" in fit.model.input_names
     shown = {
-        "telling": bool(told), "waves": known is not None, "standards": is_steered,
+        "telling": bool(told), "rolling": fit.rolling is not None, "waves": known is not None, "standards": is_steered,
         "training": bool(fit.predictions), "residuals": bool(fit.residuals), "rivals": compared is not None,
     }  # fmt: skip
     context: dict[str, object] = {
@@ -61,6 +62,9 @@ def html(fit: Fit) -> str:
         "titles": {key: title for key, title in TITLES.items() if shown.get(key, True)},
         "is_steered": is_steered,
         "waves": None if known is None else {"sheets": waves.sheets(known), "figures": waves.figures(known)},
+        "rolling": None
+        if fit.rolling is None
+        else {"sheets": rolling.sheets(fit.rolling, fit.ship.scale), "figures": rolling.figures(fit.rolling)},
         "told": told,
         "rivals": compared,
         "answer": answer.sentences(fit),

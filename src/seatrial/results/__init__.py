@@ -27,6 +27,7 @@ from seatrial.results.identifiability import (
     Symmetry,
 )
 from seatrial.results.rival import Rival, Sailed
+from seatrial.results.rolling import Estimated, Rolling
 from seatrial.results.seakeeping import PointMotion, Seakeeping
 from seatrial.results.study import Bars, Check, Claim, Curve, Figure, Matrix, Study, Table, Verdict
 
@@ -43,6 +44,7 @@ __all__ = [
     "Design",
     "Direction",
     "Disturbance",
+    "Estimated",
     "Extrapolation",
     "Figure",
     "Fit",
@@ -61,6 +63,7 @@ __all__ = [
     "Profile",
     "Residuals",
     "Rival",
+    "Rolling",
     "Sailed",
     "Seakeeping",
     "Sensitivity",

@@ -6,6 +6,7 @@ from seatrial.equations import Model
 from seatrial.optimise import Solution
 from seatrial.results.identifiability import Identifiability
 from seatrial.results.rival import Rival
+from seatrial.results.rolling import Rolling
 from seatrial.results.seakeeping import Seakeeping
 from seatrial.values import Array, Finding, Record, Ship
 
@@ -215,6 +216,7 @@ class Fit:
         identifiability: what the records can tell; disturbance: noise and criterion; family: models compared.
         margin: what intervals of further predictions are made of.
         seakeeping: what the ship does in the waves of her trial; None where she met none that are known.
+        rolling: what the coefficients of a roll model mean; None for any other model.
         rivals: other estimators on the same records, the fit itself first; empty where none were asked for.
     """
 
@@ -240,6 +242,7 @@ class Fit:
     margin: Margin | None = None
     seakeeping: Seakeeping | None = None
     rivals: tuple[Rival, ...] = ()
+    rolling: Rolling | None = None
 
     def validation(self) -> tuple[Prediction, ...]:
         """The predictions of runs that were not fitted."""

@@ -138,6 +138,34 @@ class SeakeepingEntry(Entry):
     points: list[PointMotionEntry]
 
 
+class EstimatedEntry(Entry):
+    """A derived value with its 95 % interval, SI."""
+
+    value: Number
+    lower: Number
+    upper: Number
+
+
+class RollingEntry(Entry):
+    """Roll as it follows from the coefficients, at rest and over the amplitude of a swing; bands at 95 %."""
+
+    natural_period: EstimatedEntry = Field(description="s, at small angles")
+    damping_ratio: EstimatedEntry = Field(description="linear damping over critical damping, 1")
+    gyradius: EstimatedEntry | None = Field(description="m, in roll with added inertia, given or assumed")
+    assumed: str = Field(description="where the gyradius comes from")
+    metacentric_height: EstimatedEntry | None = Field(description="m, range with that of the gyradius")
+    amplitude: list[Number] = Field(description="rad")
+    damping: list[Number] = Field(description="equivalent linear damping over amplitude, 1/s")
+    damping_lower: list[Number]
+    damping_upper: list[Number]
+    period: list[Number] = Field(description="of a swing over amplitude, s")
+    period_lower: list[Number]
+    period_upper: list[Number]
+    swings: list[tuple[Number, Number, Number]] = Field(
+        description="amplitude, logarithmic damping, period of each recorded swing of a decay, without any model"
+    )
+
+
 class FindingEntry(Entry):
     """Something a check or an estimate has to say."""
 

@@ -15,6 +15,7 @@ from seatrial.trial.fit_entries import (
     NoiseEntry,
     Number,
     RivalEntry,
+    RollingEntry,
     SeakeepingEntry,
 )
 from seatrial.values import Finding
@@ -66,6 +67,7 @@ class FitDocument(Entry):
     noise: NoiseEntry | None = Field(description="criterion of the fit and the noise it allows for; null: not examined")
     family: list[FamilyEntry] = Field(description="models compared over whole runs left out; empty: none declared")
     seakeeping: SeakeepingEntry | None = Field(description="the ship in the waves of the trial; null: none known")
+    rolling: RollingEntry | None = Field(description="what a roll model's coefficients mean; null: another model")
     rivals: list[RivalEntry] = Field(description="estimators on the same runs, the fit first; empty: not compared")
     findings: list[FindingEntry]
     elapsed_s: float
@@ -102,6 +104,7 @@ def fit_json(fit: Fit) -> dict[str, Any]:
         noise=NoiseEntry.model_validate(disturbance) if disturbance else None,
         family=[FamilyEntry.model_validate(member) for member in fit.family],
         seakeeping=SeakeepingEntry.model_validate(fit.seakeeping) if fit.seakeeping else None,
+        rolling=RollingEntry.model_validate(fit.rolling) if fit.rolling else None,
         rivals=[RivalEntry.model_validate(rival) for rival in fit.rivals],
         findings=[finding_entry(f) for f in fit.findings],
         elapsed_s=fit.elapsed_s,

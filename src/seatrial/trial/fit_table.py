@@ -21,6 +21,7 @@ from seatrial.results import (
     Prediction,
     Residuals,
     Rival,
+    Rolling,
     Seakeeping,
     Solution,
     Status,
@@ -82,6 +83,7 @@ def detail_table(fit: Fit, records: list[Record], place: Mapping[int, int]) -> d
         "disturbance": _nested(fit.disturbance),
         "family": _nested(fit.family),
         "seakeeping": _nested(fit.seakeeping),
+        "rolling": _nested(fit.rolling),
         "rivals": _nested(fit.rivals),
     }
 
@@ -179,6 +181,7 @@ def fit_from(table: Mapping[str, Any], file: ModelFile, arrays: Mapping[str, Arr
         disturbance=_restored(Disturbance | None, detail.get("disturbance")),
         family=_restored(tuple[Member, ...], detail.get("family", [])),
         seakeeping=_restored(Seakeeping | None, detail.get("seakeeping")),
+        rolling=_restored(Rolling | None, detail.get("rolling")),
         rivals=_restored(tuple[Rival, ...], detail.get("rivals", [])),
     )
 

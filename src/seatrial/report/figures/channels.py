@@ -31,6 +31,7 @@ ORDER = ("psi", "r", "u", "v", "phi", "p", "thrust", "torque", "delta", "n", "v_
 POSITIONS = ("x0", "y0")
 MOST_COLUMNS, MOST_ROWS, MOST_PANELS = 8, 16, 9
 UNLIKE = 0.25
+_FINE = 1600
 
 
 def in_order(names: Sequence[str]) -> list[str]:
@@ -103,6 +104,8 @@ def comparison(prediction: Prediction, length: float, inputs: Sequence[str]) -> 
     measured, simulated = prediction.measured, prediction.simulated
     names = [s for s in in_order(list(measured.channels)) if s in inputs or s in simulated]
     names = [s for s in names if not is_constant(measured, s)][:MOST_PANELS]
+    if len(names) == 1 and names[0] not in inputs and not has_track(measured):
+        return _alone(prediction, names[0])
     entries = [("measured", MEASURED), ("simulated, open loop", SIMULATED)]
     if bands.has_band(prediction):
         entries.append(("95 % band", bands.SAMPLE))
@@ -123,6 +126,27 @@ def comparison(prediction: Prediction, length: float, inputs: Sequence[str]) -> 
         parts.append(_pair(box, prediction, name, is_input=name in inputs, last=k >= len(names) - columns))
     total = max(top + tall, top + rows * (height + 26) + 22)
     return drawing(parts, total, f"{prediction.record}: measured and simulated")
+
+
+def _alone(prediction: Prediction, name: str) -> str:
+    """The only channel over the whole width, with what is left of it below."""
+    measured, simulated = prediction.measured, prediction.simulated
+    unit = measured.channel(name).unit
+    values, other = shown(name, measured[name], unit), shown(name, simulated[name], unit)
+    time, left = measured.time, _near(other, values, name) - values
+    reach = (float(time[0]), float(time[-1]))
+    above = Panel(56, 30, WIDTH - 66, 190, reach, span([values, other]))
+    below = Panel(56, 246, WIDTH - 66, 70, reach, span([left]))
+    unit_shown = label("", unit).strip()
+    parts = [
+        legend([("measured", MEASURED), ("simulated, open loop", SIMULATED)], WIDTH - 8, 14),
+        axes(above, x_ticks=8, x_labels=False, y_label=label(name, unit)),
+        axes(below, x_ticks=8, y_ticks=3, y_label=f"error {unit_shown}", x_label="t [s]"),
+        above.curve(*decimated(time, values, _FINE), MEASURED),
+        above.curve(*decimated(time, _near(other, values, name), _FINE), SIMULATED),
+        below.curve(*decimated(time, left, _FINE), PLAIN),
+    ]
+    return drawing(parts, 358, f"{prediction.record}: measured and simulated")
 
 
 def _pair(

@@ -1,0 +1,45 @@
+"""What an identified roll model says in the field's terms: period, damping, metacentric height, each with its range."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Estimated:
+    """A derived value with its 95 % interval, SI."""
+
+    value: float
+    lower: float
+    upper: float
+
+    def times(self, factor: float) -> "Estimated":
+        """In another unit, or at another scale."""
+        return Estimated(factor * self.value, factor * self.lower, factor * self.upper)
+
+
+@dataclass(frozen=True)
+class Rolling:
+    """Roll as it follows from the coefficients, at rest and over the amplitude of a swing.
+
+    Attributes:
+        natural_period: s, at small angles; damping_ratio: b_1 over the critical 2 sqrt(c_1).
+        gyradius: m, in roll with the added inertia in it, as it was assumed; assumed: in words.
+        metacentric_height: m; its range is the coefficients' interval and the whole range of the gyradius.
+        amplitude: rad, up to the largest recorded.
+        damping: equivalent linear damping b_e, 1/s, over amplitude, with its band; period: s, likewise.
+        swings: amplitude [rad], logarithmic damping [1/s] and period [s] of each recorded swing, without any model;
+            empty where something drove her.
+    """
+
+    natural_period: Estimated
+    damping_ratio: Estimated
+    gyradius: Estimated | None
+    assumed: str
+    metacentric_height: Estimated | None
+    amplitude: tuple[float, ...]
+    damping: tuple[float, ...]
+    damping_lower: tuple[float, ...]
+    damping_upper: tuple[float, ...]
+    period: tuple[float, ...]
+    period_lower: tuple[float, ...]
+    period_upper: tuple[float, ...]
+    swings: tuple[tuple[float, float, float], ...] = ()
