@@ -1,12 +1,14 @@
 """What a sea does to a ship without control: energy of the output over the frequencies at which waves are met.
 
 Integrals run over the wave frequency with responses taken at |omega_e(omega)|: the Jacobian d omega / d omega_e, which
-is singular in following seas, never appears.
+is singular in following seas, never appears. Without a hull that averages them, waves beyond twelve times the peak's
+frequency are left out; their slopes would add up without end.
 """
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.special import bernoulli
@@ -24,7 +26,7 @@ _ACCURACY = 1e-10
 _FAINT = 36.0
 # rad/s: a wave that keeps up with the ship
 _SLOWEST = 1e-9
-# a spectrum may be cut where it is not faint yet: trapezoids that are of order 8 there (Euler-Maclaurin by differences)
+# a spectrum may be cut where it is not faint: there trapezoids are of order 8 (Gregory)
 _ENDS = 1.0 + np.linalg.solve(np.vander(np.arange(8.0), increasing=True).T, bernoulli(8)[1:] / np.arange(1.0, 9.0))
 
 
@@ -84,7 +86,8 @@ def exposure(
 
     Args:
         U: m/s; beta: rad, 0 following, pi / 2 beam, pi head.
-        response: from the slope to the motion; nodes are doubled until its variances of angle and rate stand still.
+        response: from the slope to the motion; nodes are doubled until its variances of angle and rate stand still. A
+            loop much nearer to instability than it, or slower, is resolved by its own `TransferLoop.controlled`.
         spreading: exponent s of a short-crested sea, cos^2s over +- 90 deg; None: long-crested.
 
     Raises:
@@ -110,7 +113,7 @@ def exposure(
 
 def over_nodes(density: Callable[[Array], Array], lower: float, upper: float, response: Block, said: str) -> Exposure:
     """Exposure to a disturbance of one-sided `density` [unit^2 s/rad] over the frequency of encounter itself."""
-    return Exposure(*_settled(density, lambda w: w, lower, upper, response), said)
+    return Exposure(*_settled(density, lambda w: w, (lower, upper), response), said)
 
 
 def _spread(beta: float, exponent: float) -> tuple[Array, Array]:
@@ -139,21 +142,37 @@ def _of_one(
     upper = 12.0 * spectrum.modal_frequency
     if hull is not None:
         upper = min(upper, math.sqrt(0.5 * _FAINT * G / hull.T))
-    return _settled(density, met, lower, max(upper, 2.0 * spectrum.modal_frequency), response)
+    peak = spectrum.modal_frequency
+    # a raised peak is sharp and has a kink
+    inner = () if spectrum.gamma == 1.0 else (0.65 * peak, peak, 1.45 * peak)
+    return _settled(density, met, (lower, *inner, max(upper, 2.0 * peak)), response)
 
 
 def _settled(
-    density: Callable[[Array], Array], met: Callable[[Array], Array], lower: float, upper: float, response: Block
+    density: Callable[[Array], Array], met: Callable[[Array], Array], edges: tuple[float, ...], response: Block
 ) -> tuple[Array, Array]:
     """Trapezoids over log(omega), doubled until the response's variances of angle and rate stand still."""
     before, count = np.full(2, np.inf), _FEWEST
     while True:
-        u, step = np.linspace(math.log(lower), math.log(upper), count, retstep=True)
-        omega = np.exp(u)
-        omega_e, energy = np.maximum(met(omega), _SLOWEST), density(omega) * omega * step
-        energy[: -len(_ENDS) - 1 : -1] *= _ENDS
+        omega, width = _nodes(edges, count)
+        omega_e, energy = np.maximum(met(omega), _SLOWEST), density(omega) * width
         size = np.abs(response.at(omega_e)) ** 2 * energy
         now = np.array([size.sum(), (omega_e**2 * size).sum()])
         if np.all(np.abs(now - before) <= _ACCURACY * now) or count > _MOST:
             return omega_e, energy
         before, count = now, 2 * count
+
+
+def _nodes(edges: tuple[float, ...], count: int) -> tuple[Array, Array]:
+    """`count` nodes, between all edges as many, even in log(omega), and what each stands for, both rad/s."""
+    omega: list[Array] = []
+    width: list[Array] = []
+    own = count // (len(edges) - 1)
+    for low, high in pairwise(np.log(edges)):
+        u, step = np.linspace(low, high, own, retstep=True)
+        weights = np.ones(own)
+        weights[: len(_ENDS)] *= _ENDS
+        weights[: -len(_ENDS) - 1 : -1] *= _ENDS
+        omega.append(np.exp(u))
+        width.append(omega[-1] * weights * step)
+    return np.concatenate(omega), np.concatenate(width)
