@@ -143,3 +143,55 @@ def loop_model(loop: TransferLoop) -> Model:
     sheet.output(loop.output, along(np.vstack([made.c, np.zeros((len(gains), len(x)))])), "plant", "rad")
     sheet.output(loop.actuator, along(made.a), "servo", "rad")
     return sheet.model()
+
+
+def plant_model(loop: TransferLoop) -> Model:
+    """Plant and disturbance of a loop as a model of the house, its output being a state.
+
+    Inputs are the actuator and the disturbance (``disturbance`` where the loop has no symbol of its own for it).
+    Observable form over the common denominator; coefficients are fixed parameters, so that plants of one order share
+    their machine code.
+
+    Raises:
+        InputError: plant or disturbance answers at once.
+    """
+    den, pushed, met = _common(loop.plant, loop.disturbance)
+    n = len(den) - 1
+    if max(len(pushed), len(met)) > n:
+        raise InputError(f"the plant of loop '{loop.name}' answers at once; give the lag that every real one has")
+    sheet = Sheet(f"linear_plant_{n}", "assembled from the loop's blocks", "a plant known by its transfer functions")
+    x = sheet.states(" ".join([loop.output, *(f"x_{i}" for i in range(1, n))]))
+    own = loop.disturbed_by not in ("", loop.actuator)
+    u, w = sheet.input(loop.actuator), sheet.input(loop.disturbed_by if own else "disturbance")
+    sides = (("a", den[1:], "denominator"), ("b", pushed, loop.plant.name), ("d", met, loop.disturbance.name))
+    rows = []
+    for letter, values, meaning in sides:
+        full = np.concatenate([np.zeros(n - len(values)), values])
+        rows.append([sheet.parameter(f"{letter}_{i}", float(v), "", meaning) for i, v in enumerate(full)])
+    for i, (state, a, b, d) in enumerate(zip(x, *rows, strict=True)):
+        sheet.rate(state, (x[i + 1] if i + 1 < n else 0) - a * x[0] + b * u + d * w, "observable form")
+    return sheet.model()
+
+
+def _common(plant: Block, disturbance: Block) -> tuple[Array, Array, Array]:
+    """Common denominator, leading 1, and both numerators over it; the larger where one denominator holds the other."""
+    p, d = np.array(plant.den), np.array(disturbance.den)
+    over_p, over_d = _quotient(p, d), _quotient(d, p)
+    if over_p is not None:
+        den, left, right = p, np.ones(1), over_p
+    elif over_d is not None:
+        den, left, right = d, over_d, np.ones(1)
+    else:
+        den, left, right = np.polymul(p, d), d, p
+    top = den[0]
+    return den / top, np.polymul(plant.num, left) / top, np.polymul(disturbance.num, right) / top
+
+
+def _quotient(whole: Array, part: Array) -> Array | None:
+    """whole / part where it leaves no rest."""
+    if len(part) > len(whole):
+        return None
+    quotient, rest = np.polydiv(whole, part)
+    if np.any(np.abs(rest) > 1e-12 * np.abs(whole).max()):
+        return None
+    return np.atleast_1d(np.asarray(quotient, dtype=np.float64))
