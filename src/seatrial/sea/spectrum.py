@@ -49,6 +49,15 @@ class Spectrum:
         """T1 = 2 pi m0 / m1, s."""
         return 2.0 * math.pi * self.moment(0) / self.moment(1)
 
+    def of_height(self, height: float) -> "Spectrum":
+        """The sea of that significant height [m] and the same steepness and shape: periods go with its root.
+
+        Raises:
+            InputError: the height is not positive.
+        """
+        ratio = _positive("significant height", height, "m") / self.significant_height
+        return replace(self, B=self.B / ratio**2)
+
     def density(self, omega: ArrayLike) -> Array:
         """S [m^2 s/rad] at `omega` [rad/s], any shape; zero where omega is not positive."""
         x = np.asarray(omega, dtype=np.float64) / self.modal_frequency

@@ -1,0 +1,36 @@
+"""The published fin loop in its own sea, as tasks for tests."""
+
+import math
+
+import numpy as np
+
+from seatrial.loops import HullFactor, Objective, Seen
+from seatrial.loops.fin import PUBLISHED_GAINS, Preamplifier, fin_loop
+from seatrial.loops.objective import off_target, variance
+from seatrial.results.tuning import Restriction
+from seatrial.sea.spectrum import ittc
+from seatrial.tune.task import Seaway, Task
+
+KNOT = 0.514444
+HULL = HullFactor(100.0, 10.5, 3.4)
+VARIANCES = (
+    variance("roll", "rad^2", Seen.OUTPUT),
+    variance("fin", "rad^2", Seen.ACTUATOR),
+    variance("fin rate", "rad^2/s^2", Seen.ACTUATOR, 1),
+)
+TARGET = off_target("fin", Seen.ACTUATOR, math.radians(1.0) ** 2 * 150.31, one_sided=False)
+PAPERS = (VARIANCES[0], TARGET, VARIANCES[2])
+PUBLISHED = np.array(list(PUBLISHED_GAINS.values()))
+LIMITS = Restriction(2.0, 0.2, 0.2, math.radians(22.0), math.radians(25.0), math.radians(18.0))
+
+
+def fin_task(
+    preamplifier: Preamplifier = Preamplifier.WASHOUT,
+    objectives: tuple[Objective, ...] = VARIANCES,
+    restriction: Restriction = LIMITS,
+    beta: float = math.pi / 2,
+) -> Task:
+    """18 kn, ITTC spectrum of 3.3 m, beam sea."""
+    U = 18.0 * KNOT
+    met = (Seaway(ittc(3.3), U, beta, HULL),)
+    return Task("which gains?", "fins", "published", fin_loop(preamplifier), met, objectives, restriction, U)
