@@ -73,12 +73,15 @@ def _print_prediction(p: "Prediction") -> None:
 
 
 def _print_family(fit: "Fit") -> None:
+    rolls = any(m.roll_deg is not None for m in fit.family)
     if fit.family:
-        print(f"{'family, runs left out':28s} {'free':>5s} {'heading deg':>12s} {'position m':>11s}")
+        heads = f"{'roll deg':>24s}" if rolls else f"{'heading deg':>12s} {'position m':>11s}"
+        print(f"{'family, runs left out':42s} {'free':>5s} {heads}")
     for m in fit.family:
-        scores = "  ".join("-" if x is None else f"{x:.3g}" for x in (m.heading_deg, m.position_m))
+        shown = (m.roll_deg,) if rolls else (m.heading_deg, m.position_m)
+        scores = "  ".join("-" if x is None else f"{x:.3g}" for x in shown)
         marks = ", ".join(word for word, holds in (("used", m.chosen), ("tied", m.tied), (m.note, m.note)) if holds)
-        print(f"{m.name:28s} {m.free:5d} {scores:>24s}  {marks}".rstrip())
+        print(f"{m.name:42s} {m.free:5d} {scores:>24s}  {marks}".rstrip())
 
 
 def _print_rivals(fit: "Fit") -> None:

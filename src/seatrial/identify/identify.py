@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.estimate.agreement import agreement
-from seatrial.estimate.fit import Identified, identified, unit_of_time
+from seatrial.estimate.fit import Identified, identified, swings, unit_of_time
 from seatrial.estimate.settings import START_SECONDS_LENGTHS, WINDOW_SHIP_LENGTHS, Criterion, Intervals, Settings
 from seatrial.estimate.singular import refuse_singular
 from seatrial.estimate.unmeasured import refuse_unmeasured_waves
@@ -20,6 +20,7 @@ from seatrial.identify.profile import profiles
 from seatrial.identify.rolling import rolling
 from seatrial.identify.seakeeping import seakeeping
 from seatrial.identify.spectral import spectral_fit
+from seatrial.identify.swinging import chosen_by_runs
 from seatrial.information.frequency_range import frequency_range, represented
 from seatrial.information.symmetries import refuse_structural, structural
 from seatrial.predict.forecast import forecast
@@ -104,13 +105,18 @@ def identify(
     untold = outcome.untold(found)
     unit = unit_of_time(trial.model, runs, length, trial.estimate.segment_s)
     others = Considered(found, (), ())
-    if choose or intervals is Intervals.JACKKNIFE:
+    seconds = trial.estimate.initial_s or START_SECONDS_LENGTHS * unit
+    if choose and swings(trial.model):
+        kept_out = [r.record for r in _by_role(records, Role.VALIDATE)]
+        others = chosen_by_runs(
+            found, trial.model, runs, sessions, kept_out, length, seconds, settings, trial.family, progress
+        )
+    elif choose or intervals is Intervals.JACKKNIFE:
         others = considered(
             found, trial.model, runs, sessions, length, FAMILY_WINDOW * unit, settings, trial.family,
             choose=choose, progress=progress,
         )  # fmt: skip
     found, tied = others.found, others.tied
-    seconds = trial.estimate.initial_s or START_SECONDS_LENGTHS * unit
     try:
         told = forecast(found, records, seconds, length, seed, progress, tied)
     except DivergedError as error:

@@ -22,5 +22,16 @@ STRUCTURES: Mapping[str, Mapping[str, tuple[str, ...]]] = MappingProxyType(
         "waterjet": {"inertia": ("m_x", "m_y", "J_z")},
     }
 )
+LEFT_OUT: Mapping[str, Mapping[str, tuple[str, ...]]] = MappingProxyType(
+    {
+        "roll": {
+            f"{damping} damping, {restoring} restoring": (*without, *neither)
+            for damping, without in (("linear", ("b_2", "b_3")), ("quadratic", ("b_3",)), ("cubic", ()))
+            for restoring, neither in (("linear", ("c_3", "c_5")), ("cubic", ("c_5",)), ("fifth-order", ()))
+        }
+    }
+)
+"""Families that count the other way: which parameters a structure leaves out, at zero."""
+
 PRIOR_FACTORS = (0.5, 3.0)
 SEGMENT_FACTORS = (0.7, 1.5)

@@ -80,6 +80,7 @@ class FamilyRow:
     free: int
     heading: str
     position: str
+    roll: str
     standing: str
     note: str
     is_chosen: bool
@@ -111,6 +112,7 @@ class Telling:
     unbounded: str
     family: tuple[FamilyRow, ...]
     has_notes: bool
+    rolls: bool
 
 
 def telling(fit: Fit) -> Telling | None:
@@ -146,6 +148,7 @@ def telling(fit: Fit) -> Telling | None:
         unbounded=_unbounded(has),
         family=tuple(_member(m) for m in fit.family),
         has_notes=any(m.note for m in fit.family),
+        rolls=any(m.roll_deg is not None for m in fit.family),
     )
 
 
@@ -263,8 +266,8 @@ def _unbounded(known: Identifiability) -> str:
 
 
 def _member(m: Member) -> FamilyRow:
-    failed = m.heading_deg is None and m.position_m is None
+    failed = m.heading_deg is None and m.position_m is None and m.roll_deg is None
     standing = "failed" if failed else "tied" if m.tied else "worse"
     standing = f"used, {standing}" if m.chosen else standing
-    return FamilyRow(m.name, m.free, significant(m.heading_deg, 3), significant(m.position_m, 3), standing, m.note,
-                     m.chosen)  # fmt: skip
+    return FamilyRow(m.name, m.free, significant(m.heading_deg, 3), significant(m.position_m, 3),
+                     significant(m.roll_deg, 3), standing, m.note, m.chosen)  # fmt: skip

@@ -135,7 +135,9 @@ class Member:
 
     Attributes:
         name: structure, prior and segment length in words; free: number of free coefficients.
-        heading_deg, position_m: mean rms over windows of the runs left out; None where the fit failed.
+        heading_deg, position_m: mean rms over windows of the runs left out; None where the fit failed or the ship has
+            none.
+        roll_deg: mean rms over whole runs left out, of a ship that swings about a rest.
         tied: not told from the best one by its runs.
         note: why it failed.
     """
@@ -147,6 +149,7 @@ class Member:
     tied: bool
     chosen: bool = False
     note: str = ""
+    roll_deg: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

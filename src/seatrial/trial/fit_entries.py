@@ -205,6 +205,7 @@ class FamilyEntry(Entry):
     free: int
     heading_deg: Number = Field(description="rms, null where the fit failed")
     position_m: Number
+    roll_deg: Number = Field(description="rms over whole runs, of a ship that swings about a rest; else null")
     tied: bool = Field(description="not told from the best one by its runs")
     chosen: bool
     note: str
