@@ -1,0 +1,153 @@
+"""A loop file into a `Task`: plant, controller, what disturbs it, what is to be small and what must be kept."""
+
+import math
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from seatrial.equations import Model
+from seatrial.loops import TransferLoop
+from seatrial.results.tuning import Restriction
+from seatrial.trial.complaints import complaint
+from seatrial.tune.aims import objective
+from seatrial.tune.amounts import amount, angle, positive, rate_unit, unit_of
+from seatrial.tune.diagram import loop_asked
+from seatrial.tune.plant import Plant, hull_of, plant_asked
+from seatrial.tune.schema import DemandTable, LoopFile, SimulationTable
+from seatrial.tune.structure import richer
+from seatrial.tune.task import Demand, Task, Trials, refuse_unstable
+from seatrial.tune.weather import met_by, plan_of, refuse_calm
+from seatrial.values import InputError, nearest
+
+_CHANGES = 30.0
+
+
+def parse_loop(path: Path) -> LoopFile:
+    """The file's tables, checked key by key.
+
+    Raises:
+        InputError: no such file, no TOML, an unknown or missing key, a value of the wrong kind.
+    """
+    try:
+        table = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"loop file '{path}' cannot be read ({error.strerror}); check the path") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"loop file '{path}' is no valid TOML: {error}") from None
+    try:
+        return LoopFile.model_validate(table)
+    except ValidationError as error:
+        raise complaint(error, LoopFile, str(path)) from None
+
+
+def task_of(path: Path, own_model: Model | None = None, model_file: Path | None = None) -> Task:
+    """The tuning that a loop file asks for.
+
+    Args:
+        own_model: equations of a model file that are not built in.
+        model_file: takes the place of the one that `[plant] model` names.
+
+    Raises:
+        InputError: one sentence naming file and key.
+    """
+    file = parse_loop(path)
+    try:
+        return _task(file, plant_asked(file.plant, path.resolve().parent, own_model, model_file))
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def _task(file: LoopFile, plant: Plant) -> Task:
+    loop = loop_asked(file.controller, file.actuator.servo, plant, file.name or f"{plant.actuator} on {plant.output}")
+    demand = None if file.demand is None else _demand(file.demand, plant)
+    if demand is None:
+        refuse_unstable(loop)
+    restriction = _restriction(file, plant)
+    met = met_by(file, plant, hull_of(file.hull, plant.ship))
+    plan = None if file.schedule is None else plan_of(file.schedule)
+    refuse_calm(met, loop, plan)
+    return Task(
+        question=file.question,
+        name=loop.name,
+        plant=plant.said,
+        loop=loop,
+        met=met,
+        objectives=tuple(
+            objective(aim, plant, restriction, f"minimise[{i}]") for i, aim in enumerate(file.minimise, 1)
+        ),
+        restriction=restriction,
+        U=plant.U,
+        effectiveness=plant.effectiveness,
+        rivals=_rivals(file.given, loop),
+        richer=tuple(richer(loop, table, f"richer[{i}]") for i, table in enumerate(file.richer, start=1)),
+        plan=plan,
+        trials=_trials(file.simulation, demand),
+        vessel=plant.vessel,
+        demand=demand,
+    )
+
+
+def _restriction(file: LoopFile, plant: Plant) -> Restriction:
+    """Limits in SI; angles of half a turn were meant as degrees."""
+    table, unit = file.actuator, unit_of(plant.actuator)
+
+    def largest(key: str) -> float:
+        given = getattr(table, key)
+        if given is None:
+            return math.inf
+        where = f"actuator.{key}"
+        return angle(given, where) if unit == "rad" else positive(given, unit, where)
+
+    return Restriction(
+        peak=file.limits.peak,
+        saturation=file.limits.saturation,
+        rate_saturation=file.limits.rate_saturation,
+        limit=largest("limit"),
+        rate=math.inf if table.rate is None else positive(table.rate, rate_unit(unit), "actuator.rate"),
+        stall=largest("stall"),
+    )
+
+
+def _rivals(given: Mapping[str, Mapping[str, float]], loop: TransferLoop) -> dict[str, Mapping[str, float]]:
+    names = loop.gains.names
+    for rival, gains in given.items():
+        for name in gains:
+            if name not in names:
+                raise InputError(f"given.{rival}: the controller has no gain '{name}'{nearest(name, [*names])}")
+        for name in names:
+            if name not in gains:
+                raise InputError(f"given.{rival}: gain {name} is missing; add it")
+    return dict(given)
+
+
+def _trials(table: SimulationTable | None, demand: Demand | None) -> Trials | None:
+    """The house's own for a stabiliser; none where a demand is followed or no seeds are wanted."""
+    if table is None:
+        return Trials() if demand is None else None
+    if not table.seeds:
+        return None
+    duration = positive(table.duration, "s", "simulation.duration")
+    step = positive(table.step, "s", "simulation.step")
+    if step * 100.0 > duration:
+        raise InputError(f"simulation: steps of {step:g} s are no simulation of {duration:g} s; make them shorter")
+    return Trials(table.seeds, duration, step)
+
+
+def _demand(table: DemandTable, plant: Plant) -> Demand:
+    """Without a time constant the ship's length over her speed; without a duration thirty time constants."""
+    unit = unit_of(plant.output)
+    change = (
+        angle(table.change, "demand.change", 20.0) if unit == "rad" else amount(table.change, unit, "demand.change")
+    )
+    if not change:
+        raise InputError("demand.change = 0 asks for nothing; give a change")
+    if table.time_constant is not None:
+        T = positive(table.time_constant, "s", "demand.time_constant")
+    elif plant.ship is not None and "L" in plant.ship.particulars:
+        T = plant.ship.length / plant.U
+    else:
+        raise InputError("key 'demand.time_constant' is missing, and the ship's length is not known; add it in s")
+    duration = _CHANGES * T if table.duration is None else positive(table.duration, "s", "demand.duration")
+    return Demand(change, table.overshoot, T, duration)
