@@ -1,4 +1,4 @@
-"""The commands as functions of values: check, identify, design, simulate, report, demo, reproduce.
+"""The commands as functions of values: check, identify, design, tune, simulate, report, demo, reproduce.
 
 import seatrial.verbs as sea
 
@@ -16,8 +16,10 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from seatrial.equations import Model
     from seatrial.results import Design, Extrapolation, Fit, Study
+    from seatrial.results.tuning import Tuning
     from seatrial.trial import Trial
     from seatrial.trial.model_file import ModelFile
+    from seatrial.tune.task import Task
     from seatrial.values import Finding, Record
 
 Progress = Callable[[str], None]
@@ -172,6 +174,61 @@ def save_design(design: "Design", folder: str | Path) -> Path:
         "report.html": html(design),
     }
     return write_together(Path(folder), {name: text.encode() for name, text in texts.items()}) / "report.html"
+
+
+def load_loop(path: str | Path, own_model: "Model | None" = None, model_file: str | Path | None = None) -> "Task":
+    """The tuning that a loop file asks for (see docs/loop-file.md).
+
+    Args:
+        own_model: equations of a model file that are not built in.
+        model_file: takes the place of the one that the loop file names.
+
+    Raises:
+        InputError: one sentence naming file, key and what to do.
+    """
+    from seatrial.tune.asked import task_of
+
+    return task_of(Path(path), own_model, None if model_file is None else Path(model_file))
+
+
+def tune(task: "Task | str | Path", seed: int = 0, progress: Progress | None = None) -> "Tuning":
+    """Gains of a feedback loop: the front, the choice and its reasons, what nonlinear simulation says of it.
+
+    Args:
+        task: as `load_loop` gives it, or the path of a loop file.
+        seed: of the search, of the seas simulated, and of the ships drawn from the fit.
+
+    Raises:
+        InputError: as `load_loop`; no gains keep the limits (which limit, by how much).
+    """
+    from seatrial.tune.task import Task
+    from seatrial.tune.tune import tune
+
+    asked = task if isinstance(task, Task) else load_loop(task)
+    return tune(asked, seed=seed, progress=progress or (lambda _: None))
+
+
+def save_tuning(tuning: "Tuning", folder: str | Path) -> Path:
+    """Write report, gains, loop, schedule and ``tuning.json`` of a tuning to `folder`; returns the report's path.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    from seatrial.report.tuning import html
+    from seatrial.trial.fit_json import strict_json
+    from seatrial.trial.tuning_files import gains_text, loop_mat, schedule_text
+    from seatrial.trial.tuning_json import tuning_json
+    from seatrial.values.files import write_together
+
+    contents = {
+        "gains.toml": gains_text(tuning).encode(),
+        "loop.mat": loop_mat(tuning),
+        "tuning.json": strict_json(tuning_json(tuning)).encode(),
+        "report.html": html(tuning).encode(),
+    }
+    if tuning.schedule:
+        contents["schedule.csv"] = schedule_text(tuning).encode()
+    return write_together(Path(folder), contents) / "report.html"
 
 
 Steering = Callable[["Model"], "Record"]

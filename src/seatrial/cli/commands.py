@@ -16,10 +16,12 @@ from seatrial.cli.output import (
     progress,
     write_json,
 )
+from seatrial.cli.tuned import print_tuning
 
 if TYPE_CHECKING:
     from seatrial.equations import Model
     from seatrial.results import Design, Fit
+    from seatrial.results.tuning import Tuning
 
 app = typer.Typer(
     name="seatrial",
@@ -161,6 +163,42 @@ def design(
     write_json(json, lambda: _design_json(found))
     print(f"orders: {out / 'orders.csv'}")
     print(f"report: {page}")
+
+
+@app.command()
+def tune(
+    loop: Annotated[Path, typer.Argument(metavar="LOOP.toml", help="Loop file.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Where report, gains, loop and tuning.json go.")
+    ] = None,
+    known: Annotated[
+        Path | None, typer.Option("--from", metavar="MODEL.toml", help="The ship: takes the place of plant.model.")
+    ] = None,
+    model: OwnModel = None,
+    json: Json = None,
+    seed: Seed = 0,
+) -> None:
+    """Tune a fin stabiliser, an autopilot or a speed control: gains with their margins, front, schedule, simulation.
+
+    Example: seatrial tune examples/fin_stabiliser.toml --out results/fins
+
+    On a ship just identified: --from results/waterjet/model.toml
+    """
+    from seatrial import verbs
+    from seatrial.values.files import writable_folder
+
+    if out is not None:
+        writable_folder(out)
+    with progress() as tell:
+        found = verbs.tune(verbs.load_loop(loop, _own(model), known), seed=seed, progress=tell)
+        if out is not None:
+            tell("report")
+            verbs.save_tuning(found, out)
+    print_tuning(found)
+    write_json(json, lambda: _tuning_json(found))
+    if out is not None:
+        print(f"gains: {out / 'gains.toml'}")
+        print(f"report: {out / 'report.html'}")
 
 
 @app.command()
@@ -340,3 +378,9 @@ def _design_json(found: "Design") -> dict[str, Any]:
     from seatrial.trial.design_json import design_json
 
     return design_json(found)
+
+
+def _tuning_json(found: "Tuning") -> dict[str, Any]:
+    from seatrial.trial.tuning_json import tuning_json
+
+    return tuning_json(found)
