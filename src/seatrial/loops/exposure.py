@@ -8,26 +8,23 @@ frequency are left out; their slopes would add up without end.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
-from scipy.special import bernoulli
 
 from seatrial.hydro.dispersion import G
 from seatrial.hydro.excitation import encounter_frequency
+from seatrial.loops import quadrature
 from seatrial.loops.block import Block
 from seatrial.sea.encounter import speed_factor
 from seatrial.sea.spectrum import Spectrum
 from seatrial.values import Array, InputError
 
-_DIRECTIONS = 16
+_DIRECTIONS = 513
 _FEWEST, _MOST = 48, 12288
-_ACCURACY = 1e-10
+_ACCURACY, _ACCURACY_OF_DIRECTIONS = 1e-10, 1e-6
 _FAINT = 36.0
 # rad/s: a wave that keeps up with the ship
 _SLOWEST = 1e-9
-# a spectrum may be cut where it is not faint: there trapezoids are of order 8 (Gregory)
-_ENDS = 1.0 + np.linalg.solve(np.vander(np.arange(8.0), increasing=True).T, bernoulli(8)[1:] / np.arange(1.0, 9.0))
 
 
 @dataclass(frozen=True)
@@ -93,16 +90,12 @@ def exposure(
     Raises:
         InputError: speed, heading or spreading out of sense, or a sea without any slope across the ship.
     """
+    said = f"{spectrum.name}, {math.degrees(beta):.0f} deg"
     if spreading is None:
-        directions, shares = np.array([beta]), np.ones(1)
-        said = f"{spectrum.name}, {math.degrees(beta):.0f} deg"
+        made = Exposure(*_of_one(spectrum, U, beta, response, hull), said)
     else:
-        directions, shares = _spread(beta, spreading)
-        said = f"{spectrum.name}, {math.degrees(beta):.0f} deg, short-crested"
-    parts = [
-        _of_one(spectrum, U, angle, response, hull, share) for angle, share in zip(directions, shares, strict=True)
-    ]
-    made = Exposure(np.concatenate([w for w, _ in parts]), np.concatenate([e for _, e in parts]), said)
+        met = _Directions(spectrum, U, beta, response, hull, spreading)
+        made = Exposure(*met.gathered(), f"{said}, short-crested")
     if not made.variance > 1e-12 * spectrum.moment(0):
         raise InputError(
             f"the sea has no wave slope across the ship at a heading of {math.degrees(beta):.0f} deg; "
@@ -116,24 +109,52 @@ def over_nodes(density: Callable[[Array], Array], lower: float, upper: float, re
     return Exposure(*_settled(density, lambda w: w, (lower, upper), response), said)
 
 
-def _spread(beta: float, exponent: float) -> tuple[Array, Array]:
-    """Headings folded into 0 to pi and their shares: Gauss-Legendre over cos^2s."""
-    if not exponent > 0.0:
-        raise InputError(f"the spreading exponent s of a short-crested sea must be positive, not {exponent:g}")
-    nodes, weights = np.polynomial.legendre.leggauss(_DIRECTIONS)
-    shares = weights * np.cos(0.5 * math.pi * nodes) ** (2.0 * exponent)
-    return np.arccos(np.cos(beta + 0.5 * math.pi * nodes)), shares / shares.sum()
+class _Directions:
+    """A short-crested sea: trapezoids over its directions, doubled until variances of angle and rate stand still."""
+
+    def __init__(
+        self, spectrum: Spectrum, U: float, beta: float, response: Block, hull: HullFactor | None, exponent: float
+    ) -> None:
+        if not exponent > 0.0:
+            raise InputError(f"the spreading exponent s of a short-crested sea must be positive, not {exponent:g}")
+        speed_factor(U, beta)
+        self._parts: dict[int, tuple[Array, Array]] = {}
+        self._one = lambda away: _of_one(spectrum, U, math.acos(math.cos(beta + away)), response, hull)
+        self._response, self._exponent = response, exponent
+        # cos^2s is below 1e-13 beyond
+        self._reach = math.acos(10.0 ** (-6.5 / exponent))
+
+    def gathered(self) -> tuple[Array, Array]:
+        """|frequencies of encounter| and energies."""
+        before, stride = np.full(2, np.inf), 8
+        while True:
+            omega_e, energy = self._at(stride)
+            now = _variances(omega_e, energy, self._response)
+            if np.all(np.abs(now - before) <= _ACCURACY_OF_DIRECTIONS * now) or stride == 1:
+                return quadrature.gathered(omega_e, energy)
+            before, stride = now, stride // 2
+
+    def _at(self, stride: int) -> tuple[Array, Array]:
+        """From every `stride`-th of the finest directions."""
+        places = range(0, _DIRECTIONS, stride)
+        away = np.linspace(-self._reach, self._reach, _DIRECTIONS)[::stride]
+        shares = quadrature.weights(len(places)) * np.cos(away) ** (2.0 * self._exponent)
+        shares /= shares.sum()
+        for place, angle in zip(places, away, strict=True):
+            if place not in self._parts:
+                self._parts[place] = self._one(float(angle))
+        parts = [self._parts[place] for place in places]
+        energy = [share * energy for share, (_, energy) in zip(shares, parts, strict=True)]
+        return np.concatenate([omega_e for omega_e, _ in parts]), np.concatenate(energy)
 
 
-def _of_one(
-    spectrum: Spectrum, U: float, beta: float, response: Block, hull: HullFactor | None, share: float
-) -> tuple[Array, Array]:
+def _of_one(spectrum: Spectrum, U: float, beta: float, response: Block, hull: HullFactor | None) -> tuple[Array, Array]:
     speed_factor(U, beta)
     across = math.sin(beta) ** 2 if abs(math.sin(beta)) > 1e-9 else 0.0
 
     def density(omega: Array) -> Array:
         factor = 1.0 if hull is None else hull.at(omega, beta) ** 2
-        return share * across * (omega**2 / G) ** 2 * factor * spectrum.density(omega)
+        return across * (omega**2 / G) ** 2 * factor * spectrum.density(omega)
 
     def met(omega: Array) -> Array:
         return np.abs(encounter_frequency(omega, U, beta))
@@ -154,25 +175,15 @@ def _settled(
     """Trapezoids over log(omega), doubled until the response's variances of angle and rate stand still."""
     before, count = np.full(2, np.inf), _FEWEST
     while True:
-        omega, width = _nodes(edges, count)
+        omega, width = quadrature.nodes(edges, count)
         omega_e, energy = np.maximum(met(omega), _SLOWEST), density(omega) * width
-        size = np.abs(response.at(omega_e)) ** 2 * energy
-        now = np.array([size.sum(), (omega_e**2 * size).sum()])
+        now = _variances(omega_e, energy, response)
         if np.all(np.abs(now - before) <= _ACCURACY * now) or count > _MOST:
             return omega_e, energy
         before, count = now, 2 * count
 
 
-def _nodes(edges: tuple[float, ...], count: int) -> tuple[Array, Array]:
-    """`count` nodes, between all edges as many, even in log(omega), and what each stands for, both rad/s."""
-    omega: list[Array] = []
-    width: list[Array] = []
-    own = count // (len(edges) - 1)
-    for low, high in pairwise(np.log(edges)):
-        u, step = np.linspace(low, high, own, retstep=True)
-        weights = np.ones(own)
-        weights[: len(_ENDS)] *= _ENDS
-        weights[: -len(_ENDS) - 1 : -1] *= _ENDS
-        omega.append(np.exp(u))
-        width.append(omega[-1] * weights * step)
-    return np.concatenate(omega), np.concatenate(width)
+def _variances(omega_e: Array, energy: Array, response: Block) -> Array:
+    """Of the response's angle and rate."""
+    size = np.abs(response.at(omega_e)) ** 2 * energy
+    return np.array([size.sum(), (omega_e**2 * size).sum()])
