@@ -42,12 +42,19 @@ def _song2025(*, quick: bool, seed: int, progress: Progress | None) -> Study:
     return study(quick=quick, seed=seed, progress=progress)
 
 
+def _yu2014(*, quick: bool, seed: int, progress: Progress | None) -> Study:
+    from seatrial.studies.yu2014 import study
+
+    return study(quick=quick, seed=seed, progress=progress)
+
+
 STUDIES: dict[str, Reproduction] = {
     "alexandersson2022": _alexandersson2022,
     "section2d": _section2d,
     "qi2025": _qi2025,
     "meng2014": _meng2014,
     "song2025": _song2025,
+    "yu2014": _yu2014,
 }
 
 __all__ = ["STUDIES", "Reproduction"]
