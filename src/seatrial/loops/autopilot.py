@@ -46,15 +46,15 @@ def heading_loop(
 
     Args:
         plant: from the rudder to the heading; it may be unstable, and turn either way. parts: gains to have.
-        derivative_filter: tau [s]; by default a tenth of the period of the fastest loop within the bounds over 2 pi.
+        derivative_filter: tau [s]; by default a tenth of 1 / omega of the fastest loop within the bounds.
         integral_lag: T [s] of a slow lag T / (T s + 1) in place of 1 / s.
 
     Raises:
-        InputError: the plant does not integrate, parts are not those above, or a time constant is not positive.
+        InputError: the plant is of first order, parts are not those above, or a time constant is not positive.
     """
-    if plant.order < 2 or plant.den[-1] != 0.0:
+    if plant.order < 2:
         raise InputError(f"block '{plant.name}' is no heading: its denominator needs the integrator s from yaw rate")
-    scale = _mean_pole(plant)
+    scale = mean_pole(plant)
 
     def placed(omega: float) -> Gains:
         inverse, slope = _local(plant, omega, integrators=1)
@@ -82,7 +82,7 @@ def speed_loop(
     Raises:
         InputError: the plant has no pole off the origin.
     """
-    scale = _mean_pole(plant)
+    scale = mean_pole(plant)
 
     def placed(omega: float) -> Gains:
         inverse, slope = _local(plant, omega, integrators=0)
@@ -114,7 +114,7 @@ def pitch_loop(
     """
     if not (math.isfinite(plant.gain) and plant.gain):
         raise InputError(f"block '{plant.name}' has no restoring: a constant actuator gives no constant answer")
-    omega = np.geomspace(0.05, 20.0, 400) * _mean_pole(plant)
+    omega = np.geomspace(0.05, 20.0, 400) * mean_pole(plant)
     place = int(np.argmax(np.abs(plant.at(omega))))
     top, damped = float(omega[place]), 1.0 / float(np.abs(plant.at(omega[place : place + 1]))[0])
     start = {"KP": 0.0, "KI": 0.0, "KD": damped / top}
@@ -127,10 +127,14 @@ def pitch_loop(
     return _loop(name, plant, disturbance, servo, sign, gains, parts, tau, math.inf, names)
 
 
-def _mean_pole(plant: Block) -> float:
-    """Geometric mean of the plant's poles off the origin, rad/s."""
+def mean_pole(plant: Block) -> float:
+    """Geometric mean of the plant's poles off the origin, rad/s.
+
+    Raises:
+        InputError: it has none.
+    """
     sizes = np.abs(plant.poles)
-    some = sizes[sizes > _LEAST * max(sizes.max(initial=0.0), 1e-300)]
+    some = sizes[sizes > _LEAST * sizes.max(initial=0.0)]
     if not some.size:
         raise InputError(f"block '{plant.name}' has no pole off the origin; there is no frequency to scale gains by")
     return float(np.exp(np.mean(np.log(some))))

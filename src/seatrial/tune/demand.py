@@ -7,6 +7,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from seatrial.loops import TransferLoop
+from seatrial.loops.autopilot import mean_pole
 from seatrial.results.tuning import Manoeuvre
 from seatrial.simulate.closed_loop import REFERENCE, ActuatorLimits, ClosedLoop
 from seatrial.tune.fleet import DRAWS, fleet, robust
@@ -40,8 +41,9 @@ def manoeuvres(
 ) -> tuple[Manoeuvre, ...]:
     """The task's change of the output, and a zigzag about the trim of half of it to either side, with the gains (g,).
 
-    Ships are drawn from the covariance of the fit; one that has no trim, or runs away, counts as not stable and
-    overshoots without bound. A task without a model behind its plant is simulated from its transfer functions.
+    Ships are drawn from the covariance of the fit; one that has no trim counts as not stable. Where one is not, or
+    runs away, the worst overshoot is infinite. A task without a model behind its plant is simulated from its transfer
+    functions.
 
     Raises:
         InputError: the task has no demand.
@@ -133,8 +135,10 @@ def _programmes(task: Task, loop: TransferLoop, gains: Array, demand: Demand) ->
 
 
 def _rate(task: Task, loop: TransferLoop, demand: Demand) -> float:
-    """Rate of the output that half the actuator's limit keeps up at the frequency of the reference model."""
+    """Rate of the output that half the actuator's limit keeps up, at the mean of the plant's poles or more slowly."""
     omega = 1.0 / demand.time_constant
+    if np.any(loop.plant.poles != 0.0):
+        omega = min(omega, mean_pole(loop.plant))
     return 0.5 * task.restriction.limit * omega * float(np.abs(loop.plant.at(np.array([omega])))[0])
 
 
@@ -145,10 +149,11 @@ def _carried_out(
     trim = _trim(ship)
     output, moved = follow(ship, loop, gains, limits, asked.dt, asked.reference)
     answers = [_answer(one, loop, gains, limits, asked) for one in drawn]
-    lost = stable[1] - sum(a is not None for a in answers)
+    is_lost = stable[0] < stable[1] or any(a is None for a in answers)
     worst = max((overshoot(a, asked.demand, asked.begun) for a in answers if a is not None), default=math.nan)
     every = math.ceil(len(output) / _SAMPLES)
     shown = [trim + a[::every] for a in answers if a is not None][:_SHOWN]
+    drawn_answers = np.array(shown).reshape(len(shown), len(output[::every]))
     series = {loop.output: output, loop.actuator: moved, REFERENCE: trim + asked.reference, DEMAND: trim + asked.demand}
     return Manoeuvre(
         name=asked.name,
@@ -159,8 +164,8 @@ def _carried_out(
         settling=settling(output - trim, asked.demand, asked.begun, asked.dt),
         stable_draws=stable[0],
         draws=stable[1],
-        worst_overshoot=math.inf if lost else worst,
-        drawn=frozen(np.array(shown).reshape(len(shown), -1)),
+        worst_overshoot=math.inf if is_lost else worst,
+        drawn=frozen(drawn_answers),
     )
 
 

@@ -63,7 +63,7 @@ def robust(task: Task, gains: Array, loop: TransferLoop | None = None, *, draws:
     """How many of the ships drawn the gains (g,) keep stable, and how many were drawn; (0, 0) without a covariance."""
     if task.vessel is None:
         return 0, 0
-    made = fleet(task.vessel, draws)
+    made = fleet(task.vessel, draws, SEED)
     return sum(made.stable(task.loop if loop is None else loop, gains)), made.draws
 
 
