@@ -20,7 +20,8 @@ ADDED = ("KB", "KL")
 LARGEST = 100.0
 # Found by `python benchmarks/fin_structures.py`: CMA-ES over both frequencies and dampings, the five gains by SLSQP at
 # each, for the least mean roll variance in three beam seas of 3.3 m (ITTC, JONSWAP, ITTC short-crested) with no more
-# fin-rate energy than the published gains in any and Ms <= 1.9; frequencies and dampings rounded, gains found again and rounded so that no sea asks for more rate.
+# fin-rate energy than the published gains in any and Ms <= 1.9; frequencies and dampings rounded, gains found again
+# and rounded so that no sea asks for more rate.
 FREQUENCIES_AND_DAMPINGS = (0.53, 0.66), (2.7, 0.4)
 FOUND = {"KP": 34.2, "KI": 0.0, "KD": 0.0, "KB": 24.4, "KL": -32.8}
 SOURCE = "searched, see seatrial.loops.structures"
