@@ -55,10 +55,11 @@ def _print_controllers(tuning: "Tuning") -> None:
     factors = (shown[tuning.output][0], shown[tuning.actuator][0], shown[tuning.actuator][0])
     for c in (tuning.chosen, *tuning.rivals):
         sizes = [
-            factor * c.rms[key] for factor, key in zip(factors, ("output", "actuator", "actuator_rate"), strict=True)
+            factor * c.rms.get(key, math.nan)
+            for factor, key in zip(factors, ("output", "actuator", "actuator_rate"), strict=True)
         ]
         cells = " ".join(f"{size:14.4g}" for size in sizes)
-        beyond = f"{100.0 * c.saturation:7.3g} {100.0 * c.rate_saturation:11.3g}"
+        beyond = f"{100.0 * c.saturation:7.1f} {100.0 * c.rate_saturation:11.1f}"
         notes = "; ".join(c.broken)
         reduction = "" if math.isnan(c.reduction) else f"{100.0 * c.reduction:.1f}"
         print(f"{c.name:20s} {reduction:>9s} {cells} {c.peak:6.3g} {beyond}  {notes}".rstrip())
