@@ -67,6 +67,11 @@ class Searches:
         return np.ptp(self.gains, axis=0) / BOX.width
 
     @property
+    def nearest(self) -> float:
+        """How far the nearest answer is from the paper's: its worst gain, over the width of the box."""
+        return float((np.abs(self.gains - FOUND) / BOX.width).max(axis=1).min())
+
+    @property
     def fragile(self) -> int:
         """How many have an Ms above 2."""
         return int(np.sum(self.peak > FRAGILE))
