@@ -58,7 +58,7 @@ def fabricated_fin() -> Tuning:
         front=_front(rng, "three gains", 140, 1.0, chosen),
         richer=(_front(rng, "five gains: band-pass and low-pass added", 110, 0.75, chosen),),
         components=components(loop),
-        sailed=tuple(sailed(loop, rng, c) for c in (chosen, given)),
+        sailed=tuple(sailed(loop, c) for c in (chosen, given)),
         paired=(
             Paired("given", "limited", 0.071, 0.062, 0.080, SEEDS),
             Paired("given", "stalled", 0.048, -0.004, 0.098, SEEDS),
@@ -151,9 +151,9 @@ def components(loop: TransferLoop) -> tuple[Component, ...]:
                      for t in loop.terms))  # fmt: skip
 
 
-def sailed(loop: TransferLoop, rng: np.random.Generator, c: Controller) -> Sailed:
+def sailed(loop: TransferLoop, c: Controller) -> Sailed:
     """Reductions scattered about the linear one, and a sum of waves through the linear loop, the fin cut off."""
-    tuned = loop.with_gains(np.array(list(c.gains.values())))
+    rng, tuned = np.random.default_rng(11), loop.with_gains(np.array(list(c.gains.values())))
     linear = c.reduction + 0.01 * rng.standard_normal(SEEDS)
     t = np.arange(0.0, 600.0, 0.25)
     omega = np.sort(rng.uniform(0.5, 1.4, 40))
@@ -201,7 +201,9 @@ def _turn(rng: np.random.Generator, name: str, by: str, KP: float, KD: float) ->
     spread = rng.uniform(0.75, 1.3, (12, 2))
     drawn = np.stack([_followed(t, KP, KD, gain * a, lag * b)[0] for a, b in spread])
     record = Record.of(name, t, {"psi": psi, "delta": delta}, Kind.SIMULATED)
-    record = record.with_channel("demand", Channel(frozen(demand), "rad", "earth", "starboard"))
+    steps = np.where(t > 0.0, math.radians(20.0), 0.0)
+    for what, values in (("demand", steps), ("reference", demand)):
+        record = record.with_channel(what, Channel(frozen(values), "rad", "earth", "starboard"))
     change = math.radians(20.0)
     return Manoeuvre(name, by, record, "psi", float(psi.max() / change - 1.0), 96.0, 100, 100,
                      float(drawn.max() / change - 1.0), drawn)  # fmt: skip

@@ -11,16 +11,17 @@ from typing import Any
 
 import numpy as np
 import tomli_w
+from numpy.typing import NDArray
 
 from seatrial.results.tuning import Component, Controller, Slot, Tuning
 from seatrial.trial.orders import shown_unit
-from seatrial.values import Array, InputError
+from seatrial.values import InputError
 
 FORMAT = 1
 # the text that begins a MAT-file is 116 bytes long and names no date here, so that the same loop gives the same bytes
 _HEADER = b"MATLAB 5.0 MAT-file, a feedback loop written by seatrial".ljust(116)
 _RESERVED = {"end", "function", "otherwise", "switch", "case", "parfor", "spmd", "persistent", "catch", *keyword.kwlist}
-Rational = tuple[Array, Array]
+Rational = tuple[NDArray[Any], NDArray[Any]]
 
 
 def gains_text(tuning: Tuning) -> str:
@@ -99,7 +100,7 @@ def loop_mat(tuning: Tuning) -> bytes:
         controller, loop = controller_of(tuning), open_loop_of(tuning)
         content |= dict(zip(_POLYNOMIALS, (*controller, *loop), strict=True))
     made = BytesIO()
-    savemat(made, content, format="5", long_field_names=True, oned_as="row")
+    savemat(made, content, format="5", long_field_names=True, oned_as="row")  # type: ignore[arg-type]
     return _HEADER + made.getvalue()[len(_HEADER) :]
 
 

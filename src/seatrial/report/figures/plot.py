@@ -19,8 +19,9 @@ ACCENT, GREY, INK, FAINT, AXIS, SECOND = "#1b4f72", "#b2b2b2", "#222222", "#ecec
 POINTS = 400
 FONT = "Arial, Helvetica, 'Liberation Sans', 'DejaVu Sans', sans-serif"
 _SYMBOLS = {
-    "psi": "ψ", "delta": "δ", "phi": "φ", "theta": "θ", "x0": "x₀", "y0": "y₀", "v_j": "vⱼ", "wind_speed": "wind",
-    "wind_direction": "wind from", "wind_speed_relative": "app. wind", "wind_direction_relative": "app. wind from",
+    "psi": "ψ", "delta": "δ", "phi": "φ", "theta": "θ", "alpha_f": "α", "x0": "x₀", "y0": "y₀", "v_j": "vⱼ",
+    "wind_speed": "wind", "wind_direction": "wind from", "wind_speed_relative": "app. wind",
+    "wind_direction_relative": "app. wind from",
 }  # fmt: skip
 
 
