@@ -13,10 +13,10 @@ from seatrial.tune.sail import sailed
 from seatrial.tune.task import Task
 from seatrial.values import Array
 
-CANDIDATES = 10
+CANDIDATES = 8
 TOO_MUCH_LOST = 0.03
-_SELECTION_SEEDS, _OTHER_SEAS = 3, 100_000
-_EQUAL = 0.003
+_SELECTION_SEEDS, _OTHER_SEAS = 8, 100_000
+_EQUAL, _CAUTION = 0.003, 0.85
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,11 +48,11 @@ _COMPROMISE = (
 
 
 def _envelope(judge: Judge, front: Front) -> Array:
-    """Gains of the front of which none moves both output and actuator less than another, well apart, (n, g)."""
+    """Gains of the front of which none leaves less of the output at less of the actuator, by output, (n, g)."""
     made = judge.of(front.gains)
     both = made.variances[:, :, :2].mean(axis=1)
     first = np.flatnonzero(non_dominated(both))
-    return front.gains[first[spread(both[first], CANDIDATES)]]
+    return front.gains[first[np.argsort(both[first, 0])]]
 
 
 def _by_compromise(judge: Judge, gains: Array) -> list[int]:
@@ -62,29 +62,62 @@ def _by_compromise(judge: Judge, gains: Array) -> list[int]:
     return np.argsort(far.max(axis=1), kind="stable").tolist()
 
 
+@dataclass(frozen=True, eq=False)
+class _Tried:
+    """A candidate simulated: mean reduction with limits, with and without stall, points lost to limits, rms rate."""
+
+    judge: Judge
+    gains: Array
+    of: str
+    reduction: float
+    lost: float
+    rate: float
+
+
 def _sailing(task: Task, known: tuple[tuple[Judge, Front], ...], seed: int, tell: Callable[[str], None]) -> Choice:
-    """The candidate that reduces the motion most in simulation with limits and stall, losing little to the limits."""
+    """The candidate that reduces the motion most in simulation with the actuator's limits, losing little to them."""
     assert task.trials is not None
     few = replace(task, trials=replace(task.trials, seeds=_SELECTION_SEEDS))
-    tried: list[tuple[float, float, float, Choice]] = []
+
+    def simulated(judge: Judge, front: Front, gains: Array) -> _Tried:
+        made = sailed(few, judge.loop, "candidate", gains, seed + _OTHER_SEAS)
+        reduction = 0.5 * float(np.mean(made.limited) + np.mean(made.stalled))
+        rate = float(judge.of(gains[None]).variances[0, :, 2].mean())
+        return _Tried(judge, gains, front.name, reduction, made.lost, rate)
+
+    tried: list[_Tried] = []
     for judge, front in known:
         some = _envelope(judge, front)
-        rates = judge.of(some).variances[:, :, 2].mean(axis=1)
-        for i, (gains, rate) in enumerate(zip(some, rates, strict=True)):
-            made = sailed(few, judge.loop, "candidate", gains, seed + _OTHER_SEAS)
-            tried.append((float(np.mean(made.stalled)), made.lost, float(rate), Choice(judge, gains, front.name, ())))
-            tell(f"choice: {front.name}, candidate {i + 1} of {len(some)} simulated")
-    keeping = [item for item in tried if item[1] < 0.8 * TOO_MUCH_LOST] or tried
-    best = max(item[0] for item in keeping)
-    reduction, lost, _, choice = min((item for item in keeping if item[0] >= best - _EQUAL), key=lambda item: item[2])
+        near = some[np.unique(np.linspace(0, len(some) - 1, CANDIDATES).astype(int))]
+        for around in ("along the front", "about the best"):
+            made = [simulated(judge, front, gains) for gains in near]
+            tried += made
+            tell(f"choice: {front.name}, {len(made)} candidates {around} simulated")
+            near = _about(some, _best(made).gains)
+    best = _best(tried)
     reasons = (
-        f"Of {len(tried)} controllers along the fronts it reduces the motion most when simulated with angle and rate "
-        f"limits and stall ({100.0 * reduction:.1f} % on {_SELECTION_SEEDS} seas kept for the choice); of equals it "
-        "moves the actuator least.",
-        f"It loses {100.0 * lost:.1f} points of reduction to angle and rate limits there; more than "
-        f"{100.0 * TOO_MUCH_LOST:.0f} points are not recommended.",
+        f"Of {len(tried)} controllers along the fronts it reduces the motion most when simulated within the actuator's "
+        f"limits, with and without stall, whose law is assumed (mean {100.0 * best.reduction:.1f} % on "
+        f"{_SELECTION_SEEDS} seas kept for the choice); of equals it moves the actuator least.",
+        f"It loses {100.0 * best.lost:.1f} points of reduction to angle and rate limits there; a loss of "
+        f"{100.0 * TOO_MUCH_LOST:.0f} points or more is not recommended.",
     )
-    return replace(choice, reasons=reasons)
+    return Choice(best.judge, best.gains, best.of, reasons)
+
+
+def _best(tried: list[_Tried]) -> _Tried:
+    """The best reduction of those that lose little, else of all; of equals the one that moves the actuator least."""
+    keeping = [one for one in tried if one.lost < _CAUTION * TOO_MUCH_LOST] or tried
+    most = max(one.reduction for one in keeping)
+    return min((one for one in keeping if one.reduction >= most - _EQUAL), key=lambda one: one.rate)
+
+
+def _about(some: Array, gains: Array) -> Array:
+    """Gains between the neighbours, a candidate's distance away, of one of `some`, (n, g)."""
+    place = int(np.argmin(np.abs(some - gains).max(axis=1)))
+    step = max(len(some) // CANDIDATES, 1)
+    low, high = max(place - step, 0), min(place + step, len(some) - 1)
+    return some[np.unique(np.linspace(low, high, CANDIDATES).astype(int))]
 
 
 def _following(task: Task, known: tuple[Judge, Front], seed: int, tell: Callable[[str], None]) -> Choice:
@@ -92,6 +125,7 @@ def _following(task: Task, known: tuple[Judge, Front], seed: int, tell: Callable
     assert task.demand is not None
     judge, front = known
     some = _envelope(judge, front)
+    some = some[spread(judge.of(some).variances[:, :, :2].mean(axis=1), CANDIDATES)]
     order = _by_compromise(judge, some)
     worst: list[float] = []
     for count, place in enumerate(order, start=1):

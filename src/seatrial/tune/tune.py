@@ -104,7 +104,7 @@ def tune(task: Task, *, seed: int = 0, progress: Callable[[str], None] = lambda 
 
 def _front(one: Judge, task: Task, seed: int, tell: Callable[[str], None]) -> Front:
     """The front of one loop; with up to three free gains its hypervolume over that of a grid, to the grid's nadir."""
-    name = f"{len(one.loop.gains.free)} gains" + ("" if one.loop is task.loop else f", {one.loop.name}")
+    name = f"{len(one.loop.gains.free)} gains" if one.loop is task.loop else one.loop.name
     made = front(one, name, seed, tell)
     count = _GRID.get(len(one.loop.gains.free))
     if count is None or not len(made.gains):
@@ -113,9 +113,11 @@ def _front(one: Judge, task: Task, seed: int, tell: Callable[[str], None]) -> Fr
     tell(f"{name}: checked against a grid")
     if not len(known):
         return made
-    nadir = known.max(axis=0)
-    volume = hypervolume(known, nadir)
-    return replace(made, hypervolume=hypervolume(made.objectives, nadir) / volume) if volume > 0.0 else made
+    live = np.ptp(known, axis=0) > 0.0
+    nadir = known[:, live].max(axis=0)
+    if not live.any():
+        return made
+    return replace(made, hypervolume=hypervolume(made.objectives[:, live], nadir) / hypervolume(known[:, live], nadir))
 
 
 def _check(task: Task, choice: Choice, rivals: dict[str, Array], seed: int, tell: Callable[[str], None]) -> _Checked:
