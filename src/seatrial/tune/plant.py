@@ -126,31 +126,27 @@ def _of_model(table: PlantTable, path: Path, own_model: Model | None) -> Plant:
 
 
 def _names(table: PlantTable, file: ModelFile, path: Path) -> tuple[str, str, str]:
-    """Output, actuator and disturbance: as said, or those a model of its kind is controlled by."""
-    model = file.model
-    known = next(
-        (
-            names
-            for names in (FINS, STEERING)
-            if names[0] in model.observables and set(names[1:]) - {""} <= set(model.input_names)
-        ),
-        None,
-    )
-    given = (table.output, table.actuator, table.disturbance)
-    if known is None and (table.output is None or table.actuator is None):
+    """Output, actuator and disturbance: as said, or those by which a model of its kind is controlled."""
+    model, given = file.model, (table.output, table.actuator, table.disturbance)
+    for name, known, key, what in zip(
+        given,
+        (model.observables, model.input_names, model.input_names),
+        ("plant.output", "plant.actuator", "plant.disturbance"),
+        ("output", "input", "input"),
+        strict=True,
+    ):
+        if name:
+            _known(name, known, key, model, what)
+    for own in (FINS, STEERING):
+        has_them = own[0] in model.observables and set(own[1:]) - {""} <= set(model.input_names)
+        if has_them and table.output in (None, own[0]) and table.actuator in (None, own[1]):
+            return own[0], own[1], own[2] if table.disturbance is None else table.disturbance
+    if table.output is None or table.actuator is None:
         raise InputError(
-            f"plant: model '{model.name}' of '{path}' neither rolls by fins nor is steered; give output (one of "
-            f"{', '.join(model.observables)}) and actuator (one of {', '.join(model.input_names)})"
+            f"plant: model '{model.name}' of '{path}' is not one that fins or a rudder alone control; give output (one "
+            f"of {', '.join(model.observables)}) and actuator (one of {', '.join(model.input_names)})"
         )
-    if known is not None and (table.output not in (None, known[0]) or table.actuator not in (None, known[1])):
-        known = None
-    own = known or (table.output or "", table.actuator or "", "")
-    output, actuator, disturbance = (a if a is not None else b for a, b in zip(given, own, strict=True))
-    _known(output, model.observables, "plant.output", model, "output")
-    _known(actuator, model.input_names, "plant.actuator", model, "input")
-    if disturbance:
-        _known(disturbance, model.input_names, "plant.disturbance", model, "input")
-    return output, actuator, disturbance
+    return table.output, table.actuator, table.disturbance or ""
 
 
 def _known(name: str, names: tuple[str, ...], where: str, model: Model, what: str) -> None:
