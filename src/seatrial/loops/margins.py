@@ -58,8 +58,7 @@ def sensitivity(loop: TransferLoop, omega: Array) -> Array:
 
 def peak_of(loop: TransferLoop) -> tuple[float, float]:
     """Ms and where it is [rad/s], to rounding, by a search about the largest sample; the loop must be stable."""
-    low, high = band(loop)
-    u = np.linspace(math.log(low), math.log(high), _SAMPLES)
+    u = _samples(loop)
     place = int(np.argmax(sensitivity(loop, np.exp(u))))
     ends = u[max(place - 1, 0)], u[min(place + 1, _SAMPLES - 1)]
     found = minimize_scalar(
@@ -85,10 +84,16 @@ def margins(loop: TransferLoop) -> Margins:
     )  # fmt: skip
 
 
+def _samples(loop: TransferLoop) -> Array:
+    """Logarithms of frequencies over the band and all closed poles: a weak loop that integrates crosses one early."""
+    low, high = band(loop)
+    poles = np.abs(loop.closed_poles)
+    return np.linspace(math.log(min(low, 0.3 * poles.min())), math.log(max(high, 2.0 * poles.max())), _SAMPLES)
+
+
 def _crossings(loop: TransferLoop, of: Callable[[Complex], Array]) -> Array:
     """Frequencies [rad/s] at which a function of L changes its sign."""
-    low, high = band(loop)
-    u = np.linspace(math.log(low), math.log(high), _SAMPLES)
+    u = _samples(loop)
     rises = np.flatnonzero(np.diff(np.sign(of(loop.open(np.exp(u))))))
 
     def along(v: float) -> float:
