@@ -215,9 +215,9 @@ def closed_loop(
 
 
 def held(series: Array) -> Array:
-    """Values (n,) that, each held over its step, act as the smooth series does: its mid-values, sharpened for the hold.
+    """Values (n,) that, each held over its step, act on a mass as the smooth series does: mid-values, sharpened.
 
-    With sinc(x) = 1 - x^2 / 6 + ... of a hold of dt, w - dt^2 / 24 w'' at mid-step; by cubics, of third order.
+    A hold takes sinc(omega dt / 2) off: w - dt^2 / 24 w'' at mid-step, by cubics, makes up for it.
     """
     w = np.concatenate([2.0 * series[:1] - series[1:2], series, 2.0 * series[-1:] - series[-2:-1]])
     w = np.concatenate([w, 2.0 * w[-1:] - w[-2:-1]])
