@@ -110,7 +110,7 @@ def ship_of(task: Task, loop: TransferLoop, gains: Array, U: float, dt: float) -
 def seas(seaway: Seaway, trials: Trials, seed: int) -> tuple[Array, ...]:
     """Effective wave slope [rad] of each seed, a run-in of `RUN_IN` s first; each (n,), read-only."""
     count = round((RUN_IN + trials.duration) / trials.dt) + 1
-    band = _band(seaway)
+    band = waves_across(seaway)
 
     def of_one(number: int) -> Array:
         lines = lines_of(seaway, np.random.default_rng(number), band)
@@ -146,7 +146,7 @@ def summed(omega: Array, amplitude: Complex, dt: float, count: int) -> Array:
     return made.ravel()[:count]
 
 
-def _band(seaway: Seaway) -> tuple[float, float]:
+def waves_across(seaway: Seaway) -> tuple[float, float]:
     """Frequencies [rad/s] of all waves with a slope to speak of, up to twelve times the modal one."""
     peak = seaway.spectrum.modal_frequency
     omega = np.linspace(0.0, 12.0 * peak, 4001)[1:]
