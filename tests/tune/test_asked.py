@@ -27,7 +27,10 @@ def test_a_fin_stabiliser_in_a_dozen_lines_is_the_published_loop(tmp_path: Path)
     assert (task.restriction.limit, task.restriction.rate) == pytest.approx((math.radians(22), math.radians(25)))
     assert math.isinf(task.restriction.stall) and task.restriction.peak == 2.0
     assert math.isclose(task.U, 9.26) and task.effectiveness is Effectiveness.SPEED_SQUARED
-    assert [(o.rows[0].seen, o.rows[0].size(2.0)) for o in task.objectives] == [(Seen.OUTPUT, 1), (Seen.ACTUATOR, 2)]
+    assert [(o.rows[0].seen, o.rows[0].size(np.array([2.0]))[0]) for o in task.objectives] == [
+        (Seen.OUTPUT, 1),
+        (Seen.ACTUATOR, 2),
+    ]
     assert task.trials == Trials() and task.demand is None and task.plan is None
 
 

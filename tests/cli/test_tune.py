@@ -1,0 +1,177 @@
+"""`seatrial tune`: a folder whole or not at all, tables people read, bad input in one sentence."""
+
+import json
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from report.tuned import fabricated_autopilot, fabricated_bare, fabricated_fin
+from seatrial import cli, verbs
+from seatrial.cli.tuned import print_tuning
+from seatrial.loops import margins
+from seatrial.models import model_named
+from seatrial.results.tuning import Tuning
+from seatrial.trial import load_trial
+from seatrial.trial.folder import save_fit
+from seatrial.trial.model_file import ModelFile, write_model
+from seatrial.trial.tuning_files import read_gains
+from seatrial.trial.tuning_json import TuningDocument
+from seatrial.tune.asked import task_of
+from seatrial.values import InputError, Ship
+from tune.loop_files import AUTOPILOT, FIN, model_file, nomoto, written
+
+
+def run(monkeypatch: pytest.MonkeyPatch, *arguments: str | Path) -> int:
+    monkeypatch.setattr(sys, "argv", ["seatrial", *map(str, arguments)])
+    with pytest.raises(SystemExit) as ending:
+        cli.main()
+    return int(ending.value.code or 0)
+
+
+@pytest.fixture
+def loop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A loop file; the search is replaced by a tuning nobody searched."""
+    monkeypatch.setattr("seatrial.verbs.tune", lambda *_, **__: fabricated_fin())
+    return written(tmp_path, FIN)
+
+
+def test_it_writes_five_files_and_prints_what_they_say(
+    loop: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    out = tmp_path / "new" / "fins"
+    assert run(monkeypatch, "tune", loop, "--out", out, "--json", tmp_path / "t.json") == 0
+    names = ["gains.toml", "loop.mat", "report.html", "schedule.csv", "tuning.json"]
+    assert sorted(p.name for p in out.iterdir()) == names
+    tuning = fabricated_fin()
+    assert read_gains(out / "gains.toml") == tuning.chosen.gains
+    table = json.loads((out / "tuning.json").read_text())
+    assert table == json.loads((tmp_path / "t.json").read_text())
+    assert TuningDocument.model_validate(table).chosen.gains == tuning.chosen.gains
+    said = capsys.readouterr().out
+    assert all(reason in said for reason in tuning.reasons)
+    rows = {line[:20].strip(): line for line in reversed(said.splitlines())}
+    assert rows["chosen"].split()[1:3] == ["74.0", "2.1"]
+    assert rows["least roll"].endswith("20 % allowed")
+    assert "schedule of 18 conditions" in said and "0.9800 of a grid's hypervolume" in said
+    assert f"gains: {out / 'gains.toml'}" in said
+
+
+def test_without_a_folder_it_only_prints(
+    loop: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    before = sorted(tmp_path.iterdir())
+    assert run(monkeypatch, "tune", loop) == 0
+    assert "chosen: KP 19.4" in capsys.readouterr().out
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_an_autopilot_has_no_schedule_to_write_and_says_what_it_turns(
+    tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
+    tuning = fabricated_autopilot()
+    verbs.save_tuning(tuning, tmp_path)
+    assert not (tmp_path / "schedule.csv").exists()
+    print_tuning(tuning)
+    said = capsys.readouterr().out
+    assert "psi [deg]" in said and "stable for 100 of 100 ships that the fit allows" in said
+    assert "does not settle" in said
+
+
+def test_what_was_not_examined_is_not_printed(capsys: pytest.CaptureFixture) -> None:
+    print_tuning(fabricated_bare())
+    said = capsys.readouterr().out
+    assert not any(word in said for word in ("schedule", "simulated", "bound", "nan\n", "warning", "stable for"))
+
+
+def test_margins_that_nothing_limits_are_said_so(capsys: pytest.CaptureFixture) -> None:
+    tuning = fabricated_fin()
+    free = replace(tuning.chosen, gain_margin=np.inf, phase_margin=np.inf, delay_margin=np.inf)
+    print_tuning(replace(tuning, chosen=free))
+    assert "gain margin any, phase margin any, delay margin any" in capsys.readouterr().out
+
+
+def test_a_search_that_refuses_leaves_nothing_behind(
+    loop: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    def refused(*_: object, **__: object) -> Tuning:
+        raise InputError("no gains keep the limits: Ms by 12 %; raise that limit")
+
+    monkeypatch.setattr("seatrial.verbs.tune", refused)
+    assert run(monkeypatch, "tune", loop, "--out", tmp_path / "fins") == 2
+    assert capsys.readouterr().err.endswith("seatrial: no gains keep the limits: Ms by 12 %; raise that limit\n")
+    assert not (tmp_path / "fins").exists()
+
+
+def test_an_interruption_leaves_nothing_behind(loop: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object, **__: object) -> Tuning:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("seatrial.verbs.tune", interrupted)
+    assert run(monkeypatch, "tune", loop, "--out", tmp_path / "fins") == cli.INTERRUPTED
+    assert not (tmp_path / "fins").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("absent.toml",), "loop file 'absent.toml' cannot be read"),
+        (
+            ("loop.toml", "--from", "absent.toml"),
+            "plant: there is no 'model' that a model file could take the place of",
+        ),
+        (("loop.toml", "--model", "absent.py"), "absent.py"),
+        (("loop.toml", "--json", "."), "is a folder; name a file"),
+    ],
+)
+def test_bad_input_is_one_line_and_code_two(
+    loop: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture,
+    arguments: tuple[str, ...], says: str,
+) -> None:  # fmt: skip
+    monkeypatch.chdir(loop.parent)
+    code = run(monkeypatch, "tune", *arguments, "--out", tmp_path / "fins")
+    said = capsys.readouterr().err
+    assert (code, says in " ".join(said.split()), said.strip().count("\n")) == (2, True, 0)
+    assert not (tmp_path / "fins").exists()
+
+
+def test_the_ship_can_be_named_on_the_command_line(tmp_path: Path) -> None:
+    known = model_file(tmp_path, nomoto(), "known.toml")
+    path = written(tmp_path, AUTOPILOT, ("model.toml", "no such place/model.toml"))
+    task = verbs.load_loop(path, model_file=known)
+    assert task.U == 7.0 and task.vessel is not None
+
+
+def test_the_example_asks_for_a_schedule_over_27_conditions(repository: Path) -> None:
+    task = task_of(repository / "examples" / "fin_stabiliser.toml")
+    assert task.plan is not None
+    assert len(task.plan.speeds) * len(task.plan.headings) * len(task.plan.heights) == 27
+    assert task.rivals["as published"] == {"KP": 11.053, "KI": 0.428, "KD": 32.736}
+
+
+def test_from_a_decay_record_to_a_model_to_a_loop(repository: Path, tmp_path: Path) -> None:
+    """Two commands: what identify writes is what tune reads."""
+    examples = repository / "examples"
+    fit = verbs.identify(verbs.load_trial(examples / "fin_decay.toml"))
+    free = [c for c in fit.coefficients if not c.fixed and c.truth]
+    assert len(free) == 4
+    assert all(abs(c.estimate - c.truth) < 3.5 * c.standard_error for c in free)  # type: ignore[operator]
+    known = save_fit(fit, tmp_path) / "model.toml"
+    task = verbs.load_loop(examples / "fin_from_decay.toml", model_file=known)
+    assert task.vessel is not None and len(task.vessel.covariance) == 5
+    assert task.loop.plant.gain == pytest.approx(0.256, rel=0.01)
+
+
+def test_the_autopilots_of_the_examples_turn_their_ships(repository: Path, tmp_path: Path) -> None:
+    """On the ship the waterjet's trials were simulated with, and on KVLCC2 as published."""
+    jet = ModelFile(model_named("waterjet"), ship=Ship("craft", {"L": 9.8}), approach={"u": 0.8, "v_j": 1.866})
+    tanker = load_trial(repository / "examples" / "kvlcc2_design.toml")
+    ships = {"waterjet": jet, "kvlcc2": ModelFile(tanker.model, ship=tanker.ship, approach={"u": 1.18, "n": 10.4})}
+    for name, file in ships.items():
+        known = tmp_path / f"{name}.toml"
+        write_model(file, known)
+        task = verbs.load_loop(repository / "examples" / f"{name}_autopilot.toml", model_file=known)
+        assert task.demand is not None and task.demand.overshoot == 0.02 and task.restriction.peak == 1.7
+        assert margins(task.loop).is_stable
