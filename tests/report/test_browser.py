@@ -6,6 +6,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from report.tuned import fabricated_fin
+from seatrial.report.tuning import html
+
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
@@ -82,4 +85,16 @@ def test_a_study_opens(browser: "Browser", study_page: Path) -> None:
     window, said = opened(browser, study_page)
     assert window.locator("h2").count() == window.locator("nav.contents a").count()
     assert window.locator(".verdict").count() == 3
+    assert said == []
+
+
+def test_a_tuning_opens_and_fits_the_window(browser: "Browser", tmp_path: Path) -> None:
+    path = tmp_path / "report.html"
+    path.write_text(html(fabricated_fin()), encoding="utf-8")
+    window, said = opened(browser, path)
+    assert window.locator("h2").count() == window.locator("nav.contents a").count()
+    assert window.locator("figure > svg:visible").count() == window.locator("figure > svg").count()
+    for width in (1100, 420):
+        window.set_viewport_size({"width": width, "height": 800})
+        assert window.evaluate("document.documentElement.scrollWidth") <= width
     assert said == []

@@ -142,7 +142,7 @@ def _named(components: tuple[Component, ...], taken: set[str]) -> dict[str, Comp
     """Each block under a name of its own that MATLAB takes for a variable."""
     made: dict[str, Component] = {}
     for c in components:
-        word = stem = _word(f"{c.role}_{c.name}" if c.name else c.role)
+        word = stem = _word(c.name if c.name.startswith(c.role) else f"{c.role}_{c.name}")
         count = 2
         while word in made or word in taken:
             word, count = f"{stem}_{count}", count + 1

@@ -34,6 +34,7 @@ from seatrial.values import Record, display
 LEFT, HEIGHT, GAP, ROW = 64.0, 112.0, 26.0, 24.0
 MOST, WINDOW, POINTS = 3, 150.0, 1200
 FREE, WITH, LIMIT = Stroke(GREY, 1.5), Stroke(ACCENT, 1.3), Stroke(SECOND, 1.0, "6 3")
+STAGES = {"linear": "without limits", "limited": "with limits", "stalled": "with stall, too"}
 UNCONTROLLED = ("uncontrolled", "free", "without")
 
 
@@ -118,7 +119,7 @@ def differences(items: Sequence[Paired]) -> str:
         return ""
     ends = [100.0 * x for p in items for x in (p.lower, p.upper, 0.0)]
     low, high = span([np.array(ends)], 0.08)
-    names = [f"over {p.other}, {p.what}" for p in items]
+    names = [f"over {p.other}, {STAGES.get(p.what, p.what)}" for p in items]
     margin, right = 6.4 * max(len(name) for name in names) + 16, 190.0
     panel = Panel(margin, 8, WIDTH - margin - right, ROW * len(items), (low, high), (0.0, 1.0))
     bottom = panel.top + panel.height
