@@ -21,9 +21,12 @@ REFERENCE = "reference"
 class ActuatorLimits:
     """What an actuator cannot do, about its trim; infinite where it can.
 
+    The actuator runs after what its servo would do without limits as fast and as far as it may.
+
     Attributes:
         limit: largest angle [rad]; rate: largest rate [rad/s].
         stall: angle [rad] beyond which its effect falls: by `loss` rad for each rad beyond, down to nothing.
+        loss: chosen, the law of no particular fin: at 1 the effect falls beyond stall as steeply as it rose before.
     """
 
     limit: float = math.inf
