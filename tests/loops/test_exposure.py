@@ -2,6 +2,7 @@
 
 import importlib
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -74,7 +75,7 @@ def test_a_following_sea_converges_without_a_jacobian(heading: int, monkeypatch:
         made = exposure(SEA, 9.26, beta, ROLL, HULL)
         assert len(made.omega_e) == count
         errors.append(np.abs(variances(made) / truth - 1.0).max())
-    assert all(after < before or after < 1e-8 for before, after in zip(errors, errors[1:], strict=False))
+    assert all(after < before or after < 1e-8 for before, after in pairwise(errors))
     assert errors[-1] < 1e-8
 
 
@@ -92,10 +93,10 @@ def test_a_beam_sea_is_the_slope_spectrum_whatever_the_speed() -> None:
 def test_a_short_crested_sea_equals_the_double_integral(heading: int, exponent: float, hull: HullFactor | None) -> None:
     U, beta = 9.26, math.radians(heading)
     made = exposure(SEA, U, beta, ROLL, hull, spreading=exponent)
-    nodes, weights = np.polynomial.legendre.leggauss(600)
+    nodes, weights = np.polynomial.legendre.leggauss(400)
     away = 0.5 * math.pi * nodes
     shares = weights * np.cos(away) ** (2.0 * exponent)
-    omega = np.geomspace(0.25, 12.0 * SEA.modal_frequency, 6001)
+    omega = np.geomspace(0.25, 12.0 * SEA.modal_frequency, 4001)
     total = np.zeros(2)
     for angle, share in zip(away, shares / shares.sum(), strict=True):
         met = np.abs(omega - omega**2 * U * math.cos(beta + angle) / G)

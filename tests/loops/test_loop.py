@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from loops.loops_at_hand import second_order
 
+from loops.loops_at_hand import second_order
 from seatrial.loops import Block, Term, TransferLoop
 from seatrial.loops.fin import Preamplifier, fin_loop
 from seatrial.loops.state_space import state_space
@@ -13,6 +13,7 @@ from seatrial.values import InputError, Parameter, Parameters
 
 OMEGA = np.geomspace(1e-3, 1e2, 40)
 LOOPS = [fin_loop(reading) for reading in Preamplifier]
+GAINS = {"a": 0.4, "b": 1.1, "c": 0.3, "d": 0.2}
 # terms of three denominators, a filter, a disturbance that shares no poles with the plant
 RICH = TransferLoop(
     "rich",
@@ -27,7 +28,7 @@ RICH = TransferLoop(
     servo=(Block("servo", (1.0,), (0.3, 1.0)),),
     plant=Block("plant", (0.7,), (1.0, 0.3, 1.0)),
     disturbance=Block("met", (1.0, 0.0), (2.0, 0.5, 1.0)),
-    gains=Parameters(tuple(Parameter(n, v, "1", 0.0, 9.0, free=True) for n, v in zip("abcd", (0.4, 1.1, 0.3, 0.2)))),
+    gains=Parameters(tuple(Parameter(n, v, "1", 0.0, 9.0, free=True) for n, v in GAINS.items())),
 )
 
 

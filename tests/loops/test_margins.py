@@ -5,8 +5,8 @@ import math
 import control
 import numpy as np
 import pytest
-from loops.loops_at_hand import second_order
 
+from loops.loops_at_hand import second_order
 from seatrial.loops import TransferLoop, margins
 from seatrial.loops.exchange import open_loop_of
 from seatrial.loops.fin import Preamplifier, fin_loop

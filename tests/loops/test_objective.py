@@ -81,7 +81,7 @@ def test_the_printed_objective_rewards_motion_below_its_target_and_the_one_sided
 
 
 def test_interruptions_equal_the_formula_by_hand() -> None:
-    # rms lateral force estimator 1 m/s^2, mean frequency 1 rad/s, half stance over height .25: 60 / pi exp(-(.25 g)^2 / 2)
+    # rms lateral force estimator 1 m/s^2, mean frequency 1 rad/s, half stance over height .25
     of = motion_interruptions(5.0)
     by_hand = 60.0 / math.pi * math.exp(-0.5 * (0.25 * G) ** 2)
     assert of.value(np.array([[1.0, 1.0]]))[0] == pytest.approx(by_hand, rel=1e-12)

@@ -54,7 +54,7 @@ def state_space(loop: TransferLoop) -> StateSpace:
     """States of plant, sensor, terms, filters and servo in a row; the disturbance's own where it shares no poles.
 
     Raises:
-        InputError: the plant answers at once, so that an algebraic loop would have to be solved.
+        InputError: plant or disturbance answers at once, so that an algebraic loop would have to be solved.
     """
     own = loop.disturbance.den != loop.plant.den
     terms = tuple(term.block for term in loop.terms)
@@ -75,10 +75,11 @@ def state_space(loop: TransferLoop) -> StateSpace:
         out[0, at] += own_c
         return out
 
+    for what, block in (("plant", loop.plant), ("disturbance", loop.disturbance)):
+        if len(block.num) == len(block.den):
+            raise InputError(f"the {what} of loop '{loop.name}' answers at once; give the lag that every real one has")
     at, plant = next(place)
     plant_A, plant_b, plant_c = _observable(plant, None if own else loop.disturbance)
-    if plant.order == 0 or len(plant.num) == len(plant.den):
-        raise InputError(f"the plant of loop '{loop.name}' answers at once; give the lag that every real one has")
     A[0, at, at], c[at] = plant_A, plant_c
     if own:
         into, block = next(place)
