@@ -48,16 +48,20 @@ _COMPROMISE = (
 
 
 def _envelope(judge: Judge, front: Front) -> Array:
-    """Gains of the front of which none leaves less of the output at less of the actuator, by output, (n, g)."""
-    made = judge.of(front.gains)
-    both = made.variances[:, :, :2].mean(axis=1)
+    """Gains of the front of which none leaves less of the output at a lower actuator rate, by output, (n, g)."""
+    both = _both(judge, front.gains)
     first = np.flatnonzero(non_dominated(both))
     return front.gains[first[np.argsort(both[first, 0])]]
 
 
+def _both(judge: Judge, gains: Array) -> Array:
+    """Variances of output and actuator rate, means over what the loop meets, (n, 2)."""
+    return judge.of(gains).variances[:, :, [0, 2]].mean(axis=1)
+
+
 def _by_compromise(judge: Judge, gains: Array) -> list[int]:
     """Order of some gains by their largest distance from the best, output against actuator rate."""
-    both = np.log(np.maximum(judge.of(gains).variances[:, :, [0, 2]].mean(axis=1), 1e-300))
+    both = np.log(np.maximum(_both(judge, gains), 1e-300))
     far = (both - both.min(axis=0)) / np.maximum(np.ptp(both, axis=0), 1e-12)
     return np.argsort(far.max(axis=1), kind="stable").tolist()
 
@@ -121,24 +125,23 @@ def _about(some: Array, gains: Array) -> Array:
 
 
 def _following(task: Task, known: tuple[Judge, Front], seed: int, tell: Callable[[str], None]) -> Choice:
-    """The best compromise that follows the demand without overshooting, in simulation."""
+    """The compromise among those that follow the demand without overshooting, in simulation."""
     assert task.demand is not None
     judge, front = known
     some = _envelope(judge, front)
-    some = some[spread(judge.of(some).variances[:, :, :2].mean(axis=1), CANDIDATES)]
-    order = _by_compromise(judge, some)
-    worst: list[float] = []
-    for count, place in enumerate(order, start=1):
-        made = manoeuvres(task, judge.loop, "candidate", some[place], seed, draws=0)
-        worst.append(made[0].overshoot)
-        tell(f"choice: candidate {count} of {len(order)} carried through the demand")
-        if made[0].overshoot <= task.demand.overshoot:
-            why = (
-                _COMPROMISE,
-                f"It follows the demand with {100.0 * made[0].overshoot:.1f} % overshoot in the nonlinear model"
-                + (f"; {count - 1} better compromises overshoot more than allowed." if count > 1 else "."),
-            )
-            return Choice(judge, some[place], front.name, why)
-    least = int(np.argmin(worst))
-    why = (f"No candidate keeps the overshoot allowed; this one overshoots least, by {100.0 * worst[least]:.1f} %.",)
-    return Choice(judge, some[order[least]], front.name, why)
+    some = some[spread(_both(judge, some), 2 * CANDIDATES)]
+    over = np.empty(len(some))
+    for i, gains in enumerate(some):
+        over[i] = manoeuvres(task, judge.loop, "candidate", gains, seed, draws=0)[0].overshoot
+    tell(f"choice: {len(some)} candidates carried through the demand")
+    keeping = some[over <= task.demand.overshoot]
+    if not len(keeping):
+        least = int(np.argmin(over))
+        why = (f"No candidate keeps the overshoot allowed; this one overshoots least, by {100.0 * over[least]:.1f} %.",)
+        return Choice(judge, some[least], front.name, why)
+    why = (
+        f"{len(keeping)} of {len(some)} controllers along the front follow the demand in the nonlinear model with no more "
+        f"than the {100.0 * task.demand.overshoot:.3g} % of overshoot allowed.",
+        _COMPROMISE.replace("of the front", "of those"),
+    )
+    return Choice(judge, keeping[_by_compromise(judge, keeping)[0]], front.name, why)
