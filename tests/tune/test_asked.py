@@ -268,6 +268,8 @@ KIND = 'kind = "yu2014"'
         ),
         ([("[actuator]", "[schedule]\nspeeds = []\nheadings = [1.0]\nheights = [3.0]\n[actuator]")], "schedule.speeds"),
         ([("[actuator]", "[simulation]\nstep = 500\n[actuator]")], "simulation: steps of 500 s"),
+        ([("[actuator]", "[simulation]\nseeds = 1\n[actuator]")], "simulation.seeds = 1 gives no interval"),
+        ([("[actuator]", "[demand]\nchange = 0.1\n[actuator]")], "demand: a roll stabiliser follows no demand"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_with_a_fin_file_is_said(changes: list[tuple[str, str]], says: str, tmp_path: Path) -> None:
@@ -297,6 +299,11 @@ def test_what_is_wrong_with_a_fin_file_is_said(changes: list[tuple[str, str]], s
         ([('parts = ["KP", "KD"]', 'parts = ["KP", "KX"]')], "controller.parts[2] = 'KX'"),
         ([('parts = ["KP", "KD"]', "derivative_filter = -1")], "controller.derivative_filter = -1 is not positive"),
         ([("[demand]", "[demand]\novershoot = 2")], "demand.overshoot = 2"),
+        ([("[demand]", "[simulation]\n[demand]")], "simulation: there is no block [[seas]]"),
+        (
+            [("[demand]", "[schedule]\nspeeds = [7]\nheadings = [1]\nheights = [2]\n[demand]")],
+            "schedule: there is no block [[seas]]",
+        ),
     ],
 )
 def test_what_is_wrong_with_an_autopilot_file_is_said(

@@ -83,7 +83,7 @@ def _task(file: LoopFile, plant: Plant) -> Task:
         rivals=_rivals(file.given, loop),
         richer=tuple(richer(loop, table, f"richer[{i}]") for i, table in enumerate(file.richer, start=1)),
         plan=plan,
-        trials=_trials(file.simulation, demand),
+        trials=_trials(file.simulation, len(file.seas), demand),
         vessel=plant.vessel,
         demand=demand,
     )
@@ -122,12 +122,16 @@ def _rivals(given: Mapping[str, Mapping[str, float]], loop: TransferLoop) -> dic
     return dict(given)
 
 
-def _trials(table: SimulationTable | None, demand: Demand | None) -> Trials | None:
-    """The house's own for a stabiliser; none where a demand is followed or no seeds are wanted."""
+def _trials(table: SimulationTable | None, seas: int, demand: Demand | None) -> Trials | None:
+    """The house's own for a stabiliser in a sea; none where a demand is followed or no seeds are wanted."""
     if table is None:
-        return Trials() if demand is None else None
+        return Trials() if demand is None and seas else None
     if not table.seeds:
         return None
+    if not seas:
+        raise InputError("simulation: there is no block [[seas]] to simulate; leave the table out, or add one")
+    if table.seeds == 1:
+        raise InputError("simulation.seeds = 1 gives no interval; give two or more, or 0 for no simulation")
     duration = positive(table.duration, "s", "simulation.duration")
     step = positive(table.step, "s", "simulation.step")
     if step * 100.0 > duration:
@@ -137,6 +141,8 @@ def _trials(table: SimulationTable | None, demand: Demand | None) -> Trials | No
 
 def _demand(table: DemandTable, plant: Plant) -> Demand:
     """Without a time constant the ship's length over her speed; without a duration thirty time constants."""
+    if plant.disturbed_by == "alpha_w":
+        raise InputError("demand: a roll stabiliser follows no demand; leave the table out")
     unit = unit_of(plant.output)
     change = (
         angle(table.change, "demand.change", 20.0) if unit == "rad" else amount(table.change, unit, "demand.change")

@@ -36,7 +36,7 @@ def refuse_calm(met: tuple[Seaway | Unrest, ...], loop: TransferLoop, plan: Plan
     """Refuse seas, and headings of a schedule, that have no slope across the ship.
 
     Raises:
-        InputError: which one.
+        InputError: which one; or a schedule without any sea.
     """
     for i, one in enumerate((m for m in met if isinstance(m, Seaway)), start=1):
         try:
@@ -44,7 +44,11 @@ def refuse_calm(met: tuple[Seaway | Unrest, ...], loop: TransferLoop, plan: Plan
         except InputError as error:
             raise InputError(f"seas[{i}]: {error}") from None
     seas = [m for m in met if isinstance(m, Seaway)]
-    if plan is not None and (not seas or seas[0].spreading is None):
+    if plan is not None and not seas:
+        raise InputError(
+            "schedule: there is no block [[seas]] to give its spectrum; add one, or leave the schedule out"
+        )
+    if plan is not None and seas[0].spreading is None:
         for beta in plan.headings:
             if abs(math.sin(beta)) < 1e-6:
                 raise InputError(
