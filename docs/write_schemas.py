@@ -7,9 +7,16 @@ from seatrial.trial.design_json import design_schema
 from seatrial.trial.fit_json import fit_schema
 from seatrial.trial.schema import trial_schema
 from seatrial.trial.tuning_json import tuning_schema
+from seatrial.tune.schema import loop_schema
 
 if __name__ == "__main__":
-    schemas = {"design": design_schema(), "result": fit_schema(), "trial": trial_schema(), "tuning": tuning_schema()}
+    schemas = {
+        "design": design_schema(),
+        "loop": loop_schema(),
+        "result": fit_schema(),
+        "trial": trial_schema(),
+        "tuning": tuning_schema(),
+    }
     for name, schema in schemas.items():
         path = Path(__file__).with_name(f"{name}.schema.json")
         path.write_text(json.dumps(schema, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")

@@ -1,6 +1,8 @@
 """A loop file becomes the task it describes; whatever is wrong with one is said in one sentence with file and key."""
 
+import json
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +12,7 @@ from seatrial.loops import Seen
 from seatrial.loops.fin import GYRO, SERVO, Preamplifier, fin_loop
 from seatrial.sea.sea_state import sea_state
 from seatrial.tune.asked import task_of
+from seatrial.tune.schema import loop_schema
 from seatrial.tune.task import Effectiveness, Seaway, Trials, Unrest
 from seatrial.values import InputError
 from tune.loop_files import AUTOPILOT, FIN, model_file, nomoto, roll, written
@@ -335,3 +338,17 @@ def test_no_toml_and_no_file_are_said(text: str | None, says: str, tmp_path: Pat
         path.write_text(text)
     with pytest.raises(InputError, match=says):
         task_of(path)
+
+
+def test_the_published_schema_is_that_in_force(repository: Path) -> None:
+    published = json.loads((repository / "docs" / "loop.schema.json").read_text())
+    assert published == loop_schema(), "write docs/loop.schema.json again: python docs/write_schemas.py"
+
+
+def test_the_loops_in_the_docs_are_tasks(repository: Path, tmp_path: Path) -> None:
+    model_file(tmp_path, nomoto())
+    blocks = re.findall(r"^```toml\n(.*?)^```", (repository / "docs" / "loop-file.md").read_text(), re.M | re.S)
+    assert len(blocks) == 2 and all(len(block.splitlines()) <= 15 for block in blocks)
+    fin, autopilot = (task_of(written(tmp_path, block), model_file=given) for block, given in zip(
+        blocks, (None, tmp_path / "model.toml"), strict=True))  # fmt: skip
+    assert fin.demand is None and autopilot.demand is not None
