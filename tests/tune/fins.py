@@ -9,6 +9,7 @@ from seatrial.loops.fin import PUBLISHED_GAINS, Preamplifier, fin_loop
 from seatrial.loops.objective import off_target, variance
 from seatrial.results.tuning import Restriction
 from seatrial.sea.spectrum import ittc
+from seatrial.tune.front import Effort
 from seatrial.tune.task import Seaway, Task
 
 KNOT = 0.514444
@@ -21,6 +22,7 @@ VARIANCES = (
 TARGET = off_target("fin", Seen.ACTUATOR, math.radians(1.0) ** 2 * 150.31, one_sided=False)
 PAPERS = (VARIANCES[0], TARGET, VARIANCES[2])
 PUBLISHED = np.array(list(PUBLISHED_GAINS.values()))
+QUICK = Effort(population=60, generations=20, polished=12, rounds=4, neighbours=8000)
 LIMITS = Restriction(2.0, 0.2, 0.2, math.radians(22.0), math.radians(25.0), math.radians(18.0))
 
 

@@ -12,10 +12,9 @@ from seatrial.tune.feasible import refuse_infeasible
 from seatrial.tune.front import Effort, front, grid, hypervolume, non_dominated, spread, thinned
 from seatrial.tune.press import free_box, pressed, whole
 from seatrial.values import InputError
-from tune.fins import PAPERS, PUBLISHED, VARIANCES, fin_task
+from tune.fins import PAPERS, PUBLISHED, QUICK, VARIANCES, fin_task
 
 FREE = Restriction(peak=2.0)
-QUICK = Effort(population=60, generations=20, polished=12, rounds=4, neighbours=8000)
 
 
 def _silent(_: str) -> None:

@@ -140,8 +140,8 @@ def _following(task: Task, known: tuple[Judge, Front], seed: int, tell: Callable
         why = (f"No candidate keeps the overshoot allowed; this one overshoots least, by {100.0 * over[least]:.1f} %.",)
         return Choice(judge, some[least], front.name, why)
     why = (
-        f"{len(keeping)} of {len(some)} controllers along the front follow the demand in the nonlinear model with no more "
-        f"than the {100.0 * task.demand.overshoot:.3g} % of overshoot allowed.",
+        f"{len(keeping)} of {len(some)} controllers along the front follow the demand in the nonlinear model with no "
+        f"more than the {100.0 * task.demand.overshoot:.3g} % of overshoot allowed.",
         _COMPROMISE.replace("of the front", "of those"),
     )
     return Choice(judge, keeping[_by_compromise(judge, keeping)[0]], front.name, why)

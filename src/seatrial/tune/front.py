@@ -36,21 +36,20 @@ def hypervolume(objectives: Array, reference: Array) -> float:
     return float(volume(objectives, ref=reference))
 
 
-def front(judge: Judge, name: str, seed: int, tell: Callable[[str], None], effort: Effort | None = None) -> Front:
+def front(judge: Judge, name: str, seed: int, tell: Callable[[str], None], effort: Effort) -> Front:
     """The feasible non-dominated gains found; empty where nothing is feasible (see `least_excess`)."""
-    work = effort or Effort()
     rng = np.random.default_rng(seed)
-    explored = _explored(judge, seed, work)
+    explored = _explored(judge, seed, effort)
     tell(f"{name}: explored")
     count = len(explored)
     kept, values = _best(judge, explored)
     if len(kept):
-        edge = np.array([pressed(judge, kept[i], values[i]) for i in spread(values, work.polished)])
+        edge = np.array([pressed(judge, kept[i], values[i]) for i in spread(values, effort.polished)])
         kept, values = _best(judge, np.concatenate([kept, edge]))
         tell(f"{name}: polished")
         low, high = free_box(judge)[1]
-        for size in np.geomspace(0.06, 0.004, work.rounds):
-            base = kept[rng.integers(len(kept), size=work.neighbours)]
+        for size in np.geomspace(0.06, 0.004, effort.rounds):
+            base = kept[rng.integers(len(kept), size=effort.neighbours)]
             step = size * (high - low) * rng.standard_normal(base.shape) * rng.random((len(base), 1))
             near = np.clip(base + step, low, high)
             kept, values = _best(judge, np.concatenate([kept, near]))
@@ -77,7 +76,7 @@ def _best(judge: Judge, free: Array) -> tuple[Array, Array]:
     return points[first], values[first]
 
 
-def _explored(judge: Judge, seed: int, work: Effort) -> Array:
+def _explored(judge: Judge, seed: int, effort: Effort) -> Array:
     """Every point that NSGA-II (Deb et al. 2002, IEEE Trans. Evol. Comput. 6, 182-197) asked about, (n, f)."""
     from pymoo.algorithms.moo.nsga2 import NSGA2
     from pymoo.core.problem import Problem
@@ -94,7 +93,7 @@ def _explored(judge: Judge, seed: int, work: Effort) -> Array:
             out["G"] = np.where(np.isfinite(made.excess), made.excess, 1e30)
 
     problem = Asked(n_var=len(places), n_obj=len(judge.objectives), n_ieq_constr=3, xl=low, xu=high)
-    search(problem, NSGA2(pop_size=work.population), ("n_gen", work.generations), seed=seed, verbose=False)
+    search(problem, NSGA2(pop_size=effort.population), ("n_gen", effort.generations), seed=seed, verbose=False)
     return np.concatenate(seen)
 
 

@@ -15,7 +15,7 @@ from seatrial.tune.controller import components, controller
 from seatrial.tune.demand import manoeuvres
 from seatrial.tune.feasible import refuse_infeasible
 from seatrial.tune.findings import findings
-from seatrial.tune.front import front, grid, hypervolume, thinned
+from seatrial.tune.front import Effort, front, grid, hypervolume, thinned
 from seatrial.tune.sail import paired, sailed
 from seatrial.tune.schedule import schedule
 from seatrial.tune.task import Task
@@ -40,22 +40,29 @@ class _Checked:
     is_interrupted: bool = field(default=False)
 
 
-def tune(task: Task, *, seed: int = 0, progress: Callable[[str], None] = lambda _: None) -> Tuning:
-    """Tune the task's loop; the same seed gives the same gains.
+def tune(
+    task: Task,
+    *,
+    seed: int = 0,
+    progress: Callable[[str], None] = lambda _: None,
+    effort: Effort | None = None,
+) -> Tuning:
+    """Tune the task's loop; the same seed gives the same gains, `effort` is that of each front.
 
     Raises:
         InputError: no gains keep the restrictions (which, by how much), or the simulation runs away.
     """
     began = time.perf_counter()
     judges = (judge(task), *(judge(task, loop) for loop in task.richer))
-    fronts = tuple((one, _front(one, task, seed, progress)) for one in judges)
+    fronts = tuple((one, _front(one, task, seed, progress, effort or Effort())) for one in judges)
     if not len(fronts[0][1].gains):
         refuse_infeasible(judges[0], seed)
     choice = choose(task, fronts, seed, progress)
     chosen = controller(choice.judge, "chosen", choice.gains)
     rivals = {name: np.array([gains[n] for n in task.loop.gains.names]) for name, gains in task.rivals.items()}
     others = tuple(controller(judges[0], name, gains) for name, gains in rivals.items())
-    checked = _check(task, choice, rivals, seed, progress)
+    stable = {one.name: rivals[one.name] for one in others if np.isfinite(one.peak)}
+    checked = _check(task, choice, stable, seed, progress)
     return Tuning(
         question=task.question,
         name=task.name,
@@ -102,10 +109,10 @@ def tune(task: Task, *, seed: int = 0, progress: Callable[[str], None] = lambda 
     )
 
 
-def _front(one: Judge, task: Task, seed: int, tell: Callable[[str], None]) -> Front:
+def _front(one: Judge, task: Task, seed: int, tell: Callable[[str], None], effort: Effort) -> Front:
     """The front of one loop; with up to three free gains its hypervolume over that of a grid, to the grid's nadir."""
     name = f"{len(one.loop.gains.free)} gains" if one.loop is task.loop else one.loop.name
-    made = front(one, name, seed, tell)
+    made = front(one, name, seed, tell, effort)
     count = _GRID.get(len(one.loop.gains.free))
     if count is None or not len(made.gains):
         return made
