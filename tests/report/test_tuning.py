@@ -16,7 +16,8 @@ from seatrial.report.figures.margins import nyquist, sensitivities
 from seatrial.report.figures.scales import scale_of
 from seatrial.report.figures.schedule_maps import schedule_maps
 from seatrial.report.told_tuning import compared, followed, sentences
-from seatrial.report.tuning import TITLES, html, schedule_sheet, transfer_latex
+from seatrial.report.tuning import TITLES, html
+from seatrial.report.tuning_rows import schedule_sheet, shown_gains, transfer_latex
 from seatrial.results.tuning import Component, Paired, Tuning
 from seatrial.values import Finding, Severity
 
@@ -116,6 +117,15 @@ def test_a_schedule_that_is_unstable_elsewhere_says_so(fin: Tuning) -> None:
     assert "‘given’ is unstable in 1" in sentences(told)[-1]
     assert "unst." in schedule_maps(told.schedule)
     assert "unstable" in schedule_sheet(told.schedule).rows[0]
+
+
+def test_what_rounding_left_of_a_zero_is_zero() -> None:
+    rows = [{"KP": 12.5, "KI": 7e-15}, {"KP": 3.0, "KI": 0.25}, {"KP": 1e-6}]
+    assert shown_gains(rows, ["KP", "KI"]) == [
+        ("12.5", "0"),
+        ("3", "0.25"),
+        ("1×10⁻⁶".replace("×", "\u202f×\u202f"), "–"),
+    ]
 
 
 def test_maps_show_every_condition_of_every_set(fin: Tuning) -> None:

@@ -1,16 +1,19 @@
 """Pareto fronts: a panel for each pair of objectives, the chosen controller and its rivals marked."""
 
+import math
 import re
+import textwrap
 from itertools import combinations
 
 import numpy as np
 
-from seatrial.report.figures.plot import ACCENT, INK, SECOND, WIDTH, Panel, clipped, drawing
+from seatrial.report.figures.plot import ACCENT, INK, SECOND, WIDTH, Panel, clipped, drawing, text
 from seatrial.report.figures.scales import Entry, Mark, Scale, grid, legend, scale_of
 from seatrial.results.tuning import Controller, Front, Tuning
 from seatrial.values import Array
 
-POINTS, COLUMNS, LEFT = 400, 3, 58.0
+POINTS, COLUMNS, LEFT = 400, 3, 46.0
+LETTER, LINE = 5.4, 14.0
 CHOSEN = Mark("diamond", 5.4, "#ffffff", SECOND)
 RIVALS = tuple(Mark(shape, 4.6, INK, "#ffffff") for shape in ("square", "up", "down", "right"))
 FRONTS = (Mark("dot", 1.9, ACCENT), Mark("cross", 2.1, "#8e6c1f"), Mark("up", 2.4, "#2e7d5b"),
@@ -44,18 +47,28 @@ def fronts(tuning: Tuning) -> str:
     points = [_thinned(front, factors) for front in drawn]
     marks = [(c.objectives * factors, mark) for c, mark in marked(tuning) if len(c.objectives) == len(factors)]
     scales = [scale_of([*(p[:, k] for p in points), *(m[k : k + 1] for m, _ in marks)]) for k in range(len(factors))]
-    labels = [_label(name, unit) for name, unit in zip(tuning.objectives, tuning.units, strict=True)]
     head, top = legend(_entries(tuning, drawn))
     columns = min(COLUMNS, len(pairs))
     width, height = (WIDTH / 3 - LEFT - 14, 200.0) if columns > 1 else (520.0, 300.0)
-    parts, bottom = [head], top
+    names = [textwrap.wrap(_label(name, unit), int(width / LETTER), break_long_words=False) or [""]
+             for name, unit in zip(tuning.objectives, tuning.units, strict=True)]  # fmt: skip
+    room = LINE * max(len(lines) for lines in names)
+    step = height + 2.0 * room + 34.0
+    parts = [head]
     for k, (i, j) in enumerate(pairs):
-        place = (LEFT + (LEFT + width + 14) * (k % columns), top + 10 + (height + 54) * (k // columns))
+        place = (LEFT + (LEFT + width + 14) * (k % columns), top + 10 + room + step * (k // columns))
         panel = Panel(*place, width, height, scales[i].ends, scales[j].ends)
-        parts.append(grid(panel, scales[i], scales[j], x_label=labels[i], y_label=labels[j], about=(4, 5)))
+        parts.append(grid(panel, scales[i], scales[j], about=(4, 5)) + _named(panel, names[i], names[j]))
         parts.append(clipped(panel, _points(panel, (scales[i], scales[j]), (i, j), points, marks)))
-        bottom = panel.top + height + 36
-    return drawing(parts, bottom, "front of the objectives")
+    return drawing(parts, top + step * math.ceil(len(pairs) / columns), "front of the objectives")
+
+
+def _named(panel: Panel, x: list[str], y: list[str]) -> str:
+    """Names of the axes, line by line: that of y above the panel, that of x below it."""
+    above, below = panel.top - 8 - LINE * (len(y) - 1), panel.top + panel.height + 29
+    right = panel.left + panel.width
+    parts = [text(panel.left - 26, above + LINE * n, line) for n, line in enumerate(y)]
+    return "".join(parts + [text(right, below + LINE * n, line, anchor="end") for n, line in enumerate(x)])
 
 
 def _points(panel: Panel, scales: tuple[Scale, Scale], pair: tuple[int, int], points: list[Array],
