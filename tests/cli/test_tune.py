@@ -78,6 +78,14 @@ def test_an_autopilot_has_no_schedule_to_write_and_says_what_it_turns(
     said = capsys.readouterr().out
     assert "psi [deg]" in said and "stable for 100 of 100 ships that the fit allows" in said
     assert "does not settle" in said
+    (row,) = [line for line in said.splitlines() if line.startswith("chosen   ")]
+    assert len(row.split()) == 7, "a heading drifts without control; it has no reduction"
+
+
+def test_a_speed_is_told_in_its_own_units(capsys: pytest.CaptureFixture) -> None:
+    print_tuning(replace(fabricated_bare(), output="u", actuator="v_j"))
+    head = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("controller"))
+    assert "u [m/s]" in head and "v_j [m/s]" in head and "rate [m/s^2]" in head
 
 
 def test_what_was_not_examined_is_not_printed(capsys: pytest.CaptureFixture) -> None:

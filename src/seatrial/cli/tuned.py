@@ -45,7 +45,10 @@ def _print_controllers(tuning: "Tuning") -> None:
 
     units = {name: NOTATION[name].unit if name in NOTATION else "1" for name in (tuning.output, tuning.actuator)}
     shown = {name: display(unit) for name, unit in units.items()}
-    rate = f"{shown[tuning.actuator][1]}/s"
+    unit = shown[tuning.actuator][1]
+    rate = f"{unit}^2" if unit.endswith("/s") else f"{unit}/s"
+    # without control an integrator carries the output anywhere: there is nothing to compare with
+    drifts = any(c.role == "plant" and c.den[-1] == 0.0 for c in tuning.components)
     heads = (f"{name} [{shown[name][1]}]" for name in (tuning.output, tuning.actuator))
     print(
         f"{'controller':20s} {'reduced %':>9s} "
@@ -61,7 +64,7 @@ def _print_controllers(tuning: "Tuning") -> None:
         cells = " ".join(f"{size:14.4g}" for size in sizes)
         beyond = f"{100.0 * c.saturation:7.1f} {100.0 * c.rate_saturation:11.1f}"
         notes = "; ".join(c.broken)
-        reduction = "" if math.isnan(c.reduction) else f"{100.0 * c.reduction:.1f}"
+        reduction = "" if drifts or math.isnan(c.reduction) else f"{100.0 * c.reduction:.1f}"
         print(f"{c.name:20s} {reduction:>9s} {cells} {c.peak:6.3g} {beyond}  {notes}".rstrip())
 
 
