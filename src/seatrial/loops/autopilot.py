@@ -2,7 +2,7 @@
 
 Start values place poles (Fossen 2021, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., section 15.3)
 on the plant of first or second order that has the same frequency response at the natural frequency asked for, so that
-they hold for any plant and are the textbook's own for a Nomoto ship. Bounds are the same at a higher frequency.
+they hold for any plant and are the textbook's own for a Nomoto ship. Bounds are the same at other frequencies.
 """
 
 import math
@@ -15,12 +15,14 @@ from seatrial.values import InputError, Parameter, Parameters
 
 FOSSEN = "pole placement, Fossen 2021, section 15.3"
 DAMPING = 0.8
-_START, _WIDEST, _SLOWER = 1.5, 6.0, 10.0
+_SLOWEST, _START, _FASTEST = 0.75, 1.5, 6.0
+_STRONGEST = 10.0
 _FILTER = 0.1
 _LEAST = 1e-9
 MEANINGS = {"KP": "proportional gain", "KI": "gain of the integral", "KD": "gain of the filtered derivative"}
 UNITS = {"KP": "1", "KI": "1/s", "KD": "s"}
 Gains = dict[str, float]
+Bounded = tuple[float, float, float]
 
 
 def steering_gear(time_constant: float) -> Block:
@@ -61,8 +63,8 @@ def heading_loop(
         KP = omega**2 * slope
         return {"KP": KP, "KI": 0.1 * omega * KP, "KD": 2.0 * DAMPING * omega * slope - inverse}
 
-    gains, sign = _between(placed(_START * scale), placed(_WIDEST * scale), "KP")
-    tau = _FILTER / (_WIDEST * scale) if derivative_filter is None else derivative_filter
+    gains, sign = _between([placed(c * scale) for c in (_SLOWEST, _START, _FASTEST)], "KP")
+    tau = _FILTER / (_FASTEST * scale) if derivative_filter is None else derivative_filter
     return _loop(
         name, plant, disturbance, servo, sign, gains, parts, tau, integral_lag, ("psi", actuator, disturbed_by)
     )
@@ -88,7 +90,7 @@ def speed_loop(
         inverse, slope = _local(plant, omega, integrators=0)
         return {"KP": 2.0 * DAMPING * omega * slope - inverse, "KI": omega**2 * slope}
 
-    gains, sign = _between(placed(_START * scale), placed(_WIDEST * scale), "KI")
+    gains, sign = _between([placed(c * scale) for c in (_SLOWEST, _START, _FASTEST)], "KI")
     parts, names = ("KP", "KI"), ("u", actuator, disturbed_by)
     return _loop(name, plant, disturbance, servo, sign, gains, parts, math.inf, math.inf, names)
 
@@ -119,10 +121,10 @@ def pitch_loop(
     top, damped = float(omega[place]), 1.0 / float(np.abs(plant.at(omega[place : place + 1]))[0])
     start = {"KP": 0.0, "KI": 0.0, "KD": damped / top}
     stiff = 1.0 / abs(plant.gain)
-    most = {"KP": 2.0 * stiff, "KI": 0.5 * top * stiff, "KD": _SLOWER * damped / top}
+    most = {"KP": 2.0 * stiff, "KI": 0.5 * top * stiff, "KD": _STRONGEST * damped / top}
     sign = math.copysign(1.0, float(np.imag(1.0 / plant.at(omega[place : place + 1]))[0]))
     tau = _FILTER / top if derivative_filter is None else derivative_filter
-    gains = {gain: (start[gain], most[gain]) for gain in start}
+    gains = {gain: (0.0, start[gain], most[gain]) for gain in start}
     names = (output, actuator, disturbed_by)
     return _loop(name, plant, disturbance, servo, sign, gains, parts, tau, math.inf, names)
 
@@ -147,19 +149,21 @@ def _local(plant: Block, omega: float, *, integrators: int) -> tuple[float, floa
     return inverse.real, inverse.imag / omega
 
 
-def _between(start: Gains, most: Gains, leading: str) -> tuple[dict[str, tuple[float, float]], float]:
-    """Value and upper bound of each gain, none negative, and the sign of the plant."""
+def _between(placed: list[Gains], leading: str) -> tuple[dict[str, Bounded], float]:
+    """Lower bound, value and upper bound of each gain, none negative, and the sign of the plant."""
+    low, start, most = placed
     sign = math.copysign(1.0, most[leading])
     made = {}
     for gain, value in most.items():
         upper = max(sign * value, 0.0) or abs(value)
-        made[gain] = (min(max(sign * start[gain], 0.0), upper), upper)
+        lower, begun = (min(max(sign * one[gain], 0.0), upper) for one in (low, start))
+        made[gain] = (min(lower, begun), begun, upper)
     return made, sign
 
 
 def _loop(
     name: str, plant: Block, disturbance: Block, servo: tuple[Block, ...], sign: float,
-    gains: dict[str, tuple[float, float]], parts: tuple[str, ...], tau: float, lag: float, names: tuple[str, str, str],
+    gains: dict[str, Bounded], parts: tuple[str, ...], tau: float, lag: float, names: tuple[str, str, str],
 ) -> TransferLoop:  # fmt: skip
     if not parts or set(parts) - set(gains):
         raise InputError(f"loop '{name}': its gains are {', '.join(gains)}, not {', '.join(parts) or 'none'}")
@@ -186,5 +190,5 @@ def _loop(
     )
 
 
-def _gain(name: str, value: float, upper: float) -> Parameter:
-    return Parameter(name, value, UNITS[name], 0.0, upper, free=True, source=FOSSEN, meaning=MEANINGS[name])
+def _gain(name: str, lower: float, value: float, upper: float) -> Parameter:
+    return Parameter(name, value, UNITS[name], lower, upper, free=True, source=FOSSEN, meaning=MEANINGS[name])

@@ -13,9 +13,7 @@ from seatrial.simulate.closed_loop import REFERENCE, ActuatorLimits, ClosedLoop
 from seatrial.tune.fleet import DRAWS, fleet, robust
 from seatrial.tune.stand_in import stand_in
 from seatrial.tune.task import Demand, Task, Vessel
-from seatrial.values import NOTATION, Array, Channel, InputError, Kind, Provenance, Record, frozen
-
-__all__ = ["manoeuvres", "robust"]
+from seatrial.values import NOTATION, Array, Channel, DivergedError, InputError, Kind, Provenance, Record, frozen
 
 DEMAND = "demand"
 _SHOWN, _SAMPLES = 20, 1000
@@ -49,9 +47,7 @@ def manoeuvres(
         InputError: the task has no demand.
         DivergedError: the loop runs away on the identified ship itself.
     """
-    demand = task.demand
-    if demand is None:
-        raise InputError(f"tuning '{task.name}' follows no demand; give a change")
+    demand = _demanded(task)
     ship = task.vessel or stand_in(loop)
     drawn = fleet(ship, draws, seed)
     stable = drawn.stable(loop, gains)
@@ -60,6 +56,29 @@ def manoeuvres(
         _carried_out(one, ship, loop, name, gains, limits, drawn.ships, (sum(stable), drawn.draws))
         for one in _programmes(task, loop, gains, demand)
     )
+
+
+def shortfall(task: Task, loop: TransferLoop, gains: Array, *, draws: int = DRAWS) -> tuple[float, str]:
+    """How far the gains (g,) are from following the task's change, to be compared, and why; 0 and nothing if they do.
+
+    Every ship drawn is to be stable; the identified one settles within 5 % and overshoots no more than allowed.
+
+    Raises:
+        InputError: the task has no demand.
+    """
+    asked = _demanded(task)
+    stable, drawn = robust(task, gains, loop, draws=draws)
+    lost = drawn - stable
+    try:
+        change = manoeuvres(task, loop, "", gains, 0, draws=0)[0]
+    except DivergedError:
+        return 100.0 + lost, "the identified ship runs away"
+    beyond = max(change.overshoot - asked.overshoot, 0.0)
+    is_slow = math.isnan(change.settling)
+    why = [f"{lost} of {drawn} ships that the fit allows are not stable"] if lost else []
+    why += ["the change does not settle within 5 %"] if is_slow else []
+    why += [f"it overshoots by {100.0 * change.overshoot:.1f} %"] if beyond else []
+    return lost + float(is_slow) + beyond, " and ".join(why)
 
 
 def follow(
@@ -115,6 +134,12 @@ def settling(output: Array, demand: Array, begun: tuple[int, ...], dt: float) ->
             return math.nan
         slowest = max(slowest, (outside[-1] + 1) * dt if outside.size else 0.0)
     return slowest
+
+
+def _demanded(task: Task) -> Demand:
+    if task.demand is None:
+        raise InputError(f"tuning '{task.name}' follows no demand; give a change")
+    return task.demand
 
 
 def _programmes(task: Task, loop: TransferLoop, gains: Array, demand: Demand) -> tuple[_Programme, ...]:
