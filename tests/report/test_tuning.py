@@ -97,12 +97,20 @@ def test_demands_are_told_with_the_ships_drawn() -> None:
     chosen, given = fabricated_autopilot().manoeuvres
     assert followed(chosen) == (
         "In the course change of 20 deg it does not overshoot and settles in 96.0 s; 100 of 100 ships that the fit "
-        "allows are stable, of which the worst overshoots by 0.4 %."
+        "allows are stable, and each overshoots by 0.4 % at most."
     )
     assert followed(given).endswith("overshoots by 6.8 % and does not settle.")
+    assert followed(replace(chosen, worst_overshoot=0.0)).endswith("are stable, and none overshoots.")
     lost = replace(chosen, stable_draws=99, worst_overshoot=math.inf)
     assert followed(lost).endswith("99 of 100 ships that the fit allows are stable; "
                                    "not every one comes through the simulation.")  # fmt: skip
+
+
+def test_a_loop_that_follows_is_judged_by_what_is_left() -> None:
+    autopilot = fabricated_autopilot()
+    told = replace(autopilot, chosen=replace(autopilot.chosen, reduction=0.9999))
+    assert sentences(told)[0].startswith("By linear theory 0.60° rms of the heading is left, with 1.4° and 0.29°/s rms")
+    assert "reduction" not in html(told)
 
 
 def test_findings_stand_by_severity(fin: Tuning) -> None:

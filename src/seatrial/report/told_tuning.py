@@ -20,6 +20,12 @@ def sentences(tuning: Tuning) -> list[str]:
     return [sentence for sentence in [*told, _scheduled(tuning)] if sentence]
 
 
+def is_compared(tuning: Tuning) -> bool:
+    """Whether a reduction means something: a loop that follows a demand is judged by what is left, not by that."""
+    known = any(math.isfinite(c.reduction) for c in (tuning.chosen, *tuning.rivals))
+    return known and not tuning.manoeuvres
+
+
 def amount(symbol: str, value: float, per: str = "") -> str:
     """A value of a channel of that symbol in the unit people read: ``2.1°``, ``9.1°/s``, ``0.3 m/s``; `per`: ``/s``."""
     factor, shown = shown_unit(symbol)
@@ -50,7 +56,7 @@ def _motion(tuning: Tuning) -> str:
     moved += [amount(tuning.actuator, rms["actuator_rate"], "/s")] if "actuator_rate" in rms else []
     effort = f", with {' and '.join(moved)} rms of the {channel(tuning.actuator)}" if moved else ""
     left = amount(tuning.output, rms["output"]) if "output" in rms else ""
-    if math.isfinite(c.reduction):
+    if is_compared(tuning):
         to = f", to {left} rms" if left else ""
         return (
             f"By linear theory these gains reduce the {channel(tuning.output)} by {percent(c.reduction)}{to}{effort}."
@@ -125,7 +131,9 @@ def followed(m: Manoeuvre) -> str:
     told += f" and settles in {significant(m.settling, 3)} s" if math.isfinite(m.settling) else " and does not settle"
     if m.draws:
         told += f"; {m.stable_draws} of {m.draws} ships that the fit allows are stable"
-        told += f", of which the worst {_overshooting(m.worst_overshoot)}" if math.isfinite(m.worst_overshoot) else ""
+        if math.isfinite(m.worst_overshoot):
+            worst = f"overshoots by {percent(m.worst_overshoot)} at most" if m.worst_overshoot > 0.0 else "overshoots"
+            told += f", and {'each' if m.worst_overshoot > 0.0 else 'none'} {worst}"
         told += "; not every one comes through the simulation" if math.isinf(m.worst_overshoot) else ""
     return f"{told}."
 

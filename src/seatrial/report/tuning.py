@@ -1,7 +1,5 @@
 """The page of a tuned controller: recommendation, front, margins, simulation, schedule, the loop itself."""
 
-import math
-
 import numpy as np
 from markupsafe import Markup
 
@@ -53,7 +51,7 @@ def html(tuning: Tuning) -> str:
             (name, fronts.people_s(unit)[1]) for name, unit in zip(tuning.objectives, tuning.units, strict=True)
         ],
         "rms_heads": tuning_rows.rms_heads(tuning),
-        "has_reduction": any(math.isfinite(c.reduction) for c in (tuning.chosen, *tuning.rivals)),
+        "has_reduction": told_tuning.is_compared(tuning),
         "controllers": controllers,
         "front": Markup(drawn),
         "sensitivities": Markup(margins.sensitivities(tuning)),
