@@ -21,6 +21,7 @@ from seatrial.identify.rolling import rolling
 from seatrial.identify.seakeeping import seakeeping
 from seatrial.identify.spectral import spectral_fit
 from seatrial.identify.swinging import chosen_by_runs
+from seatrial.identify.unknown_waves import fit_in_unknown_waves, is_rolled_by_unknown_waves
 from seatrial.information.frequency_range import frequency_range, represented
 from seatrial.information.symmetries import refuse_structural, structural
 from seatrial.predict.forecast import forecast
@@ -100,6 +101,8 @@ def identify(
     refuse_structural(trial.model, outputs, forces)
     symmetries = structural(trial.model, outputs, forces)
     found = identified(trial.model, runs, sessions, length, settings, progress)
+    if settings.criterion is Criterion.AUTO and is_rolled_by_unknown_waves(found, runs):
+        return fit_in_unknown_waves(trial, runs, findings, seed, began)
     refuse_unmeasured_waves(found, runs)
     refuse_singular(*_data_and_prior(found))
     untold = outcome.untold(found)

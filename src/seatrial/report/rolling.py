@@ -5,13 +5,14 @@ import math
 import numpy as np
 from markupsafe import Markup
 
+from seatrial.report.figures.curves import curves
 from seatrial.report.figures.swings import swings
 from seatrial.report.numbers import DASH, estimate, fixed, significant
 from seatrial.report.sheets import Sheet
-from seatrial.results import Figure, Rolling
+from seatrial.results import Curve, Figure, Rolling
 from seatrial.results.rolling import Estimated
 
-_SHOWN = 5
+_SHOWN, _DEGREES = 5, 180.0 / math.pi
 
 
 def sheets(known: Rolling, scale: float) -> list[Sheet]:
@@ -26,7 +27,8 @@ def sheets(known: Rolling, scale: float) -> list[Sheet]:
     header = ("Quantity", "estimate", "95 % from", "to", *(("at full scale",) if has_scale else ()))
     made = tuple(_row(name, value, factor, has_scale=has_scale) for name, value, factor in rows if value is not None)
     note = f"Radius of gyration: {known.assumed}. The range of GM has the whole range of that radius in it."
-    return [Sheet("What the coefficients mean", header, _numeric(header), made, note), _by_amplitude(known)]
+    first = Sheet("What the coefficients mean", header, _numeric(header), made, note)
+    return [first, _by_amplitude(known)] if known.amplitude else [first]
 
 
 def _row(name: str, value: Estimated, factor: float, *, has_scale: bool) -> tuple[str, ...]:
@@ -43,7 +45,7 @@ def _numeric(header: tuple[str, ...]) -> tuple[bool, ...]:
 
 
 def _by_amplitude(known: Rolling) -> Sheet:
-    places = np.linspace(0, len(known.amplitude) - 1, _SHOWN + 1).round().astype(int)[1:] if known.amplitude else ()
+    places = np.linspace(0, len(known.amplitude) - 1, _SHOWN + 1).round().astype(int)[1:]
     rows = tuple(
         (
             fixed(math.degrees(known.amplitude[i]), 1),
@@ -66,5 +68,16 @@ def figures(known: Rolling) -> list[tuple[Markup, Figure]]:
     said = "Equivalent linear damping and period over the amplitude of a swing, the model with its 95 % band."
     if known.swings:
         said += " Dots: each recorded swing by itself, its damping 2 ln(aᵢ / aᵢ₊₂) / T, without any model."
+    if known.spectrum:
+        return [_spectrum(known)]
     drawn = swings(known)
     return [(Markup(drawn), Figure("Damping and period", "", "", (), said))] if drawn else []
+
+
+def _spectrum(known: Rolling) -> tuple[Markup, Figure]:
+    """Recorded and expected density of roll."""
+    omega, seen, expected = (np.array(column) for column in zip(*known.spectrum, strict=True))
+    lines = (Curve("recorded, smoothed", omega, _DEGREES**2 * seen), Curve("expected", omega, _DEGREES**2 * expected))
+    note = "The sea's own spectrum, of one peak, is estimated with natural period and damping."
+    made = Figure("Spectrum of roll", "frequency, rad/s", "deg\u00b2 s/rad", lines, note)
+    return Markup(curves(made)), made

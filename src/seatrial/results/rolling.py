@@ -28,6 +28,8 @@ class Rolling:
         damping: equivalent linear damping b_e, 1/s, over amplitude, with its band; period: s, likewise.
         swings: amplitude [rad], logarithmic damping [1/s] and period [s] of each recorded swing, without any model;
             empty where something drove her.
+        spectrum: in waves that nobody measured: frequency [rad/s], recorded (smoothed) and expected density of roll
+            [rad^2 s/rad]; curves over amplitude are empty then.
     """
 
     natural_period: Estimated
@@ -43,3 +45,4 @@ class Rolling:
     period_lower: tuple[float, ...]
     period_upper: tuple[float, ...]
     swings: tuple[tuple[float, float, float], ...] = ()
+    spectrum: tuple[tuple[float, float, float], ...] = ()

@@ -164,6 +164,9 @@ class RollingEntry(Entry):
     swings: list[tuple[Number, Number, Number]] = Field(
         description="amplitude, logarithmic damping, period of each recorded swing of a decay, without any model"
     )
+    spectrum: list[tuple[Number, Number, Number]] = Field(
+        description="in waves nobody measured: frequency, recorded and expected density of roll, rad^2 s/rad"
+    )
 
 
 class FindingEntry(Entry):
