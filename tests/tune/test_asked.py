@@ -70,6 +70,22 @@ def test_fins_of_a_ship_known_by_a_decay(tmp_path: Path) -> None:
     assert task_of(moved, model_file=known).loop.plant == task.loop.plant
 
 
+def test_fins_identified_with_the_roll_keep_their_value(tmp_path: Path) -> None:
+    """They lift with the square of the speed all the same; a second value is refused."""
+    plant = ("roll = { num = [1.0], den = [1.43242, 0.3796, 1.0] }", 'model = "model.toml"')
+    known = roll()
+    fins = known.with_values({"K_alpha": 0.3})
+    model_file(tmp_path, fins.with_parameters(fins.parameters.freed("K_alpha")))
+    with pytest.raises(InputError, match="identified K_alpha; leave K_alpha out"):
+        task_of(written(tmp_path, FIN, plant))
+    faster = ("K_alpha = 0.256", 'at_speed = { value = 9, unit = "kn" }')
+    task = task_of(written(tmp_path, FIN, plant, faster))
+    assert task.loop.plant.gain == pytest.approx(1.2) and task.effectiveness is Effectiveness.SPEED_SQUARED
+    model_file(tmp_path, known)
+    with pytest.raises(InputError, match="key 'K_alpha' is missing, and the model of"):
+        task_of(written(tmp_path, FIN, plant, faster))
+
+
 def test_the_fins_lift_with_the_square_of_the_speed(tmp_path: Path) -> None:
     half = ("K_alpha = 0.256", 'K_alpha = 0.256\nat_speed = { value = 36, unit = "kn" }')
     assert task_of(written(tmp_path, FIN, half)).loop.plant.gain == pytest.approx(0.064)
@@ -185,6 +201,21 @@ upper = 10
     assert abs(notched.filters[0].at(np.array([own]))[0]) == pytest.approx(0.1)
 
 
+def test_richer_controllers_leave_fixed_gains_and_bounds_alone(tmp_path: Path) -> None:
+    more = """
+[controller.gains]
+KP = { lower = 0, upper = 20 }
+KI = { value = 0.3, fixed = true }
+[[richer]]
+add = ["band-pass", "low-pass"]
+upper = 10
+"""
+    (five,) = task_of(written(tmp_path, FIN + more)).richer
+    assert five.gains["KI"].value == 0.3 and "KI" not in five.gains.free_names
+    assert five.gains["KP"].upper == 20.0 and five.gains["KB"].upper == 10.0
+    assert all(p.lower <= p.value <= p.upper for p in five.gains.free)
+
+
 def test_gains_of_an_autopilot_in_any_bounds(tmp_path: Path) -> None:
     model_file(tmp_path, nomoto())
     bounds = (
@@ -298,6 +329,7 @@ def test_what_is_wrong_with_a_fin_file_is_said(changes: list[tuple[str, str]], s
         ([("[[unrest]]", f"[[seas]]\nheight = 2\n{SEA}\n[[unrest]]")], "seas: a sea acts through its slope"),
         ([("[demand]", 'minimise = ["roll"]\n[demand]')], "unknown key 'unrest[1].minimise'"),
         ([("[plant]", 'minimise = ["roll"]\n[plant]')], "minimise[1]: 'roll' is a word of roll stabilisers"),
+        ([('kind = "pid"\nparts = ["KP", "KD"]', 'kind = "yu2014"')], "controller.kind: 'yu2014' is a fin loop"),
         ([("value = 20", "value = 0")], "demand.change = 0 is not positive"),
         ([('parts = ["KP", "KD"]', 'parts = ["KP", "KX"]')], "controller.parts[2] = 'KX'"),
         ([('parts = ["KP", "KD"]', "derivative_filter = -1")], "controller.derivative_filter = -1 is not positive"),

@@ -25,6 +25,8 @@ def loop_asked(table: ControllerTable, servo: Sequence[BlockTable], plant: Plant
     own = blocks(servo, "actuator.servo")
     match table.kind:
         case "yu2014":
+            if plant.output != "phi":
+                raise InputError(f"controller.kind: 'yu2014' is a fin loop, not one on '{plant.output}'; write 'pid'")
             made = fin_loop(Preamplifier[table.preamplifier.upper()], K_q=table.K_q)
             made = replace(made, servo=own or (SERVO,))
         case "pid":

@@ -85,18 +85,18 @@ def _speed(table: PlantTable) -> float:
 
 def _of_roll(roll: Block, table: PlantTable, fin: FinTable) -> Plant:
     U = _speed(table)
-    K_alpha, law, words = _fin(fin, U)
+    K_alpha, law, words = _fin(fin, fin.K_alpha or 0.0, U)
     return Plant(
         replace(roll.scaled(K_alpha), name="fins to roll"), roll, *FINS, U, law,
         f"roll as given: {said(roll)}, {words}",
     )  # fmt: skip
 
 
-def _fin(table: FinTable, U: float) -> tuple[float, Effectiveness, str]:
-    """K_alpha at the speed U, how it goes with the speed, and both in words."""
+def _fin(table: FinTable, known: float, U: float) -> tuple[float, Effectiveness, str]:
+    """K_alpha at the speed U from the known one, how it goes with the speed, and both in words."""
     law = Effectiveness(table.law)
     at = U if table.at_speed is None else positive(table.at_speed, "m/s", "plant.fin.at_speed")
-    K_alpha = table.K_alpha if law is Effectiveness.CONSTANT else K_alpha_at(U, at, table.K_alpha)
+    K_alpha = known if law is Effectiveness.CONSTANT else K_alpha_at(U, at, known)
     how = "at any speed" if law is Effectiveness.CONSTANT else "growing with the square of the speed"
     return K_alpha, law, f"fins worth {K_alpha:.4g} rad of wave slope for each radian at {U * _KNOTS:.3g} kn, {how}"
 
@@ -107,8 +107,8 @@ def _of_model(table: PlantTable, path: Path, own_model: Model | None) -> Plant:
     words, law, speed = "", Effectiveness.CONSTANT, None if table.speed is None else _speed(table)
     if table.fin is not None:
         speed = _speed(table)
-        K_alpha, law, words = _fin(table.fin, speed)
-        file = _with_fins(file, K_alpha, path)
+        K_alpha, law, words = _fin(table.fin, _known_fins(table.fin, file.model, path), speed)
+        file = replace(file, model=file.model.with_values({"K_alpha": K_alpha}))
     elif "K_alpha" in file.model.parameters and not file.model.parameters["K_alpha"].value:
         raise InputError(f"plant: the model of '{path}' knows no fins; add [plant.fin] with K_alpha")
     amplitude = None if table.amplitude is None else angle(table.amplitude, "plant.amplitude", 10.0)
@@ -154,13 +154,16 @@ def _known(name: str, names: tuple[str, ...], where: str, model: Model, what: st
         raise InputError(f"{where}: '{name}' is no {what} of model '{model.name}'{nearest(name, [*names])}")
 
 
-def _with_fins(file: ModelFile, K_alpha: float, path: Path) -> ModelFile:
-    parameters = file.model.parameters
-    if "K_alpha" not in parameters:
-        raise InputError(f"plant.fin: model '{file.model.name}' of '{path}' has no K_alpha; leave the table out")
-    if parameters["K_alpha"].free:
-        raise InputError(f"plant.fin: '{path}' has an identified K_alpha; leave the table out")
-    return replace(file, model=file.model.with_values({"K_alpha": K_alpha}, "loop file"))
+def _known_fins(table: FinTable, model: Model, path: Path) -> float:
+    """K_alpha of the loop file, or of the model where that was identified."""
+    if "K_alpha" not in model.parameters:
+        raise InputError(f"plant.fin: model '{model.name}' of '{path}' has no K_alpha; leave the table out")
+    own = model.parameters["K_alpha"]
+    if table.K_alpha is not None and own.free:
+        raise InputError(f"plant.fin: '{path}' has an identified K_alpha; leave K_alpha out")
+    if table.K_alpha is None and not own.value:
+        raise InputError(f"plant.fin: key 'K_alpha' is missing, and the model of '{path}' knows no fins; add it")
+    return own.value if table.K_alpha is None else table.K_alpha
 
 
 def _trim_speed(ship: Vessel, file: ModelFile) -> float:

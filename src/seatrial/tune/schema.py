@@ -78,9 +78,12 @@ class TermTable(BlockTable):
 
 
 class FinTable(Strict):
-    """`[plant.fin]`: wave slope to which a radian of fin angle is equivalent, at which speed, and how it grows."""
+    """`[plant.fin]`: wave slope to which a radian of fin angle is equivalent, at which speed, and how it grows.
 
-    K_alpha: Positive
+    Without `K_alpha` the model file's own is taken.
+    """
+
+    K_alpha: Positive | None = None
     at_speed: SiAmount | None = None
     law: Literal["constant", "U^2"] = "U^2"
 
@@ -106,7 +109,7 @@ class PlantTable(Strict):
     def _one_source(self) -> Self:
         if sum(part is not None for part in (self.roll, self.response, self.model)) != 1:
             raise ValueError("give one of roll, response (transfer functions) and model (a model file)")
-        if self.roll is not None and self.fin is None:
+        if self.roll is not None and (self.fin is None or self.fin.K_alpha is None):
             raise ValueError("roll needs a table [plant.fin] with K_alpha, the wave slope a radian of fin is worth")
         if self.response is not None and (self.output is None or self.actuator is None or self.fin is not None):
             raise ValueError("response needs the symbols output and actuator, and no table fin")

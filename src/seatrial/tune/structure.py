@@ -18,7 +18,7 @@ from seatrial.loops.structures import (
 )
 from seatrial.tune.amounts import positive
 from seatrial.tune.schema import PassTable, RicherTable
-from seatrial.values import InputError, Parameter
+from seatrial.values import InputError, Parameter, Parameters
 
 _PARTS = ("band-pass", "low-pass")
 _NOTCH = 0.5, 0.1
@@ -64,8 +64,8 @@ def _with_terms(loop: TransferLoop, table: RicherTable, where: str) -> TransferL
         raise InputError(f"{where}.add: {error}") from None
     known = full.gains
     for name in made:
-        known = known.bounded(name, lower, upper).with_values({name: min(max(known[name].value, lower), upper)})
-    return replace(full, gains=known)
+        known = known.bounded(name, lower, upper)
+    return replace(full, gains=_within(known.with_values({p.name: p.value for p in loop.gains if not p.free})))
 
 
 def _part(loop: TransferLoop, kind: str, shape: PassTable | None, found: tuple[float, float], where: str) -> Block:
@@ -80,6 +80,11 @@ def _notch(loop: TransferLoop, table: RicherTable, where: str) -> Block:
     if table.notch is None:
         return notch(_swing(loop, f"{where}.notch"), *_NOTCH)
     return notch(positive(table.notch.omega, "rad/s", f"{where}.notch.omega"), table.notch.damping, table.notch.depth)
+
+
+def _within(gains: Parameters) -> Parameters:
+    """Values moved into their bounds."""
+    return gains.with_values({p.name: min(max(p.value, p.lower), p.upper) for p in gains.free})
 
 
 def _bounds(loop: TransferLoop, table: RicherTable, where: str) -> tuple[float, float]:
