@@ -103,11 +103,11 @@ def reference_model(demand: Array, dt: float, time_constant: float, rate: float 
     Critically damped, with saturating rate (Fossen 2021, Handbook, section 12.1, reference models).
     """
     w, made = 1.0 / time_constant, np.empty(len(demand))
-    E = expm(np.array([[0.0, 1.0], [-(w**2), -2.0 * w]]) * dt)
+    (stay, carry), (pull, damp) = expm(np.array([[0.0, 1.0], [-(w**2), -2.0 * w]]) * dt).tolist()
     x, v = 0.0, 0.0
     for k, r in enumerate(demand.tolist()):
         made[k] = x
-        away, speed = E @ (x - r, v)
+        away, speed = stay * (x - r) + carry * v, pull * (x - r) + damp * v
         if abs(speed) > rate:
             speed = math.copysign(rate, speed)
             away = x - r + 0.5 * (v + speed) * dt
