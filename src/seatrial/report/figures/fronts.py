@@ -94,4 +94,5 @@ def _label(name: str, unit: str) -> str:
 
 def _entries(tuning: Tuning, drawn: list[Front]) -> list[Entry]:
     own: list[Entry] = [(f"front, {f.name}", FRONTS[k % len(FRONTS)]) for k, f in enumerate(drawn)]
-    return own + [(c.name, mark) for c, mark in reversed(marked(tuning))]
+    *rivals, chosen = marked(tuning)
+    return own + [(c.name, mark) for c, mark in (chosen, *rivals)]

@@ -6,7 +6,9 @@ from collections.abc import Sequence
 from seatrial.report.figures.plot import ACCENT, AXIS, INK, WIDTH, Stroke, drawing, label, segment, text
 from seatrial.results.tuning import Component
 
-HEIGHT, ROW, RADIUS, TOP = 42.0, 54.0, 8.0, 66.0
+HEIGHT, ROW, RADIUS = 42.0, 54.0, 8.0
+# room that the block of the disturbance and its arrow take above the middle
+ABOVE = ROW + HEIGHT + 18.0
 WIDEST, GAP = 116.0, 22.0
 WIRE = Stroke(INK, 1.1)
 _PALE = "#eef3f7"
@@ -31,7 +33,7 @@ def diagram(components: Sequence[Component], output: str, actuator: str) -> str:
     sums = 1 + (len(of["term"]) > 1) + bool(of["disturbance"])
     room = WIDTH - 92 - sums * (2 * RADIUS + GAP)
     width = min(WIDEST, room / max(1, len(columns)) - GAP)
-    middle = TOP + max(0.5 * ROW * (tallest - 1), HEIGHT if of["disturbance"] else 0.0) + HEIGHT / 2
+    middle = 6.0 + max(0.5 * (ROW * (tallest - 1) + HEIGHT), ABOVE if of["disturbance"] else 0.0)
     parts, x = [_sum(26.0, middle, "−"), _arrow(0.0, 18.0, middle)], 26.0 + RADIUS
     for column in columns:
         if column[0].role == "plant":

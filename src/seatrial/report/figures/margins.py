@@ -69,8 +69,8 @@ def nyquist(tuning: Tuning) -> str:
     drawn = styled(tuning)
     if not drawn:
         return ""
-    head, top = legend([(c.name, stroke) for c, stroke in drawn], right=SIDE + LEFT + 160)
     width = SIDE * (REAL[1] - REAL[0]) / (IMAGINARY[1] - IMAGINARY[0])
+    head, top = legend([(c.name, stroke) for c, stroke in drawn], right=LEFT + width + 40)
     panel = Panel(LEFT, top + 8, width, SIDE, REAL, IMAGINARY)
     radius = 1.0 / tuning.restriction.peak
     parts = [head, axes(panel, x_ticks=7, y_ticks=7, x_label="Re L", y_label="Im L")]
