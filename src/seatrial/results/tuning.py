@@ -100,7 +100,8 @@ class Sailed:
 
     Attributes:
         linear: without limits; limited: with angle and rate limits; stalled: with stall, too.
-        record: of the first seed, everything switched on; channels: output, actuator, disturbance.
+        record: of the first seed, everything switched on; channels: output, actuator, disturbance, and the output on the
+            same sea without control, its name with ``_uncontrolled``.
     """
 
     name: str

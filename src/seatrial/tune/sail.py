@@ -24,6 +24,7 @@ from seatrial.workers import mapped
 
 LINES, SPREAD_LINES = 800, 1600
 RUN_IN = 100.0
+WITHOUT = "uncontrolled"
 _FAINT = 1e-4
 _CONFIDENCE = 0.95
 
@@ -62,6 +63,8 @@ def sailed(task: Task, loop: TransferLoop, name: str, gains: Array, seed: int) -
 
     reductions = np.array(mapped(of_one, list(met)))
     shown = _cut(steered.record(f"{name}, first sea", met[0], everything), first)
+    alone = _cut(still.record("without control", met[0], FREE), first).channel(loop.output)
+    shown = replace(shown, channels={**shown.channels, f"{loop.output}_{WITHOUT}": alone})
     linear, limited, stalled = (frozen(column) for column in reductions.T)
     return Sailed(name, linear, limited, stalled, shown)
 

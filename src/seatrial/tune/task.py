@@ -12,7 +12,7 @@ from seatrial.loops import Exposure, HullFactor, Objective, TransferLoop, exposu
 from seatrial.loops.exposure import over_nodes
 from seatrial.results.tuning import Restriction
 from seatrial.sea.spectrum import Spectrum
-from seatrial.values import Array, InputError
+from seatrial.values import Array, InputError, display
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Seaway:
 
 @dataclass(frozen=True)
 class Unrest:
-    """A slow disturbance that acts like the actuator: coloured noise of rms `size` [its unit] and `bandwidth` [rad/s].
+    """A slow disturbance that acts like the actuator: coloured noise of rms `size` [`unit`] and `bandwidth` [rad/s].
 
     Its one-sided density is 2 size^2 bandwidth / pi / (omega^2 + bandwidth^2), that of a first-order Gauss-Markov
     process (Gelb 1974, Applied Optimal Estimation, section 3.8). U: m/s, the ship's speed.
@@ -50,6 +50,7 @@ class Unrest:
     size: float
     bandwidth: float
     U: float
+    unit: str = "rad"
 
     def exposure(self, loop: TransferLoop) -> Exposure:
         """The disturbance over five decades about its bandwidth."""
@@ -61,7 +62,8 @@ class Unrest:
     @property
     def said(self) -> str:
         """In words."""
-        return f"unrest of {math.degrees(self.size):.3g} deg of the actuator, {self.bandwidth:.3g} rad/s"
+        factor, unit = display(self.unit)
+        return f"unrest like {self.size * factor:.3g} {unit} of the actuator, slower than {self.bandwidth:.3g} rad/s"
 
 
 class Effectiveness(Enum):

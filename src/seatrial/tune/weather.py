@@ -108,4 +108,5 @@ def _unrest(table: UnrestTable, plant: Plant, where: str) -> Unrest:
         positive(table.size, unit_of(plant.disturbed_by), f"{where}.size"),
         positive(table.bandwidth, "rad/s", f"{where}.bandwidth"),
         plant.U if table.speed is None else positive(table.speed, "m/s", f"{where}.speed"),
+        unit_of(plant.disturbed_by),
     )
