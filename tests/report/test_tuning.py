@@ -15,6 +15,7 @@ from seatrial.report.figures.loop_diagram import diagram
 from seatrial.report.figures.margins import nyquist, sensitivities
 from seatrial.report.figures.scales import scale_of
 from seatrial.report.figures.schedule_maps import schedule_maps
+from seatrial.report.figures.voyages import histories
 from seatrial.report.told_tuning import compared, followed, sentences
 from seatrial.report.tuning import TITLES, html
 from seatrial.report.tuning_rows import schedule_sheet, shown_gains, transfer_latex
@@ -134,6 +135,13 @@ def test_what_rounding_left_of_a_zero_is_zero() -> None:
         ("3", "0.25"),
         ("1×10⁻⁶".replace("×", "\u202f×\u202f"), "–"),
     ]
+
+
+def test_histories_show_the_motion_without_control_where_it_is_known(fin: Tuning) -> None:
+    drawn = histories(fin)
+    assert ">without<" in drawn and drawn.count("<path") > histories(replace(fin, sailed=fin.sailed[:1])).count("<path")
+    alone = replace(fin, sailed=tuple(replace(s, record=s.record.without("phi_uncontrolled")) for s in fin.sailed))
+    assert ">with control<" in histories(alone) and ">without<" not in histories(alone)
 
 
 def test_maps_show_every_condition_of_every_set(fin: Tuning) -> None:

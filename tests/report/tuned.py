@@ -165,7 +165,7 @@ def sailed(loop: TransferLoop, c: Controller) -> Sailed:
         "phi": (waves @ roll).real,
         "alpha_f": np.clip((waves @ fin).real, -LIMITS.limit, LIMITS.limit),
         "alpha_w": waves.sum(axis=1).real,
-        "uncontrolled": (waves @ free).real,
+        "phi_uncontrolled": (waves @ free).real,
     }
     channels = {name: Channel(frozen(v), "rad", "body", "starboard") for name, v in values.items()}
     return Sailed(c.name, linear, linear - 0.014, linear - 0.06, Record(c.name, frozen(t), channels, Kind.SIMULATED))

@@ -39,9 +39,8 @@ UNCONTROLLED = ("uncontrolled", "free", "without")
 
 
 def named(record: Record, *names: str) -> str:
-    """The first of the names that the record has as a channel, also as the beginning of one; empty for none."""
-    found = [c for name in names for c in record.channels if c == name or c.startswith(f"{name}_")]
-    return found[0] if found else ""
+    """The first of the names that the record has as a channel; empty for none."""
+    return next((name for name in names if name in record), "")
 
 
 def uncontrolled(record: Record, output: str) -> str:
