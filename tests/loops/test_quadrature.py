@@ -31,7 +31,7 @@ def test_gathered_energy_weighs_smooth_functions_as_before(rng: np.random.Genera
     few, made = gathered(omega, energy, 512)
     assert few.shape == made.shape == (512,)
     assert few[0] > 0.0 and np.all(np.diff(few) > 0.0)
-    for damping in (1.0, 0.16, 0.05):
+    for damping, limit in ((1.0, 1e-10), (0.16, 1e-8), (0.08, 1e-6), (0.05, 1e-5)):
         size = [1.0 / ((1.0 - w**2) ** 2 + (2.0 * damping * w) ** 2) for w in (omega, few)]
-        assert size[1] @ made == pytest.approx(size[0] @ energy, rel=1e-7)
+        assert size[1] @ made == pytest.approx(size[0] @ energy, rel=limit)
     assert made.sum() == pytest.approx(energy.sum(), rel=1e-12)

@@ -21,10 +21,10 @@ from seatrial.values import Array, InputError
 
 _DIRECTIONS = 513
 _FEWEST, _FEW, _MOST = 48, 512, 12288
-_ACCURACY, _ACCURACY_OF_FEW = 1e-10, 1e-8
+_ACCURACY, _ACCURACY_OF_FEW = 1e-10, 1e-9
 _ACCURACY_OF_DIRECTIONS, _ACCURACY_OF_ONE = 1e-6, 1e-8
 _FAINT = 36.0
-_SHARPER = 3.0
+_SHARPER = 2.0
 # rad/s: a wave that keeps up with the ship
 _SLOWEST = 1e-9
 
@@ -85,7 +85,7 @@ def exposure(
 
     Args:
         U: m/s; beta: rad, 0 following, pi / 2 beam, pi head.
-        response: from the slope to the motion; nodes suffice for variances of its angle and rate with a third of its
+        response: from the slope to the motion; nodes suffice for variances of its angle and rate with half of its
             damping. A loop much nearer to instability, or slower, is resolved by its own `TransferLoop.controlled`.
         spreading: exponent s of a short-crested sea, cos^2s over +- 90 deg; None: long-crested.
 
@@ -208,7 +208,7 @@ def _lean(omega_e: Array, energy: Array, response: Block, accuracy: float) -> tu
 
 
 def _sharpened(response: Block) -> Block:
-    """With a third of its damping, as feedback may leave it."""
+    """With half of its damping, as feedback may leave it."""
     poles = response.poles
     return replace(response, den=tuple(response.den[0] * np.poly(poles.real / _SHARPER + 1j * poles.imag).real))
 
