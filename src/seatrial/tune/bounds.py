@@ -1,0 +1,44 @@
+"""What no linear controller does better: the bounds beside a tuning, as many as can be had."""
+
+import contextlib
+from dataclasses import replace
+from importlib.util import find_spec
+
+from seatrial.loops import TransferLoop
+from seatrial.results.tuning import Bound
+from seatrial.tune.quadratic import quadratic_bound, with_tails
+from seatrial.tune.task import Seaway, Task
+from seatrial.tune.youla import NoBound, refuse_unbounded, youla_bound
+from seatrial.values import Array
+
+
+def is_available() -> bool:
+    """Whether the convex bounds can be had: cvxpy, the extra `bounds`."""
+    return find_spec("cvxpy") is not None
+
+
+def bounds(task: Task, loop: TransferLoop, gains: Array) -> tuple[Bound, ...]:
+    """Bounds against the controller `gains` (g,) of `loop`, in the first sea of the task.
+
+    Where cvxpy is installed the convex one in the sea itself, and in a rational spectrum fitted to it: one without
+    energy outside a band lets complicated controllers predict what real seas, with tails, do not. The linear-quadratic
+    one in the latter, for context. None for servo loops on plants that integrate or run away (an autopilot), nor where
+    no sea is met: their output has no variance without control.
+
+    Raises:
+        InputError: the loop is unstable with these gains.
+    """
+    sea = next((met for met in task.met if isinstance(met, Seaway)), None)
+    if sea is None or task.demand is not None:
+        return ()
+    made: list[Bound] = []
+    with contextlib.suppress(NoBound):
+        refuse_unbounded(loop)
+        met = sea.exposure(loop)
+        if is_available():
+            made.append(youla_bound(loop, met, gains, task.restriction.peak))
+            tails, _ = with_tails(met, loop.disturbance)
+            other = youla_bound(loop, tails, gains, task.restriction.peak)
+            made.append(replace(other, name=f"{other.name}, waves with tails"))
+        made.append(quadratic_bound(loop, met, gains))
+    return tuple(made)
