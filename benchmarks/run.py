@@ -18,6 +18,7 @@ import waterjet_rivals
 from measure import Line, machine
 
 import design
+import loops
 
 BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "simulation": simulation.run,
@@ -30,6 +31,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "population": population.run,
     "heave_pitch": heave_pitch.run,
     "design": design.run,
+    "loops": loops.run,
 }
 
 

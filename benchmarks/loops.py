@@ -1,0 +1,209 @@
+"""The published fin loop in a beam sea: evaluations a second, beside simulation and Lyapunov; its genetic search.
+
+The job is the same for all: three variances (roll, fin angle, fin rate) of the closed loop at some gains, from matrices
+or polynomials that are known. The time-domain search draws, breeds and selects as ours does; its objectives come from a
+compiled exact simulation in hold of 1000 s at .1 s under one record of the same sea, for stable individuals only: once
+with the loops written out for the machine's vectors, once with phi @ x as one would write it.
+"""
+
+import math
+import time
+from collections.abc import Callable
+
+import control
+import numpy as np
+from measure import Line, at_least, at_most, fastest
+from numba import njit
+from scipy.linalg import expm, solve_continuous_lyapunov
+from scipy.signal import lsim
+
+from seatrial.loops import Block, Exposure, HullFactor, Performance, Seen, TransferLoop, exposure
+from seatrial.loops.exposure import over_nodes
+from seatrial.loops.fin import BOUNDS, ROLL, Preamplifier, fin_loop
+from seatrial.loops.objective import off_target, variance
+from seatrial.loops.performance import rows_of
+from seatrial.loops.state_space import StateSpace, canonical, state_space
+from seatrial.optimise import Box, GeneticSettings, RandomWeightGenetic, search
+from seatrial.sea.spectrum import ittc
+
+DURATION, DT, COUNT, POOL, SOME = 1000.0, 0.1, 20000, 400, 20
+LOWER, UPPER = (np.array(side) for side in zip(*BOUNDS.values(), strict=True))
+TARGET = math.radians(math.sqrt(150.31)) ** 2
+ROBUST = 5.0
+OBJECTIVES = (
+    variance("roll", "rad^2", Seen.OUTPUT),
+    off_target("fin", Seen.ACTUATOR, TARGET, one_sided=False),
+    variance("rate", "rad^2/s^2", Seen.ACTUATOR, 1),
+)
+ROWS, PLACES = rows_of(OBJECTIVES)
+SHAPED = Block("sea", (1.0, 0.0), (1.0, 0.54, 0.81))
+
+
+def sea() -> Exposure:
+    """Beam sea of 3.3 m at 18 kn."""
+    hull = HullFactor(100.0, 10.5, 3.4)
+    return exposure(ittc(3.3), 18.0 * 1852.0 / 3600.0, math.pi / 2.0, ROLL, hull)
+
+
+def record(of: Exposure, rng: np.random.Generator) -> np.ndarray:
+    """Effective wave slope [rad] over time, random phases."""
+    t, u = np.arange(round(DURATION / DT) + 1) * DT, 0.0
+    for omega, energy, phase in zip(
+        of.omega_e, of.energy, rng.uniform(0.0, 2.0 * math.pi, len(of.energy)), strict=True
+    ):
+        u = u + math.sqrt(2.0 * energy) * np.cos(omega * t + phase)
+    return np.asarray(u)
+
+
+def seen_of(made: StateSpace, gains: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A (n, n) and rows for roll, fin angle, fin rate (3, n) at some gains."""
+    A, a = made.closed(gains), made.actuator(gains)
+    return A, np.stack([made.c, a, a @ A])
+
+
+@njit(fastmath=True)
+def mean_squares(phi: np.ndarray, gamma: np.ndarray, C: np.ndarray, u: np.ndarray, out: np.ndarray) -> None:
+    """Of three outputs over a record, in hold; phi transposed, so that the inner loop runs along it."""
+    n = len(gamma)
+    x, following = np.zeros(n), np.zeros(n)
+    out[:] = 0.0
+    for k in range(len(u)):
+        for i in range(n):
+            following[i] = gamma[i] * u[k]
+        for j in range(n):
+            now = x[j]
+            for i in range(n):
+                following[i] += phi[j, i] * now
+        for r in range(len(out)):
+            y = 0.0
+            for i in range(n):
+                y += C[r, i] * x[i]
+            out[r] += y * y
+        x, following = following, x
+    for r in range(len(out)):
+        out[r] /= len(u)
+
+
+@njit
+def plain_mean_squares(phi: np.ndarray, gamma: np.ndarray, C: np.ndarray, u: np.ndarray, out: np.ndarray) -> None:
+    """The same as one would write it."""
+    x = np.zeros(len(gamma))
+    out[:] = 0.0
+    for k in range(len(u)):
+        y = C @ x
+        out += y * y
+        x = phi @ x + gamma * u[k]
+    out /= len(u)
+
+
+class Simulated:
+    """Variances in the time domain."""
+
+    def __init__(self, loop: TransferLoop, u: np.ndarray, *, is_plain: bool = False) -> None:
+        self.made, self.u, self.is_plain = state_space(loop), u, is_plain
+
+    def of(self, gains: np.ndarray) -> np.ndarray:
+        """Variances (m, 3) at gains (m, g); infinite where unstable."""
+        out, n = np.full((len(gains), 3), np.inf), len(self.made.b)
+        for row, k in zip(out, gains, strict=True):
+            A, C = seen_of(self.made, k)
+            if np.linalg.eigvals(A).real.max() >= 0.0:
+                continue
+            block = np.zeros((n + 1, n + 1))
+            block[:n, :n], block[:n, n] = A * DT, self.made.b * DT
+            whole = expm(block)
+            phi, gamma = whole[:n, :n], whole[:n, n].copy()
+            if self.is_plain:
+                plain_mean_squares(phi.copy(), gamma, C, self.u, row)
+            else:
+                mean_squares(np.ascontiguousarray(phi.T), gamma, C, self.u, row)
+        return out
+
+
+def by_lsim(made: StateSpace, gains: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """The three variances by SciPy."""
+    A, C = seen_of(made, gains)
+    y = lsim((A, made.b[:, None], C, np.zeros((3, 1))), u, np.arange(len(u)) * DT)[1]
+    return np.mean(y**2, axis=0)
+
+
+def by_control(made: StateSpace, gains: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """The three variances by python-control."""
+    A, C = seen_of(made, gains)
+    system = control.ss(A, made.b[:, None], C, np.zeros((3, 1)))
+    return np.mean(control.forced_response(system, np.arange(len(u)) * DT, u).outputs ** 2, axis=1)
+
+
+def by_lyapunov(made: StateSpace, gains: np.ndarray) -> np.ndarray:
+    """The three variances under shaped white noise of one-sided density 1."""
+    (own_A, C), (fa, fb, fc, _) = seen_of(made, gains), canonical(SHAPED)
+    n, m = len(made.b), len(fb)
+    A, b = np.zeros((n + m, n + m)), np.zeros(n + m)
+    A[:n, :n], A[:n, n:], A[n:, n:], b[n:] = own_A, np.outer(made.b, fc), fa, fb
+    X = solve_continuous_lyapunov(A, -math.pi * np.outer(b, b))[:n, :n]
+    return np.einsum("ri,ij,rj->r", C, X, C)
+
+
+def objectives(variances: np.ndarray) -> np.ndarray:
+    """J1, J2, J3 (m, 3)."""
+    return np.stack([o.value(variances[:, p]) for o, p in zip(OBJECTIVES, PLACES, strict=True)], axis=1)
+
+
+def searched(variances_of: Callable[[np.ndarray], np.ndarray], generations: int = 200) -> float:
+    """Seconds of the published search, population 50."""
+    genetic = RandomWeightGenetic(
+        Box(LOWER, UPPER), np.random.default_rng(1), GeneticSettings(population=50, generations=generations)
+    )
+    began = time.perf_counter()
+    search(genetic, lambda points: objectives(variances_of(points)))
+    return time.perf_counter() - began
+
+
+def run() -> list[Line]:
+    """Evaluations a second, then ratios and agreements."""
+    lines = []
+    for reading in (Preamplifier.PRINTED, Preamplifier.WASHOUT):
+        lines += _of_reading(fin_loop(reading), reading.name.lower())
+    return lines
+
+
+def _of_reading(loop: TransferLoop, word: str) -> list[Line]:
+    rng = np.random.default_rng(2014)
+    met = sea()
+    of, made, u = Performance(loop, met, ROWS), state_space(loop), record(met, rng)
+    drawn = LOWER + rng.random((COUNT, 3)) * (UPPER - LOWER)
+    stable = drawn[np.isfinite(of.of(drawn).peak)]
+    whole, alone = (fastest(lambda p=p: of.of(stable, with_peak=p), 15) / len(stable) for p in (True, False))
+    box = fastest(lambda: of.of(drawn), 15) / len(drawn)
+    k = loop.values
+    lsim_seconds, control_seconds = (fastest(lambda f=f: f(made, k, u), 3) for f in (by_lsim, by_control))
+    lyapunov_seconds = fastest(lambda: by_lyapunov(made, k), 20)
+    apart = np.sqrt(by_lsim(made, k, u) / of.of(k).variances[0]) - 1.0
+    ours = min(searched(lambda points: of.of(points, with_peak=False).variances) for _ in range(5))
+    written_out, plain = Simulated(loop, u), Simulated(loop, u, is_plain=True)
+    np.testing.assert_allclose(written_out.of(k[None]), plain.of(k[None]), rtol=1e-9)
+    theirs, plainly = searched(written_out.of), searched(plain.of, SOME) * 200 / SOME
+    return [
+        at_least(f"{word}: stable loops, three variances, Routh", 1e-6 / alone, "M/s", 1.0),
+        at_least(f"{word}: the same with Ms", 1e-6 / whole, "M/s", 1.0),
+        Line(f"{word}: the same over the whole box, unstable loops too", 1e-6 / box, "M/s"),
+        at_least(f"{word}: ratio, scipy.signal.lsim of {DURATION:g} s", lsim_seconds / alone, "x", 1e5),
+        Line(f"{word}: the same with Ms", lsim_seconds / whole, "x"),
+        at_least(f"{word}: ratio, python-control forced_response", control_seconds / alone, "x", 1e5),
+        Line(f"{word}: rms of that one record off, worst of three", float(np.abs(apart).max()), ""),
+        Line(f"{word}: ratio, Lyapunov by SciPy", lyapunov_seconds / alone, "x"),
+        at_most(f"{word}: variances off Lyapunov, Ms <= {ROBUST:g}", _off(loop, made, stable), "", 1e-8),
+        Line(f"{word}: published search, 50 x 200", 1e3 * ours, "ms"),
+        Line(f"{word}: the same in the time domain, written out", theirs, "s"),
+        at_most(f"{word}: ratio to it", ours / theirs, "", 1e-3),
+        Line(f"{word}: the same in the time domain, phi @ x ({SOME} generations scaled)", plainly, "s"),
+        at_most(f"{word}: ratio to it", ours / plainly, "", 1e-3),
+    ]
+
+
+def _off(loop: TransferLoop, made: StateSpace, gains: np.ndarray) -> float:
+    noise = over_nodes(lambda w: np.abs(SHAPED.at(w)) ** 2, 1e-4, 1e4, ROLL, "shaped noise")
+    found = Performance(loop, noise, ROWS).of(gains[:POOL])
+    robust = np.flatnonzero(found.peak <= ROBUST)
+    exact = np.array([by_lyapunov(made, gains[i]) for i in robust])
+    return float(np.abs(found.variances[robust] / exact - 1.0).max())
