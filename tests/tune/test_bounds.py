@@ -1,12 +1,13 @@
 """Bounds: closed forms where there are any, laws that every bound keeps, two independent computations of one number."""
 
 import math
+import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from seatrial.loops import Block, Exposure, Performance, Seen, Term, TransferLoop, margins
+from seatrial.loops import Block, Exposure, HullFactor, Performance, Seen, Term, TransferLoop, margins
 from seatrial.loops.exposure import over_nodes
 from seatrial.loops.fin import ROLL, fin_loop
 from seatrial.loops.objective import variance
@@ -30,8 +31,6 @@ def beam_sea() -> Exposure:
 
 
 def task(loop: TransferLoop = FIN) -> Task:
-    from seatrial.loops import HullFactor
-
     met = Seaway(ittc(3.3), U, math.pi / 2.0, HullFactor(100.0, 10.5, 3.4))
     return Task("", "fins", "", loop, (met,), (variance("roll", "rad^2", Seen.OUTPUT),), Restriction(), U)
 
@@ -162,8 +161,6 @@ def test_without_cvxpy_the_quadratic_one_remains(monkeypatch: pytest.MonkeyPatch
 
 
 def test_without_cvxpy_the_convex_one_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    import sys
-
     monkeypatch.setitem(sys.modules, "cvxpy", None)
     with pytest.raises(InputError, match=r"pip install 'seatrial\[bounds\]'"):
         youla_bound(FIN, beam_sea(), FIN.values, 2.0)

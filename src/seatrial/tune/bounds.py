@@ -8,7 +8,7 @@ from seatrial.loops import TransferLoop
 from seatrial.results.tuning import Bound
 from seatrial.tune.quadratic import quadratic_bound, with_tails
 from seatrial.tune.task import Seaway, Task
-from seatrial.tune.youla import NoBound, refuse_unbounded, youla_bound
+from seatrial.tune.youla import NoBound, youla_bound
 from seatrial.values import Array
 
 
@@ -31,14 +31,20 @@ def bounds(task: Task, loop: TransferLoop, gains: Array) -> tuple[Bound, ...]:
     sea = next((met for met in task.met if isinstance(met, Seaway)), None)
     if sea is None or task.demand is not None:
         return ()
+    met, peak = sea.exposure(loop), task.restriction.peak
+
+    def in_the_sea() -> Bound:
+        return youla_bound(loop, met, gains, peak)
+
+    def with_its_tails() -> Bound:
+        made = youla_bound(loop, with_tails(met, loop.disturbance)[0], gains, peak)
+        return replace(made, name=f"{made.name}, waves with tails")
+
+    def known() -> Bound:
+        return quadratic_bound(loop, met, gains)
+
     made: list[Bound] = []
-    with contextlib.suppress(NoBound):
-        refuse_unbounded(loop)
-        met = sea.exposure(loop)
-        if is_available():
-            made.append(youla_bound(loop, met, gains, task.restriction.peak))
-            tails, _ = with_tails(met, loop.disturbance)
-            other = youla_bound(loop, tails, gains, task.restriction.peak)
-            made.append(replace(other, name=f"{other.name}, waves with tails"))
-        made.append(quadratic_bound(loop, met, gains))
+    for one in (in_the_sea, with_its_tails, known) if is_available() else (known,):
+        with contextlib.suppress(NoBound):
+            made.append(one())
     return tuple(made)

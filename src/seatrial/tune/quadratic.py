@@ -141,7 +141,10 @@ def _cost(plant: Block, disturbance: Block, shaping: Block) -> Callable[[float],
     C = np.concatenate([cp, cd, dd * cs, [dp]])
 
     def at(weight: float) -> Reference:
-        X = solve_continuous_are(A, B, np.outer(C, C), np.array([[weight]]))
+        try:
+            X = solve_continuous_are(A, B, np.outer(C, C), np.array([[weight]]))
+        except np.linalg.LinAlgError as error:
+            raise NoBound(f"the Riccati equation of the quadratic bound is not solved: {error}") from error
         K = (B.T @ X)[0] / weight
         V = solve_continuous_lyapunov(A - B * K, -np.outer(noise, noise))
         return Reference(float(C @ V @ C), float(K @ V @ K))
