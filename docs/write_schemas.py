@@ -7,7 +7,7 @@ from seatrial.trial.design_json import design_schema
 from seatrial.trial.fit_json import fit_schema
 from seatrial.trial.schema import trial_schema
 from seatrial.trial.tuning_json import tuning_schema
-from seatrial.tune.schema import loop_schema
+from seatrial.tune.loopfile.schema import loop_schema
 
 if __name__ == "__main__":
     schemas = {

@@ -186,7 +186,7 @@ def load_loop(path: str | Path, own_model: "Model | None" = None, model_file: st
     Raises:
         InputError: one sentence naming file, key and what to do.
     """
-    from seatrial.tune.asked import task_of
+    from seatrial.tune.loopfile.load import task_of
 
     return task_of(Path(path), own_model, None if model_file is None else Path(model_file))
 

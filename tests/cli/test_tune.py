@@ -19,7 +19,7 @@ from seatrial.trial.folder import save_fit
 from seatrial.trial.model_file import ModelFile, write_model
 from seatrial.trial.tuning_files import read_gains
 from seatrial.trial.tuning_json import TuningDocument
-from seatrial.tune.asked import task_of
+from seatrial.tune.loopfile.load import task_of
 from seatrial.values import InputError, Ship
 from tune.loop_files import AUTOPILOT, FIN, model_file, nomoto, written
 

@@ -17,10 +17,10 @@ from seatrial.trial.trial import Role
 from seatrial.tune.assess import judge
 from seatrial.tune.choose import choose
 from seatrial.tune.demand import manoeuvres, shortfall
-from seatrial.tune.fleet import robust
 from seatrial.tune.front import Effort, front
+from seatrial.tune.ship.fleet import robust
+from seatrial.tune.ship.vessel import plant_of, vessel
 from seatrial.tune.task import Demand, Task, Unrest, Vessel
-from seatrial.tune.vessel import plant_of, vessel
 
 DEGREE = math.pi / 180.0
 OBJECTIVES = variance("output", "rad^2", Seen.OUTPUT), variance("actuator rate", "rad^2/s^2", Seen.ACTUATOR, 1)

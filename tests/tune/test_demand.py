@@ -17,10 +17,10 @@ from seatrial.results.tuning import Restriction
 from seatrial.simulate.closed_loop import REFERENCE, ActuatorLimits
 from seatrial.trial.model_file import ModelFile
 from seatrial.tune.demand import follow, manoeuvres, overshoot, reference_model, settling
-from seatrial.tune.fleet import fleet, robust
-from seatrial.tune.stand_in import stand_in
+from seatrial.tune.ship.fleet import fleet, robust
+from seatrial.tune.ship.stand_in import stand_in
+from seatrial.tune.ship.vessel import plant_of, vessel
 from seatrial.tune.task import Demand, Task, Unrest, Vessel
-from seatrial.tune.vessel import plant_of, vessel
 from seatrial.values import Array, InputError
 
 DEGREE = math.pi / 180.0

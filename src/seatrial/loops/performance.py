@@ -6,7 +6,6 @@ is solved. An unstable loop, whose variances would be finite all the same, gets 
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 
@@ -88,6 +87,18 @@ class Performance:
         slopes_of_loop(np.ascontiguousarray(gains, dtype=np.float64), re, im, *self._weights, out)
         return out
 
+    def peak_slope(self, gains: Array) -> Array:
+        """d Ms / d gains (g,) of what `of` gives, by the same parabola: its place does not count to first order."""
+        _, _, re, im = self._tables
+        terms = re + 1j * im
+        z = 1.0 + gains @ terms
+        place = int(np.clip(np.argmin(np.abs(z)), 1, len(z) - 2))
+        near = np.array([z[place - 1], z[place], z[place + 1]])
+        u = _turning(near)
+        weights = np.array([0.5 * u * (u - 1.0), 1.0 - u**2, 0.5 * u * (u + 1.0)])
+        at = weights @ near
+        return -np.real(np.conj(at) * (terms[:, place - 1 : place + 2] @ weights)) / np.abs(at) ** 3
+
     @property
     def uncontrolled(self) -> Array:
         """The variances with all gains at zero, (r,): those on the actuator vanish."""
@@ -95,11 +106,21 @@ class Performance:
         return np.concatenate([on_s.sum(axis=1), np.zeros(len(on_t))])
 
 
+def _turning(near: np.ndarray) -> float:
+    """Where in -1 to 1 the complex parabola through three points comes nearest to zero."""
+    b, c = 0.5 * (near[2] - near[0]), 0.5 * (near[2] + near[0]) - near[1]
+    u = 0.0
+    for _ in range(4):
+        z, slope = near[1] + u * (b + u * c), b + 2.0 * u * c
+        curved = abs(slope) ** 2 + 2.0 * (np.conj(z) * c).real
+        if not curved > 0.0:
+            break
+        u = float(np.clip(u - (np.conj(z) * slope).real / curved, -1.0, 1.0))
+    return u
+
+
 def rows_of(objectives: tuple[Objective, ...]) -> tuple[tuple[Row, ...], list[list[int]]]:
-    """All rows of some objectives, outputs first, and for each objective where its own stand."""
-    rows = [row for objective in objectives for row in objective.rows]
-    order = sorted(range(len(rows)), key=lambda i: rows[i].seen is Seen.ACTUATOR)
-    place = {old: new for new, old in enumerate(order)}
-    starts = np.cumsum([0, *(len(objective.rows) for objective in objectives)])
-    places = [[place[i] for i in range(a, b)] for a, b in pairwise(starts)]
-    return tuple(rows[i] for i in order), places
+    """All different rows of some objectives, outputs first, and for each objective where its own stand."""
+    different = dict.fromkeys(row for objective in objectives for row in objective.rows)
+    rows = sorted(different, key=lambda row: row.seen is Seen.ACTUATOR)
+    return tuple(rows), [[rows.index(row) for row in objective.rows] for objective in objectives]

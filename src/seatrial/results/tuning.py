@@ -100,8 +100,8 @@ class Sailed:
 
     Attributes:
         linear: without limits; limited: with angle and rate limits; stalled: with stall, too.
-        record: of the first seed, everything switched on; channels: output, actuator, disturbance, and the output on the
-            same sea without control, its name with ``_uncontrolled``.
+        record: of the first seed, everything switched on; channels: output, actuator, disturbance, and the output of
+            the same sea without control, its name with ``_uncontrolled``.
     """
 
     name: str
@@ -148,7 +148,7 @@ class Slot:
 
 @dataclass(frozen=True)
 class Bound:
-    """What no linear controller of its kind does better: output variance over that of the reference controller.
+    """What no linear controller of its kind does better: output variance over that of the chosen one.
 
     `at`: what is held equal (actuator rate energy), the spectrum and the Ms; `note`: what it means.
     """

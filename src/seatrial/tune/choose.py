@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.results.tuning import Front
 from seatrial.tune.assess import Judge
-from seatrial.tune.demand import manoeuvres
+from seatrial.tune.demand import shortfall
 from seatrial.tune.front import non_dominated, spread
 from seatrial.tune.sail import sailed
 from seatrial.tune.task import Task
@@ -33,7 +33,7 @@ def choose(task: Task, fronts: tuple[tuple[Judge, Front], ...], seed: int, tell:
     """The recommendation, from fronts that are not empty."""
     known = tuple((judge, front) for judge, front in fronts if len(front.gains))
     if task.demand is not None:
-        return _following(task, known[0], seed, tell)
+        return _following(task, known[0], tell)
     if task.trials is not None:
         return _sailing(task, known, seed, tell)
     judge, front = known[0]
@@ -124,24 +124,24 @@ def _about(some: Array, gains: Array) -> Array:
     return some[np.unique(np.linspace(low, high, CANDIDATES).astype(int))]
 
 
-def _following(task: Task, known: tuple[Judge, Front], seed: int, tell: Callable[[str], None]) -> Choice:
+def _following(task: Task, known: tuple[Judge, Front], tell: Callable[[str], None]) -> Choice:
     """The compromise among those that follow the demand without overshooting, in simulation."""
     assert task.demand is not None
     judge, front = known
     some = _envelope(judge, front)
     some = some[spread(_both(judge, some), 2 * CANDIDATES)]
-    over = np.empty(len(some))
-    for i, gains in enumerate(some):
-        over[i] = manoeuvres(task, judge.loop, "candidate", gains, seed, draws=0)[0].overshoot
-    tell(f"choice: {len(some)} candidates carried through the demand")
-    keeping = some[over <= task.demand.overshoot]
+    short = []
+    for gains in some:
+        short.append(shortfall(task, judge.loop, gains))
+        tell(f"choice: {len(short)} of {len(some)} candidates carried through the demand")
+    keeping = some[np.array([far == 0.0 for far, _ in short])]
     if not len(keeping):
-        least = int(np.argmin(over))
-        why = (f"No candidate keeps the overshoot allowed; this one overshoots least, by {100.0 * over[least]:.1f} %.",)
+        least = min(range(len(some)), key=lambda i: short[i][0])
+        why = (f"No candidate follows the demand as asked; this one comes nearest, but {short[least][1]}.",)
         return Choice(judge, some[least], front.name, why)
     why = (
-        f"{len(keeping)} of {len(some)} controllers along the front follow the demand in the nonlinear model with no "
-        f"more than the {100.0 * task.demand.overshoot:.3g} % of overshoot allowed.",
+        f"{len(keeping)} of {len(some)} controllers along the front follow the demand in the nonlinear model, with no "
+        f"more than {100.0 * task.demand.overshoot:.3g} % of overshoot, and keep every ship stable that the fit allows.",
         _COMPROMISE.replace("of the front", "of those"),
     )
     return Choice(judge, keeping[_by_compromise(judge, keeping)[0]], front.name, why)

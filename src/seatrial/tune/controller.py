@@ -28,7 +28,7 @@ def controller(judge: Judge, name: str, gains: Array) -> Controller:
         gains=dict(zip(judge.loop.gains.names, gains.tolist(), strict=True)),
         objectives=made.objectives[0],
         rms=dict(zip(("output", "actuator", "actuator_rate"), rms.tolist(), strict=True)),
-        reduction=1.0 - float(rms[0]) / math.sqrt(judge.uncontrolled),
+        reduction=math.nan if judge.task.demand else 1.0 - float(rms[0]) / math.sqrt(judge.uncontrolled),
         peak=found.peak,
         gain_margin=found.gain,
         phase_margin=found.phase,

@@ -10,8 +10,8 @@ from seatrial.loops import TransferLoop
 from seatrial.loops.autopilot import mean_pole
 from seatrial.results.tuning import Manoeuvre
 from seatrial.simulate.closed_loop import REFERENCE, ActuatorLimits, ClosedLoop
-from seatrial.tune.fleet import DRAWS, fleet, robust
-from seatrial.tune.stand_in import stand_in
+from seatrial.tune.ship.fleet import DRAWS, fleet, robust
+from seatrial.tune.ship.stand_in import stand_in
 from seatrial.tune.task import Demand, Task, Vessel
 from seatrial.values import NOTATION, Array, Channel, DivergedError, InputError, Kind, Provenance, Record, frozen
 

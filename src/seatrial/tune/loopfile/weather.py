@@ -5,9 +5,9 @@ import math
 from seatrial.loops import HullFactor, TransferLoop
 from seatrial.sea.sea_state import sea_state
 from seatrial.sea.spectrum import Spectrum, bretschneider, ittc, ittc_two_parameter, jonswap
-from seatrial.tune.amounts import heading, positive, unit_of
-from seatrial.tune.plant import Plant
-from seatrial.tune.schema import LoopFile, ScheduleTable, SeaTable, UnrestTable
+from seatrial.tune.loopfile.amounts import heading, positive, unit_of
+from seatrial.tune.loopfile.plant import Plant
+from seatrial.tune.loopfile.schema import LoopFile, ScheduleTable, SeaTable, UnrestTable
 from seatrial.tune.task import Plan, Seaway, Unrest
 from seatrial.values import InputError
 

@@ -9,11 +9,11 @@ from seatrial.loops import Block, HullFactor
 from seatrial.loops.fin import K_alpha_at
 from seatrial.trial.model_file import ModelFile, read_model_file
 from seatrial.trial.runs import expanded
-from seatrial.tune.amounts import amount, angle, positive, unit_of
-from seatrial.tune.blocks import block, said
-from seatrial.tune.schema import FinTable, HullTable, PlantTable
+from seatrial.tune.loopfile.amounts import amount, angle, positive, unit_of
+from seatrial.tune.loopfile.blocks import block, said
+from seatrial.tune.loopfile.schema import FinTable, HullTable, PlantTable
+from seatrial.tune.ship.vessel import described, plant_of, vessel
 from seatrial.tune.task import Effectiveness, Vessel
-from seatrial.tune.vessel import described, plant_of, vessel
 from seatrial.values import InputError, Ship, nearest
 
 FINS = ("phi", "alpha_f", "alpha_w")

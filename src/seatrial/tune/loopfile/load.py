@@ -11,14 +11,14 @@ from seatrial.equations import Model
 from seatrial.loops import TransferLoop
 from seatrial.results.tuning import Restriction
 from seatrial.trial.complaints import complaint
-from seatrial.tune.aims import objective
-from seatrial.tune.amounts import amount, angle, positive, rate_unit, unit_of
-from seatrial.tune.diagram import loop_asked
-from seatrial.tune.plant import Plant, hull_of, plant_asked
-from seatrial.tune.schema import DemandTable, LoopFile, SimulationTable
-from seatrial.tune.structure import richer
+from seatrial.tune.loopfile.aims import objective
+from seatrial.tune.loopfile.amounts import amount, angle, positive, rate_unit, unit_of
+from seatrial.tune.loopfile.diagram import loop_asked
+from seatrial.tune.loopfile.plant import Plant, hull_of, plant_asked
+from seatrial.tune.loopfile.schema import DemandTable, LoopFile, SimulationTable
+from seatrial.tune.loopfile.structure import richer
+from seatrial.tune.loopfile.weather import met_by, plan_of, refuse_calm
 from seatrial.tune.task import Demand, Task, Trials, refuse_unstable
-from seatrial.tune.weather import met_by, plan_of, refuse_calm
 from seatrial.values import InputError, nearest
 
 _CHANGES = 30.0

@@ -11,8 +11,8 @@ import pytest
 from seatrial.loops import Seen
 from seatrial.loops.fin import GYRO, SERVO, Preamplifier, fin_loop
 from seatrial.sea.sea_state import sea_state
-from seatrial.tune.asked import task_of
-from seatrial.tune.schema import loop_schema
+from seatrial.tune.loopfile.load import task_of
+from seatrial.tune.loopfile.schema import loop_schema
 from seatrial.tune.task import Effectiveness, Seaway, Trials, Unrest
 from seatrial.values import InputError
 from tune.loop_files import AUTOPILOT, FIN, model_file, nomoto, roll, written

@@ -15,8 +15,8 @@ from seatrial.information.stability import lateral
 from seatrial.loops import Block
 from seatrial.simulate.approach import RUDDER
 from seatrial.trial.model_file import ModelFile
+from seatrial.tune.ship.trim import driven, jacobian_at, trimmed
 from seatrial.tune.task import Vessel
-from seatrial.tune.trim import driven, jacobian_at, trimmed
 from seatrial.values import Array, InputError, nearest
 
 _ASIDE, _NOTHING = 1e-12, 1e-10

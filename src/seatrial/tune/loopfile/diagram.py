@@ -6,10 +6,10 @@ from dataclasses import replace
 from seatrial.loops import Block, Term, TransferLoop
 from seatrial.loops.autopilot import heading_loop, pitch_loop, speed_loop
 from seatrial.loops.fin import SERVO, Preamplifier, fin_loop
-from seatrial.tune.amounts import positive
-from seatrial.tune.blocks import block, blocks
-from seatrial.tune.plant import Plant
-from seatrial.tune.schema import BlockTable, ControllerTable, GainTable
+from seatrial.tune.loopfile.amounts import positive
+from seatrial.tune.loopfile.blocks import block, blocks
+from seatrial.tune.loopfile.plant import Plant
+from seatrial.tune.loopfile.schema import BlockTable, ControllerTable, GainTable
 from seatrial.values import InputError, Parameter, Parameters, nearest
 
 PID = ("KP", "KI", "KD")

@@ -6,9 +6,9 @@ from seatrial.loops import Objective, Seen
 from seatrial.loops.objective import motion_interruptions, motion_sickness, off_target, variance
 from seatrial.results.tuning import Restriction
 from seatrial.trial.schema import Amount
-from seatrial.tune.amounts import amount, positive, unit_of
-from seatrial.tune.plant import Plant
-from seatrial.tune.schema import AimTable
+from seatrial.tune.loopfile.amounts import amount, positive, unit_of
+from seatrial.tune.loopfile.plant import Plant
+from seatrial.tune.loopfile.schema import AimTable
 from seatrial.values import NOTATION, InputError
 
 # name -> where the variance is taken, power of the frequency

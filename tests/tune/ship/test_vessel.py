@@ -12,7 +12,7 @@ from seatrial.models import model_named
 from seatrial.models.published import kvlcc2
 from seatrial.simulate import harmonics
 from seatrial.trial.model_file import ModelFile
-from seatrial.tune.vessel import at_values, described, linearised, plant_of, sides_of, vessel
+from seatrial.tune.ship.vessel import at_values, described, linearised, plant_of, sides_of, vessel
 from seatrial.values import Array, InputError
 
 HULL = {"m": 3000.0, "I5": 9000.0, "c33": 8e4, "c55": 2.5e5, "c35": 4e3, "c53": 4e3}

@@ -16,8 +16,8 @@ from seatrial.loops.structures import (
     with_filters,
     with_structure,
 )
-from seatrial.tune.amounts import positive
-from seatrial.tune.schema import PassTable, RicherTable
+from seatrial.tune.loopfile.amounts import positive
+from seatrial.tune.loopfile.schema import PassTable, RicherTable
 from seatrial.values import InputError, Parameter, Parameters
 
 _PARTS = ("band-pass", "low-pass")

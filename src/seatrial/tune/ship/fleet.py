@@ -8,8 +8,8 @@ import numpy as np
 from seatrial.kernels.loop import is_hurwitz
 from seatrial.loops import Block, TransferLoop
 from seatrial.predict.draws import root
+from seatrial.tune.ship.vessel import at_values, plant_of, sides_of
 from seatrial.tune.task import Task, Vessel
-from seatrial.tune.vessel import at_values, plant_of, sides_of
 from seatrial.values import Array, InputError
 
 SEED, DRAWS = 0, 100

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 from seatrial.loops import Block
 from seatrial.loops.structures import band_pass, low_pass, notch
-from seatrial.tune.amounts import positive
-from seatrial.tune.schema import BlockTable
+from seatrial.tune.loopfile.amounts import positive
+from seatrial.tune.loopfile.schema import BlockTable
 from seatrial.values import InputError
 
 
