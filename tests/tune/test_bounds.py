@@ -3,6 +3,7 @@
 import math
 import sys
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -26,6 +27,7 @@ U = 18.0 * 1852.0 / 3600.0
 FIN = fin_loop()
 
 
+@cache
 def beam_sea() -> Exposure:
     return task().met[0].exposure(FIN)
 
@@ -46,6 +48,7 @@ def waves(omega: np.ndarray) -> np.ndarray:
     return np.abs(Block("", (0.1, 0.0, 0.0), (1.0, 0.9, 2.0, 0.7, 0.6)).at(omega)) ** 2
 
 
+@cache
 def rational_sea() -> Exposure:
     return over_nodes(waves, 1e-3, 1e3, ROLL, "rational")
 
