@@ -124,10 +124,32 @@ def test_slopes_equal_differences_of_the_evaluation(loop: TransferLoop) -> None:
     np.testing.assert_allclose(made.slopes(k), ((v[:3] - v[3:]) / (2.0 * h)).T, rtol=1e-6)
 
 
+def test_the_slope_of_the_peak_equals_differences(loop: TransferLoop) -> None:
+    made, h = Performance(loop, beam(), ROWS), 1e-4
+    for k in (np.array([11.0, 0.4, 32.0]), np.array([4.0, 1.0, 12.0])):
+        peaks = made.of(np.concatenate([k + h * np.eye(3), k - h * np.eye(3)])).peak
+        np.testing.assert_allclose(made.peak_slope(k), (peaks[:3] - peaks[3:]) / (2.0 * h), rtol=1e-5, atol=1e-9)
+
+
 def test_rows_in_the_wrong_order_are_refused(loop: TransferLoop) -> None:
     rows = (Row(Seen.ACTUATOR, np.ones_like), Row(Seen.OUTPUT, np.ones_like))
     with pytest.raises(InputError, match="rows on the output must precede"):
         Performance(loop, beam(), rows)
+
+
+def test_an_actuator_that_moves_nothing_is_refused() -> None:
+    with pytest.raises(InputError, match=r"the actuator alpha_f of loop 'fin washout' does not move phi at .* at rest"):
+        Performance(fin_loop(K_alpha=0.0), beam(), ROWS)
+
+
+def test_gains_of_another_number_are_refused(loop: TransferLoop) -> None:
+    with pytest.raises(InputError, match="has 3 gains, not 2"):
+        Performance(loop, beam(), ROWS).of(np.ones((5, 2)))
+
+
+def test_gains_that_are_no_numbers_are_not_stable(loop: TransferLoop) -> None:
+    found = Performance(loop, beam(), ROWS).of(np.array([[1.0, np.nan, 1.0]]))
+    assert np.isinf(found.peak[0]) and np.all(np.isinf(found.variances))
 
 
 def test_objectives_find_their_own_rows() -> None:

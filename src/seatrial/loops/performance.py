@@ -34,13 +34,18 @@ class Evaluation:
 
 @dataclass(frozen=True, eq=False)
 class Performance:
-    """The loop in one exposure, or a mean over several that weigh alike.
+    """The loop in one exposure.
+
+    Variances are exact to 1e-8 up to Ms 5, at nodes that settle without control; to 1e-4 up to 10, to one in a hundred
+    up to 20, and worth nothing beyond 50. An exposure whose `response` is `TransferLoop.controlled` resolves any loop.
+    A loop slower than .002 rad/s in following seas, where waves keep up with the ship, may be .1 % off.
 
     Attributes:
         rows: variances computed, in this order; those on the output must stand first.
 
     Raises:
-        InputError: the plant is zero somewhere, or rows on the actuator precede rows on the output.
+        InputError: the plant does nothing at a frequency of the exposure, or rows on the actuator precede rows on the
+            output.
     """
 
     loop: TransferLoop
@@ -51,6 +56,12 @@ class Performance:
         seen = [row.seen is Seen.ACTUATOR for row in self.rows]
         if seen != sorted(seen):
             raise InputError("rows on the output must precede rows on the actuator")
+        dead = self.exposure.omega_e[self.loop.plant.at(self.exposure.omega_e) == 0.0]
+        if dead.size:
+            raise InputError(
+                f"the actuator {self.loop.actuator} of loop '{self.loop.name}' does not move {self.loop.output} at "
+                f"{dead[0]:.3g} rad/s; is the ship at rest?"
+            )
 
     @cached_property
     def _weights(self) -> tuple[Array, Array]:
@@ -70,8 +81,14 @@ class Performance:
         return tuple(np.ascontiguousarray(part) for part in (seen.real, seen.imag, wide.real, wide.imag))  # type: ignore[return-value]
 
     def of(self, gains: Array, *, with_peak: bool = True) -> Evaluation:
-        """Loops with the gains (m, g); without the peak, `peak` tells only whether a loop is stable (zero)."""
+        """Loops with the gains (m, g); without the peak, `peak` tells only whether a loop is stable (zero).
+
+        Raises:
+            InputError: there is not one gain for each term.
+        """
         k = np.ascontiguousarray(np.atleast_2d(gains), dtype=np.float64)
+        if k.shape[1] != len(self.loop.terms):
+            raise InputError(f"loop '{self.loop.name}' has {len(self.loop.terms)} gains, not {k.shape[1]}")
         d, n = self.loop.polynomials
         re, im, wide_re, wide_im = self._tables
         if not with_peak:
