@@ -1,0 +1,40 @@
+"""One sample of a stream, and where samples come from."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from seatrial.results.online import Counts
+from seatrial.values import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """One row of the stream: time [s] on its own clock and the layout's columns in SI, conventions as declared.
+
+    values: (k,), in the order of the layout's columns; NaN where a cell was empty or no number.
+    """
+
+    time: float
+    values: Array
+
+
+class Source(Protocol):
+    """Where samples come from. Never waits longer than asked, never raises for what somebody sends."""
+
+    def poll(self, seconds: float) -> list[Sample]:
+        """Samples that have come, waiting at most so long for the first; empty if none has."""
+        ...
+
+    @property
+    def is_over(self) -> bool:
+        """Whether nothing more will come (end of file, end of standard input)."""
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        """What could not be read so far: garbled, checksum, dropped, truncated."""
+        ...
+
+    def close(self) -> None:
+        """Give back the file or the socket."""
+        ...
