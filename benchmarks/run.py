@@ -13,6 +13,7 @@ import generation
 import heave_pitch
 import montecarlo
 import population
+import roll_decay
 import simulation
 import waterjet_rivals
 from measure import Line, machine
@@ -32,6 +33,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "heave_pitch": heave_pitch.run,
     "design": design.run,
     "loops": loops.run,
+    "roll_decay": roll_decay.run,
 }
 
 

@@ -107,3 +107,12 @@ def test_too_short_a_record_is_refused(tmp_path: Path) -> None:
     """With the number of swings it has."""
     with pytest.raises(InputError, match="swings in waves that nobody measured are too few"):
         trial_of(tmp_path, rolled(bretschneider(2.0, 12.0), 1, duration=200.0))
+
+
+@pytest.mark.parametrize("growth", [0.0, 0.004])
+def test_roll_that_never_decays_is_refused(tmp_path: Path, growth: float) -> None:
+    """Nothing drives her and she swings on: no damping can be told, and none is printed."""
+    time = np.arange(0.0, 120.0, 0.1)
+    record = Record.of("sea", time, {"phi": 0.1 * np.exp(growth * time) * np.cos(0.7 * time)})
+    with pytest.raises(InputError, match="record 'sea': the roll does not decay"):
+        trial_of(tmp_path, record)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatrial.trial.release import released
+from seatrial.trial.release import refuse_undecayed, released
 from seatrial.values import InputError, Record
 
 TIME = np.arange(0.0, 60.0, 0.05)
@@ -31,6 +31,10 @@ def test_what_lies_before_the_release_goes() -> None:
     [
         (decay(start=0.001, noise=0.01), "within the noise"),
         (decay(damping=0.0), "does not decay: 8.7 deg in its first third, 8.7 deg in its last"),
+        (
+            Record.of("decay", TIME, {"phi": 0.002 * np.exp(0.07 * TIME) * np.cos(2.5 * TIME)}),
+            "the roll grows, to 7.1 deg at 59",
+        ),
         (decay().without("phi"), "needs the roll angle 'phi'"),
         (Record.of("decay", TIME, {"phi": np.where(TIME > 59.8, 0.1, 0.0)}), "nothing is left of the decay"),
     ],
@@ -39,3 +43,12 @@ def test_what_is_no_decay_is_refused(record: Record, said: str) -> None:
     """One sentence, naming the record."""
     with pytest.raises(InputError, match=f"record 'decay'.*{said}"):
         released(record)
+
+
+@pytest.mark.parametrize("growth", [0.0, 0.01])
+def test_a_motion_that_lasts_is_no_decay(growth: float) -> None:
+    """Constant or growing amplitude, whether or not a release was sought; a decay passes."""
+    lasting = Record.of("run", TIME, {"phi": 0.1 * np.exp(growth * TIME) * np.cos(2.5 * TIME)})
+    with pytest.raises(InputError, match="record 'run': the roll does not decay"):
+        refuse_undecayed(lasting)
+    refuse_undecayed(released(decay()))

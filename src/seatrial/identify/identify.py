@@ -21,7 +21,7 @@ from seatrial.identify.rolling import rolling
 from seatrial.identify.seakeeping import seakeeping
 from seatrial.identify.spectral import spectral_fit
 from seatrial.identify.swinging import chosen_by_runs
-from seatrial.identify.unknown_waves import fit_in_unknown_waves, is_rolled_by_unknown_waves
+from seatrial.identify.unknown_waves import fit_in_unknown_waves, is_free_decay, is_rolled_by_unknown_waves
 from seatrial.information.frequency_range import frequency_range, represented
 from seatrial.information.symmetries import refuse_structural, structural
 from seatrial.predict.forecast import forecast
@@ -30,6 +30,7 @@ from seatrial.problem.static_forces import StaticForces
 from seatrial.results import Fit
 from seatrial.trial import Role, Trial, TrialRecord, records_of, refuse_errors
 from seatrial.trial.approach import approach_of
+from seatrial.trial.release import refuse_undecayed
 from seatrial.values import NOTATION, Array, DivergedError, InputError, Progress, Record
 from seatrial.values.versions import versions
 
@@ -103,6 +104,9 @@ def identify(
     found = identified(trial.model, runs, sessions, length, settings, progress)
     if settings.criterion is Criterion.AUTO and is_rolled_by_unknown_waves(found, runs):
         return fit_in_unknown_waves(trial, runs, findings, seed, began)
+    if is_free_decay(found, runs):
+        for run in runs:
+            refuse_undecayed(run)
     refuse_unmeasured_waves(found, runs)
     refuse_singular(*_data_and_prior(found))
     untold = outcome.untold(found)

@@ -31,13 +31,25 @@ _NONE = np.zeros((0, 0))
 
 def is_rolled_by_unknown_waves(found: Identified, records: Sequence[Record]) -> bool:
     """Whether the ship swings, no input was recorded, and no initial state explains half of what she does."""
-    model, problem = found.model, found.shooting.problem
-    if not swings(model) or WAVES not in model.input_names or "phi" not in model.states:
+    return _is_undriven_roll(found, records) and not _is_explained(found)
+
+
+def is_free_decay(found: Identified, records: Sequence[Record]) -> bool:
+    """Whether the ship swings, no input was recorded, and her initial state explains it."""
+    return _is_undriven_roll(found, records) and _is_explained(found)
+
+
+def _is_undriven_roll(found: Identified, records: Sequence[Record]) -> bool:
+    model = found.model
+    if not swings(model) or WAVES not in model.input_names or not all("phi" in r for r in records):
         return False
-    if any(n in r and np.ptp(r[n]) > 0.0 for n in model.input_names for r in records):
-        return False
-    left, moved = np.nanstd(found.shooting.residuals(), axis=0), np.nanstd(problem.data.measured, axis=0)
-    return bool(np.any(left > _UNEXPLAINED * moved))
+    return not any(n in r and np.ptp(r[n]) > 0.0 for n in model.input_names for r in records)
+
+
+def _is_explained(found: Identified) -> bool:
+    measured = found.shooting.problem.data.measured
+    left, moved = np.nanstd(found.shooting.residuals(), axis=0), np.nanstd(measured, axis=0)
+    return bool(np.all(left <= _UNEXPLAINED * moved))
 
 
 def fit_in_unknown_waves(

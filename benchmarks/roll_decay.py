@@ -1,0 +1,138 @@
+"""KVLCC2's roll decays beside the classes of rolldecay-estimators in one run: how much of the roll is explained.
+
+Both fit the same rows: each decay from its release, from half a second later, and from its next two extremes on.
+R2 is that of the simulated angle over all of these rows. One decay also predicts the other without being refitted.
+"""
+
+import json
+import os
+import subprocess
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from against_shipmmg import HERE, peers_python
+from measure import Line, at_least, at_most, fastest
+
+from seatrial.estimate import Identified, identified
+from seatrial.identify.identify import settings_of
+from seatrial.predict.open_loop import open_loop
+from seatrial.trial import Trial, load_trial, records_of
+from seatrial.values import Record
+
+TRIAL = HERE.parent / "examples" / "kvlcc2_rolldecay.toml"
+TARGETS = {"model_test_21337": 0.99998, "model_test_21338": 0.9999}
+CROSS, SECONDS = 0.998, 0.5
+
+
+def r_squared(measured: np.ndarray, simulated: np.ndarray) -> float:
+    """Share of the variance that is explained."""
+    return float(1.0 - np.sum((measured - simulated) ** 2) / np.sum((measured - measured.mean()) ** 2))
+
+
+def fit(trial: Trial, record: Record) -> Identified:
+    """Ours, from an automatic start."""
+    return identified(trial.model, [record], ["decay"], trial.ship.length, settings_of(trial, [record]))
+
+
+def explained(found: Identified, record: Record) -> float:
+    """R2 over the rows that were fitted."""
+    return r_squared(record["phi"], record["phi"] + found.residuals[:, 0])
+
+
+def predicted(found: Identified, record: Record, seconds: float) -> float:
+    """R2 of a record that was not fitted."""
+    made = open_loop(found.made.problem, found.model, record, np.zeros(0), seconds)
+    return r_squared(record["phi"], made.record["phi"])
+
+
+def _unexplained(what: str, score: float, target: float | None = None) -> Line:
+    """Parts per million of the variance, R2 in words; target: of R2."""
+    said, left = f"{what}: R2 {score:.7f}", 1e6 * (1.0 - score)
+    return Line(said, left, "ppm") if target is None else at_most(said, left, "ppm", round(1e6 * (1.0 - target), 6))
+
+
+def beginnings(record: Record) -> list[int]:
+    """Rows: the release, half a second later, and the next two extremes."""
+    rising = np.diff(record["phi"]) > 0.0
+    extremes = np.flatnonzero(rising[11:] != rising[10:-1]) + 11
+    return [0, round(0.5 / record.dt), *extremes[:2].tolist()]
+
+
+def run() -> list[Line]:
+    """Ours, then the peer's best class, then the least difference over all beginnings."""
+    if "SEATRIAL_DATA" not in os.environ:
+        print("  left out: set SEATRIAL_DATA to the folder with kvlcc2_rolldecay")
+        return []
+    trial = load_trial(TRIAL)
+    records = {r.record.name: r.record for r in records_of(trial)[0]}
+    found = {name: fit(trial, record) for name, record in records.items()}
+    lines = []
+    for name, record in records.items():
+        (other,) = [n for n in records if n != name]
+        lines += [
+            _unexplained(f"{name}, ours", explained(found[name], record), TARGETS[name]),
+            _unexplained(f"{name} from {other}", predicted(found[other], record, 10.0), CROSS),
+            at_most(f"{name}: fit", fastest(lambda r=record: fit(trial, r), 3), "s", SECONDS),
+        ]
+    return [*lines, *_beside_the_peer(trial, records, found)]
+
+
+def _beside_the_peer(trial: Trial, records: dict[str, Record], found: dict[str, Identified]) -> list[Line]:
+    rows = {name: beginnings(record) for name, record in records.items()}
+    theirs = _peer(records, rows, found)
+    lines = []
+    for name, record in records.items() if theirs else ():
+        best = {row: max(_scores(theirs[name], str(row)), key=lambda pair: pair[1]) for row in rows[name]}
+        own = {row: explained(fit(trial, _from(record, row)), _from(record, row)) for row in rows[name]}
+        seconds = min(one["0"]["seconds"] for kind, one in theirs[name].items() if kind == best[0][0])
+        lines += [
+            _unexplained(f"{name}, rolldecay-estimators", best[0][1]),
+            _unexplained(f"{name}, it with its own start", max(s for _, s in _scores(theirs[name], "its own start"))),
+            Line(f"{name}: its search ({best[0][0]})", seconds, "s"),
+            at_least(f"{name}: our R2 less its best, least of {len(own)} beginnings",
+                     1e6 * min(own[row] - best[row][1] for row in own), "ppm", 0.0),
+        ]  # fmt: skip
+    return lines
+
+
+def _from(record: Record, row: int) -> Record:
+    return replace(record.rows(slice(row, None)), name=record.name)
+
+
+def _scores(classes: dict[str, dict[str, dict[str, float | None]]], key: str) -> list[tuple[str, float]]:
+    """Class and R2; minus infinity where it failed."""
+    return [
+        (kind, -np.inf if one[key]["r2"] is None else float(one[key]["r2"] or 0.0)) for kind, one in classes.items()
+    ]
+
+
+def _peer(
+    records: dict[str, Record], rows: dict[str, list[int]], found: dict[str, Identified]
+) -> dict[str, dict[str, dict[str, dict[str, float | None]]]]:
+    """What its classes reach, by run, class and beginning; empty where it cannot be installed."""
+    with tempfile.TemporaryDirectory() as text:
+        folder = Path(text)
+        try:
+            python = peers_python(folder / "peers", "peers_rolldecay.txt")
+        except subprocess.CalledProcessError:
+            print("  left out: rolldecay-estimators could not be installed")
+            return {}
+        task: dict[str, np.ndarray] = {"runs": np.array(list(records))}
+        for name, record in records.items():
+            rest = found[name].model.parameters["phi_0"].value
+            task |= {
+                f"{name}/time": record.time,
+                f"{name}/phi": record["phi"] - rest,
+                f"{name}/rows": np.array(rows[name]),
+            }
+        np.savez(folder / "task.npz", **task)
+        same_order = {**os.environ, "PYTHONHASHSEED": "0"}  # it takes its coefficients in the order of a set
+        subprocess.run([python, HERE / "peer_rolldecay.py", folder], check=True, env=same_order)
+        return json.loads((folder / "peer.json").read_text())
+
+
+if __name__ == "__main__":
+    for line in run():
+        print(f"  {line.what:<78} {line.value:>10.4g} {line.unit:<3} {line.verdict}", flush=True)
