@@ -89,8 +89,19 @@ def test_a_beam_sea_is_the_slope_spectrum_whatever_the_speed() -> None:
     assert still.variance == pytest.approx(expected, rel=1e-7)
 
 
-@pytest.mark.parametrize("hull", [HULL, None], ids=["hull", "no hull"])
-@pytest.mark.parametrize(("heading", "exponent"), [(0, 1.0), (45, 1.0), (90, 1.0), (90, 8.0), (135, 25.0), (180, 2.0)])
+@pytest.mark.parametrize(
+    ("heading", "exponent", "hull"),
+    [
+        (0, 1.0, HULL),
+        (45, 1.0, HULL),
+        (90, 1.0, HULL),
+        (90, 8.0, HULL),
+        (135, 25.0, HULL),
+        (180, 2.0, HULL),
+        (45, 1.0, None),
+        (90, 8.0, None),
+    ],
+)
 def test_a_short_crested_sea_equals_the_double_integral(heading: int, exponent: float, hull: HullFactor | None) -> None:
     U, beta = 9.26, math.radians(heading)
     made = exposure(SEA, U, beta, ROLL, hull, spreading=exponent)
