@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from functools import cache
 
 import numpy as np
 from scipy.special import ndtr
@@ -43,6 +44,7 @@ class Objective:
     slope: Callable[[Array], Array]
 
 
+@cache
 def _power(n: int) -> Callable[[Array], Array]:
     return lambda omega: omega**n
 
