@@ -10,10 +10,11 @@ from seatrial.equations import Model
 from seatrial.trial.complaints import complaint
 from seatrial.trial.design_table import brief_of
 from seatrial.trial.excitation import excitation_of
+from seatrial.trial.follow_table import stream_of
 from seatrial.trial.forces import points_of
 from seatrial.trial.literature import range_findings
 from seatrial.trial.model_choice import chosen_model, ship_of
-from seatrial.trial.runs import expanded, runs_of
+from seatrial.trial.runs import expanded, refuse_untrained, runs_of
 from seatrial.trial.schema import EstimateTable, FamilyTable, TrialFile
 from seatrial.trial.trial import Estimate, Family, Trial
 from seatrial.values import NOTATION, InputError, Ship, nearest
@@ -36,8 +37,11 @@ def parse_trial(path: Path) -> TrialFile:
         file = TrialFile.model_validate(table)
     except ValidationError as error:
         raise complaint(error, TrialFile, str(path)) from None
-    if not file.records and file.design is None:
-        raise InputError(f"{path}: key 'records' is missing; add it, or a [design] table for 'seatrial design'")
+    if not file.records and file.design is None and file.follow is None:
+        raise InputError(
+            f"{path}: key 'records' is missing; add it, or a [design] table for 'seatrial design', or [follow] for "
+            "'seatrial follow'"
+        )
     return file
 
 
@@ -60,6 +64,8 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         known = set(NOTATION)
         for number, block in enumerate(file.records, start=1):
             _refuse_strangers(f"records[{number}].channels", list(block.channels), known)
+        if file.follow is not None:
+            _refuse_strangers("follow.channels", list(file.follow.channels), known)
         _refuse_strangers("noise", list(file.noise), known)
         _refuse_strangers("estimate.channels", list(file.estimate.channels), set(model.observables))
         _refuse_strangers("estimate.offsets", list(file.estimate.offsets), known)
@@ -75,6 +81,9 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         base = home / expanded(file.data.folder)
         excitation = excitation_of(file.excitation, ship, model, base)
         runs = runs_of(file.records, file.data.folder, home, excitation, ship.length) if file.records else ()
+        if runs and file.follow is None:
+            refuse_untrained(runs)
+        stream = None if file.follow is None else stream_of(file.follow, base, home, excitation, ship.length)
         brief = None if file.design is None else brief_of(file.design, model, ship.length)
         forces = tuple(
             points_of(block, base, model, file.model.reference_point, f"forces[{i}]")
@@ -96,6 +105,7 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         forces=forces,
         family=None if file.family is None else _family(file.family),
         design=brief,
+        follow=stream,
         findings=(*ranges, *(finding for points in forces for finding in force_findings(points, unit))),
     )
 

@@ -46,7 +46,7 @@ def records_of(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ..
 
 def checked(run: Run, reference_point: float) -> tuple[Record, list[Finding]]:
     """One run read, examined as it is, repaired, made canonical, given its wave forces, trimmed and resampled."""
-    raw = read_record(run.path, run.layout).named(run.name)
+    raw = read_record(run.path, run.layout).named(run.name) if run.raw is None else run.raw
     record, _ = prepared(raw, reference_point)
     if run.waves is not None and run.waves.spectrum is None:
         record = with_wave_forces(record, run.waves.excitation, run.waves.U, run.waves.beta)

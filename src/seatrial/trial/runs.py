@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from seatrial.hydro.excitation import Excitation
-from seatrial.read import Column, Layout, format_of
+from seatrial.read import Column, Format, Layout, format_of
 from seatrial.trial.excitation import waves_of
-from seatrial.trial.schema import ChannelColumn, RecordsTable
+from seatrial.trial.schema import ChannelColumn, ColumnsTable, RecordsTable
 from seatrial.trial.trial import Role, Run, Trimming, run_name
 from seatrial.values import InputError, nearest, quantity, si
 
@@ -58,9 +58,15 @@ def runs_of(
     for name in names:
         if names.count(name) > 1:
             raise InputError(f"two record files are called '{name}'; rename one, or narrow the globs")
+    return tuple(runs)
+
+
+def refuse_untrained(runs: Sequence[Run]) -> None:
+    """Raises:
+    InputError: none of the runs is one to train on.
+    """
     if not any(run.role is Role.TRAIN for run in runs):
         raise InputError("no run is left to train on; narrow 'validate' or 'leave_out'")
-    return tuple(runs)
 
 
 def _block_runs(block: RecordsTable, base: Path, where: str, excitation: Excitation | None, length: float) -> list[Run]:
@@ -68,9 +74,10 @@ def _block_runs(block: RecordsTable, base: Path, where: str, excitation: Excitat
     trimming = Trimming(block.from_s, block.to_s, block.skip_acceleration, block.rate, block.from_release)
     roles = _roles(block, [run_name(p) for p in paths], where)
     met = waves_of(block.waves, excitation, length, where)
+    layouts = [layout_of(block, block.format or format_of(path), where, block.scale) for path in paths]
     return [
-        Run(path, layout_of(block, path, where), role, session_of(path, block.session), trimming, block.source, met)
-        for path, role in zip(paths, roles, strict=True)
+        Run(path, layout, role, session_of(path, block.session), trimming, block.source, met)
+        for path, layout, role in zip(paths, layouts, roles, strict=True)
     ]
 
 
@@ -123,21 +130,21 @@ def session_of(path: Path, rule: str) -> str:
     return match.group(1) if match.re.groups else match.group(0)
 
 
-def layout_of(block: RecordsTable, path: Path, where: str) -> Layout:
-    """How to parse one file of the block, in the terms of `seatrial.read`.
+def layout_of(block: ColumnsTable, kind: Format, where: str, scale: float = 1.0) -> Layout:
+    """How to parse one file or stream of the block, in the terms of `seatrial.read`.
 
     Raises:
-        InputError: a unit of another kind than the channel's, or a format that the file's ending does not tell.
+        InputError: a unit of another kind than the channel's.
     """
     return Layout(
-        format=block.format or format_of(path),
+        format=kind,
         time=Column("time", block.time.column, block.time.unit),
         columns=tuple(_column(s, c, f"{where}.channels.{s}") for s, c in block.channels.items()),
         header_lines=block.header_lines,
         encoding=block.encoding,
         separator=block.separator,
         decimal=block.decimal,
-        scale=block.scale,
+        scale=scale,
     )
 
 

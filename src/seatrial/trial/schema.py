@@ -144,19 +144,35 @@ class WavesTable(Strict):
     sea: SeaTable | None = None
 
 
-class RecordsTable(Strict):
-    """One `[[records]]` block: files of one layout, their roles and trimming."""
+class ColumnsTable(Strict):
+    """Where time and channels stand, in a file or in a stream."""
 
-    files: Words
-    format: Format | None = None
     header_lines: Annotated[int, Field(ge=0)] = 0
     encoding: str = "utf-8"
     separator: Separator = "auto"
     decimal: Literal[".", ","] = "."
-    scale: Annotated[float, Field(gt=0)] = 1.0
-    source: str = ""
     time: TimeColumn
     channels: dict[str, ChannelColumn]
+
+    @model_validator(mode="after")
+    def _one_channel_a_column(self) -> Self:
+        owner: dict[str | int, str] = {self.time.column: "time"}
+        for symbol, channel in self.channels.items():
+            if channel.column in owner:
+                raise ValueError(
+                    f"column {channel.column!r} is named for '{owner[channel.column]}' and '{symbol}'; keep one"
+                )
+            owner[channel.column] = symbol
+        return self
+
+
+class RecordsTable(ColumnsTable):
+    """One `[[records]]` block: files of one layout, their roles and trimming."""
+
+    files: Words
+    format: Format | None = None
+    scale: Annotated[float, Field(gt=0)] = 1.0
+    source: str = ""
     train: Words = ()
     validate_: Words = Field((), alias="validate")
     leave_out: Words = ()
@@ -174,15 +190,35 @@ class RecordsTable(Strict):
             raise ValueError(f"from_s = {self.from_s:g} is not before to_s = {self.to_s:g}")
         return self
 
+
+class FollowTable(ColumnsTable):
+    """`[follow]`: samples that come while the record is being made, from where and in which columns.
+
+    `source`: lines of a growing file, of standard input or of UDP datagrams, or NMEA 0183 sentences from them.
+    """
+
+    source: Literal["file", "stdin", "udp", "nmea-file", "nmea-stdin", "nmea-udp"]
+    file: str | None = None
+    host: str = "127.0.0.1"
+    port: Annotated[int, Field(ge=1, le=65535)] | None = None
+    rate: Annotated[float, Field(gt=0)]
+    waves: WavesTable | None = None
+    whole_s: Annotated[float, Field(gt=0)] = 3600.0
+    forgetting_s: Annotated[float, Field(gt=0)] | None = None
+    longest_gap_s: Annotated[float, Field(gt=0)] = 30.0
+    page: Annotated[int, Field(ge=0, le=65535)] = 0
+    journal: str | None = None
+
     @model_validator(mode="after")
-    def _one_channel_a_column(self) -> Self:
-        owner: dict[str | int, str] = {self.time.column: "time"}
-        for symbol, channel in self.channels.items():
-            if channel.column in owner:
-                raise ValueError(
-                    f"column {channel.column!r} is named for '{owner[channel.column]}' and '{symbol}'; keep one"
-                )
-            owner[channel.column] = symbol
+    def _place_where_needed(self) -> Self:
+        if self.source.endswith("file") and self.file is None:
+            raise ValueError(f"source = '{self.source}' needs a file; add it")
+        if self.source.endswith("udp") and self.port is None:
+            raise ValueError(f"source = '{self.source}' needs a port; add it")
+        if self.longest_gap_s * self.rate < 1.0:
+            raise ValueError(
+                f"longest_gap_s = {self.longest_gap_s:g} is shorter than a step at {self.rate:g} Hz; make it longer"
+            )
         return self
 
 
@@ -357,7 +393,7 @@ class DesignTable(Strict):
 
 
 class TrialFile(Strict):
-    """The whole file; the records may be missing where a manoeuvre is only to be designed."""
+    """The whole file; records may be missing where a manoeuvre is only to be designed, or a stream to be followed."""
 
     question: str = ""
     accept: tuple[str, ...] = ()
@@ -372,6 +408,7 @@ class TrialFile(Strict):
     truth: dict[str, float] = {}
     estimate: EstimateTable = EstimateTable()
     design: DesignTable | None = None
+    follow: FollowTable | None = None
 
 
 def trial_schema() -> dict[str, Any]:

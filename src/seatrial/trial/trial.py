@@ -10,7 +10,7 @@ from seatrial.hydro.excitation import Excitation
 from seatrial.read import Layout
 from seatrial.results import Actuator, Limits
 from seatrial.sea.spectrum import Spectrum
-from seatrial.values import Finding, ForcePoints, Ship
+from seatrial.values import Finding, ForcePoints, Record, Ship
 
 
 class Role(StrEnum):
@@ -59,7 +59,10 @@ class Waves:
 
 @dataclass(frozen=True)
 class Run:
-    """One record file of the trial: where it lies, how to parse it, what it is for, what it shares offsets with."""
+    """One record file of the trial: where it lies, how to parse it, what it is for, what it shares offsets with.
+
+    raw: the record as it was read where it has been read already; the file is then left alone.
+    """
 
     path: Path
     layout: Layout
@@ -68,6 +71,7 @@ class Run:
     trimming: Trimming = Trimming()
     source: str = ""
     waves: Waves | None = None
+    raw: Record | None = field(default=None, compare=False, repr=False)
 
     @property
     def name(self) -> str:
@@ -139,6 +143,46 @@ class Brief:
     prior: float = 0.3
 
 
+class Feed(StrEnum):
+    """Where the samples of a stream come from; NMEA 0183 sentences or lines of columns."""
+
+    FILE = "file"
+    STDIN = "stdin"
+    UDP = "udp"
+    NMEA_FILE = "nmea-file"
+    NMEA_STDIN = "nmea-stdin"
+    NMEA_UDP = "nmea-udp"
+
+
+@dataclass(frozen=True)
+class Stream:
+    """Samples that come while the record is being made, SI.
+
+    Attributes:
+        feed: where they come from; layout: which column is what; rate: Hz, nominal.
+        name: of the runs it makes, as the stem of a file names a record's.
+        file: of a feed from a file; host, port: on which UDP is listened to.
+        waves: how the ship meets them, for an elevation in the stream.
+        whole: s over which the batch criterion is kept; forgetting: s after which the past counts 1/e, None for ever.
+        longest_gap: s without a sample after which a new run begins.
+        page: port of the local page, 0 none; journal: where what was admitted is kept, None beside the result.
+    """
+
+    feed: Feed
+    layout: Layout
+    rate: float
+    name: str = "stream"
+    file: Path | None = None
+    host: str = "127.0.0.1"
+    port: int = 0
+    waves: Waves | None = None
+    whole: float = 3600.0
+    forgetting: float | None = None
+    longest_gap: float = 30.0
+    page: int = 0
+    journal: Path | None = None
+
+
 @dataclass(frozen=True, eq=False)
 class Trial:
     """Ship, runs and their roles, model, assumptions.
@@ -152,6 +196,7 @@ class Trial:
         forces: static force points that are fitted beside the runs.
         family: models to compare; None: the family of the house.
         design: the manoeuvre that is to be designed; None: none is.
+        follow: the stream that is to be followed; None: none is.
         findings: what is odd about the trial itself: priors beyond their range, force points of unexpected sign.
         path: the trial file; None for a trial made in Python.
     """
@@ -169,6 +214,7 @@ class Trial:
     forces: tuple[ForcePoints, ...] = ()
     family: Family | None = None
     design: Brief | None = None
+    follow: Stream | None = None
     findings: tuple[Finding, ...] = ()
 
     def of_role(self, role: Role) -> tuple[Run, ...]:
