@@ -23,12 +23,31 @@ def hidden_states(model: Model, records: Sequence[Record]) -> tuple[str, ...]:
     return tuple(s for s in model.states if s not in NOTATION and not all(s in r for r in records))
 
 
+def untold_states(model: Model, record: Record) -> tuple[str, ...]:
+    """States of the model that the record neither holds nor implies."""
+    found = _found(model, record)
+    return tuple(s for s in model.states if s not in found)
+
+
 def measured_states(model: Model, record: Record) -> Array:
     """States as columns, shape (n, nx); u, v, r are derived from positions and heading where they were not measured.
 
     Raises:
         InputError: a state is neither measured nor derivable.
     """
+    found = _found(model, record)
+    missing = [s for s in model.states if s not in found]
+    if missing:
+        raise InputError(
+            f"record '{record.name}' neither holds nor implies '{missing[0]}', "
+            f"which model '{model.name}' needs; add the channel"
+        )
+    columns = np.stack([found[s] for s in model.states], axis=1)
+    return np.ascontiguousarray(np.where(np.isfinite(columns), columns, 0.0))
+
+
+def _found(model: Model, record: Record) -> dict[str, Array]:
+    """What the record holds or implies of the model's states, (n,) each."""
     found: dict[str, Array] = {s: record[s] for s in model.states if s in record}
     if "r" not in found and "psi" in record:
         found["r"] = _slope(record, "psi")
@@ -45,11 +64,4 @@ def measured_states(model: Model, record: Record) -> Array:
             found[rate] = _slope(record, rate.removesuffix("_dot"))
     for unused in ("x0", "y0"):
         found.setdefault(unused, np.zeros(len(record)))
-    missing = [s for s in model.states if s not in found]
-    if missing:
-        raise InputError(
-            f"record '{record.name}' neither holds nor implies '{missing[0]}', "
-            f"which model '{model.name}' needs; add the channel"
-        )
-    columns = np.stack([found[s] for s in model.states], axis=1)
-    return np.ascontiguousarray(np.where(np.isfinite(columns), columns, 0.0))
+    return found
