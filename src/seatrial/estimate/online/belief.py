@@ -1,0 +1,97 @@
+"""What a recursive filter begins with and what it knows: coefficients, the present state, and how these are tied."""
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from seatrial.optimise import Normal
+from seatrial.problem.output_error import OutputError
+from seatrial.simulate.linear import batch_for
+from seatrial.values import Array, InputError
+
+
+@dataclass(frozen=True, eq=False)
+class Belief:
+    """Gaussian: coefficients theta ~ N(value, covariance), state ~ N(state + sensitivity (theta - value), spread).
+
+    Attributes:
+        value (k,), covariance (k, k): of the coefficients; state (nx,): at the present sample.
+        sensitivity: (nx, k), change of the present state with the coefficients, given all that was measured.
+        spread: (nx, nx), covariance of the state were the coefficients known.
+    """
+
+    value: Array
+    covariance: Array
+    state: Array
+    sensitivity: Array
+    spread: Array
+
+    def __post_init__(self) -> None:
+        k, nx = len(self.value), len(self.state)
+        shapes = {"covariance": (k, k), "sensitivity": (nx, k), "spread": (nx, nx)}
+        for name, shape in {"value": (k,), "state": (nx,), **shapes}.items():
+            made = np.shape(getattr(self, name))
+            if made != shape or not np.all(np.isfinite(getattr(self, name))):
+                raise InputError(f"the filter's first {name} must be {shape} finite numbers, its shape is {made}")
+
+    def root(self) -> Array:
+        """R, (k + nx, k + nx), lower block triangular, R R' the covariance of [theta | state].
+
+        Raises:
+            InputError: a covariance is not positive (semi-definite).
+        """
+        k = len(self.value)
+        made = np.zeros((k + len(self.state),) * 2)
+        made[:k, :k] = root_of(self.covariance, "the coefficients' covariance")
+        made[k:, :k] = self.sensitivity @ made[:k, :k]
+        made[k:, k:] = root_of(self.spread, "the state's covariance")
+        return made
+
+    def at(self, state: Array, spread: Array) -> Self:
+        """The same coefficients where a run begins: its state knows nothing of them."""
+        return replace(self, state=state, sensitivity=np.zeros((len(state), len(self.value))), spread=spread)
+
+
+def root_of(covariance: Array, what: str) -> Array:
+    """A square root of a covariance that may be singular, scaled by its own deviations first.
+
+    Raises:
+        InputError: it is not positive semi-definite.
+    """
+    deviation = np.sqrt(np.maximum(np.diagonal(covariance), 0.0))
+    scale = np.where(deviation > 0.0, deviation, 1.0)
+    values, vectors = np.linalg.eigh(covariance / np.outer(scale, scale))
+    if values[0] < -1e-8 * max(values[-1], 1.0):
+        raise InputError(f"{what} is not positive; give one that comes from a fit")
+    return scale[:, None] * vectors * np.sqrt(np.maximum(values, 0.0))
+
+
+def handed_over(problem: OutputError, shared: Array, local: Array, normal: Normal) -> Belief:
+    """What an output-error fit knows at the last sample of its last segment; `normal` is its model at the optimum.
+
+    Corrections of inputs and a current count as the fit left them; their uncertainty is in the coefficients'.
+
+    Raises:
+        InputError: the records do not tell every coefficient.
+    """
+    model, data, k = problem.model, problem.data, len(problem.free)
+    information = normal.reduced()[1]
+    scale = np.sqrt(np.maximum(np.diagonal(information), 1e-300))
+    scaled = information / np.outer(scale, scale)
+    if not np.all(np.isfinite(scaled)) or np.linalg.eigvalsh(scaled)[0] < 1e-13:
+        raise InputError("the records so far do not tell every coefficient; keep the window until they do")
+    covariance = (np.linalg.inv(scaled) / np.outer(scale, scale))[:k, :k]
+    first, last = data.offsets[-2:]
+    start, values, corrections = problem.unpacked(shared, local)
+    batch = batch_for(model)(
+        model, np.ascontiguousarray(data.inputs[first:last]), np.array([0, last - first]), data.dt, model.states,
+        problem.free, tuple(n.correction for n in problem.nuisances), problem.starts, problem.substeps,
+    )  # fmt: skip
+    y, slopes, _ = batch.differentiate(0, 1, start[-1:], values[-1:], corrections[-1:])
+    by_start = slopes[-1, :, len(batch.parameters) + len(batch.corrections) :]
+    of_start = np.linalg.pinv(normal.local_hessian[-1], hermitian=True)
+    moved = -of_start @ normal.cross[-1, :k].T
+    spread = by_start @ of_start @ by_start.T
+    return Belief(shared[:k].copy(), 0.5 * (covariance + covariance.T), y[-1], slopes[-1, :, :k] + by_start @ moved,
+                  0.5 * (spread + spread.T))  # fmt: skip
