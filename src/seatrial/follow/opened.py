@@ -66,7 +66,7 @@ class LineSamples:
         self._lines.close()
 
 
-def opened(stream: Stream, *, once: bool = False) -> Source:
+def source_of(stream: Stream, *, once: bool = False) -> Source:
     """The source of a trial's stream; with `once` a file is over at its end.
 
     Raises:
