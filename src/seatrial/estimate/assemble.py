@@ -32,7 +32,7 @@ def output_error(
 ) -> OutputError:
     """The records in segments of `seconds` (infinite: whole runs); each channel's noise a tenth of its spread.
 
-    Beside them stand the settings' force points.
+    Beside them stand the settings' force points and other data.
 
     Raises:
         InputError: outputs that cannot be compared, time steps that differ, a record of fewer than three samples, or
@@ -43,4 +43,4 @@ def output_error(
     spread = np.nanstd(data.measured, axis=0)
     return OutputError(model, data, np.maximum(0.1 * spread, 1e-9), _nuisances(settings), _current(settings),
                        substeps=settings.substeps, workers=settings.workers,
-                       others=tuple(StaticForces(model, points) for points in settings.forces))  # fmt: skip
+                       others=(*(StaticForces(model, points) for points in settings.forces), *settings.others))  # fmt: skip

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from seatrial.problem.addend import Addend
 from seatrial.values import ForcePoints
 
 SEGMENT_SHIP_LENGTHS = 1.5
@@ -54,6 +55,7 @@ class Settings:
         substeps: Runge-Kutta steps in one sample.
         evaluations: limit for each search.
         forces: tables of static force points that are fitted beside the records.
+        others: other data beside the records: information carried from records no longer kept.
         intervals: where intervals come from; seed: of what is drawn for them.
     """
 
@@ -68,5 +70,6 @@ class Settings:
     evaluations: int = 60
     workers: int | None = None
     forces: tuple[ForcePoints, ...] = ()
+    others: tuple[Addend, ...] = ()
     intervals: Intervals = Intervals.AUTO
     seed: int = 0

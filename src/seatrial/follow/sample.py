@@ -1,21 +1,10 @@
 """One sample of a stream, and where samples come from."""
 
-from dataclasses import dataclass
 from typing import Protocol
 
-from seatrial.results.online import Counts
-from seatrial.values import Array
+from seatrial.results.online import Counts, Sample
 
-
-@dataclass(frozen=True, eq=False)
-class Sample:
-    """One row of the stream: time [s] on its own clock and the layout's columns in SI, conventions as declared.
-
-    values: (k,), in the order of the layout's columns; NaN where a cell was empty or no number.
-    """
-
-    time: float
-    values: Array
+__all__ = ["Sample", "Source"]
 
 
 class Source(Protocol):

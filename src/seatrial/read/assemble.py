@@ -18,24 +18,41 @@ def assembled(sheet: Sheet, layout: Layout, sha256: str) -> Record:
     """
     time = sheet.numbers(layout.time) * layout.time.factor("s")
     _demand_time(time, sheet, layout)
-    channels: dict[str, Channel] = {}
+    columns = []
     for column in layout.columns:
-        unit = quantity(column.symbol).unit
-        values = sheet.numbers(column) * column.factor(unit)
+        values = sheet.numbers(column) * column.factor(quantity(column.symbol).unit)
         if np.all(np.isnan(values)):
             raise InputError(
                 f"{sheet.file}: {column.place} (channel '{column.symbol}') holds no number at all; leave it out"
             )
-        channels[column.symbol] = Channel(
-            frozen(values),
-            unit,
+        columns.append(values)
+    labels = tuple(sheet.label(column) for column in layout.columns)
+    provenance = Provenance(sheet.file, sha256, (f"read as {layout.format}",))
+    return as_declared(stem(sheet.file), layout, time, np.stack(columns, axis=1), labels, provenance)
+
+
+def as_declared(
+    name: str,
+    layout: Layout,
+    time: Array,
+    values: Array,
+    labels: tuple[str, ...] = (),
+    provenance: Provenance | None = None,
+) -> Record:
+    """The record of rows that are numbers already: time (n,) [s], the layout's columns (n, k) [SI], as declared."""
+    named = labels or tuple(column.label or column.place for column in layout.columns)
+    channels = {
+        column.symbol: Channel(
+            frozen(values[:, k]),
+            quantity(column.symbol).unit,
             column.declared_frame,
             column.declared_positive,
             column.reference_point,
-            sheet.label(column),
+            named[k],
         )
-    provenance = Provenance(sheet.file, sha256, (f"read as {layout.format}",))
-    return scaled(Record(stem(sheet.file), time, channels, provenance=provenance), layout.scale)
+        for k, column in enumerate(layout.columns)
+    }
+    return scaled(Record(name, time, channels, provenance=provenance or Provenance(name)), layout.scale)
 
 
 def stem(file: str) -> str:

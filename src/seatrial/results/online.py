@@ -6,6 +6,17 @@ from enum import StrEnum
 from seatrial.values import Array, Finding
 
 
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """One row of a stream: time [s] on its own clock and the layout's columns in SI, conventions as declared.
+
+    values: (k,), in the order of the layout's columns; NaN where a cell was empty or no number.
+    """
+
+    time: float
+    values: Array
+
+
 class Phase(StrEnum):
     """How the numbers of a snapshot come about.
 

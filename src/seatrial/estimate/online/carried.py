@@ -1,0 +1,43 @@
+"""What records no longer kept have told: information of the coefficients at the point where it was gathered."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from seatrial.problem.addend import Contribution
+from seatrial.values import Array, Index
+
+
+@dataclass(frozen=True, eq=False)
+class Carried:
+    """Half (theta - point)' information (theta - point), an `Addend`: Gauss-Newton's model of all that went before.
+
+    Attributes:
+        places: positions of the coefficients among all model parameters, (k,); point: (k,); information: (k, k).
+    """
+
+    places: Index
+    point: Array
+    information: Array
+
+    def cost(self, values: Array) -> float:
+        """As `Addend.cost`."""
+        off = values[self.places] - self.point
+        return 0.5 * float(off @ self.information @ off)
+
+    def normal(self, values: Array, free: Sequence[int]) -> Contribution:
+        """As `Addend.normal`."""
+        off = values[self.places] - self.point
+        own = [list(self.places).index(i) if i in self.places else -1 for i in free]
+        known = np.array([i >= 0 for i in own])
+        gradient, hessian = np.zeros(len(own)), np.zeros((len(own), len(own)))
+        rows = np.array([i for i in own if i >= 0], dtype=np.int64)
+        gradient[known] = (self.information @ off)[rows]
+        hessian[np.ix_(known, known)] = self.information[np.ix_(rows, rows)]
+        return Contribution(self.cost(values), gradient, hessian)
+
+    def faded(self, share: float) -> Self:
+        """With that share of the information left: what is older counts less (exponential forgetting)."""
+        return replace(self, information=share * self.information)

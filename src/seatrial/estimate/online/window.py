@@ -1,0 +1,129 @@
+"""The batch criterion over everything seen, started where the last search ended: output error over whole runs."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from seatrial.equations import Model
+from seatrial.estimate.assemble import output_error
+from seatrial.estimate.estimate import Estimate, colour, residual_spread
+from seatrial.estimate.fit import unit_of_time
+from seatrial.estimate.settings import WHITE_INFLATION, WINDOW_SHIP_LENGTHS, Settings
+from seatrial.estimate.start import start
+from seatrial.information.autocorrelation import whiteness_p
+from seatrial.information.covariance import inverse
+from seatrial.optimise import levenberg_marquardt
+from seatrial.problem.output_error import OutputError
+from seatrial.values import Array, Record
+
+# a promised decrease of half the sum of squares: some hundredths of a standard error
+_NEGLIGIBLE = 1e-3
+_FIRST, _LATER = 40, 12
+_WHITE, _TIE = 0.01, 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """An estimate from everything in the window.
+
+    Attributes:
+        made: problem and optimum; covariance: of the free coefficients, (k, k); infinite diagonal where singular.
+        inflation: of each channel's residuals, (ny,); one where they are white.
+        begins: name and first time of each record.
+    """
+
+    made: Estimate
+    covariance: Array
+    inflation: Array
+    begins: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def value(self) -> Array:
+        """The free coefficients, (k,)."""
+        return self.made.shared[: len(self.made.problem.free)]
+
+    @property
+    def misfit(self) -> float:
+        """Rms residual over the spread of what was measured."""
+        problem = self.made.problem
+        spread = np.nanstd(problem.data.measured, axis=0)
+        return float(np.sqrt(np.nanmean((self.made.residuals() / np.maximum(spread, 1e-12)) ** 2)))
+
+    @property
+    def is_coloured(self) -> bool:
+        """Whether residuals are correlated in time."""
+        return bool(np.any(self.inflation > WHITE_INFLATION))
+
+
+def begun(model: Model, records: Sequence[Record], sessions: Sequence[str], length: float, settings: Settings) -> Known:
+    """A search from nowhere, as `identify` makes it.
+
+    Raises:
+        InputError: the records cannot be fitted at all.
+    """
+    problem = output_error(model, records, sessions, np.inf, settings)
+    unit = unit_of_time(model, records, length, settings.segment_seconds)
+    first = start(problem, records, WINDOW_SHIP_LENGTHS * unit)
+    known = _searched(first.problem, first.shared, first.local, settings, _FIRST)
+    again = _searched(_weighted(known), known.made.shared, known.made.optimum.local, settings, _FIRST)
+    return replace(again, begins=_begins(records))
+
+
+def grown(before: Known, model: Model, records: Sequence[Record], sessions: Sequence[str], settings: Settings) -> Known:
+    """The search continued on longer records, weights as the last residuals have them.
+
+    Raises:
+        InputError: the records cannot be fitted at all.
+    """
+    last = _weighted(before)
+    problem = replace(
+        output_error(model, records, sessions, np.inf, settings), noise=last.noise, inflation=last.inflation
+    )
+    shared = problem.start()
+    shared[: len(problem.free)] = before.value
+    local = problem.measured_starts()
+    begins = _begins(records)
+    for row, (now, was) in enumerate(zip(begins, before.begins, strict=False)):
+        if now == was:
+            local[row] = before.made.optimum.local[row]
+    return replace(_searched(problem, shared, local, settings, _LATER), begins=begins)
+
+
+def better(one: Known, other: Known) -> Known:
+    """The one that leaves less, both on the same records; a search that ended nowhere leaves infinitely much."""
+    left = [known.misfit if np.isfinite(known.misfit) else np.inf for known in (one, other)]
+    return other if left[1] < (1.0 - _TIE) * left[0] else one
+
+
+def _begins(records: Sequence[Record]) -> tuple[tuple[str, float], ...]:
+    return tuple((record.name, float(record.time[0])) for record in records)
+
+
+def _searched(problem: OutputError, shared: Array, local: Array, settings: Settings, evaluations: int) -> Known:
+    given = np.array([settings.noise.get(o, np.nan) for o in problem.data.outputs])
+    problem = replace(problem, noise=np.where(np.isfinite(given), given, problem.noise))
+    found = levenberg_marquardt(problem, shared, local, negligible=_NEGLIGIBLE, evaluations=evaluations)
+    made = Estimate(problem, found)
+    inflation = _inflation(made)
+    count = len(problem.free)
+    hessian = found.normal.reduced()[1]
+    covariance = inverse(hessian)[:count, :count] if np.all(np.isfinite(hessian)) else np.diag(np.full(count, np.inf))
+    trust = 1.0 if problem.inflation is not None else float(np.max(inflation))
+    return Known(made, covariance * max(trust, 1.0), inflation)
+
+
+def _inflation(made: Estimate) -> Array:
+    """Variance inflation of each channel's residuals; one where a short record cannot tell them from white."""
+    residuals = made.residuals()
+    rho, inflation = colour(made.problem, residuals)
+    samples = np.isfinite(residuals).sum(axis=0)
+    p = np.array([whiteness_p(r, int(n)) for r, n in zip(rho, samples, strict=True)])
+    return np.where(p < _WHITE, inflation, 1.0)
+
+
+def _weighted(known: Known) -> OutputError:
+    """The problem with noise and effective numbers of samples from the residuals it left."""
+    made = known.made
+    inflation = np.where(known.inflation > WHITE_INFLATION, known.inflation, 1.0) if known.is_coloured else None
+    return replace(made.problem, noise=residual_spread(made.problem, made.residuals()), inflation=inflation)

@@ -1,0 +1,207 @@
+"""One estimator fed sample by sample: the criterion of `identify` over a growing window, then over what it carries on.
+
+While the window lasts (`Stream.whole`) every re-linearisation goes over all samples, so that the numbers are those of
+the batch fit. Beyond it the window's normal equations are kept instead of its samples (`Carried`), and further
+stretches are added one by one: an information filter whose updates are iterated over a stretch, not over a sample.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from seatrial.estimate.fit import identified, swings
+from seatrial.estimate.online.carried import Carried
+from seatrial.estimate.online.rows import Rows
+from seatrial.estimate.online.window import Known, begun, better, grown
+from seatrial.estimate.settings import Criterion, Settings
+from seatrial.identify.identify import settings_of
+from seatrial.read.assemble import as_declared
+from seatrial.results.online import Change, Phase, Sample, Snapshot
+from seatrial.trial import Role, Run, Trial
+from seatrial.trial.follow_table import followed
+from seatrial.trial.records import checked
+from seatrial.values import Array, InputError, Record
+
+# samples before the first search, seconds and growth between searches: started warm, or from nowhere
+_FEWEST = 30
+_STEP, _GROWTH = 2.5, 1.15
+_COLD_STEP, _COLD_GROWTH = 10.0, 1.5
+# s after which a search is started from where the last one ended only, unless residuals grow by this factor
+_SURE, _WORSE = 60.0, 1.2
+# s of a stretch beyond the window
+_STRETCH = 60.0
+
+
+@dataclass
+class _Kept:
+    """What the window holds: raw rows of its runs, canonical records of closed ones."""
+
+    rows: list[Rows]
+    closed: list[Record]
+
+
+class Online:
+    """Feed with `update`; the same samples give the same bits. No threads, no files.
+
+    A trial's own training runs come first and stay in the window.
+
+    Raises:
+        InputError: the trial follows nothing, or its own records do not pass.
+    """
+
+    def __init__(self, trial: Trial) -> None:
+        self._trial, self._stream = trial, followed(trial)
+        self._own = tuple(checked(run, trial.reference_point)[0] for run in trial.runs if run.role is Role.TRAIN)
+        self._kept = _Kept([], [])
+        self._runs = self._samples = 0
+        self._carried: Carried | None = None
+        self._known: Known | None = None
+        self._change: Change | None = None
+        self._next = 0.0
+        self._why = "too few samples yet"
+        self._is_warm = self._suits_whole_runs()
+        self._shown = self._waiting()
+
+    def begin_run(self) -> None:
+        """What follows belongs to a new run: a gap, or a jump of the clock."""
+        if self._kept.rows and len(self._kept.rows[-1]):
+            self._close()
+        self._runs += 1
+        self._kept.rows.append(Rows(len(self._stream.layout.columns)))
+
+    def update(self, sample: Sample) -> Snapshot:
+        """Take in one sample, later than the last; the estimate by now."""
+        if not self._kept.rows:
+            self.begin_run()
+        self._kept.rows[-1].add(sample.time, sample.values)
+        self._samples += 1
+        if self._seconds >= self._next and len(self._kept.rows[-1]) >= 3:
+            self.relinearise()
+        self._shown = replace(self._shown, time=sample.time, samples=self._samples, runs=self._runs)
+        return self._shown
+
+    def relinearise(self) -> Snapshot:
+        """Search now, from where the last search ended, over everything in the window."""
+        step, growth = (_STEP, _GROWTH) if self._is_warm else (_COLD_STEP, _COLD_GROWTH)
+        if self._carried is not None:
+            step, growth = _STRETCH, 1.0
+        self._next = max(self._seconds + step, self._seconds * growth)
+        if sum(len(rows) for rows in self._kept.rows) >= _FEWEST:
+            try:
+                self._known = self._searched(self._records())
+                self._shown = self._told(self._known)
+            except InputError as error:
+                self._why = str(error)
+                self._shown = replace(self._shown, advice=self._why) if self._known is None else self._shown
+        if self._known is not None and self._is_full:
+            self._carry(self._known)
+        return self._shown
+
+    def raw_runs(self) -> tuple[Run, ...]:
+        """The stream's runs that are still kept, as training runs of a trial whose files have been read."""
+        return tuple(self._run(self._raw(rows, i)) for i, rows in self._numbered() if len(rows) > 2)
+
+    @property
+    def _seconds(self) -> float:
+        """Length of what the window holds."""
+        return sum(rows.seconds for rows in self._kept.rows)
+
+    @property
+    def _is_full(self) -> bool:
+        whole = min(self._stream.whole, self._stream.forgetting or np.inf)
+        return self._seconds >= (whole if self._carried is None else min(_STRETCH, whole))
+
+    def _suits_whole_runs(self) -> bool:
+        wishes, model = self._trial.estimate, self._trial.model
+        is_free = Criterion(wishes.criterion) in (Criterion.AUTO, Criterion.OUTPUT_ERROR) and wishes.segment_s is None
+        return is_free and (model.is_affine or swings(model))
+
+    def _numbered(self) -> list[tuple[int, Rows]]:
+        first = self._runs - len(self._kept.rows) + 1
+        return list(enumerate(self._kept.rows, start=first))
+
+    def _raw(self, rows: Rows, number: int) -> Record:
+        name = self._stream.name if number <= 1 else f"{self._stream.name}_{number}"
+        return as_declared(name, self._stream.layout, rows.time, rows.values)
+
+    def _run(self, raw: Record) -> Run:
+        stream = self._stream
+        return Run(Path(raw.name), stream.layout, Role.TRAIN, raw.name, waves=stream.waves, raw=raw)
+
+    def _canonical(self, raw: Record) -> Record:
+        record = checked(self._run(raw), self._trial.reference_point)[0]
+        rate = self._trial.estimate.rate
+        return record if rate is None else record.resampled(rate)
+
+    def _close(self) -> None:
+        number, rows = self._numbered()[-1]
+        if len(rows) < 3:
+            self._kept.rows.pop()
+            return
+        self._kept.closed.append(self._canonical(self._raw(rows, number)))
+
+    def _records(self) -> list[Record]:
+        open_run = self._numbered()[len(self._kept.closed) :]
+        return [*self._own, *self._kept.closed, *(self._canonical(self._raw(r, i)) for i, r in open_run if len(r) > 2)]
+
+    def _settings(self, records: Sequence[Record]) -> Settings:
+        made = settings_of(self._trial, records)
+        return made if self._carried is None else replace(made, others=(self._carried,))
+
+    def _searched(self, records: list[Record]) -> Known:
+        model, length, settings = self._trial.model, self._trial.ship.length, self._settings(records)
+        sessions = [record.name for record in records]
+        if not self._is_warm:
+            started = model if self._known is None else model.with_parameters(
+                model.parameters.with_free_values(self._known.value)
+            )  # fmt: skip
+            found = identified(started, records, sessions, length, settings)
+            count = len(found.made.problem.free)
+            return Known(found.made, found.interval.covariance[:count, :count], found.inflation)
+        if self._known is None:
+            return begun(model, records, sessions, length, settings)
+        warm = grown(self._known, model, records, sessions, settings)
+        if self._carried is not None or (self._seconds > _SURE and warm.misfit < _WORSE * self._known.misfit):
+            return warm
+        return better(warm, begun(model, records, sessions, length, settings))
+
+    def _carry(self, known: Known) -> None:
+        """Keep the window's normal equations instead of its samples."""
+        problem = known.made.problem
+        places = np.array([problem.model.parameters.index(n) for n in problem.free], dtype=np.int64)
+        count = len(places)
+        information = known.made.optimum.normal.reduced()[1][:count, :count] - np.diag(problem.priors[1][:count])
+        trust = 1.0 if problem.inflation is not None else float(np.max(known.inflation))
+        now = Carried(places, known.value, information / max(trust, 1.0))
+        if self._stream.forgetting is not None:
+            now = now.faded(float(np.exp(-self._seconds / self._stream.forgetting)))
+        self._carried, self._own = now, ()
+        self._kept = _Kept([Rows(len(self._stream.layout.columns))], [])
+        self._next = min(_STRETCH, self._stream.whole)
+
+    def _waiting(self) -> Snapshot:
+        free = self._trial.model.parameters.free
+        values = np.array([p.value for p in free])
+        names, units = tuple(p.name for p in free), tuple(p.unit for p in free)
+        return Snapshot(0.0, 0, 0, Phase.WAITING, names, units, values, np.full(len(free), np.inf), advice=self._why)
+
+    def _told(self, known: Known) -> Snapshot:
+        problem = known.made.problem
+        error = _errors(known.covariance)
+        untold = tuple(
+            n for n, v, s in zip(problem.free, known.value, error, strict=True)
+            if s > max(abs(v), problem.model.parameters[n].scale)
+        )  # fmt: skip
+        left = known.made.residuals()
+        noise = dict(zip(problem.data.outputs, np.sqrt(np.nanmean(left**2, axis=0)).tolist(), strict=True))
+        phase = Phase.WINDOW if self._carried is None else Phase.RECURSIVE
+        return replace(
+            self._shown, phase=phase, value=known.value, standard_error=error, noise=noise, untold=untold,
+            advice="", change=self._change,
+        )  # fmt: skip
+
+
+def _errors(covariance: Array) -> Array:
+    return np.sqrt(np.maximum(np.diag(covariance), 0.0))
