@@ -64,8 +64,10 @@ def test_same_seed_same_gains():
 
 
 def test_without_simulation_the_compromise_is_taken_and_said():
+    """Gains near zero, which are on the front as well, are no compromise."""
     bare = tune(fin_task(), effort=TINY)
     assert bare.sailed == () and bare.schedule == ()
+    assert bare.chosen.reduction > 0.3
     assert any("compromise" in reason for reason in bare.reasons)
 
 
@@ -93,3 +95,9 @@ def test_an_interruption_keeps_what_is_finished(monkeypatch):
     assert found.sailed and not found.schedule
     assert found.findings[0].code == "interrupted"
     assert np.isfinite(found.chosen.peak)
+
+
+def test_no_control_at_all_is_no_answer():
+    task = replace(fin_task(), restriction=Restriction(limit=1e-5))
+    with pytest.raises(InputError, match="no control at all, with every gain at zero"):
+        tune(replace(task, trials=None), effort=TINY)

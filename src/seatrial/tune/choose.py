@@ -38,13 +38,15 @@ def choose(task: Task, fronts: tuple[tuple[Judge, Front], ...], seed: int, tell:
         return _sailing(task, known, seed, tell)
     judge, front = known[0]
     some = _envelope(judge, front)
-    return Choice(judge, some[_by_compromise(judge, some)[0]], front.name, (_COMPROMISE,))
+    return Choice(judge, some[_by_compromise(judge, some)[0]], front.name, (_compromise(task, "the front"),))
 
 
-_COMPROMISE = (
-    "It is the compromise of the front: nearest to the best of output and actuator at once, each over its range in "
-    "decades (least largest distance; Zeleny 1973)."
-)
+def _compromise(task: Task, of: str) -> str:
+    decades = "the output's in decades" if task.demand is None else "in decades"
+    return (
+        f"It is the compromise of {of}: nearest to the best of output and actuator at once, each over its range, "
+        f"{decades} (least largest distance; Zeleny 1973)."
+    )
 
 
 def _envelope(judge: Judge, front: Front) -> Array:
@@ -60,8 +62,13 @@ def _both(judge: Judge, gains: Array) -> Array:
 
 
 def _by_compromise(judge: Judge, gains: Array) -> list[int]:
-    """Order of some gains by their largest distance from the best, output against actuator rate."""
-    both = np.log(np.maximum(_both(judge, gains), 1e-300))
+    """Order of some gains by their largest distance from the best, rms of output against rms of actuator rate.
+
+    In decades; the rate as it is where no demand is followed: there gains of zero are on the front, decades from any.
+    """
+    both = np.sqrt(_both(judge, gains))
+    decades = slice(0, 1 if judge.task.demand is None else 2)
+    both[:, decades] = np.log(np.maximum(both[:, decades], 1e-150))
     far = (both - both.min(axis=0)) / np.maximum(np.ptp(both, axis=0), 1e-12)
     return np.argsort(far.max(axis=1), kind="stable").tolist()
 
@@ -141,7 +148,8 @@ def _following(task: Task, known: tuple[Judge, Front], tell: Callable[[str], Non
         return Choice(judge, some[least], front.name, why)
     why = (
         f"{len(keeping)} of {len(some)} controllers along the front follow the demand in the nonlinear model, with no "
-        f"more than {100.0 * task.demand.overshoot:.3g} % of overshoot, and keep every ship stable that the fit allows.",
-        _COMPROMISE.replace("of the front", "of those"),
+        f"more than {100.0 * task.demand.overshoot:.3g} % of overshoot, and keep every ship stable that the fit "
+        "allows.",
+        _compromise(task, "those"),
     )
     return Choice(judge, keeping[_by_compromise(judge, keeping)[0]], front.name, why)

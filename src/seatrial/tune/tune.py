@@ -13,7 +13,7 @@ from seatrial.tune.bounds import bounds, is_available
 from seatrial.tune.choose import Choice, choose
 from seatrial.tune.controller import components, controller
 from seatrial.tune.demand import manoeuvres
-from seatrial.tune.feasible import refuse_infeasible
+from seatrial.tune.feasible import refuse_idle, refuse_infeasible
 from seatrial.tune.findings import findings
 from seatrial.tune.front import Effort, front, grid, hypervolume, thinned
 from seatrial.tune.sail import paired, sailed
@@ -50,7 +50,8 @@ def tune(
     """Tune the task's loop; the same seed gives the same gains, `effort` is that of each front.
 
     Raises:
-        InputError: no gains keep the restrictions (which, by how much), or the simulation runs away.
+        InputError: no gains keep the restrictions (which, by how much), or none but zero do, or the simulation runs
+            away.
     """
     began = time.perf_counter()
     judges = (judge(task), *(judge(task, loop) for loop in task.richer))
@@ -59,6 +60,7 @@ def tune(
         refuse_infeasible(judges[0], seed)
     choice = choose(task, fronts, seed, progress)
     chosen = controller(choice.judge, "chosen", choice.gains)
+    refuse_idle(chosen)
     rivals = {name: np.array([gains[n] for n in task.loop.gains.names]) for name, gains in task.rivals.items()}
     others = tuple(controller(judges[0], name, gains) for name, gains in rivals.items())
     stable = {one.name: rivals[one.name] for one in others if np.isfinite(one.peak)}
