@@ -52,6 +52,15 @@ def complaint(error: ValidationError, table: type[BaseModel], file: str) -> Inpu
             return InputError(f"{where}key '{key_path(location)}' is missing; add it")
         case "value_error":
             return InputError(f"{where}{key_path(location)}: {first.get('ctx', {}).get('error', first['msg'])}")
+        case "tuple_type" if isinstance(first["input"], dict):
+            return InputError(
+                f"{where}{key_path(location)} is one table where a list of them belongs; write it as "
+                f"[[{key_path(location)}]]"
+            )
+        case "tuple_type":
+            return InputError(f"{where}{key_path(location)} = {first['input']!r} is no list; put it into brackets")
+        case "too_short":
+            return InputError(f"{where}{key_path(location)} is an empty list; give at least one entry")
         case "model_type":
             return InputError(
                 f"{where}{key_path(location)} = {first['input']!r} is neither a table nor a number; write one"

@@ -14,6 +14,8 @@ from seatrial.results.tuning import Restriction
 from seatrial.sea.spectrum import Spectrum
 from seatrial.values import Array, InputError, display
 
+_UNDAMPED = 1e-9
+
 
 @dataclass(frozen=True)
 class Seaway:
@@ -41,7 +43,7 @@ class Seaway:
 
 @dataclass(frozen=True)
 class Unrest:
-    """A slow disturbance that acts like the actuator: coloured noise of rms `size` [`unit`] and `bandwidth` [rad/s].
+    """A slow disturbance: coloured noise of rms `size` [`unit`] and `bandwidth` [rad/s]; `of` what it acts like.
 
     Its one-sided density is 2 size^2 bandwidth / pi / (omega^2 + bandwidth^2), that of a first-order Gauss-Markov
     process (Gelb 1974, Applied Optimal Estimation, section 3.8). U: m/s, the ship's speed.
@@ -51,6 +53,7 @@ class Unrest:
     bandwidth: float
     U: float
     unit: str = "rad"
+    of: str = "of the actuator"
 
     def exposure(self, loop: TransferLoop) -> Exposure:
         """The disturbance over five decades about its bandwidth."""
@@ -63,7 +66,7 @@ class Unrest:
     def said(self) -> str:
         """In words."""
         factor, unit = display(self.unit)
-        return f"unrest like {self.size * factor:.3g} {unit} of the actuator, slower than {self.bandwidth:.3g} rad/s"
+        return f"unrest like {self.size * factor:.3g} {unit} {self.of}, slower than {self.bandwidth:.3g} rad/s"
 
 
 class Effectiveness(Enum):
@@ -180,9 +183,17 @@ def refuse_unstable(loop: TransferLoop) -> None:
     Raises:
         InputError: which block, and its pole.
     """
+    for block in (loop.plant, loop.disturbance):
+        undamped = block.poles[(np.abs(block.poles.real) <= _UNDAMPED * np.abs(block.poles)) & (block.poles.imag > 0.0)]
+        if undamped.size:
+            raise InputError(
+                f"block '{block.name}' swings undamped at {undamped[0].imag:.4g} rad/s: without control its motion has "
+                "no variance; give its denominator the damping that every real one has"
+            )
     for block in (loop.plant, loop.disturbance, *loop.sensor, *loop.servo, *loop.filters):
-        if block.order and block.poles.real.max() > 0.0:
-            pole = block.poles[int(np.argmax(block.poles.real))]
+        poles = block.poles
+        if block.order and poles.real.max() > 0.0:
+            pole = poles[int(np.argmax(poles.real))]
             raise InputError(
                 f"block '{block.name}' has a pole in the right half plane, at {pole.real:.4g} rad/s: it is unstable "
                 "without control and its motion has no variance; check the signs of its denominator"

@@ -57,6 +57,21 @@ def angle(given: Amount, where: str, example: float = 22.0) -> float:
     return value
 
 
+def rate(given: Amount, unit: str, where: str) -> float:
+    """A positive rate of what is measured in `unit`, SI; a bare number of half a turn a second was meant in degrees.
+
+    Raises:
+        InputError: it is not positive, of another kind, or such a number.
+    """
+    value = positive(given, rate_unit(unit), where)
+    if unit == "rad" and given.unit is None and value >= _HALF_TURN:
+        raise InputError(
+            f"{where} = {value:g} is half a turn a second or more; write it with its unit, such as "
+            f'{{ value = {value:g}, unit = "deg/s" }}'
+        )
+    return value
+
+
 def heading(given: Amount, where: str) -> float:
     """A heading to the waves, 0 following to pi head [rad].
 

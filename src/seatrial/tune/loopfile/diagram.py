@@ -66,6 +66,8 @@ def gains_of(tables: Mapping[str, GainTable], known: Parameters) -> Parameters:
 
 def _pid(table: ControllerTable, plant: Plant) -> TransferLoop:
     """KP + KI / s + KD s / (tau s + 1) on the error; bounds from the plant where it is of a kind that gives them."""
+    if len(set(table.parts)) != len(table.parts):
+        raise InputError("controller.parts names a part twice; name each once")
     parts = table.parts or tuple(name for name in PID if name in table.gains)
     given = None if table.derivative_filter is None else positive(
         table.derivative_filter, "s", "controller.derivative_filter"

@@ -2,26 +2,28 @@
 
 import math
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from pydantic import ValidationError
 
 from seatrial.equations import Model
-from seatrial.loops import TransferLoop
+from seatrial.loops import Objective, TransferLoop
 from seatrial.results.tuning import Restriction
 from seatrial.trial.complaints import complaint
 from seatrial.tune.loopfile.aims import objective
-from seatrial.tune.loopfile.amounts import amount, angle, positive, rate_unit, unit_of
+from seatrial.tune.loopfile.amounts import amount, angle, positive, rate, unit_of
 from seatrial.tune.loopfile.diagram import loop_asked
 from seatrial.tune.loopfile.plant import Plant, hull_of, plant_asked
-from seatrial.tune.loopfile.schema import DemandTable, LoopFile, SimulationTable
+from seatrial.tune.loopfile.schema import AimTable, DemandTable, LoopFile, SimulationTable
 from seatrial.tune.loopfile.structure import richer
 from seatrial.tune.loopfile.weather import met_by, plan_of, refuse_calm
 from seatrial.tune.task import Demand, Task, Trials, refuse_unstable
 from seatrial.values import InputError, nearest
 
 _CHANGES = 30.0
+_MOST_STEPS = 1e7
+_LONGEST = 1e4
 
 
 def parse_loop(path: Path) -> LoopFile:
@@ -68,15 +70,15 @@ def _task(file: LoopFile, plant: Plant) -> Task:
     met = met_by(file, plant, hull_of(file.hull, plant.ship))
     plan = None if file.schedule is None else plan_of(file.schedule)
     refuse_calm(met, loop, plan)
+    objectives = tuple(objective(aim, plant, restriction, f"minimise[{i}]") for i, aim in enumerate(file.minimise, 1))
+    _refuse_twice(file.minimise, objectives)
     return Task(
         question=file.question,
         name=loop.name,
         plant=plant.said,
         loop=loop,
         met=met,
-        objectives=tuple(
-            objective(aim, plant, restriction, f"minimise[{i}]") for i, aim in enumerate(file.minimise, 1)
-        ),
+        objectives=objectives,
         restriction=restriction,
         U=plant.U,
         effectiveness=plant.effectiveness,
@@ -87,6 +89,14 @@ def _task(file: LoopFile, plant: Plant) -> Task:
         vessel=plant.vessel,
         demand=demand,
     )
+
+
+def _refuse_twice(aims: Sequence[AimTable], objectives: Sequence[Objective]) -> None:
+    """`roll` and `output` are one thing, an off-target with another target is not."""
+    keys = [(made.name, aim.model_dump(exclude={"what"})) for aim, made in zip(aims, objectives, strict=True)]
+    for i, key in enumerate(keys, start=1):
+        if key in keys[: i - 1]:
+            raise InputError(f"minimise[{i}]: the {key[0]} is asked for twice; name it once")
 
 
 def _restriction(file: LoopFile, plant: Plant) -> Restriction:
@@ -105,7 +115,7 @@ def _restriction(file: LoopFile, plant: Plant) -> Restriction:
         saturation=file.limits.saturation,
         rate_saturation=file.limits.rate_saturation,
         limit=largest("limit"),
-        rate=math.inf if table.rate is None else positive(table.rate, rate_unit(unit), "actuator.rate"),
+        rate=math.inf if table.rate is None else rate(table.rate, unit, "actuator.rate"),
         stall=largest("stall"),
     )
 
@@ -136,6 +146,11 @@ def _trials(table: SimulationTable | None, seas: int, demand: Demand | None) -> 
     step = positive(table.step, "s", "simulation.step")
     if step * 100.0 > duration:
         raise InputError(f"simulation: steps of {step:g} s are no simulation of {duration:g} s; make them shorter")
+    if table.seeds * duration / step > _MOST_STEPS:
+        raise InputError(
+            f"simulation: {table.seeds} seas of {duration:g} s in steps of {step:g} s are more than {_MOST_STEPS:.0e} "
+            "steps; take a shorter duration, longer steps or fewer seeds"
+        )
     return Trials(table.seeds, duration, step)
 
 
@@ -156,4 +171,9 @@ def _demand(table: DemandTable, plant: Plant) -> Demand:
     else:
         raise InputError("key 'demand.time_constant' is missing, and the ship's length is not known; add it in s")
     duration = _CHANGES * T if table.duration is None else positive(table.duration, "s", "demand.duration")
+    if not T <= duration <= _LONGEST * T:
+        raise InputError(
+            f"demand.duration = {duration:g} s is no time to follow a demand of time constant {T:.4g} s; give one to "
+            f"{_LONGEST:g} time constants"
+        )
     return Demand(change, table.overshoot, T, duration)

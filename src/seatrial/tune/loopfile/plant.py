@@ -11,7 +11,7 @@ from seatrial.trial.model_file import ModelFile, read_model_file
 from seatrial.trial.runs import expanded
 from seatrial.tune.loopfile.amounts import amount, angle, positive, unit_of
 from seatrial.tune.loopfile.blocks import block, said
-from seatrial.tune.loopfile.schema import FinTable, HullTable, PlantTable
+from seatrial.tune.loopfile.schema import BlockTable, FinTable, HullTable, PlantTable
 from seatrial.tune.ship.vessel import described, plant_of, vessel
 from seatrial.tune.task import Effectiveness, Vessel
 from seatrial.values import InputError, Ship, nearest
@@ -57,9 +57,9 @@ def plant_asked(table: PlantTable, home: Path, own_model: Model | None = None, m
     if model_file is not None:
         raise InputError("plant: there is no 'model' that a model file could take the place of; leave --from out")
     if table.roll is not None and table.fin is not None:
-        return _of_roll(block(table.roll, "roll", "plant.roll"), table, table.fin)
+        return _of_roll(_moving(table.roll, "roll", "plant.roll"), table, table.fin)
     assert table.response is not None and table.output is not None and table.actuator is not None
-    response = block(table.response, "plant", "plant.response")
+    response = _moving(table.response, "plant", "plant.response")
     return Plant(
         response, response, table.output, table.actuator, table.actuator, _speed(table),
         Effectiveness.CONSTANT,
@@ -73,6 +73,14 @@ def hull_of(table: HullTable | None, ship: Ship | None) -> HullFactor | None:
         return HullFactor(*(positive(getattr(table, key), "m", f"hull.{key}") for key in ("L", "B", "T")))
     own = {} if ship is None else ship.particulars
     return HullFactor(own["L"], own["B"], own["d"]) if {"L", "B", "d"} <= set(own) else None
+
+
+def _moving(table: BlockTable, name: str, where: str) -> Block:
+    """A block whose output answers."""
+    made = block(table, name, where)
+    if not any(made.num):
+        raise InputError(f"{where}.num is zero: nothing would move; give its coefficients, highest power first")
+    return made
 
 
 def _speed(table: PlantTable) -> float:

@@ -109,4 +109,5 @@ def _unrest(table: UnrestTable, plant: Plant, where: str) -> Unrest:
         positive(table.bandwidth, "rad/s", f"{where}.bandwidth"),
         plant.U if table.speed is None else positive(table.speed, "m/s", f"{where}.speed"),
         unit_of(plant.disturbed_by),
+        "of the actuator" if plant.disturbed_by == plant.actuator else f"of {plant.disturbed_by}",
     )
