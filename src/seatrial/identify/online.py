@@ -24,12 +24,14 @@ from seatrial.trial.follow_table import followed
 from seatrial.trial.records import checked
 from seatrial.values import Array, InputError, Record
 
-# samples before the first search, seconds and growth between searches: started warm, or from nowhere
+# samples before the first search
 _FEWEST = 30
-_STEP, _GROWTH = 2.5, 1.15
-_COLD_STEP, _COLD_GROWTH = 10.0, 1.5
-# s after which a search is started from where the last one ended only, unless residuals grow by this factor
-_SURE, _WORSE = 60.0, 1.2
+# s between searches from where the last one ended: at least, and as a share of what the window has beyond the first
+_STEP, _FIRST, _SHARE = 2.5, 60.0, 0.15
+# s between searches from nowhere: at least, and as a share of the window
+_COLD_STEP, _COLD_SHARE = 10.0, 0.5
+# residuals that grow by this factor bring a search from nowhere too
+_WORSE = 1.2
 # s of a stretch beyond the window
 _STRETCH = 60.0
 
@@ -59,7 +61,7 @@ class Online:
         self._carried: Carried | None = None
         self._known: Known | None = None
         self._change: Change | None = None
-        self._next = 0.0
+        self._next = self._next_cold = 0.0
         self._why = "too few samples yet"
         self._is_warm = self._suits_whole_runs()
         self._shown = self._waiting()
@@ -84,10 +86,7 @@ class Online:
 
     def relinearise(self) -> Snapshot:
         """Search now, from where the last search ended, over everything in the window."""
-        step, growth = (_STEP, _GROWTH) if self._is_warm else (_COLD_STEP, _COLD_GROWTH)
-        if self._carried is not None:
-            step, growth = _STRETCH, 1.0
-        self._next = max(self._seconds + step, self._seconds * growth)
+        self._next = self._seconds + self._pause
         if sum(len(rows) for rows in self._kept.rows) >= _FEWEST:
             try:
                 self._known = self._searched(self._records())
@@ -107,6 +106,15 @@ class Online:
     def _seconds(self) -> float:
         """Length of what the window holds."""
         return sum(rows.seconds for rows in self._kept.rows)
+
+    @property
+    def _pause(self) -> float:
+        """s until the next search."""
+        if self._carried is not None:
+            return _STRETCH
+        if self._is_warm:
+            return max(_STEP, _SHARE * (self._seconds - _FIRST))
+        return max(_COLD_STEP, _COLD_SHARE * self._seconds)
 
     @property
     def _is_full(self) -> bool:
@@ -159,13 +167,15 @@ class Online:
             )  # fmt: skip
             found = identified(started, records, sessions, length, settings)
             count = len(found.made.problem.free)
-            return Known(found.made, found.interval.covariance[:count, :count], found.inflation)
-        if self._known is None:
-            return begun(model, records, sessions, length, settings)
-        warm = grown(self._known, model, records, sessions, settings)
-        if self._carried is not None or (self._seconds > _SURE and warm.misfit < _WORSE * self._known.misfit):
-            return warm
-        return better(warm, begun(model, records, sessions, length, settings))
+            return Known(found.made, found.residuals, found.interval.covariance[:count, :count], found.inflation)
+        warm = None if self._known is None else grown(self._known, model, records, sessions, settings)
+        if warm is not None and self._known is not None:
+            is_early = self._seconds < _FIRST and self._seconds >= self._next_cold
+            if self._carried is not None or not (is_early or warm.misfit > _WORSE * self._known.misfit):
+                return warm
+        self._next_cold = self._seconds + max(_COLD_STEP, _COLD_SHARE * self._seconds)
+        cold = begun(model, records, sessions, length, settings)
+        return cold if warm is None else better(warm, cold)
 
     def _carry(self, known: Known) -> None:
         """Keep the window's normal equations instead of its samples."""
@@ -194,8 +204,7 @@ class Online:
             n for n, v, s in zip(problem.free, known.value, error, strict=True)
             if s > max(abs(v), problem.model.parameters[n].scale)
         )  # fmt: skip
-        left = known.made.residuals()
-        noise = dict(zip(problem.data.outputs, np.sqrt(np.nanmean(left**2, axis=0)).tolist(), strict=True))
+        noise = dict(zip(problem.data.outputs, np.sqrt(np.nanmean(known.left**2, axis=0)).tolist(), strict=True))
         phase = Phase.WINDOW if self._carried is None else Phase.RECURSIVE
         return replace(
             self._shown, phase=phase, value=known.value, standard_error=error, noise=noise, untold=untold,

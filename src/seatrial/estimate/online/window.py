@@ -28,12 +28,14 @@ class Known:
     """An estimate from everything in the window.
 
     Attributes:
-        made: problem and optimum; covariance: of the free coefficients, (k, k); infinite diagonal where singular.
+        made: problem and optimum; left: its residuals, simulated minus measured, (rows, ny), SI.
+        covariance: of the free coefficients, (k, k); infinite diagonal where singular.
         inflation: of each channel's residuals, (ny,); one where they are white.
         begins: name and first time of each record.
     """
 
     made: Estimate
+    left: Array
     covariance: Array
     inflation: Array
     begins: tuple[tuple[str, float], ...] = ()
@@ -46,9 +48,8 @@ class Known:
     @property
     def misfit(self) -> float:
         """Rms residual over the spread of what was measured."""
-        problem = self.made.problem
-        spread = np.nanstd(problem.data.measured, axis=0)
-        return float(np.sqrt(np.nanmean((self.made.residuals() / np.maximum(spread, 1e-12)) ** 2)))
+        spread = np.nanstd(self.made.problem.data.measured, axis=0)
+        return float(np.sqrt(np.nanmean((self.left / np.maximum(spread, 1e-12)) ** 2)))
 
     @property
     def is_coloured(self) -> bool:
@@ -105,18 +106,18 @@ def _searched(problem: OutputError, shared: Array, local: Array, settings: Setti
     problem = replace(problem, noise=np.where(np.isfinite(given), given, problem.noise))
     found = levenberg_marquardt(problem, shared, local, negligible=_NEGLIGIBLE, evaluations=evaluations)
     made = Estimate(problem, found)
-    inflation = _inflation(made)
+    left = made.residuals()
+    inflation = _inflation(problem, left)
     count = len(problem.free)
     hessian = found.normal.reduced()[1]
     covariance = inverse(hessian)[:count, :count] if np.all(np.isfinite(hessian)) else np.diag(np.full(count, np.inf))
     trust = 1.0 if problem.inflation is not None else float(np.max(inflation))
-    return Known(made, covariance * max(trust, 1.0), inflation)
+    return Known(made, left, covariance * max(trust, 1.0), inflation)
 
 
-def _inflation(made: Estimate) -> Array:
+def _inflation(problem: OutputError, residuals: Array) -> Array:
     """Variance inflation of each channel's residuals; one where a short record cannot tell them from white."""
-    residuals = made.residuals()
-    rho, inflation = colour(made.problem, residuals)
+    rho, inflation = colour(problem, residuals)
     samples = np.isfinite(residuals).sum(axis=0)
     p = np.array([whiteness_p(r, int(n)) for r, n in zip(rho, samples, strict=True)])
     return np.where(p < _WHITE, inflation, 1.0)
@@ -124,6 +125,6 @@ def _inflation(made: Estimate) -> Array:
 
 def _weighted(known: Known) -> OutputError:
     """The problem with noise and effective numbers of samples from the residuals it left."""
-    made = known.made
+    problem = known.made.problem
     inflation = np.where(known.inflation > WHITE_INFLATION, known.inflation, 1.0) if known.is_coloured else None
-    return replace(made.problem, noise=residual_spread(made.problem, made.residuals()), inflation=inflation)
+    return replace(problem, noise=residual_spread(problem, known.left), inflation=inflation)
