@@ -137,7 +137,7 @@ class Recursive:
     def update(self, measured: Array, inputs: Array) -> None:
         """Take in the next n samples: measured (n, ny), NaN where nothing came; inputs (n, nu) at the same instants.
 
-        Does nothing once the filter is not sound.
+        Does nothing once the state has left all bounds.
 
         Raises:
             InputError: shapes that do not agree, or an input that is no number.
@@ -159,7 +159,7 @@ class Recursive:
 
     def _take(self, until: int) -> None:
         w, first = self._window, self._window.done
-        if until <= first or not self.is_sound:
+        if until <= first or w.failed:
             return
         failed = self._stepping.run(self._held, w.inputs, w.measured[:until], first, w.begins)
         w.failed = failed >= 0

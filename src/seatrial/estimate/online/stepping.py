@@ -1,6 +1,7 @@
 """How the filter gets from sample to sample: by the batch's own discrete step, with its derivatives."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
@@ -97,22 +98,25 @@ class Exact:
     """Affine models by exact propagators; smooth inputs along a spline in straight pieces, as in `simulate.linear`.
 
     The pieces of a sample are multiplied together once. That is done again when a coefficient has moved by a fifth of
-    its standard error or by one per cent; until then its move acts to first order.
+    its standard error or by one per cent, which is looked at every `ROWS` samples; until then its move acts to first
+    order.
     """
 
-    ROWS = 32
+    ROWS = 16
 
     def __init__(self, model: Model, names: tuple[str, ...], outputs: tuple[str, ...], dt: float, substeps: int):
         nx, k = len(model.states), len(names)
         self._model, self._dt = model, dt
-        self._pieces = max(substeps, SUBSTEPS)
+        pieces = max(substeps, SUBSTEPS)
         self._smooth = np.array([not i.is_held for i in model.inputs])
+        self._pieces = [_along(m / pieces, self._smooth) for m in range(pieces + 1)]
         self._values = np.array(model.parameters.values)
         self._places = np.array([model.parameters.index(n) for n in names], dtype=np.int64)
         self._select = np.array([model.observables.index(o) for o in outputs], dtype=np.int64)
         self._work = (*_scratch(nx, k, len(outputs)), np.empty(4 * len(model.inputs) + 1), np.empty(nx))
         self._made: _Made | None = None
         self._at = np.full(k, np.nan)
+        self._since = 0
 
     @property
     def ahead(self) -> int:
@@ -121,19 +125,23 @@ class Exact:
 
     def run(self, held: Held, inputs: Array, measured: Array, first: int, begins: int) -> int:
         """As `Stepping.run`."""
-        slopes = spline_slopes(inputs)
-        for row in range(first, len(measured), self.ROWS):
+        slopes, row = spline_slopes(inputs), first
+        while row < len(measured):
+            made = self._linearised(held)
+            until = min(row + self.ROWS - self._since, len(measured))
             failed = follow_linear(
-                *self._linearised(held), held.z, held.root, inputs, measured[: row + self.ROWS], row, begins, slopes,
+                *made, held.z, held.root, inputs, measured[:until], row, begins, slopes,
                 held.variance, held.limit, held.memory, held.running, held.tally, held.widest, held.kept, held.every,
                 held.since, *self._work,
             )  # fmt: skip
-            begins = 0
             if failed >= 0:
                 return failed
+            begins, self._since, row = 0, (self._since + until - row) % self.ROWS, until
         return -1
 
     def _linearised(self, held: Held) -> _Made:
+        if self._made is not None and self._since:
+            return self._made
         k = len(self._at)
         now = held.z[:k]
         error = np.sqrt(np.einsum("ij,ij->i", held.root[:k], held.root[:k]))
@@ -143,9 +151,9 @@ class Exact:
             return self._made
         self._at = now.copy()
         self._values[self._places] = now
-        step = self._dt / self._pieces
+        step = self._dt / (len(self._pieces) - 1)
         made = matrices(self._model, self._values[None], step, self._select, self._places)
-        plant, slope = composed(made, self._smooth, self._pieces)
+        plant, slope = composed(made, self._pieces)
         nx = len(plant)
         seen = np.ascontiguousarray(np.hstack([made.c[0], made.d[0]]))
         de, dg = (np.ascontiguousarray(s) for s in (slope[:, :nx], slope[:, nx:]))
@@ -153,19 +161,17 @@ class Exact:
         return self._made
 
 
-def composed(made: Matrices, smooth: np.ndarray, pieces: int) -> tuple[Array, Array]:
+def composed(made: Matrices, inputs: list[Array]) -> tuple[Array, Array]:
     """The step over one sample from those of its pieces: (nx, nx + 4 nu + 1), and its derivatives, last axis.
 
-    Columns: state, inputs at both ends, their slopes a sample at both ends, 1; cubic Hermite pieces (de Boor 1978,
-    chapter IV) where an input is smooth, its first value where it is held.
+    inputs: at the ends of the pieces, as `_along` has them. Columns: state, inputs at both ends, their slopes a sample at
+    both ends, 1; cubic Hermite pieces (de Boor 1978, chapter IV) where an input is smooth, its first value where held.
     """
     e, g0, g1 = made.e[0], made.g0[0], made.g1[0]
     de, dg0, dg1 = (np.moveaxis(s[0], 2, 0) for s in made.slopes[:3])
-    nx, nu = len(e), len(smooth)
-    total, slope = np.eye(nx, nx + 4 * nu + 1), np.zeros((len(de), nx, nx + 4 * nu + 1))
-    ahead = _along(0.0, smooth)
-    for piece in range(pieces):
-        here, ahead = ahead, _along((piece + 1) / pieces, smooth)
+    nx, width = len(e), inputs[0].shape[1]
+    total, slope = np.eye(nx, nx + width), np.zeros((len(de), nx, nx + width))
+    for here, ahead in pairwise(inputs):
         slope = de @ total + e @ slope
         total = e @ total
         total[:, nx:] += g0 @ here + g1 @ ahead
