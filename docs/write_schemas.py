@@ -5,6 +5,7 @@ from pathlib import Path
 
 from seatrial.trial.design_json import design_schema
 from seatrial.trial.fit_json import fit_schema
+from seatrial.trial.online_json import online_schema
 from seatrial.trial.schema import trial_schema
 from seatrial.trial.tuning_json import tuning_schema
 from seatrial.tune.loopfile.schema import loop_schema
@@ -13,6 +14,7 @@ if __name__ == "__main__":
     schemas = {
         "design": design_schema(),
         "loop": loop_schema(),
+        "online": online_schema(),
         "result": fit_schema(),
         "trial": trial_schema(),
         "tuning": tuning_schema(),

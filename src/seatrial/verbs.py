@@ -1,4 +1,4 @@
-"""The commands as functions of values: check, identify, design, tune, simulate, report, demo, reproduce.
+"""The commands as functions of values: check, identify, follow, design, tune, simulate, report, demo, reproduce.
 
 import seatrial.verbs as sea
 
@@ -15,7 +15,10 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from seatrial.equations import Model
+    from seatrial.follow.follow import Outcome
+    from seatrial.follow.sample import Source
     from seatrial.results import Design, Extrapolation, Fit, Study
+    from seatrial.results.online import Counts, Snapshot
     from seatrial.results.tuning import Tuning
     from seatrial.trial import Trial
     from seatrial.trial.model_file import ModelFile
@@ -78,6 +81,57 @@ def identify(
     compiling.finish()
     kind = Intervals(intervals)
     return identify(trial, seed=seed, progress=progress, intervals=kind, choose=choose, compare=compare)
+
+
+def follow(
+    trial: "Trial",
+    *,
+    source: "Source | None" = None,
+    once: bool = False,
+    journal: str | Path | None = None,
+    show: "Callable[[Snapshot, Counts], None] | None" = None,
+    stop: Callable[[], bool] | None = None,
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> "Outcome":
+    """Estimate while the record is still being made, from the samples that [follow] of the trial names.
+
+    Args:
+        source: takes the place of the one that the trial file names.
+        once: end at the end of the input; the outcome then holds the fit `identify` makes of what was accepted.
+        journal: file in which admitted samples are kept; one that is there already is read first and continued.
+        show: called with what is known and what happened to the samples, twice a second at most.
+        stop: asked several times a second; ends the work when it says so.
+        seed: of the fit of `once`.
+
+    Raises:
+        InputError: the trial has no [follow], it lacks channels, its source cannot be opened, or the journal is of
+            another trial.
+    """
+    from seatrial.models.ahead import Ahead
+
+    compiling = Ahead(trial.model.name)
+    from seatrial.follow.follow import follow
+
+    compiling.finish()
+    place = None if journal is None else Path(journal)
+    return follow(trial, source=source, once=once, journal=place, show=show, stop=stop, seed=seed, progress=progress)
+
+
+def save_outcome(outcome: "Outcome", folder: str | Path) -> Path:
+    """Write what following came to: a result folder with its report after `once`, else ``online.json``; its path.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    from seatrial.trial.fit_json import strict_json
+    from seatrial.trial.online_json import online_json
+    from seatrial.values.files import write_together
+
+    if outcome.fit is not None:
+        return save(outcome.fit, folder)
+    text = strict_json(online_json(outcome.snapshot, outcome.counts))
+    return write_together(Path(folder), {"online.json": text.encode()}) / "online.json"
 
 
 def save(fit: "Fit", folder: str | Path) -> Path:

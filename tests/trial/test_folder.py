@@ -26,6 +26,7 @@ from seatrial.results import (
 from seatrial.trial.design_json import design_schema
 from seatrial.trial.fit_json import FitDocument, fit_json, fit_schema, strict_json
 from seatrial.trial.folder import load_fit, save_fit
+from seatrial.trial.online_json import online_schema
 from seatrial.trial.schema import trial_schema
 from seatrial.values import Finding, InputError, Kind, Record, Severity, Ship
 
@@ -222,7 +223,8 @@ def test_a_folder_without_a_result_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "schema"), [("design", design_schema), ("result", fit_schema), ("trial", trial_schema)]
+    ("name", "schema"),
+    [("design", design_schema), ("online", online_schema), ("result", fit_schema), ("trial", trial_schema)],
 )
 def test_the_published_schemas_are_those_in_force(name: str, schema, repository: Path) -> None:
     published = json.loads((repository / "docs" / f"{name}.schema.json").read_text())

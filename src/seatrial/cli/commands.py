@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from seatrial.cli.followed import heading_of, journal_place, outcome_json, print_outcome, stopping, watching
 from seatrial.cli.output import (
     print_design,
     print_findings,
@@ -48,7 +49,9 @@ def _json_place(path: Path | None) -> Path | None:
 Json = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", callback=_json_place, help="Write the result as JSON.")
 ]
-Seed = Annotated[int, typer.Option("--seed", help="Of everything drawn at random; the same seed gives the same bits.")]
+Seed = Annotated[
+    int, typer.Option("--seed", min=0, help="Of everything drawn at random; the same seed gives the same bits.")
+]
 TrialPath = Annotated[Path, typer.Argument(metavar="TRIAL.toml", help="Trial file.")]
 OwnModel = Annotated[Path | None, typer.Option("--model", metavar="FILE.py", help="A model of your own (is executed).")]
 
@@ -129,6 +132,57 @@ def identify(
     print_fit(fit)
     write_json(json, lambda: _fit_json(fit))
     print(f"report: {page}")
+
+
+@app.command()
+def follow(
+    trial: TrialPath,
+    once: Annotated[bool, typer.Option("--once", help="End at the end of the input, with what identify says.")] = False,
+    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Where journal and result go.")] = None,
+    page: Annotated[
+        int | None, typer.Option("--page", metavar="PORT", help="Port of the page on this machine; 0: any.")
+    ] = None,
+    journal: Annotated[
+        Path | None, typer.Option("--journal", metavar="FILE", help="Samples are kept there, and read back first.")
+    ] = None,
+    source: Annotated[
+        str | None, typer.Option("--source", metavar="KIND", help="file, stdin, udp, or nmea- before them.")
+    ] = None,
+    model: OwnModel = None,
+    json: Json = None,
+    seed: Seed = 0,
+) -> None:
+    """Identify while the record is still being made: a growing file, standard input, NMEA 0183 or UDP.
+
+    Example: seatrial follow examples/heave_pitch_follow.toml --once --json fit.json
+
+    On board, with a page of moving plots and a journal: --page 8000 --out results/today
+    """
+    from seatrial import verbs
+    from seatrial.trial.follow_table import fed_from, followed
+    from seatrial.values.files import writable_folder
+
+    if out is not None:
+        writable_folder(out)
+    asked = verbs.load_trial(trial, _own(model))
+    asked = asked if source is None else fed_from(asked, source)
+    port = page if page is not None else followed(asked).page or None
+    with stopping() as stop, watching(heading_of(asked), port) as show, progress() as tell:
+        outcome = verbs.follow(
+            asked,
+            once=once,
+            journal=journal_place(journal, asked, out, once=once),
+            show=show,
+            stop=stop,
+            seed=seed,
+            progress=tell,
+        )
+    print_outcome(outcome)
+    if outcome.fit is not None:
+        print_fit(outcome.fit)
+    write_json(json, lambda: outcome_json(outcome))
+    if out is not None:
+        print(f"result: {verbs.save_outcome(outcome, out)}")
 
 
 @app.command()

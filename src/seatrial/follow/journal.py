@@ -1,18 +1,19 @@
 """What was admitted, on disk: appended, a checksum for each entry, so that a torn end is told from what was written.
 
-A line of text (`seatrial journal 1 IDENTITY COLUMNS`), then entries, little-endian: `S`, number of the sample in its
-source (u64), time (f64), values (f64 each), CRC-32; `R`, length (u16), name of the run that begins (UTF-8), CRC-32.
+A line of text (`seatrial journal 1 IDENTITY COLUMNS`), then entries, little-endian: `S`, time and values (f64 each),
+CRC-32; `R`, length (u16), why a run begins (UTF-8), CRC-32.
 """
 
+import errno
 import hashlib
 import os
 import struct
 import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from io import RawIOBase
 from pathlib import Path
 from time import monotonic
-from typing import BinaryIO
 
 import numpy as np
 
@@ -24,7 +25,8 @@ from seatrial.values import InputError
 _MARK = b"seatrial journal 1 "
 _CRC = struct.Struct("<I")
 _SAMPLE, _RUN = b"S", b"R"
-_FLUSH_S = 1.0
+# with the wait for samples, on disk within a second
+_FLUSH_S = 0.7
 # what a break can tear off: what a second may hold, far less than a voyage
 _TORN_AT_MOST = 1 << 18
 _PIECE = 1 << 20
@@ -32,20 +34,12 @@ _PIECE = 1 << 20
 
 @dataclass(frozen=True)
 class Begin:
-    """A run begins."""
+    """A run begins, and why."""
 
-    name: str
-
-
-@dataclass(frozen=True, eq=False)
-class Admitted:
-    """A sample was admitted; number: how many samples its source had given by then, itself included."""
-
-    sample: Sample
-    number: int
+    reason: str
 
 
-Entry = Begin | Admitted
+Entry = Begin | Sample
 
 
 def identity_of(model: Model, layout: Layout) -> str:
@@ -54,7 +48,7 @@ def identity_of(model: Model, layout: Layout) -> str:
 
 
 class Journal:
-    """An open journal: first `entries` of what is there, then `begin` and `admit`, on disk within a second.
+    """An open journal: first `entries` of what is there; then what is noted is written by `settle`.
 
     Attributes:
         path: the file; torn: bytes that a break had left half-written, cut off; trouble: why nothing more is written.
@@ -67,12 +61,13 @@ class Journal:
             InputError: it cannot be written, is none, belongs to another trial, or is open elsewhere.
         """
         self.path, self.torn, self.trouble = path, 0, ""
-        self._sample = struct.Struct(f"<cQ{1 + columns}d")
+        self._sample = struct.Struct(f"<c{1 + columns}d")
+        self._noted: list[bytes] = []
         self._clock, self._flushed = clock, clock()
         header = _MARK + f"{identity} {columns}\n".encode()
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._file: BinaryIO = path.open("r+b" if path.exists() else "x+b")
+            self._file: RawIOBase = path.open("r+b" if path.exists() else "x+b", buffering=0)
         except OSError as error:
             raise InputError(f"journal '{path}' cannot be written ({error.strerror}); choose another place") from None
         try:
@@ -107,24 +102,29 @@ class Journal:
         self._file.truncate(place)
         self._file.seek(place)
 
-    def begin(self, name: str) -> None:
-        """Note that a run begins."""
-        text = name.encode()[: 2**16 - 1]
-        self._write(_RUN + struct.pack("<H", len(text)) + text)
-
-    def admit(self, sample: Sample, number: int) -> None:
-        """Note a sample, the `number`-th of its source."""
-        self._write(self._sample.pack(_SAMPLE, number, sample.time, *sample.values))
+    def note(self, entry: Entry) -> None:
+        """Note what happened next."""
+        match entry:
+            case Sample(time=time, values=values):
+                made = self._sample.pack(_SAMPLE, time, *values)
+            case Begin(reason=reason):
+                text = reason.encode()[: 2**16 - 1]
+                made = _RUN + struct.pack("<H", len(text)) + text
+        self._noted.append(made + _CRC.pack(zlib.crc32(made)))
 
     def settle(self) -> None:
-        """Bring to disk what has been noted, where a second has passed since the last time."""
+        """Hand what was noted to the system, which survives this process; to the disk where a second has passed."""
+        data, self._noted = b"".join(self._noted), []
+        if data:
+            self._try(lambda: _written(self._file, data))
         if self._clock() - self._flushed >= _FLUSH_S:
-            self.flush()
+            self._flushed = self._clock()
+            self._try(lambda: os.fsync(self._file.fileno()))
 
     def flush(self) -> None:
-        """Bring to disk what has been noted."""
-        self._flushed = self._clock()
-        self._try(self._synchronised)
+        """All of it to the disk, now."""
+        self._flushed = -_FLUSH_S
+        self.settle()
 
     def close(self) -> None:
         """Bring everything to disk and give the file back."""
@@ -147,15 +147,8 @@ class Journal:
             return None
         if tag == _RUN:
             return Begin(data[at + 3 : at + size].decode(errors="replace")), size + _CRC.size
-        _, number, time, *values = self._sample.unpack_from(data, at)
-        return Admitted(Sample(time, np.array(values)), number), size + _CRC.size
-
-    def _write(self, entry: bytes) -> None:
-        self._try(lambda: self._file.write(entry + _CRC.pack(zlib.crc32(entry))))
-
-    def _synchronised(self) -> None:
-        self._file.flush()
-        os.fsync(self._file.fileno())
+        _, time, *values = self._sample.unpack_from(data, at)
+        return Sample(time, np.array(values)), size + _CRC.size
 
     def _try(self, act: Callable[[], object]) -> None:
         """A full disk ends the journal, not the voyage."""
@@ -167,14 +160,19 @@ class Journal:
             self.trouble = f"journal '{self.path}' is no longer written ({error.strerror}); make room and start again"
 
 
-def _headed(file: BinaryIO, header: bytes, path: Path) -> int:
+def _written(file: RawIOBase, data: bytes) -> None:
+    """All of it, or an error: half an entry must be the last."""
+    if file.write(data) != len(data):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+def _headed(file: RawIOBase, header: bytes, path: Path) -> int:
     """Write or check the header; where entries begin."""
     found = file.read(len(header))
     if header.startswith(found):
         file.seek(0)
         file.truncate(0) if len(found) < len(header) else None
         file.write(header)
-        file.flush()
     elif not found.startswith(_MARK):
         raise InputError(f"'{path}' is no journal of 'seatrial follow'; name another file")
     elif found != header:
@@ -184,7 +182,7 @@ def _headed(file: BinaryIO, header: bytes, path: Path) -> int:
     return len(header)
 
 
-def _lock(file: BinaryIO, path: Path) -> None:
+def _lock(file: RawIOBase, path: Path) -> None:
     """One writer at a time, where the system can tell."""
     try:
         import fcntl

@@ -3,7 +3,7 @@
 import numpy as np
 
 from seatrial.check.conventions import canonical
-from seatrial.follow.raw import raw_record
+from seatrial.read.assemble import as_declared
 from seatrial.simulate.channels import AT_REST
 from seatrial.simulate.states import hidden_states, untold_states
 from seatrial.trial import Trial
@@ -45,7 +45,7 @@ def _stand_in(trial: Trial) -> Record:
     """A record of the stream's channels, at rest, in the house's conventions."""
     stream = followed(trial)
     time = np.arange(_STAND_IN) / stream.rate
-    rest = raw_record(stream.layout, "stream", time, np.zeros((_STAND_IN, len(stream.layout.columns))))
+    rest = as_declared("stream", stream.layout, time, np.zeros((_STAND_IN, len(stream.layout.columns))))
     record = canonical(rest, trial.reference_point)
     if stream.waves is None or "u" in record:
         return record

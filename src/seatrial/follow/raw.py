@@ -8,28 +8,13 @@ import numpy as np
 
 from seatrial.follow.sample import Sample
 from seatrial.read import Layout
+from seatrial.read.assemble import as_declared
 from seatrial.trial import Role, Trial
 from seatrial.trial.follow_table import followed
 from seatrial.trial.trial import Run
-from seatrial.values import Array, Channel, Provenance, Record, frozen, quantity
+from seatrial.values import Record
 
 _FEWEST = 2
-
-
-def raw_record(layout: Layout, name: str, time: Array, values: Array) -> Record:
-    """The record of times (n,) [s] and values (n, k) in the order of the layout's columns, SI."""
-    channels = {
-        column.symbol: Channel(
-            frozen(values[:, j]),
-            quantity(column.symbol).unit,
-            column.declared_frame,
-            column.declared_positive,
-            column.reference_point,
-            column.source if isinstance(column.source, str) else f"column {column.source}",
-        )
-        for j, column in enumerate(layout.columns)
-    }
-    return Record(name, time, channels, provenance=Provenance(name, "", ("followed",)))
 
 
 class Kept:
@@ -54,7 +39,7 @@ class Kept:
         width = 1 + len(self._layout.columns)
         tables = [(name, np.frombuffer(rows, dtype=np.float64).reshape(-1, width)) for name, rows in self._runs]
         return tuple(
-            raw_record(self._layout, name, frozen(table[:, 0]), table[:, 1:])
+            as_declared(name, self._layout, table[:, 0], table[:, 1:])
             for name, table in tables
             if len(table) >= _FEWEST
         )

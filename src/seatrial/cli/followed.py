@@ -1,0 +1,104 @@
+"""What follow shows while it runs and says at its end; how it is stopped."""
+
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING, Any
+
+from seatrial.cli.output import SEVERITY_MARK
+
+if TYPE_CHECKING:
+    from seatrial.follow.follow import Outcome
+    from seatrial.results.online import Counts, Snapshot
+    from seatrial.trial import Trial
+
+
+@contextmanager
+def stopping() -> Iterator[Callable[[], bool]]:
+    """Whether somebody asked for the end (Ctrl-C, or a polite kill); asked twice, it is cut short."""
+    asked: list[int] = []
+
+    def note(number: int, _: FrameType | None) -> None:
+        if asked:
+            raise KeyboardInterrupt
+        asked.append(number)
+
+    before = {number: signal.signal(number, note) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield lambda: bool(asked)
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+@contextmanager
+def watching(heading: str, port: int | None) -> "Iterator[Callable[[Snapshot, Counts], None]]":
+    """A live table or lines, and a page at that port where one is wanted (0: any that is free)."""
+    from seatrial.follow.live import Live
+
+    with ExitStack() as held:
+        page = None
+        if port is not None:
+            from seatrial.follow.page import Page
+
+            page = held.enter_context(Page(port, title=heading))
+            heading = f"{heading}; page {page.address}"
+        live = held.enter_context(Live(heading=heading))
+
+        def show(snapshot: "Snapshot", counts: "Counts") -> None:
+            live.show(snapshot, counts)
+            if page is not None:
+                page.show(snapshot, counts)
+
+        yield show
+        if page is not None:
+            page.over()
+
+
+def heading_of(trial: "Trial") -> str:
+    """What is followed, in a line."""
+    from seatrial.trial.follow_table import followed
+
+    stream = followed(trial)
+    name = trial.path.name if trial.path else trial.model.name
+    if stream.file is not None and stream.feed.value.endswith("file"):
+        return f"{name}: {stream.feed} {stream.file.name}"
+    return f"{name}: {stream.feed}" + (f" {stream.host}:{stream.port}" if stream.feed.value.endswith("udp") else "")
+
+
+def print_outcome(outcome: "Outcome") -> None:
+    """What happened to the samples, then what is to be said besides; trouble on standard error."""
+    from seatrial.follow.shown import clean, troubles
+
+    counts = outcome.counts
+    wrong = [f"{count} {words}" for words, count in troubles(counts) if count]
+    print(f"{counts.accepted} samples accepted" + (f"; {', '.join(wrong)}" if wrong else "; nothing amiss"))
+    if counts.last:
+        print(f"the latest: {clean(counts.last)}")
+    for finding in () if outcome.snapshot is None else outcome.snapshot.findings:
+        print(f"{SEVERITY_MARK[finding.severity.value]} [{finding.code}] {finding.text}")
+    for note in outcome.notes:
+        print(f"seatrial: {note}", file=sys.stderr)
+
+
+def outcome_json(outcome: "Outcome") -> dict[str, Any]:
+    """As `identify` writes it where the stream was followed to its end, else the last estimate."""
+    from seatrial.trial.fit_json import fit_json
+    from seatrial.trial.online_json import online_json
+
+    if outcome.fit is not None:
+        return fit_json(outcome.fit)
+    return online_json(outcome.snapshot, outcome.counts)
+
+
+def journal_place(given: Path | None, trial: "Trial", out: Path | None, *, once: bool) -> Path | None:
+    """Where the journal goes: as given, as [follow] says, or in the result folder where no end is in sight."""
+    from seatrial.trial.follow_table import followed
+
+    named = given or followed(trial).journal
+    if named is not None or out is None or once:
+        return named
+    return out / f"{trial.path.stem if trial.path else trial.model.name}.journal"

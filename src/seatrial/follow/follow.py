@@ -1,0 +1,169 @@
+"""The loop on board: poll, admit, note, estimate, show. No threads, and nothing that is sent can end it."""
+
+import math
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from time import monotonic
+
+import numpy as np
+
+from seatrial.follow.journal import Journal, identity_of
+from seatrial.follow.needs import refuse_lacking
+from seatrial.follow.opened import source_of
+from seatrial.follow.raw import Kept, with_runs
+from seatrial.follow.sample import Sample, Source
+from seatrial.follow.voyage import Estimator, Voyage
+from seatrial.identify import identify
+from seatrial.identify.online import Online
+from seatrial.results import Fit
+from seatrial.results.online import Counts, Snapshot
+from seatrial.trial import Trial
+from seatrial.trial.follow_table import followed
+from seatrial.trial.trial import Feed, Stream
+from seatrial.values import Progress
+
+_WAIT_S, _SHOW_S, _PATIENCE = 0.2, 0.5, 3
+# sources that give everything once more when they are opened again
+_AGAIN = (Feed.FILE, Feed.NMEA_FILE)
+
+Show = Callable[[Snapshot, Counts], None]
+Stop = Callable[[], bool]
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """How following ended.
+
+    Attributes:
+        snapshot: the last one; None where no sample came. counts: of all samples, those of the journal included.
+        fit: what `identify` says of the samples accepted, where they were followed to their end with `once`.
+        notes: what else is to be said: a torn journal, trouble of the estimator.
+    """
+
+    snapshot: Snapshot | None
+    counts: Counts
+    fit: Fit | None = None
+    notes: tuple[str, ...] = ()
+
+
+def follow(
+    trial: Trial,
+    *,
+    source: Source | None = None,
+    once: bool = False,
+    journal: Path | None = None,
+    show: Show | None = None,
+    stop: Stop | None = None,
+    estimator: Estimator | None = None,
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> Outcome:
+    """Estimate the trial's model from the samples of its stream, until they end, `stop` says so, or Ctrl-C.
+
+    Args:
+        source: takes the place of the one that [follow] names, and is left open.
+        once: end at the end of the input; the fit of what was accepted then is that of `identify`.
+        journal: where admitted samples are kept; what is there already is taken in first.
+        show: called with the newest snapshot twice a second at most, and at the end.
+        estimator: takes the place of the house's.
+        seed: of that fit.
+
+    Raises:
+        InputError: no [follow], channels that are lacking, a source that cannot be opened, a journal of another trial;
+            with `once` also whatever `identify` refuses.
+    """
+    stream = followed(trial)
+    refuse_lacking(trial)
+    kept = Kept(stream.layout) if once else None
+    with ExitStack() as held:
+        log = None if journal is None else _journal(held, journal, trial)
+        voyage = Voyage(stream, estimator or Online(trial), log, kept)
+        last = None if log is None else voyage.recall(log)
+        feed, first = source, list[Sample]()
+        if feed is None:
+            feed, first = _resumed(held, stream, voyage, last, once=once)
+        is_ended = _sailed(voyage, feed, first, log, show or _nobody, stop or _never)
+        counts = voyage.counts(feed.counts)
+    if voyage.snapshot is not None and show is not None:
+        show(voyage.snapshot, counts)
+    fit = None
+    if kept is not None and is_ended:
+        fit = identify(with_runs(trial, kept.records()), seed=seed, progress=progress)
+    trouble = (log.trouble,) if log is not None and log.trouble else ()
+    return Outcome(voyage.snapshot, counts, fit, (*voyage.notes, *trouble))
+
+
+def _sailed(voyage: Voyage, feed: Source, first: list[Sample], journal: Journal | None, show: Show, stop: Stop) -> bool:
+    """The loop itself; whether the source ended, rather than somebody's patience."""
+    shown = -math.inf
+    samples = first
+    try:
+        while True:
+            for event in (*voyage.admitted(samples), None):
+                if event is not None:
+                    voyage.follow(event)
+                if monotonic() - shown < _SHOW_S:
+                    continue
+                shown = monotonic()
+                if voyage.snapshot is not None:
+                    show(voyage.snapshot, voyage.counts(feed.counts))
+                if stop():
+                    return False
+            if feed.is_over:
+                return True
+            samples = feed.poll(_WAIT_S)
+    except KeyboardInterrupt:
+        return False
+    finally:
+        voyage.finish()
+        if journal is not None:
+            journal.flush()
+
+
+def _resumed(
+    held: ExitStack, stream: Stream, voyage: Voyage, last: Sample | None, *, once: bool
+) -> tuple[Source, list[Sample]]:
+    """The stream's own source, and what it has given already that is new.
+
+    A source that gives everything once more is read up to the journal's last sample, which is passed over with all
+    before it; where it is not found, the file is another one and begins from its start. After any other break a run
+    begins, for nobody knows how long it was.
+    """
+    feed = source_of(stream, once=once)
+    new = None if last is None or stream.feed not in _AGAIN else _behind(feed, last)
+    if last is not None and new is None:
+        voyage.restarted()
+        if stream.feed in _AGAIN:
+            feed.close()
+            feed = source_of(stream, once=once)
+    held.callback(feed.close)
+    return feed, new or []
+
+
+def _behind(feed: Source, last: Sample) -> list[Sample] | None:
+    """What of a poll comes behind that sample; None if the source does not hold it."""
+    empty = 0
+    while not feed.is_over and empty < _PATIENCE:
+        samples = feed.poll(_WAIT_S)
+        empty = 0 if samples else empty + 1
+        for place, sample in enumerate(samples, start=1):
+            if sample.time == last.time and np.array_equal(sample.values, last.values, equal_nan=True):
+                return samples[place:]
+    return None
+
+
+def _journal(held: ExitStack, path: Path, trial: Trial) -> Journal:
+    layout = followed(trial).layout
+    journal = Journal(path, identity_of(trial.model, layout), len(layout.columns))
+    held.callback(journal.close)
+    return journal
+
+
+def _nobody(snapshot: Snapshot, counts: Counts) -> None:
+    """Nobody looks."""
+
+
+def _never() -> bool:
+    return False
