@@ -116,7 +116,7 @@ def test_a_program_that_ended_is_said_and_its_numbers_stay(browser: "Browser") -
 
 def test_silence_is_said(browser: "Browser", page: Page) -> None:
     page.show(list(heave_pitch(30.0))[-1], Counts())
-    page._shown_at -= 17.0
+    page._news_at -= 17.0
     with opened(browser, page) as (window, said):
         window.get_by_text(re.compile(r"no news for (17|18|19|2\d) s")).wait_for()
         assert said == []

@@ -2,7 +2,6 @@
 
 import io
 import os
-import pty
 from dataclasses import replace
 from typing import TextIO
 
@@ -15,7 +14,7 @@ from seatrial.follow import live as module
 from seatrial.follow.history import History, Recent
 from seatrial.follow.live import Live
 from seatrial.follow.plain import line
-from seatrial.follow.table import picture
+from seatrial.follow.table import Shown, picture
 from seatrial.results.online import Counts, Phase, Snapshot
 
 
@@ -35,12 +34,14 @@ def _plain_surroundings(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TERM", "xterm-256color")
 
 
-def drawn(*, snapshots: list[Snapshot], width: int = 110, height: int | None = None, heading: str = "") -> str:
+def drawn(
+    *, snapshots: list[Snapshot], width: int = 110, height: int | None = None, heading: str = "", silence: float = 0.0
+) -> str:
     console = Console(file=io.StringIO(), width=width, height=50, force_terminal=False)
     history, recent = History(), Recent()
     for snapshot in snapshots:
         recent.add(history.add(snapshot))
-    console.print(picture(console, snapshots[-1], troubled(), recent, heading, height))
+    console.print(picture(console, Shown(heading, snapshots[-1], troubled(), recent, silence), height))
     return console.file.getvalue()  # pyright: ignore[reportAttributeAccessIssue]
 
 
@@ -70,6 +71,12 @@ def test_before_anything_is_known_there_are_dashes() -> None:
     assert "waiting" in text and "–" in text and "nan" not in text and "inf" not in text
 
 
+def test_silence_is_said() -> None:
+    snapshots = list(heave_pitch(10.0))
+    assert "no news for 7.0 s" in drawn(snapshots=snapshots, silence=7.0)
+    assert "no news" not in drawn(snapshots=snapshots, silence=1.0)
+
+
 def test_a_small_terminal_gets_what_fits() -> None:
     snapshots = list(mmg(30.0))
     for width, height in ((80, 24), (40, 24), (110, 20)):
@@ -86,7 +93,7 @@ def test_markup_and_escape_sequences_are_text() -> None:
     console = Console(file=io.StringIO(), width=100, force_terminal=False)
     recent = Recent()
     recent.add(History().add(snapshot))
-    console.print(picture(console, snapshot, counts, recent, "\x1b[2Jheading", None))
+    console.print(picture(console, Shown("\x1b[2Jheading", snapshot, counts, recent), None))
     text = console.file.getvalue()  # pyright: ignore[reportAttributeAccessIssue]
     assert "\x1b" not in text and "\x07" not in text and "\u202e" not in text
     assert "[b]x[/b]0" in text and "[red]" in text
@@ -106,6 +113,7 @@ def test_on_a_terminal_the_table_stays_in_place_and_ends_whole() -> None:
 
 
 def test_a_real_terminal_that_is_closed_stops_nothing() -> None:
+    pty = pytest.importorskip("pty", reason="no pseudo-terminals on this system")
     mine, theirs = pty.openpty()
     stream = os.fdopen(theirs, "w", encoding="utf-8")
     snapshots = list(heave_pitch(5.0))
@@ -114,7 +122,7 @@ def test_a_real_terminal_that_is_closed_stops_nothing() -> None:
         os.read(mine, 1 << 16)
         os.close(mine)
         for snapshot in snapshots:
-            live._screen._drawn = -1e9  # pyright: ignore
+            live._screen._drawn_at = -1e9  # pyright: ignore
             live.show(snapshot, Counts())
 
 
@@ -166,6 +174,16 @@ def test_lines_come_at_growing_waits_and_the_last_is_never_lost(monkeypatch: pyt
     assert np.all(np.diff(waits) >= -0.51)
     assert len(at) < 150
     assert stream.getvalue().splitlines()[-1].startswith("3600.0 s recursive")
+
+
+def test_the_same_again_is_no_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = [0.0]
+    monkeypatch.setattr(module.time, "monotonic", lambda: clock[0])
+    stream, snapshot = io.StringIO(), list(heave_pitch(10.0))[-1]
+    with Live(stream) as live:
+        for clock[0] in range(100):
+            live.show(snapshot, Counts(late=int(clock[0] > 50)))
+    assert len(stream.getvalue().splitlines()) == 2
 
 
 def test_a_line_has_values_with_half_intervals_and_no_typography() -> None:

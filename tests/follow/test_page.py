@@ -90,6 +90,15 @@ def test_other_coefficients_and_another_program_are_another_epoch(page: Page) ->
     assert len({first, second["epoch"], third}) == 3 and len(second["points"]) == 1
 
 
+def test_the_same_again_is_no_news(page: Page) -> None:
+    snapshot = next(iter(heave_pitch(0.0)))
+    page.show(snapshot, Counts())
+    for counts, is_news in ((Counts(), False), (Counts(late=1), True)):
+        page._news_at -= 60.0
+        page.show(snapshot, counts)
+        assert (state(page)["age"] < 30.0) is is_news and len(state(page)["points"]) == 1
+
+
 def test_the_end_of_the_stream_is_said(page: Page) -> None:
     page.over("end of trial.csv")
     assert (state(page)["is_over"], state(page)["why"]) == (True, "end of trial.csv")

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Protocol, Self, TextIO
 from seatrial.follow.history import History, Recent
 from seatrial.follow.plain import line, plain
 from seatrial.follow.shown import clean
-from seatrial.follow.table import picture
+from seatrial.follow.table import Shown, picture
 from seatrial.results.online import Counts, Snapshot
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-BETWEEN_PICTURES = 0.25
+BETWEEN_PICTURES = 0.5
 SHORTEST_WAIT, LONGEST_WAIT, PATIENCE = 1.0, 60.0, 0.05
 
 
@@ -30,7 +30,7 @@ class Live:
     with Live(heading="trial.toml") as live: live.show(snapshot, counts)
 
     stream: standard output unless told otherwise; heading: what is followed, and where its page is.
-    No threads: it draws when it is given something, at most four times a second; the last one is always shown.
+    No threads: it draws when it is given something, at most twice a second; the last one is always shown.
     """
 
     def __init__(self, stream: TextIO | None = None, *, heading: str = "") -> None:
@@ -63,16 +63,19 @@ class _Table:
         self._console, self._heading = console, heading
         self._history, self._recent = History(limit=4), Recent()
         self._last: tuple[Snapshot, Counts] | None = None
-        self._drawn = -math.inf
+        self._news_at, self._drawn_at = 0.0, -math.inf
         self._live = RichLive(console=console, auto_refresh=False)
         self._is_lost = not _survived(self._live.start)
 
     def show(self, snapshot: Snapshot, counts: Counts) -> None:
-        self._recent.add(self._history.add(snapshot))
+        now = time.monotonic()
+        if _is_news(self._last, snapshot, counts):
+            self._recent.add(self._history.add(snapshot))
+            self._news_at = now
         self._last = snapshot, counts
-        if time.monotonic() - self._drawn >= BETWEEN_PICTURES:
+        if now - self._drawn_at >= BETWEEN_PICTURES:
             self._draw(self._console.height)
-            self._drawn = time.monotonic()
+            self._drawn_at = time.monotonic()
 
     def close(self) -> None:
         self._draw(None)
@@ -81,7 +84,8 @@ class _Table:
     def _draw(self, height: int | None) -> None:
         if self._last is None or self._is_lost:
             return
-        made = picture(self._console, *self._last, self._recent, self._heading, height)
+        silence = 0.0 if height is None else time.monotonic() - self._news_at
+        made = picture(self._console, Shown(self._heading, *self._last, self._recent, silence), height)
         self._is_lost = not _survived(lambda: self._live.update(made, refresh=height is not None))
 
 
@@ -91,26 +95,29 @@ class _Lines:
     def __init__(self, stream: TextIO, heading: str) -> None:
         self._stream = stream
         self._begun, self._due = math.inf, -math.inf
-        self._waiting: tuple[Snapshot, Counts] | None = None
+        self._last: tuple[Snapshot, Counts] | None = None
+        self._is_written = True
         self._is_lost = False
         if heading:
             self._write(plain(clean(heading)))
 
     def show(self, snapshot: Snapshot, counts: Counts) -> None:
-        self._waiting = snapshot, counts
+        if not _is_news(self._last, snapshot, counts):
+            return
+        self._last, self._is_written = (snapshot, counts), False
         now = time.monotonic()
         if now >= self._due:
             self._begun = min(self._begun, now)
             self._due = now + min(LONGEST_WAIT, max(SHORTEST_WAIT, PATIENCE * (now - self._begun)))
-            self._write_waiting()
+            self._write_last()
 
     def close(self) -> None:
-        self._write_waiting()
+        self._write_last()
 
-    def _write_waiting(self) -> None:
-        if self._waiting is not None:
-            self._write(line(*self._waiting))
-        self._waiting = None
+    def _write_last(self) -> None:
+        if self._last is not None and not self._is_written:
+            self._write(line(*self._last))
+        self._is_written = True
 
     def _write(self, text: str) -> None:
         if not self._is_lost:
@@ -129,6 +136,10 @@ def _console(stream: TextIO) -> "Console | None":
     except (OSError, ValueError, LookupError):
         return None
     return console if can_draw else None
+
+
+def _is_news(last: tuple[Snapshot, Counts] | None, snapshot: Snapshot, counts: Counts) -> bool:
+    return last is None or last[0] is not snapshot or last[1] != counts
 
 
 def _print(text: str, stream: TextIO) -> None:

@@ -41,7 +41,7 @@ class Page:
         self._lock = threading.Lock()
         self._history = History()
         self._newest: tuple[Snapshot, Counts] | None = None
-        self._shown_at = time.monotonic()
+        self._news_at = time.monotonic()
         self._over: str | None = None
         self._stamp = secrets.token_hex(4)
         self._server: _Server | None = None
@@ -69,11 +69,14 @@ class Page:
         return f"http://{LOOPBACK}:{self.port}/"
 
     def show(self, snapshot: Snapshot, counts: Counts) -> None:
-        """This is the newest."""
+        """This is the newest; the same snapshot and counts again are no news."""
         with self._lock:
-            self._history.add(snapshot)
+            last = self._newest
+            if last is None or last[0] is not snapshot:
+                self._history.add(snapshot)
+            if last is None or last[0] is not snapshot or last[1] != counts:
+                self._news_at = time.monotonic()
             self._newest = snapshot, counts
-            self._shown_at = time.monotonic()
 
     def over(self, why: str = "") -> None:
         """Nothing more will come; the page says so and keeps what it shows."""
@@ -86,7 +89,7 @@ class Page:
             newest, over = self._newest, self._over
             some, stride = self._history.since(since), self._history.stride
             epoch = f"{self._stamp}-{self._history.generation}"
-            age = time.monotonic() - self._shown_at
+            age = time.monotonic() - self._news_at
         return {
             "title": self._title,
             "epoch": epoch,

@@ -1,6 +1,6 @@
 """One snapshot as one line of plain text, for log files and for terminals that can draw nothing."""
 
-from seatrial.follow.shown import MINUS, clean, listed, moment, rows, troubles
+from seatrial.follow.shown import MINUS, clean, counted, listed, moment, rows, troubles
 from seatrial.follow.shown import change as change_words
 from seatrial.results.online import Counts, Snapshot
 
@@ -10,8 +10,8 @@ _POWERS = dict(zip("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789", strict=True)
 
 def line(snapshot: Snapshot, counts: Counts) -> str:
     """Moment, phase, coefficients with half of their 95 % intervals, what is not told, trouble so far."""
-    runs = f"{snapshot.runs} run{'s' * (snapshot.runs != 1)}"
-    parts = [f"{moment(snapshot.time)} {snapshot.phase.value} {snapshot.samples} samples {runs}"]
+    seen = f"{counted(snapshot.samples, 'sample')} {counted(snapshot.runs, 'run')}"
+    parts = [f"{moment(snapshot.time)} {snapshot.phase.value} {seen}"]
     parts += [", ".join(f"{row.name} {row.value} +- {row.half} {row.unit}".rstrip() for row in rows(snapshot))]
     parts += [f"not told: {listed([clean(name) for name in snapshot.untold])}"] if snapshot.untold else []
     wrong = [f"{count} {words}" for words, count in troubles(counts) if count]

@@ -83,7 +83,7 @@ def change(told: Change | None) -> str:
     """The change that was told, in a sentence; empty if none was."""
     if told is None or not told.is_told:
         return ""
-    since, freedom = moment(told.since), f"{told.freedom} degree{'s' * (told.freedom != 1)} of freedom"
+    since, freedom = moment(told.since), f"{counted(told.freedom, 'degree')} of freedom"
     return (
         f"Since {since} the data tell other coefficients than before, {clean(told.most)} most of all "
         f"(chi-squared {significant(told.statistic, 3)} of {freedom}, p {significant(told.p, 2)})."
@@ -166,6 +166,11 @@ def significant(value: float, digits: int) -> str:
     if 1e-4 <= abs(value) < 1e7:
         return fixed(value, digits - 1 - power)
     return f"{fixed(value / 10.0**power, digits - 1)} ×10{str(power).translate(_SUPERSCRIPTS)}"
+
+
+def counted(number: int, noun: str) -> str:
+    """1 run, 2 runs."""
+    return f"{number} {noun}{'s' * (number != 1)}"
 
 
 def listed(items: Sequence[str], most: int = 8) -> str:

@@ -1,5 +1,6 @@
 """A snapshot as a table for a terminal."""
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from seatrial.follow.history import Recent
@@ -9,6 +10,7 @@ from seatrial.follow.shown import (
     arrow,
     change,
     clean,
+    counted,
     duration,
     listed,
     moment,
@@ -28,38 +30,51 @@ if TYPE_CHECKING:
 
 FINDINGS = 3
 NARROW = 76
-LEAST_ROWS, HEAD_LINES = 3, 2
+QUIET = 5.0
+LEAST_ROWS, TAKEN = 3, 4
 _SEVERITIES = list(Severity)[::-1]
 _STYLES = {Phase.WAITING: "yellow", Phase.WINDOW: "green", Phase.RECURSIVE: "cyan"}
 
 
-def picture(
-    console: "Console", snapshot: Snapshot, counts: Counts, recent: Recent, heading: str, height: int | None
-) -> "RenderableType":
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """What a picture shows: the newest of everything; silence: s since something new came."""
+
+    heading: str
+    snapshot: Snapshot
+    counts: Counts
+    recent: Recent
+    silence: float = 0.0
+
+
+def picture(console: "Console", shown: Shown, height: int | None) -> "RenderableType":
     """Head, coefficients, what else there is to say; so many coefficients that all fits in `height` lines, if given."""
     from rich.console import Group
     from rich.text import Text
 
-    head, foot, every = _head(snapshot, heading), _foot(snapshot, counts), rows(snapshot)
+    head, foot, every = _head(shown), _foot(shown.snapshot, shown.counts), rows(shown.snapshot)
     most = len(every)
     if height is not None:
-        free = height - 1 - HEAD_LINES - sum(len(console.render_lines(part)) for part in (head, foot))
+        free = height - TAKEN - sum(len(console.render_lines(part)) for part in (head, foot))
         most = most if most <= free else max(LEAST_ROWS, free - 1)
     more = [Text(f"and {len(every) - most} more", "dim")] if most < len(every) else []
-    return Group(head, _coefficients(every[:most], recent, console.width), *more, foot)
+    return Group(head, _coefficients(every[:most], shown.recent, console.width), *more, Text(), foot)
 
 
-def _head(snapshot: Snapshot, heading: str) -> "Text":
+def _head(shown: Shown) -> "Text":
     from rich.text import Text
 
-    runs = f"{snapshot.runs} run{'s' * (snapshot.runs != 1)}"
-    head = Text()
-    if heading:
-        head.append(clean(heading) + "\n", "bold")
+    snapshot = shown.snapshot
+    head = Text(no_wrap=True, overflow="ellipsis")
+    if shown.heading:
+        head.append(clean(shown.heading) + "\n", "bold")
     head.append(snapshot.phase.value, f"bold {_STYLES[snapshot.phase]}")
-    head.append(f"  {moment(snapshot.time)}  {snapshot.samples} samples  {runs}  ")
-    head.append(phase(snapshot.phase), "dim")
-    return head
+    head.append(f"  {moment(snapshot.time)}  {counted(snapshot.samples, 'sample')}  {counted(snapshot.runs, 'run')}  ")
+    if shown.silence > QUIET:
+        head.append(f"no news for {duration(shown.silence)}", "yellow")
+    else:
+        head.append(phase(snapshot.phase), "dim")
+    return head.append("\n")
 
 
 def _coefficients(some: list[Row], recent: Recent, width: int) -> "Table":

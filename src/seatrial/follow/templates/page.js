@@ -87,7 +87,7 @@ function panel(width, height, box, xs, range, labels) {
   onX.forEach((value, k) => {
     const x = X(value * size), words = digits(value, stepX) + (k === onX.length - 1 ? ` ${unit}` : "");
     svg.append(drawn("path", { class: "gridline", d: `M${x} ${top}V${bottom}` }));
-    svg.append(drawn("text", { class: "tick", x, y: bottom + 12, "text-anchor": "middle" }, words));
+    svg.append(drawn("text", { class: "tick", x, y: bottom + 14, "text-anchor": "middle" }, words));
   });
   for (const [value, words] of labels) {
     svg.append(drawn("path", { class: "gridline", d: `M${left} ${Y(value)}H${right}` }));
@@ -128,14 +128,14 @@ function course(title, now, xs, values, halves, isTold) {
 }
 
 // standard errors in per cent of values, logarithmic, named at their ends
-function shares(rows, xs, values, halves) {
+function shares(width, rows, xs, values, halves) {
   const lines = rows.map((row, k) => ({ name: row.name, told: row.is_told,
     ys: xs.map((_, j) => Math.log10(100 * halves[j][k] / Z95 / Math.abs(values[j][k]))) }));
   const known = lines.flatMap(line => line.ys).filter(Number.isFinite);
   const low = known.length ? Math.floor(Math.min(...known.map(y => Math.max(y, -4))) + 1e-9) : 0;
   const high = known.length ? Math.min(3, Math.max(low + 1, Math.ceil(Math.max(...known)))) : 2;
   const decades = Array.from({ length: high - low + 1 }, (_, k) => [low + k, `${+(10 ** (low + k)).toPrecision(1)} %`]);
-  const { svg, inside, X, Y } = panel(1060, 290, [52, 10, 950, 270], xs, [low, high], decades);
+  const { svg, inside, X, Y } = panel(width, 292, [52, 10, width - 110, 270], xs, [low, high], decades);
   const ended = lines.filter(line => Number.isFinite(line.ys.at(-1))).sort((a, b) => b.ys.at(-1) - a.ys.at(-1));
   const places = xs.map(X);
   for (const line of [...lines].reverse()) {
@@ -149,14 +149,15 @@ function shares(rows, xs, values, halves) {
     const most = 276 - (labelled.length - 1 - k) * Math.min(12, room);
     const y = Math.min(Math.max(end, below + Math.min(12, room)), most);
     below = y;
-    svg.append(drawn("path", { class: "leader", d: `M951 ${end}L966 ${y}` }));
-    svg.append(drawn("text", { class: k ? "label" : "label worst", x: 969, y: y + 3.5 }, line.name));
+    svg.append(drawn("path", { class: "leader", d: `M${width - 109} ${end}L${width - 94} ${y}` }));
+    svg.append(drawn("text", { class: k ? "label" : "label worst", x: width - 91, y: y + 3.5 }, line.name));
   });
   svg.setAttribute("aria-label", "standard errors in per cent of the values");
   return svg;
 }
 
 // the sections
+const listed = names => names.length < 2 ? names.join("") : `${names.slice(0, -1).join(", ")} and ${names.at(-1)}`;
 function facts(told) {
   const fact = (what, value) => nested("div", {}, [node("dt", {}, what), node("dd", {}, value)]);
   return [fact("phase", `${told.phase}: ${told.meaning}`), fact("stream's clock", told.moment), fact("samples", told.samples),
@@ -185,17 +186,19 @@ function words(told) {
   renew(at("findings"), told.findings, () => told.findings.map(finding));
   renew(at("change"), told.change, () => [node("p", {}, told.change)]);
   renew(at("untold"), [told.untold, told.advice], () => [
-    node("p", {}, `The data so far do not tell ${told.untold.join(", ")}.`), node("p", {}, told.advice)]);
+    node("p", {}, `The data so far do not tell ${listed(told.untold)}.`), node("p", {}, told.advice)]);
   at("change").hidden = told.change === "";
   at("untold").hidden = told.untold.length === 0;
   at("told").hidden = told.findings.length === 0;
+  at("residuals").hidden = told.noise.length === 0;
   at("last").textContent = told.last ? `The latest trouble: ${told.last}` : "";
   at("body").hidden = false;
 }
 function plots(told) {
   const shown = thinned(seen.points), xs = shown.map(p => p[1]);
   const values = shown.map(p => p[2].map(v => v ?? NaN)), halves = shown.map(p => p[3].map(h => h ?? NaN));
-  at("shares").replaceChildren(shares(told.rows, xs, values, halves));
+  const width = Math.max(340, at("shares").clientWidth);
+  at("shares").replaceChildren(shares(width, told.rows, xs, values, halves));
   at("values").replaceChildren(...told.rows.map((row, k) => {
     const scale = 10 ** row.power, both = row.half === "–" ? row.value : `${row.value} ± ${row.half}`;
     const now = `${row.power ? `(${both})` : both} ${row.unit}`.trim();
@@ -213,8 +216,8 @@ function say(kind, text) {
 }
 function status(state) {
   if (state.is_over) return say("over", `the stream is over${state.why ? `: ${state.why}` : ""}`);
-  if (state.age > QUIET) return say("quiet", `no news for ${Math.round(state.age)} s`);
-  return state.told ? say("following", "following") : say("", "nothing has come yet");
+  if (!state.told) return say("", "nothing has come yet");
+  return state.age > QUIET ? say("quiet", `no news for ${Math.round(state.age)} s`) : say("following", "following");
 }
 // keeps what the server keeps: every stride-th point and the newest
 function merge(state) {
