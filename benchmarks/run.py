@@ -20,6 +20,7 @@ from measure import Line, machine
 
 import design
 import loops
+import tune
 
 BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "simulation": simulation.run,
@@ -33,6 +34,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "heave_pitch": heave_pitch.run,
     "design": design.run,
     "loops": loops.run,
+    "tune": tune.run,
     "roll_decay": roll_decay.run,
 }
 

@@ -1,0 +1,113 @@
+"""Tuning: fronts beside a brute-force grid, the fin example beside the published gains, autopilots of known ships."""
+
+import math
+import os
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+from measure import Line, at_least, at_most
+
+from seatrial import verbs
+from seatrial.loops import HullFactor, Objective, Seen
+from seatrial.loops.fin import PUBLISHED_GAINS, Preamplifier, fin_loop
+from seatrial.loops.objective import off_target, variance
+from seatrial.results.tuning import Restriction, Tuning
+from seatrial.sea.spectrum import ittc
+from seatrial.tune.assess import judge
+from seatrial.tune.front import Effort, front, grid, hypervolume
+from seatrial.tune.task import Seaway, Task
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+KNOT, POINTS = 1852.0 / 3600.0, 160
+PUBLISHED = np.array([list(PUBLISHED_GAINS.values())])
+VARIANCES = (
+    variance("roll", "rad^2", Seen.OUTPUT),
+    variance("fin", "rad^2", Seen.ACTUATOR),
+    variance("fin rate", "rad^2/s^2", Seen.ACTUATOR, 1),
+)
+TARGET = off_target("fin", Seen.ACTUATOR, math.radians(math.sqrt(150.31)) ** 2, one_sided=False)
+OBJECTIVES = {"variances": VARIANCES, "the paper's": (VARIANCES[0], TARGET, VARIANCES[2])}
+
+
+def run() -> list[Line]:
+    """Fronts, the example, autopilots."""
+    lines = []
+    for reading in (Preamplifier.PRINTED, Preamplifier.WASHOUT):
+        for name, objectives in OBJECTIVES.items():
+            lines += _front(reading, name, objectives)
+    return [*lines, *_fins(), *_autopilots()]
+
+
+def _front(reading: Preamplifier, name: str, objectives: tuple[Objective, ...]) -> list[Line]:
+    """Beam sea of 3.3 m at 18 kn, Ms <= 2."""
+    U = 18.0 * KNOT
+    met = Seaway(ittc(3.3), U, math.pi / 2.0, HullFactor(100.0, 10.5, 3.4))
+    one = judge(Task("", "fins", "", fin_loop(reading), (met,), objectives, Restriction(peak=2.0), U))
+    front(one, "", 0, _silent, Effort(20, 2, 1, 1, 100))
+    began = time.perf_counter()
+    made = front(one, "", 0, _silent, Effort())
+    seconds = time.perf_counter() - began
+    known = grid(one, (POINTS,) * 3)
+    nadir = known.max(axis=0)
+    share = hypervolume(made.objectives, nadir) / hypervolume(known, nadir)
+    word = f"{reading.name.lower()}, {name}"
+    lines = [
+        at_least(f"{word}: hypervolume over that of a grid of {POINTS}^3", share, "x", 0.97),
+        at_most(f"{word}: time of the front", seconds, "s", 10.0),
+    ]
+    if name == "variances":
+        ratio = float((made.objectives / one.of(PUBLISHED).objectives).max(axis=1).min())
+        what = f"{word}: largest of three objectives over the published gains'"
+        lines.append(at_most(what, ratio, "x", 0.62) if reading is Preamplifier.PRINTED else Line(what, ratio, "x"))
+    return lines
+
+
+def _fins() -> list[Line]:
+    made = verbs.tune(verbs.load_loop(EXAMPLES / "fin_stabiliser.toml"))
+    own = float(np.mean([slot.cost for slot in made.schedule]))
+    published = float(np.mean([slot.others["as published"] for slot in made.schedule]))
+    headings = sorted({slot.beta for slot in made.schedule})
+    worst = max(
+        float(np.mean([s.cost for s in made.schedule if s.beta == b]))
+        / float(np.mean([s.others["as published"] for s in made.schedule if s.beta == b]))
+        for b in headings
+    )
+    return [
+        at_most("fin example: points lost to angle and rate limits", 100.0 * made.sailed[0].lost, "points", 3.0),
+        *(
+            at_least(f"fin example: better than published, {p.what}, lower end of 95 %", 100.0 * p.lower, "points", 0.0)
+            for p in made.paired
+        ),
+        at_most("fin example: mean cost of the schedule over the published gains'", own / published, "x", 0.6),
+        at_most("fin example: worst heading of the schedule over the published gains'", worst, "x", 1.0),
+        at_least("fin example: conditions feasible", sum(s.is_feasible for s in made.schedule), "of 27", 27),
+        Line("fin example: whole tuning", made.elapsed_s, "s"),
+    ]
+
+
+def _autopilots() -> list[Line]:
+    lines = []
+    for trial, loop in (("waterjet", "waterjet_autopilot"), ("kvlcc2_hsva", "kvlcc2_autopilot")):
+        if trial == "kvlcc2_hsva" and "SEATRIAL_DATA" not in os.environ:
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            verbs.save(verbs.identify(verbs.load_trial(EXAMPLES / f"{trial}.toml")), folder)
+            made = verbs.tune(verbs.load_loop(EXAMPLES / f"{loop}.toml", model_file=Path(folder) / "model.toml"))
+        lines += _autopilot(trial, made)
+    return lines
+
+
+def _autopilot(name: str, made: Tuning) -> list[Line]:
+    change = made.manoeuvres[0]
+    return [
+        at_most(f"{name}: overshoot of a 20 deg course change", 100.0 * change.overshoot, "%", 2.0),
+        at_most(f"{name}: Ms", made.chosen.peak, "", 1.7),
+        at_least(f"{name}: ships of the fit that are stable", change.stable_draws, "of 100", 100),
+        at_most(f"{name}: worst overshoot of these ships", 100.0 * change.worst_overshoot, "%", 2.0),
+    ]
+
+
+def _silent(_: str) -> None:
+    pass
