@@ -1,5 +1,6 @@
 """Samples from a stream: lines from a file, a pipe or a socket, read as columns or as NMEA sentences."""
 
+from time import monotonic
 from typing import Protocol
 
 from seatrial.follow.columns import ColumnReader
@@ -42,13 +43,17 @@ class LineSamples:
         self._is_over = False
 
     def poll(self, seconds: float) -> list[Sample]:
-        """Samples that have come, waiting at most so long for the first lines."""
-        if self._is_over:
-            return []
-        found = self._reader.samples(self._lines.read(seconds))
-        if self._lines.is_over:
-            self._is_over = True
-            found += self._reader.rest()
+        """Samples that have come, waiting at most so long for the first."""
+        deadline = monotonic() + seconds
+        found: list[Sample] = []
+        while not (found or self._is_over):
+            left = deadline - monotonic()
+            found = self._reader.samples(self._lines.read(max(left, 0.0)))
+            if self._lines.is_over:
+                self._is_over = True
+                found += self._reader.rest()
+            if left <= 0.0:
+                break
         return found
 
     @property

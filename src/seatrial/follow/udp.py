@@ -52,15 +52,17 @@ class UdpLines:
         self._rate = rate
         self._dropped = 0
         self._last = ""
+        if not 0 <= port <= 65535:
+            raise InputError(f"there is no UDP port {port}; choose one from 1 to 65535")
         try:
             kind, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0]
             self._socket = socket.socket(kind, socket.SOCK_DGRAM)
-        except (OSError, OverflowError, UnicodeError) as error:
+        except (OSError, UnicodeError) as error:
             raise _refusal(host, port, error) from None
         try:
             self._socket.setblocking(False)
             self._socket.bind(address)
-        except (OSError, OverflowError) as error:
+        except OSError as error:
             self._socket.close()
             raise _refusal(host, port, error) from None
 
