@@ -10,6 +10,7 @@ import pytest
 
 from report.test_page import HOSTILE, parsed
 from report.tuned import fabricated_autopilot, fabricated_bare, fabricated_fin
+from seatrial.report.figures.demanded import LIMIT, manoeuvre
 from seatrial.report.figures.fronts import fronts, people_s
 from seatrial.report.figures.loop_diagram import diagram
 from seatrial.report.figures.margins import nyquist, sensitivities
@@ -20,7 +21,7 @@ from seatrial.report.told_tuning import compared, followed, sentences
 from seatrial.report.tuning import TITLES, html
 from seatrial.report.tuning_rows import schedule_sheet, shown_gains, transfer_latex
 from seatrial.results.tuning import Component, Paired, Tuning
-from seatrial.values import Finding, Severity
+from seatrial.values import Finding, Severity, frozen
 
 LARGEST = 600_000
 MADE = {"fin": fabricated_fin, "autopilot": fabricated_autopilot, "bare": fabricated_bare}
@@ -235,3 +236,20 @@ def test_text_from_files_is_escaped(make: Callable[[], Tuning]) -> None:
         manoeuvres=tuple(replace(m, name=HOSTILE) for m in tuning.manoeuvres),
     )  # fmt: skip
     assert parsed(html(hostile)).scripts == parsed(html(tuning)).scripts
+
+
+def test_limits_of_an_actuator_lie_about_its_steady_value() -> None:
+    """A jet that runs at two metres a second may do so much more or less than that."""
+    tuning = fabricated_autopilot()
+    asked = tuning.manoeuvres[0]
+    moved = asked.record.channel("delta")
+    limit = 1.2 * float(np.max(np.abs(moved.values - moved.values[0])))
+    near = replace(tuning, restriction=replace(tuning.restriction, limit=limit))
+    aside = replace(moved, values=frozen(moved.values + 2.0))
+    record = replace(asked.record, channels={**asked.record.channels, "delta": aside})
+    here, there = (
+        [float(y) for y in re.findall(r'd="M[\d.]+[ ,]([\d.]+)[^"]*"[^>]*' + re.escape(LIMIT.dash), drawn)]
+        for drawn in (manoeuvre(asked, near), manoeuvre(replace(asked, record=record), near))
+    )
+    assert len(here) == 2
+    assert here == pytest.approx(there, abs=0.2)

@@ -23,7 +23,7 @@ def print_tuning(tuning: "Tuning") -> None:
     _print_sailed(tuning)
     _print_schedule(tuning)
     for bound in tuning.bounds:
-        print(f"bound {bound.name}: output variance {bound.ratio:.3g} of the reference's, {bound.at}")
+        print(f"bound {bound.name}: output variance {bound.ratio:.3g} of the chosen gains', {bound.at}")
     _print_manoeuvres(tuning)
     for finding in tuning.findings:
         advice = f": {finding.advice}" if finding.advice else ""
@@ -104,5 +104,7 @@ def _print_manoeuvres(tuning: "Tuning") -> None:
     for m in tuning.manoeuvres:
         settled = "does not settle" if math.isnan(m.settling) else f"settled in {m.settling:.4g} s"
         draws = f", stable for {m.stable_draws} of {m.draws} ships that the fit allows" if m.draws else ""
-        worst = "" if math.isnan(m.worst_overshoot) else f" (at most {100.0 * m.worst_overshoot:.2g} %)"
+        worst = (
+            "" if math.isnan(m.worst_overshoot) else f" (of all ships drawn at most {100.0 * m.worst_overshoot:.2g} %)"
+        )
         print(f"{m.name}, {m.controller}: overshoot {100.0 * m.overshoot:.2g} %{worst}, {settled}{draws}")

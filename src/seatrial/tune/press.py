@@ -9,7 +9,7 @@ from seatrial.tune.assess import Judge
 from seatrial.values import Array, Index
 
 Box = tuple[Array, Array]
-_HUGE, _TINY = 1e30, 1e-300
+_HUGE, _TINY, _ROUNDING = 1e30, 1e-300, 1e-12
 
 
 def free_box(judge: Judge) -> tuple[Index, Box]:
@@ -63,4 +63,6 @@ def pressed(judge: Judge, start: Array, ceiling: Array | None = None) -> Array:
         value, (start - low) / width, jac=slope, bounds=[(0.0, 1.0)] * len(places), method="SLSQP",
         constraints=NonlinearConstraint(room, 0.0, np.inf, jac=room_slope), options={"maxiter": 50, "ftol": 1e-10},
     )  # fmt: skip
-    return low + np.clip(found.x, 0.0, 1.0) * width
+    unit = np.clip(found.x, 0.0, 1.0)
+    unit[unit < _ROUNDING] = 0.0
+    return low + unit * width

@@ -67,11 +67,13 @@ def manoeuvre(m: Manoeuvre, tuning: Tuning) -> str:
 
 
 def _actuator(m: Manoeuvre, tuning: Tuning, panel: Panel) -> str:
+    """The actuator, which begins at its steady value; its limits lie about that."""
     name, limit = named(m.record, tuning.actuator, "actuator"), tuning.restriction.limit
     unit = m.record.channel(name).unit
     values = m.record[name] * display(unit)[0]
-    ends = np.array([-limit, limit]) * display(unit)[0]
-    is_near = math.isfinite(limit) and float(np.nanmax(np.abs(values))) > 0.5 * ends[1]
+    steady, reach = float(values[0]), limit * display(unit)[0]
+    ends = steady + np.array([-reach, reach])
+    is_near = math.isfinite(limit) and float(np.nanmax(np.abs(values - steady))) > 0.5 * reach
     shown = Panel(panel.left, panel.top, panel.width, panel.height, panel.x,
                   span([values, ends] if is_near else [values], 0.1))  # fmt: skip
     parts = [axes(shown, x_ticks=9, y_ticks=3, y_label=label(tuning.actuator, unit))]
