@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from follow.fabricated import heave_pitch, mmg, troubled
-from seatrial.follow.page import Page, html, policy
+from seatrial.follow.page import Page
+from seatrial.follow.server import html, policy
 from seatrial.results.online import Counts
 from seatrial.values import InputError
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.follow.shown import arrow, change, clean, duration, moment, noises, rows, sparkline
+from seatrial.follow.shown import change, clean, duration, moment, noises, rows
 from seatrial.results.online import Change, Phase, Snapshot
 
 
@@ -36,21 +36,6 @@ def test_without_a_standard_error_there_is_no_interval(error: float) -> None:
 def test_angles_are_degrees_and_squares_are_squares() -> None:
     assert noises(one(1.0, 0.1)) == [("theta", "0.573", "deg")]
     assert rows(one(2e6, 1e5, "kg m^2"))[0].unit == "10⁶ kg m²"
-
-
-@given(st.lists(st.floats(-1e9, 1e9) | st.just(float("nan")), max_size=50), st.floats(0, 1e9) | st.just(float("inf")))
-def test_a_sparkline_never_fails_and_never_grows(values: list[float], half: float) -> None:
-    assert len(sparkline(np.array(values), half)) <= 12
-
-
-def test_a_sparkline_is_flat_where_the_move_is_small_beside_the_interval() -> None:
-    rising = np.linspace(1.0, 2.0, 40)
-    assert sparkline(rising, 0.1)[0] == "▁" and sparkline(rising, 0.1)[-1] == "█"
-    assert len(set(sparkline(rising, 100.0))) <= 2
-
-
-def test_arrows() -> None:
-    assert [arrow(np.array(e)) for e in ([np.inf, 2.0, 1.0], [1.0, 1.02], [1.0, 2.0], [1.0])] == ["↘", "→", "↗", ""]
 
 
 def test_times() -> None:

@@ -1,7 +1,8 @@
 """One snapshot as one line of plain text, for log files and for terminals that can draw nothing."""
 
-from seatrial.follow.shown import MINUS, clean, counted, listed, moment, rows, troubles
+from seatrial.follow.digits import MINUS
 from seatrial.follow.shown import change as change_words
+from seatrial.follow.shown import clean, counted, listed, moment, rows, troubles
 from seatrial.results.online import Counts, Snapshot
 
 _ASCII = str.maketrans({MINUS: "-", "–": "-", "²": "^2", "³": "^3", "×": "x", "…": "...", "·": "?"})

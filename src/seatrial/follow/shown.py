@@ -6,19 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
-import numpy as np
-
+from seatrial.follow.digits import DASH, exponent, fixed, percent, significant, superscript
 from seatrial.results.online import Change, Counts, Phase, Snapshot
-from seatrial.values import NOTATION, Array, display
+from seatrial.values import NOTATION, display
 
 # two-sided 95 % of a normal distribution
 NORMAL_95 = 1.96
-MINUS, DASH = "\u2212", "\u2013"
-BARS = "▁▂▃▄▅▆▇█"
-NARROWER, WIDER = 0.9, 1.1
 FIRST_DATE = 1e8
 LONGEST = 300
-_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PHASES = {
     Phase.WAITING: "too little has been seen yet",
     Phase.WINDOW: "fit over everything seen, re-linearised as it grows",
@@ -119,55 +114,6 @@ def clean(text: str, longest: int = LONGEST) -> str:
     return shown if len(shown) <= longest else shown[: longest - 1] + "…"
 
 
-def sparkline(values: Array, half: float, width: int = 12) -> str:
-    """The course of a value as bars, newest last; a move that is small beside its interval looks flat.
-
-    values: (n,) over the last minutes; half: half of the interval now, sets the least height shown.
-    """
-    known = values[np.isfinite(values)]
-    if len(known) < 2:
-        return ""
-    picked = known[np.linspace(0, len(known) - 1, min(width, len(known))).round().astype(int)]
-    low, high = float(picked.min()), float(picked.max())
-    least = 2.0 * half if math.isfinite(half) else 0.0
-    reach = max(high - low, least)
-    if reach <= 0.0:
-        return BARS[3] * len(picked)
-    bottom = 0.5 * (low + high) - 0.5 * reach
-    places = np.clip((picked - bottom) / reach * len(BARS), 0, len(BARS) - 1).astype(int)
-    return "".join(BARS[k] for k in places)
-
-
-def arrow(errors: Array) -> str:
-    """Whether the interval became narrower (↘), wider (↗) or stayed (→) over the last minutes.
-
-    errors: (n,) standard errors, newest last.
-    """
-    known = errors[np.isfinite(errors) & (errors > 0)]
-    if len(known) < 2:
-        return ""
-    ratio = float(known[-1] / known[0])
-    return "↘" if ratio < NARROWER else "↗" if ratio > WIDER else "→"
-
-
-def fixed(value: float, decimals: int) -> str:
-    """A number with so many decimals and a true minus sign; a dash where there is none."""
-    if not math.isfinite(value):
-        return DASH
-    nearest = round(value, decimals) + 0.0
-    return (MINUS if nearest < 0 else "") + f"{abs(nearest):.{max(decimals, 0)}f}"
-
-
-def significant(value: float, digits: int) -> str:
-    """A number with so many significant digits; a power of ten where it is long."""
-    if not math.isfinite(value) or value == 0.0:
-        return "0" if value == 0.0 else DASH
-    power = _power(value, digits)
-    if 1e-4 <= abs(value) < 1e7:
-        return fixed(value, digits - 1 - power)
-    return f"{fixed(value / 10.0**power, digits - 1)} ×10{str(power).translate(_SUPERSCRIPTS)}"
-
-
 def counted(number: int, noun: str) -> str:
     """1 run, 2 runs."""
     return f"{number} {noun}{'s' * (number != 1)}"
@@ -184,29 +130,18 @@ def _row(name: str, unit: str, value: float, error: float, is_told: bool) -> Row
     factor, shown = display(unit)
     value, half = factor * value, NORMAL_95 * factor * error
     shown = "" if shown == "1" else clean(shown).replace("^2", "²").replace("^3", "³")
-    share = _percent(_share(value, factor * error))
+    share = percent(_share(value, factor * error))
     if not math.isfinite(value) or not math.isfinite(half) or half <= 0.0:
         return Row(clean(name), significant(value, 4), DASH, DASH, DASH, shown, 0, share, is_told)
     largest = max(abs(value), half)
-    power = 0 if 1e-2 <= largest < 1e5 else _power(largest, 2)
+    power = 0 if 1e-2 <= largest < 1e5 else exponent(largest, 2)
     scale = 10.0**power
     # no more than seven digits of the largest: a value known to a millionth is known
-    decimals = min(1 - _power(half / scale, 2), 6 - _power(largest / scale, 2))
+    decimals = min(1 - exponent(half / scale, 2), 6 - exponent(largest / scale, 2))
     texts = [fixed(x / scale, decimals) for x in (value, half, value - half, value + half)]
-    unit = f"10{str(power).translate(_SUPERSCRIPTS)} {shown}".strip() if power else shown
+    unit = f"10{superscript(power)} {shown}".strip() if power else shown
     return Row(clean(name), texts[0], texts[1], texts[2], texts[3], unit, power, share, is_told)
 
 
 def _share(value: float, error: float) -> float:
     return error / abs(value) if value != 0.0 and math.isfinite(value) and math.isfinite(error) else math.inf
-
-
-def _percent(share: float) -> str:
-    if not math.isfinite(share):
-        return DASH
-    return "> 999" if share > 9.99 else significant(100.0 * share, 2)
-
-
-def _power(value: float, digits: int) -> int:
-    """Decimal exponent after rounding to so many digits."""
-    return int(f"{abs(value):.{digits - 1}e}".partition("e")[2])

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from seatrial.follow import shown
+from seatrial.follow.digits import significant
 from seatrial.follow.history import Point
 from seatrial.results.online import Counts, Snapshot
 from seatrial.values import NOTATION, Array, Severity, display
@@ -63,7 +64,7 @@ def _noise(channel: str, rms: float) -> dict[str, str]:
     return {
         "name": shown.clean(channel),
         "meaning": meaning,
-        "rms": shown.significant(factor * rms, 3),
+        "rms": significant(factor * rms, 3),
         "unit": "" if unit == "1" else unit,
     }
 

@@ -7,7 +7,6 @@ from seatrial.follow.history import Recent
 from seatrial.follow.shown import (
     NORMAL_95,
     Row,
-    arrow,
     change,
     clean,
     counted,
@@ -17,9 +16,9 @@ from seatrial.follow.shown import (
     noises,
     phase,
     rows,
-    sparkline,
     troubles,
 )
+from seatrial.follow.trend import arrow, sparkline
 from seatrial.results.online import Counts, Phase, Snapshot
 from seatrial.values import Severity
 
