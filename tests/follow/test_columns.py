@@ -155,6 +155,7 @@ def test_names_without_any_header_are_said() -> None:
     [
         (Layout("mat", NAMED.time, NAMED.columns), "format 'mat' cannot be followed"),
         (Layout("text", NAMED.time, ()), "no channels"),
+        (Layout("text", NAMED.time, NAMED.columns, scale=45.7), "Froude-scaled by 45.7"),
         (Layout("text", NAMED.time, NAMED.columns, encoding="utf-16"), "utf-16"),
         (Layout("text", NAMED.time, NAMED.columns, encoding="klingon"), "unknown encoding"),
         (Layout("text", NAMED.time, (Column("u", 2, "deg"),)), "does not fit"),
@@ -163,6 +164,12 @@ def test_names_without_any_header_are_said() -> None:
 def test_a_layout_that_cannot_be_followed_is_refused(layout: Layout, text: str) -> None:
     with pytest.raises(InputError, match=text):
         ColumnReader(layout)
+
+
+def test_names_in_another_encoding() -> None:
+    layout = Layout("text", Column("time", "t", "s"), (Column("u", "Geschw. [m/s] ü", "m/s"),), encoding="cp1252")
+    found, _ = samples("Geschw. [m/s] ü;t\n1;2\n".encode("cp1252"), layout)
+    np.testing.assert_array_equal(table(found), [[2.0, 1.0]])
 
 
 def test_memory_does_not_grow_with_garbage() -> None:

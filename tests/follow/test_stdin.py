@@ -1,6 +1,7 @@
 """Lines of a pipe: in halves, to its end, never waited for longer than asked."""
 
 import os
+from subprocess import PIPE, Popen
 from time import monotonic
 
 import pytest
@@ -31,6 +32,15 @@ def test_nothing_is_waited_for_longer_than_asked() -> None:
     assert PipeLines(reading).read(0.1).lines == [] and 0.05 < monotonic() - since < 2.0
     os.close(writing)
     os.close(reading)
+
+
+def test_an_endless_line_does_not_hold_the_reader() -> None:
+    with Popen(["/bin/sh", "-c", "exec cat /dev/zero"], stdout=PIPE) as writer:
+        assert writer.stdout is not None
+        lines, since = PipeLines(writer.stdout.fileno()), monotonic()
+        found = lines.read(0.1).lines
+        writer.kill()
+    assert found == [] and monotonic() - since < 2.0 and lines.counts.dropped == 1
 
 
 def test_a_closed_input_is_refused() -> None:

@@ -3,6 +3,8 @@
 import socket
 import tracemalloc
 from collections.abc import Iterator
+from threading import Event, Thread
+from time import monotonic
 
 import pytest
 
@@ -80,6 +82,21 @@ def test_giants_are_dropped(lines: UdpLines, sender: socket.socket) -> None:
     sender.sendto(b"x" * (LONGEST_DATAGRAM + 1), ("127.0.0.1", lines.port))
     sender.sendto(b"y" * 5000 + b"\n0,1", ("127.0.0.1", lines.port))
     assert everything(lines) == [b"0,1"] and lines.counts.dropped == 2
+
+
+def test_a_flood_of_nothing_does_not_hold_the_reader(lines: UdpLines, sender: socket.socket) -> None:
+    stop = Event()
+
+    def flood() -> None:
+        while not stop.is_set():
+            sender.sendto(b"", ("127.0.0.1", lines.port))
+
+    thread, since = Thread(target=flood), monotonic()
+    thread.start()
+    found = lines.read(0.1).lines
+    stop.set()
+    thread.join()
+    assert found == [] and monotonic() - since < 2.0
 
 
 def test_memory_stays_while_flooded(lines: UdpLines, sender: socket.socket) -> None:

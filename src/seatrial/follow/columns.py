@@ -27,7 +27,8 @@ class ColumnReader:
     A column that the header does not name stays NaN, and `complaint` says so.
 
     Raises:
-        InputError: the layout is of no text file, wants no channel, or has an encoding or unit that cannot be used.
+        InputError: the layout is of no text file, wants no channel, or has a scale, encoding or unit that cannot be
+            used.
     """
 
     def __init__(self, layout: Layout) -> None:
@@ -35,6 +36,8 @@ class ColumnReader:
             raise InputError(f"format '{layout.format}' cannot be followed; follow a text file")
         if not layout.columns:
             raise InputError("there are no channels to follow; name their columns")
+        if layout.scale != 1.0:
+            raise InputError(f"a stream cannot be Froude-scaled by {layout.scale:g}; follow it at its own scale")
         _refuse_encoding(layout.encoding)
         self._layout = layout
         self._wanted = (layout.time, *layout.columns)

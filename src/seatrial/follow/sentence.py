@@ -1,7 +1,8 @@
 """One NMEA 0183 sentence: its checksum, its fields, and what of them a ship model can use.
 
 Fields and signs as collected by E. S. Raymond, "NMEA Revealed" (gpsd project), from published manuals; the standard
-itself (IEC 61162-1) is sold. Negative is to port for ROT, RSA and transverse VBW, astern for longitudinal VBW.
+itself (IEC 61162-1) is sold. Negative is to port for ROT, RSA and transverse VBW, astern for longitudinal VBW, and
+counter-clockwise for RPM. RSA is proportional to the rudder angle and need not equal it: a gain may be needed.
 """
 
 import math

@@ -33,11 +33,12 @@ class PipeLines:
         """Lines that have come, waiting at most so long for the first."""
         deadline = time.monotonic() + seconds
         lines: list[bytes] = []
-        while not lines and not self._is_over:
-            left = max(deadline - time.monotonic(), 0.0)
-            if not select.select([self._descriptor], [], [], left)[0]:
-                break
+        left = seconds
+        while not (lines or self._is_over) and select.select([self._descriptor], [], [], max(left, 0.0))[0]:
             lines = self._come()
+            left = deadline - time.monotonic()
+            if left <= 0.0:
+                break
         begins, self._begins = self._begins, False
         return Batch(lines, begins)
 

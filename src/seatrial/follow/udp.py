@@ -75,11 +75,12 @@ class UdpLines:
         """Lines that have come, waiting at most so long for the first."""
         deadline = time.monotonic() + seconds
         lines: list[bytes] = []
-        while not lines:
-            left = max(deadline - time.monotonic(), 0.0)
-            if not select.select([self._socket], [], [], left)[0]:
-                break
+        left = seconds
+        while not lines and select.select([self._socket], [], [], max(left, 0.0))[0]:
             lines = self._come()
+            left = deadline - time.monotonic()
+            if left <= 0.0:
+                break
         return Batch(lines)
 
     @property
