@@ -114,6 +114,22 @@ def test_a_program_that_ended_is_said_and_its_numbers_stay(browser: "Browser") -
     window.close()
 
 
+def test_who_looks_as_the_stream_ends_sees_its_end(browser: "Browser") -> None:
+    snapshots = list(heave_pitch(30.0))
+    with Page(0) as page:
+        page.show(snapshots[-2], Counts())
+        window = browser.new_page()
+        window.set_default_timeout(8000)
+        window.goto(page.address)
+        window.locator("#facts").get_by_text("29.5 s").wait_for()
+        page.show(snapshots[-1], Counts())
+        page.over()
+    window.wait_for_timeout(700)
+    assert window.locator("#status").inner_text() == "the stream is over"
+    assert window.locator("#facts").get_by_text("30.0 s").is_visible()
+    window.close()
+
+
 def test_silence_is_said(browser: "Browser", page: Page) -> None:
     page.show(list(heave_pitch(30.0))[-1], Counts())
     page._news_at -= 17.0

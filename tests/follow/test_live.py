@@ -71,6 +71,11 @@ def test_before_anything_is_known_there_are_dashes() -> None:
     assert "waiting" in text and "–" in text and "nan" not in text and "inf" not in text
 
 
+def test_a_heading_wraps_so_that_the_address_can_be_read() -> None:
+    heading = "a trial with a long name.toml: nmea udp 127.0.0.1:10110; page http://127.0.0.1:45678/"
+    assert "http://127.0.0.1:45678/" in drawn(snapshots=list(heave_pitch(10.0)), width=60, heading=heading)
+
+
 def test_silence_is_said() -> None:
     snapshots = list(heave_pitch(10.0))
     assert "no news for 7.0 s" in drawn(snapshots=snapshots, silence=7.0)

@@ -4,6 +4,7 @@ import http.client
 import json
 import socket
 import threading
+import time
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
@@ -167,6 +168,14 @@ def test_a_port_is_free_again_after_the_page() -> None:
     with Page(first.port) as second:
         assert second.port == first.port
     assert not [thread for thread in threading.enumerate() if thread.name == "page" and thread.is_alive()]
+
+
+def test_a_page_nobody_looks_at_ends_at_once() -> None:
+    begun = time.monotonic()
+    with Page(0) as page:
+        page.show(next(iter(heave_pitch(0.0))), Counts())
+        page.over()
+    assert time.monotonic() - begun < 1.0
 
 
 def test_a_visitor_who_goes_away_or_says_nothing_disturbs_nobody(page: Page, capfd: pytest.CaptureFixture[str]) -> None:

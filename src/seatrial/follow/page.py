@@ -1,5 +1,6 @@
 """A page of moving plots for a browser on the same machine; it listens on the loopback address only."""
 
+import math
 import secrets
 import threading
 import time
@@ -11,6 +12,7 @@ from seatrial.follow.server import LOOPBACK, Server, listening
 from seatrial.results.online import Counts, Snapshot
 
 POLL = 0.1
+WATCHED, LAST_LOOK = 3.0, 1.5
 
 
 class Page:
@@ -28,7 +30,9 @@ class Page:
         self._history = History()
         self._newest: tuple[Snapshot, Counts] | None = None
         self._news_at = time.monotonic()
+        self._asked_at = -math.inf
         self._over: str | None = None
+        self._over_at = math.inf
         self._stamp = secrets.token_hex(4)
         self._server: Server | None = None
 
@@ -44,6 +48,7 @@ class Page:
         return self
 
     def __exit__(self, *raised: object) -> None:
+        self._wait_for_a_last_look()
         if self._server is not None:
             self._server.shutdown()
             self._server.server_close()
@@ -67,7 +72,7 @@ class Page:
     def over(self, why: str = "") -> None:
         """Nothing more will come; the page says so and keeps what it shows."""
         with self._lock:
-            self._over = why
+            self._over, self._over_at = why, time.monotonic()
 
     def state(self, since: int) -> dict[str, Any]:
         """What a browser that has the points up to number `since` needs; everything for -1."""
@@ -75,7 +80,8 @@ class Page:
             newest, over = self._newest, self._over
             some, stride = self._history.since(since), self._history.stride
             epoch = f"{self._stamp}-{self._history.generation}"
-            age = time.monotonic() - self._news_at
+            self._asked_at = time.monotonic()
+            age = self._asked_at - self._news_at
         return {
             "title": self._title,
             "epoch": epoch,
@@ -86,3 +92,9 @@ class Page:
             "told": None if newest is None else state.told(*newest),
             "points": [] if newest is None else state.points(some, newest[0]),
         }
+
+    def _wait_for_a_last_look(self) -> None:
+        """Whoever looks at the page as the stream ends gets its end before the page goes."""
+        is_watched = self._over_at - self._asked_at < WATCHED
+        while is_watched and self._asked_at < self._over_at and time.monotonic() < self._over_at + LAST_LOOK:
+            time.sleep(POLL)

@@ -25,7 +25,6 @@ from seatrial.values import Severity
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
     from rich.table import Table
-    from rich.text import Text
 
 FINDINGS = 3
 NARROW = 76
@@ -60,20 +59,19 @@ def picture(console: "Console", shown: Shown, height: int | None) -> "Renderable
     return Group(head, _coefficients(every[:most], shown.recent, console.width), *more, Text(), foot)
 
 
-def _head(shown: Shown) -> "Text":
+def _head(shown: Shown) -> "RenderableType":
+    from rich.console import Group
     from rich.text import Text
 
     snapshot = shown.snapshot
     head = Text(no_wrap=True, overflow="ellipsis")
-    if shown.heading:
-        head.append(clean(shown.heading) + "\n", "bold")
     head.append(snapshot.phase.value, f"bold {_STYLES[snapshot.phase]}")
     head.append(f"  {moment(snapshot.time)}  {counted(snapshot.samples, 'sample')}  {counted(snapshot.runs, 'run')}  ")
     if shown.silence > QUIET:
         head.append(f"no news for {duration(shown.silence)}", "yellow")
     else:
         head.append(phase(snapshot.phase), "dim")
-    return head.append("\n")
+    return Group(*([Text(clean(shown.heading), "bold")] if shown.heading else []), head, Text())
 
 
 def _coefficients(some: list[Row], recent: Recent, width: int) -> "Table":

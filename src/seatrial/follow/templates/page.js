@@ -1,6 +1,6 @@
 "use strict";
 const SVG = "http://www.w3.org/2000/svg", PERIOD = 500, DRAWN = 400, QUIET = 5, LABELS = 16, Z95 = 1.96;
-const seen = { epoch: "", points: [], stride: 1 };
+const seen = { epoch: "", points: [], isOver: false };
 const at = id => document.getElementById(id);
 
 // elements: text is only ever set as text
@@ -215,6 +215,7 @@ function say(kind, text) {
   if (at("status").textContent !== text) at("status").textContent = text;
 }
 function status(state) {
+  seen.isOver = state.is_over;
   if (state.is_over) return say("over", `the stream is over${state.why ? `: ${state.why}` : ""}`);
   if (!state.told) return say("", "nothing has come yet");
   return state.age > QUIET ? say("quiet", `no news for ${Math.round(state.age)} s`) : say("following", "following");
@@ -248,7 +249,7 @@ async function turn() {
   }
 }
 async function follow() {
-  try { await turn(); } catch { say("gone", "seatrial no longer answers; these are its last numbers"); }
+  try { await turn(); } catch { if (!seen.isOver) say("gone", "seatrial no longer answers; these are its last numbers"); }
   setTimeout(follow, PERIOD);
 }
 follow();
