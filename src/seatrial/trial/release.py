@@ -7,16 +7,20 @@ from seatrial.values import Array, InputError, Record
 _ABOVE_NOISE, _DECAYED = 5.0, 0.9
 _GROWN, _GROWING = 0.2, 4
 _LEAST_ROWS = 20
+_ON_HER_SIDE = np.pi / 2.0
 
 
 def released(record: Record) -> Record:
     """The record from its largest roll angle (about the angle it ends at) on.
 
     Raises:
-        InputError: no roll angle, a start that is not above the noise, a motion that does not decay, too little of it.
+        InputError: no roll angle, a start that is not above the noise or beyond a ship on her side, a motion that does
+            not decay, too little of it.
     """
     if "phi" not in record:
         raise InputError(f"record '{record.name}': from_release needs the roll angle 'phi'; add the channel")
+    if len(record) < _LEAST_ROWS:
+        raise InputError(f"record '{record.name}': {len(record)} rows are no decay; give a longer record")
     swing = record["phi"] - np.median(record["phi"][-max(1, len(record) // 4) :])
     first = int(np.argmax(np.abs(swing)))
     largest, noise = abs(float(swing[first])), _noise(swing)
@@ -24,6 +28,11 @@ def released(record: Record) -> Record:
         raise InputError(
             f"record '{record.name}': the decay starts at {np.degrees(largest):.2g} deg, within the noise of "
             f"{np.degrees(noise):.2g} deg; release from a larger angle"
+        )
+    if largest > _ON_HER_SIDE:
+        raise InputError(
+            f"record '{record.name}': the decay starts at {np.degrees(largest):.4g} deg, beyond a ship on her side; "
+            "check the unit of channel 'phi'"
         )
     if _swings(swing[:first], _GROWN * largest) > _GROWING:
         raise InputError(

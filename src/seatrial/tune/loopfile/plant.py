@@ -118,7 +118,10 @@ def _of_model(table: PlantTable, path: Path, own_model: Model | None) -> Plant:
         K_alpha, law, words = _fin(table.fin, _known_fins(table.fin, file.model, path), speed)
         file = replace(file, model=file.model.with_values({"K_alpha": K_alpha}))
     elif "K_alpha" in file.model.parameters and not file.model.parameters["K_alpha"].value:
-        raise InputError(f"plant: the model of '{path}' knows no fins; add [plant.fin] with K_alpha")
+        raise InputError(
+            f"plant: model '{file.model.name}' of '{path}' rolls and knows no fins; add [plant.fin] with K_alpha, or "
+            "name a model that is steered"
+        )
     amplitude = None if table.amplitude is None else angle(table.amplitude, "plant.amplitude", 10.0)
     inputs = {name: amount(value, unit_of(name), f"plant.inputs.{name}") for name, value in table.inputs.items()}
     for name in inputs:

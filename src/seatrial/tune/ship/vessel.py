@@ -121,7 +121,7 @@ def sides_of(ship: Vessel) -> tuple[Block, ...]:
 def described(ship: Vessel) -> str:
     """The plant in words: the model, the trim, whether it is stable by itself."""
     model, (plant, _) = ship.model, plant_of(ship)
-    where = "at rest"
+    where = "about its mean position"
     if "u" in model.states:
         where = f"straight run at {ship.state[model.states.index('u')]:.4g} m/s"
     held = [f"{i.name} {v:.4g}" for i, v in zip(model.inputs, ship.inputs, strict=True) if v and i.name != RUDDER]
