@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from follow.fabricated import heave_pitch, mmg, troubled
+from seatrial.follow import page as module
 from seatrial.follow.page import Page
 from seatrial.follow.server import html, policy
 from seatrial.results.online import Counts
@@ -20,7 +21,8 @@ from seatrial.values import InputError
 
 
 @pytest.fixture
-def page() -> Iterator[Page]:
+def page(monkeypatch: pytest.MonkeyPatch) -> Iterator[Page]:
+    monkeypatch.setattr(module, "POLL", 0.005)
     with Page(0, title="trial.toml") as made:
         yield made
 
