@@ -9,6 +9,7 @@ from time import monotonic
 
 import numpy as np
 
+from seatrial.follow.advice import Adviser
 from seatrial.follow.journal import Journal, identity_of
 from seatrial.follow.needs import refuse_lacking
 from seatrial.follow.opened import source_of
@@ -79,20 +80,31 @@ def follow(
     kept = Kept(stream.layout) if once else None
     with ExitStack() as held:
         log = None if journal is None else _journal(held, journal, trial)
-        voyage = Voyage(stream, estimator or Online(trial), log, kept)
+        known = estimator or Online(trial)
+        voyage, adviser = Voyage(stream, known, log, kept), Adviser(trial, known)
         last = None if log is None else voyage.recall(log)
         feed, first = source, list[Sample]()
+        if feed is not None and last is not None:
+            voyage.restarted()
         if feed is None:
             feed, first = _resumed(held, stream, voyage, last, once=once)
-        is_ended = _sailed(voyage, feed, first, log, show or _nobody, stop or _never)
+        is_ended = _sailed(voyage, feed, first, log, _advising(show, adviser), stop or _never)
         counts = voyage.counts(feed.counts)
-    if voyage.snapshot is not None and show is not None:
-        show(voyage.snapshot, counts)
+    latest = None if voyage.snapshot is None else adviser.concluded(voyage.snapshot)
+    if latest is not None and show is not None:
+        show(latest, counts)
     fit = None
     if kept is not None and is_ended:
         fit = identify(with_runs(trial, kept.records()), seed=seed, progress=progress)
     trouble = (log.trouble,) if log is not None and log.trouble else ()
-    return Outcome(voyage.snapshot, counts, fit, (*voyage.notes, *trouble))
+    return Outcome(latest, counts, fit, (*voyage.notes, *trouble))
+
+
+def _advising(show: Show | None, adviser: Adviser) -> Show:
+    """Shows what would help, too."""
+    if show is None:
+        return _nobody
+    return lambda snapshot, counts: show(adviser.advised(snapshot), counts)
 
 
 def _sailed(voyage: Voyage, feed: Source, first: list[Sample], journal: Journal | None, show: Show, stop: Stop) -> bool:

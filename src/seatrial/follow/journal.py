@@ -25,6 +25,7 @@ from seatrial.values import InputError
 _MARK = b"seatrial journal 1 "
 _CRC = struct.Struct("<I")
 _SAMPLE, _RUN = b"S", b"R"
+_TIMED = struct.Struct("<cd")
 # with the wait for samples, on disk within a second
 _FLUSH_S = 0.7
 # what a break can tear off: what a second may hold, far less than a voyage
@@ -61,7 +62,7 @@ class Journal:
             InputError: it cannot be written, is none, belongs to another trial, or is open elsewhere.
         """
         self.path, self.torn, self.trouble = path, 0, ""
-        self._sample = struct.Struct(f"<c{1 + columns}d")
+        self._columns, self._size = columns, _TIMED.size + 8 * columns
         self._noted: list[bytes] = []
         self._clock, self._flushed = clock, clock()
         header = _MARK + f"{identity} {columns}\n".encode()
@@ -106,7 +107,7 @@ class Journal:
         """Note what happened next."""
         match entry:
             case Sample(time=time, values=values):
-                made = self._sample.pack(_SAMPLE, time, *values)
+                made = _TIMED.pack(_SAMPLE, time) + values.astype("<f8").tobytes()
             case Begin(reason=reason):
                 text = reason.encode()[: 2**16 - 1]
                 made = _RUN + struct.pack("<H", len(text)) + text
@@ -136,7 +137,7 @@ class Journal:
         """The whole entry at that place and its size; None if there is none."""
         tag = data[at : at + 1]
         if tag == _SAMPLE:
-            size = self._sample.size
+            size = self._size
         elif tag == _RUN and len(data) >= at + 3:
             size = 3 + struct.unpack_from("<H", data, at + 1)[0]
         else:
@@ -147,8 +148,8 @@ class Journal:
             return None
         if tag == _RUN:
             return Begin(data[at + 3 : at + size].decode(errors="replace")), size + _CRC.size
-        _, time, *values = self._sample.unpack_from(data, at)
-        return Sample(time, np.array(values)), size + _CRC.size
+        values = np.frombuffer(data, "<f8", self._columns, at + _TIMED.size).astype(np.float64)
+        return Sample(_TIMED.unpack_from(data, at)[1], values), size + _CRC.size
 
     def _try(self, act: Callable[[], object]) -> None:
         """A full disk ends the journal, not the voyage."""

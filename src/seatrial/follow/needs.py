@@ -6,7 +6,7 @@ from seatrial.check.conventions import canonical
 from seatrial.read.assemble import as_declared
 from seatrial.simulate.channels import AT_REST
 from seatrial.simulate.states import hidden_states, untold_states
-from seatrial.trial import Trial
+from seatrial.trial import Role, Trial
 from seatrial.trial.follow_table import followed
 from seatrial.values import Channel, InputError, Record
 
@@ -18,17 +18,18 @@ def refuse_lacking(trial: Trial) -> None:
     """Refuse a trial whose [follow] lacks channels that the model needs, all of them named.
 
     Raises:
-        InputError: which inputs and states are neither there nor implied, no channel that the model can be compared
-            with, or conventions that cannot be turned into the house's.
+        InputError: a file that is one of the trial's records already; which inputs and states are neither there nor
+            implied; no channel that the model can be compared with; conventions that cannot be turned into the house's.
     """
     stream, model = followed(trial), trial.model
+    where = f"{trial.path}: " if trial.path else ""
+    _refuse_twice(trial, where)
     record = _stand_in(trial)
     inputs = [i.name for i in model.inputs if i.name not in record and i.name not in AT_REST]
     if stream.waves is not None:
         inputs += [] if "zeta" in record or set(_FORCES) <= set(record.channels) else ["zeta (or F3 and M5)"]
     hidden = hidden_states(model, [record])
     states = [s for s in untold_states(model, record) if s not in hidden]
-    where = f"{trial.path}: " if trial.path else ""
     if lacking := [*inputs, *states]:
         raise InputError(
             f"{where}[follow] lacks channels that model '{model.name}' needs: {', '.join(lacking)}; add them to "
@@ -39,6 +40,15 @@ def refuse_lacking(trial: Trial) -> None:
             f"{where}[follow] has no channel that model '{model.name}' can be compared with; add one of "
             f"{', '.join(model.observables)} to [follow.channels]"
         )
+
+
+def _refuse_twice(trial: Trial, where: str) -> None:
+    file = followed(trial).file
+    for run in trial.runs:
+        if file is not None and run.role is not Role.LEAVE_OUT and run.path.resolve() == file.resolve():
+            raise InputError(
+                f"{where}{file.name} is named under both [[records]] and [follow]; leave it out of the records"
+            )
 
 
 def _stand_in(trial: Trial) -> Record:
