@@ -30,6 +30,7 @@ _FEWEST = 30
 _STEP, _FIRST, _SHARE = 2.5, 60.0, 0.15
 # s between searches from nowhere: at least, and as a share of the window
 _COLD_STEP, _COLD_SHARE = 10.0, 0.5
+_NOT_YET = "what was seen so far leads to no model that can be simulated"
 # residuals that grow by this factor bring a search from nowhere too
 _WORSE = 1.2
 # s of a stretch beyond the window
@@ -91,8 +92,8 @@ class Online:
             try:
                 self._known = self._searched(self._records())
                 self._shown = self._told(self._known)
-            except InputError as error:
-                self._why = str(error)
+            except (InputError, np.linalg.LinAlgError) as error:
+                self._why = str(error) if isinstance(error, InputError) else _NOT_YET
                 self._shown = replace(self._shown, advice=self._why) if self._known is None else self._shown
         if self._known is not None and self._is_full:
             self._carry(self._known)
@@ -101,6 +102,20 @@ class Online:
     def raw_runs(self) -> tuple[Run, ...]:
         """The stream's runs that are still kept, as training runs of a trial whose files have been read."""
         return tuple(self._run(self._raw(rows, i)) for i, rows in self._numbered() if len(rows) > 2)
+
+    @property
+    def covariance(self) -> Array:
+        """Of the free coefficients, (k, k); infinite diagonal where nothing is known."""
+        count = len(self._shown.names)
+        return np.diag(np.full(count, np.inf)) if self._known is None else self._known.covariance
+
+    def records(self) -> tuple[Record, ...]:
+        """What the window holds, in the house's frames and signs.
+
+        Raises:
+            InputError: it is too short to be read as a record.
+        """
+        return tuple(self._records())
 
     @property
     def _seconds(self) -> float:
