@@ -29,7 +29,9 @@ _FEWEST = 30
 # s between searches from where the last one ended: at least, and as a share of what the window has beyond the first
 _STEP, _FIRST, _SHARE = 2.5, 60.0, 0.15
 # s between searches from nowhere: at least, and as a share of the window
-_COLD_STEP, _COLD_SHARE = 10.0, 0.5
+_COLD_STEP, _COLD_SHARE = 10.0, 0.25
+# share of the window that is news when a run ends, from which on a search is made then
+_NEWS = 0.1
 _NOT_YET = "what was seen so far leads to no model that can be simulated"
 # residuals that grow by this factor bring a search from nowhere too
 _WORSE = 1.2
@@ -62,7 +64,7 @@ class Online:
         self._carried: Carried | None = None
         self._known: Known | None = None
         self._change: Change | None = None
-        self._next = self._next_cold = 0.0
+        self._next = self._next_cold = self._searched_at = 0.0
         self._why = "too few samples yet"
         self._is_warm = self._suits_whole_runs()
         self._shown = self._waiting()
@@ -70,6 +72,8 @@ class Online:
     def begin_run(self) -> None:
         """What follows belongs to a new run: a gap, or a jump of the clock."""
         if self._kept.rows and len(self._kept.rows[-1]):
+            if self._seconds - self._searched_at >= max(_COLD_STEP, _NEWS * self._seconds):
+                self.relinearise()
             self._close()
         self._runs += 1
         self._kept.rows.append(Rows(len(self._stream.layout.columns)))
@@ -87,7 +91,7 @@ class Online:
 
     def relinearise(self) -> Snapshot:
         """Search now, from where the last search ended, over everything in the window."""
-        self._next = self._seconds + self._pause
+        self._next, self._searched_at = self._seconds + self._pause, self._seconds
         if sum(len(rows) for rows in self._kept.rows) >= _FEWEST:
             try:
                 self._known = self._searched(self._records())
@@ -204,7 +208,7 @@ class Online:
             now = now.faded(float(np.exp(-self._seconds / self._stream.forgetting)))
         self._carried, self._own = now, ()
         self._kept = _Kept([Rows(len(self._stream.layout.columns))], [])
-        self._next = min(_STRETCH, self._stream.whole)
+        self._next, self._searched_at = min(_STRETCH, self._stream.whole), 0.0
 
     def _waiting(self) -> Snapshot:
         free = self._trial.model.parameters.free
