@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.estimate.fit import identified, swings
-from seatrial.estimate.online.carried import Carried
+from seatrial.estimate.online.carried import Carried, carried
 from seatrial.estimate.online.rows import Rows
 from seatrial.estimate.online.window import Known, begun, better, grown
 from seatrial.estimate.settings import Criterion, Settings
@@ -175,7 +175,7 @@ class Online:
 
     def _settings(self, records: Sequence[Record]) -> Settings:
         made = settings_of(self._trial, records)
-        return made if self._carried is None else replace(made, others=(self._carried,))
+        return made if self._carried is None else replace(made, others=(self._carried,), forces=())
 
     def _searched(self, records: list[Record]) -> Known:
         model, length, settings = self._trial.model, self._trial.ship.length, self._settings(records)
@@ -200,10 +200,10 @@ class Online:
         """Keep the window's normal equations instead of its samples."""
         problem = known.made.problem
         places = np.array([problem.model.parameters.index(n) for n in problem.free], dtype=np.int64)
-        count = len(places)
-        information = known.made.optimum.normal.reduced()[1][:count, :count] - np.diag(problem.priors[1][:count])
-        trust = 1.0 if problem.inflation is not None else float(np.max(known.inflation))
-        now = Carried(places, known.value, information / max(trust, 1.0))
+        mean, weight = (of[: len(places)] for of in problem.priors)
+        now = carried(places, known.value, known.made.optimum.normal.reduced()[1], mean, weight)
+        if problem.inflation is None:
+            now = now.faded(1.0 / max(float(np.max(known.inflation)), 1.0))
         if self._stream.forgetting is not None:
             now = now.faded(float(np.exp(-self._seconds / self._stream.forgetting)))
         self._carried, self._own = now, ()

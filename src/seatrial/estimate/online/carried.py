@@ -6,26 +6,29 @@ from typing import Self
 
 import numpy as np
 
+from seatrial.information.covariance import inverse
 from seatrial.problem.addend import Contribution
 from seatrial.values import Array, Index
 
 
 @dataclass(frozen=True, eq=False)
 class Carried:
-    """Half (theta - point)' information (theta - point), an `Addend`: Gauss-Newton's model of all that went before.
+    """Gauss-Newton's model of all that went before, an `Addend`: slope' d + 1/2 d' information d, d = theta - point.
 
     Attributes:
         places: positions of the coefficients among all model parameters, (k,); point: (k,); information: (k, k).
+        slope: (k,), what the data pulled with at the point, where priors pulled as much the other way.
     """
 
     places: Index
     point: Array
     information: Array
+    slope: Array
 
     def cost(self, values: Array) -> float:
         """As `Addend.cost`."""
         off = values[self.places] - self.point
-        return 0.5 * float(off @ self.information @ off)
+        return float(self.slope @ off + 0.5 * off @ self.information @ off)
 
     def normal(self, values: Array, free: Sequence[int]) -> Contribution:
         """As `Addend.normal`."""
@@ -34,10 +37,22 @@ class Carried:
         known = np.array([i >= 0 for i in own])
         gradient, hessian = np.zeros(len(own)), np.zeros((len(own), len(own)))
         rows = np.array([i for i in own if i >= 0], dtype=np.int64)
-        gradient[known] = (self.information @ off)[rows]
+        gradient[known] = (self.slope + self.information @ off)[rows]
         hessian[np.ix_(known, known)] = self.information[np.ix_(rows, rows)]
         return Contribution(self.cost(values), gradient, hessian)
 
     def faded(self, share: float) -> Self:
         """With that share of the information left: what is older counts less (exponential forgetting)."""
-        return replace(self, information=share * self.information)
+        return replace(self, information=share * self.information, slope=share * self.slope)
+
+
+def carried(places: Index, point: Array, hessian: Array, mean: Array, weight: Array) -> Carried:
+    """What data told at the optimum `point` (k,) of data and priors together.
+
+    hessian: of coefficients, then nuisances, (n, n), priors included; the nuisances are eliminated.
+    mean, weight: of the coefficients' priors, (k,); these stay with the problem and are taken out.
+    """
+    k = len(point)
+    own, tie, rest = hessian[:k, :k], hessian[:k, k:], hessian[k:, k:]
+    known = own - tie @ inverse(rest) @ tie.T if len(rest) else own
+    return Carried(places, point, known - np.diag(weight), -weight * (point - mean))
