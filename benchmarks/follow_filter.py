@@ -14,8 +14,9 @@ import numpy as np
 from measure import Line, at_least, at_most, machine
 
 from seatrial.equations import Model
-from seatrial.estimate.online.belief import Belief, handed_over
+from seatrial.estimate.online.belief import Belief
 from seatrial.estimate.online.change import Watch
+from seatrial.estimate.online.handover import handed_over
 from seatrial.estimate.online.recursive import Recursive
 from seatrial.models.heave_pitch import COEFFICIENTS, physics_start
 from seatrial.optimise import levenberg_marquardt

@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.equations import Model
-from seatrial.estimate.online.belief import Belief, handed_over
+from seatrial.estimate.online.belief import Belief
+from seatrial.estimate.online.handover import handed_over
 from seatrial.estimate.online.recursive import Forgetting, Recursive
 from seatrial.optimise import levenberg_marquardt
 from seatrial.problem.output_error import OutputError

@@ -8,16 +8,17 @@ import sympy as sp
 
 from estimate.online.streams import DT, NAMES, NOISE, OUTPUTS, Stream, truth_of
 from seatrial.equations import Model, Sheet
-from seatrial.estimate.online.belief import Belief, handed_over
+from seatrial.estimate.online.belief import Belief
+from seatrial.estimate.online.handover import handed_over, taken_over
 from seatrial.estimate.online.recursive import Forgetting, Guard, Recursive
 from seatrial.models.roll import roll
-from seatrial.optimise import levenberg_marquardt
-from seatrial.problem.output_error import OutputError
+from seatrial.optimise import Optimum, levenberg_marquardt
+from seatrial.problem.output_error import Nuisance, OutputError
 from seatrial.problem.segments import Segments
-from seatrial.simulate.batch import Batch
+from seatrial.simulate.batch import Batch, InputCorrection
 from seatrial.simulate.linear import LinearBatch, batch_for
 from seatrial.studies.seaway import fin_commands, ship
-from seatrial.values import InputError
+from seatrial.values import InputError, Prior
 
 Array = np.ndarray
 FIRST = 601
@@ -102,6 +103,35 @@ def test_ten_minutes_in_a_sea_end_at_the_batch(heading: int) -> None:
     assert made.is_sound
     np.testing.assert_allclose(made.innovations.ratio, 1.0, atol=0.35)
     np.testing.assert_allclose(made.state, batch.state, atol=5e-3)
+
+
+def test_a_filter_takes_over_with_the_noise_of_the_fit() -> None:
+    """Coloured channels count for fewer samples in both, so that intervals agree."""
+    stream = Stream.at(90, 120.0, 4)
+    measured = stream.measured(4)
+
+    def fitted(rows: int) -> tuple[OutputError, Optimum]:
+        data = replace(stream.clean, inputs=np.ascontiguousarray(stream.clean.inputs[:rows]), measured=measured[:rows],
+                       offsets=np.array([0, rows]))  # fmt: skip
+        problem = OutputError(stream.ship, data, NOISE, inflation=np.array([4.0, 1.0]))
+        return problem, levenberg_marquardt(problem, problem.start(), problem.measured_starts(), negligible=1e-9)
+
+    problem, found = fitted(FIRST)
+    made = stream.followed(taken_over(problem, found.solution.point, found.local, found.normal), measured, FIRST)
+    whole = fitted(len(measured))[1]
+    error = np.sqrt(np.diagonal(np.linalg.inv(whole.normal.reduced()[1])))
+    np.testing.assert_allclose(made.standard_error / error, 1.0, atol=0.05)
+    assert np.max(np.abs(made.value - whole.solution.point) / error) < 0.1
+    assert made.innovations.ratio[0] < 0.5
+
+
+def test_what_is_estimated_for_each_run_is_not_carried_on() -> None:
+    stream = Stream.at(90, 60.0, 4)
+    gain = Nuisance(InputCorrection("F3", "gain"), Prior(1.0, 0.1, "test"), "1")
+    problem = OutputError(stream.ship, replace(stream.clean, measured=stream.measured(1)), NOISE, (gain,))
+    shared, local = problem.start(), problem.measured_starts()
+    with pytest.raises(InputError, match="F3 gain"):
+        taken_over(problem, shared, local, problem.normal(shared, local))
 
 
 @pytest.fixture(scope="module")

@@ -5,9 +5,6 @@ from typing import Self
 
 import numpy as np
 
-from seatrial.optimise import Normal
-from seatrial.problem.output_error import OutputError
-from seatrial.simulate.linear import batch_for
 from seatrial.values import Array, InputError
 
 
@@ -65,33 +62,3 @@ def root_of(covariance: Array, what: str) -> Array:
     if values[0] < -1e-8 * max(values[-1], 1.0):
         raise InputError(f"{what} is not positive; give one that comes from a fit")
     return scale[:, None] * vectors * np.sqrt(np.maximum(values, 0.0))
-
-
-def handed_over(problem: OutputError, shared: Array, local: Array, normal: Normal) -> Belief:
-    """What an output-error fit knows at the last sample of its last segment; `normal` is its model at the optimum.
-
-    Corrections of inputs and a current count as the fit left them; their uncertainty is in the coefficients'.
-
-    Raises:
-        InputError: the records do not tell every coefficient.
-    """
-    model, data, k = problem.model, problem.data, len(problem.free)
-    information = normal.reduced()[1]
-    scale = np.sqrt(np.maximum(np.diagonal(information), 1e-300))
-    scaled = information / np.outer(scale, scale)
-    if not np.all(np.isfinite(scaled)) or np.linalg.eigvalsh(scaled)[0] < 1e-13:
-        raise InputError("the records so far do not tell every coefficient; keep the window until they do")
-    covariance = (np.linalg.inv(scaled) / np.outer(scale, scale))[:k, :k]
-    first, last = data.offsets[-2:]
-    start, values, corrections = problem.unpacked(shared, local)
-    batch = batch_for(model)(
-        model, np.ascontiguousarray(data.inputs[first:last]), np.array([0, last - first]), data.dt, model.states,
-        problem.free, tuple(n.correction for n in problem.nuisances), problem.starts, problem.substeps,
-    )  # fmt: skip
-    y, slopes, _ = batch.differentiate(0, 1, start[-1:], values[-1:], corrections[-1:])
-    by_start = slopes[-1, :, len(batch.parameters) + len(batch.corrections) :]
-    of_start = np.linalg.pinv(normal.local_hessian[-1], hermitian=True)
-    moved = -of_start @ normal.cross[-1, :k].T
-    spread = by_start @ of_start @ by_start.T
-    return Belief(shared[:k].copy(), 0.5 * (covariance + covariance.T), y[-1], slopes[-1, :, :k] + by_start @ moved,
-                  0.5 * (spread + spread.T))  # fmt: skip
