@@ -81,7 +81,7 @@ class Snapshot:
     Attributes:
         time: s on the stream's clock; samples: seen so far, all runs; runs: begun so far.
         names, units: of the free coefficients, k; value, standard_error: (k,), infinite where nothing is known.
-        noise: channel -> residual rms, SI; disturbed: residuals are coloured, so that errors may be too small.
+        noise: channel -> residual rms, SI.
         untold: coefficients that the data so far do not tell (standard error beyond the value, or a tied direction);
         advice: which manoeuvre would help, in a sentence; empty if nothing is untold.
     """

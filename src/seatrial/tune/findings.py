@@ -46,6 +46,10 @@ def _of_gains(judge: Judge, chosen: Controller) -> list[Finding]:
     found = []
     for gain in judge.loop.gains.free:
         width, value = gain.upper - gain.lower, chosen.gains[gain.name]
+        if gain.lower == 0.0 and abs(value) <= _ON_BOUND * width:
+            found.append(Finding(Severity.INFO, "gain-at-zero", f"gain {gain.name} ends at zero: its term is not "
+                                 "needed", "", "leave the term out"))  # fmt: skip
+            continue
         for end, bound in (("lower", gain.lower), ("upper", gain.upper)):
             if abs(value - bound) <= _ON_BOUND * width:
                 found.append(_warning("gain-on-bound", f"gain {gain.name} ends on its {end} bound {bound:g}",
