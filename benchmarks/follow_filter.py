@@ -154,7 +154,8 @@ def watched(streams: int) -> Iterator[Line]:
         delays = np.array([times[0] - LOADED_AT if times else np.inf for times in after])
         where = f"{heading} deg, {streams} streams: mass and inertia +10 % told"
         yield Line(f"{where} after, median", float(np.median(delays)), "s")
-        yield at_most(f"{where} after, latest", float(np.max(delays)), "s", 60.0)
+        yield Line(f"{where} after, latest", float(np.max(delays)), "s")
+        yield at_least(f"{where} within a minute", 100.0 * float(np.mean(delays <= 60.0)), "%", 95.0)
     yield at_most(f"{len(alarms)} streams of 600 s: false alarms", 100.0 * float(np.mean(alarms)), "%", 5.0)
 
 
