@@ -18,6 +18,7 @@ from seatrial.follow.columns import ColumnReader
 from seatrial.follow.follow import follow
 from seatrial.follow.opened import LineSamples
 from seatrial.follow.sample import Sample
+from seatrial.follow.tail import TailLines
 from seatrial.follow.udp import UdpLines
 from seatrial.identify import identify
 from seatrial.results.online import Counts, Snapshot
@@ -158,6 +159,23 @@ def test_kill_9_and_a_restart_are_as_one_voyage(tmp_path: Path) -> None:
     again = Notes()
     follow(voyage_trial(file), once=True, journal=journal, estimator=again)
     assert again.runs == uninterrupted.runs
+
+
+def test_the_house_s_estimate_after_a_restart_is_the_uninterrupted_one_bit_for_bit(tmp_path: Path) -> None:
+    file, journal = tmp_path / "log.csv", tmp_path / "a.journal"
+    file.write_text("".join(LINES[:701]))
+    source = LineSamples(TailLines(file, once=True), ColumnReader(followed(voyage_trial()).layout))
+    follow(voyage_trial(file), source=source, journal=journal)
+    source.close()
+    file.write_text("".join(LINES))
+    ends: list[Snapshot] = []
+    for place in (journal, None):
+        outcome = follow(voyage_trial(file), once=True, journal=place)
+        assert outcome.snapshot is not None
+        ends.append(outcome.snapshot)
+    assert np.array_equal(ends[0].value, ends[1].value)
+    assert np.array_equal(ends[0].standard_error, ends[1].standard_error)
+    assert (ends[0].samples, ends[0].runs) == (ends[1].samples, ends[1].runs) == (len(LINES) - 1, 1)
 
 
 @pytest.mark.usefixtures("in_a_hurry")

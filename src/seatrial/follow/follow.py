@@ -79,15 +79,18 @@ def follow(
     refuse_lacking(trial)
     kept = Kept(stream.layout) if once else None
     with ExitStack() as held:
+        if journal is not None and journal.exists() and progress is not None:
+            progress(f"taking in {journal.name}")
         log = None if journal is None else _journal(held, journal, trial)
+        # open before the journal is taken in, so that what comes meanwhile waits in the socket
+        feed, first = source or _opened(held, stream, once=once), list[Sample]()
         known = estimator or Online(trial)
         voyage, adviser = Voyage(stream, known, log, kept), Adviser(trial, known)
         last = None if log is None else voyage.recall(log)
-        feed, first = source, list[Sample]()
-        if feed is not None and last is not None:
+        if last is not None and source is None and stream.feed in _AGAIN:
+            feed, first = _resumed(held, stream, voyage, feed, last, once=once)
+        elif last is not None:
             voyage.restarted()
-        if feed is None:
-            feed, first = _resumed(held, stream, voyage, last, once=once)
         is_ended = _sailed(voyage, feed, first, log, _advising(show, adviser), stop or _never)
         counts = voyage.counts(feed.counts)
     latest = None if voyage.snapshot is None else adviser.concluded(voyage.snapshot)
@@ -134,24 +137,25 @@ def _sailed(voyage: Voyage, feed: Source, first: list[Sample], journal: Journal 
             journal.flush()
 
 
-def _resumed(
-    held: ExitStack, stream: Stream, voyage: Voyage, last: Sample | None, *, once: bool
-) -> tuple[Source, list[Sample]]:
-    """The stream's own source, and what it has given already that is new.
-
-    A source that gives everything once more is read up to the journal's last sample, which is passed over with all
-    before it; where it is not found, the file is another one and begins from its start. After any other break a run
-    begins, for nobody knows how long it was.
-    """
+def _opened(held: ExitStack, stream: Stream, *, once: bool) -> Source:
     feed = source_of(stream, once=once)
-    new = None if last is None or stream.feed not in _AGAIN else _behind(feed, last)
-    if last is not None and new is None:
-        voyage.restarted()
-        if stream.feed in _AGAIN:
-            feed.close()
-            feed = source_of(stream, once=once)
     held.callback(feed.close)
-    return feed, new or []
+    return feed
+
+
+def _resumed(
+    held: ExitStack, stream: Stream, voyage: Voyage, feed: Source, last: Sample, *, once: bool
+) -> tuple[Source, list[Sample]]:
+    """A source that gives everything once more, and what of it is new.
+
+    It is read up to the journal's last sample, which is passed over with all before it; where it is not found, the file
+    is another one and begins from its start, with a run of its own.
+    """
+    new = _behind(feed, last)
+    if new is not None:
+        return feed, new
+    voyage.restarted()
+    return _opened(held, stream, once=once), []
 
 
 def _behind(feed: Source, last: Sample) -> list[Sample] | None:

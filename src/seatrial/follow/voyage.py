@@ -4,6 +4,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Protocol
 
+import numpy as np
+
 from seatrial.follow.gate import Event, Gate, RunBegins, combined
 from seatrial.follow.journal import Begin, Journal
 from seatrial.follow.raw import Kept
@@ -72,14 +74,14 @@ class Voyage:
 
     def follow(self, event: Event) -> None:
         """Make of it what can be made; what the estimator refuses is said, and the next may be better."""
-        if isinstance(event, RunBegins):
-            self._begin()
-            return
-        if self._kept is not None:
-            self._kept.add(event)
         try:
+            if isinstance(event, RunBegins):
+                self._begin()
+                return
+            if self._kept is not None:
+                self._kept.add(event)
             self.snapshot = self._estimator.update(event)
-        except InputError as error:
+        except (InputError, np.linalg.LinAlgError, ArithmeticError) as error:
             self._trouble = f"t = {event.time:g} s: {error}"
             self._say(str(error))
 
