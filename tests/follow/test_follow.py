@@ -16,6 +16,7 @@ import pytest
 from follow.streams import EXAMPLES, LINES, Given, Notes, accepted, some, told, voyage_trial
 from seatrial.follow.columns import ColumnReader
 from seatrial.follow.follow import follow
+from seatrial.follow.needs import refuse_lacking
 from seatrial.follow.opened import LineSamples
 from seatrial.follow.sample import Sample
 from seatrial.follow.tail import TailLines
@@ -305,6 +306,11 @@ def test_channels_that_are_lacking_are_named_before_anything_starts(
     with pytest.raises(InputError, match=says):
         follow(replace(trial, follow=replace(followed(trial), layout=kept)), source=Given([]), estimator=notes)
     assert notes.runs == []
+
+
+@pytest.mark.parametrize("example", ["heave_pitch_follow", "waterjet_follow"])
+def test_the_examples_lack_nothing(example: str) -> None:
+    refuse_lacking(load_trial(EXAMPLES / f"{example}.toml"))
 
 
 def test_a_file_that_is_a_run_of_the_records_already_is_not_used_twice() -> None:

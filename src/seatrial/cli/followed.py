@@ -78,6 +78,8 @@ def print_outcome(outcome: "Outcome") -> None:
     print(f"{counts.accepted} samples accepted" + (f"; {', '.join(wrong)}" if wrong else "; nothing amiss"))
     if counts.last:
         print(f"the latest: {clean(counts.last)}")
+    if outcome.snapshot is not None and outcome.snapshot.phase.value == "waiting" and outcome.snapshot.advice:
+        print(f"no estimate yet: {clean(outcome.snapshot.advice)}")
     for finding in () if outcome.snapshot is None else outcome.snapshot.findings:
         print(f"{SEVERITY_MARK[finding.severity.value]} [{finding.code}] {finding.text}")
     for note in outcome.notes:

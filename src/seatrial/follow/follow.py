@@ -79,9 +79,10 @@ def follow(
     refuse_lacking(trial)
     kept = Kept(stream.layout) if once else None
     with ExitStack() as held:
-        if journal is not None and journal.exists() and progress is not None:
-            progress(f"taking in {journal.name}")
+        is_known = journal is not None and journal.exists()
         log = None if journal is None else _journal(held, journal, trial)
+        if log is not None and is_known and progress is not None:
+            progress(f"taking in {log.path.name}")
         # open before the journal is taken in, so that what comes meanwhile waits in the socket
         feed, first = source or _opened(held, stream, once=once), list[Sample]()
         known = estimator or Online(trial)
