@@ -17,6 +17,7 @@ from seatrial.estimate.online.rows import Rows
 from seatrial.estimate.online.window import Known, begun, better, grown
 from seatrial.estimate.settings import Criterion, Settings
 from seatrial.identify.identify import settings_of
+from seatrial.information.covariance import inverse
 from seatrial.read.assemble import as_declared
 from seatrial.results.online import Change, Phase, Sample, Snapshot
 from seatrial.trial import Role, Run, Trial
@@ -33,10 +34,11 @@ _COLD_STEP, _COLD_SHARE = 10.0, 0.25
 # share of the window that is news when a run ends, from which on a search is made then
 _NEWS = 0.1
 _NOT_YET = "what was seen so far leads to no model that can be simulated"
-# residuals that grow by this factor bring a search from nowhere too
-_WORSE = 1.2
-# s of a stretch beyond the window
-_STRETCH = 60.0
+# started warm, a search from nowhere comes along in the first minute, where residuals are coloured or grow by this
+# factor; s between such at least 10, and this share of the window
+_WORSE, _AGAIN = 1.2, 0.5
+# s of a stretch beyond the window; at least, and as a share of it, where searches are from nowhere
+_STRETCH, _COLD_STRETCH = 60.0, 0.25
 
 
 @dataclass
@@ -62,6 +64,7 @@ class Online:
         self._kept = _Kept([], [])
         self._runs = self._samples = 0
         self._carried: Carried | None = None
+        self._inflation = 1.0
         self._known: Known | None = None
         self._change: Change | None = None
         self._next = self._next_cold = self._searched_at = 0.0
@@ -129,7 +132,7 @@ class Online:
     @property
     def _pause(self) -> float:
         """s until the next search."""
-        if self._carried is not None:
+        if self._is_warm and self._carried is not None:
             return _STRETCH
         if self._is_warm:
             return max(_STEP, _SHARE * (self._seconds - _FIRST))
@@ -138,7 +141,8 @@ class Online:
     @property
     def _is_full(self) -> bool:
         whole = min(self._stream.whole, self._stream.forgetting or np.inf)
-        return self._seconds >= (whole if self._carried is None else min(_STRETCH, whole))
+        stretch = _STRETCH if self._is_warm else max(_STRETCH, _COLD_STRETCH * whole)
+        return self._seconds >= (whole if self._carried is None else min(stretch, whole))
 
     def _suits_whole_runs(self) -> bool:
         wishes, model = self._trial.estimate, self._trial.model
@@ -185,14 +189,19 @@ class Online:
                 model.parameters.with_free_values(self._known.value)
             )  # fmt: skip
             found = identified(started, records, sessions, length, settings)
+            covariance = found.interval.covariance
+            if self._carried is not None:
+                known = np.diag(found.made.problem.priors[1])
+                told = found.made.optimum.normal.reduced()[1] - known
+                covariance = inverse(told / self._inflation + known)
             count = len(found.made.problem.free)
-            return Known(found.made, found.residuals, found.interval.covariance[:count, :count], found.inflation)
+            return Known(found.made, found.residuals, covariance[:count, :count], found.inflation)
         warm = None if self._known is None else grown(self._known, model, records, sessions, settings)
         if warm is not None and self._known is not None:
-            is_early = self._seconds < _FIRST and self._seconds >= self._next_cold
-            if self._carried is not None or not (is_early or warm.misfit > _WORSE * self._known.misfit):
+            is_unsure = self._seconds < _FIRST or warm.is_coloured or warm.misfit > _WORSE * self._known.misfit
+            if self._carried is not None or not is_unsure or self._seconds < self._next_cold:
                 return warm
-        self._next_cold = self._seconds + max(_COLD_STEP, _COLD_SHARE * self._seconds)
+        self._next_cold = self._seconds + max(_COLD_STEP, _AGAIN * self._seconds)
         cold = begun(model, records, sessions, length, settings)
         return cold if warm is None else better(warm, cold)
 
@@ -201,14 +210,17 @@ class Online:
         problem = known.made.problem
         places = np.array([problem.model.parameters.index(n) for n in problem.free], dtype=np.int64)
         mean, weight = (of[: len(places)] for of in problem.priors)
-        now = carried(places, known.value, known.made.optimum.normal.reduced()[1], mean, weight)
-        if problem.inflation is None:
+        hessian = known.made.optimum.normal.reduced()[1]
+        now = carried(places, known.value, hessian, mean, weight)
+        if self._carried is None:
+            self._inflation = now.inflation(hessian, known.covariance)
+        if self._is_warm and problem.inflation is None:
             now = now.faded(1.0 / max(float(np.max(known.inflation)), 1.0))
         if self._stream.forgetting is not None:
             now = now.faded(float(np.exp(-self._seconds / self._stream.forgetting)))
         self._carried, self._own = now, ()
         self._kept = _Kept([Rows(len(self._stream.layout.columns))], [])
-        self._next, self._searched_at = min(_STRETCH, self._stream.whole), 0.0
+        self._next, self._searched_at = self._pause, 0.0
 
     def _waiting(self) -> Snapshot:
         free = self._trial.model.parameters.free

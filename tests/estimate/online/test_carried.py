@@ -11,17 +11,17 @@ PLACES = np.array([0, 1])
 def _solved(hessian, gradient, known, weight, mean):
     """Minimiser of one part's squares, what is carried and the priors."""
     free = (0, 1)
-    zero = np.zeros(2)
-    told = known.normal(zero, free) if known is not None else None
-    h = hessian + np.diag(weight) + (told.hessian if told else 0.0)
-    g = gradient - weight * mean + (told.gradient if told else 0.0)
+    told = known.normal(np.zeros(2), free)
+    h = hessian + np.diag(weight) + told.hessian
+    g = gradient - weight * mean + told.gradient
     return np.linalg.solve(h, -g), h
 
 
 @pytest.mark.parametrize("weight", [np.zeros(2), np.array([3.0, 0.5])])
 def test_in_parts_is_all_at_once(weight):
     rng = np.random.default_rng(1)
-    mean, point, known = np.array([1.0, -2.0]), None, None
+    mean, known = np.array([1.0, -2.0]), carried(PLACES, np.zeros(2), np.zeros((2, 2)), np.zeros(2), np.zeros(2))
+    point = mean
     total, pull = np.zeros((2, 2)), np.zeros(2)
     for _ in range(5):
         rows, seen = rng.standard_normal((6, 2)), rng.standard_normal(6)
@@ -37,7 +37,8 @@ def test_in_parts_is_all_at_once(weight):
 def test_a_prior_does_not_pull_again_at_each_stretch_that_tells_nothing():
     weight, mean = np.array([4.0, 0.0]), np.zeros(2)
     told, seen = np.diag([4.0, 1.0]), np.array([1.0, 1.0])
-    point, hessian = _solved(told, -told @ seen, None, weight, mean)
+    nothing = carried(PLACES, mean, np.zeros((2, 2)), mean, mean)
+    point, hessian = _solved(told, -told @ seen, nothing, weight, mean)
     assert point[0] == pytest.approx(0.5)
     for _ in range(20):
         known = carried(PLACES, point, hessian, mean, weight)
@@ -63,3 +64,10 @@ def test_what_fades_counts_less_and_points_the_same_way():
     known = carried(PLACES, np.ones(2), np.eye(2), np.zeros(2), np.zeros(2))
     np.testing.assert_allclose(known.faded(0.25).information, 0.25 * np.eye(2))
     assert known.faded(0.25).cost(np.zeros(2)) == pytest.approx(0.25)
+
+
+def test_coloured_residuals_inflate_the_covariance():
+    hessian = np.array([[5.0, 1.0], [1.0, 2.0]])
+    known = carried(PLACES, np.zeros(2), hessian, np.zeros(2), np.zeros(2))
+    assert known.inflation(hessian, 9.0 * np.linalg.inv(hessian)) == pytest.approx(9.0)
+    assert known.inflation(hessian, 0.1 * np.linalg.inv(hessian)) == 1.0

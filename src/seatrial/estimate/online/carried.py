@@ -45,11 +45,21 @@ class Carried:
         """With that share of the information left: what is older counts less (exponential forgetting)."""
         return replace(self, information=share * self.information, slope=share * self.slope)
 
+    def inflation(self, hessian: Array, covariance: Array) -> float:
+        """How many times the coefficients' covariance (k, k) exceeds that of white residuals, one at least.
+
+        hessian: as for `carried`. What the data tell most of weighs most.
+        """
+        k = len(self.point)
+        white = float(np.trace(self.information @ inverse(hessian)[:k, :k]))
+        held = float(np.trace(self.information @ covariance))
+        return max(held / white, 1.0) if white > 0.0 and np.isfinite(held) else 1.0
+
 
 def carried(places: Index, point: Array, hessian: Array, mean: Array, weight: Array) -> Carried:
     """What data told at the optimum `point` (k,) of data and priors together.
 
-    hessian: of coefficients, then nuisances, (n, n), priors included; the nuisances are eliminated.
+    hessian: of coefficients, then nuisances if any, (n, n), priors included; the nuisances are eliminated.
     mean, weight: of the coefficients' priors, (k,); these stay with the problem and are taken out.
     """
     k = len(point)

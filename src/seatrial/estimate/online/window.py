@@ -58,7 +58,7 @@ class Known:
 
 
 def begun(model: Model, records: Sequence[Record], sessions: Sequence[str], length: float, settings: Settings) -> Known:
-    """A search from nowhere, as `identify` makes it.
+    """A search from nowhere as `identify` makes it, and one from the model's own values: the one that leaves less.
 
     Raises:
         InputError: the records cannot be fitted at all.
@@ -66,7 +66,8 @@ def begun(model: Model, records: Sequence[Record], sessions: Sequence[str], leng
     problem = output_error(model, records, sessions, np.inf, settings)
     unit = unit_of_time(model, records, length, settings.segment_seconds)
     first = start(problem, records, WINDOW_SHIP_LENGTHS * unit)
-    known = _searched(first.problem, first.shared, first.local, settings, _FIRST)
+    own = first.problem.start(), first.problem.measured_starts()
+    known = better(*(_searched(first.problem, *at, settings, _FIRST) for at in ((first.shared, first.local), own)))
     again = _searched(_weighted(known), known.made.shared, known.made.optimum.local, settings, _FIRST)
     return replace(again, begins=_begins(records))
 
