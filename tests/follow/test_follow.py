@@ -216,6 +216,16 @@ def test_another_file_under_the_same_name_begins_a_run_and_so_does_a_break_of_a_
     assert fourth.runs == third.runs
 
 
+def test_the_end_may_be_asked_for_while_the_journal_is_taken_in(tmp_path: Path) -> None:
+    journal = tmp_path / "a.journal"
+    follow(voyage_trial(), source=Given(some(0, 500)), journal=journal, estimator=Notes())
+    before = journal.read_bytes()
+    ended = follow(voyage_trial(), source=Given(some(500, 510)), journal=journal, estimator=Notes(), stop=lambda: True)
+    assert ended.snapshot is not None
+    assert ended.snapshot.samples < 500
+    assert journal.read_bytes() == before
+
+
 def test_a_journal_of_another_trial_is_refused_before_anything_starts(tmp_path: Path) -> None:
     journal = tmp_path / "a.journal"
     follow(voyage_trial(), source=Given(some(0, 5)), journal=journal, estimator=Notes())

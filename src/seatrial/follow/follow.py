@@ -1,15 +1,17 @@
 """The loop on board: poll, admit, note, estimate, show. No threads, and nothing that is sent can end it."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from time import monotonic
 
 import numpy as np
 
 from seatrial.follow.advice import Adviser
+from seatrial.follow.gate import Event
 from seatrial.follow.journal import Journal, identity_of
 from seatrial.follow.needs import refuse_lacking
 from seatrial.follow.opened import source_of
@@ -84,15 +86,20 @@ def follow(
         if log is not None and is_known and progress is not None:
             progress(f"taking in {log.path.name}")
         # open before the journal is taken in, so that what comes meanwhile waits in the socket
-        feed, first = source or _opened(held, stream, once=once), list[Sample]()
+        feed = source or _opened(held, stream, once=once)
         known = estimator or Online(trial)
         voyage, adviser = Voyage(stream, known, log, kept), Adviser(trial, known)
-        last = None if log is None else voyage.recall(log)
-        if last is not None and source is None and stream.feed in _AGAIN:
-            feed, first = _resumed(held, stream, voyage, feed, last, once=once)
-        elif last is not None:
-            voyage.restarted()
-        is_ended = _sailed(voyage, feed, first, log, _advising(show, adviser), stop or _never)
+        watch = _Watch(voyage, _advising(show, adviser), stop or _never)
+        is_ended = False
+        try:
+            if log is None or watch.passes(voyage.recalled(log), feed):
+                again = partial(_opened, held, stream, once=once) if source is None and stream.feed in _AGAIN else None
+                feed, first = _resumed(voyage, feed, again)
+                is_ended = _sailed(voyage, feed, first, watch)
+        except KeyboardInterrupt:
+            pass
+        finally:
+            voyage.finish()
         counts = voyage.counts(feed.counts)
     latest = None if voyage.snapshot is None else adviser.concluded(voyage.snapshot)
     if latest is not None and show is not None:
@@ -111,31 +118,38 @@ def _advising(show: Show | None, adviser: Adviser) -> Show:
     return lambda snapshot, counts: show(adviser.advised(snapshot), counts)
 
 
-def _sailed(voyage: Voyage, feed: Source, first: list[Sample], journal: Journal | None, show: Show, stop: Stop) -> bool:
+class _Watch:
+    """Shows what is known and asks whether to go on, twice a second at most."""
+
+    def __init__(self, voyage: Voyage, show: Show, stop: Stop) -> None:
+        self._voyage, self._show, self._stop = voyage, show, stop
+        self._shown = -math.inf
+
+    def passes(self, events: Iterable[Event], feed: Source) -> bool:
+        """Make of the events what can be made; False where the end was asked for."""
+        for event in events:
+            self._voyage.follow(event)
+            if not self._goes_on(feed):
+                return False
+        return self._goes_on(feed)
+
+    def _goes_on(self, feed: Source) -> bool:
+        if monotonic() - self._shown < _SHOW_S:
+            return True
+        self._shown = monotonic()
+        if self._voyage.snapshot is not None:
+            self._show(self._voyage.snapshot, self._voyage.counts(feed.counts))
+        return not self._stop()
+
+
+def _sailed(voyage: Voyage, feed: Source, first: list[Sample], watch: _Watch) -> bool:
     """The loop itself; whether the source ended, rather than somebody's patience."""
-    shown = -math.inf
     samples = first
-    try:
-        while True:
-            for event in (*voyage.admitted(samples), None):
-                if event is not None:
-                    voyage.follow(event)
-                if monotonic() - shown < _SHOW_S:
-                    continue
-                shown = monotonic()
-                if voyage.snapshot is not None:
-                    show(voyage.snapshot, voyage.counts(feed.counts))
-                if stop():
-                    return False
-            if feed.is_over:
-                return True
-            samples = feed.poll(_WAIT_S)
-    except KeyboardInterrupt:
-        return False
-    finally:
-        voyage.finish()
-        if journal is not None:
-            journal.flush()
+    while watch.passes(voyage.admitted(samples), feed):
+        if feed.is_over:
+            return True
+        samples = feed.poll(_WAIT_S)
+    return False
 
 
 def _opened(held: ExitStack, stream: Stream, *, once: bool) -> Source:
@@ -144,19 +158,20 @@ def _opened(held: ExitStack, stream: Stream, *, once: bool) -> Source:
     return feed
 
 
-def _resumed(
-    held: ExitStack, stream: Stream, voyage: Voyage, feed: Source, last: Sample, *, once: bool
-) -> tuple[Source, list[Sample]]:
-    """A source that gives everything once more, and what of it is new.
+def _resumed(voyage: Voyage, feed: Source, again: Callable[[], Source] | None) -> tuple[Source, list[Sample]]:
+    """The source behind a journal, and what of it has come that is new.
 
-    It is read up to the journal's last sample, which is passed over with all before it; where it is not found, the file
-    is another one and begins from its start, with a run of its own.
+    again: opens a source that gives everything once more. That is read up to the journal's last sample, which is passed
+    over with all before it; where it is not found, the file is another one and begins from its start, with a run of its
+    own. So does what comes from any other source, for nobody knows how long the break was.
     """
-    new = _behind(feed, last)
+    if voyage.last is None:
+        return feed, []
+    new = None if again is None else _behind(feed, voyage.last)
     if new is not None:
         return feed, new
     voyage.restarted()
-    return _opened(held, stream, once=once), []
+    return (feed if again is None else again()), []
 
 
 def _behind(feed: Source, last: Sample) -> list[Sample] | None:

@@ -1,6 +1,6 @@
 """One stream on its way to an estimate: admitted, noted in the journal, kept where a fit is to be made of it."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Protocol
 
@@ -34,34 +34,33 @@ class Voyage:
     """Samples in, the newest snapshot out.
 
     Attributes:
-        snapshot: the newest; None before the first sample. notes: trouble of the estimator, in words, each once.
+        snapshot: the newest; None before the first sample. last: the last sample of the journal, if there was any.
+        notes: trouble of the estimator and of the journal, in words, each once.
     """
 
     def __init__(self, stream: Stream, estimator: Estimator, journal: Journal | None, kept: Kept | None) -> None:
         self.snapshot: Snapshot | None = None
+        self.last: Sample | None = None
         self.notes: list[str] = []
         self._name, self._estimator, self._journal, self._kept = stream.name, estimator, journal, kept
         self._stream, self._gate, self._before = stream, _gate(stream), Counts()
         self._runs = 0
         self._trouble = ""
 
-    def recall(self, journal: Journal) -> Sample | None:
-        """Take in what the journal holds; the last sample of it.
+    def recalled(self, journal: Journal) -> Iterator[Event]:
+        """What the journal holds, as it came; nothing of it is noted again.
 
         Raises:
             InputError: the journal is damaged.
         """
-        last = None
         for entry in journal.entries():
             if isinstance(entry, Sample):
-                last = entry
-                for event in self._gate.admit(entry):
-                    self.follow(event)
+                self.last = entry
+                yield from self._gate.admit(entry)
             elif entry.reason == _RESTARTED:
                 self._begin_anew()
         if journal.torn:
             self._say(f"the last {journal.torn} bytes of '{journal.path.name}' were torn by a break and are cut off")
-        return last
 
     def admitted(self, samples: Iterable[Sample]) -> list[Event]:
         """What comes of these samples, in the journal before anything is made of it."""
