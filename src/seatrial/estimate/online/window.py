@@ -15,7 +15,7 @@ from seatrial.information.autocorrelation import whiteness_p
 from seatrial.information.covariance import inverse
 from seatrial.optimise import levenberg_marquardt
 from seatrial.problem.output_error import OutputError
-from seatrial.values import Array, Record
+from seatrial.values import Array, InputError, Record
 
 # a promised decrease of half the sum of squares: some hundredths of a standard error
 _NEGLIGIBLE = 1e-3
@@ -90,6 +90,21 @@ def grown(before: Known, model: Model, records: Sequence[Record], sessions: Sequ
         if now == was:
             local[row] = before.made.optimum.local[row]
     return replace(_searched(problem, shared, local, settings, _LATER), begins=begins)
+
+
+def refuse_unsailed(made: Estimate, records: Sequence[Record], sessions: Sequence[str], settings: Settings) -> None:
+    """Refuse an estimate over segments at which whole runs diverge, as `identify` does.
+
+    Raises:
+        InputError: they do.
+    """
+    problem = output_error(made.problem.model, records, sessions, np.inf, settings)
+    with np.errstate(all="ignore"):
+        simulated = problem.simulated(made.shared, problem.measured_starts())
+    if not np.all(np.isfinite(simulated)):
+        raise InputError(
+            "what was seen so far leads to no model that can be sailed: too short or too calm yet; go on, or harder"
+        )
 
 
 def better(one: Known, other: Known) -> Known:
