@@ -126,7 +126,7 @@ def _with_outages(record: Record, symbols: tuple[str, ...], starts: tuple[int, .
 
 
 def test_one_second_without_motions_costs_accuracy_that_is_told(outages):
-    """Holes of a second are interpolated straight, as in a batch fit: some per cent, and residuals that are coloured."""
+    """Holes of a second are interpolated straight, as in a batch fit: some per cent, and coloured residuals."""
     trial, record, truth = outages
     best = _feed(Online(trial), record, trial.follow)
     shown = _feed(Online(trial), _with_outages(record, ("z", "theta"), (200, 555, 900)), trial.follow)
