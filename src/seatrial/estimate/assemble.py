@@ -41,6 +41,6 @@ def output_error(
     outputs = compared_outputs(model, records, settings.channels)
     data = cut(model, records, outputs, None if np.isinf(seconds) else seconds, sessions)
     spread = np.nanstd(data.measured, axis=0)
+    others = (*(StaticForces(model, points) for points in settings.forces), *settings.others)
     return OutputError(model, data, np.maximum(0.1 * spread, 1e-9), _nuisances(settings), _current(settings),
-                       substeps=settings.substeps, workers=settings.workers,
-                       others=(*(StaticForces(model, points) for points in settings.forces), *settings.others))  # fmt: skip
+                       substeps=settings.substeps, workers=settings.workers, others=others)  # fmt: skip

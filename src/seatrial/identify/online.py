@@ -1,8 +1,9 @@
 """One estimator fed sample by sample: the criterion of `identify` over a growing window, then over what it carries on.
 
 While the window lasts (`Stream.whole`) every re-linearisation goes over all samples, so that the numbers are those of
-the batch fit. Beyond it the window's normal equations are kept instead of its samples (`Carried`), and further
-stretches are added one by one: an information filter whose updates are iterated over a stretch, not over a sample.
+the batch fit. Beyond it a recursive filter carries the same information on (`Onward`). Where a filter cannot take over
+(nuisances, waves from an elevation, segments, a new run) the window's normal equations are kept instead of its samples
+(`Carried`), and further stretches are added one by one.
 """
 
 from collections.abc import Sequence
@@ -13,10 +14,12 @@ import numpy as np
 
 from seatrial.estimate.fit import identified, swings
 from seatrial.estimate.online.carried import Carried, carried
+from seatrial.estimate.online.change import Watch
 from seatrial.estimate.online.rows import Rows
-from seatrial.estimate.online.window import Known, begun, better, grown
+from seatrial.estimate.online.window import Known, begun, better, grown, refuse_unsailed
 from seatrial.estimate.settings import Criterion, Settings
 from seatrial.identify.identify import settings_of
+from seatrial.identify.onward import LOOKS, Onward
 from seatrial.information.covariance import inverse
 from seatrial.read.assemble import as_declared
 from seatrial.results.online import Change, Phase, Sample, Snapshot
@@ -66,7 +69,9 @@ class Online:
         self._carried: Carried | None = None
         self._inflation = 1.0
         self._known: Known | None = None
-        self._change: Change | None = None
+        self._onward: Onward | None = None
+        self._watch = Watch(trial.model.parameters.free_names, LOOKS)
+        self._elapsed, self._last = 0.0, np.nan
         self._next = self._next_cold = self._searched_at = 0.0
         self._why = "too few samples yet"
         self._is_warm = self._suits_whole_runs()
@@ -74,26 +79,37 @@ class Online:
 
     def begin_run(self) -> None:
         """What follows belongs to a new run: a gap, or a jump of the clock."""
+        if self._onward is not None:
+            self._back_to_window(self._onward)
         if self._kept.rows and len(self._kept.rows[-1]):
             if self._seconds - self._searched_at >= max(_COLD_STEP, _NEWS * self._seconds):
                 self.relinearise()
             self._close()
-        self._runs += 1
+        self._runs, self._last = self._runs + 1, np.nan
         self._kept.rows.append(Rows(len(self._stream.layout.columns)))
 
     def update(self, sample: Sample) -> Snapshot:
         """Take in one sample, later than the last; the estimate by now."""
         if not self._kept.rows:
             self.begin_run()
-        self._kept.rows[-1].add(sample.time, sample.values)
         self._samples += 1
+        self._elapsed += 0.0 if np.isnan(self._last) else sample.time - self._last
+        self._last = sample.time
+        if self._onward is not None:
+            self._take_onward(self._onward, sample)
+            return self._shown
+        self._kept.rows[-1].add(sample.time, sample.values)
         if self._seconds >= self._next and len(self._kept.rows[-1]) >= 3:
             self.relinearise()
         self._shown = replace(self._shown, time=sample.time, samples=self._samples, runs=self._runs)
         return self._shown
 
     def relinearise(self) -> Snapshot:
-        """Search now, from where the last search ended, over everything in the window."""
+        """Search now, from where the last search ended, over everything in the window; a filter takes in what waits."""
+        if self._onward is not None:
+            self._onward.finish()
+            self._shown = self._filtered(self._onward)
+            return self._shown
         self._next, self._searched_at = self._seconds + self._pause, self._seconds
         if sum(len(rows) for rows in self._kept.rows) >= _FEWEST:
             try:
@@ -103,8 +119,40 @@ class Online:
                 self._why = str(error) if isinstance(error, InputError) else _NOT_YET
                 self._shown = replace(self._shown, advice=self._why) if self._known is None else self._shown
         if self._known is not None and self._is_full:
-            self._carry(self._known)
+            self._hand_over(self._known)
         return self._shown
+
+    def _hand_over(self, known: Known) -> None:
+        """To the filter where it can take over, else to what is carried."""
+        if self._is_warm:
+            try:
+                self._onward = Onward(known, self._stream, self._trial.reference_point, self._watch)
+            except InputError:
+                self._onward = None
+        if self._onward is None:
+            self._carry(known)
+        else:
+            if self._stream.forgetting is not None and self._carried is not None:
+                self._watch.reset()
+            self._kept, self._own = _Kept([Rows(len(self._stream.layout.columns))], []), ()
+
+    def _take_onward(self, onward: Onward, sample: Sample) -> None:
+        if onward.add(sample.time, sample.values, self._elapsed):
+            if not onward.is_sound:
+                self._back_to_window(onward)
+                return
+            self._shown = self._filtered(onward)
+        self._shown = replace(self._shown, time=sample.time, samples=self._samples, runs=self._runs)
+
+    def _back_to_window(self, onward: Onward) -> None:
+        """A window goes on: with the filter's information, or from nowhere where the filter lost the ship."""
+        onward.finish()
+        self._carried = onward.carried() if onward.is_sound else None
+        self._known = self._known if onward.is_sound else None
+        self._onward = None
+        if self._known is None:
+            self._watch.anew()
+        self._next, self._searched_at, self._next_cold = 0.0, 0.0, 0.0
 
     def raw_runs(self) -> tuple[Run, ...]:
         """The stream's runs that are still kept, as training runs of a trial whose files have been read."""
@@ -114,6 +162,8 @@ class Online:
     def covariance(self) -> Array:
         """Of the free coefficients, (k, k); infinite diagonal where nothing is known."""
         count = len(self._shown.names)
+        if self._onward is not None:
+            return self._onward.covariance
         return np.diag(np.full(count, np.inf)) if self._known is None else self._known.covariance
 
     def records(self) -> tuple[Record, ...]:
@@ -189,6 +239,7 @@ class Online:
                 model.parameters.with_free_values(self._known.value)
             )  # fmt: skip
             found = identified(started, records, sessions, length, settings)
+            refuse_unsailed(found.made, records, sessions, settings)
             covariance = found.interval.covariance
             if self._carried is not None:
                 known = np.diag(found.made.problem.priors[1])
@@ -231,16 +282,29 @@ class Online:
     def _told(self, known: Known) -> Snapshot:
         problem = known.made.problem
         error = _errors(known.covariance)
-        untold = tuple(
-            n for n, v, s in zip(problem.free, known.value, error, strict=True)
-            if s > max(abs(v), problem.model.parameters[n].scale)
-        )  # fmt: skip
         noise = dict(zip(problem.data.outputs, np.sqrt(np.nanmean(known.left**2, axis=0)).tolist(), strict=True))
         phase = Phase.WINDOW if self._carried is None else Phase.RECURSIVE
         return replace(
-            self._shown, phase=phase, value=known.value, standard_error=error, noise=noise, untold=untold,
-            advice="", change=self._change,
+            self._shown, phase=phase, value=known.value, standard_error=error, noise=noise,
+            untold=self._untold(known.value, error), advice="", change=self._looked(known),
         )  # fmt: skip
+
+    def _looked(self, known: Known) -> Change | None:
+        """Whether the latest stretch says otherwise; nobody looks while what is old is forgotten."""
+        if self._stream.forgetting is None and np.all(np.isfinite(known.covariance)):
+            self._watch.look(self._elapsed, known.value, known.covariance)
+        return self._watch.told or self._watch.latest
+
+    def _filtered(self, onward: Onward) -> Snapshot:
+        error = _errors(onward.covariance)
+        return replace(
+            self._shown, phase=Phase.RECURSIVE, value=onward.value, standard_error=error, noise=onward.noise,
+            untold=self._untold(onward.value, error), advice="", change=onward.change,
+        )  # fmt: skip
+
+    def _untold(self, value: Array, error: Array) -> tuple[str, ...]:
+        free = self._trial.model.parameters.free
+        return tuple(p.name for p, v, s in zip(free, value, error, strict=True) if s > max(abs(v), p.scale))
 
 
 def _errors(covariance: Array) -> Array:

@@ -35,7 +35,7 @@ class Change:
     """Whether the latest stretch tells other coefficients than what came before (Hausman 1978, Econometrica 46).
 
     Attributes:
-        since: s on the stream's clock where the latest stretch begins; statistic: chi-squared of `freedom` degrees.
+        since: s of samples seen when the latest stretch began; statistic: chi-squared of `freedom` degrees.
         p: probability of as much by chance; is_told: p is small enough to say so, corrected for repeated looking.
         most: the coefficient that has moved most, in its standard errors.
     """

@@ -85,6 +85,7 @@ class Watch:
     _looks: int = 0
     _since: float = field(default=np.nan)
     _before: Told | None = None
+    _former: Told | None = None
 
     def __post_init__(self) -> None:
         if not (self.stretch > 0.0 and 0.0 < self.alpha < 1.0):
@@ -103,7 +104,8 @@ class Watch:
             self._since, self._before = time, now
         elif time >= self._since + self.stretch:
             self._looks += 1
-            moved = nested(self._before, now)
+            moved = nested(self._before, now) if self._former is None else independent(self._former, now)
+            self._former = None
             is_told = moved.p <= self.alpha / (self._looks * (self._looks + 1))
             self.latest = Change(self._since, moved.statistic, moved.freedom, moved.p, is_told, self.names[moved.most])
             if is_told:
@@ -112,5 +114,10 @@ class Watch:
         return self.latest
 
     def reset(self) -> None:
-        """The estimate begins anew, from fewer data: the next call begins a stretch. What was spent is spent."""
+        """Data are counted anew, some of them the same: the next call begins a stretch. What was spent is spent."""
+        self._before = self._former = None
+
+    def anew(self) -> None:
+        """The estimate begins anew from nothing but later data: the second call from here compares it with the last."""
+        self._former = self._before or self._former
         self._before = None

@@ -165,7 +165,7 @@ def composed(made: Matrices, inputs: list[Array]) -> tuple[Array, Array]:
     """The step over one sample from those of its pieces: (nx, nx + 4 nu + 1), and its derivatives, last axis.
 
     inputs: at the ends of the pieces, as `_along` has them. Columns: state, inputs at both ends, their slopes a sample
-    at both ends, 1; cubic Hermite pieces (de Boor 1978, chapter IV) where an input is smooth, its first value where held.
+    at both ends, 1; cubic Hermite pieces (de Boor 1978, chapter IV) where an input is smooth, else its first value.
     """
     e, g0, g1 = made.e[0], made.g0[0], made.g1[0]
     de, dg0, dg1 = (np.moveaxis(s[0], 2, 0) for s in made.slopes[:3])
