@@ -225,6 +225,27 @@ def test_the_end_may_be_asked_for_while_the_journal_is_taken_in(tmp_path: Path) 
     assert journal.read_bytes() == before
 
 
+def test_a_socket_is_read_on_while_a_search_takes_its_time(tmp_path: Path) -> None:
+    class Slow(Notes):
+        def update(self, sample: Sample) -> Snapshot:
+            time.sleep(0.11)
+            assert journal.stat().st_size > 45 * min(5 * (len(self.values) + 1), 20)
+            return super().update(sample)
+
+    journal, notes = tmp_path / "a.journal", Slow()
+    polls = [some(5 * i, 5 * i + 5) for i in range(4)]
+    follow(voyage_trial(), source=Given(*polls), journal=journal, estimator=notes)
+    assert len(notes.values) == 20
+
+
+def test_what_comes_while_a_journal_is_taken_in_is_not_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("seatrial.follow.follow._TURN_S", 0.0)
+    journal, notes = tmp_path / "a.journal", Notes()
+    follow(voyage_trial(), source=Given(some(0, 20)), journal=journal, estimator=Notes())
+    follow(voyage_trial(), source=Given(some(30, 35), some(35, 40), some(40, 45)), journal=journal, estimator=notes)
+    assert [len(run) for run in notes.runs] == [20, 15]
+
+
 def test_a_journal_of_another_trial_is_refused_before_anything_starts(tmp_path: Path) -> None:
     journal = tmp_path / "a.journal"
     follow(voyage_trial(), source=Given(some(0, 5)), journal=journal, estimator=Notes())

@@ -1,7 +1,8 @@
 """The loop on board: poll, admit, note, estimate, show. No threads, and nothing that is sent can end it."""
 
 import math
-from collections.abc import Callable, Iterable
+from collections import deque
+from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
@@ -11,7 +12,6 @@ from time import monotonic
 import numpy as np
 
 from seatrial.follow.advice import Adviser
-from seatrial.follow.gate import Event
 from seatrial.follow.journal import Journal, identity_of
 from seatrial.follow.needs import refuse_lacking
 from seatrial.follow.opened import source_of
@@ -27,7 +27,9 @@ from seatrial.trial.follow_table import followed
 from seatrial.trial.trial import Feed, Stream
 from seatrial.values import Progress
 
-_WAIT_S, _SHOW_S, _PATIENCE = 0.2, 0.5, 3
+_WAIT_S, _TURN_S, _SHOW_S, _PATIENCE = 0.2, 0.1, 0.5, 3
+# samples that may wait for the estimator
+_QUEUE = 10_000
 # sources that give everything once more when they are opened again
 _AGAIN = (Feed.FILE, Feed.NMEA_FILE)
 
@@ -90,18 +92,21 @@ def follow(
         known = estimator or Online(trial)
         voyage, adviser = Voyage(stream, known, log, kept), Adviser(trial, known)
         watch = _Watch(voyage, _advising(show, adviser), stop or _never)
+        again = partial(_opened, held, stream, once=once) if source is None and stream.feed in _AGAIN else None
         is_ended = False
         try:
-            if log is None or watch.passes(voyage.recalled(log), feed):
-                again = partial(_opened, held, stream, once=once) if source is None and stream.feed in _AGAIN else None
-                feed, first = _resumed(voyage, feed, again)
+            early = [] if log is None else _recalled(voyage, log, feed, watch, waits=again is not None)
+            if early is not None:
+                feed, first = _resumed(voyage, feed, early, again)
                 is_ended = _sailed(voyage, feed, first, watch)
         except KeyboardInterrupt:
             pass
         finally:
             voyage.finish()
         counts = voyage.counts(feed.counts)
-    latest = None if voyage.snapshot is None else adviser.concluded(voyage.snapshot)
+    latest = voyage.snapshot
+    if latest is not None:
+        latest = adviser.concluded(known.relinearise() if is_ended and isinstance(known, Online) else latest)
     if latest is not None and show is not None:
         show(latest, counts)
     fit = None
@@ -125,15 +130,8 @@ class _Watch:
         self._voyage, self._show, self._stop = voyage, show, stop
         self._shown = -math.inf
 
-    def passes(self, events: Iterable[Event], feed: Source) -> bool:
-        """Make of the events what can be made; False where the end was asked for."""
-        for event in events:
-            self._voyage.follow(event)
-            if not self._goes_on(feed):
-                return False
-        return self._goes_on(feed)
-
-    def _goes_on(self, feed: Source) -> bool:
+    def goes_on(self, feed: Source) -> bool:
+        """False where the end was asked for."""
         if monotonic() - self._shown < _SHOW_S:
             return True
         self._shown = monotonic()
@@ -142,13 +140,36 @@ class _Watch:
         return not self._stop()
 
 
+def _recalled(voyage: Voyage, journal: Journal, feed: Source, watch: _Watch, *, waits: bool) -> list[Sample] | None:
+    """What came while the journal was taken in, unless the source waits for its reader; None: the end was asked for."""
+    early: list[Sample] = []
+    polled = monotonic()
+    for event in voyage.recalled(journal):
+        voyage.follow(event)
+        if not watch.goes_on(feed):
+            return None
+        if not waits and monotonic() - polled > _TURN_S and len(early) < _QUEUE and not feed.is_over:
+            early += feed.poll(0.0)
+            polled = monotonic()
+    return early
+
+
 def _sailed(voyage: Voyage, feed: Source, first: list[Sample], watch: _Watch) -> bool:
-    """The loop itself; whether the source ended, rather than somebody's patience."""
-    samples = first
-    while watch.passes(voyage.admitted(samples), feed):
-        if feed.is_over:
+    """The loop itself; whether the source ended, rather than somebody's patience.
+
+    Between two samples that take long the source is asked again, so that nothing is lost while a search goes on.
+    """
+    queue = deque(voyage.admitted(first))
+    while watch.goes_on(feed):
+        if feed.is_over and not queue:
             return True
-        samples = feed.poll(_WAIT_S)
+        if len(queue) < _QUEUE and not feed.is_over:
+            queue.extend(voyage.admitted(feed.poll(0.0 if queue else _WAIT_S)))
+        turn = monotonic() + _TURN_S
+        while queue:
+            voyage.follow(queue.popleft())
+            if monotonic() > turn:
+                break
     return False
 
 
@@ -158,20 +179,22 @@ def _opened(held: ExitStack, stream: Stream, *, once: bool) -> Source:
     return feed
 
 
-def _resumed(voyage: Voyage, feed: Source, again: Callable[[], Source] | None) -> tuple[Source, list[Sample]]:
-    """The source behind a journal, and what of it has come that is new.
+def _resumed(
+    voyage: Voyage, feed: Source, early: list[Sample], again: Callable[[], Source] | None
+) -> tuple[Source, list[Sample]]:
+    """The source behind a journal, and what of it has come that is new, first of all `early`.
 
     again: opens a source that gives everything once more. That is read up to the journal's last sample, which is passed
     over with all before it; where it is not found, the file is another one and begins from its start, with a run of its
     own. So does what comes from any other source, for nobody knows how long the break was.
     """
     if voyage.last is None:
-        return feed, []
+        return feed, early
     new = None if again is None else _behind(feed, voyage.last)
     if new is not None:
         return feed, new
     voyage.restarted()
-    return (feed if again is None else again()), []
+    return (feed, early) if again is None else (again(), [])
 
 
 def _behind(feed: Source, last: Sample) -> list[Sample] | None:
