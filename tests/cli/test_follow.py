@@ -137,6 +137,7 @@ def test_ctrl_c_ends_it_with_what_is_known_and_the_journal_goes_on(tmp_path: Pat
         journal = out / "trial.journal"
         while child.poll() is None and not (journal.exists() and journal.stat().st_size > 1200 * 45):
             time.sleep(0.05)
+        time.sleep(2.0)
         os.kill(child.pid, signal.SIGINT)
         said, wrong = child.communicate()
         last_resort.cancel()
