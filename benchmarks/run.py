@@ -19,6 +19,7 @@ import waterjet_rivals
 from measure import Line, machine
 
 import design
+import follow
 import loops
 import tune
 
@@ -36,6 +37,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "loops": loops.run,
     "tune": tune.run,
     "roll_decay": roll_decay.run,
+    "follow": follow.run,
 }
 
 
