@@ -1,5 +1,6 @@
 """Which manoeuvre would tell what the data so far do not: the Cramer-Rao bound after it, for the ship as estimated."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from time import monotonic
@@ -20,6 +21,8 @@ from seatrial.values import Array, InputError, Record
 
 # a coefficient is told once its standard error is below this share of it
 _TOLD = 1.0
+# a random sequence, which nobody steers by hand, must leave errors smaller by this factor
+_UNUSUAL = 2.0
 # s between two looks
 _PAUSE = 60.0
 _MOST_NAMED = 3
@@ -112,7 +115,12 @@ def prospects(
     if not found:
         raise InputError("no manoeuvre can be simulated")
     at = _places(snapshot)
-    return sorted(found, key=lambda p: (int(np.sum(p.after[at] > _TOLD)), float(np.sum(np.log(p.after[at])))))
+
+    def rank(one: Prospect) -> tuple[int, float]:
+        unusual = math.log(_UNUSUAL) if one.offer.is_random else 0.0
+        return int(np.sum(one.after[at] > _TOLD)), float(np.mean(np.log(one.after[at]))) + unusual
+
+    return sorted(found, key=rank)
 
 
 def _places(snapshot: Snapshot) -> list[int]:

@@ -106,7 +106,7 @@ def follow(
         counts = voyage.counts(feed.counts)
     latest = voyage.snapshot
     if latest is not None:
-        latest = adviser.concluded(known.relinearise() if is_ended and isinstance(known, Online) else latest)
+        latest = adviser.concluded(known.relinearise() if isinstance(known, Online) else latest)
     if latest is not None and show is not None:
         show(latest, counts)
     fit = None

@@ -102,7 +102,7 @@ class _Lines:
             self._write(plain(clean(heading)))
 
     def show(self, snapshot: Snapshot, counts: Counts) -> None:
-        if not _is_news(self._last, snapshot, counts):
+        if self._is_written and not _is_news(self._last, snapshot, counts):
             return
         self._last, self._is_written = (snapshot, counts), False
         now = time.monotonic()

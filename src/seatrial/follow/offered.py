@@ -40,6 +40,7 @@ class Offer:
     start: Array
     inputs: Array
     dt: float
+    is_random: bool = False
 
 
 def offers(trial: Trial, model: Model, records: Sequence[Record], noise: dict[str, float]) -> list[Offer]:
@@ -58,7 +59,7 @@ def offers(trial: Trial, model: Model, records: Sequence[Record], noise: dict[st
     for one in standards(bench):
         inputs = one.made(bench)
         own = inputs[0] if inputs.ndim == 3 else inputs
-        made.append(Offer(one.name, _named(one.name, task), task.start, own, bench.dt))
+        made.append(Offer(one.name, _named(one.name, task), task.start, own, bench.dt, one.is_random))
     return made
 
 

@@ -27,7 +27,7 @@ def told(snapshot: Snapshot, counts: Counts) -> dict[str, Any]:
         "rows": [vars(row) for row in shown.rows(snapshot)],
         "noise": [_noise(name, rms) for name, rms in snapshot.noise.items()],
         "untold": [shown.clean(name) for name in snapshot.untold],
-        "advice": shown.clean(snapshot.advice) if snapshot.untold else "",
+        "advice": shown.clean(snapshot.advice),
         "change": shown.change(snapshot.change),
         "accepted": counts.accepted,
         "troubles": shown.troubles(counts),

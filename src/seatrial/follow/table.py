@@ -128,7 +128,7 @@ def _said(snapshot: Snapshot, counts: Counts) -> list[tuple[str, str, str]]:
     return [
         ("residuals", ", ".join(f"{name} {rms} {unit}".rstrip() for name, rms, unit in noises(snapshot)), ""),
         ("not told", listed([clean(name) for name in snapshot.untold]), "yellow"),
-        ("would help", clean(snapshot.advice) if snapshot.untold else "", ""),
+        ("would help" if snapshot.untold else "why not yet", clean(snapshot.advice), ""),
         ("change", change(snapshot.change), "bold red"),
         ("samples", wrong, "yellow"),
         ("last", clean(counts.last), "dim"),

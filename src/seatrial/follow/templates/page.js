@@ -186,9 +186,10 @@ function words(told) {
   renew(at("findings"), told.findings, () => told.findings.map(finding));
   renew(at("change"), told.change, () => [node("p", {}, told.change)]);
   renew(at("untold"), [told.untold, told.advice], () => [
-    node("p", {}, `The data so far do not tell ${listed(told.untold)}.`), node("p", {}, told.advice)]);
+    node("p", {}, told.untold.length ? `The data so far do not tell ${listed(told.untold)}.` : "No estimate yet."),
+    node("p", {}, told.advice)]);
   at("change").hidden = told.change === "";
-  at("untold").hidden = told.untold.length === 0;
+  at("untold").hidden = told.untold.length === 0 && told.advice === "";
   at("told").hidden = told.findings.length === 0;
   at("residuals").hidden = told.noise.length === 0;
   at("last").textContent = told.last ? `The latest trouble: ${told.last}` : "";
