@@ -72,6 +72,21 @@ def test_the_best_leaves_fewest_untold_and_none_is_worse_than_before(craft):
     assert all(np.all(p.after <= before * (1.0 + 1e-6)) for p in found)
 
 
+def test_a_helmsman_s_manoeuvre_comes_before_a_random_one_of_like_worth(craft):
+    trial, snapshot, covariance, records = craft
+    found = prospects(snapshot, trial, trial.model, covariance, records)
+    places = [snapshot.names.index(n) for n in snapshot.untold]
+
+    def left(one):
+        return int(np.sum(one.after[places] > 1.0)), float(np.exp(np.mean(np.log(one.after[places]))))
+
+    steered = [left(p) for p in found if not p.offer.is_random]
+    first = left(found[0])
+    assert steered
+    for count, error in steered if found[0].offer.is_random else []:
+        assert (first[0], 2.0 * first[1]) <= (count, error)
+
+
 def test_what_is_promised_is_the_bound_of_both_together(craft):
     """(C^-1 + M)^-1, and M grows as the noise falls: a tenth of the noise is a hundred times the information."""
     trial, snapshot, covariance, records = craft

@@ -23,6 +23,8 @@ from seatrial.values import Array, InputError, Record
 _TOLD = 1.0
 # a random sequence, which nobody steers by hand, must leave errors smaller by this factor
 _UNUSUAL = 2.0
+# an unstable ship's course tells everything of her, on paper: relative errors below this are no promise
+_BELIEVABLE = 1e-5
 # s between two looks
 _PAUSE = 60.0
 _MOST_NAMED = 3
@@ -111,7 +113,8 @@ def prospects(
     found = []
     for offer in offers(trial, model, records, noise):
         left = np.sqrt(np.diag(inverse(known + information(model, offer, noise, rate))))
-        found.append(Prospect(offer, left / size))
+        if np.min(left / size) > _BELIEVABLE:
+            found.append(Prospect(offer, left / size))
     if not found:
         raise InputError("no manoeuvre can be simulated")
     at = _places(snapshot)

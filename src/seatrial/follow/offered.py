@@ -15,6 +15,7 @@ from seatrial.equations import Model
 from seatrial.estimate.fit import swings, unit_of_time
 from seatrial.optimise import Normal
 from seatrial.results import Actuator
+from seatrial.simulate.bounds import limits
 from seatrial.simulate.channels import AT_REST
 from seatrial.simulate.linear import batch_for
 from seatrial.simulate.steer import RUDDER, SOLAS_SLEW_RATE
@@ -64,11 +65,11 @@ def offers(trial: Trial, model: Model, records: Sequence[Record], noise: dict[st
 
 
 def information(model: Model, offer: Offer, noise: dict[str, float], rate: float) -> Array:
-    """Fisher information of the free coefficients, (k, k), initial states unknown; zero where she diverges.
+    """Fisher information of the free coefficients, (k, k), initial states unknown; zero where she leaves all bounds.
 
     noise: channel -> standard deviation, SI, white; rate: Hz at which these are recorded.
     """
-    names, outputs = model.parameters.free_names, tuple(noise)
+    names, outputs = model.parameters.free_names, (*noise, *(n for n in model.states if n not in noise))
     offsets = np.array([0, len(offer.inputs)], dtype=np.int64)
     inputs = np.ascontiguousarray(offer.inputs)
     batch = batch_for(model)(model, inputs, offsets, offer.dt, outputs, names)
@@ -77,9 +78,10 @@ def information(model: Model, offer: Offer, noise: dict[str, float], rate: float
         0, 1, offer.start[None], model.parameters.values[None], np.zeros((1, 0))
     )  # fmt: skip
     k = len(names)
-    if failed[0] >= 0 or not (np.all(np.isfinite(y)) and np.all(np.isfinite(slopes))):
+    states = y[:, [outputs.index(n) for n in model.states]]
+    if failed[0] >= 0 or not np.all(np.abs(states) <= limits(model)) or not np.all(np.isfinite(slopes)):
         return np.zeros((k, k))
-    scaled = (slopes / np.array(list(noise.values()))[:, None]).reshape(-1, slopes.shape[2])
+    scaled = (slopes[:, : len(noise)] / np.array(list(noise.values()))[:, None]).reshape(-1, slopes.shape[2])
     hessian = (scaled.T @ scaled) * (rate * offer.dt)
     none = np.zeros(len(hessian) - k)
     return Normal(
