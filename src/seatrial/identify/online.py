@@ -113,7 +113,8 @@ class Online:
         self._next, self._searched_at = self._seconds + self._pause, self._seconds
         if sum(len(rows) for rows in self._kept.rows) >= _FEWEST:
             try:
-                self._known = self._searched(self._records())
+                with np.errstate(all="ignore"):  # a trial step may overflow; the search then takes another
+                    self._known = self._searched(self._records())
                 self._shown = self._told(self._known)
             except (InputError, np.linalg.LinAlgError) as error:
                 self._why = str(error) if isinstance(error, InputError) else _NOT_YET
