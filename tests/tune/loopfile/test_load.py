@@ -365,7 +365,7 @@ def test_a_model_that_knows_no_fins_and_one_of_another_kind_are_refused(tmp_path
     model_file(tmp_path, roll())
     with pytest.raises(InputError, match=r"knows no fins; add \[plant.fin\]"):
         task_of(written(tmp_path, FIN, plant, ("[plant.fin]\nK_alpha = 0.256", "")))
-    with pytest.raises(InputError, match="model 'roll' of .* rolls and knows no fins.* name a model that is steered"):
+    with pytest.raises(InputError, match=r"model 'roll' of .* rolls and knows no fins.* name a model that is steered"):
         task_of(written(tmp_path, AUTOPILOT))
     model_file(tmp_path, nomoto())
     with pytest.raises(InputError, match=r"model 'nomoto' of .* has no K_alpha"):
