@@ -236,10 +236,9 @@ class Online:
         model, length, settings = self._trial.model, self._trial.ship.length, self._settings(records)
         sessions = [record.name for record in records]
         if not self._is_warm:
-            started = model if self._known is None else model.with_parameters(
-                model.parameters.with_free_values(self._known.value)
-            )  # fmt: skip
-            found = identified(started, records, sessions, length, settings)
+            if self._carried is not None and self._known is not None:  # what is carried is known about that point
+                model = model.with_parameters(model.parameters.with_free_values(self._known.value))
+            found = identified(model, records, sessions, length, settings)
             refuse_unsailed(found.made, records, sessions, settings)
             covariance = found.interval.covariance
             if self._carried is not None:
