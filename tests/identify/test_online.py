@@ -1,10 +1,12 @@
 """Fed sample by sample: the numbers of the batch fit on the same samples, and what is carried on beyond the window."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from seatrial.follow.opened import source_of
 from seatrial.identify.identify import identify
 from seatrial.identify.online import Online
 from seatrial.models.qi2025 import SHIP
@@ -12,9 +14,12 @@ from seatrial.read import Column, Layout
 from seatrial.results.online import Phase, Sample, Snapshot
 from seatrial.studies.own_fit import started
 from seatrial.studies.seaway import HEAVE_NOISE, PITCH_NOISE, Voyage, sailed, ship
+from seatrial.trial import load_trial
+from seatrial.trial.follow_table import followed
 from seatrial.trial.trial import Feed, Stream, Trial
 from seatrial.values import NOTATION, InputError, Record
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 CHANNELS = ("F3", "M5", "delta_f1", "z", "theta")
 LAYOUT = Layout(
     "text", Column("time", 1, "s"), tuple(Column(c, k + 2, NOTATION[c].unit) for k, c in enumerate(CHANNELS))
@@ -135,3 +140,17 @@ def test_a_trial_that_follows_nothing_is_refused():
     trial, _, _ = _voyage(135, 20.0)
     with pytest.raises(InputError, match=r"there is no \[follow\]"):
         Online(replace(trial, follow=None))
+
+
+def test_a_ship_that_stays_the_same_is_not_told_to_change():
+    # waves known by their elevation: their forces change a little as more of it is known
+    trial = load_trial(EXAMPLES / "heave_pitch_follow.toml")
+    source = source_of(followed(trial), once=True)
+    estimator, shown = Online(trial), None
+    while not source.is_over:
+        for sample in source.poll(0.1):
+            shown = estimator.update(sample)
+    source.close()
+    assert shown is not None
+    last = estimator.relinearise()
+    assert last.change is None or not last.change.is_told

@@ -290,8 +290,13 @@ class Online:
         )  # fmt: skip
 
     def _looked(self, known: Known) -> Change | None:
-        """Whether the latest stretch says otherwise; nobody looks while what is old is forgotten."""
-        if self._stream.forgetting is None and np.all(np.isfinite(known.covariance)):
+        """Whether the latest stretch says otherwise, where the estimates are nested.
+
+        They are not while what is old is forgotten, where every search chooses its criterion anew, and where the forces
+        of the same waves change as more of their elevation is known.
+        """
+        is_nested = self._is_warm and self._stream.waves is None and self._stream.forgetting is None
+        if is_nested and np.all(np.isfinite(known.covariance)):
             self._watch.look(self._elapsed, known.value, known.covariance)
         return self._watch.told or self._watch.latest
 
