@@ -13,10 +13,11 @@ from seatrial import verbs
 from seatrial.loops import HullFactor, Objective, Seen
 from seatrial.loops.fin import PUBLISHED_GAINS, Preamplifier, fin_loop
 from seatrial.loops.objective import off_target, variance
+from seatrial.optimise import hypervolume
 from seatrial.results.tuning import Restriction, Tuning
 from seatrial.sea.spectrum import ittc
 from seatrial.tune.assess import judge
-from seatrial.tune.front import Effort, front, grid, hypervolume
+from seatrial.tune.front import Effort, front, grid
 from seatrial.tune.task import Seaway, Task
 
 EXAMPLES = Path(__file__).parents[1] / "examples"

@@ -12,7 +12,7 @@ from seatrial.loops.loop import Term, TransferLoop
 from seatrial.values import Parameter, Parameters
 
 PAPER = "Yu et al. 2014, section 1"
-K_ALPHA, KNOTS_OF_K_ALPHA = 0.256, 18.0
+K_ALPHA = 0.256
 GYRO = Block("rate gyro", (400.0, 0.0), (1.0, 80.0, 4000.0), PAPER)
 SERVO = Block("servo", (550.0,), (1.0, 15.0, 225.0), PAPER)
 ROLL = Block("roll", (1.0,), (1.43242, 0.3796, 1.0), PAPER)

@@ -4,7 +4,7 @@ from seatrial.optimise.ask_tell import Box, Optimiser, SearchError, fitness_of, 
 from seatrial.optimise.cloud_particle_swarm import CloudParticleSwarm, CloudSettings
 from seatrial.optimise.cma_es import AdaptationSettings, CovarianceAdaptation
 from seatrial.optimise.differential_evolution import DifferentialEvolution, EvolutionSettings
-from seatrial.optimise.dominance import non_dominated
+from seatrial.optimise.dominance import hypervolume, non_dominated
 from seatrial.optimise.improved_wild_horse import ImprovedHerdSettings, ImprovedWildHorse
 from seatrial.optimise.least_squares import LeastSquares, Normal, Optimum, levenberg_marquardt
 from seatrial.optimise.multistart import Multistart, Restarts, multistart
@@ -44,6 +44,7 @@ __all__ = [
     "Variant",
     "WildHorse",
     "fitness_of",
+    "hypervolume",
     "levenberg_marquardt",
     "multistart",
     "non_dominated",

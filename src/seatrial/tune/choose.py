@@ -5,10 +5,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from seatrial.optimise import non_dominated
 from seatrial.results.tuning import Front
 from seatrial.tune.assess import Judge
 from seatrial.tune.demand import shortfall
-from seatrial.tune.front import non_dominated, spread
+from seatrial.tune.front import spread
 from seatrial.tune.sail import sailed
 from seatrial.tune.task import Task
 from seatrial.values import Array
@@ -52,7 +53,7 @@ def _compromise(task: Task, of: str) -> str:
 def _envelope(judge: Judge, front: Front) -> Array:
     """Gains of the front of which none leaves less of the output at a lower actuator rate, by output, (n, g)."""
     both = _both(judge, front.gains)
-    first = np.flatnonzero(non_dominated(both))
+    first = non_dominated(both)
     return front.gains[first[np.argsort(both[first, 0])]]
 
 

@@ -1,7 +1,6 @@
 """One set of gains in words a control engineer knows."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
@@ -77,8 +76,3 @@ def components(loop: TransferLoop) -> tuple[Component, ...]:
         for role, block in (("plant", loop.plant), ("disturbance", loop.disturbance))
     )
     return (*made["sensor"], *terms, *made["filter"], *made["servo"], plant, disturbance)
-
-
-def renamed(made: Controller, name: str) -> Controller:
-    """The controller under another name."""
-    return replace(made, name=name)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from seatrial.optimise import non_dominated
 from seatrial.results.tuning import Front
 from seatrial.tune.assess import Judge
 from seatrial.tune.press import free_box, pressed, whole
@@ -22,22 +23,8 @@ class Effort:
     neighbours: int = 40_000
 
 
-def non_dominated(objectives: Array) -> np.ndarray:
-    """Which of the points (n, m) no other one beats in all objectives, (n,)."""
-    from moocore import is_nondominated
-
-    return np.asarray(is_nondominated(objectives, keep_weakly=False), dtype=bool)
-
-
-def hypervolume(objectives: Array, reference: Array) -> float:
-    """Volume that the points (n, m) dominate within the reference point (m,)."""
-    from moocore import hypervolume as volume
-
-    return float(volume(objectives, ref=reference))
-
-
 def front(judge: Judge, name: str, seed: int, tell: Callable[[str], None], effort: Effort) -> Front:
-    """The feasible non-dominated gains found; empty where nothing is feasible (see `least_excess`)."""
+    """The feasible non-dominated gains found; empty where nothing is feasible (see `refuse_infeasible`)."""
     rng = np.random.default_rng(seed)
     explored = _explored(judge, seed, effort)
     tell(f"{name}: explored")

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from seatrial.optimise import Solution, Status
+from seatrial.optimise import Solution, Status, hypervolume
 from seatrial.results.tuning import Bound, Controller, Front, Manoeuvre, Paired, Sailed, Slot, Tuning
 from seatrial.tune.assess import Judge, judge
 from seatrial.tune.bounds import bounds, is_available
@@ -15,7 +15,7 @@ from seatrial.tune.controller import components, controller
 from seatrial.tune.demand import manoeuvres
 from seatrial.tune.feasible import refuse_idle, refuse_infeasible
 from seatrial.tune.findings import findings
-from seatrial.tune.front import Effort, front, grid, hypervolume, thinned
+from seatrial.tune.front import Effort, front, grid, thinned
 from seatrial.tune.sail import paired, sailed
 from seatrial.tune.schedule import schedule
 from seatrial.tune.task import Task
