@@ -15,7 +15,7 @@ from measure import Line, at_least
 from optimiser_functions import FUNCTIONS, ITERATIONS, LOWER, POPULATION, RUNS, UPPER
 from scipy.stats import mannwhitneyu
 
-from seatrial.optimise import (
+from seatrial.numerics.optimise import (
     AdaptationSettings,
     Box,
     CloudParticleSwarm,

@@ -11,10 +11,10 @@ import numpy as np
 import shipmmg_equations as peer
 from measure import Line, at_least, at_most, fastest
 
-from seatrial.kernels.steering import steer
-from seatrial.manoeuvres.programme import programme
-from seatrial.manoeuvres.steering import Steering, rudder_angles
-from seatrial.simulate.batch import Batch
+from seatrial.numerics.kernels.steering import steer
+from seatrial.physics.manoeuvres.programme import programme
+from seatrial.physics.manoeuvres.steering import Steering, rudder_angles
+from seatrial.physics.simulate.batch import Batch
 
 HERE = Path(__file__).parent
 DURATION, DT, SLEW = 100.0, 0.1, np.radians(15.0)  # s, s, rad/s: KVLCC2 model rudder, 2.32 deg/s full scale

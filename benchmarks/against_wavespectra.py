@@ -9,7 +9,7 @@ import numpy as np
 from against_shipmmg import peers_python
 from measure import Line, at_most
 
-from seatrial.sea.spectrum import Spectrum, jonswap
+from seatrial.physics.sea.spectrum import Spectrum, jonswap
 
 HERE = Path(__file__).parent
 SEAS = [

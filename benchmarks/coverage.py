@@ -14,16 +14,16 @@ import numpy as np
 from disturbed import HELD_OUT, TRAINING, sail, ships
 from measure import Line, machine
 
-from seatrial.equations import Model
-from seatrial.estimate.fit import ship_length_seconds
-from seatrial.estimate.settings import Intervals
-from seatrial.identify import Settings, identified
-from seatrial.information.discrepancy import kind_of
-from seatrial.predict.forecast import forecast
-from seatrial.results import Prediction
-from seatrial.trial import Role, TrialRecord
-from seatrial.values import Prior, Record
-from seatrial.workers import mapped
+from seatrial.core.equations import Model
+from seatrial.core.results import Prediction
+from seatrial.core.values import Prior, Record
+from seatrial.data.trial import Role, TrialRecord
+from seatrial.estimation.estimate.fit import ship_length_seconds
+from seatrial.estimation.estimate.settings import Intervals
+from seatrial.estimation.identify import Settings, identified
+from seatrial.estimation.information.discrepancy import kind_of
+from seatrial.estimation.predict.forecast import forecast
+from seatrial.numerics.workers import mapped
 
 LIMITS = (0.92, 0.97)
 NOT_PREDICTED = ("rudder_deg", "approach_speed")

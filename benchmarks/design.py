@@ -15,16 +15,16 @@ import numpy as np
 from measure import Line, at_least, at_most, machine
 from numpy.typing import NDArray
 
-from seatrial.design.design import CONFIRMED_WITH, design
-from seatrial.design.search import GENERATIONS, coarse
-from seatrial.design.ships import Ships, ships
-from seatrial.design.standards import Standard, standards
-from seatrial.design.task import Task
-from seatrial.design.worth import Bench, leaves
-from seatrial.results import Actuator, Design, Limits
-from seatrial.simulate.channels import inputs_of
-from seatrial.studies.series import JET_VELOCITY, RATE, SENSOR_NOISE, SLEW_RATE, truth
-from seatrial.values import InputError, Ship
+from seatrial.core.results import Actuator, Design, Limits
+from seatrial.core.values import InputError, Ship
+from seatrial.data.example_series.series import JET_VELOCITY, RATE, SENSOR_NOISE, SLEW_RATE, truth
+from seatrial.estimation.design.design import CONFIRMED_WITH, design
+from seatrial.estimation.design.search import GENERATIONS, coarse
+from seatrial.estimation.design.ships import Ships, ships
+from seatrial.estimation.design.standards import Standard, standards
+from seatrial.estimation.design.task import Task
+from seatrial.estimation.design.worth import Bench, leaves
+from seatrial.physics.simulate.channels import inputs_of
 
 Array = NDArray[np.float64]
 DURATION, HOLD, RANGE = 600.0, 15.0, math.radians(35.0)

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from seatrial.equations import Model
-from seatrial.models.mmg import HULL
-from seatrial.models.published import kvlcc2
-from seatrial.simulate.batch import Batch
-from seatrial.values import Record
+from seatrial.core.equations import Model
+from seatrial.core.values import Record
+from seatrial.physics.models.mmg import HULL
+from seatrial.physics.models.published import kvlcc2
+from seatrial.physics.simulate.batch import Batch
 
 Array = NDArray[np.float64]
 SPEED, REVOLUTIONS, SLEW = 1.18, 10.4, np.radians(15.8)

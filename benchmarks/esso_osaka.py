@@ -9,11 +9,11 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from seatrial.estimate.fit import identified
-from seatrial.identify.identify import settings_of
-from seatrial.models import model_named
-from seatrial.models.published import parameter_set
-from seatrial.predict.cross_validation import (
+from seatrial.core.values import InputError
+from seatrial.data.trial import load_trial, records_of
+from seatrial.estimation.estimate.fit import identified
+from seatrial.estimation.identify.identify import settings_of
+from seatrial.estimation.predict.cross_validation import (
     CrossValidation,
     Fold,
     Pooled,
@@ -22,8 +22,8 @@ from seatrial.predict.cross_validation import (
     fitted_folds,
     unfitted,
 )
-from seatrial.trial import load_trial, records_of
-from seatrial.values import InputError
+from seatrial.physics.models import model_named
+from seatrial.physics.models.published import parameter_set
 
 TRIAL = Path(__file__).parent.parent / "examples" / "esso_osaka.toml"
 LIMITS = {"turn": (0.40, 4.2), "zigzag": (0.75, 5.2), "berthing": (0.38, 4.5)}

@@ -14,12 +14,12 @@ from pathlib import Path
 import numpy as np
 from measure import machine
 
-from seatrial.estimate import identified
-from seatrial.identify.identify import settings_of
-from seatrial.information.discrepancy import GROWTH, Miss
-from seatrial.predict.cross_validation import Protocol
-from seatrial.predict.window_bands import Missed, covered, missed_windows
-from seatrial.trial import Role, Trial, TrialRecord, load_trial, records_of
+from seatrial.data.trial import Role, Trial, TrialRecord, load_trial, records_of
+from seatrial.estimation.estimate import identified
+from seatrial.estimation.identify.identify import settings_of
+from seatrial.estimation.information.discrepancy import GROWTH, Miss
+from seatrial.estimation.predict.cross_validation import Protocol
+from seatrial.estimation.predict.window_bands import Missed, covered, missed_windows
 
 TRIAL = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"
 LIMITS, POWERS, WINDOW_S = (10, 15, 20, 25), (0.0, 1.0, 2.0, 3.0), 30.0

@@ -18,11 +18,11 @@ from cmaes import CMA
 from measure import Line, at_most, machine
 from scipy.optimize import NonlinearConstraint, minimize
 
-from seatrial.loops import Exposure, HullFactor, Performance, Row, Seen, TransferLoop, exposure
-from seatrial.loops.fin import ROLL, fin_loop
-from seatrial.loops.structures import band_pass, five_gains, low_pass
-from seatrial.sea.spectrum import ittc, jonswap
-from seatrial.values import Array
+from seatrial.core.values import Array
+from seatrial.physics.loops import Exposure, HullFactor, Performance, Row, Seen, TransferLoop, exposure
+from seatrial.physics.loops.fin import ROLL, fin_loop
+from seatrial.physics.loops.structures import band_pass, five_gains, low_pass
+from seatrial.physics.sea.spectrum import ittc, jonswap
 
 U, BEAM, HEIGHT = 18.0 * 1852.0 / 3600.0, math.pi / 2.0, 3.3
 HULL = HullFactor(100.0, 10.5, 3.4)

@@ -16,20 +16,21 @@ import numpy as np
 from measure import Line, at_least, at_most, machine
 from numpy.typing import NDArray
 
-from seatrial.identify.identify import identify
-from seatrial.identify.online import Online
-from seatrial.models.qi2025 import SHIP
-from seatrial.optimise import ImprovedHerdSettings, ImprovedWildHorse, search
-from seatrial.problem.linear_record import LinearRecord
-from seatrial.problem.segments import cut
-from seatrial.read import Column, Layout, read_record
-from seatrial.results.online import Phase, Sample, Snapshot
-from seatrial.studies import series, swarm_search
-from seatrial.studies.own_fit import started
-from seatrial.studies.seaway import HEAVE_NOISE, PITCH_NOISE, Sailed, Voyage, sailed, ship
-from seatrial.trial import Role, Trial, load_trial
-from seatrial.trial.trial import Feed, Stream
-from seatrial.values import NOTATION, Channel, Record
+from seatrial.core.results.online import Phase, Sample, Snapshot
+from seatrial.core.values import NOTATION, Channel, Record
+from seatrial.data.example_series import series
+from seatrial.data.read import Column, Layout, read_record
+from seatrial.data.trial import Role, Trial, load_trial
+from seatrial.data.trial.trial import Feed, Stream
+from seatrial.estimation.identify.identify import identify
+from seatrial.estimation.identify.online import Online
+from seatrial.estimation.problem.linear_record import LinearRecord
+from seatrial.estimation.problem.segments import cut
+from seatrial.numerics.optimise import ImprovedHerdSettings, ImprovedWildHorse, search
+from seatrial.physics.models.qi2025 import SHIP
+from seatrial_studies import swarm_search
+from seatrial_studies.own_fit import started
+from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, Sailed, Voyage, sailed, ship
 
 Array = NDArray[np.float64]
 HEADINGS, RUNS, SECONDS, RATE = (45, 90, 135, 180), 20, 600.0, 10.0

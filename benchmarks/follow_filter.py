@@ -13,18 +13,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 from measure import Line, at_least, at_most, machine
 
-from seatrial.equations import Model
-from seatrial.estimate.online.belief import Belief
-from seatrial.estimate.online.change import Watch
-from seatrial.estimate.online.handover import handed_over
-from seatrial.estimate.online.recursive import Recursive
-from seatrial.models.heave_pitch import COEFFICIENTS, physics_start
-from seatrial.optimise import levenberg_marquardt
-from seatrial.problem.output_error import OutputError
-from seatrial.problem.segments import Segments, cut
-from seatrial.simulate.linear import LinearBatch
-from seatrial.studies.seaway import HEAVE_NOISE, PITCH_NOISE, Voyage, sailed, ship
-from seatrial.values import Array
+from seatrial.core.equations import Model
+from seatrial.core.values import Array
+from seatrial.estimation.estimate.online.belief import Belief
+from seatrial.estimation.estimate.online.change import Watch
+from seatrial.estimation.estimate.online.handover import handed_over
+from seatrial.estimation.estimate.online.recursive import Recursive
+from seatrial.estimation.problem.output_error import OutputError
+from seatrial.estimation.problem.segments import Segments, cut
+from seatrial.numerics.optimise import levenberg_marquardt
+from seatrial.physics.models.heave_pitch import COEFFICIENTS, physics_start
+from seatrial.physics.simulate.linear import LinearBatch
+from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, Voyage, sailed, ship
 
 HEADINGS = (45, 90, 135, 180)
 NOISE, OUTPUTS, DT = np.array([HEAVE_NOISE, PITCH_NOISE]), ("z", "theta"), 0.1

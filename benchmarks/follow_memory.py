@@ -10,14 +10,14 @@ from pathlib import Path
 
 import numpy as np
 
-from seatrial.identify.online import Online
-from seatrial.models.qi2025 import SHIP
-from seatrial.read import Column, Layout
-from seatrial.results.online import Sample
-from seatrial.studies.own_fit import started
-from seatrial.studies.seaway import HEAVE_NOISE, PITCH_NOISE, Voyage, sailed
-from seatrial.trial.trial import Feed, Stream, Trial
-from seatrial.values import NOTATION
+from seatrial.core.results.online import Sample
+from seatrial.core.values import NOTATION
+from seatrial.data.read import Column, Layout
+from seatrial.data.trial.trial import Feed, Stream, Trial
+from seatrial.estimation.identify.online import Online
+from seatrial.physics.models.qi2025 import SHIP
+from seatrial_studies.own_fit import started
+from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, Voyage, sailed
 
 CHANNELS = ("F3", "M5", "delta_f1", "z", "theta")
 HOUR, GAP, EVERY = 3600.0, 3700.0, 25

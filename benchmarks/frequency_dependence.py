@@ -16,22 +16,22 @@ from dataclasses import dataclass
 import numpy as np
 from measure import Line, at_least, machine
 
-from seatrial.equations import Model
-from seatrial.hydro.capytaine_data import HullData, HullExcitation
-from seatrial.hydro.cummins import Memory, memory_of, simulate_memory
-from seatrial.hydro.excitation import Complex
-from seatrial.hydro.mesh import solve_hull, wigley
-from seatrial.hydro.strip_theory import at_speed
-from seatrial.identify.seakeeping import operators
-from seatrial.information.frequency_range import frequency_range
-from seatrial.models.heave_pitch import COEFFICIENTS, heave_pitch, physics_start
-from seatrial.optimise import Status, levenberg_marquardt
-from seatrial.problem.output_error import OutputError
-from seatrial.problem.segments import cut
-from seatrial.sea.encounter import encounter_frequency
-from seatrial.sea.realise import Lines, harmonic_sum, realise
-from seatrial.sea.spectrum import Spectrum, bretschneider, ittc, jonswap
-from seatrial.values import Array, Channel, InputError, Kind, Record, frozen
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, Channel, InputError, Kind, Record, frozen
+from seatrial.estimation.identify.seakeeping import operators
+from seatrial.estimation.information.frequency_range import frequency_range
+from seatrial.estimation.problem.output_error import OutputError
+from seatrial.estimation.problem.segments import cut
+from seatrial.numerics.optimise import Status, levenberg_marquardt
+from seatrial.physics.hydro.capytaine_data import HullData, HullExcitation
+from seatrial.physics.hydro.cummins import Memory, memory_of, simulate_memory
+from seatrial.physics.hydro.excitation import Complex
+from seatrial.physics.hydro.mesh import solve_hull, wigley
+from seatrial.physics.hydro.strip_theory import at_speed
+from seatrial.physics.models.heave_pitch import COEFFICIENTS, heave_pitch, physics_start
+from seatrial.physics.sea.encounter import encounter_frequency
+from seatrial.physics.sea.realise import Lines, harmonic_sum, realise
+from seatrial.physics.sea.spectrum import Spectrum, bretschneider, ittc, jonswap
 
 L, B, T, RHO = 60.0, 7.14, 2.27, 1025.0
 DT, FINE, DURATION = 0.1, 0.02, 240.0

@@ -23,18 +23,18 @@ from pathlib import Path
 import numpy as np
 from measure import Line, at_most, machine
 
-from seatrial.equations import Model
-from seatrial.identify import Settings, identified
-from seatrial.identify.identify import settings_of
-from seatrial.manoeuvres.measures import measures
-from seatrial.manoeuvres.programme import programme
-from seatrial.models.mmg import HULL, mmg
-from seatrial.models.published import esso_osaka, kvlcc2_full
-from seatrial.problem.static_forces import StaticForces
-from seatrial.simulate import replay
-from seatrial.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
-from seatrial.trial import Role, load_trial, records_of
-from seatrial.values import ForcePoints, Prior, Record
+from seatrial.core.equations import Model
+from seatrial.core.values import ForcePoints, Prior, Record
+from seatrial.data.trial import Role, load_trial, records_of
+from seatrial.estimation.identify import Settings, identified
+from seatrial.estimation.identify.identify import settings_of
+from seatrial.estimation.problem.static_forces import StaticForces
+from seatrial.physics.manoeuvres.measures import measures
+from seatrial.physics.manoeuvres.programme import programme
+from seatrial.physics.models.mmg import HULL, mmg
+from seatrial.physics.models.published import esso_osaka, kvlcc2_full
+from seatrial.physics.simulate import replay
+from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
 
 SEED, DRAWS, RATE, REVOLUTIONS = 11, 8, 1.0, 1.54
 TRAINING = ("zigzag:10/10", "zigzag:10/10:port")

@@ -9,16 +9,16 @@ import tempfile
 import numpy as np
 from measure import Line, at_most, fastest
 
-from seatrial.kernels.evaluate import evaluate
-from seatrial.kernels.sensitivity import evaluate_tangent
-from seatrial.models.mmg import mmg
-from seatrial.models.published import kvlcc2_l7
+from seatrial.numerics.kernels.evaluate import evaluate
+from seatrial.numerics.kernels.sensitivity import evaluate_tangent
+from seatrial.physics.models.mmg import mmg
+from seatrial.physics.models.published import kvlcc2_l7
 
 ROWS = 200
 PROGRAM = """
 import json, time
-import numpy, sympy, numba, seatrial.kernels.integrate, seatrial.equations.generate as generate
-from seatrial.models.mmg import mmg
+import numpy, sympy, numba, seatrial.numerics.kernels.integrate, seatrial.core.equations.generate as generate
+from seatrial.physics.models.mmg import mmg
 t = [time.perf_counter()]
 model = mmg(); t.append(time.perf_counter())
 generate.source_text(model.equations); t.append(time.perf_counter())

@@ -20,24 +20,24 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from seatrial.equations import Model
-from seatrial.equations.bindings import Input
-from seatrial.estimate.assemble import output_error
-from seatrial.estimate.estimate import estimate
-from seatrial.estimate.process_noise import prediction_error
-from seatrial.estimate.settings import SEGMENT_SHIP_LENGTHS, WINDOW_SHIP_LENGTHS, Settings
-from seatrial.estimate.start import start
-from seatrial.information.covariance import from_information
-from seatrial.kernels.steering import steer
-from seatrial.kernels.types import COMMAND_SIGNATURE, OPTIONS
-from seatrial.manoeuvres import zigzag
-from seatrial.manoeuvres.programme import programme
-from seatrial.manoeuvres.steering import FINISHED, Steering, rudder_angles
-from seatrial.simulate.approach import approach_speed
-from seatrial.simulate.channels import record_of
-from seatrial.studies.series import APPROACH, FINE_STEP, JET_VELOCITY, RATE, SLEW_RATE, noisy, truth
-from seatrial.values import Record
-from seatrial.workers import mapped_in_processes
+from seatrial.core.equations import Model
+from seatrial.core.equations.bindings import Input
+from seatrial.core.values import Record
+from seatrial.data.example_series.series import APPROACH, FINE_STEP, JET_VELOCITY, RATE, SLEW_RATE, noisy, truth
+from seatrial.estimation.estimate.assemble import output_error
+from seatrial.estimation.estimate.estimate import estimate
+from seatrial.estimation.estimate.process_noise import prediction_error
+from seatrial.estimation.estimate.settings import SEGMENT_SHIP_LENGTHS, WINDOW_SHIP_LENGTHS, Settings
+from seatrial.estimation.estimate.start import start
+from seatrial.estimation.information.covariance import from_information
+from seatrial.numerics.kernels.steering import steer
+from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
+from seatrial.numerics.workers import mapped_in_processes
+from seatrial.physics.manoeuvres import zigzag
+from seatrial.physics.manoeuvres.programme import programme
+from seatrial.physics.manoeuvres.steering import FINISHED, Steering, rudder_angles
+from seatrial.physics.simulate.approach import approach_speed
+from seatrial.physics.simulate.channels import record_of
 
 Array = NDArray[np.float64]
 FORCE, LEVER_LENGTHS, HELD, MEMORY = 1.0, 0.25, 0.1, 5.0

@@ -14,15 +14,15 @@ import to_one_percent
 from measure import Line, at_least, at_most, fastest, machine
 from to_one_percent import Array, lean
 
-from seatrial.models.heave_pitch import COEFFICIENTS, physics_start
-from seatrial.optimise import Box, Normal, Optimum, Solution, levenberg_marquardt, search
-from seatrial.optimise.improved_wild_horse import ImprovedHerdSettings, ImprovedWildHorse
-from seatrial.optimise.multistart import Multistart, Restarts, multistart
-from seatrial.problem.linear_record import LinearRecord
-from seatrial.problem.segments import cut
-from seatrial.studies import swarm_search
-from seatrial.studies.seaway import Voyage, sailed
-from seatrial.workers import mapped
+from seatrial.estimation.problem.linear_record import LinearRecord
+from seatrial.estimation.problem.segments import cut
+from seatrial.numerics.optimise import Box, Normal, Optimum, Solution, levenberg_marquardt, search
+from seatrial.numerics.optimise.improved_wild_horse import ImprovedHerdSettings, ImprovedWildHorse
+from seatrial.numerics.optimise.multistart import Multistart, Restarts, multistart
+from seatrial.numerics.workers import mapped
+from seatrial.physics.models.heave_pitch import COEFFICIENTS, physics_start
+from seatrial_studies import swarm_search
+from seatrial_studies.seaway import Voyage, sailed
 
 HEADINGS, NOISY_HEADINGS = (45, 90, 135, 180), (90, 135, 180)
 NEGLIGIBLE = 1e-12  # promised decrease, in half squared standard deviations: data without noise are fitted to rounding

@@ -12,23 +12,23 @@ from pathlib import Path
 import numpy as np
 from measure import Line, at_least, at_most, machine
 
-from seatrial.estimate.fit import Identified, identified
-from seatrial.estimate.intervals import intervals
-from seatrial.estimate.settings import Intervals
-from seatrial.identify.identify import identify, settings_of
-from seatrial.predict.cross_validation import Protocol
-from seatrial.predict.window_bands import covered, missed_windows
-from seatrial.results import Fit
-from seatrial.studies.alexandersson2022.margins import (
+from seatrial.core.results import Fit
+from seatrial.data.trial import Role, TrialRecord, load_trial, records_of
+from seatrial.data.trial.approach import approach_of
+from seatrial.estimation.estimate.fit import Identified, identified
+from seatrial.estimation.estimate.intervals import intervals
+from seatrial.estimation.estimate.settings import Intervals
+from seatrial.estimation.identify.identify import identify, settings_of
+from seatrial.estimation.predict.cross_validation import Protocol
+from seatrial.estimation.predict.window_bands import covered, missed_windows
+from seatrial_studies.alexandersson2022.margins import (
     HALF_WIDTH_LIMIT,
     HELD_OUT_SHARE,
     SHARE_LIMITS,
     WINDOW_S,
     turn_margins,
 )
-from seatrial.studies.alexandersson2022.published import SIDES
-from seatrial.trial import Role, TrialRecord, load_trial, records_of
-from seatrial.trial.approach import approach_of
+from seatrial_studies.alexandersson2022.published import SIDES
 
 TRIAL = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"
 SECONDS = 60.0

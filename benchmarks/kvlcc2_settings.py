@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 from measure import machine
 
-from seatrial.studies.alexandersson2022.left_out import left_out
-from seatrial.trial import Role, Trial, load_trial, records_of
-from seatrial.values import Prior
+from seatrial.core.values import Prior
+from seatrial.data.trial import Role, Trial, load_trial, records_of
+from seatrial_studies.alexandersson2022.left_out import left_out
 
 TRIAL = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"
 PUBLISHED_THRUST = {"k_0": 0.2931, "k_1": -0.2753, "k_2": -0.1385}

@@ -17,14 +17,14 @@ from numba import njit
 from scipy.linalg import expm, solve_continuous_lyapunov
 from scipy.signal import lsim
 
-from seatrial.loops import Block, Exposure, HullFactor, Performance, Seen, TransferLoop, exposure
-from seatrial.loops.exposure import over_nodes
-from seatrial.loops.fin import BOUNDS, ROLL, Preamplifier, fin_loop
-from seatrial.loops.objective import off_target, variance
-from seatrial.loops.performance import rows_of
-from seatrial.loops.state_space import StateSpace, canonical, state_space
-from seatrial.optimise import Box, GeneticSettings, RandomWeightGenetic, search
-from seatrial.sea.spectrum import ittc
+from seatrial.numerics.optimise import Box, GeneticSettings, RandomWeightGenetic, search
+from seatrial.physics.loops import Block, Exposure, HullFactor, Performance, Seen, TransferLoop, exposure
+from seatrial.physics.loops.exposure import over_nodes
+from seatrial.physics.loops.fin import BOUNDS, ROLL, Preamplifier, fin_loop
+from seatrial.physics.loops.objective import off_target, variance
+from seatrial.physics.loops.performance import rows_of
+from seatrial.physics.loops.state_space import StateSpace, canonical, state_space
+from seatrial.physics.sea.spectrum import ittc
 
 DURATION, DT, COUNT, POOL, SOME = 1000.0, 0.1, 20000, 400, 20
 LOWER, UPPER = (np.array(side) for side in zip(*BOUNDS.values(), strict=True))

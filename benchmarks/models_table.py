@@ -17,15 +17,21 @@ from pathlib import Path
 import numpy as np
 from measure import machine
 
-from seatrial.equations import Model
-from seatrial.identify import Settings, identified
-from seatrial.identify.identify import settings_of
-from seatrial.models.abkowitz import STANDARD, abkowitz
-from seatrial.models.nomoto import nomoto2
-from seatrial.predict.cross_validation import Protocol, cross_validated, fitted_folds, own_nuisances, window_errors
-from seatrial.predict.open_loop import open_loop, rms
-from seatrial.trial import Role, Trial, TrialRecord, load_trial, records_of
-from seatrial.values import InputError, Prior, Record
+from seatrial.core.equations import Model
+from seatrial.core.values import InputError, Prior, Record
+from seatrial.data.trial import Role, Trial, TrialRecord, load_trial, records_of
+from seatrial.estimation.identify import Settings, identified
+from seatrial.estimation.identify.identify import settings_of
+from seatrial.estimation.predict.cross_validation import (
+    Protocol,
+    cross_validated,
+    fitted_folds,
+    own_nuisances,
+    window_errors,
+)
+from seatrial.estimation.predict.open_loop import open_loop, rms
+from seatrial.physics.models.abkowitz import STANDARD, abkowitz
+from seatrial.physics.models.nomoto import nomoto2
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 HELD_OUT_SECONDS, WINDOW = 6.0, {"kvlcc2_hsva": 30.0, "esso_osaka": 50.0}

@@ -13,14 +13,14 @@ import numpy as np
 from measure import Line, machine
 from numpy.typing import NDArray
 
-from seatrial.equations import Model
-from seatrial.identify import Settings, identified
-from seatrial.information.covariance import from_information
-from seatrial.problem.output_error import OutputError
-from seatrial.problem.segments import cut
-from seatrial.studies.series import SENSOR_NOISE, noisy, truth
-from seatrial.studies.series import run as steered
-from seatrial.values import Record
+from seatrial.core.equations import Model
+from seatrial.core.values import Record
+from seatrial.data.example_series.series import SENSOR_NOISE, noisy, truth
+from seatrial.data.example_series.series import run as steered
+from seatrial.estimation.identify import Settings, identified
+from seatrial.estimation.information.covariance import from_information
+from seatrial.estimation.problem.output_error import OutputError
+from seatrial.estimation.problem.segments import cut
 
 Array = NDArray[np.float64]
 RATIO, COVERAGE, POOLED = (0.85, 1.2), (0.90, 0.99), (0.93, 0.97)

@@ -14,10 +14,10 @@ from measure import Line, at_least, at_most, fastest
 from scipy.linalg import expm
 from scipy.signal import lsim
 
-from seatrial.kernels.population import misfit
-from seatrial.models.heave_pitch import COEFFICIENTS
-from seatrial.models.qi2025 import SHIP, theory
-from seatrial.simulate.population import (
+from seatrial.numerics.kernels.population import misfit
+from seatrial.physics.models.heave_pitch import COEFFICIENTS
+from seatrial.physics.models.qi2025 import SHIP, theory
+from seatrial.physics.simulate.population import (
     Forcing,
     completed,
     discretised_ramp,

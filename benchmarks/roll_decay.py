@@ -15,11 +15,11 @@ import numpy as np
 from against_shipmmg import HERE, peers_python
 from measure import Line, at_least, at_most, fastest
 
-from seatrial.estimate import Identified, identified
-from seatrial.identify.identify import settings_of
-from seatrial.predict.open_loop import open_loop
-from seatrial.trial import Trial, load_trial, records_of
-from seatrial.values import Record
+from seatrial.core.values import Record
+from seatrial.data.trial import Trial, load_trial, records_of
+from seatrial.estimation.estimate import Identified, identified
+from seatrial.estimation.identify.identify import settings_of
+from seatrial.estimation.predict.open_loop import open_loop
 
 TRIAL = HERE.parent / "examples" / "kvlcc2_rolldecay.toml"
 TARGETS = {"model_test_21337": 0.99998, "model_test_21338": 0.9999}

@@ -8,20 +8,19 @@ from collections.abc import Callable
 
 import against_optimisers
 import against_shipmmg
+import design
+import follow
 import fusion
 import generation
 import heave_pitch
+import loops
 import montecarlo
 import population
 import roll_decay
 import simulation
+import tune
 import waterjet_rivals
 from measure import Line, machine
-
-import design
-import follow
-import loops
-import tune
 
 BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "simulation": simulation.run,

@@ -6,7 +6,7 @@ v - x_G r and nondimensionalises with v; the same is done here, so that the comp
 
 import sympy as sp
 
-from seatrial.equations import Model, Sheet
+from seatrial.core.equations import Model, Sheet
 
 RHO, L, D = 1025.0, 7.00, 0.46
 MASS = 3.27 * RHO

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 from measure import Line, at_least, at_most, fastest
 
-from seatrial.equations import Model
-from seatrial.models.waterjet import COEFFICIENTS, waterjet
-from seatrial.simulate.batch import Batch
+from seatrial.core.equations import Model
+from seatrial.physics.models.waterjet import COEFFICIENTS, waterjet
+from seatrial.physics.simulate.batch import Batch
 
 STEPS = 20_000
 DT = 0.1

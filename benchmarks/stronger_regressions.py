@@ -13,14 +13,14 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
-from seatrial.equations import Model
-from seatrial.kernels.sensitivity import evaluate_tangent
-from seatrial.regress.estimators import Estimator, Regressed
-from seatrial.regress.features import Motion
-from seatrial.regress.weak import shape
-from seatrial.simulate.replay import replay
-from seatrial.studies.series import SENSOR_NOISE
-from seatrial.values import Record
+from seatrial.core.equations import Model
+from seatrial.core.values import Record
+from seatrial.data.example_series.series import SENSOR_NOISE
+from seatrial.estimation.regress.estimators import Estimator, Regressed
+from seatrial.estimation.regress.features import Motion
+from seatrial.estimation.regress.weak import shape
+from seatrial.numerics.kernels.sensitivity import evaluate_tangent
+from seatrial.physics.simulate.replay import replay
 
 Array = NDArray[np.float64]
 SMOOTHED = ("u", "v", "r", "psi", "x0", "y0")

@@ -18,12 +18,12 @@ from measure import Line, at_least, fastest
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from seatrial.optimise import Box, Normal, levenberg_marquardt
-from seatrial.problem.linear_record import LinearRecord
-from seatrial.problem.segments import Segments
-from seatrial.simulate.population import fitness, trajectories
-from seatrial.studies.seaway import HEAVE_NOISE, PITCH_NOISE
-from seatrial.studies.swarm_search import STEP, Data, heave_pitch_candidates, off_centre, sailed
+from seatrial.estimation.problem.linear_record import LinearRecord
+from seatrial.estimation.problem.segments import Segments
+from seatrial.numerics.optimise import Box, Normal, levenberg_marquardt
+from seatrial.physics.simulate.population import fitness, trajectories
+from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE
+from seatrial_studies.swarm_search import STEP, Data, heave_pitch_candidates, off_centre, sailed
 
 Array = NDArray[np.float64]
 HERE = Path(__file__).parent

@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 from measure import Line, at_least, at_most
 
-from seatrial import verbs
-from seatrial.loops import HullFactor, Objective, Seen
-from seatrial.loops.fin import PUBLISHED_GAINS, Preamplifier, fin_loop
-from seatrial.loops.objective import off_target, variance
-from seatrial.optimise import hypervolume
-from seatrial.results.tuning import Restriction, Tuning
-from seatrial.sea.spectrum import ittc
-from seatrial.tune.assess import judge
-from seatrial.tune.front import Effort, front, grid
-from seatrial.tune.task import Seaway, Task
+from seatrial import api
+from seatrial.control.assess import judge
+from seatrial.control.front import Effort, front, grid
+from seatrial.control.task import Seaway, Task
+from seatrial.core.results.tuning import Restriction, Tuning
+from seatrial.numerics.optimise import hypervolume
+from seatrial.physics.loops import HullFactor, Objective, Seen
+from seatrial.physics.loops.fin import PUBLISHED_GAINS, Preamplifier, fin_loop
+from seatrial.physics.loops.objective import off_target, variance
+from seatrial.physics.sea.spectrum import ittc
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 KNOT, POINTS = 1852.0 / 3600.0, 160
@@ -66,7 +66,7 @@ def _front(reading: Preamplifier, name: str, objectives: tuple[Objective, ...]) 
 
 
 def _fins() -> list[Line]:
-    made = verbs.tune(verbs.load_loop(EXAMPLES / "fin_stabiliser.toml"))
+    made = api.tune(api.load_loop(EXAMPLES / "fin_stabiliser.toml"))
     own = float(np.mean([slot.cost for slot in made.schedule]))
     published = float(np.mean([slot.others["as published"] for slot in made.schedule]))
     headings = sorted({slot.beta for slot in made.schedule})
@@ -94,8 +94,8 @@ def _autopilots() -> list[Line]:
         if trial == "kvlcc2_hsva" and "SEATRIAL_DATA" not in os.environ:
             continue
         with tempfile.TemporaryDirectory() as folder:
-            verbs.save(verbs.identify(verbs.load_trial(EXAMPLES / f"{trial}.toml")), folder)
-            made = verbs.tune(verbs.load_loop(EXAMPLES / f"{loop}.toml", model_file=Path(folder) / "model.toml"))
+            api.save(api.identify(api.load_trial(EXAMPLES / f"{trial}.toml")), folder)
+            made = api.tune(api.load_loop(EXAMPLES / f"{loop}.toml", model_file=Path(folder) / "model.toml"))
         lines += _autopilot(trial, made)
     return lines
 

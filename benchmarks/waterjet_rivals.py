@@ -16,17 +16,17 @@ from montecarlo import EXECUTES, SEED, Series, series
 from numpy.typing import NDArray
 from stronger_regressions import OnSmoothed, Weighted
 
-from seatrial.identify import Settings, identified
-from seatrial.manoeuvres.programme import programme
-from seatrial.regress.arithmetic import LeastSquares
-from seatrial.regress.estimators import Estimator, InstrumentalVariables, Regression
-from seatrial.regress.named import regressions
-from seatrial.regress.operators import Central, Smoothed, Weak
-from seatrial.regress.pipeline import Pipeline
-from seatrial.simulate.steer import manoeuvre
-from seatrial.studies.series import JET_VELOCITY, SLEW_RATE, noisy, truth
-from seatrial.studies.series import run as steered
-from seatrial.values import InputError, Record
+from seatrial.core.values import InputError, Record
+from seatrial.data.example_series.series import JET_VELOCITY, SLEW_RATE, noisy, truth
+from seatrial.data.example_series.series import run as steered
+from seatrial.estimation.identify import Settings, identified
+from seatrial.estimation.regress.arithmetic import LeastSquares
+from seatrial.estimation.regress.estimators import Estimator, InstrumentalVariables, Regression
+from seatrial.estimation.regress.named import regressions
+from seatrial.estimation.regress.operators import Central, Smoothed, Weak
+from seatrial.estimation.regress.pipeline import Pipeline
+from seatrial.physics.manoeuvres.programme import programme
+from seatrial.physics.simulate.steer import manoeuvre
 
 Array = NDArray[np.float64]
 RUNS = 20

@@ -11,10 +11,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-import seatrial.verbs as sea
-from seatrial.report.figures.tracks import hull
-from seatrial.results import Prediction
-from seatrial.values import Record
+import seatrial.api as sea
+from seatrial.core.figures.tracks import hull
+from seatrial.core.results import Prediction
+from seatrial.core.values import Record
 
 REPOSITORY = Path(__file__).parents[1]
 MEASURED = {"color": "#b2b2b2", "linewidth": 3.4}

@@ -3,12 +3,12 @@
 import json
 from pathlib import Path
 
-from seatrial.trial.design_json import design_schema
-from seatrial.trial.fit_json import fit_schema
-from seatrial.trial.online_json import online_schema
-from seatrial.trial.schema import trial_schema
-from seatrial.trial.tuning_json import tuning_schema
-from seatrial.tune.loopfile.schema import loop_schema
+from seatrial.control.loopfile.schema import loop_schema
+from seatrial.data.folder.design_json import design_schema
+from seatrial.data.folder.fit_json import fit_schema
+from seatrial.data.folder.online_json import online_schema
+from seatrial.data.folder.tuning_json import tuning_schema
+from seatrial.data.trial.schema import trial_schema
 
 if __name__ == "__main__":
     schemas = {

@@ -6,10 +6,10 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
-from seatrial.hydro.dispersion import G
-from seatrial.sea.realise import Spacing, harmonic_sum, realise
-from seatrial.sea.spectrum import Spectrum
-from seatrial.values import Record
+from seatrial.core.values import Record
+from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.sea.realise import Spacing, harmonic_sum, realise
+from seatrial.physics.sea.spectrum import Spectrum
 
 SHIP = {"b_1": 0.08, "b_2": 0.0, "b_3": 0.0, "c_1": (2.0 * np.pi / 10.0) ** 2, "c_3": 0.0, "c_5": 0.0, "phi_0": 0.005}
 BREADTH, DRAUGHT = 10.5, 3.4

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from seatrial.models.qi2025 import theory
-from seatrial.studies.seaway import FIN, Voyage, sailed, ship
+from seatrial.physics.models.qi2025 import theory
+from seatrial_studies.seaway import FIN, Voyage, sailed, ship
 
 UNITS = {"F3": "N", "M5": "N m", "delta_f1": "rad", "z": "m", "theta": "rad", "zeta": "m"}
 WITH_BOX = """

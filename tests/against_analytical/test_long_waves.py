@@ -9,13 +9,13 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.equations import Model
-from seatrial.hydro.dispersion import G
-from seatrial.hydro.excitation import encounter_frequency
-from seatrial.models.qi2025 import SPEED
-from seatrial.simulate.harmonics import Complex, frequency_response, plant
-from seatrial.studies.seaway import box, ship
-from seatrial.values import Array
+from seatrial.core.equations import Model
+from seatrial.core.values import Array
+from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.hydro.excitation import encounter_frequency
+from seatrial.physics.models.qi2025 import SPEED
+from seatrial.physics.simulate.harmonics import Complex, frequency_response, plant
+from seatrial_studies.seaway import box, ship
 
 everywhere = pytest.mark.parametrize("heading", [0, 30, 60, 90, 120, 150, 180])
 at_all_speeds = pytest.mark.parametrize("U", [0.0, 5.0, SPEED])

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from seatrial.equations import Model
-from seatrial.kernels.integrate import replay
-from seatrial.models.nomoto import nomoto, nomoto2
-from seatrial.values import Array
+from seatrial.core.equations import Model
+from seatrial.core.values import Array
+from seatrial.numerics.kernels.integrate import replay
+from seatrial.physics.models.nomoto import nomoto, nomoto2
 
 DT, ROWS, STEP = 0.05, 2001, 0.2
 

@@ -6,17 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from seatrial.equations import Model
-from seatrial.estimate.fit import Identified
-from seatrial.identify import identified
-from seatrial.manoeuvres.programme import programme
-from seatrial.models.abkowitz import STANDARD, abkowitz
-from seatrial.models.mmg import HULL
-from seatrial.models.nomoto import nomoto, nomoto2
-from seatrial.models.published import kvlcc2, kvlcc2_l7
-from seatrial.models.waterjet import COEFFICIENTS, waterjet
-from seatrial.simulate.steer import manoeuvre
-from seatrial.values import Record
+from seatrial.core.equations import Model
+from seatrial.core.values import Record
+from seatrial.estimation.estimate.fit import Identified
+from seatrial.estimation.identify import identified
+from seatrial.physics.manoeuvres.programme import programme
+from seatrial.physics.models.abkowitz import STANDARD, abkowitz
+from seatrial.physics.models.mmg import HULL
+from seatrial.physics.models.nomoto import nomoto, nomoto2
+from seatrial.physics.models.published import kvlcc2, kvlcc2_l7
+from seatrial.physics.models.waterjet import COEFFICIENTS, waterjet
+from seatrial.physics.simulate.steer import manoeuvre
 
 MODEL_SCALE_SLEW = math.radians(15.8)
 

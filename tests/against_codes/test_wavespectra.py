@@ -7,7 +7,7 @@ import math
 
 import pytest
 
-from seatrial.sea.spectrum import Spectrum, bretschneider, jonswap
+from seatrial.physics.sea.spectrum import Spectrum, bretschneider, jonswap
 
 PM, YOUNG = bretschneider(3.0, 10.0), jonswap(3.0, 10.0, 3.3)
 SMALL, STEEP = jonswap(0.88, 6.25, 1.7), jonswap(7.5, 15.0, 7.0)

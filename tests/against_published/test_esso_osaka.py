@@ -6,10 +6,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from seatrial.kernels.integrate import replay
-from seatrial.models.mmg import mmg
-from seatrial.models.published import esso_osaka
-from seatrial.values import Array
+from seatrial.core.values import Array
+from seatrial.numerics.kernels.integrate import replay
+from seatrial.physics.models.mmg import mmg
+from seatrial.physics.models.published import esso_osaka
 
 WINDOW = 500  # 50 s at 10 Hz
 STATES = ("u_velo", "vm_velo", "r_angvelo", "psi_hat", "x_position_mid", "y_position_mid")

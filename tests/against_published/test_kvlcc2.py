@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.kernels.integrate import replay
-from seatrial.models.published import kvlcc2, kvlcc2_l7
-from seatrial.values import Array
+from seatrial.core.values import Array
+from seatrial.numerics.kernels.integrate import replay
+from seatrial.physics.models.published import kvlcc2, kvlcc2_l7
 
 SPEED = 1.18  # m/s, 15.5 kn at 1:45.7
 

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatrial.identify import identify
-from seatrial.results import Fit
-from seatrial.trial import load_trial
+from seatrial.core.results import Fit
+from seatrial.data.trial import load_trial
+from seatrial.estimation.identify import identify
 
 TRIAL = Path(__file__).parents[2] / "examples" / "kvlcc2_rolldecay.toml"
 RUNS = ("model_test_21337", "model_test_21338")

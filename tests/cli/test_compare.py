@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.reporting.fabricated import fabricated_fit
+from tests.reporting.told import rivals
 
-from report.fabricated import fabricated_fit
-from report.told import rivals
 from seatrial import cli
-from seatrial.results import Fit
+from seatrial.core.results import Fit
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *arguments: str | Path) -> int:
@@ -29,7 +29,7 @@ def test_it_compares_when_asked_and_the_report_shows_it_again(
         plain = fabricated_fit()
         return replace(plain, rivals=rivals(plain)) if compare else plain
 
-    monkeypatch.setattr("seatrial.identify.identify", identified)
+    monkeypatch.setattr("seatrial.estimation.identify.identify", identified)
     trial, out = repository / "examples" / "waterjet.toml", tmp_path / "out"
     assert run(monkeypatch, "identify", trial, "--out", out, "--json", tmp_path / "fit.json", *option) == 0
     told = json.loads((tmp_path / "fit.json").read_text())["rivals"]

@@ -8,18 +8,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.reporting.designed import fabricated_design
 
-from report.designed import fabricated_design
-from seatrial import cli, verbs
-from seatrial.design.asked import task_of
-from seatrial.information.symmetries import refuse_structural
-from seatrial.models import model_named
-from seatrial.read import read_table
-from seatrial.results import Order
-from seatrial.trial.design_json import DesignDocument
-from seatrial.trial.model_file import ModelFile, write_model
-from seatrial.trial.orders import orders_text
-from seatrial.values import InputError, Kind, Ship
+from seatrial import api, cli
+from seatrial.core.results import Order
+from seatrial.core.values import InputError, Kind, Ship
+from seatrial.data.folder.design_json import DesignDocument
+from seatrial.data.folder.model_file import ModelFile, write_model
+from seatrial.data.folder.orders import orders_text
+from seatrial.data.read import read_table
+from seatrial.estimation.design.asked import task_of
+from seatrial.estimation.information.symmetries import refuse_structural
+from seatrial.physics.models import model_named
 
 TRIAL = """
 [ship]
@@ -52,7 +52,7 @@ def run(monkeypatch: pytest.MonkeyPatch, *arguments: str | Path) -> int:
 @pytest.fixture
 def trial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A trial file; the search is replaced by a design nobody searched."""
-    monkeypatch.setattr("seatrial.verbs.design", lambda *_, **__: fabricated_design())
+    monkeypatch.setattr("seatrial.api.design", lambda *_, **__: fabricated_design())
     path = tmp_path / "trial.toml"
     path.write_text(TRIAL)
     return path
@@ -87,13 +87,13 @@ def test_the_plan_replays(trial: Path, tmp_path: Path, monkeypatch: pytest.Monke
     assert plan.kind is Kind.PLANNED
     assert np.array_equal(sailed["delta"], plan["delta"])
     assert (sailed["v"][0], sailed["r"][0], sailed["psi"][0]) == (0.0, 0.0, 0.0)
-    straight = verbs.simulate(verbs.load_model(model), "zigzag:20/20", inputs={"v_j": 1.866}, duration=1.0)
+    straight = api.simulate(api.load_model(model), "zigzag:20/20", inputs={"v_j": 1.866}, duration=1.0)
     assert sailed["u"][0] == straight["u"][0]
 
 
 def test_a_plan_starts_at_the_speed_that_is_said() -> None:
     file = ModelFile(model_named("waterjet"), ship=Ship("craft", {"L": 9.8}))
-    assert verbs.replay(file, fabricated_design().plan, 1.25)["u"][0] == 1.25
+    assert api.replay(file, fabricated_design().plan, 1.25)["u"][0] == 1.25
 
 
 def test_orders_are_in_people_s_units() -> None:
@@ -107,7 +107,7 @@ def test_orders_are_in_people_s_units() -> None:
 def test_json_is_as_documented_and_holds_no_infinity(tmp_path: Path) -> None:
     design = fabricated_design()
     blind = replace(design.designed, relative=np.full(11, np.inf))
-    verbs.save_design(replace(design, designed=blind), tmp_path)
+    api.save_design(replace(design, designed=blind), tmp_path)
     table = json.loads((tmp_path / "design.json").read_text())
     assert DesignDocument.model_validate(table).designed.worst is None
     assert table["rivals"][1]["diverged"] == 1 and table["rivals"][1]["drawn"][2]["X_uu"] is None
@@ -121,7 +121,7 @@ def test_a_search_that_refuses_leaves_nothing_behind(
     def refused(*_: object, **__: object) -> None:
         raise InputError("design.drift: even a straight run leaves it; allow more")
 
-    monkeypatch.setattr("seatrial.verbs.design", refused)
+    monkeypatch.setattr("seatrial.api.design", refused)
     assert run(monkeypatch, "design", trial, "--out", tmp_path / "plan") == 2
     assert capsys.readouterr().err.endswith("seatrial: design.drift: even a straight run leaves it; allow more\n")
     assert not (tmp_path / "plan").exists()
@@ -195,7 +195,7 @@ def test_the_search_itself_beats_the_standard_and_repeats_to_the_bit(
 @pytest.mark.parametrize("name", ["waterjet", "kvlcc2", "heave_pitch"])
 def test_the_examples_ask_for_what_can_be_told(name: str, repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("SEATRIAL_DATA", raising=False)
-    task = task_of(verbs.load_trial(repository / "examples" / f"{name}_design.toml"))
+    task = task_of(api.load_trial(repository / "examples" / f"{name}_design.toml"))
     assert task.draws > 0
     assert np.isfinite(task.start).all()
     refuse_structural(task.model, tuple(task.sensors), ())

@@ -12,11 +12,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from tests.onboard.streams import EXAMPLES, LINES
 
-from follow.streams import EXAMPLES, LINES
 from seatrial import cli
-from seatrial.trial.fit_json import FitDocument
-from seatrial.trial.online_json import OnlineDocument
+from seatrial.data.folder.fit_json import FitDocument
+from seatrial.data.folder.online_json import OnlineDocument
 
 COMMAND = (sys.executable, "-c", "from seatrial.cli import main; main()", "follow")
 

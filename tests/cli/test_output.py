@@ -3,9 +3,9 @@
 from dataclasses import replace
 
 import pytest
+from tests.reporting.fabricated import fabricated_fit
+from tests.reporting.told import rivals, told
 
-from report.fabricated import fabricated_fit
-from report.told import rivals, told
 from seatrial.cli.output import print_fit
 
 

@@ -7,21 +7,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.control.loop_files import AUTOPILOT, FIN, model_file, nomoto, written
+from tests.reporting.tuned import fabricated_autopilot, fabricated_bare, fabricated_fin
 
-from report.tuned import fabricated_autopilot, fabricated_bare, fabricated_fin
-from seatrial import cli, verbs
+from seatrial import api, cli
 from seatrial.cli.tuned import print_tuning
-from seatrial.loops import margins
-from seatrial.models import model_named
-from seatrial.results.tuning import Tuning
-from seatrial.trial import load_trial
-from seatrial.trial.folder import save_fit
-from seatrial.trial.model_file import ModelFile, write_model
-from seatrial.trial.tuning_files import read_gains
-from seatrial.trial.tuning_json import TuningDocument
-from seatrial.tune.loopfile.load import task_of
-from seatrial.values import InputError, Ship
-from tune.loop_files import AUTOPILOT, FIN, model_file, nomoto, written
+from seatrial.control.loopfile.load import task_of
+from seatrial.core.results.tuning import Tuning
+from seatrial.core.values import InputError, Ship
+from seatrial.data.folder.model_file import ModelFile, write_model
+from seatrial.data.folder.result_folder import save_fit
+from seatrial.data.folder.tuning_files import read_gains
+from seatrial.data.folder.tuning_json import TuningDocument
+from seatrial.data.trial import load_trial
+from seatrial.physics.loops import margins
+from seatrial.physics.models import model_named
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *arguments: str | Path) -> int:
@@ -34,7 +34,7 @@ def run(monkeypatch: pytest.MonkeyPatch, *arguments: str | Path) -> int:
 @pytest.fixture
 def loop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A loop file; the search is replaced by a tuning nobody searched."""
-    monkeypatch.setattr("seatrial.verbs.tune", lambda *_, **__: fabricated_fin())
+    monkeypatch.setattr("seatrial.api.tune", lambda *_, **__: fabricated_fin())
     return written(tmp_path, FIN)
 
 
@@ -72,7 +72,7 @@ def test_an_autopilot_has_no_schedule_to_write_and_says_what_it_turns(
     tmp_path: Path, capsys: pytest.CaptureFixture
 ) -> None:
     tuning = fabricated_autopilot()
-    verbs.save_tuning(tuning, tmp_path)
+    api.save_tuning(tuning, tmp_path)
     assert not (tmp_path / "schedule.csv").exists()
     print_tuning(tuning)
     said = capsys.readouterr().out
@@ -107,7 +107,7 @@ def test_a_search_that_refuses_leaves_nothing_behind(
     def refused(*_: object, **__: object) -> Tuning:
         raise InputError("no gains keep the limits: Ms by 12 %; raise that limit")
 
-    monkeypatch.setattr("seatrial.verbs.tune", refused)
+    monkeypatch.setattr("seatrial.api.tune", refused)
     assert run(monkeypatch, "tune", loop, "--out", tmp_path / "fins") == 2
     assert capsys.readouterr().err.endswith("seatrial: no gains keep the limits: Ms by 12 %; raise that limit\n")
     assert not (tmp_path / "fins").exists()
@@ -117,7 +117,7 @@ def test_an_interruption_leaves_nothing_behind(loop: Path, tmp_path: Path, monke
     def interrupted(*_: object, **__: object) -> Tuning:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("seatrial.verbs.tune", interrupted)
+    monkeypatch.setattr("seatrial.api.tune", interrupted)
     assert run(monkeypatch, "tune", loop, "--out", tmp_path / "fins") == cli.INTERRUPTED
     assert not (tmp_path / "fins").exists()
 
@@ -148,7 +148,7 @@ def test_bad_input_is_one_line_and_code_two(
 def test_the_ship_can_be_named_on_the_command_line(tmp_path: Path) -> None:
     known = model_file(tmp_path, nomoto(), "known.toml")
     path = written(tmp_path, AUTOPILOT, ("model.toml", "no such place/model.toml"))
-    task = verbs.load_loop(path, model_file=known)
+    task = api.load_loop(path, model_file=known)
     assert task.U == 7.0 and task.vessel is not None
 
 
@@ -162,12 +162,12 @@ def test_the_example_asks_for_a_schedule_over_27_conditions(repository: Path) ->
 def test_from_a_decay_record_to_a_model_to_a_loop(repository: Path, tmp_path: Path) -> None:
     """Two commands: what identify writes is what tune reads."""
     examples = repository / "examples"
-    fit = verbs.identify(verbs.load_trial(examples / "fin_decay.toml"))
+    fit = api.identify(api.load_trial(examples / "fin_decay.toml"))
     free = [c for c in fit.coefficients if not c.fixed and c.truth]
     assert len(free) == 4
     assert all(abs(c.estimate - c.truth) < 3.5 * c.standard_error for c in free)  # type: ignore[operator]
     known = save_fit(fit, tmp_path) / "model.toml"
-    task = verbs.load_loop(examples / "fin_from_decay.toml", model_file=known)
+    task = api.load_loop(examples / "fin_from_decay.toml", model_file=known)
     assert task.vessel is not None and len(task.vessel.covariance) == 5
     assert task.loop.plant.gain == pytest.approx(0.256, rel=0.01)
 
@@ -180,6 +180,6 @@ def test_the_autopilots_of_the_examples_turn_their_ships(repository: Path, tmp_p
     for name, file in ships.items():
         known = tmp_path / f"{name}.toml"
         write_model(file, known)
-        task = verbs.load_loop(repository / "examples" / f"{name}_autopilot.toml", model_file=known)
+        task = api.load_loop(repository / "examples" / f"{name}_autopilot.toml", model_file=known)
         assert task.demand is not None and task.demand.overshoot == 0.02 and task.restriction.peak == 1.7
         assert margins(task.loop).is_stable

@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import seatrial.verbs as sea
-from seatrial.identify import identify
-from seatrial.models import model_from_file
-from seatrial.trial import load_trial
-from seatrial.trial.folder import save_fit
+import seatrial.api as sea
+from seatrial.data.folder.result_folder import save_fit
+from seatrial.data.trial import load_trial
+from seatrial.estimation.identify import identify
+from seatrial.physics.models import model_from_file
 
 REPOSITORY = Path(__file__).parents[2]
 PAGES = sorted([REPOSITORY / "README.md", *(REPOSITORY / "docs").rglob("*.md")])

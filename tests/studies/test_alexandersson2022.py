@@ -5,31 +5,31 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from tests.reporting.fabricated import fabricated_fit
 
-from report.fabricated import fabricated_fit
-from seatrial import cli, verbs
-from seatrial.predict.window_bands import Covered
-from seatrial.results import Member, Study, Verdict
-from seatrial.studies import STUDIES
-from seatrial.studies.alexandersson2022 import published, verdicts
-from seatrial.studies.alexandersson2022.left_out import LeftOut, jackknife_error
-from seatrial.studies.alexandersson2022.margins import Margins, TurnMargin
-from seatrial.studies.alexandersson2022.margins import tables as margin_tables
-from seatrial.studies.alexandersson2022.published import MEASURED_TURNS, PREDICTED_TURNS, SIDES, percent
-from seatrial.studies.alexandersson2022.repetition import Repetition, noise_of
-from seatrial.studies.alexandersson2022.tables import left_out, left_out_turns
-from seatrial.trial.fit_json import strict_json
-from seatrial.values import Finding, InputError, Record, Severity
+from seatrial import api, cli
+from seatrial.core.results import Member, Study, Verdict
+from seatrial.core.values import Finding, InputError, Record, Severity
+from seatrial.data.folder.fit_json import strict_json
+from seatrial.estimation.predict.window_bands import Covered
+from seatrial_studies.alexandersson2022 import published, verdicts
+from seatrial_studies.alexandersson2022.left_out import LeftOut, jackknife_error
+from seatrial_studies.alexandersson2022.margins import Margins, TurnMargin
+from seatrial_studies.alexandersson2022.margins import tables as margin_tables
+from seatrial_studies.alexandersson2022.published import MEASURED_TURNS, PREDICTED_TURNS, SIDES, percent
+from seatrial_studies.alexandersson2022.repetition import Repetition, noise_of
+from seatrial_studies.alexandersson2022.tables import left_out, left_out_turns
 
 
 @pytest.fixture(scope="module")
 def quick(data_folder: Path) -> Iterator[Study]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SEATRIAL_DATA", str(data_folder))
-        yield verbs.reproduce("alexandersson2022", quick=True)
+        yield api.reproduce("alexandersson2022", quick=True)
 
 
 def test_quick_run_has_the_promised_keys(quick: Study) -> None:
@@ -55,7 +55,7 @@ def test_nothing_is_fitted_on_the_validation_run(quick: Study) -> None:
 
 
 def test_the_page_and_the_json_are_written(quick: Study, tmp_path: Path) -> None:
-    page = verbs.save_study(quick, tmp_path / "made")
+    page = api.save_study(quick, tmp_path / "made")
     assert json.loads((tmp_path / "made" / "study.json").read_text()) == json.loads(strict_json(quick.as_table()))
     assert "MARIN" in page.read_text() and page.name == "report.html"
 
@@ -65,7 +65,8 @@ def test_the_command_writes_report_and_json_and_prints_what_fails(
 ) -> None:
     repetition = made(factor=1.2)
     bare = Study("bare", "Nobody 2022", (verdicts.turning(repetition),), verdicts.checks(repetition))
-    monkeypatch.setitem(STUDIES, "bare", lambda **_: bare)
+    installed = SimpleNamespace(name="bare", load=lambda: lambda **_: bare)
+    monkeypatch.setattr("seatrial.api.entry_points", lambda group: [installed])  # noqa: ARG005
     arguments = ["seatrial", "reproduce", "bare", "--out", str(tmp_path / "out"), "--json", str(tmp_path / "bare.json")]
     monkeypatch.setattr("sys.argv", arguments)
     with pytest.raises(SystemExit) as ending:
@@ -82,7 +83,7 @@ def test_without_the_records_it_says_what_to_do(folder: str | None, monkeypatch:
     if folder:
         monkeypatch.setenv("SEATRIAL_DATA", folder)
     with pytest.raises(InputError, match=r"SEATRIAL_DATA.*set it to their folder"):
-        verbs.reproduce("alexandersson2022", quick=True)
+        api.reproduce("alexandersson2022", quick=True)
 
 
 def test_the_paper_s_errors_follow_from_its_table() -> None:

@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from seatrial.results import Study, Verdict
-from seatrial.studies import STUDIES
-from seatrial.studies.meng2014.study import insensitive, twelve_unknowns
-from seatrial.studies.swarm_search import sailed
+from seatrial.core.results import Study, Verdict
+from seatrial_studies import meng2014
+from seatrial_studies.meng2014.study import insensitive, twelve_unknowns
+from seatrial_studies.swarm_search import sailed
 
 
 @pytest.fixture(scope="module")
 def study() -> Study:
-    return STUDIES["meng2014"](quick=True, seed=0, progress=None)
+    return meng2014.study(quick=True, seed=0, progress=None)
 
 
 def test_twelve_unknowns_are_told_by_waves_and_fin_together_only() -> None:

@@ -3,20 +3,20 @@
 import numpy as np
 import pytest
 
-from seatrial.models.qi2025 import HEADINGS
-from seatrial.optimise import HerdSettings, WildHorse, search
-from seatrial.results import Study, Verdict
-from seatrial.studies import STUDIES
-from seatrial.studies.qi2025.audit import audit
-from seatrial.studies.qi2025.carried import carried_sample
-from seatrial.studies.qi2025.published import Algorithm, misprinted, recomputed_error
-from seatrial.studies.qi2025.repetition import Setting
-from seatrial.studies.swarm_search import centred, off_centre, one_sample, sailed, searched
+from seatrial.core.results import Study, Verdict
+from seatrial.numerics.optimise import HerdSettings, WildHorse, search
+from seatrial.physics.models.qi2025 import HEADINGS
+from seatrial_studies import qi2025
+from seatrial_studies.qi2025.audit import audit
+from seatrial_studies.qi2025.carried import carried_sample
+from seatrial_studies.qi2025.published import Algorithm, misprinted, recomputed_error
+from seatrial_studies.qi2025.repetition import Setting
+from seatrial_studies.swarm_search import centred, off_centre, one_sample, sailed, searched
 
 
 @pytest.fixture(scope="module")
 def study() -> Study:
-    return STUDIES["qi2025"](quick=True, seed=0, progress=None)
+    return qi2025.study(quick=True, seed=0, progress=None)
 
 
 def test_six_printed_errors_do_not_follow_from_their_values() -> None:

@@ -5,15 +5,15 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.studies import ready
-from seatrial.trial import Role
-from seatrial.values import InputError
+from seatrial.core.values import InputError
+from seatrial.data.trial import Role
+from seatrial_studies import ready
 
 
 def test_the_wheel_carries_the_examples_where_they_are_looked_for(repository: Path) -> None:
     table = tomllib.loads((repository / "pyproject.toml").read_text(encoding="utf-8"))
     included = table["tool"]["hatch"]["build"]["targets"]["wheel"]["force-include"]
-    package = Path(ready.__file__).parents[2]
+    package = Path(ready.__file__).parents[1]
     for source, target in included.items():
         assert (repository / source).is_file()
         assert package / target == ready._PLACES[0] / Path(source).name

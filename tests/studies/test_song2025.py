@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from seatrial.results import Bars, Matrix, Study, Verdict
-from seatrial.studies.song2025 import study
-from seatrial.studies.song2025.candidates import thirteen
-from seatrial.studies.song2025.published import DROPPED, STATEMENTS
-from seatrial.studies.song2025.repetition import Row
-from seatrial.studies.song2025.verdicts import checks
-from seatrial.trial.fit_json import strict_json
+from seatrial.core.results import Bars, Matrix, Study, Verdict
+from seatrial.data.folder.fit_json import strict_json
+from seatrial_studies.song2025 import study
+from seatrial_studies.song2025.candidates import thirteen
+from seatrial_studies.song2025.published import DROPPED, STATEMENTS
+from seatrial_studies.song2025.repetition import Row
+from seatrial_studies.song2025.verdicts import checks
 
 
 @cache

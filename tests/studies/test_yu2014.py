@@ -5,26 +5,26 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.hydro.dispersion import G
-from seatrial.loops.fin import Preamplifier
-from seatrial.loops.state_space import state_space
-from seatrial.results import Study, Verdict
-from seatrial.sea.spectrum import ittc
-from seatrial.studies import STUDIES
-from seatrial.studies.yu2014.audit import audit
-from seatrial.studies.yu2014.better import ALL, CAP, compared, least_roll, peak_of
-from seatrial.studies.yu2014.fitted import fitted
-from seatrial.studies.yu2014.histories import histories, variation_of_rms
-from seatrial.studies.yu2014.published import FOUND, HEIGHT, SET_AT, TABLE_1, TARGET, Column
-from seatrial.studies.yu2014.readings import HULL, SETTING, Fins, Sea, motion, objectives, performance
-from seatrial.studies.yu2014.searches import Setting, searches
+from seatrial.core.results import Study, Verdict
+from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.loops.fin import Preamplifier
+from seatrial.physics.loops.state_space import state_space
+from seatrial.physics.sea.spectrum import ittc
+from seatrial_studies import yu2014
+from seatrial_studies.yu2014.audit import audit
+from seatrial_studies.yu2014.better import ALL, CAP, compared, least_roll, peak_of
+from seatrial_studies.yu2014.fitted import fitted
+from seatrial_studies.yu2014.histories import histories, variation_of_rms
+from seatrial_studies.yu2014.published import FOUND, HEIGHT, SET_AT, TABLE_1, TARGET, Column
+from seatrial_studies.yu2014.readings import HULL, SETTING, Fins, Sea, motion, objectives, performance
+from seatrial_studies.yu2014.searches import Setting, searches
 
 PRINTED, WASHOUT = Preamplifier.PRINTED, Preamplifier.WASHOUT
 
 
 @pytest.fixture(scope="module")
 def study() -> Study:
-    return STUDIES["yu2014"](quick=True, seed=0, progress=None)
+    return yu2014.study(quick=True, seed=0, progress=None)
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ def main() -> None:
     try:
         app()
     except ValueError as error:
-        from seatrial.values import InputError
+        from seatrial.core.values import InputError
 
         if not isinstance(error, InputError):
             raise

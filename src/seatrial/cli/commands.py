@@ -20,9 +20,9 @@ from seatrial.cli.output import (
 from seatrial.cli.tuned import print_tuning
 
 if TYPE_CHECKING:
-    from seatrial.equations import Model
-    from seatrial.results import Design, Fit
-    from seatrial.results.tuning import Tuning
+    from seatrial.core.equations import Model
+    from seatrial.core.results import Design, Fit
+    from seatrial.core.results.tuning import Tuning
 
 app = typer.Typer(
     name="seatrial",
@@ -37,8 +37,8 @@ app = typer.Typer(
 def _json_place(path: Path | None) -> Path | None:
     """The place of the JSON file, tested before the work rather than after it."""
     if path is not None:
-        from seatrial.values import InputError
-        from seatrial.values.files import writable_folder
+        from seatrial.core.values import InputError
+        from seatrial.core.values.files import writable_folder
 
         if path.is_dir():
             raise InputError(f"--json {path} is a folder; name a file")
@@ -85,10 +85,10 @@ def check(
 
     Example: seatrial check examples/esso_osaka.toml
     """
-    from seatrial import verbs
-    from seatrial.trial.fit_json import findings_json
+    from seatrial import api
+    from seatrial.data.folder.fit_json import findings_json
 
-    findings = verbs.check(verbs.load_trial(trial, _own(model)))
+    findings = api.check(api.load_trial(trial, _own(model)))
     print_findings(findings, len(findings) if everything else OF_A_KIND)
     write_json(json, lambda: findings_json(findings))
 
@@ -114,13 +114,13 @@ def identify(
 
     Every run left out and refitted, and the spread of tied models: --intervals jackknife
     """
-    from seatrial import verbs
-    from seatrial.values.files import writable_folder
+    from seatrial import api
+    from seatrial.core.values.files import writable_folder
 
     writable_folder(out)
     with progress() as tell:
-        fit = verbs.identify(
-            verbs.load_trial(trial, _own(model)),
+        fit = api.identify(
+            api.load_trial(trial, _own(model)),
             seed=seed,
             progress=tell,
             intervals=intervals,
@@ -128,7 +128,7 @@ def identify(
             compare=compare,
         )
         tell("report")
-        page = verbs.save(fit, out)
+        page = api.save(fit, out)
     print_fit(fit)
     write_json(json, lambda: _fit_json(fit))
     print(f"report: {page}")
@@ -158,17 +158,17 @@ def follow(
 
     On board, with a page of moving plots and a journal: --page 8000 --out results/today
     """
-    from seatrial import verbs
-    from seatrial.trial.follow_table import fed_from, followed
-    from seatrial.values.files import writable_folder
+    from seatrial import api
+    from seatrial.core.values.files import writable_folder
+    from seatrial.data.trial.follow_table import fed_from, followed
 
     if out is not None:
         writable_folder(out)
-    asked = verbs.load_trial(trial, _own(model))
+    asked = api.load_trial(trial, _own(model))
     asked = asked if source is None else fed_from(asked, source)
     port = page if page is not None else followed(asked).page or None
     with stopping() as stop, watching(heading_of(asked), port) as show, progress() as tell:
-        outcome = verbs.follow(
+        outcome = api.follow(
             asked,
             once=once,
             journal=journal_place(journal, asked, out, once=once),
@@ -182,7 +182,7 @@ def follow(
         print_fit(outcome.fit)
     write_json(json, lambda: outcome_json(outcome))
     if out is not None:
-        print(f"result: {verbs.save_outcome(outcome, out)}")
+        print(f"result: {api.save_outcome(outcome, out)}")
 
 
 @app.command()
@@ -202,17 +202,17 @@ def design(
 
     After a first trial: --from results/waterjet/model.toml designs for the coefficients it gave.
     """
-    from seatrial import verbs
-    from seatrial.values.files import writable_folder
+    from seatrial import api
+    from seatrial.core.values.files import writable_folder
 
     writable_folder(out)
     own = _own(model)
-    asked = verbs.load_trial(trial, own)
-    known = None if prior is None else verbs.load_model(prior, own)
+    asked = api.load_trial(trial, own)
+    known = None if prior is None else api.load_model(prior, own)
     with progress() as tell:
-        found = verbs.design(asked, seed=seed, progress=tell, prior=known)
+        found = api.design(asked, seed=seed, progress=tell, prior=known)
         tell("report")
-        page = verbs.save_design(found, out)
+        page = api.save_design(found, out)
     print_design(found)
     write_json(json, lambda: _design_json(found))
     print(f"orders: {out / 'orders.csv'}")
@@ -238,16 +238,16 @@ def tune(
 
     On a ship just identified: --from results/waterjet/model.toml
     """
-    from seatrial import verbs
-    from seatrial.values.files import writable_folder
+    from seatrial import api
+    from seatrial.core.values.files import writable_folder
 
     if out is not None:
         writable_folder(out)
     with progress() as tell:
-        found = verbs.tune(verbs.load_loop(loop, _own(model), known), seed=seed, progress=tell)
+        found = api.tune(api.load_loop(loop, _own(model), known), seed=seed, progress=tell)
         if out is not None:
             tell("report")
-            verbs.save_tuning(found, out)
+            api.save_tuning(found, out)
     print_tuning(found)
     write_json(json, lambda: _tuning_json(found))
     if out is not None:
@@ -285,22 +285,22 @@ def simulate(
 
     Measured inputs: --inputs table.csv, or --trial examples/kvlcc2_hsva.toml --inputs HSVA_CPMC_KVLCC2_Z_35_05
     """
-    from seatrial import verbs
-    from seatrial.read import read_table, write_record
-    from seatrial.values import InputError
-    from seatrial.values.files import writable_folder
+    from seatrial import api
+    from seatrial.core.values import InputError
+    from seatrial.core.values.files import writable_folder
+    from seatrial.data.read import read_table, write_record
 
     if (manoeuvre is None) == (inputs is None):
         raise InputError("give either --manoeuvre or --inputs")
-    file = verbs.load_model(model_file, _own(model))
+    file = api.load_model(model_file, _own(model))
     writable_folder(out.parent)
     measured, intervals = None, {}
     if inputs is not None:
-        measured = read_table(Path(inputs)) if trial is None else verbs.run_of(trial, inputs)
-        record = verbs.replay(file, measured, speed)
+        measured = read_table(Path(inputs)) if trial is None else api.run_of(trial, inputs)
+        record = api.replay(file, measured, speed)
     else:
         held = dict(_pair(text) for text in constant or [])
-        steer = verbs.steering(
+        steer = api.steering(
             file,
             manoeuvre or "",
             speed=speed,
@@ -311,15 +311,15 @@ def simulate(
         )
         record = steer(file.model)
         try:
-            intervals = verbs.measure_intervals(file, steer)
+            intervals = api.measure_intervals(file, steer)
         except InputError as error:
             print(f"seatrial: {error}", file=sys.stderr)
     write_record(record, out)
     like = measured if measured is not None and "psi" in measured else None
-    measures = verbs.measures(file, record, like) if "psi" in record else {}
-    reach = verbs.extrapolation(file, record)
+    measures = api.measures(file, record, like) if "psi" in record else {}
+    reach = api.extrapolation(file, record)
     print_measures(measures, intervals, reach)
-    rms = {} if measured is None else verbs.differences(measured, record)
+    rms = {} if measured is None else api.differences(measured, record)
     if measured is not None and rms:
         print(f"against {measured.name}: rms {', '.join(f'{name} {value:.3g}' for name, value in rms.items())}")
     write_json(
@@ -347,10 +347,10 @@ def report(
 
     Example: seatrial report results/kvlcc2
     """
-    from seatrial import verbs
+    from seatrial import api
 
-    fit = verbs.load_fit(folder, _own(model))
-    page = verbs.report(fit, folder / "report.html")
+    fit = api.load_fit(folder, _own(model))
+    page = api.report(fit, folder / "report.html")
     write_json(json, lambda: _fit_json(fit))
     print(f"report: {page}")
 
@@ -365,12 +365,12 @@ def demo(
 
     Example: seatrial demo --out demo
     """
-    from seatrial import verbs
-    from seatrial.values.files import writable_folder
+    from seatrial import api
+    from seatrial.core.values.files import writable_folder
 
     writable_folder(out)
     with progress() as tell:
-        fit = verbs.demo(out, seed=seed, progress=tell)
+        fit = api.demo(out, seed=seed, progress=tell)
     print_fit(fit)
     write_json(json, lambda: _fit_json(fit))
     print(f"report: {out / 'report.html'}")
@@ -388,14 +388,14 @@ def reproduce(
 
     Example: seatrial reproduce alexandersson2022 --quick --out results/alexandersson2022
     """
-    from seatrial import verbs
-    from seatrial.values.files import writable_folder
+    from seatrial import api
+    from seatrial.core.values.files import writable_folder
 
     if out is not None:
         writable_folder(out)
     with progress() as tell:
-        made = verbs.reproduce(study, quick=quick, seed=seed, progress=tell)
-        page = None if out is None else verbs.save_study(made, out)
+        made = api.reproduce(study, quick=quick, seed=seed, progress=tell)
+        page = None if out is None else api.save_study(made, out)
     print_study(made)
     write_json(json, made.as_table)
     if page is not None:
@@ -405,13 +405,13 @@ def reproduce(
 def _own(path: Path | None) -> "Model | None":
     if path is None:
         return None
-    from seatrial.models import model_from_file
+    from seatrial.physics.models import model_from_file
 
     return model_from_file(path)
 
 
 def _pair(text: str) -> tuple[str, float]:
-    from seatrial.values import InputError
+    from seatrial.core.values import InputError
 
     name, equals, value = text.partition("=")
     try:
@@ -423,18 +423,18 @@ def _pair(text: str) -> tuple[str, float]:
 
 
 def _fit_json(fit: "Fit") -> dict[str, Any]:
-    from seatrial.trial.fit_json import fit_json
+    from seatrial.data.folder.fit_json import fit_json
 
     return fit_json(fit)
 
 
 def _design_json(found: "Design") -> dict[str, Any]:
-    from seatrial.trial.design_json import design_json
+    from seatrial.data.folder.design_json import design_json
 
     return design_json(found)
 
 
 def _tuning_json(found: "Tuning") -> dict[str, Any]:
-    from seatrial.trial.tuning_json import tuning_json
+    from seatrial.data.folder.tuning_json import tuning_json
 
     return tuning_json(found)

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 from seatrial.cli.output import SEVERITY_MARK
 
 if TYPE_CHECKING:
-    from seatrial.follow.follow import Outcome
-    from seatrial.results.online import Counts, Snapshot
-    from seatrial.trial import Trial
+    from seatrial.core.results.online import Counts, Snapshot
+    from seatrial.data.trial import Trial
+    from seatrial.onboard.follow import Outcome
 
 
 @contextmanager
@@ -37,12 +37,12 @@ def stopping() -> Iterator[Callable[[], bool]]:
 @contextmanager
 def watching(heading: str, port: int | None) -> "Iterator[Callable[[Snapshot, Counts], None]]":
     """A live table or lines, and a page at that port where one is wanted (0: any that is free)."""
-    from seatrial.follow.live import Live
+    from seatrial.onboard.live import Live
 
     with ExitStack() as held:
         page = None
         if port is not None:
-            from seatrial.follow.page import Page
+            from seatrial.onboard.page import Page
 
             page = held.enter_context(Page(port, title=heading))
             heading = f"{heading}; page {page.address}"
@@ -60,7 +60,7 @@ def watching(heading: str, port: int | None) -> "Iterator[Callable[[Snapshot, Co
 
 def heading_of(trial: "Trial") -> str:
     """What is followed, in a line."""
-    from seatrial.trial.follow_table import followed
+    from seatrial.data.trial.follow_table import followed
 
     stream = followed(trial)
     name = trial.path.name if trial.path else trial.model.name
@@ -71,7 +71,7 @@ def heading_of(trial: "Trial") -> str:
 
 def print_outcome(outcome: "Outcome") -> None:
     """What happened to the samples, then what is to be said besides; trouble on standard error."""
-    from seatrial.follow.shown import clean, troubles
+    from seatrial.onboard.shown import clean, troubles
 
     counts = outcome.counts
     wrong = [f"{count} {words}" for words, count in troubles(counts) if count]
@@ -88,8 +88,8 @@ def print_outcome(outcome: "Outcome") -> None:
 
 def outcome_json(outcome: "Outcome") -> dict[str, Any]:
     """As `identify` writes it where the stream was followed to its end, else the last estimate."""
-    from seatrial.trial.fit_json import fit_json
-    from seatrial.trial.online_json import online_json
+    from seatrial.data.folder.fit_json import fit_json
+    from seatrial.data.folder.online_json import online_json
 
     if outcome.fit is not None:
         return fit_json(outcome.fit)
@@ -98,7 +98,7 @@ def outcome_json(outcome: "Outcome") -> dict[str, Any]:
 
 def journal_place(given: Path | None, trial: "Trial", out: Path | None, *, once: bool) -> Path | None:
     """Where the journal goes: as given, as [follow] says, or in the result folder where no end is in sight."""
-    from seatrial.trial.follow_table import followed
+    from seatrial.data.trial.follow_table import followed
 
     named = given or followed(trial).journal
     if named is not None or out is None or once:

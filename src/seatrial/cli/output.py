@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from seatrial.results import Design, Extrapolation, Fit, Prediction, Rival, Study, Worth
-    from seatrial.values import Finding
+    from seatrial.core.results import Design, Extrapolation, Fit, Prediction, Rival, Study, Worth
+    from seatrial.core.values import Finding
 
 FAR = 1.2
 BEYOND = ": beyond the training runs, read its intervals as lower limits"
@@ -152,7 +152,7 @@ def print_study(study: "Study") -> None:
 
 def print_design(design: "Design") -> None:
     """What the manoeuvre found is worth beside the standard ones, and how the helmsman's table begins."""
-    from seatrial.results.worths import has_track, ranked
+    from seatrial.core.results.worths import has_track, ranked
 
     track = f" {'drift deg':>10s} {'room m':>8s}" if has_track(design) else ""
     print(f"{'relative std. error, %':24s} {'worst':>8s} {'mean':>8s} {'drawn':>9s}{track}")
@@ -172,7 +172,7 @@ def print_design(design: "Design") -> None:
 def _print_worth(worth: "Worth", design: "Design") -> None:
     import math
 
-    from seatrial.results.worths import diverged, has_track, keeps, worst_drawn
+    from seatrial.core.results.worths import diverged, has_track, keeps, worst_drawn
 
     drawn = worst_drawn(worth)
     cells = [f"{100.0 * value:8.3g}" for value in (worth.worst, worth.mean)]
@@ -185,7 +185,7 @@ def _print_worth(worth: "Worth", design: "Design") -> None:
 
 
 def _print_orders(design: "Design") -> None:
-    from seatrial.trial.orders import heads, row
+    from seatrial.data.folder.orders import heads, row
 
     lines = [heads(design.actuators), *(row(order, design.actuators) for order in design.orders[:FIRST_ORDERS])]
     widths = [len(head) + 3 for head in lines[0]]
@@ -214,7 +214,7 @@ def write_json(path: Path | None, table: Callable[[], Mapping[str, Any]]) -> Non
         InputError: the place cannot be written.
     """
     if path is not None:
-        from seatrial.trial.fit_json import strict_json
-        from seatrial.values.files import write_whole
+        from seatrial.core.values.files import write_whole
+        from seatrial.data.folder.fit_json import strict_json
 
         write_whole(path, strict_json(table()).encode())

@@ -4,7 +4,7 @@ import math
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from seatrial.results.tuning import Controller, Tuning
+    from seatrial.core.results.tuning import Controller, Tuning
 
 _MARK = {"error": "ERROR  ", "warning": "warning", "info": "note   "}
 
@@ -41,7 +41,7 @@ def _margins(c: "Controller") -> str:
 
 
 def _print_controllers(tuning: "Tuning") -> None:
-    from seatrial.values import NOTATION, display
+    from seatrial.core.values import NOTATION, display
 
     units = {name: NOTATION[name].unit if name in NOTATION else "1" for name in (tuning.output, tuning.actuator)}
     shown = {name: display(unit) for name, unit in units.items()}

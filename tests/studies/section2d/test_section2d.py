@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatrial import cli, verbs
-from seatrial.results import Verdict
-from seatrial.studies.section2d import tank, verdicts
-from seatrial.studies.section2d.modes import halves, jackknife
-from seatrial.studies.section2d.numbers import Numbers, numbers
-from seatrial.studies.section2d.runs import STEADY, periods
-from seatrial.studies.section2d.study import study
-from seatrial.studies.section2d.tables import tables, worst
-from seatrial.trial.fit_json import strict_json
-from seatrial.values import InputError
+from seatrial import api, cli
+from seatrial.core.results import Verdict
+from seatrial.core.values import InputError
+from seatrial.data.folder.fit_json import strict_json
+from seatrial_studies.section2d import tank, verdicts
+from seatrial_studies.section2d.modes import halves, jackknife
+from seatrial_studies.section2d.numbers import Numbers, numbers
+from seatrial_studies.section2d.runs import STEADY, periods
+from seatrial_studies.section2d.study import study
+from seatrial_studies.section2d.tables import tables, worst
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +44,7 @@ def test_natural_periods_are_the_documented_ones(made: Numbers) -> None:
 
 def test_nothing_of_a_held_out_period_trains(made: Numbers) -> None:
     """Changing what was measured there leaves the trained oscillator as it is."""
-    from seatrial.studies.section2d.modes import HEAVE, mode_fit
+    from seatrial_studies.section2d.modes import HEAVE, mode_fit
 
     held = {s.response.run.name for s in made.heave.scores if not s.trained}
     bent = [replace(r, heave=1.1 * r.heave) if r.run.name in held else r for r in made.responses]
@@ -88,7 +88,7 @@ def test_the_stretch_lies_between_ramp_and_reflection(made: Numbers) -> None:
 
 
 def test_accelerometers_and_camera_differ_by_the_known_gain(made: Numbers) -> None:
-    from seatrial.studies.section2d.instruments import camera_gain
+    from seatrial_studies.section2d.instruments import camera_gain
 
     assert camera_gain(made)[0] == pytest.approx(1.13, abs=0.03)
 
@@ -126,11 +126,11 @@ def test_the_jackknife_of_a_mean_is_its_standard_error(rng: np.random.Generator)
 
 
 def test_the_command_writes_a_page(made: Numbers, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    module = importlib.import_module("seatrial.studies.section2d.study")
+    module = importlib.import_module("seatrial_studies.section2d.study")
     monkeypatch.setattr(module, "data_folder", lambda: tmp_path)
     monkeypatch.setattr(module, "numbers", lambda *_, **__: made)
     done = study(quick=True, seed=0, progress=None)
-    page = verbs.save_study(done, tmp_path / "out")
+    page = api.save_study(done, tmp_path / "out")
     table = json.loads(strict_json(done.as_table()))
     assert table["study"] == "section2d" and len(table["checks"]) == 8 and "Haskind" in page.read_text()
 

@@ -4,14 +4,14 @@ import math
 
 import pytest
 
-from seatrial.studies.series import JET_VELOCITY
-from seatrial.studies.song2025 import audited_equations as equations
-from seatrial.studies.song2025 import audited_motions as motions
-from seatrial.studies.song2025 import audited_tables as tables
-from seatrial.studies.song2025.audit import audit
-from seatrial.studies.song2025.choices import choices
-from seatrial.studies.song2025.crafts import TRUTH, reference
-from seatrial.studies.song2025.published import APPROACH_SPEED, TABLE_3, Equation, Run
+from seatrial.data.example_series.series import JET_VELOCITY
+from seatrial_studies.song2025 import audited_equations as equations
+from seatrial_studies.song2025 import audited_motions as motions
+from seatrial_studies.song2025 import audited_tables as tables
+from seatrial_studies.song2025.audit import audit
+from seatrial_studies.song2025.choices import choices
+from seatrial_studies.song2025.crafts import TRUTH, reference
+from seatrial_studies.song2025.published import APPROACH_SPEED, TABLE_3, Equation, Run
 
 
 @pytest.fixture(scope="module")

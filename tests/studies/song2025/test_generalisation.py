@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.studies.song2025.crafts import MENDED, PRINTED, TRUTH, Reading, drift, reference
-from seatrial.studies.song2025.discrimination import discrimination
-from seatrial.studies.song2025.generalisation import accuracy, force_series, outcome, outcomes, steady_drift
-from seatrial.studies.song2025.published import TABLE_4, Column, Run
+from seatrial_studies.song2025.crafts import MENDED, PRINTED, TRUTH, Reading, drift, reference
+from seatrial_studies.song2025.discrimination import discrimination
+from seatrial_studies.song2025.generalisation import accuracy, force_series, outcome, outcomes, steady_drift
+from seatrial_studies.song2025.published import TABLE_4, Column, Run
 
 ORIGINAL, IMPROVED = MENDED[1], MENDED[2]
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from seatrial.models.waterjet import COEFFICIENTS, TABLE_2, waterjet
-from seatrial.studies.song2025.crafts import MENDED, PRINTED, TRUTH
-from seatrial.studies.song2025.published import (
+from seatrial.physics.models.waterjet import COEFFICIENTS, TABLE_2, waterjet
+from seatrial_studies.song2025.crafts import MENDED, PRINTED, TRUTH
+from seatrial_studies.song2025.published import (
     DRAUGHT,
     LENGTH,
     MASS,

@@ -1,0 +1,78 @@
+"""One set of gains in words a control engineer knows."""
+
+import math
+
+import numpy as np
+
+from seatrial.control.assess import Assessed, Judge, beyond
+from seatrial.core.results.tuning import Component, Controller
+from seatrial.core.values import Array
+from seatrial.physics.loops import TransferLoop, margins
+from seatrial.physics.loops.margins import band
+
+_POINTS = 400
+
+
+def controller(judge: Judge, name: str, gains: Array) -> Controller:
+    """Everything linear theory says of gains (g,) in what the task meets; the frailest speed gives the margins."""
+    made = judge.of(gains[None])
+    loops = [judge.task.loop_at(met.U, judge.loop).with_gains(gains) for met in judge.task.met]
+    frailest = max(loops, key=lambda loop: margins(loop).peak)
+    found = margins(frailest)
+    rms = np.sqrt(made.variances[0].mean(axis=0))
+    omega = np.geomspace(*band(frailest), _POINTS)
+    limits = judge.task.restriction
+    return Controller(
+        name=name,
+        gains=dict(zip(judge.loop.gains.names, gains.tolist(), strict=True)),
+        objectives=made.objectives[0],
+        rms=dict(zip(("output", "actuator", "actuator_rate"), rms.tolist(), strict=True)),
+        reduction=math.nan if judge.task.demand else 1.0 - float(rms[0]) / math.sqrt(judge.uncontrolled),
+        peak=found.peak,
+        gain_margin=found.gain,
+        phase_margin=found.phase,
+        delay_margin=found.delay,
+        damping=found.damping,
+        saturation=beyond(limits.limit, float(made.variances[0, :, 1].max())),
+        rate_saturation=beyond(limits.rate, float(made.variances[0, :, 2].max())),
+        broken=broken(judge, made),
+        omega=omega,
+        open_loop=frailest.open(omega),
+    )
+
+
+def broken(judge: Judge, made: Assessed) -> tuple[str, ...]:
+    """Restrictions that the first of some gains does not keep, in words."""
+    if not math.isfinite(made.peak[0]):
+        return ("stability: the closed loop is unstable",)
+    limits, worst = judge.task.restriction, made.variances[0].max(axis=0)
+    said = []
+    if made.excess[0, 0] > 1e-9:
+        said.append(f"Ms {made.peak[0]:.3g} where {limits.peak:.3g} is allowed")
+    for i, (what, limit, share) in enumerate(
+        (("angle", limits.limit, limits.saturation), ("rate", limits.rate, limits.rate_saturation)), start=1
+    ):
+        if made.excess[0, i] > 1e-9:
+            said.append(
+                f"{100.0 * beyond(limit, float(worst[i])):.0f} % of the actuator's {what} amplitudes beyond its limit "
+                f"where {100.0 * share:.0f} % are allowed"
+            )
+    return tuple(said)
+
+
+def components(loop: TransferLoop) -> tuple[Component, ...]:
+    """The blocks of a loop, in the order of the signal from its output back to it."""
+    series = {"sensor": loop.sensor, "filter": loop.filters, "servo": loop.servo}
+    made = {
+        role: [Component(role, block.name, block.num, block.den, source=block.source) for block in blocks]
+        for role, blocks in series.items()
+    }
+    terms = [
+        Component("term", term.block.name, term.block.num, term.block.den, term.gain, term.block.source)
+        for term in loop.terms
+    ]
+    plant, disturbance = (
+        Component(role, block.name, block.num, block.den, source=block.source)
+        for role, block in (("plant", loop.plant), ("disturbance", loop.disturbance))
+    )
+    return (*made["sensor"], *terms, *made["filter"], *made["servo"], plant, disturbance)

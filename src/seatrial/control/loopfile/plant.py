@@ -1,0 +1,188 @@
+"""The table `[plant]` of a loop file: transfer functions as given, or those of an identified model."""
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from seatrial.control.loopfile.amounts import amount, angle, positive, unit_of
+from seatrial.control.loopfile.blocks import block, said
+from seatrial.control.loopfile.schema import BlockTable, FinTable, HullTable, PlantTable
+from seatrial.control.ship.vessel import described, plant_of, vessel
+from seatrial.control.task import Effectiveness, Vessel
+from seatrial.core.equations import Model
+from seatrial.core.values import InputError, Ship, nearest
+from seatrial.data.folder.model_file import ModelFile, read_model_file
+from seatrial.data.trial.runs import expanded
+from seatrial.physics.loops import Block, HullFactor
+from seatrial.physics.loops.fin import K_alpha_at
+
+FINS = ("phi", "alpha_f", "alpha_w")
+STEERING = ("psi", "delta", "")
+_KNOTS = 3600.0 / 1852.0
+
+
+@dataclass(frozen=True, eq=False)
+class Plant:
+    """What is controlled, at the speed U [m/s].
+
+    Attributes:
+        response: actuator to output; disturbance: what disturbs to output.
+        said: where it comes from, in words; vessel, ship: of a model file, else none.
+    """
+
+    response: Block
+    disturbance: Block
+    output: str
+    actuator: str
+    disturbed_by: str
+    U: float
+    effectiveness: Effectiveness
+    said: str
+    vessel: Vessel | None = None
+    ship: Ship | None = None
+
+
+def plant_asked(table: PlantTable, home: Path, own_model: Model | None = None, model_file: Path | None = None) -> Plant:
+    """The plant that the table describes.
+
+    Args:
+        home: folder of the loop file, from which the model file's path counts.
+        model_file: takes the place of `model`.
+
+    Raises:
+        InputError: no such file, another kind of model, no speed, no fin.
+    """
+    if table.model is not None:
+        return _of_model(table, model_file or home / expanded(table.model), own_model)
+    if model_file is not None:
+        raise InputError("plant: there is no 'model' that a model file could take the place of; leave --from out")
+    if table.roll is not None and table.fin is not None:
+        return _of_roll(_moving(table.roll, "roll", "plant.roll"), table, table.fin)
+    assert table.response is not None and table.output is not None and table.actuator is not None
+    response = _moving(table.response, "plant", "plant.response")
+    return Plant(
+        response, response, table.output, table.actuator, table.actuator, _speed(table),
+        Effectiveness.CONSTANT,
+        f"{table.actuator} to {table.output} as given: {said(response)}",
+    )  # fmt: skip
+
+
+def hull_of(table: HullTable | None, ship: Ship | None) -> HullFactor | None:
+    """The box of the table, or of the ship's own L, B, d; none where neither is known."""
+    if table is not None:
+        return HullFactor(*(positive(getattr(table, key), "m", f"hull.{key}") for key in ("L", "B", "T")))
+    own = {} if ship is None else ship.particulars
+    return HullFactor(own["L"], own["B"], own["d"]) if {"L", "B", "d"} <= set(own) else None
+
+
+def _moving(table: BlockTable, name: str, where: str) -> Block:
+    """A block whose output answers."""
+    made = block(table, name, where)
+    if not any(made.num):
+        raise InputError(f"{where}.num is zero: nothing would move; give its coefficients, highest power first")
+    return made
+
+
+def _speed(table: PlantTable) -> float:
+    if table.speed is not None:
+        return positive(table.speed, "m/s", "plant.speed")
+    if table.fin is not None and table.fin.at_speed is not None:
+        return positive(table.fin.at_speed, "m/s", "plant.fin.at_speed")
+    raise InputError("key 'plant.speed' is missing; add it, such as { value = 18, unit = \"kn\" }")
+
+
+def _of_roll(roll: Block, table: PlantTable, fin: FinTable) -> Plant:
+    U = _speed(table)
+    K_alpha, law, words = _fin(fin, fin.K_alpha or 0.0, U)
+    return Plant(
+        replace(roll.scaled(K_alpha), name="fins to roll"), roll, *FINS, U, law,
+        f"roll as given: {said(roll)}, {words}",
+    )  # fmt: skip
+
+
+def _fin(table: FinTable, known: float, U: float) -> tuple[float, Effectiveness, str]:
+    """K_alpha at the speed U from the known one, how it goes with the speed, and both in words."""
+    law = Effectiveness(table.law)
+    at = U if table.at_speed is None else positive(table.at_speed, "m/s", "plant.fin.at_speed")
+    K_alpha = known if law is Effectiveness.CONSTANT else K_alpha_at(U, at, known)
+    how = "at any speed" if law is Effectiveness.CONSTANT else "growing with the square of the speed"
+    return K_alpha, law, f"fins worth {K_alpha:.4g} rad of wave slope for each radian at {U * _KNOTS:.3g} kn, {how}"
+
+
+def _of_model(table: PlantTable, path: Path, own_model: Model | None) -> Plant:
+    file = read_model_file(path, own_model)
+    output, actuator, disturbance = _names(table, file, path)
+    words, law, speed = "", Effectiveness.CONSTANT, None if table.speed is None else _speed(table)
+    if table.fin is not None:
+        speed = _speed(table)
+        K_alpha, law, words = _fin(table.fin, _known_fins(table.fin, file.model, path), speed)
+        file = replace(file, model=file.model.with_values({"K_alpha": K_alpha}))
+    elif "K_alpha" in file.model.parameters and not file.model.parameters["K_alpha"].value:
+        raise InputError(
+            f"plant: model '{file.model.name}' of '{path}' rolls and knows no fins; add [plant.fin] with K_alpha, or "
+            "name a model that is steered"
+        )
+    amplitude = None if table.amplitude is None else angle(table.amplitude, "plant.amplitude", 10.0)
+    inputs = {name: amount(value, unit_of(name), f"plant.inputs.{name}") for name, value in table.inputs.items()}
+    for name in inputs:
+        _known(name, file.model.input_names, f"plant.inputs.{name}", file.model, "input")
+    ship = vessel(file, output=output, actuator=actuator, disturbance=disturbance, speed=speed, inputs=inputs)
+    response, disturbed = plant_of(ship, amplitude)
+    about = "" if amplitude is None else f"linearised at a roll of {math.degrees(amplitude):.3g} deg"
+    return Plant(
+        response, disturbed, output, actuator, disturbance or actuator,
+        _trim_speed(ship, file) if speed is None else speed, law,
+        ", ".join(part for part in (described(ship), about, words) if part), ship, file.ship,
+    )  # fmt: skip
+
+
+def _names(table: PlantTable, file: ModelFile, path: Path) -> tuple[str, str, str]:
+    """Output, actuator and disturbance: as said, or those by which a model of its kind is controlled."""
+    model, given = file.model, (table.output, table.actuator, table.disturbance)
+    for name, known, key, what in zip(
+        given,
+        (model.observables, model.input_names, model.input_names),
+        ("plant.output", "plant.actuator", "plant.disturbance"),
+        ("output", "input", "input"),
+        strict=True,
+    ):
+        if name:
+            _known(name, known, key, model, what)
+    for own in (FINS, STEERING):
+        has_them = own[0] in model.observables and set(own[1:]) - {""} <= set(model.input_names)
+        if has_them and table.output in (None, own[0]) and table.actuator in (None, own[1]):
+            return own[0], own[1], own[2] if table.disturbance is None else table.disturbance
+    if table.output is None or table.actuator is None:
+        raise InputError(
+            f"plant: model '{model.name}' of '{path}' is not one that fins or a rudder alone control; give output (one "
+            f"of {', '.join(model.observables)}) and actuator (one of {', '.join(model.input_names)})"
+        )
+    return table.output, table.actuator, table.disturbance or ""
+
+
+def _known(name: str, names: tuple[str, ...], where: str, model: Model, what: str) -> None:
+    if name not in names:
+        raise InputError(f"{where}: '{name}' is no {what} of model '{model.name}'{nearest(name, [*names])}")
+
+
+def _known_fins(table: FinTable, model: Model, path: Path) -> float:
+    """K_alpha of the loop file, or of the model where that was identified."""
+    if "K_alpha" not in model.parameters:
+        raise InputError(f"plant.fin: model '{model.name}' of '{path}' has no K_alpha; leave the table out")
+    own = model.parameters["K_alpha"]
+    if table.K_alpha is not None and own.free:
+        raise InputError(f"plant.fin: '{path}' has an identified K_alpha; leave K_alpha out")
+    if table.K_alpha is None and not own.value:
+        raise InputError(f"plant.fin: key 'K_alpha' is missing, and the model of '{path}' knows no fins; add it")
+    return own.value if table.K_alpha is None else table.K_alpha
+
+
+def _trim_speed(ship: Vessel, file: ModelFile) -> float:
+    model = file.model
+    if "u" in model.states:
+        return float(ship.state[model.states.index("u")])
+    if "U" in model.parameters and model.parameters["U"].value > 0.0:
+        return float(model.parameters["U"].value)
+    if file.approach.get("u", 0.0) > 0.0:
+        return float(file.approach["u"])
+    raise InputError("key 'plant.speed' is missing, and the model file does not tell the ship's speed; add it")

@@ -1,0 +1,329 @@
+"""What a loop file may say: pydantic models, strict; unknown keys are refused by `seatrial.data.trial.complaints`."""
+
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from seatrial.data.trial.schema import Amount, SiAmount, Strict, Unit
+
+Coefficients = Annotated[tuple[float, ...], Field(min_length=1)]
+Share = Annotated[float, Field(gt=0, lt=1)]
+Positive = Annotated[float, Field(gt=0)]
+
+
+def _as_amounts(value: object) -> object:
+    """Bare numbers are amounts in SI units."""
+    return {"values": value} if isinstance(value, list) else value
+
+
+def _as_aim(value: object) -> object:
+    return {"what": value} if isinstance(value, str) else value
+
+
+class Amounts(Strict):
+    """Numbers of one unit; without one they are SI."""
+
+    values: Annotated[tuple[float, ...], Field(min_length=1)]
+    unit: Unit | None = None
+
+    def each(self) -> tuple[Amount, ...]:
+        """One by one."""
+        return tuple(Amount(value=value, unit=self.unit) for value in self.values)
+
+
+SiAmounts = Annotated[Amounts, BeforeValidator(_as_amounts)]
+
+
+class NotchTable(Strict):
+    """(s^2 + 2 depth damping omega s + omega^2) / (s^2 + 2 damping omega s + omega^2): `depth` is what passes."""
+
+    omega: SiAmount
+    damping: Positive = 0.5
+    depth: Annotated[float, Field(ge=0, lt=1)] = 0.1
+
+
+class PassTable(Strict):
+    """Of second order: low-pass omega^2, band-pass 2 damping omega s, high-pass s^2, over the polynomial of both."""
+
+    omega: SiAmount
+    damping: Positive = 0.7
+
+
+class BlockTable(Strict):
+    """One transfer function: coefficients of s with the highest power first, or a filter by its kind (`lag` in s)."""
+
+    name: str = ""
+    num: Coefficients | None = None
+    den: Coefficients | None = None
+    notch: NotchTable | None = None
+    low_pass: PassTable | None = None
+    band_pass: PassTable | None = None
+    high_pass: PassTable | None = None
+    lag: SiAmount | None = None
+    source: str = ""
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Self:
+        kinds = [self.num is not None or self.den is not None]
+        kinds += [k is not None for k in (self.lag, self.notch, self.low_pass, self.band_pass, self.high_pass)]
+        if sum(kinds) != 1 or (kinds[0] and (self.num is None or self.den is None)):
+            raise ValueError("give num and den, or one of lag, notch, low_pass, band_pass, high_pass")
+        return self
+
+
+class TermTable(BlockTable):
+    """One part of the controller in parallel: the gain of that name times the block."""
+
+    gain: str
+
+
+class FinTable(Strict):
+    """`[plant.fin]`: wave slope to which a radian of fin angle is equivalent, at which speed, and how it grows.
+
+    Without `K_alpha` the model file's own is taken.
+    """
+
+    K_alpha: Positive | None = None
+    at_speed: SiAmount | None = None
+    law: Literal["constant", "U^2"] = "U^2"
+
+
+class PlantTable(Strict):
+    """`[plant]`: what is controlled, as transfer functions or as a model file of `identify`.
+
+    `roll`: wave slope to roll angle, with `fin`; `response`: actuator to output; `model`: the path of a model file.
+    """
+
+    roll: BlockTable | None = None
+    response: BlockTable | None = None
+    model: str | None = None
+    speed: SiAmount | None = None
+    fin: FinTable | None = None
+    output: str | None = None
+    actuator: str | None = None
+    disturbance: str | None = None
+    amplitude: SiAmount | None = None
+    inputs: dict[str, SiAmount] = Field(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _one_source(self) -> Self:
+        if sum(part is not None for part in (self.roll, self.response, self.model)) != 1:
+            raise ValueError("give one of roll, response (transfer functions) and model (a model file)")
+        if self.roll is not None and (self.fin is None or self.fin.K_alpha is None):
+            raise ValueError("roll needs a table [plant.fin] with K_alpha, the wave slope a radian of fin is worth")
+        if self.response is not None and (self.output is None or self.actuator is None or self.fin is not None):
+            raise ValueError("response needs the symbols output and actuator, and no table fin")
+        if self.model is None and (self.inputs or self.amplitude is not None or self.disturbance is not None):
+            raise ValueError("inputs, amplitude and disturbance go with a model file; leave them out")
+        return self
+
+
+class GainTable(Strict):
+    """`[controller.gains.NAME]`: where it may lie, or its value alone where it is fixed."""
+
+    value: float | None = None
+    lower: float | None = None
+    upper: float | None = None
+    fixed: bool = False
+
+    @model_validator(mode="after")
+    def _free_or_fixed(self) -> Self:
+        if self.fixed and self.value is None:
+            raise ValueError("a fixed gain needs its value")
+        if self.lower is not None and self.upper is not None and not self.lower < self.upper:
+            raise ValueError(f"lower = {self.lower:g} is not below upper = {self.upper:g}; give the smaller first")
+        return self
+
+
+class ControllerTable(Strict):
+    """`[controller]`: `yu2014` (the published fin loop), `pid` (on the output error) or `blocks` (terms one by one)."""
+
+    kind: Literal["yu2014", "pid", "blocks"]
+    preamplifier: Literal["printed", "washout"] = "washout"
+    K_q: Positive | None = None
+    parts: tuple[Literal["KP", "KI", "KD"], ...] = ()
+    derivative_filter: SiAmount | None = None
+    sensor: tuple[BlockTable, ...] = ()
+    terms: tuple[TermTable, ...] = ()
+    filters: tuple[BlockTable, ...] = ()
+    gains: dict[str, GainTable] = Field(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _keys_of_the_kind(self) -> Self:
+        of_others = {
+            "yu2014": ("sensor", "terms", "parts", "derivative_filter"),
+            "pid": ("terms", "preamplifier", "K_q"),
+            "blocks": ("parts", "derivative_filter", "preamplifier", "K_q"),
+        }
+        for key in of_others[self.kind]:
+            if key in self.model_fields_set:
+                raise ValueError(f"kind '{self.kind}' knows no '{key}'; leave it out")
+        if self.kind == "blocks" and not self.terms:
+            raise ValueError("kind 'blocks' needs at least one entry in [[controller.terms]]")
+        return self
+
+
+class RicherTable(Strict):
+    """`[[richer]]`: a controller with more structure, to be compared; `lower`, `upper`: bounds of each gain added.
+
+    band_pass, low_pass, notch: where they are set; without, at multiples of the frequency at which the plant swings.
+    """
+
+    name: str = ""
+    add: Annotated[tuple[Literal["band-pass", "low-pass", "notch"], ...], Field(min_length=1)]
+    band_pass: PassTable | None = None
+    low_pass: PassTable | None = None
+    notch: NotchTable | None = None
+    lower: float | None = None
+    upper: float | None = None
+
+    @model_validator(mode="after")
+    def _added_once(self) -> Self:
+        if len(set(self.add)) != len(self.add):
+            raise ValueError("add names a part twice; name each once")
+        for part in ("band-pass", "low-pass", "notch"):
+            key = part.replace("-", "_")
+            if getattr(self, key) is not None and part not in self.add:
+                raise ValueError(f"'{key}' is described but not added; put '{part}' into add")
+        return self
+
+
+class ActuatorTable(Strict):
+    """`[actuator]`: largest excursion from the steady value, largest rate, angle of stall, and the servo's blocks."""
+
+    limit: SiAmount | None = None
+    rate: SiAmount | None = None
+    stall: SiAmount | None = None
+    servo: tuple[BlockTable, ...] = ()
+
+
+class SeaTable(Strict):
+    """One `[[seas]]` block: a spectrum, met under a heading (0 following, 180 degrees head) at a speed."""
+
+    spectrum: Literal["ittc", "ittc2", "bretschneider", "jonswap", "sea-state"] = "ittc"
+    height: SiAmount | None = None
+    period: SiAmount | None = None
+    gamma: float = 3.3
+    state: Annotated[int, Field(ge=0, le=9)] | None = None
+    heading: SiAmount
+    speed: SiAmount | None = None
+    spreading: Positive | None = None
+
+    @model_validator(mode="after")
+    def _keys_of_the_spectrum(self) -> Self:
+        needed = {"ittc": {"height"}, "sea-state": {"state"}}.get(self.spectrum, {"height", "period"})
+        given = {key for key in ("height", "period", "state") if getattr(self, key) is not None}
+        for key in sorted(needed - given):
+            raise ValueError(f"spectrum '{self.spectrum}' needs a {key}")
+        for key in sorted(given - needed):
+            raise ValueError(f"spectrum '{self.spectrum}' has no {key}")
+        return self
+
+
+class UnrestTable(Strict):
+    """One `[[unrest]]` block: a slow disturbance of rms `size` that acts like the actuator; bandwidth in rad/s."""
+
+    size: SiAmount
+    bandwidth: SiAmount
+    speed: SiAmount | None = None
+
+
+class HullTable(Strict):
+    """`[hull]`: the box over which the slope of short waves is averaged."""
+
+    L: SiAmount
+    B: SiAmount
+    T: SiAmount
+
+
+Aim = Literal[
+    "output", "output_rate", "output_acceleration", "actuator", "actuator_rate", "actuator_off_target",
+    "roll", "roll_rate", "fin", "fin_rate", "fin_off_target", "motion_interruptions", "motion_sickness",
+]  # fmt: skip
+
+
+class AimTable(Strict):
+    """One thing to be made small; `height` above the axis and `friction` of interruptions, `lever` of sickness."""
+
+    what: Aim
+    height: SiAmount | None = None
+    friction: Positive = 0.25
+    lever: SiAmount | None = None
+    target: SiAmount | None = None
+    one_sided: bool = True
+
+    @model_validator(mode="after")
+    def _keys_of_what(self) -> Self:
+        own = {
+            "motion_interruptions": {"height", "friction"},
+            "motion_sickness": {"lever"},
+            "fin_off_target": {"target", "one_sided"},
+            "actuator_off_target": {"target", "one_sided"},
+        }.get(self.what, set())
+        for key in sorted(self.model_fields_set - own - {"what"}):
+            raise ValueError(f"'{self.what}' knows no '{key}'; leave it out")
+        for key in {"height", "lever"} & own:
+            if getattr(self, key) is None:
+                raise ValueError(f"'{self.what}' needs a {key} in metres")
+        return self
+
+
+class LimitsTable(Strict):
+    """`[limits]`: largest Ms, and shares of amplitudes beyond the actuator's limit and rate."""
+
+    peak: Annotated[float, Field(gt=1)] = 2.0
+    saturation: Share = 0.2
+    rate_saturation: Share = 0.2
+
+
+class ScheduleTable(Strict):
+    """`[schedule]`: conditions, every combination of which gets gains of its own."""
+
+    speeds: SiAmounts
+    headings: SiAmounts
+    heights: SiAmounts
+
+
+class SimulationTable(Strict):
+    """`[simulation]`: the nonlinear check; no seeds, no check."""
+
+    seeds: Annotated[int, Field(ge=0, le=1000)] = 20
+    duration: SiAmount = Amount(value=1000.0)
+    step: SiAmount = Amount(value=0.05)
+
+
+class DemandTable(Strict):
+    """`[demand]`: a change of the output that the loop has to follow, and the largest overshoot as a share of it."""
+
+    change: SiAmount
+    overshoot: Annotated[float, Field(ge=0, lt=1)] = 0.02
+    time_constant: SiAmount | None = None
+    duration: SiAmount | None = None
+
+
+class LoopFile(Strict):
+    """The whole file."""
+
+    question: str = ""
+    name: str = ""
+    plant: PlantTable
+    controller: ControllerTable
+    actuator: ActuatorTable = ActuatorTable()
+    hull: HullTable | None = None
+    seas: tuple[SeaTable, ...] = ()
+    unrest: tuple[UnrestTable, ...] = ()
+    minimise: Annotated[tuple[Annotated[AimTable, BeforeValidator(_as_aim)], ...], Field(min_length=1)] = (
+        AimTable(what="output"),
+        AimTable(what="actuator_rate"),
+    )
+    limits: LimitsTable = LimitsTable()
+    given: dict[str, dict[str, float]] = Field(default_factory=dict)
+    richer: tuple[RicherTable, ...] = ()
+    schedule: ScheduleTable | None = None
+    simulation: SimulationTable | None = None
+    demand: DemandTable | None = None
+
+
+def loop_schema() -> dict[str, Any]:
+    """JSON Schema of a loop file, for editors."""
+    return LoopFile.model_json_schema()

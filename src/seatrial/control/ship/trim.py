@@ -1,0 +1,124 @@
+"""Steady motion about which a model is linearised: a straight run, or rest; what drives her."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from scipy.optimize import brentq
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, InputError
+from seatrial.numerics.kernels.sensitivity import evaluate_tangent
+from seatrial.physics.simulate.approach import RUDDER, approach_speed, held_inputs
+from seatrial.physics.simulate.channels import AT_REST
+
+_TURNS = 30
+_MOST_RUDDER = 0.6
+_POSE = ("psi", "x0", "y0")
+
+
+def driven(
+    model: Model, approach: Mapping[str, float], speed: float | None, given: Mapping[str, float] | None
+) -> tuple[Model, Array]:
+    """The model and its held inputs in its own signs, with what drives her found where a speed is asked for."""
+    names, own = model.input_names, dict(given or {})
+    known = {k: v for k, v in approach.items() if k in names and k != RUDDER and k not in AT_REST} | own
+    drives = [n for n in names if n != RUDDER and n not in AT_REST and n != "u" and n != "omega_e"]
+    if speed is None:
+        return model, held_inputs(model, known, RUDDER)
+    if not speed > 0.0:
+        raise InputError(f"the speed of a straight run must be positive, not {speed:g} m/s")
+    if "u" in names:
+        return model, held_inputs(model, known | {"u": speed}, RUDDER)
+    if "u" not in model.states:
+        return _at_nominal(model, speed), held_inputs(model, known, RUDDER)
+    free = [n for n in drives if n not in own]
+    if len(free) != 1:
+        held = held_inputs(model, known, RUDDER)
+        balanced = approach_speed(model, held)
+        if abs(balanced - speed) > 1e-3 * speed:
+            raise InputError(
+                f"model '{model.name}' runs at {balanced:.4g} m/s with these inputs, not at {speed:.4g} m/s; "
+                "give the speed or what drives her, not both"
+            )
+        return model, held
+    held = held_inputs(model, known | {free[0]: known.get(free[0], 0.0)}, RUDDER)
+    held[names.index(free[0])] = _drive(model, held, free[0], speed)
+    return model, held
+
+
+def _at_nominal(model: Model, speed: float) -> Model:
+    if "U" not in model.parameters:
+        return model
+    U = model.parameters["U"].value
+    if U > 0.0 and abs(U - speed) > 1e-2 * speed:
+        raise InputError(
+            f"model '{model.name}' holds for {U:.4g} m/s, where it was identified, not for {speed:.4g} m/s; "
+            "leave the speed out, or take a model with surge"
+        )
+    return model.with_values({"U": speed})
+
+
+def _drive(model: Model, held: Array, name: str, speed: float) -> float:
+    """The input at which surge is in balance on a straight course at u = `speed`."""
+    place, k = model.input_names.index(name), model.states.index("u")
+    state, inputs, rates = np.zeros(len(model.states)), held.copy(), np.empty(len(model.states))
+    state[k] = speed
+
+    def surge(value: float) -> float:
+        inputs[place] = value
+        model.compiled.rates(0.0, state, inputs, model.parameters.values, rates)
+        return float(rates[k])
+
+    tried = np.geomspace(1e-3, 1e3, 121) * speed
+    least = next((i for i, value in enumerate(tried) if surge(value) > 0.0), 0)
+    if least == 0:
+        raise InputError(f"model '{model.name}' has no '{name}' that drives her at {speed:.4g} m/s; take another speed")
+    return float(brentq(surge, tried[least - 1], tried[least], xtol=1e-12))
+
+
+def trimmed(model: Model, held: Array) -> tuple[Array, Array]:
+    """State (nx,) and inputs (nu,) of steady motion: a straight course if there is a heading, else rest.
+
+    The rudder carries what asymmetry asks for. held: (nu,) in the model's signs.
+
+    Raises:
+        InputError: there is none with less than 34 degrees of rudder.
+    """
+    names, nx = model.states, len(model.states)
+    steers = "psi" in names and RUDDER in model.input_names
+    still = (*_POSE, "r") if "psi" in names else ()
+    state, inputs = np.zeros(nx), held.copy()
+    if "u" in names:
+        state[names.index("u")] = approach_speed(model, held)
+    rows = [i for i, s in enumerate(names) if s not in _POSE]
+    columns = [i for i, s in enumerate(names) if s not in still]
+    if steers:
+        columns.append(nx + model.input_names.index(RUDDER))
+    unknown, rates = np.concatenate([state, inputs]), np.empty(nx)
+    for _ in range(_TURNS):
+        x, u = np.ascontiguousarray(unknown[:nx]), np.ascontiguousarray(unknown[nx:])
+        model.compiled.rates(0.0, x, u, model.parameters.values, rates)
+        slopes = jacobian_at(model, x[None], u, of_outputs=False)[0][np.ix_(rows, columns)]
+        step = np.linalg.lstsq(slopes, -rates[rows], rcond=None)[0]
+        unknown[columns] += step
+        if not np.all(np.isfinite(unknown)) or np.max(np.abs(step), initial=0.0) < 1e-13 * max(1.0, np.abs(x).max()):
+            break
+    state, inputs = np.ascontiguousarray(unknown[:nx]), np.ascontiguousarray(unknown[nx:])
+    model.compiled.rates(0.0, state, inputs, model.parameters.values, rates)
+    kept = not steers or abs(inputs[model.input_names.index(RUDDER)]) < _MOST_RUDDER
+    if not (np.all(np.isfinite(unknown)) and np.max(np.abs(rates[rows])) < 1e-9 and kept):
+        what = "straight course with less than 34 degrees of rudder" if steers else "steady motion"
+        raise InputError(f"model '{model.name}' has no {what} with these inputs; check them and the model's values")
+    return state, inputs
+
+
+def jacobian_at(model: Model, states: Array, inputs: Array, *, of_outputs: bool) -> Array:
+    """Exact, at each of the states (n, nx), shape (n, rows, nx + nu + np)."""
+    rows = len(model.outputs) if of_outputs else len(model.states)
+    n, width = len(states), len(model.states) + len(model.inputs) + len(model.parameters)
+    jac = np.zeros((n, rows, width))
+    if rows:
+        code = model.compiled.outputs_tangent if of_outputs else model.compiled.rates_tangent
+        repeated = np.tile(inputs, (n, 1)), np.tile(model.parameters.values, (n, 1))
+        evaluate_tangent(code, np.ascontiguousarray(states), *repeated, 1.0, np.empty((n, rows)), jac)
+    return jac

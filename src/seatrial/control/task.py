@@ -1,0 +1,200 @@
+"""What is to be tuned: a loop, what disturbs it, what is to be small, what must be kept."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from enum import Enum
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.results.tuning import Restriction
+from seatrial.core.values import Array, InputError, display
+from seatrial.physics.loops import Exposure, HullFactor, Objective, TransferLoop, exposure
+from seatrial.physics.loops.exposure import over_nodes
+from seatrial.physics.sea.spectrum import Spectrum
+
+_UNDAMPED = 1e-9
+
+
+@dataclass(frozen=True)
+class Seaway:
+    """A sea met at a speed and heading: U [m/s], beta [rad, 0 following]; spreading: exponent s, None long-crested."""
+
+    spectrum: Spectrum
+    U: float
+    beta: float
+    hull: HullFactor | None = None
+    spreading: float | None = None
+
+    def exposure(self, loop: TransferLoop) -> Exposure:
+        """Effective wave slope [rad] that the loop meets."""
+        return exposure(self.spectrum, self.U, self.beta, loop.disturbance, self.hull, spreading=self.spreading)
+
+    @property
+    def said(self) -> str:
+        """In words."""
+        crests = "long-crested" if self.spreading is None else "short-crested"
+        return (
+            f"{self.spectrum.name} {self.spectrum.significant_height:.3g} m, {crests}, "
+            f"{math.degrees(self.beta):.0f} deg, {self.U:.3g} m/s"
+        )
+
+
+@dataclass(frozen=True)
+class Unrest:
+    """A slow disturbance: coloured noise of rms `size` [`unit`] and `bandwidth` [rad/s]; `of` what it acts like.
+
+    Its one-sided density is 2 size^2 bandwidth / pi / (omega^2 + bandwidth^2), that of a first-order Gauss-Markov
+    process (Gelb 1974, Applied Optimal Estimation, section 3.8). U: m/s, the ship's speed.
+    """
+
+    size: float
+    bandwidth: float
+    U: float
+    unit: str = "rad"
+    of: str = "of the actuator"
+
+    def exposure(self, loop: TransferLoop) -> Exposure:
+        """The disturbance over five decades about its bandwidth."""
+        b = self.bandwidth
+        return over_nodes(
+            lambda w: 2.0 * self.size**2 * b / math.pi / (w**2 + b**2), 1e-3 * b, 1e2 * b, loop.disturbance, self.said
+        )
+
+    @property
+    def said(self) -> str:
+        """In words."""
+        factor, unit = display(self.unit)
+        return f"unrest like {self.size * factor:.3g} {unit} {self.of}, slower than {self.bandwidth:.3g} rad/s"
+
+
+class Effectiveness(Enum):
+    """How the actuator's effect goes with the ship's speed."""
+
+    CONSTANT = "constant"
+    SPEED_SQUARED = "U^2"
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Conditions of a schedule: U [m/s], beta [rad], significant height [m]; every combination is tuned."""
+
+    speeds: tuple[float, ...]
+    headings: tuple[float, ...]
+    heights: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Trials:
+    """Nonlinear simulation: seeds of the sea, duration [s], step [s]."""
+
+    seeds: int = 20
+    duration: float = 1000.0
+    dt: float = 0.05
+
+
+@dataclass(frozen=True)
+class Demand:
+    """What a servo loop has to follow: a change of the output and a zigzag, through a reference filter.
+
+    Attributes:
+        change: of the output, its unit; overshoot: largest share of it allowed; time_constant: s, of the second-order
+            reference filter, critically damped; duration: s.
+    """
+
+    change: float
+    overshoot: float
+    time_constant: float
+    duration: float
+
+
+@dataclass(frozen=True, eq=False)
+class Vessel:
+    """The model behind the plant, for simulation and for draws.
+
+    Attributes:
+        state, inputs: trim about which it was linearised, SI; covariance: of the free parameters (k, k) or (0, 0).
+        actuator, disturbance, output: names; the disturbance may be empty.
+        sign: -1 where the record's actuator is positive the other way than the model's.
+    """
+
+    model: Model
+    state: Array
+    inputs: Array
+    actuator: str
+    output: str
+    disturbance: str = ""
+    covariance: Array = field(default_factory=lambda: np.empty((0, 0)))
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """One tuning.
+
+    Attributes:
+        loop: at the speed `U`; `effectiveness` gives it at others.
+        met: what disturbs it, one or more; objectives are means over them, restrictions bind in each.
+        rivals: gains given, by name of the controller; richer: loops with more structure on the same plant.
+        vessel: behind the plant; None where only transfer functions are known (simulated from those).
+        demand: for servo loops (autopilot, speed); None for stabilisers.
+
+    Raises:
+        InputError: nothing disturbs the loop, a plant with poles right of the axis, gains of other names.
+    """
+
+    question: str
+    name: str
+    plant: str
+    loop: TransferLoop
+    met: tuple[Seaway | Unrest, ...]
+    objectives: tuple[Objective, ...]
+    restriction: Restriction
+    U: float
+    effectiveness: Effectiveness = Effectiveness.CONSTANT
+    rivals: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    richer: tuple[TransferLoop, ...] = ()
+    plan: Plan | None = None
+    trials: Trials | None = None
+    vessel: Vessel | None = None
+    demand: Demand | None = None
+
+    def __post_init__(self) -> None:
+        if not self.met or not self.objectives:
+            raise InputError("a tuning needs a sea or another disturbance, and an objective")
+        for name, gains in self.rivals.items():
+            if set(gains) != set(self.loop.gains.names):
+                raise InputError(f"controller '{name}' gives {', '.join(gains)}, the loop has "
+                                 f"{', '.join(self.loop.gains.names)}; give exactly these")  # fmt: skip
+        if self.demand is None:
+            refuse_unstable(self.loop)
+
+    def loop_at(self, U: float, loop: TransferLoop | None = None) -> TransferLoop:
+        """The loop (the task's own if none is given) at the speed U [m/s]."""
+        made = self.loop if loop is None else loop
+        if self.effectiveness is Effectiveness.CONSTANT or U == self.U:
+            return made
+        return replace(made, plant=made.plant.scaled((U / self.U) ** 2))
+
+
+def refuse_unstable(loop: TransferLoop) -> None:
+    """Refuse a plant that runs away by itself: what it does without control has no variance.
+
+    Raises:
+        InputError: which block, and its pole.
+    """
+    for block in (loop.plant, loop.disturbance):
+        undamped = block.poles[(np.abs(block.poles.real) <= _UNDAMPED * np.abs(block.poles)) & (block.poles.imag > 0.0)]
+        if undamped.size:
+            raise InputError(
+                f"block '{block.name}' swings undamped at {undamped[0].imag:.4g} rad/s: without control its motion has "
+                "no variance; give its denominator the damping that every real one has"
+            )
+    for block in (loop.plant, loop.disturbance, *loop.sensor, *loop.servo, *loop.filters):
+        poles = block.poles
+        if block.order and poles.real.max() > 0.0:
+            pole = poles[int(np.argmax(poles.real))]
+            raise InputError(
+                f"block '{block.name}' has a pole in the right half plane, at {pole.real:.4g} rad/s: it is unstable "
+                "without control and its motion has no variance; check the signs of its denominator"
+            )

@@ -1,0 +1,217 @@
+"""The least variance that any stabilising linear controller leaves, by a convex programme (cvxpy, extra `bounds`).
+
+With a stable plant, and sensor, filters and servo F that the controller acts through, all stabilising controllers are
+K = F Q' / (1 - P F Q') with Q' stable (Youla, Jabr & Bongiorno 1976, IEEE Trans. Autom. Control 21(3), 319-338), and
+S = 1 - P F Q', a = -F Q' D w are affine in Q'. Variances and peaks are convex in it (Boyd & Barratt 1991, Linear
+Controller Design). Q' is a sum of Kautz functions of frequencies spread evenly over the logarithm; washout zeros and
+the roll-off of servo and gyro stay in F; so that Q' cannot undo them, |T| <= (1 + peak) times the servo's own response
+at every frequency: no loop is faster than its servo. Without that, spectra that vanish outside a band could be
+predicted and cancelled whatever the peak, by |S| at the peak over an unlimited band (Bode's integral).
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from seatrial.core.results.tuning import Bound
+from seatrial.core.values import Array, InputError
+from seatrial.physics.hydro.excitation import Complex
+from seatrial.physics.loops import Exposure, Performance, Row, Seen, TransferLoop, in_series
+
+DAMPING = 0.7
+SECTIONS = 32
+_GRID = 260
+NOTHING = 0.01
+ROWS = (Row(Seen.OUTPUT, np.ones_like), Row(Seen.ACTUATOR, lambda w: w))
+
+
+class NoBound(InputError):
+    """No bound can be had for this loop."""
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What a bound is held against: output variance and actuator-rate variance of some gains, SI."""
+
+    output: float
+    rate: float
+
+
+def reference(loop: TransferLoop, exposure: Exposure, gains: Array) -> Reference:
+    """Of gains (g,).
+
+    Raises:
+        InputError: the loop is unstable with these gains.
+    """
+    output, rate = (float(v) for v in Performance(loop, exposure, ROWS).of(gains, with_peak=False).variances[0])
+    if not math.isfinite(output + rate):
+        raise InputError(f"loop '{loop.name}' is unstable with the gains that its bound is to be held against")
+    return Reference(output, rate)
+
+
+def positive(exposure: Exposure) -> Exposure:
+    """The exposure without negative energies, which are made up for by the nodes next to them; nodes in order."""
+    order = np.argsort(exposure.omega_e)
+    energy = exposure.energy[order].copy()
+    for i in np.flatnonzero(energy < 0.0):
+        owed, reach = -energy[i], 1
+        energy[i] = 0.0
+        while owed > 0.0 and reach < len(energy):
+            for j in (i - reach, i + reach):
+                if 0 <= j < len(energy) and energy[j] > 0.0:
+                    paid = min(owed, energy[j])
+                    energy[j] -= paid
+                    owed -= paid
+            reach += 1
+    kept = energy > 0.0
+    return Exposure(exposure.omega_e[order][kept], energy[kept], exposure.said)
+
+
+def refuse_unbounded(loop: TransferLoop) -> None:
+    """Servo loops on plants that integrate or run away have no such bound here.
+
+    Raises:
+        NoBound: which block.
+    """
+    for block in (loop.plant, loop.disturbance, *loop.sensor, *loop.filters, *loop.servo):
+        if block.order and block.poles.real.max() >= 0.0:
+            raise NoBound(
+                f"block '{block.name}' of loop '{loop.name}' integrates or is unstable: without control it has no "
+                "variance, and bounds are for stable plants only"
+            )
+
+
+def youla_bound(
+    loop: TransferLoop, exposure: Exposure, gains: Array, peak: float, *, sections: int = SECTIONS
+) -> Bound:
+    """Least output variance over that of `gains` (g,) at equal actuator-rate energy, |S| <= `peak` everywhere.
+
+    It is the least over sums of `sections` Kautz sections; the note says what the second half of them has changed.
+
+    Args:
+        peak: above 1; infinite for none, and then no roll-off of |T| either.
+
+    Raises:
+        InputError: peak out of sense, unstable gains, cvxpy not installed; NoBound for a plant that is not stable and
+            where the solver gives up.
+    """
+    refuse_unbounded(loop)
+    sea = positive(exposure)
+    held = reference(loop, sea, gains)
+    half, whole = (least_variance(loop, sea, held.rate, peak, n) for n in (sections // 2, sections))
+    capped = f", Ms <= {peak:.3g}" if math.isfinite(peak) else ""
+    if whole < NOTHING * held.output:
+        told = "so much rate energy would cancel these waves altogether; the limit of the reference lies elsewhere."
+    else:
+        changed = 100.0 * (1.0 - whole / half)
+        told = f"{2 * sections + 1} terms, of which the second half changed it by {changed:.0f} %."
+    note = f"However complicated, through the same sensor and servo, in this spectrum alone (Youla, convex): {told}"
+    at = f"equal rate energy of the actuator; {exposure.said}{capped}"
+    return Bound("any linear controller", whole / held.output, at, note)
+
+
+def least_variance(loop: TransferLoop, exposure: Exposure, rate: float, peak: float, sections: int) -> float:
+    """Output variance with no more than `rate` of actuator-rate variance and |S| <= peak."""
+    if not peak > 1.0:
+        raise InputError(f"|S| exceeds 1 somewhere in every real loop; give a largest Ms above 1, not {peak:g}")
+    if not rate > 0.0:
+        return exposure.variance_of(loop.disturbance)
+    problem = _Programme.of(loop, exposure, math.sqrt(rate), peak, sections)
+    return problem.solved(peak) ** 2 * exposure.variance_of(loop.disturbance)
+
+
+def kautz(frequencies: Array, omega: Array) -> Complex:
+    """Functions (1 + 2 n, m): 1, and two for each of n frequencies, at omega (m,) [rad/s].
+
+    With d_i = s^2 + 2 zeta w_i s + w_i^2: s / d_i and w_i / d_i, times the all-passes of the sections before (Wahlberg
+    1994, IEEE Trans. Autom. Control 39(6), 1276-1282).
+    """
+    s = 1j * omega
+    made, passed = [np.ones_like(s)], np.ones_like(s)
+    for w in frequencies:
+        d = s**2 + 2.0 * DAMPING * w * s + w**2
+        size = math.sqrt(4.0 * DAMPING * w)
+        made += [size * s / d * passed, size * w / d * passed]
+        passed = passed * (s**2 - 2.0 * DAMPING * w * s + w**2) / d
+    return np.array(made, dtype=np.complex128)
+
+
+@dataclass(frozen=True, eq=False)
+class _Programme:
+    """min |A x - b| with |R x| <= 1, |1 - Z x| <= peak and |Z x| <= cap at every frequency of a grid.
+
+    Coordinates x are those in which all rows together are orthonormal; A, R are real, triangular; Z is complex.
+    """
+
+    A: Array
+    b: Array
+    R: Array
+    Z: Complex
+    cap: Array
+
+    @classmethod
+    def of(cls, loop: TransferLoop, exposure: Exposure, rate: float, peak: float, sections: int) -> "_Programme":
+        path = in_series("path", (*loop.sensor, *loop.filters, *loop.servo))
+        w = exposure.omega_e
+        met = np.sqrt(exposure.energy) * np.abs(loop.disturbance.at(w))
+        low, high = _span_of_path(loop, 0.1 * float(np.sum(w * met**2) / np.sum(met**2)))
+        grid, frequencies = np.geomspace(low / 10.0, 4.0 * high, _GRID), np.geomspace(low, high, sections)
+        at_nodes = (kautz(frequencies, w) * path.at(w)).T
+        on_grid = (kautz(frequencies, grid) * path.at(grid) * loop.plant.at(grid)).T
+        size = float(np.linalg.norm(met))
+        left = at_nodes * (loop.plant.at(w) * met / size)[:, None]
+        moved = at_nodes * (w * met / rate)[:, None]
+        whole = np.vstack([left, moved, on_grid / math.sqrt(_GRID)])
+        turn = np.linalg.inv(np.linalg.qr(np.vstack([whole.real, whole.imag]), mode="r"))
+        A, b = _triangular(left @ turn, met / size)
+        R, _ = _triangular(moved @ turn, np.zeros_like(met))
+        return cls(A, b, R, on_grid @ turn, (1.0 + peak) * _servo(loop, grid))
+
+    def solved(self, peak: float) -> float:
+        """The least |A x - b|."""
+        cvxpy = _cvxpy()
+        x: Any = cvxpy.Variable(self.A.shape[1])
+        held = [cvxpy.norm(self.R @ x) <= 1.0]
+        if math.isfinite(peak):
+            held.append(cvxpy.norm(cvxpy.vstack([1.0 - self.Z.real @ x, self.Z.imag @ x]), 2, axis=0) <= peak)
+        capped = np.isfinite(self.cap)
+        if capped.any():
+            T = self.Z[capped] / self.cap[capped, None]
+            held.append(cvxpy.norm(cvxpy.vstack([T.real @ x, T.imag @ x]), 2, axis=0) <= 1.0)
+        problem = cvxpy.Problem(cvxpy.Minimize(cvxpy.norm(self.A @ x - self.b)), held)
+        try:
+            problem.solve(solver=cvxpy.CLARABEL)
+        except cvxpy.SolverError as error:
+            raise NoBound(f"the convex solver gives up on the bound ({error}); ask for fewer sections") from error
+        if problem.value is None or not np.isfinite(problem.value):
+            raise NoBound(f"the convex solver finds no bound (it says: {problem.status}); ask for fewer sections")
+        return float(problem.value)
+
+
+def _servo(loop: TransferLoop, omega: Array) -> Array:
+    """|servo| over that at rest."""
+    servo = in_series("servo", loop.servo)
+    return np.abs(servo.at(omega)) / abs(servo.gain)
+
+
+def _triangular(rows: Complex, target: Array) -> tuple[Array, Array]:
+    """The same sum of squares |rows x - target|^2 by few real rows."""
+    both = np.column_stack([np.vstack([rows.real, rows.imag]), np.concatenate([target, np.zeros_like(target)])])
+    R = np.asarray(np.linalg.qr(both, mode="r"))
+    return R[:, :-1], R[:, -1]
+
+
+def _span_of_path(loop: TransferLoop, low: float) -> tuple[float, float]:
+    """From `low` [rad/s] to four times the fastest pole of sensor, filters, servo; three decades at least."""
+    poles = [np.abs(block.poles).max() for block in (*loop.sensor, *loop.filters, *loop.servo) if block.order]
+    return low, max(4.0 * float(max(poles, default=0.0)), 1000.0 * low)
+
+
+def _cvxpy() -> Any:
+    try:
+        import cvxpy
+    except ImportError as error:
+        raise InputError("bounds need the package cvxpy: pip install 'seatrial[bounds]'") from error
+    return cvxpy

@@ -1,0 +1,1 @@
+"""Named values, equations, results, and how they are drawn and written."""

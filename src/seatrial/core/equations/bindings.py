@@ -1,0 +1,99 @@
+"""What is written down of a model: inputs, named bindings, rates. Everything numeric is generated from it."""
+
+import hashlib
+from dataclasses import dataclass
+from functools import cached_property
+
+import sympy as sp
+
+from seatrial.core.equations.differentiate import partials
+from seatrial.core.values import NOTATION, quantity
+
+
+@dataclass(frozen=True)
+class Binding:
+    """A named expression with its source; a rate is a binding named after its state."""
+
+    name: str
+    expression: sp.Expr
+    source: str = ""
+    unit: str = "1"
+
+
+@dataclass(frozen=True)
+class Input:
+    """An input channel; `positive` is its positive direction where it differs from the notation table's.
+
+    `is_held`: constant from sample to sample in the exact propagation of linear models.
+    """
+
+    name: str
+    positive: str = ""
+    is_held: bool = False
+
+    @property
+    def direction(self) -> str:
+        """The positive direction in force."""
+        return self.positive or (quantity(self.name).positive if self.name in NOTATION else "none")
+
+    @property
+    def is_turned(self) -> bool:
+        """Whether it points against the notation table's positive direction."""
+        return self.name in NOTATION and self.direction != quantity(self.name).positive
+
+
+@dataclass(frozen=True, eq=False)
+class Equations:
+    """The equations of a model, whatever the values of its parameters; models that differ in values share them.
+
+    Attributes:
+        rates: one binding a state, in the order of the states.
+        outputs: names of bindings that can be measured, besides the states.
+        parameters: names of all parameters, in order.
+    """
+
+    name: str
+    source: str
+    inputs: tuple[Input, ...]
+    bindings: tuple[Binding, ...]
+    rates: tuple[Binding, ...]
+    outputs: tuple[str, ...]
+    parameters: tuple[str, ...]
+    meaning: str = ""
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states."""
+        return tuple(rate.name for rate in self.rates)
+
+    @property
+    def input_names(self) -> tuple[str, ...]:
+        """Names of the inputs."""
+        return tuple(i.name for i in self.inputs)
+
+    @property
+    def measurable(self) -> tuple[Binding, ...]:
+        """The bindings of the outputs, in the order of `outputs`."""
+        by_name = {b.name: b for b in self.bindings}
+        return tuple(by_name[name] for name in self.outputs)
+
+    @cached_property
+    def is_affine(self) -> bool:
+        """Whether rates and outputs are affine in states and inputs, so that exact propagators serve."""
+        moving = {*self.states, *self.input_names}
+        for binding in (*self.bindings, *self.rates):
+            slopes = {name: slope for name, slope in partials(binding.expression).items() if name in moving}
+            if any({str(s) for s in slope.free_symbols} & moving for slope in slopes.values()):
+                return False
+            if slopes and binding.name not in self.states:
+                moving.add(binding.name)
+        return True
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 over names and expressions."""
+        inputs = [f"{i.name} held" if i.is_held else i.name for i in self.inputs]
+        lines = [self.name, *inputs, *self.outputs, *self.parameters]
+        lines += [f"{b.name} = {sp.srepr(b.expression)}" for b in self.bindings]
+        lines += [f"d{b.name} = {sp.srepr(b.expression)}" for b in self.rates]
+        return hashlib.sha256("\n".join(lines).encode()).hexdigest()

@@ -1,0 +1,59 @@
+"""A model's equations as LaTeX, one line for each binding and rate, with its source: what a report prints."""
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from seatrial.core.equations.bindings import Binding
+from seatrial.core.equations.model import Model
+from seatrial.core.values.notation import NOTATION
+
+_GREEK = {
+    "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi", "rho",
+    "sigma", "tau", "phi", "chi", "psi", "omega",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Equation:
+    """One line: the name it defines, LaTeX without dollar signs, unit and source; `is_rate` for d/dt of a state."""
+
+    name: str
+    latex: str
+    source: str
+    unit: str
+    is_rate: bool
+
+
+def symbol(name: str) -> str:
+    r"""LaTeX of an ASCII name: ``x_P_prime`` -> ``x'_{P}``, ``gamma_R`` -> ``\gamma_{R}``, ``sin_psi`` -> upright."""
+    head, *rest = name.split("_")
+    prime = "'" if rest and rest[-1] == "prime" else ""
+    rest = rest[:-1] if prime else rest
+    if head in _GREEK:
+        head = f"\\{head}"
+    elif len(head) > 1:
+        head = f"\\mathrm{{{head}}}"
+    below = " ".join(f"\\{part}" if part in _GREEK else part for part in rest)
+    upright = f"\\mathrm{{{below}}}" if any(len(part) > 2 and part not in _GREEK for part in rest) else below
+    return f"{head}{prime}_{{{upright}}}" if below else f"{head}{prime}"
+
+
+def symbols(model: Model) -> dict[str, str]:
+    """Name -> LaTeX for every symbol of the model: the parameter's own, the notation table's, else from the name."""
+    names = [*model.states, *model.input_names, *(b.name for b in model.bindings)]
+    made = {n: NOTATION[n].latex if n in NOTATION else symbol(n) for n in names}
+    return made | {p.name: p.latex or symbol(p.name) for p in model.parameters}
+
+
+def equations(model: Model) -> list[Equation]:
+    """All bindings in order, then all rates."""
+    known = symbols(model)
+    names = {sp.Symbol(name, real=True): text for name, text in known.items()}
+
+    def line(binding: Binding, left: str, *, is_rate: bool) -> Equation:
+        right = sp.latex(binding.expression, symbol_names=names, fold_short_frac=False)
+        return Equation(binding.name, f"{left} = {right}", binding.source, binding.unit, is_rate)
+
+    lines = [line(b, known[b.name], is_rate=False) for b in model.bindings]
+    return lines + [line(b, f"\\dot{{{known[b.name]}}}", is_rate=True) for b in model.equations.rates]

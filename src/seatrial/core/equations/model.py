@@ -1,0 +1,104 @@
+"""A model: equations, written once, and the values of their parameters."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from seatrial.core.equations.bindings import Binding, Equations, Input
+from seatrial.core.equations.compiled import Compiled, compiled
+from seatrial.core.values import Array, InputError, Parameters, Ship
+from seatrial.numerics.kernels.evaluate import evaluate
+
+
+@dataclass(frozen=True)
+class Model:
+    """Equations with the parameters, free and fixed, in the equations' order."""
+
+    equations: Equations
+    parameters: Parameters
+
+    @property
+    def name(self) -> str:
+        """What the registry and model files call it."""
+        return self.equations.name
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states."""
+        return self.equations.states
+
+    @property
+    def inputs(self) -> tuple[Input, ...]:
+        """The input channels."""
+        return self.equations.inputs
+
+    @property
+    def input_names(self) -> tuple[str, ...]:
+        """Names of the inputs."""
+        return self.equations.input_names
+
+    @property
+    def bindings(self) -> tuple[Binding, ...]:
+        """The named expressions, in order."""
+        return self.equations.bindings
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of bindings that can be measured, besides the states."""
+        return self.equations.outputs
+
+    @property
+    def observables(self) -> tuple[str, ...]:
+        """Everything a record can be compared with: states, then measurable outputs."""
+        return (*self.states, *self.outputs)
+
+    @property
+    def equation_hash(self) -> str:
+        """SHA-256 over names and expressions: what the equations are, whatever the parameter values."""
+        return self.equations.digest
+
+    @property
+    def is_affine(self) -> bool:
+        """Whether it is affine in states and inputs, so that exact propagators serve."""
+        return self.equations.is_affine
+
+    @property
+    def compiled(self) -> Compiled:
+        """The generated machine code: rates, outputs, bindings and exact Jacobians (cached between processes)."""
+        return compiled(self.equations)
+
+    def with_parameters(self, parameters: Parameters) -> Self:
+        """The same equations with other parameters (same names, same order).
+
+        Raises:
+            InputError: the names differ.
+        """
+        if parameters.names != self.parameters.names:
+            raise InputError(f"the parameters do not belong to model '{self.name}'")
+        return replace(self, parameters=parameters)
+
+    def with_values(self, values: Mapping[str, float], source: str | None = None) -> Self:
+        """Other parameter values."""
+        return self.with_parameters(self.parameters.with_values(values, source))
+
+    def of_ship(self, ship: Ship) -> Self:
+        """Particulars the model knows by name, taken from the ship.
+
+        Raises:
+            InputError: a parameter still has no value.
+        """
+        known = {n: v for n, v in ship.particulars.items() if n in self.parameters}
+        model = self.with_values(known, source=ship.source or ship.name)
+        if model.parameters.missing:
+            names = ", ".join(model.parameters.missing)
+            raise InputError(f"model '{self.name}' needs {names}; give them under [ship] or [model.fixed]")
+        return model
+
+    def forces(self, states: Array, inputs: Array) -> dict[str, Array]:
+        """Every binding along a record: states (n, nx), inputs (n, nu) -> name -> (n,)."""
+        out = np.empty((len(states), max(1, len(self.bindings))))
+        x, u = np.ascontiguousarray(states), np.ascontiguousarray(inputs)
+        evaluate(self.compiled.bindings, x, u, self.parameters.values, 0.0, out)
+        return {b.name: out[:, i] for i, b in enumerate(self.bindings)}

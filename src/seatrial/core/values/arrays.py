@@ -1,0 +1,20 @@
+"""The array types of the house, and how numbers are frozen."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+def frozen(values: ArrayLike) -> Array:
+    """A float64 copy that cannot be written to."""
+    array = np.array(values, dtype=np.float64)
+    array.setflags(write=False)
+    return array
+
+
+def correlation_of(covariance: Array) -> Array:
+    """Return a covariance (n, n) scaled to a unit diagonal; rows without a variance are NaN."""
+    spread = np.sqrt(np.where(np.diag(covariance) > 0, np.diag(covariance), np.nan))
+    return covariance / np.outer(spread, spread)

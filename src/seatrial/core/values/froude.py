@@ -1,0 +1,67 @@
+"""Froude similarity: a record made at one scale, expressed at another."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from seatrial.core.values.errors import InputError
+from seatrial.core.values.record import Record
+
+# exponent of the length ratio by SI unit, equal gravity and density (ITTC 2021, 7.5-02-06-01, Froude scaling)
+_EXPONENTS: dict[str, float] = {
+    "1": 0.0,
+    "rad": 0.0,
+    "m": 1.0,
+    "m^2": 2.0,
+    "m^3": 3.0,
+    "s": 0.5,
+    "m/s": 0.5,
+    "m/s^2": 0.0,
+    "rad/s": -0.5,
+    "rps": -0.5,
+    "N": 3.0,
+    "N m": 4.0,
+    "kg": 3.0,
+    "kg/m^3": 0.0,
+    "kg m^2": 5.0,
+}
+
+
+def factor(unit: str, ratio: float) -> float:
+    """Factor from model to ship for a quantity of SI `unit` at length ratio `ratio` = L_ship / L_model.
+
+    Raises:
+        InputError: the ratio is not positive, or the unit has no known exponent.
+    """
+    if not (np.isfinite(ratio) and ratio > 0):
+        raise InputError(f"scale must be a positive number, not {ratio:g}; give 45.7 for a model 1:45.7")
+    if unit not in _EXPONENTS:
+        raise InputError(f"no Froude exponent is known for unit '{unit}'; convert the channel to an SI unit first")
+    return float(ratio ** _EXPONENTS[unit])
+
+
+def scaled(record: Record, ratio: float) -> Record:
+    """The record at `ratio` times its scale (ratio > 1: model to ship; the inverse is `1 / ratio`).
+
+    Lengths and reference points x ratio, time and velocities x ratio^1/2, rates x ratio^-1/2, forces x ratio^3,
+    moments x ratio^4; equal water density at both scales.
+
+    Raises:
+        InputError: see `factor`.
+    """
+    if ratio == 1.0:
+        return record
+    length = factor("m", ratio)
+    channels = {
+        symbol: replace(
+            channel.with_values(channel.values * factor(channel.unit, ratio)),
+            reference_point=channel.reference_point * length,
+        )
+        for symbol, channel in record.channels.items()
+    }
+    return replace(
+        record,
+        time=record.time * factor("s", ratio),
+        channels=channels,
+        provenance=record.provenance.then(f"Froude-scaled by {ratio:g}"),
+    )

@@ -1,0 +1,157 @@
+"""Parameters: ordered named values with unit, bounds, prior, free or fixed, and where each comes from."""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+
+from seatrial.core.values.arrays import Array
+from seatrial.core.values.errors import InputError, nearest
+
+
+@dataclass(frozen=True)
+class Prior:
+    """Gaussian prior knowledge of one parameter, with its source."""
+
+    mean: float
+    standard_deviation: float
+    source: str = ""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One named value.
+
+    Attributes:
+        name: the field's symbol in ASCII, e.g. ``Y_vvr``.
+        value: NaN where the user must give it (ship particulars).
+        unit: SI unit, ``1`` for nondimensional.
+        lower, upper: bounds; infinite where there are none.
+        scale: smallest size that counts: priors in per cent refer to it where the value is smaller.
+        prior: Gaussian knowledge, used only while the parameter is free.
+        free: whether an estimator may move it.
+        source: citation or file it comes from.
+        meaning: what the symbol stands for.
+        latex: how it is printed.
+    """
+
+    name: str
+    value: float = math.nan
+    unit: str = "1"
+    lower: float = -math.inf
+    upper: float = math.inf
+    scale: float = 0.0
+    prior: Prior | None = None
+    free: bool = False
+    source: str = ""
+    meaning: str = ""
+    latex: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.lower <= self.upper:
+            raise InputError(f"parameter '{self.name}': lower bound {self.lower:g} exceeds upper bound {self.upper:g}")
+
+    @property
+    def characteristic_scale(self) -> float:
+        """The magnitude of the value or `scale`, whichever is larger; 1 where both are 0."""
+        return max(self.scale, abs(self.value)) or 1.0
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """An immutable ordered set of parameters; every change returns a new one.
+
+    Raises:
+        InputError: a name is not among the parameters (the nearest is named).
+    """
+
+    items: tuple[Parameter, ...]
+
+    def __iter__(self) -> Iterator[Parameter]:
+        return iter(self.items)
+
+    def __len__(self) -> int:
+        return len(self.items)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._places
+
+    def __getitem__(self, name: str) -> Parameter:
+        return self.items[self.index(name)]
+
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        return {p.name: i for i, p in enumerate(self.items)}
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """All names in order."""
+        return tuple(p.name for p in self.items)
+
+    @property
+    def values(self) -> Array:
+        """All values in order, shape (n,)."""
+        return np.array([p.value for p in self.items])
+
+    @property
+    def free(self) -> tuple[Parameter, ...]:
+        """The parameters an estimator may move."""
+        return tuple(p for p in self.items if p.free)
+
+    @property
+    def free_names(self) -> tuple[str, ...]:
+        """Names of the free ones."""
+        return tuple(p.name for p in self.free)
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """Names of parameters without a value."""
+        return tuple(p.name for p in self.items if math.isnan(p.value))
+
+    def index(self, name: str) -> int:
+        """Position of a name."""
+        if name not in self._places:
+            raise InputError(f"unknown parameter '{name}'{nearest(name, list(self.names))}")
+        return self._places[name]
+
+    def _changed(self, changes: Mapping[str, Mapping[str, object]]) -> Self:
+        for name in changes:
+            self.index(name)
+        return replace(self, items=tuple(replace(p, **changes.get(p.name, {})) for p in self.items))  # type: ignore[arg-type]
+
+    def with_values(self, values: Mapping[str, float], source: str | None = None) -> Self:
+        """New values, and their source if given."""
+        extra = {} if source is None else {"source": source}
+        return self._changed({name: {"value": float(value), **extra} for name, value in values.items()})
+
+    def with_free_values(self, point: Array) -> Self:
+        """Values of the free parameters, in order."""
+        return self.with_values(dict(zip(self.free_names, point, strict=True)))
+
+    def fixed(self, *names: str) -> Self:
+        """The named parameters fixed at their values."""
+        return self._changed({name: {"free": False} for name in names})
+
+    def freed(self, *names: str) -> Self:
+        """The named parameters free."""
+        return self._changed({name: {"free": True} for name in names})
+
+    def only_free(self, names: Iterable[str]) -> Self:
+        """Exactly the named parameters free."""
+        wanted = set(names)
+        return self._changed({n: {"free": n in wanted} for n in (*self.names, *wanted)})
+
+    def bounded(self, name: str, lower: float, upper: float) -> Self:
+        """Bounds of one parameter."""
+        return self._changed({name: {"lower": lower, "upper": upper}})
+
+    def with_priors(self, priors: Mapping[str, Prior]) -> Self:
+        """Gaussian priors by name."""
+        return self._changed({name: {"prior": prior} for name, prior in priors.items()})
+
+    def without_priors(self) -> Self:
+        """No priors at all."""
+        return self._changed({name: {"prior": None} for name in self.names})

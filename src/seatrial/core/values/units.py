@@ -1,0 +1,59 @@
+"""Units at the boundary: factors to SI. Inside the house everything is SI and radians."""
+
+import math
+
+from seatrial.core.values.errors import InputError, nearest
+
+# unit -> (factor to SI, SI unit); exact by definition (SI brochure 2019; 1 kn = 1852 m/h)
+_UNITS: dict[str, tuple[float, str]] = {
+    "1": (1.0, "1"),
+    "s": (1.0, "s"),
+    "ms": (1e-3, "s"),
+    "min": (60.0, "s"),
+    "h": (3600.0, "s"),
+    "m": (1.0, "m"),
+    "mm": (1e-3, "m"),
+    "cm": (1e-2, "m"),
+    "km": (1e3, "m"),
+    "ft": (0.3048, "m"),
+    "nmi": (1852.0, "m"),
+    "rad": (1.0, "rad"),
+    "deg": (math.pi / 180.0, "rad"),
+    "m/s": (1.0, "m/s"),
+    "km/h": (1.0 / 3.6, "m/s"),
+    "kn": (1852.0 / 3600.0, "m/s"),
+    "rad/s": (1.0, "rad/s"),
+    "deg/s": (math.pi / 180.0, "rad/s"),
+    "deg/min": (math.pi / 10800.0, "rad/s"),
+    "m/s^2": (1.0, "m/s^2"),
+    "g": (9.80665, "m/s^2"),
+    "rps": (1.0, "rps"),
+    "rpm": (1.0 / 60.0, "rps"),
+    "N": (1.0, "N"),
+    "kN": (1e3, "N"),
+    "MN": (1e6, "N"),
+    "N m": (1.0, "N m"),
+    "kN m": (1e3, "N m"),
+    "kg": (1.0, "kg"),
+    "t": (1e3, "kg"),
+    "kg/m^3": (1.0, "kg/m^3"),
+    "kg m^2": (1.0, "kg m^2"),
+    "m^2": (1.0, "m^2"),
+    "m^3": (1.0, "m^3"),
+}
+
+
+def si(unit: str) -> tuple[float, str]:
+    """Factor and SI unit of `unit`.
+
+    Raises:
+        InputError: the unit is unknown; the nearest known one is named.
+    """
+    if unit not in _UNITS:
+        raise InputError(f"unknown unit '{unit}'{nearest(unit, sorted(_UNITS))}")
+    return _UNITS[unit]
+
+
+def display(unit: str) -> tuple[float, str]:
+    """Factor from SI and the unit people read: degrees for angles, otherwise SI."""
+    return {"rad": (180.0 / math.pi, "deg"), "rad/s": (180.0 / math.pi, "deg/s")}.get(unit, (1.0, unit))

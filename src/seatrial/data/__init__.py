@@ -1,0 +1,1 @@
+"""Records and trial files in, result folders out."""

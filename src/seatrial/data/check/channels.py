@@ -1,0 +1,123 @@
+"""Single channels: dead or stuck, constant, holes, wraps; and lags between channels."""
+
+import numpy as np
+
+from seatrial.core.values import Array, Finding, Record, Severity
+from seatrial.data.check.frames import best_reading
+from seatrial.data.check.mend import INPUTS
+from seatrial.data.check.motion import motion_of
+from seatrial.data.check.rates import heading_rate
+from seatrial.data.check.signal import jackknifed, slope, smoothed, stretches, window
+
+OUTPUTS = ("x0", "y0", "psi", "u", "v", "r", "phi", "p", "theta", "z", "u_dot", "v_dot")
+STUCK_SAMPLES, STUCK_PART = 20, 0.02
+LAG_ERRORS, LAG_SAMPLES = 4.0, 1.5
+
+
+def channel_findings(record: Record) -> tuple[Finding, ...]:
+    """Dead, stuck and constant channels, and headings that wrap, of a record as it was read."""
+    found: list[Finding] = []
+    wraps: dict[str, int] = {}
+    for symbol, channel in record.channels.items():
+        values = channel.values[np.isfinite(channel.values)]
+        if values.size < 2:
+            continue
+        if np.ptp(values) == 0:
+            found.append(_constant(record, symbol, float(values[0])))
+        elif symbol in OUTPUTS:
+            found += _stuck(record, symbol, channel.values)
+        if channel.unit == "rad" and symbol not in INPUTS:
+            wraps[symbol] = int(np.sum(np.abs(np.diff(values)) > np.pi))
+    wraps = {symbol: count for symbol, count in wraps.items() if count}
+    if wraps:
+        what = f"record '{record.name}': readings of {', '.join(wraps)} jump by a whole turn; they are unwrapped"
+        evidence = ", ".join(f"{symbol} {count} times" for symbol, count in wraps.items())
+        found.append(Finding(Severity.INFO, "angle-wrap", what, evidence, "no action needed"))
+    return tuple(found)
+
+
+def _constant(record: Record, symbol: str, value: float) -> Finding:
+    evidence = f"{value:.6g} {record.channel(symbol).unit} throughout"
+    if symbol in OUTPUTS:
+        what = f"record '{record.name}': channel '{symbol}' is dead, it never changes"
+        return Finding(Severity.WARNING, "dead-channel", what, evidence, "leave the channel out or mend the sensor")
+    what = f"record '{record.name}': channel '{symbol}' is constant"
+    return Finding(Severity.INFO, "constant", what, evidence, "its effect cannot be told from a constant force")
+
+
+def _stuck(record: Record, symbol: str, values: Array) -> list[Finding]:
+    """The longest run of one repeated value, where it lasts over twenty samples and a fiftieth of the record."""
+    first, last = max(stretches(np.diff(values) == 0), key=lambda ends: ends[1] - ends[0], default=(0, 0))
+    if last - first < max(STUCK_SAMPLES, STUCK_PART * len(values)):
+        return []
+    what = f"record '{record.name}': channel '{symbol}' is stuck for {last - first + 1} samples"
+    evidence = (
+        f"{values[first]:.6g} from t = {record.time[first]:.6g} to {record.time[min(last, len(values) - 1)]:.6g} s"
+    )
+    return [Finding(Severity.WARNING, "stuck", what, evidence, "look whether the sensor stopped or the ship lay still")]
+
+
+def lag_findings(record: Record) -> tuple[Finding, ...]:
+    """Lags of u, v behind the positions and of r behind the heading, of a clean, signed record as declared."""
+    found = []
+    for what, lag in (
+        ("u, v lag behind the positions", velocity_lag(record)),
+        ("r lags behind the heading", rate_lag(record)),
+    ):
+        if lag is None:
+            continue
+        delay, error = lag
+        if abs(delay) > LAG_SAMPLES * record.dt and abs(delay) > LAG_ERRORS * error:
+            said = what if delay > 0 else what.replace("lag behind", "lead").replace("lags behind", "leads")
+            found.append(
+                Finding(
+                    Severity.WARNING,
+                    "lag",
+                    f"record '{record.name}': {said} by about {abs(delay):.2g} s",
+                    f"{abs(delay) / record.dt:.1f} samples, standard error {error:.2g} s",
+                    "shift the channel, or estimate the delay as a nuisance",
+                )
+            )
+    return tuple(found)
+
+
+def velocity_lag(record: Record) -> tuple[float, float] | None:
+    """Delay of the measured velocity [s] and its standard error: d(position)/dt - w = tau dw/dt - d lever + constant.
+
+    A reference point d ahead is fitted along (its lever is the turned yaw rate), so that it does not pass for a lag.
+    None where positions are missing or the declared frame is refuted.
+    """
+    motion = motion_of(record)
+    if motion is None or best_reading(motion).changes:
+        return None
+    length = motion.length
+    levers = (-np.sin(motion.psi), np.cos(motion.psi))
+    turning = np.gradient(motion.psi, motion.dt)
+    features, levered, target = [], [], []
+    for position, velocity, lever in zip(motion.measured, motion.velocity(motion.readings[0]), levers, strict=True):
+        features.append(slope(velocity, motion.dt, length))
+        levered.append(smoothed(turning * lever, length))
+        target.append(position - smoothed(velocity, length))
+    return _delay(features, target, levered)
+
+
+def rate_lag(record: Record) -> tuple[float, float] | None:
+    """The same for r against the heading; None where they do not belong together."""
+    turning = heading_rate(record)
+    if turning is None or "r" not in record:
+        return None
+    length = window(len(record))
+    r = smoothed(record["r"], length)
+    if np.ptp(r) == 0 or np.corrcoef(r, turning)[0, 1] < 0.8:
+        return None
+    return _delay([slope(record["r"], record.dt, length)], [turning - r])
+
+
+def _delay(features: list[Array], target: list[Array], *others: list[Array]) -> tuple[float, float] | None:
+    """Components interleaved in time, so that blocks of rows are blocks of time; one offset for each component."""
+    rate, misfit, *rest = (np.stack(part, axis=1).ravel() for part in (features, target, *others))
+    if not np.any(rate):
+        return None
+    offsets = np.tile(np.eye(len(features)), (len(features[0]), 1))
+    answer, errors = jackknifed(np.column_stack([rate, *rest, offsets]), misfit)
+    return float(answer[0]), float(errors[0])

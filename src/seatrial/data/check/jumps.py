@@ -1,0 +1,78 @@
+"""Jumps of position (held and catching up, or staying) and single wild samples."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from seatrial.core.values import Array
+from seatrial.data.check.signal import Rows
+
+REACH = 15
+STEP_RATIO, STEP_SIZE = 4.0, 6.0
+HELD_RATIO, LONGEST_HOLD = 0.35, 50
+SPIKE_RATIO, NEIGHBOURS = 4.0, 8
+_NONE: Rows = np.empty(0, dtype=np.intp)
+
+
+@dataclass(frozen=True)
+class Jumps:
+    """Jumps of a track.
+
+    Attributes:
+        rows: index of the sample after each jump.
+        sizes: length of each jump [m].
+        held: samples to replace: the position stood still there before it caught up.
+    """
+
+    rows: Rows
+    sizes: Array
+    held: Rows
+
+
+def track_jumps(x: Array, y: Array) -> Jumps:
+    """Steps of more than four times the mean step around them and six times the median step of the run.
+
+    x, y: shape (n,), no NaN. A receiver that holds its last position and then catches up shows small steps first.
+    """
+    steps = np.hypot(np.diff(x), np.diff(y))
+    rows = np.arange(len(steps))
+    first, last = np.maximum(rows - REACH, 0), np.minimum(rows + 1 + REACH, len(x) - 1)
+    mean = np.hypot(x[last] - x[first], y[last] - y[first]) / np.maximum(last - first, 1)
+    moving = steps[steps > 0]
+    typical = float(np.median(moving)) if moving.size else 0.0
+    jumped = np.flatnonzero((steps > STEP_RATIO * mean) & (steps > STEP_SIZE * typical))
+    held = [_held_before(j, steps, mean) for j in jumped.tolist()]
+    return Jumps(jumped + 1, steps[jumped], np.unique(np.concatenate([*held, _NONE])))
+
+
+def _held_before(j: int, steps: Array, mean: Array) -> Rows:
+    """Samples held before step j, or none where the jump does not match the distance missed."""
+    count = 0
+    while count < LONGEST_HOLD and j - 1 - count >= 0 and steps[j - 1 - count] < HELD_RATIO * mean[j]:
+        count += 1
+    missed = (count + 1) * mean[j]
+    if count == 0 or not 0.3 * missed < steps[j] < 2.5 * missed:
+        return _NONE
+    return np.arange(j - count + 1, j + 1, dtype=np.intp)
+
+
+def spikes(values: Array) -> Rows:
+    """Rows of single samples that leave and return in steps over four times any other step within eight samples.
+
+    values: shape (n,), no NaN. The step must also exceed three times the record's 95 % step, and five times its
+    smallest (quantisation).
+    """
+    steps = np.diff(values)
+    sizes = np.abs(steps)
+    moving = sizes[sizes > 0]
+    if moving.size == 0 or len(values) < 2 * NEIGHBOURS:
+        return _NONE
+    floor = max(3.0 * float(np.quantile(sizes, 0.95)), 5.0 * float(moving.min()))
+    both = np.minimum(sizes[:-1], sizes[1:])
+    candidates = np.flatnonzero((steps[:-1] * steps[1:] < 0) & (both > floor))
+    found = []
+    for c in candidates.tolist():
+        before, after = sizes[max(0, c - NEIGHBOURS) : c], sizes[c + 2 : c + 2 + NEIGHBOURS]
+        if both[c] > SPIKE_RATIO * max(before.max(initial=0.0), after.max(initial=0.0)):
+            found.append(c + 1)
+    return np.array(found, dtype=np.intp)

@@ -1,0 +1,1 @@
+"""A simulated trial series of a craft with known coefficients."""

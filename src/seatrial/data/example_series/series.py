@@ -1,0 +1,112 @@
+"""A simulated trial series of a craft whose coefficients are known: the embedded example, and the proof by truth.
+
+`python -m seatrial.data.example_series.series FOLDER` writes it as CSV files of 2 Hz, as in ``examples/waterjet``.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Record, display
+from seatrial.core.values.files import write_whole
+from seatrial.physics.manoeuvres.programme import programme
+from seatrial.physics.models.waterjet import waterjet
+from seatrial.physics.simulate.steer import manoeuvre
+
+# standard deviations in SI units: log, gyro and GNSS of a small craft
+SENSOR_NOISE = {"u": 0.02, "v": 0.02, "r": math.radians(0.1), "psi": math.radians(0.2), "x0": 0.5, "y0": 0.5}
+JET_VELOCITY = 1.866
+SLEW_RATE = math.radians(4.0)
+FINE_STEP, RATE, APPROACH = 0.01, 10.0, 10.0
+HELD_OUT = ("zigzag:25/25", "turning-circle:20")
+EXAMPLE_RATE, EXAMPLE_SEED = 2.0, 2025
+EXAMPLE_COLUMNS = ("x0", "y0", "psi", "u", "v", "r", "delta", "v_j")
+
+
+def truth() -> Model:
+    """The craft with the coefficients that estimates are compared with."""
+    return waterjet()
+
+
+def demo_series(seed: int, executes: int = 5) -> tuple[tuple[Record, ...], Model]:
+    """Records with sensor noise at 10 Hz, and the model that made them.
+
+    The first record is for training: consecutive zigzags 10/10 to 30/30, `executes` of each (5: 2075 s).
+    The others are held out: a 25/25 zigzag and a turning circle with 20 deg, where drift stays within the model's
+    reach. The generator is finer than any fitted model: steps of 0.01 s under a continuously slewing nozzle (4 deg/s),
+    of which the record keeps every tenth sample. Inputs are recorded without noise.
+
+    Args:
+        seed: every record has a stream of its own, so that one does not depend on the others' lengths.
+        executes: executes of each zigzag angle.
+    """
+    craft = truth()
+    texts = (f"consecutive-zigzags:{executes}", *HELD_OUT)
+    streams = np.random.SeedSequence(seed).spawn(len(texts))
+    records = tuple(
+        noisy(run(craft, text), np.random.default_rng(stream), seed)
+        for text, stream in zip(texts, streams, strict=True)
+    )
+    return records, craft
+
+
+def run(craft: Model, text: str) -> Record:
+    """One noise-free manoeuvre of the series, sampled at 10 Hz, named after its programme."""
+    fine = manoeuvre(
+        craft, programme(text), dt=FINE_STEP, inputs={"v_j": JET_VELOCITY}, slew_rate=SLEW_RATE, approach=APPROACH
+    )
+    kept = fine.resampled(RATE)
+    step = f"generated in steps of {FINE_STEP:g} s, every {round(1.0 / (FINE_STEP * RATE))}th kept"
+    return replace(kept, name=file_name(text), provenance=kept.provenance.then(step))
+
+
+def noisy(record: Record, rng: np.random.Generator, seed: int) -> Record:
+    """The record with white Gaussian sensor noise (`SENSOR_NOISE`) on its measured channels."""
+    channels = dict(record.channels)
+    for symbol, deviation in SENSOR_NOISE.items():
+        values = record[symbol] + deviation * rng.standard_normal(len(record))
+        channels[symbol] = record.channel(symbol).with_values(values)
+    return replace(record, channels=channels, provenance=record.provenance.then(f"sensor noise, seed {seed}"))
+
+
+def file_name(text: str) -> str:
+    """A programme's text as the name of a record or file."""
+    return text.replace(":", "_").replace("/", "_")
+
+
+def write_csv(record: Record, path: Path, columns: Sequence[str] = EXAMPLE_COLUMNS) -> None:
+    """Time and `columns` in the units people read, header ``symbol [unit]``; whole or not at all.
+
+    Raises:
+        InputError: the place cannot be written.
+    """
+    header = ",".join(["time [s]", *(f"{s} [{display(record.channel(s).unit)[1]}]" for s in columns)])
+    values = [record.time, *(record[s] * display(record.channel(s).unit)[0] for s in columns)]
+    rows = [",".join(_number(value) for value in row) for row in zip(*values, strict=True)]
+    write_whole(path, ("\n".join([header, *rows]) + "\n").encode())
+
+
+def _number(value: float) -> str:
+    return f"{value + 0.0:.4g}" if abs(value) < 10.0 else f"{value:.2f}"
+
+
+def main(folder: str) -> None:
+    """Write the example series to `folder`."""
+    place = Path(folder)
+    records, _ = demo_series(EXAMPLE_SEED)
+    for record in records:
+        path = place / f"{record.name}.csv"
+        write_csv(record.resampled(EXAMPLE_RATE), path)
+        print(f"{path}: {record.duration:.0f} s, {path.stat().st_size / 1000:.0f} kB")
+
+
+if __name__ == "__main__":
+    import sys
+
+    if len(sys.argv) != 2:
+        sys.exit("usage: python -m seatrial.data.example_series.series FOLDER")
+    main(sys.argv[1])

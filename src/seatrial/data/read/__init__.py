@@ -1,0 +1,68 @@
+"""Files to records: parses, converts units, judges nothing. One format, one file."""
+
+import hashlib
+from pathlib import Path
+
+from seatrial.core.values import InputError, Record, nearest
+from seatrial.data.read.assemble import assembled
+from seatrial.data.read.layout import Column, Format, Layout
+from seatrial.data.read.mat import read_mat
+from seatrial.data.read.netcdf import read_netcdf
+from seatrial.data.read.parquet import read_parquet
+from seatrial.data.read.sheet import Reader
+from seatrial.data.read.table import read_table, write_record
+from seatrial.data.read.text import read_text
+
+READERS: dict[Format, Reader] = {"text": read_text, "mat": read_mat, "parquet": read_parquet, "netcdf": read_netcdf}
+
+_SUFFIXES: dict[str, Format] = {
+    ".csv": "text",
+    ".tsv": "text",
+    ".txt": "text",
+    ".dat": "text",
+    ".asc": "text",
+    ".mat": "mat",
+    ".parquet": "parquet",
+    ".pq": "parquet",
+    ".nc": "netcdf",
+    ".nc4": "netcdf",
+    ".netcdf": "netcdf",
+}
+
+
+def format_of(path: Path) -> Format:
+    """The format a file's suffix promises (``.gz`` is looked through).
+
+    Raises:
+        InputError: the suffix is not known.
+    """
+    suffix = Path(path.name.removesuffix(".gz")).suffix.lower()
+    if suffix not in _SUFFIXES:
+        raise InputError(f"{path.name}: the format cannot be told from '{suffix}'; give format = one of {_known()}")
+    return _SUFFIXES[suffix]
+
+
+def read_record(path: Path, layout: Layout) -> Record:
+    """Read one file: values in SI units, frames, signs and reference points as the layout declares them.
+
+    Empty cells become NaN, an empty time stamp as well; `check` reports and repairs them.
+
+    Raises:
+        InputError: missing, empty or binary file, wrong encoding, column, unit or cell, time that runs backwards,
+            a channel without numbers, fewer than two samples.
+    """
+    if layout.format not in READERS:
+        raise InputError(f"unknown format '{layout.format}'{nearest(layout.format, sorted(READERS))}")
+    if not path.is_file():
+        raise InputError(f"{path} does not exist; check the path and SEATRIAL_DATA")
+    if path.stat().st_size == 0:
+        raise InputError(f"{path.name} is empty; leave it out or replace it")
+    sheet = READERS[layout.format](path, layout)
+    return assembled(sheet, layout, hashlib.sha256(path.read_bytes()).hexdigest())
+
+
+def _known() -> str:
+    return ", ".join(sorted(READERS))
+
+
+__all__ = ["READERS", "Column", "Format", "Layout", "format_of", "read_record", "read_table", "write_record"]

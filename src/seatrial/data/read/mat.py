@@ -1,0 +1,87 @@
+"""MATLAB files: version 5 by scipy, version 7.3 (HDF5) by h5py from the extra `formats`."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from seatrial.core.values import InputError
+from seatrial.data.read.layout import Layout
+from seatrial.data.read.sheet import Sheet
+
+_HDF5 = b"\x89HDF"
+
+
+def read_mat(path: Path, layout: Layout) -> Sheet:
+    """Vectors become columns under their names (``run.u`` for a field of a struct); a matrix under its numbers.
+
+    Column numbers count through the columns of the largest matrix of the file.
+
+    Raises:
+        InputError: not a MATLAB file, or h5py is needed and not installed.
+    """
+    with path.open("rb") as file:
+        head = file.read(520)
+    variables = _version_7(path) if _HDF5 in head[:8] or head[512:516] == _HDF5 else _version_5(path)
+    return _sheet(path.name, variables, layout)
+
+
+def _version_5(path: Path) -> dict[str, np.ndarray]:
+    from scipy.io import loadmat
+
+    try:
+        return _flat(loadmat(path, squeeze_me=True, struct_as_record=True))
+    except Exception as error:  # scipy raises half a dozen unrelated types on damaged files
+        raise InputError(f"{path.name} is not a readable MATLAB file ({error}); save it again with -v7") from None
+
+
+def _flat(variables: Mapping, prefix: str = "") -> dict[str, np.ndarray]:
+    found: dict[str, np.ndarray] = {}
+    for name, value in variables.items():
+        if name.startswith("__"):
+            continue
+        array = np.asarray(value)
+        if array.dtype.names and array.size == 1:
+            fields = {field: array[field].item() for field in array.dtype.names}
+            found |= _flat(fields, f"{prefix}{name}.")
+        elif array.dtype.kind in "fiub":
+            found[prefix + name] = array.astype(float)
+    return found
+
+
+def _version_7(path: Path) -> dict[str, np.ndarray]:
+    try:
+        import h5py  # type: ignore[import-untyped]
+    except ImportError:
+        raise InputError(
+            f"{path.name} is a MATLAB 7.3 file, which needs h5py; install it with: pip install 'seatrial[formats]'"
+        ) from None
+    found: dict[str, np.ndarray] = {}
+
+    def visit(name: str, item: object) -> None:
+        if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu" and not name.startswith("#"):
+            found[name.replace("/", ".")] = np.squeeze(np.asarray(item, dtype=float).T)
+
+    try:
+        with h5py.File(path, "r") as file:
+            file.visititems(visit)
+    except OSError as error:
+        raise InputError(f"{path.name} is not a readable MATLAB 7.3 file ({error})") from None
+    return found
+
+
+def _sheet(file: str, variables: dict[str, np.ndarray], layout: Layout) -> Sheet:
+    matrices = [value for value in variables.values() if value.ndim == 2]
+    matrix = max(matrices, key=np.size, default=np.empty((0, 0)))
+    if not layout.has_names:
+        return Sheet(file, ("",) * matrix.shape[1], tuple(matrix.T))
+    vectors = {name: np.atleast_1d(value) for name, value in variables.items() if value.ndim <= 1}
+    time = vectors.get(str(layout.time.source), np.empty(0))
+    same = {name: value for name, value in vectors.items() if value.size == time.size or time.size == 0}
+    for column in layout.columns:
+        if column.source in vectors and column.source not in same:
+            raise InputError(
+                f"{file}: '{column.source}' has {vectors[str(column.source)].size} samples, time has {time.size}; "
+                "give a variable of the same length"
+            )
+    return Sheet(file, tuple(same), tuple(same.values()))

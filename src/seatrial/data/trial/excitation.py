@@ -1,0 +1,84 @@
+"""`[excitation]` and `[records.waves]` of a trial file: what the waves do to the ship, and how she meets them."""
+
+import math
+from pathlib import Path
+
+from seatrial.core.equations import Model
+from seatrial.core.values import InputError, Ship
+from seatrial.data.trial.schema import ExcitationTable, SeaTable, WavesTable
+from seatrial.data.trial.trial import Waves
+from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.hydro.excitation import BoxHull, Excitation
+from seatrial.physics.sea.encounter import speed_factor
+from seatrial.physics.sea.spectrum import Spectrum, bretschneider, ittc, ittc_two_parameter, jonswap
+
+_FASTEST_FROUDE = 1.0
+_BOX = ("L", "B", "d", "c33", "c35", "c53", "c55")
+
+
+def excitation_of(table: ExcitationTable | None, ship: Ship, model: Model, base: Path) -> Excitation | None:
+    """The excitation that the table names; files lie under `base`.
+
+    Raises:
+        InputError: a model that knows no wave force, a dimension of the box that nobody gives, or a file that cannot be
+            read.
+    """
+    if table is None:
+        return None
+    if not {"F3", "M5"} <= set(model.input_names):
+        raise InputError(f"[excitation]: model '{model.name}' has no inputs F3 and M5; remove the table")
+    if table.source == "table":
+        from seatrial.physics.hydro.transfer_file import read_transfer
+
+        return read_transfer(base / str(table.file))
+    if table.source == "capytaine":
+        from seatrial.physics.hydro.capytaine_data import HullExcitation, read_capytaine
+
+        return HullExcitation(read_capytaine(base / str(table.file)))
+    return _box(ship, model)
+
+
+def _box(ship: Ship, model: Model) -> BoxHull:
+    known = {p.name: p.value for p in model.parameters} | dict(ship.particulars)
+    for name in _BOX:
+        if name not in known:
+            raise InputError(f"[excitation] source = 'box' needs ship.{name}; add it")
+    L, B, T, c33, c35, c53, c55 = (known[name] for name in _BOX)
+    return BoxHull(L, B, T, c33, c35, c53, c55)
+
+
+def waves_of(table: WavesTable | None, excitation: Excitation | None, length: float, where: str) -> Waves | None:
+    """How a block's runs met the waves; None for records that carry their wave forces themselves. length: m.
+
+    Raises:
+        InputError: waves without an excitation, or a speed or heading out of sense.
+    """
+    if table is None:
+        return None
+    froude = table.speed.in_si / math.sqrt(G * length)
+    if froude > _FASTEST_FROUDE:
+        raise InputError(
+            f"{where}.waves: {table.speed.in_si:.3g} m/s is a Froude number of {froude:.2g} at L = {length:g} m, where "
+            "no strip theory holds; is the speed in knots?"
+        )
+    if excitation is None:
+        raise InputError(f"{where}.waves: nothing turns the elevation into forces; add [excitation] source = 'box'")
+    try:
+        speed_factor(table.speed.in_si, table.heading.in_si)
+    except InputError as error:
+        raise InputError(f"{where}.waves: {error}") from None
+    spectrum = None if table.sea is None else _spectrum(table.sea)
+    return Waves(excitation, table.speed.in_si, table.heading.in_si, spectrum)
+
+
+def _spectrum(table: SeaTable) -> Spectrum:
+    height, period = table.height.in_si, 0.0 if table.period is None else table.period.in_si
+    match table.spectrum:
+        case "ittc":
+            return ittc(height)
+        case "ittc2":
+            return ittc_two_parameter(height, period)
+        case "bretschneider":
+            return bretschneider(height, period)
+        case "jonswap":
+            return jonswap(height, period, table.gamma)

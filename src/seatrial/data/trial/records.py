@@ -1,0 +1,93 @@
+"""From a trial's runs to checked records in the house's own frames, signs and units."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from seatrial.core.values import Finding, InputError, Record, Severity
+from seatrial.data.check import examine, prepared
+from seatrial.data.read import read_record
+from seatrial.data.trial.approach import first_execution
+from seatrial.data.trial.release import released
+from seatrial.data.trial.trial import Role, Run, Trial, Trimming, Waves
+from seatrial.physics.sea.felt import with_wave_forces
+
+# speed at the end of an acceleration run as a part of the speed at the first execution
+_ACCELERATED = 0.9
+
+
+@dataclass(frozen=True, eq=False)
+class TrialRecord:
+    """One record ready for use: canonical, trimmed, resampled."""
+
+    record: Record
+    role: Role
+    session: str
+    waves: Waves | None = None
+
+
+def records_of(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ...]]:
+    """Read, repair and check every run that is not left out; the trial's own findings come first.
+
+    Raises:
+        InputError: the trial has no records; a file cannot be parsed; trimming leaves nothing.
+    """
+    if not trial.runs:
+        where = f"{trial.path}: " if trial.path else ""
+        raise InputError(f"{where}there are no [[records]] to read; add them, or plan a trial with 'seatrial design'")
+    made, findings = [], list(trial.findings)
+    for run in trial.runs:
+        if run.role is not Role.LEAVE_OUT:
+            record, said = checked(run, trial.reference_point)
+            made.append(TrialRecord(record, run.role, run.session, run.waves))
+            findings += said
+    return tuple(made), tuple(findings)
+
+
+def checked(run: Run, reference_point: float) -> tuple[Record, list[Finding]]:
+    """One run read, examined as it is, repaired, made canonical, given its wave forces, trimmed and resampled."""
+    raw = read_record(run.path, run.layout).named(run.name) if run.raw is None else run.raw
+    record, _ = prepared(raw, reference_point)
+    if run.waves is not None and run.waves.spectrum is None:
+        record = with_wave_forces(record, run.waves.excitation, run.waves.U, run.waves.beta)
+    return trimmed(record, run.trimming), list(examine(raw))
+
+
+def trimmed(record: Record, rules: Trimming) -> Record:
+    """The part of the record that the rules keep, at their rate.
+
+    Raises:
+        InputError: nothing is left, or the channels a rule needs are absent.
+    """
+    if rules.from_s is not None or rules.to_s is not None:
+        start = record.time[0] if rules.from_s is None else rules.from_s
+        stop = record.time[-1] if rules.to_s is None else rules.to_s
+        record = record.between(float(start), float(stop))
+    if rules.skip_acceleration:
+        record = record.rows(slice(_accelerated(record), None))
+    if rules.from_release:
+        record = released(record)
+    return record if rules.rate is None else record.resampled(rules.rate)
+
+
+def _accelerated(record: Record) -> int:
+    speed = record["u"]
+    return int(np.argmax(speed >= _ACCELERATED * speed[first_execution(record)]))
+
+
+def refuse_errors(findings: tuple[Finding, ...], accept: tuple[str, ...]) -> tuple[Finding, ...]:
+    """The findings, accepted errors lowered to warnings.
+
+    Raises:
+        InputError: an error finding that the trial does not accept.
+    """
+    open_errors = [f for f in findings if f.severity is Severity.ERROR and f.code not in accept]
+    if open_errors:
+        first, more = open_errors[0], len(open_errors) - 1
+        rest = f" (and {more} more; run 'seatrial check')" if more else ""
+        advice = f"; {first.advice}" if first.advice else ""
+        raise InputError(
+            f"the records do not pass the checks{rest}: {first.text}{advice}; "
+            f'or, if it is right as it is, add accept = ["{first.code}"] at the top of the trial file'
+        )
+    return tuple(replace(f, severity=Severity.WARNING) if f.severity is Severity.ERROR else f for f in findings)

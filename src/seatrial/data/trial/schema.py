@@ -1,0 +1,416 @@
+"""What a trial file may say: pydantic models, strict; unknown keys are refused by `seatrial.data.trial.complaints`."""
+
+import re
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+from seatrial.core.values import si
+from seatrial.data.read.layout import Format, Separator
+
+
+class Strict(BaseModel):
+    """A table of the trial file: no unknown keys, immutable."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+def _known_unit(unit: object) -> object:
+    if isinstance(unit, str):
+        si(unit)
+    return unit
+
+
+def _as_amount(value: object) -> object:
+    """A bare number is an amount in SI units."""
+    return {"value": value} if isinstance(value, int | float) and not isinstance(value, bool) else value
+
+
+def _as_spread(value: object) -> object:
+    return {"sd": value} if isinstance(value, int | float) and not isinstance(value, bool) else value
+
+
+def _as_tuple(value: object) -> object:
+    return (value,) if isinstance(value, str) else value
+
+
+def _as_nuisances(value: object) -> object:
+    """Channel names alone: the estimator's own prior. Numbers: standard deviations in SI units."""
+    if isinstance(value, list):
+        return {name: {} for name in value}
+    return {name: _as_spread(spread) for name, spread in value.items()} if isinstance(value, dict) else value
+
+
+def _valid_pattern(session: object) -> object:
+    if isinstance(session, str) and session not in ("run", "day"):
+        try:
+            re.compile(session)
+        except re.error as error:
+            raise ValueError(f"'{session}' is no regular expression ({error}); give one, or 'run', or 'day'") from None
+    return session
+
+
+Unit = Annotated[str, BeforeValidator(_known_unit)]
+Words = Annotated[tuple[str, ...], BeforeValidator(_as_tuple)]
+
+
+class Amount(Strict):
+    """A number with its unit; without one it is SI."""
+
+    value: float
+    unit: Unit | None = None
+
+    @property
+    def in_si(self) -> float:
+        """The value in SI units."""
+        return self.value * (si(self.unit)[0] if self.unit else 1.0)
+
+
+class Spread(Strict):
+    """A standard deviation with its unit; without one it is SI."""
+
+    sd: Annotated[float, Field(gt=0)] | None = None
+    unit: Unit | None = None
+
+    @property
+    def in_si(self) -> float | None:
+        """The standard deviation in SI units, None where it is not stated."""
+        return None if self.sd is None else self.sd * (si(self.unit)[0] if self.unit else 1.0)
+
+
+SiAmount = Annotated[Amount, BeforeValidator(_as_amount)]
+SiSpread = Annotated[Spread, BeforeValidator(_as_spread)]
+Nuisances = Annotated[dict[str, Spread], BeforeValidator(_as_nuisances)]
+Bound = Annotated[float, Field(allow_inf_nan=True)]
+
+
+class ShipTable(BaseModel):
+    """`[ship]`: every key besides these is a particular by its symbol, a number in SI units or {value, unit}."""
+
+    model_config = ConfigDict(extra="allow", frozen=True, allow_inf_nan=False)
+
+    name: str
+    source: str = ""
+    scale: Annotated[float, Field(gt=0)] = 1.0
+    __pydantic_extra__: dict[str, SiAmount] = Field(init=False)  # type: ignore[assignment]
+
+    @property
+    def particulars(self) -> dict[str, float]:
+        """Symbol -> value in SI units."""
+        return {symbol: amount.in_si for symbol, amount in (self.__pydantic_extra__ or {}).items()}
+
+
+class TimeColumn(Strict):
+    """Where the time stands: header name, or number counted from 1."""
+
+    column: str | Annotated[int, Field(ge=1)]
+    unit: Unit = "s"
+
+
+class ChannelColumn(Strict):
+    """Where a channel stands and what its numbers mean; frame and sign default to the notation table's."""
+
+    column: str | Annotated[int, Field(ge=1)]
+    unit: Unit
+    frame: Literal["body", "earth", "none"] | None = None
+    positive: Literal["forward", "aft", "ahead", "starboard", "port", "north", "south", "east", "west",
+                      "up", "down", "bow up", "bow down", "none"] | None = None  # fmt: skip
+    reference_point: float = 0.0
+
+
+class SeaTable(Strict):
+    """The spectrum of a sea whose elevation nobody recorded; `period`: mean T_1 for ittc2, else of the peak."""
+
+    spectrum: Literal["ittc", "ittc2", "bretschneider", "jonswap"]
+    height: SiAmount
+    period: SiAmount | None = None
+    gamma: float = 3.3
+
+    @model_validator(mode="after")
+    def _period_where_needed(self) -> Self:
+        if (self.period is None) != (self.spectrum == "ittc"):
+            raise ValueError(f"spectrum '{self.spectrum}' {'has no' if self.period else 'needs a'} period")
+        return self
+
+
+class WavesTable(Strict):
+    """`[records.waves]`: heading to the waves (0 following, 180 degrees head; rad without a unit) and ship speed.
+
+    `sea`: where neither the elevation nor the wave forces were recorded.
+    """
+
+    heading: SiAmount
+    speed: SiAmount
+    sea: SeaTable | None = None
+
+
+class ColumnsTable(Strict):
+    """Where time and channels stand, in a file or in a stream."""
+
+    header_lines: Annotated[int, Field(ge=0)] = 0
+    encoding: str = "utf-8"
+    separator: Separator = "auto"
+    decimal: Literal[".", ","] = "."
+    time: TimeColumn
+    channels: dict[str, ChannelColumn]
+
+    @model_validator(mode="after")
+    def _one_channel_a_column(self) -> Self:
+        owner: dict[str | int, str] = {self.time.column: "time"}
+        for symbol, channel in self.channels.items():
+            if channel.column in owner:
+                raise ValueError(
+                    f"column {channel.column!r} is named for '{owner[channel.column]}' and '{symbol}'; keep one"
+                )
+            owner[channel.column] = symbol
+        return self
+
+
+class RecordsTable(ColumnsTable):
+    """One `[[records]]` block: files of one layout, their roles and trimming."""
+
+    files: Words
+    format: Format | None = None
+    scale: Annotated[float, Field(gt=0)] = 1.0
+    source: str = ""
+    train: Words = ()
+    validate_: Words = Field((), alias="validate")
+    leave_out: Words = ()
+    session: Annotated[str, BeforeValidator(_valid_pattern)] = "run"
+    rate: Annotated[float, Field(gt=0)] | None = None
+    from_s: float | None = None
+    to_s: float | None = None
+    skip_acceleration: bool = False
+    from_release: bool = False
+    waves: WavesTable | None = None
+
+    @model_validator(mode="after")
+    def _times_in_order(self) -> Self:
+        if self.from_s is not None and self.to_s is not None and self.from_s >= self.to_s:
+            raise ValueError(f"from_s = {self.from_s:g} is not before to_s = {self.to_s:g}")
+        return self
+
+
+class FollowTable(ColumnsTable):
+    """`[follow]`: samples that come while the record is being made, from where and in which columns.
+
+    `source`: lines of a growing file, of standard input or of UDP datagrams, or NMEA 0183 sentences from them.
+    """
+
+    source: Literal["file", "stdin", "udp", "nmea-file", "nmea-stdin", "nmea-udp"]
+    file: str | None = None
+    host: str = "127.0.0.1"
+    port: Annotated[int, Field(ge=1, le=65535)] | None = None
+    rate: Annotated[float, Field(gt=0)]
+    waves: WavesTable | None = None
+    whole_s: Annotated[float, Field(gt=0)] = 3600.0
+    forgetting_s: Annotated[float, Field(gt=0)] | None = None
+    longest_gap_s: Annotated[float, Field(gt=0)] = 30.0
+    page: Annotated[int, Field(ge=0, le=65535)] = 0
+    journal: str | None = None
+
+    @model_validator(mode="after")
+    def _place_where_needed(self) -> Self:
+        if self.source.endswith("file") and self.file is None:
+            raise ValueError(f"source = '{self.source}' needs a file; add it")
+        if self.source.endswith("udp") and self.port is None:
+            raise ValueError(f"source = '{self.source}' needs a port; add it")
+        if self.longest_gap_s * self.rate < 1.0:
+            raise ValueError(
+                f"longest_gap_s = {self.longest_gap_s:g} is shorter than a step at {self.rate:g} Hz; make it longer"
+            )
+        return self
+
+
+class MotionColumn(Strict):
+    """A motion or input of force points: a column of the table, or one value for all points.
+
+    Unit 1: v over U, r L over U. A drift angle must say which way the bow points from the course when it is positive.
+    """
+
+    column: str | Annotated[int, Field(ge=1)] | None = None
+    value: float | None = None
+    unit: Unit
+    positive: Literal["forward", "aft", "ahead", "astern", "starboard", "port", "bow to starboard",
+                      "bow to port"] | None = None  # fmt: skip
+
+    @model_validator(mode="after")
+    def _one_source(self) -> Self:
+        if (self.column is None) == (self.value is None):
+            raise ValueError("give either column or value, and not both")
+        return self
+
+
+class ForceColumn(Strict):
+    """A measured force: its column, unit (1 in a prime system), positive direction and standard deviation in it."""
+
+    column: str | Annotated[int, Field(ge=1)]
+    unit: Unit
+    positive: Literal["forward", "aft", "starboard", "port"] | None = None
+    sd: Annotated[float, Field(gt=0)] | None = None
+
+
+class ForcesTable(Strict):
+    """One `[[forces]]` block: static force points of captive tests or CFD."""
+
+    file: str
+    includes: Literal["hull", "hydrodynamic", "pressure", "balance"]
+    motion: dict[Literal["u", "v", "U", "beta", "r", "delta", "n", "v_j"], MotionColumn]
+    measured: Annotated[dict[Literal["X", "Y", "N"], ForceColumn], Field(min_length=1)]
+    prime: str = ""
+    origin: float = 0.0
+    motion_origin: float | None = None
+    sd_percent: Annotated[float, Field(gt=0)] | None = None
+    weight: Annotated[float, Field(gt=0)] = 1.0
+    scale: Annotated[float, Field(gt=0)] = 1.0
+    format: Format | None = None
+    header_lines: Annotated[int, Field(ge=0)] = 0
+    encoding: str = "utf-8"
+    separator: Separator = "auto"
+    decimal: Literal[".", ","] = "."
+    source: str = ""
+
+    @model_validator(mode="after")
+    def _motion_is_known(self) -> Self:
+        told = set(self.motion)
+        if len(told & {"u", "U"}) != 1:
+            raise ValueError("motion needs the surge velocity u or the speed U, one of them")
+        if {"beta", "v"} <= told:
+            raise ValueError("motion has both v and the drift angle beta; keep one")
+        if "v" in told and ("U" in told) != (self.motion["v"].unit == "1"):
+            raise ValueError("motion.v goes with u in m/s, or with U as v/U of unit 1")
+        return self
+
+
+class DataTable(Strict):
+    """`[data]`: where record files are sought, relative to the trial file; ${NAME} is an environment variable."""
+
+    folder: str = "."
+
+
+class PriorTable(Strict):
+    """Gaussian prior of one parameter, in its own unit."""
+
+    mean: float | None = None
+    sd: Annotated[float, Field(gt=0)]
+    source: str = ""
+
+
+class ModelTable(Strict):
+    """`[model]`: which equations, which values, what is free."""
+
+    name: str
+    parameter_set: str | None = None
+    reference_point: float = 0.0
+    fixed: dict[str, SiAmount] = {}
+    start: dict[str, SiAmount] = {}
+    free: tuple[str, ...] | None = None
+    bounds: dict[str, tuple[Bound, Bound]] = {}
+    priors: dict[str, PriorTable] = {}
+    prior_sd_percent: Annotated[float, Field(gt=0)] | None = None
+    priors_from: Words = ()
+
+
+class ExcitationTable(Strict):
+    """`[excitation]`: how an elevation becomes a wave force.
+
+    `box`: closed form for the ship's L, B, d and stiffness; `table`: complex transfer functions in a CSV or NetCDF
+    file; `capytaine`: a dataset of Capytaine at rest, speed terms by strip theory.
+    """
+
+    source: Literal["box", "table", "capytaine"]
+    file: str | None = None
+
+    @model_validator(mode="after")
+    def _file_where_needed(self) -> Self:
+        if (self.file is None) != (self.source == "box"):
+            raise ValueError("a box needs no file" if self.file else f"source = '{self.source}' needs a file")
+        return self
+
+
+class EstimateTable(Strict):
+    """`[estimate]`: settings of the estimator; what is not given follows the decision table."""
+
+    criterion: Literal["auto", "output-error", "multiple-shooting", "prediction-error"] = "auto"
+    channels: tuple[str, ...] = ()
+    segment_s: Annotated[float, Field(gt=0)] | None = None
+    segment_lengths: Annotated[float, Field(gt=0)] | None = None
+    rate: Annotated[float, Field(gt=0)] | None = None
+    robust: bool = False
+    offsets: Nuisances = {}
+    gains: Nuisances = {}
+    delays: Nuisances = {}
+    current: Annotated[float, Field(ge=0)] = 0.0
+    initial_s: Annotated[float, Field(gt=0)] | None = None
+
+    @model_validator(mode="after")
+    def _one_segment_length(self) -> Self:
+        if self.segment_s is not None and self.segment_lengths is not None:
+            raise ValueError("segment_s and segment_lengths are both given; keep one")
+        return self
+
+
+class FamilyTable(Strict):
+    """`[family]`: models to compare by runs left out; a structure frees further parameters."""
+
+    structures: dict[str, tuple[str, ...]] = {}
+    prior_factors: tuple[Annotated[float, Field(gt=0)], ...] = ()
+    segment_factors: tuple[Annotated[float, Field(gt=0)], ...] = ()
+
+
+class InputTable(Strict):
+    """`[design.inputs.NAME]`: what may be done with an input, in `unit`; `rate` in it per second, `hold` in s."""
+
+    lower: float
+    upper: float
+    unit: Unit
+    rate: Annotated[float, Field(gt=0)] | None = None
+    hold: Annotated[float, Field(gt=0)]
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        if not self.lower < self.upper:
+            raise ValueError(
+                f"lower = {self.lower:g} is not below upper = {self.upper:g}; give a range, the smaller first"
+            )
+        return self
+
+
+class DesignTable(Strict):
+    """`[design]`: the manoeuvre that is sought: how long, with which inputs, within which limits."""
+
+    duration: SiAmount
+    rate: Annotated[float, Field(gt=0)]
+    inputs: Annotated[dict[str, InputTable], Field(min_length=1)]
+    held: dict[str, SiAmount] = {}
+    speed: SiAmount | None = None
+    criterion: Literal["worst", "mean"] = "worst"
+    draws: Annotated[int, Field(ge=0, le=1000)] = 24
+    prior_percent: Annotated[float, Field(gt=0, lt=100)] = 30.0
+    drift: SiAmount | None = None
+    sea_room: SiAmount | None = None
+    every_ship: bool = False
+
+
+class TrialFile(Strict):
+    """The whole file; records may be missing where a manoeuvre is only to be designed, or a stream to be followed."""
+
+    question: str = ""
+    accept: tuple[str, ...] = ()
+    ship: ShipTable
+    data: DataTable = DataTable()
+    records: tuple[RecordsTable, ...] = ()
+    model: ModelTable
+    forces: tuple[ForcesTable, ...] = ()
+    excitation: ExcitationTable | None = None
+    family: FamilyTable | None = None
+    noise: dict[str, SiSpread] = {}
+    truth: dict[str, float] = {}
+    estimate: EstimateTable = EstimateTable()
+    design: DesignTable | None = None
+    follow: FollowTable | None = None
+
+
+def trial_schema() -> dict[str, Any]:
+    """JSON Schema of a trial file, for editors."""
+    return TrialFile.model_json_schema()

@@ -1,6 +1,0 @@
-"""Start, search, criterion, intervals: from records to an estimate (the decision table of docs/estimation.md)."""
-
-from seatrial.estimate.fit import Identified, identified
-from seatrial.estimate.settings import Intervals, Settings
-
-__all__ = ["Identified", "Intervals", "Settings", "identified"]

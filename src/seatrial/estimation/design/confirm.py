@@ -1,0 +1,93 @@
+"""A design tried on simulated trials: noisy records of ships the prior allows, fitted by output error."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.results import Confirmation
+from seatrial.core.values import Array, InputError, Record
+from seatrial.estimation.design.ships import Ships
+from seatrial.estimation.design.task import Task
+from seatrial.estimation.design.worth import Bench
+from seatrial.estimation.estimate.start import start
+from seatrial.estimation.problem.output_error import OutputError
+from seatrial.estimation.problem.segments import cut
+from seatrial.numerics.optimise import Solution, levenberg_marquardt
+from seatrial.numerics.workers import mapped
+from seatrial.physics.simulate.replay import replay
+
+WINDOW_HOLDS = 1.5
+# of the criterion: a move of some 1e-4 standard errors
+NEGLIGIBLE = 1e-8
+
+
+def confirmed(
+    task: Task, made: Array, planned: Record, ships: Ships, seed: int, progress: Callable[[str], None]
+) -> Confirmation:
+    """One noisy record and one fit for every ship; `made` are the plan's inputs at the sensors' rate."""
+    foretold = Bench(task, ships, 1.0 / task.rate).told(made).relative
+    streams = np.random.SeedSequence(seed).spawn(ships.count)
+
+    def fitted(number: int) -> Solution | None:
+        ship = _with(task.model, ships.parameters[number])
+        record = _noisy(task, ship, planned, np.random.default_rng(streams[number]))
+        return None if record is None else _fitted(task, record)
+
+    progress(f"confirming: {ships.count} simulated trials")
+    results = mapped(fitted, list(range(ships.count)))
+    places = [task.model.parameters.index(n) for n in task.model.parameters.free_names]
+    scale = np.array([p.characteristic_scale for p in task.model.parameters.free])
+    errors, bounds = [], []
+    for number, result in enumerate(results):
+        if result is not None and result.status.is_success:
+            true = ships.parameters[number, places]
+            errors.append((result.point - true) / np.where(np.abs(true) > 1e-3 * scale, np.abs(true), scale))
+            bounds.append(foretold[number])
+    none = np.full((1, len(places)), np.nan)
+    return Confirmation(ships.count, len(errors), _rms(errors or none), _rms(bounds or none))
+
+
+def _fitted(task: Task, record: Record) -> Solution:
+    """Output error from the weak form's start and from the model's own values; the better of the two."""
+    outputs = tuple(task.sensors)
+    problem = OutputError(
+        task.model, cut(task.model, [record], outputs, None), np.array(list(task.sensors.values())), workers=1
+    )
+    local = np.array([[task.start[task.model.states.index(s)] for s in problem.starts]])
+    found = [
+        levenberg_marquardt(problem, shared, local, negligible=NEGLIGIBLE).solution
+        for shared in (*_without_guess(task, problem, record), problem.start())
+    ]
+    return min(found, key=lambda solution: solution.value)
+
+
+def _without_guess(task: Task, problem: OutputError, record: Record) -> list[Array]:
+    """The weak form's start; none where the sensors do not show every state."""
+    try:
+        return [start(problem, [record], WINDOW_HOLDS * task.shortest_hold).shared]
+    except InputError:
+        return []
+
+
+def _with(model: Model, values: Array) -> Model:
+    return model.with_values(dict(zip(model.parameters.names, values.tolist(), strict=True)))
+
+
+def _noisy(task: Task, ship: Model, planned: Record, generator: np.random.Generator) -> Record | None:
+    """Sensors and inputs of a ship that follows the plan; None where she is lost."""
+    start = dict(zip(ship.states, task.start.tolist(), strict=True))
+    try:
+        sailed = replay(ship, planned, start)
+    except InputError:
+        return None
+    channels = {name: sailed.channel(name) for name in ship.input_names}
+    for name, deviation in task.sensors.items():
+        channel = sailed.channel(name)
+        channels[name] = channel.with_values(channel.values + deviation * generator.standard_normal(len(sailed)))
+    return replace(sailed, channels=channels)
+
+
+def _rms(values: "list[Array] | Array") -> Array:
+    return np.sqrt(np.mean(np.square(values), axis=0))

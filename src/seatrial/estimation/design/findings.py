@@ -1,0 +1,98 @@
+"""What to warn of in a design: limits, ships that stray, coefficients nobody tells, trials that do not confirm it."""
+
+import math
+
+import numpy as np
+
+from seatrial.core.results import Confirmation, Worth
+from seatrial.core.results.worths import diverged, keeps, leaving
+from seatrial.core.values import Finding, InputError, Severity
+from seatrial.estimation.design.task import Task
+
+_FAR_DRIFT = math.radians(45.0)
+_MANY, _MOST = 0.2, 0.8
+
+
+def refuse_left(task: Task, designed: Worth) -> None:
+    """Refuse limits that no orders found keep.
+
+    Raises:
+        InputError: which limit, what the best orders reach, what is allowed.
+    """
+    if keeps(designed, task.limits):
+        return
+    every = task.limits.for_every_ship
+    drift = float(np.max([designed.drift, *(designed.drawn_drift if every else ())]))
+    room = float(np.max([designed.room, *(designed.drawn_room if every else ())]))
+    if drift > task.limits.drift:
+        said = f"a drift angle of {math.degrees(drift):.3g} deg, {math.degrees(task.limits.drift):.3g} deg are allowed"
+    else:
+        said = f"{room:.3g} m from the start, {task.limits.room:.3g} m are allowed"
+    whom = "some ship of the prior reaches" if every else "the ship reaches"
+    raise InputError(
+        f"[design] cannot be kept: under the best of all orders tried {whom} {said}; widen that limit, shorten the "
+        "trial, or narrow the inputs' ranges"
+    )
+
+
+def findings(
+    task: Task, designed: Worth, confirmation: Confirmation | None, *, is_interrupted: bool
+) -> tuple[Finding, ...]:
+    """Everything worth a warning, the gravest first."""
+    found = list[Finding]()
+    if is_interrupted:
+        found.append(_warning("interrupted", "the work was interrupted; this is the best so far",
+                              "let it finish for a better manoeuvre"))  # fmt: skip
+        if not keeps(designed, task.limits):
+            found.append(_warning("leaves-limits", "these orders leave the limits", "let the search finish"))
+    return (*found, *_untold(task, designed), *_straying(task, designed), *_unconfirmed(designed, confirmation))
+
+
+def _warning(code: str, text: str, advice: str) -> Finding:
+    return Finding(Severity.WARNING, code, text, "", advice)
+
+
+def _untold(task: Task, designed: Worth) -> list[Finding]:
+    names = task.model.parameters.free_names
+    own = designed.relative > 1.0
+    some = np.any(np.nan_to_num(designed.drawn) > 1.0, axis=0) & ~own if len(designed.drawn) else np.zeros_like(own)
+    found = []
+    if own.any():
+        listed = ", ".join(n for n, bad in zip(names, own, strict=True) if bad)
+        found.append(_warning("not-identifiable",
+                              f"even this manoeuvre cannot tell {listed}: the standard error exceeds the value",
+                              "better sensors, a longer trial, wider limits, or give a prior for them"))  # fmt: skip
+    if some.any():
+        listed = ", ".join(n for n, bad in zip(names, some, strict=True) if bad)
+        found.append(_warning("not-identifiable-drawn",
+                              f"for some ship of the prior this manoeuvre cannot tell {listed}",
+                              "design again after a first trial, with --from and its model file"))  # fmt: skip
+    return found
+
+
+def _straying(task: Task, designed: Worth) -> list[Finding]:
+    found, count = [], len(designed.drawn)
+    farthest = max([designed.drift, *designed.drawn_drift.tolist()])
+    if straying := leaving(designed, task.limits):
+        severity = Severity.WARNING if straying > _MANY * count else Severity.INFO
+        found.append(Finding(severity, "straying", f"{straying} of {count} ships drawn from the prior leave the limits "
+                             f"under these orders, with up to {math.degrees(farthest):.0f} deg of drift and "
+                             f"{max(designed.drawn_room.tolist()):.0f} m from the start", "",
+                             "watch both and abort there; design.every_ship = true binds them, too"))  # fmt: skip
+    elif farthest > _FAR_DRIFT:
+        found.append(_warning("drift", f"the manoeuvre reaches a drift angle of {math.degrees(farthest):.0f} deg for "
+                              "some ship of the prior", "few models hold so far; give a smaller design.drift, or abort "
+                              "there"))  # fmt: skip
+    return found
+
+
+def _unconfirmed(designed: Worth, confirmation: Confirmation | None) -> list[Finding]:
+    found = []
+    if lost := diverged(designed):
+        found.append(_warning("lost", f"{lost} of {len(designed.drawn)} ships drawn from the prior cannot be simulated "
+                              "under these orders", "narrow the prior or the inputs' ranges"))  # fmt: skip
+    if confirmation is not None and confirmation.converged < _MOST * confirmation.runs:
+        found.append(_warning("unconfirmed", f"only {confirmation.converged} of {confirmation.runs} simulated trials "
+                              "could be fitted, so that the errors foretold are not confirmed",
+                              "narrow the prior, measure more channels, or lengthen the trial"))  # fmt: skip
+    return found

@@ -1,0 +1,259 @@
+"""The recursive filter: the information of a fit carried on, sample by sample, in bounded memory.
+
+Recursive identification of output error (Ljung & Soderstrom 1983, section 3.7; Ljung 1979): coefficients and state are
+one Gaussian belief without process noise, so that the state is what the coefficients and the start of the run make of
+it, and its derivatives are those of the batch. For models linear in both it is the batch estimate itself.
+
+It needs a good fit to go on from (`curvature`): begun with errors of 70 % it may settle elsewhere and be sure of it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, InputError
+from seatrial.estimation.estimate.online.belief import Belief
+from seatrial.estimation.estimate.online.stepping import Held, stepping
+
+_HISTORY = 12
+_STEPS_OF_FORGETTING = 200
+
+
+@dataclass(frozen=True)
+class Forgetting:
+    """Slow change: older samples count exp(-age / seconds) times.
+
+    Information of what is not excited falls to that of `widest` and no further (Kulhavy & Zarrop 1993). Standard errors
+    are those of the weighted sum of squares, up to sqrt 2 more than the spread of a ship that stays the same.
+
+    Attributes:
+        seconds: infinite: nothing is forgotten.
+        widest: standard deviation of each coefficient where all is forgotten, (k,), in its unit.
+    """
+
+    seconds: float = np.inf
+    widest: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Guard:
+    """When to distrust.
+
+    Attributes:
+        limit: an innovation of more standard deviations counts linearly (Huber 1964) and as an outlier.
+        memory: s over which innovations are averaged.
+        unsound: mean squared innovation, in its own variance, beyond which the filter has lost the ship.
+    """
+
+    limit: float = 6.0
+    memory: float = 30.0
+    unsound: float = 9.0
+
+
+@dataclass(frozen=True, eq=False)
+class Innovations:
+    """What the measurements were beyond their predictions, by channel, (ny,).
+
+    Attributes:
+        rms: over the guard's memory, SI; ratio: mean square by its predicted variance, 1 if all is as believed.
+        taken, outliers: counts since the filter began.
+    """
+
+    rms: Array
+    ratio: Array
+    taken: Array
+    outliers: Array
+
+
+@dataclass(eq=False)
+class _Window:
+    """Samples from a few before the present one to those that still wait for what comes after them."""
+
+    inputs: Array
+    measured: Array
+    done: int
+    begins: int = 0
+    failed: bool = False
+
+
+class Recursive:
+    """Coefficients and state of a model, sample by sample; no thread, no clock of its own.
+
+    A smooth input needs samples ahead (`LOOK_AHEAD`): so many of the latest wait; `flush` takes them in.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        names: Sequence[str],
+        outputs: Sequence[str],
+        noise: Array,
+        dt: float,
+        belief: Belief,
+        *,
+        recent: Array | None = None,
+        substeps: int = 1,
+        forgetting: Forgetting | None = None,
+        guard: Guard | None = None,
+    ) -> None:
+        """Carry `belief` on.
+
+        Args:
+            model: its other parameters are known; names: of the k coefficients, in the belief's order.
+            outputs: observables that are measured, ny; noise: their standard deviations, SI, (ny,), times the root of
+                the variance inflation where residuals are coloured.
+            dt: s between samples.
+            recent: the run's latest inputs up to the present sample, (m, nu), m >= 1, in the model's signs, a dozen if
+                there are. None: the belief stands before a run's first sample, which comes next.
+
+        Raises:
+            InputError: names the model does not have, or shapes that do not agree.
+        """
+        self.names, self.outputs, self.dt = tuple(names), tuple(outputs), dt
+        for name in self.names:
+            _ = model.parameters[name]
+        if len(belief.value) != len(self.names) or len(belief.state) != len(model.states):
+            raise InputError(
+                f"the belief is of {len(belief.value)} coefficients and {len(belief.state)} states; the filter has "
+                f"{len(self.names)} and model '{model.name}' {len(model.states)}"
+            )
+        if np.shape(noise) != (len(self.outputs),) or not np.all(np.asarray(noise) > 0.0):
+            raise InputError(f"noise must be positive, one value for each of {', '.join(self.outputs)}")
+        self._model, self._guard = model, guard or Guard()
+        self._stepping = stepping(model, self.names, self.outputs, dt, substeps)
+        bounds = [model.parameters[n] for n in self.names]
+        self._lower, self._upper = np.array([b.lower for b in bounds]), np.array([b.upper for b in bounds])
+        self._held = _held(belief, np.asarray(noise, dtype=np.float64), dt, self._guard, forgetting or Forgetting())
+        self._window = self._opened(recent)
+
+    def _opened(self, recent: Array | None) -> _Window:
+        nu, ny = len(self._model.inputs), len(self.outputs)
+        if recent is None:
+            return _Window(np.empty((0, nu)), np.empty((0, ny)), 0, begins=1)
+        inputs = np.ascontiguousarray(recent[-_HISTORY:], dtype=np.float64)
+        if inputs.ndim != 2 or inputs.shape[1] != nu or not len(inputs):
+            raise InputError(f"recent inputs must be at least one row of {nu} columns, their shape is {inputs.shape}")
+        return _Window(inputs, np.full((len(inputs), ny), np.nan), len(inputs))
+
+    def update(self, measured: Array, inputs: Array) -> None:
+        """Take in the next n samples: measured (n, ny), NaN where nothing came; inputs (n, nu) at the same instants.
+
+        Does nothing once the state has left all bounds.
+
+        Raises:
+            InputError: shapes that do not agree, or an input that is no number.
+        """
+        w = self._window
+        if len(measured) != len(inputs) or measured.shape[1:] != w.measured.shape[1:]:
+            raise InputError(f"{np.shape(measured)} measurements do not go with inputs of shape {np.shape(inputs)}")
+        if inputs.shape[1:] != w.inputs.shape[1:] or not np.all(np.isfinite(inputs)):
+            raise InputError(
+                f"inputs must be finite numbers in {w.inputs.shape[1]} columns; fill or leave out the rest"
+            )
+        w.inputs = np.concatenate([w.inputs, inputs])
+        w.measured = np.concatenate([w.measured, measured])
+        self._take(len(w.inputs) - self._stepping.ahead)
+
+    def flush(self) -> None:
+        """Take in what still waits for samples ahead: before the end of a run, or to be up to date."""
+        self._take(len(self._window.inputs))
+
+    def _take(self, until: int) -> None:
+        w, first = self._window, self._window.done
+        if until <= first or w.failed:
+            return
+        failed = self._stepping.run(self._held, w.inputs, w.measured[:until], first, w.begins)
+        w.failed = failed >= 0
+        w.begins, w.done = 0, until
+        drop = max(until - _HISTORY, 0)
+        if drop:
+            w.inputs, w.measured, w.done = w.inputs[drop:], w.measured[drop:], until - drop
+
+    def begin_run(self, state: Array, spread: Array) -> None:
+        """A new run, or segment, starts with the next sample: there the state is `state` (nx,), covariance `spread`."""
+        self.flush()
+        self._held.root[:] = self.belief().at(np.asarray(state, dtype=np.float64), spread).root()
+        self._held.z[len(self.names) :] = state
+        self._window = self._opened(None)
+
+    def belief(self) -> Belief:
+        """All that is known at the latest sample taken in."""
+        k, z = len(self.names), self._held.z
+        joint = self.covariance_of_all
+        own, other = self._held.root[:k], self._held.root[k:]
+        sensitivity = np.asarray(np.linalg.lstsq(own.T, other.T, rcond=1e-12)[0].T, dtype=np.float64)
+        left = other - sensitivity @ own
+        return Belief(z[:k].copy(), joint[:k, :k], z[k:].copy(), sensitivity, left @ left.T)
+
+    @property
+    def value(self) -> Array:
+        """Coefficients, (k,)."""
+        return self._held.z[: len(self.names)].copy()
+
+    @property
+    def covariance(self) -> Array:
+        """Of the coefficients, (k, k)."""
+        own = self._held.root[: len(self.names)]
+        return own @ own.T
+
+    @property
+    def covariance_of_all(self) -> Array:
+        """Of [coefficients | state], (k + nx, k + nx)."""
+        return self._held.root @ self._held.root.T
+
+    @property
+    def standard_error(self) -> Array:
+        """Of the coefficients, (k,)."""
+        own = self._held.root[: len(self.names)]
+        return np.sqrt(np.einsum("ij,ij->i", own, own))
+
+    @property
+    def state(self) -> Array:
+        """At the latest sample taken in, (nx,)."""
+        return self._held.z[len(self.names) :].copy()
+
+    @property
+    def waiting(self) -> int:
+        """Samples that wait for those after them."""
+        return len(self._window.inputs) - self._window.done
+
+    @property
+    def innovations(self) -> Innovations:
+        """Statistics of the innovations so far."""
+        h = self._held
+        return Innovations(np.sqrt(h.running[:, 1]), h.running[:, 0].copy(), h.tally[0].copy(), h.tally[1].copy())
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether the filter may be believed; if not, a window of the latest samples has to be fitted again.
+
+        It is not where a number is not finite, the state left all bounds, a coefficient its own, or the innovations of
+        a channel are larger than believed (`Guard.unsound`) while its mean covers half the guard's memory.
+        """
+        h = self._held
+        if self._window.failed or not (np.all(np.isfinite(h.z)) and np.all(np.isfinite(h.root))):
+            return False
+        value = h.z[: len(self.names)]
+        if np.any(value < self._lower) or np.any(value > self._upper):
+            return False
+        filled = h.tally[0] >= 0.5 * h.memory
+        return not np.any(filled & (h.running[:, 0] > self._guard.unsound))
+
+
+def _held(belief: Belief, noise: Array, dt: float, guard: Guard, forgetting: Forgetting) -> Held:
+    k, nx, ny = len(belief.value), len(belief.state), len(noise)
+    kept, every, widest = 1.0, 1, np.zeros((0, k + nx))
+    if np.isfinite(forgetting.seconds):
+        if len(forgetting.widest) != k or not np.all(np.asarray(forgetting.widest) > 0.0):
+            raise InputError("forgetting needs the widest standard deviation of each coefficient, all positive")
+        every = max(1, round(forgetting.seconds / dt / _STEPS_OF_FORGETTING))
+        kept = float(np.exp(-every * dt / forgetting.seconds))
+        widest = np.diag(1.0 / np.asarray(forgetting.widest, dtype=np.float64))
+        widest = np.ascontiguousarray(np.hstack([widest, np.zeros((k, nx))]))
+    return Held(
+        np.concatenate([belief.value, belief.state]), belief.root(), noise**2, guard.limit,
+        max(guard.memory / dt, 1.0), np.zeros((ny, 2)), np.zeros((2, ny), dtype=np.int64), widest, kept, every,
+        np.zeros(1, dtype=np.int64),
+    )  # fmt: skip

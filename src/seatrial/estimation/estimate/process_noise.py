@@ -1,0 +1,357 @@
+"""Is there process noise in the records, how much, and what the coefficients are when it is counted.
+
+Prediction error with the intensities estimated, begun from an output-error estimate; a gate decides whether it is
+needed (likelihood against the same filter without process noise) and whether it suffices (white innovations).
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from seatrial.core.equations.augment import MEMORY, gust_of
+from seatrial.core.values import Array, Index, InputError, Progress, nearest
+from seatrial.data.check.signal import sample_noise
+from seatrial.estimation.estimate.estimate import Estimate, rounding_level
+from seatrial.estimation.estimate.gate import Gate, colour, gate
+from seatrial.estimation.information.covariance import Interval, from_information, left_out_steps
+from seatrial.estimation.problem.output_error import OutputError, SegmentNormals
+from seatrial.estimation.problem.prediction_error import PredictionError, whole_runs
+from seatrial.numerics.optimise import Normal, Optimum, Solution, Status, levenberg_marquardt
+
+KINEMATIC = ("psi", "phi", "theta", "x0", "y0", "z0", "z")
+_DIFFUSE = 10.0
+_SCANNED = 10.0 ** np.arange(-3.0, 0.5, 0.5)
+_ROUGH, _NEGLIGIBLE, _EXACT = 1.0, 1e-3, 1e-3
+_NEWTON_STEPS = 6
+_NO_LOCAL = np.zeros((0, 0))
+_SHORT = 24
+_SAMPLES = 3000
+_HOPELESS = 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class ProcessNoise:
+    """An optimum of the prediction-error criterion, with its gate.
+
+    Attributes:
+        problem: gives exact gradients; optimum: point, normal equations with expected information, history.
+        slope: Newton decrement of the exact gradient at the point: how far above the minimum the cost still is; NaN
+            where the coefficients were not searched.
+        runs: the output-error problem over whole runs that it was made from; `problem.runs` is another one where the
+            model has more states (gusts with a memory, biases, lags), whose parameters stand behind the free ones.
+        colours: what was added to the model, in words; empty: nothing.
+    """
+
+    problem: PredictionError
+    optimum: Optimum
+    slope: float
+    gate: Gate
+    runs: OutputError
+    colours: str = ""
+
+    @property
+    def shared(self) -> Array:
+        """Coefficients and what the sessions have of their own, as in the output-error problem."""
+        return self.optimum.solution.point[self._places]
+
+    @property
+    def process(self) -> dict[str, float]:
+        """Intensity of each state's process noise, SI over the root of a second; 0 where there is none.
+
+        Of a gust with a memory that of the white noise with the same effect over longer times.
+        """
+        names, q = self.problem.process, self.problem.split(self.optimum.solution.point)[1]
+        found = dict(zip(names, map(float, q), strict=True))
+        memory = self.added.get(MEMORY, 1.0)
+        found |= {s: found[gust_of(s)] * memory for s in self.runs.model.states if gust_of(s) in found}
+        return {s: v for s, v in found.items() if s in self.runs.model.states}
+
+    @property
+    def added(self) -> dict[str, float]:
+        """Parameters the model has beyond the caller's: time constants [s]."""
+        free, point = self.problem.runs.free, self.optimum.solution.point
+        return {n: float(point[i]) for i, n in enumerate(free) if n not in self.runs.free}
+
+    @property
+    def measurement(self) -> dict[str, float]:
+        """Standard deviation of each channel's noise, SI."""
+        r = self.problem.split(self.optimum.solution.point)[2]
+        return dict(zip(self.runs.data.outputs, map(float, r), strict=True))
+
+    @cached_property
+    def _places(self) -> Index:
+        """Positions of `shared` among the unknowns."""
+        first, last = len(self.runs.free), self.problem.runs.size
+        return np.concatenate([np.arange(first), np.arange(len(self.problem.runs.free), last)])
+
+    @cached_property
+    def information(self) -> Array:
+        """Information of `shared`, priors counted, the noise unknowns eliminated where they are not on a bound."""
+        return self._reduced(self.optimum.normal)[1]
+
+    @property
+    def interval(self) -> Interval:
+        """Of `shared`, from the information matrix of the prediction-error criterion."""
+        return replace(from_information(self.information), meaning="information matrix of the innovations")
+
+    @property
+    def left_out(self) -> Array:
+        """`shared` with each run left out by one Newton step from stored normal equations, (runs, k)."""
+        blocks, point, runs = self._blocks, self.optimum.solution.point, self.problem.runs.data
+        parts = [
+            self.problem.assembled(blocks, point, runs.of_run(int(r)), with_prior=False) for r in np.unique(runs.run)
+        ]
+        free = self._free
+        gradients = np.array([p.gradient[free] for p in parts])
+        hessians = np.array([p.hessian[np.ix_(free, free)] for p in parts])
+        steps = left_out_steps(self.optimum.normal.hessian[np.ix_(free, free)], gradients, hessians)
+        moved = np.tile(point, (len(parts), 1))
+        moved[:, free] += steps
+        return moved[:, self._places]
+
+    def as_estimate(self) -> Estimate:
+        """The same point as an estimate over whole runs: noise levels, initial states, and the reduced information."""
+        runs = replace(self.runs, noise=np.array(list(self.measurement.values())))
+        states = [runs.model.states.index(s) for s in runs.starts]
+        gradient, hessian = self._reduced(self.optimum.normal)
+        normal = Normal(self.optimum.normal.cost, gradient, hessian, _NO_LOCAL, np.zeros((0, 0, 0)),
+                        np.zeros((0, len(gradient), 0)))  # fmt: skip
+        solution = replace(self.optimum.solution, point=self.shared)
+        return Estimate(runs, Optimum(solution, self.problem.start[:, states], normal))
+
+    @cached_property
+    def _blocks(self) -> SegmentNormals:
+        return replace(self.problem, steps=None).blocks(self.optimum.solution.point)
+
+    @cached_property
+    def _free(self) -> Index:
+        point, low, high = self.optimum.solution.point, self.problem.lower, self.problem.upper
+        inside = (point > low) & (point < high)
+        inside[: self.problem.runs.size] = True
+        return np.flatnonzero(inside)
+
+    def _reduced(self, normal: Normal) -> tuple[Array, Array]:
+        kept, others = self._places, np.setdiff1d(self._free, self._places)
+        cross = normal.hessian[np.ix_(kept, others)]
+        solved = np.linalg.solve(normal.hessian[np.ix_(others, others)], cross.T)
+        return normal.gradient[kept], normal.hessian[np.ix_(kept, kept)] - cross @ solved
+
+
+def is_worthwhile(made: Estimate) -> bool:
+    """Whether the records have noise at all: rounding errors have no likelihood."""
+    return bool(np.all(made.problem.noise > 2.0 * rounding_level(made.problem)))
+
+
+def intensities(made: Estimate, known: Mapping[str, float]) -> dict[str, float]:
+    """Intensity of each state's process noise that suits the estimate as it is, from some of its runs.
+
+    What the model does not explain counts as noise here, so this bounds the process noise from above. Runs are taken
+    evenly until they have some thousand samples.
+    """
+    data = made.problem.data
+    count = min(len(data.runs), max(1, round(len(data.runs) * _SAMPLES / len(data.inputs))))
+    runs = np.unique(np.linspace(0, len(data.runs) - 1, count).round().astype(int))
+    chosen = np.concatenate([data.of_run(int(r)) for r in runs])
+    problem = replace(made.problem, data=data.taken(chosen))
+    part = Estimate(problem, replace(made.optimum, local=made.optimum.local[chosen]))
+    begun = _begun(part, known, ())
+    squares = _intensities(begun, part)[: len(begun.process)]
+    return dict(zip(begun.process, np.sqrt(squares).tolist(), strict=True))
+
+
+def suited(made: Estimate, known: Mapping[str, float]) -> ProcessNoise:
+    """Noise in the states and in the channels that suits the estimate as it is, over all its runs, with its gate."""
+    problem = _begun(made, known, ())
+    return _unfinished(problem, np.concatenate([made.shared, _intensities(problem, made)]))
+
+
+def prediction_error(
+    made: Estimate,
+    known: Mapping[str, float] | None = None,
+    driven: tuple[str, ...] = (),
+    *,
+    thorough: bool = False,
+    evaluations: int = 60,
+    progress: Progress | None = None,
+) -> ProcessNoise:
+    """Coefficients, process and measurement noise together by maximum likelihood, from an output-error estimate.
+
+    The intensities alone come first (coefficients held), then everything with the gain frozen in the gradient, then
+    the gradient of the likelihood itself by central differences of the innovations, until it vanishes.
+
+    Args:
+        made: over segments or whole runs; its robust loss is not kept, outliers must be gone.
+        known: standard deviations of channels that are not estimated, SI.
+        driven: states with process noise; empty: all that are no kinematics.
+        thorough: search the coefficients even where the innovations cannot become white.
+
+    Returns:
+        The optimum with its gate, however that decides. Where innovations stay strongly coloured with intensities that
+        suit the given coefficients, these are kept: the gate is shut already, and the intensities serve the floor.
+
+    Raises:
+        InputError: a driven state is none of the model's, or reaches no compared channel.
+    """
+    tell = progress or (lambda _: None)
+    problem = _begun(made, known or {}, driven)
+    tell("process noise: intensities")
+    point = np.concatenate([made.shared, _intensities(problem, made)])
+    if not thorough and np.max(colour(problem, point)[1]) > _HOPELESS:
+        return _unfinished(problem, point)
+    exact, found, slope = searched(problem, point, evaluations, tell)
+    cost, before = _without(problem, made, found.solution.point)
+    verdict = gate(exact, found.solution.point, found.normal.cost, cost, before)
+    return ProcessNoise(exact, found, slope, verdict, problem.runs)
+
+
+def searched(
+    problem: PredictionError, point: Array, evaluations: int, tell: Progress
+) -> tuple[PredictionError, Optimum, float]:
+    """The problem with steps for exact gradients, its optimum, and the Newton decrement left there."""
+
+    def counted(count: int, cost: float) -> None:
+        tell(f"prediction error, evaluation {count}: {cost:.6g}")
+
+    found = levenberg_marquardt(
+        problem, point, _NO_LOCAL, negligible=_NEGLIGIBLE, evaluations=evaluations, progress=counted
+    )
+    tell("prediction error: exact gradient")
+    return _polished(problem, found)
+
+
+def _unfinished(problem: PredictionError, point: Array) -> ProcessNoise:
+    """Intensities alone, the coefficients as they were: no search can make these innovations white."""
+    normal = problem.normal(point, _NO_LOCAL)
+    found = Optimum(Solution(point, normal.cost, Status.STALLED, 1), _NO_LOCAL, normal)
+    quiet = replace(problem, process=())
+    held = np.concatenate([point[: problem.runs.size], point[problem.runs.size + len(problem.process) :]])
+    verdict = gate(problem, point, normal.cost, quiet.cost(held, _NO_LOCAL), None)
+    return ProcessNoise(problem, found, np.nan, verdict, problem.runs)
+
+
+def _begun(made: Estimate, known: Mapping[str, float], driven: tuple[str, ...]) -> PredictionError:
+    """The problem with its initial states."""
+    problem, first = whole_runs(made.problem)
+    measured, local = problem.measured_starts(), made.optimum.local[first]
+    model, outputs = problem.model, problem.data.outputs
+    start = np.zeros((problem.data.count, len(model.states)))
+    variance = np.zeros_like(start)
+    for m, state in enumerate(problem.starts):
+        i = model.states.index(state)
+        if state in outputs:
+            start[:, i] = measured[:, m]
+            variance[:, i] = (_DIFFUSE * problem.noise[outputs.index(state)]) ** 2
+        else:
+            column = made.optimum.local[:, m]
+            start[:, i] = local[:, m]
+            variance[:, i] = max(np.std(column), 0.1 * np.max(np.abs(column)), 1e-3) ** 2
+    chosen = driven or tuple(s for s in problem.starts if s not in KINEMATIC)
+    for state in chosen:
+        if state not in problem.starts:
+            raise InputError(
+                f"process noise on '{state}' would move nothing that is measured{nearest(state, list(problem.starts))}"
+            )
+    held = np.array([known.get(o, np.nan) for o in outputs])
+    return PredictionError(problem, chosen, start, variance, held)
+
+
+def _longest(problem: OutputError) -> float:
+    return float(np.max(np.diff(problem.data.offsets))) * problem.data.dt
+
+
+def _spread(made: Estimate, states: tuple[str, ...]) -> Array:
+    """How far each state moves in the records: measured, or else over the initial states of segments."""
+    outputs, starts = made.problem.data.outputs, made.problem.starts
+    spread = []
+    for state in states:
+        if state in outputs:
+            spread.append(np.nanstd(made.problem.data.measured[:, outputs.index(state)]))
+        else:
+            spread.append(np.std(made.optimum.local[:, starts.index(state)]) if state in starts else 0.0)
+    return np.maximum(spread, 1e-6)
+
+
+def _intensities(problem: PredictionError, made: Estimate) -> Array:
+    """Squared intensities and variances that suit the coefficients as they are: a scan, then a search."""
+    runs, begin = problem.runs, made.shared
+    held = runs.model.with_values(dict(zip(runs.free, begin[: len(runs.free)], strict=True)))
+    held = held.with_parameters(held.parameters.fixed(*held.parameters.names))
+    own = begin[len(runs.free) :]
+    alone = replace(problem, runs=replace(runs, model=held, pinned=own, others=()))
+    deviation = np.clip(_sample_noise(runs), 1e-2 * runs.noise, runs.noise)
+    whole = _spread(made, problem.process) / np.sqrt(_longest(runs))
+    scanned = [_balanced(alone, np.concatenate([own, (share * whole) ** 2, deviation**2])) for share in _SCANNED]
+    best = min(scanned, key=lambda one: one[0])[1]
+    found = levenberg_marquardt(alone, best, _NO_LOCAL, negligible=_ROUGH, evaluations=_SHORT)
+    return found.solution.point[len(own) :]
+
+
+def _sample_noise(runs: OutputError) -> Array:
+    """White noise on each channel from third differences, median over runs; infinite where none can be computed."""
+    pieces = [runs.data.measured[a:b] for a, b in pairwise(runs.data.offsets)]
+    columns = [[p[:, i] for p in pieces if np.any(np.isfinite(np.diff(p[:, i], 3)))] for i in range(len(runs.noise))]
+    return np.array([np.median([sample_noise(c) for c in mine]) if mine else np.inf for mine in columns])
+
+
+def _balanced(problem: PredictionError, point: Array) -> tuple[float, Array]:
+    """Cost and point after two rounds of setting each channel's variance by its innovations' size."""
+    ny = len(problem.runs.noise)
+    for _ in range(2):
+        squares = np.nanmean(problem.innovations(point).normalised ** 2, axis=0)
+        if not np.all(np.isfinite(squares)):
+            return np.inf, point
+        point = point.copy()
+        point[-ny:] *= np.clip(squares, 1e-4, 1e4)
+        point[-ny - len(problem.process) : -ny] *= np.clip(np.median(squares), 1e-2, 1e2)
+        point = np.clip(point, problem.lower, problem.upper)
+    return problem.cost(point, _NO_LOCAL), point
+
+
+def _polished(problem: PredictionError, found: Optimum) -> tuple[PredictionError, Optimum, float]:
+    """Newton steps by the exact gradient, none where it vanishes already; with the decrement that is left."""
+    point, count = found.solution.point, found.solution.evaluations
+    exact = replace(problem, steps=problem.difference_steps(point, found.normal.hessian))
+    normal = exact.normal(point, _NO_LOCAL)
+    for _ in range(_NEWTON_STEPS):
+        step, slope = _newton(exact, point, normal)
+        trials = (np.clip(point + share * step, exact.lower, exact.upper) for share in (1.0, 0.5, 0.25, 0.125))
+        better = next((p for p in trials if exact.cost(p, _NO_LOCAL) < normal.cost), None) if slope > _EXACT else None
+        if better is None:
+            break
+        point, normal, count = better, exact.normal(better, _NO_LOCAL), count + 1
+    slope = _newton(exact, point, normal)[1]
+    status = Status.CONVERGED if slope <= _EXACT else Status.STALLED
+    history = (*found.solution.history, normal.cost)
+    solution = replace(
+        found.solution, point=point, value=normal.cost, status=status, evaluations=count, history=history
+    )
+    return exact, Optimum(solution, _NO_LOCAL, normal), slope
+
+
+def _newton(problem: PredictionError, point: Array, normal: Normal) -> tuple[Array, float]:
+    """Newton step of the unknowns that no bound holds, and half the squared gradient in the information's metric."""
+    low, high, slope = problem.lower, problem.upper, normal.gradient
+    free = (low < high) & ~((point <= low) & (slope > 0)) & ~((point >= high) & (slope < 0))
+    gradient, hessian = slope[free], normal.hessian[np.ix_(free, free)]
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-300))
+    solved = scale * np.linalg.lstsq(hessian * scale[:, None] * scale, scale * gradient, rcond=1e-12)[0]
+    step = np.zeros_like(point)
+    step[free] = -solved
+    return step, float(0.5 * gradient @ solved)
+
+
+def _without(problem: PredictionError, made: Estimate, point: Array) -> tuple[float, Array | None]:
+    """Minus the log-likelihood without process noise at its own optimum, and innovations there."""
+    quiet = replace(problem, process=())
+    k = problem.runs.size
+    deviation = point[k + len(problem.process) :]
+    begins = [np.concatenate([p, deviation]) for p in (point[:k], made.shared)]
+    costs = [quiet.cost(p, _NO_LOCAL) for p in begins]
+    if not np.any(np.isfinite(costs)):
+        return np.inf, None
+    begin = begins[int(np.argmin(costs))]
+    found = levenberg_marquardt(quiet, begin, _NO_LOCAL, negligible=1e-2, evaluations=_SHORT)
+    return found.normal.cost, quiet.innovations(found.solution.point).normalised

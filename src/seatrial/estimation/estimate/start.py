@@ -1,0 +1,75 @@
+"""Where a search begins: without a guess, by the weak form of the equations; else at the model's own values."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, Record
+from seatrial.estimation.estimate.estimate import residual_spread
+from seatrial.estimation.problem.output_error import OutputError
+from seatrial.estimation.regress.weak import WeakForm
+from seatrial.numerics.optimise import levenberg_marquardt
+from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.states import hidden_states, measured_states
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """Unknowns from which to search, the problem with the noise they leave, and where they come from in words."""
+
+    problem: OutputError
+    shared: Array
+    local: Array
+    how: str
+
+
+def start(problem: OutputError, records: Sequence[Record], seconds: float) -> Start:
+    """Coefficients by the weak form with windows of half width `seconds`, initial states as measured.
+
+    The model's own values take their place where a state is hidden, or where the weak form's diverge.
+    """
+    local = problem.measured_starts()
+    hidden, how = hidden_states(problem.model, records), "weak form of the equations, no guess"
+    if hidden:
+        how = f"the model's own values: nobody measures {', '.join(hidden)}, a state of the weak form"
+    shared = _with_coefficients(problem, weak_start(problem.model, records, seconds))
+    simulated = problem.simulated(shared, local)
+    if not np.all(np.isfinite(simulated)):
+        shared, how = problem.start(), "the model's own values: those of the weak form diverge"
+        simulated = problem.simulated(shared, local)
+    if np.all(np.isfinite(simulated)):
+        left = simulated - problem.data.measured
+        problem = replace(problem, noise=residual_spread(replace(problem, huber=1.0), left))
+    return Start(problem, shared, local, how)
+
+
+def _with_coefficients(problem: OutputError, point: Array) -> Array:
+    shared = problem.start()
+    names = problem.model.parameters.free_names
+    shared[: len(problem.free)] = [point[names.index(n)] for n in problem.free]
+    return shared
+
+
+def weak_start(model: Model, records: Sequence[Record], seconds: float, rounds: int = 3) -> Array:
+    """Free parameters from the weak form over all records, shape (free,); priors pull as far as the data leave room.
+
+    Equations of states that stay constant in a record (positions nobody measured) are left out. A model with hidden
+    states starts at its own values.
+    """
+    point = np.array([p.value for p in model.parameters.free])
+    if hidden_states(model, records):
+        return point
+    states = tuple(measured_states(model, r) for r in records)
+    inputs = tuple(inputs_of(model, r) for r in records)
+    problem = WeakForm(model, states, inputs, records[0].dt, seconds, np.ones(len(model.states)))
+    point = np.clip(point, problem.lower, problem.upper)
+    known = np.all([np.ptp(x, axis=0) > 0 for x in states], axis=0)
+    floor = 1e-9 * np.max(np.abs(np.concatenate(states)), axis=0)
+    for _ in range(rounds):
+        residual = problem.linearised(point)[0]
+        spread = np.maximum(np.sqrt(np.mean(residual**2, axis=0)), floor)
+        problem = replace(problem, spread=np.where(known, spread, np.inf))
+        point = levenberg_marquardt(problem, point, np.zeros((0, 0)), evaluations=30).solution.point
+    return point

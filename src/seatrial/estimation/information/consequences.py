@@ -1,0 +1,39 @@
+"""What a wrong assumed value does to the estimates, by one Gauss-Newton step from the information matrix.
+
+With H the information on assumed and fitted parameters together, d theta = -H_ff^-1 H_fp dp, and the sum of squares
+grows by dp (H_pp - H_pf H_ff^-1 H_fp) dp (implicit function theorem on the normal equations). That is what to expect:
+the noise of one record favours one sign of dp and adds a part linear in it.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from seatrial.core.values import Array, Index
+
+_NAMED, _LEAST = 4, 0.005
+_SEEN = 0.05
+
+
+def answer(information: Array, fitted: Index, assumed: int, step: float) -> tuple[Array, float]:
+    """Changes of the fitted parameters, (len(fitted),), and the growth of chi squared, for a step of the assumed one.
+
+    information: shape (n, n); fitted, assumed: positions in it.
+    """
+    cross = information[fitted, assumed]
+    moves = np.asarray(-step * np.linalg.solve(information[np.ix_(fitted, fitted)], cross), dtype=np.float64)
+    return moves, max(float(step * (information[assumed, assumed] * step + cross @ moves)), 0.0)
+
+
+def words(name: str, change: float, moves: Mapping[str, float], misfit: float, left: float) -> str:
+    """In words; change and moves are relative, largest first; misfit: growth of chi squared; left: what it is now."""
+    shifts = [f"{n} by {float(f'{100 * m:.2g}'):+g} %" for n, m in list(moves.items())[:_NAMED] if abs(m) >= _LEAST]
+    first = f"were {name} {100 * change:.0f} % larger, "
+    if not shifts:
+        return f"{first}no estimate would shift by half a per cent"
+    growth = float(np.sqrt(1.0 + misfit / left) - 1.0) if left > 0 else np.inf
+    shown = "show it" if growth >= _SEEN else "hardly show it"
+    return (
+        f"{first}the estimates would shift, {', '.join(shifts)}, and the residuals would {shown} "
+        f"(they would grow by {100 * growth:.2g} %, chi squared by {misfit:.2g})"
+    )

@@ -1,0 +1,90 @@
+"""Covariance of estimates: from the information matrix, from runs left out, or from blocks.
+
+White-noise errors are valid only for white residuals; the other two stay valid under model error and coloured noise.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from seatrial.core.values import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Interval:
+    """Covariance of the shared unknowns, degrees of freedom of Student's t, and what it means in words."""
+
+    covariance: Array
+    degrees_of_freedom: float
+    meaning: str
+
+    @property
+    def standard_error(self) -> Array:
+        """Square roots of the diagonal."""
+        return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+
+    @property
+    def half_width(self) -> Array:
+        """Half widths of the 95 % intervals."""
+        return float(stats.t.ppf(0.975, self.degrees_of_freedom)) * self.standard_error
+
+
+def inverse(hessian: Array) -> Array:
+    """Inverse of a symmetric positive matrix in its own scales; singular directions get a huge variance, not zero."""
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-100))
+    values, vectors = np.linalg.eigh(hessian * scale[:, None] * scale[None, :])
+    values = np.maximum(values, 1e-14 * values[-1])
+    return scale[:, None] * ((vectors / values) @ vectors.T) * scale[None, :]
+
+
+def from_information(hessian: Array) -> Interval:
+    """Inverse of the Fisher information: the Cramer-Rao bound (Rao 1945), for white residuals."""
+    return Interval(inverse(hessian), np.inf, "information matrix (residuals are white)")
+
+
+def left_out_steps(hessian: Array, run_gradients: Array, run_hessians: Array) -> Array:
+    """One Gauss-Newton step from the joint optimum for each run left out, theta_(-i) - theta = (H - H_i)^-1 g_i.
+
+    From the stored normal equations (Hinkley 1977): run_gradients (n, k), run_hessians (n, k, k); returns (n, k).
+    """
+    return np.array([inverse(hessian - h) @ g for g, h in zip(run_gradients, run_hessians, strict=True)])
+
+
+def jackknife(points: Array, meaning: str) -> Interval:
+    """Covariance from estimates with one run left out each, (n, k): (n - 1)/n sum of outer products about their mean.
+
+    Tukey 1958, Ann. Math. Stat. 29, 614.
+    """
+    count = len(points)
+    centred = points - points.mean(axis=0)
+    return Interval((count - 1) / count * centred.T @ centred, count - 1, meaning)
+
+
+def bootstrap(points: Array, runs: int, meaning: str) -> Interval:
+    """Covariance of estimates from runs drawn with replacement, points (n, k) (Efron 1979, Ann. Stat. 7, 1).
+
+    The variance of a mean of `runs` drawn values is too small by (runs - 1)/runs, which is put right.
+    """
+    centred = points - points.mean(axis=0)
+    covariance = runs / (runs - 1) * centred.T @ centred / (len(points) - 1)
+    return Interval(covariance, runs - 1, meaning)
+
+
+def sandwich(hessian: Array, block_gradients: Array) -> Interval:
+    """H^-1 (sum g g') H^-1 over blocks longer than the residuals' memory (Huber 1967; White 1982)."""
+    count = len(block_gradients)
+    bread = inverse(hessian)
+    factor = count / max(count - 1, 1)
+    covariance = bread @ (factor * block_gradients.T @ block_gradients) @ bread
+    return Interval(covariance, max(count - 1, 1), f"sandwich over {count} blocks")
+
+
+def with_prior(interval: Interval, hessian: Array, precision: Array) -> Interval:
+    """Add what priors and other data may be wrong by: H^-1 P H^-1, P (k, k) the variance of their score.
+
+    Leaving runs out never moves a prior, so without this a coefficient held by its prior would seem certain.
+    """
+    bread = inverse(hessian)
+    covariance = interval.covariance + bread @ precision @ bread
+    return Interval(covariance, interval.degrees_of_freedom, f"{interval.meaning}, with the priors' own uncertainty")

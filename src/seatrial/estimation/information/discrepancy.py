@@ -1,0 +1,131 @@
+"""What runs left out missed beyond the scatter that was foreseen: the model's own error, from cross-validation.
+
+Every training run is predicted by the model without it. Where its error exceeds what coefficients, offsets and process
+noise explain, the excess variance is the model discrepancy (Kennedy & O'Hagan 2001, J. R. Stat. Soc. B 63, 425), here
+estimated for every kind of measure and for heading and position by the time since the initial state. It grows with the
+extrapolation index squared: the first terms an odd polynomial leaves out are two orders above its last ones, and so it
+is when runs of large rudder angles are predicted from those of small ones (benchmarks/extrapolation.py).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.optimize import isotonic_regression
+
+from seatrial.core.values import Array
+
+_VALUES, _RUNS = 4, 3
+_TRACK = ("psi", "x0", "y0")
+
+GROWTH = 2.0
+"""Power of the extrapolation index with which the discrepancy grows (benchmarks/extrapolation.py)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Miss:
+    """How one run left out was missed.
+
+    Attributes:
+        run: its name; dt: s.
+        errors, foreseen: channel (psi, x0, y0) -> error and foreseen standard deviation at every sample, (n,), SI.
+        measures: measure -> (error, foreseen standard deviation), in the measure's unit.
+        index: extrapolation index of the run against the others.
+    """
+
+    run: str
+    dt: float
+    errors: dict[str, Array]
+    foreseen: dict[str, Array]
+    measures: dict[str, tuple[float, float]] = field(default_factory=dict)
+    index: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Discrepancy:
+    """Standard deviations that come on top of the foreseen ones, within the ground the training runs cover.
+
+    Attributes:
+        kinds: kind of measure -> standard deviation in its unit.
+        factor: by which the foreseen standard deviation of a measure is multiplied that no training run shows (the
+            ratio of Birge 1932, Phys. Rev. 40, 207, over the kinds they show).
+        dt: s; elapsed: channel -> standard deviation by time since the initial state, shape (n,), SI.
+    """
+
+    kinds: dict[str, float]
+    factor: float
+    dt: float
+    elapsed: dict[str, Array]
+
+    def of_measure(self, name: str, foreseen: float, index: float) -> float:
+        """Standard deviation of a measure, discrepancy included; `index`: how far the run extrapolates."""
+        extra = self.kinds.get(kind_of(name))
+        return self.factor * foreseen if extra is None else float(np.hypot(foreseen, growth(index) * extra))
+
+    def of_channel(self, channel: str, foreseen: Array, dt: float, index: float) -> Array:
+        """Standard deviation of a channel along a prediction, shape (n,); constant beyond the longest run left out."""
+        if channel not in self.elapsed:
+            return foreseen
+        known = self.elapsed[channel]
+        at = np.interp(dt * np.arange(len(foreseen)), self.dt * np.arange(len(known)), known)
+        return np.hypot(foreseen, growth(index) * at)
+
+
+NONE = Discrepancy({}, 1.0, 1.0, {})
+
+
+def growth(index: float) -> float:
+    """How much larger the discrepancy is of a run that extrapolates: the index squared, never less than one."""
+    return max(index, 1.0) ** GROWTH
+
+
+def kind_of(measure: str) -> str:
+    """The kind a measure belongs to: its name without numbers, so that all overshoots count together."""
+    return "_".join(part for part in measure.split("_") if not part.isdigit())
+
+
+def discrepancy(missed: Sequence[Miss]) -> Discrepancy:
+    """What these misses have in excess of what was foreseen; none where there are too few runs."""
+    if len({m.run for m in missed}) < _RUNS:
+        return NONE
+    pairs: dict[str, list[tuple[float, float, float]]] = {}
+    for miss in missed:
+        for name, pair in miss.measures.items():
+            pairs.setdefault(kind_of(name), []).append((*pair, growth(miss.index)))
+    known = {kind: np.array(values) for kind, values in pairs.items() if len(values) >= _VALUES}
+    kinds = {kind: float(excess(v[:, :1], v[:, 1:2], v[:, 2:])[0]) for kind, v in known.items()}
+    ratios = [np.mean((v[:, 0] / np.maximum(v[:, 1], 1e-300)) ** 2) for v in known.values()]
+    factor = float(np.sqrt(max(np.median(ratios), 1.0))) if ratios else 1.0
+    elapsed = {c: _elapsed(missed, c) for c in _TRACK if all(c in m.errors for m in missed)}
+    if {"x0", "y0"} <= set(elapsed):
+        both = np.sqrt(0.5 * (elapsed["x0"] ** 2 + elapsed["y0"] ** 2))
+        elapsed |= {"x0": both, "y0": both}
+    return Discrepancy(kinds, factor, missed[0].dt, elapsed)
+
+
+def _elapsed(missed: Sequence[Miss], channel: str) -> Array:
+    """Excess standard deviation by elapsed time; it grows, so isotonic regression of the excess variance."""
+    longest = max(len(m.errors[channel]) for m in missed)
+    error, expected = np.full((2, len(missed), longest), np.nan)
+    for row, miss in enumerate(missed):
+        error[row, : len(miss.errors[channel])] = miss.errors[channel]
+        expected[row, : len(miss.foreseen[channel])] = miss.foreseen[channel]
+    count = np.maximum(np.isfinite(error).sum(axis=0), 1e-9)
+    grown = np.array([[growth(miss.index)] for miss in missed])
+    return np.sqrt(np.maximum(isotonic_regression(excess(error, expected, grown) ** 2, weights=count).x, 0.0))
+
+
+def excess(errors: Array, foreseen: Array, grown: Array) -> Array:
+    """Standard deviation d of each column for which errors of variance f^2 + (g d)^2 have the size they have, (n,).
+
+    Solves sum e^2 / (f^2 + g^2 d^2) = number of errors (Paule & Mandel 1982, J. Res. NBS 87, 377) by bisection; 0 where
+    the errors are no larger than foreseen. errors, foreseen: (m, n), NaN where there is none; grown: (m, 1).
+    """
+    count = np.isfinite(errors).sum(axis=0)
+    square, expected = np.where(np.isfinite(errors), errors, 0.0) ** 2, np.nan_to_num(foreseen) ** 2
+    low, high = np.zeros(errors.shape[1]), np.max(square, axis=0) + 1e-300
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        large = np.sum(square / (expected + grown**2 * middle), axis=0) > count
+        low, high = np.where(large, middle, low), np.where(large, high, middle)
+    return np.sqrt(np.where(low > 0.0, high, 0.0))

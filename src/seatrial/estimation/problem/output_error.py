@@ -1,0 +1,310 @@
+"""Output error over segments: simulate each from its own free initial state and compare with what was measured.
+
+Whole runs give the classical output-error method (Maine & Iliff 1985), pieces of about 1.5 L/U multiple shooting
+(Bock 1981) without continuity constraints, the remedy for nearly unstable ships.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, Index, Prior
+from seatrial.estimation.problem.addend import Addend
+from seatrial.estimation.problem.segments import Segments
+from seatrial.numerics.optimise import Normal
+from seatrial.numerics.workers import mapped
+from seatrial.physics.simulate.batch import Batch, InputCorrection
+from seatrial.physics.simulate.linear import batch_for
+
+_ROWS_A_PIECE = 4000
+
+
+@dataclass(frozen=True)
+class Nuisance:
+    """An input correction estimated once a session, with its prior.
+
+    Attributes:
+        scale: size of a meaningful change, SI.
+    """
+
+    correction: InputCorrection
+    prior: Prior
+    unit: str
+
+
+@dataclass(frozen=True, eq=False)
+class OutputError:
+    """Shared unknowns: free model parameters, then each nuisance for each session. Local: initial states.
+
+    Attributes:
+        noise: standard deviation of each compared output, shape (ny,), SI.
+        inflation: variance inflation of each channel's residuals; coloured samples count for that many times fewer, so
+            that priors keep their weight against them (effective sample size; Sokal 1997). None: white.
+        huber: residuals beyond this many standard deviations count linearly (Huber 1964); infinite: squares only.
+        session_parameters: model parameters estimated once a session (a current), with their priors.
+        pinned: shared unknowns held at these values, for predictions: only initial states move.
+        others: data besides the records that say something about the model parameters (static force points).
+    """
+
+    model: Model
+    data: Segments
+    noise: Array
+    nuisances: tuple[Nuisance, ...] = ()
+    session_parameters: tuple[tuple[str, Prior], ...] = ()
+    inflation: Array | None = None
+    huber: float = np.inf
+    substeps: int = 1
+    workers: int | None = None
+    pinned: Array | None = None
+    others: tuple[Addend, ...] = ()
+
+    @cached_property
+    def free(self) -> tuple[str, ...]:
+        """Names of the free model parameters that all runs share."""
+        own = {name for name, _ in self.session_parameters}
+        return tuple(n for n in self.model.parameters.free_names if n not in own)
+
+    @cached_property
+    def _batch(self) -> Batch:
+        batch = batch_for(self.model)(
+            self.model, self.data.inputs, self.data.offsets, self.data.dt, self.data.outputs,
+            (*self.free, *(name for name, _ in self.session_parameters)),
+            tuple(n.correction for n in self.nuisances), (), self.substeps,
+        )  # fmt: skip
+        return replace(batch, starts=batch.influential_states())
+
+    @property
+    def starts(self) -> tuple[str, ...]:
+        """States whose initial value is estimated in every segment."""
+        return self._batch.starts
+
+    @property
+    def kinds(self) -> int:
+        """Number of unknowns a session has of its own."""
+        return len(self.session_parameters) + len(self.nuisances)
+
+    @property
+    def size(self) -> int:
+        """Number of shared unknowns."""
+        return len(self.free) + self.kinds * len(self.data.sessions)
+
+    def _edge(self, of_free: list[float], elsewhere: float) -> Array:
+        if self.pinned is not None:
+            return self.pinned
+        return np.concatenate([of_free, np.full(self.size - len(self.free), elsewhere)])
+
+    @property
+    def lower(self) -> Array:
+        """Lower bounds of the shared unknowns."""
+        return self._edge([self.model.parameters[n].lower for n in self.free], -np.inf)
+
+    @property
+    def upper(self) -> Array:
+        """Upper bounds of the shared unknowns."""
+        return self._edge([self.model.parameters[n].upper for n in self.free], np.inf)
+
+    @cached_property
+    def priors(self) -> tuple[Array, Array]:
+        """Mean and weight (1/variance, 0 without prior) of each shared unknown."""
+        mean, weight = np.zeros(self.size), np.zeros(self.size)
+        own = [p for _, p in self.session_parameters] + [n.prior for n in self.nuisances]
+        listed = [self.model.parameters[n].prior for n in self.free] + own * len(self.data.sessions)
+        for i, prior in enumerate(listed):
+            if prior is not None and np.isfinite(prior.standard_deviation):
+                mean[i], weight[i] = prior.mean, prior.standard_deviation**-2
+        return mean, weight
+
+    def start(self) -> Array:
+        """Model values and prior means: the shared unknowns where nothing is known yet."""
+        point = self.priors[0].copy()
+        point[: len(self.free)] = [self.model.parameters[n].value for n in self.free]
+        return point
+
+    def columns_of(self, session: int) -> np.ndarray:
+        """Positions among the shared unknowns of a session's sensitivity columns."""
+        own = len(self.free) + session * self.kinds
+        return np.concatenate([np.arange(len(self.free)), own + np.arange(self.kinds)])
+
+    def measured_starts(self) -> Array:
+        """Initial states from each segment's first measured samples, (segments, len(starts)); zero if unmeasured."""
+        local = np.zeros((self.data.count, len(self.starts)))
+        for m, state in enumerate(self.starts):
+            if state in self.data.outputs:
+                column = self.data.measured[:, self.data.outputs.index(state)]
+                for s, (a, b) in enumerate(pairwise(self.data.offsets)):
+                    good = np.flatnonzero(np.isfinite(column[a:b]))
+                    if len(good):
+                        local[s, m] = column[a + good[0]]
+        return local
+
+    def unpacked(self, shared: Array, local: Array) -> tuple[Array, Array, Array]:
+        """Full initial states, model parameters and corrections of each segment."""
+        count, parameters = self.data.count, self.model.parameters
+        values = np.tile(parameters.values, (count, 1))
+        values[:, self._places] = shared[: len(self.free)]
+        own = shared[len(self.free) :].reshape(len(self.data.sessions), self.kinds)[self.data.session]
+        split = len(self.session_parameters)
+        values[:, [parameters.index(n) for n, _ in self.session_parameters]] = own[:, :split]
+        start = np.zeros((count, len(self.model.states)))
+        start[:, [self.model.states.index(s) for s in self.starts]] = local
+        return start, values, np.ascontiguousarray(own[:, split:])
+
+    def _pieces(self) -> list[tuple[int, int]]:
+        """Ranges of segments of some thousand rows each: the units of work."""
+        edges, first = [], 0
+        for s in range(1, self.data.count + 1):
+            if s == self.data.count or self.data.offsets[s] - self.data.offsets[first] >= _ROWS_A_PIECE:
+                edges.append((first, s))
+                first = s
+        return edges
+
+    def _scaled(self, simulated: Array, rows: slice) -> Array:
+        residual = (simulated - self.data.measured[rows]) / self.noise
+        return np.where(np.isfinite(self.data.measured[rows]), residual, 0.0)
+
+    @cached_property
+    def _trust(self) -> Array:
+        """Effective over actual number of samples, by channel."""
+        return np.ones(len(self.noise)) if self.inflation is None else 1.0 / self.inflation
+
+    def _loss(self, scaled: Array) -> tuple[float, Array]:
+        """Half the robust sum of squares of effective samples, and the weight of each residual (Huber 1964)."""
+        size = np.abs(scaled)
+        if np.isinf(self.huber) or not np.any(size > self.huber):
+            return 0.5 * float(np.sum(self._trust * scaled**2)), np.broadcast_to(self._trust, scaled.shape)
+        inside = size <= self.huber
+        loss = np.where(inside, 0.5 * scaled**2, self.huber * (size - 0.5 * self.huber))
+        weight = np.where(inside, 1.0, self.huber / np.maximum(size, 1e-300))
+        return float(np.sum(self._trust * loss)), self._trust * weight
+
+    def _prior_cost(self, shared: Array) -> float:
+        mean, weight = self.priors
+        return 0.5 * float(np.sum(weight * (shared - mean) ** 2))
+
+    def _parameter_values(self, shared: Array) -> Array:
+        """All model parameters as the runs share them."""
+        values = self.model.parameters.values
+        values[self._places] = shared[: len(self.free)]
+        return values
+
+    @cached_property
+    def _places(self) -> list[int]:
+        return [self.model.parameters.index(n) for n in self.free]
+
+    @property
+    def _told_by(self) -> tuple[Addend, ...]:
+        """The other data; none where only initial states move, which they say nothing about."""
+        return () if self.pinned is not None else self.others
+
+    def known_precision(self, shared: Array) -> Array:
+        """Information (size, size) of priors and other data, which stay when runs are left out."""
+        precision, k = np.diag(self.priors[1]), len(self.free)
+        for other in self._told_by:
+            precision[:k, :k] += other.normal(self._parameter_values(shared), self._places).hessian
+        return precision
+
+    def _other_cost(self, shared: Array) -> float:
+        return sum(other.cost(self._parameter_values(shared)) for other in self._told_by)
+
+    def simulated(self, shared: Array, local: Array) -> Array:
+        """Simulated outputs of all segments, shape (rows, ny); NaN after a divergence."""
+        start, values, corrections = self.unpacked(shared, local)
+        pieces = mapped(lambda p: self._batch.simulate(*p, start, values, corrections)[0], self._pieces(),
+                        workers=self.workers)  # fmt: skip
+        return np.concatenate(pieces)
+
+    def cost(self, shared: Array, local: Array) -> float:
+        """Half the (robust) sum of squares and the prior's; infinite if any segment diverges."""
+        y = self.simulated(shared, local)
+        if not np.all(np.isfinite(y)):
+            return np.inf
+        return self._loss(self._scaled(y, slice(None)))[0] + self._prior_cost(shared) + self._other_cost(shared)
+
+    def blocks(self, shared: Array, local: Array) -> "SegmentNormals":
+        """Gauss-Newton blocks of every segment, prior left out."""
+        start, values, corrections = self.unpacked(shared, local)
+        n, m = len(self.free) + self.kinds, len(self.starts)
+
+        def piece(bounds: tuple[int, int]) -> tuple[Array, Array, Array]:
+            y, s, _ = self._batch.differentiate(*bounds, start, values, corrections)
+            base = self.data.offsets[bounds[0]]
+            scaled = self._scaled(y, slice(base, base + len(y)))
+            costs, gradients, hessians = [], [], []
+            for k in range(*bounds):
+                rows = slice(self.data.offsets[k] - base, self.data.offsets[k + 1] - base)
+                cost, weight = self._loss(scaled[rows])
+                root = np.sqrt(weight) * np.isfinite(self.data.measured[rows.start + base : rows.stop + base])
+                jacobian = (s[rows] * (root / self.noise)[:, :, None]).reshape(-1, n + m)
+                costs.append(cost)
+                gradients.append(jacobian.T @ (root * scaled[rows]).ravel())
+                hessians.append(jacobian.T @ jacobian)
+            return np.array(costs), np.array(gradients), np.array(hessians)
+
+        parts = mapped(piece, self._pieces(), workers=self.workers)
+        costs, gradients, hessians = (np.concatenate([p[i] for p in parts]) for i in range(3))
+        return SegmentNormals(costs, gradients, hessians, n)
+
+    def slopes(self, shared: Array, local: Array) -> Array:
+        """Derivatives of the outputs by a session's columns (`columns_of`), then by initial states, (rows, ny, n)."""
+        start, values, corrections = self.unpacked(shared, local)
+        parts = mapped(lambda p: self._batch.differentiate(*p, start, values, corrections)[1], self._pieces(),
+                       workers=self.workers)  # fmt: skip
+        return np.concatenate(parts)
+
+    def sensitivities(self, shared: Array, local: Array) -> Array:
+        """Rms slope of each output, in units of its noise, by each free parameter, (ny, free); initial states held."""
+        start, values, corrections = self.unpacked(shared, local)
+        known = np.isfinite(self.data.measured)
+
+        def piece(bounds: tuple[int, int]) -> Array:
+            _, s, _ = self._batch.differentiate(*bounds, start, values, corrections)
+            rows = slice(self.data.offsets[bounds[0]], self.data.offsets[bounds[1]])
+            return np.einsum("tyf,ty->yf", s[:, :, : len(self.free)] ** 2, known[rows].astype(float))
+
+        total = np.sum(mapped(piece, self._pieces(), workers=self.workers), axis=0)
+        return np.sqrt(total / np.maximum(known.sum(axis=0), 1)[:, None]) / self.noise[:, None]
+
+    def normal(self, shared: Array, local: Array) -> Normal:
+        """The Gauss-Newton model at a point."""
+        return self.assembled(self.blocks(shared, local), shared, np.arange(self.data.count), with_prior=True)
+
+    def assembled(self, blocks: "SegmentNormals", shared: Array, chosen: Index, *, with_prior: bool) -> Normal:
+        """The normal equations of some segments (all for the fit, those of one run for the jackknife).
+
+        with_prior: whether what is known besides the records is in them: priors and other data.
+        """
+        n, gradient, hessian = blocks.shared, np.zeros(self.size), np.zeros((self.size, self.size))
+        cross = np.zeros((len(chosen), self.size, blocks.gradients.shape[1] - n))
+        for session in np.unique(self.data.session[chosen]):
+            inside = np.flatnonzero(self.data.session[chosen] == session)
+            columns = self.columns_of(int(session))
+            picked = chosen[inside]
+            gradient[columns] += blocks.gradients[picked, :n].sum(axis=0)
+            hessian[np.ix_(columns, columns)] += blocks.hessians[picked, :n, :n].sum(axis=0)
+            cross[np.ix_(inside, columns)] = blocks.hessians[picked, :n, n:]
+        cost = float(blocks.costs[chosen].sum())
+        if with_prior:
+            mean, weight = self.priors
+            cost += self._prior_cost(shared)
+            gradient += weight * (shared - mean)
+            hessian += np.diag(weight)
+            k = len(self.free)
+            for other in self._told_by:
+                more = other.normal(self._parameter_values(shared), self._places)
+                cost += more.cost
+                gradient[:k] += more.gradient
+                hessian[:k, :k] += more.hessian
+        return Normal(cost, gradient, hessian, blocks.gradients[chosen, n:], blocks.hessians[chosen, n:, n:], cross)
+
+
+@dataclass(frozen=True, eq=False)
+class SegmentNormals:
+    """Cost (s,), gradient (s, k) and Hessian (s, k, k) of each segment; the first `shared` columns are shared ones."""
+
+    costs: Array
+    gradients: Array
+    hessians: Array
+    shared: int

@@ -1,0 +1,125 @@
+"""Records cut into segments: the data of an output-error problem as arrays."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, Index, InputError, Record, nearest
+from seatrial.physics.simulate.channels import inputs_of
+
+
+@dataclass(frozen=True, eq=False)
+class Segments:
+    """Segments laid end to end.
+
+    Attributes:
+        inputs: (rows, nu) in the model's signs; measured: (rows, ny), NaN where nothing was measured.
+        offsets: (segments + 1,); run, session: (segments,), indices into `runs` and `sessions`.
+        outputs: observables that are compared, in order; dt: s.
+    """
+
+    inputs: Array
+    measured: Array
+    offsets: Index
+    run: Index
+    session: Index
+    runs: tuple[str, ...]
+    sessions: tuple[str, ...]
+    outputs: tuple[str, ...]
+    dt: float
+
+    @property
+    def count(self) -> int:
+        """Number of segments."""
+        return len(self.run)
+
+    def of_run(self, run: int) -> Index:
+        """The segments of a run."""
+        return np.flatnonzero(self.run == run)
+
+    def taken(self, chosen: Index) -> "Segments":
+        """Only the chosen segments, in that order, repeated where one is chosen twice; runs and sessions stay."""
+        rows = [np.arange(int(self.offsets[s]), int(self.offsets[s + 1])) for s in chosen]
+        kept = np.concatenate(rows)
+        return replace(
+            self,
+            inputs=np.ascontiguousarray(self.inputs[kept]),
+            measured=self.measured[kept],
+            offsets=np.concatenate([[0], np.cumsum([len(r) for r in rows])]).astype(np.int64),
+            run=self.run[chosen],
+            session=self.session[chosen],
+        )
+
+
+def compared_outputs(model: Model, records: Sequence[Record], wanted: Sequence[str] = ()) -> tuple[str, ...]:
+    """Observables of the model that at least one record holds; only the wanted ones where some are named.
+
+    Raises:
+        InputError: there is none, or a wanted one is no observable of the model or in no record.
+    """
+    found = tuple(o for o in model.observables if any(o in r for r in records))
+    for name in wanted:
+        if name not in found:
+            raise InputError(f"channel '{name}' cannot be compared{nearest(name, list(found))}")
+    if not found:
+        raise InputError(f"no record holds any output of model '{model.name}': {', '.join(model.observables)}")
+    return tuple(o for o in found if not wanted or o in wanted)
+
+
+def _bounds(rows: int, length: int) -> list[tuple[int, int]]:
+    """Overlapping-by-one pieces of about `length` steps, as even as possible."""
+    steps = rows - 1
+    pieces = max(1, round(steps / length))
+    edges = np.linspace(0, steps, pieces + 1).round().astype(int)
+    return [(int(a), int(b) + 1) for a, b in pairwise(edges)]
+
+
+def cut(
+    model: Model,
+    records: Sequence[Record],
+    outputs: tuple[str, ...],
+    seconds: float | None,
+    sessions: Sequence[str] | None = None,
+) -> Segments:
+    """Cut records (all of one time step) into pieces of about `seconds`; None keeps whole runs.
+
+    Neighbouring pieces share one sample. Each record belongs to the session of the same index (default: its own).
+
+    Raises:
+        InputError: time steps differ, or a record has fewer than three samples.
+    """
+    dt = records[0].dt
+    inputs, measured, lengths, runs = [], [], [], []
+    for index, record in enumerate(records):
+        if abs(record.dt - dt) > 1e-3 * dt:
+            raise InputError(
+                f"record '{record.name}' has a time step of {record.dt:g} s, the first one {dt:g} s; give one rate"
+            )
+        if len(record) < 3:
+            raise InputError(f"record '{record.name}' has {len(record)} samples; at least three are needed")
+        u = inputs_of(model, record)
+        y = np.stack([record[o] if o in record else np.full(len(record), np.nan) for o in outputs], axis=1)
+        length = len(record) - 1 if seconds is None else max(2, round(seconds / dt))
+        for first, last in _bounds(len(record), length):
+            inputs.append(u[first:last])
+            measured.append(y[first:last])
+            lengths.append(last - first)
+            runs.append(index)
+    names = tuple(r.name for r in records)
+    of_run = tuple(sessions) if sessions is not None else names
+    distinct = tuple(dict.fromkeys(of_run))
+    run = np.array(runs, dtype=np.int64)
+    return Segments(
+        np.concatenate(inputs),
+        np.concatenate(measured),
+        np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64),
+        run,
+        np.array([distinct.index(of_run[i]) for i in runs], dtype=np.int64),
+        names,
+        distinct,
+        outputs,
+        dt,
+    )

@@ -1,0 +1,98 @@
+"""Estimators by regression: an operator and an arithmetic, through one door."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, Finding, Record
+from seatrial.estimation.regress.arithmetic import Arithmetic, LeastSquares, Solved, instrumental
+from seatrial.estimation.regress.features import Motion
+from seatrial.estimation.regress.operators import Operator
+from seatrial.estimation.regress.system import System, systems
+from seatrial.physics.simulate.replay import replay
+
+
+@dataclass(frozen=True, eq=False)
+class Regressed:
+    """Values of the free coefficients (k,) in the model's order; the constant each equation allowed itself besides."""
+
+    values: Array
+    bias: dict[str, float] = field(default_factory=dict)
+    findings: tuple[Finding, ...] = ()
+    settings: dict[str, float] = field(default_factory=dict)
+
+    def in_model(self, model: Model) -> Model:
+        """The model with these coefficients."""
+        return model.with_values(dict(zip(model.parameters.free_names, self.values.tolist(), strict=True)))
+
+
+class Estimator(Protocol):
+    """From a model and records to coefficients, whatever values the model comes with."""
+
+    @property
+    def name(self) -> str:
+        """What tables call it."""
+        ...
+
+    def estimate(self, model: Model, records: Sequence[Record]) -> Regressed:
+        """The free coefficients from all records together.
+
+        Raises:
+            InputError: the records do not show every state, or their features are constant or collinear.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class Regression:
+    """An arithmetic on the rows that an operator makes."""
+
+    name: str
+    operator: Operator
+    arithmetic: Arithmetic
+
+    def estimate(self, model: Model, records: Sequence[Record]) -> Regressed:
+        """The coefficients, system by system."""
+        made = systems(model, [Motion.of(model, r) for r in records], self.operator)
+        return gathered(model, made, self.arithmetic.solve)
+
+
+@dataclass(frozen=True)
+class InstrumentalVariables:
+    """Instruments simulated by the model that least squares found, then again by their own (Young & Jakeman 1979)."""
+
+    name: str
+    operator: Operator
+    rounds: int = 3
+
+    def estimate(self, model: Model, records: Sequence[Record]) -> Regressed:
+        """The coefficients after `rounds` of simulation; the records' inputs drive it from their first sample.
+
+        Raises:
+            InputError: besides those of regression, a simulation that diverges.
+        """
+        made = systems(model, [Motion.of(model, r) for r in records], self.operator)
+        found = gathered(model, made, LeastSquares().solve)
+        for _ in range(self.rounds):
+            ship = found.in_model(model)
+            free_of_noise = [Motion.of(model, replay(ship, r)) for r in records]
+            instruments = {s.equations: s for s in systems(model, free_of_noise, self.operator)}
+            found = gathered(model, made, lambda s, z=instruments: instrumental(s, z[s.equations]))
+        return found
+
+
+def gathered(model: Model, made: Sequence[System], solve: Callable[[System], Solved]) -> Regressed:
+    """Every system solved, the coefficients in the model's order."""
+    names = model.parameters.free_names
+    values = np.zeros(len(names))
+    bias, findings, settings = {}, [], {}
+    for system in made:
+        solved = solve(system)
+        values[[names.index(n) for n in system.names]] = solved.coefficients
+        bias[system.title] = solved.bias
+        findings += solved.findings
+        settings |= {f"{system.title}: {key}": value for key, value in solved.settings.items()}
+    return Regressed(values, bias, tuple(findings), settings)

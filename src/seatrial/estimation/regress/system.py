@@ -1,0 +1,119 @@
+"""The linear systems of a regression: equations that share no coefficient stand apart."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, InputError
+from seatrial.estimation.regress.features import Motion
+from seatrial.estimation.regress.operators import Operator, Rows
+
+_ALIKE = 1e-12
+_NAMED = 0.05
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """target = matrix @ coefficients + noise.
+
+    Attributes:
+        equations: states whose rates stand in it; names: its coefficients, k.
+        matrix: (n, k); target: (n,); rows of several equations one after another, each in units of its own spread.
+    """
+
+    equations: tuple[str, ...]
+    names: tuple[str, ...]
+    matrix: Array
+    target: Array
+
+    @property
+    def title(self) -> str:
+        """What reports call it."""
+        return ", ".join(self.equations)
+
+    def of(self, names: Sequence[str]) -> Self:
+        """Only these of its coefficients; the others are zero."""
+        kept = [self.names.index(n) for n in names]
+        return replace(self, names=tuple(names), matrix=self.matrix[:, kept])
+
+
+def systems(model: Model, motions: Sequence[Motion], operator: Operator) -> tuple[System, ...]:
+    """The systems of all runs together, one for each set of equations that shares coefficients.
+
+    Raises:
+        InputError: no run is long enough for the operator, or the features of a system are constant or collinear.
+    """
+    of_runs = [rows for motion in motions if len((rows := operator.rows(model, motion)).time)]
+    if not of_runs:
+        raise InputError("no run is long enough for the regression's windows; give longer runs or shorter windows")
+    rows = Rows(
+        np.concatenate([r.time for r in of_runs]),
+        np.concatenate([r.target for r in of_runs]),
+        np.concatenate([r.slope for r in of_runs]),
+        of_runs[0].step,
+    )
+    names = model.parameters.free_names
+    made = tuple(_system(model, rows, equations, columns, names) for equations, columns in _sets(model))
+    for system in made:
+        refuse_degenerate(system)
+    return made
+
+
+def refuse_degenerate(system: System) -> None:
+    """Refuse features that do not act, that are combinations of one another, or too few rows.
+
+    Raises:
+        InputError: naming them.
+    """
+    rows, count = system.matrix.shape
+    if rows < count:
+        raise InputError(
+            f"the runs give {rows} row{'s' * (rows != 1)} for the {count} coefficients {', '.join(system.names)}: "
+            "give longer runs or shorter windows"
+        )
+    size = np.sqrt(np.mean(system.matrix**2, axis=0))
+    absent = [n for n, s in zip(system.names, size, strict=True) if not s > 0.0]
+    if absent:
+        raise InputError(
+            f"the feature of {', '.join(absent)} is zero in these rows, so that regression cannot see it: "
+            "record a manoeuvre in which it acts, or fix it under [model]"
+        )
+    _, values, directions = np.linalg.svd(system.matrix / size, full_matrices=False)
+    if values[-1] <= _ALIKE * values[0]:
+        share = np.abs(directions[-1])
+        alike = [n for n, s in zip(system.names, share, strict=True) if s > _NAMED * share.max()]
+        raise InputError(
+            f"the features of {', '.join(alike)} are collinear in these rows: record a manoeuvre that tells them "
+            "apart, or fix one of them under [model]"
+        )
+
+
+def _sets(model: Model) -> list[tuple[list[int], list[int]]]:
+    """States and places among the free coefficients of each set of equations that shares some (structural)."""
+    nx, nu = len(model.states), len(model.inputs)
+    place = {nx + nu + model.parameters.index(n): c for c, n in enumerate(model.parameters.free_names)}
+    holds: dict[int, set[int]] = {}
+    for state, column in model.compiled.rates_pattern:
+        if int(column) in place:
+            holds.setdefault(int(state), set()).add(place[int(column)])
+    sets: list[tuple[set[int], set[int]]] = []
+    for state, columns in sorted(holds.items()):
+        joined = ({state}, set(columns))
+        for other in [s for s in sets if s[1] & columns]:
+            sets.remove(other)
+            joined = (joined[0] | other[0], joined[1] | other[1])
+        sets.append(joined)
+    return [(sorted(states), sorted(columns)) for states, columns in sets]
+
+
+def _system(model: Model, rows: Rows, equations: list[int], columns: list[int], names: tuple[str, ...]) -> System:
+    spread = [float(np.std(rows.target[:, i])) or 1.0 for i in equations] if len(equations) > 1 else [1.0]
+    return System(
+        tuple(model.states[i] for i in equations),
+        tuple(names[c] for c in columns),
+        np.concatenate([rows.slope[:, i][:, columns] / s for i, s in zip(equations, spread, strict=True)]),
+        np.concatenate([rows.target[:, i] / s for i, s in zip(equations, spread, strict=True)]),
+    )

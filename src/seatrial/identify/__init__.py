@@ -1,6 +1,0 @@
-"""From a trial to a fit: estimate, compare models, predict, and say what the records tell."""
-
-from seatrial.estimate import Identified, Intervals, Settings, identified
-from seatrial.identify.identify import identify
-
-__all__ = ["Identified", "Intervals", "Settings", "identified", "identify"]

@@ -1,0 +1,109 @@
+"""A controller in the loop: a linear one, exact from sample to sample, and behind it an actuator with limits.
+
+A command(t, x, memory, u), called once at the start of each step of `kernels.steering.steer`. The error runs straight
+between samples; its value at the end of the step, on which the actuator depends only through all lags of the
+controller, is extrapolated by a parabola and put right at the next call. The input held over the step is
+(2 a_{k+1} + 5 a_k - a_{k-1}) / 6 of the actuator's effect a: its mean over the step, sharpened by -dt^2 / 6 a'' for
+what the straight line and the hold take off.
+
+Memory: the head below, then `laws` twice (free, and with the slow states held), the slow order's rate, the controller's
+states and as many places of scratch, the reference (count + 1), the disturbance held over each step (count), and room
+for the actuator's angles (count + 1).
+"""
+
+from numba import njit
+
+from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
+
+(
+    ORDER, COUNT, OUTPUT, ACTUATOR, DISTURBED, TRIM, EFFECT, LIMIT, SLEW, STALL, LOSS,
+    STEP, ANGLE, EFFECTIVE, EXCESS, HOLDING, BEFORE, EARLIER, ERROR, HEAD,
+) = range(20)  # fmt: skip
+
+
+@njit(inline="always", **OPTIONS)
+def law_size(n):
+    """Places of one law: E (n, n), g0 (n), g1 (n), and the order a step ahead: row (n), r0, r1."""
+    return n * n + 3 * n + 2
+
+
+@njit(inline="always", **OPTIONS)
+def within(value, bound):
+    """The value, cut to +- bound."""
+    return min(max(value, -bound), bound)
+
+
+@njit(**OPTIONS)
+def lifting(angle, stall, loss):
+    """The angle that would lift as much without stall: beyond it, `loss` is lost for each unit, down to nothing."""
+    size = abs(angle)
+    if size <= stall:
+        return angle
+    left = max(stall - loss * (size - stall), 0.0)
+    return left if angle > 0.0 else -left
+
+
+@njit(inline="always", **OPTIONS)
+def _advance(memory, law, states, n, before, now):
+    """States over the step that ends now."""
+    g0, g1, scratch = law + n * n, law + n * n + n, states + n
+    for i in range(n):
+        total = memory[g0 + i] * before + memory[g1 + i] * now
+        for j in range(n):
+            total += memory[law + i * n + j] * memory[states + j]
+        memory[scratch + i] = total
+    for i in range(n):
+        memory[states + i] = memory[scratch + i]
+
+
+@njit(inline="always", **OPTIONS)
+def _row(memory, at, states, n):
+    total = 0.0
+    for i in range(n):
+        total += memory[at + i] * memory[states + i]
+    return total
+
+
+@njit(COMMAND_SIGNATURE, **OPTIONS)
+def controller(_, x, memory, u):
+    """Order, angle, effect; slow states are held while a limit bites and they would drive further into it."""
+    n, count, k = int(memory[ORDER]), int(memory[COUNT]), int(memory[STEP])
+    size = law_size(n)
+    slow = HEAD + 2 * size
+    states = slow + n + 1
+    reference = states + 2 * n
+    disturbance = reference + count + 1
+    angles = disturbance + count
+    y = x[int(memory[OUTPUT])]
+    error = memory[reference + k] - y
+    ahead = y
+    if k > 0:
+        _advance(memory, HEAD + int(memory[HOLDING]) * size, states, n, memory[ERROR], error)
+        ahead = 2.0 * y - memory[BEFORE]
+    if k > 1:
+        ahead += y - 2.0 * memory[BEFORE] + memory[EARLIER]
+    excess = memory[EXCESS]
+    drift = _row(memory, slow, states, n) + memory[slow + n] * error
+    memory[HOLDING] = 1.0 if excess * drift > 0.0 else 0.0
+    law = HEAD + int(memory[HOLDING]) * size
+    row = law + n * n + 2 * n
+    coming = memory[reference + k + 1] - ahead
+    order = _row(memory, row, states, n) + memory[row + n] * error + memory[row + n + 1] * coming
+    angle = memory[ANGLE]
+    new = angle + within(within(order, memory[LIMIT]) - angle, memory[SLEW])
+    is_free = abs(order) <= memory[LIMIT] and abs(order - angle) <= memory[SLEW]
+    memory[EXCESS] = 0.0 if is_free else order - new
+    stall, loss = memory[STALL], memory[LOSS]
+    lift = lifting(new, stall, loss)
+    mean = (2.0 * lift + 5.0 * lifting(angle, stall, loss) - memory[EFFECTIVE]) / 6.0
+    memory[EFFECTIVE] = lifting(angle, stall, loss)
+    place, disturbed = int(memory[ACTUATOR]), int(memory[DISTURBED])
+    u[place] = memory[TRIM] + memory[EFFECT] * mean
+    if disturbed == place:
+        u[place] += memory[disturbance + k]
+    elif disturbed >= 0:
+        u[disturbed] = memory[disturbance + k]
+    memory[ERROR], memory[EARLIER], memory[BEFORE] = error, memory[BEFORE], y
+    memory[ANGLE] = new
+    memory[angles + k + 1] = new
+    memory[STEP] = k + 1.0

@@ -1,0 +1,210 @@
+"""Linear models: their matrices from the generated code, and their runs by exact propagators, with sensitivities.
+
+x' = A x + B u + c, y = C x + D u + d, all affine in states and inputs; the constants ride along as one more input, 1.
+"""
+
+import math
+
+import numpy as np
+from numba import njit, void
+
+from seatrial.numerics.kernels.integrate import DIVERGED
+from seatrial.numerics.kernels.types import CUBE, I8, INDEX, LEAN, MATRIX, OPTIONS, QUARTIC, TABLE, TANGENT, VECTOR
+
+
+@njit(void(TANGENT, I8, I8, INDEX, VECTOR, MATRIX, CUBE, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX), **LEAN)
+def _affine(f, nx, nu, wanted, p, value, slope, x, u, out, jac, rest):
+    rows = value.shape[0]
+    for i in range(nx):
+        x[i] = 0.0
+    for j in range(nu):
+        u[j] = 0.0
+    f(0.0, x, u, p, out, jac)
+    for i in range(rows):
+        for k in range(nx + nu):
+            value[i, k] = jac[i, k]
+        value[i, nx + nu] = out[i]
+        for q in range(wanted.size):
+            rest[i, q] = jac[i, nx + nu + wanted[q]]
+            slope[q, i, nx + nu] = rest[i, q]
+    for k in range(nx + nu):
+        if k < nx:
+            x[k] = 1.0
+        else:
+            u[k - nx] = 1.0
+        f(0.0, x, u, p, out, jac)
+        for i in range(rows):
+            for q in range(wanted.size):
+                slope[q, i, k] = jac[i, nx + nu + wanted[q]] - rest[i, q]
+        if k < nx:
+            x[k] = 0.0
+        else:
+            u[k - nx] = 0.0
+
+
+def affine(f, rows, nx, nu, wanted, p):
+    """Matrix [A | B | c] of an affine function and its derivatives by the parameters of index `wanted`.
+
+    f: a function with its Jacobian, columns [x | u | p]. As f is affine in x and u at fixed p, its slope by a parameter
+    at a unit vector less that at the origin is the derivative of that vector's column: exact.
+
+    Returns (rows, nx + nu + 1) and (len(wanted), rows, nx + nu + 1).
+    """
+    width = nx + nu
+    value, slope = np.zeros((rows, width + 1)), np.zeros((len(wanted), rows, width + 1))
+    if rows:
+        _affine(f, nx, nu, wanted, p, value, slope, np.empty(nx), np.empty(max(nu, 1)), np.empty(rows),
+                np.zeros((rows, width + len(p))), np.empty((rows, max(len(wanted), 1))))  # fmt: skip
+    return value, slope
+
+
+@njit(inline="always", **OPTIONS)
+def _advance(e, g0, g1, x, u0, u1, y):
+    """x <- e x + g0 u0 + g1 u1; y is scratch. Returns the size of the new state."""
+    n = x.size
+    size = 0.0
+    for i in range(n):
+        total = 0.0
+        for k in range(n):
+            total += e[i, k] * x[k]
+        for j in range(u0.size):
+            total += g0[i, j] * u0[j] + g1[i, j] * u1[j]
+        y[i] = total
+    for i in range(n):
+        x[i] = y[i]
+        size += abs(y[i])
+    return size
+
+
+@njit(inline="always", **OPTIONS)
+def _observe(c, d, x, u, out):
+    for i in range(out.size):
+        total = 0.0
+        for k in range(x.size):
+            total += c[i, k] * x[k]
+        for j in range(u.size):
+            total += d[i, j] * u[j]
+        out[i] = total
+
+
+@njit(void(CUBE, CUBE, CUBE, CUBE, CUBE, INDEX, MATRIX, INDEX, I8, MATRIX, MATRIX, INDEX, VECTOR, VECTOR), **LEAN)
+def _replay(e, g0, g1, c, d, which, inputs, offsets, fine, x0, y_out, failed, x, y):
+    for s in range(offsets.size - 1):
+        first, last, w = offsets[s], offsets[s + 1], which[s]
+        for i in range(x.size):
+            x[i] = x0[s, i]
+        row = (first - offsets[0]) * fine - s * (fine - 1)
+        for k in range(first, last):
+            _observe(c[w], d[w], x, inputs[row], y_out[k])
+            if k == last - 1:
+                break
+            size = 0.0
+            for _ in range(fine):
+                size = _advance(e[w], g0[w], g1[w], x, inputs[row], inputs[row + 1], y)
+                row += 1
+            if not size < DIVERGED:
+                failed[s] = k + 1 - first
+                for late in range(k + 1, last):
+                    for i in range(y_out.shape[1]):
+                        y_out[late, i] = math.nan
+                break
+
+
+def replay(e, g0, g1, c, d, which, inputs, offsets, fine, x0, y_out, failed):
+    """Run segments whose matrices are e[which[s]], ...; write y at every sample.
+
+    Segment s owns rows offsets[s]..offsets[s+1] of y_out. `inputs` holds `fine` steps to a sample (its last sample
+    without any), segments end to end, the constant 1 as the last column.
+    failed[s] becomes the sample at which the solution left all bounds (or was not finite), else stays -1.
+    """
+    nx = x0.shape[1]
+    _replay(e, g0, g1, c, d, which, inputs, offsets, fine, x0, y_out, failed, np.empty(nx), np.empty(nx))
+
+
+@njit(
+    void(
+        *(CUBE, CUBE, CUBE, CUBE, CUBE, QUARTIC, QUARTIC, QUARTIC, QUARTIC, QUARTIC, INDEX, MATRIX, INDEX, I8),
+        *(MATRIX, TABLE, MATRIX, INDEX, MATRIX, CUBE, INDEX, VECTOR, VECTOR, MATRIX, MATRIX),
+    ),
+    **LEAN,
+)
+def _replay_tangent(
+    e, g0, g1, c, d, de, dg0, dg1, dc, dd, which, inputs, offsets, fine,
+    x0, shifts, weights, starts, y_out, s_out, failed, x, y, s, t,
+):  # fmt: skip
+    nx, nu, ncol, count = x.size, inputs.shape[1], s.shape[1], de.shape[3]
+    for seg in range(offsets.size - 1):
+        first, last, w = offsets[seg], offsets[seg + 1], which[seg]
+        ew, g0w, g1w, cw, dw = e[w], g0[w], g1[w], c[w], d[w]
+        dew, dg0w, dg1w, dcw, ddw = de[w], dg0[w], dg1[w], dc[w], dd[w]
+        for i in range(nx):
+            x[i] = x0[seg, i]
+            for q in range(ncol):
+                s[i, q] = 0.0
+            if starts[i] >= 0:
+                s[i, starts[i]] = 1.0
+        row = (first - offsets[0]) * fine - seg * (fine - 1)
+        for k in range(first, last):
+            _observe(cw, dw, x, inputs[row], y_out[k])
+            for i in range(y_out.shape[1]):
+                for q in range(ncol):
+                    s_out[k, i, q] = 0.0
+                for m in range(nx):
+                    a = cw[i, m]
+                    if a != 0.0:
+                        for q in range(ncol):
+                            s_out[k, i, q] += a * s[m, q]
+                    for q in range(count):
+                        s_out[k, i, q] += dcw[i, m, q] * x[m]
+                for j in range(nu):
+                    for q in range(count):
+                        s_out[k, i, q] += ddw[i, j, q] * inputs[row, j]
+                for q in range(shifts.shape[0]):
+                    s_out[k, i, shifts[q, 1]] += dw[i, shifts[q, 0]] * weights[row, q]
+            if k == last - 1:
+                break
+            size = 0.0
+            for _ in range(fine):
+                for i in range(nx):
+                    for q in range(ncol):
+                        t[i, q] = 0.0
+                    for m in range(nx):
+                        a = ew[i, m]
+                        for q in range(ncol):
+                            t[i, q] += a * s[m, q]
+                        b = x[m]
+                        for q in range(count):
+                            t[i, q] += b * dew[i, m, q]
+                    for j in range(nu):
+                        b0, b1 = inputs[row, j], inputs[row + 1, j]
+                        for q in range(count):
+                            t[i, q] += b0 * dg0w[i, j, q] + b1 * dg1w[i, j, q]
+                    for q in range(shifts.shape[0]):
+                        j = shifts[q, 0]
+                        t[i, shifts[q, 1]] += g0w[i, j] * weights[row, q] + g1w[i, j] * weights[row + 1, q]
+                for i in range(nx):
+                    for q in range(ncol):
+                        s[i, q] = t[i, q]
+                size = _advance(ew, g0w, g1w, x, inputs[row], inputs[row + 1], y)
+                row += 1
+            if not size < DIVERGED:
+                failed[seg] = k + 1 - first
+                for late in range(k + 1, last):
+                    for i in range(y_out.shape[1]):
+                        y_out[late, i] = math.nan
+                break
+
+
+def replay_tangent(
+    e, g0, g1, c, d, de, dg0, dg1, dc, dd, which, inputs, offsets, fine, x0, shifts, weights, starts, y_out, s_out,
+    failed,
+):  # fmt: skip
+    """`replay` with sensitivities: columns of parameters (last axis of de, ...), of input corrections, of starts.
+
+    shifts: (corrections, 2), input column and sensitivity column of each; weights: (fine rows, corrections), derivative
+    of that input by its correction. starts: (nx,), sensitivity column of each initial state or -1.
+    """
+    nx, ncol = x0.shape[1], s_out.shape[2]
+    _replay_tangent(e, g0, g1, c, d, de, dg0, dg1, dc, dd, which, inputs, offsets, fine, x0, shifts, weights, starts,
+                    y_out, s_out, failed, np.empty(nx), np.empty(nx), np.empty((nx, ncol)),
+                    np.empty((nx, ncol)))  # fmt: skip

@@ -1,0 +1,305 @@
+"""One run of an affine model from parameters to residuals and their slopes in one call.
+
+The march of `linear` for one segment, its matrices made on the spot. Slopes go side by side through vector registers,
+eight columns a pass: s <- dGamma v + dE x + E s, with the derivatives of `propagate` taken along in the same lanes.
+v holds the inputs that act at all: [u_k | u_{k+1} of those that run straight].
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from seatrial.numerics.kernels.integrate import DIVERGED
+from seatrial.numerics.kernels.lanes import LANES, add_scaled, scratch, spread
+from seatrial.numerics.kernels.linear import _affine
+from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TANGENT, VECTOR
+
+_SMALL = 0.25
+_TERMS = 11
+_MOST = 60
+
+
+@njit(inline="always", **OPTIONS)
+def _product(z, out, a, b, rows, inner, columns):
+    """out = a b, matrices row by row in z."""
+    for i in range(rows):
+        for j in range(columns):
+            total = 0.0
+            for k in range(inner):
+                total += z[a + i * inner + k] * z[b + k * columns + j]
+            z[out + i * columns + j] = total
+
+
+@njit(inline="always", **OPTIONS)
+def _slope_of_product(w, z, out, a, da, b, db, rows, inner, columns):
+    """out = da b + a db in lanes; da, db, out in w, a, b in z."""
+    for i in range(rows):
+        for j in range(columns):
+            slot = out + i * columns + j
+            spread(w, slot, 0.0)
+            add_scaled(w, slot, da + i * inner, 1, z, b + j, columns, inner)
+            add_scaled(w, slot, db + j, columns, z, a + i * inner, 1, inner)
+
+
+@njit(inline="always", **OPTIONS)
+def _halved(z, a, n, h):
+    """A <- A h / 2^k until it is small. Returns k, or the most if it stays large or is not finite."""
+    size = 0.0
+    for i in range(n):
+        row = 0.0
+        for j in range(n):
+            row += abs(z[a + i * n + j])
+        size = max(size, row)
+    size *= h
+    count, step = 0, h
+    while not size <= _SMALL and count < _MOST:
+        size *= 0.5
+        step *= 0.5
+        count += 1
+    for m in range(n * n):
+        z[a + m] *= step
+    return count
+
+
+@njit(inline="always", **OPTIONS)
+def _blend(z, out, factor, a, b, c, size):
+    for m in range(size):
+        z[out + m] = factor * (z[a + m] + z[b + m] + (z[c + m] if c >= 0 else 0.0))
+
+
+@njit(inline="always", **OPTIONS)
+def _propagate(z, w, n, h):
+    """E, P/h, R/h of `propagators` at z[n^2 ...], from A at z[0], and slopes at the same slots from dA at w[0].
+
+    Both are laid out [A | E | P | R | power | new | newer], n^2 each. Returns whether A could be scaled.
+    """
+    nn, wide = n * n, n * n * LANES
+    e, p, r, power, new, newer = nn, 2 * nn, 3 * nn, 4 * nn, 5 * nn, 6 * nn
+    halvings = _halved(z, 0, n, h)
+    if halvings == _MOST:
+        return False
+    for m in range(nn):
+        one = 1.0 if m % (n + 1) == 0 else 0.0
+        z[e + m], z[p + m], z[r + m], z[power + m] = one, one, 0.5 * one, one
+    step = h * 0.5**halvings
+    for m in range(wide):
+        w[m] *= step
+        w[e * LANES + m] = w[p * LANES + m] = w[r * LANES + m] = w[power * LANES + m] = 0.0
+    for k in range(1, _TERMS + 1):
+        over, first, second = 1.0 / k, 1.0 / (k + 1), 1.0 / ((k + 1) * (k + 2))
+        _slope_of_product(w, z, new, power, power, 0, 0, n, n, n)
+        for m in range(wide):
+            d = over * w[new * LANES + m]
+            w[power * LANES + m] = d
+            w[e * LANES + m] += d
+            w[p * LANES + m] += first * d
+            w[r * LANES + m] += second * d
+        _product(z, new, power, 0, n, n, n)
+        for m in range(nn):
+            d = over * z[new + m]
+            z[power + m] = d
+            z[e + m] += d
+            z[p + m] += first * d
+            z[r + m] += second * d
+    for _ in range(halvings):
+        _slope_of_product(w, z, new, e, e, r, r, n, n, n)
+        _slope_of_product(w, z, newer, e, e, p, p, n, n, n)
+        _slope_of_product(w, z, power, e, e, e, e, n, n, n)
+        _blend(w, r * LANES, 0.25, new * LANES, p * LANES, r * LANES, wide)
+        _blend(w, p * LANES, 0.5, newer * LANES, p * LANES, -1, wide)
+        for m in range(wide):
+            w[e * LANES + m] = w[power * LANES + m]
+        _product(z, new, e, r, n, n, n)
+        _product(z, newer, e, p, n, n, n)
+        _product(z, power, e, e, n, n, n)
+        _blend(z, r, 0.25, new, p, r, nn)
+        _blend(z, p, 0.5, newer, p, -1, nn)
+        for m in range(nn):
+            z[e + m] = z[power + m]
+    return True
+
+
+@njit(inline="always", **OPTIONS)
+def _drive(z, n, h, used, straight, at_b, at_gamma):
+    """Gamma from P, R and B (n, used): [h P B - h R B | h R B], the ramp R only in columns that run straight."""
+    nb, nn = used.size, n * n
+    nv = nb + straight.size
+    for i in range(n):
+        for j in range(nb):
+            total = 0.0
+            for m in range(n):
+                total += z[2 * nn + i * n + m] * z[at_b + m * nb + j]
+            z[at_gamma + i * nv + j] = h * total
+        for k in range(straight.size):
+            j, total = straight[k], 0.0
+            for m in range(n):
+                total += z[3 * nn + i * n + m] * z[at_b + m * nb + j]
+            z[at_gamma + i * nv + nb + k] = h * total
+            z[at_gamma + i * nv + j] -= h * total
+
+
+@njit(inline="always", **OPTIONS)
+def _slope_of_drive(w, z, n, h, used, straight, at_b, at_gamma):
+    """The slope of `_drive`, B and its slope at the same places of z and w."""
+    nb, nn = used.size, n * n
+    nv = nb + straight.size
+    for i in range(n):
+        for j in range(nb):
+            out = at_gamma + i * nv + j
+            spread(w, out, 0.0)
+            add_scaled(w, out, 2 * nn + i * n, 1, z, at_b + j, nb, n)
+            add_scaled(w, out, at_b + j, nb, z, 2 * nn + i * n, 1, n)
+            for lane in range(LANES):
+                w[out * LANES + lane] *= h
+        for k in range(straight.size):
+            j, out = straight[k], at_gamma + i * nv + nb + k
+            spread(w, out, 0.0)
+            add_scaled(w, out, 3 * nn + i * n, 1, z, at_b + j, nb, n)
+            add_scaled(w, out, at_b + j, nb, z, 3 * nn + i * n, 1, n)
+            for lane in range(LANES):
+                w[out * LANES + lane] *= h
+                w[(at_gamma + i * nv + j) * LANES + lane] -= w[out * LANES + lane]
+
+
+@njit(inline="always", **OPTIONS)
+def _placed(z, n, plant, used):
+    """A and B of the plant into z; returns where B begins."""
+    at_b = 7 * n * n
+    for i in range(n):
+        for j in range(n):
+            z[i * n + j] = plant[i, j]
+        for j in range(used.size):
+            z[at_b + i * used.size + j] = plant[i, n + used[j]]
+    return at_b
+
+
+@njit(inline="always", **OPTIONS)
+def _advance(z, n, nv, at_gamma, at):
+    """The state behind [v | x] at `at` moves one step; returns its size."""
+    size, new = 0.0, at + nv + n
+    for i in range(n):
+        total = 0.0
+        for j in range(nv):
+            total += z[at_gamma + i * nv + j] * z[at + j]
+        for j in range(n):
+            total += z[n * n + i * n + j] * z[at + nv + j]
+        z[new + i] = total
+    for i in range(n):
+        z[at + nv + i] = z[new + i]
+        size += abs(z[new + i])
+    return size
+
+
+@njit(inline="always", **OPTIONS)
+def _loaded(w, n, dplant, first, used, at_b):
+    """Slopes of A and B by the parameters from `first` on; zero in lanes beyond the last."""
+    for lane in range(LANES):
+        q = first + lane
+        is_parameter = q < dplant.shape[0]
+        for i in range(n):
+            for j in range(n):
+                w[(i * n + j) * LANES + lane] = dplant[q, i, j] if is_parameter else 0.0
+            for j in range(used.size):
+                w[(at_b + i * used.size + j) * LANES + lane] = dplant[q, i, n + used[j]] if is_parameter else 0.0
+
+
+@njit(inline="always", **OPTIONS)
+def _marched(
+    n, plant, dplant, used, straight, h, v, fine, x0, starts, select, measured, weight, residual, jacobian, z, w,
+):  # fmt: skip
+    nb, nv, nn, ny = used.size, v.shape[1], n * n, select.size
+    samples = measured.shape[0]
+    for first in range(0, jacobian.shape[1], LANES):
+        at_b = _placed(z, n, plant, used)
+        at_gamma = at_b + n * nb
+        at = at_gamma + n * nv
+        _loaded(w, n, dplant, first, used, at_b)
+        if not _propagate(z, w, n, h):
+            return False
+        _drive(z, n, h, used, straight, at_b, at_gamma)
+        _slope_of_drive(w, z, n, h, used, straight, at_b, at_gamma)
+        here, there = at, at + n
+        for i in range(n):
+            z[at + nv + i] = x0[i]
+            for lane in range(LANES):
+                w[(here + i) * LANES + lane] = 1.0 if starts[i] == first + lane else 0.0
+        for k in range(samples):
+            for i in range(ny):
+                row, state = k * ny + i, select[i]
+                factor, off = 0.0, 0.0
+                if not math.isnan(measured[k, i]):
+                    factor, off = weight[i], weight[i] * (z[at + nv + state] - measured[k, i])
+                residual[row] = off
+                for lane in range(LANES):
+                    jacobian[row, first + lane] = factor * w[(here + state) * LANES + lane]
+            if k == samples - 1:
+                break
+            size = 0.0
+            for step in range(k * fine, k * fine + fine):
+                for j in range(nv):
+                    z[at + j] = v[step, j]
+                for i in range(n):
+                    spread(w, there + i, 0.0)
+                    add_scaled(w, there + i, at_gamma + i * nv, 1, z, at, 1, nv)
+                    add_scaled(w, there + i, nn + i * n, 1, z, at + nv, 1, n)
+                    add_scaled(w, there + i, here, 1, z, nn + i * n, 1, n)
+                here, there = there, here
+                size = _advance(z, n, nv, at_gamma, at)
+            if not size < DIVERGED:
+                return False
+    return True
+
+
+@njit(
+    I8(
+        *(TANGENT, I8, INDEX, INDEX, INDEX, VECTOR, F8, MATRIX, I8, VECTOR, INDEX, INDEX, MATRIX, VECTOR, VECTOR),
+        *(MATRIX, MATRIX, CUBE, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, VECTOR, VECTOR),
+    ),
+    **LEAN,
+)
+def _slopes(
+    f, nu, wanted, used, straight, p, h, v, fine, x0, starts, select, measured, weight, residual,
+    jacobian, plant, dplant, x, u, out, jac, rest, z, w,
+):  # fmt: skip
+    n = x0.size
+    _affine(f, n, nu, wanted, p, plant, dplant, x, u, out, jac, rest)
+    if n == 4:
+        return _marched(
+            4, plant, dplant, used, straight, h, v, fine, x0, starts, select, measured, weight, residual, jacobian, z, w
+        )  # fmt: skip
+    return _marched(
+        n, plant, dplant, used, straight, h, v, fine, x0, starts, select, measured, weight, residual, jacobian, z, w
+    )  # fmt: skip
+
+
+def _room(nx, nu, count, used, straight, p):
+    """Scratch of `_affine`, and the length of z."""
+    width, rows = nx + nu + 1, max(count, 1)
+    size = 7 * nx * nx + nx * (2 * len(used) + len(straight)) + 2 * nx + len(used) + len(straight) + nx
+    plant, jacobian = np.empty((nx, width)), np.zeros((nx, nx + nu + len(p)))
+    return (
+        plant,
+        np.empty((count, nx, width)),
+        np.empty(nx),
+        np.empty(nu),
+        np.empty(nx),
+        jacobian,
+        np.empty((nx, rows)),
+    ), size
+
+
+def slopes(f, nu, wanted, used, straight, p, h, v, fine, x0, starts, columns, select, measured, weight):
+    """Residuals weight (x - measured), (samples ny,), and their Jacobian (samples ny, columns); zero where unmeasured.
+
+    f: rates with Jacobian, nu inputs; used: columns of [u | 1] that act; straight: places in `used` of inputs that are
+    not held; h: fine step, s; v: ((samples - 1) fine, nv). select: states that are compared, (ny,); measured:
+    (samples, ny), NaN where nothing was measured; weight: (ny,), 1 over the noise.
+    Columns: the parameters of index `wanted`, then initial states; starts: (nx,), column of each initial state or -1.
+    None in place of both if the run leaves all bounds.
+    """
+    residual, jacobian = np.empty(measured.size), np.empty((measured.size, -(-columns // LANES) * LANES))
+    room, size = _room(len(x0), nu, len(wanted), used, straight, p)
+    is_fine = _slopes(f, nu, wanted, used, straight, p, h, v, fine, x0, starts, select, measured, weight, residual,
+                      jacobian, *room, np.empty(size), scratch(size))  # fmt: skip
+    return (residual, jacobian[:, :columns]) if is_fine else None

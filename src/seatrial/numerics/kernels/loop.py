@@ -1,0 +1,141 @@
+"""Feedback loops linear in their gains, by the thousand: Routh's test, the peak of the sensitivity, variances.
+
+L(j omega_f) = sum_i k_i (re[i, f] + j im[i, f]). Loops over frequencies stand innermost, so that they become vectors.
+"""
+
+import numpy as np
+from numba import njit, void
+
+from seatrial.numerics.kernels.types import F8, I8, MATRIX, OPTIONS, VECTOR
+
+# sums over frequencies may be taken in any order: four or eight at once
+_SUMS = {**OPTIONS, "fastmath": {"contract", "reassoc", "nsz", "arcp"}}
+
+
+@njit(I8(VECTOR, I8), **OPTIONS)
+def is_hurwitz(row, n):
+    """1 where the polynomial row[:n + 1], highest power first, has all roots left of the axis (Routh 1877).
+
+    Destroys `row`, which has n + 1 places or more. The array is folded: row r of the scheme stands on alternate places.
+    """
+    if row[0] == 0.0:
+        return 0
+    sign = 1.0 if row[0] > 0.0 else -1.0
+    for first in range(n):
+        pivot = row[first + 1]
+        if not pivot * sign > 0.0:
+            return 0
+        factor = row[first] / pivot
+        for j in range(first + 2, n, 2):
+            row[j] -= factor * row[j + 1]
+    return 1
+
+
+@njit(void(VECTOR, MATRIX, MATRIX, VECTOR, VECTOR), **_SUMS)
+def _open(k, re, im, x, y):
+    """1 + L at each frequency: x + j y."""
+    for f in range(x.size):
+        x[f] = 1.0 + k[0] * re[0, f]
+        y[f] = k[0] * im[0, f]
+    for i in range(1, k.size):
+        for f in range(x.size):
+            x[f] += k[i] * re[i, f]
+            y[f] += k[i] * im[i, f]
+
+
+@njit(F8(VECTOR, VECTOR), **_SUMS)
+def _nearest(x, y):
+    """Least |1 + L| along the curve x + j y: a complex parabola through the nearest sample and its neighbours."""
+    count = x.size
+    least = np.inf
+    for f in range(count):
+        least = min(least, x[f] * x[f] + y[f] * y[f])
+    place = 0
+    for f in range(count):
+        if x[f] * x[f] + y[f] * y[f] <= least:
+            place = f
+    if place == 0 or place == count - 1:
+        return np.sqrt(least)
+    bx, by = 0.5 * (x[place + 1] - x[place - 1]), 0.5 * (y[place + 1] - y[place - 1])
+    cx = 0.5 * (x[place + 1] + x[place - 1]) - x[place]
+    cy = 0.5 * (y[place + 1] + y[place - 1]) - y[place]
+    u = 0.0
+    for _ in range(4):
+        zx, zy = x[place] + u * (bx + u * cx), y[place] + u * (by + u * cy)
+        dx, dy = bx + 2.0 * u * cx, by + 2.0 * u * cy
+        curved = dx * dx + dy * dy + 2.0 * (zx * cx + zy * cy)
+        if not curved > 0.0:
+            break
+        u = min(max(u - (zx * dx + zy * dy) / curved, -1.0), 1.0)
+    zx, zy = x[place] + u * (bx + u * cx), y[place] + u * (by + u * cy)
+    return np.sqrt(min(zx * zx + zy * zy, least))
+
+
+@njit(void(MATRIX, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX), **_SUMS)
+def evaluate_loops(k, d, n, re, im, on_s, on_t, wide_re, wide_im, peak, out):
+    """Sensitivity peak and variances of loops; infinite where a loop is unstable.
+
+    k: gains (m, g). d (n + 1,), n (g, n + 1): characteristic polynomial d + k n. re, im: L_i (g, f) at the frequencies
+    of the sea; on_s (rs, f), on_t (rt, f): what |S|^2 and |L S|^2 weigh there. wide_re, wide_im: L_i over the whole
+    band, for the peak; without frequencies no peak. peak (m,); out (m, rs + rt).
+    """
+    order = d.size - 1
+    row, x, y = np.empty(order + 1), np.empty(re.shape[1]), np.empty(re.shape[1])
+    s, t = np.empty(re.shape[1]), np.empty(re.shape[1])
+    wide_x, wide_y = np.empty(wide_re.shape[1]), np.empty(wide_re.shape[1])
+    for m in range(k.shape[0]):
+        for j in range(order + 1):
+            total = d[j]
+            for i in range(k.shape[1]):
+                total += k[m, i] * n[i, j]
+            row[j] = total
+        if is_hurwitz(row, order) == 0:
+            peak[m] = np.inf
+            for j in range(out.shape[1]):
+                out[m, j] = np.inf
+            continue
+        if wide_x.size > 0:
+            _open(k[m], wide_re, wide_im, wide_x, wide_y)
+            peak[m] = max(1.0 / _nearest(wide_x, wide_y), 1.0)
+        _open(k[m], re, im, x, y)
+        for f in range(x.size):
+            s[f] = 1.0 / (x[f] * x[f] + y[f] * y[f])
+            t[f] = ((x[f] - 1.0) * (x[f] - 1.0) + y[f] * y[f]) * s[f]
+        for j in range(on_s.shape[0]):
+            total = 0.0
+            for f in range(x.size):
+                total += on_s[j, f] * s[f]
+            out[m, j] = total
+        for j in range(on_t.shape[0]):
+            total = 0.0
+            for f in range(x.size):
+                total += on_t[j, f] * t[f]
+            out[m, on_s.shape[0] + j] = total
+
+
+@njit(void(VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX), **_SUMS)
+def slopes_of_loop(k, re, im, on_s, on_t, out):
+    """d variance / d gain of one loop, (rs + rt, g).
+
+    With z = 1 + L: d|S|^2 = -2 Re(conj(z) L_i) |S|^4, d|L S|^2 = 2 Re(conj(L) L_i) |S|^2 + |L|^2 d|S|^2.
+    """
+    count = re.shape[1]
+    x, y = np.empty(count), np.empty(count)
+    ds, dt = np.empty(count), np.empty(count)
+    _open(k, re, im, x, y)
+    for i in range(k.size):
+        for f in range(count):
+            s = 1.0 / (x[f] * x[f] + y[f] * y[f])
+            size = (x[f] - 1.0) * (x[f] - 1.0) + y[f] * y[f]
+            ds[f] = -2.0 * (x[f] * re[i, f] + y[f] * im[i, f]) * s * s
+            dt[f] = 2.0 * ((x[f] - 1.0) * re[i, f] + y[f] * im[i, f]) * s + size * ds[f]
+        for j in range(on_s.shape[0]):
+            total = 0.0
+            for f in range(count):
+                total += on_s[j, f] * ds[f]
+            out[j, i] = total
+        for j in range(on_t.shape[0]):
+            total = 0.0
+            for f in range(count):
+                total += on_t[j, f] * dt[f]
+            out[on_s.shape[0] + j, i] = total

@@ -1,0 +1,30 @@
+"""A compiled function with its address looked up once.
+
+Numba looks it up at every call that takes one: 20 us, more than a small kernel takes (measured).
+"""
+
+from collections.abc import Callable
+
+from numba.core import types
+from numba.core.typing.templates import Signature
+from numba.experimental.function_type import _get_wrapper_address
+
+from seatrial.numerics.kernels.types import TANGENT, TANGENT_SIGNATURE
+
+
+class TangentPointer(types.WrapperAddressProtocol):
+    """Goes to kernels where a function with its Jacobian is wanted."""
+
+    _numba_type_ = TANGENT
+
+    def __init__(self, function: Callable[..., None]) -> None:
+        self.function = function  # kept, as the address lives no longer than its code
+        self._address = _get_wrapper_address(function, TANGENT_SIGNATURE)
+
+    def __wrapper_address__(self) -> int:
+        """Of the compiled code."""
+        return self._address
+
+    def signature(self) -> Signature:
+        """As all functions with Jacobians have it."""
+        return TANGENT_SIGNATURE

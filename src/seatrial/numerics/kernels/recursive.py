@@ -1,0 +1,200 @@
+"""Coefficients and state of a run without process noise, estimated as the samples come.
+
+z = [coefficients | state]: the coefficients stay, the state follows the very step of the batch (exact propagators with
+spline inputs, or Runge-Kutta), whose derivatives carry the belief's square root on (`square_root`). Scratch comes from
+the caller; the memory needed does not grow with the samples.
+"""
+
+from numba import njit
+
+from seatrial.numerics.kernels.integrate import DIVERGED
+from seatrial.numerics.kernels.sensitivity import rk4_tangent_step
+from seatrial.numerics.kernels.square_root import forget, take
+from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, TANGENT, VECTOR
+
+_BELIEF = (VECTOR, MATRIX)
+_SAMPLES = (MATRIX, MATRIX, I8, I8)
+_NOISE = (VECTOR, F8, F8, MATRIX, TABLE)
+_FORGETTING = (MATRIX, F8, I8, INDEX)
+_SCRATCH = (VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, MATRIX)
+
+
+@njit(inline="always", **OPTIONS)
+def _carried(root, step, k, carried):
+    """State rows of the root after a step whose derivatives are `step` (nx, k + nx)."""
+    nx, n = step.shape
+    for i in range(nx):
+        for j in range(n):
+            carried[i, j] = 0.0
+        for m in range(n):
+            a = step[i, m]
+            if a != 0.0:
+                for j in range(n):
+                    carried[i, j] += a * root[m, j]
+    for i in range(nx):
+        for j in range(n):
+            root[k + i, j] = carried[i, j]
+
+
+@njit(inline="always", **OPTIONS)
+def _forgotten(root, z, widest, kept, every, since, v):
+    since[0] += 1
+    if kept < 1.0 and since[0] >= every:
+        forget(root, z, widest, kept, v)
+        since[0] = 0
+
+
+@njit(
+    I8(
+        *(CUBE, CUBE, CUBE, CUBE, MATRIX, MATRIX, VECTOR),
+        *(*_BELIEF, *_SAMPLES, MATRIX, *_NOISE, *_FORGETTING, *_SCRATCH, VECTOR, VECTOR),
+    ),
+    **LEAN,
+)
+def follow_linear(
+    de, dg, dc, dd, plant, seen, at,
+    z, root, inputs, measured, first, begins, slopes, variance, limit, memory, running, tally, widest, kept, every,
+    since, v, before, predicted, h, step, carried, w, x,
+):  # fmt: skip
+    """Take in rows first.. of an affine model; returns the row at which the state left all bounds, or -1.
+
+    plant (nx, nx + nw), seen (ny, nx + nu + 1): the step and the outputs about the coefficients `at`, columns state,
+    then inputs; their derivatives by the coefficients, last axis: de (nx, nx, k), dg (nx, nw, k), dc (ny, nx, k),
+    dd (ny, nu + 1, k). nw = 4 nu + 1: inputs at both ends of the step, their slopes a step at both ends, 1.
+    inputs, slopes, measured: a row a sample; begins: 1 where row `first` is the first of a run. z and root are those of
+    the row before. variance (ny,) and limit, memory, running, tally: see `take`; widest, kept: see `forget`, which is
+    done every so many samples, `since` counting them.
+    """
+    k, nx, nu = at.size, x.size, inputs.shape[1]
+    ny = variance.size
+    for row in range(first, measured.shape[0]):
+        if row > first or begins == 0:
+            for j in range(nu):
+                w[j], w[nu + j] = inputs[row - 1, j], inputs[row, j]
+                w[2 * nu + j], w[3 * nu + j] = slopes[row - 1, j], slopes[row, j]
+            w[4 * nu] = 1.0
+            size = 0.0
+            for i in range(nx):
+                total = 0.0
+                for c in range(k):
+                    step[i, c] = 0.0
+                for m in range(nx):
+                    a = z[k + m]
+                    step[i, k + m] = plant[i, m]
+                    total += plant[i, m] * a
+                    for c in range(k):
+                        step[i, c] += a * de[i, m, c]
+                for m in range(w.size):
+                    a = w[m]
+                    if a != 0.0:
+                        total += plant[i, nx + m] * a
+                        for c in range(k):
+                            step[i, c] += a * dg[i, m, c]
+                for c in range(k):
+                    total += step[i, c] * (z[c] - at[c])
+                x[i] = total
+                size += abs(total)
+            for i in range(nx):
+                z[k + i] = x[i]
+            _carried(root, step, k, carried)
+            if not size < DIVERGED:
+                return row
+        for i in range(ny):
+            total = 0.0
+            for c in range(k):
+                h[i, c] = 0.0
+            for m in range(nx):
+                a = z[k + m]
+                h[i, k + m] = seen[i, m]
+                total += seen[i, m] * a
+                for c in range(k):
+                    h[i, c] += a * dc[i, m, c]
+            for m in range(nu + 1):
+                a = inputs[row, m] if m < nu else 1.0
+                if a != 0.0:
+                    total += seen[i, nx + m] * a
+                    for c in range(k):
+                        h[i, c] += a * dd[i, m, c]
+            for c in range(k):
+                total += h[i, c] * (z[c] - at[c])
+            predicted[i] = total
+        for j in range(z.size):
+            before[j] = z[j]
+        take(root, z, before, h, predicted, measured[row], variance, limit, memory, running, tally, v)
+        _forgotten(root, z, widest, kept, every, since, v)
+    return -1
+
+
+@njit(
+    I8(
+        *(TANGENT, TANGENT, F8, I8, VECTOR, INDEX, TABLE, TABLE, TABLE, INDEX),
+        *(*_BELIEF, *_SAMPLES, *_NOISE, *_FORGETTING, *_SCRATCH),
+        *(MATRIX, CUBE, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR),
+    ),
+    **LEAN,
+)
+def follow(
+    f, g, dt, substeps, p, places, chain, link_p, link_u, select,
+    z, root, inputs, measured, first, begins, variance, limit, memory, running, tally, widest, kept, every, since,
+    v, before, predicted, h, step, carried,
+    work_x, work_s, work_u, work_w, jac, g_jac, g_value,
+):  # fmt: skip
+    """The same for any model by Runge-Kutta steps, inputs running straight between samples, as `sensitivity` has it.
+
+    places: of the coefficients in p, whose other values stay. No model depends on time itself: it counts as 0.
+    links as in `simulate.batch`, columns [coefficients | state]; select: outputs, states first, then those of g.
+    """
+    k, nx, nu = places.size, jac.shape[0], inputs.shape[1]
+    ny = select.size
+    x, rate, y, acc = work_x[0], work_x[1], work_x[2], work_x[3]
+    u0, um, ub, u1 = work_u[0], work_u[1], work_u[2], work_u[3]
+    length = dt / substeps
+    for row in range(first, measured.shape[0]):
+        for c in range(k):
+            p[places[c]] = z[c]
+        for i in range(nx):
+            x[i] = z[k + i]
+        if row > first or begins == 0:
+            for i in range(nx):
+                for c in range(k + nx):
+                    work_s[0, i, c] = 1.0 if c == k + i else 0.0
+            for j in range(nu):
+                u0[j], u1[j] = inputs[row - 1, j], inputs[row, j]
+            size = 0.0
+            for m in range(substeps):
+                for j in range(nu):
+                    half = 0.5 * (u1[j] - u0[j]) / (substeps - m)
+                    um[j] = u0[j] + half
+                    ub[j] = um[j] + half
+                size += rk4_tangent_step(f, chain, link_p, link_u, 0.0, x, work_s[0], u0, um, ub,
+                                         work_w[0], work_w[1], work_w[2], p, length, jac, rate, y, acc,
+                                         work_s[1], work_s[2], work_s[3])  # fmt: skip
+                for j in range(nu):
+                    u0[j] = ub[j]
+            for i in range(nx):
+                z[k + i] = x[i]
+                for c in range(k + nx):
+                    step[i, c] = work_s[0, i, c]
+            _carried(root, step, k, carried)
+            if not size < DIVERGED:
+                return row
+        if g_value.size > 0:
+            g(0.0, x, inputs[row], p, g_value, g_jac)
+        for i in range(ny):
+            here = select[i] - nx
+            for j in range(k + nx):
+                h[i, j] = 0.0
+            if here < 0:
+                predicted[i] = x[select[i]]
+                h[i, k + select[i]] = 1.0
+            else:
+                predicted[i] = g_value[here]
+                for c in range(k):
+                    h[i, c] = g_jac[here, nx + nu + places[c]]
+                for j in range(nx):
+                    h[i, k + j] = g_jac[here, j]
+        for j in range(z.size):
+            before[j] = z[j]
+        take(root, z, before, h, predicted, measured[row], variance, limit, memory, running, tally, v)
+        _forgotten(root, z, widest, kept, every, since, v)
+    return -1

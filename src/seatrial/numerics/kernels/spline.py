@@ -1,0 +1,42 @@
+"""Slopes of the cubic spline through evenly spaced samples: its pieces as one step needs them."""
+
+import numpy as np
+from numba import njit, void
+
+from seatrial.numerics.kernels.types import LEAN, MATRIX, VECTOR
+
+
+@njit(void(MATRIX, MATRIX, VECTOR), **LEAN)
+def _slopes(u, slope, work):
+    n = u.shape[0]
+    for j in range(u.shape[1]):
+        if n < 4:
+            rise = 0.0 if n == 1 else (u[n - 1, j] - u[0, j]) / (n - 1)
+            bend = 0.0 if n < 3 else u[2, j] - 2.0 * u[1, j] + u[0, j]
+            for i in range(n):
+                slope[i, j] = rise + (i - 1) * bend
+            continue
+        before, after = u[1, j] - u[0, j], u[2, j] - u[1, j]
+        work[0] = 2.0
+        slope[0, j] = 2.5 * before + 0.5 * after
+        for i in range(1, n - 1):
+            after = u[i + 1, j] - u[i, j]
+            pivot = 1.0 / (4.0 - work[i - 1])
+            work[i] = pivot
+            slope[i, j] = (3.0 * (before + after) - slope[i - 1, j]) * pivot
+            before = after
+        last = 2.5 * before + 0.5 * (u[n - 2, j] - u[n - 3, j])
+        slope[n - 1, j] = (last - 2.0 * slope[n - 2, j]) / (1.0 - 2.0 * work[n - 2])
+        for i in range(n - 2, -1, -1):
+            slope[i, j] -= work[i] * slope[i + 1, j]
+
+
+def spline_slopes(u):
+    """Rise a sample of the not-a-knot cubic spline at every sample of u (n, columns), as scipy's `CubicSpline` has it.
+
+    Equal steps: s[i-1] + 4 s[i] + s[i+1] = 3 (u[i+1] - u[i-1]) (de Boor 1978, chapter IV). What lies m samples ahead
+    acts on a slope by (2 - sqrt 3)^m of its own, so that a few samples ahead do for a whole record.
+    """
+    slope = np.empty_like(u)
+    _slopes(u, slope, np.empty(len(u)))
+    return slope

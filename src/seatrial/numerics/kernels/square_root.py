@@ -1,0 +1,97 @@
+"""A Gaussian belief kept as a square root: covariance P = R R', R square, not triangular.
+
+Measurements come one scalar after the other (Potter; Bierman 1977, section II.6; Kaminski, Bryson & Schmidt 1971,
+eq. (10)): P stays symmetric and positive however nearly singular it is, and nothing is divided by what may vanish.
+Without process noise a prediction is R <- F R, so that R is never made triangular again.
+"""
+
+import math
+
+from numba import njit
+
+from seatrial.numerics.kernels.types import OPTIONS
+
+# what `take` counts, by channel: measurements taken, outliers among them
+TAKEN, OUTLYING = 0, 1
+
+
+@njit(inline="always", **OPTIONS)
+def across(root, h, v):
+    """v = R' h; returns its square, the variance of h' z."""
+    n = h.size
+    for j in range(n):
+        v[j] = 0.0
+    for i in range(n):
+        a = h[i]
+        if a != 0.0:
+            for j in range(n):
+                v[j] += a * root[i, j]
+    total = 0.0
+    for j in range(n):
+        total += v[j] * v[j]
+    return total
+
+
+@njit(inline="always", **OPTIONS)
+def narrow(root, z, v, spread, variance, e):
+    """A measurement of variance `variance` lies e beyond its prediction; v, spread as `across` left them."""
+    n = z.size
+    total = spread + variance
+    shrink = 1.0 / (total + math.sqrt(variance * total))
+    for i in range(n):
+        w = 0.0
+        for j in range(n):
+            w += root[i, j] * v[j]
+        z[i] += w * (e / total)
+        w *= shrink
+        for j in range(n):
+            root[i, j] -= w * v[j]
+
+
+@njit(inline="always", **OPTIONS)
+def take(root, z, before, h, predicted, measured, variance, limit, memory, running, tally, v):
+    """All channels of one sample, NaN being no measurement.
+
+    h (ny, n), predicted (ny,): slopes and values at z = `before`. An innovation beyond `limit` standard deviations
+    counts linearly (Huber 1964): its variance is raised as far as its weight falls, and what moves z ends at the limit.
+    running (ny, 2): means over the latest `memory` of the squared innovation, by its variance and plain, cut at the
+    limit; tally (2, ny).
+    """
+    n = z.size
+    for channel in range(variance.size):
+        e = measured[channel] - predicted[channel]
+        if math.isnan(e):
+            continue
+        for j in range(n):
+            e -= h[channel, j] * (z[j] - before[j])
+        spread = across(root, h[channel], v)
+        r = variance[channel]
+        size = math.sqrt(e * e / (spread + r))
+        tally[TAKEN, channel] += 1
+        cut = 1.0
+        if size > limit:
+            tally[OUTLYING, channel] += 1
+            cut = limit / size
+        weight = 1.0 / min(tally[TAKEN, channel] * 1.0, memory)
+        running[channel, 0] += weight * ((cut * size) ** 2 - running[channel, 0])
+        running[channel, 1] += weight * ((cut * e) ** 2 - running[channel, 1])
+        r /= cut
+        most = limit * math.sqrt(spread + r)
+        narrow(root, z, v, spread, r, min(max(e, -most), most))
+
+
+@njit(inline="always", **OPTIONS)
+def forget(root, z, widest, kept, v):
+    """The geometric mean of the belief (power `kept`) and a wide one about the same point (power 1 - kept).
+
+    Information <- kept * information + (1 - kept) * widest' widest: exponential forgetting that ends at the wide belief
+    where nothing is learnt (Kulhavy & Zarrop 1993, section 3). widest (rows, n): root of the wide belief's information.
+    """
+    n = z.size
+    grown = math.sqrt(1.0 / kept)
+    for i in range(n):
+        for j in range(n):
+            root[i, j] *= grown
+    for m in range(widest.shape[0]):
+        spread = across(root, widest[m], v)
+        narrow(root, z, v, spread, 1.0 / (1.0 - kept), 0.0)

@@ -1,0 +1,221 @@
+"""Levenberg-Marquardt for least squares with shared and local unknowns, bounds on the shared ones.
+
+Local unknowns (initial states of segments) touch one block of residuals each and are eliminated block by block
+(Schur complement; Golub & Pereyra 2003, section 5). Damping after Nielsen 1999 (IMM-REP-1999-05), eq. (2.4).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from scipy.linalg.lapack import dposv
+
+from seatrial.numerics.optimise.solution import Array, Solution, Status
+
+# where no step lowers the cost: promises this small, against the cost and against the first cost, are rounding
+_ROUNDING = 1e-8
+_EXHAUSTED = 1e-20
+
+
+@dataclass(frozen=True, eq=False)
+class Normal:
+    """Gauss-Newton model of half the sum of squares about one point.
+
+    Attributes:
+        cost: half the sum of squared residuals (robust loss included).
+        gradient, hessian: shared unknowns, shapes (n,), (n, n).
+        local_gradient, local_hessian, cross: blocks, shapes (s, m), (s, m, m), (s, n, m).
+    """
+
+    cost: float
+    gradient: Array
+    hessian: Array
+    local_gradient: Array
+    local_hessian: Array
+    cross: Array
+
+    def reduced(self) -> tuple[Array, Array]:
+        """Gradient and Hessian of the shared unknowns with the local ones eliminated at their optimum."""
+        if self.local_gradient.size == 0:
+            return self.gradient, self.hessian
+        solved = np.linalg.solve(_guarded(self.local_hessian), np.swapaxes(self.cross, 1, 2))
+        hessian = self.hessian - np.einsum("sij,sjk->ik", self.cross, solved)
+        gradient = self.gradient - np.einsum("sj,sjk->k", self.local_gradient, solved)
+        return gradient, hessian
+
+
+class LeastSquares(Protocol):
+    """What the optimiser asks of a problem; `local` has shape (s, m), possibly with m = 0."""
+
+    @property
+    def lower(self) -> Array:
+        """Lower bounds of the shared unknowns."""
+        ...
+
+    @property
+    def upper(self) -> Array:
+        """Upper bounds of the shared unknowns."""
+        ...
+
+    def cost(self, shared: Array, local: Array) -> float:
+        """Half the sum of squares; infinite where the model cannot be evaluated."""
+        ...
+
+    def normal(self, shared: Array, local: Array) -> Normal:
+        """The Gauss-Newton model at a point."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Optimum:
+    """Solution with its local unknowns and the Gauss-Newton model there."""
+
+    solution: Solution
+    local: Array
+    normal: Normal
+
+
+def _guarded(blocks: Array) -> Array:
+    """Blocks with a relative rounding-size ridge, so that an unobservable local direction stays put."""
+    diagonal = np.einsum("sii->si", blocks)
+    ridge = 1e-12 * diagonal + 1e-14 * (diagonal.max(axis=1, keepdims=True) + 1e-300)
+    return blocks + np.einsum("si,ij->sij", ridge, np.eye(blocks.shape[1]))
+
+
+def _step(normal: Normal, damping: float, low: Array, high: Array) -> tuple[Array, Array]:
+    """The damped Gauss-Newton step with low <= shared step <= high."""
+    hessian = normal.hessian.copy()
+    diagonal = hessian.reshape(-1)[:: len(hessian) + 1]
+    diagonal += damping * np.where(diagonal > 0, diagonal, 1.0)
+    if not normal.local_gradient.size:
+        return _boxed(hessian, normal.gradient, low, high), normal.local_gradient
+    local = _guarded(normal.local_hessian)
+    local = local + damping * np.einsum("sii,ij->sij", local, np.eye(local.shape[1]))
+    right = np.concatenate([np.swapaxes(normal.cross, 1, 2), normal.local_gradient[:, :, None]], axis=2)
+    solved = np.linalg.solve(local, right)
+    hessian = hessian - np.einsum("sij,sjk->ik", normal.cross, solved[:, :, :-1])
+    gradient = normal.gradient - np.einsum("sij,sj->i", normal.cross, solved[:, :, -1])
+    step = _boxed(hessian, gradient, low, high)
+    return step, -solved[:, :, -1] - solved[:, :, :-1] @ step
+
+
+def _boxed(hessian: Array, gradient: Array, low: Array, high: Array) -> Array:
+    """Minimiser of the quadratic model in a box that holds zero (active sets; Stark & Parker 1995, BVLS)."""
+    free = _solve(hessian, -gradient)
+    if ((free >= low) & (free <= high)).all():
+        return free
+    step = np.zeros_like(gradient)
+    held = ((low >= 0) & (gradient > 0)) | ((high <= 0) & (gradient < 0)) | (low >= high)
+    for _ in range(3 * len(step) + 3):
+        moving = ~held
+        target = step.copy()
+        pull = gradient[moving] + hessian[np.ix_(moving, held)] @ step[held]
+        target[moving] = _solve(hessian[np.ix_(moving, moving)], -pull)
+        way = target - step
+        limit = np.where(way > 0, high, low)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = np.where(moving & (way != 0), (limit - step) / way, np.inf)
+        if share.size and np.min(share) < 1.0:
+            first = int(np.argmin(share))
+            step = np.clip(step + max(share[first], 0.0) * way, low, high)
+            step[first], held[first] = limit[first], True
+            continue
+        step = target
+        slope = (gradient + hessian @ step) / np.sqrt(np.maximum(np.diag(hessian), 1e-300))
+        wrong = np.where(held & (low < high), np.where(step <= low, -slope, slope), -np.inf)
+        if not wrong.size or np.max(wrong) <= 1e-12 * np.max(np.abs(slope)):
+            return step
+        held[int(np.argmax(wrong))] = False
+    return step
+
+
+def _solve(matrix: Array, right: Array) -> Array:
+    """Symmetric solve in the unknowns' own scales; least squares where the matrix is singular to rounding."""
+    if not len(right):
+        return right
+    scale = 1.0 / np.sqrt(np.maximum(np.abs(matrix.diagonal()), 1e-300))
+    scaled = matrix * scale[:, None] * scale
+    _, found, failed = dposv(scaled.T, scale * right)
+    return scale * (np.linalg.lstsq(scaled, scale * right, rcond=1e-13)[0] if failed else found)
+
+
+def _predicted(normal: Normal, step: Array, local_step: Array) -> float:
+    """Decrease of the quadratic model along a step."""
+    linear = normal.gradient @ step
+    curved = step @ normal.hessian @ step
+    if local_step.size:
+        linear += np.sum(normal.local_gradient * local_step)
+        curved += 2.0 * np.einsum("i,sij,sj->", step, normal.cross, local_step)
+        curved += np.einsum("si,sij,sj->", local_step, normal.local_hessian, local_step)
+    return float(-linear - 0.5 * curved)
+
+
+def _clipped(point: Array, problem: LeastSquares) -> Array:
+    return np.minimum(np.maximum(point, problem.lower), problem.upper)
+
+
+def levenberg_marquardt(
+    problem: LeastSquares,
+    shared: Array,
+    local: Array,
+    *,
+    tolerance: float = 1e-10,
+    negligible: float = 0.0,
+    evaluations: int = 100,
+    progress: Callable[[int, float], None] | None = None,
+) -> Optimum:
+    """Minimise from a start; stops when the model promises less than `tolerance` of the cost, or rounding is reached.
+
+    A promised decrease below `negligible` stops it too: where residuals are in standard deviations, 1e-8 is a move of
+    some 1e-4 standard errors, and data without noise are not fitted down to their last bit.
+
+    Deterministic. The result's status says how it ended; bounds of the shared unknowns are never left.
+    """
+    shared = _clipped(shared, problem)
+    normal = problem.normal(shared, local)
+    count, damping, growth = 1, 1e-4, 2.0
+    history = [normal.cost]
+    if not np.isfinite(normal.cost):
+        return Optimum(Solution(shared, normal.cost, Status.FAILED, count), local, normal)
+    status = Status.EXHAUSTED
+    rejected = 0
+    while count < evaluations:
+        low, high = problem.lower - shared, problem.upper - shared
+        step, local_step = _step(normal, damping, low, high)
+        trial = _clipped(shared + step, problem)
+        trial_local = local + local_step
+        predicted = _predicted(normal, trial - shared, local_step)
+        enough = max(tolerance * normal.cost, negligible)
+        if predicted <= enough:  # else the undamped step, the model's minimum, promises more than enough too
+            newton, local_newton = _step(normal, 0.0, low, high)
+            if _predicted(normal, newton, local_newton) <= enough:
+                trial = _clipped(shared + newton, problem)
+                last = problem.normal(trial, local + local_newton)
+                count += 1
+                if last.cost <= normal.cost:
+                    shared, local, normal = trial, local + local_newton, last
+                history.append(normal.cost)
+                status = Status.CONVERGED
+                break
+        cost = problem.cost(trial, trial_local)
+        count += 1
+        gain = (normal.cost - cost) / predicted if predicted > 0 else -1.0
+        if np.isfinite(cost) and gain > 0:
+            shared, local = trial, trial_local
+            normal = problem.normal(shared, local)
+            count += 1
+            bold = gain > 0.8 and rejected == 0
+            damping *= 0.01 if bold else max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0) ** 3)
+            damping, growth, rejected = max(damping, 1e-14), 2.0, 0
+        else:
+            damping, growth, rejected = max(damping, 1e-8) * growth, growth * 2.0, rejected + 1
+            if predicted <= 1e-14 * normal.cost or rejected > 25:
+                rounding = max(_ROUNDING * normal.cost, _EXHAUSTED * history[0])
+                promised = _predicted(normal, *_step(normal, 0.0, low, high))
+                status = Status.CONVERGED if promised <= rounding else Status.STALLED
+                break
+        history.append(normal.cost)
+        if progress:
+            progress(count, normal.cost)
+    return Optimum(Solution(shared, normal.cost, status, count, tuple(history)), local, normal)

@@ -1,0 +1,100 @@
+"""Levenberg-Marquardt from several starts, until one gives an acceptable value."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from seatrial.numerics.optimise.ask_tell import Box, SearchError
+from seatrial.numerics.optimise.least_squares import LeastSquares, Optimum, levenberg_marquardt
+from seatrial.numerics.optimise.population import seed_of
+from seatrial.numerics.optimise.solution import Array, Solution
+
+
+@dataclass(frozen=True)
+class Restarts:
+    """How often, and until when, to start again.
+
+    Attributes:
+        acceptable: value (half the sum of squares) at or below which a fit is taken; for residuals in standard
+            deviations half a quantile of chi-square with the degrees of freedom of the data.
+        most: restarts at most, after the first start.
+        evaluations: of each start.
+        negligible: promised decrease below which a start ends.
+    """
+
+    acceptable: float
+    most: int = 4
+    evaluations: int = 100
+    negligible: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.most < 0 or self.evaluations < 1:
+            raise SearchError(
+                f"A search of {self.most} restarts with {self.evaluations} evaluations each is none; "
+                "give 0 or more restarts and 1 or more evaluations."
+            )
+        if np.isnan(self.acceptable):
+            raise SearchError("The acceptable value is NaN; give the largest half sum of squares that is taken.")
+
+
+@dataclass(frozen=True, eq=False)
+class Multistart:
+    """The best of several starts.
+
+    Attributes:
+        optimum: solution (evaluations and history over all starts), local unknowns, Gauss-Newton model.
+        restarts: starts made after the first.
+        accepted: whether the value is acceptable; if not, all restarts are spent.
+    """
+
+    optimum: Optimum
+    restarts: int
+    accepted: bool
+
+    @property
+    def solution(self) -> Solution:
+        """What was found."""
+        return self.optimum.solution
+
+
+def multistart(
+    problem: LeastSquares,
+    start: Array,
+    box: Box,
+    generator: np.random.Generator,
+    restarts: Restarts,
+    *,
+    local: Array | None = None,
+    scaled: Callable[[Array], Array] | None = None,
+) -> Multistart:
+    """Start at `start`, then at points drawn from the box, until the value is acceptable; the best one is returned.
+
+    Args:
+        start: shape (n,).
+        local: local unknowns at every start, shape (s, m).
+        scaled: from the box's coordinates to the problem's, where starts are not drawn uniformly in these
+            (`np.exp` of a box of logarithms).
+
+    Raises:
+        SearchError: a start of another size than the box.
+    """
+    if np.shape(start) != (box.size,):
+        raise SearchError(f"The start has shape {np.shape(start)}, but the box has {box.size} unknowns.")
+    held = np.zeros((0, 0)) if local is None else local
+    best: Optimum | None = None
+    evaluations, history, count = 0, [], -1
+    at = start
+    while best is None or (not best.solution.value <= restarts.acceptable and count < restarts.most):
+        if best is not None:
+            drawn = box.drawn(generator, 1)[0]
+            at = scaled(drawn) if scaled else drawn
+        found = levenberg_marquardt(problem, at, held, evaluations=restarts.evaluations, negligible=restarts.negligible)
+        count += 1
+        evaluations += found.solution.evaluations
+        if best is None or found.solution.value < best.solution.value or np.isnan(best.solution.value):
+            best = found
+        history.append(best.solution.value)
+    s = best.solution
+    solution = Solution(s.point, s.value, s.status, evaluations, tuple(history), seed_of(generator))
+    return Multistart(Optimum(solution, best.local, best.normal), count, s.value <= restarts.acceptable)

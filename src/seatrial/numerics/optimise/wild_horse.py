@@ -1,0 +1,165 @@
+"""Wild horse optimiser (Naruei & Keynia 2022, Engineering with Computers 38, 3025-3056), as Qi et al. 2025 print it."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from seatrial.numerics.optimise.ask_tell import Box, SearchError
+from seatrial.numerics.optimise.population import Memory, Population, refuse_settings_without_value
+from seatrial.numerics.optimise.solution import Array
+
+
+class Variant(Enum):
+    """How a stride turns.
+
+    PAPER: cos(2 pi R Z) with one R in [-2, 2] for each horse (eq. 15); leaders draw their own Z and R.
+    REFERENCE: cos(2 pi R) with R = -2 + 4 Z, as in the authors' published program, where a leader takes the stride
+        of the last foal of its group again.
+    """
+
+    PAPER = "paper"
+    REFERENCE = "reference"
+
+
+@dataclass(frozen=True)
+class HerdSettings:
+    """Settings of the wild horse optimiser, defaults from Qi et al. 2025, section 4.1.
+
+    Attributes:
+        population: horses, N.
+        iterations: populations evaluated, the first included, T_max.
+        stallions: share of leaders, P_S.
+        crossover: probability of mating instead of grazing, P_C.
+        variant: how a stride turns.
+        memory: what becomes of the leaders' fitness.
+    """
+
+    population: int = 40
+    iterations: int = 200
+    stallions: float = 0.25
+    crossover: float = 0.13
+    variant: Variant = Variant.PAPER
+    memory: Memory = Memory.KEEP
+
+    def __post_init__(self) -> None:
+        refuse_settings_without_value(self)
+        groups = self.groups
+        if groups < 3 or self.population < 2 * groups:
+            raise SearchError(
+                "The wild horse optimiser needs 3 groups or more with a foal each, but a population of "
+                f"{self.population} with a share of {self.stallions:g} leaders makes {groups} groups and "
+                f"{self.population - groups} foals; raise the population, or take a share between 0.1 and 0.5."
+            )
+        if not 0 <= self.crossover <= 1:
+            raise SearchError(f"The crossover probability lies between 0 and 1, not at {self.crossover}.")
+
+    @property
+    def groups(self) -> int:
+        """Number of groups, G = ceil(N P_S)."""
+        return int(np.ceil(round(self.population * self.stallions, 9)))
+
+
+class WildHorse(Population):
+    """Groups of foals that graze round their leader or mate, while leaders move about the waterhole.
+
+    An ask holds the foals, then one trial of each leader; as a leader's trial depends on no foal of its iteration, it
+    loses nothing against one evaluation after the other. All groups move at once: mates are the worst foals of the
+    last population, where the authors' program meets some that have moved already. A leader keeps its place unless
+    the trial is better, then changes places with a better foal (eq. 20). The waterhole is the best leader.
+
+    Eq. 19 is not invariant to a shift of the unknowns: -WH sends leaders through zero. The population therefore lives
+    in the coordinates of the box that was given. With `Memory.RE_EVALUATE` the leaders, shape (groups, d), follow in
+    every ask but the first.
+    """
+
+    def __init__(self, box: Box, generator: np.random.Generator, settings: HerdSettings | None = None) -> None:
+        self.settings = settings or HerdSettings()
+        super().__init__(box, generator, self.settings.iterations)
+        groups = self.settings.groups
+        horses = box.drawn(generator, self.settings.population)
+        self._leaders, self._foals = horses[:groups], horses[groups:]
+        self._leader_fitness = np.full(groups, np.inf)
+        self._foal_fitness = np.full(len(self._foals), np.inf)
+        self._group = np.arange(len(self._foals)) % groups
+        self._last = len(self._foals) - 1 - (len(self._foals) - 1 - np.arange(groups)) % groups
+
+    @property
+    def best(self) -> tuple[Array, float]:
+        """The waterhole: the best leader, and its fitness."""
+        first = int(np.argmin(self._leader_fitness))
+        return self._leaders[first].copy(), float(self._leader_fitness[first])
+
+    def _propose(self) -> Array:
+        if self.iteration == 0:
+            return np.concatenate([self._foals, self._leaders])
+        z, stride = self._strides(len(self._foals))
+        mating = self._generator.random((len(self._foals), 1)) < self.settings.crossover
+        leaders = self._leaders[self._group]
+        grazed = stride * (leaders - self._foals) + leaders  # eq. 15
+        foals = np.where(mating, self._mated(), grazed)
+        if self.settings.variant is Variant.REFERENCE:
+            z, stride = z[self._last], stride[self._last]
+        else:
+            z, stride = self._strides(len(self._leaders))
+        moved = self._scattered(np.concatenate([foals, self._led(z, stride)]))
+        return moved if self.settings.memory is Memory.KEEP else np.concatenate([moved, self._leaders])
+
+    def _learn(self, points: Array, fitness: Array) -> None:
+        count, groups = len(self._foals), len(self._leaders)
+        self._foals, self._foal_fitness = points[:count].copy(), fitness[:count].copy()
+        trials, trial_fitness = points[count : count + groups], fitness[count : count + groups]
+        if len(fitness) > count + groups:
+            self._leader_fitness = fitness[count + groups :]
+        better = (trial_fitness < self._leader_fitness) | (self.iteration == 0)
+        self._leaders = np.where(better[:, None], trials, self._leaders)
+        self._leader_fitness = np.where(better, trial_fitness, self._leader_fitness)
+        self._exchange()
+
+    def _strides(self, count: int) -> tuple[Array, Array]:
+        """Z (eq. 16) and 2 Z cos(...) (eq. 15) of some horses, shapes (count, d)."""
+        generator, shape = self._generator, (count, self.box.size)
+        fading = 1 - (self.iteration + 1) / self.iterations  # eq. 17; the first population is T = 1
+        inside = generator.random(shape) < fading
+        z = np.where(inside, generator.random(shape), generator.random((count, 1)))
+        if self.settings.variant is Variant.REFERENCE:
+            return z, 2 * z * np.cos(2 * np.pi * (4 * z - 2))
+        turn = generator.uniform(-2, 2, (count, 1))
+        return z, 2 * z * np.cos(2 * np.pi * turn * z)
+
+    def _mated(self) -> Array:
+        """For each foal the mean of the worst foals of two other groups, eq. 18; shape (foals, d)."""
+        groups, count = len(self._leaders), len(self._foals)
+        first = self._generator.integers(groups - 1, size=count)
+        second = self._generator.integers(groups - 2, size=count)
+        second += second >= first
+        worst = self._foals[_in_groups(self._foal_fitness, groups, -np.inf).argmax(axis=0) * groups + np.arange(groups)]
+        return (worst[(self._group + 1 + first) % groups] + worst[(self._group + 1 + second) % groups]) / 2
+
+    def _led(self, z: Array, stride: Array) -> Array:  # noqa: ARG002
+        """A trial for each leader, eq. 19; shape (groups, d)."""
+        waterhole = self.best[0]
+        side = np.where(self._generator.random((len(stride), 1)) >= 0.5, 1.0, -1.0)
+        return stride * (waterhole - self._leaders) + side * waterhole
+
+    def _scattered(self, points: Array) -> Array:
+        """Points moved against all laws: none."""
+        return points
+
+    def _exchange(self) -> None:
+        """A foal better than its leader takes its place, eq. 20."""
+        groups = len(self._leaders)
+        first = _in_groups(self._foal_fitness, groups, np.inf).argmin(axis=0) * groups + np.arange(groups)
+        rising = np.flatnonzero(self._foal_fitness[first] < self._leader_fitness)
+        foals = first[rising]
+        risen, risen_fitness = self._foals[foals], self._foal_fitness[foals]
+        self._foals[foals], self._foal_fitness[foals] = self._leaders[rising], self._leader_fitness[rising]
+        self._leaders[rising], self._leader_fitness[rising] = risen, risen_fitness
+
+
+def _in_groups(fitness: Array, groups: int, missing: float) -> Array:
+    """Fitness of foals dealt out to groups in turn, shape (foals in the largest group, groups)."""
+    rows = -(-len(fitness) // groups)
+    table = np.full(rows * groups, missing)
+    table[: len(fitness)] = fitness
+    return table.reshape(rows, groups)

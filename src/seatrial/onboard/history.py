@@ -1,0 +1,115 @@
+"""What an estimate has been since the stream began, thinned so that a week of it fits in memory. No file."""
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+
+from seatrial.core.results.online import Snapshot
+from seatrial.core.values import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """One snapshot of the past.
+
+    Attributes:
+        sequence: its number, from 0; elapsed: s followed until then, breaks of the clock left out.
+        value, standard_error: (k,), SI; noise: channel -> residual rms, SI.
+    """
+
+    sequence: int
+    elapsed: float
+    names: tuple[str, ...]
+    value: Array
+    standard_error: Array
+    noise: dict[str, float]
+
+
+class History:
+    """At most `limit` points: every `stride`-th snapshot, the first among them, and the newest.
+
+    The stride doubles when the room is used up, so that the points stay even over the whole time.
+    """
+
+    def __init__(self, limit: int = 2000) -> None:
+        self.limit = max(4, limit)
+        self.stride = 1
+        self.generation = 0
+        self.names: tuple[str, ...] = ()
+        self._count = 0
+        self._points: list[Point] = []
+        self._elapsed = 0.0
+        self._last: Snapshot | None = None
+
+    def add(self, snapshot: Snapshot) -> Point:
+        """Remember it; other coefficients than before begin a new history, of the next generation."""
+        if self._last is not None and snapshot.names != self.names:
+            self._begin_anew()
+        self.names = snapshot.names
+        self._elapsed += _step(self._last, snapshot)
+        self._last = snapshot
+        value, error = snapshot.value.copy(), snapshot.standard_error.copy()
+        point = Point(self._count, self._elapsed, snapshot.names, value, error, dict(snapshot.noise))
+        self._count += 1
+        if self._points and self._points[-1].sequence % self.stride:
+            self._points.pop()
+        self._points.append(point)
+        while len(self._points) > self.limit:
+            self.stride *= 2
+            self._points = [p for p in self._points if p is point or p.sequence % self.stride == 0]
+        return point
+
+    def since(self, sequence: int) -> list[Point]:
+        """Points after that number, oldest first; all of them for -1."""
+        return [p for p in self._points if p.sequence > sequence]
+
+    @property
+    def newest(self) -> Point | None:
+        """The last one, if there is any."""
+        return self._points[-1] if self._points else None
+
+    def __len__(self) -> int:
+        return len(self._points)
+
+    def _begin_anew(self) -> None:
+        self.generation += 1
+        self.stride, self._count, self._points, self._elapsed, self._last = 1, 0, [], 0.0, None
+
+
+class Recent:
+    """The last minutes: points that lie in the last `seconds` followed, at most `most` of them."""
+
+    def __init__(self, seconds: float = 180.0, most: int = 180) -> None:
+        self.seconds = seconds
+        self._spacing = seconds / most
+        self._points: deque[Point] = deque()
+
+    def add(self, point: Point) -> None:
+        """Remember it, in place of the newest where that one came a moment after its predecessor."""
+        points = self._points
+        if points and points[-1].names != point.names:
+            points.clear()
+        if len(points) > 1 and points[-1].elapsed - points[-2].elapsed < self._spacing:
+            points.pop()
+        points.append(point)
+        while points[0].elapsed < point.elapsed - self.seconds:
+            points.popleft()
+
+    @property
+    def value(self) -> Array:
+        """(n, k), oldest first."""
+        return np.array([p.value for p in self._points])
+
+    @property
+    def standard_error(self) -> Array:
+        """(n, k), oldest first."""
+        return np.array([p.standard_error for p in self._points])
+
+
+def _step(before: Snapshot | None, now: Snapshot) -> float:
+    """s from one snapshot to the next; none where a new run began in between or a clock went back."""
+    if before is None or now.runs != before.runs:
+        return 0.0
+    step = now.time - before.time
+    return step if 0.0 < step < float("inf") else 0.0

@@ -1,0 +1,156 @@
+"""A live table on a terminal, plain lines everywhere else; nothing an odd terminal does stops the estimate."""
+
+import math
+import sys
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Protocol, Self, TextIO
+
+from seatrial.core.results.online import Counts, Snapshot
+from seatrial.onboard.history import History, Recent
+from seatrial.onboard.plain import line, plain
+from seatrial.onboard.shown import clean
+from seatrial.onboard.table import Shown, picture
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+BETWEEN_PICTURES = 0.5
+SHORTEST_WAIT, LONGEST_WAIT, PATIENCE = 1.0, 60.0, 0.05
+
+
+class _Screen(Protocol):
+    def show(self, snapshot: Snapshot, counts: Counts) -> None: ...
+    def close(self) -> None: ...
+
+
+class Live:
+    """Shows the snapshots it is given: a table that stays in place, or lines where the stream is no terminal.
+
+    with Live(heading="trial.toml") as live: live.show(snapshot, counts)
+
+    stream: standard output unless told otherwise; heading: what is followed, and where its page is.
+    No threads: it draws when it is given something, at most twice a second; the last one is always shown.
+    """
+
+    def __init__(self, stream: TextIO | None = None, *, heading: str = "") -> None:
+        self._stream = sys.stdout if stream is None else stream
+        self._heading = heading
+        self._screen: _Screen | None = None
+
+    def __enter__(self) -> Self:
+        console = _console(self._stream)
+        self._screen = _Lines(self._stream, self._heading) if console is None else _Table(console, self._heading)
+        return self
+
+    def __exit__(self, *raised: object) -> None:
+        if self._screen is not None:
+            self._screen.close()
+        self._screen = None
+
+    def show(self, snapshot: Snapshot, counts: Counts) -> None:
+        """Show this one, unless the one before was shown a moment ago."""
+        if self._screen is not None:
+            self._screen.show(snapshot, counts)
+
+
+class _Table:
+    """The table, drawn in place."""
+
+    def __init__(self, console: "Console", heading: str) -> None:
+        from rich.live import Live as RichLive
+
+        self._console, self._heading = console, heading
+        self._history, self._recent = History(limit=4), Recent()
+        self._last: tuple[Snapshot, Counts] | None = None
+        self._news_at, self._drawn_at = 0.0, -math.inf
+        self._live = RichLive(console=console, auto_refresh=False)
+        self._is_lost = not _survived(self._live.start)
+
+    def show(self, snapshot: Snapshot, counts: Counts) -> None:
+        now = time.monotonic()
+        if _is_news(self._last, snapshot, counts):
+            self._recent.add(self._history.add(snapshot))
+            self._news_at = now
+        self._last = snapshot, counts
+        if now - self._drawn_at >= BETWEEN_PICTURES:
+            self._draw(self._console.height)
+            self._drawn_at = time.monotonic()
+
+    def close(self) -> None:
+        self._draw(None)
+        _survived(self._live.stop)
+
+    def _draw(self, height: int | None) -> None:
+        if self._last is None or self._is_lost:
+            return
+        silence = 0.0 if height is None else time.monotonic() - self._news_at
+        made = picture(self._console, Shown(self._heading, *self._last, self._recent, silence), height)
+        self._is_lost = not _survived(lambda: self._live.update(made, refresh=height is not None))
+
+
+class _Lines:
+    """A line now and then: at once, then at waits that grow from a second to a minute."""
+
+    def __init__(self, stream: TextIO, heading: str) -> None:
+        self._stream = stream
+        self._begun, self._due = math.inf, -math.inf
+        self._last: tuple[Snapshot, Counts] | None = None
+        self._is_written = True
+        self._is_lost = False
+        if heading:
+            self._write(plain(clean(heading)))
+
+    def show(self, snapshot: Snapshot, counts: Counts) -> None:
+        if self._is_written and not _is_news(self._last, snapshot, counts):
+            return
+        self._last, self._is_written = (snapshot, counts), False
+        now = time.monotonic()
+        if now >= self._due:
+            self._begun = min(self._begun, now)
+            self._due = now + min(LONGEST_WAIT, max(SHORTEST_WAIT, PATIENCE * (now - self._begun)))
+            self._write_last()
+
+    def close(self) -> None:
+        self._write_last()
+
+    def _write_last(self) -> None:
+        if self._last is not None and not self._is_written:
+            self._write(line(*self._last))
+        self._is_written = True
+
+    def _write(self, text: str) -> None:
+        if not self._is_lost:
+            self._is_lost = not _survived(lambda: _print(text, self._stream))
+
+
+def _console(stream: TextIO) -> "Console | None":
+    """A console on that stream; None where it is no terminal, a dumb one, or cannot show what a table needs."""
+    try:
+        if not stream.isatty():
+            return None
+        from rich.console import Console
+
+        console = Console(file=stream)
+        can_draw = console.is_terminal and not console.is_dumb_terminal and console.encoding.startswith("utf")
+    except (OSError, ValueError, LookupError):
+        return None
+    return console if can_draw else None
+
+
+def _is_news(last: tuple[Snapshot, Counts] | None, snapshot: Snapshot, counts: Counts) -> bool:
+    return last is None or last[0] is not snapshot or last[1] != counts
+
+
+def _print(text: str, stream: TextIO) -> None:
+    encoding = getattr(stream, "encoding", None) or "utf-8"
+    print(text.encode(encoding, "replace").decode(encoding), file=stream, flush=True)
+
+
+def _survived(write: Callable[[], object]) -> bool:
+    """Whether that could be written: a terminal may be closed, too small, or of an encoding of its own."""
+    try:
+        write()
+    except (OSError, ValueError, LookupError):
+        return False
+    return True

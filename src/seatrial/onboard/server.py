@@ -1,0 +1,156 @@
+"""Answers a browser on the same machine: two fixed paths, the loopback address only, no files."""
+
+import base64
+import errno
+import hashlib
+import json
+import os
+import socketserver
+import sys
+from collections.abc import Callable
+from functools import cache
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from importlib.resources import files
+from typing import Any
+from urllib.parse import parse_qs
+
+from seatrial.core.values import InputError
+
+LOOPBACK = "127.0.0.1"
+PATIENCE = 5.0
+State = Callable[[int], dict[str, Any]]
+
+
+def listening(port: int, state: State) -> "Server":
+    """A server that has its port; 0 takes a free one.
+
+    Raises:
+        InputError: the port is in use, not allowed, or no port at all.
+    """
+    if not 0 <= port < 65536:
+        raise InputError(f"port {port} of the page is none; give one from 1024 to 65535, or 0 for any that is free")
+    try:
+        return Server(port, state)
+    except OSError as error:
+        in_use = error.errno == errno.EADDRINUSE
+        why = "is in use by another program" if in_use else f"cannot be had ({error.strerror or error})"
+        raise InputError(f"port {port} of the page {why}; give another, or 0 for any that is free") from None
+
+
+class Server(ThreadingHTTPServer):
+    """Answers with the page and with what `state(since)` gives."""
+
+    daemon_threads = True
+    # on Windows this option would let two programs share a port
+    allow_reuse_address = os.name != "nt"
+
+    def __init__(self, port: int, state: State) -> None:
+        self.state = state
+        super().__init__((LOOPBACK, port), _Answer)
+        self.hosts = {f"{name}:{self.server_port}" for name in (LOOPBACK, "localhost")}
+
+    def server_bind(self) -> None:
+        """As the socket does, without asking the network for this machine's name."""
+        socketserver.TCPServer.server_bind(self)
+        self.server_name, self.server_port = LOOPBACK, self.server_address[1]
+
+    def handle_error(self, request: object, client_address: object) -> None:
+        """A browser that went away is nobody's trouble; anything else is told."""
+        if not isinstance(sys.exception(), OSError):
+            super().handle_error(request, client_address)  # pyright: ignore[reportArgumentType]
+
+
+class _Answer(BaseHTTPRequestHandler):
+    """Two fixed paths, GET only, for a browser that names this machine."""
+
+    server: Server  # pyright: ignore[reportIncompatibleVariableOverride]
+    server_version, sys_version = "seatrial", ""
+    timeout = PATIENCE
+
+    def do_GET(self) -> None:
+        path, _, query = self.path.partition("?")
+        if self.headers.get_all("Host") not in [[host] for host in self.server.hosts]:
+            # another name for this address is how a foreign page would read it (DNS rebinding)
+            self._refuse(HTTPStatus.FORBIDDEN)
+        elif path == "/":
+            self._answer("text/html; charset=utf-8", html().encode())
+        elif path != "/state.json":
+            self._refuse(HTTPStatus.NOT_FOUND)
+        elif self.headers.get("Sec-Fetch-Site", "same-origin") not in ("same-origin", "none"):
+            self._refuse(HTTPStatus.FORBIDDEN)
+        elif (since := _since(query)) is None:
+            self._refuse(HTTPStatus.BAD_REQUEST)
+        else:
+            text = json.dumps(self.server.state(since), allow_nan=False, separators=(",", ":"))
+            self._answer("application/json", text.encode())
+
+    def do_other(self) -> None:
+        """No other method is known."""
+        self._refuse(HTTPStatus.METHOD_NOT_ALLOWED)
+
+    do_HEAD = do_POST = do_PUT = do_PATCH = do_DELETE = do_OPTIONS = do_TRACE = do_CONNECT = do_other
+
+    def _answer(self, kind: str, body: bytes) -> None:
+        self._begin(HTTPStatus.OK, kind, len(body))
+        self.wfile.write(body)
+
+    def _refuse(self, status: HTTPStatus) -> None:
+        body = f"{status.value} {status.phrase}\n".encode()
+        self._begin(status, "text/plain; charset=utf-8", len(body))
+        if self.command != "HEAD":
+            self.wfile.write(body)
+
+    def _begin(self, status: HTTPStatus, kind: str, length: int) -> None:
+        self.send_response(status)
+        sent = {"Content-Type": kind, "Content-Length": str(length), **HEADERS, "Content-Security-Policy": policy()}
+        if status is HTTPStatus.METHOD_NOT_ALLOWED:
+            sent["Allow"] = "GET"
+        for name, value in sent.items():
+            self.send_header(name, value)
+        self.end_headers()
+
+    def log_message(self, format: str, *args: object) -> None:
+        """Nothing is logged."""
+
+
+HEADERS = {
+    "Cache-Control": "no-store",
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+}
+
+
+@cache
+def html() -> str:
+    """The page, the same for every stream: style and script inside, nothing fetched but the state."""
+    page, style, script = (_template(name) for name in ("page.html", "page.css", "page.js"))
+    return page.replace("{style}", style).replace("{script}", script)
+
+
+@cache
+def policy() -> str:
+    """What the page may do: run the one script and the one style it came with, ask its own address, nothing else."""
+    style, script = (_digest(_template(name)) for name in ("page.css", "page.js"))
+    return (
+        f"default-src 'none'; script-src '{script}'; style-src '{style}'; connect-src 'self'; img-src data:; "
+        "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    )
+
+
+def _template(name: str) -> str:
+    return files("seatrial.onboard").joinpath("templates", name).read_text(encoding="utf-8")
+
+
+def _digest(text: str) -> str:
+    return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+
+
+def _since(query: str) -> int | None:
+    """The number asked for, -1 if none is, None if it is no number."""
+    text = parse_qs(query).get("since", ["-1"])[0]
+    is_number = text.removeprefix("-").isascii() and text.removeprefix("-").isdigit() and len(text) < 16
+    return int(text) if is_number else None

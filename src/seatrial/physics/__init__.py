@@ -1,0 +1,1 @@
+"""Ship models, their simulation, manoeuvres, sea states, hydrodynamics and feedback loops."""

@@ -1,0 +1,180 @@
+"""A dataset of the panel code Capytaine at zero speed to hull data and wave excitation in our convention.
+
+Capytaine (its manual, "Conventions"): time factor exp(-i omega t), incident potential -i g / omega exp(k z)
+exp(i k (x cos beta + y sin beta)), so that the crest is at the origin at t = 0 and the wave travels towards beta: 0 is
+following. Its axes are x forward (as meshed), z up, pitch the rotation about y to port, bow down. Forces therefore
+become ours by complex conjugation alone; added mass, damping and stiffness stay.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from seatrial.core.values import Array, InputError, nearest
+from seatrial.physics.hydro.dispersion import wavenumber
+from seatrial.physics.hydro.excitation import Complex, checked_waves
+from seatrial.physics.hydro.strip_theory import at_speed, excitation_at_speed
+from seatrial.physics.hydro.tabulated import WaveTable, interpolated, refuse_outside
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+DOFS = ["Heave", "Pitch"]
+_NEEDED = ("added_mass", "radiation_damping", "diffraction_force", "Froude_Krylov_force", "hydrostatic_stiffness")
+
+
+@dataclass(frozen=True)
+class HullData:
+    """Heave and pitch of a hull at rest over frequency; the reference point is midship, pitch bow down.
+
+    Attributes:
+        omega: rad/s (n,), rising.
+        added_mass, damping: (n, 2, 2), heave first; rows are forces, columns motions.
+        infinite: added mass at infinite frequency (2, 2), if it was computed.
+        froude_krylov, diffraction: WaveTable, values (n, h, 2) per metre of wave amplitude.
+        stiffness: (2, 2).
+        depth: of the water, m; infinite for deep.
+    """
+
+    omega: Array
+    added_mass: Array
+    damping: Array
+    infinite: Array | None
+    froude_krylov: WaveTable
+    diffraction: WaveTable
+    stiffness: Array
+    depth: float
+
+    def coefficients(self, omega_e: Array, U: float) -> tuple[Array, Array]:
+        """Added mass and damping (k, 2, 2) at the frequencies of encounter (k,), with the speed terms of strip theory.
+
+        Raises:
+            InputError: |omega_e| outside the data (not extrapolated), or as `strip_theory.at_speed`.
+        """
+        felt = np.abs(omega_e)
+        refuse_outside("the hull data", "frequency of encounter", "rad/s", self.omega, felt)
+        inside = np.clip(felt, self.omega[0], self.omega[-1])
+        A, B = (np.real(interpolated(self.omega, table, inside)) for table in (self.added_mass, self.damping))
+        return at_speed(A, B, omega_e, U)
+
+
+@dataclass(frozen=True)
+class HullExcitation:
+    """`Excitation` of a hull from its data at rest, with the speed terms of strip theory."""
+
+    data: HullData
+
+    def forces(self, omega: Array, U: float, beta: Array | float) -> tuple[Complex, Complex]:
+        """As `Excitation.forces`; the sum of Froude-Krylov force and diffraction at the frequency of the wave.
+
+        Raises:
+            InputError: frequency or heading outside the data, or as `checked_waves`.
+        """
+        w, heading = checked_waves(omega, U, beta)
+        omega_e = w - wavenumber(w, self.data.depth) * U * np.cos(heading)
+        incident, scattered = (table.at(w, U, heading) for table in (self.data.froude_krylov, self.data.diffraction))
+        total = excitation_at_speed(incident, scattered, w, omega_e, U)
+        return total[:, 0], total[:, 1]
+
+
+def read_capytaine(path: str | Path) -> HullData:
+    """Hull data from a NetCDF file that Capytaine wrote.
+
+    Raises:
+        InputError: no such file, not NetCDF, xarray not installed, or as `hull_data`.
+    """
+    file = Path(path)
+    if not file.is_file():
+        raise InputError(f"there is no file {file} with hydrodynamic data")
+    try:
+        import xarray as xr
+    except ImportError:
+        raise InputError(
+            f"{file.name} needs xarray and h5netcdf; install them with: pip install 'seatrial[hydro]'"
+        ) from None
+    try:
+        dataset = xr.load_dataset(file)
+    except (OSError, ValueError) as error:
+        raise InputError(f"{file.name} is not a readable NetCDF file ({str(error).splitlines()[0]})") from None
+    return hull_data(dataset, name=file.name)
+
+
+def hull_data(dataset: xr.Dataset, name: str = "the dataset") -> HullData:
+    """Hull data from a Capytaine dataset in memory; headings beyond 0 to 180 degrees are mirrored ones and left out.
+
+    Raises:
+        InputError: a variable, a degree of freedom or heading is missing, the dataset was computed with forward speed
+            or about a point that is not midship, or holds NaN.
+    """
+    for key in _NEEDED:
+        if key not in dataset:
+            raise InputError(f"{name} has no variable '{key}'{nearest(key, [str(v) for v in dataset.data_vars])}")
+    _refuse_others(dataset, name)
+    dataset = _one_body(dataset, name).sortby("omega")
+    finite = np.isfinite(dataset["omega"].values)
+    at = dataset.isel(omega=finite)
+    omega = np.asarray(at["omega"].values, dtype=np.float64)
+    pair = ("omega", "influenced_dof", "radiating_dof")
+    A, B = (_real(at[key].transpose(*pair), f"{name}: {key}") for key in ("added_mass", "radiation_damping"))
+    limit = _real(dataset["added_mass"].isel(omega=~finite).transpose(*pair), f"{name}: added_mass")
+    tables = [_wave_table(at, key, name) for key in ("Froude_Krylov_force", "diffraction_force")]
+    C = _real(dataset["hydrostatic_stiffness"].transpose(*pair[1:]), f"{name}: hydrostatic_stiffness")
+    depth = float(dataset["water_depth"]) if "water_depth" in dataset.coords else np.inf
+    return HullData(omega, A, B, limit[-1] if limit.size else None, tables[0], tables[1], C, depth)
+
+
+def _refuse_others(dataset: xr.Dataset, name: str) -> None:
+    """Forward speed and other reference points."""
+    if "forward_speed" in dataset.coords and np.any(dataset["forward_speed"].values != 0.0):
+        raise InputError(
+            f"{name} was computed with forward speed, which breaks the antisymmetry of A35, A53; compute it at rest, "
+            "the speed terms are added here"
+        )
+    if "rotation_center" in dataset and np.abs(np.ravel(dataset["rotation_center"].values)[0]) > 1e-6:
+        raise InputError(f"{name} turns about a point that is not midship; give the rotation centre x = 0")
+
+
+def _one_body(dataset: xr.Dataset, name: str) -> xr.Dataset:
+    """Heave and pitch, one water depth, one period axis."""
+    for dimension in ("influenced_dof", "radiating_dof"):
+        known = [str(v) for v in np.atleast_1d(dataset[dimension].values)] if dimension in dataset.coords else []
+        for dof in DOFS:
+            if dof not in known:
+                raise InputError(f"{name} has no degree of freedom '{dof}' among {known}")
+    if "omega" not in dataset.dims:
+        raise InputError(f"{name} has no dimension 'omega'")
+    chosen = dataset.sel(influenced_dof=DOFS, radiating_dof=DOFS)
+    if "water_depth" in chosen.dims:
+        if chosen.sizes["water_depth"] != 1:
+            raise InputError(f"{name} holds several water depths; choose one")
+        chosen = chosen.squeeze("water_depth")
+    return chosen
+
+
+def _wave_table(dataset: xr.Dataset, key: str, name: str) -> WaveTable:
+    """A wave force, conjugated from exp(-i omega t) to exp(+i omega t)."""
+    force = dataset[key]
+    if "complex" in force.dims:
+        force = force.sel(complex="re") + 1j * force.sel(complex="im")
+    if "wave_direction" not in force.dims:
+        force = force.expand_dims("wave_direction")
+    force = force.sortby("wave_direction").transpose("omega", "wave_direction", "influenced_dof")
+    headings = np.asarray(force["wave_direction"].values, dtype=np.float64)
+    kept = (headings > -1e-9) & (headings < np.pi + 1e-9)
+    return WaveTable(
+        f"{name}: {key}",
+        np.asarray(dataset["omega"].values, dtype=np.float64),
+        np.clip(headings[kept], 0.0, np.pi),
+        np.conj(np.asarray(force.values, dtype=np.complex128)[:, kept]),
+    )
+
+
+def _real(array: xr.DataArray, what: str) -> Array:
+    values = np.asarray(array.values, dtype=np.float64)
+    if not np.all(np.isfinite(values)):
+        raise InputError(f"{what} holds NaN; leave out the frequencies that were not solved")
+    return values

@@ -1,0 +1,191 @@
+"""Hull, wake and rudder coefficients from main dimensions: prior means where no test says better.
+
+Every function returns MMG prime values (rho/2 L d U^2, r' = r L / U, added mass over rho/2 L^2 d, added inertia over
+rho/2 L^4 d), positive rudder to starboard, moments about midship. Read through Sukas, Kinaci & Bal 2019, Ocean Eng.
+192, 106239 (MANSIM), and public implementations of it; Zhou's three formulae also reproduce the added masses of
+Song et al. 2025 (.0281, .785, .0699) and of KVLCC2 (m_y' .222, J_z' .0111 against .223, .011 of Yasukawa & Yoshimura).
+"""
+
+import math
+from dataclasses import dataclass
+
+from seatrial.core.values import InputError, Ship
+
+ZHOU = "Zhou et al. 1983, regression on Motora's charts"
+CLARKE = "Clarke, Gedling & Hine 1983, Trans. RINA 125, 45-68"
+KIJIMA = "Kijima et al. 1990, The Naval Architect / PRADS, linear derivatives"
+YOSHIMURA = "Yoshimura & Masumoto 2012, MARSIM, hydrodynamic database"
+FUJII = "Fujii & Tuda 1961, gradient of rudder lift"
+
+
+@dataclass(frozen=True)
+class Form:
+    """Main dimensions of a hull in metres, block coefficient, mass' = mass / (rho/2 L^2 d), x_G' = x_G / L."""
+
+    L: float
+    B: float
+    d: float
+    C_b: float
+    x_G_prime: float = 0.0
+
+    @classmethod
+    def of_ship(cls, ship: Ship) -> "Form":
+        """The form of a ship.
+
+        Raises:
+            InputError: L, B, d or C_b is not among its particulars.
+        """
+        missing = [n for n in ("L", "B", "d", "C_b") if n not in ship.particulars]
+        if missing:
+            names = ", ".join(missing)
+            raise InputError(f"ship '{ship.name}' lacks {names} for empirical coefficients; add them under [ship]")
+        p = ship.particulars
+        return cls(p["L"], p["B"], p["d"], p["C_b"], p.get("x_G", 0.0) / p["L"])
+
+    @property
+    def aspect(self) -> float:
+        """k = 2 d / L."""
+        return 2 * self.d / self.L
+
+    @property
+    def fullness(self) -> float:
+        """C_b B / L."""
+        return self.C_b * self.B / self.L
+
+    @property
+    def mass_prime(self) -> float:
+        """Displacement over rho/2 L^2 d."""
+        return 2 * self.fullness
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Values of one method, its source, and whether the form lies where the method was fitted."""
+
+    values: dict[str, float]
+    source: str
+    valid: bool
+    limits: str
+
+
+Range = tuple[float, float]
+
+
+def _within(form: Form, C_b: Range, L_B: Range, B_d: Range) -> tuple[bool, str]:
+    pairs = ((form.C_b, C_b), (form.L / form.B, L_B), (form.B / form.d, B_d))
+    limits = f"C_b {C_b[0]:g}-{C_b[1]:g}, L/B {L_B[0]:g}-{L_B[1]:g}, B/d {B_d[0]:g}-{B_d[1]:g}"
+    return all(low <= value <= high for value, (low, high) in pairs), limits
+
+
+def added_mass(form: Form) -> Estimate:
+    """m_x', m_y', J_z' by Zhou's regression; outside merchant proportions it is an extrapolation."""
+    C_b, L_B, d_B, dL_BB = form.C_b, form.L / form.B, form.d / form.B, form.d * form.L / form.B**2
+    x = 0.398 + 11.97 * C_b * (1 + 3.73 * d_B) - 2.89 * C_b * L_B * (1 + 1.13 * d_B)
+    x += 0.175 * C_b * L_B**2 * (1 + 0.541 * d_B) - 1.107 * L_B * d_B
+    y = 0.882 - 0.54 * C_b * (1 - 1.6 * d_B) - 0.156 * (1 - 0.673 * C_b) * L_B
+    y += 0.826 * dL_BB * (1 - 0.678 * d_B) - 0.638 * C_b * dL_BB * (1 - 0.669 * d_B)
+    z = 0.01 * (33 - 76.85 * C_b * (1 - 0.784 * C_b) + 3.43 * L_B * (1 - 0.63 * C_b))
+    m = form.mass_prime
+    values = {"m_x_prime": m * x / 100, "m_y_prime": m * y, "J_z_prime": m * z**2}
+    return Estimate(values, ZHOU, *_within(form, (0.5, 0.85), (4.0, 8.0), (2.2, 4.0)))
+
+
+def clarke(form: Form) -> Estimate:
+    """Linear derivatives and added masses by Clarke's regression (there over rho/2 L^2 U^2, here times L/d).
+
+    Y_r, N_v and N_r here are hydrodynamic parts at constant speed, without rigid-body terms.
+    """
+    B_d, B_L, d_L = form.B / form.d, form.B / form.L, form.d / form.L
+    S = math.pi * d_L**2 * form.L / form.d
+    values = {
+        "Y_v": -S * (1 + 0.40 * form.C_b * B_d),
+        "Y_r": -S * (-0.5 + 2.2 * B_L - 0.080 * B_d),
+        "N_v": -S * (0.5 + 2.4 * d_L),
+        "N_r": -S * (0.25 + 0.039 * B_d - 0.56 * B_L),
+        "m_y_prime": S * (1 + 0.16 * form.C_b * B_d - 5.1 * B_L**2),
+        "J_z_prime": S * (1 / 12 + 0.017 * form.C_b * B_d - 0.33 * B_L),
+    }
+    return Estimate(values, CLARKE, *_within(form, (0.5, 0.85), (5.0, 8.0), (2.0, 4.5)))
+
+
+def kijima(form: Form) -> Estimate:
+    """Linear derivatives by Kijima; his Y_r' - (m' + m_x') = -1.5 C_b B/L becomes Y_r' with the added mass of Zhou."""
+    k, m_x = form.aspect, added_mass(form).values["m_x_prime"]
+    values = {
+        "Y_v": -(math.pi / 2 * k + 1.4 * form.fullness),
+        "Y_r": form.mass_prime + m_x - 1.5 * form.fullness,
+        "N_v": -k,
+        "N_r": -0.54 * k + k**2,
+    }
+    return Estimate(values, KIJIMA, *_within(form, (0.5, 0.85), (5.0, 8.0), (2.0, 4.5)))
+
+
+def yoshimura(form: Form) -> Estimate:
+    """All hull coefficients of the MMG standard method but R_0, by the regressions of Yoshimura & Masumoto.
+
+    Linear ones are good to about 25 % on KVLCC2, cubic ones only to their order of magnitude; X_rr with x_G m_y' rests
+    on one transcription.
+    """
+    C_b, L_B, f, k = form.C_b, form.L / form.B, form.fullness, form.aspect
+    m_x, m_y = (added_mass(form).values[n] for n in ("m_x_prime", "m_y_prime"))
+    values = {
+        "X_vv": 1.15 * f - 0.18,
+        "X_vr": m_y - 1.91 * f + 0.08,
+        "X_rr": -0.085 * f + 0.008 - form.x_G_prime * m_y,
+        "X_vvvv": -6.68 * f + 1.1,
+        "Y_v": -(math.pi / 2 * k + 1.4 * f),
+        "Y_r": m_x + 0.5 * f,
+        "Y_vvv": -0.185 * L_B + 0.48,
+        "Y_vvr": -0.75,
+        "Y_vrr": -(0.26 * (1 - C_b) * L_B + 0.11),
+        "Y_rrr": -0.051,
+        "N_v": -k,
+        "N_r": -0.54 * k + k**2,
+        "N_vvv": -(-0.69 * C_b + 0.66),
+        "N_vvr": 1.55 * f - 0.76,
+        "N_vrr": -0.075 * (1 - C_b) * L_B - 0.098,
+        "N_rrr": 0.25 * f - 0.056,
+    }
+    return Estimate(values, YOSHIMURA, *_within(form, (0.5, 0.85), (2.5, 7.0), (2.1, 3.8)))
+
+
+def interaction(form: Form, aspect_ratio: float) -> Estimate:
+    """Wake, rudder and interaction coefficients; `aspect_ratio` of the rudder is H_R^2 / A_R."""
+    f = form.fullness
+    values = {
+        "w_P0": 0.5 * form.C_b - 0.05,
+        "t_R": 0.39,
+        "a_H": 0.627 * form.C_b - 0.153,
+        "x_H_prime": -0.45,
+        "l_R_prime": -0.9,
+        "gamma_R_plus": 2.06 * f + 0.14,
+        "gamma_R_minus": 2.06 * f + 0.14,
+        "epsilon": -156.5 * f**2 + 41.6 * f - 1.76,
+        "kappa": 0.55 - 0.8 * f,
+        "f_alpha": 6.13 * aspect_ratio / (2.25 + aspect_ratio),
+    }
+    source = (
+        f"w_P0 Taylor; t_R, l_R, gamma_R, kappa {YOSHIMURA}; a_H Quadvlieg 2013; x_H Aoki et al. 2006; "
+        f"epsilon Kijima et al. 1990; f_alpha {FUJII}; through MANSIM"
+    )
+    return Estimate(values, source, *_within(form, (0.5, 0.85), (4.0, 8.0), (2.0, 4.5)))
+
+
+def cross_flow(C_D: float, C_rY: float, C_rN: float) -> dict[str, float]:
+    """Cubic coefficients that stand in for a cross-flow drag integral of Yoshimura's low-speed model.
+
+    -C_D integral of |v' + C x r'| (v' + C x r') over x in [-1/2, 1/2], C = C_rY for the force and C_rN for the
+    moment, fitted by least squares over |v'| <= 0.5, |r'| <= 1 (uniform), where U' = 1.
+    """
+    import numpy as np
+
+    v, r = (a.ravel() for a in np.meshgrid(np.linspace(-0.5, 0.5, 21), np.linspace(-1.0, 1.0, 21)))
+    x = (np.arange(100) + 0.5) / 100 - 0.5
+    flow_Y, flow_N = (v[:, None] + c * x * r[:, None] for c in (C_rY, C_rN))
+    Y = -C_D * np.mean(np.abs(flow_Y) * flow_Y, axis=1)
+    N = -C_D * np.mean(np.abs(flow_N) * flow_N * x, axis=1)
+    terms = np.column_stack([v**3, v**2 * r, v * r**2, r**3])
+    names = ("vvv", "vvr", "vrr", "rrr")
+    fit_Y, fit_N = (np.linalg.lstsq(terms, force, rcond=None)[0] for force in (Y, N))
+    both = zip(("Y", "N"), (fit_Y, fit_N), strict=True)
+    return {f"{force}_{name}": float(value) for force, fit in both for name, value in zip(names, fit, strict=True)}

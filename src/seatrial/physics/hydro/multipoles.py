@@ -1,0 +1,164 @@
+"""Added mass, damping and wave excitation of a Lewis section in beam waves by multipoles (Ursell 1949; Tasai 1959).
+
+Deep water, per unit length, exp(+i omega t), axes of the section: x to the side, y down, roll turns x to y. A wave
+travels towards +x; its elevation at the centre line is cos(omega t), positive up. Sway and roll couple; heave stands
+alone. What is not computed: depth, side walls, viscosity.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatrial.core.values import Array, InputError
+from seatrial.physics.hydro.dispersion import G, group_velocity
+from seatrial.physics.hydro.lewis import LewisForm
+
+Complex = NDArray[np.complex128]
+RHO = 1000.0
+TERMS, NODES = 16, 100
+
+
+class Motion(StrEnum):
+    """A motion of the section; heave down."""
+
+    SWAY = "sway"
+    HEAVE = "heave"
+    ROLL = "roll"
+
+
+@dataclass(frozen=True)
+class Hydrodynamics:
+    """Per m of length at one frequency.
+
+    Attributes:
+        added, damping: kg/m and kg/(s m), for roll kg m and kg m/s.
+        excitation: complex force (moment) on the held section per m of wave amplitude, along the motion.
+        radiated: outgoing wave amplitude to one side per velocity of the motion, s (s m for roll).
+    """
+
+    added: float
+    damping: float
+    excitation: complex
+    radiated: float
+
+
+def hydrodynamics(form: LewisForm, omega: float, motion: Motion, axis: float = 0.0) -> Hydrodynamics:
+    """Radiation by the multipoles, excitation by Green's theorem over the contour (Haskind 1957; Newman 1977, chap. 6).
+
+    Args:
+        omega: rad/s.
+        axis: depth below the waterline about which the section rolls, m.
+
+    Raises:
+        InputError: the frequency is not positive.
+    """
+    if not omega > 0.0:
+        raise InputError(f"the frequency must be positive, not {omega:g} rad/s")
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    theta, weights = 0.25 * np.pi * (nodes + 1.0), 0.25 * np.pi * weights
+    (x, y), (dx, dy) = form.points(theta), form.tangents(theta)
+    flux = _flux(motion, x, y, dx, dy, axis)
+    potential, strength = _potential(form, omega, motion, theta, axis)
+    wave, crossing = _incident(omega, motion, x, y, dx, dy)
+    force = 1j * omega * RHO
+    radiation = force * 2.0 * np.sum(weights * potential * flux)
+    excitation = -force * 2.0 * np.sum(weights * (wave * flux - potential * crossing))
+    height = omega * np.pi * abs(strength) / G
+    if motion is not Motion.HEAVE:
+        height *= omega**2 / G
+    return Hydrodynamics(float(radiation.imag / omega), float(radiation.real), complex(excitation), float(height))
+
+
+def haskind_damping(excitation: float, omega: float, depth: float = np.inf) -> float:
+    """b = |X|^2 / (2 rho g c_g) per unit length of a symmetric section (Haskind 1957; Newman 1977, chap. 6).
+
+    The section sends a wave of amplitude A to each side: b V^2 / 2 = 2 (rho g A^2 / 2) c_g, and X = 2 rho g c_g A / V.
+
+    Args:
+        excitation: amplitude in N/m per m of wave amplitude.
+    """
+    return excitation**2 / (2.0 * RHO * G * float(group_velocity(omega, depth)))
+
+
+def _flux(motion: Motion, x: Array, y: Array, dx: Array, dy: Array, axis: float) -> Array:
+    """Velocity of the unit motion into the section times element: U_x dy - U_y dx from keel to waterline."""
+    if motion is Motion.HEAVE:
+        return -dx
+    return dy if motion is Motion.SWAY else -(x * dx + (y - axis) * dy)
+
+
+def _potential(form: LewisForm, omega: float, motion: Motion, theta: Array, axis: float) -> tuple[Complex, complex]:
+    """Potential on the contour at unit velocity, and the strength of the source or dipole at the origin.
+
+    The stream function on the body is that of the body's own motion up to a constant: least squares over the contour.
+    """
+    nu = omega**2 / G
+    x, y = form.points(theta)
+    if motion is Motion.HEAVE:
+        first = _source(x, y, nu)
+        target, parity = -x, 0
+    else:
+        first = _dipole(x, y, nu)
+        target, parity = (y if motion is Motion.SWAY else -0.5 * (x**2 + (y - axis) ** 2)), 1
+    even = parity == 0
+    phis = [first[0], *_multipoles(form, nu, theta, parity, np.cos if even else np.sin)]
+    psis = [first[1], *_multipoles(form, nu, theta, parity, np.sin if even else _minus_cos), np.ones_like(theta)]
+    solved = np.linalg.lstsq(np.stack(psis, axis=1).astype(complex), target.astype(complex), rcond=None)[0]
+    potential = np.stack(phis, axis=1).astype(np.complex128) @ solved[:-1]
+    return np.asarray(potential, dtype=np.complex128), complex(solved[0])
+
+
+def _minus_cos(angle: Array) -> Array:
+    return -np.cos(angle)
+
+
+def _multipoles(form: LewisForm, nu: float, theta: Array, parity: int, trig: Callable[[Array], Array]) -> list[Array]:
+    """Wave-free potentials on the contour, order 2m + parity (Tasai 1959, 1961)."""
+    scaled = nu * form.scale
+    return [
+        trig(n * theta)
+        + scaled
+        * (
+            trig((n - 1) * theta) / (n - 1)
+            + form.a1 * trig((n + 1) * theta) / (n + 1)
+            - 3.0 * form.a3 * trig((n + 3) * theta) / (n + 3)
+        )
+        for n in range(2 + parity, 2 * TERMS + 2 + parity, 2)
+    ]
+
+
+def _source(x: Array, y: Array, nu: float) -> tuple[Complex, Complex]:
+    """phi_c - i phi_s and psi_c - i psi_s of the pulsating source at the origin (Ursell 1949).
+
+    The integral over wave numbers is e^(i nu w) E1(i nu w), w = x + i y.
+    """
+    from scipy.special import exp1
+
+    w = x + 1j * y
+    cosine = np.pi * np.exp(1j * nu * w)
+    sine = -1j * cosine - np.exp(1j * nu * w) * exp1(1j * nu * w)
+    return cosine.real - 1j * sine.real, cosine.imag - 1j * sine.imag
+
+
+def _dipole(x: Array, y: Array, nu: float) -> tuple[Complex, Complex]:
+    """The derivative of the source in x: horizontal dipole."""
+    from scipy.special import exp1
+
+    w = x + 1j * y
+    cosine = 1j * nu * np.pi * np.exp(1j * nu * w)
+    sine = -1j * cosine - (1j * nu * np.exp(1j * nu * w) * exp1(1j * nu * w) - 1.0 / w)
+    return cosine.real - 1j * sine.real, cosine.imag - 1j * sine.imag
+
+
+def _incident(omega: float, motion: Motion, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Complex, Complex]:
+    """Potential (i g / omega) e^(-nu y - i nu x) and its flux; only the part symmetric like the motion counts."""
+    nu = omega**2 / G
+    amplitude = 1j * G / omega * np.exp(-nu * y)
+    if motion is Motion.HEAVE:
+        wave, along = amplitude * np.cos(nu * x), -nu * amplitude * np.sin(nu * x)
+    else:
+        wave, along = -1j * amplitude * np.sin(nu * x), -1j * nu * amplitude * np.cos(nu * x)
+    return wave, along * dy + nu * wave * dx

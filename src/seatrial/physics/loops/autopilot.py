@@ -1,0 +1,194 @@
+"""Loops that follow a demand, gains and bounds from the plant: heading by rudder, speed by propulsion, pitch by fin.
+
+Start values place poles (Fossen 2021, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., section 15.3)
+on the plant of first or second order that has the same frequency response at the natural frequency asked for, so that
+they hold for any plant and are the textbook's own for a Nomoto ship. Bounds are the same at other frequencies.
+"""
+
+import math
+
+import numpy as np
+
+from seatrial.core.values import InputError, Parameter, Parameters
+from seatrial.physics.loops.block import Block
+from seatrial.physics.loops.loop import Term, TransferLoop
+
+FOSSEN = "pole placement, Fossen 2021, section 15.3"
+DAMPING = 0.8
+_SLOWEST, _START, _FASTEST = 0.75, 1.5, 6.0
+_STRONGEST = 10.0
+_FILTER = 0.1
+_LEAST = 1e-9
+MEANINGS = {"KP": "proportional gain", "KI": "gain of the integral", "KD": "gain of the filtered derivative"}
+UNITS = {"KP": "1", "KI": "1/s", "KD": "s"}
+Gains = dict[str, float]
+Bounded = tuple[float, float, float]
+
+
+def steering_gear(time_constant: float) -> Block:
+    """A lag of first order from the order to the rudder, s (Van Amerongen 1982, thesis, Delft, section 2.3)."""
+    if not time_constant > 0.0:
+        raise InputError(f"the steering gear's time constant must be positive, not {time_constant:g} s")
+    return Block("steering gear", (1.0,), (time_constant, 1.0))
+
+
+def heading_loop(
+    plant: Block,
+    disturbance: Block,
+    servo: tuple[Block, ...],
+    *,
+    name: str = "autopilot",
+    parts: tuple[str, ...] = ("KP", "KI", "KD"),
+    derivative_filter: float | None = None,
+    integral_lag: float = math.inf,
+    actuator: str = "delta",
+    disturbed_by: str = "",
+) -> TransferLoop:
+    """PD or PID on the heading error: KP + KI / s + KD s / (tau s + 1), from psi to the rudder [rad].
+
+    Args:
+        plant: from the rudder to the heading; it may be unstable, and turn either way. parts: gains to have.
+        derivative_filter: tau [s]; by default a tenth of 1 / omega of the fastest loop within the bounds.
+        integral_lag: T [s] of a slow lag T / (T s + 1) in place of 1 / s.
+
+    Raises:
+        InputError: the plant is of first order, parts are not those above, or a time constant is not positive.
+    """
+    if plant.order < 2:
+        raise InputError(f"block '{plant.name}' is no heading: its denominator needs the integrator s from yaw rate")
+    scale = mean_pole(plant)
+
+    def placed(omega: float) -> Gains:
+        inverse, slope = _local(plant, omega, integrators=1)
+        KP = omega**2 * slope
+        return {"KP": KP, "KI": 0.1 * omega * KP, "KD": 2.0 * DAMPING * omega * slope - inverse}
+
+    gains, sign = _between([placed(c * scale) for c in (_SLOWEST, _START, _FASTEST)], "KP")
+    tau = _FILTER / (_FASTEST * scale) if derivative_filter is None else derivative_filter
+    return _loop(
+        name, plant, disturbance, servo, sign, gains, parts, tau, integral_lag, ("psi", actuator, disturbed_by)
+    )
+
+
+def speed_loop(
+    plant: Block,
+    disturbance: Block,
+    servo: tuple[Block, ...],
+    *,
+    name: str = "speed control",
+    actuator: str = "n",
+    disturbed_by: str = "",
+) -> TransferLoop:
+    """PI on the speed error, from u to what drives her (propeller rate or jet velocity, its SI unit).
+
+    Raises:
+        InputError: the plant has no pole off the origin.
+    """
+    scale = mean_pole(plant)
+
+    def placed(omega: float) -> Gains:
+        inverse, slope = _local(plant, omega, integrators=0)
+        return {"KP": 2.0 * DAMPING * omega * slope - inverse, "KI": omega**2 * slope}
+
+    gains, sign = _between([placed(c * scale) for c in (_SLOWEST, _START, _FASTEST)], "KI")
+    parts, names = ("KP", "KI"), ("u", actuator, disturbed_by)
+    return _loop(name, plant, disturbance, servo, sign, gains, parts, math.inf, math.inf, names)
+
+
+def pitch_loop(
+    plant: Block,
+    disturbance: Block,
+    servo: tuple[Block, ...],
+    *,
+    name: str = "pitch fin",
+    parts: tuple[str, ...] = ("KP", "KI", "KD"),
+    derivative_filter: float | None = None,
+    output: str = "theta",
+    actuator: str = "delta_f1",
+    disturbed_by: str = "M5",
+) -> TransferLoop:
+    """PID on pitch (or heave) by a fin; gains in units of what the plant's resonance needs.
+
+    KD of 1 / |omega P| at the resonance halves the motion there; KP of 1 / |P(0)| doubles the stiffness.
+
+    Raises:
+        InputError: the plant does not answer a constant fin angle, or parts are not those above.
+    """
+    if not (math.isfinite(plant.gain) and plant.gain):
+        raise InputError(f"block '{plant.name}' has no restoring: a constant actuator gives no constant answer")
+    omega = np.geomspace(0.05, 20.0, 400) * mean_pole(plant)
+    place = int(np.argmax(np.abs(plant.at(omega))))
+    top, damped = float(omega[place]), 1.0 / float(np.abs(plant.at(omega[place : place + 1]))[0])
+    start = {"KP": 0.0, "KI": 0.0, "KD": damped / top}
+    stiff = 1.0 / abs(plant.gain)
+    most = {"KP": 2.0 * stiff, "KI": 0.5 * top * stiff, "KD": _STRONGEST * damped / top}
+    sign = math.copysign(1.0, float(np.imag(1.0 / plant.at(omega[place : place + 1]))[0]))
+    tau = _FILTER / top if derivative_filter is None else derivative_filter
+    gains = {gain: (0.0, start[gain], most[gain]) for gain in start}
+    names = (output, actuator, disturbed_by)
+    return _loop(name, plant, disturbance, servo, sign, gains, parts, tau, math.inf, names)
+
+
+def mean_pole(plant: Block) -> float:
+    """Geometric mean of the plant's poles off the origin, rad/s.
+
+    Raises:
+        InputError: it has none.
+    """
+    sizes = np.abs(plant.poles)
+    some = sizes[sizes > _LEAST * sizes.max(initial=0.0)]
+    if not some.size:
+        raise InputError(f"block '{plant.name}' has no pole off the origin; there is no frequency to scale gains by")
+    return float(np.exp(np.mean(np.log(some))))
+
+
+def _local(plant: Block, omega: float, *, integrators: int) -> tuple[float, float]:
+    """1 / K and T / K of the lag K / (T s + 1), behind so many integrators, that P is at that frequency."""
+    s = 1j * omega
+    inverse = complex(1.0 / (s**integrators * plant.at(np.array([omega]))[0]))
+    return inverse.real, inverse.imag / omega
+
+
+def _between(placed: list[Gains], leading: str) -> tuple[dict[str, Bounded], float]:
+    """Lower bound, value and upper bound of each gain, none negative, and the sign of the plant."""
+    low, start, most = placed
+    sign = math.copysign(1.0, most[leading])
+    made = {}
+    for gain, value in most.items():
+        upper = max(sign * value, 0.0) or abs(value)
+        lower, begun = (min(max(sign * one[gain], 0.0), upper) for one in (low, start))
+        made[gain] = (min(lower, begun), begun, upper)
+    return made, sign
+
+
+def _loop(
+    name: str, plant: Block, disturbance: Block, servo: tuple[Block, ...], sign: float,
+    gains: dict[str, Bounded], parts: tuple[str, ...], tau: float, lag: float, names: tuple[str, str, str],
+) -> TransferLoop:  # fmt: skip
+    if not parts or set(parts) - set(gains):
+        raise InputError(f"loop '{name}': its gains are {', '.join(gains)}, not {', '.join(parts) or 'none'}")
+    if not (tau > 0.0 and lag > 0.0):
+        raise InputError(f"loop '{name}': derivative filter {tau:g} s and integral lag {lag:g} s must be positive")
+    blocks = {
+        "KP": Block("proportional"),
+        "KI": Block("integral", (1.0,), (1.0, 0.0)) if math.isinf(lag) else Block("slow lag", (lag,), (lag, 1.0)),
+        "KD": Block("derivative", (1.0, 0.0), (tau, 1.0)) if math.isfinite(tau) else Block("none", (0.0,)),
+    }
+    output, actuator, disturbed_by = names
+    return TransferLoop(
+        name,
+        sensor=(),
+        terms=tuple(Term(gain, blocks[gain]) for gain in parts),
+        filters=() if sign > 0.0 else (Block("reversed", (-1.0,)),),
+        servo=servo,
+        plant=plant,
+        disturbance=disturbance,
+        gains=Parameters(tuple(_gain(gain, *gains[gain]) for gain in parts)),
+        output=output,
+        actuator=actuator,
+        disturbed_by=disturbed_by or actuator,
+    )
+
+
+def _gain(name: str, lower: float, value: float, upper: float) -> Parameter:
+    return Parameter(name, value, UNITS[name], lower, upper, free=True, source=FOSSEN, meaning=MEANINGS[name])

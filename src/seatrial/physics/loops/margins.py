@@ -1,0 +1,106 @@
+"""How near a loop is to instability, at its own gains."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from seatrial.core.values import Array
+from seatrial.physics.hydro.excitation import Complex
+from seatrial.physics.loops.loop import TransferLoop
+
+_SAMPLES = 2000
+
+
+@dataclass(frozen=True)
+class Margins:
+    """Of one loop; nan where it is unstable.
+
+    Attributes:
+        is_stable: all closed-loop poles lie left of the axis; peak: Ms, the largest |S|, infinite if unstable;
+        peak_at: rad/s.
+        gain: the factor that the loop gain may grow by, infinite if any.
+        phase: rad, positive: the least that L may turn, either way, where its size is one; infinite if it never is.
+        delay: s of dead time that the loop bears: the least lag up to -1 over the frequency, infinite if any.
+        damping: the least damping ratio of a closed-loop pole.
+    """
+
+    is_stable: bool
+    peak: float
+    peak_at: float
+    gain: float
+    phase: float
+    delay: float
+    damping: float
+
+
+def band(loop: TransferLoop) -> tuple[float, float]:
+    """Frequencies [rad/s] between which everything of the loop happens.
+
+    A little more than from the slowest to the fastest of its poles and zeros; beside the open ones those that swing
+    when it is closed at its own gains or with all at their upper bounds, as integrators let it.
+    """
+    d, n = loop.polynomials
+    bounds = np.array([gain.upper for gain in loop.gains])
+    closed = d + loop.values @ n, d + np.where(np.isfinite(bounds), bounds, loop.values) @ n
+    swinging = [roots[np.abs(roots.imag) > 0.5 * np.abs(roots.real)] for roots in (np.roots(row) for row in closed)]
+    roots = np.abs(np.concatenate([np.roots(d), *(np.roots(row) for row in n), *swinging]))
+    some = roots[roots > 1e-6]
+    return (0.3 * float(some.min()), 2.0 * float(some.max())) if some.size else (1e-2, 1e2)
+
+
+def sensitivity(loop: TransferLoop, omega: Array) -> Array:
+    """|S| of the loop at omega [rad/s], (n,)."""
+    return 1.0 / np.abs(1.0 + loop.open(omega))
+
+
+def peak_of(loop: TransferLoop) -> tuple[float, float]:
+    """Ms and where it is [rad/s], to rounding, by a search about the largest sample; the loop must be stable."""
+    u = _samples(loop)
+    place = int(np.argmax(sensitivity(loop, np.exp(u))))
+    ends = u[max(place - 1, 0)], u[min(place + 1, _SAMPLES - 1)]
+    found = minimize_scalar(
+        lambda v: -float(sensitivity(loop, np.exp(np.array([v])))[0]), bounds=ends, method="bounded",
+        options={"xatol": 1e-9},
+    )  # fmt: skip
+    return max(-float(found.fun), 1.0), math.exp(float(found.x))
+
+
+def margins(loop: TransferLoop) -> Margins:
+    """The margins at the loop's gains; Ms to rounding, by a search about the largest sample."""
+    poles = loop.closed_poles
+    damping = float(np.min(-poles.real / np.maximum(np.abs(poles), 1e-300)))
+    if not np.all(poles.real < 0.0):
+        return Margins(False, math.inf, math.nan, math.nan, math.nan, math.nan, damping)
+    peak, at = peak_of(loop)
+    turned, axis = _crossings(loop, lambda z: np.abs(z) - 1.0), _crossings(loop, lambda z: z.imag)
+    lag = np.mod(np.angle(loop.open(turned)) + math.pi, 2.0 * math.pi)
+    factors = -1.0 / loop.open(axis).real
+    return Margins(
+        True, peak, at, _least(factors[factors > 1.0]), _least(np.minimum(lag, 2.0 * math.pi - lag)),
+        _least(lag / turned), damping,
+    )  # fmt: skip
+
+
+def _samples(loop: TransferLoop) -> Array:
+    """Logarithms of frequencies over the band and all closed poles: a weak loop that integrates crosses one early."""
+    low, high = band(loop)
+    poles = np.abs(loop.closed_poles)
+    return np.linspace(math.log(min(low, 0.3 * poles.min())), math.log(max(high, 2.0 * poles.max())), _SAMPLES)
+
+
+def _crossings(loop: TransferLoop, of: Callable[[Complex], Array]) -> Array:
+    """Frequencies [rad/s] at which a function of L changes its sign."""
+    u = _samples(loop)
+    rises = np.flatnonzero(np.diff(np.sign(of(loop.open(np.exp(u))))))
+
+    def along(v: float) -> float:
+        return float(of(loop.open(np.exp(np.array([v]))))[0])
+
+    return np.exp(np.array([float(brentq(along, u[i], u[i + 1], xtol=1e-13)) for i in rises]))  # type: ignore[arg-type]
+
+
+def _least(values: Array) -> float:
+    return float(values.min()) if values.size else math.inf

@@ -1,0 +1,55 @@
+"""Sums that stand for integrals: trapezoids with mended ends, and many nodes gathered on few."""
+
+from itertools import pairwise
+
+import numpy as np
+from scipy.special import bernoulli
+
+from seatrial.core.values import Array
+
+_ORDER = 8
+_ENDS = 1.0 + np.linalg.solve(
+    np.vander(np.arange(float(_ORDER)), increasing=True).T, bernoulli(_ORDER)[1:] / np.arange(1.0, _ORDER + 1.0)
+)
+# rad/s: below, gathered nodes are even in frequency, above in its logarithm
+_LINEAR = 0.05
+
+
+def weights(count: int) -> Array:
+    """Of trapezoids (count,), 16 or more, in steps: of order 8 at both ends (Gregory 1670; Euler-Maclaurin)."""
+    made = np.ones(count)
+    made[:_ORDER] *= _ENDS
+    made[: -_ORDER - 1 : -1] *= _ENDS
+    return made
+
+
+def nodes(edges: tuple[float, ...], count: int) -> tuple[Array, Array]:
+    """`count` nodes, between all edges as many, even in their logarithm, and the width that each stands for."""
+    made: list[Array] = []
+    width: list[Array] = []
+    own = count // (len(edges) - 1)
+    for low, high in pairwise(np.log(edges)):
+        u, step = np.linspace(low, high, own, retstep=True)
+        made.append(np.exp(u))
+        width.append(made[-1] * weights(own) * step)
+    return np.concatenate(made), np.concatenate(width)
+
+
+def gathered(omega: Array, energy: Array, count: int) -> tuple[Array, Array]:
+    """The same sums over energy on `count` nodes: each energy goes to its eight neighbours by Lagrange.
+
+    What is summed must be smooth over arsinh(20 omega), as the response of a loop is. Single energies may come out
+    negative.
+    """
+    x = np.arcsinh(omega / _LINEAR)
+    step = float(x.max()) / (count - 0.5)
+    # the first one stands half a step from zero, where plants may integrate
+    at = x / step - 0.5
+    first = np.clip(np.floor(at).astype(int) - _ORDER // 2 + 1, 0, count - _ORDER)
+    u, place = at - first, np.arange(_ORDER)
+    made = np.zeros(count)
+    for j in place:
+        others = place[place != j]
+        share = np.prod((u[:, None] - others) / (j - others), axis=1)
+        made += np.bincount(first + j, share * energy, count)
+    return _LINEAR * np.sinh((np.arange(count) + 0.5) * step), made

@@ -1,0 +1,198 @@
+"""The states behind a loop, for simulation, Lyapunov checks and other programs; linear in the gains as the loop is."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import sympy as sp
+
+from seatrial.core.equations import Model, Sheet
+from seatrial.core.values import Array, InputError
+from seatrial.physics.loops.block import Block
+from seatrial.physics.loops.loop import TransferLoop
+
+
+@dataclass(frozen=True, eq=False)
+class StateSpace:
+    """x' = (A_0 + sum gain_i A_i) x + b w, y = c x, a = (a_0 + sum gain_i a_i) x; first axis of a, A: 1 + g.
+
+    Attributes:
+        names: of the states, by block; A: (1 + g, n, n); b: (n,); c: (n,), the output; a: (1 + g, n), the actuator.
+    """
+
+    names: tuple[str, ...]
+    A: Array
+    b: Array
+    c: Array
+    a: Array
+
+    def closed(self, gains: Array) -> Array:
+        """A at those gains, (n, n)."""
+        return self.A[0] + np.tensordot(gains, self.A[1:], 1)
+
+    def actuator(self, gains: Array) -> Array:
+        """Row that gives the actuator, (n,)."""
+        return self.a[0] + gains @ self.a[1:]
+
+
+def canonical(block: Block) -> tuple[Array, Array, Array, float]:
+    """A, b, c, d of a block: controllable form with each state scaled by the size of the poles."""
+    den = np.array(block.den) / block.den[0]
+    num = np.concatenate([np.zeros(len(den) - len(block.num)), np.array(block.num) / block.den[0]])
+    n, d = block.order, float(num[0])
+    size = max(float(np.abs(den[-1])) ** (1.0 / n), 1e-3) if n and den[-1] else 1.0
+    powers = size ** np.arange(n)
+    A = np.diag(np.full(max(n - 1, 0), size), -1) if n else np.zeros((0, 0))
+    b = np.zeros(n)
+    if n:
+        A[0] = -den[1:] / powers
+        b[0] = 1.0
+    return A, b, (num[1:] - d * den[1:]) / powers, d
+
+
+def state_space(loop: TransferLoop) -> StateSpace:
+    """States of plant, sensor, terms, filters and servo in a row; the disturbance's own where it shares no poles.
+
+    Raises:
+        InputError: plant or disturbance answers at once, so that an algebraic loop would have to be solved.
+    """
+    own = loop.disturbance.den != loop.plant.den
+    terms = tuple(term.block for term in loop.terms)
+    blocks = (loop.plant, *((loop.disturbance,) if own else ()), *loop.sensor, *terms, *loop.filters, *loop.servo)
+    first = np.cumsum([0, *(block.order for block in blocks)])
+    n, g = int(first[-1]), len(terms)
+    A, b, c = np.zeros((1 + g, n, n)), np.zeros(n), np.zeros(n)
+    where = [slice(int(i), int(j)) for i, j in pairwise(first)]
+    place = iter(zip(where, blocks, strict=True))
+
+    def through(signal: Array) -> Array:
+        """The next block's answer to a signal, (1 + g, n) over the states."""
+        at, block = next(place)
+        own_A, own_b, own_c, d = canonical(block)
+        A[0, at, at] += own_A
+        A[:, at] += own_b[:, None] * signal[:, None, :]
+        out = d * signal
+        out[0, at] += own_c
+        return out
+
+    for what, block in (("plant", loop.plant), ("disturbance", loop.disturbance)):
+        if len(block.num) == len(block.den):
+            raise InputError(f"the {what} of loop '{loop.name}' answers at once; give the lag that every real one has")
+    at, plant = next(place)
+    plant_A, plant_b, plant_c = _observable(plant, None if own else loop.disturbance)
+    A[0, at, at], c[at] = plant_A, plant_c
+    if own:
+        into, block = next(place)
+        own_A, own_b, own_c, _ = canonical(block)
+        A[0, into, into], b[into], c[into] = own_A, own_b, own_c
+    else:
+        b[at] = plant_b[:, 1]
+    signal = np.zeros((1 + g, n))
+    signal[0] = -c
+    for _ in loop.sensor:
+        signal = through(signal)
+    ordered = np.zeros((1 + g, n))
+    for i in range(g):
+        ordered[1 + i] = through(signal)[0]
+    for _ in (*loop.filters, *loop.servo):
+        ordered = through(ordered)
+    A[:, at] += plant_b[:, 0][:, None] * ordered[:, None, :]
+    names = tuple(f"x_{i}_{_word(block.name)}" for i, block in enumerate(blocks) for _ in range(block.order))
+    return StateSpace(tuple(f"{name}_{i}" for i, name in enumerate(names)), A, b, c, ordered)
+
+
+def _observable(plant: Block, disturbance: Block | None) -> tuple[Array, Array, Array]:
+    """A (n, n), b (n, 2) of actuator and disturbance, c (n,): observable form, so that both share the states."""
+    den, n = np.array(plant.den) / plant.den[0], plant.order
+    A = np.diag(np.ones(max(n - 1, 0)), 1)
+    A[:, 0] = -den[1:]
+    b = np.zeros((n, 2))
+    for column, block in enumerate((plant, disturbance)):
+        if block is not None:
+            num = np.array(block.num) / plant.den[0]
+            b[n - len(num) :, column] = num
+    return A, b, np.eye(n)[0]
+
+
+def _word(name: str) -> str:
+    return "".join(character if character.isalnum() else "_" for character in name)
+
+
+def loop_model(loop: TransferLoop) -> Model:
+    """The closed loop as a model of the house: its gains are parameters, free where the loop's are.
+
+    The input is the disturbance, measurable outputs are the loop's output and actuator; all angles in rad.
+    """
+    made = state_space(loop)
+    sheet = Sheet(f"{_word(loop.name)}_loop", "assembled from the loop's blocks", "a closed loop, linear")
+    x = sheet.states(" ".join(made.names))
+    w = sheet.input(loop.disturbed_by)
+    gains = [
+        sheet.parameter(p.name, p.value, p.unit, p.meaning, p.source, free=p.free, lower=p.lower, upper=p.upper)
+        for p in loop.gains
+    ]
+
+    def along(rows: Array) -> sp.Expr:
+        """Rows (1 + g, n) as an expression."""
+        whole = sp.Integer(0)
+        for factor, row in zip((sp.Integer(1), *gains), rows, strict=True):
+            whole += factor * sp.Add(*(float(v) * s for v, s in zip(row, x, strict=True) if v))
+        return whole
+
+    for i, state in enumerate(x):
+        sheet.rate(state, along(made.A[:, i]) + float(made.b[i]) * w, "blocks in series")
+    sheet.output(loop.output, along(np.vstack([made.c, np.zeros((len(gains), len(x)))])), "plant", "rad")
+    sheet.output(loop.actuator, along(made.a), "servo", "rad")
+    return sheet.model()
+
+
+def plant_model(loop: TransferLoop) -> Model:
+    """Plant and disturbance of a loop as a model of the house, its output being a state.
+
+    Inputs are the actuator and the disturbance (``disturbance`` where the loop has no symbol of its own for it).
+    Observable form over the common denominator; coefficients are fixed parameters, so that plants of one order share
+    their machine code.
+
+    Raises:
+        InputError: plant or disturbance answers at once.
+    """
+    den, pushed, met = _common(loop.plant, loop.disturbance)
+    n = len(den) - 1
+    if max(len(pushed), len(met)) > n:
+        raise InputError(f"the plant of loop '{loop.name}' answers at once; give the lag that every real one has")
+    sheet = Sheet(f"linear_plant_{n}", "assembled from the loop's blocks", "a plant known by its transfer functions")
+    x = sheet.states(" ".join([loop.output, *(f"x_{i}" for i in range(1, n))]))
+    own = loop.disturbed_by not in ("", loop.actuator)
+    u, w = sheet.input(loop.actuator), sheet.input(loop.disturbed_by if own else "disturbance")
+    sides = (("a", den[1:], "denominator"), ("b", pushed, loop.plant.name), ("d", met, loop.disturbance.name))
+    rows = []
+    for letter, values, meaning in sides:
+        full = np.concatenate([np.zeros(n - len(values)), values])
+        rows.append([sheet.parameter(f"{letter}_{i}", float(v), "", meaning) for i, v in enumerate(full)])
+    for i, (state, a, b, d) in enumerate(zip(x, *rows, strict=True)):
+        sheet.rate(state, (x[i + 1] if i + 1 < n else 0) - a * x[0] + b * u + d * w, "observable form")
+    return sheet.model()
+
+
+def _common(plant: Block, disturbance: Block) -> tuple[Array, Array, Array]:
+    """Common denominator, leading 1, and both numerators over it; the larger where one denominator holds the other."""
+    p, d = np.array(plant.den), np.array(disturbance.den)
+    over_p, over_d = _quotient(p, d), _quotient(d, p)
+    if over_p is not None:
+        den, left, right = p, np.ones(1), over_p
+    elif over_d is not None:
+        den, left, right = d, over_d, np.ones(1)
+    else:
+        den, left, right = np.polymul(p, d), d, p
+    top = den[0]
+    return den / top, np.polymul(plant.num, left) / top, np.polymul(disturbance.num, right) / top
+
+
+def _quotient(whole: Array, part: Array) -> Array | None:
+    """whole / part where it leaves no rest."""
+    if len(part) > len(whole):
+        return None
+    quotient, rest = np.polydiv(whole, part)
+    if np.any(np.abs(rest) > 1e-12 * np.abs(whole).max()):
+        return None
+    return np.atleast_1d(np.asarray(quotient, dtype=np.float64))

@@ -1,0 +1,97 @@
+"""Track and speed of a record: where the ship was, how fast, and when her heading had changed by so much."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from seatrial.core.values import Array, Record
+from seatrial.physics.manoeuvres.observed import Observed
+
+
+@dataclass(frozen=True, eq=False)
+class Swing:
+    """A heading change to one side from the time of an execute.
+
+    Attributes:
+        seen: the record.
+        start: time of the execute [s].
+        side: +1 to starboard, -1 to port.
+    """
+
+    seen: Observed
+    start: float
+    side: float
+
+    def time_of(self, change: float) -> float | None:
+        """First time [s] at which the heading has changed by `change` [rad] to this side, or None."""
+        time = self.seen.record.time
+        deviation = self.side * (self.seen.psi - self.seen.psi_at(self.start)) - change
+        rows = np.flatnonzero((deviation >= 0.0) & (time >= self.start))
+        if not len(rows):
+            return None
+        row = int(rows[0])
+        if row == 0 or time[row - 1] < self.start:
+            return float(time[row])
+        a, b = float(deviation[row - 1]), float(deviation[row])
+        return float(time[row - 1] - a / (b - a) * (time[row] - time[row - 1])) if b > a else float(time[row])
+
+    def displacement(self, time: float) -> tuple[float, float] | None:
+        """Distance along the original course and across it to this side [m] since the execute; None without x0, y0.
+
+        The course is the heading at the execute (MSC.137(76), definitions 4.2.3 and 4.2.4).
+        """
+        record = self.seen.record
+        if "x0" not in record or "y0" not in record:
+            return None
+        known = np.isfinite(record["x0"]) & np.isfinite(record["y0"])
+        if np.count_nonzero(known) < 2:
+            return None
+        when = (self.start, time)
+        dx, dy = (float(np.diff(np.interp(when, record.time[known], record[s][known]))[0]) for s in ("x0", "y0"))
+        course = self.seen.psi_at(self.start)
+        along = dx * np.cos(course) + dy * np.sin(course)
+        across = -dx * np.sin(course) + dy * np.cos(course)
+        return float(along), float(self.side * across)
+
+
+def speed(record: Record) -> Array | None:
+    """Speed [m/s] over the samples, shape (n,), from u and v (through water or over ground, as recorded), or None."""
+    if "u" not in record:
+        return None
+    sway = record["v"] if "v" in record else np.zeros(len(record))
+    return np.hypot(record["u"], sway)
+
+
+def mean_between(record: Record, values: Array, start: float, stop: float) -> float | None:
+    """Mean of the finite values with start <= t <= stop, or the nearest sample's, or None."""
+    inside = (record.time >= start) & (record.time <= stop) & np.isfinite(values)
+    if inside.any():
+        return float(np.mean(values[inside]))
+    nearest = float(values[int(np.argmin(np.abs(record.time - start)))])
+    return nearest if np.isfinite(nearest) else None
+
+
+def steady(swing: Swing, stop: float, length: float, approach: float | None) -> dict[str, float]:
+    """Steady turning measures over the last 180 deg of heading before `stop` [s]; none before 360 deg are turned.
+
+    Yaw rate [deg/s], drift [deg] (positive with the bow into the turn), final diameter 2 U / r [L], loss of speed.
+    """
+    turned = swing.side * (swing.seen.psi_at(stop) - swing.seen.psi_at(swing.start))
+    begin = swing.time_of(turned - np.pi)
+    if turned < 2.0 * np.pi - 1e-3 or begin is None:
+        return {}
+    record = swing.seen.record
+    rate = np.pi / (stop - begin)
+    made = {"steady_yaw_rate_deg_s": float(np.degrees(rate))}
+    flow = speed(record)
+    mean = None if flow is None else mean_between(record, flow, begin, stop)
+    if mean is None:
+        return made
+    made["steady_diameter_L"] = 2.0 * mean / rate / length
+    if approach:
+        made["speed_loss"] = 1.0 - mean / approach
+    if "v" in record:
+        drift = mean_between(record, -swing.side * np.arctan2(record["v"], record["u"]), begin, stop)
+        if drift is not None:
+            made["steady_drift_deg"] = float(np.degrees(drift))
+    return made

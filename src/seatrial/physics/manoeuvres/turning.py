@@ -1,0 +1,36 @@
+"""The helmsman of turning circle and pull-out: hold the rudder over until the heading has changed by so much.
+
+ISO 13643-3:2017 (turning circle, pull-out); IMO MSC/Circ.1053 (2002): at least 540 deg of heading.
+"""
+
+from numba import njit
+
+from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
+from seatrial.physics.manoeuvres.steering import (
+    APPROACH,
+    SINCE,
+    STAGE,
+    TABLE,
+    deviation,
+    next_stage,
+    turn_rudder,
+    under_way,
+)
+
+
+@njit(COMMAND_SIGNATURE, **OPTIONS)
+def helmsman(t, x, memory, u):
+    """Table: rudder order, heading change that ends the turn [rad, both positive to starboard].
+
+    A second stage puts the rudder amidships for as long as the turn has taken.
+    """
+    order = 0.0
+    if under_way(t, x, memory):
+        if memory[STAGE] == 1.0:
+            over = deviation(x, memory) / memory[TABLE + 1] >= 1.0
+        else:
+            over = t - memory[SINCE] >= memory[SINCE] - memory[APPROACH]
+        if over:
+            next_stage(t, memory)
+        order = memory[TABLE] if memory[STAGE] == 1.0 else 0.0
+    turn_rudder(memory, order, u)

@@ -1,0 +1,105 @@
+"""The Taylor expansion of Abkowitz in three degrees of freedom, to third order, with every usual term.
+
+Generated once; a subset of terms is a mask: the others stay fixed at zero. Axes at midship, x forward, y starboard;
+positive rudder turns to starboard (so Y_d < 0 < N_d). u in a subscript is the deviation from the nominal speed U_n.
+Rigid-body terms are written out, so the derivatives hold hydrodynamic forces only.
+
+Prime system (SNAME 1950, "prime I"): X' = X / (rho/2 L^2 U^2), N' = N / (rho/2 L^3 U^2), mass rho/2 L^3,
+v' = v / U, r' = r L / U, u' = (u - U_n) / U. `prime` = 1 takes the instantaneous speed for U (as Chislett &
+Stroem-Tejsen 1965 for the Mariner), 0 the nominal speed U_n, which makes it a plain Taylor series.
+"""
+
+from collections.abc import Sequence
+from functools import cache
+
+import sympy as sp
+
+from seatrial.core.equations import Model, Sheet
+from seatrial.physics.models.pose import pose_rates
+
+ABKOWITZ = "Abkowitz 1964, Hydro- and Aerodynamics Laboratory report Hy-5"
+TERMS_SOURCE = "Abkowitz 1964, Taylor series; terms of Chislett & Stroem-Tejsen 1965, Hy-6"
+SNAME = "SNAME 1950, TR 1-5, prime system"
+
+X_TERMS = (
+    "0", "u", "uu", "uuu", "vv", "rr", "dd", "vr", "vd", "rd", "vvu", "rru", "ddu", "vru", "vdu", "rdu",
+)  # fmt: skip
+# 0u, 0uu: asymmetry that changes with u
+Y_TERMS = N_TERMS = (
+    "0", "0u", "0uu", "v", "r", "d", "vvv", "vvr", "vrr", "rrr", "vvd", "vdd", "ddd", "rrd", "rdd", "vrd",
+    "vu", "vuu", "ru", "ruu", "du", "duu",
+)  # fmt: skip
+TERMS = (*(f"X_{t}" for t in X_TERMS), *(f"Y_{t}" for t in Y_TERMS), *(f"N_{t}" for t in N_TERMS))
+
+STANDARD = (
+    "X_u", "X_uu", "X_vv", "X_rr", "X_dd", "X_vr",
+    "Y_0", "Y_v", "Y_r", "Y_d", "Y_vvv", "Y_vvr", "Y_vrr", "Y_rrr",
+    "N_0", "N_v", "N_r", "N_d", "N_vvv", "N_vvr", "N_vrr", "N_rrr",
+)  # fmt: skip
+LINEAR = ("X_u", "Y_v", "Y_r", "Y_d", "N_v", "N_r", "N_d")
+
+
+def _series(sheet: Sheet, force: str, terms: Sequence[str], variables: dict[str, sp.Symbol]) -> sp.Expr:
+    total = sp.Integer(0)
+    for term in terms:
+        sub = term.replace("d", r"\delta")
+        coefficient = sheet.parameter(f"{force}_{term}", 0.0, latex=f"{force}'_{{{sub}}}", scale=0.01)
+        total += coefficient * sp.Mul(*(variables[letter] for letter in term.replace("0", "")))
+    return total
+
+
+@cache
+def _full() -> Model:
+    sheet = Sheet("abkowitz", ABKOWITZ, "Taylor expansion to third order")
+    u, v, r, psi, x0, y0 = sheet.states("u v r psi x0 y0")
+    delta = sheet.input("delta")
+    L = sheet.parameter("L", unit="m", meaning="length between perpendiculars")
+    m = sheet.parameter("m", unit="kg", meaning="mass")
+    x_G = sheet.parameter("x_G", unit="m", meaning="centre of gravity forward of midship")
+    I_z = sheet.parameter("I_z", unit="kg m^2", meaning="yaw inertia about the centre of gravity")
+    rho = sheet.parameter("rho", unit="kg/m^3", meaning="water density")
+    U_n = sheet.parameter("U_n", unit="m/s", meaning="nominal speed about which is expanded", latex="U_n")
+    prime = sheet.parameter("prime", 1.0, meaning="1: instantaneous speed in the prime system, 0: nominal speed")
+    delta_0 = sheet.parameter("delta_0", 0.0, "rad", "added to the recorded rudder angle", scale=0.02)
+    X_udot, Y_vdot, Y_rdot, N_vdot, N_rdot = (
+        sheet.parameter(n, 0.0, latex=f"{n[0]}'_{{\\dot {n[2]}}}", meaning="added mass, negative", scale=0.01)
+        for n in ("X_udot", "Y_vdot", "Y_rdot", "N_vdot", "N_rdot")
+    )
+    U = sheet.bind("U", sp.sqrt(prime * (u**2 + v**2) + (1 - prime) * U_n**2 + sp.Float(1e-12)), SNAME, "m/s")
+    variables = {
+        "u": sheet.bind("du_p", (u - U_n) / U, f"u', {SNAME}"),
+        "v": sheet.bind("v_p", v / U, f"v', {SNAME}"),
+        "r": sheet.bind("r_p", L * r / U, f"r', {SNAME}"),
+        "d": sheet.bind("delta_R", delta + delta_0, "rudder angle with its zero", "rad"),
+    }
+    q = sheet.bind("q", rho / 2 * L**2 * U**2, SNAME, "N")
+    X = sheet.bind("X_sum", q * _series(sheet, "X", X_TERMS, variables), TERMS_SOURCE, "N")
+    Y = sheet.bind("Y_sum", q * _series(sheet, "Y", Y_TERMS, variables), TERMS_SOURCE, "N")
+    N = sheet.bind("N_sum", q * L * _series(sheet, "N", N_TERMS, variables), TERMS_SOURCE, "N m")
+    unit_mass = sheet.bind("m_L", rho / 2 * L**3, SNAME, "kg")
+    M_vv = sheet.bind("M_vv", m - Y_vdot * unit_mass, "Abkowitz 1964, inertia matrix", "kg")
+    M_vr = sheet.bind("M_vr", m * x_G - Y_rdot * unit_mass * L, "Abkowitz 1964, inertia matrix", "kg m")
+    M_rv = sheet.bind("M_rv", m * x_G - N_vdot * unit_mass * L, "Abkowitz 1964, inertia matrix", "kg m")
+    M_rr = sheet.bind("M_rr", I_z + m * x_G**2 - N_rdot * unit_mass * L**2, "Abkowitz 1964, inertia matrix", "kg m^2")
+    D = sheet.bind("D_M", M_vv * M_rr - M_vr * M_rv, "determinant of the inertia matrix", "kg^2 m^2")
+    X_m = sheet.bind("X_m", X + m * (v * r + x_G * r**2), "Abkowitz 1964, rigid body", "N")
+    Y_m = sheet.bind("Y_m", Y - m * u * r, "Abkowitz 1964, rigid body", "N")
+    N_m = sheet.bind("N_m", N - m * x_G * u * r, "Abkowitz 1964, rigid body", "N m")
+    sheet.rate(u, X_m / (m - X_udot * unit_mass), "Abkowitz 1964, rigid body")
+    sheet.rate(v, (Y_m * M_rr - N_m * M_vr) / D, "inertia matrix inverted")
+    sheet.rate(r, (N_m * M_vv - Y_m * M_rv) / D, "inertia matrix inverted")
+    pose_rates(sheet, u, v, r, psi, x0, y0)
+    return sheet.model()
+
+
+def abkowitz(terms: Sequence[str] = STANDARD) -> Model:
+    """The expansion with exactly the named derivatives free (of `TERMS`), all others fixed at zero.
+
+    States u, v, r, psi, x0, y0 at midship; input delta [rad]. Ship particulars L, m, x_G, I_z, rho and the nominal
+    speed U_n are given by the ship or the trial. Every subset has the same equations and the same compiled code.
+
+    Raises:
+        InputError: a term is unknown; the nearest is named.
+    """
+    model = _full()
+    return model.with_parameters(model.parameters.only_free(terms))

@@ -1,0 +1,322 @@
+"""MMG standard method in three degrees of freedom (Yasukawa & Yoshimura 2015), with the extensions real records need.
+
+Axes at midship, x forward, y starboard, psi clockwise; v is the sway velocity at midship; positive rudder turns to
+starboard. Forces are made dimensionless with rho/2 L d U^2, moments with rho/2 L^2 d U^2, r' = r L / U.
+
+Extensions, neutral at their default values: asymmetry (Y_0, N_0), rudder zero, side forces of a single screw
+(proportional to thrust, to delta^2, to n^2 astern), wind, a propeller turning astern, and continuation to zero and
+astern speed. For that, speeds in denominators carry the small constant U_0, odd terms change sign with the direction
+of advance as for a hull with fore-and-aft symmetry, and J_P never appears: with T / (rho D_P^2) = K_T (n D_P)^2 every
+expression is finite at n = 0 and u = 0. At u >> U_0 and n > 0 all of them are the published ones to (U_0/u)^2.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+
+import sympy as sp
+
+from seatrial.core.equations import Model, Sheet
+from seatrial.physics.models.pose import pose_rates
+
+YASUKAWA = "Yasukawa & Yoshimura 2015, J Mar Sci Technol 20, 37-52"
+EXTENSION = "extension for records"
+KITAGAWA = "after Kitagawa et al. 2015, as used by Miyauchi et al. 2022, doi 10.1007/s00773-022-00889-3"
+WIND = "Fujiwara et al. 1998, J. Soc. Nav. Archit. Japan 183, 77-90, Fourier series in the apparent direction"
+
+HULL_X = ("R_0", "X_vv", "X_vr", "X_rr", "X_vvvv")
+HULL_Y = ("Y_v", "Y_r", "Y_vvv", "Y_vvr", "Y_vrr", "Y_rrr")
+HULL_N = ("N_v", "N_r", "N_vvv", "N_vvr", "N_vrr", "N_rrr")
+HULL = (*HULL_X, *HULL_Y, *HULL_N)
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """Symbols that every force needs."""
+
+    u: sp.Symbol
+    v: sp.Symbol
+    r: sp.Symbol
+    U: sp.Symbol
+    r_L: sp.Symbol
+    beta: sp.Symbol
+    s_u: sp.Symbol
+    U_0: sp.Symbol
+    L: sp.Symbol
+    rho: sp.Symbol
+    q: sp.Symbol
+    delta_R: sp.Symbol
+
+
+def _coefficient(sheet: Sheet, name: str, meaning: str = "hull force coefficient", *, free: bool = False) -> sp.Symbol:
+    latex = f"{name[0]}'_{{{name[2:].replace('_', ' ')}}}"
+    return sheet.parameter(name, 0.0, "1", meaning, free=free, scale=0.02, latex=latex)
+
+
+def _motion(sheet: Sheet, u: sp.Symbol, v: sp.Symbol, r: sp.Symbol, delta: sp.Symbol) -> _Motion:
+    L = sheet.parameter("L", unit="m", meaning="length between perpendiculars")
+    d = sheet.parameter("d", unit="m", meaning="draught")
+    rho = sheet.parameter("rho", unit="kg/m^3", meaning="water density")
+    U_0 = sheet.parameter("U_0", 1e-3, "m/s", "speed below which denominators are rounded off", EXTENSION)
+    delta_0 = sheet.parameter("delta_0", 0.0, "rad", "added to the recorded rudder angle", EXTENSION, scale=0.02)
+    U = sheet.bind("U", sp.sqrt(u**2 + v**2 + U_0**2), f"{YASUKAWA}, speed U", "m/s")
+    ahead = sheet.bind("u_0", sp.sqrt(u**2 + U_0**2), EXTENSION, "m/s")
+    return _Motion(
+        u, v, r, U,
+        r_L=sheet.bind("r_L", L * r, "r' U", "m/s"),
+        beta=sheet.bind("beta", -sp.atan(v / ahead), f"{YASUKAWA}, drift angle", "rad"),
+        s_u=sheet.bind("s_u", u / ahead, "direction of advance, +1 ahead, -1 astern"),
+        U_0=U_0, L=L, rho=rho,
+        q=sheet.bind("q", rho / 2 * L * d, f"{YASUKAWA}, dimensions of forces", "kg/m^2"),
+        delta_R=sheet.bind("delta_R", delta + delta_0, "rudder angle with its zero", "rad"),
+    )  # fmt: skip
+
+
+def _hull(sheet: Sheet, at: _Motion) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
+    c = {name: _coefficient(sheet, name, free=True) for name in HULL}
+    Y_0, N_0 = (_coefficient(sheet, n, "asymmetry of the hull") for n in ("Y_0", "N_0"))
+    N_rr = _coefficient(sheet, "N_rr", "yaw drag r|r|, for turning on the spot")
+    v, r_L, U, s = at.v, at.r_L, at.U, at.s_u
+    r_s = sheet.bind("r_s", s * r_L, "r' U, odd in the direction of advance", "m/s")
+    v_s = sheet.bind("v_s", s * v, "v, odd in the direction of advance", "m/s")
+    X_H = sheet.bind(
+        "X_H",
+        at.q
+        * (
+            s * (-c["R_0"] * U**2 + c["X_vv"] * v**2 + c["X_rr"] * r_L**2 + c["X_vvvv"] * v**4 / U**2)
+            + c["X_vr"] * v * r_L
+        ),
+        f"{YASUKAWA}, hull force polynomial",
+        "N",
+    )
+    cubic = c["Y_vvv"] * v**3 + c["Y_vvr"] * v**2 * r_s + c["Y_vrr"] * v * r_L**2 + c["Y_rrr"] * r_s * r_L**2
+    Y_H = sheet.bind(
+        "Y_H",
+        at.q * (Y_0 * U**2 + c["Y_v"] * v * U + c["Y_r"] * r_s * U + cubic / U),
+        f"{YASUKAWA}, hull force polynomial; Y_0 {EXTENSION}",
+        "N",
+    )
+    cubic = c["N_vvv"] * v_s * v**2 + c["N_vvr"] * v**2 * r_L + c["N_vrr"] * v_s * r_L**2 + c["N_rrr"] * r_L**3
+    N_H = sheet.bind(
+        "N_H",
+        at.q * at.L * (N_0 * U**2 + c["N_v"] * v_s * U + c["N_r"] * r_L * U + cubic / U + N_rr * r_L * sp.Abs(r_L)),
+        f"{YASUKAWA}, hull force polynomial; N_0, N_rr {EXTENSION}",
+        "N m",
+    )
+    return X_H, Y_H, N_H
+
+
+@dataclass(frozen=True)
+class _Propeller:
+    u_P: sp.Symbol
+    n_D: sp.Symbol
+    D_P: sp.Symbol
+    thrust: sp.Symbol
+    X_P: sp.Symbol
+    Y_P: sp.Symbol
+    N_P: sp.Symbol
+
+
+def _inflow(sheet: Sheet, at: _Motion) -> sp.Symbol:
+    """Axial inflow u (1 - w_P) of the propeller; no wake where the ship goes astern."""
+    x_P = sheet.parameter("x_P_prime", -0.48, meaning="propeller position over L", source=YASUKAWA, latex="x'_P")
+    w_P0 = sheet.parameter("w_P0", meaning="wake fraction straight ahead", latex="w_{P0}")
+    C_1 = sheet.parameter("C_1", 0.0, meaning="change of wake with drift, rate", latex="C_1")
+    C_2p = sheet.parameter("C_2_plus", 1.0, meaning="limit of 1 - w_P over 1 - w_P0, beta_P > 0", latex="C_2^+")
+    C_2m = sheet.parameter("C_2_minus", 1.0, meaning="limit of 1 - w_P over 1 - w_P0, beta_P < 0", latex="C_2^-")
+    beta_P = sheet.bind("beta_P", at.beta - x_P * at.r_L / at.U, f"{YASUKAWA}, beta_P", "rad")
+    C_2 = sheet.bind("C_2", sp.Piecewise((C_2p, beta_P > 0), (C_2m, True)), f"{YASUKAWA}, change of wake with beta_P")
+    w_P = sheet.bind(
+        "w_P",
+        1 - (1 - w_P0) * (1 + (1 - sp.exp(-C_1 * sp.Abs(beta_P))) * (C_2 - 1)),
+        f"{YASUKAWA}, change of wake with beta_P",
+    )
+    return sheet.bind("u_P", sp.Piecewise((at.u * (1 - w_P), at.u > 0), (at.u, True)), "u (1 - w_P)", "m/s")
+
+
+def _propeller(sheet: Sheet, at: _Motion, n: sp.Symbol) -> _Propeller:
+    D_P = sheet.parameter("D_P", unit="m", meaning="propeller diameter")
+    t_P = sheet.parameter("t_P", meaning="thrust deduction", latex="t_P")
+    k_0, k_1, k_2 = (sheet.parameter(f"k_{i}", meaning=f"K_T polynomial, J_P^{i}") for i in range(3))
+    a_0 = sheet.parameter("k_0_astern", -0.22, meaning="K_T astern at u = 0", source=KITAGAWA, latex="k_0^-")
+    a_1 = sheet.parameter("k_1_astern", 0.42, meaning="K_T astern, slope in u/(n D_P)", source=KITAGAWA, latex="k_1^-")
+    J_a = sheet.parameter("J_astern", -0.233, meaning="u/(n D_P) where K_T astern levels off", source=KITAGAWA)
+    J_s = sheet.parameter("J_side", -0.35, meaning="u/(n D_P) where the side force levels off", source=KITAGAWA)
+    Y_T = _coefficient(sheet, "Y_T", "side force over thrust of a single screw")
+    N_T = _coefficient(sheet, "N_T", "yaw moment over thrust times L of a single screw")
+    Y_nn, Y_nu, N_nn, N_nu = (
+        _coefficient(sheet, name, "side force or moment of the propeller astern")
+        for name in ("Y_nn", "Y_nu", "N_nn", "N_nu")
+    )
+    u_P = _inflow(sheet, at)
+    n_D = sheet.bind("n_D", n * D_P, "n D_P", "m/s")
+    u_a = sheet.bind("u_a", sp.Piecewise((at.u, at.u < J_a * n_D), (J_a * n_D, True)), KITAGAWA, "m/s")
+    u_s = sheet.bind("u_s", sp.Piecewise((at.u, at.u < J_s * n_D), (J_s * n_D, True)), KITAGAWA, "m/s")
+    driven = sp.Piecewise((n_D * (k_0 * n_D + k_1 * u_P), n >= 0), (n_D * (a_0 * n_D + a_1 * u_a), True))
+    thrust = sheet.output(
+        "thrust",
+        at.rho * D_P**2 * (driven + k_2 * u_P * sp.Abs(u_P)),
+        f"{YASUKAWA}, thrust, T = rho n^2 D_P^4 K_T; astern {KITAGAWA}",
+        "N",
+    )
+    X_P = sheet.bind("X_P", (1 - t_P) * thrust, f"{YASUKAWA}, propeller force", "N")
+    side = sp.Piecewise((sp.Integer(0), n >= 0), (n_D * (Y_nn * n_D + Y_nu * u_s), True))
+    Y_P = sheet.bind("Y_P", Y_T * thrust + at.q * side, f"{EXTENSION}; astern {KITAGAWA}", "N")
+    turn = sp.Piecewise((sp.Integer(0), n >= 0), (n_D * (N_nn * n_D + N_nu * u_s), True))
+    N_P = sheet.bind("N_P", at.L * (N_T * thrust + at.q * turn), f"{EXTENSION}; astern {KITAGAWA}", "N m")
+    return _Propeller(u_P, n_D, D_P, thrust, X_P, Y_P, N_P)
+
+
+def _rudder_inflow(
+    sheet: Sheet, at: _Motion, by: _Propeller, n: sp.Symbol, H_R: sp.Symbol
+) -> tuple[sp.Symbol, sp.Symbol]:
+    epsilon = sheet.parameter("epsilon", meaning="wake ratio, rudder over propeller", latex=r"\varepsilon")
+    kappa = sheet.parameter("kappa", meaning="slipstream acceleration at the rudder", latex=r"\kappa")
+    kappa_a = sheet.parameter(
+        "kappa_astern",
+        0.0,
+        meaning="flow at the rudder over n D_P, propeller astern",
+        source=KITAGAWA,
+        latex=r"\kappa^-",
+    )
+    gamma_p = sheet.parameter("gamma_R_plus", meaning="flow straightening, beta_R > 0", latex=r"\gamma_R^+")
+    gamma_m = sheet.parameter("gamma_R_minus", meaning="flow straightening, beta_R < 0", latex=r"\gamma_R^-")
+    l_R = sheet.parameter("l_R_prime", meaning="effective position of the rudder over L", latex=r"\ell'_R")
+    eta = sheet.bind("eta", by.D_P / H_R, f"{YASUKAWA}, eta = D_P / H_R")
+    z = sheet.bind("z", by.u_P**2 + 8 / sp.pi * by.thrust / (at.rho * by.D_P**2), "square of the slipstream", "m^2/s^2")
+    z_root = sheet.bind("z_root", sp.sqrt(z**2 + at.U_0**4), EXTENSION, "m^2/s^2")
+    u_inf = sheet.bind("u_inf", sp.sqrt((z + z_root) / 2), "slipstream far aft, positive part of z", "m/s")
+    backwash = sp.Piecewise((sp.Integer(0), n >= 0), (kappa_a * by.n_D, True))
+    u_slip = sheet.bind(
+        "u_slip",
+        epsilon * (by.u_P + kappa * (u_inf - by.u_P)) + backwash,
+        f"{YASUKAWA}, u_R inside the slipstream; astern {KITAGAWA}",
+        "m/s",
+    )
+    u_free = sheet.bind("u_free", epsilon * by.u_P, f"{YASUKAWA}, u_R", "m/s")
+    square = sheet.bind(
+        "u_R_2",
+        eta * u_slip * sp.Abs(u_slip) + (1 - eta) * u_free * sp.Abs(u_free),
+        f"{YASUKAWA}, u_R, squared",
+        "m^2/s^2",
+    )
+    root = sheet.bind("u_R_abs", sp.sqrt(square**2 + at.U_0**4), EXTENSION, "m^2/s^2")
+    u_R = sheet.bind("u_R", square / sp.sqrt(root), f"{YASUKAWA}, u_R", "m/s")
+    v_B = sheet.bind("v_B", at.U * at.beta - l_R * at.r_L, f"{YASUKAWA}, U beta_R", "m/s")
+    gamma_R = sheet.bind(
+        "gamma_R", sp.Piecewise((gamma_p, v_B > 0), (gamma_m, True)), f"{YASUKAWA}, gamma_R by the side of beta_R"
+    )
+    return u_R, sheet.bind("v_R", gamma_R * v_B, f"{YASUKAWA}, v_R", "m/s")
+
+
+def _rudder(sheet: Sheet, at: _Motion, by: _Propeller, n: sp.Symbol) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
+    A_R = sheet.parameter("A_R", unit="m^2", meaning="movable rudder area")
+    H_R = sheet.parameter("H_R", unit="m", meaning="rudder span")
+    x_R = sheet.parameter("x_R_prime", -0.5, meaning="rudder position over L", source=YASUKAWA, latex="x'_R")
+    f_alpha = sheet.parameter("f_alpha", meaning="gradient of the rudder's lift", latex=r"f_\alpha")
+    t_R = sheet.parameter("t_R", meaning="steering resistance deduction", latex="t_R")
+    a_H = sheet.parameter("a_H", meaning="rudder force increase", latex="a_H")
+    x_H = sheet.parameter("x_H_prime", meaning="position of the additional force over L", latex="x'_H")
+    Y_dd, N_dd = (_coefficient(sheet, name, "even in the rudder angle, single screw") for name in ("Y_dd", "N_dd"))
+    u_R, v_R = _rudder_inflow(sheet, at, by, n, H_R)
+    sine = sheet.bind("sin_delta", sp.sin(at.delta_R), "of the rudder angle")
+    cosine = sheet.bind("cos_delta", sp.cos(at.delta_R), "of the rudder angle")
+    U_R = sheet.bind("U_R", sp.sqrt(u_R**2 + v_R**2 + at.U_0**2), f"{YASUKAWA}, U_R", "m/s")
+    F_N = sheet.bind(
+        "F_N",
+        at.rho / 2 * A_R * f_alpha * U_R * (u_R * sine - v_R * cosine),
+        f"{YASUKAWA}, normal force: U_R sin(alpha_R) = u_R sin(delta) - v_R cos(delta)",
+        "N",
+    )
+    even = sheet.bind("even", at.q * (at.U * at.delta_R) ** 2, EXTENSION, "N")
+    F_C = sheet.bind("F_C", F_N * cosine, "athwartships part of the normal force", "N")
+    X_R = sheet.bind("X_R", -(1 - t_R) * F_N * sine, f"{YASUKAWA}, rudder forces", "N")
+    Y_R = sheet.bind("Y_R", -(1 + a_H) * F_C + Y_dd * even, f"{YASUKAWA}, rudder forces; Y_dd {EXTENSION}", "N")
+    N_R = sheet.bind(
+        "N_R",
+        at.L * (-(x_R + a_H * x_H) * F_C + N_dd * even),
+        f"{YASUKAWA}, rudder forces; N_dd {EXTENSION}",
+        "N m",
+    )
+    return X_R, Y_R, N_R
+
+
+def _wind(
+    sheet: Sheet, at: _Motion, psi: sp.Symbol, current: tuple[sp.Symbol, sp.Symbol]
+) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
+    """Wind force; the apparent wind is that of the ship over ground, current included."""
+    speed, direction = sheet.input("wind_speed"), sheet.input("wind_direction")
+    A_T = sheet.parameter("A_T", 0.0, "m^2", "transverse projected area above water, 0: no wind force")
+    A_L = sheet.parameter("A_L", 0.0, "m^2", "lateral projected area above water, 0: no wind force")
+    rho_air = sheet.parameter("rho_air", 1.22, "kg/m^3", "air density", "ISO 2533, 15 degC", latex=r"\rho_A")
+    c = {
+        name: sheet.parameter(name, 0.0, meaning="wind force coefficient", scale=0.1, latex=f"C_{{{name[2:]}}}")
+        for name in ("C_X0", "C_X1", "C_X3", "C_Y1", "C_Y3", "C_N1", "C_N2", "C_N3")
+    }
+    north, east = current
+    sine, cosine = (
+        sheet.bind("sin_psi", sp.sin(psi), "of the heading"),
+        sheet.bind("cos_psi", sp.cos(psi), "of the heading"),
+    )
+    air_north = sheet.bind("air_north", north + speed * sp.cos(direction), "water against air", "m/s")
+    air_east = sheet.bind("air_east", east + speed * sp.sin(direction), "water against air", "m/s")
+    u_A = sheet.bind("u_A", at.u + air_north * cosine + air_east * sine, "apparent wind from ahead", "m/s")
+    v_A = sheet.bind("v_A", at.v - air_north * sine + air_east * cosine, "apparent wind from starboard", "m/s")
+    V_A = sheet.bind("V_A", sp.sqrt(u_A**2 + v_A**2 + at.U_0**2), "apparent wind speed", "m/s")
+    k = sheet.bind("cos_gamma", u_A / V_A, "of the apparent direction, off the bow")
+    s = sheet.bind("sin_gamma", v_A / V_A, "of the apparent direction, positive from starboard")
+    q_A = sheet.bind("q_A", rho_air / 2 * V_A**2, "dynamic pressure of the wind", "N/m^2")
+    C_X = sheet.bind("C_X", c["C_X0"] + c["C_X1"] * k + c["C_X3"] * (4 * k**3 - 3 * k), WIND)
+    C_Y = sheet.bind("C_Y", c["C_Y1"] * s + c["C_Y3"] * (3 * s - 4 * s**3), WIND)
+    C_N = sheet.bind("C_N", c["C_N1"] * s + c["C_N2"] * 2 * s * k + c["C_N3"] * (3 * s - 4 * s**3), WIND)
+    X_W = sheet.bind("X_W", q_A * A_T * C_X, WIND, "N")
+    Y_W = sheet.bind("Y_W", q_A * A_L * C_Y, WIND, "N")
+    return X_W, Y_W, sheet.bind("N_W", q_A * A_L * at.L * C_N, WIND, "N m")
+
+
+def _rates(sheet: Sheet, at: _Motion, X: sp.Symbol, Y: sp.Symbol, N: sp.Symbol) -> None:
+    """Accelerations; X_m, Y_m, N_m are what a balance feels that holds the ship in steady motion."""
+    m = sheet.parameter("m", unit="kg", meaning="mass")
+    x_G = sheet.parameter("x_G", unit="m", meaning="centre of gravity forward of midship")
+    I_z = sheet.parameter("I_z", unit="kg m^2", meaning="yaw inertia about the centre of gravity")
+    m_x = sheet.parameter("m_x_prime", meaning="surge added mass over rho/2 L^2 d", latex="m'_x")
+    m_y = sheet.parameter("m_y_prime", meaning="sway added mass over rho/2 L^2 d", latex="m'_y")
+    J_z = sheet.parameter("J_z_prime", meaning="yaw added inertia over rho/2 L^4 d", latex="J'_z")
+    equation = f"{YASUKAWA}, equations of motion"
+    unit = sheet.bind("m_L", at.q * at.L, "rho/2 L^2 d", "kg")
+    M_u = sheet.bind("M_u", m + m_x * unit, equation, "kg")
+    M_v = sheet.bind("M_v", m + m_y * unit, equation, "kg")
+    M_c = sheet.bind("M_c", m * x_G, equation, "kg m")
+    M_r = sheet.bind("M_r", I_z + M_c * x_G + J_z * unit * at.L**2, equation, "kg m^2")
+    D = sheet.bind("D_M", M_v * M_r - M_c**2, "determinant of the inertia matrix", "kg^2 m^2")
+    u_r = sheet.bind("u_r", at.u * at.r, equation, "m/s^2")
+    X_m = sheet.bind("X_m", X + M_v * at.v * at.r + M_c * at.r**2, equation, "N")
+    Y_m = sheet.bind("Y_m", Y - M_u * u_r, equation, "N")
+    N_m = sheet.bind("N_m", N - M_c * u_r, equation, "N m")
+    sheet.rate(at.u, X_m / M_u, equation)
+    sheet.rate(at.v, (Y_m * M_r - N_m * M_c) / D, f"{equation}, inertia matrix inverted")
+    sheet.rate(at.r, (N_m * M_v - Y_m * M_c) / D, f"{equation}, inertia matrix inverted")
+
+
+@cache
+def mmg() -> Model:
+    """The standard method with all extensions; hull coefficients are free, everything else fixed.
+
+    States u, v, r [m/s, m/s, rad/s] through the water at midship, psi [rad], x0, y0 [m]; inputs delta [rad, positive
+    turns to starboard], n [rps, negative astern], wind_speed [m/s], wind_direction [rad, the heading it comes from].
+    Output thrust [N], the propeller's own, not reduced by t_P. Parameters without a value (particulars, added masses,
+    propeller and rudder coefficients) come from the ship or a parameter set.
+    """
+    sheet = Sheet("mmg", YASUKAWA, "MMG standard method with propeller, rudder and wind")
+    u, v, r, psi, x0, y0 = sheet.states("u v r psi x0 y0")
+    delta, n = sheet.input("delta"), sheet.input("n")
+    at = _motion(sheet, u, v, r, delta)
+    current = pose_rates(sheet, u, v, r, psi, x0, y0)
+    X_H, Y_H, N_H = _hull(sheet, at)
+    by = _propeller(sheet, at, n)
+    X_R, Y_R, N_R = _rudder(sheet, at, by, n)
+    X_W, Y_W, N_W = _wind(sheet, at, psi, current)
+    X = sheet.bind("X_sum", X_H + by.X_P + X_R + X_W, f"{YASUKAWA}, X of the equations of motion", "N")
+    Y = sheet.bind("Y_sum", Y_H + by.Y_P + Y_R + Y_W, f"{YASUKAWA}, Y of the equations of motion", "N")
+    N = sheet.bind("N_sum", N_H + by.N_P + N_R + N_W, f"{YASUKAWA}, N_m of the equations of motion", "N m")
+    _rates(sheet, at, X, Y, N)
+    return sheet.model()

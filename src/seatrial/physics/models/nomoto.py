@@ -1,0 +1,71 @@
+"""Steering models of Nomoto: first order, and second order with the zero of the rudder's transfer function.
+
+Positive rudder turns to starboard (K > 0). Position follows at a constant speed U without drift, so that tracks of a
+short manoeuvre can be compared; U = 0 leaves the position where it is.
+"""
+
+from functools import cache
+
+import sympy as sp
+
+from seatrial.core.equations import Model, Sheet
+from seatrial.physics.models.pose import pose_rates
+
+NOMOTO = "Nomoto et al. 1957, Int. Shipbuilding Progress 4(35), 354-370"
+NORRBIN = "Norrbin 1963, cubic manoeuvring characteristic"
+SECOND = "Nomoto et al. 1957, transfer function of second order, observer form"
+CHOSEN = "start value, chosen"
+
+
+def _speed(sheet: Sheet) -> sp.Symbol:
+    return sheet.parameter("U", 0.0, "m/s", "constant speed along the heading, 0: position not modelled", scale=1.0)
+
+
+def _rudder(sheet: Sheet) -> sp.Expr:
+    delta = sheet.input("delta")
+    return delta + sheet.parameter("delta_0", 0.0, "rad", "added to the recorded rudder angle", scale=0.02)
+
+
+@cache
+def nomoto() -> Model:
+    """First order: T dr/dt + r + alpha r^3 = K (delta + delta_0).
+
+    States r [rad/s], psi [rad], x0, y0 [m]; input delta [rad]. Free: K [1/s], T [s]; the cubic alpha is fixed at 0.
+    """
+    sheet = Sheet("nomoto", NOMOTO, "steering model of first order")
+    r, psi, x0, y0 = sheet.states("r psi x0 y0")
+    delta = _rudder(sheet)
+    U = _speed(sheet)
+    K = sheet.parameter("K", 0.1, "1/s", "gain", CHOSEN, free=True)
+    T = sheet.parameter("T", 10.0, "s", "time constant", CHOSEN, free=True)
+    alpha = sheet.parameter(
+        "alpha", 0.0, "s^2/rad^2", "cubic manoeuvring coefficient", "linear unless freed", scale=1.0
+    )
+    sheet.rate(r, (K * delta - r - alpha * r**3) / T, f"{NOMOTO}, first order; cubic term {NORRBIN}")
+    pose_rates(sheet, U, sp.Integer(0), r, psi, x0, y0)
+    return sheet.model()
+
+
+@cache
+def nomoto2() -> Model:
+    """Second order: T_1 T_2 r'' + (T_1 + T_2) r' + r + alpha r^3 = K (delta + T_3 delta').
+
+    The rate of the rudder is no input: the state r_rest = r' - K T_3 delta / (T_1 T_2) takes its place.
+    States r [rad/s], r_rest [rad/s^2], psi [rad], x0, y0 [m]; input delta [rad]. Free: K, T_1, T_2, T_3.
+    """
+    sheet = Sheet("nomoto2", NOMOTO, "steering model of second order")
+    r, r_rest, psi, x0, y0 = sheet.states("r r_rest psi x0 y0")
+    delta = _rudder(sheet)
+    U = _speed(sheet)
+    K = sheet.parameter("K", 0.1, "1/s", "gain", CHOSEN, free=True)
+    T_1 = sheet.parameter("T_1", 20.0, "s", "slow time constant", CHOSEN, free=True)
+    T_2 = sheet.parameter("T_2", 2.0, "s", "fast time constant", CHOSEN, free=True)
+    T_3 = sheet.parameter("T_3", 4.0, "s", "time constant of the zero", CHOSEN, free=True)
+    alpha = sheet.parameter(
+        "alpha", 0.0, "s^2/rad^2", "cubic manoeuvring coefficient", "linear unless freed", scale=1.0
+    )
+    r_dot = sheet.bind("r_dot", r_rest + K * T_3 / (T_1 * T_2) * delta, SECOND, "rad/s^2")
+    sheet.rate(r, r_dot, SECOND)
+    sheet.rate(r_rest, (K * delta - r - alpha * r**3 - (T_1 + T_2) * r_dot) / (T_1 * T_2), f"{SECOND}; {NORRBIN}")
+    pose_rates(sheet, U, sp.Integer(0), r, psi, x0, y0)
+    return sheet.model()

@@ -1,0 +1,127 @@
+"""Published coefficients as named parameter sets, each with its ship and its source.
+
+Numbers were compared with several independent transcriptions of the same table; where these differ it is said here.
+"""
+
+from collections.abc import Callable, Mapping
+from functools import cache, partial
+
+from seatrial.core.equations import Model
+from seatrial.core.values import InputError, Ship, nearest
+from seatrial.physics.models.parameter_set import ParameterSet
+from seatrial.physics.models.qi2025 import HEADINGS, theory
+
+YASUKAWA = "Yasukawa & Yoshimura 2015, J Mar Sci Technol 20, 37-52, doi 10.1007/s00773-014-0293-y"
+MIYAUCHI = "Miyauchi et al. 2022, J Mar Sci Technol 27, 1065-1083, doi 10.1007/s00773-022-00889-3, captive tests"
+
+
+# principal particulars of the 7 m model and of the ship; radius of gyration 0.25 L
+_L7 = {"L": 7.00, "B": 1.27, "d": 0.46, "C_b": 0.810, "x_G": 0.25, "D_P": 0.216, "H_R": 0.345, "A_R": 0.0539}
+_FULL = {"L": 320.0, "B": 58.0, "d": 20.8, "C_b": 0.810, "x_G": 11.2, "D_P": 9.86, "H_R": 15.80, "A_R": 112.5}
+
+
+def _with_mass(particulars: Mapping[str, float], volume: float, rho: float) -> dict[str, float]:
+    mass = rho * volume
+    return {**particulars, "rho": rho, "m": mass, "I_z": mass * (0.25 * particulars["L"]) ** 2}
+
+
+# hydrodynamic force coefficients; x_P' = -0.48 is the propeller's place, one transcription has -0.690
+_KVLCC2 = {
+    "R_0": 0.022, "X_vv": -0.040, "X_vr": 0.002, "X_rr": 0.011, "X_vvvv": 0.771,
+    "Y_v": -0.315, "Y_r": 0.083, "Y_vvv": -1.607, "Y_vvr": 0.379, "Y_vrr": -0.391, "Y_rrr": 0.008,
+    "N_v": -0.137, "N_r": -0.049, "N_vvv": -0.030, "N_vvr": -0.294, "N_vrr": 0.055, "N_rrr": -0.013,
+    "m_x_prime": 0.022, "m_y_prime": 0.223, "J_z_prime": 0.011,
+    "t_P": 0.220, "w_P0": 0.40, "x_P_prime": -0.48, "C_1": 2.0, "C_2_plus": 1.6, "C_2_minus": 1.1,
+    "k_0": 0.2931, "k_1": -0.2753, "k_2": -0.1385,
+    "t_R": 0.387, "a_H": 0.312, "x_H_prime": -0.464, "x_R_prime": -0.5, "l_R_prime": -0.710, "f_alpha": 2.747,
+    "gamma_R_plus": 0.640, "gamma_R_minus": 0.395, "epsilon": 1.09, "kappa": 0.50,
+}  # fmt: skip
+_COEFFICIENTS = f"{YASUKAWA}, hydrodynamic force coefficients"
+_PARTICULARS = f"{YASUKAWA}, principal particulars"
+
+
+@cache
+def kvlcc2_l7() -> ParameterSet:
+    """The 7 m model of KVLCC2, scale 1:45.7, in fresh water."""
+    ship = Ship("KVLCC2 model L7", _with_mass(_L7, 3.27, 1000.0), _PARTICULARS, 45.7)
+    note = "k_2 is -0.1385; a transcription in circulation has -0.1359"
+    return ParameterSet("kvlcc2", "mmg", ship, _KVLCC2, _COEFFICIENTS, note)
+
+
+@cache
+def kvlcc2_full() -> ParameterSet:
+    """KVLCC2 at full scale in sea water; the same coefficients with the wake of the ship."""
+    ship = Ship("KVLCC2", _with_mass(_FULL, 312600.0, 1025.0), _PARTICULARS)
+    return ParameterSet(
+        "kvlcc2-full", "mmg", ship, {**_KVLCC2, "w_P0": 0.35}, _COEFFICIENTS, "w_P0 0.35 at full scale, 0.40 for models"
+    )
+
+
+_ESSO_SHIP = {
+    "L": 3.0, "B": 0.489, "d": 0.201, "C_b": 0.83, "m": 244.6, "x_G": 0.094, "D_P": 0.084, "A_R": 0.0106,
+    "H_R": 0.1279, "A_T": 0.135, "A_L": 0.520, "rho": 998.0, "I_z": 244.6 * (0.25 * 3.0) ** 2,
+}  # fmt: skip
+
+# as published, in rho/2 L d U^2; the cross-flow drag integral (C_D, C_rY, C_rN) and R_0 ahead and astern are converted
+_ESSO = {
+    "R_0": 0.02139, "X_vr": -0.0081, "Y_v": -0.3728, "Y_r": 0.116, "N_v": -0.1458, "N_r": -0.04849,
+    "m_x_prime": 0.0467, "m_y_prime": 0.2579,
+    "k_0": 0.3278, "k_1": -0.3223, "k_2": -0.156, "t_P": 0.22, "w_P0": 0.614, "x_P_prime": -0.517,
+    "t_R": 0.19, "a_H": 0.393, "x_H_prime": -0.45, "x_R_prime": -0.5, "l_R_prime": -1.08, "epsilon": 1.42,
+    "gamma_R_plus": 0.4406, "gamma_R_minus": 0.3506,
+    "C_X0": -0.010466, "C_X1": -0.821992, "C_X3": 0.060274,
+    "C_Y1": -1.058172, "C_Y3": -0.002321, "C_N1": 0.030728, "C_N2": -0.104116, "C_N3": 0.000880,
+    "Y_nn": -0.000079, "Y_nu": 0.00799, "N_nn": 0.000035, "N_nu": -0.00317,
+}  # fmt: skip
+_ESSO_NOTE = (
+    "cross-flow drag replaced by cubic terms; wake -0.871|b| + 0.359 b^2 by C_1 1.5, C_2 2.6; kappa = 0.288/1.42; "
+    "K_T astern divided by 1 - t_P, which the source does not apply astern; kappa astern = 0.144 sqrt(8 0.22/pi); "
+    "wind series without its fifth harmonics, signs for an apparent direction positive from starboard; "
+    "H_R from aspect ratio 1.539; I_z (0.25 L)^2 m, J_z from the published I_z + J_z; k_1 -0.3223 has a variant -0.3323"
+)
+
+
+@cache
+def esso_osaka() -> ParameterSet:
+    """The 3 m model of Esso Osaka (free-running data set of Osaka University): captive-test values, converted."""
+    from seatrial.physics.hydro.empirical import cross_flow
+
+    ship = Ship(
+        "Esso Osaka 3 m model", _ESSO_SHIP, "FRT-DS-ESSO data set, Wakita et al. 2022, Miyauchi et al. 2022", 108.33
+    )
+    unit = 0.5 * 998.0 * 3.0**4 * 0.201
+    converted = {
+        **cross_flow(0.9665, 2.217, 0.8097),
+        "J_z_prime": 0.0286 - _ESSO_SHIP["I_z"] / unit,
+        "C_1": 1.5, "C_2_plus": 2.6, "C_2_minus": 2.6,
+        "kappa": 0.288 / 1.42, "kappa_astern": 0.144 * (8 * 0.22 / 3.141592653589793) ** 0.5,
+        "k_0_astern": -0.175 / 0.78, "k_1_astern": 0.330 / 0.78, "J_astern": -0.233, "J_side": -0.35,
+        "f_alpha": 6.13 * 1.539 / (2.25 + 1.539), "U_0": 0.01,
+    }  # fmt: skip
+    return ParameterSet("esso-osaka", "mmg", ship, {**_ESSO, **converted}, MIYAUCHI, _ESSO_NOTE)
+
+
+PARAMETER_SETS: dict[str, Callable[[], ParameterSet]] = {
+    "kvlcc2": kvlcc2_l7,
+    "kvlcc2-full": kvlcc2_full,
+    "esso-osaka": esso_osaka,
+    **{f"qi2025-{heading}": partial(theory, heading) for heading in HEADINGS},
+}
+
+
+def parameter_set(name: str) -> ParameterSet:
+    """A published set by name.
+
+    Raises:
+        InputError: there is none of that name; the nearest is given.
+    """
+    if name not in PARAMETER_SETS:
+        raise InputError(f"unknown parameter set '{name}'{nearest(name, sorted(PARAMETER_SETS))}")
+    return PARAMETER_SETS[name]()
+
+
+def kvlcc2() -> Model:
+    """The MMG model of the 7 m KVLCC2 with its published coefficients."""
+    from seatrial.physics.models.mmg import mmg
+
+    return kvlcc2_l7().applied(mmg())

@@ -1,0 +1,98 @@
+"""Simplified modular model of a waterjet craft in three degrees of freedom (Song et al. 2025), misprints mended.
+
+Origin at G, x forward, y starboard, psi clockwise. A positive nozzle angle gives a force to starboard at the stern and
+so turns the craft to port.
+"""
+
+from functools import cache
+
+import sympy as sp
+
+from seatrial.core.equations import Model, Sheet
+from seatrial.physics.models.pose import pose_rates
+
+SONG = "Song et al. 2025, doi 10.19693/j.issn.1673-3185.03832"
+ZHOU = "Zhou et al. 1983, through Song et al. 2025"
+RHO = 1025.0
+LENGTH, DRAUGHT, MASS = 9.8, 0.71, 5540.0
+
+# Table 2, column CFD; N_v is -0.1708: with the printed sign the steady turn reverses and no zigzag finishes
+TABLE_2 = {
+    "X_uu": -0.03125, "X_vv": 0.04657, "X_rr": 0.00414,
+    "Y_v": -0.27670, "Y_r": 0.08811, "Y_vv": -1.00740, "Y_vr": -0.16437, "Y_rr": -0.07020,
+    "N_v": -0.17080, "N_r": -0.05240, "N_rr": -0.04350,
+}  # fmt: skip
+COEFFICIENTS = tuple(TABLE_2)
+
+
+@cache
+def waterjet() -> Model:
+    """The eleven-coefficient model with the published ship; free parameters are the coefficients of Table 2.
+
+    States u, v, r [m/s, m/s, rad/s], psi, x0, y0; inputs nozzle angle delta [rad], jet velocity v_j [m/s].
+    A uniform current (current_north, current_east) moves the water; u and v are through it.
+    """
+    sheet = Sheet("waterjet", SONG, "waterjet craft, simplified MMG")
+    u, v, r, psi, x0, y0 = sheet.states("u v r psi x0 y0")
+    delta = sheet.input("delta", positive="port")
+    v_j = sheet.input("v_j")
+    L = sheet.parameter("L", LENGTH, "m", "length", f"{SONG}, table 1")
+    d = sheet.parameter("d", DRAUGHT, "m", "draught", f"{SONG}, table 1")
+    m = sheet.parameter("m", MASS, "kg", "mass", f"{SONG}, table 1")
+    rho = sheet.parameter("rho", RHO, "kg/m^3", "water density", "sea water, chosen")
+    I_z = sheet.parameter("I_z", MASS * (0.25 * LENGTH) ** 2, "kg m^2", "yaw inertia", "m (0.25 L)^2, chosen")
+    m_x = sheet.parameter("m_x", 0.0281 * MASS, "kg", "surge added mass", ZHOU)
+    m_y = sheet.parameter("m_y", 0.785 * MASS, "kg", "sway added mass", ZHOU)
+    J_z = sheet.parameter("J_z", 0.0699 * MASS * LENGTH**2, "kg m^2", "yaw added inertia", ZHOU)
+    A_j = sheet.parameter("A_j", 0.035, "m^2", "jet area", "chosen")
+    alpha = sheet.parameter("alpha", 1.0, "1", "inflow fraction of the jet", "chosen")
+    x_T = sheet.parameter("x_T", -0.45 * LENGTH, "m", "nozzle position forward of G", "chosen")
+
+    def coefficient(name: str) -> sp.Symbol:
+        return sheet.parameter(
+            name, TABLE_2[name], source=f"{SONG}, table 2 (CFD)", free=True, latex=f"{name[0]}'_{{{name[2:]}}}"
+        )
+
+    U = sheet.bind("U", sp.sqrt(u**2 + v**2 + sp.Float(1e-12)), "speed through water", "m/s")
+    q = sheet.bind("q", rho * L * d / 2, "q = rho L d / 2", "kg/m^2")
+    r_L = sheet.bind("r_L", L * r, "L r", "m/s")
+    X_H = sheet.bind(
+        "X_H",
+        q * (coefficient("X_uu") * u**2 + coefficient("X_vv") * v**2 + coefficient("X_rr") * r_L**2),
+        "eq. (2)",
+        "N",
+    )
+    Y_H = sheet.bind(
+        "Y_H",
+        q
+        * (
+            coefficient("Y_v") * v * U
+            + coefficient("Y_r") * r_L * U
+            + coefficient("Y_vv") * v * sp.Abs(v)
+            + coefficient("Y_vr") * sp.Abs(v) * r_L
+            + coefficient("Y_rr") * r_L * sp.Abs(r_L)
+        ),
+        "eq. (2), v|v| and r|r| mended",
+        "N",
+    )
+    N_H = sheet.bind(
+        "N_H",
+        q * L * (coefficient("N_v") * v * U + coefficient("N_r") * r_L * U + coefficient("N_rr") * r_L * sp.Abs(r_L)),
+        "eq. (2), r|r| mended",
+        "N m",
+    )
+    T = sheet.bind("T_jet", rho * A_j * v_j * (v_j - alpha * u), "eq. (3)", "N")
+    X_P = sheet.bind("X_P", T * sp.cos(delta), "eq. (3)", "N")
+    Y_P = sheet.bind("Y_P", T * sp.sin(delta), "eq. (3), alpha u in place of alpha v", "N")
+    N_P = sheet.bind("N_P", x_T * Y_P, "eq. (3)", "N m")
+    X = sheet.bind("X_sum", X_H + X_P, "all forces, eq. (1)", "N")
+    Y = sheet.bind("Y_sum", Y_H + Y_P, "all forces, eq. (1)", "N")
+    N = sheet.bind("N_sum", N_H + N_P, "all moments, eq. (1)", "N m")
+    X_m = sheet.bind("X_m", (m + m_y) * v * r + X, "eq. (1), with the centripetal terms", "N")
+    Y_m = sheet.bind("Y_m", -(m + m_x) * u * r + Y, "eq. (1), with the centripetal terms, u r mended", "N")
+    N_m = sheet.bind("N_m", N, "eq. (1), no centripetal terms about G", "N m")
+    sheet.rate(u, X_m / (m + m_x), "eq. (1), parentheses mended")
+    sheet.rate(v, Y_m / (m + m_y), "eq. (1)")
+    sheet.rate(r, N_m / (I_z + J_z), "eq. (1), parentheses mended")
+    pose_rates(sheet, u, v, r, psi, x0, y0)
+    return sheet.model()

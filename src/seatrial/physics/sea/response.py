@@ -1,0 +1,185 @@
+"""What a linear ship does in a sea: spectra and statistics of motions from response amplitude operators.
+
+Operators are complex amplitudes per metre of wave at wave frequencies omega; integrals run over omega, where a
+following sea has no singularity, while derivatives in time go by the frequency of encounter.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import ndtr
+
+from seatrial.core.values import Array, InputError
+from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.hydro.excitation import Complex
+from seatrial.physics.sea.realise import Lines
+from seatrial.physics.sea.spectrum import Spectrum
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """Of one motion in a sea, SI.
+
+    Attributes:
+        m0, m2, m4: moments over the frequency of encounter: variances of the motion, its velocity, its acceleration.
+    """
+
+    m0: float
+    m2: float
+    m4: float
+
+    @property
+    def rms(self) -> float:
+        """sqrt(m0)."""
+        return math.sqrt(self.m0)
+
+    @property
+    def significant(self) -> float:
+        """Mean of the highest third of the amplitudes, 2 sqrt(m0) (narrow band; Longuet-Higgins 1952)."""
+        return 2.0 * self.rms
+
+    @property
+    def acceleration(self) -> float:
+        """rms of the second derivative."""
+        return math.sqrt(self.m4)
+
+    @property
+    def zero_crossing_period(self) -> float:
+        """Mean period between upward zero crossings, 2 pi sqrt(m0 / m2), s (Rice 1944); infinite without motion."""
+        return 2.0 * math.pi * math.sqrt(self.m0 / self.m2) if self.m2 > 0.0 else math.inf
+
+    def exceedance(self, amplitude: float) -> float:
+        """Probability that an amplitude exceeds this one, exp(-a^2 / (2 m0)) (Rayleigh; Longuet-Higgins 1952)."""
+        if self.m0 == 0.0:
+            return 0.0
+        return math.exp(-(amplitude**2) / (2.0 * self.m0))
+
+    def most_probable_maximum(self, duration: float) -> float:
+        """Most probable largest amplitude in `duration` [s], sqrt(2 m0 ln N), N = duration / T_z (same source).
+
+        Raises:
+            InputError: the duration holds no whole period.
+        """
+        count = duration / self.zero_crossing_period
+        if not count > 1.0:
+            raise InputError(
+                f"{duration:g} s hold no whole period of {self.zero_crossing_period:.3g} s; ask for a longer time"
+            )
+        return math.sqrt(2.0 * self.m0 * math.log(count))
+
+
+def response_spectrum(spectrum: Spectrum, omega: Array, operator: Complex) -> Array:
+    """|H|^2 S over the wave frequency, shape of `omega`."""
+    return np.abs(operator) ** 2 * spectrum.density(omega)
+
+
+def response_over_encounter(density: Array, omega: Array, omega_e: Array, edges: Array) -> Array:
+    """Mean density over |omega_e| between `edges` (n + 1,) of a response whose `density` over omega is given, (n,).
+
+    Each interval of omega gives its energy evenly to what lies between the frequencies at which its ends are met, so
+    that a following sea has no singularity and no energy is lost.
+
+    Raises:
+        InputError: omega or the edges do not rise.
+    """
+    if len(edges) < 2 or np.any(np.diff(edges) <= 0.0) or len(omega) < 2 or np.any(np.diff(omega) <= 0.0):
+        raise InputError("a response spectrum needs two or more frequencies, and edges, that rise")
+    energy = 0.5 * (density[1:] + density[:-1]) * np.diff(omega)
+    met = np.sort(np.abs(np.stack([omega_e[1:], omega_e[:-1]])), axis=0)
+    # waves that keep up with the ship between two of omega: met from nothing on
+    met[0] = np.where(omega_e[1:] * omega_e[:-1] < 0.0, 0.0, met[0])
+    width = np.maximum(met[1] - met[0], 1e-12)
+    within = np.clip((np.asarray(edges)[:, None] - met[0]) / width, 0.0, 1.0) @ energy
+    return np.diff(within) / np.diff(edges)
+
+
+def statistics(spectrum: Spectrum, omega: Array, omega_e: Array, operator: Complex) -> Statistics:
+    """Statistics of the motion `operator`, all arrays (n,), rad/s; trapezoids over rising omega.
+
+    Raises:
+        InputError: omega does not rise, an operator is not finite, or the sea has no energy between the ends.
+    """
+    if len(omega) < 2 or np.any(np.diff(omega) <= 0.0):
+        raise InputError("the wave frequencies of a response must be two or more, and rise")
+    _demand_finite(omega, operator)
+    share = float(spectrum.energy_between(omega[0], omega[-1])) / spectrum.moment(0)
+    if share < 1e-3:
+        raise InputError(
+            f"the sea has no energy between {omega[0]:.3g} and {omega[-1]:.3g} rad/s; it peaks at "
+            f"{spectrum.modal_frequency:.3g} rad/s"
+        )
+    density = response_spectrum(spectrum, omega, operator)
+    if np.trapezoid(spectrum.density(omega), omega) < 1e-3 * spectrum.moment(0):
+        raise InputError(
+            f"the sea has no energy between {omega[0]:.3g} and {omega[-1]:.3g} rad/s; it peaks at "
+            f"{spectrum.modal_frequency:.3g} rad/s"
+        )
+    m0, m2, m4 = (float(np.trapezoid(omega_e**n * density, omega)) for n in (0, 2, 4))
+    return Statistics(m0, m2, m4)
+
+
+def statistics_of_lines(lines: Lines, operator: Complex) -> Statistics:
+    """The same of one realisation, long- or short-crested: sums of |H a|^2 / 2 over its lines, `operator` (n,).
+
+    Raises:
+        InputError: an operator is not finite.
+    """
+    _demand_finite(lines.omega, operator)
+    energy = 0.5 * np.abs(operator * lines.amplitude) ** 2
+    m0, m2, m4 = (float(np.sum(lines.encounter**n * energy)) for n in (0, 2, 4))
+    return Statistics(m0, m2, m4)
+
+
+def vertical_motion(heave: Complex, pitch: Complex, x: float) -> Complex:
+    """Upward motion at x [m, forward of midship] from heave [up] and pitch [rad, bow down]: z - x theta."""
+    return heave - x * pitch
+
+
+def vertical_acceleration(heave: Complex, pitch: Complex, omega_e: Array, x: float) -> Complex:
+    """Upward acceleration at x, -omega_e^2 (z - x theta) [m/s^2 per m]; the root of `Statistics.m4` is its rms."""
+    return -(omega_e**2) * vertical_motion(heave, pitch, x)
+
+
+def motion_sickness(motion: Statistics) -> float:
+    """Share of people sick within two hours in a vertical motion, 0 to 1 (O'Hanlon & McCauley 1974; Lloyd 1989).
+
+    Phi((log10(a / g) - mu) / .4), mu = -.819 + 2.32 log10(omega_e)^2, a = .798 sqrt(m4) the mean absolute acceleration,
+    omega_e = sqrt(m4 / m2) its mean frequency.
+    """
+    if motion.m4 <= 0.0:
+        return 0.0
+    mean_absolute = 0.798 * motion.acceleration
+    mu = -0.819 + 2.32 * math.log10(math.sqrt(motion.m4 / motion.m2)) ** 2
+    return float(ndtr((math.log10(mean_absolute / G) - mu) / 0.4))
+
+
+def motion_sickness_after(motion: Statistics, minutes: float) -> float:
+    """Share of people sick within that time in a vertical motion, 0 to 1 (McCauley et al. 1976, HFR report 1733-2).
+
+    Phi(z_a) Phi(z_t'), z_a = 2.128 log10(a) - 9.277 log10(f) - 5.809 log10(f)^2 - 1.851,
+    z_t' = 1.134 z_a + 1.989 log10(t) - 2.904: a the rms acceleration in g, f in Hz, t in minutes. Measured on young men
+    in sines of up to two hours; a sea enters by its rms and mean frequency sqrt(m4 / m2) / (2 pi). The report was not
+    at hand; the constants follow from those of a public program that cites it.
+
+    Raises:
+        InputError: the time is not positive.
+    """
+    if not minutes > 0.0:
+        raise InputError(f"sickness needs a positive time of exposure, not {minutes:g} min")
+    if motion.m4 <= 0.0:
+        return 0.0
+    f = math.log10(math.sqrt(motion.m4 / motion.m2) / (2.0 * math.pi))
+    z_a = 2.128 * math.log10(motion.acceleration / G) - 9.277 * f - 5.809 * f**2 - 1.851
+    z_t = 1.134 * z_a + 1.989 * math.log10(minutes) - 2.904
+    return float(ndtr(z_a) * ndtr(z_t))
+
+
+def _demand_finite(omega: Array, operator: Complex) -> None:
+    if np.shape(operator) != np.shape(omega):
+        raise InputError(
+            f"give one operator for each of the {np.size(omega)} wave frequencies, not {np.size(operator)}"
+        )
+    broken = np.flatnonzero(~np.isfinite(operator))
+    if broken.size:
+        raise InputError(f"the response operator at {omega[broken[0]]:.4g} rad/s is not a finite number")

@@ -1,0 +1,187 @@
+"""Wave spectra of one height and one period: S(omega) = A / omega^5 exp(-B / omega^4), the peak raised or not."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import gamma as gamma_function
+
+from seatrial.core.values import Array, InputError
+from seatrial.physics.hydro.dispersion import G
+
+SIGMA_BELOW, SIGMA_ABOVE = 0.07, 0.09
+# beyond nine sigma the raised peak adds less than a rounding error
+_REACH = 9.0
+_CALM = 0.1
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
+_HALVINGS = 64
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """One-sided density over wave frequency, A / omega^5 exp(-B / omega^4) gamma^r (Bretschneider 1959; ITTC 1978).
+
+    r = exp(-(omega / omega_p - 1)^2 / (2 sigma^2)), sigma = .07 up to the peak and .09 above it (JONSWAP: Hasselmann
+    et al. 1973); gamma = 1 leaves the peak alone. Made by `ittc`, `ittc_two_parameter`, `bretschneider`, `jonswap`.
+
+    Attributes:
+        A: m^2 rad^4/s^4; B: rad^4/s^4; gamma: 1.
+    """
+
+    name: str
+    A: float
+    B: float
+    gamma: float = 1.0
+
+    @property
+    def modal_frequency(self) -> float:
+        """Where the density is largest, (4 B / 5)^(1/4), rad/s."""
+        return (0.8 * self.B) ** 0.25
+
+    @property
+    def significant_height(self) -> float:
+        """4 sqrt(m0), m; the constants of the one-parameter spectrum make it 1.0013 times the height put in."""
+        return 4.0 * math.sqrt(self.moment(0))
+
+    @property
+    def mean_period(self) -> float:
+        """T1 = 2 pi m0 / m1, s."""
+        return 2.0 * math.pi * self.moment(0) / self.moment(1)
+
+    def of_height(self, height: float) -> "Spectrum":
+        """The sea of that significant height [m] and the same steepness and shape: periods go with its root.
+
+        Raises:
+            InputError: the height is not positive.
+        """
+        ratio = _positive("significant height", height, "m") / self.significant_height
+        return replace(self, B=self.B / ratio**2)
+
+    def density(self, omega: ArrayLike) -> Array:
+        """S [m^2 s/rad] at `omega` [rad/s], any shape; zero where omega is not positive."""
+        x = np.asarray(omega, dtype=np.float64) / self.modal_frequency
+        return np.asarray(self._plain(x) * self._raised(x), dtype=np.float64)
+
+    def moment(self, n: float) -> float:
+        """m_n = int omega^n S d omega [m^2 (rad/s)^n] = A B^(n/4 - 1) Gamma(1 - n/4) / 4, and what the peak adds.
+
+        Raises:
+            InputError: n is 4 or more, where the integral does not exist; bound the band instead.
+        """
+        if n >= 4:
+            raise InputError(f"moment {n:g} of the {self.name} spectrum is infinite; take a band of frequencies")
+        plain = self.A / 4.0 * self.B ** (n / 4.0 - 1.0) * float(gamma_function(1.0 - n / 4.0))
+        return plain + float(self._added(np.array(np.inf), n))
+
+    def share_below(self, omega: ArrayLike) -> Array:
+        """Share of the energy below `omega` [rad/s], any shape: exp(-B / omega^4), and what the peak adds."""
+        x = np.asarray(omega, dtype=np.float64) / self.modal_frequency
+        plain = self.A / (4.0 * self.B) * np.exp(-1.25 / np.maximum(x, _CALM) ** 4)
+        return np.asarray((plain + self._added(x, 0.0)) / self.moment(0), dtype=np.float64)
+
+    def energy_between(self, lower: ArrayLike, upper: ArrayLike) -> Array:
+        """int S [m^2] from `lower` to `upper` [rad/s], shapes that go together."""
+        return self.moment(0) * (self.share_below(upper) - self.share_below(lower))
+
+    def frequency_of_share(self, share: ArrayLike) -> Array:
+        """omega [rad/s] below which that share of the energy lies, any shape; by bisection where the peak is raised.
+
+        Raises:
+            InputError: a share does not lie between 0 and 1.
+        """
+        part = np.asarray(share, dtype=np.float64)
+        if not np.all((part > 0.0) & (part < 1.0)):
+            raise InputError("shares of a spectrum's energy must lie between 0 and 1, both excluded")
+        plain = (self.B / -np.log(part)) ** 0.25
+        if self.gamma == 1.0:
+            return np.asarray(plain, dtype=np.float64)
+        low, high = np.zeros_like(part), np.maximum(plain, 2.0 * self.modal_frequency)
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            above = self.share_below(middle) > part
+            low, high = np.where(above, low, middle), np.where(above, middle, high)
+        return np.asarray(0.5 * (low + high), dtype=np.float64)
+
+    def band(self, lower: float = 0.001, upper: float = 0.99) -> tuple[float, float]:
+        """Frequencies [rad/s] below which the shares `lower` and `upper` of the energy lie (Qi et al. 2025).
+
+        Raises:
+            InputError: as `frequency_of_share`, or the shares do not rise.
+        """
+        if not lower < upper:
+            raise InputError(f"a band needs a lower share below its upper one, not {lower:g} and {upper:g}")
+        first, last = self.frequency_of_share([lower, upper])
+        return float(first), float(last)
+
+    def _plain(self, x: Array) -> Array:
+        """Density without the raised peak at omega = x omega_p; exp(-1.25 / x^4) is zero below x = .1."""
+        safe = np.maximum(x, _CALM)
+        return self.A / (safe * self.modal_frequency) ** 5 * np.exp(-1.25 / safe**4)
+
+    def _raised(self, x: Array) -> Array:
+        sigma = np.where(x <= 1.0, SIGMA_BELOW, SIGMA_ABOVE)
+        return self.gamma ** np.exp(-0.5 * ((x - 1.0) / sigma) ** 2)
+
+    def _added(self, x: Array, n: float) -> Array:
+        """int of omega^n S (1 - gamma^-r) up to x omega_p: Gauss-Legendre below and above the kink at the peak."""
+        if self.gamma == 1.0:
+            return np.zeros_like(x)
+        added = np.zeros_like(x)
+        for start, stop in ((1.0 - _REACH * SIGMA_BELOW, 1.0), (1.0, 1.0 + _REACH * SIGMA_ABOVE)):
+            half = 0.5 * (np.clip(x, start, stop) - start)
+            at = start + half[..., None] * (1.0 + _NODES)
+            # nodes never touch the kink, so each side has its own sigma
+            values = at**n * self._plain(at) * (self._raised(at) - 1.0)
+            added = added + half * (values @ _WEIGHTS)
+        return self.modal_frequency ** (n + 1.0) * added
+
+
+def ittc(height: float) -> Spectrum:
+    """One-parameter ITTC spectrum: A = 8.1e-3 g^2, B = 3.11 / h13^2 (Qi et al. 2025, eq. 13, its h^-3 mended).
+
+    Raises:
+        InputError: the significant height [m] is not positive.
+    """
+    h = _positive("significant height", height, "m")
+    return Spectrum("ITTC one-parameter", 8.1e-3 * G**2, 3.11 / h**2)
+
+
+def ittc_two_parameter(height: float, mean_period: float) -> Spectrum:
+    """ITTC 1978: A = 173 h13^2 / T1^4, B = 691 / T1^4, unrounded: B = (2 pi / (Gamma(3/4) T1))^4, A = B h13^2 / 4.
+
+    Raises:
+        InputError: the significant height [m] or the mean period T1 = 2 pi m0 / m1 [s] is not positive.
+    """
+    h, T1 = _positive("significant height", height, "m"), _positive("mean period", mean_period, "s")
+    B = (2.0 * math.pi / (float(gamma_function(0.75)) * T1)) ** 4
+    return Spectrum("ITTC two-parameter", B * h**2 / 4.0, B)
+
+
+def bretschneider(height: float, peak_period: float) -> Spectrum:
+    """B = 5/4 omega_p^4, A = B h13^2 / 4, so that 4 sqrt(m0) = h13 (Bretschneider 1959; Pierson & Moskowitz 1964).
+
+    Raises:
+        InputError: the significant height [m] or the peak period [s] is not positive.
+    """
+    h, period = _positive("significant height", height, "m"), _positive("peak period", peak_period, "s")
+    B = 1.25 * (2.0 * math.pi / period) ** 4
+    return Spectrum("Bretschneider", B * h**2 / 4.0, B)
+
+
+def jonswap(height: float, peak_period: float, gamma: float = 3.3) -> Spectrum:
+    """JONSWAP (Hasselmann et al. 1973), scaled so that 4 sqrt(m0) = height.
+
+    Raises:
+        InputError: the significant height [m] or the peak period [s] is not positive, or gamma is not from 1 to 20.
+    """
+    if not 1.0 <= gamma <= 20.0:
+        raise InputError(f"the peak enhancement gamma of a JONSWAP spectrum lies from 1 to 20, not at {gamma:g}")
+    raw = replace(bretschneider(height, peak_period), name="JONSWAP", gamma=gamma)
+    return replace(raw, A=raw.A * height**2 / (16.0 * raw.moment(0)))
+
+
+def _positive(what: str, value: float, unit: str) -> float:
+    if not (math.isfinite(value) and value > 0.0):
+        raise InputError(f"the {what} of a sea must be positive, not {value:g} {unit}")
+    return value

@@ -1,0 +1,93 @@
+"""The straight run before a manoeuvre: inputs that are held, the steady speed, the time to travel one's own length."""
+
+from collections.abc import Mapping
+from itertools import pairwise
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, InputError, Record, nearest
+from seatrial.physics.simulate.channels import AT_REST, inputs_of
+
+RUDDER = "delta"
+_FASTEST = 100.0
+
+
+def held_inputs(model: Model, given: Mapping[str, float], rudder: str) -> Array:
+    """Constant inputs in the model's signs, shape (nu,), rudder amidships; absent wind channels mean still air.
+
+    Raises:
+        InputError: an input is missing, unknown, or the rudder is among those given.
+    """
+    known = [name for name in model.input_names if name != rudder]
+    for name in given:
+        if name not in known:
+            raise InputError(f"'{name}' is no held input of model '{model.name}'{nearest(name, known)}")
+    values = np.zeros(len(model.inputs))
+    for j, item in enumerate(model.inputs):
+        if item.name in given:
+            values[j] = -given[item.name] if item.is_turned else given[item.name]
+        elif item.name != rudder and item.name not in AT_REST:
+            raise InputError(f"model '{model.name}' needs the input '{item.name}'; give the value it is held at")
+    return values
+
+
+def approach_speed(model: Model, held: Array) -> float:
+    """The speed u [m/s] at which surge is in balance on a straight course without drift.
+
+    Raises:
+        InputError: there is none below 100 m/s.
+    """
+    from scipy.optimize import brentq
+
+    place, parameters = model.states.index("u"), model.parameters.values
+    state, rates = np.zeros(len(model.states)), np.empty(len(model.states))
+
+    def surge(u: float) -> float:
+        state[place] = u
+        model.compiled.rates(0.0, state, held, parameters, rates)
+        return float(rates[place])
+
+    speeds = np.geomspace(1e-3, _FASTEST, 60)
+    for low, high in pairwise(speeds):
+        if surge(low) > 0.0 >= surge(high):
+            return float(brentq(surge, low, high, xtol=1e-12))
+    raise InputError(f"model '{model.name}' has no steady speed ahead with these inputs; give the approach speed")
+
+
+def straight_run(model: Model, plan: Record, speed: float | None = None) -> dict[str, float]:
+    """Where a planned record starts: on a straight course at u = `speed`, all else zero.
+
+    Without a speed it is the one at which surge balances with the plan's first inputs, rudder amidships.
+
+    Raises:
+        InputError: as `inputs_of` and `approach_speed`.
+    """
+    start = dict.fromkeys(model.states, 0.0)
+    if "u" in start and speed is not None:
+        start["u"] = speed
+    elif "u" in start:
+        first = inputs_of(model, plan)[0].copy()
+        first[[name == RUDDER for name in model.input_names]] = 0.0
+        start["u"] = approach_speed(model, first)
+    return start
+
+
+def time_unit(model: Model, start: Array, known: float | None) -> float:
+    """L/U [s] from the start's u, the speed given, or the model's parameter U; else a Nomoto model's time constant.
+
+    Raises:
+        InputError: length or speed is not known.
+    """
+    names = model.parameters.names
+    length = model.parameters["L"].value if "L" in names else 0.0
+    if "u" in model.states:
+        speed = float(start[model.states.index("u")])
+    else:
+        speed = known or (model.parameters["U"].value if "U" in names else 0.0)
+    if length > 0.0 and speed > 0.0:
+        return length / speed
+    for constant in ("T", "T_1"):
+        if constant in names:
+            return model.parameters[constant].value
+    raise InputError(f"model '{model.name}': the approach speed must be positive, and its parameters must give L")

@@ -1,0 +1,151 @@
+"""Many segments of one model at once, as arrays: outputs, and outputs with sensitivities."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, Index
+from seatrial.numerics.kernels.integrate import replay
+from seatrial.numerics.kernels.sensitivity import DELAY, GAIN, OFFSET, replay_tangent
+
+INPUT_KINDS = {"zero": OFFSET, "gain": GAIN, "delay": DELAY}
+
+
+@dataclass(frozen=True)
+class InputCorrection:
+    """A correction of one input that can be estimated: its `zero` (added), `gain` or `delay` [s]."""
+
+    input: str
+    kind: str
+
+    @property
+    def name(self) -> str:
+        """What reports call it."""
+        return f"{self.input} {self.kind}"
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """Segments laid end to end: rows offsets[s]..offsets[s+1] of `inputs` belong to segment s.
+
+    Attributes:
+        inputs: shape (rows, nu), in the model's own signs.
+        offsets: shape (segments + 1,).
+        dt: s; substeps: Runge-Kutta steps in each.
+        outputs: observables that are returned, in order.
+        columns: names of the parameters to differentiate by, then corrections, then states (initial values).
+    """
+
+    model: Model
+    inputs: Array
+    offsets: Index
+    dt: float
+    outputs: tuple[str, ...]
+    parameters: tuple[str, ...] = ()
+    corrections: tuple[InputCorrection, ...] = ()
+    starts: tuple[str, ...] = ()
+    substeps: int = 1
+
+    @property
+    def count(self) -> int:
+        """Number of segments."""
+        return len(self.offsets) - 1
+
+    @property
+    def width(self) -> int:
+        """Number of sensitivity columns."""
+        return len(self.parameters) + len(self.corrections) + len(self.starts)
+
+    @cached_property
+    def _select(self) -> Index:
+        return np.array([self.model.observables.index(o) for o in self.outputs], dtype=np.int64)
+
+    @cached_property
+    def _links(self) -> tuple[Index, Index, Index, Index, Index, Index]:
+        compiled = self.model.compiled
+        return (*self._linked(compiled.rates_pattern), *self._linked(compiled.outputs_pattern))
+
+    def _linked(self, pattern: Index) -> tuple[Index, Index, Index]:
+        """Structural nonzeros as (row, state), (row, jac column, column), (row, jac column, weight slot, column)."""
+        nx, nu = len(self.model.states), len(self.model.inputs)
+        column = {nx + nu + self.model.parameters.index(n): c for c, n in enumerate(self.parameters)}
+        chain = [(i, k) for i, k in pattern if k < nx]
+        link_p = [(i, k, column[k]) for i, k in pattern if k in column]
+        link_u = [
+            (i, nx + j, 3 * j + INPUT_KINDS[c.kind], len(self.parameters) + m)
+            for m, c in enumerate(self.corrections)
+            for j in [self.model.input_names.index(c.input)]
+            for i, k in pattern
+            if k == nx + j
+        ]
+        return _table(chain, 2), _table(link_p, 3), _table(link_u, 4)
+
+    def _corrected(self, corrections: Array) -> tuple[Array, Array, Array]:
+        """gain, offset, delay, each (segments, nu), from correction values (segments, n)."""
+        shape = (self.count, len(self.model.inputs))
+        made = {"gain": np.ones(shape), "zero": np.zeros(shape), "delay": np.zeros(shape)}
+        for m, c in enumerate(self.corrections):
+            made[c.kind][:, self.model.input_names.index(c.input)] = corrections[:, m]
+        return made["gain"], made["zero"], made["delay"]
+
+    def simulate(
+        self, first: int, last: int, start: Array, parameters: Array, corrections: Array
+    ) -> tuple[Array, Index]:
+        """Outputs of segments first..last: shapes (rows, ny), and the sample of failure or -1, (segments,).
+
+        start (segments, nx), parameters (segments, np) all of the model's, corrections (segments, n): for all segments.
+        """
+        offsets, inputs, failed, y = self._piece(first, last)
+        gain, zero, delay = (a[first:last] for a in self._corrected(corrections))
+        compiled = self.model.compiled
+        replay(compiled.rates, compiled.outputs, inputs, offsets, 0, last - first, self.dt, self.substeps,
+               np.ascontiguousarray(start[first:last]), np.ascontiguousarray(parameters[first:last]),
+               gain, zero, delay, self._select, len(self.model.outputs), y, failed)  # fmt: skip
+        return y, failed
+
+    def differentiate(
+        self, first: int, last: int, start: Array, parameters: Array, corrections: Array
+    ) -> tuple[Array, Array, Index]:
+        """`simulate` with d(output)/d(column), shape (rows, ny, width)."""
+        offsets, inputs, failed, y = self._piece(first, last)
+        gain, zero, delay = (a[first:last] for a in self._corrected(corrections))
+        column = np.full(len(self.model.states), -1, dtype=np.int64)
+        for m, state in enumerate(self.starts):
+            column[self.model.states.index(state)] = len(self.parameters) + len(self.corrections) + m
+        s = np.empty((len(y), len(self.outputs), self.width))
+        compiled = self.model.compiled
+        replay_tangent(compiled.rates_tangent, compiled.outputs_tangent, inputs, offsets, 0, last - first, self.dt,
+                       self.substeps, np.ascontiguousarray(start[first:last]),
+                       np.ascontiguousarray(parameters[first:last]), gain, zero, delay, *self._links, column,
+                       self._select, len(self.model.outputs), y, s, failed)  # fmt: skip
+        return y, s, failed
+
+    def _piece(self, first: int, last: int) -> tuple[Index, Array, Index, Array]:
+        rows = slice(self.offsets[first], self.offsets[last])
+        offsets = np.ascontiguousarray(self.offsets[first : last + 1] - self.offsets[first])
+        return (
+            offsets,
+            self.inputs[rows],
+            np.full(last - first, -1, dtype=np.int64),
+            np.empty((rows.stop - rows.start, len(self.outputs))),
+        )
+
+    def influential_states(self) -> tuple[str, ...]:
+        """States whose initial value reaches any of the outputs."""
+        nx = len(self.model.states)
+        compiled = self.model.compiled
+        reached = {int(i) for i in self._select if i < nx}
+        for i in self._select:
+            reached |= {int(k) for row, k in compiled.outputs_pattern if row == i - nx and k < nx}
+        while True:
+            more = {int(k) for i, k in compiled.rates_pattern if i in reached and k < nx} - reached
+            if not more:
+                return tuple(s for i, s in enumerate(self.model.states) if i in reached)
+            reached |= more
+
+
+def _table(rows: Sequence[Sequence[int]], width: int) -> Index:
+    return np.array(rows, dtype=np.int64).reshape(-1, width)

@@ -1,0 +1,152 @@
+"""A Kalman filter over many segments of one model: innovations, and innovations with sensitivities."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from seatrial.core.values import Array, Index
+from seatrial.numerics.kernels.sensitivity import DELAY, GAIN, OFFSET
+from seatrial.physics.simulate.batch import Batch
+
+
+@dataclass(frozen=True, eq=False)
+class Noisy:
+    """What a filter has to know besides the model, for one point.
+
+    Attributes:
+        start, start_variance: initial states and their variances, (segments, nx).
+        parameters: all of the model's, (segments, np); corrections (segments, n).
+        intensity: of each state that is `driven`, SI over the root of a second; deviation: of each output, SI.
+    """
+
+    start: Array
+    start_variance: Array
+    parameters: Array
+    corrections: Array
+    intensity: Array
+    deviation: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Filter(Batch):
+    """Segments to be filtered; columns: parameters, corrections, squares of intensities, squares of deviations.
+
+    Attributes:
+        driven: states with white process noise.
+    """
+
+    driven: tuple[str, ...] = ()
+
+    @property
+    def noises(self) -> int:
+        """Number of intensities and deviations."""
+        return len(self.driven) + len(self.outputs)
+
+    @cached_property
+    def _driven(self) -> Index:
+        return np.array([self.model.states.index(s) for s in self.driven], dtype=np.int64)
+
+    @cached_property
+    def _moved_links(self) -> tuple[Index, ...]:
+        """Links with columns counted from behind the transition matrix."""
+        chain, link_p, link_u, _, g_link_p, g_link_u = self._links
+        return (chain, *(_shifted(link, len(self.model.states)) for link in (link_p, link_u, g_link_p, g_link_u)))
+
+    @cached_property
+    def _bare_links(self) -> tuple[Index, ...]:
+        none = np.zeros((0, 3), np.int64), np.zeros((0, 4), np.int64)
+        return (self._links[0], *none, *none)
+
+    def innovations(self, segment: int, measured: Array, at: Noisy) -> tuple[Array, Array, bool]:
+        """Innovations e (measured - predicted) and variances v of one segment, (rows, ny); whether it diverged.
+
+        measured: of all segments, NaN where there is none; there e = 0 and v = 1.
+        """
+        e, v, _, _, _, failed = self._run(segment, measured, at, self._bare_links, 0, 0)
+        return e, v, failed
+
+    def sensitivities(self, segment: int, measured: Array, at: Noisy) -> tuple[Array, Array, Array, Array, bool]:
+        """`innovations` with de by all columns, (rows, ny, columns), and dv by the noise's, (rows, ny, noises).
+
+        The gain counts as independent of parameters and corrections.
+        """
+        width = len(self.parameters) + len(self.corrections) + self.noises
+        e, v, de, dv, _, failed = self._run(segment, measured, at, self._moved_links, width, self.noises)
+        return e, v, de, dv, failed
+
+    def variances(self, segment: int, at: Noisy) -> Array:
+        """Variance of each state where nothing is measured, (rows, nx): how far a run may stray from its prediction."""
+        nothing = np.full((int(self.offsets[-1]), len(self.outputs)), np.nan)
+        return self._run(segment, nothing, at, self._bare_links, 0, 0, recorded=True)[4]
+
+    def transitions(self, segment: int, start: Array, parameters: Array, corrections: Array) -> tuple[Array, Array]:
+        """Transition matrices from sample to sample, (rows - 1, nx, nx), and outputs by states, (rows, ny, nx).
+
+        Along the motion without noise; start, parameters, corrections: as in `simulate`, of all segments.
+        """
+        a, b = self.offsets[segment : segment + 2]
+        gain, zero, delay = (c[segment] for c in self._corrected(corrections))
+        inputs, rows, nx = corrected(self.inputs[a:b], self.dt, gain, zero, delay)[0], b - a, len(self.model.states)
+        whole = Batch(self.model, inputs, np.array([0, rows]), self.dt, self.model.states, substeps=self.substeps)
+        one = parameters[segment : segment + 1]
+        states = whole.simulate(0, 1, start[segment : segment + 1], one, np.zeros((1, 0)))[0]
+        ahead = np.minimum(np.column_stack([np.arange(rows), np.arange(1, rows + 1)]), rows - 1).ravel()
+        steps = replace(
+            whole, inputs=np.ascontiguousarray(inputs[ahead]), offsets=2 * np.arange(rows + 1, dtype=np.int64),
+            outputs=(*self.model.states, *self.outputs), starts=self.model.states,
+        )  # fmt: skip
+        slopes = steps.differentiate(0, rows, states, np.repeat(one, rows, axis=0), np.zeros((rows, 0)))[1]
+        return slopes[1:-1:2, :nx], slopes[::2, nx:]
+
+    def _run(
+        self, segment: int, measured: Array, at: Noisy, links: tuple[Index, ...], width: int, noises: int,
+        *, recorded: bool = False,
+    ) -> tuple[Array, Array, Array, Array, Array, bool]:  # fmt: skip
+        nx, ny = len(self.model.states), len(self.outputs)
+        from seatrial.numerics.kernels.innovations import innovate  # compiled when it is first wanted
+
+        chain, link_p, link_u, g_link_p, g_link_u = links
+        nx, ny, (a, b) = len(self.model.states), len(self.outputs), self.offsets[segment : segment + 2]
+        gain, zero, delay = (c[segment] for c in self._corrected(at.corrections))
+        inputs, weights = corrected(self.inputs[a:b], self.dt, gain, zero, delay)
+        if not len(link_u) + len(g_link_u):
+            weights = np.empty((b - a, 0))
+        process = np.zeros(nx)
+        process[self._driven] = at.intensity**2
+        e, v = np.empty((b - a, ny)), np.empty((b - a, ny))
+        de, dv = np.empty((b - a, ny, width)), np.empty((b - a, ny, noises))
+        variance = np.empty((b - a if recorded else 0, nx))
+        compiled = self.model.compiled
+        failed = innovate(
+            compiled.rates_tangent, compiled.outputs_tangent, inputs, weights, self.dt, self.substeps,
+            at.start[segment], at.start_variance[segment], at.parameters[segment],
+            chain, link_p, link_u, g_link_p, g_link_u, self._select, len(self.model.outputs), self._driven, process,
+            at.deviation**2, np.ascontiguousarray(measured[a:b]), e, v, de, dv, variance,
+        )  # fmt: skip
+        return e, v, de, dv, variance, failed >= 0
+
+
+def corrected(inputs: Array, dt: float, gain: Array, zero: Array, delay: Array) -> tuple[Array, Array]:
+    """Inputs as `kernels.integrate.effective_input` corrects them, (rows, nu), and their derivatives (rows, 3 nu).
+
+    The derivatives by zero, gain and delay stand in that order for every input (`kernels.sensitivity`).
+    """
+    rows, nu = inputs.shape
+    made, weights = np.empty((rows, nu)), np.empty((rows, 3 * nu))
+    for j in range(nu):
+        delayed = np.arange(rows) - delay[j] / dt
+        place = np.clip(delayed, 0.0, rows - 1.0)
+        left = np.minimum(place.astype(np.int64), rows - 2)
+        rise = inputs[left + 1, j] - inputs[left, j]
+        raw = inputs[left, j] + (place - left) * rise
+        made[:, j] = gain[j] * raw + zero[j]
+        weights[:, 3 * j + OFFSET], weights[:, 3 * j + GAIN] = 1.0, raw
+        weights[:, 3 * j + DELAY] = np.where(place == delayed, -gain[j] * rise / dt, 0.0)
+    return made, weights
+
+
+def _shifted(link: Index, by: int) -> Index:
+    moved = link.copy()
+    moved[:, -1] += by
+    return moved

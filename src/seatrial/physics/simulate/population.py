@@ -1,0 +1,220 @@
+"""Populations of small linear models in the same inputs: trajectories and fitness of all candidates at once.
+
+Every candidate has matrices of its own, x' = A x + B u. A candidate's numbers do not depend on its neighbours.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from seatrial.core.values import Array, InputError
+from seatrial.numerics.kernels.population import discretise, misfit
+from seatrial.numerics.kernels.population import trajectories as simulated
+from seatrial.physics.models.heave_pitch import COEFFICIENTS, STIFFNESSES
+
+ALL_COEFFICIENTS = ("m", "I5", *COEFFICIENTS, *STIFFNESSES)
+HEAVE_AND_PITCH = (0, 2)
+
+
+@dataclass(frozen=True, eq=False)
+class Forcing:
+    """Inputs that all candidates meet.
+
+    Attributes:
+        inputs: ((samples - 1) substeps + 1, nu), `substeps` intervals to a sample.
+        dt: s, between samples.
+        is_held: constant over each interval (Qi et al. 2025, eq. (8)); otherwise straight between rows.
+
+    Raises:
+        InputError: on construction, if the rows do not fit the substeps, dt is not positive, or a value is not finite.
+    """
+
+    inputs: Array
+    dt: float
+    is_held: bool
+    substeps: int = 1
+
+    def __post_init__(self) -> None:
+        if self.substeps < 1 or len(self.inputs) < 2 or (len(self.inputs) - 1) % self.substeps:
+            raise InputError(
+                f"forcing of {len(self.inputs)} rows is no whole number of samples with {self.substeps} substeps each; "
+                "give (samples - 1) * substeps + 1 rows"
+            )
+        if not 0.0 < self.dt < np.inf:
+            raise InputError(f"forcing with a sample interval of {self.dt} s; give a positive one")
+        bad = np.flatnonzero(~np.isfinite(self.inputs).all(axis=1))
+        if bad.size:
+            raise InputError(f"forcing is not finite in row {bad[0]}; mend the gap before simulating")
+
+    @property
+    def samples(self) -> int:
+        """Number of samples."""
+        return (len(self.inputs) - 1) // self.substeps + 1
+
+    @cached_property
+    def rows(self) -> Array:
+        """What a step multiplies by Gamma: u_k, or u_k beside u_{k+1}."""
+        u = np.array(self.inputs, dtype=np.float64, order="C")
+        return u if self.is_held else np.hstack([u, np.vstack([u[1:], u[-1:]])])
+
+    def one_step(self, sample: int) -> "Forcing":
+        """From one sample to the next.
+
+        Raises:
+            InputError: there is no next one.
+        """
+        if not 0 <= sample < self.samples - 1:
+            raise InputError(f"no step from sample {sample} in a forcing of {self.samples} samples")
+        first = sample * self.substeps
+        return Forcing(self.inputs[first : first + self.substeps + 1], self.dt, self.is_held, self.substeps)
+
+
+def discretised_hold(A: Array, B: Array, dt: float) -> tuple[Array, Array]:
+    """Phi (count, nx, nx) and Psi (count, nx, nu) of A, B, same shapes: x_{k+1} = Phi x_k + Psi u_k.
+
+    NaN where a matrix is not finite or too large to be scaled.
+    """
+    return _discretised(A, B, dt, is_ramp=False)
+
+
+def discretised_ramp(A: Array, B: Array, dt: float) -> tuple[Array, Array, Array]:
+    """Phi, G0, G1 of inputs straight between samples: x_{k+1} = Phi x_k + G0 u_k + G1 u_{k+1}; as for a hold."""
+    phi, gamma = _discretised(A, B, dt, is_ramp=True)
+    nu = B.shape[2]
+    return phi, gamma[:, :, :nu], gamma[:, :, nu:]
+
+
+def trajectories(
+    A: Array, B: Array, forcing: Forcing, start: Array, channels: tuple[int, ...] = HEAVE_AND_PITCH
+) -> Array:
+    """States `channels` of every candidate, shape (count, samples, channels).
+
+    A (count, nx, nx), B (count, nx, nu); start (nx,) for all or (count, nx). What grows beyond all bounds is infinite
+    or NaN in the result.
+
+    Raises:
+        InputError: shapes do not fit.
+    """
+    phi, gamma, x0 = _ready(A, B, forcing, start)
+    _within(channels, A.shape[1])
+    y = np.empty((len(A), forcing.samples, len(channels)))
+    simulated(phi, gamma, forcing.rows, forcing.substeps, x0, np.array(channels, dtype=np.int64), y)
+    return y
+
+
+def fitness(
+    A: Array, B: Array, forcing: Forcing, start: Array, measured: Array, sigma: Array,
+    channels: tuple[int, ...] = HEAVE_AND_PITCH,
+) -> Array:  # fmt: skip
+    """Sum over samples and channels of ((y - measured)/sigma)^2 of every candidate, shape (count,).
+
+    measured (samples, channels), NaN where there is no sample; sigma (channels,), in the unit of each channel.
+    Infinite, never NaN, for a candidate that is unstable beyond all bounds or whose matrices are not finite.
+
+    Raises:
+        InputError: shapes do not fit, a sigma is not positive, or nothing was measured.
+    """
+    phi, gamma, x0 = _ready(A, B, forcing, start)
+    nx = phi.shape[1]
+    _within(channels, nx)
+    if measured.shape != (forcing.samples, len(channels)):
+        raise InputError(f"measured has shape {measured.shape}; the forcing wants ({forcing.samples}, {len(channels)})")
+    if np.shape(sigma) != (len(channels),) or not np.all(np.asarray(sigma) > 0.0):
+        raise InputError(f"sigma must be positive, one for each of {len(channels)} channels; got {sigma}")
+    seen, weight = np.full((forcing.samples, nx), np.nan), np.zeros(nx)
+    seen[:, channels] = measured
+    weight[list(channels)] = 1.0 / np.square(sigma)
+    if np.isnan(seen).all():
+        raise InputError("no channel has a measured sample; there is nothing to compare candidates with")
+    cost = np.empty(len(A))
+    misfit(phi, gamma, forcing.rows, forcing.substeps, x0, seen, weight, cost)
+    return cost
+
+
+def one_sample_fitness(
+    A: Array, B: Array, forcing: Forcing, sample: int, state: Array, measured: Array, sigma: Array,
+    channels: tuple[int, ...] = HEAVE_AND_PITCH,
+) -> Array:  # fmt: skip
+    """Fitness of one step from the state (nx,) at `sample` to the next sample (Qi et al. 2025, eq. (28)); (count,).
+
+    measured (channels,): at the next sample. Otherwise as `fitness`.
+    """
+    seen = np.full((2, len(channels)), np.nan)
+    seen[1] = measured
+    return fitness(A, B, forcing.one_step(sample), state, seen, sigma, channels)
+
+
+def completed(coefficients: Array, known: Mapping[str, float]) -> Array:
+    """All fourteen parameters, (count, 14) in the order of ALL_COEFFICIENTS, from the eight unknown ones (count, 8).
+
+    known: m, I5 and the stiffnesses, as in the particulars of `seatrial.physics.models.qi2025.SHIP`.
+
+    Raises:
+        InputError: one of the known values is missing, or there are not eight columns.
+    """
+    if coefficients.ndim != 2 or coefficients.shape[1] != len(COEFFICIENTS):
+        raise InputError(f"coefficients of shape {coefficients.shape}; give (count, 8) in the order {COEFFICIENTS}")
+    missing = [name for name in ("m", "I5", *STIFFNESSES) if name not in known]
+    if missing:
+        raise InputError(f"'{missing[0]}' of the ship is missing; heave and pitch need m, I5, {', '.join(STIFFNESSES)}")
+    whole = np.empty((len(coefficients), len(ALL_COEFFICIENTS)))
+    whole[:, :2] = known["m"], known["I5"]
+    whole[:, 2:10] = coefficients
+    whole[:, 10:] = [known[name] for name in STIFFNESSES]
+    return whole
+
+
+def heave_pitch_matrices(parameters: Array) -> tuple[Array, Array]:
+    """A (count, 4, 4) and B (count, 4, 2) of x' = A x + B (F3, M5), x = (z, z_dot, theta, theta_dot).
+
+    parameters (count, 14): m I5 a33 a35 a55 a53 b33 b35 b55 b53 c33 c35 c53 c55 in SI units (Qi et al. 2025, eq. (1));
+    F3 and z, M5 and theta share their signs. A singular mass matrix gives infinite or NaN entries.
+
+    Raises:
+        InputError: there are not fourteen columns.
+    """
+    if parameters.ndim != 2 or parameters.shape[1] != len(ALL_COEFFICIENTS):
+        raise InputError(f"parameters of shape {parameters.shape}; give (count, 14) in the order {ALL_COEFFICIENTS}")
+    m, i5, a33, a35, a55, a53, b33, b35, b55, b53, c33, c35, c53, c55 = parameters.T
+    count = len(parameters)
+    A, B = np.zeros((count, 4, 4)), np.zeros((count, 4, 2))
+    A[:, 0, 1] = A[:, 2, 3] = 1.0
+    heave, pitch = m + a33, i5 + a55
+    loads = np.stack([c33, b33, c35, b35, c53, b53, c55, b55], axis=1).reshape(count, 2, 4)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        det = heave * pitch - a35 * a53
+        B[:, 1, 0], B[:, 1, 1] = pitch / det, -a35 / det
+        B[:, 3, 0], B[:, 3, 1] = -a53 / det, heave / det
+        A[:, 1::2] = -(B[:, 1::2, :1] * loads[:, :1] + B[:, 1::2, 1:] * loads[:, 1:])
+    return A, B
+
+
+def _discretised(A: Array, B: Array, dt: float, *, is_ramp: bool) -> tuple[Array, Array]:
+    A, B = _matrices(A, B)
+    count, nx, nu = B.shape
+    phi, gamma = np.empty((count, nx, nx)), np.empty((count, nx, 2 * nu if is_ramp else nu))
+    discretise(A, B, dt, phi, gamma)
+    return phi, gamma
+
+
+def _matrices(A: Array, B: Array) -> tuple[Array, Array]:
+    if A.ndim != 3 or B.ndim != 3 or A.shape != (*B.shape[:2], B.shape[1]):
+        raise InputError(f"matrices A {A.shape} and B {B.shape} do not fit; give (count, nx, nx) and (count, nx, nu)")
+    return np.array(A, dtype=np.float64, order="C"), np.array(B, dtype=np.float64, order="C")
+
+
+def _ready(A: Array, B: Array, forcing: Forcing, start: Array) -> tuple[Array, Array, Array]:
+    phi, gamma = _discretised(A, B, forcing.dt / forcing.substeps, is_ramp=not forcing.is_held)
+    count, nx, nu = B.shape
+    if forcing.inputs.shape[1:] != (nu,):
+        raise InputError(f"forcing has shape {forcing.inputs.shape}; the matrices B want {nu} inputs in each row")
+    if np.shape(start) not in ((nx,), (count, nx)) or not np.isfinite(start).all():
+        raise InputError(f"start must be finite, of shape ({nx},) or ({count}, {nx}); got {np.shape(start)}")
+    return phi, gamma, np.array(np.broadcast_to(start, (count, nx)), dtype=np.float64, order="C")
+
+
+def _within(channels: tuple[int, ...], nx: int) -> None:
+    if not channels or min(channels) < 0 or max(channels) >= nx:
+        raise InputError(f"channels {channels} are no states; there are {nx}, counted from 0")

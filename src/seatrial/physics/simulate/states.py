@@ -1,0 +1,67 @@
+"""States of a model along a record, as measured: for regression and for starting values."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.signal import savgol_filter
+
+from seatrial.core.equations import Model
+from seatrial.core.values import NOTATION, Array, InputError, Record
+
+_SMOOTHING_SAMPLES = 15
+
+
+def _slope(record: Record, symbol: str) -> Array:
+    """Derivative by local cubic polynomials (Savitzky & Golay 1964) over 15 samples."""
+    values = record[symbol]
+    width = min(_SMOOTHING_SAMPLES, len(values) - 1 + len(values) % 2)
+    return savgol_filter(values, width, min(3, width - 1), deriv=1, delta=record.dt)
+
+
+def hidden_states(model: Model, records: Sequence[Record]) -> tuple[str, ...]:
+    """States that no instrument shows (they are not in the notation table) and no record holds."""
+    return tuple(s for s in model.states if s not in NOTATION and not all(s in r for r in records))
+
+
+def untold_states(model: Model, record: Record) -> tuple[str, ...]:
+    """States of the model that the record neither holds nor implies."""
+    found = _found(model, record)
+    return tuple(s for s in model.states if s not in found)
+
+
+def measured_states(model: Model, record: Record) -> Array:
+    """States as columns, shape (n, nx); u, v, r are derived from positions and heading where they were not measured.
+
+    Raises:
+        InputError: a state is neither measured nor derivable.
+    """
+    found = _found(model, record)
+    missing = [s for s in model.states if s not in found]
+    if missing:
+        raise InputError(
+            f"record '{record.name}' neither holds nor implies '{missing[0]}', "
+            f"which model '{model.name}' needs; add the channel"
+        )
+    columns = np.stack([found[s] for s in model.states], axis=1)
+    return np.ascontiguousarray(np.where(np.isfinite(columns), columns, 0.0))
+
+
+def _found(model: Model, record: Record) -> dict[str, Array]:
+    """What the record holds or implies of the model's states, (n,) each."""
+    found: dict[str, Array] = {s: record[s] for s in model.states if s in record}
+    if "r" not in found and "psi" in record:
+        found["r"] = _slope(record, "psi")
+    if "p" not in found and "phi" in record:
+        found["p"] = _slope(record, "phi")
+    if "psi" not in found and "r" in found:
+        found["psi"] = np.concatenate([[0.0], np.cumsum(0.5 * record.dt * (found["r"][1:] + found["r"][:-1]))])
+    if not {"u", "v"} <= set(found) and {"x0", "y0", "psi"} <= set(record.channels):
+        north, east, psi = _slope(record, "x0"), _slope(record, "y0"), record["psi"]
+        found.setdefault("u", north * np.cos(psi) + east * np.sin(psi))
+        found.setdefault("v", -north * np.sin(psi) + east * np.cos(psi))
+    for rate in model.states:
+        if rate.endswith("_dot") and rate not in found and rate.removesuffix("_dot") in record:
+            found[rate] = _slope(record, rate.removesuffix("_dot"))
+    for unused in ("x0", "y0"):
+        found.setdefault(unused, np.zeros(len(record)))
+    return found

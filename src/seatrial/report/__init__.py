@@ -1,5 +1,0 @@
-"""Fits and studies as self-contained HTML pages."""
-
-from seatrial.report.page import write_report
-
-__all__ = ["write_report"]

@@ -1,0 +1,117 @@
+"""One self-contained HTML page from a fit: style and figures in one file, nothing fetched, nothing fitted."""
+
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from markupsafe import Markup
+
+from seatrial.core.figures import channels, correlation, forest, tracks, whiteness
+from seatrial.core.figures.plot import common_prefix
+from seatrial.core.results import Fit
+from seatrial.core.text import numbers, words
+from seatrial.core.values.files import write_whole
+from seatrial.reporting import answer, rivals, rolling, runs, tables, telling, waves
+from seatrial.reporting.citations import Citations
+from seatrial.reporting.mathml import inline, pieces
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+TITLES = {
+    "answer": "Question and answer",
+    "telling": "What this record can and cannot tell",
+    "records": "Records",
+    "findings": "Findings",
+    "coefficients": "Coefficients",
+    "rolling": "Roll: period, damping, metacentric height",
+    "prediction": "Prediction of held-out runs",
+    "training": "Fit of the training runs",
+    "rivals": "Other estimators on the same records",
+    "residuals": "Residuals",
+    "waves": "Motions in waves",
+    "offsets": "Offsets",
+    "standards": "IMO standards",
+    "model": "Equations of the model",
+    "fixed": "Fixed values and priors",
+    "method": "Method and provenance",
+}
+
+
+def write_report(fit: Fit, path: Path) -> Path:
+    """Write the fit's page, whole or not at all; returns the path.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    write_whole(path, html(fit).encode())
+    return path
+
+
+def html(fit: Fit) -> str:
+    """The page as text."""
+    citations = Citations()
+    length = fit.ship.length if "L" in fit.ship.particulars else 0.0
+    told, known, compared = telling.telling(fit), fit.seakeeping, rivals.rivals(fit)
+    is_steered = "psi" in fit.model.states or "delta" in fit.model.input_names
+    shown = {
+        "telling": bool(told), "rolling": fit.rolling is not None, "waves": known is not None, "standards": is_steered,
+        "training": bool(fit.predictions), "residuals": bool(fit.residuals), "rivals": compared is not None,
+    }  # fmt: skip
+    context: dict[str, object] = {
+        "fit": fit,
+        "titles": {key: title for key, title in TITLES.items() if shown.get(key, True)},
+        "is_steered": is_steered,
+        "waves": None if known is None else {"sheets": waves.sheets(known), "figures": waves.figures(known)},
+        "rolling": None
+        if fit.rolling is None
+        else {"sheets": rolling.sheets(fit.rolling, fit.ship.scale), "figures": rolling.figures(fit.rolling)},
+        "told": told,
+        "rivals": compared,
+        "answer": answer.sentences(fit),
+        "facts": answer.facts(fit),
+        "scores": runs.scores(fit.predictions, length),
+        "records": tables.records(fit),
+        "without": words.without(common_prefix([r.name for r in fit.records])),
+        "tracks": Markup(tracks.tracks(fit.records, length)),
+        "channels": [Markup(figure) for figure in channels.overview(fit.records)],
+        "findings": tables.findings(fit.findings),
+        "equations": tables.equations(fit.model, citations),
+        "coefficients": tables.coefficients(fit.coefficients),
+        "has_truth": any(c.truth is not None for c in fit.coefficients if not c.fixed),
+        "has_meaning": any(c.meaning for c in fit.coefficients if not c.fixed),
+        "has_prior": any(c.prior_mean is not None for c in fit.coefficients if not c.fixed),
+        "forest": Markup(forest.forest(fit.coefficients)),
+        "correlation": Markup(correlation.heat_map(fit.model.parameters.free_names, fit.covariance)),
+        "correlated": words.correlated(fit.model.parameters.free_names, fit.covariance),
+        "runs": runs.runs(fit.predictions, length, fit.model.input_names),
+        "noise": tables.noise(fit.noise),
+        "whiteness": Markup(whiteness.whiteness(fit.residuals)),
+        "offsets": tables.offsets(fit.offsets),
+        "standards": runs.standards(fit.predictions, length, fit.ship.scale),
+        "fixed": tables.fixed(fit.coefficients, citations),
+        "priors": tables.priors(fit.coefficients, fit.model, citations),
+        "ship_source": citations.marked(fit.ship.source),
+        "settings": tables.settings(fit.method),
+        "citations": citations,
+    }
+    return environment().get_template("report.html").render(context)
+
+
+@cache
+def environment() -> "Environment":
+    """The templates with everything escaped by default, and the filters they use."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    made = Environment(
+        loader=PackageLoader("seatrial.reporting"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    made.filters["duration"] = numbers.duration
+    made.filters["significant"] = numbers.significant
+    made.filters["math"] = lambda latex: Markup(inline(latex))
+    made.filters["breakable"] = lambda latex: Markup("".join(pieces(latex)))
+    return made

@@ -1,0 +1,103 @@
+"""The page of a study: claims with verdicts, checks with limits, tables, figures, runs; nothing is computed."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from markupsafe import Markup
+
+from seatrial.core.figures.bars import bars
+from seatrial.core.figures.curves import curves
+from seatrial.core.figures.matrix import matrix
+from seatrial.core.results import Bars, Check, Figure, Matrix, Study, Verdict
+from seatrial.core.text.numbers import significant
+from seatrial.core.text.words import counted
+from seatrial.core.values.files import write_whole
+from seatrial.reporting import runs, tables
+from seatrial.reporting.page import environment
+from seatrial.reporting.sheets import sheet
+
+# channels a run is given rather than predicted
+INPUTS = ("delta", "n", "v_j", "wind_speed", "wind_direction")
+TITLES = {
+    "outcome": "Outcome",
+    "claims": "Claims",
+    "checks": "Checks",
+    "tables": "Tables",
+    "figures": "Figures",
+    "runs": "Runs",
+    "findings": "Findings",
+    "versions": "Versions",
+}
+
+
+@dataclass(frozen=True)
+class CheckRow:
+    """A check as text."""
+
+    name: str
+    value: str
+    limit: str
+    holds: bool
+
+
+def write_study(study: Study, path: Path) -> Path:
+    """Write the study's page, whole or not at all; returns the path.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    write_whole(path, html(study).encode())
+    return path
+
+
+def html(study: Study) -> str:
+    """The page as text; sections without content are left out."""
+    content: dict[str, object] = {
+        "claims": study.claims,
+        "checks": [_check(c) for c in study.checks],
+        "tables": [sheet(t) for t in study.tables],
+        "figures": [(Markup(_drawn(f)), f) for f in study.figures],
+        "runs": runs.runs(study.predictions, 0.0, INPUTS),
+        "findings": tables.findings(study.findings),
+    }
+    titles = {key: title for key, title in TITLES.items() if content.get(key, True)}
+    context = {
+        **content,
+        "titles": titles,
+        "study": study,
+        "outcome": outcome(study),
+        "scores": runs.scores(study.predictions, 0.0),
+    }
+    return environment().get_template("study.html").render(context)
+
+
+def _drawn(figure: Figure | Bars | Matrix) -> str:
+    match figure:
+        case Bars():
+            return bars(figure)
+        case Matrix():
+            return matrix(figure)
+        case Figure():
+            return curves(figure)
+
+
+def outcome(study: Study) -> list[str]:
+    """How many claims came out how, and which checks fail."""
+    counts = [(verdict, sum(c.verdict is verdict for c in study.claims)) for verdict in Verdict]
+    said = []
+    if study.claims:
+        told = ", ".join(f"{number} {verdict}" for verdict, number in counts if number)
+        said.append(f"{counted(len(study.claims), 'claim').capitalize()} judged: {told}.")
+    if study.checks:
+        failed = [c.name for c in study.checks if not c.holds]
+        holding = len(study.checks) - len(failed)
+        tail = (
+            f"; it fails: {failed[0]}" if len(failed) == 1 else f"; these fail: {', '.join(failed)}" if failed else ""
+        )
+        said.append(f"{holding} of {counted(len(study.checks), 'check')} hold{tail}.")
+    return said
+
+
+def _check(c: Check) -> CheckRow:
+    limit = c.limit if isinstance(c.limit, str) else significant(c.limit)
+    return CheckRow(c.name, significant(c.value), limit, c.holds)

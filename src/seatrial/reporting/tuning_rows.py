@@ -1,0 +1,156 @@
+"""Rows of a tuning's page: controllers, schedule, bounds, blocks, as text."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from seatrial.core.equations.latex import symbol
+from seatrial.core.figures import fronts
+from seatrial.core.results.tuning import Bound, Component, Controller, Slot, Tuning
+from seatrial.core.text.numbers import DASH, exact, fixed, significant
+from seatrial.core.text.words import channel
+from seatrial.data.folder.orders import shown_unit
+from seatrial.reporting import told_tuning
+from seatrial.reporting.mathml import inline
+from seatrial.reporting.sheets import Sheet
+
+NOTHING = 1e-9
+
+
+@dataclass(frozen=True)
+class ControllerRow:
+    """One controller as text: cells in the order of the heads."""
+
+    name: str
+    gains: tuple[str, ...]
+    objectives: tuple[str, ...]
+    rms: tuple[str, ...]
+    reduction: str
+    margins: tuple[str, ...]
+    shares: tuple[str, ...]
+    broken: tuple[str, ...]
+
+
+def gain_symbol(name: str) -> Markup:
+    """``KP`` and ``K_P`` as K with its index."""
+    spaced = f"K_{name[1:]}" if len(name) > 1 and name[0] == "K" and name[1:].isupper() else name
+    return Markup(inline(symbol(spaced)))
+
+
+def gain_names(tuning: Tuning) -> list[str]:
+    """Names of all gains, in order, each once."""
+    return list(dict.fromkeys(name for c in (tuning.chosen, *tuning.rivals) for name in c.gains))
+
+
+def shown_gains(rows: Sequence[Mapping[str, float]], names: Sequence[str]) -> list[tuple[str, ...]]:
+    """Gains of several controllers as text; what rounding left of a zero, beside the largest of its name, is zero."""
+    known = {name: [abs(row[name]) for row in rows if name in row] for name in names}
+    least = {name: NOTHING * max(values, default=0.0) for name, values in known.items()}
+    return [
+        tuple(DASH if name not in row else exact(row[name] if abs(row[name]) > least[name] else 0.0, 4)
+              for name in names)
+        for row in rows
+    ]  # fmt: skip
+
+
+def rms_heads(tuning: Tuning) -> list[tuple[str, str]]:
+    """Names and units of the root mean squares."""
+    names = (("output", tuning.output, ""), ("actuator", tuning.actuator, ""),
+             ("actuator_rate", tuning.actuator, "/s"))  # fmt: skip
+    words = {"output": channel(tuning.output), "actuator": channel(tuning.actuator), "actuator_rate": "its rate"}
+    return [(words[key], told_tuning.unit_of(name, per)) for key, name, per in names]
+
+
+def controller_rows(tuning: Tuning) -> list[ControllerRow]:
+    """The chosen controller, then its rivals."""
+    controllers = (tuning.chosen, *tuning.rivals)
+    gains = shown_gains([c.gains for c in controllers], gain_names(tuning))
+    return [_row(c, told, tuning) for c, told in zip(controllers, gains, strict=True)]
+
+
+def schedule_sheet(slots: tuple[Slot, ...]) -> Sheet:
+    """The schedule's gains as a table, a line for each condition."""
+    first = slots[0] if slots else None
+    gains, others = (list(first.gains), list(first.others)) if first else ([], [])
+    header = ("speed m/s", "heading deg", "height m", *gains, "cost", *others, "Ms", "saturation %",
+              "")  # fmt: skip
+    shown = shown_gains([s.gains for s in slots], gains)
+    rows = [
+        (exact(s.U, 4), exact(math.degrees(s.beta), 4), exact(s.height, 3),
+         *told, fixed(s.cost, 3),
+         *(_cost(s.others.get(name, math.nan)) for name in others), fixed(s.peak, 2), fixed(100.0 * s.saturation, 1),
+         "" if s.is_feasible else "not kept")
+        for s, told in zip(slots, shown, strict=True)
+    ]  # fmt: skip
+    return Sheet("Gains of the schedule", header, tuple([True] * (len(header) - 1) + [False]), tuple(rows), "")
+
+
+def bound_row(b: Bound) -> tuple[str, str, str, str, str]:
+    """Name, variance ratio, rms ratio, what is held equal, note."""
+    rms = fixed(math.sqrt(b.ratio), 2) if b.ratio >= 0.0 else DASH
+    return b.name, fixed(b.ratio, 2), rms, b.at, b.note
+
+
+def component_row(c: Component, gains: dict[str, float]) -> tuple[str | Markup, ...]:
+    """Role, name, transfer function, gain and its value, source."""
+    value = exact(gains[c.gain], 5) if c.gain in gains else ""
+    letter = gain_symbol(c.gain) if c.gain else ""
+    return c.role, c.name, Markup(inline(transfer_latex(c.num, c.den))), letter, value, c.source
+
+
+def transfer_latex(num: tuple[float, ...], den: tuple[float, ...]) -> str:
+    """num(s) / den(s) as LaTeX; the denominator 1 is left out."""
+    above, below = _polynomial(num), _polynomial(den)
+    return above if below == "1" else f"\\frac{{{above}}}{{{below}}}"
+
+
+def _row(c: Controller, gains: tuple[str, ...], tuning: Tuning) -> ControllerRow:
+    factors = [fronts.people_s(unit)[0] for unit in tuning.units]
+    of_output, of_actuator = shown_unit(tuning.output)[0], shown_unit(tuning.actuator)[0]
+    rms = [c.rms.get(key, math.nan) * factor for key, factor in
+           (("output", of_output), ("actuator", of_actuator), ("actuator_rate", of_actuator))]  # fmt: skip
+    has_limits = [math.isfinite(limit) for limit in (tuning.restriction.limit, tuning.restriction.rate)]
+    return ControllerRow(
+        c.name,
+        gains,
+        tuple(significant(float(v) * f) for v, f in zip(c.objectives, factors, strict=False)),
+        tuple(significant(v, 3) for v in rms),
+        fixed(100.0 * c.reduction, 1),
+        (_ratio(c.peak, 2), _ratio(c.gain_margin, 1), _ratio(math.degrees(c.phase_margin), 0),
+         "∞" if math.isinf(c.delay_margin) else significant(c.delay_margin, 2), fixed(c.damping, 2)),
+        tuple(fixed(100.0 * share, 1) if known else DASH for share, known in
+              zip((c.saturation, c.rate_saturation), has_limits, strict=True)),
+        c.broken,
+    )  # fmt: skip
+
+
+def _ratio(value: float, decimals: int) -> str:
+    return "∞" if math.isinf(value) else fixed(value, decimals)
+
+
+def _cost(value: float) -> str:
+    return "unstable" if math.isinf(value) else fixed(value, 3)
+
+
+def _polynomial(coefficients: tuple[float, ...]) -> str:
+    """``1.432 s^{2} + 0.3796 s + 1``."""
+    parts = []
+    for k, c in enumerate(coefficients):
+        power = len(coefficients) - 1 - k
+        if c == 0.0 and len(coefficients) > 1:
+            continue
+        variable = "" if power == 0 else "s" if power == 1 else f"s^{{{power}}}"
+        number = "" if abs(c) == 1.0 and variable else _number(abs(c))
+        sign = (" - " if c < 0.0 else " + ") if parts else ("-" if c < 0.0 else "")
+        parts.append(sign + f"{number} {variable}".strip())
+    return "".join(parts).strip() or "0"
+
+
+def _number(value: float) -> str:
+    """Up to five digits, without thin spaces; powers of ten in LaTeX."""
+    if value and not 1e-3 <= value < 1e5:
+        mantissa, _, power = f"{value:.4e}".partition("e")
+        return f"{mantissa.rstrip('0').rstrip('.')} \\cdot 10^{{{int(power)}}}"
+    return f"{value:.5g}"

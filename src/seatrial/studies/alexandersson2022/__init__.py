@@ -1,5 +1,0 @@
-"""KVLCC2 from zigzags: Alexandersson, Mao & Ringsberg 2022 repeated on the records they used."""
-
-from seatrial.studies.alexandersson2022.study import study
-
-__all__ = ["study"]

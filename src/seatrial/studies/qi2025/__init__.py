@@ -1,5 +1,0 @@
-"""Qi et al. 2025: improved wild horse optimizer for heave and pitch, repeated as published, audited, and answered."""
-
-from seatrial.studies.qi2025.study import study
-
-__all__ = ["study"]

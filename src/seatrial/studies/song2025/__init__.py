@@ -1,5 +1,0 @@
-"""Song et al. 2025: support vector regression for a waterjet craft, repeated as published, audited, and answered."""
-
-from seatrial.studies.song2025.study import study
-
-__all__ = ["study"]

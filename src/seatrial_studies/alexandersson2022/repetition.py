@@ -1,0 +1,142 @@
+"""The numbers of the repetition: fit, turns, the headers' labels put to the test, noise from sample to sample."""
+
+import math
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.results import Fit
+from seatrial.core.values import Finding, Progress, Record, Severity
+from seatrial.data.check import examine
+from seatrial.data.check.signal import sample_noise
+from seatrial.data.read import Column, Layout, read_record
+from seatrial.data.trial import Role, Trial, TrialRecord, records_of
+from seatrial.data.trial.approach import approach_of
+from seatrial.estimation.estimate.settings import Intervals
+from seatrial.estimation.identify import identified, identify
+from seatrial.estimation.identify.identify import settings_of
+from seatrial.physics.manoeuvres import measures
+from seatrial.physics.manoeuvres.programme import programme
+from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
+from seatrial_studies.alexandersson2022.left_out import LeftOut, left_out
+from seatrial_studies.alexandersson2022.margins import Margins, margins
+from seatrial_studies.alexandersson2022.published import SIDES, Turn
+
+
+@dataclass(frozen=True, eq=False)
+class Repetition:
+    """Everything the study's tables, claims and checks rest on.
+
+    Attributes:
+        fit: of the trial file as it is, the validation run predicted.
+        warm_fit_s: s for the estimate alone, all code compiled.
+        turns: side -> simulated 35 deg turn; tracks: the same as records.
+        labels: run -> errors the checks find when the columns are declared as the headers name them.
+        noise: channel -> noise from sample to sample, SI, median over runs.
+        left_out: one entry a training run; empty in the quick version.
+        margins: what the intervals are worth.
+    """
+
+    fit: Fit
+    warm_fit_s: float
+    turns: Mapping[str, Turn]
+    tracks: Mapping[str, Record]
+    labels: Mapping[str, tuple[Finding, ...]]
+    noise: Mapping[str, float]
+    left_out: tuple[LeftOut, ...]
+    margins: Margins
+
+
+def repetition(trial: Trial, *, quick: bool, seed: int, progress: Progress | None) -> Repetition:
+    """Identify, simulate the turns, and (unless quick) leave out each training run in turn.
+
+    Raises:
+        InputError: what `identify` raises.
+    """
+    tell = progress or (lambda _: None)
+    fit = identify(trial, seed, progress)
+    raw = records_of(trial)[0]
+    rate = trial.estimate.rate
+    used = [replace(r, record=r.record.resampled(rate) if rate else r.record) for r in raw]
+    train, held = ([r for r in used if r.role is role] for role in (Role.TRAIN, Role.VALIDATE))
+    records = [r.record for r in train]
+    approach = approach_of(records, trial.model)
+    tell("the fit once more, warm")
+    began = time.perf_counter()
+    sessions, settings = [r.session for r in train], settings_of(trial, records)
+    found = identified(trial.model, records, sessions, trial.ship.length, settings)
+    warm = time.perf_counter() - began
+    wide = None if quick else identify(trial, seed, progress, intervals=Intervals.JACKKNIFE)
+    tell("the headers' labels")
+    labels = mislabelled(trial)
+    tracks = {side: turn_record(fit.model, side, approach, trial.ship.scale) for side in SIDES}
+    return Repetition(
+        fit=fit,
+        warm_fit_s=warm,
+        turns={side: turn_of(track, side, trial.ship.length) for side, track in tracks.items()},
+        tracks=tracks,
+        labels=labels,
+        noise=noise_of([r.record for r in raw], [n.channel for n in fit.noise]),
+        left_out=() if quick else _left_out(trial, train, approach, progress),
+        margins=margins(fit, wide, found, train, held, approach, seed),
+    )
+
+
+def _left_out(
+    trial: Trial, train: Sequence[TrialRecord], approach: Mapping[str, float], progress: Progress | None
+) -> tuple[LeftOut, ...]:
+    def turns(model: Model) -> dict[str, Turn]:
+        records = {side: turn_record(model, side, approach, trial.ship.scale) for side in SIDES}
+        return {side: turn_of(record, side, trial.ship.length) for side, record in records.items()}
+
+    return left_out(trial, train, turns, progress)
+
+
+def turn_record(model: Model, side: str, approach: Mapping[str, float], scale: float) -> Record:
+    """The 35 deg turn as ``seatrial simulate MODEL --manoeuvre turning-circle:35:SIDE`` steers it."""
+    held = {name: value for name, value in approach.items() if name in model.input_names}
+    text = f"turning-circle:35:{side}"
+    return manoeuvre(model, programme(text), inputs=held, slew_rate=SOLAS_SLEW_RATE * math.sqrt(scale))
+
+
+def turn_of(record: Record, side: str, length: float) -> Turn:
+    """Advance and tactical diameter of a simulated turn; NaN where it does not come round."""
+    found = measures(record, length)
+    return Turn(side, found.get("advance_L", math.nan), found.get("tactical_diameter_L", math.nan), "simulated here")
+
+
+def mislabelled(trial: Trial) -> dict[str, tuple[Finding, ...]]:
+    """Errors the checks find in each run when its columns are declared as the files' headers name them."""
+    return {
+        run.name: tuple(
+            finding
+            for finding in examine(read_record(run.path, as_labelled(run.layout)).named(run.name))
+            if finding.severity is Severity.ERROR
+        )
+        for run in trial.runs
+    }
+
+
+def as_labelled(layout: Layout) -> Layout:
+    """The headers' reading: columns 5 to 8 are u, v, p, r of the ship, a positive rudder steers to starboard."""
+    changed = {
+        "u": lambda c: replace(c, frame="body", positive=""),
+        "v": lambda c: replace(c, frame="body", positive=""),
+        "r": lambda c: replace(c, symbol="p"),
+        "delta": lambda c: replace(c, positive="starboard"),
+    }
+    columns = [changed[c.symbol](c) if c.symbol in changed else c for c in layout.columns]
+    return replace(layout, columns=(*columns, Column("r", 8, "deg/s")))
+
+
+def noise_of(records: Sequence[Record], channels: Sequence[str]) -> dict[str, float]:
+    """Noise of each channel from sample to sample, SI: median over the records as they were sampled."""
+    made = {}
+    for channel in channels:
+        found = [sample_noise(r[channel]) for r in records if channel in r]
+        if found:
+            made[channel] = float(np.median(found))
+    return made

@@ -1,0 +1,42 @@
+"""The study: read, identify, turn, leave runs out, judge."""
+
+import time
+from collections.abc import Callable
+
+from seatrial.core.results import Study
+from seatrial.core.values.versions import versions
+from seatrial_studies.alexandersson2022.published import SOURCE
+from seatrial_studies.alexandersson2022.repetition import repetition
+from seatrial_studies.alexandersson2022.tables import figures, tables, validated
+from seatrial_studies.alexandersson2022.verdicts import checks, claims
+from seatrial_studies.ready import ready_trial
+
+
+def study(*, quick: bool, seed: int, progress: Callable[[str], None] | None) -> Study:
+    """Identify KVLCC2 from twelve HSVA zigzags, predict the thirteenth and the 35 deg turns; the paper beside it.
+
+    Args:
+        quick: leaves out the leave-one-run-out tables and the family of models.
+        seed: of the draws behind intervals of predictions and the bands of windows.
+
+    Raises:
+        InputError: SEATRIAL_DATA does not lead to the records, or what `identify` raises.
+    """
+    began = time.perf_counter()
+    trial = ready_trial("kvlcc2_hsva.toml")
+    made = repetition(trial, quick=quick, seed=seed, progress=progress)
+    return Study(
+        name="alexandersson2022",
+        source=SOURCE,
+        title="KVLCC2 from zigzags: a published benchmark repeated",
+        question=trial.question,
+        claims=claims(made),
+        checks=checks(made),
+        tables=tables(made),
+        figures=figures(made),
+        predictions=(validated(made), *(e.whole for e in made.left_out)),
+        findings=made.fit.findings,
+        seed=seed,
+        elapsed_s=time.perf_counter() - began,
+        versions=versions(),
+    )

@@ -1,0 +1,125 @@
+"""What the paper's own numbers say when they are worked through again."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from seatrial.core.values import Array
+from seatrial.physics.models.heave_pitch import COEFFICIENTS
+from seatrial.physics.models.qi2025 import HEADINGS, SIGNIFICANT_HEIGHT, SPEED
+from seatrial.physics.sea.encounter import encounter_frequency
+from seatrial.physics.sea.response import statistics
+from seatrial.physics.sea.spectrum import G, ittc
+from seatrial.physics.simulate.harmonics import frequency_response, plant
+from seatrial.physics.simulate.population import trajectories
+from seatrial_studies.qi2025.published import Algorithm, recomputed_error, true_values
+from seatrial_studies.seaway import box
+from seatrial_studies.swarm_search import Data, heave_pitch_candidates, sailed, theory_of
+
+SATURATED = (-10.05, -9.3)
+
+
+@dataclass(frozen=True, eq=False)
+class Audit:
+    """Numbers behind the verdicts.
+
+    Attributes:
+        speeds: heading -> (b35 + |b53|) / (2 a33) and (b35 - |b53|) / (2 a33), m/s.
+        sign_effect: heading -> rms change of heave and pitch by the printed sign of b53, over their rms.
+        saturated: values of WHO at 90 and 135 degrees between -10 and -9.3 %, and their number.
+        extremes: largest heave [m] and pitch [deg] within 200 s at 45 degrees, median over seas.
+        kinematic: smallest pitch in degrees that goes with the heave of figures 1 and 2 in waves long enough to be
+                    followed.
+        heights: significant height [m] of the spectrum with B = 3.11 / h^3 as printed, and with h^2.
+        step_rank: directions of the eight unknowns that one step of two motions tells.
+        beyond: PSO's printed values farther from the truth than 10.05 %, their number, the largest error in per cent.
+    """
+
+    speeds: dict[int, tuple[float, float]]
+    sign_effect: dict[int, tuple[float, float]]
+    saturated: tuple[int, int]
+    extremes: tuple[float, float]
+    significant: tuple[float, float]
+    kinematic: float
+    heights: tuple[float, float]
+    step_rank: int
+    beyond: tuple[int, int, float]
+
+
+def audit(seas: list[Data], seed: int) -> Audit:
+    """Everything that needs no search; `seas` at 45 degrees."""
+    tops = np.array([np.abs(s.states[:, [0, 2]]).max(axis=0) for s in seas])
+    heave, pitch = _statistics_at_45()
+    return Audit(
+        {h: _speeds(h) for h in HEADINGS},
+        {h: _sign_effect(h, seed) for h in HEADINGS},
+        _saturation(),
+        (float(np.median(tops[:, 0])), math.degrees(float(np.median(tops[:, 1])))),
+        (heave, pitch),
+        _kinematic_pitch(),
+        _heights(),
+        _step_rank(seas[0]),
+        _beyond(),
+    )
+
+
+def _speeds(heading: int) -> tuple[float, float]:
+    a33, b35, b53 = (true_values(heading)[COEFFICIENTS.index(n)] for n in ("a33", "b35", "b53"))
+    return float((b35 + b53) / (2.0 * a33)), float((b35 - b53) / (2.0 * a33))
+
+
+def _sign_effect(heading: int, seed: int) -> tuple[float, float]:
+    data = sailed(heading, np.random.default_rng([seed, 3, heading]))
+    turned = data.truth.copy()
+    turned[COEFFICIENTS.index("b53")] *= -1.0
+    A, B = heave_pitch_candidates(np.stack([data.truth, turned]))
+    y = trajectories(A, B, data.forcing, np.zeros(4))
+    change: Array = np.sqrt(np.mean((y[1] - y[0]) ** 2, axis=0)) / np.sqrt(np.mean(y[0] ** 2, axis=0))
+    return float(change[0]), float(change[1])
+
+
+def _saturation() -> tuple[int, int]:
+    errors = np.concatenate([recomputed_error(h, Algorithm.WHO) for h in (90, 135)])
+    low, high = SATURATED
+    return int(np.sum((errors >= low) & (errors <= high))), len(errors)
+
+
+def _statistics_at_45() -> tuple[float, float]:
+    """Significant amplitudes of heave [m] and pitch [deg] with the 90 degree coefficients, exact in the waves."""
+    spectrum = ittc(SIGNIFICANT_HEIGHT)
+    omega = np.linspace(*spectrum.band(), 2000)
+    omega_e = encounter_frequency(omega, SPEED, math.radians(45.0))
+    response = frequency_response(plant(theory_of(45), ("z", "theta")), omega_e)[:, :, :2]
+    forces = np.stack(box().forces(omega, SPEED, math.radians(45.0)), axis=1)
+    motion = np.einsum("kyu,ku->ky", response, forces)
+    heave, pitch = (statistics(spectrum, omega, omega_e, motion[:, j]).significant for j in (0, 1))
+    return heave, math.degrees(pitch)
+
+
+def _kinematic_pitch() -> float:
+    """Pitch [deg] of a ship that follows waves of .3 m amplitude and the sea's modal frequency at 45 degrees."""
+    slope = 0.3 * ittc(SIGNIFICANT_HEIGHT).modal_frequency ** 2 / G
+    return math.degrees(slope * math.cos(math.radians(45.0)))
+
+
+def _heights() -> tuple[float, float]:
+    """4 sqrt(m0) with m0 = A / (4 B), A = 8.1e-3 g^2: the integral of eq. (13)."""
+    heights = (4.0 * math.sqrt(8.1e-3 * G**2 * SIGNIFICANT_HEIGHT**power / (4.0 * 3.11)) for power in (3, 2))
+    printed, mended = heights
+    return printed, mended
+
+
+def _step_rank(data: Data, sample: int = 100, change: float = 1e-4) -> int:
+    """Rank of the slopes of both motions after one step, by all coefficients in relative terms."""
+    count = len(data.truth)
+    points = data.truth * (1.0 + change * np.vstack([np.eye(count), -np.eye(count)]))
+    A, B = heave_pitch_candidates(points)
+    y = trajectories(A, B, data.forcing.one_step(sample), data.states[sample])[:, 1]
+    slopes = (y[:count] - y[count:]) / (2.0 * change)
+    return int(np.linalg.matrix_rank(slopes / np.abs(slopes).max(axis=0)))
+
+
+def _beyond() -> tuple[int, int, float]:
+    errors = np.abs(np.concatenate([recomputed_error(h, Algorithm.PSO) for h in HEADINGS]))
+    return int(np.sum(errors > -SATURATED[0])), len(errors), float(errors.max())

@@ -1,0 +1,141 @@
+"""A ship of known coefficients in a known sea: records whose truth is continuous, not the fitted discretisation.
+
+Waves act through their exact harmonic response, the fin holds its angle between commands; noise comes last.
+"""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, Channel, Kind, Provenance, Record, frozen
+from seatrial.data.example_series.series import write_csv
+from seatrial.physics.hydro.excitation import BoxHull
+from seatrial.physics.models.heave_pitch import heave_pitch
+from seatrial.physics.models.qi2025 import SHIP, SIGNIFICANT_HEIGHT, SPEED, theory
+from seatrial.physics.sea.realise import LINES, Lines, Spacing, harmonic_sum, realise
+from seatrial.physics.sea.spectrum import ittc
+from seatrial.physics.simulate.harmonics import harmonic_motion, plant
+from seatrial.physics.simulate.linear import LinearBatch
+
+# assumed, printed nowhere: lift slope rho/2 U^2 A C_L_alpha with 6 m^2 and 3/rad, 25 m aft, +-10 degrees for 1 s each
+FIN = {"lift_1": 0.5 * 1025.0 * SPEED**2 * 6.0 * 3.0, "x_f1": -25.0}
+FIN_ANGLE, FIN_HOLD = math.radians(10.0), 1.0
+HEAVE_NOISE, PITCH_NOISE = 0.01, math.radians(0.02)
+
+
+def box() -> BoxHull:
+    """The paper's ship as a box: her force coefficients are not printed."""
+    p = SHIP.particulars
+    return BoxHull(p["L"], p["B"], p["d"], p["c33"], p["c35"], p["c53"], p["c55"])
+
+
+@dataclass(frozen=True)
+class Voyage:
+    """What is sailed: heading in degrees, significant height [m], duration and time step [s], fin, sensors.
+
+    Attributes:
+        every: only each `every`-th sample of the motions is measured.
+        noise: standard deviations of heave [m] and pitch [rad].
+    """
+
+    heading: int
+    height: float = SIGNIFICANT_HEIGHT
+    duration: float = 200.0
+    dt: float = 0.1
+    every: int = 1
+    has_waves: bool = True
+    has_fin: bool = True
+    noise: tuple[float, float] = (HEAVE_NOISE, PITCH_NOISE)
+    spacing: Spacing = Spacing.EQUAL_INTERVAL
+    lines: int = LINES
+
+
+@dataclass(frozen=True, eq=False)
+class Sailed:
+    """A record, the ship that made it, and the lines of the sea she met."""
+
+    record: Record
+    truth: Model
+    lines: Lines
+
+    def noisy(self, rng: np.random.Generator, voyage: Voyage) -> Record:
+        """The record with a draw of sensor noise."""
+        own = self.record.channels
+        made = {
+            name: own[name].with_values(own[name].values + sd * rng.standard_normal(len(self.record)))
+            for name, sd in zip(("z", "theta"), voyage.noise, strict=True)
+        }
+        return Record(self.record.name, self.record.time, {**own, **made}, Kind.SIMULATED, self.record.provenance)
+
+
+def ship(heading: int) -> Model:
+    """The paper's ship at a heading of its tables, with the assumed fin."""
+    return theory(heading).applied(heave_pitch()).with_values(FIN)
+
+
+def sailed(voyage: Voyage, rng: np.random.Generator, truth: Model | None = None) -> Sailed:
+    """The voyage without sensor noise; `rng` draws the sea's phases and the fin's commands.
+
+    Raises:
+        InputError: no coefficients at this heading, or a sea that cannot be made.
+    """
+    model = truth or ship(voyage.heading)
+    count = round(voyage.duration / voyage.dt) + 1
+    time = np.arange(count, dtype=np.float64) * voyage.dt
+    beta = math.radians(voyage.heading)
+    lines = realise(ittc(voyage.height), SPEED, beta, rng, count=voyage.lines, spacing=voyage.spacing)
+    amplitude = -lines.forces(box()) * float(voyage.has_waves)  # z down, theta bow up
+    angle = -fin_commands(count, voyage.dt, rng) * float(voyage.has_fin)
+    inputs = np.zeros((count, 4))
+    inputs[:, 2] = angle
+    forces = np.zeros((len(lines.omega), 4), complex)
+    forces[:, :2] = amplitude
+    motion = harmonic_motion(plant(model, ("z", "theta")), lines.encounter, forces, time, np.zeros(4))
+    batch = LinearBatch(model, inputs, np.array([0, count]), voyage.dt, ("z", "theta"))
+    motion = motion + batch.simulate(0, 1, np.zeros((1, 4)), model.parameters.values[None], np.empty((1, 0)))[0]
+    motion[np.arange(count) % voyage.every != 0] = np.nan
+    waves = [harmonic_sum(lines.encounter, -amplitude[:, j], time) for j in (0, 1)]
+    channels = {"zeta": lines.elevation(time), "F3": waves[0], "M5": waves[1], "delta_f1": -angle,
+                "z": motion[:, 0], "theta": motion[:, 1]}  # fmt: skip
+    made = {name: Channel.of(name, frozen(values)) for name, values in channels.items()}
+    name = f"{voyage.heading} deg"
+    return Sailed(Record(name, frozen(time), made, Kind.SIMULATED, Provenance("simulated sea")), model, lines)
+
+
+def fin_commands(count: int, dt: float, rng: np.random.Generator) -> Array:
+    """Fin angles lifting up [rad]: a random binary sequence."""
+    hold = max(1, round(FIN_HOLD / dt))
+    return FIN_ANGLE * np.repeat(rng.choice([-1.0, 1.0], count // hold + 1), hold)[:count]
+
+
+MOTIONS = ("delta_f1", "z", "theta")
+_VOYAGE = Voyage(135, duration=150.0)
+_UNRECORDED = Voyage(135, dt=0.2, duration=400.0, spacing=Spacing.JITTERED, lines=300)
+# file -> voyage and what was recorded of the waves: their elevation, nothing, or the force
+EXAMPLES = {
+    "voyage_1": (_VOYAGE, ("zeta",)),
+    "voyage_2": (_VOYAGE, ("zeta",)),
+    "voyage_held_out": (_VOYAGE, ("zeta",)),
+    "sea_unrecorded": (_UNRECORDED, ()),
+    "forces_recorded": (_VOYAGE, ("F3", "M5")),
+}
+
+
+def main(folder: str) -> None:
+    """Write the example voyages to `folder`."""
+    for number, (name, (voyage, waves)) in enumerate(EXAMPLES.items()):
+        record = sailed(voyage, np.random.default_rng([2025, number])).noisy(np.random.default_rng([7, number]), voyage)
+        path = Path(folder) / f"{name}.csv"
+        write_csv(record, path, (*waves, *MOTIONS))
+        print(f"{path}: {record.duration:.0f} s, {path.stat().st_size / 1000:.0f} kB")
+
+
+if __name__ == "__main__":
+    import sys
+
+    if len(sys.argv) != 2:
+        sys.exit("usage: python -m seatrial_studies.seaway FOLDER")
+    main(sys.argv[1])

@@ -1,0 +1,117 @@
+"""Runs to responses: heave, roll, sway per wave amplitude at the model, in the steady stretch."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from seatrial.core.values import Array
+from seatrial.data.check.conventions import signed
+from seatrial.estimation.problem.harmonic import harmonics, whole_periods
+from seatrial.estimation.problem.separation import Probes, Waves, calibrated, separated
+from seatrial_studies.section2d.runs import STEADY, Run, Timing
+from seatrial_studies.section2d.tank import DEPTH, FIRST_PROBE_TO_MODEL, PLACES, PROBES
+
+ORDERS = (1, 2, 3)
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """One run in its steady stretch; complex amplitudes per m of the wave that goes on, at the model.
+
+    Attributes:
+        periods: whole periods in the stretch.
+        wave: amplitude of the wave that goes on, m.
+        paddle: wave amplitude over the paddle's stroke.
+        back: of the wave that comes back; beyond: elevation behind the model.
+        heave: up, from the mean of both accelerometers, m/m.
+        roll: starboard over port accelerometer, m/m: roll angle times the distance between them.
+        sway: from the accelerometer, m/m; force: holding force, N/m.
+        camera_heave, camera_roll: amplitudes only; the camera's clock is its own. Zero where it is dead.
+        error: relative standard error of the heave amplitude by the harmonic fit.
+    """
+
+    run: Run
+    periods: int
+    wave: float
+    paddle: float
+    back: float
+    beyond: float
+    heave: complex
+    roll: complex
+    sway: complex
+    force: complex
+    camera_heave: float
+    camera_roll: float
+    camera_sway: float
+    error: float
+
+
+def calibrated_probes(runs: Sequence[Run]) -> Probes:
+    """Places and gains from those runs.
+
+    Raises:
+        InputError: no run.
+    """
+    return calibrated([(r.elevations(PROBES), r.record.dt, r.omega) for r in runs], DEPTH, PLACES)
+
+
+def waves_at_model(run: Run, probes: Probes) -> Waves:
+    """Both waves at the model's place, whole record."""
+    return separated(run.elevations(PROBES), run.record.dt, run.omega, probes, FIRST_PROBE_TO_MODEL)
+
+
+def steady(run: Run, timing: Timing = STEADY) -> slice:
+    """The samples of whole periods in the window.
+
+    Raises:
+        InputError: the window holds no period.
+    """
+    return whole_periods(run.record.time, *run.window(timing), run.omega)
+
+
+def response(run: Run, probes: Probes, timing: Timing = STEADY) -> Response:
+    """Amplitudes of one run.
+
+    Raises:
+        InputError: the window holds no period.
+    """
+    waves, rows, w = waves_at_model(run, probes), steady(run, timing), run.omega
+    record, time = signed(run.record), run.record.time[rows]
+
+    def first(values: Array) -> complex:
+        return harmonics(time, values[rows], w, ORDERS).first
+
+    onward = first(waves.onward)
+    up = harmonics(time, -0.5 * (record["z_ddot_1"] + record["z_ddot_2"])[rows], w, ORDERS)
+    difference = first(record["z_ddot_2"] - record["z_ddot_1"])
+    turned = [first(record[s]) for s in ("v_dot", "F_y")]
+    camera = [abs(first(record[s])) for s in ("z", "phi", "y0")]
+    return Response(
+        run=run,
+        periods=round((time[-1] - time[0]) / run.period),
+        wave=abs(onward),
+        paddle=abs(onward) / _stroke(run),
+        back=abs(first(waves.back) / onward),
+        beyond=abs(first(record["zeta_6"]) / onward),
+        heave=-up.first / w**2 / onward,
+        roll=-difference / w**2 / onward,
+        sway=-turned[0] / w**2 / onward,
+        force=turned[1] / onward,
+        camera_heave=camera[0] / abs(onward),
+        camera_roll=camera[1] / abs(onward),
+        camera_sway=camera[2] / abs(onward),
+        error=up.relative_error,
+    )
+
+
+def _stroke(run: Run) -> float:
+    _, full, left = run.strokes
+    part = run.record.between(full, left)
+    return abs(harmonics(part.time, part["x_wm"], run.omega, (1,)).first)
+
+
+def difference(one: complex, other: complex) -> tuple[float, float]:
+    """One over the other: per cent of amplitude, degrees of phase."""
+    ratio = one / other
+    return 100.0 * (abs(ratio) - 1.0), float(np.degrees(np.angle(ratio)))

@@ -1,0 +1,157 @@
+"""The runs of the folder: record, wave frequency, and the stretch between the ramp and the beach's reflection."""
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from seatrial.core.values import Array, InputError, Record
+from seatrial.data.read import read_record
+from seatrial.estimation.problem.harmonic import frequency_near
+from seatrial.physics.hydro.dispersion import group_velocity, wavenumber
+from seatrial_studies.section2d.tank import DEPTH, LAYOUT, ROUND_TRIP, TO_MODEL
+
+FOLDER = "section2d_waves"
+_TRIM_S = 0.5
+_ON, _FULL = 0.03, 0.97
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Where the steady stretch lies.
+
+    Attributes:
+        settling: s after the full waves' arrival, for roll's transient to die (its time constant is about 2 s).
+        allowed: s of the beach's reflection that may be in: the beginning of a ramp 4 to 6 s long.
+    """
+
+    settling: float = 1.5
+    allowed: float = 2.5
+
+
+STEADY = Timing()
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One run SPPH_rep: scenario S, period PP, height H."""
+
+    record: Record
+    listed: "Listed"
+
+    @property
+    def name(self) -> str:
+        """As in the file name."""
+        return self.record.name
+
+    @property
+    def scenario(self) -> int:
+        """3 sway-heave-roll, 4 sway-heave, 6 heave-roll."""
+        return int(self.name[0])
+
+    @property
+    def index(self) -> int:
+        """Of the wave period."""
+        return int(self.name[1:3])
+
+    @property
+    def height(self) -> int:
+        """1 or 2."""
+        return int(self.name[3])
+
+    @cached_property
+    def strokes(self) -> tuple[float, float, float]:
+        """s: the paddle starts, reaches its full stroke, leaves it."""
+        stroke = np.abs(self.record["x_wm"])
+        most, time = float(stroke.max()), self.record.time
+        full = np.flatnonzero(stroke > _FULL * most)
+        return float(time[np.argmax(stroke > _ON * most)]), float(time[full[0]]), float(time[full[-1]])
+
+    @cached_property
+    def omega(self) -> float:
+        """rad/s, of the paddle at full stroke."""
+        _, full, left = self.strokes
+        stretch = self.record.between(full + _TRIM_S, left - _TRIM_S)
+        return frequency_near(stretch.time, stretch["x_wm"], self.listed.omega)
+
+    @property
+    def period(self) -> float:
+        """s."""
+        return 2.0 * np.pi / self.omega
+
+    @property
+    def wavenumber(self) -> float:
+        """rad/m, at the flume's depth."""
+        return float(wavenumber(self.omega, DEPTH))
+
+    def window(self, timing: "Timing") -> tuple[float, float]:
+        """s: from full waves at the model to the first of what the beach sends back.
+
+        The front travels with the group velocity; reflections from the beach take 12 m more, as in periods.csv.
+        """
+        on, full, left = self.strokes
+        speed = float(group_velocity(self.omega, DEPTH))
+        start = full + TO_MODEL / speed + timing.settling
+        stop = min(on + (TO_MODEL + ROUND_TRIP) / speed + timing.allowed, left + TO_MODEL / speed)
+        return start, stop
+
+    def elevations(self, probes: tuple[str, ...]) -> Array:
+        """(n, p), m."""
+        return self.record.matrix(probes)
+
+
+def data_folder() -> Path:
+    """The folder of the section's records in SEATRIAL_DATA.
+
+    Raises:
+        InputError: SEATRIAL_DATA is not set, or holds no such folder.
+    """
+    root = os.environ.get("SEATRIAL_DATA")
+    folder = Path(root or "") / FOLDER
+    if not root or not (folder / "periods.csv").is_file():
+        told = f"'{root}' holds no {FOLDER}/periods.csv" if root else "SEATRIAL_DATA is not set"
+        raise InputError(f"the measured records are not part of the package and {told}; set it to their folder")
+    return folder
+
+
+@dataclass(frozen=True)
+class Listed:
+    """A row of periods.csv: rad/s, and the wave number listed beside it, rad/m."""
+
+    omega: float
+    wavenumber: float
+
+
+def periods(path: Path) -> dict[int, Listed]:
+    """Index -> wave period as listed.
+
+    Raises:
+        InputError: a row is no pair of numbers.
+    """
+    rows = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines() if line[:1].isdigit()]
+    try:
+        return {int(row[0]): Listed(2.0 * np.pi / float(row[1]), float(row[3])) for row in rows}
+    except (ValueError, IndexError, ZeroDivisionError):
+        raise InputError(f"{path}: each row must hold index, period in s, frequency and wave number") from None
+
+
+def runs_of(folder: Path, scenarios: tuple[int, ...] = (3, 4, 6)) -> tuple[Run, ...]:
+    """All runs of those scenarios, by name.
+
+    Raises:
+        InputError: none is there, or a file cannot be read.
+    """
+    omegas = periods(folder / "periods.csv")
+    paths = [p for s in scenarios for p in sorted((folder / f"{s}PPH").glob(f"{s}*.csv.gz"))]
+    if not paths:
+        raise InputError(f"{folder} holds no runs; it needs folders 3PPH, 4PPH, 6PPH with files like 4021_1.csv.gz")
+    made = []
+    for path in paths:
+        record = read_record(path, LAYOUT)
+        index = int(record.name[1:3]) if record.name[1:3].isdigit() else -1
+        if index not in omegas:
+            raise InputError(f"{path.name}: period {record.name[1:3]} is not in periods.csv; name files SPPH_rep")
+        made.append(Run(record, omegas[index]))
+    return tuple(made)

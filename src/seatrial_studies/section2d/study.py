@@ -1,0 +1,48 @@
+"""The study: read, calibrate, fit, predict what was held out, judge the documented values."""
+
+import time
+
+from seatrial.core.results import Study
+from seatrial.core.values import Progress
+from seatrial.core.values.versions import versions
+from seatrial_studies.section2d.figures import figures
+from seatrial_studies.section2d.instruments import findings
+from seatrial_studies.section2d.numbers import numbers
+from seatrial_studies.section2d.runs import data_folder
+from seatrial_studies.section2d.tables import tables
+from seatrial_studies.section2d.tank import SOURCE
+from seatrial_studies.section2d.verdicts import checks, claims
+
+QUESTION = (
+    "What do measured motions of a ship section in regular beam waves tell of added mass, damping, stiffness and "
+    "excitation, and do they predict wave periods that were not used?"
+)
+
+
+def study(*, quick: bool, seed: int, progress: Progress | None) -> Study:
+    """Heave from the sway-heave runs, roll from the heave-roll runs, the coupled runs reported.
+
+    Args:
+        quick: leaves out what other choices of the steady stretch would have given.
+        seed: nothing is random here; kept for the page.
+
+    Raises:
+        InputError: SEATRIAL_DATA does not lead to the records, or they do not suffice.
+    """
+    began = time.perf_counter()
+    made = numbers(data_folder(), quick=quick, progress=progress)
+    return Study(
+        name="section2d",
+        source=SOURCE,
+        title="A ship section in regular beam waves: heave and roll from measured records",
+        question=QUESTION,
+        kind="Measured records worked through",
+        claims=claims(made),
+        checks=checks(made),
+        tables=tables(made),
+        figures=figures(made),
+        findings=findings(made),
+        seed=seed,
+        elapsed_s=time.perf_counter() - began,
+        versions=versions(),
+    )

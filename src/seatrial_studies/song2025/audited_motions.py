@@ -1,0 +1,160 @@
+"""Misprints that show when the craft is sailed as printed: signs of table 2, equations (2) and (3)."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, Record
+from seatrial.physics.simulate.channels import inputs_of
+from seatrial_studies.song2025.crafts import (
+    MENDED,
+    TRUTH,
+    Reading,
+    drift,
+    reference,
+    replayed,
+    rewritten,
+    sailed,
+    symbol,
+    whole,
+)
+from seatrial_studies.song2025.generalisation import accuracy
+from seatrial_studies.song2025.published import Accuracy, Column, Run, coefficients
+
+ZIGZAGS, TURN = (10, 20, 35), 20
+
+
+@dataclass(frozen=True)
+class ReversedTurn:
+    """What the sign of N_v does, CFD column.
+
+    Attributes:
+        yaw_rates: deg/s at the end of a turn with 20 deg to starboard, N_v mended and as printed.
+        finished: zigzags of 10, 20 and 35 deg that come to their end, mended and as printed.
+    """
+
+    yaw_rates: tuple[float, float]
+    finished: tuple[int, int]
+
+
+def reversed_turn() -> ReversedTurn:
+    """Steady turn and zigzags of the CFD column with N_v negative and as printed."""
+    readings = (TRUTH, Reading(Column.CFD))
+    rates = [math.degrees(_last(whole(r.craft(), f"turning-circle:{TURN}"), "r")) for r in readings]
+    finished = [sum(sailed(r.craft(), f"zigzag:{a}/{a}").finished for a in ZIGZAGS) for r in readings]
+    return ReversedTurn((rates[0], rates[1]), (finished[0], finished[1]))
+
+
+@dataclass(frozen=True)
+class Undamped:
+    """What the sign of the improved column's Y_vv does, N_v mended, on the truth's nozzle history.
+
+    Attributes:
+        diverges: run -> s after which the motion leaves all bounds, as printed; infinite where it does not.
+        mended: run -> accuracy with Y_vv negative.
+        drift: deg beyond which Y_v + Y_vv |v|/U is positive, so that sway is driven, as printed.
+        reached: run -> largest drift of the truth, deg.
+    """
+
+    diverges: dict[Run, float]
+    mended: dict[Run, Accuracy]
+    drift: float
+    reached: dict[Run, float]
+
+
+def undamped() -> Undamped:
+    """The 20/20 and 35/35 zigzags and the 35 deg turn with the improved column's Y_vv of either sign."""
+    printed, mended = Reading(Column.IMPROVED, ("N_v",)).craft(), MENDED[2].craft()
+    references = {run: reference(run) for run in (Run.ZIGZAG_20, Run.ZIGZAG_35, Run.TURN_35)}
+    values = coefficients(Column.IMPROVED)
+    return Undamped(
+        {run: _diverges(printed, record) for run, record in references.items()},
+        {run: accuracy(record, replayed(mended, record)) for run, record in references.items()},
+        math.degrees(math.asin(-values["Y_v"] / values["Y_vv"])),
+        {run: float(np.max(np.abs(drift(record)))) for run, record in references.items()},
+    )
+
+
+@dataclass(frozen=True)
+class OneSided:
+    """What alpha v in place of alpha u in Y_P, eq. (3), and |v|, |r| in Y_H, N_H, eq. (2), do to a symmetric craft.
+
+    Attributes:
+        asymmetry: binding -> rms of the force plus that of the mirrored state, over the force's rms, along the 20/20
+            zigzag: mended, as printed. A symmetric craft has 0, an even force 2.
+        jet_turns: deg/s of yaw at the end of a 20 deg turn to starboard and to port, eq. (3) as printed.
+        jet_drifts: deg of drift there.
+        mended_turns: deg/s of yaw with alpha u.
+        hull_diverges: s after which the motion leaves all bounds on the nozzle history of these turns, eq. (2) as
+            printed; infinite where it does not.
+    """
+
+    asymmetry: dict[str, tuple[float, float]]
+    jet_turns: tuple[float, float]
+    jet_drifts: tuple[float, float]
+    mended_turns: tuple[float, float]
+    hull_diverges: tuple[float, float]
+
+
+def one_sided() -> OneSided:
+    """Forces at mirrored states, and turns to either side."""
+    craft = TRUTH.craft()
+    jet, hull = jet_as_printed(craft), hull_as_printed(craft)
+    record = whole(craft, Run.ZIGZAG_20)
+    asymmetries = {
+        name: (asymmetry(craft, record, name), asymmetry(printed, record, name))
+        for name, printed in (("Y_P", jet), ("Y_H", hull), ("N_H", hull))
+    }
+    sides = (f"turning-circle:{TURN}", f"turning-circle:{TURN}:port")
+    turns, mended = [whole(jet, side) for side in sides], [whole(craft, side) for side in sides]
+    return OneSided(
+        asymmetries,
+        _pair([math.degrees(_last(turn, "r")) for turn in turns]),
+        _pair([float(drift(turn)[-1]) for turn in turns]),
+        _pair([math.degrees(_last(turn, "r")) for turn in mended]),
+        _pair([_diverges(hull, turn) for turn in mended]),
+    )
+
+
+def jet_as_printed(craft: Model) -> Model:
+    """Side force of the jet with alpha v, eq. (3)."""
+    rho, A_j, v_j, alpha, v, delta = (symbol(n) for n in ("rho", "A_j", "v_j", "alpha", "v", "delta"))
+    return rewritten(craft, "waterjet_jet_as_printed", {"Y_P": rho * A_j * v_j * (v_j - alpha * v) * sp.sin(delta)})
+
+
+def hull_as_printed(craft: Model) -> Model:
+    """Y_H and N_H with |v| and |r| where v|v| and r|r| are meant, eq. (2)."""
+    q, L, U, v, r_L = (symbol(n) for n in ("q", "L", "U", "v", "r_L"))
+    Y_v, Y_r, Y_vv, Y_vr, Y_rr, N_v, N_r, N_rr = (symbol(n) for n in craft.parameters.free_names[3:])
+    Y_H = q * (Y_v * v * U + Y_r * r_L * U + Y_vv * sp.Abs(v) + Y_rr * sp.Abs(r_L) + Y_vr * sp.Abs(v) * r_L)
+    N_H = q * L * (N_v * v * U + N_r * r_L * U + N_rr * sp.Abs(r_L))
+    return rewritten(craft, "waterjet_hull_as_printed", {"Y_H": Y_H, "N_H": N_H})
+
+
+def asymmetry(craft: Model, record: Record, binding: str) -> float:
+    """Rms of F(v, r, delta) + F(-v, -r, -delta) over that of F along a record; 0 where port and starboard are alike."""
+    states, inputs = record.matrix(craft.states), inputs_of(craft, record)
+    turned_states = states * np.array([-1.0 if s in ("v", "r", "psi", "y0") else 1.0 for s in craft.states])
+    turned_inputs = inputs * np.array([-1.0 if name == "delta" else 1.0 for name in craft.input_names])
+    here, there = craft.forces(states, inputs)[binding], craft.forces(turned_states, turned_inputs)[binding]
+    return _rms(here + there) / _rms(here)
+
+
+def _diverges(craft: Model, record: Record) -> float:
+    again = replayed(craft, record)
+    return math.inf if len(again) == len(record) else float(again.time[-1])
+
+
+def _last(record: Record, channel: str) -> float:
+    return float(record[channel][-1])
+
+
+def _pair(values: list[float]) -> tuple[float, float]:
+    return values[0], values[1]
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))

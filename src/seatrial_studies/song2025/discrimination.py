@@ -1,0 +1,63 @@
+"""RMSE and CC as measures of coefficients: a move of 100 % along what the record tells least."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.results import Direction
+from seatrial.core.values import Array, Record
+from seatrial.data.example_series.series import SENSOR_NOISE
+from seatrial.estimation.information.directions import directions
+from seatrial.physics.simulate.batch import Batch
+from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.replay import initial_state
+from seatrial_studies.song2025.crafts import TRUTH, replayed
+from seatrial_studies.song2025.generalisation import accuracy
+from seatrial_studies.song2025.published import Accuracy
+
+
+@dataclass(frozen=True)
+class Discrimination:
+    """What accuracy sees of coefficients moved by 100 % along the weakest direction of the Fisher information.
+
+    Attributes:
+        direction: the weakest of output error with the sensors' noise, with its standard deviation.
+        changes: coefficient -> relative change of the moved craft.
+        accuracy: of the moved craft on the same nozzle history, against the truth.
+        sensors: channel -> the noise whose standard deviation the RMSE is to be compared with, SI units.
+    """
+
+    direction: Direction
+    changes: dict[str, float]
+    accuracy: Accuracy
+    sensors: dict[str, float]
+
+    @property
+    def lost(self) -> dict[str, float]:
+        """1 - CC by channel."""
+        return {channel: 1.0 - cc for channel, cc in self.accuracy.cc.items()}
+
+
+def discrimination(series: Record) -> Discrimination:
+    """Of the consecutive zigzags, noise-free (.8 s)."""
+    craft = TRUTH.craft()
+    names = craft.parameters.free_names
+    sizes = np.array([p.characteristic_scale for p in craft.parameters.free])
+    weakest = directions(information(craft, series), names, sizes)[0]
+    moved = {p.name: p.value + weakest.combination[p.name] * p.characteristic_scale for p in craft.parameters.free}
+    changes = {p.name: moved[p.name] / p.value - 1.0 for p in craft.parameters.free}
+    found = accuracy(series, replayed(craft.with_values(moved), series))
+    return Discrimination(weakest, changes, found, {c: SENSOR_NOISE[c] for c in found.cc})
+
+
+def information(craft: Model, record: Record) -> Array:
+    """Fisher information of the free coefficients (k, k): output error, given initial state, white sensor noise."""
+    outputs = tuple(SENSOR_NOISE)
+    offsets = np.array([0, len(record)])
+    batch = Batch(craft, inputs_of(craft, record), offsets, record.dt, outputs, craft.parameters.free_names)
+    start, none = initial_state(craft, record, {}), np.empty((1, 0))
+    _, slopes, _ = batch.differentiate(0, 1, start[None], craft.parameters.values[None], none)
+    weighted = slopes / np.array([SENSOR_NOISE[name] for name in outputs])[None, :, None]
+    rows = weighted.reshape(-1, weighted.shape[2])
+    return rows.T @ rows

@@ -1,0 +1,95 @@
+"""The columns of table 2 sailed: zigzags and a turn beside the truth's, with accuracy, forces and drift."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from seatrial.core.values import Array, Record
+from seatrial.data.example_series.series import JET_VELOCITY
+from seatrial.physics.simulate.forces import forces
+from seatrial.physics.simulate.replay import trajectory
+from seatrial_studies.song2025.crafts import Reading, Sailed, drift, reference, replayed, sailed
+from seatrial_studies.song2025.published import APPROACH_SPEED, Accuracy, Run
+
+CHANNELS = ("u", "v", "r")
+FORCES = {"X": "X_sum", "Y": "Y_sum", "N": "N_sum"}
+STEADY_SECONDS, STEP = 1500.0, 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """One run of one column beside the truth's.
+
+    Attributes:
+        reference: the truth, helmsman in the loop.
+        sailed: the column's, helmsman in the loop, so that nozzle angles differ as in figures 4c and 7c.
+        replayed: the column's on the reference's nozzle history; shorter than the reference where it diverges.
+        steered_accuracy, replayed_accuracy: over what reference and prediction have in common; None where one diverges.
+        largest_drift: of the replayed motion, deg.
+    """
+
+    reading: Reading
+    run: Run
+    reference: Record
+    sailed: Sailed
+    replayed: Record
+    steered_accuracy: Accuracy | None
+    replayed_accuracy: Accuracy | None
+    largest_drift: float
+
+    @property
+    def diverges(self) -> float:
+        """Seconds after which the replayed motion leaves all bounds; infinite where it does not."""
+        return math.inf if len(self.replayed) == len(self.reference) else float(self.replayed.time[-1])
+
+
+def outcomes(readings: Sequence[Reading], runs: Sequence[Run]) -> tuple[Outcome, ...]:
+    """Every reading in every run: some .1 s each; a craft that never finishes the consecutive zigzags takes 3 s."""
+    references = {run: reference(run) for run in runs}
+    return tuple(outcome(reading, run, references[run]) for reading in readings for run in runs)
+
+
+def outcome(reading: Reading, run: Run, truth: Record) -> Outcome:
+    """One column in one run, beside the record `truth`."""
+    craft = reading.craft()
+    steered, again = sailed(craft, run), replayed(craft, truth)
+    return Outcome(
+        reading,
+        run,
+        truth,
+        steered,
+        again,
+        None if steered.record is None else accuracy(truth, steered.record),
+        accuracy(truth, again) if len(again) == len(truth) else None,
+        float(np.max(np.abs(drift(again)))),
+    )
+
+
+def accuracy(truth: Record, other: Record) -> Accuracy:
+    """Root mean square errors and correlation coefficients (Pearson) of u, v, r over the samples both have."""
+    n = min(len(truth), len(other))
+    pairs = {c: (truth[c][:n], other[c][:n]) for c in CHANNELS}
+    return Accuracy(
+        {c: float(np.sqrt(np.mean((b - a) ** 2))) for c, (a, b) in pairs.items()},
+        {c: float(np.corrcoef(a, b)[0, 1]) for c, (a, b) in pairs.items()},
+    )
+
+
+def force_series(reading: Reading, record: Record) -> dict[str, Array]:
+    """X, Y [N] and N [N m] of hull and jet that the column's model gives along a record, by letter, each (n,)."""
+    of_model = forces(reading.craft(), record)
+    return {letter: of_model[binding] for letter, binding in FORCES.items()}
+
+
+def steady_drift(reading: Reading, degrees: float) -> float:
+    """Drift angle [deg] of the turn that a nozzle held at `degrees` ends in; NaN where the simulation diverges."""
+    craft = reading.craft()
+    count = round(STEADY_SECONDS / STEP)
+    held = {"delta": math.radians(degrees), "v_j": JET_VELOCITY}
+    inputs = np.tile([-held[i.name] if i.is_turned else held[i.name] for i in craft.inputs], (count, 1))
+    start = np.array([APPROACH_SPEED if state == "u" else 0.0 for state in craft.states])
+    states, _ = trajectory(craft, inputs, STEP, start)
+    u, v = (states[-1, craft.states.index(s)] for s in "uv")
+    return math.degrees(math.atan2(-v, u))

@@ -1,0 +1,188 @@
+"""Swarms that look for heave-pitch coefficients as the papers have them: data, fitness, boxes, repeated searches."""
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Array
+from seatrial.numerics.optimise import Box, search
+from seatrial.numerics.optimise.population import Population
+from seatrial.physics.models.heave_pitch import COEFFICIENTS, STIFFNESSES, heave_pitch_held
+from seatrial.physics.models.qi2025 import SHIP, SIGNIFICANT_HEIGHT, SPEED, theory
+from seatrial.physics.sea.realise import realise
+from seatrial.physics.sea.spectrum import ittc
+from seatrial.physics.simulate.linear import LinearBatch
+from seatrial.physics.simulate.population import Forcing, completed, fitness, heave_pitch_matrices, one_sample_fitness
+from seatrial_studies.seaway import FIN, box, fin_commands
+
+STEP = 0.5
+SAMPLES = 401
+
+
+def theory_of(heading: int, *, printed_sign: bool = False) -> Model:
+    """The papers' ship, wave force held; at 0 and 45 degrees the coefficients of the 90 degree column, assumed."""
+    known = theory(heading if heading >= 90 else 90, printed_sign=printed_sign)
+    return known.applied(heave_pitch_held())
+
+
+@dataclass(frozen=True, eq=False)
+class Data:
+    """One sea met by the ship at one heading, as the papers simulate it: samples every .5 s, forces held.
+
+    Attributes:
+        truth: (8,), in the order of COEFFICIENTS; states: (n, 4), noise-free; measured: (n, 2), with noise if any.
+        forces: F3 [N] and M5 [N m] of waves and fin, (n, 2), in the model's axes.
+    """
+
+    heading: int
+    model: Model
+    truth: Array
+    states: Array
+    measured: Array
+    forces: Array
+
+    @property
+    def forcing(self) -> Forcing:
+        """What all candidates meet."""
+        return Forcing(self.forces, STEP, is_held=True)
+
+
+def sailed(
+    heading: int,
+    rng: np.random.Generator,
+    *,
+    height: float = SIGNIFICANT_HEIGHT,
+    samples: int = SAMPLES,
+    has_fin: bool = False,
+    noise: tuple[float, float] = (0.0, 0.0),
+    printed_sign: bool = False,
+) -> Data:
+    """A realisation of 30 equally spaced lines (Qi et al. 2025, eq. (14)) met by the ship, from rest."""
+    model = theory_of(heading, printed_sign=printed_sign)
+    lines = realise(ittc(height), SPEED, math.radians(heading), rng)
+    when = np.arange(samples) * STEP
+    turning = np.exp(1j * np.outer(when, lines.encounter))
+    forces = -(turning @ lines.forces(box())).real
+    if has_fin:
+        angle = fin_commands(samples, STEP, rng)
+        lift = -FIN["lift_1"] * angle
+        forces = forces + np.stack([lift, -FIN["x_f1"] * lift], axis=1)
+    inputs = np.zeros((samples, 4))
+    inputs[:, :2] = forces
+    batch = LinearBatch(model, inputs, np.array([0, samples]), STEP, model.states)
+    states = batch.simulate(0, 1, np.zeros((1, 4)), model.parameters.values[None], np.empty((1, 0)))[0]
+    measured = states[:, [0, 2]] + rng.standard_normal((samples, 2)) * noise
+    truth = np.array([model.parameters[n].value for n in COEFFICIENTS])
+    return Data(heading, model, truth, states, measured, np.ascontiguousarray(forces))
+
+
+class Angle(Enum):
+    """In what unit pitch enters the fitness beside metres of heave; the papers do not say."""
+
+    DEGREES = math.radians(1.0)
+    RADIANS = 1.0
+
+
+Fitness = Callable[[Array], Array]
+
+
+def heave_pitch_candidates(points: Array) -> tuple[Array, Array]:
+    """A and B of candidates (count, 8), everything else as in the ship."""
+    known = {name: SHIP.particulars[name] for name in ("m", "I5", *STIFFNESSES)}
+    return heave_pitch_matrices(completed(points, known))
+
+
+def one_sample(data: Data, optimiser: Population, angle: Angle = Angle.DEGREES) -> Fitness:
+    """Eq. (28): iteration k compares sample k alone, one step from the true state before it (our choice: generous)."""
+    sigma = np.array([1.0, angle.value])
+    forcing = data.forcing
+
+    def judged(points: Array) -> Array:
+        k = min(optimiser.iteration, len(data.states) - 2)
+        A, B = heave_pitch_candidates(points)
+        return np.sqrt(0.5 * one_sample_fitness(A, B, forcing, k, data.states[k], data.measured[k + 1], sigma))
+
+    return judged
+
+
+def whole_record(data: Data, angle: Angle = Angle.DEGREES) -> Fitness:
+    """Eq. (27): root mean square over the whole record."""
+    sigma, forcing, count = np.array([1.0, angle.value]), data.forcing, data.measured.size
+
+    def judged(points: Array) -> Array:
+        A, B = heave_pitch_candidates(points)
+        return np.sqrt(fitness(A, B, forcing, np.zeros(4), data.measured, sigma) / count)
+
+    return judged
+
+
+def centred(truth: Array, share: float) -> Box:
+    """The truth +- a share of it: the truth in the middle."""
+    ends = np.stack([truth * (1.0 - share), truth * (1.0 + share)])
+    return Box(ends.min(axis=0), ends.max(axis=0))
+
+
+def off_centre(truth: Array, share: float, rng: np.random.Generator) -> Box:
+    """As wide, the truth anywhere between a fifth and four fifths of it."""
+    below = 2.0 * share * rng.uniform(0.2, 0.8, len(truth))
+    ends = np.stack([truth * (1.0 - below), truth * (1.0 + 2.0 * share - below)])
+    return Box(ends.min(axis=0), ends.max(axis=0))
+
+
+@dataclass(frozen=True, eq=False)
+class Searches:
+    """Repeated searches of one optimiser for one truth.
+
+    Attributes:
+        points: what each run found, (runs, 8); seconds: time of one run; trace: best point after each iteration of the
+            first run, (iterations, 8); history: its best fitness.
+        lower: lower ends of each run's box, by magnitude, (runs, 8).
+    """
+
+    truth: Array
+    points: Array
+    lower: Array
+    seconds: float
+    trace: Array
+    history: Array
+
+    @property
+    def errors(self) -> Array:
+        """Relative errors of all runs, (runs, 8)."""
+        return self.points / self.truth - 1.0
+
+    @property
+    def error_of_mean(self) -> Array:
+        """Relative error of the mean of the runs, as the papers print it, (8,)."""
+        return np.abs(np.mean(self.points, axis=0) / self.truth - 1.0)
+
+    @property
+    def mean_error(self) -> Array:
+        """Mean of the runs' relative errors, (8,)."""
+        return np.mean(np.abs(self.errors), axis=0)
+
+
+def searched(
+    seas: list[Data],
+    boxes: list[Box],
+    kind: Callable[[Box, np.random.Generator], Population],
+    judge: Callable[[Data, Population], Fitness],
+    seed: int,
+) -> Searches:
+    """One run in each sea and box, each with a generator of its own."""
+    points, traces, histories = [], [], []
+    began = time.perf_counter()
+    for run, (data, bounds) in enumerate(zip(seas, boxes, strict=True)):
+        optimiser = kind(bounds, np.random.default_rng([seed, run]))
+        found = search(optimiser, judge(data, optimiser))
+        points.append(found.point)
+        traces.append(optimiser.trace)
+        histories.append(np.array(found.history))
+    truth = seas[0].truth
+    lower = np.array([np.where(truth > 0, b.lower, b.upper) for b in boxes])
+    return Searches(truth, np.array(points), lower, (time.perf_counter() - began) / len(seas), traces[0], histories[0])

@@ -1,0 +1,143 @@
+"""The print worked through again from its own numbers: misprints and what they would do."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from seatrial.core.values import Array
+from seatrial.numerics.optimise import Box
+from seatrial.numerics.optimise.random_weight_genetic import decoded, encoded, selection_probabilities
+from seatrial.physics.loops.fin import BOUNDS, GYRO, PUBLISHED_GAINS, SERVO, Preamplifier
+from seatrial_studies.yu2014.published import (
+    ASPECT,
+    CHORD,
+    CHORD_OF_LEVER,
+    DENSITY,
+    FIN_LIMIT,
+    SATURATION,
+    SPAN,
+    STEP,
+    TABLE_1,
+    THICKNESS,
+)  # fmt: skip
+from seatrial_studies.yu2014.readings import SETTING, Motion, met, motion, performance
+
+LONGEST_CODE = 24
+PRINTED_DIGITS = 3
+
+
+@dataclass(frozen=True)
+class Fin:
+    """Section 2.3: mass [kg] and moment of inertia [kg m^2] about the stock, and the latter with one chord throughout.
+
+    Attributes:
+        chord: span over aspect ratio, m.
+    """
+
+    chord: float
+    mass: float
+    inertia: float
+    consistent: float
+
+
+@dataclass(frozen=True, eq=False)
+class Audit:
+    """Numbers behind the verdicts on the print; no random number is drawn but for `roulette`.
+
+    Attributes:
+        target: fin variance [deg^2] at which 20 % of amplitudes exceed 22 deg; target_rounded: with ln 5 as 1.61.
+        integral: rms [deg s] of the fin rate's print with 1/s, beside the rate itself [deg/s]; by reading.
+        roulette: what selection probabilities of 50 individuals add up to with the sum over 3, drawn at random.
+        lower_reductions, larger_rates: rows of table 1 in which the statements hold.
+        contradicting: rows whose two columns imply different rolls without fins, whatever was rounded.
+        bits: shortest code that holds every printed gain.
+        growth: of one Runge-Kutta step of .1 s along the gyro's poles.
+        motions: of the paper's gains where they were set, by reading.
+        steady: fin angle ordered for each degree, servo.
+    """
+
+    target: float
+    target_rounded: float
+    fin: Fin
+    integral: dict[Preamplifier, tuple[float, float]]
+    roulette: float
+    lower_reductions: int
+    larger_rates: int
+    contradicting: tuple[str, ...]
+    bits: int
+    growth: float
+    motions: dict[Preamplifier, Motion]
+    steady: float
+
+
+def audit(seed: int) -> Audit:
+    """Everything, in some hundredths of a second."""
+    return Audit(
+        FIN_LIMIT**2 / (2.0 * math.log(1.0 / SATURATION)),
+        FIN_LIMIT**2 / (2.0 * 1.61),
+        fin(),
+        {reading: fin_rate(reading) for reading in Preamplifier},
+        roulette_sum(np.random.default_rng([seed, 3])),
+        sum(row.genetic.reduction < row.traditional.reduction for row in TABLE_1),
+        sum(row.traditional.rate > row.genetic.rate for row in TABLE_1),
+        contradicting(),
+        shortest_code(),
+        runge_kutta_growth(STEP, complex(GYRO.poles[0])),
+        {reading: motion(performance(reading)) for reading in Preamplifier},
+        SERVO.gain,
+    )
+
+
+def fin() -> Fin:
+    """Mass of a plate, a third of it for the water, on a lever of a fifth of the chord."""
+    mass = DENSITY * SPAN * CHORD * THICKNESS
+    return Fin(SPAN / ASPECT, mass, _inertia(mass, CHORD_OF_LEVER), _inertia(mass, CHORD))
+
+
+def _inertia(mass: float, chord: float) -> float:
+    return 4.0 / 3.0 * mass * (0.2 * chord) ** 2
+
+
+def fin_rate(reading: Preamplifier) -> tuple[float, float]:
+    """rms of alpha / s [deg s] and of s alpha [deg/s] where the gains were set."""
+    of = performance(reading)
+    w = met(SETTING).omega_e
+    S = 1.0 / (1.0 + of.loop.open(w))
+    fins = of.loop.values @ of.loop.controller_terms(w) * of.loop.disturbance.at(w) * S
+    energy = np.abs(fins) ** 2 * met(SETTING).energy
+    return tuple(math.degrees(math.sqrt(float(np.sum(energy * w**power)))) for power in (-2, 2))  # type: ignore[return-value]
+
+
+def roulette_sum(generator: np.random.Generator) -> float:
+    """What the probabilities of a population of 50 add up to when they are divided by a sum over its first 3."""
+    share = selection_probabilities(generator.random(50))
+    return float(1.0 / share[:3].sum())
+
+
+def contradicting() -> tuple[str, ...]:
+    """Rows whose columns cannot come from one sea."""
+    made = []
+    for row in TABLE_1:
+        (low, high), (other_low, other_high) = row.traditional.uncontrolled_between, row.genetic.uncontrolled_between
+        if high < other_low or other_high < low:
+            made.append(row.name)
+    return tuple(made)
+
+
+def shortest_code() -> int:
+    """Bits of the shortest code whose values round to all gains as they are printed."""
+    return next(bits for bits in range(2, LONGEST_CODE) if _holds(bits))
+
+
+def _holds(bits: int) -> bool:
+    values = np.array(list(PUBLISHED_GAINS.values()))
+    box = Box(*(np.array([BOUNDS[name][side] for name in PUBLISHED_GAINS]) for side in (0, 1)))
+    nearest: Array = decoded(encoded(values, box, bits), box)
+    return bool(np.all(np.round(nearest, PRINTED_DIGITS) == values))
+
+
+def runge_kutta_growth(step: float, pole: complex) -> float:
+    """|1 + z + z^2 / 2 + z^3 / 6 + z^4 / 24|, z = h lambda: above 1 the classical method diverges."""
+    z = step * pole
+    return abs(1.0 + z + z**2 / 2.0 + z**3 / 6.0 + z**4 / 24.0)

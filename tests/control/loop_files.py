@@ -1,0 +1,68 @@
+"""Loop files for tests: a minimal fin stabiliser and a minimal autopilot, and what changes one line of them."""
+
+from pathlib import Path
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Ship
+from seatrial.data.folder.model_file import ModelFile, write_model
+from seatrial.physics.models import model_named
+
+FIN = """
+[plant]
+roll = { num = [1.0], den = [1.43242, 0.3796, 1.0] }
+speed = { value = 18, unit = "kn" }
+[plant.fin]
+K_alpha = 0.256
+[controller]
+kind = "yu2014"
+[actuator]
+limit = { value = 22, unit = "deg" }
+rate = { value = 25, unit = "deg/s" }
+[[seas]]
+spectrum = "ittc"
+height = 3.3
+heading = { value = 90, unit = "deg" }
+"""
+
+AUTOPILOT = """
+[plant]
+model = "model.toml"
+[controller]
+kind = "pid"
+parts = ["KP", "KD"]
+[actuator]
+limit = { value = 35, unit = "deg" }
+rate = { value = 3, unit = "deg/s" }
+[[unrest]]
+size = { value = 1, unit = "deg" }
+bandwidth = 0.05
+[demand]
+change = { value = 20, unit = "deg" }
+"""
+
+
+def written(folder: Path, text: str, *changes: tuple[str, str]) -> Path:
+    """The file with some of its text changed; what is to be changed must be there."""
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new, 1)
+    path = folder / "loop.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def nomoto() -> Model:
+    """A ship that answers in ten seconds, at 7 m/s."""
+    return model_named("nomoto").with_values({"K": 0.08, "T": 10.0, "U": 7.0})
+
+
+def roll() -> Model:
+    """A ship that rolls in 7.5 s, damped more the more she rolls; she knows no fins."""
+    return model_named("roll").with_values({"b_1": 0.06, "b_2": 0.35, "c_1": 0.698})
+
+
+def model_file(folder: Path, model: Model, name: str = "model.toml") -> Path:
+    """The model as `identify` writes it, of a ship of 100 m."""
+    path = folder / name
+    write_model(ModelFile(model, ship=Ship("a ship", {"L": 100.0, "B": 10.5, "d": 3.4})), path)
+    return path

@@ -1,0 +1,103 @@
+"""A task in, a tuning out: the recommendation beats the published gains where it counts, or says that it does not."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.control.fins import KNOT, LIMITS, PUBLISHED, QUICK, fin_task
+
+from seatrial.control import tune as module
+from seatrial.control.front import Effort
+from seatrial.control.task import Plan, Trials
+from seatrial.control.tune import tune
+from seatrial.core.results.tuning import Restriction
+from seatrial.core.values import InputError
+from seatrial.physics.loops.structures import five_gains
+
+TINY = Effort(population=40, generations=10, polished=4, rounds=2, neighbours=2000)
+SHORT = Trials(seeds=2, duration=200.0)
+PUBLISHED_BY_NAME = {"as published": dict(zip(("KP", "KI", "KD"), PUBLISHED.tolist(), strict=True))}
+
+
+@pytest.fixture(scope="module")
+def made():
+    task = fin_task()
+    asked = replace(task, rivals=PUBLISHED_BY_NAME, richer=(five_gains(task.loop),), trials=Trials(seeds=20))
+    return tune(asked, effort=QUICK)
+
+
+def test_recommended_gains_keep_every_restriction(made):
+    assert made.chosen.broken == ()
+    assert made.chosen.peak <= LIMITS.peak
+    assert made.chosen.saturation <= LIMITS.saturation
+
+
+def test_recommended_gains_lose_less_than_three_points_to_the_limits(made):
+    assert made.sailed[0].name == "chosen"
+    assert made.sailed[0].lost < 0.03
+
+
+def test_recommended_gains_beat_the_published_ones_on_the_same_seas(made):
+    for pair in made.paired:
+        assert pair.seeds == 20
+        assert pair.lower > 0.0, pair
+
+
+def test_front_covers_the_grid_and_the_rival_is_shown(made):
+    assert made.front.hypervolume >= 0.97
+    assert [front.name for front in made.richer] == [five_gains(fin_task().loop).name]
+    assert made.rivals[0].name == "as published"
+    assert made.rivals[0].peak == pytest.approx(1.32, abs=0.01)
+
+
+def test_five_gains_roll_a_third_less_at_equal_fin_rate(made):
+    published, front = made.rivals[0], made.richer[0]
+    keeping = front.objectives[:, 2] <= published.objectives[2]
+    assert front.objectives[keeping, 0].min() <= 0.7 * published.objectives[0]
+
+
+def test_same_seed_same_gains():
+    task = replace(fin_task(), trials=SHORT)
+    first, again = (tune(task, seed=5, effort=TINY).chosen.gains for _ in range(2))
+    assert first == again
+
+
+def test_without_simulation_the_compromise_is_taken_and_said():
+    """Gains near zero, which are on the front as well, are no compromise."""
+    bare = tune(fin_task(), effort=TINY)
+    assert bare.sailed == () and bare.schedule == ()
+    assert bare.chosen.reduction > 0.3
+    assert any("compromise" in reason for reason in bare.reasons)
+
+
+def test_restrictions_that_nothing_keeps_are_refused():
+    task = fin_task(restriction=Restriction(peak=1.05))
+    gains = task.loop.gains.bounded("KP", 5.0, 100.0)
+    with pytest.raises(InputError, match="keep all limits"):
+        tune(replace(task, loop=replace(task.loop, gains=gains)), effort=TINY)
+
+
+def test_gains_on_their_bounds_are_found():
+    task = fin_task()
+    narrow = task.loop.gains.bounded("KP", 0.0, 2.0).bounded("KD", 0.0, 1.0)
+    found = tune(replace(task, loop=replace(task.loop, gains=narrow), trials=SHORT), effort=TINY)
+    assert "gain-on-bound" in {finding.code for finding in found.findings}
+
+
+def test_an_interruption_keeps_what_is_finished(monkeypatch):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "schedule", interrupted)
+    plan = Plan((18.0 * KNOT,), (math.pi / 2,), (3.3,))
+    found = tune(replace(fin_task(), plan=plan, trials=SHORT), effort=TINY)
+    assert found.sailed and not found.schedule
+    assert found.findings[0].code == "interrupted"
+    assert np.isfinite(found.chosen.peak)
+
+
+def test_no_control_at_all_is_no_answer():
+    task = replace(fin_task(), restriction=Restriction(limit=1e-5))
+    with pytest.raises(InputError, match="no control at all, with every gain at zero"):
+        tune(replace(task, trials=None), effort=TINY)

@@ -1,0 +1,48 @@
+"""Augmented models: the same motion where nothing drives the new states, and what drives them where something does."""
+
+import numpy as np
+import pytest
+
+from seatrial.core.equations.augment import bias_of, biased, gust_of, lagged, with_biases, with_gusts, with_lags
+from seatrial.core.values import InputError
+from seatrial.physics.models.nomoto import nomoto
+from seatrial.physics.simulate.replay import trajectory
+
+DT, ROWS = 0.1, 200
+INPUTS = 0.3 * np.sin(0.1 * np.arange(ROWS))[:, None]
+
+
+def test_a_gust_pushes_and_fades() -> None:
+    """With r' = gust and nothing else, r = g0 tau (1 - exp(-t / tau)): damping and rudder switched off by T."""
+    model = with_gusts(nomoto().with_values({"T": 1e12}), ("r",), memory=2.0)
+    assert model.states[-1] == gust_of("r") == "gust_r"
+    start = np.zeros(5)
+    start[-1] = 0.01
+    states, _ = trajectory(model, 0.0 * INPUTS, DT, start)
+    time = DT * np.arange(ROWS)
+    np.testing.assert_allclose(states[:, -1], 0.01 * np.exp(-time / 2.0), rtol=1e-6)
+    np.testing.assert_allclose(states[:, 0], 0.02 * (1.0 - np.exp(-time / 2.0)), atol=1e-8)
+
+
+def test_biases_are_added_to_what_is_read() -> None:
+    model = with_biases(nomoto().with_values({"U": 1.0}), ("x0", "y0"))
+    assert model.outputs[-2:] == (biased("x0"), biased("y0"))
+    start = np.zeros(6)
+    start[4:] = 3.0, -4.0
+    states, outputs = trajectory(model, INPUTS, DT, start)
+    assert model.states[4:] == (bias_of("x0"), bias_of("y0"))
+    np.testing.assert_array_equal(states[:, 4:], np.tile([3.0, -4.0], (ROWS, 1)))
+    np.testing.assert_allclose(outputs[:, -2:], states[:, 2:4] + [3.0, -4.0], rtol=1e-14)
+
+
+def test_a_lagging_channel_follows() -> None:
+    model = with_lags(nomoto(), ("r",), 0.5)
+    states, _ = trajectory(model, INPUTS, DT, np.zeros(5))
+    late = states[:, model.states.index(lagged("r"))]
+    np.testing.assert_allclose(0.5 * np.gradient(late, DT)[1:-1], (states[:, 0] - late)[1:-1], atol=2e-5)
+
+
+@pytest.mark.parametrize("more", [lambda m: with_gusts(m, ("r",), 1.0), lambda m: with_lags(m, ("r",), 1.0)])
+def test_twice_the_same_is_refused(more) -> None:
+    with pytest.raises(InputError, match="already"):
+        more(more(nomoto()))

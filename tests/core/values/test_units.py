@@ -1,0 +1,66 @@
+"""Units at the boundary, and the one table of channel names."""
+
+import math
+
+import pytest
+
+from seatrial.core.values import NOTATION, Finding, InputError, Severity, Ship, display, quantity, si
+from seatrial.core.values.units import _UNITS
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor", "base"),
+    [
+        ("deg", math.pi / 180, "rad"),
+        ("deg/min", math.pi / 180 / 60, "rad/s"),
+        ("kn", 0.514444444444, "m/s"),
+        ("rpm", 1 / 60, "rps"),
+        ("t", 1000.0, "kg"),
+        ("nmi", 1852.0, "m"),
+        ("ft", 0.3048, "m"),
+    ],
+)
+def test_factors(unit: str, factor: float, base: str) -> None:
+    assert si(unit)[0] == pytest.approx(factor, rel=1e-11)
+    assert si(unit)[1] == base
+
+
+@pytest.mark.parametrize("unit", sorted(_UNITS))
+def test_every_si_unit_is_its_own(unit: str) -> None:
+    base = si(unit)[1]
+    assert si(base) == (1.0, base)
+
+
+def test_display_turns_angles_into_degrees() -> None:
+    assert display("rad") == (pytest.approx(57.29577951308232), "deg")
+    assert display("m") == (1.0, "m")
+
+
+def test_an_unknown_unit_is_refused_and_the_nearest_named() -> None:
+    with pytest.raises(InputError, match="unknown unit 'knt'; did you mean 'kn'"):
+        si("knt")
+
+
+@pytest.mark.parametrize("symbol", sorted(NOTATION))
+def test_every_channel_has_an_si_unit_and_a_known_frame(symbol: str) -> None:
+    q = quantity(symbol)
+    assert si(q.unit) == (1.0, q.unit)
+    assert q.frame in {"body", "earth", "none"}
+    assert q.latex and q.standard_name and q.meaning and q.positive
+
+
+def test_standard_names_are_unique() -> None:
+    names = [q.standard_name for q in NOTATION.values()]
+    assert len(set(names)) == len(names)
+
+
+def test_a_finding_in_one_line() -> None:
+    assert Finding(Severity.WARNING, "gap", "a gap", "3 s").text == "a gap (3 s)"
+    assert Finding(Severity.INFO, "fine", "all is well").text == "all is well"
+
+
+def test_a_ship_cannot_be_changed() -> None:
+    ship = Ship("tanker", {"L": 7.0})
+    assert ship.length == 7.0
+    with pytest.raises(TypeError):
+        ship.particulars["L"] = 8.0  # type: ignore[index]

@@ -1,0 +1,149 @@
+"""The model file: exact both ways, refused when its equations have changed, never executed."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from seatrial.core.equations import Model, Sheet
+from seatrial.core.results import Margin
+from seatrial.core.values import InputError, Prior, Ship
+from seatrial.data.folder.model_file import (
+    ModelFile,
+    ModelProvenance,
+    model_text,
+    parsed_model,
+    read_model,
+    write_model,
+)
+from seatrial.physics.models import model_named
+
+numbers = st.floats(allow_nan=False, allow_infinity=False)
+
+
+def whole_file() -> ModelFile:
+    model = model_named("waterjet")
+    parameters = model.parameters.bounded("Y_v", -1.0, math.inf).with_priors({"N_v": Prior(-0.1, 0.02, "guess")})
+    count = len(parameters.free)
+    rng = np.random.default_rng(1)
+    root = rng.normal(size=(count, count))
+    return ModelFile(
+        model.with_parameters(parameters),
+        root @ root.T,
+        ModelProvenance((("run", "training", "ab12"),), "output error", 7, {"seatrial": "0"}),
+        Ship("craft", {"L": 9.8}, "paper", 2.0),
+        {"u": 0.8, "v_j": 1.866},
+    )
+
+
+def test_everything_reads_back_to_the_last_bit() -> None:
+    file = whole_file()
+    back = parsed_model(model_text(file), "model.toml")
+    assert back.model.parameters == file.model.parameters
+    assert np.array_equal(back.covariance, file.covariance)
+    assert back.provenance == file.provenance
+    assert (back.ship, back.approach) == (file.ship, file.approach)
+
+
+@given(numbers)
+def test_any_value_reads_back_to_the_last_bit(value: float) -> None:
+    model = model_named("waterjet").with_values({"Y_v": value})
+    back = parsed_model(model_text(ModelFile(model)), "model.toml").model.parameters["Y_v"].value
+    assert np.float64(back).tobytes() == np.float64(value).tobytes()
+
+
+def test_other_equations_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "model.toml"
+    text = model_text(whole_file())
+    path.write_text(text.replace(model_named("waterjet").equation_hash, "0" * 64))
+    with pytest.raises(InputError, match="written for other equations of model 'waterjet'"):
+        read_model(path)
+
+
+def own() -> Model:
+    sheet = Sheet("my yaw")
+    r, psi = sheet.states("r psi")
+    delta = sheet.input("delta")
+    gain = sheet.parameter("K", 0.1, "1/s", free=True)
+    sheet.rate(r, gain * delta - r)
+    sheet.rate(psi, r)
+    return sheet.model()
+
+
+def test_a_model_of_ones_own_is_handed_in(tmp_path: Path) -> None:
+    write_model(ModelFile(own()), tmp_path / "model.toml")
+    assert read_model(tmp_path / "model.toml", own()).parameters == own().parameters
+    with pytest.raises(InputError, match=r"unknown model 'my yaw'.*--model FILE\.py"):
+        read_model(tmp_path / "model.toml")
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [(b"\xff\xfe\x00", "not UTF-8"), (b"a = [", "no valid TOML"), (b"a = 1", "no seatrial model file")],
+)
+def test_rubbish_is_refused(tmp_path: Path, content: bytes, says: str) -> None:
+    path = tmp_path / "model.toml"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=says):
+        read_model(path)
+
+
+def test_a_file_with_other_parameters_is_refused() -> None:
+    text = model_text(whole_file()).replace("[parameters.N_rr]", "[parameters.N_rx]")
+    with pytest.raises(InputError, match="not those of model 'waterjet'"):
+        parsed_model(text, "model.toml")
+
+
+def test_a_damaged_file_is_refused() -> None:
+    text = model_text(whole_file()).replace("value = 9.8", "worth = 9.8")
+    with pytest.raises(InputError, match="damaged"):
+        parsed_model(text, "model.toml")
+
+
+def margin(count: int) -> Margin:
+    return Margin(
+        np.diag(np.linspace(0.1, 1.0, count)), math.inf, 2.5, {"overshoot_deg": 1.2}, {"delta zero": 0.005},
+        {"r": 1e-4}, {"rudder": 0.5}, ({"Y_v": -0.3}, {"Y_v": -0.2, "N_v": -0.1}),
+    )  # fmt: skip
+
+
+def test_what_intervals_are_made_of_reads_back_to_the_last_bit() -> None:
+    file = whole_file()
+    given = margin(len(file.model.parameters.free))
+    back = parsed_model(model_text(replace(file, margin=given)), "model.toml").margin
+    assert back is not None
+    assert np.array_equal(back.covariance, given.covariance)
+    assert vars(back) | {"covariance": 0} == vars(given) | {"covariance": 0}
+
+
+def test_a_covariance_that_is_none_is_refused(tmp_path: Path) -> None:
+    file = whole_file()
+    broken = file.covariance.copy()
+    broken[0, 1] = broken[1, 0] = 3.0 * math.sqrt(broken[0, 0] * broken[1, 1])
+    path = tmp_path / "model.toml"
+    path.write_text(model_text(replace(file, covariance=broken)))
+    with pytest.raises(InputError, match=r"model\.toml': covariance is not positive definite \(smallest eigenvalue -"):
+        read_model(path)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "says"),
+    [
+        (lambda m, n: replace(m, covariance=np.eye(n - 1)), "margin.covariance has [0-9]+ rows for [0-9]+ free"),
+        (lambda m, n: replace(m, covariance=np.diag([-1.0, *[1.0] * (n - 1)])), "margin.covariance is not positive"),
+        (lambda m, n: replace(m, covariance=np.eye(n) + np.eye(n, k=1)), "margin.covariance is not a symmetric"),
+        (lambda m, n: replace(m, covariance=np.full((n, n), math.nan)), "margin.covariance is not a symmetric"),
+        (lambda m, _: replace(m, degrees_of_freedom=math.nan), "margin.degrees_of_freedom is nan"),
+        (lambda m, _: replace(m, tied=({"Y_w": 1.0},)), "margin.tied names 'Y_w'"),
+    ],
+)
+def test_a_margin_that_cannot_be_is_refused(wrong: Callable[[Margin, int], Margin], says: str) -> None:
+    file = whole_file()
+    count = len(file.model.parameters.free)
+    with pytest.raises(InputError, match=rf"model file 'model\.toml'.*{says}"):
+        parsed_model(model_text(replace(file, margin=wrong(margin(count), count))), "model.toml")

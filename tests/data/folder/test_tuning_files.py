@@ -1,0 +1,168 @@
+"""What other programs read of a tuning: gains that come back, a loop that python-control closes alike, strict JSON."""
+
+import csv
+import io
+import json
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import control
+import numpy as np
+import pytest
+from scipy.io import loadmat
+from tests.reporting.tuned import fabricated_autopilot, fabricated_bare, fabricated_fin, heading_loop
+
+from seatrial.core.results.tuning import Component, Tuning
+from seatrial.core.values import InputError
+from seatrial.data.folder.fit_json import strict_json
+from seatrial.data.folder.tuning_files import gains_text, loop_mat, read_gains, schedule_text
+from seatrial.data.folder.tuning_json import TuningDocument, tuning_json
+from seatrial.physics.loops import TransferLoop, margins
+from seatrial.physics.loops.fin import fin_loop
+
+MADE = {"fin": fabricated_fin, "autopilot": fabricated_autopilot, "bare": fabricated_bare}
+
+
+@pytest.fixture(scope="module", params=sorted(MADE))
+def tuning(request: pytest.FixtureRequest) -> Tuning:
+    return MADE[request.param]()
+
+
+@pytest.fixture(scope="module")
+def fin() -> Tuning:
+    return fabricated_fin()
+
+
+def loaded(tuning: Tuning) -> dict:
+    return loadmat(io.BytesIO(loop_mat(tuning)), squeeze_me=True, struct_as_record=False)
+
+
+def written(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "gains.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_gains_come_back_to_the_last_bit(tuning: Tuning, tmp_path: Path) -> None:
+    uneven = {name: value / 3.0 for name, value in tuning.chosen.gains.items()}
+    told = replace(tuning, chosen=replace(tuning.chosen, gains=uneven))
+    assert read_gains(written(tmp_path, gains_text(told))) == uneven
+
+
+def test_gains_stand_beside_what_they_keep(fin: Tuning) -> None:
+    table = tomllib.loads(gains_text(fin))
+    assert table["kept"]["limit_deg"] == pytest.approx(22.0)
+    assert table["kept"]["rate_deg_per_s"] == pytest.approx(25.0)
+    assert table["margins"]["Ms"] == fin.chosen.peak
+    assert table["controller"]["seas"] == list(fin.seas)
+    assert [slot["gains"] for slot in table["schedule"]] == [slot.gains for slot in fin.schedule]
+
+
+def test_what_is_unlimited_is_left_out() -> None:
+    bare = tomllib.loads(gains_text(fabricated_bare()))
+    assert set(bare["kept"]) == {"Ms", "saturation", "rate_saturation"}
+    assert "Ms" not in bare["margins"] and "schedule" not in bare
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("gains = 3", "has no table \\[gains\\]"),
+        ("[gains]", "has no table \\[gains\\]"),
+        ("[gains]\nKP = nan", "gain KP = nan is no finite number"),
+        ('[gains]\nKP = "3"', "gain KP = '3' is no finite number"),
+        ("[gains]\nKP = true", "gain KP = True is no finite number"),
+        ("KP : 3", "is no TOML"),
+    ],
+)
+def test_a_file_without_gains_is_refused(text: str, told: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=told):
+        read_gains(written(tmp_path, text))
+
+
+def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"'.*absent.toml' cannot be read"):
+        read_gains(tmp_path / "absent.toml")
+
+
+@pytest.mark.parametrize(("make", "loop"), [(fabricated_fin, fin_loop()), (fabricated_autopilot, heading_loop())])
+def test_the_rebuilt_loop_closes_as_the_tuning_says(make, loop: TransferLoop) -> None:
+    tuning = make()
+    known = loaded(tuning)
+    open_loop = control.tf(known["open_loop_num"], known["open_loop_den"])
+    sensitivity = control.feedback(control.tf(1, 1), open_loop)
+    fine = np.geomspace(tuning.chosen.omega[0], tuning.chosen.omega[-1], 40_001)
+    assert np.max(np.abs(sensitivity(1j * fine))) == pytest.approx(tuning.chosen.peak, rel=1e-6)
+    tuned = loop.with_gains(np.array(list(tuning.chosen.gains.values())))
+    assert margins(tuned).peak == tuning.chosen.peak
+    poles = np.sort_complex(control.feedback(open_loop, control.tf(1, 1)).poles())
+    assert poles == pytest.approx(np.sort_complex(tuned.closed_poles), rel=1e-6)
+
+
+def test_blocks_in_parallel_and_in_a_row_give_the_same_open_loop(fin: Tuning) -> None:
+    known = loaded(fin)
+    blocks = [value for name, value in known.items() if name.split("_")[0] in ("sensor", "servo", "plant", "term")]
+    systems = {role: [(b, control.tf(b.num, b.den)) for b in blocks if b.role == role]
+               for role in ("sensor", "servo", "plant", "term")}  # fmt: skip
+    s = 1j * fin.chosen.omega
+    through = np.prod([tf(s) for role in ("sensor", "servo", "plant") for _, tf in systems[role]], axis=0)
+    summed = np.sum([getattr(known["gains"], b.gain) * tf(s) for b, tf in systems["term"]], axis=0)
+    assert through * summed == pytest.approx(fin.chosen.open_loop, rel=1e-9)
+    K = control.tf(known["controller_num"], known["controller_den"])
+    plant = systems["plant"][0][1]
+    assert K(s) * plant(s) == pytest.approx(fin.chosen.open_loop, rel=1e-9)
+
+
+def test_the_same_loop_gives_the_same_bytes_without_a_date(tuning: Tuning) -> None:
+    once = loop_mat(tuning)
+    assert once == loop_mat(tuning)
+    assert once[:116].decode("ascii").rstrip() == "MATLAB 5.0 MAT-file, a feedback loop written by seatrial"
+    assert once[124:128] == b"\x00\x01IM"
+
+
+def test_blocks_of_one_name_and_of_odd_names_are_all_kept(fin: Tuning) -> None:
+    odd = [Component("filter", name, (1.0,), (1.0, 1.0)) for name in ("notch", "notch", "2 Hz / ω", "")]
+    known = loaded(replace(fin, components=(*fin.components, *odd)))
+    filters = {name for name in known if name.startswith("filter")}
+    assert filters == {"filter_notch", "filter_notch_2", "filter_2_Hz", "filter"}
+
+
+def test_a_term_without_its_gain_is_refused(fin: Tuning) -> None:
+    stray = Component("term", "lag", (1.0,), (1.0, 1.0), "KX")
+    with pytest.raises(InputError, match="term 'lag' is multiplied by 'KX', which is none of the chosen gains"):
+        loop_mat(replace(fin, components=(stray,)))
+
+
+def test_a_loop_without_blocks_has_its_gains(fin: Tuning) -> None:
+    known = loaded(fabricated_bare())
+    assert vars(known["gains"])["KP"] == fin.chosen.gains["KP"]
+    assert "open_loop_num" not in known
+
+
+def test_the_schedule_is_a_table(fin: Tuning) -> None:
+    rows = list(csv.DictReader(io.StringIO(schedule_text(fin))))
+    assert len(rows) == len(fin.schedule)
+    assert [float(row["heading [deg]"]) for row in rows[:3]] == [45.0, 90.0, 135.0]
+    assert [float(row["KP"]) for row in rows] == [slot.gains["KP"] for slot in fin.schedule]
+    assert float(rows[0]["cost given"]) == pytest.approx(fin.schedule[0].others["given"], rel=1e-7)
+    assert {row["feasible"] for row in rows} == {"yes", "no"}
+    assert schedule_text(fabricated_bare()) == ""
+
+
+def test_json_is_strict_and_as_documented(tuning: Tuning) -> None:
+    table = json.loads(strict_json(tuning_json(tuning)))
+    assert TuningDocument.model_validate(table).name == tuning.name
+    assert table["chosen"]["gains"] == tuning.chosen.gains
+    assert len(table["front"]["gains"]) == len(tuning.front.gains)
+    assert len(table["chosen"]["open_loop"]) == len(tuning.chosen.omega)
+
+
+def test_infinite_is_null() -> None:
+    assert tuning_json(fabricated_bare())["chosen"]["peak"] is None
+    assert tuning_json(fabricated_autopilot())["restriction"]["stall"] is None
+
+
+def test_the_documented_schema_is_the_code_s(repository: Path) -> None:
+    known = json.loads((repository / "docs" / "tuning.schema.json").read_text(encoding="utf-8"))
+    assert known == TuningDocument.model_json_schema()

@@ -1,0 +1,170 @@
+"""Process noise found where there is some and not where there is none; its floor against simulated runs."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from seatrial.core.equations import Model
+from seatrial.core.values import InputError, Record
+from seatrial.estimation.estimate.estimate import Estimate, estimate
+from seatrial.estimation.estimate.gate import boundary_quantile
+from seatrial.estimation.estimate.process_noise import ProcessNoise, is_worthwhile, prediction_error
+from seatrial.estimation.predict.draws import Scatter, drawn
+from seatrial.estimation.predict.floor import floor
+from seatrial.estimation.problem.output_error import OutputError
+from seatrial.estimation.problem.segments import cut
+from seatrial.physics.models.nomoto import nomoto
+
+Array = NDArray[np.float64]
+K, T, INTENSITY = 0.15, 8.0, 2e-3
+NOISE = {"r": 1e-3, "psi": 3e-3}
+DT, FINE, ROWS = 0.5, 10, 800
+NONE = np.zeros((0, 0))
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    return nomoto().with_values({"K": K, "T": T})
+
+
+def seconds(rows: int) -> Array:
+    return np.linspace(0.0, DT * (rows - 1), rows)
+
+
+def rudder(rows: int, phase: float = 0.0) -> Array:
+    return 0.3 * np.clip(8.0 * np.sin(2 * np.pi * (DT * np.arange(rows) + phase) / 52.0), -1.0, 1.0)
+
+
+def yawing(rng: np.random.Generator, intensity: float, phase: float = 0.0, rows: int = ROWS) -> Record:
+    """T r' + r = K delta with white noise on r', Euler steps ten times finer than the samples."""
+    delta, h = np.repeat(rudder(rows, phase), FINE), DT / FINE
+    state, kept = np.zeros(2), np.empty((rows, 2))
+    for step in range(rows * FINE):
+        if step % FINE == 0:
+            kept[step // FINE] = state
+        slope = np.diff(rudder(rows + 1, phase))[step // FINE] * (step % FINE) / FINE
+        kick = intensity * np.sqrt(h) * rng.standard_normal()
+        state = state + np.array([h * (K * (delta[step] + slope) - state[0]) / T + kick, h * state[0]])
+    noisy = kept + rng.standard_normal(kept.shape) * list(NOISE.values())
+    return Record.of("run", seconds(rows), {"delta": rudder(rows, phase), "r": noisy[:, 0], "psi": noisy[:, 1]})
+
+
+def made_of(model: Model, intensity: float, seed: int, runs: int = 1) -> Estimate:
+    rng = np.random.default_rng(seed)
+    records = [replace(yawing(rng, intensity, 7.0 * i), name=f"run {i}") for i in range(runs)]
+    problem = OutputError(model, cut(model, records, ("r", "psi"), 20.0), np.array([1e-2, 1e-1]), workers=1)
+    return estimate(problem, problem.start(), problem.measured_starts(), {})
+
+
+@pytest.fixture(scope="module")
+def found(model: Model) -> ProcessNoise:
+    return prediction_error(made_of(model, INTENSITY, 3, runs=4))
+
+
+def test_process_noise_is_needed_and_suffices(found: ProcessNoise) -> None:
+    assert found.gate.is_needed
+    assert found.gate.is_white
+    assert "innovations are white" in found.gate.text
+
+
+def test_intensities_and_coefficients_are_found(found: ProcessNoise) -> None:
+    assert found.process == {"r": pytest.approx(INTENSITY, rel=0.1)}
+    assert found.measurement == {s: pytest.approx(v, rel=0.1) for s, v in NOISE.items()}
+    error = (found.shared - np.array([K, T])) / found.interval.standard_error
+    assert np.all(np.abs(error) < 3.0)
+    assert np.all(found.interval.standard_error / np.array([K, T]) < 0.05)
+
+
+def test_slope_of_the_likelihood_vanishes(found: ProcessNoise) -> None:
+    """Central differences of the cost itself, in units of each unknown's standard error."""
+    point, hessian = found.optimum.solution.point, found.optimum.normal.hessian
+    for i, size in enumerate(0.05 / np.sqrt(np.diag(hessian))):
+        step = size * (np.arange(len(point)) == i)
+        rise = found.problem.cost(point + step, NONE) - found.problem.cost(point - step, NONE)
+        assert abs(rise / (2.0 * 0.05)) < 0.02
+    assert found.slope < 1e-3
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_sensor_noise_is_no_process_noise(model: Model, seed: int) -> None:
+    none = prediction_error(made_of(model, 0.0, seed))
+    assert not none.gate.is_needed
+    assert not none.gate.holds
+    assert none.gate.text.startswith("no process noise")
+
+
+def test_a_known_deviation_is_kept(model: Model) -> None:
+    held = prediction_error(made_of(model, INTENSITY, 5), {"psi": 3.1e-3})
+    assert held.measurement["psi"] == pytest.approx(3.1e-3, rel=1e-12)
+
+
+def test_a_channel_that_only_one_run_has(model: Model) -> None:
+    made = made_of(model, INTENSITY, 6, runs=2)
+    measured = made.problem.data.measured.copy()
+    measured[np.isin(np.repeat(made.problem.data.run, np.diff(made.problem.data.offsets)), [1]), 0] = np.nan
+    gappy = replace(made, problem=replace(made.problem, data=replace(made.problem.data, measured=measured)))
+    assert prediction_error(gappy).process["r"] == pytest.approx(INTENSITY, rel=0.15)
+
+
+def test_a_state_that_is_not_seen_is_refused(model: Model) -> None:
+    with pytest.raises(InputError, match="'x0' would move nothing"):
+        prediction_error(made_of(model, 0.0, 0), driven=("x0",))
+
+
+def test_runs_left_out_by_one_step(found: ProcessNoise) -> None:
+    """Against a full refit of the likelihood to the other runs."""
+    problem = found.problem
+    assert found.left_out.shape == (4, 2)
+    rest = np.array([0, 2, 3])
+    again = replace(
+        problem, runs=replace(problem.runs, data=problem.runs.data.taken(rest)), start=problem.start[rest],
+        start_variance=problem.start_variance[rest],
+    )  # fmt: skip
+    point = found.optimum.solution.point
+    for _ in range(6):
+        normal = again.normal(point, NONE)
+        point = point - np.linalg.solve(normal.hessian, normal.gradient)
+    moved = (found.left_out[1] - found.shared) / found.interval.standard_error
+    np.testing.assert_allclose(moved, (point[:2] - found.shared) / found.interval.standard_error, atol=0.15)
+
+
+def test_the_estimate_it_leaves_is_one_over_whole_runs(found: ProcessNoise) -> None:
+    made = found.as_estimate()
+    assert made.problem.data.count == 4
+    np.testing.assert_array_equal(made.shared, found.shared)
+    np.testing.assert_array_equal(made.optimum.normal.reduced()[1], found.information)
+    assert made.residuals().shape == made.problem.data.measured.shape
+
+
+def test_records_without_noise_have_no_likelihood(model: Model) -> None:
+    made = made_of(model, 0.0, 0)
+    assert is_worthwhile(made)
+    exact = replace(made, problem=replace(made.problem, noise=np.full(2, 1e-12)))
+    assert not is_worthwhile(exact)
+
+
+def test_floor_is_the_scatter_of_simulated_runs(model: Model) -> None:
+    """400 nonlinear simulations with kicks every half second."""
+    sailing = model.with_values({"U": 1.0})
+    record = Record.of("run", seconds(120), {"delta": rudder(120)})
+    template = OutputError(sailing, cut(sailing, [yawing(np.random.default_rng(0), 0.0, rows=120)], ("r", "psi"), None),
+                           np.ones(2))  # fmt: skip
+    start, own = np.array([0.0, 0.4, 0.0, 0.0]), np.zeros(0)
+    made = floor(template, sailing, record, start, own, {"r": INTENSITY})
+    nothing = Scatter(np.zeros((2, 2)), np.zeros((0, 0)), np.array([INTENSITY, 0.0, 0.0, 0.0]), np.inf)
+    runs = drawn(template, sailing, record, start, own, nothing, np.random.default_rng(1), 400)
+    spread = np.sqrt(np.mean(np.var(runs, axis=0), axis=0))
+    assert made["r"] == pytest.approx(spread[0], rel=0.05)
+    assert made["psi_deg"] == pytest.approx(np.degrees(spread[1]), rel=0.1)
+    assert made["position_m"] == pytest.approx(np.hypot(spread[2], spread[3]), rel=0.12)
+
+
+def test_quantiles_on_the_boundary() -> None:
+    """Half of chi squared with one degree of freedom, and by drawing for three."""
+    assert boundary_quantile(1, 0.95) == pytest.approx(2.7055, abs=1e-3)
+    assert boundary_quantile(0, 0.95) == 0.0
+    draws = np.random.default_rng(2).standard_normal((200_000, 3))
+    ratio = np.sum(np.maximum(draws, 0.0) ** 2, axis=1)
+    assert boundary_quantile(3, 0.99) == pytest.approx(np.quantile(ratio, 0.99), rel=0.02)

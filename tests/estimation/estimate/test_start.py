@@ -1,0 +1,79 @@
+"""States that were not measured, and the start without a guess."""
+
+import math
+
+import numpy as np
+import pytest
+from tests.estimation.identify.conftest import TRUTH, square, steered
+
+from seatrial.core.values import InputError, Record
+from seatrial.estimation.estimate.start import weak_start
+from seatrial.estimation.identify import identified
+from seatrial.physics.manoeuvres.programme import programme
+from seatrial.physics.models.nomoto import nomoto, nomoto2
+from seatrial.physics.models.waterjet import COEFFICIENTS, waterjet
+from seatrial.physics.simulate.states import measured_states
+from seatrial.physics.simulate.steer import manoeuvre
+
+
+@pytest.fixture(scope="module")
+def record() -> Record:
+    return manoeuvre(
+        waterjet(), programme("zigzag:20/20"), inputs={"v_j": 1.866}, slew_rate=math.radians(4.0), duration=250.0
+    )
+
+
+def test_velocities_follow_from_positions(record: Record) -> None:
+    states = measured_states(waterjet(), record.without("u", "v", "r"))
+    for i, (symbol, tolerance) in enumerate((("u", 1e-4), ("v", 1e-4), ("r", 1e-4))):
+        np.testing.assert_allclose(states[20:-20, i], record[symbol][20:-20], atol=tolerance)
+
+
+def test_heading_follows_from_the_rate_and_positions_may_lack(record: Record) -> None:
+    states = measured_states(waterjet(), record.without("psi", "x0", "y0"))
+    np.testing.assert_allclose(states[:, 3], record["psi"] - record["psi"][0], atol=1e-3)
+    np.testing.assert_array_equal(states[:, 4:], 0.0)
+
+
+def test_what_neither_is_nor_follows_is_named(record: Record) -> None:
+    with pytest.raises(InputError, match="neither holds nor implies 'v', which model 'waterjet' needs"):
+        measured_states(waterjet(), record.without("v", "x0", "y0"))
+
+
+def test_coefficients_without_any_velocity_measured(record: Record) -> None:
+    """From positions and heading alone, starting at zero."""
+    bare = record.without("u", "v", "r")
+    start = waterjet().with_values(dict.fromkeys(COEFFICIENTS, 0.0))
+    found = identified(start, [bare], ["a"], 9.8).model.parameters
+    truth = waterjet().parameters
+    assert max(abs(found[n].value / truth[n].value - 1) for n in COEFFICIENTS) < 1e-6
+
+
+def test_the_start_is_near_the_truth(record: Record) -> None:
+    point = weak_start(waterjet().with_values(dict.fromkeys(COEFFICIENTS, 0.0)), [record], 15.0)
+    truth = np.array([waterjet().parameters[n].value for n in waterjet().parameters.free_names])
+    np.testing.assert_allclose(point, truth, rtol=0.02)
+
+
+def test_positions_nobody_measured_say_nothing_about_speed() -> None:
+    """U of the steering model moves positions only; the others start as if it were fixed."""
+    rng = np.random.default_rng(3)
+    model = nomoto().with_values({**TRUTH, "U": 2.0})
+    record = steered(model, square(500), rng, {"r": 1e-3}).without("x0", "y0")
+    free = model.with_parameters(model.parameters.freed("U")).with_values({"K": 0.1, "T": 10.0})
+    started = dict(zip(free.parameters.free_names, weak_start(free, [record], 6.0), strict=True))
+    assert started["U"] == 2.0
+    assert started["K"] == pytest.approx(TRUTH["K"], rel=0.05)
+    assert started["T"] == pytest.approx(TRUTH["T"], rel=0.1)
+
+
+def test_a_hidden_state_leaves_the_start_to_the_model() -> None:
+    """The second-order steering model has a state that no record can hold; its truth is found all the same."""
+    model = nomoto2().with_values({"K": 0.15, "T_1": 15.0, "T_2": 3.0, "T_3": 5.0, "U": 1.0})
+    record = manoeuvre(model, programme("zigzag:20/20"), dt=0.2, speed=1.0).without("r_rest")
+    start = nomoto2().with_values({"U": 1.0})
+    np.testing.assert_array_equal(weak_start(start, [record], 10.0), [p.value for p in start.parameters.free])
+    found = identified(start, [record], ["a"], 7.0)
+    assert "r_rest" in found.start
+    values = [found.model.parameters[n].value for n in ("K", "T_1", "T_2", "T_3")]
+    np.testing.assert_allclose(values, [0.15, 15.0, 3.0, 5.0], rtol=1e-6)

@@ -1,0 +1,39 @@
+"""A few series of the coverage benchmark: ships the fitted model does not know, intervals that hold their measures."""
+
+import importlib
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from seatrial.estimation.estimate.settings import Intervals
+
+SERIES = 3
+
+
+@pytest.fixture(scope="module")
+def coverage(repository: Path) -> ModuleType:
+    sys.path.insert(0, str(repository / "benchmarks"))
+    try:
+        return importlib.import_module("coverage")
+    finally:
+        sys.path.pop(0)
+
+
+def test_intervals_hold_what_is_measured(coverage: ModuleType) -> None:
+    """Some 70 values of four ships: .85 is three standard deviations below .95 if a ship's values go together."""
+    told = coverage.series(SERIES, 3, Intervals.AUTO)
+    assert len(told) > 12 * SERIES
+    assert {t.kind for t in told} >= {"overshoot_deg", "tactical_diameter_L", "advance_L"}
+    assert np.mean([t.is_inside for t in told]) >= 0.85
+    halves = [t.half / t.measured for t in told if t.kind == "tactical_diameter_L"]
+    assert 0.003 < np.median(halves) < 0.1
+
+
+def test_the_table_can_fail(coverage: ModuleType) -> None:
+    kinds = [coverage.Told(0, "turn", "advance_L", 3.0, 3.2, half) for half in (0.1, 0.3)]
+    rows = {line.what.split(" (")[0]: line for line in coverage.lines(kinds)}
+    assert rows["turns: advance_L"].value == 0.5
+    assert rows["pooled"].holds is False

@@ -1,0 +1,145 @@
+"""Fed sample by sample: a craft that is steered, a ship that rolls out, and outages in waves, against the batch fit."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from seatrial.core.results import Fit
+from seatrial.core.results.online import Phase, Sample, Snapshot
+from seatrial.core.values import NOTATION, Record
+from seatrial.data.read import Column, Layout, read_record
+from seatrial.data.trial import Role, Trial, load_trial
+from seatrial.data.trial.release import released
+from seatrial.data.trial.trial import Feed, Stream
+from seatrial.estimation.identify.identify import identify
+from seatrial.estimation.identify.online import Online
+from seatrial.physics.models.qi2025 import SHIP
+from seatrial_studies.own_fit import started
+from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, Voyage, sailed
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+
+
+def _stream(name: str) -> tuple[Trial, Record]:
+    """An example's trial without its runs, following the columns of its training run; and that run."""
+    trial = load_trial(EXAMPLES / f"{name}.toml")
+    (run,) = [r for r in trial.runs if r.role is Role.TRAIN]
+    raw = read_record(run.path, run.layout).named(run.name)
+    return replace(trial, runs=(), follow=Stream(Feed.STDIN, run.layout, 1.0 / raw.dt, name=run.name)), raw
+
+
+def _feed(estimator: Online, record: Record, stream: Stream, rows: slice = slice(None)) -> Snapshot:
+    values = np.stack([record[c.symbol] for c in stream.layout.columns], axis=1)[rows]
+    shown = None
+    for time, row in zip(record.time[rows].tolist(), values, strict=True):
+        shown = estimator.update(Sample(time, row))
+    assert shown is not None
+    return shown
+
+
+def _off(shown: Snapshot, fit: Fit) -> np.ndarray:
+    batch = {c.name: c for c in fit.coefficients}
+    pairs = zip(shown.names, shown.value, strict=True)
+    return np.array([(v - batch[n].estimate) / batch[n].standard_error for n, v in pairs])
+
+
+@pytest.fixture(scope="module")
+def zigzags():
+    """The waterjet craft's first zigzags, 10/10 and some 15/15, fed; what was shown last, and at the end."""
+    trial, raw = _stream("waterjet")
+    estimator = Online(trial)
+    assert trial.follow is not None
+    shown = _feed(estimator, raw, trial.follow, slice(0, 900))
+    return trial, estimator, shown, estimator.relinearise()
+
+
+def test_zigzags_end_at_the_batch_estimate(zigzags):
+    trial, estimator, _, ended = zigzags
+    fit = identify(replace(trial, runs=estimator.raw_runs()))
+    assert np.max(np.abs(_off(ended, fit))) < 0.01
+    errors = [c.standard_error for c in fit.coefficients if not c.fixed]
+    np.testing.assert_allclose(ended.standard_error, errors, rtol=0.02)
+
+
+def test_what_small_zigzags_do_not_tell_is_said(zigzags):
+    *_, ended = zigzags
+    assert "X_rr" in ended.untold
+    assert not {"X_uu", "Y_v", "N_v", "N_r"} & set(ended.untold)
+
+
+def test_the_truth_lies_within_the_errors(zigzags):
+    trial, _, _, ended = zigzags
+    truth = np.array([trial.truth[n] for n in ended.names])
+    assert np.all(np.abs(ended.value - truth) < 4.0 * ended.standard_error)
+
+
+def test_a_straight_run_first_is_not_fatal():
+    trial, raw = _stream("waterjet")
+    assert trial.follow is not None
+    estimator = Online(trial)
+    straight = raw.rows(slice(0, 120))
+    straight = straight.with_channel("delta", straight.channel("delta").with_values(np.zeros(120)))
+    early = _feed(estimator, straight, trial.follow)
+    assert early.phase is Phase.WAITING
+    assert "never moves" in early.advice
+
+
+def test_a_roll_decay_ends_at_the_batch_estimate():
+    trial, raw = _stream("fin_decay")
+    assert trial.follow is not None
+    estimator = Online(trial)
+    shown = _feed(estimator, released(raw), trial.follow)
+    ended = estimator.relinearise()
+    fit = identify(replace(trial, runs=estimator.raw_runs()))
+    assert np.max(np.abs(_off(ended, fit))) < 0.01
+    assert np.max(np.abs(_off(shown, fit))) < 1.5
+    truth = np.array([trial.truth[n] for n in ended.names])
+    assert np.all(np.abs(ended.value - truth) < 4.0 * ended.standard_error)
+
+
+@pytest.fixture(scope="module")
+def outages():
+    """Two minutes in waves with a fin; the motion sensor loses a second three times, the whole logger once."""
+    voyage = Voyage(135, duration=120.0)
+    made = sailed(voyage, np.random.default_rng(3))
+    record = made.noisy(np.random.default_rng(4), voyage)
+    channels = ("F3", "M5", "delta_f1", "z", "theta")
+    columns = tuple(Column(c, k + 2, NOTATION[c].unit) for k, c in enumerate(channels))
+    model = started(made.truth)
+    trial = Trial(
+        ship=SHIP, runs=(), model=model, noise={"z": HEAVE_NOISE, "theta": PITCH_NOISE},
+        follow=Stream(Feed.STDIN, Layout("text", Column("time", 1, "s"), columns), 10.0),
+    )  # fmt: skip
+    truth = np.array([made.truth.parameters[n].value for n in model.parameters.free_names])
+    return trial, record, truth
+
+
+def _with_outages(record: Record, symbols: tuple[str, ...], starts: tuple[int, ...]) -> Record:
+    for symbol in symbols:
+        values = np.array(record[symbol])
+        for first in starts:
+            values[first : first + 10] = np.nan
+        record = record.with_channel(symbol, record.channel(symbol).with_values(values))
+    return record
+
+
+def test_one_second_without_motions_costs_accuracy_that_is_told(outages):
+    """Holes of a second are interpolated straight, as in a batch fit: some per cent, and coloured residuals."""
+    trial, record, truth = outages
+    best = _feed(Online(trial), record, trial.follow)
+    shown = _feed(Online(trial), _with_outages(record, ("z", "theta"), (200, 555, 900)), trial.follow)
+    assert shown.phase is Phase.WINDOW
+    assert np.mean(np.abs(shown.value / truth - 1.0)) < 0.04
+    assert np.all(shown.standard_error > 1.5 * best.standard_error)
+
+
+def test_a_logger_that_stops_for_a_second_goes_on_in_a_new_run(outages):
+    trial, record, truth = outages
+    estimator = Online(trial)
+    _feed(estimator, record, trial.follow, slice(0, 600))
+    estimator.begin_run()
+    shown = _feed(estimator, record, trial.follow, slice(610, None))
+    assert shown.runs == 2
+    assert np.mean(np.abs(shown.value / truth - 1.0)) < 0.01

@@ -1,0 +1,227 @@
+"""Splitting: pieces make the whole, none is shorter than a manoeuvre, and shuffling gives the answer away."""
+
+import math
+import re
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from seatrial.core.values import Array, Channel, InputError, Kind, Record
+from seatrial.data.example_series.series import run, truth
+from seatrial.estimation.regress.cleaning import without_small
+from seatrial.estimation.regress.split import (
+    blocks,
+    folds,
+    manoeuvre_seconds,
+    record_folds,
+    reversals,
+    shuffled,
+    training_rows,
+)
+
+shares = st.floats(0.01, 0.99)
+PERIOD = 40.0
+
+
+@cache
+def zigzags() -> Record:
+    """Ten executes of the waterjet craft, 755 s, without noise."""
+    return run(truth(), "consecutive-zigzags:2")
+
+
+def weaving(seconds: float, dt: float = 0.1) -> Record:
+    """A rudder turned as a sine, period 40 s, never held; the heading follows."""
+    time = dt * np.arange(round(seconds / dt) + 1)
+    phase = 2.0 * np.pi * time / PERIOD
+    values = {"delta": 0.2 * np.sin(phase), "psi": 0.4 * np.sin(phase - 1.0)}
+    return Record.of("weaving", time, values, Kind.SIMULATED)
+
+
+@given(rows=st.integers(2, 400), share=shares)
+def test_blocks_partition_the_record_in_order(rows: int, share: float) -> None:
+    assume(0 < round(share * rows) < rows)
+    record = Record.of("run", np.cumsum(np.ones(rows)), {"u": np.arange(float(rows))}, Kind.SIMULATED)
+    train, test = blocks(record, share)
+    np.testing.assert_array_equal(np.concatenate([train["u"], test["u"]]), record["u"])
+    np.testing.assert_array_equal(np.concatenate([train.time, test.time]), record.time)
+    assert len(train) == training_rows(rows, share)
+    assert abs(len(train) - share * rows) <= 0.5
+    assert {train.kind, test.kind} == {Kind.SIMULATED}
+
+
+def test_the_published_split_puts_16800_of_21000_samples_into_training() -> None:
+    assert training_rows(21000, 0.8) == 16800
+
+
+def test_blocks_say_which_samples_they_are() -> None:
+    train, test = blocks(weaving(200.0), 0.5)
+    assert train.provenance.steps == ("training block: samples 1 to 1000 of 2001",)
+    assert test.provenance.steps == ("test block: samples 1001 to 2001 of 2001",)
+
+
+@given(rows=st.integers(2, 500), count=st.integers(2, 40))
+def test_folds_partition_the_rows_in_order_and_nearly_equally(rows: int, count: int) -> None:
+    assume(count <= rows)
+    made = folds(rows, count)
+    assert len(made) == count
+    np.testing.assert_array_equal(np.concatenate(made), np.arange(rows))
+    assert max(map(len, made)) - min(map(len, made)) <= 1
+
+
+@given(rows=st.integers(2, 300), share=shares, seed=st.integers(0, 5))
+def test_shuffled_rows_are_every_row_once_and_repeatable(rows: int, share: float, seed: int) -> None:
+    assume(0 < round(share * rows) < rows)
+    train, test = shuffled(rows, share, np.random.default_rng(seed))
+    assert len(train) == training_rows(rows, share)
+    np.testing.assert_array_equal(np.sort(np.concatenate([train, test])), np.arange(rows))
+    assert np.all(np.diff(train) > 0)
+    assert np.all(np.diff(test) > 0)
+    again = shuffled(rows, share, np.random.default_rng(seed))
+    np.testing.assert_array_equal(train, again[0])
+
+
+def copied(train: Array, test: Array, values: Array) -> float:
+    """Error of predicting each test row by the nearest row for training, against the deviation of the test rows."""
+    right = np.clip(np.searchsorted(train, test), 1, len(train) - 1)
+    near = np.where(test - train[right - 1] <= train[right] - test, train[right - 1], train[right])
+    return float(np.sqrt(np.mean((values[near] - values[test]) ** 2)) / np.std(values[test]))
+
+
+def test_shuffling_leaks_and_blocks_do_not(rng: np.random.Generator) -> None:
+    """Copying the neighbour, which knows no ship, predicts shuffled rows to a hundredth and blocks not at all."""
+    r = zigzags()["r"]
+    first, rows = training_rows(len(r), 0.7), np.arange(len(r))
+    assert copied(*shuffled(len(r), 0.7, rng), r) < 0.01
+    assert copied(rows[:first], rows[first:], r) > 0.9
+
+
+def test_longest_manoeuvre_of_zigzags_is_the_longest_cycle_of_heading() -> None:
+    """Two executes lie between extremes to the same side; the executes are known from the rudder."""
+    record = zigzags()
+    moved = np.flatnonzero(np.diff(np.sign(record["delta"])) != 0)
+    gaps = np.diff(record.time[moved])
+    longest = manoeuvre_seconds(record)
+    assert np.max(gaps) < longest < 2.0 * np.max(gaps)
+    assert longest == pytest.approx(np.max(gaps[gaps > 1.0][1:] + gaps[gaps > 1.0][:-1]), rel=0.05)
+
+
+def test_longest_manoeuvre_of_a_rudder_never_held_is_the_period_of_heading() -> None:
+    assert manoeuvre_seconds(weaving(200.0)) == pytest.approx(PERIOD, abs=0.1 + 1e-9)
+
+
+def test_longest_manoeuvre_of_two_executes_is_the_time_between_them() -> None:
+    """The heading turns back once only, so that no cycle is seen."""
+    time = 0.5 * np.arange(300)
+    delta = np.select([time < 10.0, time < 70.0], [0.0, 0.3], -0.3)
+    psi = np.radians(np.interp(time, [0.0, 10.0, 80.0, 150.0], [0.0, 0.0, 30.0, 5.0]))
+    record = Record.of("begun", time, {"delta": delta, "psi": psi})
+    assert manoeuvre_seconds(record) == pytest.approx(60.0, abs=0.5)
+
+
+@pytest.mark.parametrize("positive", ["starboard", "port"])
+def test_longest_manoeuvre_of_a_turning_circle_is_one_circle(positive: str) -> None:
+    """A steady turn of 3 deg/s, begun at 20 s: 120 s, to either side and over the jump of a compass at 360 deg."""
+    time = 0.5 * np.arange(500)
+    turned = np.radians(3.0) * np.maximum(time - 20.0, 0.0)
+    psi = np.mod(1.0 + turned, 2.0 * np.pi)
+    rudder = np.where(time >= 20.0, 0.3, 0.0)
+    channels = {"psi": Channel(psi, "rad", "earth", positive), "delta": Channel(rudder, "rad", "body", positive)}
+    assert manoeuvre_seconds(Record("circle", time, channels)) == pytest.approx(120.0, abs=1.0)
+    half = Record("circle", time, channels).between(0.0, 110.0)
+    assert manoeuvre_seconds(half) == pytest.approx(90.0, abs=1.0)
+
+
+def test_manoeuvres_are_seen_through_noise_and_holes(rng: np.random.Generator) -> None:
+    clean = zigzags()
+    noise = math.radians(0.2) * rng.standard_normal(len(clean))
+    noisy = clean.with_channel("psi", clean.channel("psi").with_values(clean["psi"] + noise))
+    cleaned = without_small(noisy, {"v": 2e-3, "r": 2e-3})
+    assert len(cleaned) < 0.95 * len(clean)
+    assert not cleaned.is_uniform
+    for record in (noisy, cleaned):
+        assert manoeuvre_seconds(record) == pytest.approx(manoeuvre_seconds(clean), rel=0.03)
+
+
+def test_without_rudder_or_heading_no_manoeuvre_is_demanded() -> None:
+    record = zigzags().without("delta")
+    assert manoeuvre_seconds(record) == 0.0
+    assert manoeuvre_seconds(zigzags().without("psi")) == 0.0
+    assert len(blocks(record, 0.99)[1]) == len(record) - round(0.99 * len(record))
+
+
+def test_a_block_shorter_than_a_manoeuvre_is_refused_with_both_lengths() -> None:
+    said = (
+        r"record 'consecutive-zigzags_2': the test block would be 151 s long \(1511 samples\), shorter than the "
+        r"longest manoeuvre in the record, 165.9 s; take a share between 0.22 and 0.78$"
+    )
+    with pytest.raises(InputError, match=said):
+        blocks(zigzags(), 0.8)
+    with pytest.raises(InputError, match="the training block would be"):
+        blocks(zigzags(), 0.1)
+
+
+@given(seconds=st.floats(30.0, 300.0), share=shares)
+def test_both_blocks_hold_a_manoeuvre_or_the_advice_helps(seconds: float, share: float) -> None:
+    record = weaving(seconds, dt=0.5)
+    longest = manoeuvre_seconds(record)
+    try:
+        assert min(piece.duration for piece in blocks(record, share)) >= longest
+    except InputError as refusal:
+        advised = [float(number) for number in re.findall(r"\b0\.\d\d\b", str(refusal).rpartition(";")[2])]
+        for other in advised:
+            assert min(piece.duration for piece in blocks(record, other)) >= longest
+        if not advised:
+            assert "take a longer record" in str(refusal)
+            assert record.duration < 2.1 * longest
+
+
+@given(seconds=st.floats(30.0, 300.0), count=st.integers(2, 12))
+def test_every_fold_of_a_record_holds_a_manoeuvre_or_the_advice_helps(seconds: float, count: int) -> None:
+    record = weaving(seconds, dt=0.5)
+    longest = manoeuvre_seconds(record)
+    try:
+        assert all(record.time[f[-1]] - record.time[f[0]] >= longest for f in record_folds(record, count))
+    except InputError as refusal:
+        fewer = re.search(r"give (\d+) folds at most", str(refusal))
+        if fewer:
+            assert len(record_folds(record, int(fewer[1]))) < count
+        else:
+            assert record.duration < 2.1 * longest
+        assert f"shortest of {count} folds would be" in str(refusal)
+        assert f"longest manoeuvre in the record, {longest:.4g} s" in str(refusal)
+
+
+@given(swings=st.lists(st.floats(2.5, 9.0), min_size=3, max_size=12), up=st.booleans())
+def test_reversals_are_the_corners_of_a_zigzag(swings: list[float], up: bool) -> None:
+    signs = (1.0 if up else -1.0) * (-1.0) ** np.arange(len(swings))
+    corners = np.concatenate([[0.0], np.cumsum(signs * np.array(swings))])
+    fine = np.interp(np.arange(10 * len(swings) + 1) / 10.0, np.arange(len(corners)), corners)
+    ripple = 0.4 * np.where(np.arange(len(fine)) % 2 == 1, 1.0, 0.0)
+    np.testing.assert_array_equal(reversals(fine, 2.0), 10 * np.arange(1, len(swings)))
+    assert len(reversals(fine + ripple, 2.0)) == len(swings) - 1
+
+
+@pytest.mark.parametrize("share", [0.0, 1.0, -0.2, 1.5, float("nan")])
+def test_a_share_must_lie_between_nothing_and_all(share: float) -> None:
+    with pytest.raises(InputError, match=r"share for training is .*; give one between 0 and 1"):
+        blocks(weaving(200.0), share)
+
+
+def test_no_piece_may_be_empty() -> None:
+    with pytest.raises(InputError, match="puts 0 of 3 rows there; give more rows"):
+        training_rows(3, 0.1)
+    with pytest.raises(InputError, match="puts 3 of 3 rows there; give more rows"):
+        training_rows(3, 0.9)
+    for count in (-1, 0, 1, 8):
+        with pytest.raises(InputError, match=f"7 rows cannot be cut into {count} folds; give between 2 and 7"):
+            folds(7, count)
+
+
+def test_missing_stamps_are_refused() -> None:
+    time = np.array([0.0, 1.0, float("nan"), 3.0])
+    channels = {symbol: Channel.of(symbol, np.zeros(4)) for symbol in ("psi", "delta")}
+    with pytest.raises(InputError, match="stamps are missing; rebuild its time base"):
+        blocks(Record("run", time, channels), 0.5)

@@ -1,0 +1,134 @@
+"""The integrator against the matrix exponential, and what it does at the edges."""
+
+import numpy as np
+import pytest
+from numba import njit
+from scipy.linalg import expm
+from tests.numerics.kernels.case import Case
+
+from seatrial.core.equations import Model
+from seatrial.numerics.kernels.steering import steer
+from seatrial.numerics.kernels.types import COMMAND_SIGNATURE
+
+K, C, B = 1.5, 0.3, 0.8
+
+
+def exact(start: np.ndarray, u: np.ndarray, time: np.ndarray) -> np.ndarray:
+    """States under an input that runs linearly over the whole time: the system augmented by u and its slope."""
+    slope = (u[-1] - u[0]) / (time[-1] - time[0])
+    a = np.array([[0, 1, 0, 0], [-K, -C, B, 0], [0, 0, 0, 1], [0, 0, 0, 0]])
+    begin = np.array([*start, u[0], slope])
+    return np.array([(expm(a * t) @ begin)[:2] for t in time])
+
+
+def ramp(model: Model, steps: int, substeps: int = 1) -> tuple[Case, np.ndarray]:
+    time = np.linspace(0.0, 8.0, steps + 1)
+    inputs = np.ascontiguousarray((0.2 + 0.1 * time)[:, None])
+    start = np.array([[0.4, -0.2]])
+    case = Case(model, inputs, (0, steps + 1), 8.0 / steps, start, model.parameters.values[None], substeps)
+    return case, exact(start[0], inputs[:, 0], time)
+
+
+def test_error_falls_with_the_fourth_power_of_the_step(oscillator: Model) -> None:
+    errors = []
+    for steps in (40, 80, 160, 320):
+        case, truth = ramp(oscillator, steps)
+        errors.append(np.abs(case.run()[0][:, :2] - truth).max())
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    np.testing.assert_allclose(orders, 4.0, atol=0.15)
+
+
+def test_substeps_are_smaller_steps(oscillator: Model) -> None:
+    coarse, fine = ramp(oscillator, 40, substeps=4)[0].run()[0], ramp(oscillator, 160)[0].run()[0]
+    np.testing.assert_allclose(coarse, fine[::4], rtol=1e-12, atol=1e-13)
+
+
+def test_outputs_are_taken_at_the_sample(oscillator: Model) -> None:
+    case, truth = ramp(oscillator, 320)
+    y = case.run()[0]
+    np.testing.assert_allclose(y[:, 2], B * case.inputs[:, 0] - K * truth[:, 0] - C * truth[:, 1], atol=1e-8)
+
+
+def test_segments_do_not_touch_one_another(nonlinear: Model, rng: np.random.Generator) -> None:
+    inputs, start = rng.uniform(0.2, 0.8, (50, 2)), rng.normal(size=(3, 2))
+    p = nonlinear.parameters.values * rng.uniform(0.9, 1.1, (3, 3))
+    cuts = (0, 10, 35, 50)
+    together = Case(nonlinear, inputs, cuts, 0.1, start, p).run()[0]
+    for i in range(3):
+        part = np.ascontiguousarray(inputs[cuts[i] : cuts[i + 1]])
+        alone = Case(nonlinear, part, (0, len(part)), 0.1, start[i : i + 1], p[i : i + 1]).run()[0]
+        np.testing.assert_array_equal(together[cuts[i] : cuts[i + 1]], alone)
+
+
+def test_corrections_act_on_the_input(oscillator: Model) -> None:
+    """Gain and offset scale and shift it; a delay of whole samples shifts the record, clamped to its first value."""
+    case, _ = ramp(oscillator, 80)
+    shifted = np.concatenate([np.repeat(case.inputs[:1], 3, axis=0), case.inputs[:-3]])
+    corrected = Case(
+        oscillator, case.inputs, case.offsets, case.dt, case.start, case.p, 1, (1.3,), (-0.05,), (3 * case.dt,)
+    )
+    by_hand = Case(oscillator, 1.3 * shifted - 0.05, case.offsets, case.dt, case.start, case.p)
+    np.testing.assert_allclose(corrected.run()[0], by_hand.run()[0], rtol=1e-12, atol=1e-12)
+
+
+def test_divergence_is_flagged_with_its_sample_and_nan_fills_the_rest(explosive: Model) -> None:
+    inputs = np.zeros((80, 1))
+    start = np.array([[0.1], [1.0]])
+    y, failed = Case(explosive, inputs, (0, 40, 80), 0.1, start, np.ones((2, 1))).run()
+    assert failed[0] == -1
+    assert np.isfinite(y[:40]).all()
+    assert 10 <= failed[1] <= 14, "1 / (1 - t) leaves all bounds at t = 1"
+    assert np.isfinite(y[40 : 40 + failed[1]]).all()
+    assert np.isnan(y[40 + failed[1] :]).all()
+
+
+def test_a_segment_of_one_sample_is_its_start(oscillator: Model) -> None:
+    case = Case(oscillator, np.zeros((1, 1)), (0, 1), 0.1, np.array([[0.4, -0.2]]), oscillator.parameters.values[None])
+    y, failed = case.run()
+    np.testing.assert_allclose(y[0, :2], [0.4, -0.2])
+    assert failed[0] == -1
+
+
+@njit(COMMAND_SIGNATURE)
+def _alternate(t, x, memory, u):  # noqa: ARG001
+    """A bang-bang helmsman: +-memory[0] against the sign of x; memory[1] counts the calls."""
+    memory[1] += 1.0
+    u[0] = -memory[0] if x[0] > 0.0 else memory[0]
+
+
+def test_a_command_is_called_once_a_step_and_held_over_it(oscillator: Model) -> None:
+    steps, dt = 60, 0.05
+    x_out, u_out, memory = np.empty((steps, 2)), np.empty((steps, 1)), np.array([0.5, 0.0])
+    p = oscillator.parameters.values
+    row = steer(oscillator.compiled.rates, _alternate, np.array([0.4, -0.2]), np.zeros(1), p, memory, dt, x_out, u_out)
+    assert row == -1
+    assert memory[1] == steps
+    a = np.array([[0, 1, 0], [-K, -C, B], [0, 0, 0]])
+    hold = expm(a * dt)
+    for k in range(steps - 1):
+        assert u_out[k, 0] == (-0.5 if x_out[k, 0] > 0 else 0.5)
+        np.testing.assert_allclose(x_out[k + 1], (hold @ [*x_out[k], u_out[k, 0]])[:2], atol=1e-8)
+
+
+def test_a_diverging_loop_says_when(explosive: Model) -> None:
+    x_out, u_out = np.full((80, 1), np.nan), np.full((80, 1), np.nan)
+    row = steer(
+        explosive.compiled.rates, _alternate, np.ones(1), np.zeros(1), np.ones(1), np.zeros(2), 0.1, x_out, u_out
+    )
+    assert 10 <= row <= 14
+    assert np.isfinite(x_out[:row]).all()
+
+
+@pytest.mark.parametrize("which", ["replay", "steer"])
+def test_both_ways_agree_on_a_constant_input(nonlinear: Model, which: str) -> None:
+    inputs = np.tile([0.3, 0.9], (30, 1))
+    start, p = np.array([[0.2, 0.1]]), nonlinear.parameters.values[None]
+    y = Case(nonlinear, inputs, (0, 30), 0.1, start, p).run()[0][:, :2]
+    x_out, u_out = np.empty((30, 2)), np.empty((30, 2))
+    steer(nonlinear.compiled.rates, _idle, start[0], inputs[0].copy(), p[0], np.zeros(1), 0.1, x_out, u_out)
+    np.testing.assert_allclose({"replay": y, "steer": x_out}[which], y, rtol=1e-13)
+
+
+@njit(COMMAND_SIGNATURE)
+def _idle(t, x, memory, u):
+    """Leaves the input as it is."""

@@ -1,0 +1,79 @@
+"""Streams to follow in tests: the example's voyage, in pieces, and an estimator that only takes notes."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from seatrial.core.results import Fit
+from seatrial.core.results.online import Counts, Phase, Snapshot
+from seatrial.data.folder.fit_json import fit_json
+from seatrial.data.trial import Trial, load_trial
+from seatrial.data.trial.follow_table import followed
+from seatrial.onboard.follow import Outcome
+from seatrial.onboard.sample import Sample
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+VOYAGE = EXAMPLES / "heave_pitch" / "voyage_1.csv"
+LINES = VOYAGE.read_text(encoding="utf-8").splitlines(keepends=True)
+
+
+class Notes:
+    """An estimator that remembers what it was given."""
+
+    def __init__(self) -> None:
+        self.runs: list[list[float]] = []
+        self.values: list[np.ndarray] = []
+
+    def begin_run(self) -> None:
+        self.runs.append([])
+
+    def update(self, sample: Sample) -> Snapshot:
+        self.runs[-1].append(sample.time)
+        self.values.append(sample.values)
+        count = len(self.values)
+        return Snapshot(sample.time, count, len(self.runs), Phase.WAITING, ("a",), ("1",), np.ones(1), np.ones(1))
+
+
+class Given:
+    """A source that gives what it has, one list a poll, then is over; a list that is None is Ctrl-C."""
+
+    def __init__(self, *polls: list[Sample] | None) -> None:
+        self._polls = list(polls)
+        self.counts = Counts()
+        self.is_closed = False
+
+    def poll(self, seconds: float) -> list[Sample]:  # noqa: ARG002
+        samples = self._polls.pop(0)
+        if samples is None:
+            raise KeyboardInterrupt
+        return samples
+
+    @property
+    def is_over(self) -> bool:
+        return not self._polls
+
+    def close(self) -> None:
+        self.is_closed = True
+
+
+def voyage_trial(file: Path = VOYAGE) -> Trial:
+    """The example's trial, its stream from `file`, no runs besides."""
+    trial = load_trial(EXAMPLES / "heave_pitch_follow.toml")
+    return replace(trial, runs=(), follow=replace(followed(trial), file=file, name=file.stem))
+
+
+def some(first: int, last: int, start: float = 0.0) -> list[Sample]:
+    """Samples of the four channels, numbers `first` to before `last`, at 10 Hz."""
+    return [Sample(start + 0.1 * i, np.array([i, 1.0, 2.0, 3.0])) for i in range(first, last)]
+
+
+def told(fit: Fit | None) -> dict:
+    """The fit as JSON, but for the time it took."""
+    assert fit is not None
+    return {key: value for key, value in fit_json(fit).items() if key != "elapsed_s"}
+
+
+def accepted(outcome: Outcome) -> int:
+    """How many samples were used."""
+    return outcome.counts.accepted

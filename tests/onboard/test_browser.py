@@ -1,0 +1,138 @@
+"""A real browser opens the page, sees it move, and runs nothing that somebody put into a name."""
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+from tests.onboard.fabricated import heave_pitch, mmg, troubled
+
+from seatrial.core.results.online import Counts
+from seatrial.core.values import Finding, Severity
+from seatrial.onboard.page import Page
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+    from playwright.sync_api import Page as Window
+
+playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed; pip install playwright")
+QUIET = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+         "--disable-component-update", "--disable-sync"]  # fmt: skip
+SCRIPT = "<script>document.title='owned'</script><img src=x onerror=alert(1)>"
+
+
+@pytest.fixture(scope="module")
+def browser(browser_path: str) -> "Iterator[Browser]":
+    with playwright.sync_playwright() as started:
+        opened = started.chromium.launch(executable_path=browser_path, args=QUIET)
+        yield opened
+        opened.close()
+
+
+@pytest.fixture
+def page() -> Iterator[Page]:
+    with Page(0, title="trial.toml") as made:
+        yield made
+
+
+@contextmanager
+def opened(browser: "Browser", page: Page) -> "Iterator[tuple[Window, list[str]]]":
+    """The page in a window, and what its console had to say; requests to anybody else are complaints."""
+    window = browser.new_page(viewport={"width": 1100, "height": 900})
+    window.set_default_timeout(8000)
+    said: list[str] = []
+    window.on("console", lambda message: said.append(f"{message.type}: {message.text}"))
+    window.on("pageerror", lambda error: said.append(str(error)))
+    window.on("request", lambda request: None if request.url.startswith(page.address) else said.append(request.url))
+    window.goto(page.address)
+    yield window, said
+    window.close()
+
+
+def test_opens_with_nothing_moves_with_what_comes_and_says_when_it_ends(browser: "Browser", page: Page) -> None:
+    with opened(browser, page) as (window, said):
+        window.get_by_text("nothing has come yet").wait_for()
+        assert not window.locator("#body").is_visible()
+        snapshots = list(heave_pitch(120.0))
+        page.show(snapshots[0], Counts())
+        window.get_by_text("waiting: too little has been seen yet").wait_for()
+        for snapshot in snapshots[1:100]:
+            page.show(snapshot, troubled())
+        window.locator("#facts").get_by_text("49.5 s").wait_for()
+        first = window.locator("#values path.course").first.get_attribute("d")
+        assert window.locator("#values figure").count() == 8 and window.locator("#noise figure").count() == 2
+        assert window.locator("#values path.band").first.get_attribute("d")
+        for snapshot in snapshots[100:]:
+            page.show(snapshot, troubled())
+        window.locator("#facts").get_by_text("120.0 s").wait_for()
+        assert window.locator("#values path.course").first.get_attribute("d") != first
+        assert window.locator("#status").inner_text() == "following"
+        page.over("end of trial.csv")
+        window.get_by_text("the stream is over: end of trial.csv").wait_for()
+        assert said == []
+
+
+def test_what_somebody_put_into_names_is_text(browser: "Browser", page: Page) -> None:
+    base = list(mmg(40.0))[-1]
+    names = (SCRIPT, *base.names[1:])
+    hostile = Finding(Severity.ERROR, "x", SCRIPT, SCRIPT, SCRIPT)
+    noise = {SCRIPT: 0.1, **base.noise}
+    page.show(
+        replace(base, names=names, noise=noise, untold=(SCRIPT,), advice=SCRIPT, findings=(hostile,)),
+        Counts(garbled=1, last=SCRIPT),
+    )
+    with opened(browser, page) as (window, said):
+        window.locator("#rows").get_by_text(SCRIPT).wait_for()
+        for place in ("#values", "#noise", "#shares", "#untold", "#findings", "#last"):
+            assert SCRIPT in (window.locator(place).text_content() or "")
+        assert window.locator("script").count() == 1 and window.locator("img").count() == 0
+        assert window.title() == "trial.toml · seatrial"
+        window.set_viewport_size({"width": 420, "height": 800})
+        assert window.evaluate("document.documentElement.scrollWidth") <= 420
+        assert said == []
+
+
+def test_a_program_that_ended_is_said_and_its_numbers_stay(browser: "Browser") -> None:
+    first = Page(0)
+    with first:
+        for snapshot in heave_pitch(30.0):
+            first.show(snapshot, Counts())
+        window = browser.new_page()
+        window.set_default_timeout(8000)
+        window.goto(first.address)
+        window.locator("#facts").get_by_text("30.0 s").wait_for()
+    window.get_by_text("seatrial no longer answers").wait_for()
+    assert window.locator("#rows tr").count() == 8
+    with Page(first.port) as again:
+        for snapshot in mmg(30.0):
+            again.show(snapshot, Counts())
+        window.locator("#rows").get_by_text("X_vvvv").wait_for()
+        assert window.locator("#values figure").count() == 15
+        assert window.locator("#status").inner_text() == "following"
+    window.close()
+
+
+def test_who_looks_as_the_stream_ends_sees_its_end(browser: "Browser") -> None:
+    snapshots = list(heave_pitch(30.0))
+    with Page(0) as page:
+        page.show(snapshots[-2], Counts())
+        window = browser.new_page()
+        window.set_default_timeout(8000)
+        window.goto(page.address)
+        window.locator("#facts").get_by_text("29.5 s").wait_for()
+        page.show(snapshots[-1], Counts())
+        page.over()
+    window.wait_for_timeout(700)
+    assert window.locator("#status").inner_text() == "the stream is over"
+    assert window.locator("#facts").get_by_text("30.0 s").is_visible()
+    window.close()
+
+
+def test_silence_is_said(browser: "Browser", page: Page) -> None:
+    page.show(list(heave_pitch(30.0))[-1], Counts())
+    page._news_at -= 17.0
+    with opened(browser, page) as (window, said):
+        window.get_by_text(re.compile(r"no news for (17|18|19|2\d) s")).wait_for()
+        assert said == []

@@ -1,0 +1,87 @@
+"""Gains from the plant: the textbook's poles for a Nomoto ship, half the motion at resonance for a fin."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from seatrial.core.values import InputError
+from seatrial.physics.loops import Block, margins
+from seatrial.physics.loops.autopilot import DAMPING, heading_loop, pitch_loop, speed_loop, steering_gear
+from seatrial.physics.loops.margins import sensitivity
+
+GEAR = (steering_gear(0.5),)
+UNSTABLE = Block("tanker", (0.0285, 0.00497), (1.0, 0.384, -0.0045, 0.0))
+PITCH = Block("pitch", (0.06,), (1.0, 0.25, 1.4))
+
+
+def nomoto(K: float, T: float) -> Block:
+    return Block("ship", (K,), (T, 1.0, 0.0))
+
+
+@given(K=st.floats(0.01, 0.5), T=st.floats(1.0, 100.0), sign=st.sampled_from([1.0, -1.0]))
+def test_pd_places_the_poles_of_a_nomoto_ship(K: float, T: float, sign: float) -> None:
+    plant = nomoto(sign * K, T)
+    loop = heading_loop(plant, plant, (), parts=("KP", "KD"))
+    KP, KD = loop.values
+    omega = 1.5 / T
+    assert pytest.approx(omega**2 * T / K) == KP
+    assert pytest.approx((2.0 * DAMPING * omega * T - 1.0) / K) == KD
+    assert bool(loop.filters) is (sign < 0.0)
+    assert margins(loop).is_stable
+
+
+def test_the_integral_is_a_tenth_of_the_frequency_and_may_leak() -> None:
+    plant = nomoto(0.2, 10.0)
+    loop = heading_loop(plant, plant, GEAR)
+    KP, KI, _ = loop.values
+    assert pytest.approx(0.1 * 0.15 * KP) == KI
+    assert loop.terms[1].block.den == (1.0, 0.0)
+    leaking = heading_loop(plant, plant, GEAR, integral_lag=200.0)
+    assert leaking.terms[1].block.gain == 200.0
+    omega = np.geomspace(0.1, 10.0, 20)
+    assert leaking.open(omega) == pytest.approx(loop.open(omega), rel=0.01)
+
+
+def test_an_unstable_ship_is_held_within_its_bounds() -> None:
+    for parts in (("KP", "KD"), ("KP", "KI", "KD")):
+        loop = heading_loop(UNSTABLE, UNSTABLE, GEAR, parts=parts)
+        made = margins(loop)
+        assert made.is_stable
+        assert made.peak < 1.3
+        assert all(0.0 < p.lower < p.value < p.upper < np.inf for p in loop.gains)
+
+
+def test_pi_places_the_poles_of_a_speed() -> None:
+    K, T = 0.11, 50.0
+    plant = Block("speed", (K,), (T, 1.0))
+    loop = speed_loop(plant, plant, ())
+    omega = 1.5 / T
+    assert loop.closed_poles == pytest.approx(np.roots([1.0, 2.0 * DAMPING * omega, omega**2]))
+    assert (loop.output, loop.actuator) == ("u", "n")
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_fin_on_pitch_halves_the_motion_at_resonance(sign: float) -> None:
+    plant = PITCH.scaled(sign)
+    loop = pitch_loop(plant, PITCH, (), parts=("KD",), derivative_filter=1e-4)
+    at = np.geomspace(0.5, 3.0, 2000)
+    top = at[np.argmax(np.abs(plant.at(at)))]
+    assert sensitivity(loop, np.array([top]))[0] == pytest.approx(0.5, rel=0.02)
+    assert margins(loop).is_stable
+
+
+def test_what_cannot_be_is_refused() -> None:
+    lag = Block("lag", (1.0,), (5.0, 1.0))
+    with pytest.raises(InputError, match="is no heading"):
+        heading_loop(lag, lag, GEAR)
+    with pytest.raises(InputError, match="KP, KI, KD, not KQ"):
+        heading_loop(UNSTABLE, UNSTABLE, GEAR, parts=("KQ",))
+    with pytest.raises(InputError, match="must be positive"):
+        heading_loop(UNSTABLE, UNSTABLE, GEAR, derivative_filter=0.0)
+    with pytest.raises(InputError, match="must be positive"):
+        steering_gear(0.0)
+    with pytest.raises(InputError, match="no restoring"):
+        pitch_loop(nomoto(0.1, 5.0), lag, GEAR)
+    with pytest.raises(InputError, match="no pole off the origin"):
+        speed_loop(Block("integrator", (1.0,), (1.0, 0.0)), lag, GEAR)

@@ -1,0 +1,134 @@
+"""Measures against motions whose measures follow from geometry or from an independent fine integration."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from seatrial.core.values import InputError, Record
+from seatrial.physics.manoeuvres import Manoeuvre, criteria, measures, recognise
+from seatrial.physics.manoeuvres.imo import first_overshoot_limit, second_overshoot_limit
+from seatrial.physics.manoeuvres.programme import programme
+from seatrial.physics.models.nomoto import nomoto
+from seatrial.physics.simulate.steer import manoeuvre
+
+LENGTH = 10.0
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("positive", ["starboard", "port"])
+def test_circle_in_closed_form(circle: Callable[..., Record], side: int, positive: str) -> None:
+    record = circle(side, positive)
+    assert recognise(record) is Manoeuvre.TURNING_CIRCLE
+    found = measures(record, LENGTH)
+    # the rudder jumps within one sample, of which the execute takes the middle: 0.05 m of track
+    assert found["advance_L"] == pytest.approx(2.0, abs=0.006)
+    assert found["transfer_L"] == pytest.approx(2.0, abs=1e-3)
+    assert found["tactical_diameter_L"] == pytest.approx(4.0, abs=1e-3)
+    assert found["steady_diameter_L"] == pytest.approx(4.0, rel=1e-3)
+    assert found["steady_yaw_rate_deg_s"] == pytest.approx(math.degrees(0.05), rel=1e-3)
+    assert found["steady_drift_deg"] == pytest.approx(math.degrees(0.1), rel=1e-6)
+    assert found["speed_loss"] == pytest.approx(0.0, abs=1e-9)
+    assert found["rudder_deg"] == pytest.approx(35.0)
+
+
+def fine_nomoto_zigzag(gain: float, lag: float, rudder: float, switching: float, slew: float) -> tuple[float, float]:
+    """First and second overshoot [rad] of T r' + r = K delta by steps of 2 ms, independent of the package."""
+    h, psi, r, delta, order = 0.002, 0.0, 0.0, 0.0, rudder
+    peaks, switched_at, peak = [], None, 0.0
+    while len(peaks) < 2:
+        if order * psi > 0 and abs(psi) >= switching:
+            if switched_at is not None:
+                peaks.append(peak - switched_at)
+            order, switched_at, peak = -order, abs(psi), 0.0
+        delta += min(max(order - delta, -slew * h), slew * h)
+        old = r
+        r += h * (gain * delta - r) / lag
+        psi += 0.5 * h * (old + r)
+        if switched_at is not None and psi * order < 0:
+            peak = max(peak, abs(psi))
+    return peaks[0], peaks[1]
+
+
+def test_nomoto_zigzag_against_fine_integration() -> None:
+    model = nomoto().with_values({"K": 0.08, "T": 12.0})
+    slew = math.radians(3.0)
+    record = manoeuvre(model, programme("zigzag:20/20"), slew_rate=slew)
+    assert recognise(record) is Manoeuvre.ZIGZAG
+    found = measures(record, LENGTH)
+    first, second = fine_nomoto_zigzag(0.08, 12.0, math.radians(20.0), math.radians(20.0), slew)
+    assert found["overshoot_1_deg"] == pytest.approx(math.degrees(first), abs=0.02)
+    assert found["overshoot_2_deg"] == pytest.approx(math.degrees(second), abs=0.02)
+    counted = measures(record, LENGTH, switching=math.radians(20.0))
+    assert counted["overshoot_1_deg"] == pytest.approx(found["overshoot_1_deg"], abs=0.25)
+    assert "initial_turning_L" not in found
+
+
+def test_initial_turning_time_of_a_jumping_rudder() -> None:
+    """psi = K delta (t - T (1 - exp(-t/T))), Nomoto's step response."""
+    gain, lag, delta = 0.08, 12.0, math.radians(10.0)
+    record = manoeuvre(nomoto().with_values({"K": gain, "T": lag}), programme("zigzag:10/10"), slew_rate=1e3, dt=0.02)
+    time = measures(record, LENGTH)["initial_turning_time_s"]
+    assert gain * delta * (time - lag * (1 - math.exp(-time / lag))) == pytest.approx(math.radians(10.0), rel=5e-3)
+
+
+def test_noise_moves_measures_little(rng: np.random.Generator) -> None:
+    model = nomoto().with_values({"K": 0.08, "T": 12.0})
+    clean = manoeuvre(model, programme("zigzag:20/20"), slew_rate=math.radians(3.0), approach=20.0)
+    psi = clean.channel("psi").with_values(clean["psi"] + math.radians(0.2) * rng.standard_normal(len(clean)))
+    delta = clean.channel("delta").with_values(clean["delta"] + math.radians(0.3) * rng.standard_normal(len(clean)))
+    noisy = clean.with_channel("psi", psi).with_channel("delta", delta)
+    assert recognise(noisy) is Manoeuvre.ZIGZAG
+    expected, found = measures(clean, LENGTH), measures(noisy, LENGTH)
+    assert found["overshoot_1_deg"] == pytest.approx(expected["overshoot_1_deg"], abs=0.5)
+    assert found["overshoot_2_deg"] == pytest.approx(expected["overshoot_2_deg"], abs=0.5)
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ("zigzag:10/10:port", Manoeuvre.ZIGZAG),
+        ("consecutive-zigzags:2", Manoeuvre.ZIGZAG),
+        ("turning-circle:20:port", Manoeuvre.TURNING_CIRCLE),
+        ("pull-out:15", Manoeuvre.PULL_OUT),
+        ("spiral:20", Manoeuvre.SPIRAL),
+        ("prbs:20:7:3", Manoeuvre.OTHER),
+    ],
+)
+def test_programmes_are_recognised(text: str, kind: Manoeuvre) -> None:
+    record = manoeuvre(nomoto(), programme(text), slew_rate=math.radians(4.0))
+    assert recognise(record) is kind
+
+
+def test_pull_out_of_a_stable_ship_leaves_no_rate() -> None:
+    record = manoeuvre(nomoto().with_values({"T": 5.0}), programme("pull-out:15"))
+    assert measures(record, LENGTH)["residual_yaw_rate_deg_s"] == pytest.approx(0.0, abs=1e-3)
+
+
+def test_rudder_that_never_moves_shows_nothing() -> None:
+    time = np.arange(50.0)
+    record = Record.of("straight", time, {"psi": 0.0 * time, "delta": 0.0 * time})
+    assert recognise(record) is Manoeuvre.OTHER
+    assert measures(record, LENGTH) == {}
+
+
+def test_missing_channel_and_bad_length_are_refused(circle: Callable[..., Record]) -> None:
+    with pytest.raises(InputError, match="has no channel 'delta'"):
+        measures(circle().without("delta"), LENGTH)
+    with pytest.raises(InputError, match="length 0 m is not positive"):
+        measures(circle(), 0.0)
+
+
+def test_overshoot_limits_of_the_resolution() -> None:
+    assert [first_overshoot_limit(t) for t in (5.0, 10.0, 20.0, 30.0, 50.0)] == [10.0, 10.0, 15.0, 20.0, 20.0]
+    assert [second_overshoot_limit(t) for t in (5.0, 10.0, 20.0, 30.0, 50.0)] == [25.0, 25.0, 32.5, 40.0, 40.0]
+
+
+def test_criteria_of_a_turning_circle_say_where_they_apply(circle: Callable[..., Record]) -> None:
+    small = criteria(circle(), LENGTH)
+    assert {c.name: c.limit for c in small} == {"advance_L": 4.5, "tactical_diameter_L": 5.0}
+    assert all(c.holds and not c.applies for c in small)
+    assert "100 m and more" in small[0].note
+    model = criteria(circle(), LENGTH, scale=20.0)
+    assert all(c.applies and "model scale 1:20" in c.note for c in model)

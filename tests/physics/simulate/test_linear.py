@@ -1,0 +1,117 @@
+"""Affine models by exact propagators: against continuous truth, SciPy and differences."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Array
+from seatrial.physics.models.heave_pitch import COEFFICIENTS, heave_pitch, heave_pitch_held
+from seatrial.physics.models.qi2025 import HEADINGS, theory
+from seatrial.physics.simulate.batch import Batch, InputCorrection
+from seatrial.physics.simulate.linear import LinearBatch
+
+FIN = {"lift_1": 7.9e5, "x_f1": -25.0}
+STATES = ("z", "z_dot", "theta", "theta_dot")
+CORRECTIONS = (InputCorrection("F3", "gain"), InputCorrection("M5", "delay"), InputCorrection("delta_f1", "zero"))
+
+
+def ship(heading: int = 135, held: bool = False) -> Model:
+    model = theory(heading).applied(heave_pitch())
+    return (heave_pitch_held().with_parameters(model.parameters) if held else model).with_values(FIN)
+
+
+def waves(time: Array) -> tuple[Array, Array]:
+    w, phase = np.array([0.7, 1.1, 1.9, 2.6]), np.array([0.3, 2.0, 4.1, 5.5])
+    return 2e5 * np.cos(np.outer(time, w) + phase).sum(1), 5e6 * np.sin(np.outer(time, w) + phase).sum(1)
+
+
+def inputs(dt: float, count: int, rng: np.random.Generator) -> Array:
+    u = np.zeros((count, 4))
+    u[:, 0], u[:, 1] = waves(np.arange(count) * dt)
+    u[:, 2] = np.repeat(rng.choice([-0.17, 0.17], count // 10 + 1), 10)[:count]
+    return u
+
+
+def test_continuous_waves_and_a_held_fin_equal_the_integrated_equations(rng: np.random.Generator) -> None:
+    model, dt = ship(), 0.1
+    u = inputs(dt, 301, rng)
+
+    def rate(t: float, x: Array) -> Array:
+        out, now = np.empty(4), u[min(int(t / dt + 1e-9), 300)].copy()
+        now[:2] = [wave[0] for wave in waves(np.array([t]))]
+        model.compiled.rates(t, x, now, model.parameters.values, out)
+        return out
+
+    y, _ = LinearBatch(model, u, np.array([0, 301]), dt, STATES).simulate(
+        0, 1, np.zeros((1, 4)), model.parameters.values[None], np.empty((1, 0))
+    )
+    x = np.zeros(4)
+    for k in range(300):  # step by step: the fin jumps
+        x = solve_ivp(rate, (k * dt, (k + 1) * dt - 1e-12), x, rtol=1e-9, atol=1e-12).y[:, -1]
+    scale = np.abs(y).max(axis=0)
+    np.testing.assert_allclose(y[-1] / scale, x / scale, atol=1e-4)
+
+
+@pytest.mark.parametrize("heading", HEADINGS)
+def test_held_waves_equal_the_hold_of_each_sample(heading: int, rng: np.random.Generator) -> None:
+    model = ship(heading, held=True)
+    u = inputs(0.5, 41, rng)
+    exact, _ = LinearBatch(model, u, np.array([0, 41]), 0.5, ("z", "theta")).simulate(
+        0, 1, np.zeros((1, 4)), model.parameters.values[None], np.empty((1, 0))
+    )
+    steps = 200
+    fine = np.repeat(u[:-1], steps, axis=0)
+    x = np.zeros(4)
+    for row in fine:
+        k = [np.empty(4) for _ in range(4)]
+        h = 0.5 / steps
+        for i, c in enumerate([0.0, 0.5, 0.5, 1.0]):
+            model.compiled.rates(0.0, x + c * h * k[i - 1] if i else x, row, model.parameters.values, k[i])
+        x = x + h / 6 * (k[0] + 2 * k[1] + 2 * k[2] + k[3])
+    np.testing.assert_allclose(exact[-1], x[[0, 2]], rtol=1e-9)
+
+
+def test_sensitivities_equal_differences_of_the_computed_numbers(rng: np.random.Generator) -> None:
+    model = ship()
+    batch = LinearBatch(
+        model, inputs(0.5, 81, rng), np.array([0, 41, 81]), 0.5, ("z", "theta"), COEFFICIENTS, CORRECTIONS, STATES
+    )
+    start, p = 0.1 * rng.normal(size=(2, 4)), np.tile(model.parameters.values, (2, 1))
+    c = np.array([[1.05, 0.07, 0.02], [0.97, -0.03, 0.0]])
+    y, s, _ = batch.differentiate(0, 2, start, p, c)
+    assert np.array_equal(y, batch.simulate(0, 2, start, p, c)[0])
+
+    def moved(point: tuple[Array, Array, Array], which: int, column: int, h: float) -> Array:
+        changed = [a.copy() for a in point]
+        changed[which][:, column] += h
+        return batch.simulate(0, 2, *changed)[0]
+
+    targets = [(1, model.parameters.index(n)) for n in COEFFICIENTS] + [(2, j) for j in range(3)]
+    targets += [(0, j) for j in range(4)]
+    for column, (which, j) in enumerate(targets):
+        point = (start, p, c)
+        h = 1e-5 * max(1.0, float(np.abs(point[which][0, j])))
+        numeric = (moved(point, which, j, h) - moved(point, which, j, -h)) / (2 * h)
+        exact = s[:, :, column]
+        np.testing.assert_allclose(exact, numeric, atol=2e-7 * np.abs(exact).max())
+
+
+def test_without_input_the_motion_dies_out_and_without_a_gap(rng: np.random.Generator) -> None:
+    model = ship()
+    start = rng.normal(size=(1, 4))
+    y, failed = LinearBatch(model, np.zeros((200, 4)), np.array([0, 200]), 0.5, STATES).simulate(
+        0, 1, start, model.parameters.values[None], np.empty((1, 0))
+    )
+    assert failed[0] == -1
+    assert np.abs(y[-1]).max() < 1e-6 * np.abs(start).max()
+
+
+def test_runge_kutta_agrees_where_its_steps_are_fine(rng: np.random.Generator) -> None:
+    model, u = ship(), inputs(0.02, 501, rng)
+    u[:, 2] = 0.0
+    args = (model, u, np.array([0, 501]), 0.02, ("z", "theta"))
+    point = (np.zeros((1, 4)), model.parameters.values[None], np.empty((1, 0)))
+    exact, rk4 = LinearBatch(*args).simulate(0, 1, *point)[0], Batch(*args).simulate(0, 1, *point)[0]
+    scale = np.abs(exact).max(axis=0)  # inputs straight between samples there: (omega h)^2 / 12 = 2e-4
+    np.testing.assert_allclose(exact / scale, rk4 / scale, atol=3e-4)

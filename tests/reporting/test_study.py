@@ -1,0 +1,41 @@
+"""The page of a study: claims, verdicts, checks; empty sections are left out; JSON keys as promised."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from seatrial.core.results import Claim, Study, Verdict
+from seatrial.reporting.study import outcome, write_study
+
+
+def test_claims_and_checks_are_there(study_page: Path, study: Study) -> None:
+    text = study_page.read_text()
+    for word in ("confirmed", "refuted", "unknowable", "holds", "fails", "0.85 to 1.2", study.source, "3.25"):
+        assert word in text
+
+
+def test_outcome_names_what_fails(study: Study) -> None:
+    assert outcome(study) == [
+        "3 claims judged: 1 confirmed, 1 refuted, 1 unknowable.",
+        "1 of 2 checks hold; it fails: RMSE over bound.",
+    ]
+
+
+def test_empty_sections_are_left_out(tmp_path: Path) -> None:
+    bare = Study("bare", "Nobody 2020", (Claim("<b>", Verdict.UNKNOWABLE, "none"),), ())
+    text = write_study(bare, tmp_path / "bare.html").read_text()
+    assert 'href="#claims"' in text and 'href="#checks"' not in text and "<b>" not in text
+
+
+def test_table_for_json(study: Study) -> None:
+    table = replace(study).as_table()
+    assert table["claims"][0] == {
+        "claim": "The model predicts a turn within 5 %", "verdict": "confirmed", "evidence": "advance −1.6 %",
+    }  # fmt: skip
+    assert set(table["checks"][0]) == {"name", "value", "limit", "holds"}
+
+
+def test_figures_of_every_kind_have_title_and_note(study_page: Path, study: Study) -> None:
+    text = study_page.read_text()
+    assert text.count("<figure") >= len(study.figures) == 4
+    for figure in study.figures:
+        assert f"<h3>{figure.title}</h3>" in text and f'aria-label="{figure.title}"' in text and figure.note in text

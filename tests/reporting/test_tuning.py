@@ -1,0 +1,255 @@
+"""The page of a tuning says what the gains do and how near instability is; it is whole and asks for nothing."""
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.reporting.test_page import HOSTILE, parsed
+from tests.reporting.tuned import fabricated_autopilot, fabricated_bare, fabricated_fin
+
+from seatrial.core.figures.demanded import LIMIT, manoeuvre
+from seatrial.core.figures.fronts import fronts, people_s
+from seatrial.core.figures.loop_diagram import diagram
+from seatrial.core.figures.margins import nyquist, sensitivities
+from seatrial.core.figures.scales import scale_of
+from seatrial.core.figures.schedule_maps import schedule_maps
+from seatrial.core.figures.voyages import histories
+from seatrial.core.results.tuning import Component, Paired, Tuning
+from seatrial.core.values import Finding, Severity, frozen
+from seatrial.reporting.told_tuning import compared, followed, sentences
+from seatrial.reporting.tuning import TITLES, html
+from seatrial.reporting.tuning_rows import schedule_sheet, shown_gains, transfer_latex
+
+LARGEST = 600_000
+MADE = {"fin": fabricated_fin, "autopilot": fabricated_autopilot, "bare": fabricated_bare}
+SECTIONS = {
+    "fin": set(TITLES) - {"manoeuvres"},
+    "autopilot": {"answer", "controllers", "front", "margins", "manoeuvres", "loop", "method"},
+    "bare": {"answer", "controllers", "method"},
+}
+
+
+@pytest.fixture(scope="module")
+def fin() -> Tuning:
+    return fabricated_fin()
+
+
+@pytest.fixture(scope="module")
+def page(fin: Tuning) -> str:
+    return html(fin)
+
+
+@pytest.mark.parametrize("name", sorted(MADE))
+def test_it_is_small_whole_and_asks_for_nothing(name: str) -> None:
+    text = html(MADE[name]())
+    tags = parsed(text)
+    assert len(text.encode()) < LARGEST
+    assert not re.search(r"@import|url\((?!#)", text)
+    assert all(link.startswith(("#", "data:,")) for link in tags.links)
+    assert {link[1:] for link in tags.links if link.startswith("#")} == SECTIONS[name]
+    assert set(tags.ids) >= SECTIONS[name]
+    assert not re.search(r"\b(nan|inf)\b", text)
+
+
+def test_it_has_what_the_tuning_holds(page: str, fin: Tuning) -> None:
+    for word in (fin.question, fin.plant, *fin.seas, *fin.reasons, *fin.objectives, *(c.name for c in fin.rivals),
+                 *(c.name for c in fin.components), *(b.name.replace("'", "&#39;") for b in fin.bounds),
+                 *(f.code for f in fin.findings), fin.front.name, fin.richer[0].name):  # fmt: skip
+        assert word in page
+    assert page.count("<svg xmlns") == 8
+    assert page.count("<mfrac>") == 7
+
+
+def test_the_same_tuning_gives_the_same_bytes(page: str) -> None:
+    assert html(fabricated_fin()) == page
+
+
+def test_the_recommendation_is_told_in_degrees_and_per_cent(fin: Tuning) -> None:
+    motion, margins, saturation, simulated, better, doubtful, schedule = sentences(fin)
+    assert motion == (
+        "By linear theory these gains reduce the roll angle by 74.0 %, to 2.1° rms, with 8.0° and 9.1°/s rms of the "
+        "angle of the roll fins."
+    )
+    assert margins.startswith("The sensitivity peak Ms is 1.67 (2 allowed); it bears a loop gain 2.7 times as large, ")
+    assert saturation.endswith("2.3 % of its rates would pass 25°/s (20 % allowed).")
+    assert "they cost 1.4 points; with stall beyond 18°" in simulated
+    assert better.endswith("it is better than ‘given’ by 7.1 points (95 % interval 6.2 to 8.0, 20 seas).")
+    assert "cannot be told from ‘given’" in doubtful
+    assert schedule.endswith("it keeps what was asked in 17 of 18.")
+
+
+def test_what_is_worse_is_called_worse() -> None:
+    assert "it is worse than ‘x’ by 3.0 points" in compared(Paired("x", "limited", -0.03, -0.04, -0.02, 20))
+
+
+def test_an_unstable_loop_is_not_recommended() -> None:
+    assert sentences(fabricated_bare()) == ["The loop is unstable with these gains: do not use them."]
+
+
+def test_restrictions_that_are_broken_are_told(fin: Tuning) -> None:
+    broken = replace(fin, chosen=replace(fin.chosen, broken=("Ms 2.3, 2 allowed",)))
+    assert "It does not keep what was asked: Ms 2.3, 2 allowed." in sentences(broken)
+    assert html(fin).count("not kept") == 1 + sum(not s.is_feasible for s in fin.schedule)
+
+
+def test_demands_are_told_with_the_ships_drawn() -> None:
+    chosen, given = fabricated_autopilot().manoeuvres
+    assert followed(chosen) == (
+        "In the course change of 20 deg it does not overshoot and settles in 96.0 s; 100 of 100 ships that the fit "
+        "allows are stable, and each overshoots by 0.4 % at most."
+    )
+    assert followed(given).endswith("overshoots by 6.8 % and does not settle.")
+    assert followed(replace(chosen, worst_overshoot=0.0)).endswith("are stable, and none overshoots.")
+    lost = replace(chosen, stable_draws=99, worst_overshoot=math.inf)
+    assert followed(lost).endswith("99 of 100 ships that the fit allows are stable; "
+                                   "not every one comes through the simulation.")  # fmt: skip
+
+
+def test_a_loop_that_follows_is_judged_by_what_is_left() -> None:
+    autopilot = fabricated_autopilot()
+    told = replace(autopilot, chosen=replace(autopilot.chosen, reduction=0.9999))
+    assert sentences(told)[0].startswith("By linear theory 0.60° rms of the heading is left, with 1.4° and 0.29°/s rms")
+    assert "reduction" not in html(told)
+
+
+def test_findings_stand_by_severity(fin: Tuning) -> None:
+    grave = Finding(Severity.ERROR, "grave", "It capsizes")
+    text = html(replace(fin, findings=(*fin.findings, grave)))
+    assert text.index("<code>grave") < text.index("<code>gain-bound") < text.index("<code>schedule")
+
+
+def test_a_schedule_that_is_unstable_elsewhere_says_so(fin: Tuning) -> None:
+    lost = replace(fin.schedule[0], others={"given": math.inf, "chosen everywhere": 0.3})
+    told = replace(fin, schedule=(lost, *fin.schedule[1:]))
+    assert "‘given’ is unstable in 1" in sentences(told)[-1]
+    assert "unst." in schedule_maps(told.schedule)
+    assert "unstable" in schedule_sheet(told.schedule).rows[0]
+
+
+def test_what_rounding_left_of_a_zero_is_zero() -> None:
+    rows = [{"KP": 12.5, "KI": 7e-15}, {"KP": 3.0, "KI": 0.25}, {"KP": 1e-6}]
+    assert shown_gains(rows, ["KP", "KI"]) == [
+        ("12.5", "0"),
+        ("3", "0.25"),
+        ("1×10⁻⁶".replace("×", "\u202f×\u202f"), "–"),
+    ]
+
+
+def test_histories_show_the_motion_without_control_where_it_is_known(fin: Tuning) -> None:
+    drawn = histories(fin)
+    assert ">without<" in drawn and drawn.count("<path") > histories(replace(fin, sailed=fin.sailed[:1])).count("<path")
+    alone = replace(fin, sailed=tuple(replace(s, record=s.record.without("phi_uncontrolled")) for s in fin.sailed))
+    assert ">with control<" in histories(alone) and ">without<" not in histories(alone)
+
+
+def test_maps_show_every_condition_of_every_set(fin: Tuning) -> None:
+    svg = schedule_maps(fin.schedule)
+    costs = [f"{cost:.2f}".lstrip("0") for s in fin.schedule for cost in (s.cost, *s.others.values())]
+    assert all(f">{cost}<" in svg for cost in costs)
+    assert svg.count("<rect") == 3 * len(fin.schedule) + 5
+    assert schedule_maps(fin.schedule[:1] + fin.schedule[4:5]).count("<rect") == 3 * 4 + 5
+
+
+def test_two_objectives_have_one_panel_and_one_has_none(fin: Tuning) -> None:
+    pair = fabricated_autopilot()
+    assert fronts(pair).count("heading variance [deg²]") == 1
+    single = replace(fin.front, objectives=fin.front.objectives[:, :1])
+    assert fronts(replace(fin, objectives=fin.objectives[:1], units=fin.units[:1], front=single, richer=())) == ""
+
+
+def test_a_rival_off_the_front_s_scale_or_unstable_is_no_trouble(fin: Tuning) -> None:
+    lost = replace(fin.rivals[0], objectives=np.full(3, np.inf), peak=math.inf, gain_margin=math.nan,
+                   phase_margin=math.nan, delay_margin=math.nan, reduction=-math.inf)  # fmt: skip
+    text = html(replace(fin, rivals=(lost,)))
+    assert not re.search(r"\b(nan|inf)\b", text)
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor", "shown"),
+    [
+        ("rad^2", math.degrees(1.0) ** 2, "deg²"),
+        ("rad^2/s^2", math.degrees(1.0) ** 2, "deg²/s²"),
+        ("rad/s", math.degrees(1.0), "deg/s"),
+        ("1/min", 1.0, "1/min"),
+        ("1", 1.0, ""),
+        ("", 1.0, ""),
+    ],
+)
+def test_objectives_are_in_degrees(unit: str, factor: float, shown: str) -> None:
+    assert people_s(unit) == (pytest.approx(factor), shown)
+
+
+def test_an_axis_is_logarithmic_where_values_are_far_apart() -> None:
+    wide = scale_of([np.array([0.01, 30.0, np.inf])])
+    assert wide.is_logarithmic
+    assert [words for _, words in wide.ticks(4)] == ["0.01", "0.1", "1", "10"]
+    assert np.isnan(wide.at(np.array([-1.0, np.nan]))).all()
+    assert not scale_of([np.array([-0.01, 30.0])]).is_logarithmic
+
+
+def test_the_peak_allowed_is_drawn_where_there_is_one(fin: Tuning) -> None:
+    free = replace(fin, restriction=replace(fin.restriction, peak=math.inf))
+    for draw in (sensitivities, nyquist):
+        assert "Ms = 2" in draw(fin)
+        assert "Ms" not in draw(free)
+        assert draw(fabricated_bare()) == ""
+
+
+@pytest.mark.parametrize("roles", [("plant",), ("term", "plant"), ("sensor",) * 4 + ("term",) * 5 + ("filter",) * 2])
+def test_any_loop_is_drawn_with_every_block(roles: tuple[str, ...]) -> None:
+    blocks = [Component(role, f"b{k}", (1.0,), (1.0, 1.0)) for k, role in enumerate(roles)]
+    svg = diagram(blocks, "phi", "alpha_f")
+    assert svg.count("<rect") == len(blocks)
+    width = float(re.findall(r'viewBox="0 0 (\d+) ', svg)[0])
+    assert max(float(x) for x in re.findall(r'<rect x="([\d.]+)"', svg)) < width <= 1000
+    assert diagram((), "phi", "alpha_f") == ""
+
+
+@pytest.mark.parametrize(
+    ("num", "den", "latex"),
+    [
+        ((400.0, 0.0), (1.0, 80.0, 4000.0), r"\frac{400 s}{s^{2} + 80 s + 4000}"),
+        ((1.0,), (1.0,), "1"),
+        ((-1.0, 2.0), (1.0,), "-s + 2"),
+        ((3e-7,), (1.0, 0.0), r"\frac{3 \cdot 10^{-7}}{s}"),
+        ((0.0,), (1.0,), "0"),
+    ],
+)
+def test_transfer_functions_read_as_in_a_book(num: tuple[float, ...], den: tuple[float, ...], latex: str) -> None:
+    assert transfer_latex(num, den) == latex
+
+
+@pytest.mark.parametrize("make", [fabricated_fin, fabricated_autopilot])
+def test_text_from_files_is_escaped(make: Callable[[], Tuning]) -> None:
+    tuning = make()
+    hostile = replace(
+        tuning, question=HOSTILE, name=HOSTILE, plant=HOSTILE, seas=(HOSTILE,), reasons=(HOSTILE,),
+        rivals=tuple(replace(c, name=HOSTILE, broken=(HOSTILE,)) for c in tuning.rivals),
+        objectives=(HOSTILE, *tuning.objectives[1:]), front=replace(tuning.front, name=HOSTILE),
+        components=tuple(replace(c, name=HOSTILE, source=HOSTILE) for c in tuning.components),
+        sailed=tuple(replace(s, name=HOSTILE) for s in tuning.sailed),
+        schedule=tuple(replace(s, others={HOSTILE: 0.3}) for s in tuning.schedule),
+        bounds=tuple(replace(b, note=HOSTILE) for b in tuning.bounds),
+        manoeuvres=tuple(replace(m, name=HOSTILE) for m in tuning.manoeuvres),
+    )  # fmt: skip
+    assert parsed(html(hostile)).scripts == parsed(html(tuning)).scripts
+
+
+def test_limits_of_an_actuator_lie_about_its_steady_value() -> None:
+    """A jet that runs at two metres a second may do so much more or less than that."""
+    tuning = fabricated_autopilot()
+    asked = tuning.manoeuvres[0]
+    moved = asked.record.channel("delta")
+    limit = 1.2 * float(np.max(np.abs(moved.values - moved.values[0])))
+    near = replace(tuning, restriction=replace(tuning.restriction, limit=limit))
+    aside = replace(moved, values=frozen(moved.values + 2.0))
+    record = replace(asked.record, channels={**asked.record.channels, "delta": aside})
+    here, there = (
+        [float(y) for y in re.findall(r'd="M[\d.]+[ ,]([\d.]+)[^"]*"[^>]*' + re.escape(LIMIT.dash), drawn)]
+        for drawn in (manoeuvre(asked, near), manoeuvre(replace(asked, record=record), near))
+    )
+    assert len(here) == 2
+    assert here == pytest.approx(there, abs=0.2)

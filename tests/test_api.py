@@ -1,0 +1,88 @@
+"""The verbs as functions: what each hands over."""
+
+from pathlib import Path
+
+import pytest
+
+import seatrial.api as sea
+from seatrial.core.values import InputError, Ship
+from seatrial.data.folder.model_file import ModelFile
+from seatrial.data.trial import Role
+
+
+def test_the_demo_trial_loads_with_its_truth(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from seatrial.data.example_series import files, series
+
+    monkeypatch.setattr(files, "demo_series", lambda seed: series.demo_series(seed, executes=1))
+    trial = sea.load_trial(files.write_demo(tmp_path, seed=1))
+    assert [run.role for run in trial.runs].count(Role.VALIDATE) == 2
+    assert set(trial.truth) == set(trial.model.parameters.free_names)
+    assert not [f for f in sea.check(trial) if f.severity == "error"]
+
+
+def test_the_waterjet_example_stands_alone(repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("SEATRIAL_DATA", raising=False)
+    trial = sea.load_trial(repository / "examples" / "waterjet.toml")
+    assert [run.role for run in trial.runs].count(Role.TRAIN) == 1
+    assert not [f for f in sea.check(trial) if f.severity == "error"]
+    for name, value in trial.truth.items():
+        assert trial.model.parameters[name].value == value
+
+
+def test_a_model_scale_rudder_is_quicker(repository: Path) -> None:
+    trial = sea.load_trial(repository / "examples" / "waterjet.toml")
+    full = sea.simulate(ModelFile(trial.model, ship=trial.ship), "zigzag:20/20", inputs={"v_j": 1.866})
+    small = Ship("model", trial.ship.particulars, "", 25.0)
+    quick = sea.simulate(ModelFile(trial.model, ship=small), "zigzag:20/20", inputs={"v_j": 1.866})
+    over = [next(t for t, d in zip(r.time, r["delta"], strict=True) if d > 0.34) for r in (full, quick)]
+    assert over[0] / over[1] == pytest.approx(5.0, rel=0.1)
+
+
+def test_measures_need_a_ship(repository: Path) -> None:
+    trial = sea.load_trial(repository / "examples" / "waterjet.toml")
+    record = sea.simulate(ModelFile(trial.model), "zigzag:20/20", inputs={"v_j": 1.866})
+    with pytest.raises(InputError, match=r"no \[ship\]"):
+        sea.measures(ModelFile(trial.model), record)
+    assert sea.measures(ModelFile(trial.model, ship=trial.ship), record)["overshoot_1_deg"] > 0.0
+
+
+def test_the_seed_draws_the_random_binary_sequence(repository: Path) -> None:
+    trial = sea.load_trial(repository / "examples" / "waterjet.toml")
+    file = ModelFile(trial.model, ship=trial.ship)
+
+    def rudder(text: str, seed: int) -> list[float]:
+        return sea.simulate(file, text, inputs={"v_j": 1.866}, duration=100.0, seed=seed)["delta"].tolist()
+
+    for text in ("prbs", "prbs:15", "prbs:15:4"):
+        assert rudder(text, 1) == rudder(text, 1)
+        assert rudder(text, 1) != rudder(text, 2)
+    assert rudder("prbs:20:5:1", 2) == rudder("prbs:20:5:1", 3)
+    assert rudder("prbs", 0) == rudder("prbs:20", 0)
+
+
+@pytest.mark.parametrize("rate", [0.0, -0.1, float("nan")])
+def test_a_rudder_that_cannot_move_is_refused(rate: float, repository: Path) -> None:
+    trial = sea.load_trial(repository / "examples" / "waterjet.toml")
+    with pytest.raises(InputError, match=r"rudder rate .* is not positive"):
+        sea.simulate(ModelFile(trial.model, ship=trial.ship), "zigzag:20/20", rudder_rate=rate)
+
+
+def test_the_readmes_own_model_replaces_the_examples(repository: Path, tmp_path: Path) -> None:
+    from seatrial.physics.models import model_from_file
+
+    page = (repository / "README.md").read_text(encoding="utf-8").split("## A model of your own")[1]
+    file = tmp_path / "yaw.py"
+    file.write_text(page.split("```python\n")[1].split("```")[0], encoding="utf-8")
+    trial = sea.load_trial(repository / "examples" / "waterjet.toml", model_from_file(file))
+    assert trial.truth == {}
+    assert set(trial.model.parameters.free_names) == {"T", "K"}
+
+
+def test_a_run_of_a_trial_can_be_replayed(repository: Path) -> None:
+    trial = sea.load_trial(repository / "examples" / "waterjet.toml")
+    name = trial.runs[0].name
+    record = sea.run_of(trial, name)
+    again = sea.replay(ModelFile(trial.model, ship=trial.ship), record)
+    assert (again.time == record.time).all()
+    with pytest.raises(InputError, match=f"no run 'none'.*{name}"):
+        sea.run_of(trial, "none")
