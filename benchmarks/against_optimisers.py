@@ -28,8 +28,8 @@ from seatrial.numerics.optimise import (
     ImprovedWildHorse,
     Optimiser,
     ParticleSwarm,
+    StrideVariant,
     SwarmSettings,
-    Variant,
     WildHorse,
     search,
 )
@@ -40,7 +40,7 @@ N, T = POPULATION, ITERATIONS
 OURS: dict[str, Callable[[np.random.Generator], Optimiser]] = {
     "particle swarm": lambda g: ParticleSwarm(BOX, g, SwarmSettings(N, T)),
     "wild horses, paper": lambda g: WildHorse(BOX, g, HerdSettings(N, T)),
-    "wild horses, reference": lambda g: WildHorse(BOX, g, HerdSettings(N, T, variant=Variant.REFERENCE)),
+    "wild horses, reference": lambda g: WildHorse(BOX, g, HerdSettings(N, T, variant=StrideVariant.REFERENCE)),
     "improved wild horses": lambda g: ImprovedWildHorse(BOX, g, ImprovedHerdSettings(N, T)),
     "cloud particle swarm": lambda g: CloudParticleSwarm(BOX, g, CloudSettings(N, T)),
     "differential evolution": lambda g: DifferentialEvolution(BOX, g, EvolutionSettings(N, T)),
@@ -48,7 +48,7 @@ OURS: dict[str, Callable[[np.random.Generator], Optimiser]] = {
 }
 
 
-def _ours(make: Callable[[np.random.Generator], Optimiser]) -> tuple[np.ndarray, float]:
+def _own_values(make: Callable[[np.random.Generator], Optimiser]) -> tuple[np.ndarray, float]:
     """Values, shape (functions, runs), and seconds of all."""
     began = time.perf_counter()
     values = [[search(make(np.random.default_rng(s)), f).value for s in range(RUNS)] for f in FUNCTIONS.values()]
@@ -78,7 +78,7 @@ def run() -> list[Line]:
     """Medians, overheads, and the ratios to the peers' particle swarms."""
     lines, swarm, seconds = [], np.empty(0), 0.0
     for name, make in OURS.items():
-        values, spent = _ours(make)
+        values, spent = _own_values(make)
         if name == "particle swarm":
             swarm, seconds = values, spent
         lines += [*_lines(name, values), Line(f"{name}: an iteration of {N} x {BOX.size}", overhead(make), "us")]

@@ -14,7 +14,7 @@ from measure import Line, at_least, at_most, fastest
 from seatrial.numerics.kernels.steering import steer
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.manoeuvres.steering import Steering, rudder_angles
-from seatrial.physics.simulate.batch import Batch
+from seatrial.physics.simulate.batch import SegmentBatch
 
 HERE = Path(__file__).parent
 DURATION, DT, SLEW = 100.0, 0.1, np.radians(15.0)  # s, s, rad/s: KVLCC2 model rudder, 2.32 deg/s full scale
@@ -31,7 +31,7 @@ def peers_python(folder: Path, packages: str = "peers.txt") -> Path:
     return python
 
 
-class Ours:
+class OwnIntegration:
     """The peer's equations in this package's integrator."""
 
     def __init__(self) -> None:
@@ -39,10 +39,10 @@ class Ours:
         self.start = np.array([peer.SPEED, 0.0, 0.0, 0.0, 0.0, 0.0])
         self.p = self.model.parameters.values
 
-    def replayed(self, rudder: np.ndarray, stride: int = 1) -> np.ndarray:
+    def replay(self, rudder: np.ndarray, stride: int = 1) -> np.ndarray:
         """States under a recorded rudder, one Runge-Kutta step every `stride` samples."""
         inputs = np.stack([rudder[::stride], np.full(len(rudder[::stride]), peer.RATE)], axis=1)
-        batch = Batch(self.model, inputs, np.array([0, len(inputs)]), stride * DT, self.model.states)
+        batch = SegmentBatch(self.model, inputs, np.array([0, len(inputs)]), stride * DT, self.model.states)
         return batch.simulate(0, 1, self.start[None], self.p[None], np.empty((1, 0)))[0]
 
     def zigzag(self) -> np.ndarray:
@@ -61,7 +61,7 @@ def _distance(a: np.ndarray, b: np.ndarray) -> float:
 
 def run() -> list[Line]:
     """Ratios of time and distances of tracks."""
-    ours = Ours()
+    ours = OwnIntegration()
     turn, zigzag = np.full(SAMPLES, np.radians(35.0)), ours.zigzag()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -80,11 +80,11 @@ def run() -> list[Line]:
     return [*_turn(ours, theirs, turn), *_zigzag(ours, theirs, zigzag)]
 
 
-def _turn(ours: Ours, theirs: dict[str, np.ndarray], rudder: np.ndarray) -> list[Line]:
+def _turn(ours: OwnIntegration, theirs: dict[str, np.ndarray], rudder: np.ndarray) -> list[Line]:
     seconds, truth = float(theirs["turn_seconds"]), theirs["turn_tight"]
-    fine, coarse = fastest(lambda: ours.replayed(rudder)), fastest(lambda: ours.replayed(rudder, COARSE))
+    fine, coarse = fastest(lambda: ours.replay(rudder)), fastest(lambda: ours.replay(rudder, COARSE))
     tolerance = _distance(theirs["turn"], truth)
-    far = _distance(ours.replayed(rudder, COARSE), truth[::COARSE])
+    far = _distance(ours.replay(rudder, COARSE), truth[::COARSE])
     step = f"{COARSE * DT:g} s"
     return [
         Line("35 deg turn, 100 s: shipmmg", 1e3 * seconds, "ms"),
@@ -95,10 +95,10 @@ def _turn(ours: Ours, theirs: dict[str, np.ndarray], rudder: np.ndarray) -> list
     ]
 
 
-def _zigzag(ours: Ours, theirs: dict[str, np.ndarray], rudder: np.ndarray) -> list[Line]:
+def _zigzag(ours: OwnIntegration, theirs: dict[str, np.ndarray], rudder: np.ndarray) -> list[Line]:
     seconds, truth = float(theirs["zigzag_seconds"]), theirs["zigzag_tight"]
     own = fastest(ours.zigzag)
-    tolerance, far = _distance(theirs["zigzag_loose"], truth), _distance(ours.replayed(rudder), truth)
+    tolerance, far = _distance(theirs["zigzag_loose"], truth), _distance(ours.replay(rudder), truth)
     return [
         Line("20/20 zigzag, 100 s: shipmmg", 1e3 * seconds, "ms"),
         Line("20/20 zigzag: its track off its own at tight tolerance, same rudder", tolerance, "m"),

@@ -15,15 +15,15 @@ import numpy as np
 from measure import Line, at_least, at_most, machine
 from numpy.typing import NDArray
 
-from seatrial.core.results import Actuator, Design, Limits
+from seatrial.core.results import Actuator, Design, TrialLimits
 from seatrial.core.values import InputError, Ship
-from seatrial.data.example_series.series import JET_VELOCITY, RATE, SENSOR_NOISE, SLEW_RATE, truth
-from seatrial.estimation.design.design import CONFIRMED_WITH, design
-from seatrial.estimation.design.search import GENERATIONS, coarse
-from seatrial.estimation.design.ships import Ships, ships
-from seatrial.estimation.design.standards import Standard, standards
-from seatrial.estimation.design.task import Task
-from seatrial.estimation.design.worth import Bench, leaves
+from seatrial.data.example_series.series import JET_VELOCITY, SAMPLE_RATE, SENSOR_NOISE, SLEW_RATE, true_model
+from seatrial.estimation.design.design import CONFIRMATION_RUNS, design
+from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator, leaves_limits
+from seatrial.estimation.design.search import GENERATIONS, search_step
+from seatrial.estimation.design.ships import PriorShips, draw_ships
+from seatrial.estimation.design.standard_manoeuvres import StandardManoeuvre, standard_manoeuvres
+from seatrial.estimation.design.task import DesignTask
 from seatrial.physics.simulate.channels import inputs_of
 
 Array = NDArray[np.float64]
@@ -32,24 +32,24 @@ TEST_SHIPS, TEST_SEED, SEED = 50, 20261, 0
 FACTOR, SECONDS = 3.0, 60.0
 NOZZLE = Actuator("delta", -RANGE, RANGE, SLEW_RATE, HOLD)
 THRUST = Actuator("v_j", 1.4, 2.4, 0.2, 30.0)
-TIGHT = Limits(drift=math.radians(30.0))
+TIGHT = TrialLimits(drift=math.radians(30.0))
 COMPRESSED = ("consecutive-zigzags:1", "consecutive-zigzags:2")
 _CHUNK = 17
 
 
-def task(actuators: tuple[Actuator, ...] = (NOZZLE,), limits: Limits | None = None) -> Task:
+def task(actuators: tuple[Actuator, ...] = (NOZZLE,), limits: TrialLimits | None = None) -> DesignTask:
     """The craft, her sensors and what may be moved; thrust is held where it is not moved."""
-    craft = truth()
+    craft = true_model()
     held = {} if THRUST in actuators else {"v_j": JET_VELOCITY}
-    return Task(
+    return DesignTask(
         question="",
         ship=Ship("waterjet craft", {"L": craft.parameters["L"].value}),
         model=craft,
         sensors=SENSOR_NOISE,
-        rate=RATE,
+        rate=SAMPLE_RATE,
         duration=DURATION,
         actuators=actuators,
-        limits=limits or Limits(),
+        limits=limits or TrialLimits(),
         held=held,
     )
 
@@ -67,10 +67,10 @@ class Ratios:
     """A standard manoeuvre's worst error over the designed one's, of the model itself and of each test ship."""
 
     nominal: float
-    drawn: Array
+    test_ships: Array
 
     @classmethod
-    def of(cls, standard: Array, designed: Array) -> "Ratios":
+    def from_errors(cls, standard: Array, designed: Array) -> "Ratios":
         """From worst errors of all ships, the model itself first; a ship that is lost counts as infinitely bad."""
         each = np.where(np.isfinite(standard), standard, np.inf) / np.where(np.isfinite(designed), designed, np.inf)
         return cls(float(each[0]), each[1:])
@@ -78,39 +78,45 @@ class Ratios:
     @property
     def least(self) -> float:
         """Of the nominal model and every ship."""
-        return min(self.nominal, float(self.drawn.min()))
+        return min(self.nominal, float(self.test_ships.min()))
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
+class DesignOutcome:
     """One case: the design, its worst error for all ships (nominal first), standards' (name -> the same)."""
 
-    made: Design
+    design: Design
     designed: Array
     standard: dict[str, Array]
     random: frozenset[str]
     within: frozenset[str]
     cpu_s: float
 
-    def against(self, names: "frozenset[str] | set[str]") -> Ratios:
+    def ratios_to_best(self, names: "frozenset[str] | set[str]") -> Ratios:
         """The best of these manoeuvres for each ship."""
         errors = np.array([self.standard[n] for n in sorted(names)])
-        return Ratios.of(np.where(np.isfinite(errors), errors, np.inf).min(axis=0), self.designed)
+        return Ratios.from_errors(np.where(np.isfinite(errors), errors, np.inf).min(axis=0), self.designed)
 
 
-def outcome(given: Task, seed: int = SEED, confirming: int = CONFIRMED_WITH, generations: int = GENERATIONS) -> Outcome:
+def outcome(
+    given: DesignTask, seed: int = SEED, confirming: int = CONFIRMATION_RUNS, generations: int = GENERATIONS
+) -> DesignOutcome:
     """Design it, then measure it and the standard manoeuvres with test ships of another seed."""
     began = time.process_time()
-    made = design(given, seed, confirming=confirming, generations=generations)
+    made = design(given, seed, confirmation_runs=confirming, generations=generations)
     cpu = time.process_time() - began
-    test = Bench(given, ships(given, TEST_SEED + seed, TEST_SHIPS), coarse(given))
-    standard = standards(test)
+    test = ManoeuvreEvaluator(given, draw_ships(given, TEST_SEED + seed, TEST_SHIPS), search_step(given))
+    standard = standard_manoeuvres(test)
     plan = inputs_of(given.model, made.plan)
-    errors = {r.name: worst(test, r) for r in standard}
-    within = [r.name for r in standard if not leaves(given, _first(test).told(r.made(_first(test))))]
-    return Outcome(
+    errors = {r.name: worst_standard_errors(test, r) for r in standard}
+    within = [
+        r.name
+        for r in standard
+        if not leaves_limits(given, _nominal_bench(test).evaluate(r.inputs_for(_nominal_bench(test))))
+    ]
+    return DesignOutcome(
         made,
-        worst(test, Standard("designed", lambda _: plan)),
+        worst_standard_errors(test, StandardManoeuvre("designed", lambda _: plan)),
         errors,
         frozenset(r.name for r in standard if r.is_random),
         frozenset(within),
@@ -118,39 +124,39 @@ def outcome(given: Task, seed: int = SEED, confirming: int = CONFIRMED_WITH, gen
     )
 
 
-def worst(test: Bench, manoeuvre: Standard) -> Array:
+def worst_standard_errors(test: ManoeuvreEvaluator, manoeuvre: StandardManoeuvre) -> Array:
     """The least well told coefficient's relative standard error of every ship, at the sensors' rate, (ships,)."""
     found = []
     for first in range(0, test.ships.count, _CHUNK):
-        few = Ships(test.ships.parameters[first : first + _CHUNK], test.ships.precision)
-        fine = Bench(test.task, few, 1.0 / test.task.rate)
+        few = PriorShips(test.ships.parameters[first : first + _CHUNK], test.ships.precision)
+        fine = ManoeuvreEvaluator(test.task, few, 1.0 / test.task.rate)
         try:
-            found.append(fine.told(manoeuvre.made(fine)).relative.max(axis=1))
+            found.append(fine.evaluate(manoeuvre.inputs_for(fine)).relative_errors.max(axis=1))
         except InputError:
             found.append(np.full(few.count, np.nan))
     return np.concatenate(found)
 
 
-def _first(test: Bench) -> Bench:
+def _nominal_bench(test: ManoeuvreEvaluator) -> ManoeuvreEvaluator:
     """The same bench with the model itself alone."""
-    return replace(test, ships=Ships(test.ships.parameters[:1], test.ships.precision))
+    return replace(test, ships=PriorShips(test.ships.parameters[:1], test.ships.precision))
 
 
-def lines(name: str, found: Outcome) -> list[Line]:
+def lines(name: str, result: DesignOutcome) -> list[Line]:
     """The table of one case against its targets."""
-    zigzag, random = found.against(set(COMPRESSED)), found.against(found.random)
-    chosen = found.against({min(found.random, key=lambda n: float(found.standard[n][0]))})
-    keeping = found.within or frozenset(found.standard)
+    zigzag, random = result.ratios_to_best(set(COMPRESSED)), result.ratios_to_best(result.random)
+    chosen = result.ratios_to_best({min(result.random, key=lambda n: float(result.standard[n][0]))})
+    keeping = result.within or frozenset(result.standard)
     table = [
-        Line(f"{name}: worst error designed, nominal", 100.0 * float(found.designed[0]), "%"),
-        Line(f"{name}: worst error designed, median ship", 100.0 * float(np.median(found.designed[1:])), "%"),
-        Line(f"{name}: ships lost under it", float(np.sum(~np.isfinite(found.designed))), ""),
-        Line(f"{name}: largest drift, nominal", math.degrees(found.made.designed.drift), "deg"),
+        Line(f"{name}: worst error designed, nominal", 100.0 * float(result.designed[0]), "%"),
+        Line(f"{name}: worst error designed, median ship", 100.0 * float(np.median(result.designed[1:])), "%"),
+        Line(f"{name}: ships lost under it", float(np.sum(~np.isfinite(result.designed))), ""),
+        Line(f"{name}: largest drift, nominal", math.degrees(result.design.designed.drift), "deg"),
         at_least(f"{name}: compressed zigzag / designed, nominal", zigzag.nominal, "", FACTOR),
-        at_least(f"{name}: compressed zigzag / designed, median", float(np.median(zigzag.drawn)), "", FACTOR),
+        at_least(f"{name}: compressed zigzag / designed, median", float(np.median(zigzag.test_ships)), "", FACTOR),
         Line(f"{name}: compressed zigzag / designed, least", zigzag.least, ""),
         Line(f"{name}: best PRBS / designed, nominal", random.nominal, ""),
-        Line(f"{name}: best PRBS / designed, median", float(np.median(random.drawn)), ""),
+        Line(f"{name}: best PRBS / designed, median", float(np.median(random.test_ships)), ""),
         Line(
             f"{name}: best PRBS of each ship in hindsight / designed, least",
             random.least,
@@ -158,28 +164,32 @@ def lines(name: str, found: Outcome) -> list[Line]:
             "> 1",
             random.least > 1.0,
         ),
-        Line(f"{name}: ships of {TEST_SHIPS} for which some PRBS is better", float(np.sum(random.drawn <= 1.0)), ""),
+        Line(
+            f"{name}: ships of {TEST_SHIPS} for which some PRBS is better", float(np.sum(random.test_ships <= 1.0)), ""
+        ),
         Line(f"{name}: PRBS chosen beforehand / designed, least", chosen.least, "", "> 1", chosen.least > 1.0),
-        Line(f"{name}: ships for which that one is better", float(np.sum(chosen.drawn <= 1.0)), ""),
+        Line(f"{name}: ships for which that one is better", float(np.sum(chosen.test_ships <= 1.0)), ""),
     ]
-    best = found.against(keeping)
+    best = result.ratios_to_best(keeping)
     table += [
-        Line(f"{name}: best standard within limits / designed, median", float(np.median(best.drawn)), ""),
+        Line(f"{name}: best standard within limits / designed, median", float(np.median(best.test_ships)), ""),
         Line(f"{name}: best standard within limits / designed, least", best.least, ""),
-        at_most(f"{name}: time of the design", found.made.elapsed_s, "s", SECONDS),
-        Line(f"{name}: processor time of it", found.cpu_s, "s"),
+        at_most(f"{name}: time of the design", result.design.elapsed_s, "s", SECONDS),
+        Line(f"{name}: processor time of it", result.cpu_s, "s"),
     ]
-    return [*table, *_confirmed(name, found.made)]
+    return [*table, *_confirmation_lines(name, result.design)]
 
 
-def _confirmed(name: str, made: Design) -> list[Line]:
-    tried = made.confirmation
+def _confirmation_lines(name: str, tested_design: Design) -> list[Line]:
+    tried = tested_design.confirmation
     if tried is None:
         return []
     ratio = tried.error / tried.bound
     what = f"{name}: error / bound of {tried.runs} trials"
     return [
-        Line(f"{name}: trials converged", tried.converged, "", f"{tried.runs}", tried.converged == tried.runs),
+        Line(
+            f"{name}: trials converged", tried.converged_runs, "", f"{tried.runs}", tried.converged_runs == tried.runs
+        ),
         Line(f"{what}, least", float(ratio.min()), ""),
         Line(f"{what}, root mean square", float(np.sqrt(np.mean(ratio**2))), ""),
         Line(f"{what}, most", float(ratio.max()), ""),
@@ -196,14 +206,14 @@ def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(description="designed manoeuvres against standard ones on ships never seen")
     parser.add_argument("--cases", nargs="*", default=list(CASES), choices=list(CASES))
     parser.add_argument("--seed", type=int, default=SEED)
-    parser.add_argument("--confirming", type=int, default=CONFIRMED_WITH, help="simulated trials that are fitted")
+    parser.add_argument("--confirming", type=int, default=CONFIRMATION_RUNS, help="simulated trials that are fitted")
     parser.add_argument("--generations", type=int, default=GENERATIONS)
     given = parser.parse_args(arguments)
     print(machine())
     missed = False
     for name in given.cases:
         for line in lines(name, outcome(CASES[name], given.seed, given.confirming, given.generations)):
-            print(f"  {line.what:<74} {line.value:>10.4g} {line.unit:<5} {line.verdict}", flush=True)
+            print(f"  {line.quantity:<74} {line.value:>10.4g} {line.unit:<5} {line.verdict}", flush=True)
             missed |= line.holds is False
     return int(missed)
 

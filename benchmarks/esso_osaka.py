@@ -10,17 +10,17 @@ from dataclasses import replace
 from pathlib import Path
 
 from seatrial.core.values import InputError
-from seatrial.data.trial import load_trial, records_of
-from seatrial.estimation.estimate.fit import identified
-from seatrial.estimation.identify.identify import settings_of
+from seatrial.data.trial import load_records, load_trial
+from seatrial.estimation.estimate.fit import estimate_model
+from seatrial.estimation.identify.identify import settings_from_trial
 from seatrial.estimation.predict.cross_validation import (
     CrossValidation,
     Fold,
-    Pooled,
-    Protocol,
-    cross_validated,
-    fitted_folds,
-    unfitted,
+    HoldoutProtocol,
+    PooledError,
+    cross_validate,
+    cross_validate_unfitted,
+    fit_folds,
 )
 from seatrial.physics.models import model_named
 from seatrial.physics.models.published import parameter_set
@@ -28,7 +28,7 @@ from seatrial.physics.models.published import parameter_set
 TRIAL = Path(__file__).parent.parent / "examples" / "esso_osaka.toml"
 LIMITS = {"turn": (0.40, 4.2), "zigzag": (0.75, 5.2), "berthing": (0.38, 4.5)}
 # the windows on which the published simulator was judged: the first two of a run, started from the first sample
-ANCHOR = Protocol(initial_s=0.0, first=2)
+ANCHOR = HoldoutProtocol(initial_s=0.0, max_windows=2)
 
 
 def label_of(run: str) -> str:
@@ -36,21 +36,23 @@ def label_of(run: str) -> str:
     return run.split("_")[0]
 
 
-def show(title: str, made: CrossValidation, *, judged: bool = False) -> None:
+def show(title: str, validation: CrossValidation, *, with_targets: bool = False) -> None:
     """Print one table; `judged`: with every fold and the targets."""
     print(f"\n{title}")
     print("             windows   mean of rms          scatter over folds    rms of all samples")
-    for label in made.labels:
-        p, (metres, degrees) = made.pooled(label), made.scatter(label)
-        scatter = f"{metres:6.3f} m {degrees:5.2f} deg" if len(made.elapsed_s) > 1 else f"{'-':>18}"
-        print(f"  {label:<10} {p.windows:>6}   {p.position_m:6.3f} m {p.heading_deg:5.2f} deg   {scatter}   "
-              f"{p.rms_position_m:6.3f} m {p.rms_heading_deg:5.2f} deg{_verdict(p) if judged else ''}")  # fmt: skip
-        for fold in sorted({w.fold for w in made.windows if w.label == label} if judged else ()):
-            q = made.pooled(label, fold)
+    for label in validation.labels:
+        p, (metres, degrees) = validation.pooled(label), validation.fold_spread(label)
+        scatter = f"{metres:6.3f} m {degrees:5.2f} deg" if len(validation.elapsed_s) > 1 else f"{'-':>18}"
+        print(
+            f"  {label:<10} {p.windows:>6}   {p.position_m:6.3f} m {p.heading_deg:5.2f} deg   {scatter}   "
+            f"{p.rms_position_m:6.3f} m {p.rms_heading_deg:5.2f} deg{_verdict(p) if with_targets else ''}"
+        )
+        for fold in sorted({w.fold for w in validation.windows if w.label == label} if with_targets else ()):
+            q = validation.pooled(label, fold)
             print(f"    fold {fold + 1:<3} {q.windows:>6}   {q.position_m:6.3f} m {q.heading_deg:5.2f} deg")
 
 
-def _verdict(pooled: Pooled) -> str:
+def _verdict(pooled: PooledError) -> str:
     metres, degrees = LIMITS[pooled.label]
     holds = pooled.position_m <= metres and pooled.heading_deg <= degrees
     return f"   target {metres:.2f} m {degrees:.1f} deg {'holds' if holds else 'missed'}"
@@ -61,30 +63,36 @@ def main() -> int:
     os.environ.setdefault("SEATRIAL_DATA", str(TRIAL.parent.parent.parent / "shared" / "data"))
     try:
         trial = load_trial(TRIAL)
-        items, _ = records_of(trial)
+        items, _ = load_records(trial)
         rate = trial.estimate.rate
         records = [i.record if rate is None else i.record.resampled(rate) for i in items]
         labels = [label_of(r.name) for r in records]
-        settings = settings_of(trial, records)
-        protocol = Protocol(initial_s=trial.estimate.initial_s or 5.0)
+        settings = settings_from_trial(trial, records)
+        protocol = HoldoutProtocol(initial_s=trial.estimate.initial_s or 5.0)
         sessions = [i.session for i in items]
-        folds = fitted_folds(trial.model, records, sessions, labels, trial.ship.length, settings,
-                             progress=lambda text: print(text, flush=True))  # fmt: skip
-        made = cross_validated(folds, records, sessions, labels, protocol)
-        raw = cross_validated(folds, records, sessions, labels, ANCHOR)
-        published = parameter_set("esso-osaka").applied(model_named("mmg"))
+        folds = fit_folds(trial.model, records, sessions, labels, trial.ship.length, settings,
+                             report_progress=lambda text: print(text, flush=True))  # fmt: skip
+        made = cross_validate(folds, records, sessions, labels, protocol)
+        raw = cross_validate(folds, records, sessions, labels, ANCHOR)
+        published = parameter_set("esso-osaka").applied_to(model_named("mmg"))
         show(f"fitted, {len(records)} runs, all windows, initial state from the first {protocol.initial_s:g} s",
-             made, judged=True)  # fmt: skip
+             made, with_targets=True)  # fmt: skip
         print(f"  a fit takes {min(made.elapsed_s):.1f} to {max(made.elapsed_s):.1f} s")
-        problem = folds[0].found.made.problem
+        problem = folds[0].estimation.estimate.problem
         plain = replace(settings, noise=dict(zip(problem.data.outputs, problem.noise.tolist(), strict=True)))
-        everything = identified(trial.model, records, sessions, trial.ship.length, settings)
+        everything = estimate_model(trial.model, records, sessions, trial.ship.length, settings)
         within = Fold(tuple(range(len(records))), everything)
         show("fitted on all runs, nothing held out: what the model class and the wind leave",
-             cross_validated((within,), records, sessions, labels, protocol))  # fmt: skip
-        show("published coefficients, the same windows", unfitted(published, records, labels, protocol, plain))
+             cross_validate((within,), records, sessions, labels, protocol))  # fmt: skip
+        show(
+            "published coefficients, the same windows",
+            cross_validate_unfitted(published, records, labels, protocol, plain),
+        )
         show("fitted, first two windows of a run, started from the first sample", raw)
-        show("published coefficients, the same windows", unfitted(published, records, labels, ANCHOR, plain))
+        show(
+            "published coefficients, the same windows",
+            cross_validate_unfitted(published, records, labels, ANCHOR, plain),
+        )
     except InputError as error:
         print(error, file=sys.stderr)
         return 2

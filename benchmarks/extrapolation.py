@@ -14,12 +14,12 @@ from pathlib import Path
 import numpy as np
 from measure import machine
 
-from seatrial.data.trial import Role, Trial, TrialRecord, load_trial, records_of
-from seatrial.estimation.estimate import identified
-from seatrial.estimation.identify.identify import settings_of
-from seatrial.estimation.information.discrepancy import GROWTH, Miss
-from seatrial.estimation.predict.cross_validation import Protocol
-from seatrial.estimation.predict.window_bands import Missed, covered, missed_windows
+from seatrial.data.trial import Role, Trial, TrialRecord, load_records, load_trial
+from seatrial.estimation.estimate import estimate_model
+from seatrial.estimation.identify.identify import settings_from_trial
+from seatrial.estimation.information.discrepancy import GROWTH_POWER, HoldoutError
+from seatrial.estimation.predict.cross_validation import HoldoutProtocol
+from seatrial.estimation.predict.window_bands import HoldoutWindows, band_coverage, holdout_windows
 
 TRIAL = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"
 LIMITS, POWERS, WINDOW_S = (10, 15, 20, 25), (0.0, 1.0, 2.0, 3.0), 30.0
@@ -37,30 +37,30 @@ def shares(trial: Trial, train: Sequence[TrialRecord], limit: int) -> dict[float
     known = [r for r in train if angle(r) <= limit]
     beyond = [r for r in train if angle(r) > limit]
     records, sessions = [r.record for r in known], [r.session for r in known]
-    found = identified(trial.model, records, sessions, trial.ship.length, settings_of(trial, records))
-    missed = missed_windows(found, known, beyond, Protocol(window_s=WINDOW_S))
+    found = estimate_model(trial.model, records, sessions, trial.ship.length, settings_from_trial(trial, records))
+    missed = holdout_windows(found, known, beyond, HoldoutProtocol(window_s=WINDOW_S))
     return {
         power: [
             (one.shares["psi"], 0.5 * (one.shares["x0"] + one.shares["y0"]))
-            for one in covered(to_the_power(missed, power))[1]
+            for one in band_coverage(to_the_power(missed, power))[1]
         ]
         for power in POWERS
     }
 
 
-def to_the_power(missed: Missed, power: float) -> Missed:
+def to_the_power(missed: HoldoutWindows, power: float) -> HoldoutWindows:
     """The same misses with indices so changed that their growth is the given power of the true ones."""
 
-    def changed(runs: tuple[tuple[Miss, ...], ...]) -> tuple[tuple[Miss, ...], ...]:
-        return tuple(tuple(replace(m, index=max(m.index, 1.0) ** (power / GROWTH)) for m in run) for run in runs)
+    def changed(runs: tuple[tuple[HoldoutError, ...], ...]) -> tuple[tuple[HoldoutError, ...], ...]:
+        return tuple(tuple(replace(m, index=max(m.index, 1.0) ** (power / GROWTH_POWER)) for m in run) for run in runs)
 
-    return replace(missed, trained=changed(missed.trained), held=changed(missed.held))
+    return replace(missed, training=changed(missed.training), held_out=changed(missed.held_out))
 
 
-def row(name: str, made: Mapping[float, Sequence[tuple[float, float]]]) -> str:
+def row(name: str, band_shares: Mapping[float, Sequence[tuple[float, float]]]) -> str:
     """Means over runs: heading / position for each power."""
-    means = [np.mean(made[power], axis=0) for power in POWERS]
-    return f"{name:<16}{len(made[0.0]):>12}" + "".join(f"{f'{h:.2f} / {p:.2f}':>15}" for h, p in means)
+    means = [np.mean(band_shares[power], axis=0) for power in POWERS]
+    return f"{name:<16}{len(band_shares[0.0]):>12}" + "".join(f"{f'{h:.2f} / {p:.2f}':>15}" for h, p in means)
 
 
 def main() -> None:
@@ -68,7 +68,7 @@ def main() -> None:
     trial = load_trial(TRIAL)
     trial = replace(trial, runs=tuple(run for run in trial.runs if run.role is Role.TRAIN))
     rate = trial.estimate.rate
-    train = [replace(r, record=r.record.resampled(rate) if rate else r.record) for r in records_of(trial)[0]]
+    train = [replace(r, record=r.record.resampled(rate) if rate else r.record) for r in load_records(trial)[0]]
     print(machine())
     print(f"{'trained up to':<16}{'runs beyond':>12}" + "".join(f"{f'power {p:g}':>15}" for p in POWERS))
     pooled: dict[float, list[tuple[float, float]]] = {p: [] for p in POWERS}

@@ -19,9 +19,17 @@ from measure import Line, at_most, machine
 from scipy.optimize import NonlinearConstraint, minimize
 
 from seatrial.core.values import Array
-from seatrial.physics.loops import Exposure, HullFactor, Performance, Row, Seen, TransferLoop, exposure
+from seatrial.physics.loops import (
+    EncounterSpectrum,
+    HullFactor,
+    LoopSignal,
+    Performance,
+    TransferLoop,
+    WeightedVariance,
+    wave_slope_spectrum,
+)
 from seatrial.physics.loops.fin import ROLL, fin_loop
-from seatrial.physics.loops.structures import band_pass, five_gains, low_pass
+from seatrial.physics.loops.structures import band_pass, five_gain_loop, low_pass
 from seatrial.physics.sea.spectrum import ittc, jonswap
 
 U, BEAM, HEIGHT = 18.0 * 1852.0 / 3600.0, math.pi / 2.0, 3.3
@@ -33,21 +41,21 @@ LOWER, UPPER = np.log([0.3, 0.3, 0.15, 0.4]), np.log([3.0, 1.0, 6.0, 1.0])
 SCALE = np.array([20.0, 5.0, 60.0, 30.0, 30.0])
 STARTS = np.array([[0.55, 0.085, 0.55, 0.0, 0.0], [0.3, 0.1, 0.3, 0.2, -0.2]])
 REJECTED = 50.0
-ROWS = (Row(Seen.OUTPUT, np.ones_like), Row(Seen.ACTUATOR, lambda w: w))
+ROWS = (WeightedVariance(LoopSignal.OUTPUT, np.ones_like), WeightedVariance(LoopSignal.ACTUATOR, lambda w: w))
 
 
-def seas() -> dict[str, Exposure]:
+def seas() -> dict[str, EncounterSpectrum]:
     """By name."""
     peak = 2.0 * math.pi / ittc(HEIGHT).modal_frequency
     return {
-        "ITTC": exposure(ittc(HEIGHT), U, BEAM, ROLL, HULL),
-        "JONSWAP": exposure(jonswap(HEIGHT, peak), U, BEAM, ROLL, HULL),
-        "ITTC short-crested": exposure(ittc(HEIGHT), U, BEAM, ROLL, HULL, spreading=1.0),
+        "ITTC": wave_slope_spectrum(ittc(HEIGHT), U, BEAM, ROLL, HULL),
+        "JONSWAP": wave_slope_spectrum(jonswap(HEIGHT, peak), U, BEAM, ROLL, HULL),
+        "ITTC short-crested": wave_slope_spectrum(ittc(HEIGHT), U, BEAM, ROLL, HULL, spreading=1.0),
     }
 
 
 @dataclass(frozen=True, eq=False)
-class Against:
+class PublishedComparison:
     """A loop against the published gains: roll and rate variances over theirs (seas, 2), Ms."""
 
     gains: Array
@@ -55,37 +63,43 @@ class Against:
     peak: float
 
 
-def against(loop: TransferLoop, met: list[Exposure], gains: Array) -> Against:
+def compare_with_published(loop: TransferLoop, met: list[EncounterSpectrum], gains: Array) -> PublishedComparison:
     """Of some gains."""
     published = fin_loop()
-    made = [Performance(loop, sea, ROWS).of(gains) for sea in met]
-    theirs = [Performance(published, sea, ROWS).of(published.values).variances[0] for sea in met]
-    return Against(
-        gains, np.array([m.variances[0] / t for m, t in zip(made, theirs, strict=True)]), float(made[0].peak[0])
+    made = [Performance(loop, sea, ROWS).evaluate(gains) for sea in met]
+    theirs = [Performance(published, sea, ROWS).evaluate(published.gain_values).variances[0] for sea in met]
+    return PublishedComparison(
+        gains, np.array([m.variances[0] / t for m, t in zip(made, theirs, strict=True)]), float(made[0].Ms[0])
     )
 
 
-def best_gains(loop: TransferLoop, met: list[Exposure], peak: float) -> Against | None:
+def best_gains(loop: TransferLoop, met: list[EncounterSpectrum], peak: float) -> PublishedComparison | None:
     """Least mean roll ratio at no more rate energy in any sea; None where no start leads to a feasible one."""
     n = len(loop.terms)
     scale = SCALE[:n]
     limits = [(p.lower / s, p.upper / s) for p, s in zip(loop.gains, scale, strict=True)]
 
     def roll(x: Array) -> float:
-        return _bounded(float(against(loop, met, x * scale).ratios[:, 0].mean()), REJECTED)
+        return _bounded(float(compare_with_published(loop, met, x * scale).ratios[:, 0].mean()), REJECTED)
 
-    def room(x: Array) -> Array:
-        at = against(loop, met, x * scale)
+    def constraint_margins(x: Array) -> Array:
+        at = compare_with_published(loop, met, x * scale)
         return np.array([_bounded(v, -REJECTED) for v in (*(1.0 - at.ratios[:, 1]), 1.0 - at.peak / peak)])
 
     best = None
     for start in STARTS[:, :n]:
         found = minimize(
-            roll, start, bounds=limits, method="SLSQP", constraints=NonlinearConstraint(room, 0.0, np.inf),
+            roll,
+            start,
+            bounds=limits,
+            method="SLSQP",
+            constraints=NonlinearConstraint(constraint_margins, 0.0, np.inf),
             options={"maxiter": 120, "ftol": 1e-7},
-        )  # fmt: skip
-        at = against(loop, met, found.x * scale)
-        if room(found.x).min() > -1e-4 and (best is None or at.ratios[:, 0].mean() < best.ratios[:, 0].mean()):
+        )
+        at = compare_with_published(loop, met, found.x * scale)
+        if constraint_margins(found.x).min() > -1e-4 and (
+            best is None or at.ratios[:, 0].mean() < best.ratios[:, 0].mean()
+        ):
             best = at
     return best
 
@@ -94,23 +108,23 @@ def _bounded(value: float, otherwise: float) -> float:
     return float(value) if np.isfinite(value) else otherwise
 
 
-def structured(point: Array) -> TransferLoop:
+def with_structure(point: Array) -> TransferLoop:
     """At logarithms of frequency and damping, (4,)."""
     a, b, c, d = (float(v) for v in np.exp(point))
-    return five_gains(fin_loop(), band_pass(a, b), low_pass(c, d))
+    return five_gain_loop(fin_loop(), band_pass(a, b), low_pass(c, d))
 
 
-def search(seed: int, met: list[Exposure]) -> tuple[Array, Against]:
+def search(seed: int, met: list[EncounterSpectrum]) -> tuple[Array, PublishedComparison]:
     """Frequencies and dampings (4,) and what they give."""
     span = UPPER - LOWER
     start = 0.2 + 0.6 * np.random.default_rng(seed).random(4)
     optimiser = CMA(start, 0.25, bounds=np.array([[0.0, 1.0]] * 4), seed=seed, population_size=POPULATION)
-    best: tuple[float, Array, Against | None] = (math.inf, start, None)
+    best: tuple[float, Array, PublishedComparison | None] = (math.inf, start, None)
     for _ in range(GENERATIONS):
         told = []
         for _ in range(POPULATION):
             x = optimiser.ask()
-            made = best_gains(structured(LOWER + span * x), met, PEAK)
+            made = best_gains(with_structure(LOWER + span * x), met, PEAK)
             value = REJECTED if made is None else float(made.ratios[:, 0].mean())
             told.append((x, value))
             if value < best[0]:
@@ -121,10 +135,10 @@ def search(seed: int, met: list[Exposure]) -> tuple[Array, Against]:
     return np.exp(LOWER + span * best[1]), best[2]
 
 
-def lines(met: dict[str, Exposure]) -> list[Line]:
+def lines(met: dict[str, EncounterSpectrum]) -> list[Line]:
     """What the frozen structure and gains are worth."""
-    loop = five_gains(fin_loop())
-    frozen = against(loop, list(met.values()), loop.values)
+    loop = five_gain_loop(fin_loop())
+    frozen = compare_with_published(loop, list(met.values()), loop.gain_values)
     table = []
     for name, (roll, rate) in zip(met, frozen.ratios, strict=True):
         table.append(at_most(f"{name}: roll variance, five gains over published", float(roll), "", WORTH))
@@ -152,7 +166,7 @@ def main(arguments: list[str]) -> int:
         print(f"  seed {seed}: {found} Ms {made.peak:.3f}, {time.perf_counter() - began:.0f} s")
     table = lines(met)
     for line in table:
-        print(f"  {line.what:<72} {line.value:>8.4g} {line.unit:<2} {line.verdict}")
+        print(f"  {line.quantity:<72} {line.value:>8.4g} {line.unit:<2} {line.verdict}")
     return int(any(line.holds is False for line in table))
 
 

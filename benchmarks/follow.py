@@ -16,21 +16,21 @@ import numpy as np
 from measure import Line, at_least, at_most, machine
 from numpy.typing import NDArray
 
-from seatrial.core.results.online import Phase, Sample, Snapshot
+from seatrial.core.results.online import EstimatorPhase, Sample, Snapshot
 from seatrial.core.values import NOTATION, Channel, Record
 from seatrial.data.example_series import series
-from seatrial.data.read import Column, Layout, read_record
+from seatrial.data.read import ColumnSpec, Layout, read_record
 from seatrial.data.trial import Role, Trial, load_trial
-from seatrial.data.trial.trial import Feed, Stream
+from seatrial.data.trial.trial import Stream, StreamSource
 from seatrial.estimation.identify.identify import identify
-from seatrial.estimation.identify.online import Online
-from seatrial.estimation.problem.linear_record import LinearRecord
-from seatrial.estimation.problem.segments import cut
+from seatrial.estimation.identify.online import OnlineEstimator
+from seatrial.estimation.problem.linear_output_error import LinearOutputError
+from seatrial.estimation.problem.segments import cut_segments
 from seatrial.numerics.optimise import ImprovedHerdSettings, ImprovedWildHorse, search
 from seatrial.physics.models.qi2025 import SHIP
 from seatrial_studies import swarm_search
-from seatrial_studies.own_fit import started
-from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, Sailed, Voyage, sailed, ship
+from seatrial_studies.output_error_fit import with_physics_start
+from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, SeawayRun, SeawayScenario, ship, simulate_seaway_run
 
 Array = NDArray[np.float64]
 HEADINGS, RUNS, SECONDS, RATE = (45, 90, 135, 180), 20, 600.0, 10.0
@@ -46,8 +46,8 @@ EXAMPLES = Path(__file__).parent.parent / "examples"
 
 def layout(channels: tuple[str, ...]) -> Layout:
     """Columns of SI values in that order, after the time."""
-    columns = tuple(Column(c, k + 2, NOTATION[c].unit) for k, c in enumerate(channels))
-    return Layout("text", Column("time", 1, "s"), columns)
+    columns = tuple(ColumnSpec(c, k + 2, NOTATION[c].unit) for k, c in enumerate(channels))
+    return Layout("text", ColumnSpec("time", 1, "s"), columns)
 
 
 def samples(record: Record, stream: Stream) -> Iterator[Sample]:
@@ -58,7 +58,7 @@ def samples(record: Record, stream: Stream) -> Iterator[Sample]:
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class EstimateHistory:
     """Times [s] at which the estimate changed, relative errors then, (changes, k), and the last snapshot."""
 
     time: Array
@@ -75,51 +75,54 @@ class Course:
         reached = np.flatnonzero(self.mean <= good)
         return float(self.time[reached[0]]) if len(reached) else np.inf
 
-    def time_for_good(self, good: float) -> float:
+    def settling_time(self, good: float) -> float:
         """s after which the mean error stays within `good`."""
         bad = np.flatnonzero(~(self.mean <= good))
         after = int(bad[-1]) + 1 if len(bad) else 0
         return float(self.time[after]) if after < len(self.time) else np.inf
 
     @property
-    def is_lost(self) -> bool:
+    def has_diverged(self) -> bool:
         """Whether it diverged: after the first minute an estimate far off, or none."""
         late = self.time > SETTLED
         return not np.any(late) or not bool(np.all(self.mean[late] <= LOST))
 
 
-def followed(trial: Trial, record: Record, truth: Array) -> Course:
+def follow_stream(trial: Trial, record: Record, truth: Array) -> EstimateHistory:
     """The estimates along a stream."""
-    assert trial.follow is not None
-    estimator, times, errors, value, last = Online(trial), [], [], None, None
-    for sample in samples(record, trial.follow):
+    assert trial.stream is not None
+    estimator, times, errors, value, last = OnlineEstimator(trial), [], [], None, None
+    for sample in samples(record, trial.stream):
         last = estimator.update(sample)
-        if last.phase is not Phase.WAITING and last.value is not value:
+        if last.phase is not EstimatorPhase.WAITING and last.value is not value:
             value = last.value
             times.append(sample.time)
             errors.append(value / truth - 1.0)
     assert last is not None
-    return Course(np.array(times), np.array(errors), last)
+    return EstimateHistory(np.array(times), np.array(errors), last)
 
 
-def heave_pitch(heading: int, run: int, seconds: float) -> tuple[Trial, Sailed, Record]:
+def heave_pitch(heading: int, run: int, seconds: float) -> tuple[Trial, SeawayRun, Record]:
     """A voyage in waves with a fin, 1 cm and .02 deg of noise at 10 Hz, and the trial that follows it."""
-    voyage = Voyage(heading, duration=seconds)
+    voyage = SeawayScenario(heading, duration=seconds)
     truth = ship(90) if heading == 45 else None
-    made = sailed(voyage, np.random.default_rng([heading, run]), truth)
-    stream = Stream(Feed.STDIN, layout(WAVES_AND_FIN), RATE)
-    trial = Trial(ship=SHIP, runs=(), model=started(made.truth), noise=NOISE, follow=stream)
-    return trial, made, made.noisy(np.random.default_rng([heading, run, 1]), voyage)
+    made = simulate_seaway_run(voyage, np.random.default_rng([heading, run]), truth)
+    stream = Stream(StreamSource.STDIN, layout(WAVES_AND_FIN), RATE)
+    trial = Trial(ship=SHIP, runs=(), model=with_physics_start(made.truth), noise=NOISE, stream=stream)
+    return trial, made, made.with_sensor_noise(np.random.default_rng([heading, run, 1]), voyage)
 
 
-def bound(made: Sailed, record: Record) -> Array:
+def bound(seaway_run: SeawayRun, record: Record) -> Array:
     """Cramer-Rao bound of the whole record over the truth, (k,); the initial state unknown."""
-    problem = LinearRecord(
-        made.truth, cut(made.truth, [record], ("z", "theta"), None), np.array(list(NOISE.values())), np.zeros(4),
-        made.truth.states,
-    )  # fmt: skip
+    problem = LinearOutputError(
+        seaway_run.truth,
+        cut_segments(seaway_run.truth, [record], ("z", "theta"), None),
+        np.array(list(NOISE.values())),
+        np.zeros(4),
+        seaway_run.truth.states,
+    )
     truth = problem.start()
-    information = problem.normal(truth, problem.known_starts()).reduced()[1]
+    information = problem.normal(truth, problem.given_initial_states()).without_local()[1]
     return np.sqrt(np.diag(np.linalg.inv(information))) / np.abs(truth)
 
 
@@ -129,10 +132,10 @@ def in_waves(heading: int, runs: int) -> Iterator[Line]:
     for run in range(runs):
         trial, made, record = heave_pitch(heading, run, SECONDS)
         truth = np.array([made.truth.parameters[n].value for n in trial.model.parameters.free_names])
-        courses.append(followed(trial, record, truth))
-        assert trial.follow is not None
-        narrow = replace(trial, follow=replace(trial.follow, whole=SHORT_WINDOW))
-        short.append(followed(narrow, record, truth))
+        courses.append(follow_stream(trial, record, truth))
+        assert trial.stream is not None
+        narrow = replace(trial, stream=replace(trial.stream, batch_window=SHORT_WINDOW))
+        short.append(follow_stream(narrow, record, truth))
         bounds.append(bound(made, record))
     where = f"{heading} deg, {runs} seas"
     reached = float(np.median([c.time_to(GOOD) for c in courses]))
@@ -140,10 +143,10 @@ def in_waves(heading: int, runs: int) -> Iterator[Line]:
         yield at_most(f"{where}: median time to 1 % mean error", reached, "s", TO_ONE_PERCENT[heading])
     else:
         yield Line(f"{where}: median time to 1 % mean error", reached, "s")
-    stays = float(np.median([c.time_for_good(GOOD) for c in courses]))
+    stays = float(np.median([c.settling_time(GOOD) for c in courses]))
     yield Line(f"{where}: median time after which it stays within 1 %", stays, "s")
     for what, found in (("all kept", courses), (f"window of {SHORT_WINDOW:g} s", short)):
-        yield at_most(f"{where}: {what}: diverged", sum(c.is_lost for c in found), "", 0)
+        yield at_most(f"{where}: {what}: diverged", sum(c.has_diverged for c in found), "", 0)
         final = np.array([c.errors[-1] for c in found])
         yield Line(f"{where}: {what}: mean error after {SECONDS:g} s", 100.0 * float(np.mean(np.abs(final))), "%")
         ratio = float(np.sqrt(np.mean((final / np.array(bounds)) ** 2)))
@@ -153,21 +156,23 @@ def in_waves(heading: int, runs: int) -> Iterator[Line]:
 def speed(seconds: float) -> Iterator[Line]:
     """Samples a second of processor time: while the window grows, and beyond it."""
     trial, _, record = heave_pitch(135, 0, seconds)
-    assert trial.follow is not None
-    all_samples = list(samples(record, trial.follow))
-    _fed(Online(trial), all_samples[:1000])
+    assert trial.stream is not None
+    all_samples = list(samples(record, trial.stream))
+    _processing_seconds(OnlineEstimator(trial), all_samples[:1000])
     ten = round(SECONDS * RATE)
-    whole = Online(trial)
-    first, rest = _fed(whole, all_samples[:ten]), _fed(whole, all_samples[ten:])
+    whole = OnlineEstimator(trial)
+    first, rest = _processing_seconds(whole, all_samples[:ten]), _processing_seconds(whole, all_samples[ten:])
     yield Line(f"first {SECONDS:g} s while re-linearising", ten / first, "samples/s")
     yield at_least(f"{seconds:g} s while re-linearising", len(all_samples) / (first + rest), "samples/s", 10_000)
-    beyond = Online(replace(trial, follow=replace(trial.follow, whole=SECONDS)))
-    _fed(beyond, all_samples[: ten + 1])
+    beyond = OnlineEstimator(replace(trial, stream=replace(trial.stream, batch_window=SECONDS)))
+    _processing_seconds(beyond, all_samples[: ten + 1])
     after = all_samples[ten + 1 :]
-    yield at_least(f"after a window of {SECONDS:g} s", len(after) / _fed(beyond, after), "samples/s", 30_000)
+    yield at_least(
+        f"after a window of {SECONDS:g} s", len(after) / _processing_seconds(beyond, after), "samples/s", 30_000
+    )
 
 
-def _fed(estimator: Online, some: list[Sample]) -> float:
+def _processing_seconds(estimator: OnlineEstimator, some: list[Sample]) -> float:
     began = time.process_time()
     for sample in some:
         estimator.update(sample)
@@ -182,9 +187,9 @@ def zigzags(seeds: int) -> Iterator[Line]:
     online, before, batch, told, seconds = [], [], [], 0.0, 0.0
     for seed in range(seeds):
         records = [r.resampled(series.EXAMPLE_RATE) for r in series.demo_series(seed)[0]]
-        stream = Stream(Feed.STDIN, layout(series.EXAMPLE_COLUMNS), series.EXAMPLE_RATE, name="run")
-        trial = replace(known, runs=(), follow=stream)
-        estimator, shown = Online(trial), None
+        stream = Stream(StreamSource.STDIN, layout(series.EXAMPLE_COLUMNS), series.EXAMPLE_RATE, name="run")
+        trial = replace(known, runs=(), stream=stream)
+        estimator, shown = OnlineEstimator(trial), None
         began = time.process_time()
         for record in records:
             estimator.begin_run()
@@ -210,7 +215,7 @@ def _rms(errors: list[Array]) -> float:
     return float(np.sqrt(np.mean(np.array(errors) ** 2)))
 
 
-def beside_wild_horses(seas: int) -> Iterator[Line]:
+def compare_with_wild_horses(seas: int) -> Iterator[Line]:
     """qi2025's online scheme, a sample an iteration in a box of +-50 % off centre; both with the sensors' noise.
 
     The same 200 s in waves, every .5 s, held forces. The published scheme is given the true state before each sample.
@@ -218,21 +223,21 @@ def beside_wild_horses(seas: int) -> Iterator[Line]:
     theirs, ours = [], []
     for run in range(seas):
         rng = np.random.default_rng([135, run, 4])
-        data = swarm_search.sailed(135, rng, noise=(HEAVE_NOISE, PITCH_NOISE))
-        box = swarm_search.off_centre(data.truth, 0.5, rng)
+        data = swarm_search.simulate_search_data(135, rng, noise=(HEAVE_NOISE, PITCH_NOISE))
+        box = swarm_search.off_centre_box(data.truth, 0.5, rng)
         settings = ImprovedHerdSettings(iterations=len(data.measured) - 2)
         horses = ImprovedWildHorse(box, np.random.default_rng(run), settings)
-        found = search(horses, swarm_search.one_sample(data, horses, swarm_search.Angle.RADIANS)).point
+        found = search(horses, swarm_search.one_sample_objective(data, horses, swarm_search.PitchUnit.RADIANS)).point
         theirs.append(np.mean(np.abs(found / data.truth - 1.0)))
         columns = dict(zip(("F3", "M5"), -data.forces.T, strict=True)) | dict(
             zip(("z", "theta"), data.measured.T, strict=True)
         )
-        made = {n: Channel.of(n, np.ascontiguousarray(v)) for n, v in columns.items()}
+        made = {n: Channel.from_notation(n, np.ascontiguousarray(v)) for n, v in columns.items()}
         when = np.arange(len(data.measured), dtype=np.float64) * swarm_search.STEP
         record = Record("sea", when, made)
-        stream = Stream(Feed.STDIN, layout(tuple(columns)), 1.0 / swarm_search.STEP)
-        trial = Trial(ship=SHIP, runs=(), model=started(data.model), noise=NOISE, follow=stream)
-        ours.append(followed(trial, record, data.truth).mean[-1])
+        stream = Stream(StreamSource.STDIN, layout(tuple(columns)), 1.0 / swarm_search.STEP)
+        trial = Trial(ship=SHIP, runs=(), model=with_physics_start(data.model), noise=NOISE, stream=stream)
+        ours.append(follow_stream(trial, record, data.truth).mean[-1])
     what = f"135 deg, {seas} seas of 200 s"
     yield Line(f"{what}: mean error of wild horses, one sample at a time", 100.0 * float(np.mean(theirs)), "%")
     yield Line(f"{what}: mean error of ours", 100.0 * float(np.mean(ours)), "%")
@@ -247,8 +252,8 @@ def tanker() -> Iterator[Line]:
     trial = load_trial(EXAMPLES / "kvlcc2_hsva.toml")
     runs = tuple(run for run in trial.runs if run.role is Role.TRAIN)
     raws = [read_record(run.path, run.layout) for run in runs]
-    stream = Stream(Feed.STDIN, runs[0].layout, 1.0 / raws[0].dt)
-    estimator, began = Online(replace(trial, runs=(), follow=stream)), time.process_time()
+    stream = Stream(StreamSource.STDIN, runs[0].layout, 1.0 / raws[0].dt)
+    estimator, began = OnlineEstimator(replace(trial, runs=(), stream=stream)), time.process_time()
     for raw in raws:
         estimator.begin_run()
         for sample in samples(raw, stream):
@@ -271,7 +276,7 @@ def lines(runs: int, seconds: float = 3600.0) -> Iterator[Line]:
         yield from in_waves(heading, runs)
     yield from speed(seconds)
     yield from zigzags(max(2, runs // 4))
-    yield from beside_wild_horses(max(3, runs // 2))
+    yield from compare_with_wild_horses(max(3, runs // 2))
     yield from tanker()
 
 
@@ -289,7 +294,7 @@ def main(arguments: list[str]) -> int:
     print(machine())
     missed = False
     for line in lines(3 if given.quick else given.runs):
-        print(f"  {line.what:<78} {line.value:>10.4g} {line.unit:<10} {line.verdict}", flush=True)
+        print(f"  {line.quantity:<78} {line.value:>10.4g} {line.unit:<10} {line.verdict}", flush=True)
         missed |= line.holds is False
     return int(missed)
 

@@ -15,16 +15,16 @@ from measure import Line, at_least, at_most, machine
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array
-from seatrial.estimation.estimate.online.belief import Belief
-from seatrial.estimation.estimate.online.change import Watch
-from seatrial.estimation.estimate.online.handover import handed_over
-from seatrial.estimation.estimate.online.recursive import Recursive
+from seatrial.estimation.estimate.online.change_detection import ChangeDetector
+from seatrial.estimation.estimate.online.gaussian_state import GaussianState
+from seatrial.estimation.estimate.online.handover import gaussian_state_from_fit
+from seatrial.estimation.estimate.online.recursive import RecursiveFilter
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.estimation.problem.segments import Segments, cut
+from seatrial.estimation.problem.segments import Segments, cut_segments
 from seatrial.numerics.optimise import levenberg_marquardt
-from seatrial.physics.models.heave_pitch import COEFFICIENTS, physics_start
+from seatrial.physics.models.heave_pitch import COEFFICIENTS, physical_start_values
 from seatrial.physics.simulate.linear import LinearBatch
-from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, Voyage, sailed, ship
+from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, SeawayScenario, ship, simulate_seaway_run
 
 HEADINGS = (45, 90, 135, 180)
 NOISE, OUTPUTS, DT = np.array([HEAVE_NOISE, PITCH_NOISE]), ("z", "theta"), 0.1
@@ -49,21 +49,21 @@ class Stream:
     inputs: Array
     measured: Array
 
-    def fitted(self, rows: int, start: dict[str, float]) -> Belief:
+    def fit_batch(self, rows: int, start: dict[str, float]) -> GaussianState:
         """The batch's knowledge after the first rows, searched from `start`."""
         one = np.zeros(1, dtype=np.int64)
         data = Segments(np.ascontiguousarray(self.inputs[:rows]), self.measured[:rows], np.array([0, rows]), one, one,
                         ("sea",), ("sea",), OUTPUTS, DT)  # fmt: skip
         problem = OutputError(self.ship.with_values(start), data, NOISE)
-        found = levenberg_marquardt(problem, problem.start(), problem.measured_starts(), negligible=1e-8)
-        return handed_over(problem, found.solution.point, found.local, found.normal)
+        found = levenberg_marquardt(problem, problem.start(), problem.measured_initial_states(), negligible=1e-8)
+        return gaussian_state_from_fit(problem, found.solution.point, found.local, found.normal)
 
-    def filter(self) -> Recursive:
+    def filter(self) -> RecursiveFilter:
         """Handed over after a minute, the fit searched from physics."""
         parameters = self.ship.parameters
-        start = physics_start(dict(zip(parameters.names, parameters.values, strict=True)))
-        return Recursive(self.ship, COEFFICIENTS, OUTPUTS, NOISE, DT, self.fitted(FIRST, start),
-                         recent=self.inputs[:FIRST])  # fmt: skip
+        start = physical_start_values(dict(zip(parameters.names, parameters.values, strict=True)))
+        return RecursiveFilter(self.ship, COEFFICIENTS, OUTPUTS, NOISE, DT, self.fit_batch(FIRST, start),
+                         recent_inputs=self.inputs[:FIRST])  # fmt: skip
 
     def blocks(self) -> Iterator[tuple[Array, Array]]:
         """Samples after the first minute, a second at a time."""
@@ -71,11 +71,13 @@ class Stream:
             yield self.measured[row : row + BLOCK], self.inputs[row : row + BLOCK]
 
 
-def at_sea(heading: int, seed: int, duration: float = DURATION) -> Stream:
+def simulate_stream(heading: int, seed: int, duration: float = DURATION) -> Stream:
     """A voyage with a sea and noise of its own."""
     model = ship(90 if heading == 45 else heading)
-    made = sailed(Voyage(heading, duration=duration), np.random.default_rng([heading, seed]), model)
-    data = cut(model, [made.record], OUTPUTS, None)
+    made = simulate_seaway_run(
+        SeawayScenario(heading, duration=duration), np.random.default_rng([heading, seed]), model
+    )
+    data = cut_segments(model, [made.record], OUTPUTS, None)
     noise = NOISE * np.random.default_rng([heading, seed, 1]).standard_normal(data.measured.shape)
     return Stream(model, data.inputs, data.measured + noise)
 
@@ -85,18 +87,18 @@ def truth_of(model: Model) -> Array:
     return np.array([model.parameters[n].value for n in COEFFICIENTS])
 
 
-def followed(heading: int, runs: int) -> Iterator[Line]:
+def filter_lines(heading: int, runs: int) -> Iterator[Line]:
     """Error after ten minutes, beside the batch's and its bound; runs lost; samples a second."""
     errors, batch, bounds, lost, seconds, samples = [], [], [], 0, 0.0, 0
     for seed in range(runs):
-        stream = at_sea(heading, seed)
+        stream = simulate_stream(heading, seed)
         truth, made = truth_of(stream.ship), stream.filter()
         began = time.process_time()
         for measured, inputs in stream.blocks():
             made.update(measured, inputs)
         made.flush()
         seconds, samples = seconds + time.process_time() - began, samples + len(stream.measured) - FIRST
-        whole = stream.fitted(len(stream.measured), {})
+        whole = stream.fit_batch(len(stream.measured), {})
         errors.append(made.value - truth)
         batch.append(whole.value - truth)
         bounds.append(np.sqrt(np.diagonal(whole.covariance)))
@@ -115,7 +117,7 @@ def followed(heading: int, runs: int) -> Iterator[Line]:
     yield at_least(f"{where}: samples a second, blocks of {BLOCK}", samples / seconds, "/s", 30_000)
 
 
-def loaded(stream: Stream, seed: int) -> Stream:
+def with_load_change(stream: Stream, seed: int) -> Stream:
     """The same voyage from rest, mass and inertia 10 % up from `LOADED_AT` on."""
     at, model, inputs = round(LOADED_AT / DT), stream.ship, stream.inputs
     heavy = model.with_values({n: 1.1 * model.parameters[n].value for n in ("m", "I5")})
@@ -129,28 +131,28 @@ def loaded(stream: Stream, seed: int) -> Stream:
     return replace(stream, measured=y + NOISE * np.random.default_rng([seed, 7]).standard_normal(y.shape))
 
 
-def told(stream: Stream) -> list[float]:
+def alarm_times(stream: Stream) -> list[float]:
     """When a watch that looks every 30 s tells a change, s."""
-    made, watch, clock, found = stream.filter(), Watch(COEFFICIENTS, STRETCH), (FIRST - 1) * DT, []
-    watch.look(clock, made.value, made.covariance)
+    made, watch, clock, found = stream.filter(), ChangeDetector(COEFFICIENTS, STRETCH), (FIRST - 1) * DT, []
+    watch.update(clock, made.value, made.covariance)
     before = None
     for measured, inputs in stream.blocks():
         made.update(measured, inputs)
         clock += len(measured) * DT
-        watch.look(clock + 1e-6, made.value, made.covariance)
-        if watch.told is not before:
-            before = watch.told
+        watch.update(clock + 1e-6, made.value, made.covariance)
+        if watch.detected is not before:
+            before = watch.detected
             found.append(clock)
     return found
 
 
-def watched(streams: int) -> Iterator[Line]:
+def change_detection_lines(streams: int) -> Iterator[Line]:
     """False alarms over all headings, and the time until a change of loading is told."""
     alarms: list[bool] = []
     for heading in HEADINGS:
-        seas = [at_sea(heading, 1000 + seed) for seed in range(streams)]
-        alarms += [bool(told(sea)) for sea in seas]
-        after = [[t for t in told(loaded(sea, k)) if t > LOADED_AT] for k, sea in enumerate(seas)]
+        seas = [simulate_stream(heading, 1000 + seed) for seed in range(streams)]
+        alarms += [bool(alarm_times(sea)) for sea in seas]
+        after = [[t for t in alarm_times(with_load_change(sea, k)) if t > LOADED_AT] for k, sea in enumerate(seas)]
         delays = np.array([times[0] - LOADED_AT if times else np.inf for times in after])
         where = f"{heading} deg, {streams} streams: mass and inertia +10 % told"
         yield Line(f"{where} after, median", float(np.median(delays)), "s")
@@ -162,8 +164,8 @@ def watched(streams: int) -> Iterator[Line]:
 def lines(size: Size) -> Iterator[Line]:
     """Everything."""
     for heading in HEADINGS:
-        yield from followed(heading, size.runs)
-    yield from watched(size.streams)
+        yield from filter_lines(heading, size.runs)
+    yield from change_detection_lines(size.streams)
 
 
 def run() -> list[Line]:
@@ -179,7 +181,7 @@ def main(arguments: list[str]) -> int:
     print(machine())
     missed = False
     for line in lines(Size(8, 5) if given.quick else Size()):
-        print(f"  {line.what:<72} {line.value:>10.4g} {line.unit:<6} {line.verdict}", flush=True)
+        print(f"  {line.quantity:<72} {line.value:>10.4g} {line.unit:<6} {line.verdict}", flush=True)
         missed |= line.holds is False
     return int(missed)
 

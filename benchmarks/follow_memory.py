@@ -12,12 +12,12 @@ import numpy as np
 
 from seatrial.core.results.online import Sample
 from seatrial.core.values import NOTATION
-from seatrial.data.read import Column, Layout
-from seatrial.data.trial.trial import Feed, Stream, Trial
-from seatrial.estimation.identify.online import Online
+from seatrial.data.read import ColumnSpec, Layout
+from seatrial.data.trial.trial import Stream, StreamSource, Trial
+from seatrial.estimation.identify.online import OnlineEstimator
 from seatrial.physics.models.qi2025 import SHIP
-from seatrial_studies.own_fit import started
-from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, Voyage, sailed
+from seatrial_studies.output_error_fit import with_physics_start
+from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, SeawayScenario, simulate_seaway_run
 
 CHANNELS = ("F3", "M5", "delta_f1", "z", "theta")
 HOUR, GAP, EVERY = 3600.0, 3700.0, 25
@@ -25,13 +25,15 @@ HOUR, GAP, EVERY = 3600.0, 3700.0, 25
 
 def main(voyages: int) -> None:
     """Print samples, phase, memory and rate every 25 voyages."""
-    voyage = Voyage(135, duration=HOUR)
-    made = sailed(voyage, np.random.default_rng(1))
-    record = made.noisy(np.random.default_rng(2), voyage)
-    columns = tuple(Column(c, k + 2, NOTATION[c].unit) for k, c in enumerate(CHANNELS))
-    stream = Stream(Feed.STDIN, Layout("text", Column("time", 1, "s"), columns), 10.0, whole=600.0)
+    voyage = SeawayScenario(135, duration=HOUR)
+    made = simulate_seaway_run(voyage, np.random.default_rng(1))
+    record = made.with_sensor_noise(np.random.default_rng(2), voyage)
+    columns = tuple(ColumnSpec(c, k + 2, NOTATION[c].unit) for k, c in enumerate(CHANNELS))
+    stream = Stream(StreamSource.STDIN, Layout("text", ColumnSpec("time", 1, "s"), columns), 10.0, batch_window=600.0)
     noise = {"z": HEAVE_NOISE, "theta": PITCH_NOISE}
-    estimator = Online(Trial(ship=SHIP, runs=(), model=started(made.truth), noise=noise, follow=stream))
+    estimator = OnlineEstimator(
+        Trial(ship=SHIP, runs=(), model=with_physics_start(made.truth), noise=noise, stream=stream)
+    )
     rows, began = np.stack([record[c] for c in CHANNELS], axis=1), time.perf_counter()
     for number in range(voyages):
         if number:

@@ -17,20 +17,20 @@ import numpy as np
 from measure import Line, at_least, machine
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Array, Channel, InputError, Kind, Record, frozen
-from seatrial.estimation.identify.seakeeping import operators
+from seatrial.core.values import Array, Channel, InputError, Record, RecordKind, frozen
+from seatrial.estimation.identify.seakeeping import transfer_functions
 from seatrial.estimation.information.frequency_range import frequency_range
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.estimation.problem.segments import cut
+from seatrial.estimation.problem.segments import cut_segments
 from seatrial.numerics.optimise import Status, levenberg_marquardt
 from seatrial.physics.hydro.capytaine_data import HullData, HullExcitation
-from seatrial.physics.hydro.cummins import Memory, memory_of, simulate_memory
+from seatrial.physics.hydro.cummins import RetardationFunctions, retardation_functions, simulate_cummins
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.hydro.mesh import solve_hull, wigley
-from seatrial.physics.hydro.strip_theory import at_speed
-from seatrial.physics.models.heave_pitch import COEFFICIENTS, heave_pitch, physics_start
+from seatrial.physics.hydro.strip_theory import coefficients_at_speed
+from seatrial.physics.models.heave_pitch import COEFFICIENTS, heave_pitch, physical_start_values
 from seatrial.physics.sea.encounter import encounter_frequency
-from seatrial.physics.sea.realise import Lines, harmonic_sum, realise
+from seatrial.physics.sea.realise import WaveComponents, harmonic_sum, realise
 from seatrial.physics.sea.spectrum import Spectrum, bretschneider, ittc, jonswap
 
 L, B, T, RHO = 60.0, 7.14, 2.27, 1025.0
@@ -55,22 +55,22 @@ def ship(data: HullData) -> Model:
     m = data.stiffness[0, 0] / (RHO * 9.81) * T * RHO * 2.0 / 3.0
     (c33, c35), (c53, c55) = data.stiffness
     known = {"m": m, "I5": m * (0.25 * L) ** 2, "c33": c33, "c35": c35, "c53": c53, "c55": c55}
-    return heave_pitch().with_values({**known, **physics_start(known)})
+    return heave_pitch().with_values({**known, **physical_start_values(known)})
 
 
-def sailed(data: HullData, memory: Memory, model: Model, lines: Lines) -> Record:
+def simulate_with_memory(data: HullData, memory: RetardationFunctions, model: Model, lines: WaveComponents) -> Record:
     """Motions with memory in the waves of the lines, recorded at 10 Hz with sensor noise."""
     time = np.arange(round(DURATION / FINE) + 1, dtype=np.float64) * FINE
     amplitude = lines.forces(HullExcitation(data))
-    forces = np.stack([harmonic_sum(lines.encounter, amplitude[:, j], time) for j in (0, 1)], axis=1)
+    forces = np.stack([harmonic_sum(lines.omega_e, amplitude[:, j], time) for j in (0, 1)], axis=1)
     mass = np.diag([model.parameters["m"].value, model.parameters["I5"].value])
-    states = simulate_memory(memory, mass, data.stiffness, lines.U, forces)
+    states = simulate_cummins(memory, mass, data.stiffness, lines.U, forces)
     kept = slice(None, None, round(DT / FINE))
     noise = np.random.default_rng(1).standard_normal((len(time[kept]), 2)) * NOISE
     made = {"F3": forces[kept, 0], "M5": forces[kept, 1],
             "z": -states[kept, 0] + noise[:, 0], "theta": -states[kept, 2] + noise[:, 1]}  # fmt: skip
-    channels = {name: Channel.of(name, frozen(values)) for name, values in made.items()}
-    return Record("memory", frozen(time[kept]), channels, Kind.SIMULATED).between(20.0, DURATION)
+    channels = {name: Channel.from_notation(name, frozen(values)) for name, values in made.items()}
+    return Record("memory", frozen(time[kept]), channels, RecordKind.SIMULATED).between(20.0, DURATION)
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,7 @@ class Case:
     """
 
     name: str
-    lines: Lines
+    lines: WaveComponents
     fitted: Model
     outputs: tuple[str, ...]
     names: tuple[str, ...]
@@ -100,16 +100,16 @@ class Case:
 
 
 @dataclass(frozen=True, eq=False)
-class Truth:
+class ShipWithMemory:
     """The ship with memory."""
 
     data: HullData
-    memory: Memory
+    memory: RetardationFunctions
     model: Model
 
     def coefficients(self, names: tuple[str, ...], omega: Array, U: float) -> Array:
         """Those named at frequencies of encounter, (n, names), as the memory means them."""
-        A, damping = at_speed(*self.memory.coefficients(omega), omega, U)
+        A, damping = coefficients_at_speed(*self.memory.coefficients(omega), omega, U)
         index = {"3": 0, "5": 1}
         part = {"a": A, "b": damping}
         return np.stack([part[n[0]][:, index[n[1]], index[n[2]]] for n in names], axis=1)
@@ -121,13 +121,13 @@ class Truth:
     def operators(self, omega: Array, U: float, beta: float) -> Complex:
         """Heave [up] and pitch [bow down] per metre of wave, (2, n)."""
         omega_e = encounter_frequency(omega, U, beta)
-        A, damping = at_speed(*self.memory.coefficients(omega_e), omega_e, U)
+        A, damping = coefficients_at_speed(*self.memory.coefficients(omega_e), omega_e, U)
         mass = np.diag([self.model.parameters["m"].value, self.model.parameters["I5"].value])
         Z = -(omega_e**2)[:, None, None] * (mass + A) + 1j * omega_e[:, None, None] * damping + self.data.stiffness
         motion = np.linalg.solve(Z, self.forces(omega, U, beta)[:, :, None])[:, :, 0]
         return np.asarray(motion.T, dtype=np.complex128)
 
-    def sea(self, spectrum: Spectrum, U: float, beta: float, seed: int) -> Lines:
+    def sea(self, spectrum: Spectrum, U: float, beta: float, seed: int) -> WaveComponents:
         """The waves of a sea that the panels carry and the memory's step follows."""
         q = -U * math.cos(beta) / 9.81
         met = HIGHEST_MET if q < 1e-9 else (math.sqrt(1.0 + 4.0 * q * HIGHEST_MET) - 1.0) / (2.0 * q)
@@ -135,27 +135,27 @@ class Truth:
         return realise(spectrum, U, beta, np.random.default_rng(seed), band=band)
 
 
-def fitted(truth: Truth, U: float, heading: int, spectrum: Spectrum) -> Case:
+def fit_constants(truth: ShipWithMemory, U: float, heading: int, spectrum: Spectrum) -> Case:
     """The constants that fit the motions best, from the physics start and the true ones at five frequencies.
 
     There are several minima; the lowest need not be one that has converged, nor physical.
     """
     outputs, names = (("z",), ("a33", "b33")) if heading == 90 else (("z", "theta"), COEFFICIENTS)
     lines = truth.sea(spectrum, U, math.radians(heading), 0)
-    record = sailed(truth.data, truth.memory, truth.model, lines)
+    record = simulate_with_memory(truth.data, truth.memory, truth.model, lines)
     band = frequency_range([record], outputs)
     first, last = min(a for a, _ in band.values()), max(b for _, b in band.values())
     model = truth.model.with_parameters(truth.model.parameters.only_free(names))
     noise = NOISE[: len(outputs)]
-    problem = OutputError(model, cut(model, [record], outputs, None), noise)
+    problem = OutputError(model, cut_segments(model, [record], outputs, None), noise)
     within = truth.coefficients(names, np.linspace(first, last, 5), U)
     found = min(
-        (levenberg_marquardt(problem, start, problem.measured_starts(), evaluations=400)
+        (levenberg_marquardt(problem, start, problem.measured_initial_states(), evaluations=400)
          for start in (problem.start(), *within)),
         key=lambda optimum: optimum.solution.value,
     )  # fmt: skip
     constants = dict(zip(names, map(float, found.solution.point), strict=True))
-    errors = np.sqrt(np.diag(np.linalg.inv(found.normal.reduced()[1])))
+    errors = np.sqrt(np.diag(np.linalg.inv(found.normal.without_local()[1])))
     power = sum((float(np.std(record[c])) / float(sd)) ** 2 for c, sd in zip(outputs, noise, strict=True))
     misfit = math.sqrt(2.0 * found.solution.value / len(record) / power)
     name = f"{U:.3g} m/s, {heading} deg, {spectrum.name}"
@@ -169,22 +169,22 @@ def is_physical(model: Model) -> bool:
     return m + a33 > 0.0 and (m + a33) * (I5 + a55) > (0.5 * (a35 + a53)) ** 2
 
 
-def operator_errors(truth: Truth, case: Case, omega: Array) -> tuple[Complex, Complex]:
+def operator_errors(truth: ShipWithMemory, case: Case, omega: Array) -> tuple[Complex, Complex]:
     """Error of the constants' heave and pitch per metre of wave, and the true ones, (outputs, n)."""
     U, beta = case.lines.U, float(case.lines.direction[0])
     true = truth.operators(omega, U, beta)
-    made = np.stack(operators(case.fitted, encounter_frequency(omega, U, beta), truth.forces(omega, U, beta)))
+    made = np.stack(transfer_functions(case.fitted, encounter_frequency(omega, U, beta), truth.forces(omega, U, beta)))
     return (made - true)[: len(case.outputs)], true[: len(case.outputs)]
 
 
-def places(case: Case) -> Array:
+def comparison_frequencies(case: Case) -> Array:
     """Frequencies of encounter: below the range, five in it, above."""
     return np.array([0.6 * case.first, *np.linspace(case.first, case.last, 5), 1.4 * case.last])
 
 
-def lines_of(truth: Truth, case: Case) -> list[Line]:
+def lines_of(truth: ShipWithMemory, case: Case) -> list[Line]:
     """What the constants of a case are worth, in numbers."""
-    grid, ends = np.linspace(case.first, case.last, 60), places(case)[[0, -1]]
+    grid, ends = np.linspace(case.first, case.last, 60), comparison_frequencies(case)[[0, -1]]
     inside = truth.coefficients(case.names, grid, case.lines.U)
     off = np.abs(case.values - inside)
     largest = np.abs(inside).max(axis=0)
@@ -209,7 +209,7 @@ def lines_of(truth: Truth, case: Case) -> list[Line]:
     return made + per_wave(truth, case) + predictions(truth, case)
 
 
-def per_wave(truth: Truth, case: Case) -> list[Line]:
+def per_wave(truth: ShipWithMemory, case: Case) -> list[Line]:
     """Largest error of heave and pitch per wave, in the range and outside."""
     waves = np.linspace(case.lines.omega[0], case.lines.omega[-1], 120)
     met = np.abs(encounter_frequency(waves, case.lines.U, case.lines.direction[0]))
@@ -225,7 +225,7 @@ def per_wave(truth: Truth, case: Case) -> list[Line]:
     ]
 
 
-def predictions(truth: Truth, case: Case) -> list[Line]:
+def predictions(truth: ShipWithMemory, case: Case) -> list[Line]:
     """rms of the error over rms of the motion in a new draw of the same height, of other peak periods."""
     made = []
     for period in (7.5, *OTHERS):
@@ -237,9 +237,9 @@ def predictions(truth: Truth, case: Case) -> list[Line]:
     return made
 
 
-def table(truth: Truth, case: Case) -> str:
+def table(truth: ShipWithMemory, case: Case) -> str:
     """Frequency, then true and constant value of each coefficient of its own motion."""
-    omega = places(case)
+    omega = comparison_frequencies(case)
     own = [j for j, n in enumerate(case.names) if n[1] == n[2]]
     true = truth.coefficients(case.names, omega, case.lines.U)
     header = "  rad/s" + "".join(f"{case.names[j]:>11} {'constant':>10}" for j in own)
@@ -255,13 +255,13 @@ def run(*, tables: bool = False) -> list[Line]:
         InputError: Capytaine is not installed.
     """
     data = hull()
-    truth = Truth(data, memory_of(data, FINE, 30.0), ship(data))
+    truth = ShipWithMemory(data, retardation_functions(data, FINE, 30.0), ship(data))
     made: list[Line] = []
     for U, heading, spectrum in CASES:
-        case = fitted(truth, U, heading, spectrum)
+        case = fit_constants(truth, U, heading, spectrum)
         if tables:
             print(f"  {case.name}\n{table(truth, case)}", flush=True)
-        made += [Line(f"{case.name}: {n.what}", n.value, n.unit, n.target, n.holds) for n in lines_of(truth, case)]
+        made += [Line(f"{case.name}: {n.quantity}", n.value, n.unit, n.target, n.holds) for n in lines_of(truth, case)]
     return made
 
 
@@ -272,4 +272,4 @@ if __name__ == "__main__":
     except InputError as e:
         sys.exit(str(e))
     for line in result:
-        print(f"  {line.what:<86} {line.value:>8.3g} {line.unit} {line.verdict}")
+        print(f"  {line.quantity:<86} {line.value:>8.3g} {line.unit} {line.verdict}")

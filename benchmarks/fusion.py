@@ -25,9 +25,9 @@ from measure import Line, at_most, machine
 
 from seatrial.core.equations import Model
 from seatrial.core.values import ForcePoints, Prior, Record
-from seatrial.data.trial import Role, load_trial, records_of
-from seatrial.estimation.identify import Settings, identified
-from seatrial.estimation.identify.identify import settings_of
+from seatrial.data.trial import Role, load_records, load_trial
+from seatrial.estimation.identify import Settings, estimate_model
+from seatrial.estimation.identify.identify import settings_from_trial
 from seatrial.estimation.problem.static_forces import StaticForces
 from seatrial.physics.manoeuvres.measures import measures
 from seatrial.physics.manoeuvres.programme import programme
@@ -56,7 +56,7 @@ LIMIT = 4.0
 
 
 @dataclass(frozen=True)
-class Moved:
+class DiameterSpread:
     """Predicted tactical diameter in ship lengths by prior sd in per cent, and the true one."""
 
     predicted: Mapping[float, float]
@@ -73,12 +73,12 @@ class Moved:
         return 100.0 * max(abs(p / self.truth - 1.0) for p in self.predicted.values())
 
 
-def steered(model: Model, text: str) -> Record:
+def simulate_calm(model: Model, text: str) -> Record:
     """One manoeuvre in calm air at constant propeller rate."""
     return manoeuvre(model, programme(text), dt=1.0 / RATE, inputs={"n": REVOLUTIONS}, approach=30.0)
 
 
-def windy(model: Model, record: Record, rng: np.random.Generator) -> Record:
+def with_wind(model: Model, record: Record, rng: np.random.Generator) -> Record:
     """The same rudder angles in a wind of random direction with gusts (first-order), of which no record is left."""
     keep, gust = math.exp(-1.0 / (RATE * GUST_SECONDS)), np.zeros(len(record))
     for i, draw in enumerate(rng.standard_normal(len(record) - 1)):
@@ -100,7 +100,7 @@ def noisy(record: Record, rng: np.random.Generator) -> Record:
     return replace(record, channels=made)
 
 
-def captive(
+def simulate_captive_points(
     model: Model,
     rng: np.random.Generator,
     speed: float,
@@ -129,7 +129,7 @@ def captive(
     )
 
 
-def off_centre(model: Model, rng: np.random.Generator) -> dict[str, float]:
+def off_centre_means(model: Model, rng: np.random.Generator) -> dict[str, float]:
     """Prior means 10-20 % beside the truth, to either side."""
     shift = rng.uniform(*OFF_CENTRE, len(FREE)) * rng.choice((-1.0, 1.0), len(FREE))
     return {name: model.parameters[name].value * (1.0 + s) for name, s in zip(FREE, shift, strict=True)}
@@ -144,41 +144,45 @@ def with_priors(model: Model, means: Mapping[str, float], percent: float) -> Mod
 
 def diameter(model: Model) -> float:
     """Tactical diameter of the 35 deg turn in ship lengths."""
-    return measures(steered(model, TURN), model.parameters["L"].value)["tactical_diameter_L"]
+    return measures(simulate_calm(model, TURN), model.parameters["L"].value)["tactical_diameter_L"]
 
 
-def moved(runs: list[Record], means: Mapping[str, float], truth: Model, points: tuple[ForcePoints, ...]) -> Moved:
+def diameter_spread(
+    runs: list[Record], means: Mapping[str, float], truth: Model, points: tuple[ForcePoints, ...]
+) -> DiameterSpread:
     """Fit with each prior width and predict the turn."""
     names, settings = [r.name for r in runs], Settings(channels=tuple(NOISE), forces=points, workers=1)
     made = {}
     for percent in SPREADS:
-        found = identified(with_priors(truth, means, percent), runs, names, truth.parameters["L"].value, settings)
+        found = estimate_model(with_priors(truth, means, percent), runs, names, truth.parameters["L"].value, settings)
         made[percent] = diameter(found.model)
-    return Moved(made, diameter(truth))
+    return DiameterSpread(made, diameter(truth))
 
 
-def compared(seed: int = SEED, training: tuple[str, ...] = TRAINING) -> tuple[Moved, Moved]:
+def compare_with_captive(
+    seed: int = SEED, training: tuple[str, ...] = TRAINING
+) -> tuple[DiameterSpread, DiameterSpread]:
     """Without and with captive points, from the same records and priors."""
-    truth = kvlcc2_full().applied(mmg())
+    truth = kvlcc2_full().applied_to(mmg())
     streams = [np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(3)]
-    calm = [steered(truth, text) for text in training]
-    runs = [noisy(windy(truth, record, streams[0]), streams[0]) for record in calm]
-    means = off_centre(truth, streams[1])
-    points = captive(truth, streams[2], float(calm[0]["u"][0]))
-    return moved(runs, means, truth, ()), moved(runs, means, truth, (points,))
+    calm = [simulate_calm(truth, text) for text in training]
+    runs = [noisy(with_wind(truth, record, streams[0]), streams[0]) for record in calm]
+    means = off_centre_means(truth, streams[1])
+    points = simulate_captive_points(truth, streams[2], float(calm[0]["u"][0]))
+    return diameter_spread(runs, means, truth, ()), diameter_spread(runs, means, truth, (points,))
 
 
 RECORDED = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"
 
 
-def recorded(seed: int = SEED) -> tuple[Moved, Moved]:
+def compare_on_records(seed: int = SEED) -> tuple[DiameterSpread, DiameterSpread]:
     """Without and with simulated captive points, from the recorded zigzags; errors are against the published turn."""
     trial = load_trial(RECORDED)
-    found = [r for r in records_of(trial)[0] if r.role is Role.TRAIN]
+    found = [r for r in load_records(trial)[0] if r.role is Role.TRAIN]
     runs, sessions = [r.record.resampled(trial.estimate.rate or RATE) for r in found], [r.session for r in found]
     published, length = trial.model.with_parameters(trial.model.parameters.without_priors()), trial.ship.length
     speed, n = (float(np.median(np.concatenate([r[s][:10] for r in runs]))) for s in ("u", "n"))
-    points = captive(published, np.random.default_rng(seed), speed, revolutions=n)
+    points = simulate_captive_points(published, np.random.default_rng(seed), speed, revolutions=n)
     means = {p.name: p.value for p in published.parameters.free}
 
     def turn(model: Model) -> float:
@@ -186,17 +190,18 @@ def recorded(seed: int = SEED) -> tuple[Moved, Moved]:
         made = manoeuvre(model, programme(TURN), dt=0.1, inputs={"n": n}, slew_rate=slew)
         return measures(made, length)["tactical_diameter_L"]
 
-    def over(forces: tuple[ForcePoints, ...]) -> Moved:
-        settings = replace(settings_of(trial, runs), forces=forces)
+    def spread_with(forces: tuple[ForcePoints, ...]) -> DiameterSpread:
+        settings = replace(settings_from_trial(trial, runs), forces=forces)
         models = {p: with_priors(published, means, p) for p in SPREADS}
-        return Moved(
-            {p: turn(identified(m, runs, sessions, length, settings).model) for p, m in models.items()}, turn(published)
+        return DiameterSpread(
+            {p: turn(estimate_model(m, runs, sessions, length, settings).model) for p, m in models.items()},
+            turn(published),
         )
 
-    return over(()), over((points,))
+    return spread_with(()), spread_with((points,))
 
 
-def recorded_lines(pair: tuple[Moved, Moved]) -> list[Line]:
+def recorded_lines(pair: tuple[DiameterSpread, DiameterSpread]) -> list[Line]:
     """The table of the recorded zigzags."""
     alone, fused = pair
     table = [Line("recorded zigzags: the published coefficients' diameter", fused.truth, "L")]
@@ -209,7 +214,7 @@ def recorded_lines(pair: tuple[Moved, Moved]) -> list[Line]:
     ]
 
 
-def lines(pairs: list[tuple[Moved, Moved]]) -> list[Line]:
+def lines(pairs: list[tuple[DiameterSpread, DiameterSpread]]) -> list[Line]:
     """The table over all draws; the target holds for the largest move."""
     table = [Line("true tactical diameter", pairs[0][0].truth, "L")]
     for label, of in (("zigzags alone", [a for a, _ in pairs]), ("zigzags and captive points", [b for _, b in pairs])):
@@ -234,8 +239,8 @@ def lines(pairs: list[tuple[Moved, Moved]]) -> list[Line]:
 
 def run(draws: int = DRAWS, seed: int = SEED) -> list[Line]:
     """All draws of noise, wind, prior means and points."""
-    table = lines([compared(seed + i) for i in range(draws)])
-    return [*table, *recorded_lines(recorded(seed))] if os.environ.get("SEATRIAL_DATA") else table
+    table = lines([compare_with_captive(seed + i) for i in range(draws)])
+    return [*table, *recorded_lines(compare_on_records(seed))] if os.environ.get("SEATRIAL_DATA") else table
 
 
 def main(arguments: list[str]) -> int:
@@ -247,7 +252,7 @@ def main(arguments: list[str]) -> int:
     print(machine())
     table = run(given.draws, given.seed)
     for line in table:
-        print(f"  {line.what:<66} {line.value:>10.4g} {line.unit:<10} {line.verdict}")
+        print(f"  {line.quantity:<66} {line.value:>10.4g} {line.unit:<10} {line.verdict}")
     return int(any(line.holds is False for line in table))
 
 

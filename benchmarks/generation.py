@@ -27,7 +27,7 @@ print(json.dumps({"write": t[1] - t[0], "generate": t[2] - t[1], "compile": t[3]
 """
 
 
-def fresh() -> tuple[dict[str, float], dict[str, float]]:
+def start_up_times() -> tuple[dict[str, float], dict[str, float]]:
     """Times [s] with an empty cache, and in a second process with the cache the first one left."""
     with tempfile.TemporaryDirectory() as cache:
         environment = {**os.environ, "SEATRIAL_CACHE": cache}
@@ -38,7 +38,7 @@ def fresh() -> tuple[dict[str, float], dict[str, float]]:
 
 def jacobian_ratio() -> tuple[float, float]:
     """Nanoseconds of one right-hand side, and value plus full Jacobian as a multiple of it."""
-    model = kvlcc2_l7().applied(mmg())
+    model = kvlcc2_l7().applied_to(mmg())
     nx, width = len(model.states), len(model.states) + len(model.inputs) + len(model.parameters)
     states = np.tile([1.1, -0.2, 0.05, 0.0, 0.0, 0.3], (ROWS, 1))
     inputs = np.tile([0.3, 10.4, 0.0, 0.0], (ROWS, 1))
@@ -60,7 +60,7 @@ def jacobian_ratio() -> tuple[float, float]:
 
 def run() -> list[Line]:
     """Generation, compilation, Jacobian."""
-    cold, warm = fresh()
+    cold, warm = start_up_times()
     count = len(mmg().parameters)
     nanoseconds, ratio = jacobian_ratio()
     return [

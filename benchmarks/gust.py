@@ -23,16 +23,24 @@ from scipy.signal import lfilter
 from seatrial.core.equations import Model
 from seatrial.core.equations.bindings import Input
 from seatrial.core.values import Record
-from seatrial.data.example_series.series import APPROACH, FINE_STEP, JET_VELOCITY, RATE, SLEW_RATE, noisy, truth
-from seatrial.estimation.estimate.assemble import output_error
-from seatrial.estimation.estimate.estimate import estimate
-from seatrial.estimation.estimate.process_noise import prediction_error
-from seatrial.estimation.estimate.settings import SEGMENT_SHIP_LENGTHS, WINDOW_SHIP_LENGTHS, Settings
-from seatrial.estimation.estimate.start import start
+from seatrial.data.example_series.series import (
+    APPROACH_S,
+    FINE_STEP,
+    JET_VELOCITY,
+    SAMPLE_RATE,
+    SLEW_RATE,
+    true_model,
+    with_sensor_noise,
+)
+from seatrial.estimation.estimate.assemble import output_error_problem
+from seatrial.estimation.estimate.point_estimate import fit_output_error
+from seatrial.estimation.estimate.process_noise import fit_prediction_error
+from seatrial.estimation.estimate.settings import SEGMENT_SHIP_LENGTHS, WEAK_FORM_SHIP_LENGTHS, Settings
+from seatrial.estimation.estimate.start import find_start
 from seatrial.estimation.information.covariance import from_information
 from seatrial.numerics.kernels.steering import steer
 from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
-from seatrial.numerics.workers import mapped_in_processes
+from seatrial.numerics.workers import map_in_processes
 from seatrial.physics.manoeuvres import zigzag
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.manoeuvres.steering import FINISHED, Steering, rudder_angles
@@ -48,7 +56,7 @@ _STEP, _BASE = -2, -1
 
 
 @njit(COMMAND_SIGNATURE, **OPTIONS)
-def pushed(t, x, memory, u):
+def forced_helmsman(t, x, memory, u):
     """The zigzag helmsman; behind his memory lie the forces of every step, which become inputs."""
     zigzag.helmsman(t, x, memory, u)
     first = int(memory[_BASE]) + 3 * round(t / memory[_STEP])
@@ -56,9 +64,9 @@ def pushed(t, x, memory, u):
         u[2 + j] = memory[first + j]
 
 
-def gusty_craft() -> Model:
+def craft_with_forces() -> Model:
     """The craft with three more inputs: forces on surge and sway [N], moment in yaw [N m]."""
-    craft = truth()
+    craft = true_model()
     inertia = {"u": ("gust_x", "m", "m_x"), "v": ("gust_y", "m", "m_y"), "r": ("gust_n", "I_z", "J_z")}
 
     def rate(state: str) -> sp.Expr:
@@ -85,25 +93,25 @@ def forces(kind: str, rows: int, length: float, rng: np.random.Generator) -> Arr
     return FORCE * unit * [1.0, 1.0, LEVER_LENGTHS * length]
 
 
-def sailed(kind: str, executes: int, rng: np.random.Generator) -> Record:
+def simulate_run(kind: str, executes: int, rng: np.random.Generator) -> Record:
     """One run of the series with the helmsman in the loop, without sensor noise."""
-    craft, pushed_craft = truth(), gusty_craft()
+    craft, pushed_craft = true_model(), craft_with_forces()
     plan, length = programme(f"consecutive-zigzags:{executes}"), craft.parameters["L"].value
     begin = np.zeros(len(craft.states))
     begin[0] = approach_speed(craft, np.array([0.0, JET_VELOCITY]))
     unit = length / begin[0]
-    rows = int((APPROACH + plan.lengths * unit) / FINE_STEP) + 1
+    rows = int((APPROACH_S + plan.maximum_lengths * unit) / FINE_STEP) + 1
     push = np.zeros((rows, 3)) if kind == "calm" else forces(kind, rows, length, rng)
-    memory = plan.memory(Steering(3, 2, 0, -1.0, SLEW_RATE, FINE_STEP, APPROACH, unit))
+    memory = plan.memory(Steering(3, 2, 0, -1.0, SLEW_RATE, FINE_STEP, APPROACH_S, unit))
     memory = np.concatenate([memory, push.ravel(), [FINE_STEP, len(memory)]])
     states, inputs = np.empty((rows, len(begin))), np.empty((rows, 5))
     held = np.array([0.0, JET_VELOCITY, 0.0, 0.0, 0.0])
     rates, values = pushed_craft.compiled.rates, pushed_craft.parameters.values
-    steer(rates, pushed, begin, held, values, memory, FINE_STEP, states, inputs)
-    last, kept = round(memory[FINISHED] / FINE_STEP) + 1, round(1.0 / (FINE_STEP * RATE))
+    steer(rates, forced_helmsman, begin, held, values, memory, FINE_STEP, states, inputs)
+    last, kept = round(memory[FINISHED] / FINE_STEP) + 1, round(1.0 / (FINE_STEP * SAMPLE_RATE))
     angles = rudder_angles(inputs[:last, 0])[::kept]
     used = np.stack([angles, np.full(len(angles), JET_VELOCITY)], axis=1)
-    time_axis = np.linspace(0.0, (len(used) - 1) / RATE, len(used))
+    time_axis = np.linspace(0.0, (len(used) - 1) / SAMPLE_RATE, len(used))
     return record_of(craft, kind, time_axis, np.ascontiguousarray(states[:last:kept]), np.empty((len(used), 0)), used)
 
 
@@ -117,10 +125,10 @@ class Item:
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
+class GustOutcome:
     """Errors and predicted standard errors of both criteria, (coefficients,), what the gate said, times in s."""
 
-    whole: tuple[Array, Array]
+    output_error: tuple[Array, Array]
     innovations: tuple[Array, Array]
     is_needed: bool
     is_white: bool
@@ -130,38 +138,44 @@ class Outcome:
     wall: float
 
 
-def outcome(item: Item) -> Outcome:
+def outcome(item: Item) -> GustOutcome:
     """Make one run; fit it by output error over the whole run, and by prediction error from nothing."""
-    model, rng = truth(), np.random.default_rng(item.stream)
-    record = noisy(sailed(item.kind, item.executes, rng), rng, SEED)
+    model, rng = true_model(), np.random.default_rng(item.stream)
+    record = with_sensor_noise(simulate_run(item.kind, item.executes, rng), rng, SEED)
     names, settings = model.parameters.free_names, Settings(workers=1)
     values = np.array([model.parameters[n].value for n in names])
     blank = model.with_values(dict.fromkeys(names, 0.0))
     unit = model.parameters["L"].value / float(np.median(record["u"]))
-    begin = start(
-        output_error(blank, [record], [record.name], SEGMENT_SHIP_LENGTHS * unit, settings), [record],
-        WINDOW_SHIP_LENGTHS * unit,
+    begin = find_start(
+        output_error_problem(blank, [record], [record.name], SEGMENT_SHIP_LENGTHS * unit, settings), [record],
+        WEAK_FORM_SHIP_LENGTHS * unit,
     )  # fmt: skip
-    segments = estimate(begin.problem, begin.shared, begin.local, {})
+    segments = fit_output_error(begin.problem, begin.common_parameters, begin.initial_states, {})
     cpu, wall = time.process_time(), time.perf_counter()
-    found = prediction_error(segments)
+    found = fit_prediction_error(segments)
     cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
-    problem = output_error(model, [record], [record.name], np.inf, settings)
-    whole = estimate(problem, problem.start(), problem.measured_starts(), {})
+    problem = output_error_problem(model, [record], [record.name], np.inf, settings)
+    whole = fit_output_error(problem, problem.start(), problem.measured_initial_states(), {})
     # the information matrix of white residuals: what a user of output error is told
     told = from_information(
-        replace(whole.problem, inflation=None).normal(whole.shared, whole.optimum.local).reduced()[1]
+        replace(whole.problem, inflation=None).normal(whole.common_parameters, whole.optimum.local).without_local()[1]
     )
-    return Outcome(
-        (whole.shared - values, told.standard_error), (found.shared - values, found.interval.standard_error),
-        found.gate.is_needed, found.gate.is_white, found.gate.ratio, len(record), cpu, wall,
-    )  # fmt: skip
+    return GustOutcome(
+        (whole.common_parameters - values, told.standard_error),
+        (found.common_parameters - values, found.interval.standard_error),
+        found.test.is_needed,
+        found.test.is_white,
+        found.test.likelihood_ratio,
+        len(record),
+        cpu,
+        wall,
+    )
 
 
-def outcomes(kind: str, runs: int, executes: int, seed: int, workers: int | None) -> list[Outcome]:
+def outcomes(kind: str, runs: int, executes: int, seed: int, workers: int | None) -> list[GustOutcome]:
     """`runs` runs of one kind."""
     streams = np.random.SeedSequence([seed, KINDS.index(kind)]).spawn(runs)
-    return mapped_in_processes(outcome, [Item(kind, s, executes) for s in streams], workers=workers)
+    return map_in_processes(outcome, [Item(kind, s, executes) for s in streams], workers=workers)
 
 
 def ratios(pairs: Sequence[tuple[Array, Array]]) -> Array:
@@ -170,24 +184,24 @@ def ratios(pairs: Sequence[tuple[Array, Array]]) -> Array:
     return np.sqrt(np.mean(errors**2, axis=0) / np.mean(told**2, axis=0))
 
 
-def lines(kind: str, made: Sequence[Outcome]) -> list[Line]:
+def lines(kind: str, results: Sequence[GustOutcome]) -> list[Line]:
     """The table of one kind against its targets."""
-    model, runs = truth(), len(made)
+    model, runs = true_model(), len(results)
     names = model.parameters.free_names
     values = np.array([model.parameters[n].value for n in names])
-    whole, best = ratios([o.whole for o in made]), ratios([o.innovations for o in made])
-    share = np.sqrt(np.mean([(o.whole[0] / values) ** 2 for o in made], axis=0))
-    shut = sum(not o.is_needed for o in made)
+    whole, best = ratios([o.output_error for o in results]), ratios([o.innovations for o in results])
+    share = np.sqrt(np.mean([(o.output_error[0] / values) ** 2 for o in results], axis=0))
+    shut = sum(not o.is_needed for o in results)
     gate = Line("gate: process noise needed", runs - shut, "", f"{runs} of {runs}", shut == 0)
     if kind == "calm":
         gate = Line("gate: no process noise", shut, "", f"{runs} of {runs}", shut == runs)
     table = [
         gate,
-        Line("innovations white", sum(o.is_white for o in made), f"of {runs}"),
-        Line("twice the log-likelihood gained, median", float(np.median([o.ratio for o in made])), ""),
-        Line("prediction error, samples", float(np.median([o.samples for o in made])), ""),
-        at_most("prediction error, one core's time, median", float(np.median([o.cpu for o in made])), "s", SECONDS),
-        Line("prediction error, one core's time, largest", max(o.cpu for o in made), "s"),
+        Line("innovations white", sum(o.is_white for o in results), f"of {runs}"),
+        Line("twice the log-likelihood gained, median", float(np.median([o.ratio for o in results])), ""),
+        Line("prediction error, samples", float(np.median([o.samples for o in results])), ""),
+        at_most("prediction error, one core's time, median", float(np.median([o.cpu for o in results])), "s", SECONDS),
+        Line("prediction error, one core's time, largest", max(o.cpu for o in results), "s"),
     ]
     wrong = int(np.argmax(whole))
     worst = Line(f"output error, RMSE / predicted, worst ({names[wrong]})", float(whole[wrong]), "")
@@ -199,7 +213,7 @@ def lines(kind: str, made: Sequence[Outcome]) -> list[Line]:
     ]
     limits = f"{1 - WITHIN:g} to {1 + WITHIN:g}"
     for i, name in enumerate(names):
-        error = np.sqrt(np.mean([o.innovations[1][i] ** 2 for o in made])) / abs(values[i])
+        error = np.sqrt(np.mean([o.innovations[1][i] ** 2 for o in results])) / abs(values[i])
         what = f"{name}: prediction error, RMSE / predicted ({error:.2%} of the value; output error {whole[i]:.3g})"
         table.append(Line(what, float(best[i]), "", limits, bool(abs(best[i] - 1.0) <= WITHIN)))
     return table
@@ -207,7 +221,7 @@ def lines(kind: str, made: Sequence[Outcome]) -> list[Line]:
 
 def run() -> list[Line]:
     """All three kinds; some twenty minutes on two cores."""
-    return [replace(line, what=f"{kind}: {line.what}") for kind in KINDS
+    return [replace(line, quantity=f"{kind}: {line.quantity}") for kind in KINDS
             for line in lines(kind, outcomes(kind, RUNS, EXECUTES, SEED, None))]  # fmt: skip
 
 
@@ -226,7 +240,7 @@ def main(arguments: list[str]) -> int:
         print(f"{kind} gust, {given.runs} runs:" if kind != "calm" else f"calm, {given.runs} runs:")
         table = lines(kind, outcomes(kind, given.runs, given.executes, given.seed, given.workers))
         for line in table:
-            print(f"  {line.what:<90} {line.value:>10.4g} {line.unit:<6} {line.verdict}", flush=True)
+            print(f"  {line.quantity:<90} {line.value:>10.4g} {line.unit:<6} {line.verdict}", flush=True)
         missed = missed or any(line.holds is False for line in table)
     return int(missed)
 

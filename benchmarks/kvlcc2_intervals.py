@@ -13,20 +13,20 @@ import numpy as np
 from measure import Line, at_least, at_most, machine
 
 from seatrial.core.results import Fit
-from seatrial.data.trial import Role, TrialRecord, load_trial, records_of
-from seatrial.data.trial.approach import approach_of
-from seatrial.estimation.estimate.fit import Identified, identified
-from seatrial.estimation.estimate.intervals import intervals
-from seatrial.estimation.estimate.settings import Intervals
-from seatrial.estimation.identify.identify import identify, settings_of
-from seatrial.estimation.predict.cross_validation import Protocol
-from seatrial.estimation.predict.window_bands import covered, missed_windows
-from seatrial_studies.alexandersson2022.margins import (
+from seatrial.data.trial import Role, TrialRecord, load_records, load_trial
+from seatrial.data.trial.approach import approach_condition
+from seatrial.estimation.estimate.fit import Estimation, estimate_model
+from seatrial.estimation.estimate.intervals import estimate_uncertainty
+from seatrial.estimation.estimate.settings import IntervalMethod
+from seatrial.estimation.identify.identify import identify, settings_from_trial
+from seatrial.estimation.predict.cross_validation import HoldoutProtocol
+from seatrial.estimation.predict.window_bands import band_coverage, holdout_windows
+from seatrial_studies.alexandersson2022.prediction_coverage import (
     HALF_WIDTH_LIMIT,
     HELD_OUT_SHARE,
     SHARE_LIMITS,
     WINDOW_S,
-    turn_margins,
+    simulated_turn_intervals,
 )
 from seatrial_studies.alexandersson2022.published import SIDES
 
@@ -34,26 +34,26 @@ TRIAL = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"
 SECONDS = 60.0
 
 
-def turned(fit: Fit, kind: str) -> Iterator[Line]:
+def turn_lines(fit: Fit, kind: str) -> Iterator[Line]:
     """Half widths of the turns, and whether MARIN's values lie inside."""
     train = [p.measured for p in fit.predictions if p.role == "training"]
-    approach = approach_of(train, fit.model)
-    made = [m for side in SIDES for m in turn_margins(fit, side, approach)]
+    approach = approach_condition(train, fit.model)
+    made = [m for side in SIDES for m in simulated_turn_intervals(fit, side, approach)]
     for m in made:
         what, is_limited = f"{kind}: {m.measure} to {m.side}, half width", m.measure == "tactical diameter"
         yield at_most(what, m.half_width, "%", HALF_WIDTH_LIMIT) if is_limited else Line(what, m.half_width, "%")
-    yield Line(f"{kind}: MARIN's values inside", sum(m.holds for m in made), f"of {len(made)}")
+    yield Line(f"{kind}: MARIN's values inside", sum(m.contains_measured for m in made), f"of {len(made)}")
     told = [m for p in fit.validation() for m in p.measures.values() if None not in (m.measured, m.lower, m.upper)]
     told = [m for m in told if m.upper != m.lower]
     inside = sum(m.lower <= m.measured <= m.upper for m in told)  # type: ignore[operator]
     yield Line(f"{kind}: measures of Z_35_05 inside", inside, f"of {len(told)}")
 
 
-def bands(found: Identified, train: Sequence[TrialRecord], held: Sequence[TrialRecord]) -> Iterator[Line]:
+def band_lines(estimation: Estimation, train: Sequence[TrialRecord], held: Sequence[TrialRecord]) -> Iterator[Line]:
     """Shares of headings inside the bands of windows, runs left out and held out."""
     within, beyond = (
         [c.shares["psi"] for c in one]
-        for one in covered(missed_windows(found, train, held, Protocol(window_s=WINDOW_S)))
+        for one in band_coverage(holdout_windows(estimation, train, held, HoldoutProtocol(window_s=WINDOW_S)))
     )
     low, high = SHARE_LIMITS
     share = float(np.mean(within))
@@ -66,26 +66,26 @@ def lines() -> Iterator[Line]:
     """Agreement, bands, times, widths, family."""
     trial = load_trial(TRIAL)
     rate = trial.estimate.rate
-    used = [replace(r, record=r.record.resampled(rate) if rate else r.record) for r in records_of(trial)[0]]
+    used = [replace(r, record=r.record.resampled(rate) if rate else r.record) for r in load_records(trial)[0]]
     train, held = ([r for r in used if r.role is role] for role in (Role.TRAIN, Role.VALIDATE))
     records = [r.record for r in train]
-    settings = settings_of(trial, records)
-    found = identified(trial.model, records, [r.session for r in train], trial.ship.length, settings)
-    full = intervals(found.made, found.inflation, Intervals.JACKKNIFE)
-    free = found.made.problem.free
+    settings = settings_from_trial(trial, records)
+    found = estimate_model(trial.model, records, [r.session for r in train], trial.ship.length, settings)
+    full = estimate_uncertainty(found.estimate, found.inflation, IntervalMethod.JACKKNIFE)
+    free = found.estimate.problem.free
     for i, name in enumerate(free):
         ratio = found.interval.standard_error[i] / full.interval.standard_error[i]
         yield Line(f"one-step over full jackknife, priors included, {name}", float(ratio), "")
-    yield Line("one-step over full jackknife, scatter of runs, median", full.agreement or np.nan, "")
-    yield from bands(found, train, held)
-    yield from turned(identify(trial), "one-step jackknife")
+    yield Line("one-step over full jackknife, scatter of runs, median", full.one_step_ratio or np.nan, "")
+    yield from band_lines(found, train, held)
+    yield from turn_lines(identify(trial), "one-step jackknife")
     began = time.perf_counter()
-    fit = identify(trial, intervals=Intervals.JACKKNIFE)
-    intervals(found.made, found.inflation, Intervals.BOOTSTRAP, np.random.default_rng(0))
+    fit = identify(trial, intervals=IntervalMethod.JACKKNIFE)
+    estimate_uncertainty(found.estimate, found.inflation, IntervalMethod.BOOTSTRAP, np.random.default_rng(0))
     yield at_most("full jackknife, family, 40 bootstraps, two cores", time.perf_counter() - began, "s", SECONDS)
-    yield from turned(fit, "jackknife and ensemble")
-    for m in fit.family:
-        yield Line(f"family: {m.name}{', tied' if m.tied else ''}", m.heading_deg or np.nan, "deg")
+    yield from turn_lines(fit, "jackknife and ensemble")
+    for m in fit.candidate_models:
+        yield Line(f"family: {m.name}{', tied' if m.is_tied else ''}", m.heading_deg or np.nan, "deg")
 
 
 def main() -> int:
@@ -94,7 +94,7 @@ def main() -> int:
     table = []
     for line in lines():
         table.append(line)
-        print(f"  {line.what:<72} {line.value:>9.4g} {line.unit:<10} {line.verdict}", flush=True)
+        print(f"  {line.quantity:<72} {line.value:>9.4g} {line.unit:<10} {line.verdict}", flush=True)
     return int(any(line.holds is False for line in table))
 
 

@@ -13,8 +13,8 @@ import numpy as np
 from measure import machine
 
 from seatrial.core.values import Prior
-from seatrial.data.trial import Role, Trial, load_trial, records_of
-from seatrial_studies.alexandersson2022.left_out import left_out
+from seatrial.data.trial import Role, Trial, load_records, load_trial
+from seatrial_studies.alexandersson2022.leave_one_out import leave_one_out
 
 TRIAL = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"
 PUBLISHED_THRUST = {"k_0": 0.2931, "k_1": -0.2753, "k_2": -0.1385}
@@ -62,14 +62,14 @@ def candidates(trial: Trial) -> Iterator[Candidate]:
 def main() -> None:
     """Print the table."""
     trial = load_trial(TRIAL)
-    records, _ = records_of(trial)
+    records, _ = load_records(trial)
     rate = trial.estimate.rate
     train = [replace(r, record=r.record.resampled(rate)) for r in records if r.role is Role.TRAIN]
     print(machine())
     print(f"{'candidate':<38}{'all twelve':>16}{'Z_30_05':>16}{'score':>8}")
     for candidate in candidates(trial):
-        made = left_out(candidate.applied(trial), train, lambda _: {})
-        errors = np.array([[m.whole.rms["psi_deg"], m.whole.rms["position_m"]] for m in made])
+        made = leave_one_out(candidate.applied(trial), train, lambda _: {})
+        errors = np.array([[m.prediction.rms["psi_deg"], m.prediction.rms["position_m"]] for m in made])
         largest = errors[[m.run.endswith(LARGEST) for m in made]][0]
         score = float(np.sum((errors.mean(axis=0) + largest) / (HEADING_DEG, POSITION_M)))
         pairs = "".join(f"{deg:>7.2f} deg{m:>5.2f} m".rjust(16) for deg, m in (errors.mean(axis=0), largest))

@@ -18,12 +18,20 @@ from scipy.linalg import expm, solve_continuous_lyapunov
 from scipy.signal import lsim
 
 from seatrial.numerics.optimise import Box, GeneticSettings, RandomWeightGenetic, search
-from seatrial.physics.loops import Block, Exposure, HullFactor, Performance, Seen, TransferLoop, exposure
-from seatrial.physics.loops.exposure import over_nodes
+from seatrial.physics.loops import (
+    Block,
+    EncounterSpectrum,
+    HullFactor,
+    LoopSignal,
+    Performance,
+    TransferLoop,
+    wave_slope_spectrum,
+)
+from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
 from seatrial.physics.loops.fin import BOUNDS, ROLL, Preamplifier, fin_loop
-from seatrial.physics.loops.objective import off_target, variance
-from seatrial.physics.loops.performance import rows_of
-from seatrial.physics.loops.state_space import StateSpace, canonical, state_space
+from seatrial.physics.loops.objective import squared_deviation, variance
+from seatrial.physics.loops.performance import distinct_variances
+from seatrial.physics.loops.state_space import StateSpace, controllable_form, state_space
 from seatrial.physics.sea.spectrum import ittc
 
 DURATION, DT, COUNT, POOL, SOME = 1000.0, 0.1, 20000, 400, 20
@@ -31,34 +39,37 @@ LOWER, UPPER = (np.array(side) for side in zip(*BOUNDS.values(), strict=True))
 TARGET = math.radians(math.sqrt(150.31)) ** 2
 ROBUST = 5.0
 OBJECTIVES = (
-    variance("roll", "rad^2", Seen.OUTPUT),
-    off_target("fin", Seen.ACTUATOR, TARGET, one_sided=False),
-    variance("rate", "rad^2/s^2", Seen.ACTUATOR, 1),
+    variance("roll", "rad^2", LoopSignal.OUTPUT),
+    squared_deviation("fin", LoopSignal.ACTUATOR, TARGET, one_sided=False),
+    variance("rate", "rad^2/s^2", LoopSignal.ACTUATOR, 1),
 )
-ROWS, PLACES = rows_of(OBJECTIVES)
+ROWS, PLACES = distinct_variances(OBJECTIVES)
 SHAPED = Block("sea", (1.0, 0.0), (1.0, 0.54, 0.81))
 
 
-def sea() -> Exposure:
+def sea() -> EncounterSpectrum:
     """Beam sea of 3.3 m at 18 kn."""
     hull = HullFactor(100.0, 10.5, 3.4)
-    return exposure(ittc(3.3), 18.0 * 1852.0 / 3600.0, math.pi / 2.0, ROLL, hull)
+    return wave_slope_spectrum(ittc(3.3), 18.0 * 1852.0 / 3600.0, math.pi / 2.0, ROLL, hull)
 
 
-def record(of: Exposure, rng: np.random.Generator) -> np.ndarray:
+def record(slope_spectrum: EncounterSpectrum, rng: np.random.Generator) -> np.ndarray:
     """Effective wave slope [rad] over time, random phases."""
     t, u = np.arange(round(DURATION / DT) + 1) * DT, 0.0
     for omega, energy, phase in zip(
-        of.omega_e, of.energy, rng.uniform(0.0, 2.0 * math.pi, len(of.energy)), strict=True
+        slope_spectrum.omega_e,
+        slope_spectrum.energy,
+        rng.uniform(0.0, 2.0 * math.pi, len(slope_spectrum.energy)),
+        strict=True,
     ):
         u = u + math.sqrt(2.0 * energy) * np.cos(omega * t + phase)
     return np.asarray(u)
 
 
-def seen_of(made: StateSpace, gains: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def output_rows(realisation: StateSpace, gains: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """A (n, n) and rows for roll, fin angle, fin rate (3, n) at some gains."""
-    A, a = made.closed(gains), made.actuator(gains)
-    return A, np.stack([made.c, a, a @ A])
+    A, a = realisation.closed_loop_matrix(gains), realisation.actuator_row(gains)
+    return A, np.stack([realisation.c, a, a @ A])
 
 
 @njit(fastmath=True)
@@ -96,21 +107,21 @@ def plain_mean_squares(phi: np.ndarray, gamma: np.ndarray, C: np.ndarray, u: np.
     out /= len(u)
 
 
-class Simulated:
+class TimeDomainVariances:
     """Variances in the time domain."""
 
     def __init__(self, loop: TransferLoop, u: np.ndarray, *, is_plain: bool = False) -> None:
-        self.made, self.u, self.is_plain = state_space(loop), u, is_plain
+        self.realisation, self.u, self.is_plain = state_space(loop), u, is_plain
 
-    def of(self, gains: np.ndarray) -> np.ndarray:
+    def variances(self, gains: np.ndarray) -> np.ndarray:
         """Variances (m, 3) at gains (m, g); infinite where unstable."""
-        out, n = np.full((len(gains), 3), np.inf), len(self.made.b)
+        out, n = np.full((len(gains), 3), np.inf), len(self.realisation.b)
         for row, k in zip(out, gains, strict=True):
-            A, C = seen_of(self.made, k)
+            A, C = output_rows(self.realisation, k)
             if np.linalg.eigvals(A).real.max() >= 0.0:
                 continue
             block = np.zeros((n + 1, n + 1))
-            block[:n, :n], block[:n, n] = A * DT, self.made.b * DT
+            block[:n, :n], block[:n, n] = A * DT, self.realisation.b * DT
             whole = expm(block)
             phi, gamma = whole[:n, :n], whole[:n, n].copy()
             if self.is_plain:
@@ -120,26 +131,26 @@ class Simulated:
         return out
 
 
-def by_lsim(made: StateSpace, gains: np.ndarray, u: np.ndarray) -> np.ndarray:
+def by_lsim(realisation: StateSpace, gains: np.ndarray, u: np.ndarray) -> np.ndarray:
     """The three variances by SciPy."""
-    A, C = seen_of(made, gains)
-    y = lsim((A, made.b[:, None], C, np.zeros((3, 1))), u, np.arange(len(u)) * DT)[1]
+    A, C = output_rows(realisation, gains)
+    y = lsim((A, realisation.b[:, None], C, np.zeros((3, 1))), u, np.arange(len(u)) * DT)[1]
     return np.mean(y**2, axis=0)
 
 
-def by_control(made: StateSpace, gains: np.ndarray, u: np.ndarray) -> np.ndarray:
+def by_control(realisation: StateSpace, gains: np.ndarray, u: np.ndarray) -> np.ndarray:
     """The three variances by python-control."""
-    A, C = seen_of(made, gains)
-    system = control.ss(A, made.b[:, None], C, np.zeros((3, 1)))
+    A, C = output_rows(realisation, gains)
+    system = control.ss(A, realisation.b[:, None], C, np.zeros((3, 1)))
     return np.mean(control.forced_response(system, np.arange(len(u)) * DT, u).outputs ** 2, axis=1)
 
 
-def by_lyapunov(made: StateSpace, gains: np.ndarray) -> np.ndarray:
+def by_lyapunov(realisation: StateSpace, gains: np.ndarray) -> np.ndarray:
     """The three variances under shaped white noise of one-sided density 1."""
-    (own_A, C), (fa, fb, fc, _) = seen_of(made, gains), canonical(SHAPED)
-    n, m = len(made.b), len(fb)
+    (own_A, C), (fa, fb, fc, _) = output_rows(realisation, gains), controllable_form(SHAPED)
+    n, m = len(realisation.b), len(fb)
     A, b = np.zeros((n + m, n + m)), np.zeros(n + m)
-    A[:n, :n], A[:n, n:], A[n:, n:], b[n:] = own_A, np.outer(made.b, fc), fa, fb
+    A[:n, :n], A[:n, n:], A[n:, n:], b[n:] = own_A, np.outer(realisation.b, fc), fa, fb
     X = solve_continuous_lyapunov(A, -math.pi * np.outer(b, b))[:n, :n]
     return np.einsum("ri,ij,rj->r", C, X, C)
 
@@ -149,7 +160,7 @@ def objectives(variances: np.ndarray) -> np.ndarray:
     return np.stack([o.value(variances[:, p]) for o, p in zip(OBJECTIVES, PLACES, strict=True)], axis=1)
 
 
-def searched(variances_of: Callable[[np.ndarray], np.ndarray], generations: int = 200) -> float:
+def search_seconds(variances_of: Callable[[np.ndarray], np.ndarray], generations: int = 200) -> float:
     """Seconds of the published search, population 50."""
     genetic = RandomWeightGenetic(
         Box(LOWER, UPPER), np.random.default_rng(1), GeneticSettings(population=50, generations=generations)
@@ -163,26 +174,26 @@ def run() -> list[Line]:
     """Evaluations a second, then ratios and agreements."""
     lines = []
     for reading in (Preamplifier.PRINTED, Preamplifier.WASHOUT):
-        lines += _of_reading(fin_loop(reading), reading.name.lower())
+        lines += _preamplifier_lines(fin_loop(reading), reading.name.lower())
     return lines
 
 
-def _of_reading(loop: TransferLoop, word: str) -> list[Line]:
+def _preamplifier_lines(loop: TransferLoop, word: str) -> list[Line]:
     rng = np.random.default_rng(2014)
     met = sea()
     of, made, u = Performance(loop, met, ROWS), state_space(loop), record(met, rng)
     drawn = LOWER + rng.random((COUNT, 3)) * (UPPER - LOWER)
-    stable = drawn[np.isfinite(of.of(drawn).peak)]
-    whole, alone = (fastest(lambda p=p: of.of(stable, with_peak=p), 15) / len(stable) for p in (True, False))
-    box = fastest(lambda: of.of(drawn), 15) / len(drawn)
-    k = loop.values
+    stable = drawn[np.isfinite(of.evaluate(drawn).Ms)]
+    whole, alone = (fastest(lambda p=p: of.evaluate(stable, with_Ms=p), 15) / len(stable) for p in (True, False))
+    box = fastest(lambda: of.evaluate(drawn), 15) / len(drawn)
+    k = loop.gain_values
     lsim_seconds, control_seconds = (fastest(lambda f=f: f(made, k, u), 3) for f in (by_lsim, by_control))
     lyapunov_seconds = fastest(lambda: by_lyapunov(made, k), 20)
-    apart = np.sqrt(by_lsim(made, k, u) / of.of(k).variances[0]) - 1.0
-    ours = min(searched(lambda points: of.of(points, with_peak=False).variances) for _ in range(5))
-    written_out, plain = Simulated(loop, u), Simulated(loop, u, is_plain=True)
-    np.testing.assert_allclose(written_out.of(k[None]), plain.of(k[None]), rtol=1e-9)
-    theirs, plainly = searched(written_out.of), searched(plain.of, SOME) * 200 / SOME
+    apart = np.sqrt(by_lsim(made, k, u) / of.evaluate(k).variances[0]) - 1.0
+    ours = min(search_seconds(lambda points: of.evaluate(points, with_Ms=False).variances) for _ in range(5))
+    written_out, plain = TimeDomainVariances(loop, u), TimeDomainVariances(loop, u, is_plain=True)
+    np.testing.assert_allclose(written_out.variances(k[None]), plain.variances(k[None]), rtol=1e-9)
+    theirs, plainly = search_seconds(written_out.variances), search_seconds(plain.variances, SOME) * 200 / SOME
     return [
         at_least(f"{word}: stable loops, three variances, Routh", 1e-6 / alone, "M/s", 1.0),
         at_least(f"{word}: the same with Ms", 1e-6 / whole, "M/s", 1.0),
@@ -192,7 +203,7 @@ def _of_reading(loop: TransferLoop, word: str) -> list[Line]:
         at_least(f"{word}: ratio, python-control forced_response", control_seconds / alone, "x", 1e5),
         Line(f"{word}: rms of that one record off, worst of three", float(np.abs(apart).max()), ""),
         Line(f"{word}: ratio, Lyapunov by SciPy", lyapunov_seconds / alone, "x"),
-        at_most(f"{word}: variances off Lyapunov, Ms <= {ROBUST:g}", _off(loop, made, stable), "", 1e-8),
+        at_most(f"{word}: variances off Lyapunov, Ms <= {ROBUST:g}", _lyapunov_error(loop, made, stable), "", 1e-8),
         Line(f"{word}: published search, 50 x 200", 1e3 * ours, "ms"),
         Line(f"{word}: the same in the time domain, written out", theirs, "s"),
         at_most(f"{word}: ratio to it", ours / theirs, "", 1e-3),
@@ -201,9 +212,9 @@ def _of_reading(loop: TransferLoop, word: str) -> list[Line]:
     ]
 
 
-def _off(loop: TransferLoop, made: StateSpace, gains: np.ndarray) -> float:
-    noise = over_nodes(lambda w: np.abs(SHAPED.at(w)) ** 2, 1e-4, 1e4, ROLL, "shaped noise")
-    found = Performance(loop, noise, ROWS).of(gains[:POOL])
-    robust = np.flatnonzero(found.peak <= ROBUST)
-    exact = np.array([by_lyapunov(made, gains[i]) for i in robust])
+def _lyapunov_error(loop: TransferLoop, realisation: StateSpace, gains: np.ndarray) -> float:
+    noise = disturbance_spectrum(lambda w: np.abs(SHAPED.frequency_response(w)) ** 2, 1e-4, 1e4, ROLL, "shaped noise")
+    found = Performance(loop, noise, ROWS).evaluate(gains[:POOL])
+    robust = np.flatnonzero(found.Ms <= ROBUST)
+    exact = np.array([by_lyapunov(realisation, gains[i]) for i in robust])
     return float(np.abs(found.variances[robust] / exact - 1.0).max())

@@ -12,7 +12,7 @@ from pathlib import Path
 class Line:
     """One line of the table: what, how much, and the target it is held against, where there is one."""
 
-    what: str
+    quantity: str
     value: float
     unit: str
     target: str = ""
@@ -24,14 +24,14 @@ class Line:
         return "" if self.holds is None else f"target {self.target} {'holds' if self.holds else 'missed'}"
 
 
-def at_least(what: str, value: float, unit: str, limit: float) -> Line:
+def at_least(quantity: str, value: float, unit: str, limit: float) -> Line:
     """A line whose value should not fall below `limit`."""
-    return Line(what, value, unit, f">= {limit:g} {unit}", value >= limit)
+    return Line(quantity, value, unit, f">= {limit:g} {unit}", value >= limit)
 
 
-def at_most(what: str, value: float, unit: str, limit: float) -> Line:
+def at_most(quantity: str, value: float, unit: str, limit: float) -> Line:
     """A line whose value should not exceed `limit`."""
-    return Line(what, value, unit, f"<= {limit:g} {unit}", value <= limit)
+    return Line(quantity, value, unit, f"<= {limit:g} {unit}", value <= limit)
 
 
 def fastest(function: Callable[[], object], repeats: int = 9) -> float:

@@ -19,17 +19,17 @@ from measure import machine
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Prior, Record
-from seatrial.data.trial import Role, Trial, TrialRecord, load_trial, records_of
-from seatrial.estimation.identify import Settings, identified
-from seatrial.estimation.identify.identify import settings_of
+from seatrial.data.trial import Role, Trial, TrialRecord, load_records, load_trial
+from seatrial.estimation.identify import Settings, estimate_model
+from seatrial.estimation.identify.identify import settings_from_trial
 from seatrial.estimation.predict.cross_validation import (
-    Protocol,
-    cross_validated,
-    fitted_folds,
-    own_nuisances,
+    HoldoutProtocol,
+    cross_validate,
+    fit_folds,
+    session_nuisances,
     window_errors,
 )
-from seatrial.estimation.predict.open_loop import open_loop, rms
+from seatrial.estimation.predict.open_loop import rms_errors, simulate_open_loop
 from seatrial.physics.models.abkowitz import STANDARD, abkowitz
 from seatrial.physics.models.nomoto import nomoto2
 
@@ -103,13 +103,19 @@ def kvlcc2() -> list[Row]:
         model = made(trial, speed)
         try:
             began = time.perf_counter()
-            found = identified(
+            found = estimate_model(
                 model, runs, [r.session for r in train], trial.ship.length, _settings(trial, runs, model)
             )
-            seconds, problem, own = time.perf_counter() - began, found.made.problem, own_nuisances(found, held.session)
-            protocol = Protocol(window_s=WINDOW["kvlcc2_hsva"], initial_s=HELD_OUT_SECONDS)
+            seconds, problem, own = (
+                time.perf_counter() - began,
+                found.estimate.problem,
+                session_nuisances(found, held.session),
+            )
+            protocol = HoldoutProtocol(window_s=WINDOW["kvlcc2_hsva"], initial_s=HELD_OUT_SECONDS)
             windows = window_errors(problem, found.model, [held.record], [own], ["zigzag"], protocol)
-            whole = rms(held.record, open_loop(problem, found.model, held.record, own, HELD_OUT_SECONDS).record)
+            whole = rms_errors(
+                held.record, simulate_open_loop(problem, found.model, held.record, own, HELD_OUT_SECONDS).record
+            )
         except InputError as error:
             print(f"  {name}: {error}")
             continue
@@ -131,10 +137,10 @@ def esso_osaka() -> list[Row]:
     for name, made in MODELS.items():
         model = made(trial, speed)
         try:
-            folds = fitted_folds(
+            folds = fit_folds(
                 model, runs, sessions, labels, trial.ship.length, _settings(trial, runs, model), workers=2
             )
-            judged = cross_validated(folds, runs, sessions, labels, Protocol(window_s=WINDOW["esso_osaka"]))
+            judged = cross_validate(folds, runs, sessions, labels, HoldoutProtocol(window_s=WINDOW["esso_osaka"]))
         except InputError as error:
             print(f"  {name}: {error}")
             continue
@@ -150,7 +156,7 @@ SHIPS: dict[str, Callable[[], list[Row]]] = {"kvlcc2": kvlcc2, "esso_osaka": ess
 
 def _loaded(name: str) -> tuple[Trial, list[TrialRecord]]:
     trial = load_trial(EXAMPLES / f"{name}.toml")
-    records, _ = records_of(trial)
+    records, _ = load_records(trial)
     rate = trial.estimate.rate
     return trial, [r if rate is None else replace(r, record=r.record.resampled(rate)) for r in records]
 
@@ -161,7 +167,7 @@ def _speed(records: Sequence[Record]) -> float:
 
 def _settings(trial: Trial, records: Sequence[Record], model: Model) -> Settings:
     """The trial's settings without inputs and outputs that the model lacks."""
-    settings = settings_of(trial, records)
+    settings = settings_from_trial(trial, records)
     known = tuple(c for c in settings.corrections if c[0] in model.input_names)
     outputs = tuple(c for c in settings.channels if c in model.observables)
     return replace(settings, corrections=known, channels=outputs)

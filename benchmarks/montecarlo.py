@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
-from seatrial.data.example_series.series import SENSOR_NOISE, noisy, truth
-from seatrial.data.example_series.series import run as steered
-from seatrial.estimation.identify import Settings, identified
+from seatrial.data.example_series.series import SENSOR_NOISE, true_model, with_sensor_noise
+from seatrial.data.example_series.series import simulate_run as steered
+from seatrial.estimation.identify import Settings, estimate_model
 from seatrial.estimation.information.covariance import from_information
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.estimation.problem.segments import cut
+from seatrial.estimation.problem.segments import cut_segments
 
 Array = NDArray[np.float64]
 RATIO, COVERAGE, POOLED = (0.85, 1.2), (0.90, 0.99), (0.93, 0.97)
@@ -63,48 +63,60 @@ class Series:
 def bound(model: Model, clean: Record) -> Array:
     """Cramer-Rao bound of each free coefficient: information at the truth, true noise, initial state unknown."""
     outputs = tuple(SENSOR_NOISE)
-    problem = OutputError(model, cut(model, [clean], outputs, None), np.array(list(SENSOR_NOISE.values())), workers=1)
-    return from_information(problem.normal(problem.start(), problem.measured_starts()).reduced()[1]).standard_error
+    problem = OutputError(
+        model, cut_segments(model, [clean], outputs, None), np.array(list(SENSOR_NOISE.values())), workers=1
+    )
+    return from_information(
+        problem.normal(problem.start(), problem.measured_initial_states()).without_local()[1]
+    ).standard_error
 
 
 def series(runs: int = RUNS, seed: int = SEED, executes: int = EXECUTES) -> Series:
     """`runs` noisy repeats of one manoeuvre, each identified from nothing."""
-    model = truth()
+    model = true_model()
     names = model.parameters.free_names
     values = np.array([model.parameters[n].value for n in names])
     clean = steered(model, f"consecutive-zigzags:{executes}")
     blank = model.with_values(dict.fromkeys(names, 0.0))
     length, settings = model.parameters["L"].value, Settings(workers=1)
-    identified(blank, [clean], [clean.name], length, replace(settings, evaluations=2))
+    estimate_model(blank, [clean], [clean.name], length, replace(settings, evaluations=2))
     began = time.perf_counter()
     errors, halves, converged, white = [], [], 0, 0
     for stream in np.random.SeedSequence(seed).spawn(runs):
-        found = identified(blank, [noisy(clean, np.random.default_rng(stream), seed)], [clean.name], length, settings)
-        errors.append(found.made.shared[: len(names)] - values)
+        found = estimate_model(
+            blank, [with_sensor_noise(clean, np.random.default_rng(stream), seed)], [clean.name], length, settings
+        )
+        errors.append(found.estimate.common_parameters[: len(names)] - values)
         halves.append(found.interval.half_width[: len(names)])
-        converged += found.made.optimum.solution.status.is_success
+        converged += found.estimate.optimum.solution.status.is_success
         white += "whole runs" in found.criterion
     seconds = (time.perf_counter() - began) / runs
     return Series(names, values, bound(model, clean), np.array(errors), np.array(halves), converged, white, seconds)
 
 
-def _within(what: str, value: float, limits: tuple[float, float]) -> Line:
+def _within(quantity: str, value: float, limits: tuple[float, float]) -> Line:
     low, high = limits
-    return Line(what, value, "", f"{low:g} to {high:g}", low <= value <= high)
+    return Line(quantity, value, "", f"{low:g} to {high:g}", low <= value <= high)
 
 
-def lines(made: Series) -> list[Line]:
+def lines(repeats: Series) -> list[Line]:
     """The table against its targets."""
     table = [
-        Line("runs converged", made.converged, "", f"{made.runs} of {made.runs}", made.converged == made.runs),
-        Line("runs fitted whole, residuals white", made.white, ""),
-        Line("time of one fit, one core", made.seconds, "s"),
-        _within("coverage of 95 % intervals, pooled", float(np.mean(made.coverage)), POOLED),
+        Line(
+            "runs converged",
+            repeats.converged,
+            "",
+            f"{repeats.runs} of {repeats.runs}",
+            repeats.converged == repeats.runs,
+        ),
+        Line("runs fitted whole, residuals white", repeats.white, ""),
+        Line("time of one fit, one core", repeats.seconds, "s"),
+        _within("coverage of 95 % intervals, pooled", float(np.mean(repeats.coverage)), POOLED),
     ]
-    for i, name in enumerate(made.names):
-        share = made.bound[i] / abs(made.values[i])
-        table.append(_within(f"{name}: RMSE / bound (bound {share:.2%} of the value)", float(made.ratio[i]), RATIO))
-        table.append(_within(f"{name}: coverage", float(made.coverage[i]), COVERAGE))
+    for i, name in enumerate(repeats.names):
+        share = repeats.bound[i] / abs(repeats.values[i])
+        table.append(_within(f"{name}: RMSE / bound (bound {share:.2%} of the value)", float(repeats.ratio[i]), RATIO))
+        table.append(_within(f"{name}: coverage", float(repeats.coverage[i]), COVERAGE))
     return table
 
 
@@ -123,7 +135,7 @@ def main(arguments: list[str]) -> int:
     print(machine())
     table = lines(series(given.runs, given.seed, given.executes))
     for line in table:
-        print(f"  {line.what:<66} {line.value:>10.4g} {line.unit:<10} {line.verdict}")
+        print(f"  {line.quantity:<66} {line.value:>10.4g} {line.unit:<10} {line.verdict}")
     return int(any(line.holds is False for line in table))
 
 

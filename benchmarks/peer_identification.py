@@ -18,20 +18,20 @@ from pymoo.algorithms.soo.nonconvex.pso import PSO
 from pymoo.core.problem import Problem
 from pymoo.optimize import minimize
 from pyswarms.single import GlobalBestPSO
-from to_one_percent import Judge, race, timed
+from to_one_percent import TimedFitness, seas_and_boxes, time_to_target
 
 SIZE, POPULATION, GENERATIONS, LIMIT = 8, 40, 5000, 10.0
 UNIT = np.stack([np.zeros(SIZE), np.ones(SIZE)])
 
 
-def pyswarms(judge: Judge, seed: int) -> None:
+def pyswarms(judge: TimedFitness, seed: int) -> None:
     """Its global best swarm with Clerc & Kennedy's constriction."""
     np.random.seed(seed)  # noqa: NPY002
     weights = {"w": 0.7298, "c1": 1.49618, "c2": 1.49618}
     GlobalBestPSO(POPULATION, SIZE, weights, (UNIT[0], UNIT[1])).optimize(judge, GENERATIONS, verbose=False)
 
 
-def mealpy(judge: Judge, seed: int) -> None:
+def mealpy(judge: TimedFitness, seed: int) -> None:
     """L-SHADE; one candidate at a time, as the package asks."""
     problem = {
         "bounds": FloatVar(lb=UNIT[0], ub=UNIT[1]),
@@ -42,10 +42,10 @@ def mealpy(judge: Judge, seed: int) -> None:
     SHADE.L_SHADE(GENERATIONS, POPULATION).solve(problem, seed=seed)
 
 
-class Whole(Problem):
+class BatchProblem(Problem):
     """Populations at once."""
 
-    def __init__(self, judge: Judge) -> None:
+    def __init__(self, judge: TimedFitness) -> None:
         super().__init__(n_var=SIZE, n_obj=1, xl=UNIT[0], xu=UNIT[1])
         self.judge = judge
 
@@ -53,19 +53,19 @@ class Whole(Problem):
         out["F"] = self.judge(np.atleast_2d(x))[:, None]
 
 
-def pymoo_with(make: Callable[[], object]) -> Callable[[Judge, int], None]:
+def pymoo_with(make: Callable[[], object]) -> Callable[[TimedFitness, int], None]:
     """One of its algorithms."""
 
-    def search(judge: Judge, seed: int) -> None:
-        minimize(Whole(judge), make(), ("n_gen", GENERATIONS), seed=seed, verbose=False)
+    def search(judge: TimedFitness, seed: int) -> None:
+        minimize(BatchProblem(judge), make(), ("n_gen", GENERATIONS), seed=seed, verbose=False)
 
     return search
 
 
-def cmaes_of(population: int | None) -> Callable[[Judge, int], None]:
+def cmaes_of(population: int | None) -> Callable[[TimedFitness, int], None]:
     """From the middle of the box, sigma .3 of its width."""
 
-    def search(judge: Judge, seed: int) -> None:
+    def search(judge: TimedFitness, seed: int) -> None:
         strategy = CMA(np.full(SIZE, 0.5), 0.3, bounds=UNIT.T, seed=seed, population_size=population)
         while not strategy.should_stop():
             asked = [strategy.ask() for _ in range(strategy.population_size)]
@@ -74,7 +74,7 @@ def cmaes_of(population: int | None) -> Callable[[Judge, int], None]:
     return search
 
 
-PEERS: dict[str, Callable[[Judge, int], None]] = {
+PEERS: dict[str, Callable[[TimedFitness, int], None]] = {
     "pyswarms global best": pyswarms,
     "mealpy L-SHADE": mealpy,
     "pymoo DE": pymoo_with(lambda: DE(pop_size=POPULATION)),
@@ -89,11 +89,12 @@ def main(folder: Path, boxes: int) -> None:
     """All packages in all boxes, after one warm-up each."""
     logging.disable(logging.CRITICAL)
     warnings.simplefilter("ignore")
-    drawn = race(boxes)
+    drawn = seas_and_boxes(boxes)
     for search in PEERS.values():
-        timed(search, *drawn[0], 0, 0.5)
+        time_to_target(search, *drawn[0], 0, 0.5)
     found = {
-        name: np.array([timed(search, *one, k, LIMIT) for k, one in enumerate(drawn)]) for name, search in PEERS.items()
+        name: np.array([time_to_target(search, *one, k, LIMIT) for k, one in enumerate(drawn)])
+        for name, search in PEERS.items()
     }
     np.savez(folder / "peer.npz", **found)
 

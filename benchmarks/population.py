@@ -14,12 +14,12 @@ from measure import Line, at_least, at_most, fastest
 from scipy.linalg import expm
 from scipy.signal import lsim
 
-from seatrial.numerics.kernels.population import misfit
+from seatrial.numerics.kernels.linear_population import misfit
 from seatrial.physics.models.heave_pitch import COEFFICIENTS
-from seatrial.physics.models.qi2025 import SHIP, theory
+from seatrial.physics.models.qi2025 import SHIP, theoretical_coefficients
 from seatrial.physics.simulate.population import (
     Forcing,
-    completed,
+    complete_parameters,
     discretised_ramp,
     fitness,
     heave_pitch_matrices,
@@ -57,7 +57,7 @@ def by_lsim(A: np.ndarray, B: np.ndarray, u: np.ndarray) -> np.ndarray:
     return np.stack([lsim((a, b, C, D), u, t, START)[1] for a, b in zip(A, B, strict=True)])
 
 
-def squared(y: np.ndarray, measured: np.ndarray) -> np.ndarray:
+def sum_of_squares(y: np.ndarray, measured: np.ndarray) -> np.ndarray:
     """Fitness (count,) of stored trajectories."""
     return (((y - measured) / SIGMA) ** 2).sum(axis=(1, 2))
 
@@ -65,8 +65,8 @@ def squared(y: np.ndarray, measured: np.ndarray) -> np.ndarray:
 def run() -> list[Line]:
     """Times of ours, ratios to the others, agreement of the motions."""
     rng = np.random.default_rng(20251)
-    truth = np.array([theory(90).values[name] for name in COEFFICIENTS])
-    parameters = completed(truth * (1.0 + 0.1 * rng.uniform(-1.0, 1.0, (COUNT, 8))), SHIP.particulars)
+    truth = np.array([theoretical_coefficients(90).values[name] for name in COEFFICIENTS])
+    parameters = complete_parameters(truth * (1.0 + 0.1 * rng.uniform(-1.0, 1.0, (COUNT, 8))), SHIP.particulars)
     A, B = heave_pitch_matrices(parameters)
     u = np.sin(np.outer(np.arange(SAMPLES) * DT, [0.9, 1.3])) * [2e5, 2e6]
     forcing, held = Forcing(u, DT, is_held=False), Forcing(u, DT, is_held=True)
@@ -89,21 +89,21 @@ def run() -> list[Line]:
         Line("matrices from coefficients", 1e6 * prepared, "us"),
     ]
     alone = _march_alone(phi, gamma, forcing, measured)
-    numpy_seconds = fastest(lambda: squared(by_numpy(*discretised_by_scipy(A, B), v), measured), 20)
-    numpy_march = fastest(lambda: squared(by_numpy(phi, gamma, v), measured), 20)
-    lsim_seconds = fastest(lambda: squared(by_lsim(A, B, u), measured), 3)
+    numpy_seconds = fastest(lambda: sum_of_squares(by_numpy(*discretised_by_scipy(A, B), v), measured), 20)
+    numpy_march = fastest(lambda: sum_of_squares(by_numpy(phi, gamma, v), measured), 20)
+    lsim_seconds = fastest(lambda: sum_of_squares(by_lsim(A, B, u), measured), 3)
     lines += [
         at_least("ratio, NumPy vectorised over candidates", numpy_seconds / seconds, "x", 50.0),
         Line("ratio, NumPy, march alone", numpy_march / alone, "x"),
         at_least("ratio, scipy.signal.lsim", lsim_seconds / seconds, "x", 500.0),
-        at_most("motion off NumPy, of the largest", _off(y, by_numpy(phi, gamma, v)), "", 1e-12),
-        at_most("motion off lsim, of the largest", _off(y, by_lsim(A, B, u)), "", 1e-12),
+        at_most("motion off NumPy, of the largest", _largest_difference(y, by_numpy(phi, gamma, v)), "", 1e-12),
+        at_most("motion off lsim, of the largest", _largest_difference(y, by_lsim(A, B, u)), "", 1e-12),
     ]
     task = {"A": A, "B": B, "phi": phi, "gamma": gamma, "u": u, "v": v, "dt": DT, "start": START}
     return [*lines, *_peers({**task, "measured": measured, "sigma": SIGMA}, seconds, alone, y)]
 
 
-def _off(y: np.ndarray, other: np.ndarray) -> float:
+def _largest_difference(y: np.ndarray, other: np.ndarray) -> float:
     return float((np.abs(y - other).max(axis=(0, 1)) / np.abs(other).max(axis=(0, 1))).max())
 
 
@@ -129,6 +129,6 @@ def _peers(task: dict[str, np.ndarray], seconds: float, alone: float, y: np.ndar
         at_least("ratio, JAX (vmap, scan, compiled)", float(theirs["jax_seconds"]) / seconds, "x", 10.0),
         Line("ratio, JAX, march alone", float(theirs["jax_march_seconds"]) / alone, "x"),
         at_least("ratio, python-control forced_response", float(theirs["control_seconds"]) / seconds, "x", 500.0),
-        at_most("motion off JAX, of the largest", _off(y, theirs["jax"]), "", 1e-12),
-        at_most("motion off python-control, of the largest", _off(y, theirs["control"]), "", 1e-12),
+        at_most("motion off JAX, of the largest", _largest_difference(y, theirs["jax"]), "", 1e-12),
+        at_most("motion off python-control, of the largest", _largest_difference(y, theirs["control"]), "", 1e-12),
     ]

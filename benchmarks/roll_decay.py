@@ -16,10 +16,10 @@ from against_shipmmg import HERE, peers_python
 from measure import Line, at_least, at_most, fastest
 
 from seatrial.core.values import Record
-from seatrial.data.trial import Trial, load_trial, records_of
-from seatrial.estimation.estimate import Identified, identified
-from seatrial.estimation.identify.identify import settings_of
-from seatrial.estimation.predict.open_loop import open_loop
+from seatrial.data.trial import Trial, load_records, load_trial
+from seatrial.estimation.estimate import Estimation, estimate_model
+from seatrial.estimation.identify.identify import settings_from_trial
+from seatrial.estimation.predict.open_loop import simulate_open_loop
 
 TRIAL = HERE.parent / "examples" / "kvlcc2_rolldecay.toml"
 TARGETS = {"model_test_21337": 0.99998, "model_test_21338": 0.9999}
@@ -31,29 +31,29 @@ def r_squared(measured: np.ndarray, simulated: np.ndarray) -> float:
     return float(1.0 - np.sum((measured - simulated) ** 2) / np.sum((measured - measured.mean()) ** 2))
 
 
-def fit(trial: Trial, record: Record) -> Identified:
+def fit_decay(trial: Trial, record: Record) -> Estimation:
     """Ours, from an automatic start."""
-    return identified(trial.model, [record], ["decay"], trial.ship.length, settings_of(trial, [record]))
+    return estimate_model(trial.model, [record], ["decay"], trial.ship.length, settings_from_trial(trial, [record]))
 
 
-def explained(found: Identified, record: Record) -> float:
+def fitted_r_squared(estimation: Estimation, record: Record) -> float:
     """R2 over the rows that were fitted."""
-    return r_squared(record["phi"], record["phi"] + found.residuals[:, 0])
+    return r_squared(record["phi"], record["phi"] + estimation.residuals[:, 0])
 
 
-def predicted(found: Identified, record: Record, seconds: float) -> float:
+def predicted_r_squared(estimation: Estimation, record: Record, seconds: float) -> float:
     """R2 of a record that was not fitted."""
-    made = open_loop(found.made.problem, found.model, record, np.zeros(0), seconds)
+    made = simulate_open_loop(estimation.estimate.problem, estimation.model, record, np.zeros(0), seconds)
     return r_squared(record["phi"], made.record["phi"])
 
 
-def _unexplained(what: str, score: float, target: float | None = None) -> Line:
+def _unexplained(quantity: str, score: float, target: float | None = None) -> Line:
     """Parts per million of the variance, R2 in words; target: of R2."""
-    said, left = f"{what}: R2 {score:.7f}", 1e6 * (1.0 - score)
+    said, left = f"{quantity}: R2 {score:.7f}", 1e6 * (1.0 - score)
     return Line(said, left, "ppm") if target is None else at_most(said, left, "ppm", round(1e6 * (1.0 - target), 6))
 
 
-def beginnings(record: Record) -> list[int]:
+def start_rows(record: Record) -> list[int]:
     """Rows: the release, half a second later, and the next two extremes."""
     rising = np.diff(record["phi"]) > 0.0
     extremes = np.flatnonzero(rising[11:] != rising[10:-1]) + 11
@@ -66,26 +66,29 @@ def run() -> list[Line]:
         print("  left out: set SEATRIAL_DATA to the folder with kvlcc2_rolldecay")
         return []
     trial = load_trial(TRIAL)
-    records = {r.record.name: r.record for r in records_of(trial)[0]}
-    found = {name: fit(trial, record) for name, record in records.items()}
+    records = {r.record.name: r.record for r in load_records(trial)[0]}
+    found = {name: fit_decay(trial, record) for name, record in records.items()}
     lines = []
     for name, record in records.items():
         (other,) = [n for n in records if n != name]
         lines += [
-            _unexplained(f"{name}, ours", explained(found[name], record), TARGETS[name]),
-            _unexplained(f"{name} from {other}", predicted(found[other], record, 10.0), CROSS),
-            at_most(f"{name}: fit", fastest(lambda r=record: fit(trial, r), 3), "s", SECONDS),
+            _unexplained(f"{name}, ours", fitted_r_squared(found[name], record), TARGETS[name]),
+            _unexplained(f"{name} from {other}", predicted_r_squared(found[other], record, 10.0), CROSS),
+            at_most(f"{name}: fit", fastest(lambda r=record: fit_decay(trial, r), 3), "s", SECONDS),
         ]
-    return [*lines, *_beside_the_peer(trial, records, found)]
+    return [*lines, *_compare_with_peer(trial, records, found)]
 
 
-def _beside_the_peer(trial: Trial, records: dict[str, Record], found: dict[str, Identified]) -> list[Line]:
-    rows = {name: beginnings(record) for name, record in records.items()}
-    theirs = _peer(records, rows, found)
+def _compare_with_peer(trial: Trial, records: dict[str, Record], estimations: dict[str, Estimation]) -> list[Line]:
+    rows = {name: start_rows(record) for name, record in records.items()}
+    theirs = _peer(records, rows, estimations)
     lines = []
     for name, record in records.items() if theirs else ():
         best = {row: max(_scores(theirs[name], str(row)), key=lambda pair: pair[1]) for row in rows[name]}
-        own = {row: explained(fit(trial, _from(record, row)), _from(record, row)) for row in rows[name]}
+        own = {
+            row: fitted_r_squared(fit_decay(trial, _from_row(record, row)), _from_row(record, row))
+            for row in rows[name]
+        }
         seconds = min(one["0"]["seconds"] for kind, one in theirs[name].items() if kind == best[0][0])
         lines += [
             _unexplained(f"{name}, rolldecay-estimators", best[0][1]),
@@ -97,7 +100,7 @@ def _beside_the_peer(trial: Trial, records: dict[str, Record], found: dict[str, 
     return lines
 
 
-def _from(record: Record, row: int) -> Record:
+def _from_row(record: Record, row: int) -> Record:
     return replace(record.rows(slice(row, None)), name=record.name)
 
 
@@ -109,7 +112,7 @@ def _scores(classes: dict[str, dict[str, dict[str, float | None]]], key: str) ->
 
 
 def _peer(
-    records: dict[str, Record], rows: dict[str, list[int]], found: dict[str, Identified]
+    records: dict[str, Record], rows: dict[str, list[int]], estimations: dict[str, Estimation]
 ) -> dict[str, dict[str, dict[str, dict[str, float | None]]]]:
     """What its classes reach, by run, class and beginning; empty where it cannot be installed."""
     with tempfile.TemporaryDirectory() as text:
@@ -121,7 +124,7 @@ def _peer(
             return {}
         task: dict[str, np.ndarray] = {"runs": np.array(list(records))}
         for name, record in records.items():
-            rest = found[name].model.parameters["phi_0"].value
+            rest = estimations[name].model.parameters["phi_0"].value
             task |= {
                 f"{name}/time": record.time,
                 f"{name}/phi": record["phi"] - rest,
@@ -135,4 +138,4 @@ def _peer(
 
 if __name__ == "__main__":
     for line in run():
-        print(f"  {line.what:<78} {line.value:>10.4g} {line.unit:<3} {line.verdict}", flush=True)
+        print(f"  {line.quantity:<78} {line.value:>10.4g} {line.unit:<3} {line.verdict}", flush=True)

@@ -19,7 +19,7 @@ import population
 import roll_decay
 import simulation
 import tune
-import waterjet_rivals
+import waterjet_regressions
 from measure import Line, machine
 
 BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
@@ -28,7 +28,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "against_shipmmg": against_shipmmg.run,
     "against_optimisers": against_optimisers.run,
     "montecarlo": montecarlo.run,
-    "waterjet_rivals": waterjet_rivals.run,
+    "waterjet_regressions": waterjet_regressions.run,
     "fusion": fusion.run,
     "population": population.run,
     "heave_pitch": heave_pitch.run,
@@ -50,7 +50,7 @@ def main(names: list[str]) -> int:
     for name in names or BENCHMARKS:
         print(f"\n{name.replace('_', ' ')}")
         for line in BENCHMARKS[name]():
-            print(f"  {line.what:<66} {line.value:>10.4g} {line.unit:<10} {line.verdict}", flush=True)
+            print(f"  {line.quantity:<66} {line.value:>10.4g} {line.unit:<10} {line.verdict}", flush=True)
     return 0
 
 

@@ -10,7 +10,7 @@ from measure import Line, at_least, at_most, fastest
 
 from seatrial.core.equations import Model
 from seatrial.physics.models.waterjet import COEFFICIENTS, waterjet
-from seatrial.physics.simulate.batch import Batch
+from seatrial.physics.simulate.batch import SegmentBatch
 
 STEPS = 20_000
 DT = 0.1
@@ -22,14 +22,14 @@ def without_pose(model: Model) -> Model:
     return replace(model, equations=equations)
 
 
-def batch(model: Model, *, sensitivities: bool) -> Batch:
+def batch(model: Model, *, sensitivities: bool) -> SegmentBatch:
     """A run of alternating nozzle angles; 17 columns: coefficients, initial states, added masses for the rest."""
     time = np.arange(STEPS) * DT
     inputs = np.stack([np.radians(20.0) * np.sign(np.sin(0.1 * time)), np.full(STEPS, 1.866)], axis=1)
     starts = model.states if sensitivities else ()
     extra = ("m_x", "m_y", "J_z")[: 17 - len(COEFFICIENTS) - len(starts)]
     parameters = (*COEFFICIENTS, *extra) if sensitivities else ()
-    return Batch(model, inputs, np.array([0, STEPS]), DT, model.states, parameters, (), starts)
+    return SegmentBatch(model, inputs, np.array([0, STEPS]), DT, model.states, parameters, (), starts)
 
 
 def run() -> list[Line]:
@@ -44,7 +44,7 @@ def run() -> list[Line]:
         rate = STEPS / simulated / 1e6
         what = f"waterjet, {label}: Runge-Kutta steps"
         lines.append(at_least(what, rate, "M/s", 6.0) if limit == 7.0 else Line(what, rate, "M/s"))
-        what = f"waterjet, {label}: trajectory and {tangent.width} sensitivities"
+        what = f"waterjet, {label}: trajectory and {tangent.column_count} sensitivities"
         lines.append(at_most(what, differentiated / simulated, "simulations", limit))
     command = [Path(sys.executable).with_name("seatrial"), "--help"]
     started = fastest(lambda: subprocess.run(command, capture_output=True, check=True))

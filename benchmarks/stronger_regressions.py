@@ -16,9 +16,9 @@ from scipy.linalg import solveh_banded
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
 from seatrial.data.example_series.series import SENSOR_NOISE
-from seatrial.estimation.regress.estimators import Estimator, Regressed
-from seatrial.estimation.regress.features import Motion
-from seatrial.estimation.regress.weak import shape
+from seatrial.estimation.regress.estimators import RegressionEstimate, RegressionEstimator
+from seatrial.estimation.regress.features import RegressionMotion
+from seatrial.estimation.regress.weak import window_function
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 from seatrial.physics.simulate.replay import replay
 
@@ -31,23 +31,23 @@ NODES, WEIGHTS = np.polynomial.hermite_e.hermegauss(3)
 
 
 @dataclass(frozen=True)
-class OnSmoothed:
+class SmoothedRegression:
     """Another estimator on records smoothed by an extended Kalman filter and its backward pass (Rauch et al. 1965).
 
     The kinematics couple all six channels; accelerations are random walks, `bandwidth` times those of the craft.
     """
 
     name: str
-    of: Estimator
+    regression: RegressionEstimator
     bandwidth: float
 
-    def estimate(self, model: Model, records: Sequence[Record]) -> Regressed:
+    def estimate(self, model: Model, records: Sequence[Record]) -> RegressionEstimate:
         """The coefficients from the smoothed records."""
-        return self.of.estimate(model, [smoothed(r, self.bandwidth) for r in records])
+        return self.regression.estimate(model, [smoothed(r, self.bandwidth) for r in records])
 
 
 @dataclass(frozen=True)
-class Weighted:
+class WeightedRegression:
     """The weak form of all rates at once, its rows weighted by the covariance of what noise leaves in them.
 
     WENDy (Bortz, Messenger & Dukic 2023, doi 10.1007/s11538-023-01208-6) without its choice of windows: reweighted
@@ -64,27 +64,27 @@ class Weighted:
     corrected: bool = False
     instrumented: bool = False
 
-    def estimate(self, model: Model, records: Sequence[Record]) -> Regressed:
+    def estimate(self, model: Model, records: Sequence[Record]) -> RegressionEstimate:
         """The coefficients after `ROUNDS` of reweighting."""
         (record,) = records
-        motion = Motion.of(model, record)
+        motion = RegressionMotion.from_record(model, record)
         at = _tangent(model, motion, np.zeros(len(model.parameters.free_names)))
-        weak = _rows(model, self._less_bias(model, at, motion), motion, self.seconds)
+        weak = _rows(model, self._reduce_bias(model, at, motion), motion, self.seconds)
         found = np.asarray(np.linalg.lstsq(weak.slope, -weak.residual)[0], dtype=np.float64)
         for _ in range(ROUNDS):
-            ship = Regressed(found).in_model(model)
-            seen = Motion.of(model, replay(ship, record)) if self.instrumented else motion
+            ship = RegressionEstimate(found).in_model(model)
+            seen = RegressionMotion.from_record(model, replay(ship, record)) if self.instrumented else motion
             known = _rows(model, _tangent(model, seen, found), seen, self.seconds)
             if self.instrumented:
-                weak = _rows(model, self._less_bias(model, at, seen), motion, self.seconds)
+                weak = _rows(model, self._reduce_bias(model, at, seen), motion, self.seconds)
             left = known.slope if self.instrumented else weak.slope
             weighted = solveh_banded(known.covariance(), left, lower=True)
             normal, target = weighted.T @ weak.slope, weighted.T @ -weak.residual
             found = np.asarray(np.linalg.solve(normal, target), dtype=np.float64)
-        return Regressed(found)
+        return RegressionEstimate(found)
 
-    def _less_bias(self, model: Model, at: "_Tangent", motion: Motion) -> "_Tangent":
-        return at.without_bias(model, motion) if self.corrected else at
+    def _reduce_bias(self, model: Model, tangent: "_Tangent", motion: RegressionMotion) -> "_Tangent":
+        return tangent.without_bias(model, motion) if self.corrected else tangent
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +101,7 @@ class _Tangent:
     slope: Array
     values: Array
 
-    def without_bias(self, model: Model, motion: Motion) -> "_Tangent":
+    def without_bias(self, model: Model, motion: RegressionMotion) -> "_Tangent":
         """E f(x + n) - f(x) at the states x of a motion taken off, by Gauss-Hermite quadrature in each state."""
         centre = _tangent(model, motion, self.values)
         rates, slope = self.rates.copy(), self.slope.copy()
@@ -147,7 +147,7 @@ def _deviations(model: Model) -> Array:
     return np.array([SENSOR_NOISE[s] for s in model.states])
 
 
-def _tangent(model: Model, motion: Motion, free: Array) -> _Tangent:
+def _tangent(model: Model, motion: RegressionMotion, free: Array) -> _Tangent:
     values = model.parameters.with_free_values(free).values
     nx, nu, n = len(model.states), len(model.inputs), len(motion.time)
     rates, jacobian = np.empty((n, nx)), np.zeros((n, nx, nx + nu + len(values)))
@@ -157,17 +157,17 @@ def _tangent(model: Model, motion: Motion, free: Array) -> _Tangent:
     return _Tangent(rates, jacobian[:, :, :nx] * _deviations(model), jacobian[:, :, columns], free)
 
 
-def _rows(model: Model, at: _Tangent, motion: Motion, seconds: float) -> _Rows:
+def _rows(model: Model, tangent: _Tangent, motion: RegressionMotion, seconds: float) -> _Rows:
     """Windows that overlap by three quarters: integral(w' x) + integral(w f) = 0."""
     nx, half = motion.states.shape[1], round(seconds / motion.dt)
-    w, w_dot = (motion.dt * part for part in shape(half, motion.dt))
+    w, w_dot = (motion.dt * part for part in window_function(half, motion.dt))
     step, residual, slope, noise = half // 2, [], [], []
     for first in range(0, len(motion.time) - 2 * half, step):
         piece = slice(first, first + 2 * half + 1)
         about = motion.states[piece] - motion.states[first + half]
-        residual.append(w_dot @ about + w @ at.rates[piece])
-        slope.append(np.einsum("t,tip->ip", w, at.slope[piece]))
-        moved = w[:, None, None] * at.states[piece] + w_dot[:, None, None] * np.diag(_deviations(model))
+        residual.append(w_dot @ about + w @ tangent.rates[piece])
+        slope.append(np.einsum("t,tip->ip", w, tangent.slope[piece]))
+        moved = w[:, None, None] * tangent.states[piece] + w_dot[:, None, None] * np.diag(_deviations(model))
         noise.append(np.swapaxes(moved, 0, 1).reshape(nx, -1))
     return _Rows(np.concatenate(residual), np.concatenate(slope), np.array(noise), step * nx)
 

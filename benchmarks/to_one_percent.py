@@ -18,12 +18,12 @@ from measure import Line, at_least, fastest
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from seatrial.estimation.problem.linear_record import LinearRecord
+from seatrial.estimation.problem.linear_output_error import LinearOutputError
 from seatrial.estimation.problem.segments import Segments
-from seatrial.numerics.optimise import Box, Normal, levenberg_marquardt
+from seatrial.numerics.optimise import Box, NormalEquations, levenberg_marquardt
 from seatrial.physics.simulate.population import fitness, trajectories
 from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE
-from seatrial_studies.swarm_search import STEP, Data, heave_pitch_candidates, off_centre, sailed
+from seatrial_studies.swarm_search import STEP, SearchData, candidate_matrices, off_centre_box, simulate_search_data
 
 Array = NDArray[np.float64]
 HERE = Path(__file__).parent
@@ -31,7 +31,7 @@ GOOD, SHARE, HEADING = 0.01, 0.5, 135
 NOISE = np.array([HEAVE_NOISE, PITCH_NOISE])
 
 
-def lean(data: Data) -> LinearRecord:
+def problem_from_rest(data: SearchData) -> LinearOutputError:
     """The identification of a record of the papers' discretisation, from rest."""
     count = len(data.measured)
     inputs = np.zeros((count, len(data.model.inputs)))
@@ -39,14 +39,14 @@ def lean(data: Data) -> LinearRecord:
     one = np.zeros(1, dtype=np.int64)
     names = ("papers' sea",)
     segments = Segments(inputs, data.measured, np.array([0, count]), one, one, names, names, ("z", "theta"), STEP)
-    return LinearRecord(data.model, segments, NOISE, np.zeros(4))
+    return LinearOutputError(data.model, segments, NOISE, np.zeros(4))
 
 
-def race(count: int) -> list[tuple[Data, Box]]:
+def seas_and_boxes(count: int) -> list[tuple[SearchData, Box]]:
     """Seas and boxes, different ones each time."""
     rngs = [np.random.default_rng([HEADING, k, 50]) for k in range(count)]
-    seas = [sailed(HEADING, rng) for rng in rngs]
-    return [(data, off_centre(data.truth, SHARE, rng)) for data, rng in zip(seas, rngs, strict=True)]
+    seas = [simulate_search_data(HEADING, rng) for rng in rngs]
+    return [(data, off_centre_box(data.truth, SHARE, rng)) for data, rng in zip(seas, rngs, strict=True)]
 
 
 def mean_error(point: Array, truth: Array) -> float:
@@ -54,57 +54,57 @@ def mean_error(point: Array, truth: Array) -> float:
     return float(np.mean(np.abs(point / truth - 1.0)))
 
 
-class Noted:
+class EvaluationLog:
     """A problem that notes when it is asked about which point."""
 
-    def __init__(self, problem: LinearRecord) -> None:
+    def __init__(self, problem: LinearOutputError) -> None:
         self.problem, self.lower, self.upper = problem, problem.lower, problem.upper
-        self.seen: list[tuple[float, Array]] = []
+        self.evaluations: list[tuple[float, Array]] = []
 
     def cost(self, shared: Array, local: Array) -> float:
         """Of the problem."""
-        self.seen.append((time.perf_counter(), shared))
+        self.evaluations.append((time.perf_counter(), shared))
         return self.problem.cost(shared, local)
 
-    def normal(self, shared: Array, local: Array) -> Normal:
+    def normal(self, shared: Array, local: Array) -> NormalEquations:
         """Of the problem."""
-        self.seen.append((time.perf_counter(), shared))
+        self.evaluations.append((time.perf_counter(), shared))
         return self.problem.normal(shared, local)
 
 
-def first_good(seen: list[tuple[float, Array]], began: float, truth: Array) -> float:
+def first_time_within(evaluations: list[tuple[float, Array]], began: float, truth: Array) -> float:
     """Seconds until the first evaluation within 1 %."""
-    return next((at - began for at, point in seen if mean_error(point, truth) <= GOOD), np.inf)
+    return next((at - began for at, point in evaluations if mean_error(point, truth) <= GOOD), np.inf)
 
 
-def ours(data: Data, box: Box) -> tuple[float, float]:
+def output_error_seconds(data: SearchData, box: Box) -> tuple[float, float]:
     """Seconds to 1 % and to rounding; the shortest of several runs."""
-    problem, start = lean(data), 0.5 * (box.lower + box.upper)
-    local = problem.known_starts()
+    problem, start = problem_from_rest(data), 0.5 * (box.lower + box.upper)
+    local = problem.given_initial_states()
 
     def once() -> float:
-        noted = Noted(problem)
+        noted = EvaluationLog(problem)
         began = time.perf_counter()
         levenberg_marquardt(noted, start, local, negligible=1e-12)
-        return first_good(noted.seen, began, data.truth)
+        return first_time_within(noted.evaluations, began, data.truth)
 
     whole = fastest(lambda: levenberg_marquardt(problem, start, local, negligible=1e-12), 50)
     return min(once() for _ in range(50)), whole
 
 
-def simulated(data: Data) -> Callable[[Array], Array]:
+def residual_function(data: SearchData) -> Callable[[Array], Array]:
     """Residuals in standard deviations of one candidate."""
     forcing, rest, measured = data.forcing, np.zeros(4), data.measured
 
     def residuals(point: Array) -> Array:
-        return ((trajectories(*heave_pitch_candidates(point[None]), forcing, rest)[0] - measured) / NOISE).ravel()
+        return ((trajectories(*candidate_matrices(point[None]), forcing, rest)[0] - measured) / NOISE).ravel()
 
     return residuals
 
 
-def by_scipy(data: Data, box: Box, method: str) -> float:
+def by_scipy(data: SearchData, box: Box, method: str) -> float:
     """Seconds to 1 % with differences for slopes, in multiples of the start; the shortest of several runs."""
-    start, residuals = 0.5 * (box.lower + box.upper), simulated(data)
+    start, residuals = 0.5 * (box.lower + box.upper), residual_function(data)
 
     def once() -> float:
         seen: list[tuple[float, Array]] = []
@@ -115,19 +115,19 @@ def by_scipy(data: Data, box: Box, method: str) -> float:
 
         began = time.perf_counter()
         least_squares(noted, np.ones(len(start)), method=method, xtol=1e-6, ftol=1e-12, gtol=1e-12)
-        return first_good(seen, began, data.truth)
+        return first_time_within(seen, began, data.truth)
 
     return min(once() for _ in range(50))
 
 
-class Reached(Exception):
+class TargetReached(Exception):
     """The best candidate so far is within 1 % of the truth."""
 
 
-class Judge:
+class TimedFitness:
     """Our fitness of a population in coordinates of the unit box; ends the search that knows better than 1 %."""
 
-    def __init__(self, data: Data, box: Box, limit: float) -> None:
+    def __init__(self, data: SearchData, box: Box, limit: float) -> None:
         self.data, self.box, self.limit = data, box, limit
         self.forcing, self.rest, self.best = data.forcing, np.zeros(4), np.inf
         self.evaluations, self.began = 0, time.perf_counter()
@@ -140,24 +140,26 @@ class Judge:
             TimeoutError: the limit [s] is over.
         """
         points = self.box.lower + unit * (self.box.upper - self.box.lower)
-        values = fitness(*heave_pitch_candidates(points), self.forcing, self.rest, self.data.measured, NOISE)
+        values = fitness(*candidate_matrices(points), self.forcing, self.rest, self.data.measured, NOISE)
         self.evaluations += len(points)
         first = int(np.argmin(values))
         if values[first] < self.best:
             self.best = float(values[first])
             if mean_error(points[first], self.data.truth) <= GOOD:
-                raise Reached
+                raise TargetReached
         if time.perf_counter() - self.began > self.limit:
             raise TimeoutError
         return values
 
 
-def timed(search: Callable[[Judge, int], None], data: Data, box: Box, seed: int, limit: float) -> float:
+def time_to_target(
+    search: Callable[[TimedFitness, int], None], data: SearchData, box: Box, seed: int, limit: float
+) -> float:
     """Seconds to 1 %; infinite where the search gave up or the limit was over."""
-    judge = Judge(data, box, limit)
+    judge = TimedFitness(data, box, limit)
     try:
         search(judge, seed)
-    except Reached:
+    except TargetReached:
         return time.perf_counter() - judge.began
     except TimeoutError:
         pass
@@ -181,8 +183,8 @@ def _peers(boxes: int) -> dict[str, Array]:
 
 def lines(boxes: int) -> list[Line]:
     """Medians over boxes, and ratios of medians to the best of each kind."""
-    drawn = race(boxes)
-    own = np.median([ours(*one) for one in drawn], axis=0)
+    drawn = seas_and_boxes(boxes)
+    own = np.median([output_error_seconds(*one) for one in drawn], axis=0)
     scipy = {m: float(np.median([by_scipy(*one, m) for one in drawn])) for m in ("lm", "trf")}
     what = f"{boxes} boxes, 135 deg, median to 1 %"
     made = [Line(f"{what}: ours", 1e3 * own[0], "ms"), Line(f"{what}: ours to rounding instead", 1e3 * own[1], "ms")]
@@ -197,4 +199,4 @@ def lines(boxes: int) -> list[Line]:
 
 if __name__ == "__main__":
     for line in lines(12):
-        print(f"  {line.what:<66} {line.value:>10.4g} {line.unit:<10} {line.verdict}", flush=True)
+        print(f"  {line.quantity:<66} {line.value:>10.4g} {line.unit:<10} {line.verdict}", flush=True)

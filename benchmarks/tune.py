@@ -10,25 +10,25 @@ import numpy as np
 from measure import Line, at_least, at_most
 
 from seatrial import api
-from seatrial.control.assess import judge
-from seatrial.control.front import Effort, front, grid
-from seatrial.control.task import Seaway, Task
-from seatrial.core.results.tuning import Restriction, Tuning
+from seatrial.control.front import Effort, grid_front, pareto_front
+from seatrial.control.gain_evaluation import gain_evaluator
+from seatrial.control.task import Seaway, TuningTask
+from seatrial.core.results.tuning import ControllerConstraints, Tuning
 from seatrial.numerics.optimise import hypervolume
-from seatrial.physics.loops import HullFactor, Objective, Seen
+from seatrial.physics.loops import HullFactor, LoopSignal, Objective
 from seatrial.physics.loops.fin import PUBLISHED_GAINS, Preamplifier, fin_loop
-from seatrial.physics.loops.objective import off_target, variance
+from seatrial.physics.loops.objective import squared_deviation, variance
 from seatrial.physics.sea.spectrum import ittc
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 KNOT, POINTS = 1852.0 / 3600.0, 160
 PUBLISHED = np.array([list(PUBLISHED_GAINS.values())])
 VARIANCES = (
-    variance("roll", "rad^2", Seen.OUTPUT),
-    variance("fin", "rad^2", Seen.ACTUATOR),
-    variance("fin rate", "rad^2/s^2", Seen.ACTUATOR, 1),
+    variance("roll", "rad^2", LoopSignal.OUTPUT),
+    variance("fin", "rad^2", LoopSignal.ACTUATOR),
+    variance("fin rate", "rad^2/s^2", LoopSignal.ACTUATOR, 1),
 )
-TARGET = off_target("fin", Seen.ACTUATOR, math.radians(math.sqrt(150.31)) ** 2, one_sided=False)
+TARGET = squared_deviation("fin", LoopSignal.ACTUATOR, math.radians(math.sqrt(150.31)) ** 2, one_sided=False)
 OBJECTIVES = {"variances": VARIANCES, "the paper's": (VARIANCES[0], TARGET, VARIANCES[2])}
 
 
@@ -45,12 +45,14 @@ def _front(reading: Preamplifier, name: str, objectives: tuple[Objective, ...]) 
     """Beam sea of 3.3 m at 18 kn, Ms <= 2."""
     U = 18.0 * KNOT
     met = Seaway(ittc(3.3), U, math.pi / 2.0, HullFactor(100.0, 10.5, 3.4))
-    one = judge(Task("", "fins", "", fin_loop(reading), (met,), objectives, Restriction(peak=2.0), U))
-    front(one, "", 0, _silent, Effort(20, 2, 1, 1, 100))
+    one = gain_evaluator(
+        TuningTask("", "fins", "", fin_loop(reading), (met,), objectives, ControllerConstraints(Ms=2.0), U)
+    )
+    pareto_front(one, "", 0, _ignore_progress, Effort(20, 2, 1, 1, 100))
     began = time.perf_counter()
-    made = front(one, "", 0, _silent, Effort())
+    made = pareto_front(one, "", 0, _ignore_progress, Effort())
     seconds = time.perf_counter() - began
-    known = grid(one, (POINTS,) * 3)
+    known = grid_front(one, (POINTS,) * 3)
     nadir = known.max(axis=0)
     share = hypervolume(made.objectives, nadir) / hypervolume(known, nadir)
     word = f"{reading.name.lower()}, {name}"
@@ -59,7 +61,7 @@ def _front(reading: Preamplifier, name: str, objectives: tuple[Objective, ...]) 
         at_most(f"{word}: time of the front", seconds, "s", 10.0),
     ]
     if name == "variances":
-        ratio = float((made.objectives / one.of(PUBLISHED).objectives).max(axis=1).min())
+        ratio = float((made.objectives / one.evaluate(PUBLISHED).objectives).max(axis=1).min())
         what = f"{word}: largest of three objectives over the published gains'"
         lines.append(at_most(what, ratio, "x", 0.62) if reading is Preamplifier.PRINTED else Line(what, ratio, "x"))
     return lines
@@ -68,18 +70,25 @@ def _front(reading: Preamplifier, name: str, objectives: tuple[Objective, ...]) 
 def _fins() -> list[Line]:
     made = api.tune(api.load_loop(EXAMPLES / "fin_stabiliser.toml"))
     own = float(np.mean([slot.cost for slot in made.schedule]))
-    published = float(np.mean([slot.others["as published"] for slot in made.schedule]))
+    published = float(np.mean([slot.baseline_costs["as published"] for slot in made.schedule]))
     headings = sorted({slot.beta for slot in made.schedule})
     worst = max(
         float(np.mean([s.cost for s in made.schedule if s.beta == b]))
-        / float(np.mean([s.others["as published"] for s in made.schedule if s.beta == b]))
+        / float(np.mean([s.baseline_costs["as published"] for s in made.schedule if s.beta == b]))
         for b in headings
     )
     return [
-        at_most("fin example: points lost to angle and rate limits", 100.0 * made.sailed[0].lost, "points", 3.0),
+        at_most(
+            "fin example: points lost to angle and rate limits",
+            100.0 * made.seaway_simulations[0].saturation_loss,
+            "points",
+            3.0,
+        ),
         *(
-            at_least(f"fin example: better than published, {p.what}, lower end of 95 %", 100.0 * p.lower, "points", 0.0)
-            for p in made.paired
+            at_least(
+                f"fin example: better than published, {p.stage}, lower end of 95 %", 100.0 * p.lower, "points", 0.0
+            )
+            for p in made.paired_differences
         ),
         at_most("fin example: mean cost of the schedule over the published gains'", own / published, "x", 0.6),
         at_most("fin example: worst heading of the schedule over the published gains'", worst, "x", 1.0),
@@ -94,21 +103,21 @@ def _autopilots() -> list[Line]:
         if trial == "kvlcc2_hsva" and "SEATRIAL_DATA" not in os.environ:
             continue
         with tempfile.TemporaryDirectory() as folder:
-            api.save(api.identify(api.load_trial(EXAMPLES / f"{trial}.toml")), folder)
+            api.save_fit(api.identify(api.load_trial(EXAMPLES / f"{trial}.toml")), folder)
             made = api.tune(api.load_loop(EXAMPLES / f"{loop}.toml", model_file=Path(folder) / "model.toml"))
         lines += _autopilot(trial, made)
     return lines
 
 
-def _autopilot(name: str, made: Tuning) -> list[Line]:
-    change = made.manoeuvres[0]
+def _autopilot(name: str, tuning: Tuning) -> list[Line]:
+    change = tuning.manoeuvres[0]
     return [
         at_most(f"{name}: overshoot of a 20 deg course change", 100.0 * change.overshoot, "%", 2.0),
-        at_most(f"{name}: Ms", made.chosen.peak, "", 1.7),
+        at_most(f"{name}: Ms", tuning.chosen.Ms, "", 1.7),
         at_least(f"{name}: ships of the fit that are stable", change.stable_draws, "of 100", 100),
         at_most(f"{name}: worst overshoot of these ships", 100.0 * change.worst_overshoot, "%", 2.0),
     ]
 
 
-def _silent(_: str) -> None:
+def _ignore_progress(_: str) -> None:
     pass

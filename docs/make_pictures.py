@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import seatrial.api as sea
-from seatrial.core.figures.tracks import hull
+from seatrial.core.figures.tracks import hull_outline
 from seatrial.core.results import Prediction
 from seatrial.core.values import Record
 
@@ -59,7 +59,7 @@ def picture(prediction: Prediction, length: float, title: str) -> Figure:
 def _track(axes: Axes, record: Record, length: float, look: dict) -> None:
     axes.plot(record["x0"], record["y0"], **look)
     for i in np.linspace(0, len(record) - 1, 9).astype(int):
-        north, east = hull(float(record["x0"][i]), float(record["y0"][i]), float(record["psi"][i]), length).T
+        north, east = hull_outline(float(record["x0"][i]), float(record["y0"][i]), float(record["psi"][i]), length).T
         axes.fill(north, east, facecolor=look["color"] if look is MEASURED else "none", edgecolor=look["color"],
                   linewidth=0.9)  # fmt: skip
 

@@ -81,8 +81,8 @@ def test_the_readmes_own_model_replaces_the_examples(repository: Path, tmp_path:
 def test_a_run_of_a_trial_can_be_replayed(repository: Path) -> None:
     trial = sea.load_trial(repository / "examples" / "waterjet.toml")
     name = trial.runs[0].name
-    record = sea.run_of(trial, name)
+    record = sea.prepared_run(trial, name)
     again = sea.replay(ModelFile(trial.model, ship=trial.ship), record)
     assert (again.time == record.time).all()
     with pytest.raises(InputError, match=f"no run 'none'.*{name}"):
-        sea.run_of(trial, "none")
+        sea.prepared_run(trial, "none")

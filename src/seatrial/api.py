@@ -15,18 +15,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from seatrial.control.task import Task
+    from seatrial.control.task import TuningTask
     from seatrial.core.equations import Model
     from seatrial.core.results import Design, Extrapolation, Fit, Study
-    from seatrial.core.results.online import Counts, Snapshot
+    from seatrial.core.results.online import SampleCounts, Snapshot
     from seatrial.core.results.tuning import Tuning
     from seatrial.core.values import Finding, Record
     from seatrial.data.folder.model_file import ModelFile
     from seatrial.data.trial import Trial
-    from seatrial.onboard.follow import Outcome
-    from seatrial.onboard.sample import Source
+    from seatrial.onboard.follow import FollowResult
+    from seatrial.onboard.sample import SampleSource
 
-Progress = Callable[[str], None]
+ProgressCallback = Callable[[str], None]
 
 
 def load_trial(path: str | Path, own_model: "Model | None" = None) -> "Trial":
@@ -46,15 +46,15 @@ def check(trial: "Trial") -> "tuple[Finding, ...]":
     Raises:
         InputError: a record cannot be read at all.
     """
-    from seatrial.data.trial import records_of
+    from seatrial.data.trial import load_records
 
-    return records_of(trial)[1]
+    return load_records(trial)[1]
 
 
 def identify(
     trial: "Trial",
     seed: int = 0,
-    progress: Progress | None = None,
+    report_progress: ProgressCallback | None = None,
     *,
     intervals: str = "auto",
     choose: bool = False,
@@ -71,30 +71,30 @@ def identify(
     Raises:
         InputError: the records do not pass the checks, show no excitation, or cannot tell the parameters apart.
     """
-    from seatrial.physics.models.ahead import Ahead
+    from seatrial.physics.models.precompile import Precompilation
 
-    compiling = Ahead(trial.model.name)
-    from seatrial.core.values import InputError, nearest
-    from seatrial.estimation.identify import Intervals, identify
+    compiling = Precompilation(trial.model.name)
+    from seatrial.core.values import InputError, spelling_hint
+    from seatrial.estimation.identify import IntervalMethod, identify
 
-    if intervals not in (kinds := [kind.value for kind in Intervals]):
-        raise InputError(f"unknown kind of intervals '{intervals}'{nearest(intervals, kinds)}")
-    compiling.finish()
-    kind = Intervals(intervals)
-    return identify(trial, seed=seed, progress=progress, intervals=kind, choose=choose, compare=compare)
+    if intervals not in (kinds := [kind.value for kind in IntervalMethod]):
+        raise InputError(f"unknown kind of intervals '{intervals}'{spelling_hint(intervals, kinds)}")
+    compiling.wait()
+    kind = IntervalMethod(intervals)
+    return identify(trial, seed=seed, report_progress=report_progress, intervals=kind, choose=choose, compare=compare)
 
 
 def follow(
     trial: "Trial",
     *,
-    source: "Source | None" = None,
+    source: "SampleSource | None" = None,
     once: bool = False,
     journal: str | Path | None = None,
-    show: "Callable[[Snapshot, Counts], None] | None" = None,
+    show: "Callable[[Snapshot, SampleCounts], None] | None" = None,
     stop: Callable[[], bool] | None = None,
     seed: int = 0,
-    progress: Progress | None = None,
-) -> "Outcome":
+    report_progress: ProgressCallback | None = None,
+) -> "FollowResult":
     """Estimate while the record is still being made, from the samples that [follow] of the trial names.
 
     Args:
@@ -109,33 +109,35 @@ def follow(
         InputError: the trial has no [follow], it lacks channels, its source cannot be opened, or the journal is of
             another trial.
     """
-    from seatrial.physics.models.ahead import Ahead
+    from seatrial.physics.models.precompile import Precompilation
 
-    compiling = Ahead(trial.model.name)
+    compiling = Precompilation(trial.model.name)
     from seatrial.onboard.follow import follow
 
-    compiling.finish()
+    compiling.wait()
     place = None if journal is None else Path(journal)
-    return follow(trial, source=source, once=once, journal=place, show=show, stop=stop, seed=seed, progress=progress)
+    return follow(
+        trial, source=source, once=once, journal=place, show=show, stop=stop, seed=seed, report_progress=report_progress
+    )
 
 
-def save_outcome(outcome: "Outcome", folder: str | Path) -> Path:
+def save_outcome(outcome: "FollowResult", folder: str | Path) -> Path:
     """Write what following came to: a result folder with its report after `once`, else ``online.json``; its path.
 
     Raises:
         InputError: the folder cannot be written.
     """
-    from seatrial.core.values.files import write_together
+    from seatrial.core.values.files import write_files_atomically
     from seatrial.data.folder.fit_json import strict_json
     from seatrial.data.folder.online_json import online_json
 
     if outcome.fit is not None:
-        return save(outcome.fit, folder)
+        return save_fit(outcome.fit, folder)
     text = strict_json(online_json(outcome.snapshot, outcome.counts))
-    return write_together(Path(folder), {"online.json": text.encode()}) / "online.json"
+    return write_files_atomically(Path(folder), {"online.json": text.encode()}) / "online.json"
 
 
-def save(fit: "Fit", folder: str | Path) -> Path:
+def save_fit(fit: "Fit", folder: str | Path) -> Path:
     """Write the result folder (see docs/result-folder.md) with its report; returns the report's path.
 
     Raises:
@@ -183,8 +185,8 @@ def load_model(path: str | Path, own_model: "Model | None" = None) -> "ModelFile
 def design(
     trial: "Trial",
     seed: int = 0,
-    progress: Progress | None = None,
-    prior: "ModelFile | None" = None,
+    report_progress: ProgressCallback | None = None,
+    prior_model: "ModelFile | None" = None,
 ) -> "Design":
     """The manoeuvre that tells the trial's coefficients best within its limits, beside the standard ones.
 
@@ -196,15 +198,15 @@ def design(
         InputError: the trial has no [design], its sensors or inputs do not fit the model, the model file holds another
             model, or nothing keeps within the limits.
     """
-    from seatrial.physics.models.ahead import Ahead
+    from seatrial.physics.models.precompile import Precompilation
 
-    compiling = Ahead(trial.model.name)
-    from seatrial.estimation.design.asked import task_of
+    compiling = Precompilation(trial.model.name)
     from seatrial.estimation.design.design import design
+    from seatrial.estimation.design.from_trial import design_task
 
-    task = task_of(trial, prior)
-    compiling.finish()
-    return design(task, seed=seed, progress=progress or (lambda _: None))
+    task = design_task(trial, prior_model)
+    compiling.wait()
+    return design(task, seed=seed, report_progress=report_progress or (lambda _: None))
 
 
 def save_design(design: "Design", folder: str | Path) -> Path:
@@ -213,25 +215,25 @@ def save_design(design: "Design", folder: str | Path) -> Path:
     Raises:
         InputError: the folder cannot be written.
     """
-    from seatrial.core.values.files import write_together
+    from seatrial.core.values.files import write_files_atomically
     from seatrial.data.folder.design_json import design_json
     from seatrial.data.folder.fit_json import strict_json
     from seatrial.data.folder.model_file import ModelFile, model_text
-    from seatrial.data.folder.orders import orders_text
-    from seatrial.data.read.table import record_text
+    from seatrial.data.folder.orders import orders_csv
+    from seatrial.data.read.record_csv import record_csv
     from seatrial.reporting.design import html
 
     texts = {
-        "orders.csv": orders_text(design),
-        "plan.csv": record_text(design.plan),
+        "orders.csv": orders_csv(design),
+        "plan.csv": record_csv(design.plan),
         "design.json": strict_json(design_json(design)),
         "model.toml": model_text(ModelFile(design.model)),
         "report.html": html(design),
     }
-    return write_together(Path(folder), {name: text.encode() for name, text in texts.items()}) / "report.html"
+    return write_files_atomically(Path(folder), {name: text.encode() for name, text in texts.items()}) / "report.html"
 
 
-def load_loop(path: str | Path, own_model: "Model | None" = None, model_file: str | Path | None = None) -> "Task":
+def load_loop(path: str | Path, own_model: "Model | None" = None, model_file: str | Path | None = None) -> "TuningTask":
     """The tuning that a loop file asks for (see docs/loop-file.md).
 
     Args:
@@ -241,12 +243,12 @@ def load_loop(path: str | Path, own_model: "Model | None" = None, model_file: st
     Raises:
         InputError: one sentence naming file, key and what to do.
     """
-    from seatrial.control.loopfile.load import task_of
+    from seatrial.control.loopfile.load import tuning_task
 
-    return task_of(Path(path), own_model, None if model_file is None else Path(model_file))
+    return tuning_task(Path(path), own_model, None if model_file is None else Path(model_file))
 
 
-def tune(task: "Task | str | Path", seed: int = 0, progress: Progress | None = None) -> "Tuning":
+def tune(task: "TuningTask | str | Path", seed: int = 0, report_progress: ProgressCallback | None = None) -> "Tuning":
     """Gains of a feedback loop: the front, the choice and its reasons, what nonlinear simulation says of it.
 
     Args:
@@ -256,11 +258,11 @@ def tune(task: "Task | str | Path", seed: int = 0, progress: Progress | None = N
     Raises:
         InputError: as `load_loop`; no gains keep the limits (which limit, by how much).
     """
-    from seatrial.control.task import Task
+    from seatrial.control.task import TuningTask
     from seatrial.control.tune import tune
 
-    asked = task if isinstance(task, Task) else load_loop(task)
-    return tune(asked, seed=seed, progress=progress or (lambda _: None))
+    asked = task if isinstance(task, TuningTask) else load_loop(task)
+    return tune(asked, seed=seed, report_progress=report_progress or (lambda _: None))
 
 
 def save_tuning(tuning: "Tuning", folder: str | Path) -> Path:
@@ -269,21 +271,21 @@ def save_tuning(tuning: "Tuning", folder: str | Path) -> Path:
     Raises:
         InputError: the folder cannot be written.
     """
-    from seatrial.core.values.files import write_together
+    from seatrial.core.values.files import write_files_atomically
     from seatrial.data.folder.fit_json import strict_json
-    from seatrial.data.folder.tuning_files import gains_text, loop_mat, schedule_text
+    from seatrial.data.folder.tuning_files import gains_toml, loop_mat, schedule_csv
     from seatrial.data.folder.tuning_json import tuning_json
     from seatrial.reporting.tuning import html
 
     contents = {
-        "gains.toml": gains_text(tuning).encode(),
+        "gains.toml": gains_toml(tuning).encode(),
         "loop.mat": loop_mat(tuning),
         "tuning.json": strict_json(tuning_json(tuning)).encode(),
         "report.html": html(tuning).encode(),
     }
     if tuning.schedule:
-        contents["schedule.csv"] = schedule_text(tuning).encode()
-    return write_together(Path(folder), contents) / "report.html"
+        contents["schedule.csv"] = schedule_csv(tuning).encode()
+    return write_files_atomically(Path(folder), contents) / "report.html"
 
 
 Steering = Callable[["Model"], "Record"]
@@ -365,18 +367,18 @@ def measure_intervals(model: "ModelFile", steer: Steering) -> dict[str, tuple[fl
     Raises:
         InputError: most of the ships that the fit allows cannot be steered through the manoeuvre.
     """
-    from seatrial.estimation.predict.steered import measure_intervals
+    from seatrial.estimation.predict.measure_intervals import measure_intervals
 
-    if model.margin is None or model.ship is None:
+    if model.interval_basis is None or model.ship is None:
         return {}
-    return measure_intervals(model.model, model.margin, steer, model.ship.length)
+    return measure_intervals(model.model, model.interval_basis, steer, model.ship.length)
 
 
 def extrapolation(model: "ModelFile", record: "Record") -> "Extrapolation | None":
     """How far a simulated run leaves what the training runs cover; None where the model file does not say it."""
     from seatrial.estimation.information.extrapolation import extrapolation
 
-    return None if model.margin is None else extrapolation(record, model.margin.covered)
+    return None if model.interval_basis is None else extrapolation(record, model.interval_basis.training_envelope)
 
 
 def _with_seed(manoeuvre: str, seed: int) -> str:
@@ -387,21 +389,21 @@ def _with_seed(manoeuvre: str, seed: int) -> str:
     return ":".join(["prbs", *fields, *["20", ""][len(fields) :], str(seed)])
 
 
-def run_of(trial: "Trial | str | Path", name: str) -> "Record":
+def prepared_run(trial: "Trial | str | Path", name: str) -> "Record":
     """One run of a trial as `identify` would use it: canonical, trimmed, resampled.
 
     Raises:
         InputError: the trial has no run of that name (the nearest is named), or it cannot be read.
     """
-    from seatrial.core.values import InputError, nearest
+    from seatrial.core.values import InputError, spelling_hint
     from seatrial.data.trial import Trial, load_trial
-    from seatrial.data.trial.records import checked
+    from seatrial.data.trial.records import load_run
 
     known = trial if isinstance(trial, Trial) else load_trial(trial)
     runs = {run.name: run for run in known.runs}
     if name not in runs:
-        raise InputError(f"the trial has no run '{name}'{nearest(name, list(runs))}")
-    record = checked(runs[name], known.reference_point)[0]
+        raise InputError(f"the trial has no run '{name}'{spelling_hint(name, list(runs))}")
+    record = load_run(runs[name], known.reference_point)[0]
     return record if known.estimate.rate is None else record.resampled(known.estimate.rate)
 
 
@@ -414,22 +416,22 @@ def replay(model: "ModelFile", record: "Record", speed: float | None = None) -> 
     Raises:
         InputError: an input channel is missing, or the simulation diverges.
     """
-    from seatrial.core.values import Kind
+    from seatrial.core.values import RecordKind
     from seatrial.physics.simulate import replay
     from seatrial.physics.simulate.approach import straight_run
 
-    start = straight_run(model.model, record, speed) if record.kind is Kind.PLANNED else None
+    start = straight_run(model.model, record, speed) if record.kind is RecordKind.PLANNED else None
     return replay(model.model, record, start)
 
 
-def differences(measured: "Record", simulated: "Record") -> dict[str, float]:
+def rms_differences(measured: "Record", simulated: "Record") -> dict[str, float]:
     """Root-mean-square differences of two runs on one time base: keys as in `Prediction.rms`."""
-    from seatrial.estimation.predict.open_loop import rms
+    from seatrial.estimation.predict.open_loop import rms_errors
 
-    return rms(measured, simulated)
+    return rms_errors(measured, simulated)
 
 
-def measures(model: "ModelFile", record: "Record", like: "Record | None" = None) -> dict[str, float]:
+def measures(model: "ModelFile", record: "Record", measured: "Record | None" = None) -> dict[str, float]:
     """Overshoots, advance, transfer, tactical diameter and the like, as far as the record shows them.
 
     like: the measured run whose inputs `record` replays; the manoeuvre is then made out on it.
@@ -442,10 +444,10 @@ def measures(model: "ModelFile", record: "Record", like: "Record | None" = None)
 
     if model.ship is None:
         raise InputError("the model file has no [ship] with the length L, which measures need; add it")
-    return measures(record, model.ship.length, like=like)
+    return measures(record, model.ship.length, reference=measured)
 
 
-def demo(folder: str | Path, seed: int = 0, progress: Progress | None = None) -> "Fit":
+def demo(folder: str | Path, seed: int = 0, report_progress: ProgressCallback | None = None) -> "Fit":
     """The main job on simulated trials of a craft with known coefficients; trials, result and report go to `folder`.
 
     Raises:
@@ -454,34 +456,36 @@ def demo(folder: str | Path, seed: int = 0, progress: Progress | None = None) ->
     from seatrial.core.values.files import writable_folder
     from seatrial.data.example_series.files import write_demo
 
-    tell = progress or (lambda _: None)
+    tell = report_progress or (lambda _: None)
     place = writable_folder(Path(folder))
     tell("simulating the trials")
-    fit = identify(load_trial(write_demo(place / "trials", seed)), seed=seed, progress=progress)
+    fit = identify(load_trial(write_demo(place / "trials", seed)), seed=seed, report_progress=report_progress)
     tell("writing result and report")
-    save(fit, place)
+    save_fit(fit, place)
     return fit
 
 
 class Reproduction(Protocol):
     """What an entry point of the group `seatrial.studies` names: repeats a study, `quick` with fewer cases."""
 
-    def __call__(self, *, quick: bool, seed: int, progress: Progress | None) -> "Study": ...
+    def __call__(self, *, quick: bool, seed: int, report_progress: ProgressCallback | None) -> "Study": ...
 
 
-def reproduce(study: str, *, quick: bool = False, seed: int = 0, progress: Progress | None = None) -> "Study":
+def reproduce(
+    study: str, *, quick: bool = False, seed: int = 0, report_progress: ProgressCallback | None = None
+) -> "Study":
     """A published study, its claims checked.
 
     Raises:
         InputError: unknown study (the nearest is named).
     """
-    from seatrial.core.values import InputError, nearest
+    from seatrial.core.values import InputError, spelling_hint
 
     studies = {point.name: point for point in entry_points(group="seatrial.studies")}
     if study not in studies:
-        raise InputError(f"unknown study '{study}'{nearest(study, sorted(studies))}")
+        raise InputError(f"unknown study '{study}'{spelling_hint(study, sorted(studies))}")
     reproduction: Reproduction = studies[study].load()
-    return replace(reproduction(quick=quick, seed=seed, progress=progress), quick=quick)
+    return replace(reproduction(quick=quick, seed=seed, report_progress=report_progress), quick=quick)
 
 
 def save_study(study: "Study", folder: str | Path) -> Path:
@@ -490,10 +494,10 @@ def save_study(study: "Study", folder: str | Path) -> Path:
     Raises:
         InputError: the folder cannot be written.
     """
-    from seatrial.core.values.files import writable_folder, write_whole
+    from seatrial.core.values.files import writable_folder, write_atomically
     from seatrial.data.folder.fit_json import strict_json
     from seatrial.reporting.study import write_study
 
     place = writable_folder(Path(folder))
-    write_whole(place / "study.json", strict_json(study.as_table()).encode())
+    write_atomically(place / "study.json", strict_json(study.as_table()).encode())
     return write_study(study, place / "report.html")

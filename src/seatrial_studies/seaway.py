@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Array, Channel, Kind, Provenance, Record, frozen
+from seatrial.core.values import Array, Channel, Provenance, Record, RecordKind, frozen
 from seatrial.data.example_series.series import write_csv
 from seatrial.physics.hydro.excitation import BoxHull
 from seatrial.physics.models.heave_pitch import heave_pitch
-from seatrial.physics.models.qi2025 import SHIP, SIGNIFICANT_HEIGHT, SPEED, theory
-from seatrial.physics.sea.realise import LINES, Lines, Spacing, harmonic_sum, realise
+from seatrial.physics.models.qi2025 import SHIP, SIGNIFICANT_HEIGHT, SPEED, theoretical_coefficients
+from seatrial.physics.sea.realise import DEFAULT_COMPONENTS, Spacing, WaveComponents, harmonic_sum, realise
 from seatrial.physics.sea.spectrum import ittc
-from seatrial.physics.simulate.harmonics import harmonic_motion, plant
+from seatrial.physics.simulate.harmonics import harmonic_motion, linear_system
 from seatrial.physics.simulate.linear import LinearBatch
 
 # assumed, printed nowhere: lift slope rho/2 U^2 A C_L_alpha with 6 m^2 and 3/rad, 25 m aft, +-10 degrees for 1 s each
@@ -26,14 +26,14 @@ FIN_ANGLE, FIN_HOLD = math.radians(10.0), 1.0
 HEAVE_NOISE, PITCH_NOISE = 0.01, math.radians(0.02)
 
 
-def box() -> BoxHull:
+def box_hull() -> BoxHull:
     """The paper's ship as a box: her force coefficients are not printed."""
     p = SHIP.particulars
     return BoxHull(p["L"], p["B"], p["d"], p["c33"], p["c35"], p["c53"], p["c55"])
 
 
 @dataclass(frozen=True)
-class Voyage:
+class SeawayScenario:
     """What is sailed: heading in degrees, significant height [m], duration and time step [s], fin, sensors.
 
     Attributes:
@@ -45,64 +45,64 @@ class Voyage:
     height: float = SIGNIFICANT_HEIGHT
     duration: float = 200.0
     dt: float = 0.1
-    every: int = 1
+    motion_stride: int = 1
     has_waves: bool = True
     has_fin: bool = True
     noise: tuple[float, float] = (HEAVE_NOISE, PITCH_NOISE)
     spacing: Spacing = Spacing.EQUAL_INTERVAL
-    lines: int = LINES
+    line_count: int = DEFAULT_COMPONENTS
 
 
 @dataclass(frozen=True, eq=False)
-class Sailed:
+class SeawayRun:
     """A record, the ship that made it, and the lines of the sea she met."""
 
     record: Record
     truth: Model
-    lines: Lines
+    lines: WaveComponents
 
-    def noisy(self, rng: np.random.Generator, voyage: Voyage) -> Record:
+    def with_sensor_noise(self, rng: np.random.Generator, scenario: SeawayScenario) -> Record:
         """The record with a draw of sensor noise."""
         own = self.record.channels
         made = {
             name: own[name].with_values(own[name].values + sd * rng.standard_normal(len(self.record)))
-            for name, sd in zip(("z", "theta"), voyage.noise, strict=True)
+            for name, sd in zip(("z", "theta"), scenario.noise, strict=True)
         }
-        return Record(self.record.name, self.record.time, {**own, **made}, Kind.SIMULATED, self.record.provenance)
+        return Record(self.record.name, self.record.time, {**own, **made}, RecordKind.SIMULATED, self.record.provenance)
 
 
 def ship(heading: int) -> Model:
     """The paper's ship at a heading of its tables, with the assumed fin."""
-    return theory(heading).applied(heave_pitch()).with_values(FIN)
+    return theoretical_coefficients(heading).applied_to(heave_pitch()).with_values(FIN)
 
 
-def sailed(voyage: Voyage, rng: np.random.Generator, truth: Model | None = None) -> Sailed:
+def simulate_seaway_run(scenario: SeawayScenario, rng: np.random.Generator, truth: Model | None = None) -> SeawayRun:
     """The voyage without sensor noise; `rng` draws the sea's phases and the fin's commands.
 
     Raises:
         InputError: no coefficients at this heading, or a sea that cannot be made.
     """
-    model = truth or ship(voyage.heading)
-    count = round(voyage.duration / voyage.dt) + 1
-    time = np.arange(count, dtype=np.float64) * voyage.dt
-    beta = math.radians(voyage.heading)
-    lines = realise(ittc(voyage.height), SPEED, beta, rng, count=voyage.lines, spacing=voyage.spacing)
-    amplitude = -lines.forces(box()) * float(voyage.has_waves)  # z down, theta bow up
-    angle = -fin_commands(count, voyage.dt, rng) * float(voyage.has_fin)
+    model = truth or ship(scenario.heading)
+    count = round(scenario.duration / scenario.dt) + 1
+    time = np.arange(count, dtype=np.float64) * scenario.dt
+    beta = math.radians(scenario.heading)
+    lines = realise(ittc(scenario.height), SPEED, beta, rng, count=scenario.line_count, spacing=scenario.spacing)
+    amplitude = -lines.forces(box_hull()) * float(scenario.has_waves)  # z down, theta bow up
+    angle = -fin_commands(count, scenario.dt, rng) * float(scenario.has_fin)
     inputs = np.zeros((count, 4))
     inputs[:, 2] = angle
     forces = np.zeros((len(lines.omega), 4), complex)
     forces[:, :2] = amplitude
-    motion = harmonic_motion(plant(model, ("z", "theta")), lines.encounter, forces, time, np.zeros(4))
-    batch = LinearBatch(model, inputs, np.array([0, count]), voyage.dt, ("z", "theta"))
+    motion = harmonic_motion(linear_system(model, ("z", "theta")), lines.omega_e, forces, time, np.zeros(4))
+    batch = LinearBatch(model, inputs, np.array([0, count]), scenario.dt, ("z", "theta"))
     motion = motion + batch.simulate(0, 1, np.zeros((1, 4)), model.parameters.values[None], np.empty((1, 0)))[0]
-    motion[np.arange(count) % voyage.every != 0] = np.nan
-    waves = [harmonic_sum(lines.encounter, -amplitude[:, j], time) for j in (0, 1)]
+    motion[np.arange(count) % scenario.motion_stride != 0] = np.nan
+    waves = [harmonic_sum(lines.omega_e, -amplitude[:, j], time) for j in (0, 1)]
     channels = {"zeta": lines.elevation(time), "F3": waves[0], "M5": waves[1], "delta_f1": -angle,
                 "z": motion[:, 0], "theta": motion[:, 1]}  # fmt: skip
-    made = {name: Channel.of(name, frozen(values)) for name, values in channels.items()}
-    name = f"{voyage.heading} deg"
-    return Sailed(Record(name, frozen(time), made, Kind.SIMULATED, Provenance("simulated sea")), model, lines)
+    made = {name: Channel.from_notation(name, frozen(values)) for name, values in channels.items()}
+    name = f"{scenario.heading} deg"
+    return SeawayRun(Record(name, frozen(time), made, RecordKind.SIMULATED, Provenance("simulated sea")), model, lines)
 
 
 def fin_commands(count: int, dt: float, rng: np.random.Generator) -> Array:
@@ -112,22 +112,24 @@ def fin_commands(count: int, dt: float, rng: np.random.Generator) -> Array:
 
 
 MOTIONS = ("delta_f1", "z", "theta")
-_VOYAGE = Voyage(135, duration=150.0)
-_UNRECORDED = Voyage(135, dt=0.2, duration=400.0, spacing=Spacing.JITTERED, lines=300)
+_WAVES_RECORDED = SeawayScenario(135, duration=150.0)
+_WAVES_UNRECORDED = SeawayScenario(135, dt=0.2, duration=400.0, spacing=Spacing.JITTERED, line_count=300)
 # file -> voyage and what was recorded of the waves: their elevation, nothing, or the force
 EXAMPLES = {
-    "voyage_1": (_VOYAGE, ("zeta",)),
-    "voyage_2": (_VOYAGE, ("zeta",)),
-    "voyage_held_out": (_VOYAGE, ("zeta",)),
-    "sea_unrecorded": (_UNRECORDED, ()),
-    "forces_recorded": (_VOYAGE, ("F3", "M5")),
+    "voyage_1": (_WAVES_RECORDED, ("zeta",)),
+    "voyage_2": (_WAVES_RECORDED, ("zeta",)),
+    "voyage_held_out": (_WAVES_RECORDED, ("zeta",)),
+    "sea_unrecorded": (_WAVES_UNRECORDED, ()),
+    "forces_recorded": (_WAVES_RECORDED, ("F3", "M5")),
 }
 
 
 def main(folder: str) -> None:
     """Write the example voyages to `folder`."""
     for number, (name, (voyage, waves)) in enumerate(EXAMPLES.items()):
-        record = sailed(voyage, np.random.default_rng([2025, number])).noisy(np.random.default_rng([7, number]), voyage)
+        record = simulate_seaway_run(voyage, np.random.default_rng([2025, number])).with_sensor_noise(
+            np.random.default_rng([7, number]), voyage
+        )
         path = Path(folder) / f"{name}.csv"
         write_csv(record, path, (*waves, *MOTIONS))
         print(f"{path}: {record.duration:.0f} s, {path.stat().st_size / 1000:.0f} kB")

@@ -12,26 +12,32 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array
 from seatrial.numerics.optimise import Box, search
 from seatrial.numerics.optimise.population import Population
-from seatrial.physics.models.heave_pitch import COEFFICIENTS, STIFFNESSES, heave_pitch_held
-from seatrial.physics.models.qi2025 import SHIP, SIGNIFICANT_HEIGHT, SPEED, theory
+from seatrial.physics.models.heave_pitch import COEFFICIENTS, STIFFNESSES, heave_pitch_zoh
+from seatrial.physics.models.qi2025 import SHIP, SIGNIFICANT_HEIGHT, SPEED, theoretical_coefficients
 from seatrial.physics.sea.realise import realise
 from seatrial.physics.sea.spectrum import ittc
 from seatrial.physics.simulate.linear import LinearBatch
-from seatrial.physics.simulate.population import Forcing, completed, fitness, heave_pitch_matrices, one_sample_fitness
-from seatrial_studies.seaway import FIN, box, fin_commands
+from seatrial.physics.simulate.population import (
+    Forcing,
+    complete_parameters,
+    fitness,
+    heave_pitch_matrices,
+    one_sample_fitness,
+)
+from seatrial_studies.seaway import FIN, box_hull, fin_commands
 
 STEP = 0.5
 SAMPLES = 401
 
 
-def theory_of(heading: int, *, printed_sign: bool = False) -> Model:
+def held_force_ship(heading: int, *, printed_sign: bool = False) -> Model:
     """The papers' ship, wave force held; at 0 and 45 degrees the coefficients of the 90 degree column, assumed."""
-    known = theory(heading if heading >= 90 else 90, printed_sign=printed_sign)
-    return known.applied(heave_pitch_held())
+    known = theoretical_coefficients(heading if heading >= 90 else 90, printed_sign=printed_sign)
+    return known.applied_to(heave_pitch_zoh())
 
 
 @dataclass(frozen=True, eq=False)
-class Data:
+class SearchData:
     """One sea met by the ship at one heading, as the papers simulate it: samples every .5 s, forces held.
 
     Attributes:
@@ -52,7 +58,7 @@ class Data:
         return Forcing(self.forces, STEP, is_held=True)
 
 
-def sailed(
+def simulate_search_data(
     heading: int,
     rng: np.random.Generator,
     *,
@@ -61,13 +67,13 @@ def sailed(
     has_fin: bool = False,
     noise: tuple[float, float] = (0.0, 0.0),
     printed_sign: bool = False,
-) -> Data:
+) -> SearchData:
     """A realisation of 30 equally spaced lines (Qi et al. 2025, eq. (14)) met by the ship, from rest."""
-    model = theory_of(heading, printed_sign=printed_sign)
+    model = held_force_ship(heading, printed_sign=printed_sign)
     lines = realise(ittc(height), SPEED, math.radians(heading), rng)
     when = np.arange(samples) * STEP
-    turning = np.exp(1j * np.outer(when, lines.encounter))
-    forces = -(turning @ lines.forces(box())).real
+    turning = np.exp(1j * np.outer(when, lines.omega_e))
+    forces = -(turning @ lines.forces(box_hull())).real
     if has_fin:
         angle = fin_commands(samples, STEP, rng)
         lift = -FIN["lift_1"] * angle
@@ -78,10 +84,10 @@ def sailed(
     states = batch.simulate(0, 1, np.zeros((1, 4)), model.parameters.values[None], np.empty((1, 0)))[0]
     measured = states[:, [0, 2]] + rng.standard_normal((samples, 2)) * noise
     truth = np.array([model.parameters[n].value for n in COEFFICIENTS])
-    return Data(heading, model, truth, states, measured, np.ascontiguousarray(forces))
+    return SearchData(heading, model, truth, states, measured, np.ascontiguousarray(forces))
 
 
-class Angle(Enum):
+class PitchUnit(Enum):
     """In what unit pitch enters the fitness beside metres of heave; the papers do not say."""
 
     DEGREES = math.radians(1.0)
@@ -91,51 +97,51 @@ class Angle(Enum):
 Fitness = Callable[[Array], Array]
 
 
-def heave_pitch_candidates(points: Array) -> tuple[Array, Array]:
+def candidate_matrices(points: Array) -> tuple[Array, Array]:
     """A and B of candidates (count, 8), everything else as in the ship."""
     known = {name: SHIP.particulars[name] for name in ("m", "I5", *STIFFNESSES)}
-    return heave_pitch_matrices(completed(points, known))
+    return heave_pitch_matrices(complete_parameters(points, known))
 
 
-def one_sample(data: Data, optimiser: Population, angle: Angle = Angle.DEGREES) -> Fitness:
+def one_sample_objective(data: SearchData, optimiser: Population, pitch_unit: PitchUnit = PitchUnit.DEGREES) -> Fitness:
     """Eq. (28): iteration k compares sample k alone, one step from the true state before it (our choice: generous)."""
-    sigma = np.array([1.0, angle.value])
+    sigma = np.array([1.0, pitch_unit.value])
     forcing = data.forcing
 
-    def judged(points: Array) -> Array:
+    def objective(points: Array) -> Array:
         k = min(optimiser.iteration, len(data.states) - 2)
-        A, B = heave_pitch_candidates(points)
+        A, B = candidate_matrices(points)
         return np.sqrt(0.5 * one_sample_fitness(A, B, forcing, k, data.states[k], data.measured[k + 1], sigma))
 
-    return judged
+    return objective
 
 
-def whole_record(data: Data, angle: Angle = Angle.DEGREES) -> Fitness:
+def whole_record_objective(data: SearchData, pitch_unit: PitchUnit = PitchUnit.DEGREES) -> Fitness:
     """Eq. (27): root mean square over the whole record."""
-    sigma, forcing, count = np.array([1.0, angle.value]), data.forcing, data.measured.size
+    sigma, forcing, count = np.array([1.0, pitch_unit.value]), data.forcing, data.measured.size
 
-    def judged(points: Array) -> Array:
-        A, B = heave_pitch_candidates(points)
+    def objective(points: Array) -> Array:
+        A, B = candidate_matrices(points)
         return np.sqrt(fitness(A, B, forcing, np.zeros(4), data.measured, sigma) / count)
 
-    return judged
+    return objective
 
 
-def centred(truth: Array, share: float) -> Box:
+def centred_box(truth: Array, half_width: float) -> Box:
     """The truth +- a share of it: the truth in the middle."""
-    ends = np.stack([truth * (1.0 - share), truth * (1.0 + share)])
+    ends = np.stack([truth * (1.0 - half_width), truth * (1.0 + half_width)])
     return Box(ends.min(axis=0), ends.max(axis=0))
 
 
-def off_centre(truth: Array, share: float, rng: np.random.Generator) -> Box:
+def off_centre_box(truth: Array, half_width: float, rng: np.random.Generator) -> Box:
     """As wide, the truth anywhere between a fifth and four fifths of it."""
-    below = 2.0 * share * rng.uniform(0.2, 0.8, len(truth))
-    ends = np.stack([truth * (1.0 - below), truth * (1.0 + 2.0 * share - below)])
+    below = 2.0 * half_width * rng.uniform(0.2, 0.8, len(truth))
+    ends = np.stack([truth * (1.0 - below), truth * (1.0 + 2.0 * half_width - below)])
     return Box(ends.min(axis=0), ends.max(axis=0))
 
 
 @dataclass(frozen=True, eq=False)
-class Searches:
+class RepeatedSearches:
     """Repeated searches of one optimiser for one truth.
 
     Attributes:
@@ -146,10 +152,10 @@ class Searches:
 
     truth: Array
     points: Array
-    lower: Array
+    lower_bounds: Array
     seconds: float
     trace: Array
-    history: Array
+    best_fitness: Array
 
     @property
     def errors(self) -> Array:
@@ -167,22 +173,24 @@ class Searches:
         return np.mean(np.abs(self.errors), axis=0)
 
 
-def searched(
-    seas: list[Data],
+def repeat_searches(
+    seas: list[SearchData],
     boxes: list[Box],
-    kind: Callable[[Box, np.random.Generator], Population],
-    judge: Callable[[Data, Population], Fitness],
+    make_optimiser: Callable[[Box, np.random.Generator], Population],
+    make_objective: Callable[[SearchData, Population], Fitness],
     seed: int,
-) -> Searches:
+) -> RepeatedSearches:
     """One run in each sea and box, each with a generator of its own."""
     points, traces, histories = [], [], []
     began = time.perf_counter()
     for run, (data, bounds) in enumerate(zip(seas, boxes, strict=True)):
-        optimiser = kind(bounds, np.random.default_rng([seed, run]))
-        found = search(optimiser, judge(data, optimiser))
+        optimiser = make_optimiser(bounds, np.random.default_rng([seed, run]))
+        found = search(optimiser, make_objective(data, optimiser))
         points.append(found.point)
         traces.append(optimiser.trace)
         histories.append(np.array(found.history))
     truth = seas[0].truth
     lower = np.array([np.where(truth > 0, b.lower, b.upper) for b in boxes])
-    return Searches(truth, np.array(points), lower, (time.perf_counter() - began) / len(seas), traces[0], histories[0])
+    return RepeatedSearches(
+        truth, np.array(points), lower, (time.perf_counter() - began) / len(seas), traces[0], histories[0]
+    )

@@ -14,8 +14,8 @@ from seatrial.core.values import Array
 from seatrial.physics.hydro.dispersion import G
 from seatrial.physics.hydro.excitation import encounter_frequency
 from seatrial.physics.models.qi2025 import SPEED
-from seatrial.physics.simulate.harmonics import Complex, frequency_response, plant
-from seatrial_studies.seaway import box, ship
+from seatrial.physics.simulate.harmonics import Complex, frequency_response, linear_system
+from seatrial_studies.seaway import box_hull, ship
 
 everywhere = pytest.mark.parametrize("heading", [0, 30, 60, 90, 120, 150, 180])
 at_all_speeds = pytest.mark.parametrize("U", [0.0, 5.0, SPEED])
@@ -24,9 +24,9 @@ of_each_table = pytest.mark.parametrize("table", [90, 135, 180])
 
 def recorded(model: Model, omega: Array, U: float, heading: int, shaken_at: Array) -> tuple[Complex, Complex]:
     """z [down] and theta [bow up] per metre under the wave's forces, the ship answering as at `shaken_at` [rad/s]."""
-    forces = -np.stack(box().forces(omega, U, math.radians(heading)), axis=1)
+    forces = -np.stack(box_hull().forces(omega, U, math.radians(heading)), axis=1)
     driven = [model.input_names.index(name) for name in ("F3", "M5")]
-    response = frequency_response(plant(model, ("z", "theta")), shaken_at)[:, :, driven]
+    response = frequency_response(linear_system(model, ("z", "theta")), shaken_at)[:, :, driven]
     motion = np.einsum("kyu,ku->ky", response, forces)
     return motion[:, 0], motion[:, 1]
 

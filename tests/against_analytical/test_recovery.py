@@ -8,8 +8,8 @@ import pytest
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
-from seatrial.estimation.estimate.fit import Identified
-from seatrial.estimation.identify import identified
+from seatrial.estimation.estimate.fit import Estimation
+from seatrial.estimation.identify import estimate_model
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.abkowitz import STANDARD, abkowitz
 from seatrial.physics.models.mmg import HULL
@@ -78,7 +78,7 @@ def _nomoto2() -> Case:
 
 
 def _abkowitz() -> Case:
-    model = abkowitz().with_values(TANKER | ADDED_MASS).of_ship(kvlcc2_l7().ship)
+    model = abkowitz().with_values(TANKER | ADDED_MASS).with_ship(kvlcc2_l7().ship)
     records = tuple(
         manoeuvre(model, programme(text), speed=1.18, slew_rate=MODEL_SCALE_SLEW)
         for text in ("zigzag:20/20", "zigzag:10/10", "zigzag:35/5")
@@ -98,8 +98,8 @@ def _mmg() -> Case:
 CASES = {"waterjet": _waterjet, "nomoto": _nomoto, "nomoto2": _nomoto2, "abkowitz": _abkowitz, "mmg": _mmg}
 
 
-def _recovered(case: Case) -> Identified:
-    return identified(case.start, case.records, [r.name for r in case.records], case.length)
+def _recovered(case: Case) -> Estimation:
+    return estimate_model(case.start, case.records, [r.name for r in case.records], case.length)
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -112,5 +112,5 @@ def test_truth_comes_back_from_nothing(name: str) -> None:
         for n in case.truth.parameters.free_names
     }
     assert max(wrong.values()) <= 1e-8, wrong
-    assert found.made.optimum.solution.status.is_success
+    assert found.estimate.optimum.solution.status.is_success
     assert found.criterion == "output error over whole runs"

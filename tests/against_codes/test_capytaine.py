@@ -86,7 +86,7 @@ def test_the_file_it_writes_is_read_back(dataset: object, hull: HullData, tmp_pa
     again = read_capytaine(path)
     np.testing.assert_allclose(again.diffraction.values, hull.diffraction.values, rtol=1e-12)
     np.testing.assert_allclose(again.added_mass, hull.added_mass, rtol=1e-12)
-    assert again.infinite is not None and hull.infinite is not None
+    assert again.added_mass_infinite is not None and hull.added_mass_infinite is not None
 
 
 def test_shallow_water_gives_the_same_twice() -> None:

@@ -26,7 +26,7 @@ def rms(values: Array) -> float:
 
 def errors(path: Path) -> list[tuple[float, float]]:
     """Position [m] and heading [deg] rms of the first two windows, from the measured state, wind as measured."""
-    model, table = esso_osaka().applied(mmg()), pd.read_csv(path, encoding="cp1252").dropna()
+    model, table = esso_osaka().applied_to(mmg()), pd.read_csv(path, encoding="cp1252").dropna()
     x, u = columns(table, STATES), columns(table, INPUTS)
     x[:, 3] = np.unwrap(x[:, 3])
     made = []

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.reporting.complete_fit import baselines
 from tests.reporting.fabricated import fabricated_fit
-from tests.reporting.told import rivals
 
 from seatrial import cli
 from seatrial.core.results import Fit
@@ -27,12 +27,12 @@ def test_it_compares_when_asked_and_the_report_shows_it_again(
 ) -> None:
     def identified(*_: object, compare: bool, **__: Any) -> Fit:
         plain = fabricated_fit()
-        return replace(plain, rivals=rivals(plain)) if compare else plain
+        return replace(plain, baselines=baselines(plain)) if compare else plain
 
     monkeypatch.setattr("seatrial.estimation.identify.identify", identified)
     trial, out = repository / "examples" / "waterjet.toml", tmp_path / "out"
     assert run(monkeypatch, "identify", trial, "--out", out, "--json", tmp_path / "fit.json", *option) == 0
-    told = json.loads((tmp_path / "fit.json").read_text())["rivals"]
+    told = json.loads((tmp_path / "fit.json").read_text())["baselines"]
     assert [r["name"] for r in told][1:] == (["weak form", "ridge", "Euler", "pipeline"] if option else [])
     (out / "report.html").unlink()
     assert run(monkeypatch, "report", out) == 0

@@ -8,17 +8,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.reporting.designed import fabricated_design
+from tests.reporting.fabricated_design import fabricated_design
 
 from seatrial import api, cli
-from seatrial.core.results import Order
-from seatrial.core.values import InputError, Kind, Ship
+from seatrial.core.results import TimedOrder
+from seatrial.core.values import InputError, RecordKind, Ship
 from seatrial.data.folder.design_json import DesignDocument
 from seatrial.data.folder.model_file import ModelFile, write_model
-from seatrial.data.folder.orders import orders_text
-from seatrial.data.read import read_table
-from seatrial.estimation.design.asked import task_of
-from seatrial.estimation.information.symmetries import refuse_structural
+from seatrial.data.folder.orders import orders_csv
+from seatrial.data.read import read_record_csv
+from seatrial.estimation.design.from_trial import design_task
+from seatrial.estimation.information.symmetries import refuse_unidentifiable
 from seatrial.physics.models import model_named
 
 TRIAL = """
@@ -83,8 +83,8 @@ def test_the_plan_replays(trial: Path, tmp_path: Path, monkeypatch: pytest.Monke
     write_model(ModelFile(model_named("waterjet"), ship=Ship("craft", {"L": 9.8})), model)
     assert run(monkeypatch, "design", trial, "--out", tmp_path / "plan") == 0
     assert run(monkeypatch, "simulate", model, "--inputs", tmp_path / "plan" / "plan.csv", "--out", run_file) == 0
-    plan, sailed = read_table(tmp_path / "plan" / "plan.csv"), read_table(run_file)
-    assert plan.kind is Kind.PLANNED
+    plan, sailed = read_record_csv(tmp_path / "plan" / "plan.csv"), read_record_csv(run_file)
+    assert plan.kind is RecordKind.PLANNED
     assert np.array_equal(sailed["delta"], plan["delta"])
     assert (sailed["v"][0], sailed["r"][0], sailed["psi"][0]) == (0.0, 0.0, 0.0)
     straight = api.simulate(api.load_model(model), "zigzag:20/20", inputs={"v_j": 1.866}, duration=1.0)
@@ -98,21 +98,21 @@ def test_a_plan_starts_at_the_speed_that_is_said() -> None:
 
 def test_orders_are_in_people_s_units() -> None:
     design = fabricated_design()
-    rows = list(csv.reader(orders_text(design).splitlines()))
+    rows = list(csv.reader(orders_csv(design).splitlines()))
     assert rows[0] == ["time [s]", "delta [deg]"]
     assert [float(cell) for cell in rows[2]] == [6.0, pytest.approx(np.degrees(design.orders[1].values["delta"]))]
-    assert orders_text(replace(design, orders=(Order(3.0, {}),))).splitlines()[1] == "3,"
+    assert orders_csv(replace(design, orders=(TimedOrder(3.0, {}),))).splitlines()[1] == "3,"
 
 
 def test_json_is_as_documented_and_holds_no_infinity(tmp_path: Path) -> None:
     design = fabricated_design()
-    blind = replace(design.designed, relative=np.full(11, np.inf))
+    blind = replace(design.designed, relative_error=np.full(11, np.inf))
     api.save_design(replace(design, designed=blind), tmp_path)
     table = json.loads((tmp_path / "design.json").read_text())
     assert DesignDocument.model_validate(table).designed.worst is None
-    assert table["rivals"][1]["diverged"] == 1 and table["rivals"][1]["drawn"][2]["X_uu"] is None
+    assert table["baselines"][1]["diverged"] == 1 and table["baselines"][1]["sampled_relative_error"][2]["X_uu"] is None
     assert table["orders"][0] == {"time": 0.0, "values": {"delta": pytest.approx(-0.50614548)}}
-    assert list(table["designed"]["relative"]) == list(design.coefficients)
+    assert list(table["designed"]["relative_error"]) == list(design.coefficients)
 
 
 def test_a_search_that_refuses_leaves_nothing_behind(
@@ -188,14 +188,14 @@ def test_the_search_itself_beats_the_standard_and_repeats_to_the_bit(
         tables.append({key: value for key, value in table.items() if key != "elapsed_s"})
     assert tables[0] == tables[1]
     assert (tmp_path / "one" / "plan.csv").read_bytes() == (tmp_path / "two" / "plan.csv").read_bytes()
-    assert tables[0]["designed"]["worst"] < min(rival["worst"] for rival in tables[0]["rivals"])
+    assert tables[0]["designed"]["worst"] < min(rival["worst"] for rival in tables[0]["baselines"])
     assert "standard manoeuvres" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("name", ["waterjet", "kvlcc2", "heave_pitch"])
 def test_the_examples_ask_for_what_can_be_told(name: str, repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("SEATRIAL_DATA", raising=False)
-    task = task_of(api.load_trial(repository / "examples" / f"{name}_design.toml"))
+    task = design_task(api.load_trial(repository / "examples" / f"{name}_design.toml"))
     assert task.draws > 0
-    assert np.isfinite(task.start).all()
-    refuse_structural(task.model, tuple(task.sensors), ())
+    assert np.isfinite(task.initial_state).all()
+    refuse_unidentifiable(task.model, tuple(task.sensors), ())

@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import pytest
+from tests.reporting.complete_fit import baselines, complete_fit
 from tests.reporting.fabricated import fabricated_fit
-from tests.reporting.told import rivals, told
 
 from seatrial.cli.output import print_fit
 
@@ -14,14 +14,14 @@ def printed(capsys: pytest.CaptureFixture[str]) -> str:
 
 
 def test_intervals_floor_extrapolation_and_what_cannot_be_told_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
-    fit = told(fabricated_fit())
+    fit = complete_fit(fabricated_fit())
     print_fit(fit)
     text = printed(capsys)
     assert "overshoot_1_deg: 8.42 [8.083, 8.715], measured 8.31" in text
     assert "process noise alone: psi_deg 1.4" in text and "extrapolation index 1.90: beyond" in text
     assert "the records determine about 6 of 11 free coefficients" in text
     assert fit.identifiability is not None and fit.identifiability.structural[0].text in text
-    assert fit.disturbance is not None and fit.disturbance.text in text
+    assert fit.noise_model is not None and fit.noise_model.text in text
 
 
 def test_what_was_not_examined_is_not_printed(capsys: pytest.CaptureFixture[str]) -> None:
@@ -36,7 +36,7 @@ def test_other_estimators_stand_in_one_table(capsys: pytest.CaptureFixture[str])
     plain = fabricated_fit()
     print_fit(plain)
     assert "other estimators" not in printed(capsys)
-    print_fit(replace(plain, rivals=rivals(plain)))
+    print_fit(replace(plain, baselines=baselines(plain)))
     lines = printed(capsys).splitlines()
     (head,) = [k for k, line in enumerate(lines) if line.startswith("other estimators")]
     assert "errors, %" in lines[head]

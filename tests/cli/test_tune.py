@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.control.loop_files import AUTOPILOT, FIN, model_file, nomoto, written
-from tests.reporting.tuned import fabricated_autopilot, fabricated_bare, fabricated_fin
+from tests.control.loop_files import AUTOPILOT, FIN, model_file, nomoto, write_loop_file
+from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_bare, fabricated_fin
 
 from seatrial import api, cli
-from seatrial.cli.tuned import print_tuning
-from seatrial.control.loopfile.load import task_of
+from seatrial.cli.tuning_output import print_tuning
+from seatrial.control.loopfile.load import tuning_task
 from seatrial.core.results.tuning import Tuning
 from seatrial.core.values import InputError, Ship
 from seatrial.data.folder.model_file import ModelFile, write_model
@@ -35,7 +35,7 @@ def run(monkeypatch: pytest.MonkeyPatch, *arguments: str | Path) -> int:
 def loop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A loop file; the search is replaced by a tuning nobody searched."""
     monkeypatch.setattr("seatrial.api.tune", lambda *_, **__: fabricated_fin())
-    return written(tmp_path, FIN)
+    return write_loop_file(tmp_path, FIN)
 
 
 def test_it_writes_five_files_and_prints_what_they_say(
@@ -118,7 +118,7 @@ def test_an_interruption_leaves_nothing_behind(loop: Path, tmp_path: Path, monke
         raise KeyboardInterrupt
 
     monkeypatch.setattr("seatrial.api.tune", interrupted)
-    assert run(monkeypatch, "tune", loop, "--out", tmp_path / "fins") == cli.INTERRUPTED
+    assert run(monkeypatch, "tune", loop, "--out", tmp_path / "fins") == cli.INTERRUPT_EXIT_CODE
     assert not (tmp_path / "fins").exists()
 
 
@@ -147,16 +147,16 @@ def test_bad_input_is_one_line_and_code_two(
 
 def test_the_ship_can_be_named_on_the_command_line(tmp_path: Path) -> None:
     known = model_file(tmp_path, nomoto(), "known.toml")
-    path = written(tmp_path, AUTOPILOT, ("model.toml", "no such place/model.toml"))
+    path = write_loop_file(tmp_path, AUTOPILOT, ("model.toml", "no such place/model.toml"))
     task = api.load_loop(path, model_file=known)
-    assert task.U == 7.0 and task.vessel is not None
+    assert task.U == 7.0 and task.trimmed_ship is not None
 
 
 def test_the_example_asks_for_a_schedule_over_27_conditions(repository: Path) -> None:
-    task = task_of(repository / "examples" / "fin_stabiliser.toml")
-    assert task.plan is not None
-    assert len(task.plan.speeds) * len(task.plan.headings) * len(task.plan.heights) == 27
-    assert task.rivals["as published"] == {"KP": 11.053, "KI": 0.428, "KD": 32.736}
+    task = tuning_task(repository / "examples" / "fin_stabiliser.toml")
+    assert task.schedule_grid is not None
+    assert len(task.schedule_grid.speeds) * len(task.schedule_grid.headings) * len(task.schedule_grid.heights) == 27
+    assert task.baselines["as published"] == {"KP": 11.053, "KI": 0.428, "KD": 32.736}
 
 
 def test_from_a_decay_record_to_a_model_to_a_loop(repository: Path, tmp_path: Path) -> None:
@@ -168,7 +168,7 @@ def test_from_a_decay_record_to_a_model_to_a_loop(repository: Path, tmp_path: Pa
     assert all(abs(c.estimate - c.truth) < 3.5 * c.standard_error for c in free)  # type: ignore[operator]
     known = save_fit(fit, tmp_path) / "model.toml"
     task = api.load_loop(examples / "fin_from_decay.toml", model_file=known)
-    assert task.vessel is not None and len(task.vessel.covariance) == 5
+    assert task.trimmed_ship is not None and len(task.trimmed_ship.covariance) == 5
     assert task.loop.plant.gain == pytest.approx(0.256, rel=0.01)
 
 
@@ -181,5 +181,5 @@ def test_the_autopilots_of_the_examples_turn_their_ships(repository: Path, tmp_p
         known = tmp_path / f"{name}.toml"
         write_model(file, known)
         task = api.load_loop(repository / "examples" / f"{name}_autopilot.toml", model_file=known)
-        assert task.demand is not None and task.demand.overshoot == 0.02 and task.restriction.peak == 1.7
+        assert task.demand is not None and task.demand.overshoot == 0.02 and task.constraints.Ms == 1.7
         assert margins(task.loop).is_stable

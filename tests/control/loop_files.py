@@ -33,15 +33,15 @@ parts = ["KP", "KD"]
 [actuator]
 limit = { value = 35, unit = "deg" }
 rate = { value = 3, unit = "deg/s" }
-[[unrest]]
-size = { value = 1, unit = "deg" }
+[[slow_disturbances]]
+rms = { value = 1, unit = "deg" }
 bandwidth = 0.05
 [demand]
 change = { value = 20, unit = "deg" }
 """
 
 
-def written(folder: Path, text: str, *changes: tuple[str, str]) -> Path:
+def write_loop_file(folder: Path, text: str, *changes: tuple[str, str]) -> Path:
     """The file with some of its text changed; what is to be changed must be there."""
     for old, new in changes:
         assert old in text

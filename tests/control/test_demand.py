@@ -7,18 +7,24 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from seatrial.control.demand import follow, manoeuvres, overshoot, reference_model, settling
-from seatrial.control.ship.fleet import fleet, robust
-from seatrial.control.ship.stand_in import stand_in
-from seatrial.control.ship.vessel import plant_of, vessel
-from seatrial.control.task import Demand, Task, Unrest, Vessel
-from seatrial.core.results.tuning import Restriction
+from seatrial.control.demand import (
+    reference_model,
+    relative_overshoot,
+    settling_time,
+    simulate_manoeuvres,
+    simulate_tracking,
+)
+from seatrial.control.ship.parameter_draws import draw_parameters, stable_draws
+from seatrial.control.ship.plant_as_model import plant_as_model
+from seatrial.control.ship.trimmed_ship import plant_and_disturbance, trim_ship
+from seatrial.control.task import Demand, SlowDisturbance, TrimmedShip, TuningTask
+from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import Array, InputError
 from seatrial.data.folder.model_file import ModelFile
-from seatrial.physics.loops import Block, Seen, TransferLoop
+from seatrial.physics.loops import Block, LoopSignal, TransferLoop
 from seatrial.physics.loops.autopilot import heading_loop, pitch_loop, speed_loop, steering_gear
-from seatrial.physics.loops.exchange import controller_of, system_of
 from seatrial.physics.loops.objective import variance
+from seatrial.physics.loops.python_control import controller_transfer_function, transfer_function
 from seatrial.physics.models import model_named
 from seatrial.physics.models.published import kvlcc2
 from seatrial.physics.simulate.closed_loop import REFERENCE, ActuatorLimits
@@ -27,21 +33,32 @@ DEGREE = math.pi / 180.0
 GEAR = (steering_gear(0.5),)
 
 
-def task_of(loop: TransferLoop, ship: Vessel | None, demand: Demand | None, restriction: Restriction) -> Task:
-    objectives = variance("output", "rad^2", Seen.OUTPUT), variance("rate", "rad^2/s^2", Seen.ACTUATOR, 1)
-    return Task(
-        "", "autopilot", "", loop, (Unrest(0.03, 0.05, 1.0),), objectives, restriction, 1.0, vessel=ship, demand=demand
+def task_of(
+    loop: TransferLoop, ship: TrimmedShip | None, demand: Demand | None, restriction: ControllerConstraints
+) -> TuningTask:
+    objectives = variance("output", "rad^2", LoopSignal.OUTPUT), variance("rate", "rad^2/s^2", LoopSignal.ACTUATOR, 1)
+    return TuningTask(
+        "",
+        "autopilot",
+        "",
+        loop,
+        (SlowDisturbance(0.03, 0.05, 1.0),),
+        objectives,
+        restriction,
+        1.0,
+        trimmed_ship=ship,
+        demand=demand,
     )
 
 
-def nomoto(K: float = 0.2, T: float = 8.0, sd: tuple[float, float] = (0.0, 0.0)) -> Vessel:
+def nomoto(K: float = 0.2, T: float = 8.0, sd: tuple[float, float] = (0.0, 0.0)) -> TrimmedShip:
     model = model_named("nomoto").with_values({"K": K, "T": T})
     covariance = np.diag(np.square(sd)) if any(sd) else np.empty((0, 0))
-    return vessel(ModelFile(model, covariance), output="psi", actuator="delta")
+    return trim_ship(ModelFile(model, covariance), output="psi", actuator="delta")
 
 
-def autopilot(ship: Vessel, *parts: str) -> TransferLoop:
-    plant, disturbance = plant_of(ship)
+def autopilot(ship: TrimmedShip, *parts: str) -> TransferLoop:
+    plant, disturbance = plant_and_disturbance(ship)
     return heading_loop(plant, disturbance, GEAR, parts=parts or ("KP", "KD"))
 
 
@@ -64,11 +81,11 @@ def test_overshoot_and_settling_are_of_the_change() -> None:
     demand = np.concatenate([[0.0], np.full(100, 2.0), np.full(100, -2.0)])
     output = demand.copy()
     output[10], output[130] = 2.1, -2.6
-    assert overshoot(output, demand, (1,)) == pytest.approx(0.05)
-    assert overshoot(output, demand, (1, 101)) == pytest.approx(0.15)
-    assert settling(output, demand, (1, 101), 0.5) == pytest.approx(15.0)
-    assert math.isnan(settling(np.zeros(201), demand, (1, 101), 0.5))
-    assert overshoot(-output, -demand, (1, 101)) == pytest.approx(0.15)
+    assert relative_overshoot(output, demand, (1,)) == pytest.approx(0.05)
+    assert relative_overshoot(output, demand, (1, 101)) == pytest.approx(0.15)
+    assert settling_time(output, demand, (1, 101), 0.5) == pytest.approx(15.0)
+    assert math.isnan(settling_time(np.zeros(201), demand, (1, 101), 0.5))
+    assert relative_overshoot(-output, -demand, (1, 101)) == pytest.approx(0.15)
 
 
 def answer(num: Array, den: Array, reference: Array, dt: float) -> Array:
@@ -81,11 +98,11 @@ def test_without_limits_a_linear_ship_follows_as_python_control_says(*, known: b
     ship = nomoto()
     loop = autopilot(ship, "KP", "KI", "KD")
     if not known:
-        ship = stand_in(loop)
+        ship = plant_as_model(loop)
     dt = 0.05
     reference = reference_model(np.full(1200, 0.3), dt, 5.0)
-    output, rudder = follow(ship, loop, loop.values, ActuatorLimits(), dt, reference)
-    controller, plant = controller_of(loop), system_of(loop.plant)
+    output, rudder = simulate_tracking(ship, loop, loop.gain_values, ActuatorLimits(), dt, reference)
+    controller, plant = controller_transfer_function(loop), transfer_function(loop.plant)
     n_k, d_k, n_p, d_p = (c[0][0] for c in (controller.num, controller.den, plant.num, plant.den))
     den = np.polyadd(np.polymul(d_k, d_p), np.polymul(n_k, n_p))
     assert output == pytest.approx(answer(np.polymul(n_k, n_p), den, reference, dt), abs=1e-5)
@@ -96,7 +113,7 @@ def test_a_step_is_followed_within_the_actuators_limits() -> None:
     ship = nomoto()
     loop, dt = autopilot(ship), 0.02
     limits = ActuatorLimits(5.0 * DEGREE, 2.0 * DEGREE)
-    output, rudder = follow(ship, loop, loop.values, limits, dt, np.full(6000, 0.7))
+    output, rudder = simulate_tracking(ship, loop, loop.gain_values, limits, dt, np.full(6000, 0.7))
     assert np.abs(rudder).max() == pytest.approx(5.0 * DEGREE, rel=1e-9)
     assert np.abs(np.diff(rudder)).max() == pytest.approx(2.0 * DEGREE * dt, rel=1e-9)
     assert output[-1] == pytest.approx(0.7, rel=0.01)
@@ -105,19 +122,22 @@ def test_a_step_is_followed_within_the_actuators_limits() -> None:
 def test_the_reference_asks_no_more_than_the_actuator_can_do() -> None:
     ship = nomoto()
     loop = autopilot(ship)
-    limits = Restriction(2.0, 0.2, 0.2, limit=5.0 * DEGREE, rate=2.0 * DEGREE)
+    limits = ControllerConstraints(2.0, 0.2, 0.2, limit=5.0 * DEGREE, rate=2.0 * DEGREE)
     task = task_of(loop, ship, Demand(40.0 * DEGREE, 0.02, 2.0, 240.0), limits)
-    change, zigzag = manoeuvres(task, loop, "chosen", loop.values, 0, draws=0)
+    change, zigzag = simulate_manoeuvres(task, loop, "chosen", loop.gain_values, 0, draws=0)
     assert (change.name, zigzag.name, change.controller) == ("course change", "zigzag", "chosen")
     for made in (change, zigzag):
         assert np.abs(made.record["delta"]).max() < 5.0 * DEGREE
         assert made.overshoot < 0.05
         assert made.draws == made.stable_draws == 0
         assert math.isnan(made.worst_overshoot)
-        assert made.drawn.shape[0] == 0
+        assert made.sampled_outputs.shape[0] == 0
         assert len(made.record) <= 1001
-    free = replace(task, restriction=Restriction())
-    assert np.abs(manoeuvres(free, loop, "", loop.values, 0, draws=0)[0].record["delta"]).max() > 5.0 * DEGREE
+    free = replace(task, constraints=ControllerConstraints())
+    assert (
+        np.abs(simulate_manoeuvres(free, loop, "", loop.gain_values, 0, draws=0)[0].record["delta"]).max()
+        > 5.0 * DEGREE
+    )
     assert change.record[REFERENCE][-1] == pytest.approx(40.0 * DEGREE, rel=1e-6)
     assert change.record["psi"][-1] == pytest.approx(40.0 * DEGREE, rel=0.01)
     assert np.sign(zigzag.record["demand"][[200, 400, 600, 800]]).tolist() == [1.0, -1.0, 1.0, -1.0]
@@ -126,30 +146,30 @@ def test_the_reference_asks_no_more_than_the_actuator_can_do() -> None:
 def test_ships_that_no_gain_turns_the_other_way_for_are_counted_unstable() -> None:
     ship = nomoto(sd=(0.12, 0.01))
     loop = autopilot(ship)
-    task = task_of(loop, ship, Demand(0.3, 0.02, 10.0, 120.0), Restriction(limit=0.6))
-    made = fleet(ship, 100)
+    task = task_of(loop, ship, Demand(0.3, 0.02, 10.0, 120.0), ControllerConstraints(limit=0.6))
+    made = draw_parameters(ship, 100)
     K = np.array([one.model.parameters["K"].value for one in made.ships])
     assert 0 < (K < 0.0).sum() < 20
-    assert robust(task, loop.values) == (int((K > 0.0).sum()), 100)
-    change, _ = manoeuvres(task, loop, "chosen", loop.values, 0)
-    assert (change.stable_draws, change.draws) == robust(task, loop.values)
-    assert change.drawn.shape == (20, len(change.record))
+    assert stable_draws(task, loop.gain_values) == (int((K > 0.0).sum()), 100)
+    change, _ = simulate_manoeuvres(task, loop, "chosen", loop.gain_values, 0)
+    assert (change.stable_draws, change.draws) == stable_draws(task, loop.gain_values)
+    assert change.sampled_outputs.shape == (20, len(change.record))
     assert change.worst_overshoot == math.inf
 
 
 def test_stability_of_draws_is_that_of_their_closed_poles() -> None:
     file = ModelFile(kvlcc2(), np.diag(np.square(_spread())), approach={"n": 10.23})
-    ship = vessel(file, output="psi", actuator="delta")
+    ship = trim_ship(file, output="psi", actuator="delta")
     loop = autopilot(ship)
-    made = fleet(ship, 40)
-    slow = 0.02 * loop.values
+    made = draw_parameters(ship, 40)
+    slow = 0.02 * loop.gain_values
     expected = [
-        all(replace(loop, plant=p).with_gains(slow).closed_poles.real.max() < 0.0 for p in plants)
+        all(replace(loop, plant=p).with_gains(slow).closed_loop_poles.real.max() < 0.0 for p in plants)
         for plants in made.plants
     ]
     assert 0 < sum(expected) < 40
-    assert list(made.stable(loop, slow)) == expected
-    assert sum(made.stable(loop, loop.values)) > sum(expected)
+    assert list(made.stable_ships(loop, slow)) == expected
+    assert sum(made.stable_ships(loop, loop.gain_values)) > sum(expected)
 
 
 def _spread() -> list[float]:
@@ -160,40 +180,42 @@ def test_ships_without_a_steady_speed_are_lost_and_unstable() -> None:
     model = model_named("waterjet")
     sd = [0.03 if p.name == "X_uu" else 0.0 for p in model.parameters.free]
     file = ModelFile(model, np.diag(np.square(sd)), approach={"v_j": 1.866})
-    ship = vessel(file, output="psi", actuator="delta")
-    made, loop = fleet(ship, 60), autopilot(ship)
-    assert made.lost > 0
-    task = task_of(loop, ship, Demand(0.3, 0.02, 20.0, 300.0), Restriction(limit=0.5))
-    change, _ = manoeuvres(task, loop, "chosen", loop.values, 0, draws=60)
+    ship = trim_ship(file, output="psi", actuator="delta")
+    made, loop = draw_parameters(ship, 60), autopilot(ship)
+    assert made.untrimmed > 0
+    task = task_of(loop, ship, Demand(0.3, 0.02, 20.0, 300.0), ControllerConstraints(limit=0.5))
+    change, _ = simulate_manoeuvres(task, loop, "chosen", loop.gain_values, 0, draws=60)
     assert change.draws == 60
-    assert change.stable_draws <= 60 - made.lost
+    assert change.stable_draws <= 60 - made.untrimmed
     assert change.worst_overshoot == math.inf
 
 
 def test_the_same_seed_draws_the_same_ships() -> None:
     ship = nomoto(sd=(0.02, 0.5))
-    first, again, other = (fleet(nomoto(sd=(0.02, 0.5)), 5, seed) for seed in (0, 0, 1))
+    first, again, other = (draw_parameters(nomoto(sd=(0.02, 0.5)), 5, seed) for seed in (0, 0, 1))
     assert [p[0].num for p in first.plants] == [p[0].num for p in again.plants]
     assert [p[0].num for p in first.plants] != [p[0].num for p in other.plants]
-    assert fleet(replace(ship, covariance=np.empty((0, 0)))).draws == 0
+    assert draw_parameters(replace(ship, covariance=np.empty((0, 0)))).draws == 0
 
 
 def test_speed_and_pitch_follow_a_demand() -> None:
     craft = ModelFile(model_named("waterjet"), approach={"v_j": 1.866})
-    ship = vessel(craft, output="u", actuator="v_j")
-    plant, disturbance = plant_of(ship)
+    ship = trim_ship(craft, output="u", actuator="v_j")
+    plant, disturbance = plant_and_disturbance(ship)
     loop = speed_loop(plant, disturbance, (steering_gear(1.0),), actuator="v_j")
-    task = task_of(loop, ship, Demand(0.2, 0.02, 20.0, 400.0), Restriction(limit=1.0, rate=0.2))
-    change, _ = manoeuvres(task, loop, "chosen", loop.values, 0)
+    task = task_of(loop, ship, Demand(0.2, 0.02, 20.0, 400.0), ControllerConstraints(limit=1.0, rate=0.2))
+    change, _ = simulate_manoeuvres(task, loop, "chosen", loop.gain_values, 0)
     assert change.name == "speed change"
     assert change.record["u"][[0, -1]] == pytest.approx([ship.state[0], ship.state[0] + 0.2], abs=2e-3)
     hull = {"m": 3000.0, "I5": 9000.0, "c33": 8e4, "c55": 2.5e5, "c35": 0.0, "c53": 0.0, "lift_1": 5e4, "x_f1": 3.0}
     added = {"a33": 2500.0, "a55": 7000.0, "a35": 0.0, "a53": 0.0, "b33": 9e3, "b55": 2.4e4, "b35": 0.0, "b53": 0.0}
-    boat = vessel(ModelFile(model_named("heave_pitch").with_values(hull | added)), output="theta",
+    boat = trim_ship(ModelFile(model_named("heave_pitch").with_values(hull | added)), output="theta",
                   actuator="delta_f1", disturbance="M5")  # fmt: skip
-    fins = pitch_loop(*plant_of(boat), (Block("servo", (1.0,), (0.05, 1.0)),))
+    fins = pitch_loop(*plant_and_disturbance(boat), (Block("servo", (1.0,), (0.05, 1.0)),))
     fins = fins.with_gains(np.array([0.5, 2.0, 1.0]) * [1.0, fins.gains["KI"].upper / 4.0, fins.gains["KD"].value])
-    made, _ = manoeuvres(task_of(fins, boat, Demand(0.02, 0.05, 2.0, 60.0), Restriction()), fins, "x", fins.values, 0)
+    made, _ = simulate_manoeuvres(
+        task_of(fins, boat, Demand(0.02, 0.05, 2.0, 60.0), ControllerConstraints()), fins, "x", fins.gain_values, 0
+    )
     assert made.name == "change of theta"
     assert made.record["theta"][-1] == pytest.approx(0.02, rel=0.01)
 
@@ -201,4 +223,4 @@ def test_speed_and_pitch_follow_a_demand() -> None:
 def test_a_task_without_a_demand_is_refused() -> None:
     loop = autopilot(nomoto())
     with pytest.raises(InputError, match="follows no demand"):
-        manoeuvres(task_of(loop, nomoto(), None, Restriction()), loop, "chosen", loop.values, 0)
+        simulate_manoeuvres(task_of(loop, nomoto(), None, ControllerConstraints()), loop, "chosen", loop.gain_values, 0)

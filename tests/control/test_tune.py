@@ -5,60 +5,65 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.control.fins import KNOT, LIMITS, PUBLISHED, QUICK, fin_task
+from tests.control.fin_tasks import KNOT, LIMITS, PUBLISHED, QUICK, fin_task
 
 from seatrial.control import tune as module
 from seatrial.control.front import Effort
-from seatrial.control.task import Plan, Trials
+from seatrial.control.task import ScheduleGrid, SimulationSettings
 from seatrial.control.tune import tune
-from seatrial.core.results.tuning import Restriction
+from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError
-from seatrial.physics.loops.structures import five_gains
+from seatrial.physics.loops.structures import five_gain_loop
 
-TINY = Effort(population=40, generations=10, polished=4, rounds=2, neighbours=2000)
-SHORT = Trials(seeds=2, duration=200.0)
+TINY = Effort(population=40, generations=10, refined=4, fill_rounds=2, neighbours=2000)
+SHORT = SimulationSettings(seeds=2, duration=200.0)
 PUBLISHED_BY_NAME = {"as published": dict(zip(("KP", "KI", "KD"), PUBLISHED.tolist(), strict=True))}
 
 
 @pytest.fixture(scope="module")
 def made():
     task = fin_task()
-    asked = replace(task, rivals=PUBLISHED_BY_NAME, richer=(five_gains(task.loop),), trials=Trials(seeds=20))
+    asked = replace(
+        task,
+        baselines=PUBLISHED_BY_NAME,
+        extended_structures=(five_gain_loop(task.loop),),
+        simulation=SimulationSettings(seeds=20),
+    )
     return tune(asked, effort=QUICK)
 
 
 def test_recommended_gains_keep_every_restriction(made):
-    assert made.chosen.broken == ()
-    assert made.chosen.peak <= LIMITS.peak
+    assert made.chosen.violated == ()
+    assert made.chosen.Ms <= LIMITS.Ms
     assert made.chosen.saturation <= LIMITS.saturation
 
 
 def test_recommended_gains_lose_less_than_three_points_to_the_limits(made):
-    assert made.sailed[0].name == "chosen"
-    assert made.sailed[0].lost < 0.03
+    assert made.seaway_simulations[0].name == "chosen"
+    assert made.seaway_simulations[0].saturation_loss < 0.03
 
 
 def test_recommended_gains_beat_the_published_ones_on_the_same_seas(made):
-    for pair in made.paired:
+    for pair in made.paired_differences:
         assert pair.seeds == 20
         assert pair.lower > 0.0, pair
 
 
 def test_front_covers_the_grid_and_the_rival_is_shown(made):
     assert made.front.hypervolume >= 0.97
-    assert [front.name for front in made.richer] == [five_gains(fin_task().loop).name]
-    assert made.rivals[0].name == "as published"
-    assert made.rivals[0].peak == pytest.approx(1.32, abs=0.01)
+    assert [front.name for front in made.extended_fronts] == [five_gain_loop(fin_task().loop).name]
+    assert made.baselines[0].name == "as published"
+    assert made.baselines[0].Ms == pytest.approx(1.32, abs=0.01)
 
 
 def test_five_gains_roll_a_third_less_at_equal_fin_rate(made):
-    published, front = made.rivals[0], made.richer[0]
+    published, front = made.baselines[0], made.extended_fronts[0]
     keeping = front.objectives[:, 2] <= published.objectives[2]
     assert front.objectives[keeping, 0].min() <= 0.7 * published.objectives[0]
 
 
 def test_same_seed_same_gains():
-    task = replace(fin_task(), trials=SHORT)
+    task = replace(fin_task(), simulation=SHORT)
     first, again = (tune(task, seed=5, effort=TINY).chosen.gains for _ in range(2))
     assert first == again
 
@@ -66,13 +71,13 @@ def test_same_seed_same_gains():
 def test_without_simulation_the_compromise_is_taken_and_said():
     """Gains near zero, which are on the front as well, are no compromise."""
     bare = tune(fin_task(), effort=TINY)
-    assert bare.sailed == () and bare.schedule == ()
+    assert bare.seaway_simulations == () and bare.schedule == ()
     assert bare.chosen.reduction > 0.3
     assert any("compromise" in reason for reason in bare.reasons)
 
 
 def test_restrictions_that_nothing_keeps_are_refused():
-    task = fin_task(restriction=Restriction(peak=1.05))
+    task = fin_task(restriction=ControllerConstraints(Ms=1.05))
     gains = task.loop.gains.bounded("KP", 5.0, 100.0)
     with pytest.raises(InputError, match="keep all limits"):
         tune(replace(task, loop=replace(task.loop, gains=gains)), effort=TINY)
@@ -81,7 +86,7 @@ def test_restrictions_that_nothing_keeps_are_refused():
 def test_gains_on_their_bounds_are_found():
     task = fin_task()
     narrow = task.loop.gains.bounded("KP", 0.0, 2.0).bounded("KD", 0.0, 1.0)
-    found = tune(replace(task, loop=replace(task.loop, gains=narrow), trials=SHORT), effort=TINY)
+    found = tune(replace(task, loop=replace(task.loop, gains=narrow), simulation=SHORT), effort=TINY)
     assert "gain-on-bound" in {finding.code for finding in found.findings}
 
 
@@ -90,14 +95,14 @@ def test_an_interruption_keeps_what_is_finished(monkeypatch):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(module, "schedule", interrupted)
-    plan = Plan((18.0 * KNOT,), (math.pi / 2,), (3.3,))
-    found = tune(replace(fin_task(), plan=plan, trials=SHORT), effort=TINY)
-    assert found.sailed and not found.schedule
+    plan = ScheduleGrid((18.0 * KNOT,), (math.pi / 2,), (3.3,))
+    found = tune(replace(fin_task(), schedule_grid=plan, simulation=SHORT), effort=TINY)
+    assert found.seaway_simulations and not found.schedule
     assert found.findings[0].code == "interrupted"
-    assert np.isfinite(found.chosen.peak)
+    assert np.isfinite(found.chosen.Ms)
 
 
 def test_no_control_at_all_is_no_answer():
-    task = replace(fin_task(), restriction=Restriction(limit=1e-5))
+    task = replace(fin_task(), constraints=ControllerConstraints(limit=1e-5))
     with pytest.raises(InputError, match="no control at all, with every gain at zero"):
-        tune(replace(task, trials=None), effort=TINY)
+        tune(replace(task, simulation=None), effort=TINY)

@@ -57,7 +57,7 @@ def test_the_examples_in_waves_give_their_coefficients_back(name: str) -> None:
 def test_a_voyage_in_waves_is_replayed(tmp_path: Path) -> None:
     trial = REPOSITORY / "examples" / "heave_pitch.toml"
     folder = save_fit(identify(load_trial(trial)), tmp_path)
-    record = sea.run_of(trial, "voyage_held_out")
+    record = sea.prepared_run(trial, "voyage_held_out")
     simulated = sea.replay(sea.load_model(folder / "model.toml"), record)
     settled = slice(300, None)
     for channel, noise in (("z", 0.01), ("theta", np.radians(0.02))):

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from seatrial.core.results.online import Change, Counts, Phase, Snapshot
+from seatrial.core.results.online import CoefficientChange, EstimatorPhase, SampleCounts, Snapshot
 from seatrial.core.values import Finding, Severity
 
 HEAVE_PITCH = {
@@ -17,27 +17,29 @@ MMG = {
     "N_v": (-0.137, "1"), "N_r": (-0.049, "1"), "N_vvv": (-0.03, "1"), "N_vvr": (-0.294, "1"),
     "delta_0": (0.0175, "rad"),
 }  # fmt: skip
-CHANGE = Change(since=220.0, statistic=31.2, freedom=8, p=1.3e-4, is_told=True, most="b33")
+CHANGE = CoefficientChange(
+    since=220.0, statistic=31.2, degrees_of_freedom=8, p=1.3e-4, is_significant=True, most_changed="b33"
+)
 ADVICE = "A zigzag 20/20 would tell Y_rrr and X_vr: both need a large yaw rate with little drift."
 
 
 def heave_pitch(seconds: float, *, step: float = 0.5, seed: int = 3) -> Iterator[Snapshot]:
     """Eight coefficients in waves: waiting for 5 s, a window until a minute, then recursive."""
-    yield from _growing(HEAVE_PITCH, {"z": 0.0102, "theta": 3.6e-4}, seconds, step, seed)
+    yield from _converging_snapshots(HEAVE_PITCH, {"z": 0.0102, "theta": 3.6e-4}, seconds, step, seed)
 
 
 def mmg(seconds: float, *, step: float = 0.5, seed: int = 4) -> Iterator[Snapshot]:
     """Fifteen manoeuvring coefficients, some of them not told, one in degrees."""
-    yield from _growing(MMG, {"u": 0.021, "v": 0.018, "r": 0.0017, "psi": 0.0034}, seconds, step, seed)
+    yield from _converging_snapshots(MMG, {"u": 0.021, "v": 0.018, "r": 0.0017, "psi": 0.0034}, seconds, step, seed)
 
 
-def troubled() -> Counts:
+def faulty_counts() -> SampleCounts:
     """Counts of a stream that is not quite what it should be."""
     last = "line 611: 'abc' is no number in column 'theta'"
-    return Counts(accepted=6104, late=3, repeated=1, missing=12, garbled=2, checksum=4, last=last)
+    return SampleCounts(accepted=6104, late=3, repeated=1, missing=12, garbled=2, checksum=4, last_problem=last)
 
 
-def _growing(
+def _converging_snapshots(
     coefficients: dict[str, tuple[float, str]], noise: dict[str, float], seconds: float, step: float, seed: int
 ) -> Iterator[Snapshot]:
     rng = np.random.default_rng(seed)
@@ -56,13 +58,17 @@ def _growing(
             time=t,
             samples=10 * int(t * 1.0) + 1,
             runs=1,
-            phase=Phase.WAITING if is_waiting else Phase.WINDOW if t < 60.0 else Phase.RECURSIVE,
+            phase=EstimatorPhase.WAITING
+            if is_waiting
+            else EstimatorPhase.WINDOW
+            if t < 60.0
+            else EstimatorPhase.RECURSIVE,
             names=tuple(coefficients),
             units=tuple(unit for _, unit in coefficients.values()),
             value=value,
             standard_error=standard_error,
             noise={} if is_waiting else {n: s * swell * rng.normal(1.0, 0.01) for n, s in noise.items()},
-            untold=untold,
+            unidentified=untold,
             advice=ADVICE if untold else "",
             change=CHANGE if t > 280.0 else None,
             findings=FINDINGS if t > 20 else (),

@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.core.results import Fit
-from seatrial.core.results.online import Counts, Phase, Snapshot
+from seatrial.core.results.online import EstimatorPhase, SampleCounts, Snapshot
 from seatrial.data.folder.fit_json import fit_json
 from seatrial.data.trial import Trial, load_trial
-from seatrial.data.trial.follow_table import followed
-from seatrial.onboard.follow import Outcome
+from seatrial.data.trial.follow_table import require_stream
+from seatrial.onboard.follow import FollowResult
 from seatrial.onboard.sample import Sample
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -18,7 +18,7 @@ VOYAGE = EXAMPLES / "heave_pitch" / "voyage_1.csv"
 LINES = VOYAGE.read_text(encoding="utf-8").splitlines(keepends=True)
 
 
-class Notes:
+class RecordingEstimator:
     """An estimator that remembers what it was given."""
 
     def __init__(self) -> None:
@@ -32,15 +32,17 @@ class Notes:
         self.runs[-1].append(sample.time)
         self.values.append(sample.values)
         count = len(self.values)
-        return Snapshot(sample.time, count, len(self.runs), Phase.WAITING, ("a",), ("1",), np.ones(1), np.ones(1))
+        return Snapshot(
+            sample.time, count, len(self.runs), EstimatorPhase.WAITING, ("a",), ("1",), np.ones(1), np.ones(1)
+        )
 
 
-class Given:
+class ListSource:
     """A source that gives what it has, one list a poll, then is over; a list that is None is Ctrl-C."""
 
     def __init__(self, *polls: list[Sample] | None) -> None:
         self._polls = list(polls)
-        self.counts = Counts()
+        self.counts = SampleCounts()
         self.is_closed = False
 
     def poll(self, seconds: float) -> list[Sample]:  # noqa: ARG002
@@ -57,23 +59,23 @@ class Given:
         self.is_closed = True
 
 
-def voyage_trial(file: Path = VOYAGE) -> Trial:
+def stream_trial(file: Path = VOYAGE) -> Trial:
     """The example's trial, its stream from `file`, no runs besides."""
     trial = load_trial(EXAMPLES / "heave_pitch_follow.toml")
-    return replace(trial, runs=(), follow=replace(followed(trial), file=file, name=file.stem))
+    return replace(trial, runs=(), stream=replace(require_stream(trial), file=file, name=file.stem))
 
 
-def some(first: int, last: int, start: float = 0.0) -> list[Sample]:
+def sample_range(first: int, last: int, start: float = 0.0) -> list[Sample]:
     """Samples of the four channels, numbers `first` to before `last`, at 10 Hz."""
     return [Sample(start + 0.1 * i, np.array([i, 1.0, 2.0, 3.0])) for i in range(first, last)]
 
 
-def told(fit: Fit | None) -> dict:
+def fit_json_without_time(fit: Fit | None) -> dict:
     """The fit as JSON, but for the time it took."""
     assert fit is not None
     return {key: value for key, value in fit_json(fit).items() if key != "elapsed_s"}
 
 
-def accepted(outcome: Outcome) -> int:
+def accepted_count(outcome: FollowResult) -> int:
     """How many samples were used."""
     return outcome.counts.accepted

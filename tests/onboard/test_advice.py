@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatrial.core.results.online import Phase, Snapshot
+from seatrial.core.results.online import EstimatorPhase, Snapshot
 from seatrial.core.values import NOTATION, Channel, Record, Ship
 from seatrial.data.example_series.series import JET_VELOCITY, SENSOR_NOISE
-from seatrial.data.read import Column, Layout
-from seatrial.data.trial.trial import Feed, Stream, Trial
-from seatrial.onboard.advice import Adviser, advice, prospects
-from seatrial.onboard.offered import information, offers
+from seatrial.data.read import ColumnSpec, Layout
+from seatrial.data.trial.trial import Stream, StreamSource, Trial
+from seatrial.onboard.advice import ManoeuvreAdviser, advice, ranked_candidates
+from seatrial.onboard.candidate_manoeuvres import candidate_manoeuvres, fisher_information
 from seatrial.physics.models.heave_pitch import heave_pitch
-from seatrial.physics.models.qi2025 import SHIP, theory
+from seatrial.physics.models.qi2025 import SHIP, theoretical_coefficients
 from seatrial.physics.models.roll import roll
 from seatrial.physics.models.waterjet import waterjet
 from seatrial_studies.seaway import FIN
@@ -22,20 +22,23 @@ CRAFT = Ship("craft", {"L": 9.8, "B": 3.17, "d": 0.71})
 
 
 def _trial(model, ship, channels, rate=2.0) -> Trial:
-    columns = tuple(Column(c, k + 2, NOTATION[c].unit) for k, c in enumerate(channels))
-    stream = Stream(Feed.STDIN, Layout("text", Column("time", 1, "s"), columns), rate)
-    return Trial(ship=ship, runs=(), model=model, follow=stream)
+    columns = tuple(ColumnSpec(c, k + 2, NOTATION[c].unit) for k, c in enumerate(channels))
+    stream = Stream(StreamSource.STDIN, Layout("text", ColumnSpec("time", 1, "s"), columns), rate)
+    return Trial(ship=ship, runs=(), model=model, stream=stream)
 
 
 def _snapshot(model, errors, noise, untold) -> Snapshot:
     free = model.parameters.free
     names, value = tuple(p.name for p in free), np.array([p.value for p in free])
     units = tuple(p.unit for p in free)
-    return Snapshot(100.0, 200, 1, Phase.WINDOW, names, units, value, errors, noise=noise, untold=untold)
+    return Snapshot(100.0, 200, 1, EstimatorPhase.WINDOW, names, units, value, errors, noise=noise, unidentified=untold)
 
 
 def _record(rows=401, dt=0.5, **channels) -> Record:
-    made = {n: Channel.of(n, np.broadcast_to(np.asarray(v, dtype=float), rows).copy()) for n, v in channels.items()}
+    made = {
+        n: Channel.from_notation(n, np.broadcast_to(np.asarray(v, dtype=float), rows).copy())
+        for n, v in channels.items()
+    }
     return Record("so far", dt * np.arange(rows), made)
 
 
@@ -65,41 +68,43 @@ def test_a_standard_manoeuvre_is_named_with_numbers(craft):
 
 def test_the_best_leaves_fewest_untold_and_none_is_worse_than_before(craft):
     trial, snapshot, covariance, records = craft
-    found = prospects(snapshot, trial, trial.model, covariance, records)
-    left = [int(np.sum(p.after[1:] > 1.0)) for p in found]
+    found = ranked_candidates(snapshot, trial, trial.model, covariance, records)
+    left = [int(np.sum(p.relative_errors[1:] > 1.0)) for p in found]
     assert left == sorted(left)
     before = snapshot.standard_error / np.abs(snapshot.value)
-    assert all(np.all(p.after <= before * (1.0 + 1e-6)) for p in found)
+    assert all(np.all(p.relative_errors <= before * (1.0 + 1e-6)) for p in found)
 
 
 def test_a_helmsman_s_manoeuvre_comes_before_a_random_one_of_like_worth(craft):
     trial, snapshot, covariance, records = craft
-    found = prospects(snapshot, trial, trial.model, covariance, records)
-    places = [snapshot.names.index(n) for n in snapshot.untold]
+    found = ranked_candidates(snapshot, trial, trial.model, covariance, records)
+    places = [snapshot.names.index(n) for n in snapshot.unidentified]
 
     def left(one):
-        return int(np.sum(one.after[places] > 1.0)), float(np.exp(np.mean(np.log(one.after[places]))))
+        return int(np.sum(one.relative_errors[places] > 1.0)), float(
+            np.exp(np.mean(np.log(one.relative_errors[places])))
+        )
 
-    steered = [left(p) for p in found if not p.offer.is_random]
+    steered = [left(p) for p in found if not p.candidate.is_random]
     first = left(found[0])
     assert steered
-    for count, error in steered if found[0].offer.is_random else []:
+    for count, error in steered if found[0].candidate.is_random else []:
         assert (first[0], 2.0 * first[1]) <= (count, error)
 
 
 def test_what_is_promised_is_the_bound_of_both_together(craft):
     """(C^-1 + M)^-1, and M grows as the noise falls: a tenth of the noise is a hundred times the information."""
     trial, snapshot, covariance, records = craft
-    best = prospects(snapshot, trial, trial.model, covariance, records)[0]
-    gained = information(trial.model, best.offer, snapshot.noise, 2.0)
+    best = ranked_candidates(snapshot, trial, trial.model, covariance, records)[0]
+    gained = fisher_information(trial.model, best.candidate, snapshot.noise, 2.0)
     expected = np.sqrt(np.diag(np.linalg.inv(np.linalg.inv(covariance) + gained))) / np.abs(snapshot.value)
-    np.testing.assert_allclose(best.after, expected, rtol=1e-6)
+    np.testing.assert_allclose(best.relative_errors, expected, rtol=1e-6)
     quiet = {n: 0.1 * v for n, v in snapshot.noise.items()}
-    np.testing.assert_allclose(information(trial.model, best.offer, quiet, 2.0), 100.0 * gained, rtol=1e-6)
+    np.testing.assert_allclose(fisher_information(trial.model, best.candidate, quiet, 2.0), 100.0 * gained, rtol=1e-6)
 
 
 def test_fins_are_moved_in_calm_water():
-    model = theory(135).applied(heave_pitch()).with_values(FIN)
+    model = theoretical_coefficients(135).applied_to(heave_pitch()).with_values(FIN)
     trial = _trial(model, SHIP, ("delta_f1", "z", "theta"), rate=10.0)
     value = np.array([p.value for p in model.parameters.free])
     error = 2.0 * np.abs(value)
@@ -110,7 +115,7 @@ def test_fins_are_moved_in_calm_water():
 
 
 def test_without_fins_that_lift_waves_are_asked_for():
-    model = theory(135).applied(heave_pitch())
+    model = theoretical_coefficients(135).applied_to(heave_pitch())
     trial = _trial(model, SHIP, ("F3", "M5", "z", "theta"), rate=10.0)
     error = 2.0 * np.abs([p.value for p in model.parameters.free])
     snapshot = _snapshot(model, error, {"z": 0.01, "theta": 3.5e-4}, model.parameters.free_names)
@@ -141,8 +146,8 @@ def test_larger_angles_tell_more(rolled):
     trial, snapshot, _, records = rolled
     place = snapshot.names.index("c_3")
     made = [
-        information(trial.model, o, snapshot.noise, 10.0)[place, place]
-        for o in offers(trial, trial.model, records, snapshot.noise)
+        fisher_information(trial.model, o, snapshot.noise, 10.0)[place, place]
+        for o in candidate_manoeuvres(trial, trial.model, records, snapshot.noise)
     ]
     assert np.all(np.diff(made) > 0.0)
 
@@ -151,7 +156,7 @@ def test_what_cannot_be_simulated_is_answered_in_words(craft):
     trial, snapshot, covariance, records = craft
     far = np.full(len(snapshot.names), 1e6)
     lost, covariance = replace(snapshot, value=far, standard_error=3.0 * far), np.diag((3.0 * far) ** 2)
-    straight = tuple(r.with_channel("delta", Channel.of("delta", np.zeros(len(r)))) for r in records)
+    straight = tuple(r.with_channel("delta", Channel.from_notation("delta", np.zeros(len(r)))) for r in records)
     assert "zigzag" in advice(lost, trial, covariance, straight)
 
 
@@ -167,20 +172,20 @@ class _Known:
 def test_it_looks_once_a_minute_at_most_and_says_nothing_where_all_is_told(craft):
     trial, snapshot, covariance, records = craft
     known, now = _Known(covariance, records), [0.0]
-    adviser = Adviser(trial, known, clock=lambda: now[0])
-    first = adviser.advised(snapshot)
+    adviser = ManoeuvreAdviser(trial, known, clock=lambda: now[0])
+    first = adviser.with_advice(snapshot)
     for now[0] in (1.0, 30.0, 59.0):
-        assert adviser.advised(snapshot).advice == first.advice
+        assert adviser.with_advice(snapshot).advice == first.advice
     assert known.asked == 1
     now[0] = 61.0
-    adviser.advised(snapshot)
+    adviser.with_advice(snapshot)
     assert known.asked == 2
     told = replace(snapshot, untold=())
-    assert adviser.advised(told) is told
-    waiting = replace(snapshot, phase=Phase.WAITING)
-    assert adviser.advised(waiting) is waiting
+    assert adviser.with_advice(told) is told
+    waiting = replace(snapshot, phase=EstimatorPhase.WAITING)
+    assert adviser.with_advice(waiting) is waiting
 
 
 def test_an_estimator_that_knows_no_covariance_goes_unadvised(craft):
     trial, snapshot, *_ = craft
-    assert Adviser(trial, object()).advised(snapshot) is snapshot
+    assert ManoeuvreAdviser(trial, object()).with_advice(snapshot) is snapshot

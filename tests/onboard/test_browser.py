@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
-from tests.onboard.fabricated import heave_pitch, mmg, troubled
+from tests.onboard.fabricated import faulty_counts, heave_pitch, mmg
 
-from seatrial.core.results.online import Counts
+from seatrial.core.results.online import SampleCounts
 from seatrial.core.values import Finding, Severity
 from seatrial.onboard.page import Page
 
@@ -56,20 +56,20 @@ def test_opens_with_nothing_moves_with_what_comes_and_says_when_it_ends(browser:
         window.get_by_text("nothing has come yet").wait_for()
         assert not window.locator("#body").is_visible()
         snapshots = list(heave_pitch(120.0))
-        page.show(snapshots[0], Counts())
+        page.show(snapshots[0], SampleCounts())
         window.get_by_text("waiting: too little has been seen yet").wait_for()
         for snapshot in snapshots[1:100]:
-            page.show(snapshot, troubled())
+            page.show(snapshot, faulty_counts())
         window.locator("#facts").get_by_text("49.5 s").wait_for()
         first = window.locator("#values path.course").first.get_attribute("d")
         assert window.locator("#values figure").count() == 8 and window.locator("#noise figure").count() == 2
         assert window.locator("#values path.band").first.get_attribute("d")
         for snapshot in snapshots[100:]:
-            page.show(snapshot, troubled())
+            page.show(snapshot, faulty_counts())
         window.locator("#facts").get_by_text("120.0 s").wait_for()
         assert window.locator("#values path.course").first.get_attribute("d") != first
         assert window.locator("#status").inner_text() == "following"
-        page.over("end of trial.csv")
+        page.end("end of trial.csv")
         window.get_by_text("the stream is over: end of trial.csv").wait_for()
         assert said == []
 
@@ -80,12 +80,12 @@ def test_what_somebody_put_into_names_is_text(browser: "Browser", page: Page) ->
     hostile = Finding(Severity.ERROR, "x", SCRIPT, SCRIPT, SCRIPT)
     noise = {SCRIPT: 0.1, **base.noise}
     page.show(
-        replace(base, names=names, noise=noise, untold=(SCRIPT,), advice=SCRIPT, findings=(hostile,)),
-        Counts(garbled=1, last=SCRIPT),
+        replace(base, names=names, noise=noise, unidentified=(SCRIPT,), advice=SCRIPT, findings=(hostile,)),
+        SampleCounts(garbled=1, last_problem=SCRIPT),
     )
     with opened(browser, page) as (window, said):
         window.locator("#rows").get_by_text(SCRIPT).wait_for()
-        for place in ("#values", "#noise", "#shares", "#untold", "#findings", "#last"):
+        for place in ("#values", "#noise", "#shares", "#unidentified", "#findings", "#last"):
             assert SCRIPT in (window.locator(place).text_content() or "")
         assert window.locator("script").count() == 1 and window.locator("img").count() == 0
         assert window.title() == "trial.toml · seatrial"
@@ -98,7 +98,7 @@ def test_a_program_that_ended_is_said_and_its_numbers_stay(browser: "Browser") -
     first = Page(0)
     with first:
         for snapshot in heave_pitch(30.0):
-            first.show(snapshot, Counts())
+            first.show(snapshot, SampleCounts())
         window = browser.new_page()
         window.set_default_timeout(8000)
         window.goto(first.address)
@@ -107,7 +107,7 @@ def test_a_program_that_ended_is_said_and_its_numbers_stay(browser: "Browser") -
     assert window.locator("#rows tr").count() == 8
     with Page(first.port) as again:
         for snapshot in mmg(30.0):
-            again.show(snapshot, Counts())
+            again.show(snapshot, SampleCounts())
         window.locator("#rows").get_by_text("X_vvvv").wait_for()
         assert window.locator("#values figure").count() == 15
         assert window.locator("#status").inner_text() == "following"
@@ -117,13 +117,13 @@ def test_a_program_that_ended_is_said_and_its_numbers_stay(browser: "Browser") -
 def test_who_looks_as_the_stream_ends_sees_its_end(browser: "Browser") -> None:
     snapshots = list(heave_pitch(30.0))
     with Page(0) as page:
-        page.show(snapshots[-2], Counts())
+        page.show(snapshots[-2], SampleCounts())
         window = browser.new_page()
         window.set_default_timeout(8000)
         window.goto(page.address)
         window.locator("#facts").get_by_text("29.5 s").wait_for()
-        page.show(snapshots[-1], Counts())
-        page.over()
+        page.show(snapshots[-1], SampleCounts())
+        page.end()
     window.wait_for_timeout(700)
     assert window.locator("#status").inner_text() == "the stream is over"
     assert window.locator("#facts").get_by_text("30.0 s").is_visible()
@@ -131,8 +131,8 @@ def test_who_looks_as_the_stream_ends_sees_its_end(browser: "Browser") -> None:
 
 
 def test_silence_is_said(browser: "Browser", page: Page) -> None:
-    page.show(list(heave_pitch(30.0))[-1], Counts())
-    page._news_at -= 17.0
+    page.show(list(heave_pitch(30.0))[-1], SampleCounts())
+    page._updated_at -= 17.0
     with opened(browser, page) as (window, said):
         window.get_by_text(re.compile(r"no news for (17|18|19|2\d) s")).wait_for()
         assert said == []

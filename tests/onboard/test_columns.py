@@ -10,22 +10,24 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.core.values import InputError
-from seatrial.data.read import Column, Layout, read_record
+from seatrial.data.read import ColumnSpec, Layout, read_record
 from seatrial.data.trial import load_trial
 from seatrial.onboard.columns import ColumnReader
-from seatrial.onboard.lines import Batch
+from seatrial.onboard.lines import LineBatch
 from seatrial.onboard.sample import Sample
 from seatrial.onboard.tail import TailLines
 
-NAMED = Layout("text", Column("time", "t", "ms"), (Column("u", "speed", "kn"), Column("psi", "head", "deg")))
-NUMBERED = Layout("text", Column("time", 1, "s"), (Column("u", 2, "kn"), Column("psi", 3, "deg")))
+NAMED = Layout(
+    "text", ColumnSpec("time", "t", "ms"), (ColumnSpec("u", "speed", "kn"), ColumnSpec("psi", "head", "deg"))
+)
+NUMBERED = Layout("text", ColumnSpec("time", 1, "s"), (ColumnSpec("u", 2, "kn"), ColumnSpec("psi", 3, "deg")))
 CELL = st.one_of(st.floats(-1e6, 1e6).map(repr), st.sampled_from(["", "NA", " ", "null"]))
 
 
 def samples(text: str | bytes, layout: Layout, *, begins: bool = True) -> tuple[list[Sample], ColumnReader]:
     reader = ColumnReader(layout)
     data = text.encode() if isinstance(text, str) else text
-    return reader.samples(Batch(data.split(b"\n"), begins)), reader
+    return reader.samples(LineBatch(data.split(b"\n"), begins)), reader
 
 
 def table(found: list[Sample]) -> np.ndarray:
@@ -77,7 +79,7 @@ def test_real_records_followed_are_the_records(repository: Path, data_folder: Pa
 def test_no_bytes_raise_and_every_line_is_accounted_for(lines: list[bytes], begins: bool, layout: Layout) -> None:
     lines = [line.replace(b"\n", b"") for line in lines]
     reader = ColumnReader(layout)
-    found = reader.samples(Batch(lines, begins))
+    found = reader.samples(LineBatch(lines, begins))
     header = 1 if begins and layout is NAMED and lines else 0
     blank = sum(not line.removeprefix(b"\xef\xbb\xbf").strip() for line in lines[header:])
     assert len(found) + reader.counts.garbled == len(lines) - header - blank
@@ -87,9 +89,9 @@ def test_no_bytes_raise_and_every_line_is_accounted_for(lines: list[bytes], begi
 @given(st.lists(st.integers(0, 400), max_size=6))
 def test_batches_do_not_matter(cuts: list[int]) -> None:
     lines = [b"t,speed,head", *(b"%d,%d.5,%d" % (k, k, -k) for k in range(400))]
-    whole = ColumnReader(NAMED).samples(Batch(lines, True))
+    whole = ColumnReader(NAMED).samples(LineBatch(lines, True))
     reader, edges = ColumnReader(NAMED), [0, *sorted(cuts), len(lines)]
-    parts = [s for k, (a, b) in enumerate(pairwise(edges)) for s in reader.samples(Batch(lines[a:b], k == 0))]
+    parts = [s for k, (a, b) in enumerate(pairwise(edges)) for s in reader.samples(LineBatch(lines[a:b], k == 0))]
     np.testing.assert_array_equal(table(parts), table(whole))
 
 
@@ -110,7 +112,7 @@ def test_units_names_and_quotes() -> None:
     ],
 )
 def test_a_cell_without_a_finite_number_is_nan(line: str, cells: tuple[float, float]) -> None:
-    plain = Layout("text", Column("time", 1, "s"), (Column("u", 2, "m/s"), Column("v", 3, "m/s")))
+    plain = Layout("text", ColumnSpec("time", 1, "s"), (ColumnSpec("u", 2, "m/s"), ColumnSpec("v", 3, "m/s")))
     found, reader = samples(f"0,0,0\n{line}", plain)
     np.testing.assert_array_equal(found[1].values, cells)
     assert reader.counts.garbled == 0
@@ -120,7 +122,7 @@ def test_a_cell_without_a_finite_number_is_nan(line: str, cells: tuple[float, fl
 def test_a_line_that_cannot_be_read_is_counted_and_shown_in_ascii(line: str) -> None:
     found, reader = samples(f"0,1,2\n{line}\n3,1,2", NUMBERED)
     assert [s.time for s in found] == [0.0, 3.0]
-    assert reader.counts.garbled == 1 and reader.counts.last.isascii() and "line" in reader.counts.last
+    assert reader.counts.garbled == 1 and reader.counts.last_problem.isascii() and "line" in reader.counts.last_problem
 
 
 def test_a_width_that_lasts_becomes_the_width() -> None:
@@ -130,10 +132,10 @@ def test_a_width_that_lasts_becomes_the_width() -> None:
 
 def test_a_header_is_known_again_after_a_truncation_and_anywhere() -> None:
     reader = ColumnReader(NAMED)
-    assert len(reader.samples(Batch([b"t,speed,head", b"0,1,2"], True))) == 1
-    assert len(reader.samples(Batch([b"5,1,2"], True))) == 1
-    assert len(reader.samples(Batch([b"t,speed,head", b"6,1,2"], True))) == 1
-    swapped = reader.samples(Batch([b"head,t,speed", b"90,7000,1"]))
+    assert len(reader.samples(LineBatch([b"t,speed,head", b"0,1,2"], True))) == 1
+    assert len(reader.samples(LineBatch([b"5,1,2"], True))) == 1
+    assert len(reader.samples(LineBatch([b"t,speed,head", b"6,1,2"], True))) == 1
+    swapped = reader.samples(LineBatch([b"head,t,speed", b"90,7000,1"]))
     np.testing.assert_allclose(table(swapped), [[7.0, 1852 / 3600, np.pi / 2]])
     assert reader.counts.garbled == 0
 
@@ -141,13 +143,13 @@ def test_a_header_is_known_again_after_a_truncation_and_anywhere() -> None:
 def test_a_column_that_is_not_there_is_said_and_stays_nan() -> None:
     found, reader = samples("t,sped,head\n0,1,2\n1,1,2", NAMED)
     assert all(np.isnan(s.values[0]) and np.isfinite(s.values[1]) for s in found) and len(found) == 2
-    assert reader.complaint == "no column 'speed' for channel 'u'; did you mean 'sped'?"
-    assert reader.counts.last == reader.complaint
+    assert reader.column_warning == "no column 'speed' for channel 'u'; did you mean 'sped'?"
+    assert reader.counts.last_problem == reader.column_warning
 
 
 def test_names_without_any_header_are_said() -> None:
     found, reader = samples("0,1,2\n1,1,2", NAMED, begins=False)
-    assert not found and reader.counts.garbled == 2 and "no header line has come" in reader.counts.last
+    assert not found and reader.counts.garbled == 2 and "no header line has come" in reader.counts.last_problem
 
 
 @pytest.mark.parametrize(
@@ -158,7 +160,7 @@ def test_names_without_any_header_are_said() -> None:
         (Layout("text", NAMED.time, NAMED.columns, scale=45.7), "Froude-scaled by 45.7"),
         (Layout("text", NAMED.time, NAMED.columns, encoding="utf-16"), "utf-16"),
         (Layout("text", NAMED.time, NAMED.columns, encoding="klingon"), "unknown encoding"),
-        (Layout("text", NAMED.time, (Column("u", 2, "deg"),)), "does not fit"),
+        (Layout("text", NAMED.time, (ColumnSpec("u", 2, "deg"),)), "does not fit"),
     ],
 )
 def test_a_layout_that_cannot_be_followed_is_refused(layout: Layout, text: str) -> None:
@@ -167,21 +169,23 @@ def test_a_layout_that_cannot_be_followed_is_refused(layout: Layout, text: str) 
 
 
 def test_names_in_another_encoding() -> None:
-    layout = Layout("text", Column("time", "t", "s"), (Column("u", "Geschw. [m/s] ü", "m/s"),), encoding="cp1252")
+    layout = Layout(
+        "text", ColumnSpec("time", "t", "s"), (ColumnSpec("u", "Geschw. [m/s] ü", "m/s"),), encoding="cp1252"
+    )
     found, _ = samples("Geschw. [m/s] ü;t\n1;2\n".encode("cp1252"), layout)
     np.testing.assert_array_equal(table(found), [[2.0, 1.0]])
 
 
 def test_memory_does_not_grow_with_garbage() -> None:
     reader, lines = ColumnReader(NUMBERED), [b"\xff" * 200, b"1,2,3,4,5,6", b"x,y,z"] * 200
-    reader.samples(Batch(lines))
+    reader.samples(LineBatch(lines))
     tracemalloc.start()
     try:
         for _ in range(10):
-            reader.samples(Batch(lines))
+            reader.samples(LineBatch(lines))
         before, _ = tracemalloc.get_traced_memory()
         for _ in range(30):
-            reader.samples(Batch(lines))
+            reader.samples(LineBatch(lines))
         after, _ = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()

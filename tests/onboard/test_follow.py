@@ -12,19 +12,28 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.onboard.streams import EXAMPLES, LINES, Given, Notes, accepted, some, told, voyage_trial
+from tests.onboard.streams import (
+    EXAMPLES,
+    LINES,
+    ListSource,
+    RecordingEstimator,
+    accepted_count,
+    fit_json_without_time,
+    sample_range,
+    stream_trial,
+)
 
-from seatrial.core.results.online import Counts, Snapshot
+from seatrial.core.results.online import SampleCounts, Snapshot
 from seatrial.core.values import InputError
 from seatrial.data.trial import Role, Trial, load_trial
-from seatrial.data.trial.follow_table import followed
-from seatrial.data.trial.trial import Run
+from seatrial.data.trial.follow_table import require_stream
+from seatrial.data.trial.trial import TrialRun
 from seatrial.estimation.identify import identify
 from seatrial.onboard.columns import ColumnReader
 from seatrial.onboard.follow import follow
-from seatrial.onboard.needs import refuse_lacking
-from seatrial.onboard.opened import LineSamples
+from seatrial.onboard.required_channels import check_required_channels
 from seatrial.onboard.sample import Sample
+from seatrial.onboard.sources import LineSampleSource
 from seatrial.onboard.tail import TailLines
 from seatrial.onboard.udp import UdpLines
 
@@ -40,25 +49,27 @@ follow(voyage_trial(Path(sys.argv[1])), journal=Path(sys.argv[2]), estimator=Not
 @pytest.fixture
 def in_a_hurry(monkeypatch: pytest.MonkeyPatch) -> None:
     """Waits and looks twenty times as often."""
-    monkeypatch.setattr("seatrial.onboard.follow._SHOW_S", 0.02)
-    monkeypatch.setattr("seatrial.onboard.follow._WAIT_S", 0.01)
+    monkeypatch.setattr("seatrial.onboard.follow._DISPLAY_INTERVAL_S", 0.02)
+    monkeypatch.setattr("seatrial.onboard.follow._POLL_WAIT_S", 0.01)
 
 
 def identified(trial: Trial, file: Path) -> dict:
     """What identify says where the file stands under [[records]] in place of [follow]."""
-    stream = followed(trial)
-    run = Run(file, stream.layout, Role.TRAIN, file.stem, waves=stream.waves)
+    stream = require_stream(trial)
+    run = TrialRun(file, stream.layout, Role.TRAIN, file.stem, waves=stream.waves)
     others = tuple(r for r in trial.runs if r.role is not Role.TRAIN)
-    return told(identify(replace(trial, follow=None, runs=(*trial.of_role(Role.TRAIN), run, *others))))
+    return fit_json_without_time(
+        identify(replace(trial, stream=None, runs=(*trial.runs_with_role(Role.TRAIN), run, *others)))
+    )
 
 
 def test_followed_to_its_end_the_fit_is_that_of_identify_bit_for_bit() -> None:
     trial = load_trial(EXAMPLES / "heave_pitch_follow.toml")
     outcome = follow(trial, once=True)
-    file = followed(trial).file
+    file = require_stream(trial).file
     assert file is not None
-    assert told(outcome.fit) == identified(trial, file)
-    assert accepted(outcome) == len(LINES) - 1
+    assert fit_json_without_time(outcome.fit) == identified(trial, file)
+    assert accepted_count(outcome) == len(LINES) - 1
     fit, snapshot = outcome.fit, outcome.snapshot
     assert fit is not None and snapshot is not None
     free = [c for c in fit.coefficients if not c.fixed]
@@ -76,8 +87,8 @@ def test_a_garbled_file_gives_what_the_clean_one_gives(tmp_path: Path) -> None:
     garbled.write_bytes(b"".join(lines))
     mended.parent.mkdir()
     mended.write_text("".join(LINES), encoding="utf-8")
-    outcome = follow(voyage_trial(garbled), once=True)
-    assert told(outcome.fit) == identified(voyage_trial(garbled), mended)
+    outcome = follow(stream_trial(garbled), once=True)
+    assert fit_json_without_time(outcome.fit) == identified(stream_trial(garbled), mended)
     counts = outcome.counts
     assert counts.accepted == len(LINES) - 1
     assert counts.garbled + counts.dropped == len(places) - sum(i % len(noise) == 2 for i in range(len(places)))
@@ -87,7 +98,7 @@ def test_a_garbled_file_gives_what_the_clean_one_gives(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("in_a_hurry")
 def test_a_file_truncated_while_it_is_read_is_read_on_from_its_start(tmp_path: Path) -> None:
-    file, notes = tmp_path / "log.csv", Notes()
+    file, notes = tmp_path / "log.csv", RecordingEstimator()
     file.write_text("".join(LINES[:301]))
     steps = iter(range(100))
 
@@ -100,18 +111,18 @@ def test_a_file_truncated_while_it_is_read_is_read_on_from_its_start(tmp_path: P
                 log.write("".join(LINES[331:401]))
         return len(notes.values) >= 400 or step > 90
 
-    outcome = follow(voyage_trial(file), estimator=notes, stop=stop)
+    outcome = follow(stream_trial(file), estimator=notes, stop=stop)
     assert notes.runs == [pytest.approx([0.1 * i for i in range(400)])]
     assert outcome.counts.truncated == 1
     assert outcome.fit is None
 
 
 def test_a_flood_is_dropped_and_counted_and_the_loop_goes_on() -> None:
-    trial = voyage_trial()
-    layout = replace(followed(trial).layout, header_lines=0)
+    trial = stream_trial()
+    layout = replace(require_stream(trial).layout, header_lines=0)
     columns = tuple(replace(c, source=i + 2) for i, c in enumerate(layout.columns))
     layout = replace(layout, time=replace(layout.time, source=1), columns=columns)
-    source, notes = LineSamples(UdpLines(0, rate=10.0), ColumnReader(layout)), Notes()
+    source, notes = LineSampleSource(UdpLines(0, rate=10.0), ColumnReader(layout)), RecordingEstimator()
     port = source._lines.port  # type: ignore[attr-defined]
     over = threading.Event()
 
@@ -149,29 +160,29 @@ def test_kill_9_and_a_restart_are_as_one_voyage(tmp_path: Path) -> None:
     with journal.open("ab") as torn:
         torn.write(b"S half an entry")
     file.write_text("".join(LINES))
-    notes, uninterrupted = Notes(), Notes()
-    outcome = follow(voyage_trial(file), once=True, journal=journal, estimator=notes)
-    whole = follow(voyage_trial(file), once=True, estimator=uninterrupted)
-    assert told(outcome.fit) == told(whole.fit)
+    notes, uninterrupted = RecordingEstimator(), RecordingEstimator()
+    outcome = follow(stream_trial(file), once=True, journal=journal, estimator=notes)
+    whole = follow(stream_trial(file), once=True, estimator=uninterrupted)
+    assert fit_json_without_time(outcome.fit) == fit_json_without_time(whole.fit)
     assert notes.runs == uninterrupted.runs
     assert np.array_equal(notes.values, uninterrupted.values, equal_nan=True)
     assert outcome.counts == whole.counts
-    assert outcome.notes == ("the last 15 bytes of 'a.journal' were torn by a break and are cut off",)
-    again = Notes()
-    follow(voyage_trial(file), once=True, journal=journal, estimator=again)
+    assert outcome.messages == ("the last 15 bytes of 'a.journal' were torn by a break and are cut off",)
+    again = RecordingEstimator()
+    follow(stream_trial(file), once=True, journal=journal, estimator=again)
     assert again.runs == uninterrupted.runs
 
 
 def test_the_house_s_estimate_after_a_restart_is_the_uninterrupted_one_bit_for_bit(tmp_path: Path) -> None:
     file, journal = tmp_path / "log.csv", tmp_path / "a.journal"
     file.write_text("".join(LINES[:701]))
-    source = LineSamples(TailLines(file, once=True), ColumnReader(followed(voyage_trial()).layout))
-    follow(voyage_trial(file), source=source, journal=journal)
+    source = LineSampleSource(TailLines(file, once=True), ColumnReader(require_stream(stream_trial()).layout))
+    follow(stream_trial(file), source=source, journal=journal)
     source.close()
     file.write_text("".join(LINES))
     ends: list[Snapshot] = []
     for place in (journal, None):
-        outcome = follow(voyage_trial(file), once=True, journal=place)
+        outcome = follow(stream_trial(file), once=True, journal=place)
         assert outcome.snapshot is not None
         ends.append(outcome.snapshot)
     assert np.array_equal(ends[0].value, ends[1].value)
@@ -185,15 +196,15 @@ def test_whatever_of_the_journal_is_left_the_file_gives_the_rest(tmp_path: Path,
     file, journal = tmp_path / "log.csv", tmp_path / "a.journal"
     jumped = [line.replace(line.split(",")[0], f"{1000 + 0.1 * i:.1f}", 1) for i, line in enumerate(LINES[101:201])]
     file.write_text("".join([*LINES[:101], *jumped[:3]]))
-    first = Notes()
-    follow(voyage_trial(file), journal=journal, estimator=first, stop=lambda: len(first.values) >= 103)
+    first = RecordingEstimator()
+    follow(stream_trial(file), journal=journal, estimator=first, stop=lambda: len(first.values) >= 103)
     assert [len(run) for run in first.runs] == [100, 3]
     data = journal.read_bytes()
     journal.write_bytes(data[: len(data) - cut])
     file.write_text("".join([*LINES[:101], *jumped]))
-    notes, whole = Notes(), Notes()
-    resumed = follow(voyage_trial(file), journal=journal, estimator=notes, stop=lambda: len(notes.values) >= 200)
-    unbroken = follow(voyage_trial(file), estimator=whole, stop=lambda: len(whole.values) >= 200)
+    notes, whole = RecordingEstimator(), RecordingEstimator()
+    resumed = follow(stream_trial(file), journal=journal, estimator=notes, stop=lambda: len(notes.values) >= 200)
+    unbroken = follow(stream_trial(file), estimator=whole, stop=lambda: len(whole.values) >= 200)
     assert notes.runs == whole.runs
     assert resumed.counts == unbroken.counts
 
@@ -202,86 +213,97 @@ def test_whatever_of_the_journal_is_left_the_file_gives_the_rest(tmp_path: Path,
 def test_another_file_under_the_same_name_begins_a_run_and_so_does_a_break_of_a_stream(tmp_path: Path) -> None:
     file, journal = tmp_path / "log.csv", tmp_path / "a.journal"
     file.write_text("".join(LINES[:51]))
-    first = Notes()
-    follow(voyage_trial(file), journal=journal, estimator=first, stop=lambda: len(first.values) >= 50)
+    first = RecordingEstimator()
+    follow(stream_trial(file), journal=journal, estimator=first, stop=lambda: len(first.values) >= 50)
     file.write_text(LINES[0] + "".join(LINES[101:151]))
-    second = Notes()
-    follow(voyage_trial(file), journal=journal, estimator=second, stop=lambda: len(second.values) >= 100)
+    second = RecordingEstimator()
+    follow(stream_trial(file), journal=journal, estimator=second, stop=lambda: len(second.values) >= 100)
     assert [len(run) for run in second.runs] == [50, 50]
-    third = Notes()
-    follow(voyage_trial(file), source=Given(some(151, 161)), journal=journal, estimator=third)
+    third = RecordingEstimator()
+    follow(stream_trial(file), source=ListSource(sample_range(151, 161)), journal=journal, estimator=third)
     assert [len(run) for run in third.runs] == [50, 50, 10]
-    fourth = Notes()
-    follow(voyage_trial(file), source=Given([]), journal=journal, estimator=fourth)
+    fourth = RecordingEstimator()
+    follow(stream_trial(file), source=ListSource([]), journal=journal, estimator=fourth)
     assert fourth.runs == third.runs
 
 
 def test_the_end_may_be_asked_for_while_the_journal_is_taken_in(tmp_path: Path) -> None:
     journal = tmp_path / "a.journal"
-    follow(voyage_trial(), source=Given(some(0, 500)), journal=journal, estimator=Notes())
+    follow(stream_trial(), source=ListSource(sample_range(0, 500)), journal=journal, estimator=RecordingEstimator())
     before = journal.read_bytes()
-    ended = follow(voyage_trial(), source=Given(some(500, 510)), journal=journal, estimator=Notes(), stop=lambda: True)
-    assert accepted(ended) < 500
+    ended = follow(
+        stream_trial(),
+        source=ListSource(sample_range(500, 510)),
+        journal=journal,
+        estimator=RecordingEstimator(),
+        stop=lambda: True,
+    )
+    assert accepted_count(ended) < 500
     assert journal.read_bytes() == before
 
 
 def test_a_socket_is_read_on_while_a_search_takes_its_time(tmp_path: Path) -> None:
-    class Slow(Notes):
+    class Slow(RecordingEstimator):
         def update(self, sample: Sample) -> Snapshot:
             time.sleep(0.11)
             assert journal.stat().st_size > 45 * min(5 * (len(self.values) + 1), 20)
             return super().update(sample)
 
     journal, notes = tmp_path / "a.journal", Slow()
-    polls = [some(5 * i, 5 * i + 5) for i in range(4)]
-    follow(voyage_trial(), source=Given(*polls), journal=journal, estimator=notes)
+    polls = [sample_range(5 * i, 5 * i + 5) for i in range(4)]
+    follow(stream_trial(), source=ListSource(*polls), journal=journal, estimator=notes)
     assert len(notes.values) == 20
 
 
 def test_what_comes_while_a_journal_is_taken_in_is_not_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("seatrial.onboard.follow._TURN_S", 0.0)
-    journal, notes = tmp_path / "a.journal", Notes()
-    follow(voyage_trial(), source=Given(some(0, 20)), journal=journal, estimator=Notes())
-    follow(voyage_trial(), source=Given(some(30, 35), some(35, 40), some(40, 45)), journal=journal, estimator=notes)
+    monkeypatch.setattr("seatrial.onboard.follow._PROCESSING_S", 0.0)
+    journal, notes = tmp_path / "a.journal", RecordingEstimator()
+    follow(stream_trial(), source=ListSource(sample_range(0, 20)), journal=journal, estimator=RecordingEstimator())
+    follow(
+        stream_trial(),
+        source=ListSource(sample_range(30, 35), sample_range(35, 40), sample_range(40, 45)),
+        journal=journal,
+        estimator=notes,
+    )
     assert [len(run) for run in notes.runs] == [20, 15]
 
 
 def test_a_journal_of_another_trial_is_refused_before_anything_starts(tmp_path: Path) -> None:
     journal = tmp_path / "a.journal"
-    follow(voyage_trial(), source=Given(some(0, 5)), journal=journal, estimator=Notes())
-    trial = voyage_trial()
-    layout = followed(trial).layout
+    follow(stream_trial(), source=ListSource(sample_range(0, 5)), journal=journal, estimator=RecordingEstimator())
+    trial = stream_trial()
+    layout = require_stream(trial).layout
     turned = replace(layout, columns=(*layout.columns[:-1], replace(layout.columns[-1], positive="bow down")))
-    other, notes = replace(trial, follow=replace(followed(trial), layout=turned)), Notes()
+    other, notes = replace(trial, stream=replace(require_stream(trial), layout=turned)), RecordingEstimator()
     with pytest.raises(InputError, match="another model or other columns"):
-        follow(other, source=Given(some(0, 5)), journal=journal, estimator=notes)
+        follow(other, source=ListSource(sample_range(0, 5)), journal=journal, estimator=notes)
     assert notes.runs == []
 
 
 def test_ctrl_c_ends_it_with_what_is_known(tmp_path: Path) -> None:
-    journal, source = tmp_path / "a.journal", Given(some(0, 5), None, some(5, 10))
-    outcome = follow(voyage_trial(), source=source, once=True, journal=journal, estimator=Notes())
+    journal, source = tmp_path / "a.journal", ListSource(sample_range(0, 5), None, sample_range(5, 10))
+    outcome = follow(stream_trial(), source=source, once=True, journal=journal, estimator=RecordingEstimator())
     assert outcome.fit is None
     assert outcome.snapshot is not None
     assert outcome.snapshot.samples == 5
     assert not source.is_closed
-    notes = Notes()
-    follow(voyage_trial(), source=Given([]), journal=journal, estimator=notes)
+    notes = RecordingEstimator()
+    follow(stream_trial(), source=ListSource([]), journal=journal, estimator=notes)
     assert [len(run) for run in notes.runs] == [5]
 
 
 def test_what_the_estimator_refuses_is_said_and_the_next_sample_is_taken() -> None:
-    class Choosy(Notes):
+    class Choosy(RecordingEstimator):
         def update(self, sample: Sample) -> Snapshot:
             if sample.values[0] == 3:
                 raise InputError("the motion leaves all bounds")
             return super().update(sample)
 
     notes = Choosy()
-    outcome = follow(voyage_trial(), source=Given(some(0, 3), some(3, 8)), estimator=notes)
+    outcome = follow(stream_trial(), source=ListSource(sample_range(0, 3), sample_range(3, 8)), estimator=notes)
     assert len(notes.values) == 7
-    assert outcome.notes == ("the motion leaves all bounds",)
-    assert outcome.counts.last == "t = 0.3 s: the motion leaves all bounds"
+    assert outcome.messages == ("the motion leaves all bounds",)
+    assert outcome.counts.last_problem == "t = 0.3 s: the motion leaves all bounds"
 
 
 def test_a_look_is_given_twice_a_second_at_most_and_at_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -294,12 +316,12 @@ def test_a_look_is_given_twice_a_second_at_most_and_at_the_end(monkeypatch: pyte
     monkeypatch.setattr("seatrial.onboard.follow.monotonic", clock)
     seen: list[tuple[float, int]] = []
 
-    def show(snapshot: Snapshot, counts: Counts) -> None:
+    def show(snapshot: Snapshot, counts: SampleCounts) -> None:
         assert counts.accepted >= snapshot.samples
         seen.append((now[0], snapshot.samples))
 
-    source = Given(*[some(100 * i, 100 * i + 100) for i in range(30)])
-    follow(voyage_trial(), source=source, estimator=Notes(), show=show)
+    source = ListSource(*[sample_range(100 * i, 100 * i + 100) for i in range(30)])
+    follow(stream_trial(), source=source, estimator=RecordingEstimator(), show=show)
     moments = [at for at, _ in seen[:-1]]
     assert len(seen) > 4
     assert np.min(np.diff(moments)) >= 0.5
@@ -308,9 +330,9 @@ def test_a_look_is_given_twice_a_second_at_most_and_at_the_end(monkeypatch: pyte
 
 def test_training_runs_come_first_and_runs_held_out_last() -> None:
     trial = load_trial(EXAMPLES / "heave_pitch.toml")
-    stream = followed(load_trial(EXAMPLES / "heave_pitch_follow.toml"))
+    stream = require_stream(load_trial(EXAMPLES / "heave_pitch_follow.toml"))
     runs = tuple(run for run in trial.runs if run.name != "voyage_1")
-    both = follow(replace(trial, runs=runs, follow=stream), once=True, estimator=Notes())
+    both = follow(replace(trial, runs=runs, stream=stream), once=True, estimator=RecordingEstimator())
     assert both.fit is not None
     assert [record.name for record in both.fit.records] == ["voyage_2", "voyage_1", "voyage_held_out"]
     alone = identify(trial)
@@ -330,21 +352,23 @@ def test_channels_that_are_lacking_are_named_before_anything_starts(
     example: str, without: tuple[str, ...], says: str
 ) -> None:
     trial = load_trial(EXAMPLES / f"{example}.toml")
-    layout = followed(trial).layout
+    layout = require_stream(trial).layout
     kept = replace(layout, columns=tuple(c for c in layout.columns if c.symbol not in without))
-    notes = Notes()
+    notes = RecordingEstimator()
     with pytest.raises(InputError, match=says):
-        follow(replace(trial, follow=replace(followed(trial), layout=kept)), source=Given([]), estimator=notes)
+        follow(
+            replace(trial, stream=replace(require_stream(trial), layout=kept)), source=ListSource([]), estimator=notes
+        )
     assert notes.runs == []
 
 
 @pytest.mark.parametrize("example", ["heave_pitch_follow", "waterjet_follow"])
 def test_the_examples_lack_nothing(example: str) -> None:
-    refuse_lacking(load_trial(EXAMPLES / f"{example}.toml"))
+    check_required_channels(load_trial(EXAMPLES / f"{example}.toml"))
 
 
 def test_a_file_that_is_a_run_of_the_records_already_is_not_used_twice() -> None:
     trial = load_trial(EXAMPLES / "heave_pitch.toml")
-    stream = followed(load_trial(EXAMPLES / "heave_pitch_follow.toml"))
+    stream = require_stream(load_trial(EXAMPLES / "heave_pitch_follow.toml"))
     with pytest.raises(InputError, match=r"voyage_1\.csv is named under"):
-        follow(replace(trial, follow=stream), source=Given([]), estimator=Notes())
+        follow(replace(trial, stream=stream), source=ListSource([]), estimator=RecordingEstimator())

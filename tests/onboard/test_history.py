@@ -8,13 +8,13 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.core.results.online import Phase, Snapshot
-from seatrial.onboard.history import History, Recent
+from seatrial.core.results.online import EstimatorPhase, Snapshot
+from seatrial.onboard.history import History, RecentHistory
 
 
 def snapshot(time: float, *, runs: int = 1, names: Sequence[str] = ("a", "b")) -> Snapshot:
     value = np.full(len(names), time)
-    return Snapshot(time, 1, runs, Phase.WINDOW, tuple(names), ("1",) * len(names), value, 0.1 + 0.0 * value)
+    return Snapshot(time, 1, runs, EstimatorPhase.WINDOW, tuple(names), ("1",) * len(names), value, 0.1 + 0.0 * value)
 
 
 def filled(count: int, limit: int) -> History:
@@ -74,7 +74,7 @@ def test_what_was_kept_does_not_move_with_the_estimator() -> None:
 
 
 def test_recent_keeps_the_last_minutes_only() -> None:
-    history, recent = History(4), Recent(seconds=60.0, most=30)
+    history, recent = History(4), RecentHistory(seconds=60.0, limit=30)
     for k in range(4000):
         recent.add(history.add(snapshot(0.1 * k)))
     times = recent.value[:, 0]

@@ -13,8 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from seatrial.core.values import InputError
-from seatrial.data.read import Column, Layout
-from seatrial.onboard.journal import Begin, Entry, Journal, identity_of
+from seatrial.data.read import ColumnSpec, Layout
+from seatrial.onboard.journal import Journal, JournalEntry, RunEntry, journal_identity
 from seatrial.onboard.sample import Sample
 from seatrial.physics.models import model_named
 
@@ -22,38 +22,38 @@ WRITER = """
 import sys, time
 from pathlib import Path
 import numpy as np
-from seatrial.onboard.journal import Begin, Journal
+from seatrial.onboard.journal import RunEntry, Journal
 from seatrial.onboard.sample import Sample
 journal = Journal(Path(sys.argv[1]), "a", 3)
 list(journal.entries())
-journal.note(Begin("start"))
+journal.append(RunEntry("start"))
 for i in range(10**9):
-    journal.note(Sample(float(i), np.full(3, 0.5 * i)))
-    journal.settle()
+    journal.append(Sample(float(i), np.full(3, 0.5 * i)))
+    journal.write_pending()
     if i % 50 == 0:
         print(i, time.monotonic(), flush=True)
         time.sleep(0.001)
 """
 
 
-def written(path: Path, count: int) -> list[Entry]:
+def written(path: Path, count: int) -> list[JournalEntry]:
     journal = Journal(path, "a", 2)
     before = list(journal.entries())
-    journal.note(Begin("the clock jumped, å"))
+    journal.append(RunEntry("the clock jumped, å"))
     for i in range(count):
-        journal.note(Sample(0.1 * i, np.array([i, np.nan])))
+        journal.append(Sample(0.1 * i, np.array([i, np.nan])))
     journal.close()
     return before
 
 
-def read(path: Path) -> tuple[list[Entry], int]:
+def read(path: Path) -> tuple[list[JournalEntry], int]:
     journal = Journal(path, "a", 2)
     entries = list(journal.entries())
     journal.close()
-    return entries, journal.torn
+    return entries, journal.torn_bytes
 
 
-def told(entries: list[Entry]) -> list[object]:
+def told(entries: list[JournalEntry]) -> list[object]:
     return [(e.time, [repr(v) for v in e.values.tolist()]) if isinstance(e, Sample) else e for e in entries]
 
 
@@ -65,7 +65,7 @@ def test_what_was_written_comes_back_bit_for_bit_and_is_continued(tmp_path: Path
     assert torn == 0
     assert told(entries[:6]) == told(first)
     assert told(entries[6:]) == told(first[:4])
-    assert entries[0] == Begin("the clock jumped, å")
+    assert entries[0] == RunEntry("the clock jumped, å")
     last = entries[-1]
     assert isinstance(last, Sample)
     assert (last.time, last.values[0]) == (0.1 * 2, 2.0)
@@ -146,13 +146,13 @@ def test_two_writers_are_one_too_many(tmp_path: Path) -> None:
 
 
 def test_the_identity_is_that_of_equations_and_columns() -> None:
-    column = Column("r", "r", "deg/s")
-    layout = Layout("text", Column("time", "t", "s"), (column,))
-    turned = Layout("text", Column("time", "t", "s"), (Column("r", "r", "deg/s", positive="port"),))
+    column = ColumnSpec("r", "r", "deg/s")
+    layout = Layout("text", ColumnSpec("time", "t", "s"), (column,))
+    turned = Layout("text", ColumnSpec("time", "t", "s"), (ColumnSpec("r", "r", "deg/s", positive="port"),))
     nomoto = model_named("nomoto")
-    known = {identity_of(m, x) for m in (nomoto, model_named("roll")) for x in (layout, turned)}
+    known = {journal_identity(m, x) for m in (nomoto, model_named("roll")) for x in (layout, turned)}
     assert len(known) == 4
-    assert identity_of(nomoto, layout) == identity_of(model_named("nomoto"), layout)
+    assert journal_identity(nomoto, layout) == journal_identity(model_named("nomoto"), layout)
 
 
 def test_a_full_disk_ends_the_journal_and_not_the_voyage(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -162,9 +162,9 @@ def test_a_full_disk_ends_the_journal_and_not_the_voyage(tmp_path: Path, monkeyp
     journal = Journal(tmp_path / "a.journal", "a", 2)
     monkeypatch.setattr(os, "fsync", full)
     journal.flush()
-    journal.note(Sample(0.0, np.zeros(2)))
+    journal.append(Sample(0.0, np.zeros(2)))
     journal.close()
-    assert "no longer written (No space left on device)" in journal.trouble
+    assert "no longer written (No space left on device)" in journal.write_error
 
 
 def test_kill_9_loses_at_most_the_unflushed_second(tmp_path: Path) -> None:

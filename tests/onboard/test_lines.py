@@ -3,15 +3,15 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.onboard.lines import LineCutter
+from seatrial.onboard.lines import LineSplitter
 
 PIECES = st.lists(st.binary(max_size=40).map(lambda b: b.replace(b"\x00", b"\n")), max_size=20)
 
 
 def cut(pieces: list[bytes], longest: int) -> tuple[list[bytes], int]:
-    cutter = LineCutter(longest)
-    lines = [line for piece in pieces for line in cutter.cut(piece)]
-    return lines + cutter.rest(), cutter.dropped
+    cutter = LineSplitter(longest)
+    lines = [line for piece in pieces for line in cutter.split(piece)]
+    return lines + cutter.flush(), cutter.dropped
 
 
 @given(PIECES, st.integers(1, 60))
@@ -29,9 +29,9 @@ def test_every_line_comes_out_or_is_counted(pieces: list[bytes], longest: int) -
 
 
 def test_of_an_endless_line_nothing_is_kept() -> None:
-    cutter = LineCutter(100)
+    cutter = LineSplitter(100)
     for _ in range(1000):
-        assert cutter.cut(b"x" * 90) == []
-        assert len(cutter._half) <= 100
+        assert cutter.split(b"x" * 90) == []
+        assert len(cutter._partial) <= 100
     assert cutter.dropped == 1
-    assert cutter.cut(b"end\nnext\n") == [b"next"]
+    assert cutter.split(b"end\nnext\n") == [b"next"]

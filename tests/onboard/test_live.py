@@ -8,14 +8,14 @@ from typing import TextIO
 import numpy as np
 import pytest
 from rich.console import Console
-from tests.onboard.fabricated import heave_pitch, mmg, troubled
+from tests.onboard.fabricated import faulty_counts, heave_pitch, mmg
 
-from seatrial.core.results.online import Counts, Phase, Snapshot
+from seatrial.core.results.online import EstimatorPhase, SampleCounts, Snapshot
 from seatrial.onboard import live as module
-from seatrial.onboard.history import History, Recent
-from seatrial.onboard.live import Live
-from seatrial.onboard.plain import line
-from seatrial.onboard.table import Shown, picture
+from seatrial.onboard.history import History, RecentHistory
+from seatrial.onboard.live import LiveDisplay
+from seatrial.onboard.log_lines import log_line
+from seatrial.onboard.table import TableContent, render_table
 
 
 class Terminal(io.StringIO):
@@ -38,10 +38,10 @@ def drawn(
     *, snapshots: list[Snapshot], width: int = 110, height: int | None = None, heading: str = "", silence: float = 0.0
 ) -> str:
     console = Console(file=io.StringIO(), width=width, height=50, force_terminal=False)
-    history, recent = History(), Recent()
+    history, recent = History(), RecentHistory()
     for snapshot in snapshots:
         recent.add(history.add(snapshot))
-    console.print(picture(console, Shown(heading, snapshots[-1], troubled(), recent, silence), height))
+    console.print(render_table(console, TableContent(heading, snapshots[-1], faulty_counts(), recent, silence), height))
     return console.file.getvalue()  # pyright: ignore[reportAttributeAccessIssue]
 
 
@@ -61,7 +61,7 @@ def mmg_names() -> tuple[str, ...]:
 
 
 def test_intervals_are_the_value_and_1_96_standard_errors_in_degrees() -> None:
-    snapshot = Snapshot(1.0, 1, 1, Phase.WINDOW, ("delta_0",), ("rad",), np.radians([2.0]), np.radians([0.5]))
+    snapshot = Snapshot(1.0, 1, 1, EstimatorPhase.WINDOW, ("delta_0",), ("rad",), np.radians([2.0]), np.radians([0.5]))
     row = drawn(snapshots=[snapshot]).split("delta_0")[1].split()
     assert row[:5] == ["2.00", "1.02", "2.98", "deg", "25"]
 
@@ -93,23 +93,23 @@ def test_a_small_terminal_gets_what_fits() -> None:
 
 
 def test_markup_and_escape_sequences_are_text() -> None:
-    counts = Counts(garbled=1, last="$GPRMC\x1b]0;owned\x07[red]\u202e")
+    counts = SampleCounts(garbled=1, last_problem="$GPRMC\x1b]0;owned\x07[red]\u202e")
     snapshot = replace(next(iter(heave_pitch(0.0))), names=tuple("[b]x[/b]" + str(k) for k in range(8)))
     console = Console(file=io.StringIO(), width=100, force_terminal=False)
-    recent = Recent()
+    recent = RecentHistory()
     recent.add(History().add(snapshot))
-    console.print(picture(console, Shown("\x1b[2Jheading", snapshot, counts, recent), None))
+    console.print(render_table(console, TableContent("\x1b[2Jheading", snapshot, counts, recent), None))
     text = console.file.getvalue()  # pyright: ignore[reportAttributeAccessIssue]
     assert "\x1b" not in text and "\x07" not in text and "\u202e" not in text
     assert "[b]x[/b]0" in text and "[red]" in text
-    assert "\x1b" not in line(snapshot, counts)
+    assert "\x1b" not in log_line(snapshot, counts)
 
 
 def test_on_a_terminal_the_table_stays_in_place_and_ends_whole() -> None:
     stream, snapshot = Terminal(), next(iter(heave_pitch(0.0)))
-    with Live(stream, heading="trial.toml") as live:
+    with LiveDisplay(stream, heading="trial.toml") as live:
         for snapshot in heave_pitch(60.0):
-            live.show(snapshot, troubled())
+            live.show(snapshot, faulty_counts())
         assert "waiting" in stream.getvalue()
         shown = len(stream.getvalue())
     ended = stream.getvalue()[shown:]
@@ -122,13 +122,13 @@ def test_a_real_terminal_that_is_closed_stops_nothing() -> None:
     mine, theirs = pty.openpty()
     stream = os.fdopen(theirs, "w", encoding="utf-8")
     snapshots = list(heave_pitch(5.0))
-    with Live(stream) as live:
-        live.show(snapshots[0], Counts())
+    with LiveDisplay(stream) as live:
+        live.show(snapshots[0], SampleCounts())
         os.read(mine, 1 << 16)
         os.close(mine)
         for snapshot in snapshots:
             live._screen._drawn_at = -1e9  # pyright: ignore
-            live.show(snapshot, Counts())
+            live.show(snapshot, SampleCounts())
 
 
 class Broken(io.StringIO):
@@ -150,17 +150,17 @@ def closed() -> TextIO:
     ids=["broken pipe", "closed", "ascii", "cp1252"],
 )
 def test_odd_streams_do_not_raise(stream: TextIO) -> None:
-    with Live(stream, heading="versuch – ψ.toml") as live:
+    with LiveDisplay(stream, heading="versuch – ψ.toml") as live:
         for snapshot in mmg(10.0):
-            live.show(snapshot, troubled())
+            live.show(snapshot, faulty_counts())
 
 
 def test_a_dumb_terminal_gets_plain_lines(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TERM", "dumb")
     stream = Terminal()
-    with Live(stream) as live:
+    with LiveDisplay(stream) as live:
         for snapshot in heave_pitch(60.0):
-            live.show(snapshot, troubled())
+            live.show(snapshot, faulty_counts())
     assert "\x1b" not in stream.getvalue()
 
 
@@ -168,10 +168,10 @@ def test_lines_come_at_growing_waits_and_the_last_is_never_lost(monkeypatch: pyt
     clock = [0.0]
     monkeypatch.setattr(module.time, "monotonic", lambda: clock[0])
     stream, at = io.StringIO(), []
-    with Live(stream) as live:
+    with LiveDisplay(stream) as live:
         for k, snapshot in enumerate(heave_pitch(3600.0)):
             clock[0], before = 0.5 * k, stream.tell()
-            live.show(snapshot, Counts())
+            live.show(snapshot, SampleCounts())
             if stream.tell() > before:
                 at.append(clock[0])
     waits = np.diff(at)
@@ -185,15 +185,15 @@ def test_the_same_again_is_no_line(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = [0.0]
     monkeypatch.setattr(module.time, "monotonic", lambda: clock[0])
     stream, snapshot = io.StringIO(), list(heave_pitch(10.0))[-1]
-    with Live(stream) as live:
+    with LiveDisplay(stream) as live:
         for clock[0] in range(100):
-            live.show(snapshot, Counts(late=int(clock[0] > 50)))
+            live.show(snapshot, SampleCounts(late=int(clock[0] > 50)))
     assert len(stream.getvalue().splitlines()) == 2
 
 
 def test_a_line_has_values_with_half_intervals_and_no_typography() -> None:
     snapshot = list(mmg(20.0))[-1]
-    text = line(snapshot, troubled())
+    text = log_line(snapshot, faulty_counts())
     assert text.isascii() and "\n" not in text
     assert "X_vv -0.0" in text and " +- " in text and "not told: " in text and "3 late, 1 repeated, 12 missing" in text
-    assert "10^-3" in line(list(mmg(300.0))[-1], Counts())
+    assert "10^-3" in log_line(list(mmg(300.0))[-1], SampleCounts())

@@ -10,20 +10,20 @@ from hypothesis import strategies as st
 from tests.onboard.sentences import sentence
 
 from seatrial.core.values import InputError
-from seatrial.data.read import Column, Layout
-from seatrial.onboard.lines import Batch, LineCutter
-from seatrial.onboard.nmea import NmeaReader, east_of, north_of
+from seatrial.data.read import ColumnSpec, Layout
+from seatrial.onboard.lines import LineBatch, LineSplitter
+from seatrial.onboard.nmea import NmeaReader, east_distance, north_distance
 from seatrial.onboard.sample import Sample
 
-STAMP, ARRIVAL = Column("time", "stamp", "s"), Column("time", "arrival", "s")
+STAMP, ARRIVAL = ColumnSpec("time", "stamp", "s"), ColumnSpec("time", "arrival", "s")
 
 
-def layout(*symbols: str, time: Column = STAMP) -> Layout:
-    return Layout("text", time, tuple(Column(symbol, symbol, "1") for symbol in symbols))
+def layout(*symbols: str, time: ColumnSpec = STAMP) -> Layout:
+    return Layout("text", time, tuple(ColumnSpec(symbol, symbol, "1") for symbol in symbols))
 
 
 def feed(reader: NmeaReader, *bodies: str) -> list[Sample]:
-    return reader.samples(Batch([sentence(body) for body in bodies]))
+    return reader.samples(LineBatch([sentence(body) for body in bodies]))
 
 
 def zigzag(count: int, *, start: float = 0.0) -> list[str]:
@@ -44,7 +44,7 @@ def zigzag(count: int, *, start: float = 0.0) -> list[str]:
 
 def test_one_sample_for_each_stamp() -> None:
     reader = NmeaReader(layout("psi", "r", "delta", "u"), rate=1.0)
-    found = feed(reader, *zigzag(5)) + reader.rest()
+    found = feed(reader, *zigzag(5)) + reader.flush()
     assert [s.time for s in found] == [0.0, 1.0, 2.0, 3.0, 4.0]
     k = np.arange(5)
     expected = np.column_stack([np.radians(k), np.radians(k) / 60, -np.radians(k) / 10, k * 1852 / 3600])
@@ -54,7 +54,7 @@ def test_one_sample_for_each_stamp() -> None:
 
 def test_midnight_is_passed() -> None:
     reader = NmeaReader(layout("psi"), rate=1.0)
-    found = feed(reader, *zigzag(6, start=86397.0)) + reader.rest()
+    found = feed(reader, *zigzag(6, start=86397.0)) + reader.flush()
     assert [s.time for s in found] == [86397.0 + k for k in range(6)]
 
 
@@ -80,7 +80,7 @@ def test_stamps_of_several_sentences_of_one_epoch_are_one() -> None:
 def test_a_relay_behind_its_time_is_late_and_a_clock_set_back_is_followed() -> None:
     reader = NmeaReader(layout("psi"), rate=1.0)
     found = feed(reader, "GPZDA,000100", "HEHDT,1,T", "IIZDA,000058", "GPZDA,000101", "GPZDA,000010", "HEHDT,2,T")
-    found += reader.rest()
+    found += reader.flush()
     assert [s.time for s in found] == [60.0, 61.0, 10.0] and reader.counts.late == 1
 
 
@@ -90,13 +90,13 @@ def test_position_on_the_plane_of_the_first_fix() -> None:
     found = feed(
         reader,
         "GPGGA,000000,5400.0000,N,17959.5000,E,1,08", "GPGGA,000001,5401.0000,N,17959.5000,W,1,08",
-    ) + reader.rest()  # fmt: skip
+    ) + reader.flush()  # fmt: skip
     np.testing.assert_allclose(found[0].values, [0.0, 0.0])
     np.testing.assert_allclose(found[1].values, [1855.1, 1092.9], atol=0.06)
     assert reader.origin == (math.radians(54), math.radians(179 + 59.5 / 60))
     again = NmeaReader(layout("x0", "y0"), rate=1.0, origin=reader.origin)
     feed(again, "GPGGA,000001,5401.0000,N,17959.5000,W,1,08")
-    np.testing.assert_array_equal(again.rest()[0].values, found[1].values)
+    np.testing.assert_array_equal(again.flush()[0].values, found[1].values)
 
 
 @given(st.floats(-1.3, 1.3), st.floats(-3.1, 3.1), st.floats(-1e-4, 1e-4), st.floats(-1e-4, 1e-4))
@@ -111,7 +111,7 @@ def test_the_plane_touches_the_ellipsoid(latitude: float, longitude: float, nort
 
     origin = (latitude, longitude)
     chord = np.linalg.norm(point(latitude + north, longitude + east) - point(*origin))
-    plane = math.hypot(north_of(latitude + north, origin), east_of(longitude + east, origin))
+    plane = math.hypot(north_distance(latitude + north, origin), east_distance(longitude + east, origin))
     assert plane == pytest.approx(float(chord), rel=1e-3, abs=1e-6)
 
 
@@ -127,14 +127,14 @@ def test_the_better_sensor_takes_over_and_the_worse_one_is_not_mixed_in() -> Non
 
 def test_a_place_can_be_named() -> None:
     columns = (
-        Column("u", "VTG north", "m/s", frame="earth"),
-        Column("v", "VTG east", "m/s", frame="earth"),
-        Column("phi", "XDR rl", "deg"),
-        Column("n", "RPM S2", "rpm"),
+        ColumnSpec("u", "VTG north", "m/s", frame="earth"),
+        ColumnSpec("v", "VTG east", "m/s", frame="earth"),
+        ColumnSpec("phi", "XDR rl", "deg"),
+        ColumnSpec("n", "RPM S2", "rpm"),
     )
     reader = NmeaReader(Layout("text", STAMP, columns), rate=1.0)
     feed(reader, "GPZDA,000000", "GPVTG,90,T,,M,10,N,,K", "IIXDR,A,90,D,RL", "IIRPM,S,2,60,,A", "IIRPM,S,1,30,,A")
-    np.testing.assert_allclose(reader.rest()[0].values, [0.0, 10 * 1852 / 3600, math.pi / 2, 1.0], atol=1e-15)
+    np.testing.assert_allclose(reader.flush()[0].values, [0.0, 10 * 1852 / 3600, math.pi / 2, 1.0], atol=1e-15)
 
 
 def test_by_arrival_a_repeated_reading_begins_the_next_sample() -> None:
@@ -147,7 +147,7 @@ def test_by_arrival_a_repeated_reading_begins_the_next_sample() -> None:
     found = feed(reader, "HEHDT,3,T", "HEHDT,4,T", "HEHDT,5,T")
     assert first.time == 100.0
     assert [s.time for s in found] == pytest.approx([101.0, 102.0, 103.0])
-    assert [s.time for s in reader.rest()] == [104.0]
+    assert [s.time for s in reader.flush()] == [104.0]
     np.testing.assert_allclose(first.values, np.radians([1.0, 1.0]))
 
 
@@ -155,9 +155,9 @@ def test_wrong_checksums_and_garbled_sentences_are_counted() -> None:
     reader = NmeaReader(layout("psi"), rate=1.0)
     good = sentence("HEHDT,90,T")
     lines = [sentence("GPZDA,000000"), good.replace(b"9", b"8"), b"\xff\xfe", b"$HEHDT,90", b"", good, b"hello"]
-    reader.samples(Batch(lines))
-    assert (reader.counts.checksum, reader.counts.garbled) == (1, 3) and reader.counts.last.isascii()
-    np.testing.assert_allclose(reader.rest()[0].values, [math.pi / 2])
+    reader.samples(LineBatch(lines))
+    assert (reader.counts.checksum, reader.counts.garbled) == (1, 3) and reader.counts.last_problem.isascii()
+    np.testing.assert_allclose(reader.flush()[0].values, [math.pi / 2])
 
 
 KINDS = ["HDT", "ROT", "RSA", "VTG", "RMC", "GGA", "GLL", "VHW", "VBW", "RPM", "XDR", "ZDA", "GNS", "THS", "ABC"]
@@ -175,9 +175,9 @@ LINE = st.one_of(
 
 
 @given(st.lists(LINE, max_size=40), st.sampled_from([STAMP, ARRIVAL]))
-def test_no_bytes_raise_and_every_sentence_is_accounted_for(lines: list[bytes], time: Column) -> None:
+def test_no_bytes_raise_and_every_sentence_is_accounted_for(lines: list[bytes], time: ColumnSpec) -> None:
     reader = NmeaReader(layout("psi", "x0", "y0", "u", "phi", "n", time=time), rate=1.0, clock=lambda: 5.0)
-    found = reader.samples(Batch(lines)) + reader.rest()
+    found = reader.samples(LineBatch(lines)) + reader.flush()
     counts = reader.counts
     told = reader.used + reader.unused + counts.garbled + counts.checksum + counts.late
     assert told == sum(bool(line.strip()) for line in lines)
@@ -188,10 +188,10 @@ def test_no_bytes_raise_and_every_sentence_is_accounted_for(lines: list[bytes], 
 def test_cuts_in_the_stream_do_not_matter(cuts: list[int]) -> None:
     stream = b"".join(map(sentence, zigzag(20)))
     edges = [0, *sorted(min(cut, len(stream)) for cut in cuts), len(stream)]
-    reader, cutter, found = NmeaReader(layout("psi", "r"), rate=1.0), LineCutter(), []
+    reader, cutter, found = NmeaReader(layout("psi", "r"), rate=1.0), LineSplitter(), []
     for a, b in pairwise(edges):
-        found += reader.samples(Batch(cutter.cut(stream[a:b])))
-    whole = NmeaReader(layout("psi", "r"), rate=1.0).samples(Batch(stream.split(b"\n")))
+        found += reader.samples(LineBatch(cutter.split(stream[a:b])))
+    whole = NmeaReader(layout("psi", "r"), rate=1.0).samples(LineBatch(stream.split(b"\n")))
     assert [s.time for s in found] == [s.time for s in whole] == list(range(19))
     np.testing.assert_array_equal([s.values for s in found], [s.values for s in whole])
 
@@ -199,22 +199,22 @@ def test_cuts_in_the_stream_do_not_matter(cuts: list[int]) -> None:
 def test_without_any_stamp_it_is_said() -> None:
     reader = NmeaReader(layout("psi"), rate=1.0)
     assert feed(reader, *["HEHDT,1,T"] * 200) == []
-    assert "arrival" in reader.counts.last and reader.unused == 200
+    assert "arrival" in reader.counts.last_problem and reader.unused == 200
 
 
 @pytest.mark.parametrize(
     ("columns", "text"),
     [
-        ((Column("F3", "F3", "N"),), "no NMEA 0183 sentence tells channel 'F3'"),
-        ((Column("psi", "HTD", "deg"),), "no NMEA place 'HTD'; did you mean 'HDT'"),
-        ((Column("psi", "ROT", "deg"),), "is in rad/s"),
+        ((ColumnSpec("F3", "F3", "N"),), "no NMEA 0183 sentence tells channel 'F3'"),
+        ((ColumnSpec("psi", "HTD", "deg"),), "no NMEA place 'HTD'; did you mean 'HDT'"),
+        ((ColumnSpec("psi", "ROT", "deg"),), "is in rad/s"),
     ],
 )
-def test_a_channel_that_nothing_tells_is_refused(columns: tuple[Column, ...], text: str) -> None:
+def test_a_channel_that_nothing_tells_is_refused(columns: tuple[ColumnSpec, ...], text: str) -> None:
     with pytest.raises(InputError, match=text):
         NmeaReader(Layout("text", STAMP, columns), rate=1.0)
 
 
 def test_another_clock_is_refused() -> None:
     with pytest.raises(InputError, match="'stamp' or 'arrival'"):
-        NmeaReader(layout("psi", time=Column("time", "gps", "s")), rate=1.0)
+        NmeaReader(layout("psi", time=ColumnSpec("time", "gps", "s")), rate=1.0)

@@ -11,18 +11,18 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.onboard.fabricated import heave_pitch, mmg, troubled
+from tests.onboard.fabricated import faulty_counts, heave_pitch, mmg
 
-from seatrial.core.results.online import Counts
+from seatrial.core.results.online import SampleCounts
 from seatrial.core.values import InputError
 from seatrial.onboard import page as module
 from seatrial.onboard.page import Page
-from seatrial.onboard.server import html, policy
+from seatrial.onboard.server import content_security_policy, html
 
 
 @pytest.fixture
 def page(monkeypatch: pytest.MonkeyPatch) -> Iterator[Page]:
-    monkeypatch.setattr(module, "POLL", 0.005)
+    monkeypatch.setattr(module, "POLL_INTERVAL_S", 0.005)
     with Page(0, title="trial.toml") as made:
         yield made
 
@@ -49,45 +49,45 @@ def test_the_page_is_whole_and_may_do_nothing_but_ask_its_own_address(page: Page
     text = body.decode()
     assert answer.status == 200 and text == html()
     allowed = answer.getheader("Content-Security-Policy") or ""
-    assert allowed == policy() and "default-src 'none'" in allowed and "unsafe" not in allowed
+    assert allowed == content_security_policy() and "default-src 'none'" in allowed and "unsafe" not in allowed
     assert "src=" not in text and "@import" not in text and "url(" not in text
     assert [word for word in text.split() if "://" in word] == ['"http://www.w3.org/2000/svg",']
 
 
 def test_before_anything_came_there_is_a_state(page: Page) -> None:
     told = state(page)
-    assert told["told"] is None and told["points"] == [] and told["title"] == "trial.toml" and not told["is_over"]
+    assert told["snapshot"] is None and told["points"] == [] and told["title"] == "trial.toml" and not told["is_over"]
 
 
 def test_state_has_the_newest_and_only_the_points_asked_for(page: Page) -> None:
     snapshots = list(heave_pitch(100.0))
     for snapshot in snapshots[:150]:
-        page.show(snapshot, troubled())
+        page.show(snapshot, faulty_counts())
     whole = state(page)
     assert len(whole["points"]) == 150
     assert whole["points"][0][2:4] == [[pytest.approx(v) for v in snapshots[0].value], [None] * 8]
     assert whole["points"][-1][3] == pytest.approx(1.96 * snapshots[149].standard_error)
     for snapshot in snapshots[150:]:
-        page.show(snapshot, troubled())
+        page.show(snapshot, faulty_counts())
     later = state(page, whole["points"][-1][0])
     assert [p[0] for p in later["points"]] == list(range(150, 201)) and later["epoch"] == whole["epoch"]
-    assert later["told"]["phase"] == "recursive" and later["told"]["rows"][0]["name"] == "a33"
-    assert ["wrong checksum", 4] in later["told"]["troubles"]
+    assert later["snapshot"]["phase"] == "recursive" and later["snapshot"]["rows"][0]["name"] == "a33"
+    assert ["wrong checksum", 4] in later["snapshot"]["faults"]
 
 
 def test_angles_are_degrees_in_plots_as_in_the_table(page: Page) -> None:
     snapshot = list(mmg(100.0))[-1]
-    page.show(snapshot, Counts())
+    page.show(snapshot, SampleCounts())
     told = state(page)
     assert told["points"][0][2][-1] == pytest.approx(np.degrees(snapshot.value[-1]))
     assert told["points"][0][4][-1] == pytest.approx(np.degrees(snapshot.noise["psi"]))
-    assert told["told"]["rows"][-1]["unit"] == "deg" and told["told"]["noise"][-1]["unit"] == "deg"
+    assert told["snapshot"]["rows"][-1]["unit"] == "deg" and told["snapshot"]["noise"][-1]["unit"] == "deg"
 
 
 def test_other_coefficients_and_another_program_are_another_epoch(page: Page) -> None:
-    page.show(next(iter(heave_pitch(0.0))), Counts())
+    page.show(next(iter(heave_pitch(0.0))), SampleCounts())
     first = state(page)["epoch"]
-    page.show(next(iter(mmg(0.0))), Counts())
+    page.show(next(iter(mmg(0.0))), SampleCounts())
     second = state(page)
     with Page(0) as other:
         third = state(other)["epoch"]
@@ -96,16 +96,16 @@ def test_other_coefficients_and_another_program_are_another_epoch(page: Page) ->
 
 def test_the_same_again_is_no_news(page: Page) -> None:
     snapshot = next(iter(heave_pitch(0.0)))
-    page.show(snapshot, Counts())
-    for counts, is_news in ((Counts(), False), (Counts(late=1), True)):
-        page._news_at -= 60.0
+    page.show(snapshot, SampleCounts())
+    for counts, is_news in ((SampleCounts(), False), (SampleCounts(late=1), True)):
+        page._updated_at -= 60.0
         page.show(snapshot, counts)
         assert (state(page)["age"] < 30.0) is is_news and len(state(page)["points"]) == 1
 
 
 def test_the_end_of_the_stream_is_said(page: Page) -> None:
-    page.over("end of trial.csv")
-    assert (state(page)["is_over"], state(page)["why"]) == (True, "end of trial.csv")
+    page.end("end of trial.csv")
+    assert (state(page)["is_over"], state(page)["reason"]) == (True, "end of trial.csv")
 
 
 @pytest.mark.parametrize("host", ["evil.example", "evil.example:80", "127.0.0.1", "localhost:1", "", "[::1]:80"])
@@ -175,8 +175,8 @@ def test_a_port_is_free_again_after_the_page() -> None:
 def test_a_page_nobody_looks_at_ends_at_once() -> None:
     begun = time.monotonic()
     with Page(0) as page:
-        page.show(next(iter(heave_pitch(0.0))), Counts())
-        page.over()
+        page.show(next(iter(heave_pitch(0.0))), SampleCounts())
+        page.end()
     assert time.monotonic() - begun < 1.0
 
 
@@ -184,7 +184,7 @@ def test_a_visitor_who_goes_away_or_says_nothing_disturbs_nobody(page: Page, cap
     silent = socket.create_connection(("127.0.0.1", page.port))
     with socket.create_connection(("127.0.0.1", page.port)) as rude:
         rude.sendall(b"\x00\xff garbage\r\n\r\n")
-    assert state(page)["told"] is None
+    assert state(page)["snapshot"] is None
     silent.close()
     assert capfd.readouterr().err == ""
 
@@ -204,7 +204,7 @@ def test_many_ask_while_the_estimate_goes_on(page: Page) -> None:
     for visitor in visitors:
         visitor.start()
     for snapshot in heave_pitch(200.0):
-        page.show(snapshot, Counts())
+        page.show(snapshot, SampleCounts())
     for visitor in visitors:
         visitor.join()
     assert failed == []
@@ -212,6 +212,6 @@ def test_many_ask_while_the_estimate_goes_on(page: Page) -> None:
 
 def test_control_characters_and_infinities_do_not_reach_the_page(page: Page) -> None:
     snapshot = replace(list(heave_pitch(10.0))[-1], time=np.inf, noise={"z": np.nan}, untold=("a33",))
-    page.show(snapshot, replace(troubled(), last="\x1b[2J\x00 sentence"))
-    told = state(page)["told"]
-    assert told["last"] == "·[2J· sentence" and told["moment"] == "–" and told["noise"][0]["rms"] == "–"
+    page.show(snapshot, replace(faulty_counts(), last_problem="\x1b[2J\x00 sentence"))
+    told = state(page)["snapshot"]
+    assert told["last"] == "·[2J· sentence" and told["time"] == "–" and told["noise"][0]["rms"] == "–"

@@ -15,10 +15,10 @@ def test_lines_come_as_they_are_written_and_end_with_the_writer() -> None:
     lines = PipeLines(reading)
     os.write(writing, b"0,1\n1,")
     first = lines.read(1.0)
-    assert first.lines == [b"0,1"] and first.begins
+    assert first.lines == [b"0,1"] and first.starts_file
     os.write(writing, b"2\n\xff\x00half")
     second = lines.read(1.0)
-    assert second.lines == [b"1,2"] and not second.begins
+    assert second.lines == [b"1,2"] and not second.starts_file
     os.close(writing)
     assert lines.read(1.0).lines == [b"\xff\x00half"] and lines.is_over
     assert lines.read(1.0).lines == []

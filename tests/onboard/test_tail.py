@@ -40,7 +40,7 @@ def test_a_beginning_is_told_once(tmp_path: Path) -> None:
     path = tmp_path / "run.csv"
     path.write_bytes(b"0\n")
     tail = TailLines(path)
-    assert tail.read(0.0).begins and not tail.read(0.0).begins
+    assert tail.read(0.0).starts_file and not tail.read(0.0).starts_file
 
 
 def test_truncation_is_counted_and_reading_goes_on(tmp_path: Path) -> None:
@@ -49,11 +49,11 @@ def test_truncation_is_counted_and_reading_goes_on(tmp_path: Path) -> None:
     tail = TailLines(path)
     everything(tail)
     os.truncate(path, 0)
-    assert tail.read(0.0).begins
+    assert tail.read(0.0).starts_file
     with path.open("ab") as file:
         file.write(b"3,4\n")
     assert everything(tail) == [b"3,4"]
-    assert (tail.counts.truncated, tail.counts.garbled) == (1, 1) and "truncated" in tail.counts.last
+    assert (tail.counts.truncated, tail.counts.garbled) == (1, 1) and "truncated" in tail.counts.last_problem
 
 
 def test_truncation_is_seen_though_the_file_has_grown_beyond_again(tmp_path: Path) -> None:
@@ -78,9 +78,9 @@ def test_a_file_put_in_its_place_is_read_after_the_rest_of_the_old(tmp_path: Pat
     path.write_bytes(b"3,4\n")
     batches = [tail.read(0.0) for _ in range(6)]
     assert [b.lines for b in batches if b.lines] == [[b"1,2"], [b"2,3"], [b"3,4"]]
-    seen = [b for b in batches if b.lines or b.begins]
-    assert [b.begins for b in seen] == [False, False, True, False] and seen[-1].lines == [b"3,4"]
-    assert tail.counts.truncated == 0 and "replaced" in tail.counts.last
+    seen = [b for b in batches if b.lines or b.starts_file]
+    assert [b.starts_file for b in seen] == [False, False, True, False] and seen[-1].lines == [b"3,4"]
+    assert tail.counts.truncated == 0 and "replaced" in tail.counts.last_problem
 
 
 @settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])

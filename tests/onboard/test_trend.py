@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.onboard.trend import arrow, sparkline
+from seatrial.onboard.trend import sparkline, trend_arrow
 
 
 @given(st.lists(st.floats(-1e9, 1e9) | st.just(float("nan")), max_size=50), st.floats(0, 1e9) | st.just(float("inf")))
@@ -19,4 +19,9 @@ def test_a_sparkline_is_flat_where_the_move_is_small_beside_the_interval() -> No
 
 
 def test_arrows() -> None:
-    assert [arrow(np.array(e)) for e in ([np.inf, 2.0, 1.0], [1.0, 1.02], [1.0, 2.0], [1.0])] == ["↘", "→", "↗", ""]
+    assert [trend_arrow(np.array(e)) for e in ([np.inf, 2.0, 1.0], [1.0, 1.02], [1.0, 2.0], [1.0])] == [
+        "↘",
+        "→",
+        "↗",
+        "",
+    ]

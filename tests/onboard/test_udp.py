@@ -9,7 +9,7 @@ from time import monotonic
 import pytest
 
 from seatrial.core.values import InputError
-from seatrial.onboard.udp import LONGEST_DATAGRAM, TokenBucket, UdpLines
+from seatrial.onboard.udp import MAX_DATAGRAM_BYTES, TokenBucket, UdpLines
 
 
 class Clock:
@@ -62,7 +62,7 @@ def test_a_flood_is_cut_to_five_times_the_rate(lines: UdpLines, sender: socket.s
             if k % 50 == 49:
                 passed += len(lines.read(0.0).lines)
     assert 500 <= passed <= 560
-    assert passed + lines.counts.dropped == 10000 and "5 times" in lines.counts.last
+    assert passed + lines.counts.dropped == 10000 and "5 times" in lines.counts.last_problem
 
 
 def test_after_a_flood_the_rate_passes_again(lines: UdpLines, sender: socket.socket, clock: Clock) -> None:
@@ -79,7 +79,7 @@ def test_after_a_flood_the_rate_passes_again(lines: UdpLines, sender: socket.soc
 
 
 def test_giants_are_dropped(lines: UdpLines, sender: socket.socket) -> None:
-    sender.sendto(b"x" * (LONGEST_DATAGRAM + 1), ("127.0.0.1", lines.port))
+    sender.sendto(b"x" * (MAX_DATAGRAM_BYTES + 1), ("127.0.0.1", lines.port))
     sender.sendto(b"y" * 5000 + b"\n0,1", ("127.0.0.1", lines.port))
     assert everything(lines) == [b"0,1"] and lines.counts.dropped == 2
 
@@ -124,7 +124,7 @@ def test_a_bucket_grants_the_rate_on_the_average(clock: Clock) -> None:
     total = 0
     for _ in range(1000):
         clock.now += 0.1
-        total += bucket.granted(7)
+        total += bucket.take(7)
     assert total == pytest.approx(5000, abs=51)
 
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.reporting.complete_fit import complete_fit
 from tests.reporting.fabricated import fabricated_fit
-from tests.reporting.told import told
 
 from seatrial.core.results import Bars, Check, Claim, Curve, Figure, Fit, Matrix, Study, Table, Verdict
 from seatrial.reporting import write_report
@@ -15,7 +15,7 @@ from seatrial.reporting.study import write_study
 @pytest.fixture(scope="session")
 def fit() -> Fit:
     """The fabricated fit with everything a page can show."""
-    return told(fabricated_fit())
+    return complete_fit(fabricated_fit())
 
 
 @pytest.fixture(scope="session")

@@ -32,7 +32,7 @@ def zigzag(name: str, angle: float, *, gain: float = 0.11, duration: float = 240
         rows.append((x, y, psi, u, v, r, delta, 1.866))
     columns = np.array(rows).T
     names = ("x0", "y0", "psi", "u", "v", "r", "delta", "v_j")
-    return Record.of(name, np.arange(count) * STEP, dict(zip(names, columns, strict=True)))
+    return Record.from_arrays(name, np.arange(count) * STEP, dict(zip(names, columns, strict=True)))
 
 
 def noisy(record: Record, rng: np.random.Generator) -> Record:
@@ -41,7 +41,7 @@ def noisy(record: Record, rng: np.random.Generator) -> Record:
     for name, deviation in NOISE.items():
         channel = record.channel(name)
         made = made.with_channel(name, channel.with_values(record[name] + deviation * rng.standard_normal(len(record))))
-    source = replace(record.provenance, source=f"trials/{record.name}.csv").then("resampled to 5 Hz")
+    source = replace(record.provenance, source=f"trials/{record.name}.csv").with_step("resampled to 5 Hz")
     return replace(made, provenance=source)
 
 

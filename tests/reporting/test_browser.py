@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from tests.reporting.tuned import fabricated_fin
+from tests.reporting.fabricated_tuning import fabricated_fin
 
 from seatrial.reporting.tuning import html
 
@@ -77,7 +77,7 @@ def test_printing_unfolds_everything(browser: "Browser", page: Path) -> None:
     assert window.locator("details:not([open])").count() > 0
     window.evaluate("dispatchEvent(new Event('beforeprint'))")
     assert window.locator("details:not([open])").count() == 0
-    assert window.locator("#telling ~ h3:visible").count() >= 8
+    assert window.locator("#identifiability ~ h3:visible").count() >= 8
     assert len(window.pdf(format="A4", prefer_css_page_size=True)) > 50_000
 
 

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.reporting.designed import fabricated_design
+from tests.reporting.fabricated_design import fabricated_design
 from tests.reporting.test_page import HOSTILE, parsed
 
-from seatrial.core.results import Actuator, Design, Limits, Order
-from seatrial.reporting.design import clock, html, order_columns, per_cent
-from seatrial.reporting.told_design import actuator, sentences
+from seatrial.core.results import Actuator, Design, TimedOrder, TrialLimits
+from seatrial.reporting.design import html, minutes_seconds, order_columns, percent_text
+from seatrial.reporting.design_text import actuator_text, sentences
 
 LARGEST = 300_000
 
@@ -35,7 +35,13 @@ def test_it_is_small_whole_and_asks_for_nothing(page: str) -> None:
 
 
 def test_it_has_what_the_design_holds(page: str, design: Design) -> None:
-    for word in (design.question, design.ship, *design.coefficients, *(w.name for w in design.rivals), "design-drift"):
+    for word in (
+        design.question,
+        design.ship,
+        *design.coefficients,
+        *(w.name for w in design.baselines),
+        "design-drift",
+    ):
         assert word in page
     assert page.count("<svg") >= 5
     assert "leaves the limits" in page
@@ -47,7 +53,7 @@ def test_the_same_design_gives_the_same_bytes(page: str) -> None:
 
 def test_the_answer_compares_with_the_best_that_keeps_the_limits(design: Design) -> None:
     first, drawn, confirmed, limits = sentences(design)
-    ratio = design.rivals[1].worst / design.designed.worst
+    ratio = design.baselines[1].worst / design.designed.worst
     assert "prbs:35:10" in first and f"{ratio:.1f} times as much" in first
     assert drawn.endswith("smaller than with any standard manoeuvre within the limits on 5 of 5.")
     assert confirmed == "39 of 40 simulated trials could be fitted; their errors are 0.91 to 1.11 of those foretold."
@@ -55,25 +61,38 @@ def test_the_answer_compares_with_the_best_that_keeps_the_limits(design: Design)
 
 
 def test_a_design_that_is_no_better_says_so(design: Design) -> None:
-    worse = replace(design, designed=replace(design.designed, relative=design.rivals[0].relative * 2.0))
+    worse = replace(design, designed=replace(design.designed, relative_error=design.baselines[0].relative_error * 2.0))
     assert "no better than the" in sentences(worse)[0]
 
 
 def test_a_design_that_leaves_the_limits_says_so(design: Design) -> None:
-    assert "leaves the limits: she reaches" in sentences(replace(design, limits=Limits(math.radians(10.0))))[-1]
+    assert "leaves the limits: she reaches" in sentences(replace(design, limits=TrialLimits(math.radians(10.0))))[-1]
 
 
 def test_a_ship_that_is_lost_is_said(design: Design) -> None:
-    drawn = design.designed.drawn.copy()
+    drawn = design.designed.sampled_relative_error.copy()
     drawn[1] = np.nan
-    told = sentences(replace(design, designed=replace(design.designed, drawn=drawn)))[1]
+    told = sentences(replace(design, designed=replace(design.designed, sampled_relative_error=drawn)))[1]
     assert told.endswith("on 4 of 5; 1 ship cannot be simulated.")
 
 
 def test_a_design_with_next_to_nothing_renders(design: Design) -> None:
-    first = replace(design.designed, drawn=np.empty((0, 11)), executed=design.plan, relative=np.full(11, np.inf))
-    bare = replace(design, designed=first, rivals=(), confirmation=None, findings=(), limits=Limits(), orders=(),
-                   question="")  # fmt: skip
+    first = replace(
+        design.designed,
+        sampled_relative_error=np.empty((0, 11)),
+        executed=design.plan,
+        relative_error=np.full(11, np.inf),
+    )
+    bare = replace(
+        design,
+        designed=first,
+        baselines=(),
+        confirmation=None,
+        findings=(),
+        limits=TrialLimits(),
+        orders=(),
+        question="",
+    )
     text = html(bare)
     for absent in ("#ships", "#confirmation", "#findings", "#track"):
         assert f'href="{absent}"' not in text
@@ -86,23 +105,23 @@ def test_text_from_files_is_escaped(design: Design) -> None:
 
 
 def test_times_are_read_off_a_stopwatch() -> None:
-    assert [clock(t) for t in (0.0, 7.5, 65.0, 600.0, 59.999)] == ["0:00", "0:07.5", "1:05", "10:00", "1:00"]
+    assert [minutes_seconds(t) for t in (0.0, 7.5, 65.0, 600.0, 59.999)] == ["0:00", "0:07.5", "1:05", "10:00", "1:00"]
 
 
 def test_orders_stand_side_by_side_in_their_order(design: Design) -> None:
     columns = order_columns(design)
     assert len(columns) == 2
-    assert [line[0] for column in columns for line in column] == [clock(o.time) for o in design.orders]
+    assert [line[0] for column in columns for line in column] == [minutes_seconds(o.time) for o in design.orders]
     assert columns[0][0][1] == "−29"
 
 
 def test_an_order_that_leaves_an_input_alone_has_a_dash(design: Design) -> None:
     two = (*design.actuators, Actuator("v_j", 0.0, 3.0, math.inf, 6.0))
-    told = replace(design, actuators=two, orders=(Order(0.0, {"v_j": 1.5}),))
+    told = replace(design, actuators=two, orders=(TimedOrder(0.0, {"v_j": 1.5}),))
     assert order_columns(told) == [[["0:00", "–", "1.5"]]]
 
 
 def test_numbers_are_people_s() -> None:
-    assert [per_cent(x) for x in (0.0123, 0.5, 12.34, math.inf)] == ["1.2", "50", "1\u202f200", "> 10\u202f000"]
+    assert [percent_text(x) for x in (0.0123, 0.5, 12.34, math.inf)] == ["1.2", "50", "1\u202f200", "> 10\u202f000"]
     jumping = Actuator("delta", -0.1, 0.1, math.inf, 4.0)
-    assert actuator(jumping) == "delta −5.72958 to 5.72958 deg, may jump, orders 4 s apart at least"
+    assert actuator_text(jumping) == "delta −5.72958 to 5.72958 deg, may jump, orders 4 s apart at least"

@@ -4,14 +4,14 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
-from seatrial.core.equations.latex import equations
+from seatrial.core.equations.latex import latex_equations
 from seatrial.physics.models import MODELS, model_named
 from seatrial.reporting.mathml import inline, pieces
 
 
 @pytest.mark.parametrize("name", sorted(MODELS))
 def test_every_equation_of_every_model_is_read_to_its_end(name: str) -> None:
-    for equation in equations(model_named(name)):
+    for equation in latex_equations(model_named(name)):
         whole = "".join(pieces(equation.latex))
         assert "<code>" not in whole and "\\" not in whole, equation.latex
         ET.fromstring(f"<p>{whole}</p>")

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.reporting.complete_fit import complete_fit
 from tests.reporting.fabricated import fabricated_fit
-from tests.reporting.told import told
 
 from seatrial.core.results import Fit
 from seatrial.core.values import InputError, Ship
@@ -62,7 +62,7 @@ def test_every_section_has_what_the_fit_holds(page: Path, fit: Fit) -> None:
 
 
 def test_the_same_fit_gives_the_same_bytes(page: Path, tmp_path: Path) -> None:
-    again = write_report(told(fabricated_fit()), tmp_path / "again.html")
+    again = write_report(complete_fit(fabricated_fit()), tmp_path / "again.html")
     assert again.read_bytes() == page.read_bytes()
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.figures.plot import PLAIN, Panel, common_prefix, drawing, span, text, tick_text, ticks
-from seatrial.core.figures.tracks import View, fitted
+from seatrial.core.figures.tracks import TrackView, equal_scale_panel
 from seatrial.core.values import Record
 
 
@@ -30,7 +30,7 @@ def test_a_gap_breaks_the_line() -> None:
 
 def test_values_grow_upwards_unless_told_otherwise() -> None:
     up = Panel(0, 0, 100, 100, (0.0, 1.0), (0.0, 1.0))
-    down = Panel(0, 0, 100, 100, (0.0, 1.0), (0.0, 1.0), down=True)
+    down = Panel(0, 0, 100, 100, (0.0, 1.0), (0.0, 1.0), is_y_down=True)
     assert up.py(1.0) < up.py(0.0) and down.py(1.0) > down.py(0.0)
 
 
@@ -42,12 +42,14 @@ def test_constant_and_empty_curves_have_a_range() -> None:
 
 def test_a_track_keeps_its_shape() -> None:
     at = np.linspace(0.0, 1.0, 50)
-    record = Record.of("turn", at, {"x0": 300.0 * at, "y0": 20.0 * at})
-    for view in (View(lying=True), View(lying=False)):
-        panel = fitted([record], view, 10.0, (0.0, 0.0, 400.0, 90.0))
+    record = Record.from_arrays("turn", at, {"x0": 300.0 * at, "y0": 20.0 * at})
+    for view in (TrackView(is_rotated=True), TrackView(is_rotated=False)):
+        panel = equal_scale_panel([record], view, 10.0, (0.0, 0.0, 400.0, 90.0))
         across, along = (panel.x[1] - panel.x[0]) / 400.0, (panel.y[1] - panel.y[0]) / 90.0
         assert across == pytest.approx(along)
-        assert panel.x[0] < float(np.min(view.across(record))) and panel.x[1] > float(np.max(view.across(record)))
+        assert panel.x[0] < float(np.min(view.horizontal(record))) and panel.x[1] > float(
+            np.max(view.horizontal(record))
+        )
 
 
 def test_names_lose_their_common_beginning_only() -> None:

@@ -7,21 +7,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_bare, fabricated_fin
 from tests.reporting.test_page import HOSTILE, parsed
-from tests.reporting.tuned import fabricated_autopilot, fabricated_bare, fabricated_fin
 
-from seatrial.core.figures.demanded import LIMIT, manoeuvre
-from seatrial.core.figures.fronts import fronts, people_s
+from seatrial.core.figures.fronts import degree_unit, fronts
 from seatrial.core.figures.loop_diagram import diagram
+from seatrial.core.figures.manoeuvre_response import LIMIT, manoeuvre
 from seatrial.core.figures.margins import nyquist, sensitivities
 from seatrial.core.figures.scales import scale_of
 from seatrial.core.figures.schedule_maps import schedule_maps
-from seatrial.core.figures.voyages import histories
-from seatrial.core.results.tuning import Component, Paired, Tuning
+from seatrial.core.figures.seaway_simulations import time_histories
+from seatrial.core.results.tuning import Component, PairedDifference, Tuning
 from seatrial.core.values import Finding, Severity, frozen
-from seatrial.reporting.told_tuning import compared, followed, sentences
 from seatrial.reporting.tuning import TITLES, html
-from seatrial.reporting.tuning_rows import schedule_sheet, shown_gains, transfer_latex
+from seatrial.reporting.tuning_rows import gain_texts, schedule_table, transfer_latex
+from seatrial.reporting.tuning_text import comparison_sentence, demand_sentence, sentences
 
 LARGEST = 600_000
 MADE = {"fin": fabricated_fin, "autopilot": fabricated_autopilot, "bare": fabricated_bare}
@@ -55,9 +55,9 @@ def test_it_is_small_whole_and_asks_for_nothing(name: str) -> None:
 
 
 def test_it_has_what_the_tuning_holds(page: str, fin: Tuning) -> None:
-    for word in (fin.question, fin.plant, *fin.seas, *fin.reasons, *fin.objectives, *(c.name for c in fin.rivals),
+    for word in (fin.question, fin.plant, *fin.seas, *fin.reasons, *fin.objectives, *(c.name for c in fin.baselines),
                  *(c.name for c in fin.components), *(b.name.replace("'", "&#39;") for b in fin.bounds),
-                 *(f.code for f in fin.findings), fin.front.name, fin.richer[0].name):  # fmt: skip
+                 *(f.code for f in fin.findings), fin.front.name, fin.extended_fronts[0].name):  # fmt: skip
         assert word in page
     assert page.count("<svg xmlns") == 8
     assert page.count("<mfrac>") == 7
@@ -82,7 +82,9 @@ def test_the_recommendation_is_told_in_degrees_and_per_cent(fin: Tuning) -> None
 
 
 def test_what_is_worse_is_called_worse() -> None:
-    assert "it is worse than ‘x’ by 3.0 points" in compared(Paired("x", "limited", -0.03, -0.04, -0.02, 20))
+    assert "it is worse than ‘x’ by 3.0 points" in comparison_sentence(
+        PairedDifference("x", "limited", -0.03, -0.04, -0.02, 20)
+    )
 
 
 def test_an_unstable_loop_is_not_recommended() -> None:
@@ -90,21 +92,21 @@ def test_an_unstable_loop_is_not_recommended() -> None:
 
 
 def test_restrictions_that_are_broken_are_told(fin: Tuning) -> None:
-    broken = replace(fin, chosen=replace(fin.chosen, broken=("Ms 2.3, 2 allowed",)))
+    broken = replace(fin, chosen=replace(fin.chosen, violated=("Ms 2.3, 2 allowed",)))
     assert "It does not keep what was asked: Ms 2.3, 2 allowed." in sentences(broken)
     assert html(fin).count("not kept") == 1 + sum(not s.is_feasible for s in fin.schedule)
 
 
 def test_demands_are_told_with_the_ships_drawn() -> None:
     chosen, given = fabricated_autopilot().manoeuvres
-    assert followed(chosen) == (
+    assert demand_sentence(chosen) == (
         "In the course change of 20 deg it does not overshoot and settles in 96.0 s; 100 of 100 ships that the fit "
         "allows are stable, and each overshoots by 0.4 % at most."
     )
-    assert followed(given).endswith("overshoots by 6.8 % and does not settle.")
-    assert followed(replace(chosen, worst_overshoot=0.0)).endswith("are stable, and none overshoots.")
+    assert demand_sentence(given).endswith("overshoots by 6.8 % and does not settle.")
+    assert demand_sentence(replace(chosen, worst_overshoot=0.0)).endswith("are stable, and none overshoots.")
     lost = replace(chosen, stable_draws=99, worst_overshoot=math.inf)
-    assert followed(lost).endswith("99 of 100 ships that the fit allows are stable; "
+    assert demand_sentence(lost).endswith("99 of 100 ships that the fit allows are stable; "
                                    "not every one comes through the simulation.")  # fmt: skip
 
 
@@ -122,16 +124,16 @@ def test_findings_stand_by_severity(fin: Tuning) -> None:
 
 
 def test_a_schedule_that_is_unstable_elsewhere_says_so(fin: Tuning) -> None:
-    lost = replace(fin.schedule[0], others={"given": math.inf, "chosen everywhere": 0.3})
+    lost = replace(fin.schedule[0], baseline_costs={"given": math.inf, "chosen everywhere": 0.3})
     told = replace(fin, schedule=(lost, *fin.schedule[1:]))
     assert "‘given’ is unstable in 1" in sentences(told)[-1]
     assert "unst." in schedule_maps(told.schedule)
-    assert "unstable" in schedule_sheet(told.schedule).rows[0]
+    assert "unstable" in schedule_table(told.schedule).rows[0]
 
 
 def test_what_rounding_left_of_a_zero_is_zero() -> None:
     rows = [{"KP": 12.5, "KI": 7e-15}, {"KP": 3.0, "KI": 0.25}, {"KP": 1e-6}]
-    assert shown_gains(rows, ["KP", "KI"]) == [
+    assert gain_texts(rows, ["KP", "KI"]) == [
         ("12.5", "0"),
         ("3", "0.25"),
         ("1×10⁻⁶".replace("×", "\u202f×\u202f"), "–"),
@@ -139,15 +141,22 @@ def test_what_rounding_left_of_a_zero_is_zero() -> None:
 
 
 def test_histories_show_the_motion_without_control_where_it_is_known(fin: Tuning) -> None:
-    drawn = histories(fin)
-    assert ">without<" in drawn and drawn.count("<path") > histories(replace(fin, sailed=fin.sailed[:1])).count("<path")
-    alone = replace(fin, sailed=tuple(replace(s, record=s.record.without("phi_uncontrolled")) for s in fin.sailed))
-    assert ">with control<" in histories(alone) and ">without<" not in histories(alone)
+    drawn = time_histories(fin)
+    assert ">without<" in drawn and drawn.count("<path") > time_histories(
+        replace(fin, seaway_simulations=fin.seaway_simulations[:1])
+    ).count("<path")
+    alone = replace(
+        fin,
+        seaway_simulations=tuple(
+            replace(s, record=s.record.without("phi_uncontrolled")) for s in fin.seaway_simulations
+        ),
+    )
+    assert ">with control<" in time_histories(alone) and ">without<" not in time_histories(alone)
 
 
 def test_maps_show_every_condition_of_every_set(fin: Tuning) -> None:
     svg = schedule_maps(fin.schedule)
-    costs = [f"{cost:.2f}".lstrip("0") for s in fin.schedule for cost in (s.cost, *s.others.values())]
+    costs = [f"{cost:.2f}".lstrip("0") for s in fin.schedule for cost in (s.cost, *s.baseline_costs.values())]
     assert all(f">{cost}<" in svg for cost in costs)
     assert svg.count("<rect") == 3 * len(fin.schedule) + 5
     assert schedule_maps(fin.schedule[:1] + fin.schedule[4:5]).count("<rect") == 3 * 4 + 5
@@ -157,13 +166,15 @@ def test_two_objectives_have_one_panel_and_one_has_none(fin: Tuning) -> None:
     pair = fabricated_autopilot()
     assert fronts(pair).count("heading variance [deg²]") == 1
     single = replace(fin.front, objectives=fin.front.objectives[:, :1])
-    assert fronts(replace(fin, objectives=fin.objectives[:1], units=fin.units[:1], front=single, richer=())) == ""
+    assert (
+        fronts(replace(fin, objectives=fin.objectives[:1], units=fin.units[:1], front=single, extended_fronts=())) == ""
+    )
 
 
 def test_a_rival_off_the_front_s_scale_or_unstable_is_no_trouble(fin: Tuning) -> None:
-    lost = replace(fin.rivals[0], objectives=np.full(3, np.inf), peak=math.inf, gain_margin=math.nan,
+    lost = replace(fin.baselines[0], objectives=np.full(3, np.inf), Ms=math.inf, gain_margin=math.nan,
                    phase_margin=math.nan, delay_margin=math.nan, reduction=-math.inf)  # fmt: skip
-    text = html(replace(fin, rivals=(lost,)))
+    text = html(replace(fin, baselines=(lost,)))
     assert not re.search(r"\b(nan|inf)\b", text)
 
 
@@ -179,19 +190,19 @@ def test_a_rival_off_the_front_s_scale_or_unstable_is_no_trouble(fin: Tuning) ->
     ],
 )
 def test_objectives_are_in_degrees(unit: str, factor: float, shown: str) -> None:
-    assert people_s(unit) == (pytest.approx(factor), shown)
+    assert degree_unit(unit) == (pytest.approx(factor), shown)
 
 
 def test_an_axis_is_logarithmic_where_values_are_far_apart() -> None:
     wide = scale_of([np.array([0.01, 30.0, np.inf])])
     assert wide.is_logarithmic
     assert [words for _, words in wide.ticks(4)] == ["0.01", "0.1", "1", "10"]
-    assert np.isnan(wide.at(np.array([-1.0, np.nan]))).all()
+    assert np.isnan(wide.coordinates(np.array([-1.0, np.nan]))).all()
     assert not scale_of([np.array([-0.01, 30.0])]).is_logarithmic
 
 
 def test_the_peak_allowed_is_drawn_where_there_is_one(fin: Tuning) -> None:
-    free = replace(fin, restriction=replace(fin.restriction, peak=math.inf))
+    free = replace(fin, constraints=replace(fin.constraints, Ms=math.inf))
     for draw in (sensitivities, nyquist):
         assert "Ms = 2" in draw(fin)
         assert "Ms" not in draw(free)
@@ -227,11 +238,11 @@ def test_text_from_files_is_escaped(make: Callable[[], Tuning]) -> None:
     tuning = make()
     hostile = replace(
         tuning, question=HOSTILE, name=HOSTILE, plant=HOSTILE, seas=(HOSTILE,), reasons=(HOSTILE,),
-        rivals=tuple(replace(c, name=HOSTILE, broken=(HOSTILE,)) for c in tuning.rivals),
+        baselines=tuple(replace(c, name=HOSTILE, violated=(HOSTILE,)) for c in tuning.baselines),
         objectives=(HOSTILE, *tuning.objectives[1:]), front=replace(tuning.front, name=HOSTILE),
         components=tuple(replace(c, name=HOSTILE, source=HOSTILE) for c in tuning.components),
-        sailed=tuple(replace(s, name=HOSTILE) for s in tuning.sailed),
-        schedule=tuple(replace(s, others={HOSTILE: 0.3}) for s in tuning.schedule),
+        seaway_simulations=tuple(replace(s, name=HOSTILE) for s in tuning.seaway_simulations),
+        schedule=tuple(replace(s, baseline_costs={HOSTILE: 0.3}) for s in tuning.schedule),
         bounds=tuple(replace(b, note=HOSTILE) for b in tuning.bounds),
         manoeuvres=tuple(replace(m, name=HOSTILE) for m in tuning.manoeuvres),
     )  # fmt: skip
@@ -244,7 +255,7 @@ def test_limits_of_an_actuator_lie_about_its_steady_value() -> None:
     asked = tuning.manoeuvres[0]
     moved = asked.record.channel("delta")
     limit = 1.2 * float(np.max(np.abs(moved.values - moved.values[0])))
-    near = replace(tuning, restriction=replace(tuning.restriction, limit=limit))
+    near = replace(tuning, constraints=replace(tuning.constraints, limit=limit))
     aside = replace(moved, values=frozen(moved.values + 2.0))
     record = replace(asked.record, channels={**asked.record.channels, "delta": aside})
     here, there = (

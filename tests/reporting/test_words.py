@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.results import Fit
-from seatrial.core.text.words import correlated, counted, listed, measure, ordinal
-from seatrial.reporting import answer
+from seatrial.core.text.words import correlation_text, counted, enumeration, measure_label, ordinal
+from seatrial.reporting import summary
 from seatrial.reporting.citations import Citations
 
 
 def test_publications_are_numbered_once_and_the_longest_wording_is_listed() -> None:
     citations = Citations()
-    first = citations.marked("Yasukawa & Yoshimura 2015, J Mar Sci Technol 20, 37-52, hull force polynomial")
-    again = citations.marked("as Zhou et al. 1983, through Yasukawa & Yoshimura 2015; <b>")
+    first = citations.mark("Yasukawa & Yoshimura 2015, J Mar Sci Technol 20, 37-52, hull force polynomial")
+    again = citations.mark("as Zhou et al. 1983, through Yasukawa & Yoshimura 2015; <b>")
     assert ">[1]</a>, hull force polynomial" in first
     assert ">[2]</a>, through <a" in again and "[1]" in again and "<b>" not in again
     assert [str(e) for e in citations.entries()] == [
@@ -24,33 +24,33 @@ def test_publications_are_numbered_once_and_the_longest_wording_is_listed() -> N
 
 def test_a_doi_becomes_a_link() -> None:
     citations = Citations()
-    citations.marked("Song et al. 2025, doi 10.19693/j.issn.1673-3185.03832, table 1")
+    citations.mark("Song et al. 2025, doi 10.19693/j.issn.1673-3185.03832, table 1")
     assert 'href="https://doi.org/10.19693/j.issn.1673-3185.03832"' in citations.entries()[0]
 
 
 def test_strong_correlations_are_named() -> None:
     covariance = np.array([[1.0, -0.95, 0.0], [-0.95, 1.0, 0.0], [0.0, 0.0, 4.0]])
-    assert correlated(("a", "b", "c"), covariance).startswith(
+    assert correlation_text(("a", "b", "c"), covariance).startswith(
         "1 pair at 0.9 or above in size; the strongest: b and a (−0.95)"
     )
     weak = np.array([[1.0, 0.4], [0.4, 1.0]])
-    assert correlated(("a", "b"), weak) == "The strongest is 0.40, between b and a."
-    assert correlated(("a", "b"), np.eye(2)) == "None is correlated with another."
-    assert correlated(("a",), np.eye(1)) == ""
+    assert correlation_text(("a", "b"), weak) == "The strongest is 0.40, between b and a."
+    assert correlation_text(("a", "b"), np.eye(2)) == "None is correlated with another."
+    assert correlation_text(("a",), np.eye(1)) == ""
 
 
 def test_the_answer_counts_known_values_and_names_disagreeing_priors(fit: Fit) -> None:
     known = [c for c in fit.coefficients if not c.fixed and c.truth is not None]
-    assert f"of {len(known)} 95 % intervals contain" in " ".join(answer.sentences(fit))
+    assert f"of {len(known)} 95 % intervals contain" in " ".join(summary.sentences(fit))
     with_prior = next(c for c in fit.coefficients if c.prior_mean is not None)
     far = replace(with_prior, prior_mean=with_prior.estimate + 9.0 * (with_prior.prior_standard_deviation or 1.0))
     changed = replace(fit, coefficients=tuple(far if c is with_prior else c for c in fit.coefficients))
-    assert f"({far.name})" in next(s for s in answer.sentences(changed) if "prior standard deviations" in s)
+    assert f"({far.name})" in next(s for s in summary.sentences(changed) if "prior standard deviations" in s)
 
 
 def test_without_a_held_out_run_the_answer_says_so(fit: Fit) -> None:
     training = tuple(p for p in fit.predictions if p.role == "training")
-    assert answer.sentences(replace(fit, predictions=training))[0].startswith("No run was held out")
+    assert summary.sentences(replace(fit, predictions=training))[0].startswith("No run was held out")
 
 
 def test_small_words() -> None:
@@ -64,6 +64,9 @@ def test_small_words() -> None:
         "21st",
         "112th",
     ]
-    assert measure("overshoot_2_deg") == ("2nd overshoot", "deg") and measure("new_thing_L") == ("new thing", "L")
+    assert measure_label("overshoot_2_deg") == ("2nd overshoot", "deg") and measure_label("new_thing_L") == (
+        "new thing",
+        "L",
+    )
     assert counted(0, "run") == "no runs" and counted(1, "run") == "1 run"
-    assert listed(list("abc")) == "a, b and c" and listed(list("abcdefgh")) == "a, b, c, d, e and 3 more"
+    assert enumeration(list("abc")) == "a, b and c" and enumeration(list("abcdefgh")) == "a, b, c, d, e and 3 more"

@@ -12,17 +12,17 @@ import pytest
 from tests.reporting.fabricated import fabricated_fit
 
 from seatrial import api, cli
-from seatrial.core.results import Member, Study, Verdict
+from seatrial.core.results import CandidateModel, Study, Verdict
 from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.folder.fit_json import strict_json
-from seatrial.estimation.predict.window_bands import Covered
+from seatrial.estimation.predict.window_bands import BandCoverage
 from seatrial_studies.alexandersson2022 import published, verdicts
-from seatrial_studies.alexandersson2022.left_out import LeftOut, jackknife_error
-from seatrial_studies.alexandersson2022.margins import Margins, TurnMargin
-from seatrial_studies.alexandersson2022.margins import tables as margin_tables
-from seatrial_studies.alexandersson2022.published import MEASURED_TURNS, PREDICTED_TURNS, SIDES, percent
-from seatrial_studies.alexandersson2022.repetition import Repetition, noise_of
-from seatrial_studies.alexandersson2022.tables import left_out, left_out_turns
+from seatrial_studies.alexandersson2022.leave_one_out import LeftOutRun, jackknife_error
+from seatrial_studies.alexandersson2022.prediction_coverage import PredictionCoverage, TurnInterval
+from seatrial_studies.alexandersson2022.prediction_coverage import tables as margin_tables
+from seatrial_studies.alexandersson2022.published import MEASURED_TURNS, PREDICTED_TURNS, SIDES, percent_deviation
+from seatrial_studies.alexandersson2022.reproduction import BenchmarkReproduction, median_noise
+from seatrial_studies.alexandersson2022.tables import left_out_table, left_out_turn_table
 
 
 @pytest.fixture(scope="module")
@@ -64,7 +64,7 @@ def test_the_command_writes_report_and_json_and_prints_what_fails(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
     repetition = made(factor=1.2)
-    bare = Study("bare", "Nobody 2022", (verdicts.turning(repetition),), verdicts.checks(repetition))
+    bare = Study("bare", "Nobody 2022", (verdicts.turning_claim(repetition),), verdicts.checks(repetition))
     installed = SimpleNamespace(name="bare", load=lambda: lambda **_: bare)
     monkeypatch.setattr("seatrial.api.entry_points", lambda group: [installed])  # noqa: ARG005
     arguments = ["seatrial", "reproduce", "bare", "--out", str(tmp_path / "out"), "--json", str(tmp_path / "bare.json")]
@@ -88,7 +88,7 @@ def test_without_the_records_it_says_what_to_do(folder: str | None, monkeypatch:
 
 def test_the_paper_s_errors_follow_from_its_table() -> None:
     errors = {
-        m: [percent(getattr(PREDICTED_TURNS[s], m), getattr(MEASURED_TURNS[s], m)) for s in SIDES]
+        m: [percent_deviation(getattr(PREDICTED_TURNS[s], m), getattr(MEASURED_TURNS[s], m)) for s in SIDES]
         for m in ("advance", "diameter")
     }
     assert errors["advance"] == pytest.approx([-1.8, -2.0], abs=0.05)
@@ -96,38 +96,41 @@ def test_the_paper_s_errors_follow_from_its_table() -> None:
     assert published.published_range("advance") == pytest.approx((3.009, 3.283), abs=1e-3)
 
 
-def made(heading: float = 8.0, position: float = 4.0, factor: float = 1.0, warm: float = 1.0) -> Repetition:
+def made(heading: float = 8.0, position: float = 4.0, factor: float = 1.0, warm: float = 1.0) -> BenchmarkReproduction:
     """A repetition nobody computed: errors on the validation run, turns as a multiple of the measured ones."""
     fit = fabricated_fit()
     rms = {"psi_deg": heading, "position_m": position}
     predictions = tuple(replace(p, rms=rms) for p in fit.predictions)
     turns = {s: replace(t, advance=factor * t.advance, diameter=factor * t.diameter) for s, t in MEASURED_TURNS.items()}
     noise = {n.channel: 0.01 * n.standard_deviation for n in fit.noise}
-    return Repetition(replace(fit, predictions=predictions), warm, turns, {}, {}, noise, (), margins())
+    return BenchmarkReproduction(replace(fit, predictions=predictions), warm, turns, {}, {}, noise, (), margins())
 
 
-def margins(width: float = 0.2, share: float = 0.95) -> Margins:
+def margins(width: float = 0.2, share: float = 0.95) -> PredictionCoverage:
     """Intervals of the tactical diameter of this half width about MARIN's, in ship lengths, and shares inside bands."""
     measured = {s: t.diameter for s, t in MEASURED_TURNS.items()}
-    turns = tuple(TurnMargin(s, "tactical diameter", d - width, d + width, d) for s, d in measured.items())
-    run = Covered("run", 5, {"psi": share, "x0": share, "y0": share})
-    return Margins(turns, (run, run), (run,))
+    turns = tuple(TurnInterval(s, "tactical diameter", d - width, d + width, d) for s, d in measured.items())
+    run = BandCoverage("run", 5, {"psi": share, "x0": share, "y0": share})
+    return PredictionCoverage(turns, (run, run), (run,))
 
 
 def test_full_refits_and_the_family_are_judged_and_shown_where_they_were_made() -> None:
-    wide = margins(width=0.4).turns
-    members = (Member("own", 9, 1.4, 0.2, tied=False, chosen=True), Member("other", 11, 1.2, 0.2, tied=True))
-    with_tied = replace(margins(), with_tied=wide, family=members)
-    assert held(replace(made(), margins=with_tied))[8:] == [True, True, False, False, True, True]
+    wide = margins(width=0.4).turn_intervals
+    members = (
+        CandidateModel("own", 9, 1.4, 0.2, is_tied=False, is_chosen=True),
+        CandidateModel("other", 11, 1.2, 0.2, is_tied=True),
+    )
+    with_tied = replace(margins(), tied_turn_intervals=wide, family=members)
+    assert held(replace(made(), coverage=with_tied))[8:] == [True, True, False, False, True, True]
     shown, _, family = margin_tables(with_tied)
     assert [row[1] for row in shown.rows] == ["one-step jackknife"] * 2 + ["jackknife, tied models"] * 2
     assert [row[-1] for row in family.rows] == ["the trial's", "tied"]
     assert len(margin_tables(margins())) == 2
-    evidence = verdicts.certainty(replace(certain(), margins=with_tied)).evidence
+    evidence = verdicts.uncertainty_claim(replace(certain(), coverage=with_tied)).evidence
     assert evidence.count("hold 2 of 2") == 2 and "tied models" in evidence
 
 
-def held(repetition: Repetition) -> list[bool]:
+def held(repetition: BenchmarkReproduction) -> list[bool]:
     return [check.holds for check in verdicts.checks(repetition)]
 
 
@@ -139,19 +142,22 @@ def test_checks_hold_and_fail() -> None:
 
 
 def test_checks_of_intervals_hold_and_fail() -> None:
-    wide, sure = (replace(made(), margins=m) for m in (margins(width=0.4), margins(share=1.0)))
+    wide, sure = (replace(made(), coverage=m) for m in (margins(width=0.4), margins(share=1.0)))
     assert held(wide)[8:] == [False, False, True, True]
     assert held(sure)[8:] == [True, True, False, True]
-    assert held(replace(made(), margins=margins(share=0.7)))[8:] == [True, True, False, False]
-    assert margins().turns[0].half_width == pytest.approx(100 * 0.2 / MEASURED_TURNS["port"].diameter)
-    assert TurnMargin("port", "advance", 2.0, 4.0, 3.9).reach == pytest.approx(0.9)
-    assert margins().turns[0].holds and "hold 2 of 2" in verdicts.certainty(certain()).evidence
+    assert held(replace(made(), coverage=margins(share=0.7)))[8:] == [True, True, False, False]
+    assert margins().turn_intervals[0].half_width == pytest.approx(100 * 0.2 / MEASURED_TURNS["port"].diameter)
+    assert TurnInterval("port", "advance", 2.0, 4.0, 3.9).relative_deviation == pytest.approx(0.9)
+    assert (
+        margins().turn_intervals[0].contains_measured
+        and "hold 2 of 2" in verdicts.uncertainty_claim(certain()).evidence
+    )
 
 
-def certain() -> Repetition:
+def certain() -> BenchmarkReproduction:
     """A repetition with one run left out."""
     base = made()
-    return replace(base, left_out=(LeftOut("run", base.fit.validation()[0], 3, 1.5, 0.2, base.turns),) * 2)
+    return replace(base, left_out_runs=(LeftOutRun("run", base.fit.validation()[0], 3, 1.5, 0.2, base.turns),) * 2)
 
 
 @pytest.mark.parametrize(
@@ -165,24 +171,27 @@ def certain() -> Repetition:
 )
 def test_verdicts_follow_the_numbers(heading: float, factor: float, turning: Verdict, zigzag: Verdict) -> None:
     repetition = made(heading=heading, factor=factor)
-    assert verdicts.turning(repetition).verdict is turning
-    assert verdicts.zigzag(repetition).verdict is zigzag
+    assert verdicts.turning_claim(repetition).verdict is turning
+    assert verdicts.zigzag_claim(repetition).verdict is zigzag
 
 
 def test_noise_is_blamed_only_where_there_is_some() -> None:
     quiet = made()
-    noisy = replace(quiet, noise={n.channel: n.standard_deviation for n in quiet.fit.noise})
-    assert verdicts.filtering(quiet).verdict is Verdict.REFUTED
-    assert verdicts.filtering(noisy).verdict is Verdict.UNKNOWABLE
-    assert verdicts.filtering(made(heading=20.0)).verdict is Verdict.UNKNOWABLE
+    noisy = replace(quiet, noise_sweep={n.channel: n.standard_deviation for n in quiet.fit.noise})
+    assert verdicts.filtering_claim(quiet).verdict is Verdict.REFUTED
+    assert verdicts.filtering_claim(noisy).verdict is Verdict.UNKNOWABLE
+    assert verdicts.filtering_claim(made(heading=20.0)).verdict is Verdict.UNKNOWABLE
 
 
 def test_labels_are_refuted_only_where_every_run_speaks() -> None:
     finding = [Finding(Severity.ERROR, c, "wrong", "1") for c in ("velocity-frame", "yaw-rate", "rudder-sign")]
     all_of_them = {"a": tuple(finding), "b": tuple(finding)}
-    assert verdicts.labels(replace(made(), labels=all_of_them)).verdict is Verdict.REFUTED
-    assert verdicts.labels(replace(made(), labels=all_of_them | {"c": ()})).verdict is Verdict.UNKNOWABLE
-    assert verdicts.labels(made()).verdict is Verdict.UNKNOWABLE
+    assert verdicts.column_labels_claim(replace(made(), label_findings=all_of_them)).verdict is Verdict.REFUTED
+    assert (
+        verdicts.column_labels_claim(replace(made(), label_findings=all_of_them | {"c": ()})).verdict
+        is Verdict.UNKNOWABLE
+    )
+    assert verdicts.column_labels_claim(made()).verdict is Verdict.UNKNOWABLE
 
 
 @pytest.mark.parametrize(("spread", "verdict"), [(0.001, Verdict.REFUTED), (0.05, Verdict.UNKNOWABLE)])
@@ -190,15 +199,15 @@ def test_certainty_is_judged_by_leaving_runs_out(spread: float, verdict: Verdict
     base = made(factor=1.05)
     whole = base.fit.validation()[0]
     entries = tuple(
-        LeftOut(f"run {k}", whole, 3, 1.5, 0.2, {s: replace(t, diameter=t.diameter * (1.0 + spread * (k - 1)))
+        LeftOutRun(f"run {k}", whole, 3, 1.5, 0.2, {s: replace(t, diameter=t.diameter * (1.0 + spread * (k - 1)))
                                                 for s, t in base.turns.items()})
         for k in range(3)
     )  # fmt: skip
-    repetition = replace(base, left_out=entries)
-    assert verdicts.certainty(repetition).verdict is verdict
-    assert verdicts.certainty(base).verdict is Verdict.UNKNOWABLE
-    assert left_out(entries).rows[-1] == ("median", 8.0, 4.0, None, 1.5, 0.2)
-    assert left_out_turns(entries).rows[-1][1] == pytest.approx(0.0, abs=1e-12)
+    repetition = replace(base, left_out_runs=entries)
+    assert verdicts.uncertainty_claim(repetition).verdict is verdict
+    assert verdicts.uncertainty_claim(base).verdict is Verdict.UNKNOWABLE
+    assert left_out_table(entries).rows[-1] == ("median", 8.0, 4.0, None, 1.5, 0.2)
+    assert left_out_turn_table(entries).rows[-1][1] == pytest.approx(0.0, abs=1e-12)
 
 
 def test_jackknife_of_a_mean_is_its_standard_error(rng: np.random.Generator) -> None:
@@ -210,6 +219,6 @@ def test_jackknife_of_a_mean_is_its_standard_error(rng: np.random.Generator) -> 
 def test_noise_from_sample_to_sample_is_found_beneath_a_motion(rng: np.random.Generator) -> None:
     time = np.arange(8000) * 0.05
     psi = 0.3 * np.sin(0.2 * time) + 1e-3 * rng.standard_normal(len(time))
-    found = noise_of([Record.of("run", time, {"psi": psi})], ["psi", "r"])
+    found = median_noise([Record.from_arrays("run", time, {"psi": psi})], ["psi", "r"])
     assert set(found) == {"psi"}
     assert found["psi"] == pytest.approx(1e-3, rel=0.03)

@@ -5,13 +5,13 @@ import pytest
 
 from seatrial.core.results import Study, Verdict
 from seatrial_studies import meng2014
-from seatrial_studies.meng2014.study import insensitive, twelve_unknowns
-from seatrial_studies.swarm_search import sailed
+from seatrial_studies.meng2014.study import twelve_unknowns, undetected_change
+from seatrial_studies.swarm_search import simulate_search_data
 
 
 @pytest.fixture(scope="module")
 def study() -> Study:
-    return meng2014.study(quick=True, seed=0, progress=None)
+    return meng2014.study(quick=True, seed=0, report_progress=None)
 
 
 def test_twelve_unknowns_are_told_by_waves_and_fin_together_only() -> None:
@@ -22,10 +22,10 @@ def test_twelve_unknowns_are_told_by_waves_and_fin_together_only() -> None:
 
 
 def test_wrong_coefficients_follow_the_record_within_the_noise() -> None:
-    found = insensitive(sailed(135, np.random.default_rng(0), has_fin=True))
-    assert np.abs(found.change).max() > 0.2
-    assert found.heave < 0.02
-    assert found.pitch < 0.04
+    found = undetected_change(simulate_search_data(135, np.random.default_rng(0), has_fin=True))
+    assert np.abs(found.relative_change).max() > 0.2
+    assert found.heave_rms < 0.02
+    assert found.pitch_rms < 0.04
 
 
 def test_what_is_not_printed_is_said_to_be_assumed(study: Study) -> None:

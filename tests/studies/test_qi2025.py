@@ -8,56 +8,64 @@ from seatrial.numerics.optimise import HerdSettings, WildHorse, search
 from seatrial.physics.models.qi2025 import HEADINGS
 from seatrial_studies import qi2025
 from seatrial_studies.qi2025.audit import audit
-from seatrial_studies.qi2025.carried import carried_sample
-from seatrial_studies.qi2025.published import Algorithm, misprinted, recomputed_error
-from seatrial_studies.qi2025.repetition import Setting
-from seatrial_studies.swarm_search import centred, off_centre, one_sample, sailed, searched
+from seatrial_studies.qi2025.model_state_objective import model_state_objective
+from seatrial_studies.qi2025.published import SearchAlgorithm, misprinted_errors, recomputed_error
+from seatrial_studies.qi2025.reproduction import SearchSetting
+from seatrial_studies.swarm_search import (
+    centred_box,
+    off_centre_box,
+    one_sample_objective,
+    repeat_searches,
+    simulate_search_data,
+)
 
 
 @pytest.fixture(scope="module")
 def study() -> Study:
-    return qi2025.study(quick=True, seed=0, progress=None)
+    return qi2025.study(quick=True, seed=0, report_progress=None)
 
 
 def test_six_printed_errors_do_not_follow_from_their_values() -> None:
-    assert [(h, str(a), name) for h, a, name, _, _ in misprinted()] == [
+    assert [(h, str(a), name) for h, a, name, _, _ in misprinted_errors()] == [
         (90, "PSO", "a35"), (90, "WHO", "a55"), (135, "PSO", "a33"),
         (135, "WHO", "b35"), (180, "WHO", "a35"), (180, "IWHO", "a35"),
     ]  # fmt: skip
 
 
 def test_the_mean_printed_errors_of_the_improved_herd_recompute() -> None:
-    means = [float(np.mean(np.abs(recomputed_error(h, Algorithm.IWHO)))) for h in HEADINGS]
+    means = [float(np.mean(np.abs(recomputed_error(h, SearchAlgorithm.IWHO)))) for h in HEADINGS]
     assert means == pytest.approx([0.20, 0.16, 0.19], abs=0.006)
 
 
 def test_the_speed_behind_the_tables_is_eighteen_knots_if_b53_is_negative() -> None:
-    audited = audit([sailed(45, np.random.default_rng(0))], 0)
-    for right, wrong in audited.speeds.values():
+    audited = audit([simulate_search_data(45, np.random.default_rng(0))], 0)
+    for right, wrong in audited.implied_speeds.values():
         assert right == pytest.approx(9.26, abs=0.01)
         assert 5.0 < wrong < 5.8
-    assert audited.saturated == (11, 16)
-    assert audited.heights == pytest.approx((3.42, 2.27), abs=0.005)
+    assert audited.saturated_values == (11, 16)
+    assert audited.spectrum_heights == pytest.approx((3.42, 2.27), abs=0.005)
     assert audited.step_rank == 2
-    assert audited.beyond[:2] == (14, 24)
+    assert audited.beyond_box[:2] == (14, 24)
     assert all(0.05 < change < 0.5 for pair in audited.sign_effect.values() for change in pair)
 
 
 def test_boxes_off_centre_hold_the_truth_off_their_centre() -> None:
     truth = np.array([1.0, -2.0, 3.0])
     for seed in range(20):
-        box = off_centre(truth, 0.5, np.random.default_rng(seed))
+        box = off_centre_box(truth, 0.5, np.random.default_rng(seed))
         assert np.all((box.lower < truth) & (truth < box.upper))
         np.testing.assert_allclose(box.upper - box.lower, np.abs(truth))
-    assert np.allclose(0.5 * (centred(truth, 0.1).lower + centred(truth, 0.1).upper), truth)
+    assert np.allclose(0.5 * (centred_box(truth, 0.1).lower + centred_box(truth, 0.1).upper), truth)
 
 
 def test_a_search_is_the_same_from_its_seed() -> None:
-    seas = [sailed(135, np.random.default_rng(1))]
-    boxes = [centred(seas[0].truth, 0.1)]
+    seas = [simulate_search_data(135, np.random.default_rng(1))]
+    boxes = [centred_box(seas[0].truth, 0.1)]
 
     def once() -> np.ndarray:
-        return searched(seas, boxes, lambda b, g: WildHorse(b, g, HerdSettings(iterations=20)), one_sample, 3).points
+        return repeat_searches(
+            seas, boxes, lambda b, g: WildHorse(b, g, HerdSettings(iterations=20)), one_sample_objective, 3
+        ).points
 
     assert np.array_equal(once(), once())
 
@@ -78,22 +86,24 @@ def test_our_own_fit_and_the_saturation_hold(study: Study) -> None:
 
 def test_ten_runs_made_again_begin_with_those_of_the_tables(study: Study) -> None:
     tables = {t.title: t for t in study.tables}
-    again, shown = tables["What ten runs are worth"], tables[f"Errors in %: {Setting.PAPER.value}"]
+    again, shown = tables["What ten runs are worth"], tables[f"Errors in %: {SearchSetting.PAPER.value}"]
     assert [row[2] for row in again.rows] == pytest.approx([row[5] for row in shown.rows], rel=1e-12)
 
 
 def test_candidates_from_the_models_own_state_drive_who_to_the_lower_bound(study: Study) -> None:
     rows = {row[0]: row[1] for t in study.tables if t.title == "Saturation at the lower bound" for row in t.rows}
-    assert float(rows[Setting.CARRIED.value] or 0.0) > 2.0 * float(rows[Setting.PAPER.value] or 0.0) > 10.0
+    assert (
+        float(rows[SearchSetting.MODEL_STATE.value] or 0.0) > 2.0 * float(rows[SearchSetting.PAPER.value] or 0.0) > 10.0
+    )
 
 
 def test_the_truth_is_the_best_point_from_the_true_state_and_not_from_a_state_that_lags() -> None:
-    data = sailed(135, np.random.default_rng(1))
-    optimiser = WildHorse(centred(data.truth, 0.1), np.random.default_rng(2), HerdSettings(iterations=50))
-    judged = carried_sample(data, optimiser)
+    data = simulate_search_data(135, np.random.default_rng(1))
+    optimiser = WildHorse(centred_box(data.truth, 0.1), np.random.default_rng(2), HerdSettings(iterations=50))
+    judged = model_state_objective(data, optimiser)
     search(optimiser, judged)
     assert judged(data.truth[None])[0] > 1e-6
-    assert one_sample(data, optimiser)(data.truth[None])[0] < 1e-12
+    assert one_sample_objective(data, optimiser)(data.truth[None])[0] < 1e-12
 
 
 def test_the_improved_herd_meets_the_middle_of_a_symmetric_box_exactly(study: Study) -> None:

@@ -11,16 +11,16 @@ import pytest
 from seatrial.core.results import Bars, Matrix, Study, Verdict
 from seatrial.data.folder.fit_json import strict_json
 from seatrial_studies.song2025 import study
-from seatrial_studies.song2025.candidates import thirteen
-from seatrial_studies.song2025.published import DROPPED, STATEMENTS
-from seatrial_studies.song2025.repetition import Row
+from seatrial_studies.song2025.candidates import thirteen_coefficient_model
+from seatrial_studies.song2025.published import DROPPED_COEFFICIENTS, STATEMENTS
+from seatrial_studies.song2025.reproduction import EstimatorResult
 from seatrial_studies.song2025.verdicts import checks
 
 
 @cache
 def made() -> Study:
     """The quick form, seed 3."""
-    return study(quick=True, seed=3, progress=None)
+    return study(quick=True, seed=3, report_progress=None)
 
 
 def test_checks_hold_in_another_series_of_noise() -> None:
@@ -33,9 +33,9 @@ def test_every_statement_is_judged() -> None:
     """Nine statements; its improvement comes from tube and scale, robustness is refuted."""
     assert len(made().claims) == len(STATEMENTS)
     verdicts = {c.claim.split(" (")[0]: c.verdict for c in made().claims}
-    assert verdicts[STATEMENTS["robust"].words] is Verdict.REFUTED
-    assert verdicts[STATEMENTS["improved"].words] is Verdict.UNKNOWABLE
-    assert verdicts[STATEMENTS["wider"].words] is Verdict.UNKNOWABLE
+    assert verdicts[STATEMENTS["robust"].text] is Verdict.REFUTED
+    assert verdicts[STATEMENTS["improved"].text] is Verdict.UNKNOWABLE
+    assert verdicts[STATEMENTS["wider"].text] is Verdict.UNKNOWABLE
 
 
 def test_every_table_and_figure_of_the_paper_has_its_place() -> None:
@@ -56,11 +56,11 @@ def test_it_can_be_written_as_json() -> None:
 
 def test_the_two_further_candidates_act_as_eq_2_has_them() -> None:
     """N_vrr v r^2 L^2 / U and N_vvr v^2 r L / U, times q L over the yaw inertia; zero they change nothing."""
-    craft = thirteen()
-    assert craft.parameters.free_names[-2:] == DROPPED
+    craft = thirteen_coefficient_model()
+    assert craft.parameters.free_names[-2:] == DROPPED_COEFFICIENTS
     state, inputs = np.array([0.8, 0.1, 0.02, 0.0, 0.0, 0.0]), np.array([0.1, 1.866])
     rates = {}
-    for name in (None, *DROPPED):
+    for name in (None, *DROPPED_COEFFICIENTS):
         model = craft if name is None else craft.with_values({name: 1.0})
         rates[name] = np.empty(6)
         model.compiled.rates(0.0, state, inputs, model.parameters.values, rates[name])
@@ -75,18 +75,20 @@ def test_the_two_further_candidates_act_as_eq_2_has_them() -> None:
 def evidence(error: float, ratio: float = 1.0, gain: float = 8.0, confirms: bool = True) -> Any:
     """What the checks look at: every estimator's errors are `error`, the published pipeline's 10."""
 
-    def row(name: str, size: float) -> Row:
-        return Row(name, np.zeros(11), np.full(11, size), {})
+    def row(name: str, size: float) -> EstimatorResult:
+        return EstimatorResult(name, np.zeros(11), np.full(11, size), {})
 
     made = SimpleNamespace(
-        clean=(row("central differences, least squares", error),),
+        noise_free_results=(row("central differences, least squares", error),),
         published=(None, None, None, row("published", 10.0)),
-        exact=row("exact", error),
-        ours=row("ours", error),
-        over_bound={"weak form": gain},
-        ratio=ratio,
+        output_error_noise_free=row("exact", error),
+        output_error_noisy=row("ours", error),
+        errors_over_bound={"weak form": gain},
+        output_error_ratio=ratio,
     )
-    return SimpleNamespace(made=made, audited=SimpleNamespace(held=(SimpleNamespace(confirms=confirms),)))
+    return SimpleNamespace(
+        reproduction=made, audit=SimpleNamespace(sign_checks=(SimpleNamespace(confirms_misprints=confirms),))
+    )
 
 
 def test_checks_hold_for_good_numbers_and_fail_for_bad_ones() -> None:

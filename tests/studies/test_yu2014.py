@@ -12,19 +12,33 @@ from seatrial.physics.loops.state_space import state_space
 from seatrial.physics.sea.spectrum import ittc
 from seatrial_studies import yu2014
 from seatrial_studies.yu2014.audit import audit
-from seatrial_studies.yu2014.better import ALL, CAP, compared, least_roll, peak_of
-from seatrial_studies.yu2014.fitted import fitted
-from seatrial_studies.yu2014.histories import histories, variation_of_rms
-from seatrial_studies.yu2014.published import FOUND, HEIGHT, SET_AT, TABLE_1, TARGET, Column
-from seatrial_studies.yu2014.readings import HULL, SETTING, Fins, Sea, motion, objectives, performance
-from seatrial_studies.yu2014.searches import Setting, searches
+from seatrial_studies.yu2014.histories import rms_variation, simulate_histories
+from seatrial_studies.yu2014.improved_gains import (
+    FIVE_FREE,
+    MS_LIMIT,
+    compare_with_published,
+    five_gain_Ms,
+    minimise_roll,
+)
+from seatrial_studies.yu2014.published import DESIGN_ROW, HEIGHT, PUBLISHED_VALUES, TABLE_1, TARGET, ControllerResult
+from seatrial_studies.yu2014.published_loop import (
+    DESIGN_SEA,
+    HULL_FACTOR,
+    FinObjective,
+    SeaCondition,
+    objective_values,
+    performance,
+    roll_response,
+)
+from seatrial_studies.yu2014.searches import GeneticSearchSetting, search_over_seeds
+from seatrial_studies.yu2014.table_1_fit import fit_table_1
 
 PRINTED, WASHOUT = Preamplifier.PRINTED, Preamplifier.WASHOUT
 
 
 @pytest.fixture(scope="module")
 def study() -> Study:
-    return yu2014.study(quick=True, seed=0, progress=None)
+    return yu2014.study(quick=True, seed=0, report_progress=None)
 
 
 @pytest.fixture(scope="module")
@@ -34,83 +48,83 @@ def found():
 
 @pytest.mark.parametrize("reading", Preamplifier)
 def test_calibrated_the_paper_s_gains_reduce_as_printed_where_they_were_set(reading: Preamplifier) -> None:
-    assert motion(performance(reading)).reduction == pytest.approx(SET_AT.genetic.reduction, abs=1e-6)
+    assert roll_response(performance(reading)).reduction == pytest.approx(DESIGN_ROW.genetic.reduction, abs=1e-6)
 
 
 def test_the_readings_differ_in_what_the_loop_bears(found) -> None:
-    assert found.motions[PRINTED].peak == pytest.approx(5.45, abs=0.02)
-    assert found.motions[WASHOUT].peak == pytest.approx(1.32, abs=0.01)
+    assert found.roll_responses[PRINTED].Ms == pytest.approx(5.45, abs=0.02)
+    assert found.roll_responses[WASHOUT].Ms == pytest.approx(1.32, abs=0.01)
 
 
 def test_at_90_degrees_speed_changes_nothing_but_the_lift() -> None:
-    slow, fast = (performance(WASHOUT, Sea(speed, 90.0)) for speed in (18.0, 22.0))
-    assert motion(fast).free == pytest.approx(motion(slow).free, rel=1e-9)
-    assert motion(fast).reduction == pytest.approx(82.96, abs=2.0)
+    slow, fast = (performance(WASHOUT, SeaCondition(speed, 90.0)) for speed in (18.0, 22.0))
+    assert roll_response(fast).uncontrolled == pytest.approx(roll_response(slow).uncontrolled, rel=1e-9)
+    assert roll_response(fast).reduction == pytest.approx(82.96, abs=2.0)
 
 
 def test_objectives_are_those_of_the_print() -> None:
     variances = np.array([[2.0, 0.5 * TARGET, 3.0], [2.0, 3.0 * TARGET, 3.0], [np.inf, np.inf, np.inf]])
-    made = objectives(variances, Fins.PRINTED)
+    made = objective_values(variances, FinObjective.PRINTED)
     assert made[:2, 1] == pytest.approx([0.25 * TARGET**2, 4.0 * TARGET**2])
     assert made[:2, 0].tolist() == [2.0, 2.0]
-    assert objectives(variances, Fins.ONE_SIDED)[:2, 1] == pytest.approx([0.0, 4.0 * TARGET**2])
+    assert objective_values(variances, FinObjective.ONE_SIDED)[:2, 1] == pytest.approx([0.0, 4.0 * TARGET**2])
     assert np.all(np.isinf(made[2]))
 
 
 def test_the_target_was_rounded_and_the_chord_too(found) -> None:
     assert found.target_rounded == pytest.approx(150.31, abs=0.005)
     assert found.target == pytest.approx(150.36, abs=0.005)
-    assert found.fin.mass == pytest.approx(3064.932)
-    assert found.fin.inertia == pytest.approx(791.1611, abs=1e-4)
-    assert found.fin.consistent > 1.01 * found.fin.inertia
+    assert found.fin_inertia.mass == pytest.approx(3064.932)
+    assert found.fin_inertia.inertia == pytest.approx(791.1611, abs=1e-4)
+    assert found.fin_inertia.consistent_inertia > 1.01 * found.fin_inertia.inertia
 
 
 def test_only_codes_of_17_bits_hold_the_printed_gains(found) -> None:
-    assert found.bits == 17
+    assert found.shortest_code_bits == 17
 
 
 def test_table_1_contradicts_itself_and_what_is_said_of_it(found) -> None:
-    assert SET_AT.genetic.uncontrolled == pytest.approx(1.62, abs=0.005)
+    assert DESIGN_ROW.genetic.uncontrolled == pytest.approx(1.62, abs=0.005)
     assert [round(c.uncontrolled, 2) for c in (TABLE_1[4].traditional, TABLE_1[4].genetic)] == [1.53, 1.82]
-    assert found.contradicting == ("18 / 135", "22 / 45", "22 / 90", "22 / 135")
+    assert found.contradictory_rows == ("18 / 135", "22 / 45", "22 / 90", "22 / 135")
     assert (found.lower_reductions, found.larger_rates) == (1, 5)
 
 
 def test_rounding_leaves_the_implied_roll_open_by_the_printed_digits() -> None:
-    low, high = Column(0.50, 1.0, 50.0).uncontrolled_between
+    low, high = ControllerResult(0.50, 1.0, 50.0).uncontrolled_bounds
     assert (low, high) == pytest.approx((0.495 / 0.50005, 0.505 / 0.49995))
 
 
 def test_a_step_of_a_tenth_of_a_second_does_not_carry_the_gyro(found) -> None:
-    assert found.growth == pytest.approx(43.86, abs=0.01)
+    assert found.runge_kutta_growth == pytest.approx(43.86, abs=0.01)
 
 
 def test_the_fin_rate_beside_its_print_is_that_of_the_loop(found) -> None:
     for reading in Preamplifier:
-        integral, rate = found.integral[reading]
-        assert rate == pytest.approx(motion(performance(reading)).rate, rel=1e-9)
+        integral, rate = found.fin_rate_readings[reading]
+        assert rate == pytest.approx(roll_response(performance(reading)).rate, rel=1e-9)
         assert integral < rate
 
 
 def test_fits_are_as_good_as_they_say_and_no_better_than_the_table_allows() -> None:
-    made = fitted(WASHOUT, following_is_zero=True)
-    assert 0.16 < made.error < 0.19
-    assert 0.2 < made.baseline_error < 0.28
+    made = fit_table_1(WASHOUT, following_is_zero=True)
+    assert 0.16 < made.log_error < 0.19
+    assert 0.2 < made.baseline_log_error < 0.28
     for i, row in enumerate(TABLE_1):
-        of = motion(performance(WASHOUT, made.sea(row.heading, row.speed), made.K_q))
-        assert made.column(made.genetic, i).roll == pytest.approx(made.level * of.roll, rel=1e-9)
-        assert made.column(made.genetic, i).reduction == pytest.approx(of.reduction, rel=1e-9)
+        of = roll_response(performance(WASHOUT, made.sea(row.heading, row.speed), made.K_q))
+        assert made.row_result(made.genetic, i).roll == pytest.approx(made.level * of.roll, rel=1e-9)
+        assert made.row_result(made.genetic, i).reduction == pytest.approx(of.reduction, rel=1e-9)
 
 
 def test_histories_have_the_variances_of_the_spectrum() -> None:
-    made = fitted(WASHOUT, following_is_zero=True)
+    made = fit_table_1(WASHOUT, following_is_zero=True)
     free, genetic = [], []
     for seed in range(12):
-        drawn = histories(made, seed)
-        free.append(np.mean(drawn.free**2))
+        drawn = simulate_histories(made, seed)
+        free.append(np.mean(drawn.uncontrolled**2))
         genetic.append([np.mean(y**2) for y in drawn.genetic])
-    of = motion(performance(WASHOUT, made.sea(SET_AT.heading, SET_AT.speed), made.K_q))
-    expected = made.level * np.array([of.free, of.roll, of.rate])
+    of = roll_response(performance(WASHOUT, made.sea(DESIGN_ROW.heading, DESIGN_ROW.speed), made.K_q))
+    expected = made.level * np.array([of.uncontrolled, of.roll, of.rate])
     ours = np.sqrt([np.mean(free), *np.mean(genetic, axis=0)])
     assert ours == pytest.approx(expected, rel=0.08)
 
@@ -121,43 +135,45 @@ def test_one_record_varies_as_a_gaussian_process_does() -> None:
     w = 2.0 * np.pi * np.fft.rfftfreq(n, dt)
     w[0] = 1e-6
     loop = performance(WASHOUT).loop
-    slope = (w**2 / G) ** 2 * HULL.at(w, math.pi / 2) ** 2 * ittc(HEIGHT).density(w)
-    size = np.abs(loop.disturbance.at(w) / (1.0 + loop.open(w))) * np.sqrt(slope)
+    slope = (w**2 / G) ** 2 * HULL_FACTOR.slope_factor(w, math.pi / 2) ** 2 * ittc(HEIGHT).density(w)
+    size = np.abs(loop.disturbance.frequency_response(w) / (1.0 + loop.open_loop(w))) * np.sqrt(slope)
     rms = []
     for _ in range(25):
         drawn = np.fft.irfft(size * (rng.normal(size=len(w)) + 1j * rng.normal(size=len(w))), n)
         rms += list(drawn[:32000].reshape(16, 2000).std(axis=1))
     seen = np.std(rms) / np.mean(rms)
-    assert variation_of_rms(WASHOUT) == pytest.approx(seen, rel=4.0 / math.sqrt(2.0 * len(rms)))
+    assert rms_variation(WASHOUT) == pytest.approx(seen, rel=4.0 / math.sqrt(2.0 * len(rms)))
 
 
 def test_the_search_is_the_same_again_and_scatters() -> None:
-    first, again = (searches(Setting(WASHOUT), 4, 0) for _ in range(2))
+    first, again = (search_over_seeds(GeneticSearchSetting(WASHOUT), 4, 0) for _ in range(2))
     assert first.gains.tobytes() == again.gains.tobytes()
-    assert first.spread.max() > 0.5
-    assert first.nearest > 0.05
+    assert first.relative_spread.max() > 0.5
+    assert first.distance_to_published > 0.05
     states = state_space(performance(WASHOUT).loop)
-    for gains, peak in zip(first.gains, first.peak, strict=True):
-        assert np.linalg.eigvals(states.closed(gains)).real.max() < 0.0
+    for gains, peak in zip(first.gains, first.Ms, strict=True):
+        assert np.linalg.eigvals(states.closed_loop_matrix(gains)).real.max() < 0.0
         assert peak >= 1.0
 
 
 def test_beaten_answers_are_beaten() -> None:
-    made = searches(Setting(PRINTED), 4, 0)
+    made = search_over_seeds(GeneticSearchSetting(PRINTED), 4, 0)
     of = performance(PRINTED)
-    J = objectives(of.of(made.gains).variances, Fins.PRINTED)
-    assert np.allclose(made.shares, J / objectives(of.of(FOUND).variances, Fins.PRINTED)[0])
+    J = objective_values(of.evaluate(made.gains).variances, FinObjective.PRINTED)
+    assert np.allclose(
+        made.objective_ratios, J / objective_values(of.evaluate(PUBLISHED_VALUES).variances, FinObjective.PRINTED)[0]
+    )
     among = (J[:, None] < J[None]).all(axis=2).any(axis=0)
-    assert np.all(made.beaten[among])
+    assert np.all(made.is_dominated[among])
 
 
 def test_five_gains_keep_what_they_were_allowed() -> None:
-    gains = least_roll(WASHOUT, 1.0, np.random.default_rng(0), ALL)
-    made = compared(WASHOUT, gains, SETTING)
-    assert made.rate <= 1.0 + 1e-9
-    assert made.roll < 0.7
-    assert peak_of(WASHOUT, gains) <= CAP + 1e-9
-    assert made.paper_reduction == pytest.approx(SET_AT.genetic.reduction, abs=1e-6)
+    gains = minimise_roll(WASHOUT, 1.0, np.random.default_rng(0), FIVE_FREE)
+    made = compare_with_published(WASHOUT, gains, DESIGN_SEA)
+    assert made.rate_ratio <= 1.0 + 1e-9
+    assert made.roll_ratio < 0.7
+    assert five_gain_Ms(WASHOUT, gains) <= MS_LIMIT + 1e-9
+    assert made.paper_reduction == pytest.approx(DESIGN_ROW.genetic.reduction, abs=1e-6)
 
 
 def test_claims_that_rest_on_the_baseline_are_not_judged_by_it(study: Study) -> None:

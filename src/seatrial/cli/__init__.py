@@ -4,8 +4,8 @@ import sys
 
 from seatrial.cli.commands import app
 
-INTERRUPTED = 130
-_STOPPED = "seatrial: interrupted; files are written whole or not at all"
+INTERRUPT_EXIT_CODE = 130
+_INTERRUPT_MESSAGE = "seatrial: interrupted; files are written whole or not at all"
 
 
 def main() -> None:
@@ -20,12 +20,12 @@ def main() -> None:
         print(f"seatrial: {' '.join(str(error).split())}", file=sys.stderr)
         sys.exit(2)
     except SystemExit as ending:
-        if ending.code == INTERRUPTED:
-            print(_STOPPED, file=sys.stderr)
+        if ending.code == INTERRUPT_EXIT_CODE:
+            print(_INTERRUPT_MESSAGE, file=sys.stderr)
         raise
     except KeyboardInterrupt:
-        print(_STOPPED, file=sys.stderr)
-        sys.exit(INTERRUPTED)
+        print(_INTERRUPT_MESSAGE, file=sys.stderr)
+        sys.exit(INTERRUPT_EXIT_CODE)
 
 
 __all__ = ["app", "main"]

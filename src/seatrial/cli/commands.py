@@ -7,17 +7,24 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from seatrial.cli.followed import heading_of, journal_place, outcome_json, print_outcome, stopping, watching
+from seatrial.cli.follow_output import (
+    journal_path,
+    live_display,
+    outcome_json,
+    print_outcome,
+    stop_on_signal,
+    stream_heading,
+)
 from seatrial.cli.output import (
     print_design,
     print_findings,
     print_fit,
     print_measures,
     print_study,
-    progress,
+    progress_reporter,
     write_json,
 )
-from seatrial.cli.tuned import print_tuning
+from seatrial.cli.tuning_output import print_tuning
 
 if TYPE_CHECKING:
     from seatrial.core.equations import Model
@@ -34,7 +41,7 @@ app = typer.Typer(
 )
 
 
-def _json_place(path: Path | None) -> Path | None:
+def _writable_json_path(path: Path | None) -> Path | None:
     """The place of the JSON file, tested before the work rather than after it."""
     if path is not None:
         from seatrial.core.values import InputError
@@ -47,19 +54,21 @@ def _json_place(path: Path | None) -> Path | None:
 
 
 Json = Annotated[
-    Path | None, typer.Option("--json", metavar="FILE", callback=_json_place, help="Write the result as JSON.")
+    Path | None, typer.Option("--json", metavar="FILE", callback=_writable_json_path, help="Write the result as JSON.")
 ]
 Seed = Annotated[
     int, typer.Option("--seed", min=0, help="Of everything drawn at random; the same seed gives the same bits.")
 ]
 TrialPath = Annotated[Path, typer.Argument(metavar="TRIAL.toml", help="Trial file.")]
-OwnModel = Annotated[Path | None, typer.Option("--model", metavar="FILE.py", help="A model of your own (is executed).")]
+OwnModelPath = Annotated[
+    Path | None, typer.Option("--model", metavar="FILE.py", help="A model of your own (is executed).")
+]
 
-OF_A_KIND = 2
+FINDINGS_PER_CODE = 2
 
 
-def _version(wanted: bool) -> None:
-    if wanted:
+def _version(requested: bool) -> None:
+    if requested:
         from seatrial import __version__
 
         print(f"seatrial {__version__}")
@@ -76,8 +85,8 @@ def _root(
 @app.command()
 def check(
     trial: TrialPath,
-    everything: Annotated[bool, typer.Option("--all", help="Every finding, not the first few of each kind.")] = False,
-    model: OwnModel = None,
+    show_all: Annotated[bool, typer.Option("--all", help="Every finding, not the first few of each kind.")] = False,
+    model: OwnModelPath = None,
     json: Json = None,
     seed: Seed = 0,  # noqa: ARG001
 ) -> None:
@@ -88,8 +97,8 @@ def check(
     from seatrial import api
     from seatrial.data.folder.fit_json import findings_json
 
-    findings = api.check(api.load_trial(trial, _own(model)))
-    print_findings(findings, len(findings) if everything else OF_A_KIND)
+    findings = api.check(api.load_trial(trial, _own_model(model)))
+    print_findings(findings, len(findings) if show_all else FINDINGS_PER_CODE)
     write_json(json, lambda: findings_json(findings))
 
 
@@ -104,7 +113,7 @@ def identify(
     compare: Annotated[
         bool, typer.Option("--compare", help="Other estimators on the same records, beside it.")
     ] = False,
-    model: OwnModel = None,
+    model: OwnModelPath = None,
     json: Json = None,
     seed: Seed = 0,
 ) -> None:
@@ -118,17 +127,17 @@ def identify(
     from seatrial.core.values.files import writable_folder
 
     writable_folder(out)
-    with progress() as tell:
+    with progress_reporter() as tell:
         fit = api.identify(
-            api.load_trial(trial, _own(model)),
+            api.load_trial(trial, _own_model(model)),
             seed=seed,
-            progress=tell,
+            report_progress=tell,
             intervals=intervals,
             choose=choose,
             compare=compare,
         )
         tell("report")
-        page = api.save(fit, out)
+        page = api.save_fit(fit, out)
     print_fit(fit)
     write_json(json, lambda: _fit_json(fit))
     print(f"report: {page}")
@@ -148,7 +157,7 @@ def follow(
     source: Annotated[
         str | None, typer.Option("--source", metavar="KIND", help="file, stdin, udp, or nmea- before them.")
     ] = None,
-    model: OwnModel = None,
+    model: OwnModelPath = None,
     json: Json = None,
     seed: Seed = 0,
 ) -> None:
@@ -160,22 +169,22 @@ def follow(
     """
     from seatrial import api
     from seatrial.core.values.files import writable_folder
-    from seatrial.data.trial.follow_table import fed_from, followed
+    from seatrial.data.trial.follow_table import require_stream, with_source
 
     if out is not None:
         writable_folder(out)
-    asked = api.load_trial(trial, _own(model))
-    asked = asked if source is None else fed_from(asked, source)
-    port = page if page is not None else followed(asked).page or None
-    with stopping() as stop, watching(heading_of(asked), port) as show, progress() as tell:
+    asked = api.load_trial(trial, _own_model(model))
+    asked = asked if source is None else with_source(asked, source)
+    port = page if page is not None else require_stream(asked).page_port or None
+    with stop_on_signal() as stop, live_display(stream_heading(asked), port) as show, progress_reporter() as tell:
         outcome = api.follow(
             asked,
             once=once,
-            journal=journal_place(journal, asked, out, once=once),
+            journal=journal_path(journal, asked, out, once=once),
             show=show,
             stop=stop,
             seed=seed,
-            progress=tell,
+            report_progress=tell,
         )
     print_outcome(outcome)
     if outcome.fit is not None:
@@ -189,10 +198,10 @@ def follow(
 def design(
     trial: TrialPath,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where report, orders, plan and design.json go.")],
-    prior: Annotated[
+    model_path: Annotated[
         Path | None, typer.Option("--from", metavar="MODEL.toml", help="Design for what identify found before.")
     ] = None,
-    model: OwnModel = None,
+    model: OwnModelPath = None,
     json: Json = None,
     seed: Seed = 0,
 ) -> None:
@@ -206,11 +215,11 @@ def design(
     from seatrial.core.values.files import writable_folder
 
     writable_folder(out)
-    own = _own(model)
+    own = _own_model(model)
     asked = api.load_trial(trial, own)
-    known = None if prior is None else api.load_model(prior, own)
-    with progress() as tell:
-        found = api.design(asked, seed=seed, progress=tell, prior=known)
+    known = None if model_path is None else api.load_model(model_path, own)
+    with progress_reporter() as tell:
+        found = api.design(asked, seed=seed, report_progress=tell, prior_model=known)
         tell("report")
         page = api.save_design(found, out)
     print_design(found)
@@ -225,10 +234,10 @@ def tune(
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Where report, gains, loop and tuning.json go.")
     ] = None,
-    known: Annotated[
+    model_path: Annotated[
         Path | None, typer.Option("--from", metavar="MODEL.toml", help="The ship: takes the place of plant.model.")
     ] = None,
-    model: OwnModel = None,
+    model: OwnModelPath = None,
     json: Json = None,
     seed: Seed = 0,
 ) -> None:
@@ -243,8 +252,8 @@ def tune(
 
     if out is not None:
         writable_folder(out)
-    with progress() as tell:
-        found = api.tune(api.load_loop(loop, _own(model), known), seed=seed, progress=tell)
+    with progress_reporter() as tell:
+        found = api.tune(api.load_loop(loop, _own_model(model), model_path), seed=seed, report_progress=tell)
         if out is not None:
             tell("report")
             api.save_tuning(found, out)
@@ -271,11 +280,11 @@ def simulate(
     ] = None,
     speed: Annotated[float | None, typer.Option(help="Approach speed, m/s; default: where surge balances.")] = None,
     duration: Annotated[float | None, typer.Option(help="s at most.")] = None,
-    constant: Annotated[
+    constant_inputs: Annotated[
         list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A constant input in SI units.")
     ] = None,
     rudder_rate: Annotated[float | None, typer.Option(help="deg/s; default: SOLAS's at the ship's scale.")] = None,
-    model: OwnModel = None,
+    model: OwnModelPath = None,
     json: Json = None,
     seed: Seed = 0,
 ) -> None:
@@ -288,18 +297,18 @@ def simulate(
     from seatrial import api
     from seatrial.core.values import InputError
     from seatrial.core.values.files import writable_folder
-    from seatrial.data.read import read_table, write_record
+    from seatrial.data.read import read_record_csv, write_record_csv
 
     if (manoeuvre is None) == (inputs is None):
         raise InputError("give either --manoeuvre or --inputs")
-    file = api.load_model(model_file, _own(model))
+    file = api.load_model(model_file, _own_model(model))
     writable_folder(out.parent)
     measured, intervals = None, {}
     if inputs is not None:
-        measured = read_table(Path(inputs)) if trial is None else api.run_of(trial, inputs)
+        measured = read_record_csv(Path(inputs)) if trial is None else api.prepared_run(trial, inputs)
         record = api.replay(file, measured, speed)
     else:
-        held = dict(_pair(text) for text in constant or [])
+        held = dict(_name_and_value(text) for text in constant_inputs or [])
         steer = api.steering(
             file,
             manoeuvre or "",
@@ -314,12 +323,12 @@ def simulate(
             intervals = api.measure_intervals(file, steer)
         except InputError as error:
             print(f"seatrial: {error}", file=sys.stderr)
-    write_record(record, out)
+    write_record_csv(record, out)
     like = measured if measured is not None and "psi" in measured else None
     measures = api.measures(file, record, like) if "psi" in record else {}
     reach = api.extrapolation(file, record)
     print_measures(measures, intervals, reach)
-    rms = {} if measured is None else api.differences(measured, record)
+    rms = {} if measured is None else api.rms_differences(measured, record)
     if measured is not None and rms:
         print(f"against {measured.name}: rms {', '.join(f'{name} {value:.3g}' for name, value in rms.items())}")
     write_json(
@@ -339,7 +348,7 @@ def simulate(
 @app.command()
 def report(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Result folder.")],
-    model: OwnModel = None,
+    model: OwnModelPath = None,
     json: Json = None,
     seed: Seed = 0,  # noqa: ARG001
 ) -> None:
@@ -349,7 +358,7 @@ def report(
     """
     from seatrial import api
 
-    fit = api.load_fit(folder, _own(model))
+    fit = api.load_fit(folder, _own_model(model))
     page = api.report(fit, folder / "report.html")
     write_json(json, lambda: _fit_json(fit))
     print(f"report: {page}")
@@ -369,8 +378,8 @@ def demo(
     from seatrial.core.values.files import writable_folder
 
     writable_folder(out)
-    with progress() as tell:
-        fit = api.demo(out, seed=seed, progress=tell)
+    with progress_reporter() as tell:
+        fit = api.demo(out, seed=seed, report_progress=tell)
     print_fit(fit)
     write_json(json, lambda: _fit_json(fit))
     print(f"report: {out / 'report.html'}")
@@ -393,8 +402,8 @@ def reproduce(
 
     if out is not None:
         writable_folder(out)
-    with progress() as tell:
-        made = api.reproduce(study, quick=quick, seed=seed, progress=tell)
+    with progress_reporter() as tell:
+        made = api.reproduce(study, quick=quick, seed=seed, report_progress=tell)
         page = None if out is None else api.save_study(made, out)
     print_study(made)
     write_json(json, made.as_table)
@@ -402,7 +411,7 @@ def reproduce(
         print(f"report: {page}")
 
 
-def _own(path: Path | None) -> "Model | None":
+def _own_model(path: Path | None) -> "Model | None":
     if path is None:
         return None
     from seatrial.physics.models import model_from_file
@@ -410,7 +419,7 @@ def _own(path: Path | None) -> "Model | None":
     return model_from_file(path)
 
 
-def _pair(text: str) -> tuple[str, float]:
+def _name_and_value(text: str) -> tuple[str, float]:
     from seatrial.core.values import InputError
 
     name, equals, value = text.partition("=")
@@ -428,13 +437,13 @@ def _fit_json(fit: "Fit") -> dict[str, Any]:
     return fit_json(fit)
 
 
-def _design_json(found: "Design") -> dict[str, Any]:
+def _design_json(result: "Design") -> dict[str, Any]:
     from seatrial.data.folder.design_json import design_json
 
-    return design_json(found)
+    return design_json(result)
 
 
-def _tuning_json(found: "Tuning") -> dict[str, Any]:
+def _tuning_json(tuning: "Tuning") -> dict[str, Any]:
     from seatrial.data.folder.tuning_json import tuning_json
 
-    return tuning_json(found)
+    return tuning_json(tuning)

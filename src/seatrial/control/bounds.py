@@ -4,10 +4,10 @@ import contextlib
 from dataclasses import replace
 from importlib.util import find_spec
 
-from seatrial.control.quadratic import quadratic_bound, with_tails
-from seatrial.control.task import Seaway, Task
+from seatrial.control.quadratic import quadratic_bound, rational_spectrum
+from seatrial.control.task import Seaway, TuningTask
 from seatrial.control.youla import NoBound, youla_bound
-from seatrial.core.results.tuning import Bound
+from seatrial.core.results.tuning import PerformanceBound
 from seatrial.core.values import Array
 from seatrial.physics.loops import TransferLoop
 
@@ -17,7 +17,7 @@ def is_available() -> bool:
     return find_spec("cvxpy") is not None
 
 
-def bounds(task: Task, loop: TransferLoop, gains: Array) -> tuple[Bound, ...]:
+def bounds(task: TuningTask, loop: TransferLoop, gains: Array) -> tuple[PerformanceBound, ...]:
     """Bounds against the controller `gains` (g,) of `loop`, in the first sea of the task.
 
     Where cvxpy is installed the convex one in the sea itself, and in a rational spectrum fitted to it: one without
@@ -28,23 +28,23 @@ def bounds(task: Task, loop: TransferLoop, gains: Array) -> tuple[Bound, ...]:
     Raises:
         InputError: the loop is unstable with these gains.
     """
-    sea = next((met for met in task.met if isinstance(met, Seaway)), None)
+    sea = next((met for met in task.disturbances if isinstance(met, Seaway)), None)
     if sea is None or task.demand is not None:
         return ()
-    met, peak = sea.exposure(loop), task.restriction.peak
+    met, peak = sea.exposure(loop), task.constraints.Ms
 
-    def in_the_sea() -> Bound:
+    def in_the_sea() -> PerformanceBound:
         return youla_bound(loop, met, gains, peak)
 
-    def with_its_tails() -> Bound:
-        made = youla_bound(loop, with_tails(met, loop.disturbance)[0], gains, peak)
+    def in_rational_spectrum() -> PerformanceBound:
+        made = youla_bound(loop, rational_spectrum(met, loop.disturbance)[0], gains, peak)
         return replace(made, name=f"{made.name}, waves with tails")
 
-    def known() -> Bound:
+    def quadratic() -> PerformanceBound:
         return quadratic_bound(loop, met, gains)
 
-    made: list[Bound] = []
-    for one in (in_the_sea, with_its_tails, known) if is_available() else (known,):
+    made: list[PerformanceBound] = []
+    for one in (in_the_sea, in_rational_spectrum, quadratic) if is_available() else (quadratic,):
         with contextlib.suppress(NoBound):
             made.append(one())
     return tuple(made)

@@ -4,57 +4,60 @@ import math
 
 import numpy as np
 
-from seatrial.control.assess import Assessed, Judge, beyond
+from seatrial.control.gain_evaluation import GainEvaluation, GainEvaluator, exceedance_share
 from seatrial.core.results.tuning import Component, Controller
 from seatrial.core.values import Array
 from seatrial.physics.loops import TransferLoop, margins
-from seatrial.physics.loops.margins import band
+from seatrial.physics.loops.margins import frequency_band
 
 _POINTS = 400
 
 
-def controller(judge: Judge, name: str, gains: Array) -> Controller:
+def describe_controller(evaluator: GainEvaluator, name: str, gains: Array) -> Controller:
     """Everything linear theory says of gains (g,) in what the task meets; the frailest speed gives the margins."""
-    made = judge.of(gains[None])
-    loops = [judge.task.loop_at(met.U, judge.loop).with_gains(gains) for met in judge.task.met]
-    frailest = max(loops, key=lambda loop: margins(loop).peak)
+    made = evaluator.evaluate(gains[None])
+    loops = [evaluator.task.loop_at(met.U, evaluator.loop).with_gains(gains) for met in evaluator.task.disturbances]
+    frailest = max(loops, key=lambda loop: margins(loop).Ms)
     found = margins(frailest)
     rms = np.sqrt(made.variances[0].mean(axis=0))
-    omega = np.geomspace(*band(frailest), _POINTS)
-    limits = judge.task.restriction
+    omega = np.geomspace(*frequency_band(frailest), _POINTS)
+    limits = evaluator.task.constraints
     return Controller(
         name=name,
-        gains=dict(zip(judge.loop.gains.names, gains.tolist(), strict=True)),
+        gains=dict(zip(evaluator.loop.gains.names, gains.tolist(), strict=True)),
         objectives=made.objectives[0],
         rms=dict(zip(("output", "actuator", "actuator_rate"), rms.tolist(), strict=True)),
-        reduction=math.nan if judge.task.demand else 1.0 - float(rms[0]) / math.sqrt(judge.uncontrolled),
-        peak=found.peak,
+        reduction=math.nan
+        if evaluator.task.demand
+        else 1.0 - float(rms[0]) / math.sqrt(evaluator.uncontrolled_variance),
+        Ms=found.Ms,
         gain_margin=found.gain,
         phase_margin=found.phase,
         delay_margin=found.delay,
         damping=found.damping,
-        saturation=beyond(limits.limit, float(made.variances[0, :, 1].max())),
-        rate_saturation=beyond(limits.rate, float(made.variances[0, :, 2].max())),
-        broken=broken(judge, made),
+        saturation=exceedance_share(limits.limit, float(made.variances[0, :, 1].max())),
+        rate_saturation=exceedance_share(limits.rate, float(made.variances[0, :, 2].max())),
+        violated=violated_restrictions(evaluator, made),
         omega=omega,
-        open_loop=frailest.open(omega),
+        open_loop=frailest.open_loop(omega),
     )
 
 
-def broken(judge: Judge, made: Assessed) -> tuple[str, ...]:
+def violated_restrictions(evaluator: GainEvaluator, evaluation: GainEvaluation) -> tuple[str, ...]:
     """Restrictions that the first of some gains does not keep, in words."""
-    if not math.isfinite(made.peak[0]):
+    if not math.isfinite(evaluation.Ms[0]):
         return ("stability: the closed loop is unstable",)
-    limits, worst = judge.task.restriction, made.variances[0].max(axis=0)
+    limits, worst = evaluator.task.constraints, evaluation.variances[0].max(axis=0)
     said = []
-    if made.excess[0, 0] > 1e-9:
-        said.append(f"Ms {made.peak[0]:.3g} where {limits.peak:.3g} is allowed")
+    if evaluation.excess[0, 0] > 1e-9:
+        said.append(f"Ms {evaluation.Ms[0]:.3g} where {limits.Ms:.3g} is allowed")
     for i, (what, limit, share) in enumerate(
         (("angle", limits.limit, limits.saturation), ("rate", limits.rate, limits.rate_saturation)), start=1
     ):
-        if made.excess[0, i] > 1e-9:
+        if evaluation.excess[0, i] > 1e-9:
             said.append(
-                f"{100.0 * beyond(limit, float(worst[i])):.0f} % of the actuator's {what} amplitudes beyond its limit "
+                f"{100.0 * exceedance_share(limit, float(worst[i])):.0f} % of the actuator's {what} "
+                "amplitudes beyond its limit "
                 f"where {100.0 * share:.0f} % are allowed"
             )
     return tuple(said)

@@ -6,37 +6,47 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import expm
 
-from seatrial.control.ship.fleet import DRAWS, fleet, robust
-from seatrial.control.ship.stand_in import stand_in
-from seatrial.control.task import Demand, Task, Vessel
-from seatrial.core.results.tuning import Manoeuvre
-from seatrial.core.values import NOTATION, Array, Channel, DivergedError, InputError, Kind, Provenance, Record, frozen
+from seatrial.control.ship.parameter_draws import DRAWS, draw_parameters, stable_draws
+from seatrial.control.ship.plant_as_model import plant_as_model
+from seatrial.control.task import Demand, TrimmedShip, TuningTask
+from seatrial.core.results.tuning import ManoeuvreResponse
+from seatrial.core.values import (
+    NOTATION,
+    Array,
+    Channel,
+    DivergedError,
+    InputError,
+    Provenance,
+    Record,
+    RecordKind,
+    frozen,
+)
 from seatrial.physics.loops import TransferLoop
 from seatrial.physics.loops.autopilot import mean_pole
 from seatrial.physics.simulate.closed_loop import REFERENCE, ActuatorLimits, ClosedLoop
 
 DEMAND = "demand"
-_SHOWN, _SAMPLES = 20, 1000
-_FEWEST, _MOST, _FINE = 1000, 20_000, 0.2
-_WITHIN = 0.05
+_SHOWN_DRAWS, _SAMPLES = 20, 1000
+_FEWEST_STEPS, _MOST_STEPS, _STEP_SHARE = 1000, 20_000, 0.2
+_SETTLING_BAND = 0.05
 _LEGS = 4
-_NAMES = {"psi": "course change", "u": "speed change"}
+_CHANGE_NAMES = {"psi": "course change", "u": "speed change"}
 
 
 @dataclass(frozen=True, eq=False)
 class _Programme:
-    """A demand (n,) and what the loop follows (n,), about the trim, every dt; its steps are at the samples `begun`."""
+    """A demand (n,) and what the loop follows (n,), about the trim, every dt; its steps at `step_samples`."""
 
     name: str
     dt: float
     demand: Array
     reference: Array
-    begun: tuple[int, ...]
+    step_samples: tuple[int, ...]
 
 
-def manoeuvres(
-    task: Task, loop: TransferLoop, name: str, gains: Array, seed: int, draws: int = DRAWS
-) -> tuple[Manoeuvre, ...]:
+def simulate_manoeuvres(
+    task: TuningTask, loop: TransferLoop, name: str, gains: Array, seed: int, draws: int = DRAWS
+) -> tuple[ManoeuvreResponse, ...]:
     """The task's change of the output, and a zigzag about the trim of half of it to either side, with the gains (g,).
 
     Ships are drawn from the covariance of the fit; one that has no trim counts as not stable. Where one is not, or
@@ -47,18 +57,18 @@ def manoeuvres(
         InputError: the task has no demand.
         DivergedError: the loop runs away on the identified ship itself.
     """
-    demand = _demanded(task)
-    ship = task.vessel or stand_in(loop)
-    drawn = fleet(ship, draws, seed)
-    stable = drawn.stable(loop, gains)
-    limits = ActuatorLimits(task.restriction.limit, task.restriction.rate)
+    demand = _required_demand(task)
+    ship = task.trimmed_ship or plant_as_model(loop)
+    drawn = draw_parameters(ship, draws, seed)
+    stable = drawn.stable_ships(loop, gains)
+    limits = ActuatorLimits(task.constraints.limit, task.constraints.rate)
     return tuple(
-        _carried_out(one, ship, loop, name, gains, limits, drawn.ships, (sum(stable), drawn.draws))
+        _simulate_manoeuvre(one, ship, loop, name, gains, limits, drawn.ships, (sum(stable), drawn.draws))
         for one in _programmes(task, loop, gains, demand)
     )
 
 
-def shortfall(task: Task, loop: TransferLoop, gains: Array, *, draws: int = DRAWS) -> tuple[float, str]:
+def shortfall(task: TuningTask, loop: TransferLoop, gains: Array, *, draws: int = DRAWS) -> tuple[float, str]:
     """How far the gains (g,) are from following the task's change, to be compared, and why; 0 and nothing if they do.
 
     Every ship drawn is to be stable; the identified one settles within 5 % and overshoots no more than allowed.
@@ -66,11 +76,11 @@ def shortfall(task: Task, loop: TransferLoop, gains: Array, *, draws: int = DRAW
     Raises:
         InputError: the task has no demand.
     """
-    asked = _demanded(task)
-    stable, drawn = robust(task, gains, loop, draws=draws)
+    asked = _required_demand(task)
+    stable, drawn = stable_draws(task, gains, loop, draws=draws)
     lost = drawn - stable
     try:
-        change = manoeuvres(task, loop, "", gains, 0, draws=0)[0]
+        change = simulate_manoeuvres(task, loop, "", gains, 0, draws=0)[0]
     except DivergedError:
         return 100.0 + lost, "the identified ship runs away"
     beyond = max(change.overshoot - asked.overshoot, 0.0)
@@ -81,8 +91,8 @@ def shortfall(task: Task, loop: TransferLoop, gains: Array, *, draws: int = DRAW
     return lost + float(is_slow) + beyond, " and ".join(why)
 
 
-def follow(
-    ship: Vessel, loop: TransferLoop, gains: Array, limits: ActuatorLimits, dt: float, reference: Array
+def simulate_tracking(
+    ship: TrimmedShip, loop: TransferLoop, gains: Array, limits: ActuatorLimits, dt: float, reference: Array
 ) -> tuple[Array, Array]:
     """Output and actuator (n,), notation's signs, of a ship that follows a reference (n,) about her trim.
 
@@ -91,7 +101,7 @@ def follow(
     """
     model = ship.model
     place, of = model.states.index(ship.output), model.input_names.index(ship.actuator)
-    sign = -1.0 if model.inputs[of].is_turned else 1.0
+    sign = -1.0 if model.inputs[of].is_reversed else 1.0
     made = ClosedLoop(model, loop, gains, dt, ship.actuator, "", ship.output, ship.state, ship.inputs)
     states, moved = made.run(np.zeros(len(reference)), limits, ship.state[place] + reference)
     return states[:, place], sign * ship.inputs[of] + moved
@@ -115,93 +125,103 @@ def reference_model(demand: Array, dt: float, time_constant: float, rate: float 
     return made
 
 
-def overshoot(output: Array, demand: Array, begun: tuple[int, ...]) -> float:
+def relative_overshoot(output: Array, demand: Array, step_samples: tuple[int, ...]) -> float:
     """Largest share of a step of the demand by which the output exceeds it before the next, 0 or more; all (n,)."""
     worst = 0.0
-    for first, last in zip(begun, (*begun[1:], len(demand)), strict=True):
+    for first, last in zip(step_samples, (*step_samples[1:], len(demand)), strict=True):
         step = demand[first] - (demand[first - 1] if first else 0.0)
         worst = max(worst, float(np.max((output[first:last] - demand[first]) / step)))
     return worst
 
 
-def settling(output: Array, demand: Array, begun: tuple[int, ...], dt: float) -> float:
+def settling_time(output: Array, demand: Array, step_samples: tuple[int, ...], dt: float) -> float:
     """s from a step of the demand until the output stays within 5 % of it, the slowest; NaN if one never does."""
     slowest = 0.0
-    for first, last in zip(begun, (*begun[1:], len(demand)), strict=True):
+    for first, last in zip(step_samples, (*step_samples[1:], len(demand)), strict=True):
         step = abs(demand[first] - (demand[first - 1] if first else 0.0))
-        outside = np.flatnonzero(np.abs(output[first:last] - demand[first]) > _WITHIN * step)
+        outside = np.flatnonzero(np.abs(output[first:last] - demand[first]) > _SETTLING_BAND * step)
         if outside.size and outside[-1] == last - first - 1:
             return math.nan
         slowest = max(slowest, (outside[-1] + 1) * dt if outside.size else 0.0)
     return slowest
 
 
-def _demanded(task: Task) -> Demand:
+def _required_demand(task: TuningTask) -> Demand:
     if task.demand is None:
         raise InputError(f"tuning '{task.name}' follows no demand; give a change")
     return task.demand
 
 
-def _programmes(task: Task, loop: TransferLoop, gains: Array, demand: Demand) -> tuple[_Programme, ...]:
-    fastest = float(np.abs(loop.with_gains(gains).closed_poles).max(initial=1e-6))
-    count = int(np.clip(math.ceil(demand.duration * fastest / _FINE), _FEWEST, _MOST))
-    dt, rate = demand.duration / count, _rate(task, loop, demand)
+def _programmes(task: TuningTask, loop: TransferLoop, gains: Array, demand: Demand) -> tuple[_Programme, ...]:
+    fastest = float(np.abs(loop.with_gains(gains).closed_loop_poles).max(initial=1e-6))
+    count = int(np.clip(math.ceil(demand.duration * fastest / _STEP_SHARE), _FEWEST_STEPS, _MOST_STEPS))
+    dt, rate = demand.duration / count, _reference_rate(task, loop, demand)
     change, zigzag = np.full(count + 1, demand.change), np.empty(count + 1)
     change[0] = 0.0
     begun = tuple(max(1, count * leg // _LEGS) for leg in range(_LEGS))
     zigzag[0] = 0.0
     for leg, first in enumerate(begun):
         zigzag[first:] = 0.5 * demand.change * (-1.0) ** leg
-    made = ((_NAMES.get(loop.output, f"change of {loop.output}"), change, (1,)), ("zigzag", zigzag, begun))
+    made = ((_CHANGE_NAMES.get(loop.output, f"change of {loop.output}"), change, (1,)), ("zigzag", zigzag, begun))
     return tuple(
         _Programme(name, dt, steps, reference_model(steps, dt, demand.time_constant, rate), legs)
         for name, steps, legs in made
     )
 
 
-def _rate(task: Task, loop: TransferLoop, demand: Demand) -> float:
+def _reference_rate(task: TuningTask, loop: TransferLoop, demand: Demand) -> float:
     """Rate of the output that half the actuator's limit keeps up, at the mean of the plant's poles or more slowly."""
     omega = 1.0 / demand.time_constant
     if np.any(loop.plant.poles != 0.0):
         omega = min(omega, mean_pole(loop.plant))
-    return 0.5 * task.restriction.limit * omega * float(np.abs(loop.plant.at(np.array([omega])))[0])
+    return 0.5 * task.constraints.limit * omega * float(np.abs(loop.plant.frequency_response(np.array([omega])))[0])
 
 
-def _carried_out(
-    asked: _Programme, ship: Vessel, loop: TransferLoop, controller: str, gains: Array, limits: ActuatorLimits,
-    drawn: tuple[Vessel, ...], stable: tuple[int, int],
-) -> Manoeuvre:  # fmt: skip
+def _simulate_manoeuvre(
+    programme: _Programme, ship: TrimmedShip, loop: TransferLoop, controller: str, gains: Array, limits: ActuatorLimits,
+    drawn_ships: tuple[TrimmedShip, ...], stable_and_drawn: tuple[int, int],
+) -> ManoeuvreResponse:  # fmt: skip
     trim = _trim(ship)
-    output, moved = follow(ship, loop, gains, limits, asked.dt, asked.reference)
-    answers = [_answer(one, loop, gains, limits, asked) for one in drawn]
-    is_lost = stable[0] < stable[1] or any(a is None for a in answers)
-    worst = max((overshoot(a, asked.demand, asked.begun) for a in answers if a is not None), default=math.nan)
+    output, moved = simulate_tracking(ship, loop, gains, limits, programme.dt, programme.reference)
+    answers = [_output_about_trim(one, loop, gains, limits, programme) for one in drawn_ships]
+    is_lost = stable_and_drawn[0] < stable_and_drawn[1] or any(a is None for a in answers)
+    worst = max(
+        (relative_overshoot(a, programme.demand, programme.step_samples) for a in answers if a is not None),
+        default=math.nan,
+    )
     every = math.ceil(len(output) / _SAMPLES)
-    shown = [trim + a[::every] for a in answers if a is not None][:_SHOWN]
+    shown = [trim + a[::every] for a in answers if a is not None][:_SHOWN_DRAWS]
     drawn_answers = np.array(shown).reshape(len(shown), len(output[::every]))
-    series = {loop.output: output, loop.actuator: moved, REFERENCE: trim + asked.reference, DEMAND: trim + asked.demand}
-    return Manoeuvre(
-        name=asked.name,
+    series = {
+        loop.output: output,
+        loop.actuator: moved,
+        REFERENCE: trim + programme.reference,
+        DEMAND: trim + programme.demand,
+    }
+    return ManoeuvreResponse(
+        name=programme.name,
         controller=controller,
-        record=_record(f"{asked.name}, {controller}", asked.dt * every, series, loop, every),
+        record=_record(f"{programme.name}, {controller}", programme.dt * every, series, loop, every),
         output=loop.output,
-        overshoot=overshoot(output - trim, asked.demand, asked.begun),
-        settling=settling(output - trim, asked.demand, asked.begun, asked.dt),
-        stable_draws=stable[0],
-        draws=stable[1],
+        overshoot=relative_overshoot(output - trim, programme.demand, programme.step_samples),
+        settling=settling_time(output - trim, programme.demand, programme.step_samples, programme.dt),
+        stable_draws=stable_and_drawn[0],
+        draws=stable_and_drawn[1],
         worst_overshoot=math.inf if is_lost else worst,
-        drawn=frozen(drawn_answers),
+        sampled_outputs=frozen(drawn_answers),
     )
 
 
-def _trim(ship: Vessel) -> float:
+def _trim(ship: TrimmedShip) -> float:
     return float(ship.state[ship.model.states.index(ship.output)])
 
 
-def _answer(ship: Vessel, loop: TransferLoop, gains: Array, limits: ActuatorLimits, asked: _Programme) -> Array | None:
+def _output_about_trim(
+    ship: TrimmedShip, loop: TransferLoop, gains: Array, limits: ActuatorLimits, programme: _Programme
+) -> Array | None:
     """Output about the trim (n,); None where the ship runs away."""
     try:
-        return follow(ship, loop, gains, limits, asked.dt, asked.reference)[0] - _trim(ship)
+        return simulate_tracking(ship, loop, gains, limits, programme.dt, programme.reference)[0] - _trim(ship)
     except InputError:
         return None
 
@@ -211,7 +231,7 @@ def _record(name: str, dt: float, series: dict[str, Array], loop: TransferLoop, 
     for symbol, values in series.items():
         like = loop.output if symbol in (REFERENCE, DEMAND) else symbol
         some = frozen(np.ascontiguousarray(values[::every]))
-        channels[symbol] = Channel.of(like, some) if like in NOTATION else Channel(some, "1", "none", "none")
+        channels[symbol] = Channel.from_notation(like, some) if like in NOTATION else Channel(some, "1", "none", "none")
     count = len(next(iter(channels.values())).values)
     said = Provenance(f"loop '{loop.name}' following a demand")
-    return Record(name, frozen(dt * np.arange(count)), channels, Kind.SIMULATED, provenance=said)
+    return Record(name, frozen(dt * np.arange(count)), channels, RecordKind.SIMULATED, provenance=said)

@@ -12,19 +12,25 @@ import numpy as np
 from scipy.linalg import block_diag, solve_continuous_are, solve_continuous_lyapunov
 from scipy.optimize import brentq, least_squares
 
-from seatrial.control.youla import NoBound, Reference, positive, reference, refuse_unbounded
-from seatrial.core.results.tuning import Bound
+from seatrial.control.youla import (
+    NoBound,
+    ReferenceVariances,
+    reference_variances,
+    refuse_unbounded,
+    without_negative_energy,
+)
+from seatrial.core.results.tuning import PerformanceBound
 from seatrial.core.values import Array
-from seatrial.physics.loops import Block, Exposure, TransferLoop, in_series
-from seatrial.physics.loops.exposure import over_nodes
-from seatrial.physics.loops.state_space import canonical
+from seatrial.physics.loops import Block, EncounterSpectrum, TransferLoop, in_series
+from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
+from seatrial.physics.loops.state_space import controllable_form
 
 _FIT, _SPAN = 800, 30.0
-_REACH = 100.0
+_TAIL_FACTOR = 100.0
 
 
 @dataclass(frozen=True)
-class Shaping:
+class ShapingFilter:
     """A filter from white noise to the disturbance; its one-sided density is |F(j omega)|^2.
 
     misfit: largest share of the uncontrolled output's variance that the fit puts out of place in a band.
@@ -35,17 +41,17 @@ class Shaping:
 
     def density(self, omega: Array) -> Array:
         """One-sided, unit^2 s/rad."""
-        return np.abs(self.block.at(omega)) ** 2
+        return np.abs(self.block.frequency_response(omega)) ** 2
 
 
-def with_tails(exposure: Exposure, response: Block) -> tuple[Exposure, Shaping]:
+def rational_spectrum(exposure: EncounterSpectrum, response: Block) -> tuple[EncounterSpectrum, ShapingFilter]:
     """The sea of a rational spectrum fitted to the exposure, and its filter; `response`: from there to the output."""
-    shaping, mean = fitted(exposure, response), _mean_frequency(exposure, response)
-    said = f"{exposure.said}, rational fit with tails ({100.0 * shaping.misfit:.1f} % of the energy misplaced)"
-    return over_nodes(shaping.density, mean / _REACH, mean * _REACH, response, said), shaping
+    shaping, mean = fit_shaping_filter(exposure, response), _mean_frequency(exposure, response)
+    said = f"{exposure.description}, rational fit with tails ({100.0 * shaping.misfit:.1f} % of the energy misplaced)"
+    return disturbance_spectrum(shaping.density, mean / _TAIL_FACTOR, mean * _TAIL_FACTOR, response, said), shaping
 
 
-def quadratic_bound(loop: TransferLoop, exposure: Exposure, gains: Array) -> Bound:
+def quadratic_bound(loop: TransferLoop, exposure: EncounterSpectrum, gains: Array) -> PerformanceBound:
     """Output variance of full-information LQ over that of `gains` (g,), at equal actuator-rate variance.
 
     Both in the sea of a rational spectrum fitted to the exposure, whose misfit the note states. Spectra that vanish
@@ -56,81 +62,87 @@ def quadratic_bound(loop: TransferLoop, exposure: Exposure, gains: Array) -> Bou
         InputError: unstable gains; NoBound for a plant that is not stable, or where no weight gives that rate.
     """
     refuse_unbounded(loop)
-    sea, shaping = with_tails(exposure, loop.disturbance)
-    held = reference(loop, sea, gains)
+    sea, shaping = rational_spectrum(exposure, loop.disturbance)
+    held = reference_variances(loop, sea, gains)
     least = full_information(loop.plant, loop.disturbance, shaping.block, held)
     note = (
         "For context, not attainable: state feedback that knows ship, fins and waves exactly and keeps no margin (LQ). "
         f"Waves are a filter of order {shaping.block.order} fitted to the spectrum."
     )
-    return Bound("everything known", least / held.output, f"equal rate energy of the actuator; {sea.said}", note)
+    return PerformanceBound(
+        "everything known", least / held.output, f"equal rate energy of the actuator; {sea.description}", note
+    )
 
 
-def fitted(exposure: Exposure, response: Block) -> Shaping:
+def fit_shaping_filter(exposure: EncounterSpectrum, response: Block) -> ShapingFilter:
     """g s^2 / two sections of second order, by the cumulated energies of the response and of its rate."""
-    exposure = positive(exposure)
+    exposure = without_negative_energy(exposure)
     mean = _mean_frequency(exposure, response)
     omega = np.geomspace(mean / _SPAN, mean * _SPAN, _FIT)
-    true = np.concatenate([_cumulated(exposure, response, omega, power) for power in (0, 2)])
-    through = np.abs(response.at(omega)) ** 2
+    true = np.concatenate([_cumulative_energy(exposure, response, omega, power) for power in (0, 2)])
+    through = np.abs(response.frequency_response(omega)) ** 2
     steps = np.gradient(omega)
 
     def shares(point: Array) -> Array:
-        energy = np.abs(_sections(point, 1.0).at(omega)) ** 2 * through * steps
-        return np.concatenate([_below(e) for e in (energy, omega**2 * energy)])
+        energy = np.abs(_shaping_block(point, 1.0).frequency_response(omega)) ** 2 * through * steps
+        return np.concatenate([_cumulative_share(e) for e in (energy, omega**2 * energy)])
 
     start = np.log([0.8 * mean, 0.2, 1.2 * mean, 0.3])
     edges = np.log([0.1 * mean, 0.01, 0.1 * mean, 0.01]), np.log([10.0 * mean, 2.0, 10.0 * mean, 2.0])
     best = least_squares(lambda p: shares(p) - true, start, bounds=edges)
     off = (shares(best.x) - true)[:_FIT]
-    unit = _sections(best.x, 1.0)
-    size = exposure.variance_of(response) / float(np.sum(np.abs(unit.at(omega)) ** 2 * through * steps))
-    return Shaping(_sections(best.x, math.sqrt(size)), float(max(off.max(), 0.0) - min(off.min(), 0.0)))
+    unit = _shaping_block(best.x, 1.0)
+    size = exposure.response_variance(response) / float(
+        np.sum(np.abs(unit.frequency_response(omega)) ** 2 * through * steps)
+    )
+    return ShapingFilter(_shaping_block(best.x, math.sqrt(size)), float(max(off.max(), 0.0) - min(off.min(), 0.0)))
 
 
-def _sections(point: Array, size: float) -> Block:
+def _shaping_block(point: Array, size: float) -> Block:
     a, za, b, zb = (float(v) for v in np.exp(point))
     one = Block("", (1.0, 0.0), (1.0, 2.0 * za * a, a**2))
     return in_series("waves", (one, Block("", (size, 0.0), (1.0, 2.0 * zb * b, b**2))))
 
 
-def _mean_frequency(exposure: Exposure, response: Block) -> float:
-    weight = exposure.energy * np.abs(response.at(exposure.omega_e)) ** 2
+def _mean_frequency(exposure: EncounterSpectrum, response: Block) -> float:
+    weight = exposure.energy * np.abs(response.frequency_response(exposure.omega_e)) ** 2
     return float(np.sum(weight * exposure.omega_e) / np.sum(weight))
 
 
-def _cumulated(exposure: Exposure, response: Block, omega: Array, power: int) -> Array:
+def _cumulative_energy(exposure: EncounterSpectrum, response: Block, omega: Array, power: int) -> Array:
     """Share of the response's energy, times omega^power, below each omega; nodes in order."""
     w = exposure.omega_e
-    energy = exposure.energy * np.abs(response.at(w)) ** 2 * w**power
-    return np.interp(omega, w, _below(energy), left=0.0, right=1.0)
+    energy = exposure.energy * np.abs(response.frequency_response(w)) ** 2 * w**power
+    return np.interp(omega, w, _cumulative_share(energy), left=0.0, right=1.0)
 
 
-def _below(energy: Array) -> Array:
+def _cumulative_share(energy: Array) -> Array:
     return (np.cumsum(energy) - 0.5 * energy) / energy.sum()
 
 
-def full_information(plant: Block, disturbance: Block, shaping: Block, held: Reference) -> float:
+def full_information(plant: Block, disturbance: Block, shaping: Block, reference: ReferenceVariances) -> float:
     """Least output variance at the rate variance held, by the weight of the rate in the cost.
 
     Raises:
         NoBound: no weight gives that rate.
     """
-    cost = _cost(plant, disturbance, shaping)
-    middle = math.log(held.output / held.rate)
+    cost = _variances_by_weight(plant, disturbance, shaping)
+    middle = math.log(reference.output / reference.rate)
 
     def off(log_weight: float) -> float:
-        return math.log(cost(math.exp(log_weight)).rate / held.rate)
+        return math.log(cost(math.exp(log_weight)).rate / reference.rate)
 
     for reach in (4.0, 8.0, 12.0, 16.0):
         if off(middle - reach) > 0.0 > off(middle + reach):
             return cost(math.exp(float(brentq(off, middle - reach, middle + reach, xtol=1e-9)))).output  # type: ignore[arg-type]
-    raise NoBound(f"no weight of the actuator's rate gives a variance of {held.rate:.3g} of it")
+    raise NoBound(f"no weight of the actuator's rate gives a variance of {reference.rate:.3g} of it")
 
 
-def _cost(plant: Block, disturbance: Block, shaping: Block) -> Callable[[float], Reference]:
+def _variances_by_weight(plant: Block, disturbance: Block, shaping: Block) -> Callable[[float], ReferenceVariances]:
     """Variances by the rate's weight; states of plant, disturbance, waves, actuator, of which the rate is ordered."""
-    (Ap, bp, cp, dp), (Ad, bd, cd, dd), (As, bs, cs, _) = (canonical(block) for block in (plant, disturbance, shaping))
+    (Ap, bp, cp, dp), (Ad, bd, cd, dd), (As, bs, cs, _) = (
+        controllable_form(block) for block in (plant, disturbance, shaping)
+    )
     A = block_diag(Ap, Ad, As, np.zeros((1, 1)))
     p, d, s = len(bp), len(bp) + len(bd), len(bp) + len(bd) + len(bs)
     A[:p, s], A[p:d, d:s] = bp, np.outer(bd, cs)
@@ -140,13 +152,13 @@ def _cost(plant: Block, disturbance: Block, shaping: Block) -> Callable[[float],
     noise[d:s] = math.sqrt(math.pi) * bs
     C = np.concatenate([cp, cd, dd * cs, [dp]])
 
-    def at(weight: float) -> Reference:
+    def variances_at(weight: float) -> ReferenceVariances:
         try:
             X = solve_continuous_are(A, B, np.outer(C, C), np.array([[weight]]))
         except np.linalg.LinAlgError as error:
             raise NoBound(f"the Riccati equation of the quadratic bound is not solved: {error}") from error
         K = (B.T @ X)[0] / weight
         V = solve_continuous_lyapunov(A - B * K, -np.outer(noise, noise))
-        return Reference(float(C @ V @ C), float(K @ V @ K))
+        return ReferenceVariances(float(C @ V @ C), float(K @ V @ K))
 
-    return at
+    return variances_at

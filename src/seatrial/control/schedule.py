@@ -7,104 +7,112 @@ from itertools import product
 
 import numpy as np
 
-from seatrial.control.assess import OUTPUT, Judge, beyond
-from seatrial.control.press import free_box, pressed, whole
-from seatrial.control.task import Plan, Seaway, Task
-from seatrial.core.results.tuning import Slot
+from seatrial.control.gain_evaluation import OUTPUT, GainEvaluator, exceedance_share
+from seatrial.control.gradient_refinement import all_gains, free_gain_bounds, refine_gains
+from seatrial.control.task import ScheduleGrid, Seaway, TuningTask
+from seatrial.core.results.tuning import OperatingPoint
 from seatrial.core.values import Array
 
-_SAMPLES, _STARTS, _ROUNDS, _NEAR = 4096, 3, 8, 1024
+_SAMPLES, _STARTS, _ROUNDS, _NEIGHBOURS = 4096, 3, 8, 1024
 
 
 @dataclass(frozen=True, eq=False)
-class Condition:
-    """One speed, heading and height, with the judge of its loop: least output variance."""
+class ScheduleCondition:
+    """One speed, heading and height, with the evaluator of its loop: least output variance."""
 
     U: float
     beta: float
     height: float
-    judge: Judge
+    evaluator: GainEvaluator
 
     def cost(self, gains: Array) -> Array:
         """Output rms over that without control, of the gains (n, g); infinite where unstable."""
-        return np.sqrt(self.judge.of(gains).objectives[:, 0] / self.judge.uncontrolled)
+        return np.sqrt(self.evaluator.evaluate(gains).objectives[:, 0] / self.evaluator.uncontrolled_variance)
 
 
-def conditions(task: Task, plan: Plan) -> tuple[Condition, ...]:
+def schedule_conditions(task: TuningTask, grid: ScheduleGrid) -> tuple[ScheduleCondition, ...]:
     """Every combination of the plan; the first seaway of the task gives spectrum, hull and spreading."""
-    sea = next(met for met in task.met if isinstance(met, Seaway))
+    sea = next(met for met in task.disturbances if isinstance(met, Seaway))
     made = []
-    for height, U, beta in product(plan.heights, plan.speeds, plan.headings):
-        met = replace(sea, spectrum=sea.spectrum.of_height(height), U=U, beta=beta)
-        made.append(Condition(U, beta, height, Judge(replace(task, met=(met,)), task.loop, (OUTPUT,))))
+    for height, U, beta in product(grid.heights, grid.speeds, grid.headings):
+        met = replace(sea, spectrum=sea.spectrum.with_height(height), U=U, beta=beta)
+        made.append(
+            ScheduleCondition(U, beta, height, GainEvaluator(replace(task, disturbances=(met,)), task.loop, (OUTPUT,)))
+        )
     return tuple(made)
 
 
 def schedule(
-    task: Task, plan: Plan, rivals: Mapping[str, Array], seed: int, tell: Callable[[str], None]
-) -> tuple[Slot, ...]:
-    """The best gains of each condition, and what `rivals` (name -> gains) and one set for all cost there.
+    task: TuningTask,
+    grid: ScheduleGrid,
+    baselines: Mapping[str, Array],
+    seed: int,
+    report_progress: Callable[[str], None],
+) -> tuple[OperatingPoint, ...]:
+    """The best gains of each condition, and what `baselines` (name -> gains) and one set for all cost there.
 
     "one for all" has the least mean cost of all sets that keep the restrictions in every condition.
     """
-    known = conditions(task, plan)
-    samples = _samples(known[0].judge, seed)
-    made, best, others = [], [], dict(rivals)
+    known = schedule_conditions(task, grid)
+    samples = _samples(known[0].evaluator, seed)
+    made, best, others = [], [], dict(baselines)
     for i, condition in enumerate(known):
-        best.append(_best_of(condition, samples))
-        tell(f"schedule: {i + 1} of {len(known)} conditions")
-    one = _one_for_all(known, samples, np.random.default_rng(seed))
+        best.append(_best_gains(condition, samples))
+        report_progress(f"schedule: {i + 1} of {len(known)} conditions")
+    one = _common_gains(known, samples, np.random.default_rng(seed))
     if one is not None:
         others["one for all"] = one
     for condition, gains in zip(known, best, strict=True):
-        judged = condition.judge.of(gains[None])
-        made.append(Slot(
+        judged = condition.evaluator.evaluate(gains[None])
+        made.append(OperatingPoint(
             condition.U, condition.beta, condition.height,
             dict(zip(task.loop.gains.names, gains.tolist(), strict=True)),
-            float(condition.cost(gains[None])[0]), float(judged.peak[0]),
-            beyond(task.restriction.limit, float(judged.variances[0, 0, 1])),
+            float(condition.cost(gains[None])[0]), float(judged.Ms[0]),
+            exceedance_share(task.constraints.limit, float(judged.variances[0, 0, 1])),
             {name: float(condition.cost(other[None])[0]) for name, other in others.items()},
             bool(judged.is_feasible[0]),
         ))  # fmt: skip
     return tuple(made)
 
 
-def _samples(judge: Judge, seed: int) -> Array:
+def _samples(evaluator: GainEvaluator, seed: int) -> Array:
     """Gains spread over their box, (n, g): Sobol points, half of them towards small gains."""
     from scipy.stats import qmc
 
-    _, (low, high) = free_box(judge)
+    _, (low, high) = free_gain_bounds(evaluator)
     unit = qmc.Sobol(len(low), seed=seed).random(_SAMPLES)
     unit[::2] **= 3.0
-    return whole(judge, low + unit * (high - low))
+    return all_gains(evaluator, low + unit * (high - low))
 
 
-def _one_for_all(known: tuple[Condition, ...], samples: Array, rng: np.random.Generator) -> Array | None:
+def _common_gains(conditions: tuple[ScheduleCondition, ...], samples: Array, rng: np.random.Generator) -> Array | None:
     """Gains (g,) of the least mean cost among those that keep the restrictions everywhere; None without any."""
-    places, (low, high) = free_box(known[0].judge)
+    places, (low, high) = free_gain_bounds(conditions[0].evaluator)
     best, least, tried = None, math.inf, samples
     for size in np.geomspace(0.1, 0.003, _ROUNDS):
-        total = np.mean([np.where(c.judge.of(tried).is_feasible, c.cost(tried), np.inf) for c in known], axis=0)
+        total = np.mean(
+            [np.where(c.evaluator.evaluate(tried).is_feasible, c.cost(tried), np.inf) for c in conditions], axis=0
+        )
         place = int(np.argmin(total))
         if total[place] < least:
             best, least = tried[place], float(total[place])
         if best is None:
             return None
-        steps = size * (high - low) * rng.standard_normal((_NEAR, len(places)))
-        tried = whole(known[0].judge, np.clip(best[places] + steps, low, high))
+        steps = size * (high - low) * rng.standard_normal((_NEIGHBOURS, len(places)))
+        tried = all_gains(conditions[0].evaluator, np.clip(best[places] + steps, low, high))
     return best
 
 
-def _best_of(condition: Condition, samples: Array) -> Array:
+def _best_gains(condition: ScheduleCondition, samples: Array) -> Array:
     """The best samples pressed against the restrictions; the least variance wins, (g,)."""
-    judge = condition.judge
-    judged = judge.of(samples)
+    judge = condition.evaluator
+    judged = judge.evaluate(samples)
     values = np.where(judged.is_feasible, judged.objectives[:, 0], np.inf)
-    places = free_box(judge)[0]
+    places = free_gain_bounds(judge)[0]
     if not np.isfinite(values).any():
         return samples[int(np.argmin(judged.excess.max(axis=1)))]
 
     tried = [samples[i] for i in np.argsort(values)[:_STARTS]]
-    tried += [whole(judge, pressed(judge, start[places])[None])[0] for start in tried]
-    judged = judge.of(np.array(tried))
+    tried += [all_gains(judge, refine_gains(judge, start[places])[None])[0] for start in tried]
+    judged = judge.evaluate(np.array(tried))
     return tried[int(np.argmin(np.where(judged.is_feasible, judged.objectives[:, 0], np.inf)))]

@@ -8,10 +8,10 @@ from enum import Enum
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.results.tuning import Restriction
-from seatrial.core.values import Array, InputError, display
-from seatrial.physics.loops import Exposure, HullFactor, Objective, TransferLoop, exposure
-from seatrial.physics.loops.exposure import over_nodes
+from seatrial.core.results.tuning import ControllerConstraints
+from seatrial.core.values import Array, InputError, display_unit
+from seatrial.physics.loops import EncounterSpectrum, HullFactor, Objective, TransferLoop, wave_slope_spectrum
+from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
 from seatrial.physics.sea.spectrum import Spectrum
 
 _UNDAMPED = 1e-9
@@ -27,12 +27,14 @@ class Seaway:
     hull: HullFactor | None = None
     spreading: float | None = None
 
-    def exposure(self, loop: TransferLoop) -> Exposure:
+    def exposure(self, loop: TransferLoop) -> EncounterSpectrum:
         """Effective wave slope [rad] that the loop meets."""
-        return exposure(self.spectrum, self.U, self.beta, loop.disturbance, self.hull, spreading=self.spreading)
+        return wave_slope_spectrum(
+            self.spectrum, self.U, self.beta, loop.disturbance, self.hull, spreading=self.spreading
+        )
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """In words."""
         crests = "long-crested" if self.spreading is None else "short-crested"
         return (
@@ -42,31 +44,35 @@ class Seaway:
 
 
 @dataclass(frozen=True)
-class Unrest:
-    """A slow disturbance: coloured noise of rms `size` [`unit`] and `bandwidth` [rad/s]; `of` what it acts like.
+class SlowDisturbance:
+    """A slow disturbance: coloured noise of `rms` [`unit`] and `bandwidth` [rad/s], `acting_like` an input.
 
-    Its one-sided density is 2 size^2 bandwidth / pi / (omega^2 + bandwidth^2), that of a first-order Gauss-Markov
+    Its one-sided density is 2 rms^2 bandwidth / pi / (omega^2 + bandwidth^2), that of a first-order Gauss-Markov
     process (Gelb 1974, Applied Optimal Estimation, section 3.8). U: m/s, the ship's speed.
     """
 
-    size: float
+    rms: float
     bandwidth: float
     U: float
     unit: str = "rad"
-    of: str = "of the actuator"
+    acting_like: str = "of the actuator"
 
-    def exposure(self, loop: TransferLoop) -> Exposure:
+    def exposure(self, loop: TransferLoop) -> EncounterSpectrum:
         """The disturbance over five decades about its bandwidth."""
         b = self.bandwidth
-        return over_nodes(
-            lambda w: 2.0 * self.size**2 * b / math.pi / (w**2 + b**2), 1e-3 * b, 1e2 * b, loop.disturbance, self.said
+        return disturbance_spectrum(
+            lambda w: 2.0 * self.rms**2 * b / math.pi / (w**2 + b**2),
+            1e-3 * b,
+            1e2 * b,
+            loop.disturbance,
+            self.description,
         )
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """In words."""
-        factor, unit = display(self.unit)
-        return f"unrest like {self.size * factor:.3g} {unit} {self.of}, slower than {self.bandwidth:.3g} rad/s"
+        factor, unit = display_unit(self.unit)
+        return f"disturbance like {self.rms * factor:.3g} {unit} {self.acting_like} below {self.bandwidth:.3g} rad/s"
 
 
 class Effectiveness(Enum):
@@ -77,7 +83,7 @@ class Effectiveness(Enum):
 
 
 @dataclass(frozen=True)
-class Plan:
+class ScheduleGrid:
     """Conditions of a schedule: U [m/s], beta [rad], significant height [m]; every combination is tuned."""
 
     speeds: tuple[float, ...]
@@ -86,7 +92,7 @@ class Plan:
 
 
 @dataclass(frozen=True)
-class Trials:
+class SimulationSettings:
     """Nonlinear simulation: seeds of the sea, duration [s], step [s]."""
 
     seeds: int = 20
@@ -110,7 +116,7 @@ class Demand:
 
 
 @dataclass(frozen=True, eq=False)
-class Vessel:
+class TrimmedShip:
     """The model behind the plant, for simulation and for draws.
 
     Attributes:
@@ -129,14 +135,14 @@ class Vessel:
 
 
 @dataclass(frozen=True, eq=False)
-class Task:
+class TuningTask:
     """One tuning.
 
     Attributes:
         loop: at the speed `U`; `effectiveness` gives it at others.
-        met: what disturbs it, one or more; objectives are means over them, restrictions bind in each.
-        rivals: gains given, by name of the controller; richer: loops with more structure on the same plant.
-        vessel: behind the plant; None where only transfer functions are known (simulated from those).
+        disturbances: one or more; objectives are means over them, restrictions bind in each.
+        baselines: gains by name of the controller; extended_structures: loops with more terms on the same plant.
+        trimmed_ship: behind the plant; None where only transfer functions are known (simulated from those).
         demand: for servo loops (autopilot, speed); None for stabilisers.
 
     Raises:
@@ -147,22 +153,22 @@ class Task:
     name: str
     plant: str
     loop: TransferLoop
-    met: tuple[Seaway | Unrest, ...]
+    disturbances: tuple[Seaway | SlowDisturbance, ...]
     objectives: tuple[Objective, ...]
-    restriction: Restriction
+    constraints: ControllerConstraints
     U: float
     effectiveness: Effectiveness = Effectiveness.CONSTANT
-    rivals: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    richer: tuple[TransferLoop, ...] = ()
-    plan: Plan | None = None
-    trials: Trials | None = None
-    vessel: Vessel | None = None
+    baselines: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    extended_structures: tuple[TransferLoop, ...] = ()
+    schedule_grid: ScheduleGrid | None = None
+    simulation: SimulationSettings | None = None
+    trimmed_ship: TrimmedShip | None = None
     demand: Demand | None = None
 
     def __post_init__(self) -> None:
-        if not self.met or not self.objectives:
+        if not self.disturbances or not self.objectives:
             raise InputError("a tuning needs a sea or another disturbance, and an objective")
-        for name, gains in self.rivals.items():
+        for name, gains in self.baselines.items():
             if set(gains) != set(self.loop.gains.names):
                 raise InputError(f"controller '{name}' gives {', '.join(gains)}, the loop has "
                                  f"{', '.join(self.loop.gains.names)}; give exactly these")  # fmt: skip

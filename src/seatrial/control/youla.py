@@ -15,16 +15,16 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.core.results.tuning import Bound
+from seatrial.core.results.tuning import PerformanceBound
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.excitation import Complex
-from seatrial.physics.loops import Exposure, Performance, Row, Seen, TransferLoop, in_series
+from seatrial.physics.loops import EncounterSpectrum, LoopSignal, Performance, TransferLoop, WeightedVariance, in_series
 
-DAMPING = 0.7
-SECTIONS = 32
+KAUTZ_DAMPING = 0.7
+KAUTZ_SECTIONS = 32
 _GRID = 260
-NOTHING = 0.01
-ROWS = (Row(Seen.OUTPUT, np.ones_like), Row(Seen.ACTUATOR, lambda w: w))
+NEGLIGIBLE_SHARE = 0.01
+BOUND_ROWS = (WeightedVariance(LoopSignal.OUTPUT, np.ones_like), WeightedVariance(LoopSignal.ACTUATOR, lambda w: w))
 
 
 class NoBound(InputError):
@@ -32,26 +32,28 @@ class NoBound(InputError):
 
 
 @dataclass(frozen=True)
-class Reference:
+class ReferenceVariances:
     """What a bound is held against: output variance and actuator-rate variance of some gains, SI."""
 
     output: float
     rate: float
 
 
-def reference(loop: TransferLoop, exposure: Exposure, gains: Array) -> Reference:
+def reference_variances(loop: TransferLoop, exposure: EncounterSpectrum, gains: Array) -> ReferenceVariances:
     """Of gains (g,).
 
     Raises:
         InputError: the loop is unstable with these gains.
     """
-    output, rate = (float(v) for v in Performance(loop, exposure, ROWS).of(gains, with_peak=False).variances[0])
+    output, rate = (
+        float(v) for v in Performance(loop, exposure, BOUND_ROWS).evaluate(gains, with_Ms=False).variances[0]
+    )
     if not math.isfinite(output + rate):
         raise InputError(f"loop '{loop.name}' is unstable with the gains that its bound is to be held against")
-    return Reference(output, rate)
+    return ReferenceVariances(output, rate)
 
 
-def positive(exposure: Exposure) -> Exposure:
+def without_negative_energy(exposure: EncounterSpectrum) -> EncounterSpectrum:
     """The exposure without negative energies, which are made up for by the nodes next to them; nodes in order."""
     order = np.argsort(exposure.omega_e)
     energy = exposure.energy[order].copy()
@@ -66,7 +68,7 @@ def positive(exposure: Exposure) -> Exposure:
                     owed -= paid
             reach += 1
     kept = energy > 0.0
-    return Exposure(exposure.omega_e[order][kept], energy[kept], exposure.said)
+    return EncounterSpectrum(exposure.omega_e[order][kept], energy[kept], exposure.description)
 
 
 def refuse_unbounded(loop: TransferLoop) -> None:
@@ -84,45 +86,45 @@ def refuse_unbounded(loop: TransferLoop) -> None:
 
 
 def youla_bound(
-    loop: TransferLoop, exposure: Exposure, gains: Array, peak: float, *, sections: int = SECTIONS
-) -> Bound:
-    """Least output variance over that of `gains` (g,) at equal actuator-rate energy, |S| <= `peak` everywhere.
+    loop: TransferLoop, exposure: EncounterSpectrum, gains: Array, Ms: float, *, sections: int = KAUTZ_SECTIONS
+) -> PerformanceBound:
+    """Least output variance over that of `gains` (g,) at equal actuator-rate energy, |S| <= `Ms` everywhere.
 
     It is the least over sums of `sections` Kautz sections; the note says what the second half of them has changed.
 
     Args:
-        peak: above 1; infinite for none, and then no roll-off of |T| either.
+        Ms: above 1; infinite for none, and then no roll-off of |T| either.
 
     Raises:
-        InputError: peak out of sense, unstable gains, cvxpy not installed; NoBound for a plant that is not stable and
+        InputError: Ms out of sense, unstable gains, cvxpy not installed; NoBound for a plant that is not stable and
             where the solver gives up.
     """
     refuse_unbounded(loop)
-    sea = positive(exposure)
-    held = reference(loop, sea, gains)
-    half, whole = (least_variance(loop, sea, held.rate, peak, n) for n in (sections // 2, sections))
-    capped = f", Ms <= {peak:.3g}" if math.isfinite(peak) else ""
-    if whole < NOTHING * held.output:
+    sea = without_negative_energy(exposure)
+    held = reference_variances(loop, sea, gains)
+    half, whole = (least_variance(loop, sea, held.rate, Ms, n) for n in (sections // 2, sections))
+    capped = f", Ms <= {Ms:.3g}" if math.isfinite(Ms) else ""
+    if whole < NEGLIGIBLE_SHARE * held.output:
         told = "so much rate energy would cancel these waves altogether; the limit of the reference lies elsewhere."
     else:
         changed = 100.0 * (1.0 - whole / half)
         told = f"{2 * sections + 1} terms, of which the second half changed it by {changed:.0f} %."
     note = f"However complicated, through the same sensor and servo, in this spectrum alone (Youla, convex): {told}"
-    at = f"equal rate energy of the actuator; {exposure.said}{capped}"
-    return Bound("any linear controller", whole / held.output, at, note)
+    at = f"equal rate energy of the actuator; {exposure.description}{capped}"
+    return PerformanceBound("any linear controller", whole / held.output, at, note)
 
 
-def least_variance(loop: TransferLoop, exposure: Exposure, rate: float, peak: float, sections: int) -> float:
-    """Output variance with no more than `rate` of actuator-rate variance and |S| <= peak."""
-    if not peak > 1.0:
-        raise InputError(f"|S| exceeds 1 somewhere in every real loop; give a largest Ms above 1, not {peak:g}")
+def least_variance(loop: TransferLoop, exposure: EncounterSpectrum, rate: float, Ms: float, sections: int) -> float:
+    """Output variance with no more than `rate` of actuator-rate variance and |S| <= Ms."""
+    if not Ms > 1.0:
+        raise InputError(f"|S| exceeds 1 somewhere in every real loop; give a largest Ms above 1, not {Ms:g}")
     if not rate > 0.0:
-        return exposure.variance_of(loop.disturbance)
-    problem = _Programme.of(loop, exposure, math.sqrt(rate), peak, sections)
-    return problem.solved(peak) ** 2 * exposure.variance_of(loop.disturbance)
+        return exposure.response_variance(loop.disturbance)
+    problem = _Programme.from_loop(loop, exposure, math.sqrt(rate), Ms, sections)
+    return problem.solve(Ms) ** 2 * exposure.response_variance(loop.disturbance)
 
 
-def kautz(frequencies: Array, omega: Array) -> Complex:
+def kautz_functions(frequencies: Array, omega: Array) -> Complex:
     """Functions (1 + 2 n, m): 1, and two for each of n frequencies, at omega (m,) [rad/s].
 
     With d_i = s^2 + 2 zeta w_i s + w_i^2: s / d_i and w_i / d_i, times the all-passes of the sections before (Wahlberg
@@ -131,16 +133,16 @@ def kautz(frequencies: Array, omega: Array) -> Complex:
     s = 1j * omega
     made, passed = [np.ones_like(s)], np.ones_like(s)
     for w in frequencies:
-        d = s**2 + 2.0 * DAMPING * w * s + w**2
-        size = math.sqrt(4.0 * DAMPING * w)
+        d = s**2 + 2.0 * KAUTZ_DAMPING * w * s + w**2
+        size = math.sqrt(4.0 * KAUTZ_DAMPING * w)
         made += [size * s / d * passed, size * w / d * passed]
-        passed = passed * (s**2 - 2.0 * DAMPING * w * s + w**2) / d
+        passed = passed * (s**2 - 2.0 * KAUTZ_DAMPING * w * s + w**2) / d
     return np.array(made, dtype=np.complex128)
 
 
 @dataclass(frozen=True, eq=False)
 class _Programme:
-    """min |A x - b| with |R x| <= 1, |1 - Z x| <= peak and |Z x| <= cap at every frequency of a grid.
+    """min |A x - b| with |R x| <= 1, |1 - Z x| <= Ms and |Z x| <= T_limit at every frequency of a grid.
 
     Coordinates x are those in which all rows together are orthonormal; A, R are real, triangular; Z is complex.
     """
@@ -149,36 +151,40 @@ class _Programme:
     b: Array
     R: Array
     Z: Complex
-    cap: Array
+    T_limit: Array
 
     @classmethod
-    def of(cls, loop: TransferLoop, exposure: Exposure, rate: float, peak: float, sections: int) -> "_Programme":
+    def from_loop(
+        cls, loop: TransferLoop, exposure: EncounterSpectrum, rate: float, Ms: float, sections: int
+    ) -> "_Programme":
         path = in_series("path", (*loop.sensor, *loop.filters, *loop.servo))
         w = exposure.omega_e
-        met = np.sqrt(exposure.energy) * np.abs(loop.disturbance.at(w))
-        low, high = _span_of_path(loop, 0.1 * float(np.sum(w * met**2) / np.sum(met**2)))
+        met = np.sqrt(exposure.energy) * np.abs(loop.disturbance.frequency_response(w))
+        low, high = _frequency_span(loop, 0.1 * float(np.sum(w * met**2) / np.sum(met**2)))
         grid, frequencies = np.geomspace(low / 10.0, 4.0 * high, _GRID), np.geomspace(low, high, sections)
-        at_nodes = (kautz(frequencies, w) * path.at(w)).T
-        on_grid = (kautz(frequencies, grid) * path.at(grid) * loop.plant.at(grid)).T
+        at_nodes = (kautz_functions(frequencies, w) * path.frequency_response(w)).T
+        on_grid = (
+            kautz_functions(frequencies, grid) * path.frequency_response(grid) * loop.plant.frequency_response(grid)
+        ).T
         size = float(np.linalg.norm(met))
-        left = at_nodes * (loop.plant.at(w) * met / size)[:, None]
+        left = at_nodes * (loop.plant.frequency_response(w) * met / size)[:, None]
         moved = at_nodes * (w * met / rate)[:, None]
         whole = np.vstack([left, moved, on_grid / math.sqrt(_GRID)])
         turn = np.linalg.inv(np.linalg.qr(np.vstack([whole.real, whole.imag]), mode="r"))
         A, b = _triangular(left @ turn, met / size)
         R, _ = _triangular(moved @ turn, np.zeros_like(met))
-        return cls(A, b, R, on_grid @ turn, (1.0 + peak) * _servo(loop, grid))
+        return cls(A, b, R, on_grid @ turn, (1.0 + Ms) * _servo_response(loop, grid))
 
-    def solved(self, peak: float) -> float:
+    def solve(self, Ms: float) -> float:
         """The least |A x - b|."""
         cvxpy = _cvxpy()
         x: Any = cvxpy.Variable(self.A.shape[1])
         held = [cvxpy.norm(self.R @ x) <= 1.0]
-        if math.isfinite(peak):
-            held.append(cvxpy.norm(cvxpy.vstack([1.0 - self.Z.real @ x, self.Z.imag @ x]), 2, axis=0) <= peak)
-        capped = np.isfinite(self.cap)
+        if math.isfinite(Ms):
+            held.append(cvxpy.norm(cvxpy.vstack([1.0 - self.Z.real @ x, self.Z.imag @ x]), 2, axis=0) <= Ms)
+        capped = np.isfinite(self.T_limit)
         if capped.any():
-            T = self.Z[capped] / self.cap[capped, None]
+            T = self.Z[capped] / self.T_limit[capped, None]
             held.append(cvxpy.norm(cvxpy.vstack([T.real @ x, T.imag @ x]), 2, axis=0) <= 1.0)
         problem = cvxpy.Problem(cvxpy.Minimize(cvxpy.norm(self.A @ x - self.b)), held)
         try:
@@ -190,10 +196,10 @@ class _Programme:
         return float(problem.value)
 
 
-def _servo(loop: TransferLoop, omega: Array) -> Array:
+def _servo_response(loop: TransferLoop, omega: Array) -> Array:
     """|servo| over that at rest."""
     servo = in_series("servo", loop.servo)
-    return np.abs(servo.at(omega)) / abs(servo.gain)
+    return np.abs(servo.frequency_response(omega)) / abs(servo.gain)
 
 
 def _triangular(rows: Complex, target: Array) -> tuple[Array, Array]:
@@ -203,7 +209,7 @@ def _triangular(rows: Complex, target: Array) -> tuple[Array, Array]:
     return R[:, :-1], R[:, -1]
 
 
-def _span_of_path(loop: TransferLoop, low: float) -> tuple[float, float]:
+def _frequency_span(loop: TransferLoop, low: float) -> tuple[float, float]:
     """From `low` [rad/s] to four times the fastest pole of sensor, filters, servo; three decades at least."""
     poles = [np.abs(block.poles).max() for block in (*loop.sensor, *loop.filters, *loop.servo) if block.order]
     return low, max(4.0 * float(max(poles, default=0.0)), 1000.0 * low)

@@ -9,29 +9,29 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.results.online import Phase, Snapshot
+from seatrial.core.results.online import EstimatorPhase, Snapshot
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.trial import Trial
-from seatrial.data.trial.follow_table import followed
-from seatrial.estimation.estimate.fit import swings
+from seatrial.data.trial.follow_table import require_stream
+from seatrial.estimation.estimate.fit import is_pure_roll
 from seatrial.estimation.information.covariance import inverse
-from seatrial.onboard.offered import Offer, information, offers
-from seatrial.physics.simulate.channels import AT_REST
+from seatrial.onboard.candidate_manoeuvres import CandidateManoeuvre, candidate_manoeuvres, fisher_information
+from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
 from seatrial.physics.simulate.steer import RUDDER
 
 # a coefficient is told once its standard error is below this share of it
-_TOLD = 1.0
+_IDENTIFIED_BELOW = 1.0
 # a random sequence, which nobody steers by hand, must leave errors smaller by this factor
-_UNUSUAL = 2.0
+_RANDOM_PENALTY = 2.0
 # an unstable ship's course tells everything of her, on paper: relative errors below this are no promise
-_BELIEVABLE = 1e-5
+_LEAST_CREDIBLE_ERROR = 1e-5
 # s between two looks
-_PAUSE = 60.0
-_MOST_NAMED = 3
+_ADVICE_INTERVAL_S = 60.0
+_MAX_NAMED = 3
 
 
 @runtime_checkable
-class Knowing(Protocol):
+class EstimatorWithCovariance(Protocol):
     """What an estimator knows besides its snapshot."""
 
     @property
@@ -45,42 +45,42 @@ class Knowing(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Prospect:
+class PredictedAccuracy:
     """A manoeuvre and the relative standard errors after it, (k,)."""
 
-    offer: Offer
-    after: Array
+    candidate: CandidateManoeuvre
+    relative_errors: Array
 
 
-class Adviser:
+class ManoeuvreAdviser:
     """Adds advice to snapshots of an estimator, looking anew once a minute at most."""
 
     def __init__(self, trial: Trial, estimator: object, clock: Callable[[], float] = monotonic) -> None:
         self._trial, self._clock = trial, clock
-        self._estimator = estimator if isinstance(estimator, Knowing) else None
-        self._latest, self._when, self._about = "", -np.inf, ()
+        self._estimator = estimator if isinstance(estimator, EstimatorWithCovariance) else None
+        self._latest_advice, self._advised_at, self._advised_names = "", -np.inf, ()
 
-    def advised(self, snapshot: Snapshot) -> Snapshot:
+    def with_advice(self, snapshot: Snapshot) -> Snapshot:
         """The snapshot with what would help; unchanged where nothing is untold or nothing is known yet."""
-        if self._estimator is None or not snapshot.untold or snapshot.phase is Phase.WAITING:
+        if self._estimator is None or not snapshot.unidentified or snapshot.phase is EstimatorPhase.WAITING:
             return snapshot
-        if self._clock() - self._when >= _PAUSE:
-            self._latest = advice(snapshot, self._trial, self._estimator.covariance, self._seen())
-            self._when, self._about = self._clock(), snapshot.untold
-        return replace(snapshot, advice=self._latest)
+        if self._clock() - self._advised_at >= _ADVICE_INTERVAL_S:
+            self._latest_advice = advice(snapshot, self._trial, self._estimator.covariance, self._records())
+            self._advised_at, self._advised_names = self._clock(), snapshot.unidentified
+        return replace(snapshot, advice=self._latest_advice)
 
-    def _seen(self) -> tuple[Record, ...]:
+    def _records(self) -> tuple[Record, ...]:
         """What the estimator still keeps; nothing where that is too short to be read."""
         try:
             return () if self._estimator is None else self._estimator.records()
         except InputError:
             return ()
 
-    def concluded(self, snapshot: Snapshot) -> Snapshot:
-        """As `advised`, for the last snapshot: looks anew if other coefficients are untold now."""
-        if snapshot.untold != self._about:
-            self._when = -np.inf
-        return self.advised(snapshot)
+    def with_final_advice(self, snapshot: Snapshot) -> Snapshot:
+        """As `with_advice`, for the last snapshot: looks anew if other coefficients are untold now."""
+        if snapshot.unidentified != self._advised_names:
+            self._advised_at = -np.inf
+        return self.with_advice(snapshot)
 
 
 def advice(snapshot: Snapshot, trial: Trial, covariance: Array, records: Sequence[Record]) -> str:
@@ -91,15 +91,15 @@ def advice(snapshot: Snapshot, trial: Trial, covariance: Array, records: Sequenc
     """
     model = trial.model.with_parameters(trial.model.parameters.with_free_values(snapshot.value))
     try:
-        found = prospects(snapshot, trial, model, covariance, records)
+        found = ranked_candidates(snapshot, trial, model, covariance, records)
     except InputError as error:
-        return _by_words(snapshot, model, records, str(error))
-    return _said(snapshot, model, found, records)
+        return _qualitative_advice(snapshot, model, records, str(error))
+    return _advice_text(snapshot, model, found, records)
 
 
-def prospects(
+def ranked_candidates(
     snapshot: Snapshot, trial: Trial, model: Model, covariance: Array, records: Sequence[Record]
-) -> list[Prospect]:
+) -> list[PredictedAccuracy]:
     """Standard manoeuvres, the most helpful first: fewest untold after it, then the smallest errors of these.
 
     Raises:
@@ -108,29 +108,31 @@ def prospects(
     noise = {n: v for n, v in snapshot.noise.items() if np.isfinite(v) and v > 0.0}
     if not noise:
         raise InputError("residuals are not known")
-    rate, size = trial.estimate.rate or followed(trial).rate, _sizes(snapshot, model)
+    rate, size = trial.estimate.rate or require_stream(trial).rate, _error_scales(snapshot, model)
     known = _precision(covariance)
     found = []
-    for offer in offers(trial, model, records, noise):
-        left = np.sqrt(np.diag(inverse(known + information(model, offer, noise, rate))))
-        if np.min(left / size) > _BELIEVABLE:
-            found.append(Prospect(offer, left / size))
+    for offer in candidate_manoeuvres(trial, model, records, noise):
+        left = np.sqrt(np.diag(inverse(known + fisher_information(model, offer, noise, rate))))
+        if np.min(left / size) > _LEAST_CREDIBLE_ERROR:
+            found.append(PredictedAccuracy(offer, left / size))
     if not found:
         raise InputError("no manoeuvre can be simulated")
-    at = _places(snapshot)
+    at = _unidentified_indices(snapshot)
 
-    def rank(one: Prospect) -> tuple[int, float]:
-        unusual = math.log(_UNUSUAL) if one.offer.is_random else 0.0
-        return int(np.sum(one.after[at] > _TOLD)), float(np.mean(np.log(one.after[at]))) + unusual
+    def rank(one: PredictedAccuracy) -> tuple[int, float]:
+        unusual = math.log(_RANDOM_PENALTY) if one.candidate.is_random else 0.0
+        return int(np.sum(one.relative_errors[at] > _IDENTIFIED_BELOW)), float(
+            np.mean(np.log(one.relative_errors[at]))
+        ) + unusual
 
     return sorted(found, key=rank)
 
 
-def _places(snapshot: Snapshot) -> list[int]:
-    return [snapshot.names.index(n) for n in snapshot.untold]
+def _unidentified_indices(snapshot: Snapshot) -> list[int]:
+    return [snapshot.names.index(n) for n in snapshot.unidentified]
 
 
-def _sizes(snapshot: Snapshot, model: Model) -> Array:
+def _error_scales(snapshot: Snapshot, model: Model) -> Array:
     """What an error is held against: the value, or the smallest size that counts, (k,)."""
     scale = np.array([model.parameters[n].scale for n in snapshot.names])
     return np.maximum(np.maximum(np.abs(snapshot.value), scale), 1e-300)
@@ -145,38 +147,40 @@ def _precision(covariance: Array) -> Array:
     return made
 
 
-def _said(snapshot: Snapshot, model: Model, found: list[Prospect], records: Sequence[Record]) -> str:
-    at, size = _places(snapshot), _sizes(snapshot, model)
+def _advice_text(
+    snapshot: Snapshot, model: Model, candidates: list[PredictedAccuracy], records: Sequence[Record]
+) -> str:
+    at, size = _unidentified_indices(snapshot), _error_scales(snapshot, model)
     before = snapshot.standard_error / size
-    best = found[0]
-    told = [i for i in at if best.after[i] <= _TOLD]
-    never = [snapshot.names[i] for i in at if min(p.after[i] for p in found) > _TOLD]
+    best = candidates[0]
+    told = [i for i in at if best.relative_errors[i] <= _IDENTIFIED_BELOW]
+    never = [snapshot.names[i] for i in at if min(p.relative_errors[i] for p in candidates) > _IDENTIFIED_BELOW]
     if not told:
-        return _by_words(snapshot, model, records, "no standard manoeuvre tells them")
-    shown = sorted(told, key=lambda i: best.after[i] / before[i])[:_MOST_NAMED]
-    parts = [f"{snapshot.names[i]} from {_percent(before[i])} to {_percent(best.after[i])}" for i in shown]
+        return _qualitative_advice(snapshot, model, records, "no standard manoeuvre tells them")
+    shown = sorted(told, key=lambda i: best.relative_errors[i] / before[i])[:_MAX_NAMED]
+    parts = [f"{snapshot.names[i]} from {_percent(before[i])} to {_percent(best.relative_errors[i])}" for i in shown]
     more = len(told) - len(shown)
-    said = f"{best.offer.words} would bring {_listed(parts)}" + (f" and tell {more} more" if more else "")
+    said = f"{best.candidate.description} would bring {_listed(parts)}" + (f" and tell {more} more" if more else "")
     others = [snapshot.names[i] for i in at if i not in told and snapshot.names[i] not in never]
     if others:
-        said += f"; {_listed(others)} then {_stay(others)} for another manoeuvre"
-    return said + (f"; {_listed(never)} {_stay(never)} untold by any of them" if never else "")
+        said += f"; {_listed(others)} then {_stay_verb(others)} for another manoeuvre"
+    return said + (f"; {_listed(never)} {_stay_verb(never)} untold by any of them" if never else "")
 
 
-def _by_words(snapshot: Snapshot, model: Model, records: Sequence[Record], why: str) -> str:
+def _qualitative_advice(snapshot: Snapshot, model: Model, records: Sequence[Record], reason: str) -> str:
     """What to do where no manoeuvre can be weighed: move what never moved, else harder, else look at the model."""
     still = [n for n in model.input_names if not any(n in r and np.ptp(r[n]) > 0.0 for r in records)]
-    named = _listed(list(snapshot.untold))
-    if swings(model) and not model.is_affine:
-        return f"{named}: release her from a larger angle, or roll her in waves from abeam ({why})"
+    named = _listed(list(snapshot.unidentified))
+    if is_pure_roll(model) and not model.is_affine:
+        return f"{named}: release her from a larger angle, or roll her in waves from abeam ({reason})"
     if RUDDER in still:
-        return f"{named}: the rudder has not moved so far; steer a zigzag 20/20 and a turning circle ({why})"
-    moving = [n for n in still if n not in AT_REST]
+        return f"{named}: the rudder has not moved so far; steer a zigzag 20/20 and a turning circle ({reason})"
+    moving = [n for n in still if n not in ZERO_BY_DEFAULT]
     if moving:
-        return f"{named}: {_listed(moving)} never moved so far; let {'it' if len(moving) == 1 else 'them'} ({why})"
+        return f"{named}: {_listed(moving)} never moved so far; let {'it' if len(moving) == 1 else 'them'} ({reason})"
     if model.is_affine:
-        return f"{named}: sail in higher waves or at another heading, or move the fins ({why})"
-    return f"{named}: steer harder, with larger angles and longer; else fix them or give priors ({why})"
+        return f"{named}: sail in higher waves or at another heading, or move the fins ({reason})"
+    return f"{named}: steer harder, with larger angles and longer; else fix them or give priors ({reason})"
 
 
 def _percent(share: float) -> str:
@@ -185,11 +189,11 @@ def _percent(share: float) -> str:
     return f"{100.0 * share:.0f} %" if share >= 0.1 else f"{100.0 * share:.2g} %"
 
 
-def _stay(names: Sequence[str]) -> str:
+def _stay_verb(names: Sequence[str]) -> str:
     return "stays" if len(names) == 1 else "stay"
 
 
 def _listed(items: Sequence[str]) -> str:
-    if len(items) > _MOST_NAMED + 1:
-        return f"{', '.join(items[:_MOST_NAMED])} and {len(items) - _MOST_NAMED} more"
+    if len(items) > _MAX_NAMED + 1:
+        return f"{', '.join(items[:_MAX_NAMED])} and {len(items) - _MAX_NAMED} more"
     return " and ".join([", ".join(items[:-1]), items[-1]]) if len(items) > 1 else "".join(items)

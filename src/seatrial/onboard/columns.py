@@ -6,14 +6,14 @@ from operator import itemgetter
 
 import numpy as np
 
-from seatrial.core.results.online import Counts
-from seatrial.core.values import Array, InputError, nearest, quantity
-from seatrial.data.read.layout import Column, Layout
-from seatrial.data.read.text import TABLE_MARK, separator
-from seatrial.onboard.lines import Batch
+from seatrial.core.results.online import SampleCounts
+from seatrial.core.values import Array, InputError, quantity, spelling_hint
+from seatrial.data.read.layout import ColumnSpec, Layout
+from seatrial.data.read.text import RECORD_MARK, detect_separator
+from seatrial.onboard.lines import LineBatch
 from seatrial.onboard.sample import Sample
 
-_PATIENCE = 3
+_WIDTH_CONFIRMATIONS = 3
 _BOM = b"\xef\xbb\xbf"
 
 
@@ -24,7 +24,7 @@ class ColumnReader:
     garbled (counted, no sample) where its time is no number or it has more cells than the lines before it; three such
     in a row and they set the width. Blank lines count nothing. Header lines are skipped as `read_text` does at the
     first beginning; after a truncation only where they are there; and wherever all wanted names stand in a line.
-    A column that the header does not name stays NaN, and `complaint` says so.
+    A column that the header does not name stays NaN, and `column_warning` says so.
 
     Raises:
         InputError: the layout is of no text file, wants no channel, or has a scale, encoding or unit that cannot be
@@ -40,56 +40,56 @@ class ColumnReader:
             raise InputError(f"a stream cannot be Froude-scaled by {layout.scale:g}; follow it at its own scale")
         _refuse_encoding(layout.encoding)
         self._layout = layout
-        self._wanted = (layout.time, *layout.columns)
+        self._columns = (layout.time, *layout.columns)
         units = ["s", *(quantity(column.symbol).unit for column in layout.columns)]
-        self._factors = np.array([c.factor(unit) for c, unit in zip(self._wanted, units, strict=True)])
-        self._header = max(layout.header_lines, 1) if layout.has_names else layout.header_lines
-        self._skip, self._spare = 0, 0
-        self._names: bytes | None = None
-        self._mark: bytes | None = None
-        self._is_settled = False
-        self._width = self._line = self._garbled = self._wider = self._wider_times = 0
-        self._has_begun = False
-        self._getter: Callable[[list[bytes]], tuple[bytes, ...]] | None = None
-        self._places: tuple[int | None, ...] = tuple(
-            c.source - 1 if isinstance(c.source, int) else None for c in self._wanted
+        self._factors = np.array([c.si_factor(unit) for c, unit in zip(self._columns, units, strict=True)])
+        self._header_count = max(layout.header_lines, 1) if layout.has_named_columns else layout.header_lines
+        self._lines_to_skip, self._lines_skippable = 0, 0
+        self._header_line: bytes | None = None
+        self._delimiter: bytes | None = None
+        self._is_format_known = False
+        self._width = self._line = self._garbled = self._wider_width = self._wider_count = 0
+        self._has_started = False
+        self._cell_getter: Callable[[list[bytes]], tuple[bytes, ...]] | None = None
+        self._column_indices: tuple[int | None, ...] = tuple(
+            c.source - 1 if isinstance(c.source, int) else None for c in self._columns
         )
-        self._last = ""
-        self.complaint = ""
+        self._last_trouble = ""
+        self.column_warning = ""
 
     @property
-    def counts(self) -> Counts:
+    def counts(self) -> SampleCounts:
         """garbled: lines that could not be read."""
-        return Counts(garbled=self._garbled, last=self.complaint or self._last)
+        return SampleCounts(garbled=self._garbled, last_problem=self.column_warning or self._last_trouble)
 
-    def samples(self, batch: Batch) -> list[Sample]:
+    def samples(self, batch: LineBatch) -> list[Sample]:
         """The samples of these lines, in order."""
-        if batch.begins:
-            self._begin()
+        if batch.starts_file:
+            self._start_file()
         rows: list[list[float]] = []
         take = rows.append
         comma = self._layout.decimal == ","
         for line in batch.lines:
             self._line += 1
-            getter = self._getter
+            getter = self._cell_getter
             if getter is not None and b"_" not in line:
-                cells = self._cells(line, self._mark) if comma else line.split(self._mark)
+                cells = self._split_cells(line, self._delimiter) if comma else line.split(self._delimiter)
                 if len(cells) == self._width:
                     try:
                         take([*map(float, getter(cells))])
                         continue
                     except ValueError:
                         pass
-            row = self._row(line)
+            row = self._parse_line(line)
             if row is not None:
                 take(row)
-        return self._samples(rows)
+        return self._to_samples(rows)
 
-    def rest(self) -> list[Sample]:
+    def flush(self) -> list[Sample]:
         """Nothing is kept back."""
         return []
 
-    def _samples(self, rows: list[list[float]]) -> list[Sample]:
+    def _to_samples(self, rows: list[list[float]]) -> list[Sample]:
         if not rows:
             return []
         with np.errstate(over="ignore"):
@@ -98,133 +98,135 @@ class ColumnReader:
         readable = np.isfinite(block[:, 0])
         if not readable.all():
             self._garbled += int(np.sum(~readable))
-            self._last = f"line {self._line} or shortly before: the time is no number"
+            self._last_trouble = f"line {self._line} or shortly before: the time is no number"
             block = block[readable]
         block.setflags(write=False)
         values: Array = block[:, 1:]
         return [Sample(time, row) for time, row in zip(block[:, 0].tolist(), values, strict=True)]
 
-    def _begin(self) -> None:
+    def _start_file(self) -> None:
         """A file begins: its header is skipped, strictly the first time."""
-        self._skip, self._spare = (0, self._header) if self._has_begun else (self._header, 0)
-        self._has_begun = True
-        self._getter = None
+        self._lines_to_skip, self._lines_skippable = (
+            (0, self._header_count) if self._has_started else (self._header_count, 0)
+        )
+        self._has_started = True
+        self._cell_getter = None
 
-    def _row(self, line: bytes) -> list[float] | None:
+    def _parse_line(self, line: bytes) -> list[float] | None:
         """The row of a line that is not plain; None for a header, a blank line or one that cannot be read."""
         line = line.removeprefix(_BOM)
-        if line.startswith(TABLE_MARK.encode()):
+        if line.startswith(RECORD_MARK.encode()):
             return None
-        if self._skip:
-            self._skip -= 1
-            self._names = line
+        if self._lines_to_skip:
+            self._lines_to_skip -= 1
+            self._header_line = line
             return None
         if not line.strip():
             return None
-        row = self._numbers(line)
+        row = self._parse_numbers(line)
         if row is not None:
-            self._spare = 0
-            if self._getter is None:
-                self._hasten()
+            self._lines_skippable = 0
+            if self._cell_getter is None:
+                self._set_fast_path()
             return row
-        if self._is_heading(line):
-            self._names, self._is_settled, self._spare, self._getter = line, False, 0, None
+        if self._is_header(line):
+            self._header_line, self._is_format_known, self._lines_skippable, self._cell_getter = line, False, 0, None
             return None
-        if self._spare:
-            self._spare -= 1
+        if self._lines_skippable:
+            self._lines_skippable -= 1
             return None
         self._garbled += 1
-        self._last = f"line {self._line} could not be read: {_shown(line)}"
+        self._last_trouble = f"line {self._line} could not be read: {_escaped(line)}"
         return None
 
-    def _numbers(self, line: bytes) -> list[float] | None:
-        if not self._is_settled:
-            return self._settled(line)
-        cells = self._cells(line, self._mark)
-        if len(cells) > self._width and not self._is_wider(len(cells)):
+    def _parse_numbers(self, line: bytes) -> list[float] | None:
+        if not self._is_format_known:
+            return self._detect_format(line)
+        cells = self._split_cells(line, self._delimiter)
+        if len(cells) > self._width and not self._confirm_width(len(cells)):
             return None
-        row = [_number(cells, place) for place in self._places]
+        row = [_parse_number(cells, place) for place in self._column_indices]
         return row if np.isfinite(row[0]) else None
 
-    def _is_wider(self, count: int) -> bool:
+    def _confirm_width(self, count: int) -> bool:
         """Whether so many lines of this greater width have come that it is the right one."""
-        self._wider_times = self._wider_times + 1 if count == self._wider else 1
-        self._wider = count
-        if self._wider_times < _PATIENCE:
+        self._wider_count = self._wider_count + 1 if count == self._wider_width else 1
+        self._wider_width = count
+        if self._wider_count < _WIDTH_CONFIRMATIONS:
             return False
         self._width = count
         return True
 
-    def _settled(self, line: bytes) -> list[float] | None:
+    def _detect_format(self, line: bytes) -> list[float] | None:
         """The row of the first line that can be read, which sets separator, width and places."""
         text = line.decode("latin-1")
-        found = separator(text, self._layout)
+        found = detect_separator(text, self._layout)
         mark = None if found == r"\s+" else found.encode()
-        places, complaint = self._located(mark)
-        cells = self._cells(line, mark)
-        row = [_number(cells, place) for place in places]
+        places, complaint = self._locate_columns(mark)
+        cells = self._split_cells(line, mark)
+        row = [_parse_number(cells, place) for place in places]
         if not np.isfinite(row[0]):
-            if complaint and np.isfinite(_number(cells, 0)):
-                self.complaint = complaint
+            if complaint and np.isfinite(_parse_number(cells, 0)):
+                self.column_warning = complaint
             return None
-        self._mark, self._places, self.complaint = mark, places, complaint
-        self._width, self._is_settled = len(cells), True
+        self._delimiter, self._column_indices, self.column_warning = mark, places, complaint
+        self._width, self._is_format_known = len(cells), True
         return row
 
-    def _located(self, mark: bytes | None) -> tuple[tuple[int | None, ...], str]:
+    def _locate_columns(self, delimiter: bytes | None) -> tuple[tuple[int | None, ...], str]:
         """Where the wanted columns stand, and the complaint about the first that stands nowhere."""
-        names = [] if self._names is None else self._header_names(self._names, mark)
+        names = [] if self._header_line is None else self._header_names(self._header_line, delimiter)
         places: list[int | None] = []
         complaint = ""
-        for column in self._wanted:
+        for column in self._columns:
             if isinstance(column.source, int):
                 places.append(column.source - 1)
             elif column.source in names:
                 places.append(names.index(column.source))
             else:
                 places.append(None)
-                complaint = complaint or _complaint(column, [name for name in names if name])
+                complaint = complaint or _missing_column_text(column, [name for name in names if name])
         return tuple(places), complaint
 
-    def _hasten(self) -> None:
+    def _set_fast_path(self) -> None:
         """The quick way for lines like this one, if all wanted cells stand in it."""
-        places = [place for place in self._places if place is not None and place < self._width]
-        self._getter = itemgetter(*places) if len(places) == len(self._places) else None
+        places = [place for place in self._column_indices if place is not None and place < self._width]
+        self._cell_getter = itemgetter(*places) if len(places) == len(self._column_indices) else None
 
-    def _cells(self, line: bytes, mark: bytes | None) -> list[bytes]:
-        if self._layout.decimal == "," and mark != b",":
+    def _split_cells(self, line: bytes, delimiter: bytes | None) -> list[bytes]:
+        if self._layout.decimal == "," and delimiter != b",":
             line = line.replace(b",", b".")
-        return line.split(mark)
+        return line.split(delimiter)
 
-    def _header_names(self, line: bytes, mark: bytes | None) -> list[str]:
+    def _header_names(self, line: bytes, delimiter: bytes | None) -> list[str]:
         text = line.decode(self._layout.encoding, errors="replace").strip()
-        cells = text.split(None if mark is None else mark.decode())
+        cells = text.split(None if delimiter is None else delimiter.decode())
         return [cell.strip().strip('"') for cell in cells]
 
-    def _is_heading(self, line: bytes) -> bool:
-        if not self._layout.has_names:
+    def _is_header(self, line: bytes) -> bool:
+        if not self._layout.has_named_columns:
             return False
-        found = separator(line.decode("latin-1"), self._layout)
+        found = detect_separator(line.decode("latin-1"), self._layout)
         names = self._header_names(line, None if found == r"\s+" else found.encode())
-        return all(column.source in names for column in self._wanted if isinstance(column.source, str))
+        return all(column.source in names for column in self._columns if isinstance(column.source, str))
 
 
-def _number(cells: list[bytes], place: int | None) -> float:
-    if place is None or place >= len(cells):
+def _parse_number(cells: list[bytes], index: int | None) -> float:
+    if index is None or index >= len(cells):
         return np.nan
-    cell = cells[place].strip().strip(b'"')
+    cell = cells[index].strip().strip(b'"')
     try:
         return np.nan if b"_" in cell else float(cell)
     except ValueError:
         return np.nan
 
 
-def _complaint(column: Column, names: list[str]) -> str:
-    hint = nearest(str(column.source), names) if names else "; no header line has come, give numbers"
+def _missing_column_text(column: ColumnSpec, names: list[str]) -> str:
+    hint = spelling_hint(str(column.source), names) if names else "; no header line has come, give numbers"
     return f"no column '{column.source}' for channel '{column.symbol}'{hint}"
 
 
-def _shown(line: bytes) -> str:
+def _escaped(line: bytes) -> str:
     """The beginning of a line nobody trusts, in plain ASCII."""
     return repr(line[:40])[1:]
 

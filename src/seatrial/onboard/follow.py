@@ -12,59 +12,59 @@ from time import monotonic
 import numpy as np
 
 from seatrial.core.results import Fit
-from seatrial.core.results.online import Counts, Snapshot
-from seatrial.core.values import Progress
+from seatrial.core.results.online import SampleCounts, Snapshot
+from seatrial.core.values import ProgressReporter
 from seatrial.data.trial import Trial
-from seatrial.data.trial.follow_table import followed
-from seatrial.data.trial.trial import Feed, Stream
+from seatrial.data.trial.follow_table import require_stream
+from seatrial.data.trial.trial import Stream, StreamSource
 from seatrial.estimation.identify import identify
-from seatrial.estimation.identify.online import Online
-from seatrial.onboard.advice import Adviser
-from seatrial.onboard.journal import Journal, identity_of
-from seatrial.onboard.needs import refuse_lacking
-from seatrial.onboard.opened import source_of
-from seatrial.onboard.raw import Kept, with_runs
-from seatrial.onboard.sample import Sample, Source
-from seatrial.onboard.voyage import Estimator, Voyage
+from seatrial.estimation.identify.online import OnlineEstimator
+from seatrial.onboard.advice import ManoeuvreAdviser
+from seatrial.onboard.journal import Journal, journal_identity
+from seatrial.onboard.required_channels import check_required_channels
+from seatrial.onboard.run_buffer import RunBuffer, with_training_records
+from seatrial.onboard.sample import Sample, SampleSource
+from seatrial.onboard.sources import open_source
+from seatrial.onboard.stream_session import StreamEstimator, StreamSession
 
-_WAIT_S, _TURN_S, _SHOW_S, _PATIENCE = 0.2, 0.1, 0.5, 3
+_POLL_WAIT_S, _PROCESSING_S, _DISPLAY_INTERVAL_S, _MAX_EMPTY_POLLS = 0.2, 0.1, 0.5, 3
 # samples that may wait for the estimator
-_QUEUE = 10_000
+_MAX_QUEUE = 10_000
 # sources that give everything once more when they are opened again
-_AGAIN = (Feed.FILE, Feed.NMEA_FILE)
+_REOPENABLE = (StreamSource.FILE, StreamSource.NMEA_FILE)
 
-Show = Callable[[Snapshot, Counts], None]
+Show = Callable[[Snapshot, SampleCounts], None]
 Stop = Callable[[], bool]
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
+class FollowResult:
     """How following ended.
 
     Attributes:
         snapshot: the last one; None where no sample came. counts: of all samples, those of the journal included.
         fit: what `identify` says of the samples accepted, where they were followed to their end with `once`.
-        notes: what else is to be said: a torn journal, trouble of the estimator.
+        messages: what else is to be said: a torn journal, trouble of the estimator.
     """
 
     snapshot: Snapshot | None
-    counts: Counts
+    counts: SampleCounts
     fit: Fit | None = None
-    notes: tuple[str, ...] = ()
+    messages: tuple[str, ...] = ()
 
 
 def follow(
     trial: Trial,
     *,
-    source: Source | None = None,
+    source: SampleSource | None = None,
     once: bool = False,
     journal: Path | None = None,
     show: Show | None = None,
     stop: Stop | None = None,
-    estimator: Estimator | None = None,
+    estimator: StreamEstimator | None = None,
     seed: int = 0,
-    progress: Progress | None = None,
-) -> Outcome:
+    report_progress: ProgressReporter | None = None,
+) -> FollowResult:
     """Estimate the trial's model from the samples of its stream, until they end, `stop` says so, or Ctrl-C.
 
     Args:
@@ -79,26 +79,28 @@ def follow(
         InputError: no [follow], channels that are lacking, a source that cannot be opened, a journal of another trial;
             with `once` also whatever `identify` refuses.
     """
-    stream = followed(trial)
-    refuse_lacking(trial)
-    kept = Kept(stream.layout) if once else None
+    stream = require_stream(trial)
+    check_required_channels(trial)
+    kept = RunBuffer(stream.layout) if once else None
     with ExitStack() as held:
         is_known = journal is not None and journal.exists()
-        log = None if journal is None else _journal(held, journal, trial)
-        if log is not None and is_known and progress is not None:
-            progress(f"taking in {log.path.name}")
+        log = None if journal is None else _open_journal(held, journal, trial)
+        if log is not None and is_known and report_progress is not None:
+            report_progress(f"taking in {log.path.name}")
         # open before the journal is taken in, so that what comes meanwhile waits in the socket
-        feed = source or _opened(held, stream, once=once)
-        known = estimator or Online(trial)
-        voyage, adviser = Voyage(stream, known, log, kept), Adviser(trial, known)
-        watch = _Watch(voyage, _advising(show, adviser), stop or _never)
-        again = partial(_opened, held, stream, once=once) if source is None and stream.feed in _AGAIN else None
+        feed = source or _open_stream(held, stream, once=once)
+        known = estimator or OnlineEstimator(trial)
+        voyage, adviser = StreamSession(stream, known, log, kept), ManoeuvreAdviser(trial, known)
+        watch = _Display(voyage, _show_with_advice(show, adviser), stop or _never_stop)
+        again = (
+            partial(_open_stream, held, stream, once=once) if source is None and stream.source in _REOPENABLE else None
+        )
         is_ended = False
         try:
-            early = [] if log is None else _recalled(voyage, log, feed, watch, waits=again is not None)
+            early = [] if log is None else _replay_journal(voyage, log, feed, watch, source_waits=again is not None)
             if early is not None:
-                feed, first = _resumed(voyage, feed, early, again)
-                is_ended = _sailed(voyage, feed, first, watch)
+                feed, first = _resume_source(voyage, feed, early, again)
+                is_ended = _process_stream(voyage, feed, first, watch)
         except KeyboardInterrupt:
             pass
         finally:
@@ -106,102 +108,104 @@ def follow(
         counts = voyage.counts(feed.counts)
     latest = voyage.snapshot
     if latest is not None:
-        latest = adviser.concluded(known.relinearise() if isinstance(known, Online) else latest)
+        latest = adviser.with_final_advice(known.relinearise() if isinstance(known, OnlineEstimator) else latest)
     if latest is not None and show is not None:
         show(latest, counts)
     fit = None
     if kept is not None and is_ended:
-        fit = identify(with_runs(trial, kept.records()), seed=seed, progress=progress)
-    trouble = (log.trouble,) if log is not None and log.trouble else ()
-    return Outcome(latest, counts, fit, (*voyage.notes, *trouble))
+        fit = identify(with_training_records(trial, kept.records()), seed=seed, report_progress=report_progress)
+    trouble = (log.write_error,) if log is not None and log.write_error else ()
+    return FollowResult(latest, counts, fit, (*voyage.messages, *trouble))
 
 
-def _advising(show: Show | None, adviser: Adviser) -> Show:
+def _show_with_advice(show: Show | None, adviser: ManoeuvreAdviser) -> Show:
     """Shows what would help, too."""
     if show is None:
-        return _nobody
-    return lambda snapshot, counts: show(adviser.advised(snapshot), counts)
+        return _show_nothing
+    return lambda snapshot, counts: show(adviser.with_advice(snapshot), counts)
 
 
-class _Watch:
+class _Display:
     """Shows what is known and asks whether to go on, twice a second at most."""
 
-    def __init__(self, voyage: Voyage, show: Show, stop: Stop) -> None:
-        self._voyage, self._show, self._stop = voyage, show, stop
-        self._shown = -math.inf
+    def __init__(self, session: StreamSession, show: Show, stop: Stop) -> None:
+        self._session, self._show, self._stop = session, show, stop
+        self._shown_at = -math.inf
 
-    def goes_on(self, feed: Source) -> bool:
+    def should_continue(self, source: SampleSource) -> bool:
         """False where the end was asked for."""
-        if monotonic() - self._shown < _SHOW_S:
+        if monotonic() - self._shown_at < _DISPLAY_INTERVAL_S:
             return True
-        self._shown = monotonic()
-        if self._voyage.snapshot is not None:
-            self._show(self._voyage.snapshot, self._voyage.counts(feed.counts))
+        self._shown_at = monotonic()
+        if self._session.snapshot is not None:
+            self._show(self._session.snapshot, self._session.counts(source.counts))
         return not self._stop()
 
 
-def _recalled(voyage: Voyage, journal: Journal, feed: Source, watch: _Watch, *, waits: bool) -> list[Sample] | None:
+def _replay_journal(
+    session: StreamSession, journal: Journal, source: SampleSource, watch: _Display, *, source_waits: bool
+) -> list[Sample] | None:
     """What came while the journal was taken in, unless the source waits for its reader; None: the end was asked for."""
     early: list[Sample] = []
     polled = monotonic()
-    for event in voyage.recalled(journal):
-        voyage.follow(event)
-        if not watch.goes_on(feed):
+    for event in session.journal_events(journal):
+        session.process(event)
+        if not watch.should_continue(source):
             return None
-        if not waits and monotonic() - polled > _TURN_S and len(early) < _QUEUE and not feed.is_over:
-            early += feed.poll(0.0)
+        if not source_waits and monotonic() - polled > _PROCESSING_S and len(early) < _MAX_QUEUE and not source.is_over:
+            early += source.poll(0.0)
             polled = monotonic()
     return early
 
 
-def _sailed(voyage: Voyage, feed: Source, first: list[Sample], watch: _Watch) -> bool:
+def _process_stream(session: StreamSession, source: SampleSource, first_samples: list[Sample], watch: _Display) -> bool:
     """The loop itself; whether the source ended, rather than somebody's patience.
 
     Between two samples that take long the source is asked again, so that nothing is lost while a search goes on.
     """
-    queue = deque(voyage.admitted(first))
-    while watch.goes_on(feed):
-        if feed.is_over and not queue:
+    queue = deque(session.admit(first_samples))
+    while watch.should_continue(source):
+        if source.is_over and not queue:
             return True
-        if len(queue) < _QUEUE and not feed.is_over:
-            queue.extend(voyage.admitted(feed.poll(0.0 if queue else _WAIT_S)))
-        turn = monotonic() + _TURN_S
+        if len(queue) < _MAX_QUEUE and not source.is_over:
+            queue.extend(session.admit(source.poll(0.0 if queue else _POLL_WAIT_S)))
+        turn = monotonic() + _PROCESSING_S
         while queue:
-            voyage.follow(queue.popleft())
+            session.process(queue.popleft())
             if monotonic() > turn:
                 break
     return False
 
 
-def _opened(held: ExitStack, stream: Stream, *, once: bool) -> Source:
-    feed = source_of(stream, once=once)
-    held.callback(feed.close)
+def _open_stream(stack: ExitStack, stream: Stream, *, once: bool) -> SampleSource:
+    feed = open_source(stream, once=once)
+    stack.callback(feed.close)
     return feed
 
 
-def _resumed(
-    voyage: Voyage, feed: Source, early: list[Sample], again: Callable[[], Source] | None
-) -> tuple[Source, list[Sample]]:
-    """The source behind a journal, and what of it has come that is new, first of all `early`.
+def _resume_source(
+    session: StreamSession, source: SampleSource, early_samples: list[Sample], reopen: Callable[[], SampleSource] | None
+) -> tuple[SampleSource, list[Sample]]:
+    """The source behind a journal, and what of it has come that is new, first of all `early_samples`.
 
-    again: opens a source that gives everything once more. That is read up to the journal's last sample, which is passed
-    over with all before it; where it is not found, the file is another one and begins from its start, with a run of its
-    own. So does what comes from any other source, for nobody knows how long the break was.
+    reopen: opens a source that gives everything once more. That is read up to the journal's last sample, which is
+        skipped with all before it; where it is not found, the file is another one and begins from its start, with a
+        run of its own. So does what comes from any other source, as the length of the break is not known.
     """
-    if voyage.last is None:
-        return feed, early
-    new = None if again is None else _behind(feed, voyage.last)
+    if session.last_journalled is None:
+        return source, early_samples
+    new = None if reopen is None else _samples_after(source, session.last_journalled)
     if new is not None:
-        return feed, new
-    voyage.restarted()
-    return (feed, early) if again is None else (again(), [])
+        return source, new
+    session.restart()
+    return (source, early_samples) if reopen is None else (reopen(), [])
 
 
-def _behind(feed: Source, last: Sample) -> list[Sample] | None:
+def _samples_after(source: SampleSource, last: Sample) -> list[Sample] | None:
     """What of a poll comes behind that sample; None if the source does not hold it."""
     empty = 0
-    while not feed.is_over and empty < _PATIENCE:
-        samples = feed.poll(_WAIT_S)
+    while not source.is_over and empty < _MAX_EMPTY_POLLS:
+        samples = source.poll(_POLL_WAIT_S)
         empty = 0 if samples else empty + 1
         for place, sample in enumerate(samples, start=1):
             if sample.time == last.time and np.array_equal(sample.values, last.values, equal_nan=True):
@@ -209,16 +213,16 @@ def _behind(feed: Source, last: Sample) -> list[Sample] | None:
     return None
 
 
-def _journal(held: ExitStack, path: Path, trial: Trial) -> Journal:
-    layout = followed(trial).layout
-    journal = Journal(path, identity_of(trial.model, layout), len(layout.columns))
-    held.callback(journal.close)
+def _open_journal(stack: ExitStack, path: Path, trial: Trial) -> Journal:
+    layout = require_stream(trial).layout
+    journal = Journal(path, journal_identity(trial.model, layout), len(layout.columns))
+    stack.callback(journal.close)
     return journal
 
 
-def _nobody(snapshot: Snapshot, counts: Counts) -> None:
+def _show_nothing(snapshot: Snapshot, counts: SampleCounts) -> None:
     """Nobody looks."""
 
 
-def _never() -> bool:
+def _never_stop() -> bool:
     return False

@@ -10,7 +10,7 @@ from seatrial.core.values import Array
 
 
 @dataclass(frozen=True, eq=False)
-class Point:
+class HistoryPoint:
     """One snapshot of the past.
 
     Attributes:
@@ -38,19 +38,19 @@ class History:
         self.generation = 0
         self.names: tuple[str, ...] = ()
         self._count = 0
-        self._points: list[Point] = []
+        self._points: list[HistoryPoint] = []
         self._elapsed = 0.0
         self._last: Snapshot | None = None
 
-    def add(self, snapshot: Snapshot) -> Point:
+    def add(self, snapshot: Snapshot) -> HistoryPoint:
         """Remember it; other coefficients than before begin a new history, of the next generation."""
         if self._last is not None and snapshot.names != self.names:
-            self._begin_anew()
+            self._restart()
         self.names = snapshot.names
-        self._elapsed += _step(self._last, snapshot)
+        self._elapsed += _time_step(self._last, snapshot)
         self._last = snapshot
         value, error = snapshot.value.copy(), snapshot.standard_error.copy()
-        point = Point(self._count, self._elapsed, snapshot.names, value, error, dict(snapshot.noise))
+        point = HistoryPoint(self._count, self._elapsed, snapshot.names, value, error, dict(snapshot.noise))
         self._count += 1
         if self._points and self._points[-1].sequence % self.stride:
             self._points.pop()
@@ -60,32 +60,32 @@ class History:
             self._points = [p for p in self._points if p is point or p.sequence % self.stride == 0]
         return point
 
-    def since(self, sequence: int) -> list[Point]:
+    def since(self, sequence: int) -> list[HistoryPoint]:
         """Points after that number, oldest first; all of them for -1."""
         return [p for p in self._points if p.sequence > sequence]
 
     @property
-    def newest(self) -> Point | None:
+    def newest(self) -> HistoryPoint | None:
         """The last one, if there is any."""
         return self._points[-1] if self._points else None
 
     def __len__(self) -> int:
         return len(self._points)
 
-    def _begin_anew(self) -> None:
+    def _restart(self) -> None:
         self.generation += 1
         self.stride, self._count, self._points, self._elapsed, self._last = 1, 0, [], 0.0, None
 
 
-class Recent:
+class RecentHistory:
     """The last minutes: points that lie in the last `seconds` followed, at most `most` of them."""
 
-    def __init__(self, seconds: float = 180.0, most: int = 180) -> None:
+    def __init__(self, seconds: float = 180.0, limit: int = 180) -> None:
         self.seconds = seconds
-        self._spacing = seconds / most
-        self._points: deque[Point] = deque()
+        self._spacing = seconds / limit
+        self._points: deque[HistoryPoint] = deque()
 
-    def add(self, point: Point) -> None:
+    def add(self, point: HistoryPoint) -> None:
         """Remember it, in place of the newest where that one came a moment after its predecessor."""
         points = self._points
         if points and points[-1].names != point.names:
@@ -107,9 +107,9 @@ class Recent:
         return np.array([p.standard_error for p in self._points])
 
 
-def _step(before: Snapshot | None, now: Snapshot) -> float:
+def _time_step(previous: Snapshot | None, current: Snapshot) -> float:
     """s from one snapshot to the next; none where a new run began in between or a clock went back."""
-    if before is None or now.runs != before.runs:
+    if previous is None or current.runs != previous.runs:
         return 0.0
-    step = now.time - before.time
+    step = current.time - previous.time
     return step if 0.0 < step < float("inf") else 0.0

@@ -22,37 +22,37 @@ from seatrial.core.values import InputError
 from seatrial.data.read import Layout
 from seatrial.onboard.sample import Sample
 
-_MARK = b"seatrial journal 1 "
+_HEADER_PREFIX = b"seatrial journal 1 "
 _CRC = struct.Struct("<I")
-_SAMPLE, _RUN = b"S", b"R"
-_TIMED = struct.Struct("<cd")
+_SAMPLE_TAG, _RUN_TAG = b"S", b"R"
+_SAMPLE_HEAD = struct.Struct("<cd")
 # with the wait for samples, on disk within a second
 _FLUSH_S = 0.7
 # what a break can tear off: what a second may hold, far less than a voyage
-_TORN_AT_MOST = 1 << 18
-_PIECE = 1 << 20
+_MAX_TORN = 1 << 18
+_CHUNK = 1 << 20
 
 
 @dataclass(frozen=True)
-class Begin:
+class RunEntry:
     """A run begins, and why."""
 
     reason: str
 
 
-Entry = Begin | Sample
+JournalEntry = RunEntry | Sample
 
 
-def identity_of(model: Model, layout: Layout) -> str:
+def journal_identity(model: Model, layout: Layout) -> str:
     """SHA-256 of what a journal belongs to: the equations, and the columns with their units, frames and signs."""
     return hashlib.sha256(f"{model.equation_hash} {layout.time} {layout.columns}".encode()).hexdigest()
 
 
 class Journal:
-    """An open journal: first `entries` of what is there; then what is noted is written by `settle`.
+    """An open journal: first `entries` of what is there; then what is noted is written by `write_pending`.
 
     Attributes:
-        path: the file; torn: bytes that a break had left half-written, cut off; trouble: why nothing more is written.
+        path: the file; torn_bytes: left half-written by a break, cut off; write_error: why nothing more is written.
     """
 
     def __init__(self, path: Path, identity: str, columns: int, clock: Callable[[], float] = monotonic) -> None:
@@ -61,11 +61,11 @@ class Journal:
         Raises:
             InputError: it cannot be written, is none, belongs to another trial, or is open elsewhere.
         """
-        self.path, self.torn, self.trouble = path, 0, ""
-        self._columns, self._size = columns, _TIMED.size + 8 * columns
-        self._noted: list[bytes] = []
-        self._clock, self._flushed = clock, clock()
-        header = _MARK + f"{identity} {columns}\n".encode()
+        self.path, self.torn_bytes, self.write_error = path, 0, ""
+        self._columns, self._sample_size = columns, _SAMPLE_HEAD.size + 8 * columns
+        self._pending: list[bytes] = []
+        self._clock, self._flushed_at = clock, clock()
+        header = _HEADER_PREFIX + f"{identity} {columns}\n".encode()
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             self._file: RawIOBase = path.open("r+b" if path.exists() else "x+b", buffering=0)
@@ -73,108 +73,110 @@ class Journal:
             raise InputError(f"journal '{path}' cannot be written ({error.strerror}); choose another place") from None
         try:
             _lock(self._file, path)
-            self._begun = _headed(self._file, header, path)
+            self._entries_start = _check_header(self._file, header, path)
         except InputError:
             self._file.close()
             raise
 
-    def entries(self) -> Iterator[Entry]:
+    def entries(self) -> Iterator[JournalEntry]:
         """What the journal holds, in order; a torn end is cut off, so that writing goes on behind the last whole entry.
 
         Raises:
             InputError: damage that no break explains.
         """
-        place = self._begun
+        place = self._entries_start
         self._file.seek(place)
         left = b""
-        while piece := self._file.read(_PIECE):
+        while piece := self._file.read(_CHUNK):
             left += piece
             used = 0
-            while (found := self._entry(left, used)) is not None:
+            while (found := self._read_entry(left, used)) is not None:
                 entry, size = found
                 used += size
                 yield entry
             place, left = place + used, left[used:]
-            if len(left) > _TORN_AT_MOST:
+            if len(left) > _MAX_TORN:
                 raise InputError(
                     f"journal '{self.path}' is damaged at byte {place}, long before its end; move it elsewhere"
                 )
-        self.torn = len(left)
+        self.torn_bytes = len(left)
         self._file.truncate(place)
         self._file.seek(place)
 
-    def note(self, entry: Entry) -> None:
+    def append(self, entry: JournalEntry) -> None:
         """Note what happened next."""
         match entry:
             case Sample(time=time, values=values):
-                made = _TIMED.pack(_SAMPLE, time) + values.astype("<f8").tobytes()
-            case Begin(reason=reason):
+                made = _SAMPLE_HEAD.pack(_SAMPLE_TAG, time) + values.astype("<f8").tobytes()
+            case RunEntry(reason=reason):
                 text = reason.encode()[: 2**16 - 1]
-                made = _RUN + struct.pack("<H", len(text)) + text
-        self._noted.append(made + _CRC.pack(zlib.crc32(made)))
+                made = _RUN_TAG + struct.pack("<H", len(text)) + text
+        self._pending.append(made + _CRC.pack(zlib.crc32(made)))
 
-    def settle(self) -> None:
+    def write_pending(self) -> None:
         """Hand what was noted to the system, which survives this process; to the disk where a second has passed."""
-        data, self._noted = b"".join(self._noted), []
+        data, self._pending = b"".join(self._pending), []
         if data:
-            self._try(lambda: _written(self._file, data))
-        if self._clock() - self._flushed >= _FLUSH_S:
-            self._flushed = self._clock()
-            self._try(lambda: os.fsync(self._file.fileno()))
+            self._try_write(lambda: _write_all(self._file, data))
+        if self._clock() - self._flushed_at >= _FLUSH_S:
+            self._flushed_at = self._clock()
+            self._try_write(lambda: os.fsync(self._file.fileno()))
 
     def flush(self) -> None:
         """All of it to the disk, now."""
-        self._flushed = -_FLUSH_S
-        self.settle()
+        self._flushed_at = -_FLUSH_S
+        self.write_pending()
 
     def close(self) -> None:
         """Bring everything to disk and give the file back."""
         if not self._file.closed:
             self.flush()
-            self._try(self._file.close)
+            self._try_write(self._file.close)
 
-    def _entry(self, data: bytes, at: int) -> tuple[Entry, int] | None:
+    def _read_entry(self, data: bytes, offset: int) -> tuple[JournalEntry, int] | None:
         """The whole entry at that place and its size; None if there is none."""
-        tag = data[at : at + 1]
-        if tag == _SAMPLE:
-            size = self._size
-        elif tag == _RUN and len(data) >= at + 3:
-            size = 3 + struct.unpack_from("<H", data, at + 1)[0]
+        tag = data[offset : offset + 1]
+        if tag == _SAMPLE_TAG:
+            size = self._sample_size
+        elif tag == _RUN_TAG and len(data) >= offset + 3:
+            size = 3 + struct.unpack_from("<H", data, offset + 1)[0]
         else:
             return None
-        if len(data) < at + size + _CRC.size:
+        if len(data) < offset + size + _CRC.size:
             return None
-        if _CRC.unpack_from(data, at + size)[0] != zlib.crc32(data[at : at + size]):
+        if _CRC.unpack_from(data, offset + size)[0] != zlib.crc32(data[offset : offset + size]):
             return None
-        if tag == _RUN:
-            return Begin(data[at + 3 : at + size].decode(errors="replace")), size + _CRC.size
-        values = np.frombuffer(data, "<f8", self._columns, at + _TIMED.size).astype(np.float64)
-        return Sample(_TIMED.unpack_from(data, at)[1], values), size + _CRC.size
+        if tag == _RUN_TAG:
+            return RunEntry(data[offset + 3 : offset + size].decode(errors="replace")), size + _CRC.size
+        values = np.frombuffer(data, "<f8", self._columns, offset + _SAMPLE_HEAD.size).astype(np.float64)
+        return Sample(_SAMPLE_HEAD.unpack_from(data, offset)[1], values), size + _CRC.size
 
-    def _try(self, act: Callable[[], object]) -> None:
+    def _try_write(self, action: Callable[[], object]) -> None:
         """A full disk ends the journal, not the voyage."""
-        if self.trouble:
+        if self.write_error:
             return
         try:
-            act()
+            action()
         except OSError as error:
-            self.trouble = f"journal '{self.path}' is no longer written ({error.strerror}); make room and start again"
+            self.write_error = (
+                f"journal '{self.path}' is no longer written ({error.strerror}); make room and start again"
+            )
 
 
-def _written(file: RawIOBase, data: bytes) -> None:
+def _write_all(file: RawIOBase, data: bytes) -> None:
     """All of it, or an error: half an entry must be the last."""
     if file.write(data) != len(data):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
-def _headed(file: RawIOBase, header: bytes, path: Path) -> int:
+def _check_header(file: RawIOBase, header: bytes, path: Path) -> int:
     """Write or check the header; where entries begin."""
     found = file.read(len(header))
     if header.startswith(found):
         file.seek(0)
         file.truncate(0) if len(found) < len(header) else None
         file.write(header)
-    elif not found.startswith(_MARK):
+    elif not found.startswith(_HEADER_PREFIX):
         raise InputError(f"'{path}' is no journal of 'seatrial follow'; name another file")
     elif found != header:
         raise InputError(

@@ -6,25 +6,25 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Protocol, Self, TextIO
 
-from seatrial.core.results.online import Counts, Snapshot
-from seatrial.onboard.history import History, Recent
-from seatrial.onboard.plain import line, plain
-from seatrial.onboard.shown import clean
-from seatrial.onboard.table import Shown, picture
+from seatrial.core.results.online import SampleCounts, Snapshot
+from seatrial.onboard.history import History, RecentHistory
+from seatrial.onboard.log_lines import ascii_text, log_line
+from seatrial.onboard.snapshot_text import clean
+from seatrial.onboard.table import TableContent, render_table
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-BETWEEN_PICTURES = 0.5
-SHORTEST_WAIT, LONGEST_WAIT, PATIENCE = 1.0, 60.0, 0.05
+REDRAW_INTERVAL_S = 0.5
+MIN_LINE_INTERVAL_S, MAX_LINE_INTERVAL_S, INTERVAL_GROWTH = 1.0, 60.0, 0.05
 
 
 class _Screen(Protocol):
-    def show(self, snapshot: Snapshot, counts: Counts) -> None: ...
+    def show(self, snapshot: Snapshot, counts: SampleCounts) -> None: ...
     def close(self) -> None: ...
 
 
-class Live:
+class LiveDisplay:
     """Shows the snapshots it is given: a table that stays in place, or lines where the stream is no terminal.
 
     with Live(heading="trial.toml") as live: live.show(snapshot, counts)
@@ -39,7 +39,7 @@ class Live:
         self._screen: _Screen | None = None
 
     def __enter__(self) -> Self:
-        console = _console(self._stream)
+        console = _open_console(self._stream)
         self._screen = _Lines(self._stream, self._heading) if console is None else _Table(console, self._heading)
         return self
 
@@ -48,7 +48,7 @@ class Live:
             self._screen.close()
         self._screen = None
 
-    def show(self, snapshot: Snapshot, counts: Counts) -> None:
+    def show(self, snapshot: Snapshot, counts: SampleCounts) -> None:
         """Show this one, unless the one before was shown a moment ago."""
         if self._screen is not None:
             self._screen.show(snapshot, counts)
@@ -61,32 +61,32 @@ class _Table:
         from rich.live import Live as RichLive
 
         self._console, self._heading = console, heading
-        self._history, self._recent = History(limit=4), Recent()
-        self._last: tuple[Snapshot, Counts] | None = None
-        self._news_at, self._drawn_at = 0.0, -math.inf
+        self._history, self._recent = History(limit=4), RecentHistory()
+        self._last: tuple[Snapshot, SampleCounts] | None = None
+        self._updated_at, self._drawn_at = 0.0, -math.inf
         self._live = RichLive(console=console, auto_refresh=False)
-        self._is_lost = not _survived(self._live.start)
+        self._has_failed = not _try_write(self._live.start)
 
-    def show(self, snapshot: Snapshot, counts: Counts) -> None:
+    def show(self, snapshot: Snapshot, counts: SampleCounts) -> None:
         now = time.monotonic()
-        if _is_news(self._last, snapshot, counts):
+        if _is_update(self._last, snapshot, counts):
             self._recent.add(self._history.add(snapshot))
-            self._news_at = now
+            self._updated_at = now
         self._last = snapshot, counts
-        if now - self._drawn_at >= BETWEEN_PICTURES:
+        if now - self._drawn_at >= REDRAW_INTERVAL_S:
             self._draw(self._console.height)
             self._drawn_at = time.monotonic()
 
     def close(self) -> None:
         self._draw(None)
-        _survived(self._live.stop)
+        _try_write(self._live.stop)
 
     def _draw(self, height: int | None) -> None:
-        if self._last is None or self._is_lost:
+        if self._last is None or self._has_failed:
             return
-        silence = 0.0 if height is None else time.monotonic() - self._news_at
-        made = picture(self._console, Shown(self._heading, *self._last, self._recent, silence), height)
-        self._is_lost = not _survived(lambda: self._live.update(made, refresh=height is not None))
+        silence = 0.0 if height is None else time.monotonic() - self._updated_at
+        made = render_table(self._console, TableContent(self._heading, *self._last, self._recent, silence), height)
+        self._has_failed = not _try_write(lambda: self._live.update(made, refresh=height is not None))
 
 
 class _Lines:
@@ -94,21 +94,23 @@ class _Lines:
 
     def __init__(self, stream: TextIO, heading: str) -> None:
         self._stream = stream
-        self._begun, self._due = math.inf, -math.inf
-        self._last: tuple[Snapshot, Counts] | None = None
+        self._started_at, self._due_at = math.inf, -math.inf
+        self._last: tuple[Snapshot, SampleCounts] | None = None
         self._is_written = True
-        self._is_lost = False
+        self._has_failed = False
         if heading:
-            self._write(plain(clean(heading)))
+            self._write(ascii_text(clean(heading)))
 
-    def show(self, snapshot: Snapshot, counts: Counts) -> None:
-        if self._is_written and not _is_news(self._last, snapshot, counts):
+    def show(self, snapshot: Snapshot, counts: SampleCounts) -> None:
+        if self._is_written and not _is_update(self._last, snapshot, counts):
             return
         self._last, self._is_written = (snapshot, counts), False
         now = time.monotonic()
-        if now >= self._due:
-            self._begun = min(self._begun, now)
-            self._due = now + min(LONGEST_WAIT, max(SHORTEST_WAIT, PATIENCE * (now - self._begun)))
+        if now >= self._due_at:
+            self._started_at = min(self._started_at, now)
+            self._due_at = now + min(
+                MAX_LINE_INTERVAL_S, max(MIN_LINE_INTERVAL_S, INTERVAL_GROWTH * (now - self._started_at))
+            )
             self._write_last()
 
     def close(self) -> None:
@@ -116,15 +118,15 @@ class _Lines:
 
     def _write_last(self) -> None:
         if self._last is not None and not self._is_written:
-            self._write(line(*self._last))
+            self._write(log_line(*self._last))
         self._is_written = True
 
     def _write(self, text: str) -> None:
-        if not self._is_lost:
-            self._is_lost = not _survived(lambda: _print(text, self._stream))
+        if not self._has_failed:
+            self._has_failed = not _try_write(lambda: _print_encoded(text, self._stream))
 
 
-def _console(stream: TextIO) -> "Console | None":
+def _open_console(stream: TextIO) -> "Console | None":
     """A console on that stream; None where it is no terminal, a dumb one, or cannot show what a table needs."""
     try:
         if not stream.isatty():
@@ -138,16 +140,16 @@ def _console(stream: TextIO) -> "Console | None":
     return console if can_draw else None
 
 
-def _is_news(last: tuple[Snapshot, Counts] | None, snapshot: Snapshot, counts: Counts) -> bool:
+def _is_update(last: tuple[Snapshot, SampleCounts] | None, snapshot: Snapshot, counts: SampleCounts) -> bool:
     return last is None or last[0] is not snapshot or last[1] != counts
 
 
-def _print(text: str, stream: TextIO) -> None:
+def _print_encoded(text: str, stream: TextIO) -> None:
     encoding = getattr(stream, "encoding", None) or "utf-8"
     print(text.encode(encoding, "replace").decode(encoding), file=stream, flush=True)
 
 
-def _survived(write: Callable[[], object]) -> bool:
+def _try_write(write: Callable[[], object]) -> bool:
     """Whether that could be written: a terminal may be closed, too small, or of an encoding of its own."""
     try:
         write()

@@ -6,13 +6,13 @@ import threading
 import time
 from typing import Any, Self
 
-from seatrial.core.results.online import Counts, Snapshot
-from seatrial.onboard import state
+from seatrial.core.results.online import SampleCounts, Snapshot
+from seatrial.onboard import page_state
 from seatrial.onboard.history import History
-from seatrial.onboard.server import LOOPBACK, Server, listening
+from seatrial.onboard.server import LOOPBACK, Server, bind_server
 
-POLL = 0.1
-WATCHED, LAST_LOOK = 3.0, 1.5
+POLL_INTERVAL_S = 0.1
+WATCHED_S, LAST_REQUEST_WAIT_S = 3.0, 1.5
 
 
 class Page:
@@ -28,12 +28,12 @@ class Page:
         self._title = title
         self._lock = threading.Lock()
         self._history = History()
-        self._newest: tuple[Snapshot, Counts] | None = None
-        self._news_at = time.monotonic()
-        self._asked_at = -math.inf
-        self._over: str | None = None
-        self._over_at = math.inf
-        self._stamp = secrets.token_hex(4)
+        self._latest: tuple[Snapshot, SampleCounts] | None = None
+        self._updated_at = time.monotonic()
+        self._requested_at = -math.inf
+        self._end_reason: str | None = None
+        self._ended_at = math.inf
+        self._instance_id = secrets.token_hex(4)
         self._server: Server | None = None
 
     def __enter__(self) -> Self:
@@ -42,13 +42,13 @@ class Page:
         Raises:
             InputError: the port is in use, not allowed, or no port at all.
         """
-        self._server = listening(self.port, self.state)
+        self._server = bind_server(self.port, self.state)
         self.port = self._server.server_port
-        threading.Thread(target=self._server.serve_forever, args=(POLL,), name="page", daemon=True).start()
+        threading.Thread(target=self._server.serve_forever, args=(POLL_INTERVAL_S,), name="page", daemon=True).start()
         return self
 
     def __exit__(self, *raised: object) -> None:
-        self._wait_for_a_last_look()
+        self._wait_for_last_request()
         if self._server is not None:
             self._server.shutdown()
             self._server.server_close()
@@ -59,42 +59,46 @@ class Page:
         """What to open in a browser."""
         return f"http://{LOOPBACK}:{self.port}/"
 
-    def show(self, snapshot: Snapshot, counts: Counts) -> None:
+    def show(self, snapshot: Snapshot, counts: SampleCounts) -> None:
         """This is the newest; the same snapshot and counts again are no news."""
         with self._lock:
-            last = self._newest
+            last = self._latest
             if last is None or last[0] is not snapshot:
                 self._history.add(snapshot)
             if last is None or last[0] is not snapshot or last[1] != counts:
-                self._news_at = time.monotonic()
-            self._newest = snapshot, counts
+                self._updated_at = time.monotonic()
+            self._latest = snapshot, counts
 
-    def over(self, why: str = "") -> None:
+    def end(self, reason: str = "") -> None:
         """Nothing more will come; the page says so and keeps what it shows."""
         with self._lock:
-            self._over, self._over_at = why, time.monotonic()
+            self._end_reason, self._ended_at = reason, time.monotonic()
 
     def state(self, since: int) -> dict[str, Any]:
         """What a browser that has the points up to number `since` needs; everything for -1."""
         with self._lock:
-            newest, over = self._newest, self._over
+            newest, over = self._latest, self._end_reason
             some, stride = self._history.since(since), self._history.stride
-            epoch = f"{self._stamp}-{self._history.generation}"
-            self._asked_at = time.monotonic()
-            age = self._asked_at - self._news_at
+            epoch = f"{self._instance_id}-{self._history.generation}"
+            self._requested_at = time.monotonic()
+            age = self._requested_at - self._updated_at
         return {
             "title": self._title,
             "epoch": epoch,
             "stride": stride,
             "age": round(age, 1),
             "is_over": over is not None,
-            "why": over or "",
-            "told": None if newest is None else state.told(*newest),
-            "points": [] if newest is None else state.points(some, newest[0]),
+            "reason": over or "",
+            "snapshot": None if newest is None else page_state.snapshot_json(*newest),
+            "points": [] if newest is None else page_state.plot_points(some, newest[0]),
         }
 
-    def _wait_for_a_last_look(self) -> None:
+    def _wait_for_last_request(self) -> None:
         """Whoever looks at the page as the stream ends gets its end before the page goes."""
-        is_watched = self._over_at - self._asked_at < WATCHED
-        while is_watched and self._asked_at < self._over_at and time.monotonic() < self._over_at + LAST_LOOK:
-            time.sleep(POLL)
+        is_watched = self._ended_at - self._requested_at < WATCHED_S
+        while (
+            is_watched
+            and self._requested_at < self._ended_at
+            and time.monotonic() < self._ended_at + LAST_REQUEST_WAIT_S
+        ):
+            time.sleep(POLL_INTERVAL_S)

@@ -2,12 +2,12 @@
 
 from typing import Protocol
 
-from seatrial.core.results.online import Counts, Sample
+from seatrial.core.results.online import Sample, SampleCounts
 
-__all__ = ["Sample", "Source"]
+__all__ = ["Sample", "SampleSource"]
 
 
-class Source(Protocol):
+class SampleSource(Protocol):
     """Where samples come from. Never waits longer than asked, never raises for what somebody sends."""
 
     def poll(self, seconds: float) -> list[Sample]:
@@ -20,7 +20,7 @@ class Source(Protocol):
         ...
 
     @property
-    def counts(self) -> Counts:
+    def counts(self) -> SampleCounts:
         """What could not be read so far: garbled, checksum, dropped, truncated."""
         ...
 

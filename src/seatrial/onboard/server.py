@@ -18,11 +18,11 @@ from urllib.parse import parse_qs
 from seatrial.core.values import InputError
 
 LOOPBACK = "127.0.0.1"
-PATIENCE = 5.0
-State = Callable[[int], dict[str, Any]]
+REQUEST_TIMEOUT_S = 5.0
+StateProvider = Callable[[int], dict[str, Any]]
 
 
-def listening(port: int, state: State) -> "Server":
+def bind_server(port: int, state: StateProvider) -> "Server":
     """A server that has its port; 0 takes a free one.
 
     Raises:
@@ -45,9 +45,9 @@ class Server(ThreadingHTTPServer):
     # on Windows this option would let two programs share a port
     allow_reuse_address = os.name != "nt"
 
-    def __init__(self, port: int, state: State) -> None:
+    def __init__(self, port: int, state: StateProvider) -> None:
         self.state = state
-        super().__init__((LOOPBACK, port), _Answer)
+        super().__init__((LOOPBACK, port), _RequestHandler)
         self.hosts = {f"{name}:{self.server_port}" for name in (LOOPBACK, "localhost")}
 
     def server_bind(self) -> None:
@@ -61,49 +61,54 @@ class Server(ThreadingHTTPServer):
             super().handle_error(request, client_address)  # pyright: ignore[reportArgumentType]
 
 
-class _Answer(BaseHTTPRequestHandler):
+class _RequestHandler(BaseHTTPRequestHandler):
     """Two fixed paths, GET only, for a browser that names this machine."""
 
     server: Server  # pyright: ignore[reportIncompatibleVariableOverride]
     server_version, sys_version = "seatrial", ""
-    timeout = PATIENCE
+    timeout = REQUEST_TIMEOUT_S
 
     def do_GET(self) -> None:
         path, _, query = self.path.partition("?")
         if self.headers.get_all("Host") not in [[host] for host in self.server.hosts]:
             # another name for this address is how a foreign page would read it (DNS rebinding)
-            self._refuse(HTTPStatus.FORBIDDEN)
+            self._respond_error(HTTPStatus.FORBIDDEN)
         elif path == "/":
-            self._answer("text/html; charset=utf-8", html().encode())
+            self._respond("text/html; charset=utf-8", html().encode())
         elif path != "/state.json":
-            self._refuse(HTTPStatus.NOT_FOUND)
+            self._respond_error(HTTPStatus.NOT_FOUND)
         elif self.headers.get("Sec-Fetch-Site", "same-origin") not in ("same-origin", "none"):
-            self._refuse(HTTPStatus.FORBIDDEN)
-        elif (since := _since(query)) is None:
-            self._refuse(HTTPStatus.BAD_REQUEST)
+            self._respond_error(HTTPStatus.FORBIDDEN)
+        elif (since := _parse_since(query)) is None:
+            self._respond_error(HTTPStatus.BAD_REQUEST)
         else:
             text = json.dumps(self.server.state(since), allow_nan=False, separators=(",", ":"))
-            self._answer("application/json", text.encode())
+            self._respond("application/json", text.encode())
 
     def do_other(self) -> None:
         """No other method is known."""
-        self._refuse(HTTPStatus.METHOD_NOT_ALLOWED)
+        self._respond_error(HTTPStatus.METHOD_NOT_ALLOWED)
 
     do_HEAD = do_POST = do_PUT = do_PATCH = do_DELETE = do_OPTIONS = do_TRACE = do_CONNECT = do_other
 
-    def _answer(self, kind: str, body: bytes) -> None:
-        self._begin(HTTPStatus.OK, kind, len(body))
+    def _respond(self, kind: str, body: bytes) -> None:
+        self._send_headers(HTTPStatus.OK, kind, len(body))
         self.wfile.write(body)
 
-    def _refuse(self, status: HTTPStatus) -> None:
+    def _respond_error(self, status: HTTPStatus) -> None:
         body = f"{status.value} {status.phrase}\n".encode()
-        self._begin(status, "text/plain; charset=utf-8", len(body))
+        self._send_headers(status, "text/plain; charset=utf-8", len(body))
         if self.command != "HEAD":
             self.wfile.write(body)
 
-    def _begin(self, status: HTTPStatus, kind: str, length: int) -> None:
+    def _send_headers(self, status: HTTPStatus, kind: str, length: int) -> None:
         self.send_response(status)
-        sent = {"Content-Type": kind, "Content-Length": str(length), **HEADERS, "Content-Security-Policy": policy()}
+        sent = {
+            "Content-Type": kind,
+            "Content-Length": str(length),
+            **HEADERS,
+            "Content-Security-Policy": content_security_policy(),
+        }
         if status is HTTPStatus.METHOD_NOT_ALLOWED:
             sent["Allow"] = "GET"
         for name, value in sent.items():
@@ -132,7 +137,7 @@ def html() -> str:
 
 
 @cache
-def policy() -> str:
+def content_security_policy() -> str:
     """What the page may do: run the one script and the one style it came with, ask its own address, nothing else."""
     style, script = (_digest(_template(name)) for name in ("page.css", "page.js"))
     return (
@@ -149,7 +154,7 @@ def _digest(text: str) -> str:
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
 
 
-def _since(query: str) -> int | None:
+def _parse_since(query: str) -> int | None:
     """The number asked for, -1 if none is, None if it is no number."""
     text = parse_qs(query).get("since", ["-1"])[0]
     is_number = text.removeprefix("-").isascii() and text.removeprefix("-").isdigit() and len(text) < 16

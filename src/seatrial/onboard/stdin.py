@@ -4,9 +4,9 @@ import os
 import select
 import time
 
-from seatrial.core.results.online import Counts
+from seatrial.core.results.online import SampleCounts
 from seatrial.core.values import InputError
-from seatrial.onboard.lines import Batch, LineCutter
+from seatrial.onboard.lines import LineBatch, LineSplitter
 
 _CHUNK = 1 << 16
 STANDARD_INPUT = 0
@@ -25,22 +25,22 @@ class PipeLines:
         except OSError:
             raise InputError("standard input is closed; pipe the samples into the command") from None
         self._descriptor = descriptor
-        self._cutter = LineCutter()
+        self._splitter = LineSplitter()
         self._is_over = False
-        self._begins = True
+        self._starts_file = True
 
-    def read(self, seconds: float) -> Batch:
+    def read(self, seconds: float) -> LineBatch:
         """Lines that have come, waiting at most so long for the first."""
         deadline = time.monotonic() + seconds
         lines: list[bytes] = []
         left = seconds
         while not (lines or self._is_over) and select.select([self._descriptor], [], [], max(left, 0.0))[0]:
-            lines = self._come()
+            lines = self._read_lines()
             left = deadline - time.monotonic()
             if left <= 0.0:
                 break
-        begins, self._begins = self._begins, False
-        return Batch(lines, begins)
+        begins, self._starts_file = self._starts_file, False
+        return LineBatch(lines, begins)
 
     @property
     def is_over(self) -> bool:
@@ -48,14 +48,14 @@ class PipeLines:
         return self._is_over
 
     @property
-    def counts(self) -> Counts:
+    def counts(self) -> SampleCounts:
         """dropped: lines that were too long."""
-        return Counts(dropped=self._cutter.dropped)
+        return SampleCounts(dropped=self._splitter.dropped)
 
     def close(self) -> None:
         """Nothing: the descriptor belongs to whoever opened it."""
 
-    def _come(self) -> list[bytes]:
+    def _read_lines(self) -> list[bytes]:
         try:
             chunk = os.read(self._descriptor, _CHUNK)
         except BlockingIOError:
@@ -63,6 +63,6 @@ class PipeLines:
         except OSError:
             chunk = b""
         if chunk:
-            return self._cutter.cut(chunk)
+            return self._splitter.split(chunk)
         self._is_over = True
-        return self._cutter.rest()
+        return self._splitter.flush()

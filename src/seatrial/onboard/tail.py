@@ -5,13 +5,13 @@ import time
 from pathlib import Path
 from stat import S_ISREG
 
-from seatrial.core.results.online import Counts
+from seatrial.core.results.online import SampleCounts
 from seatrial.core.values import InputError
-from seatrial.onboard.lines import Batch, LineCutter
+from seatrial.onboard.lines import LineBatch, LineSplitter
 
 _CHUNK = 1 << 18
-_MARK = 64
-_PAUSE = 0.05
+_MARK_BYTES = 64
+_POLL_INTERVAL_S = 0.05
 
 
 class TailLines:
@@ -33,22 +33,22 @@ class TailLines:
         if not S_ISREG(path.stat().st_mode):
             raise InputError(f"{path} is no regular file; feed it to standard input instead")
         self._path, self._once = path, once
-        self._cutter = LineCutter()
+        self._splitter = LineSplitter()
         self._truncated = self._garbled = 0
-        self._last = ""
+        self._last_trouble = ""
         self._is_over = False
         self._open()
 
-    def read(self, seconds: float) -> Batch:
+    def read(self, seconds: float) -> LineBatch:
         """Lines that have been appended, waiting at most so long for the first."""
         deadline = time.monotonic() + seconds
         while True:
-            lines = self._appended()
+            lines = self._read_appended()
             left = deadline - time.monotonic()
             if lines or self._is_over or left <= 0:
-                begins, self._begins = self._begins, False
-                return Batch(lines, begins)
-            time.sleep(min(_PAUSE, left))
+                begins, self._starts_file = self._starts_file, False
+                return LineBatch(lines, begins)
+            time.sleep(min(_POLL_INTERVAL_S, left))
 
     @property
     def is_over(self) -> bool:
@@ -56,9 +56,14 @@ class TailLines:
         return self._is_over
 
     @property
-    def counts(self) -> Counts:
+    def counts(self) -> SampleCounts:
         """truncated, garbled (half lines lost with it) and dropped (too long)."""
-        return Counts(garbled=self._garbled, dropped=self._cutter.dropped, truncated=self._truncated, last=self._last)
+        return SampleCounts(
+            garbled=self._garbled,
+            dropped=self._splitter.dropped,
+            truncated=self._truncated,
+            last_problem=self._last_trouble,
+        )
 
     def close(self) -> None:
         """Close the file."""
@@ -73,32 +78,34 @@ class TailLines:
         self._rewind()
 
     def _rewind(self) -> None:
-        self._position, self._mark, self._begins = 0, b"", True
+        self._position, self._last_bytes, self._starts_file = 0, b"", True
 
-    def _appended(self) -> list[bytes]:
+    def _read_appended(self) -> list[bytes]:
         try:
-            self._file.seek(self._position - len(self._mark))
-            data = self._file.read(len(self._mark) + _CHUNK) or b""
+            self._file.seek(self._position - len(self._last_bytes))
+            data = self._file.read(len(self._last_bytes) + _CHUNK) or b""
         except OSError as error:
-            self._last = f"{self._path.name} could not be read ({error.strerror}); trying again"
+            self._last_trouble = f"{self._path.name} could not be read ({error.strerror}); trying again"
             return []
-        if not data.startswith(self._mark):
-            self._begin_anew()
+        if not data.startswith(self._last_bytes):
+            self._restart()
             return []
-        chunk = data[len(self._mark) :]
+        chunk = data[len(self._last_bytes) :]
         if chunk:
             self._position += len(chunk)
-            self._mark = data[-_MARK:]
-            return self._cutter.cut(chunk)
+            self._last_bytes = data[-_MARK_BYTES:]
+            return self._splitter.split(chunk)
         return self._at_end()
 
     def _at_end(self) -> list[bytes]:
         is_replaced = self._is_replaced()
         if not is_replaced and not self._once:
             return []
-        rest = self._cutter.rest()
+        rest = self._splitter.flush()
         if is_replaced and not rest:
-            self._last = f"{self._path.name} was replaced by another file while it was read; reading goes on there"
+            self._last_trouble = (
+                f"{self._path.name} was replaced by another file while it was read; reading goes on there"
+            )
             self._reopen()
         elif not is_replaced:
             self._is_over = True
@@ -115,12 +122,12 @@ class TailLines:
         try:
             self._open()
         except InputError as error:
-            self._last = str(error)
+            self._last_trouble = str(error)
         else:
             old.close()
 
-    def _begin_anew(self) -> None:
+    def _restart(self) -> None:
         self._truncated += 1
-        self._garbled += len(self._cutter.rest())
-        self._last = f"{self._path.name} was truncated while it was read; reading goes on from its start"
+        self._garbled += len(self._splitter.flush())
+        self._last_trouble = f"{self._path.name} was truncated while it was read; reading goes on from its start"
         self._rewind()

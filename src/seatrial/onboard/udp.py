@@ -5,14 +5,14 @@ import socket
 import time
 from collections.abc import Callable
 
-from seatrial.core.results.online import Counts
+from seatrial.core.results.online import SampleCounts
 from seatrial.core.values import InputError
-from seatrial.onboard.lines import LONGEST_LINE, Batch
+from seatrial.onboard.lines import MAX_LINE_BYTES, LineBatch
 
-LONGEST_DATAGRAM = 8192
-ALLOWANCE = 5.0
-_AT_ONCE = 2048
-_FEWEST = 20.0
+MAX_DATAGRAM_BYTES = 8192
+RATE_ALLOWANCE = 5.0
+_MAX_DATAGRAMS = 2048
+_MIN_CAPACITY = 20.0
 
 
 class TokenBucket:
@@ -20,15 +20,15 @@ class TokenBucket:
 
     def __init__(self, rate: float, clock: Callable[[], float] = time.monotonic) -> None:
         self._rate, self._clock = rate, clock
-        self._capacity = max(rate, _FEWEST)
+        self._capacity = max(rate, _MIN_CAPACITY)
         self._tokens = self._capacity
-        self._seen = clock()
+        self._refilled_at = clock()
 
-    def granted(self, count: int) -> int:
+    def take(self, count: int) -> int:
         """How many of `count` may pass now."""
         now = self._clock()
-        self._tokens = min(self._capacity, self._tokens + self._rate * max(now - self._seen, 0.0))
-        self._seen = now
+        self._tokens = min(self._capacity, self._tokens + self._rate * max(now - self._refilled_at, 0.0))
+        self._refilled_at = now
         granted = min(count, int(self._tokens))
         self._tokens -= granted
         return granted
@@ -48,40 +48,40 @@ class UdpLines:
     def __init__(
         self, port: int, *, rate: float, host: str = "127.0.0.1", clock: Callable[[], float] = time.monotonic
     ) -> None:
-        self._bucket = TokenBucket(ALLOWANCE * rate, clock)
+        self._bucket = TokenBucket(RATE_ALLOWANCE * rate, clock)
         self._rate = rate
         self._dropped = 0
-        self._last = ""
+        self._last_trouble = ""
         if not 0 <= port <= 65535:
             raise InputError(f"there is no UDP port {port}; choose one from 1 to 65535")
         try:
             kind, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0]
             self._socket = socket.socket(kind, socket.SOCK_DGRAM)
         except (OSError, UnicodeError) as error:
-            raise _refusal(host, port, error) from None
+            raise _listen_error(host, port, error) from None
         try:
             self._socket.setblocking(False)
             self._socket.bind(address)
         except OSError as error:
             self._socket.close()
-            raise _refusal(host, port, error) from None
+            raise _listen_error(host, port, error) from None
 
     @property
     def port(self) -> int:
         """The port that is listened to."""
         return int(self._socket.getsockname()[1])
 
-    def read(self, seconds: float) -> Batch:
+    def read(self, seconds: float) -> LineBatch:
         """Lines that have come, waiting at most so long for the first."""
         deadline = time.monotonic() + seconds
         lines: list[bytes] = []
         left = seconds
         while not lines and select.select([self._socket], [], [], max(left, 0.0))[0]:
-            lines = self._come()
+            lines = self._receive()
             left = deadline - time.monotonic()
             if left <= 0.0:
                 break
-        return Batch(lines)
+        return LineBatch(lines)
 
     @property
     def is_over(self) -> bool:
@@ -89,39 +89,39 @@ class UdpLines:
         return False
 
     @property
-    def counts(self) -> Counts:
+    def counts(self) -> SampleCounts:
         """dropped: lines beyond the rate or too long, datagrams too long."""
-        return Counts(dropped=self._dropped, last=self._last)
+        return SampleCounts(dropped=self._dropped, last_problem=self._last_trouble)
 
     def close(self) -> None:
         """Close the socket."""
         self._socket.close()
 
-    def _come(self) -> list[bytes]:
+    def _receive(self) -> list[bytes]:
         lines: list[bytes] = []
-        for _ in range(_AT_ONCE):
+        for _ in range(_MAX_DATAGRAMS):
             try:
-                datagram = self._socket.recv(LONGEST_DATAGRAM + 1)
+                datagram = self._socket.recv(MAX_DATAGRAM_BYTES + 1)
             except OSError:
                 break
-            lines += self._passed(datagram)
+            lines += self._accepted_lines(datagram)
         return lines
 
-    def _passed(self, datagram: bytes) -> list[bytes]:
-        if len(datagram) > LONGEST_DATAGRAM:
+    def _accepted_lines(self, datagram: bytes) -> list[bytes]:
+        if len(datagram) > MAX_DATAGRAM_BYTES:
             self._dropped += 1
-            self._last = f"a datagram of more than {LONGEST_DATAGRAM} bytes was dropped"
+            self._last_trouble = f"a datagram of more than {MAX_DATAGRAM_BYTES} bytes was dropped"
             return []
         lines = [line for line in datagram.split(b"\n") if line.strip()]
-        kept = [line for line in lines if len(line) <= LONGEST_LINE]
-        passed = kept[: self._bucket.granted(len(kept))]
+        kept = [line for line in lines if len(line) <= MAX_LINE_BYTES]
+        passed = kept[: self._bucket.take(len(kept))]
         self._dropped += len(lines) - len(passed)
         if len(passed) < len(kept):
-            self._last = (
-                f"more than {ALLOWANCE:g} times the {self._rate:g} lines a second expected; the rest is dropped"
+            self._last_trouble = (
+                f"more than {RATE_ALLOWANCE:g} times the {self._rate:g} lines a second expected; the rest is dropped"
             )
         return passed
 
 
-def _refusal(host: str, port: int, error: Exception) -> InputError:
+def _listen_error(host: str, port: int, error: Exception) -> InputError:
     return InputError(f"cannot listen to UDP {host}:{port} ({error}); choose another host or port")

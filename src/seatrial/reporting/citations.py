@@ -16,9 +16,9 @@ class Citations:
     """Numbers publications as texts are marked; the list is complete once everything has been marked."""
 
     def __init__(self) -> None:
-        self._found: dict[str, str] = {}
+        self._publications: dict[str, str] = {}
 
-    def marked(self, text: str) -> Markup:
+    def mark(self, text: str) -> Markup:
         """The text, escaped, with ``[k]`` in place of every publication in it."""
         parts, at = [], 0
         for match in _CITATION.finditer(text):
@@ -27,14 +27,16 @@ class Citations:
             at = match.end()
         return Markup("".join([*parts, html.escape(text[at:])]))
 
-    def _link(self, key: str, whole: str) -> str:
-        if len(whole) > len(self._found.get(key, "")):
-            self._found[key] = whole
-        number = list(self._found).index(key) + 1
-        return f'<a class="cite" href="#reference-{number}" title="{html.escape(self._found[key])}">[{number}]</a>'
+    def _link(self, key: str, text: str) -> str:
+        if len(text) > len(self._publications.get(key, "")):
+            self._publications[key] = text
+        number = list(self._publications).index(key) + 1
+        return (
+            f'<a class="cite" href="#reference-{number}" title="{html.escape(self._publications[key])}">[{number}]</a>'
+        )
 
     def entries(self) -> list[Markup]:
         """The publications in order, DOIs as links."""
         linked = r'<a href="https://doi.org/\1">doi:\1</a>'
         return [Markup(_DOI.sub(linked, html.escape(text.replace("-", "\u2013") if "doi" not in text else text)))
-                for text in self._found.values()]  # fmt: skip
+                for text in self._publications.values()]  # fmt: skip

@@ -5,20 +5,28 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from seatrial.core.equations.latex import symbol
-from seatrial.core.figures import channels, steered
-from seatrial.core.figures.errors import Dots, dots
-from seatrial.core.results import Actuator, Design, Worth
-from seatrial.core.results.worths import best_rival, drawn_errors, error_of, has_track, keeps, ranked, worst_drawn
+from seatrial.core.equations.latex import latex_symbol
+from seatrial.core.figures import channels, designed_manoeuvre
+from seatrial.core.figures.relative_errors import Dots, dots
+from seatrial.core.results import Actuator, Design, ManoeuvrePrecision
+from seatrial.core.results.design_ranking import (
+    best_baseline,
+    criterion_error,
+    has_track,
+    is_within_limits,
+    ranked_baselines,
+    sampled_criterion_errors,
+    worst_sampled_error,
+)
 from seatrial.core.text import words
 from seatrial.core.text.numbers import DASH, exact, fixed, significant
 from seatrial.core.values import NOTATION
-from seatrial.data.folder.orders import row, shown_unit
-from seatrial.reporting import told_design
+from seatrial.data.folder.orders import channel_display_unit, order_cells
+from seatrial.reporting import design_text
+from seatrial.reporting.design_text import LARGEST_SHOWN_ERROR
 from seatrial.reporting.mathml import inline
 from seatrial.reporting.page import environment
-from seatrial.reporting.tables import findings
-from seatrial.reporting.told_design import NOTHING
+from seatrial.reporting.tables import finding_groups
 
 TITLES = {
     "answer": "Question and answer",
@@ -30,26 +38,26 @@ TITLES = {
     "findings": "Findings",
     "method": "How it was made",
 }
-MOST_COLUMNS, FEW, MOST_RIVALS = 4, 12, 3
-_TOWARDS = {"starboard": "to starboard", "port": "to port"}
+MAX_COLUMNS, MIN_COLUMN_ROWS, MAX_BASELINES = 4, 12, 3
+_POSITIVE_TEXTS = {"starboard": "to starboard", "port": "to port"}
 
 
 @dataclass(frozen=True)
-class WorthRow:
+class ManoeuvreRow:
     """One manoeuvre as text, errors in per cent."""
 
     name: str
     worst: str
     mean: str
-    drawn: str
+    worst_over_draws: str
     drift: str
-    room: str
+    distance: str
     is_designed: bool
-    keeps: bool
+    is_within_limits: bool
 
 
 @dataclass(frozen=True)
-class CoefficientRow:
+class DesignCoefficientRow:
     """One coefficient: relative standard errors in per cent under the design and the rivals; fits beside the bound."""
 
     symbol: Markup
@@ -57,61 +65,65 @@ class CoefficientRow:
     value: str
     spread: str
     designed: str
-    rivals: tuple[str, ...]
-    found: str
-    foretold: str
+    baselines: tuple[str, ...]
+    simulated_error: str
+    predicted_error: str
 
 
 def html(design: Design) -> str:
     """The page as text; sections without content are left out."""
-    rivals = ranked(design)
-    track = steered.track(design) if has_track(design) else ""
+    rivals = ranked_baselines(design)
+    track = designed_manoeuvre.track(design) if has_track(design) else ""
     shown = {
         "track": bool(track),
-        "ships": bool(len(design.designed.drawn)),
+        "ships": bool(len(design.designed.sampled_relative_error)),
         "confirmation": design.confirmation is not None,
         "findings": bool(design.findings),
     }
     context: dict[str, object] = {
         "design": design,
         "titles": {key: title for key, title in TITLES.items() if shown.get(key, True)},
-        "answer": told_design.sentences(design),
-        "facts": told_design.facts(design),
-        "settings": told_design.settings(design),
-        "worths": [_worth(w, design) for w in (design.designed, *rivals)],
-        "heads": order_heads(design.actuators),
+        "answer": design_text.sentences(design),
+        "facts": design_text.facts(design),
+        "settings": design_text.settings(design),
+        "manoeuvres": [_manoeuvre_row(w, design) for w in (design.designed, *rivals)],
+        "heads": order_headings(design.actuators),
         "meanings": order_meanings(design.actuators),
         "order_columns": order_columns(design),
-        "over_time": Markup(steered.over_time(design)),
+        "over_time": Markup(designed_manoeuvre.over_time(design)),
         "channels": [Markup(figure) for figure in channels.overview([design.designed.executed])],
         "has_track": has_track(design),
-        "rivals": [w.name for w in rivals[:MOST_RIVALS]],
-        "coefficients": _coefficients(design, rivals[:MOST_RIVALS]),
-        "speed": _approach(design),
-        "errors": Markup(_errors(design)),
+        "baselines": [w.name for w in rivals[:MAX_BASELINES]],
+        "coefficients": _coefficient_rows(design, rivals[:MAX_BASELINES]),
+        "speed": _speed_option(design),
+        "errors": Markup(_errors_figure(design)),
         "track": Markup(track),
-        "ships": Markup(_ships(design, rivals)),
-        "findings": findings(design.findings),
+        "ships": Markup(_drawn_ships_figure(design, rivals)),
+        "findings": finding_groups(design.findings),
     }
     return environment().get_template("design.html").render(context)
 
 
-def per_cent(share: float) -> str:
+def percent_text(share: float) -> str:
     """Per cent with two digits, as far as they mean anything."""
     if math.isnan(share):
         return DASH
-    return significant(100.0 * share, 2) if share < NOTHING else f"> {significant(100.0 * NOTHING, 1)}"
+    return (
+        significant(100.0 * share, 2)
+        if share < LARGEST_SHOWN_ERROR
+        else f"> {significant(100.0 * LARGEST_SHOWN_ERROR, 1)}"
+    )
 
 
-def clock(seconds: float) -> str:
+def minutes_seconds(seconds: float) -> str:
     """``2:05``, ``0:07.5``."""
     minutes, rest = divmod(round(seconds, 2), 60.0)
     return f"{int(minutes)}:{exact(rest, 4).rjust(2, '0') if rest >= 10 else '0' + exact(rest, 4)}"
 
 
-def order_heads(actuators: tuple[Actuator, ...]) -> list[tuple[Markup, str]]:
+def order_headings(actuators: tuple[Actuator, ...]) -> list[tuple[Markup, str]]:
     """Symbol and unit of each column of the helmsman's table after the time."""
-    return [(Markup(inline(_latex(a.name))), shown_unit(a.name)[1]) for a in actuators]
+    return [(Markup(inline(_latex(a.name))), channel_display_unit(a.name)[1]) for a in actuators]
 
 
 def order_meanings(actuators: tuple[Actuator, ...]) -> list[tuple[Markup, str]]:
@@ -120,70 +132,81 @@ def order_meanings(actuators: tuple[Actuator, ...]) -> list[tuple[Markup, str]]:
 
 
 def _latex(name: str) -> str:
-    return NOTATION[name].latex if name in NOTATION else symbol(name)
+    return NOTATION[name].latex if name in NOTATION else latex_symbol(name)
 
 
 def _meaning(name: str) -> str:
     if name not in NOTATION or NOTATION[name].positive == "none":
-        return words.channel(name)
-    return f"{NOTATION[name].meaning}, positive {_TOWARDS.get(NOTATION[name].positive, NOTATION[name].positive)}"
+        return words.channel_meaning(name)
+    return f"{NOTATION[name].meaning}, positive {_POSITIVE_TEXTS.get(NOTATION[name].positive, NOTATION[name].positive)}"
 
 
 def order_columns(design: Design) -> list[list[list[str]]]:
     """The helmsman's table cut into columns that stand side by side: minutes and seconds, then the orders."""
     rows = [
-        [clock(order.time), *(cell.replace("-", "−") or DASH for cell in row(order, design.actuators)[1:])]
+        [
+            minutes_seconds(order.time),
+            *(cell.replace("-", "−") or DASH for cell in order_cells(order, design.actuators)[1:]),
+        ]
         for order in design.orders
     ]
-    count = min(MOST_COLUMNS, max(1, math.ceil(len(rows) / FEW)))
+    count = min(MAX_COLUMNS, max(1, math.ceil(len(rows) / MIN_COLUMN_ROWS)))
     each = math.ceil(len(rows) / count) if rows else 1
     return [rows[k : k + each] for k in range(0, len(rows), each)]
 
 
-def _approach(design: Design) -> str:
+def _speed_option(design: Design) -> str:
     """The option of `simulate` that starts a replay as the design did; empty for a model without surge."""
     executed = design.designed.executed
     return f" --speed {float(executed['u'][0]):.7g}" if "u" in design.model.states and "u" in executed else ""
 
 
-def _worth(worth: Worth, design: Design) -> WorthRow:
-    return WorthRow(
-        worth.name, per_cent(worth.worst), per_cent(worth.mean), per_cent(worst_drawn(worth)),
-        fixed(math.degrees(worth.drift), 1) if math.isfinite(worth.drift) else DASH, significant(worth.room, 3),
-        worth is design.designed, keeps(worth, design.limits),
-    )  # fmt: skip
+def _manoeuvre_row(manoeuvre: ManoeuvrePrecision, design: Design) -> ManoeuvreRow:
+    return ManoeuvreRow(
+        manoeuvre.name,
+        percent_text(manoeuvre.worst),
+        percent_text(manoeuvre.mean),
+        percent_text(worst_sampled_error(manoeuvre)),
+        fixed(math.degrees(manoeuvre.drift), 1) if math.isfinite(manoeuvre.drift) else DASH,
+        significant(manoeuvre.distance, 3),
+        manoeuvre is design.designed,
+        is_within_limits(manoeuvre, design.limits),
+    )
 
 
-def _coefficients(design: Design, rivals: tuple[Worth, ...]) -> list[CoefficientRow]:
+def _coefficient_rows(design: Design, baselines: tuple[ManoeuvrePrecision, ...]) -> list[DesignCoefficientRow]:
     known = design.confirmation
     return [
-        CoefficientRow(
-            Markup(inline(design.model.parameters[name].latex or symbol(name))),
+        DesignCoefficientRow(
+            Markup(inline(design.model.parameters[name].latex or latex_symbol(name))),
             name,
             significant(design.model.parameters[name].value, 4),
-            per_cent(float(design.spread[i])),
-            per_cent(float(design.designed.relative[i])),
-            tuple(per_cent(float(rival.relative[i])) for rival in rivals),
-            per_cent(float(known.error[i])) if known else "",
-            per_cent(float(known.bound[i])) if known else "",
+            percent_text(float(design.relative_spread[i])),
+            percent_text(float(design.designed.relative_error[i])),
+            tuple(percent_text(float(rival.relative_error[i])) for rival in baselines),
+            percent_text(float(known.error[i])) if known else "",
+            percent_text(float(known.bound[i])) if known else "",
         )
         for i, name in enumerate(design.coefficients)
     ]
 
 
-def _errors(design: Design) -> str:
+def _errors_figure(design: Design) -> str:
     """Dots for each coefficient: the design and the best standard manoeuvre."""
-    rival = best_rival(design)
-    series = [Dots(rival.name, [[100.0 * float(x)] for x in rival.relative], "open")] if rival else []
-    series.append(Dots("designed", [[100.0 * float(x)] for x in design.designed.relative], "filled"))
+    rival = best_baseline(design)
+    series = [Dots(rival.name, [[100.0 * float(x)] for x in rival.relative_error], "open")] if rival else []
+    series.append(Dots("designed", [[100.0 * float(x)] for x in design.designed.relative_error], "filled"))
     return dots(design.coefficients, series, "relative standard error, per cent of the coefficient")
 
 
-def _ships(design: Design, rivals: tuple[Worth, ...]) -> str:
+def _drawn_ships_figure(design: Design, baselines: tuple[ManoeuvrePrecision, ...]) -> str:
     """A row for each manoeuvre, a dot for each ship drawn from the prior."""
-    worths = (design.designed, *rivals)
-    drawn = Dots("ships drawn from the prior", [[100.0 * x for x in drawn_errors(w, design.criterion)] for w in worths],
-                 "open")  # fmt: skip
-    assumed = Dots("the ship as assumed", [[100.0 * error_of(w, design.criterion)] for w in worths], "tick")
+    worths = (design.designed, *baselines)
+    drawn = Dots(
+        "ships drawn from the prior",
+        [[100.0 * x for x in sampled_criterion_errors(w, design.criterion)] for w in worths],
+        "open",
+    )
+    assumed = Dots("the ship as assumed", [[100.0 * criterion_error(w, design.criterion)] for w in worths], "tick")
     kind = "worst" if design.criterion == "worst" else "mean"
     return dots([w.name for w in worths], [drawn, assumed], f"{kind} relative standard error, per cent")

@@ -23,7 +23,7 @@ _FENCES = {
     r"\lceil": "⌈", r"\rceil": "⌉", r"\|": "‖",
 }  # fmt: skip
 _ACCENTS = {"dot": "˙", "ddot": "¨", "bar": "¯", "hat": "^", "tilde": "~"}
-_WORDS = {"mathrm", "operatorname", "text", "mathit", "mathbf"}
+_TEXT_COMMANDS = {"mathrm", "operatorname", "text", "mathit", "mathbf"}
 _SPACES = {r"\,", r"\:", r"\;", r"\ ", r"\quad", r"\!"}
 
 Pieces = list[str]
@@ -42,13 +42,13 @@ def inline(latex: str) -> str:
     return "".join(pieces(latex)).replace('</math><math displaystyle="true">', "")
 
 
-def _joined(parts: Pieces) -> str:
+def _mrow(parts: Pieces) -> str:
     body = "".join(parts)
     return f"<mrow>{body}</mrow>"
 
 
-def _appended(left: Pieces, right: Pieces) -> Pieces:
-    return [*left[:-1], left[-1] + right[0], *right[1:]]
+def _appended(before: Pieces, after: Pieces) -> Pieces:
+    return [*before[:-1], before[-1] + after[0], *after[1:]]
 
 
 def _accented(body: str, accent: str) -> str:
@@ -64,19 +64,19 @@ class _Reader:
 
     def __init__(self, latex: str) -> None:
         self.tokens: list[str] = _TOKEN.findall(latex.strip())
-        self.at = 0
+        self.position = 0
 
-    def row(self, ends: Callable[[str], bool]) -> Pieces:
+    def row(self, is_end: Callable[[str], bool]) -> Pieces:
         made: Pieces = [""]
         spaced = False
-        while self.at < len(self.tokens) and not ends(self.tokens[self.at]):
-            token = self.tokens[self.at]
+        while self.position < len(self.tokens) and not is_end(self.tokens[self.position]):
+            token = self.tokens[self.position]
             if token.isspace():
-                self.at += 1
+                self.position += 1
                 spaced = made[-1] != "" and not made[-1].endswith("</mo>")
                 continue
             if token in ("+", "-"):
-                self.at += 1
+                self.position += 1
                 sign = "+" if token == "+" else "−"
                 if made[-1] and not made[-1].endswith("=</mo>"):
                     made = [*made, f'<mo form="infix">{sign}</mo>']
@@ -93,15 +93,15 @@ class _Reader:
         """An atom with what hangs on it: primes, exponents, indices."""
         base = self.atom()
         primes, upper, lower = "", "", ""
-        while self.at < len(self.tokens) and self.tokens[self.at] in ("^", "_", "'"):
-            token = self.tokens[self.at]
-            self.at += 1
+        while self.position < len(self.tokens) and self.tokens[self.position] in ("^", "_", "'"):
+            token = self.tokens[self.position]
+            self.position += 1
             if token == "'":
                 primes += '<mo lspace="0.05em" rspace="0">′</mo>'
             elif token == "^":
-                upper = _joined(self.argument())
+                upper = _mrow(self.argument())
             else:
-                lower = _joined(self.argument())
+                lower = _mrow(self.argument())
         if not (primes or upper or lower):
             return base
         body = "".join(base) + primes
@@ -112,13 +112,13 @@ class _Reader:
 
     def argument(self) -> Pieces:
         """The next group in braces, or the next atom."""
-        while self.tokens[self.at].isspace():
-            self.at += 1
+        while self.tokens[self.position].isspace():
+            self.position += 1
         return self.atom()
 
     def atom(self) -> Pieces:
-        token = self.tokens[self.at]
-        self.at += 1
+        token = self.tokens[self.position]
+        self.position += 1
         if token == "{":
             inner = self.row(lambda t: t == "}")
             self.expect("}")
@@ -138,12 +138,12 @@ class _Reader:
         if name in _OPERATORS:
             return [f"<mo>{_OPERATORS[name]}</mo>"]
         if name in ("frac", "dfrac", "tfrac"):
-            return [f"<mfrac>{_joined(self.argument())}{_joined(self.argument())}</mfrac>"]
+            return [f"<mfrac>{_mrow(self.argument())}{_mrow(self.argument())}</mfrac>"]
         if name == "sqrt":
-            return [f"<msqrt>{_joined(self.argument())}</msqrt>"]
+            return [f"<msqrt>{_mrow(self.argument())}</msqrt>"]
         if name in _ACCENTS:
-            return [_accented(_joined(self.argument()), _ACCENTS[name])]
-        if name in _WORDS:
+            return [_accented(_mrow(self.argument()), _ACCENTS[name])]
+        if name in _TEXT_COMMANDS:
             return [f'<mi mathvariant="normal">{self.word()}</mi>']
         if name == "left":
             return self.fenced()
@@ -157,18 +157,18 @@ class _Reader:
 
     def expect(self, token: str) -> None:
         """Step over a token that must be there; IndexError where the formula ends before it."""
-        if self.tokens[self.at] != token:
+        if self.tokens[self.position] != token:
             raise IndexError(token)
-        self.at += 1
+        self.position += 1
 
     def word(self) -> str:
         """The letters of the next group, as they stand."""
-        self.at += 1
-        start = self.at
-        while self.tokens[self.at] != "}":
-            self.at += 1
-        self.at += 1
-        letters = [_LETTERS.get(t[1:], t) for t in self.tokens[start : self.at - 1]]
+        self.position += 1
+        start = self.position
+        while self.tokens[self.position] != "}":
+            self.position += 1
+        self.position += 1
+        letters = [_LETTERS.get(t[1:], t) for t in self.tokens[start : self.position - 1]]
         return html.escape("".join(letters)).replace("\\", "")
 
     def fenced(self) -> Pieces:
@@ -178,11 +178,11 @@ class _Reader:
         self.expect(r"\right")
         closing = self.fence()
         whole = _appended(_appended([opening], inner), [closing])
-        return whole if "|" not in opening else [_joined(whole)]
+        return whole if "|" not in opening else [_mrow(whole)]
 
     def fence(self) -> str:
-        token = self.tokens[self.at]
-        self.at += 1
+        token = self.tokens[self.position]
+        self.position += 1
         text = html.escape(_FENCES.get(token, token))
         return f'<mo stretchy="true" fence="true">{text}</mo>' if text else ""
 
@@ -191,9 +191,9 @@ class _Reader:
         self.word()
         rows, cells = [], []
         while True:
-            cells.append(_joined(self.row(lambda t: t in ("&", r"\\", r"\end"))))
-            ended = self.tokens[self.at]
-            self.at += 1
+            cells.append(_mrow(self.row(lambda t: t in ("&", r"\\", r"\end"))))
+            ended = self.tokens[self.position]
+            self.position += 1
             if ended != "&":
                 rows.append("<mtr>" + "".join(f'<mtd style="text-align:left">{c}</mtd>' for c in cells) + "</mtr>")
                 cells = []

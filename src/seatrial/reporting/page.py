@@ -10,8 +10,16 @@ from seatrial.core.figures import channels, correlation, forest, tracks, whitene
 from seatrial.core.figures.plot import common_prefix
 from seatrial.core.results import Fit
 from seatrial.core.text import numbers, words
-from seatrial.core.values.files import write_whole
-from seatrial.reporting import answer, rivals, rolling, runs, tables, telling, waves
+from seatrial.core.values.files import write_atomically
+from seatrial.reporting import (
+    baselines,
+    identifiability_chapter,
+    roll_chapter,
+    runs,
+    seakeeping_chapter,
+    summary,
+    tables,
+)
 from seatrial.reporting.citations import Citations
 from seatrial.reporting.mathml import inline, pieces
 
@@ -20,14 +28,14 @@ if TYPE_CHECKING:
 
 TITLES = {
     "answer": "Question and answer",
-    "telling": "What this record can and cannot tell",
+    "identifiability": "What this record can and cannot tell",
     "records": "Records",
     "findings": "Findings",
     "coefficients": "Coefficients",
     "rolling": "Roll: period, damping, metacentric height",
     "prediction": "Prediction of held-out runs",
     "training": "Fit of the training runs",
-    "rivals": "Other estimators on the same records",
+    "baselines": "Other estimators on the same records",
     "residuals": "Residuals",
     "waves": "Motions in waves",
     "offsets": "Offsets",
@@ -44,7 +52,7 @@ def write_report(fit: Fit, path: Path) -> Path:
     Raises:
         InputError: the file cannot be written.
     """
-    write_whole(path, html(fit).encode())
+    write_atomically(path, html(fit).encode())
     return path
 
 
@@ -52,30 +60,41 @@ def html(fit: Fit) -> str:
     """The page as text."""
     citations = Citations()
     length = fit.ship.length if "L" in fit.ship.particulars else 0.0
-    told, known, compared = telling.telling(fit), fit.seakeeping, rivals.rivals(fit)
+    told, known, compared = (
+        identifiability_chapter.identifiability_chapter(fit),
+        fit.seakeeping,
+        baselines.baseline_chapter(fit),
+    )
     is_steered = "psi" in fit.model.states or "delta" in fit.model.input_names
     shown = {
-        "telling": bool(told), "rolling": fit.rolling is not None, "waves": known is not None, "standards": is_steered,
-        "training": bool(fit.predictions), "residuals": bool(fit.residuals), "rivals": compared is not None,
-    }  # fmt: skip
+        "identifiability": bool(told),
+        "rolling": fit.roll is not None,
+        "waves": known is not None,
+        "standards": is_steered,
+        "training": bool(fit.predictions),
+        "residuals": bool(fit.residuals),
+        "baselines": compared is not None,
+    }
     context: dict[str, object] = {
         "fit": fit,
         "titles": {key: title for key, title in TITLES.items() if shown.get(key, True)},
         "is_steered": is_steered,
-        "waves": None if known is None else {"sheets": waves.sheets(known), "figures": waves.figures(known)},
+        "waves": None
+        if known is None
+        else {"tables": seakeeping_chapter.tables(known), "figures": seakeeping_chapter.figures(known)},
         "rolling": None
-        if fit.rolling is None
-        else {"sheets": rolling.sheets(fit.rolling, fit.ship.scale), "figures": rolling.figures(fit.rolling)},
-        "told": told,
-        "rivals": compared,
-        "answer": answer.sentences(fit),
-        "facts": answer.facts(fit),
-        "scores": runs.scores(fit.predictions, length),
+        if fit.roll is None
+        else {"tables": roll_chapter.tables(fit.roll, fit.ship.scale), "figures": roll_chapter.figures(fit.roll)},
+        "identifiability": told,
+        "baselines": compared,
+        "answer": summary.sentences(fit),
+        "facts": summary.facts(fit),
+        "scores": runs.score_table(fit.predictions, length),
         "records": tables.records(fit),
-        "without": words.without(common_prefix([r.name for r in fit.records])),
+        "without": words.prefix_note(common_prefix([r.name for r in fit.records])),
         "tracks": Markup(tracks.tracks(fit.records, length)),
         "channels": [Markup(figure) for figure in channels.overview(fit.records)],
-        "findings": tables.findings(fit.findings),
+        "findings": tables.finding_groups(fit.findings),
         "equations": tables.equations(fit.model, citations),
         "coefficients": tables.coefficients(fit.coefficients),
         "has_truth": any(c.truth is not None for c in fit.coefficients if not c.fixed),
@@ -83,15 +102,15 @@ def html(fit: Fit) -> str:
         "has_prior": any(c.prior_mean is not None for c in fit.coefficients if not c.fixed),
         "forest": Markup(forest.forest(fit.coefficients)),
         "correlation": Markup(correlation.heat_map(fit.model.parameters.free_names, fit.covariance)),
-        "correlated": words.correlated(fit.model.parameters.free_names, fit.covariance),
-        "runs": runs.runs(fit.predictions, length, fit.model.input_names),
+        "correlated": words.correlation_text(fit.model.parameters.free_names, fit.covariance),
+        "runs": runs.run_sections(fit.predictions, length, fit.model.input_names),
         "noise": tables.noise(fit.noise),
         "whiteness": Markup(whiteness.whiteness(fit.residuals)),
         "offsets": tables.offsets(fit.offsets),
         "standards": runs.standards(fit.predictions, length, fit.ship.scale),
-        "fixed": tables.fixed(fit.coefficients, citations),
+        "fixed": tables.fixed_parameters(fit.coefficients, citations),
         "priors": tables.priors(fit.coefficients, fit.model, citations),
-        "ship_source": citations.marked(fit.ship.source),
+        "ship_source": citations.mark(fit.ship.source),
         "settings": tables.settings(fit.method),
         "citations": citations,
     }

@@ -9,15 +9,15 @@ from seatrial.core.figures.bands import has_band
 from seatrial.core.figures.channels import comparison
 from seatrial.core.results import Extrapolation, Measure, Prediction
 from seatrial.core.text import words
-from seatrial.core.text.numbers import DASH, column, fixed, significant
+from seatrial.core.text.numbers import DASH, column_texts, fixed, significant
 from seatrial.core.values import InputError, Record
-from seatrial.physics.manoeuvres import Criterion, criteria
+from seatrial.physics.manoeuvres import ImoCriterion, imo_criteria
 
-_ERRORS = {"psi_deg": ("heading", "deg"), "position_m": ("position", "m"), "u": ("u", "m/s"), "v": ("v", "m/s"),
+_ERROR_LABELS = {"psi_deg": ("heading", "deg"), "position_m": ("position", "m"), "u": ("u", "m/s"), "v": ("v", "m/s"),
            "r": ("r", "deg/s"), "z": ("heave", "m"), "theta_deg": ("pitch", "deg"),
            "phi_deg": ("roll", "deg")}  # fmt: skip
 _DEGREES = 57.29577951308232
-OVERSHOOTS = 6
+MAX_OVERSHOOTS = 6
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class MeasureRow:
 
 
 @dataclass(frozen=True)
-class Measures:
+class MeasureTable:
     """Rows, and which columns any of them has."""
 
     rows: tuple[MeasureRow, ...]
@@ -44,7 +44,7 @@ class Measures:
 
 
 @dataclass(frozen=True)
-class Cell:
+class ErrorCell:
     """An error, what process noise alone would leave of it, and its spread over tied models; empty: not known."""
 
     value: str
@@ -53,30 +53,30 @@ class Cell:
 
 
 @dataclass(frozen=True)
-class Score:
-    """One run's errors; `reach`: extrapolation index, `where`: inside, edge or beyond."""
+class RunScore:
+    """One run's errors; `extrapolation`: its index, `extrapolation_class`: inside, edge or beyond."""
 
     record: str
     is_held_out: bool
-    cells: tuple[Cell, ...]
-    reach: str
-    where: str
+    cells: tuple[ErrorCell, ...]
+    extrapolation: str
+    extrapolation_class: str
 
 
 @dataclass(frozen=True)
-class Scores:
+class ScoreTable:
     """Errors (rms) of every run; `header`: name and unit of each column."""
 
     header: tuple[tuple[str, str], ...]
-    rows: tuple[Score, ...]
+    rows: tuple[RunScore, ...]
     has_floor: bool
     has_spread: bool
-    has_reach: bool
+    has_extrapolation: bool
 
 
 @dataclass(frozen=True)
-class Run:
-    """One run: its picture and measures; `more` are later overshoots, `is_unlike`: nothing simulated can be read.
+class RunSection:
+    """One run: its picture and measures; `is_other_manoeuvre`: nothing simulated can be read.
 
     `notes` say what process noise alone would leave, how far the run leaves the training, how tied models differ.
     """
@@ -86,51 +86,53 @@ class Run:
     is_held_out: bool
     summary: str
     figure: Markup
-    measures: Measures
-    more: Measures
-    is_unlike: bool
+    measures: MeasureTable
+    later_overshoots: MeasureTable
+    is_other_manoeuvre: bool
     has_band: bool
     notes: tuple[str, ...]
 
 
-def scores(predictions: Sequence[Prediction], length: float) -> Scores:
+def score_table(predictions: Sequence[Prediction], length: float) -> ScoreTable:
     """Errors of every run, those held out first."""
-    names = [name for name in _ERRORS if any(name in p.rms for p in predictions)]
-    header = [_ERRORS[name] for name in names]
+    names = [name for name in _ERROR_LABELS if any(name in p.rms for p in predictions)]
+    header = [_ERROR_LABELS[name] for name in names]
     if "position_m" in names and length > 0:
         header.insert(names.index("position_m") + 1, ("position", "L"))
     ordered = sorted(predictions, key=lambda p: p.role != "validation")
-    columns = [column(values) for values in zip(*(_errors(p.rms, names, length) for p in ordered), strict=True)]
+    columns = [
+        column_texts(values) for values in zip(*(_error_values(p.rms, names, length) for p in ordered), strict=True)
+    ]
     rows = []
     for p, texts in zip(ordered, zip(*columns, strict=True), strict=False):
-        floors, spreads = _errors(p.floor, names, length), _errors(p.spread, names, length)
+        floors, spreads = _error_values(p.noise_floor, names, length), _error_values(p.tied_spread, names, length)
         cells = tuple(
-            Cell(t) if unit == "L" else Cell(t, _small(f), _small(s))
+            ErrorCell(t) if unit == "L" else ErrorCell(t, _two_digits(f), _two_digits(s))
             for t, f, s, (_, unit) in zip(texts, floors, spreads, header, strict=True)
         )
-        e = _reach(p)
-        rows.append(Score(p.record, p.role == "validation", cells, words.times(e.index) if e else "",
-                          words.reach(e.index) if e else ""))  # fmt: skip
-    return Scores(
+        e = _extrapolation(p)
+        rows.append(RunScore(p.record, p.role == "validation", cells, words.ratio_text(e.index) if e else "",
+                          words.extrapolation_zone(e.index) if e else ""))  # fmt: skip
+    return ScoreTable(
         tuple(header), tuple(rows), any(c.floor for row in rows for c in row.cells),
-        any(c.spread for row in rows for c in row.cells), any(row.reach for row in rows),
+        any(c.spread for row in rows for c in row.cells), any(row.extrapolation for row in rows),
     )  # fmt: skip
 
 
-def _reach(p: Prediction) -> Extrapolation | None:
+def _extrapolation(p: Prediction) -> Extrapolation | None:
     """How far a run held out leaves the training runs; None where that is not known, and for training runs."""
     e = p.extrapolation
-    return e if e and p.role == "validation" and words.reach(e.index) else None
+    return e if e and p.role == "validation" and words.extrapolation_zone(e.index) else None
 
 
-def _small(value: float | None) -> str:
+def _two_digits(value: float | None) -> str:
     return "" if value is None else significant(value, 2)
 
 
-def _errors(found: Mapping[str, float], names: Sequence[str], length: float) -> list[float | None]:
+def _error_values(errors: Mapping[str, float], names: Sequence[str], length: float) -> list[float | None]:
     made: list[float | None] = []
     for name in names:
-        value = found.get(name)
+        value = errors.get(name)
         factor = _DEGREES if name == "r" else 1.0
         made.append(None if value is None else value * factor)
         if name == "position_m" and length > 0:
@@ -138,56 +140,61 @@ def _errors(found: Mapping[str, float], names: Sequence[str], length: float) -> 
     return made
 
 
-def runs(predictions: Sequence[Prediction], length: float, inputs: Sequence[str]) -> list[Run]:
+def run_sections(predictions: Sequence[Prediction], length: float, inputs: Sequence[str]) -> list[RunSection]:
     """All runs in order; `inputs` are the channels the model is driven by."""
-    return [_run(p, length, inputs, f"run{k}") for k, p in enumerate(predictions)]
+    return [_run_section(p, length, inputs, f"run{k}") for k, p in enumerate(predictions)]
 
 
-def _run(p: Prediction, length: float, inputs: Sequence[str], key: str) -> Run:
-    rows = {name: _measure(name, m, p.spread.get(name)) for name, m in p.measures.items()}
-    late = {name for name in rows if name.startswith("overshoot_") and int(name.split("_")[1]) > OVERSHOOTS}
-    return Run(
+def _run_section(p: Prediction, length: float, inputs: Sequence[str], key: str) -> RunSection:
+    rows = {name: _measure_row(name, m, p.tied_spread.get(name)) for name, m in p.measures.items()}
+    late = {name for name in rows if name.startswith("overshoot_") and int(name.split("_")[1]) > MAX_OVERSHOOTS}
+    return RunSection(
         p.record, key, p.role == "validation", _summary(p), Markup(comparison(p, length, inputs)),
-        _measures([row for name, row in rows.items() if name not in late]),
-        _measures([row for name, row in rows.items() if name in late]),
+        _measure_table([row for name, row in rows.items() if name not in late]),
+        _measure_table([row for name, row in rows.items() if name in late]),
         bool(rows) and all(m.simulated is None for m in p.measures.values()),
         has_band(p), tuple(_notes(p)),
     )  # fmt: skip
 
 
 def _summary(p: Prediction) -> str:
-    return ", ".join(_told(p.rms))
+    return ", ".join(_error_texts(p.rms))
 
 
-def _told(found: Mapping[str, float]) -> list[str]:
-    return [f"{_ERRORS[name][0]} {significant(found[name], 2)} {_ERRORS[name][1]}"
-            for name in ("psi_deg", "position_m", "z", "theta_deg", "phi_deg") if name in found]  # fmt: skip
+def _error_texts(errors: Mapping[str, float]) -> list[str]:
+    return [f"{_ERROR_LABELS[name][0]} {significant(errors[name], 2)} {_ERROR_LABELS[name][1]}"
+            for name in ("psi_deg", "position_m", "z", "theta_deg", "phi_deg") if name in errors]  # fmt: skip
 
 
 def _notes(p: Prediction) -> list[str]:
     said = []
-    e = _reach(p)
+    e = _extrapolation(p)
     if e:
-        said.append(f"Extrapolation index {words.extrapolated(e)}")
-    if _told(p.floor):
-        said.append(f"Process noise alone would leave {words.listed(_told(p.floor))} with a perfect model.")
-    if _told(p.spread):
-        said.append(f"Models that the records cannot tell apart differ by {words.listed(_told(p.spread))} (std. dev.).")
+        said.append(f"Extrapolation index {words.extrapolation_text(e)}")
+    if _error_texts(p.noise_floor):
+        said.append(
+            f"Process noise alone would leave {words.enumeration(_error_texts(p.noise_floor))} with a perfect model."
+        )
+    if _error_texts(p.tied_spread):
+        said.append(
+            f"Models that the records cannot tell apart differ by "
+            f"{words.enumeration(_error_texts(p.tied_spread))} (std. dev.)."
+        )
     return said
 
 
-def _measures(rows: Sequence[MeasureRow]) -> Measures:
-    return Measures(tuple(rows), any(row.interval for row in rows), any(row.spread for row in rows))
+def _measure_table(rows: Sequence[MeasureRow]) -> MeasureTable:
+    return MeasureTable(tuple(rows), any(row.interval for row in rows), any(row.spread for row in rows))
 
 
-def _measure(name: str, m: Measure, spread: float | None) -> MeasureRow:
-    label, unit = words.measure(name)
-    digits = words.decimals(unit, m)
+def _measure_row(name: str, m: Measure, spread: float | None) -> MeasureRow:
+    label, unit = words.measure_label(name)
+    digits = words.measure_decimals(unit, m)
     both = m.measured is not None and m.simulated is not None
     difference = _signed(m.simulated - m.measured, digits) if both else DASH  # type: ignore[operator]
     return MeasureRow(
         label, unit, fixed(m.measured, digits), fixed(m.simulated, digits), difference,
-        words.interval(m.lower, m.upper, digits), words.is_inside(m), _small(spread),
+        words.interval(m.lower, m.upper, digits), words.is_inside(m), _two_digits(spread),
     )  # fmt: skip
 
 
@@ -200,25 +207,25 @@ def standards(predictions: Sequence[Prediction], length: float, scale: float) ->
     """Rows of the standards the records can be held against, and the notes about them."""
     rows, notes = [], []
     for p in predictions:
-        measured = _criteria(p.measured, length, scale, p.measured)
-        simulated = {c.name: c for c in _criteria(p.simulated, length, scale, p.measured)}
+        measured = _applicable_criteria(p.measured, length, scale, p.measured)
+        simulated = {c.name: c for c in _applicable_criteria(p.simulated, length, scale, p.measured)}
         for c in measured:
-            label, unit = words.measure(c.name)
+            label, unit = words.measure_label(c.name)
             other = simulated.get(c.name)
             digits = 1 if unit == "deg" else 2
             rows.append({
                 "record": p.record, "measure": label, "unit": unit, "limit": fixed(c.limit, digits),
                 "measured": fixed(c.value, digits), "simulated": fixed(other.value if other else None, digits),
-                "holds": c.holds, "paragraph": c.source.rsplit(", ", 1)[-1],
+                "holds": c.is_fulfilled, "paragraph": c.source.rsplit(", ", 1)[-1],
             })  # fmt: skip
             if c.note:
                 notes.append(c.note)
     return {"rows": rows, "notes": list(dict.fromkeys(notes))}
 
 
-def _criteria(record: Record, length: float, scale: float, like: Record) -> tuple[Criterion, ...]:
+def _applicable_criteria(record: Record, length: float, scale: float, like: Record) -> tuple[ImoCriterion, ...]:
     """The record's criteria, its manoeuvre as in `like`; none where that cannot be judged."""
     try:
-        return criteria(record, length, scale, like=like) if length > 0 else ()
+        return imo_criteria(record, length, scale, reference=like) if length > 0 else ()
     except InputError:
         return ()

@@ -11,13 +11,13 @@ from seatrial.core.figures.matrix import matrix
 from seatrial.core.results import Bars, Check, Figure, Matrix, Study, Verdict
 from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import counted
-from seatrial.core.values.files import write_whole
+from seatrial.core.values.files import write_atomically
 from seatrial.reporting import runs, tables
 from seatrial.reporting.page import environment
-from seatrial.reporting.sheets import sheet
+from seatrial.reporting.text_tables import text_table
 
 # channels a run is given rather than predicted
-INPUTS = ("delta", "n", "v_j", "wind_speed", "wind_direction")
+INPUT_CHANNELS = ("delta", "n", "v_j", "wind_speed", "wind_direction")
 TITLES = {
     "outcome": "Outcome",
     "claims": "Claims",
@@ -46,7 +46,7 @@ def write_study(study: Study, path: Path) -> Path:
     Raises:
         InputError: the file cannot be written.
     """
-    write_whole(path, html(study).encode())
+    write_atomically(path, html(study).encode())
     return path
 
 
@@ -54,11 +54,11 @@ def html(study: Study) -> str:
     """The page as text; sections without content are left out."""
     content: dict[str, object] = {
         "claims": study.claims,
-        "checks": [_check(c) for c in study.checks],
-        "tables": [sheet(t) for t in study.tables],
-        "figures": [(Markup(_drawn(f)), f) for f in study.figures],
-        "runs": runs.runs(study.predictions, 0.0, INPUTS),
-        "findings": tables.findings(study.findings),
+        "checks": [_check_row(c) for c in study.checks],
+        "tables": [text_table(t) for t in study.tables],
+        "figures": [(Markup(_render_figure(f)), f) for f in study.figures],
+        "runs": runs.run_sections(study.predictions, 0.0, INPUT_CHANNELS),
+        "findings": tables.finding_groups(study.findings),
     }
     titles = {key: title for key, title in TITLES.items() if content.get(key, True)}
     context = {
@@ -66,12 +66,12 @@ def html(study: Study) -> str:
         "titles": titles,
         "study": study,
         "outcome": outcome(study),
-        "scores": runs.scores(study.predictions, 0.0),
+        "scores": runs.score_table(study.predictions, 0.0),
     }
     return environment().get_template("study.html").render(context)
 
 
-def _drawn(figure: Figure | Bars | Matrix) -> str:
+def _render_figure(figure: Figure | Bars | Matrix) -> str:
     match figure:
         case Bars():
             return bars(figure)
@@ -98,6 +98,6 @@ def outcome(study: Study) -> list[str]:
     return said
 
 
-def _check(c: Check) -> CheckRow:
+def _check_row(c: Check) -> CheckRow:
     limit = c.limit if isinstance(c.limit, str) else significant(c.limit)
     return CheckRow(c.name, significant(c.value), limit, c.holds)

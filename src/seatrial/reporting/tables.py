@@ -6,32 +6,32 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from seatrial.core.equations import Model
-from seatrial.core.equations.latex import Equation, symbol
-from seatrial.core.equations.latex import equations as latex_equations
+from seatrial.core.equations.latex import LatexEquation, latex_symbol
+from seatrial.core.equations.latex import latex_equations as latex_equations
 from seatrial.core.results import Coefficient, Fit, Method, Noise, Offset
 from seatrial.core.text import words
-from seatrial.core.text.numbers import DASH, Estimate, estimate, exact, significant
+from seatrial.core.text.numbers import DASH, EstimateText, estimate_text, exact, significant
 from seatrial.core.text.numbers import fixed as decimals
-from seatrial.core.values import Finding, Severity, display
+from seatrial.core.values import Finding, Severity, display_unit
 from seatrial.reporting.citations import Citations
 from seatrial.reporting.mathml import inline, pieces
 
 _SEVERITIES = (Severity.ERROR, Severity.WARNING, Severity.INFO)
-EXAMPLES = 3
+MAX_UNFOLDED = 3
 
 
 @dataclass(frozen=True)
-class CoefficientRow:
-    """One free coefficient; `holds` says whether the interval contains the known value."""
+class FitCoefficientRow:
+    """One free coefficient; `contains_truth` says whether the interval contains the known value."""
 
     symbol: Markup
     name: str
     meaning: str
     unit: str
-    estimate: Estimate
+    estimate: EstimateText
     prior: str
     truth: str
-    holds: bool | None
+    contains_truth: bool | None
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class FindingGroup:
     severity: str
     code: str
     advice: str
-    shown: tuple[str, ...]
+    texts: tuple[str, ...]
     folded: tuple[str, ...]
 
 
@@ -56,79 +56,85 @@ class EquationRow:
 
 
 @dataclass(frozen=True)
-class Equations:
+class EquationList:
     """Rates, and the definitions they rest on, in order."""
 
     rates: tuple[EquationRow, ...]
     definitions: tuple[EquationRow, ...]
 
 
-def symbol_of(c: Coefficient) -> Markup:
+def coefficient_symbol(c: Coefficient) -> Markup:
     """The coefficient as MathML."""
-    return Markup(inline(c.latex or symbol(c.name)))
+    return Markup(inline(c.latex or latex_symbol(c.name)))
 
 
-def _shown(value: float | None, unit: str) -> float | None:
-    return None if value is None else value * display(unit)[0]
+def _display_value(value: float | None, unit: str) -> float | None:
+    return None if value is None else value * display_unit(unit)[0]
 
 
-def coefficients(items: Sequence[Coefficient]) -> list[CoefficientRow]:
+def coefficients(items: Sequence[Coefficient]) -> list[FitCoefficientRow]:
     """The free coefficients."""
-    return [_coefficient(c) for c in items if not c.fixed]
+    return [_coefficient_row(c) for c in items if not c.fixed]
 
 
-def _coefficient(c: Coefficient) -> CoefficientRow:
-    value, error, lower, upper = (_shown(x, c.unit) for x in (c.estimate, c.standard_error, c.lower, c.upper))
+def _coefficient_row(c: Coefficient) -> FitCoefficientRow:
+    value, error, lower, upper = (_display_value(x, c.unit) for x in (c.estimate, c.standard_error, c.lower, c.upper))
     holds = None
     if c.truth is not None and c.lower is not None and c.upper is not None:
         holds = c.lower <= c.truth <= c.upper
-    return CoefficientRow(
-        symbol_of(c), c.name, c.meaning, words.unit(c.unit), estimate(value or 0.0, error, lower, upper),
-        _prior(c), exact(_shown(c.truth, c.unit)), holds,
-    )  # fmt: skip
+    return FitCoefficientRow(
+        coefficient_symbol(c),
+        c.name,
+        c.meaning,
+        words.unit_text(c.unit),
+        estimate_text(value or 0.0, error, lower, upper),
+        _prior_text(c),
+        exact(_display_value(c.truth, c.unit)),
+        holds,
+    )
 
 
-def _prior(c: Coefficient) -> str:
+def _prior_text(c: Coefficient) -> str:
     if c.prior_mean is None or c.prior_standard_deviation is None:
         return DASH
-    mean, spread = _shown(c.prior_mean, c.unit), _shown(c.prior_standard_deviation, c.unit)
-    text = estimate(mean or 0.0, spread, None, None)
+    mean, spread = _display_value(c.prior_mean, c.unit), _display_value(c.prior_standard_deviation, c.unit)
+    text = estimate_text(mean or 0.0, spread, None, None)
     return f"{text.value} ± {text.error}{text.power}"
 
 
 def assumption(c: Coefficient) -> str:
     """What is assumed of a coefficient: its fixed value or its prior, with the source; empty where nothing is."""
-    unit = words.unit(c.unit)
+    unit = words.unit_text(c.unit)
     if c.fixed:
-        value = f"{c.name} = {exact(_shown(c.estimate, c.unit))} {unit}".rstrip()
+        value = f"{c.name} = {exact(_display_value(c.estimate, c.unit))} {unit}".rstrip()
         return f"{value} (fixed{': ' + c.source if c.source else ''})"
     if c.prior_mean is None or c.prior_standard_deviation is None:
         return ""
-    return f"{c.name} = {_prior(c)} {unit}".rstrip() + " (prior)"
+    return f"{c.name} = {_prior_text(c)} {unit}".rstrip() + " (prior)"
 
 
-def findings(items: Sequence[Finding]) -> list[FindingGroup]:
+def finding_groups(items: Sequence[Finding]) -> list[FindingGroup]:
     """Grouped by code and advice, the serious first."""
     groups: dict[tuple[int, str, str], list[Finding]] = {}
     for f in items:
         groups.setdefault((_SEVERITIES.index(f.severity), f.code, f.advice), []).append(f)
     return [
-        FindingGroup(_SEVERITIES[rank].value, code, advice, tuple(f.text for f in group[:EXAMPLES]),
-                     tuple(f.text for f in group[EXAMPLES:]))
+        FindingGroup(_SEVERITIES[rank].value, code, advice, tuple(f.text for f in group[:MAX_UNFOLDED]),
+                     tuple(f.text for f in group[MAX_UNFOLDED:]))
         for (rank, code, advice), group in sorted(groups.items(), key=lambda pair: pair[0][0])
     ]  # fmt: skip
 
 
-def equations(model: Model, citations: Citations) -> Equations:
+def equations(model: Model, citations: Citations) -> EquationList:
     """Every line of the model."""
     lines = latex_equations(model)
-    rates = tuple(_equation(e, citations) for e in lines if e.is_rate)
-    return Equations(rates, tuple(_equation(e, citations) for e in lines if not e.is_rate))
+    rates = tuple(_equation_row(e, citations) for e in lines if e.is_rate)
+    return EquationList(rates, tuple(_equation_row(e, citations) for e in lines if not e.is_rate))
 
 
-def _equation(e: Equation, citations: Citations) -> EquationRow:
+def _equation_row(e: LatexEquation, citations: Citations) -> EquationRow:
     unit = _equation_unit(e.unit, is_rate=e.is_rate)
-    return EquationRow(e.name, tuple(Markup(p) for p in pieces(e.latex)), unit, citations.marked(e.source))
+    return EquationRow(e.name, tuple(Markup(p) for p in pieces(e.latex)), unit, citations.mark(e.source))
 
 
 def _equation_unit(unit: str, *, is_rate: bool) -> str:
@@ -159,9 +165,9 @@ def noise(items: Sequence[Noise]) -> list[dict[str, str]]:
     return [
         {
             "channel": n.channel,
-            "meaning": words.channel(n.channel),
-            "unit": words.unit(n.unit),
-            "deviation": significant(_shown(n.standard_deviation, n.unit), 3),
+            "meaning": words.channel_meaning(n.channel),
+            "unit": words.unit_text(n.unit),
+            "deviation": significant(_display_value(n.standard_deviation, n.unit), 3),
             "time": significant(n.correlation_time, 2),
             "p": "< 0.001" if n.whiteness_p < 0.001 else decimals(n.whiteness_p, 3),
             "verdict": "white" if n.whiteness_p >= 0.01 else "coloured",
@@ -173,20 +179,22 @@ def noise(items: Sequence[Noise]) -> list[dict[str, str]]:
 def offsets(items: Sequence[Offset]) -> dict[str, object]:
     """Groups as rows, offsets as columns: `header` of name and unit, `rows` of group and texts."""
     names = list(dict.fromkeys((o.name, o.unit) for o in items))
-    cells = {(o.group, o.name): _offset(o) for o in items}
+    cells = {(o.group, o.name): _offset_text(o) for o in items}
     groups = list(dict.fromkeys(o.group for o in items))
     return {
-        "header": [(name, words.unit(unit)) for name, unit in names],
+        "header": [(name, words.unit_text(unit)) for name, unit in names],
         "rows": [(g, [cells.get((g, name), ("", "")) for name, _ in names]) for g in groups],
     }
 
 
-def _offset(o: Offset) -> tuple[str, str]:
-    text = estimate(_shown(o.estimate, o.unit) or 0.0, _shown(o.standard_error, o.unit), None, None)
+def _offset_text(o: Offset) -> tuple[str, str]:
+    text = estimate_text(
+        _display_value(o.estimate, o.unit) or 0.0, _display_value(o.standard_error, o.unit), None, None
+    )
     return text.value + text.power, text.error
 
 
-def fixed(items: Sequence[Coefficient], citations: Citations) -> list[dict[str, object]]:
+def fixed_parameters(items: Sequence[Coefficient], citations: Citations) -> list[dict[str, object]]:
     """The fixed parameters grouped by source."""
     groups: dict[str, list[Coefficient]] = {}
     for c in items:
@@ -194,12 +202,20 @@ def fixed(items: Sequence[Coefficient], citations: Citations) -> list[dict[str, 
             groups.setdefault(c.source, []).append(c)
     return [
         {
-            "source": citations.marked(source or "no source given"),
-            "rows": [(symbol_of(c), c.name, exact(_shown(c.estimate, c.unit)), words.unit(c.unit), c.meaning)
-                     for c in group],
+            "source": citations.mark(source or "no source given"),
+            "rows": [
+                (
+                    coefficient_symbol(c),
+                    c.name,
+                    exact(_display_value(c.estimate, c.unit)),
+                    words.unit_text(c.unit),
+                    c.meaning,
+                )
+                for c in group
+            ],
         }
         for source, group in groups.items()
-    ]  # fmt: skip
+    ]
 
 
 def priors(items: Sequence[Coefficient], model: Model, citations: Citations) -> list[dict[str, object]]:
@@ -211,9 +227,9 @@ def priors(items: Sequence[Coefficient], model: Model, citations: Citations) -> 
         known = model.parameters[c.name].prior if c.name in model.parameters else None
         left = None if c.standard_error is None else 100.0 * c.standard_error / c.prior_standard_deviation
         made.append({
-            "symbol": symbol_of(c), "name": c.name, "unit": words.unit(c.unit), "prior": _prior(c),
-            "estimate": _coefficient(c).estimate, "left": significant(left, 2),
-            "source": citations.marked((known.source if known else "") or c.source),
+            "symbol": coefficient_symbol(c), "name": c.name, "unit": words.unit_text(c.unit), "prior": _prior_text(c),
+            "estimate": _coefficient_row(c).estimate, "spread_percent": significant(left, 2),
+            "source": citations.mark((known.source if known else "") or c.source),
         })  # fmt: skip
     return made
 

@@ -6,17 +6,17 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from seatrial.core.equations.latex import symbol
+from seatrial.core.equations.latex import latex_symbol
 from seatrial.core.figures import fronts
-from seatrial.core.results.tuning import Bound, Component, Controller, Slot, Tuning
+from seatrial.core.results.tuning import Component, Controller, OperatingPoint, PerformanceBound, Tuning
 from seatrial.core.text.numbers import DASH, exact, fixed, significant
-from seatrial.core.text.words import channel
-from seatrial.data.folder.orders import shown_unit
-from seatrial.reporting import told_tuning
+from seatrial.core.text.words import channel_meaning
+from seatrial.data.folder.orders import channel_display_unit
+from seatrial.reporting import tuning_text
 from seatrial.reporting.mathml import inline
-from seatrial.reporting.sheets import Sheet
+from seatrial.reporting.text_tables import TextTable
 
-NOTHING = 1e-9
+ZERO_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -29,25 +29,25 @@ class ControllerRow:
     rms: tuple[str, ...]
     reduction: str
     margins: tuple[str, ...]
-    shares: tuple[str, ...]
-    broken: tuple[str, ...]
+    saturation_shares: tuple[str, ...]
+    violated: tuple[str, ...]
 
 
 def gain_symbol(name: str) -> Markup:
     """``KP`` and ``K_P`` as K with its index."""
     spaced = f"K_{name[1:]}" if len(name) > 1 and name[0] == "K" and name[1:].isupper() else name
-    return Markup(inline(symbol(spaced)))
+    return Markup(inline(latex_symbol(spaced)))
 
 
 def gain_names(tuning: Tuning) -> list[str]:
     """Names of all gains, in order, each once."""
-    return list(dict.fromkeys(name for c in (tuning.chosen, *tuning.rivals) for name in c.gains))
+    return list(dict.fromkeys(name for c in (tuning.chosen, *tuning.baselines) for name in c.gains))
 
 
-def shown_gains(rows: Sequence[Mapping[str, float]], names: Sequence[str]) -> list[tuple[str, ...]]:
+def gain_texts(rows: Sequence[Mapping[str, float]], names: Sequence[str]) -> list[tuple[str, ...]]:
     """Gains of several controllers as text; what rounding left of a zero, beside the largest of its name, is zero."""
     known = {name: [abs(row[name]) for row in rows if name in row] for name in names}
-    least = {name: NOTHING * max(values, default=0.0) for name, values in known.items()}
+    least = {name: ZERO_TOLERANCE * max(values, default=0.0) for name, values in known.items()}
     return [
         tuple(DASH if name not in row else exact(row[name] if abs(row[name]) > least[name] else 0.0, 4)
               for name in names)
@@ -55,42 +55,52 @@ def shown_gains(rows: Sequence[Mapping[str, float]], names: Sequence[str]) -> li
     ]  # fmt: skip
 
 
-def rms_heads(tuning: Tuning) -> list[tuple[str, str]]:
+def rms_headings(tuning: Tuning) -> list[tuple[str, str]]:
     """Names and units of the root mean squares."""
     names = (("output", tuning.output, ""), ("actuator", tuning.actuator, ""),
              ("actuator_rate", tuning.actuator, "/s"))  # fmt: skip
-    words = {"output": channel(tuning.output), "actuator": channel(tuning.actuator), "actuator_rate": "its rate"}
-    return [(words[key], told_tuning.unit_of(name, per)) for key, name, per in names]
+    words = {
+        "output": channel_meaning(tuning.output),
+        "actuator": channel_meaning(tuning.actuator),
+        "actuator_rate": "its rate",
+    }
+    return [(words[key], tuning_text.unit_label(name, per)) for key, name, per in names]
 
 
 def controller_rows(tuning: Tuning) -> list[ControllerRow]:
     """The chosen controller, then its rivals."""
-    controllers = (tuning.chosen, *tuning.rivals)
-    gains = shown_gains([c.gains for c in controllers], gain_names(tuning))
-    return [_row(c, told, tuning) for c, told in zip(controllers, gains, strict=True)]
+    controllers = (tuning.chosen, *tuning.baselines)
+    gains = gain_texts([c.gains for c in controllers], gain_names(tuning))
+    return [_controller_row(c, told, tuning) for c, told in zip(controllers, gains, strict=True)]
 
 
-def schedule_sheet(slots: tuple[Slot, ...]) -> Sheet:
+def schedule_table(operating_points: tuple[OperatingPoint, ...]) -> TextTable:
     """The schedule's gains as a table, a line for each condition."""
-    first = slots[0] if slots else None
-    gains, others = (list(first.gains), list(first.others)) if first else ([], [])
-    header = ("speed m/s", "heading deg", "height m", *gains, "cost", *others, "Ms", "saturation %",
-              "")  # fmt: skip
-    shown = shown_gains([s.gains for s in slots], gains)
+    first = operating_points[0] if operating_points else None
+    gains, others = (list(first.gains), list(first.baseline_costs)) if first else ([], [])
+    header = ("speed m/s", "heading deg", "height m", *gains, "cost", *others, "Ms", "saturation %", "")
+    shown = gain_texts([s.gains for s in operating_points], gains)
     rows = [
-        (exact(s.U, 4), exact(math.degrees(s.beta), 4), exact(s.height, 3),
-         *told, fixed(s.cost, 3),
-         *(_cost(s.others.get(name, math.nan)) for name in others), fixed(s.peak, 2), fixed(100.0 * s.saturation, 1),
-         "" if s.is_feasible else "not kept")
-        for s, told in zip(slots, shown, strict=True)
-    ]  # fmt: skip
-    return Sheet("Gains of the schedule", header, tuple([True] * (len(header) - 1) + [False]), tuple(rows), "")
+        (
+            exact(s.U, 4),
+            exact(math.degrees(s.beta), 4),
+            exact(s.height, 3),
+            *told,
+            fixed(s.cost, 3),
+            *(_cost_text(s.baseline_costs.get(name, math.nan)) for name in others),
+            fixed(s.Ms, 2),
+            fixed(100.0 * s.saturation, 1),
+            "" if s.is_feasible else "not kept",
+        )
+        for s, told in zip(operating_points, shown, strict=True)
+    ]
+    return TextTable("Gains of the schedule", header, tuple([True] * (len(header) - 1) + [False]), tuple(rows), "")
 
 
-def bound_row(b: Bound) -> tuple[str, str, str, str, str]:
+def bound_row(b: PerformanceBound) -> tuple[str, str, str, str, str]:
     """Name, variance ratio, rms ratio, what is held equal, note."""
     rms = fixed(math.sqrt(b.ratio), 2) if b.ratio >= 0.0 else DASH
-    return b.name, fixed(b.ratio, 2), rms, b.at, b.note
+    return b.name, fixed(b.ratio, 2), rms, b.conditions, b.note
 
 
 def component_row(c: Component, gains: dict[str, float]) -> tuple[str | Markup, ...]:
@@ -102,39 +112,39 @@ def component_row(c: Component, gains: dict[str, float]) -> tuple[str | Markup, 
 
 def transfer_latex(num: tuple[float, ...], den: tuple[float, ...]) -> str:
     """num(s) / den(s) as LaTeX; the denominator 1 is left out."""
-    above, below = _polynomial(num), _polynomial(den)
+    above, below = _polynomial_latex(num), _polynomial_latex(den)
     return above if below == "1" else f"\\frac{{{above}}}{{{below}}}"
 
 
-def _row(c: Controller, gains: tuple[str, ...], tuning: Tuning) -> ControllerRow:
-    factors = [fronts.people_s(unit)[0] for unit in tuning.units]
-    of_output, of_actuator = shown_unit(tuning.output)[0], shown_unit(tuning.actuator)[0]
+def _controller_row(c: Controller, gains: tuple[str, ...], tuning: Tuning) -> ControllerRow:
+    factors = [fronts.degree_unit(unit)[0] for unit in tuning.units]
+    of_output, of_actuator = channel_display_unit(tuning.output)[0], channel_display_unit(tuning.actuator)[0]
     rms = [c.rms.get(key, math.nan) * factor for key, factor in
            (("output", of_output), ("actuator", of_actuator), ("actuator_rate", of_actuator))]  # fmt: skip
-    has_limits = [math.isfinite(limit) for limit in (tuning.restriction.limit, tuning.restriction.rate)]
+    has_limits = [math.isfinite(limit) for limit in (tuning.constraints.limit, tuning.constraints.rate)]
     return ControllerRow(
         c.name,
         gains,
         tuple(significant(float(v) * f) for v, f in zip(c.objectives, factors, strict=False)),
         tuple(significant(v, 3) for v in rms),
         fixed(100.0 * c.reduction, 1),
-        (_ratio(c.peak, 2), _ratio(c.gain_margin, 1), _ratio(math.degrees(c.phase_margin), 0),
+        (_ratio_text(c.Ms, 2), _ratio_text(c.gain_margin, 1), _ratio_text(math.degrees(c.phase_margin), 0),
          "∞" if math.isinf(c.delay_margin) else significant(c.delay_margin, 2), fixed(c.damping, 2)),
         tuple(fixed(100.0 * share, 1) if known else DASH for share, known in
               zip((c.saturation, c.rate_saturation), has_limits, strict=True)),
-        c.broken,
+        c.violated,
     )  # fmt: skip
 
 
-def _ratio(value: float, decimals: int) -> str:
+def _ratio_text(value: float, decimals: int) -> str:
     return "∞" if math.isinf(value) else fixed(value, decimals)
 
 
-def _cost(value: float) -> str:
+def _cost_text(value: float) -> str:
     return "unstable" if math.isinf(value) else fixed(value, 3)
 
 
-def _polynomial(coefficients: tuple[float, ...]) -> str:
+def _polynomial_latex(coefficients: tuple[float, ...]) -> str:
     """``1.432 s^{2} + 0.3796 s + 1``."""
     parts = []
     for k, c in enumerate(coefficients):
@@ -142,13 +152,13 @@ def _polynomial(coefficients: tuple[float, ...]) -> str:
         if c == 0.0 and len(coefficients) > 1:
             continue
         variable = "" if power == 0 else "s" if power == 1 else f"s^{{{power}}}"
-        number = "" if abs(c) == 1.0 and variable else _number(abs(c))
+        number = "" if abs(c) == 1.0 and variable else _latex_number(abs(c))
         sign = (" - " if c < 0.0 else " + ") if parts else ("-" if c < 0.0 else "")
         parts.append(sign + f"{number} {variable}".strip())
     return "".join(parts).strip() or "0"
 
 
-def _number(value: float) -> str:
+def _latex_number(value: float) -> str:
     """Up to five digits, without thin spaces; powers of ten in LaTeX."""
     if value and not 1e-3 <= value < 1e5:
         mantissa, _, power = f"{value:.4e}".partition("e")

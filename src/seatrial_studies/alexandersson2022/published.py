@@ -35,15 +35,15 @@ PREDICTED_TURNS = {
     "starboard": Turn("starboard", 22.10 / LENGTH, 24.29 / LENGTH, "the paper's prediction"),
 }
 # in per cent: the published code (vessel-manoeuvring-models 0.0.6) run again on the same records
-AGAIN_ADVANCE = {"port": -0.9, "starboard": -1.6}
-AGAIN_DIAMETER = {"port": 6.1, "starboard": 3.0}
+RERUN_ADVANCE = {"port": -0.9, "starboard": -1.6}
+RERUN_DIAMETER = {"port": 6.1, "starboard": 3.0}
 # the same: lower and upper value over its variants, open loop from rudder and propeller rate
-AGAIN_HEADING = (11.2, 11.7)
-AGAIN_POSITION = (10.0, 10.4)
-AGAIN_SECONDS = 184.0
+RERUN_HEADING = (11.2, 11.7)
+RERUN_POSITION = (10.0, 10.4)
+RERUN_SECONDS = 184.0
 
 
-def percent(value: float, reference: float) -> float:
+def percent_deviation(value: float, reference: float) -> float:
     """Deviation of `value` from `reference` in per cent."""
     return 100.0 * (value / reference - 1.0)
 
@@ -55,7 +55,7 @@ def published_range(measure: str) -> tuple[float, float]:
     """
     values = [float(getattr(turn, measure)) for turn in (*MEASURED_TURNS.values(), *OTHER_TURNS)]
     worst = max(
-        abs(percent(float(getattr(PREDICTED_TURNS[s], measure)), float(getattr(MEASURED_TURNS[s], measure))))
+        abs(percent_deviation(float(getattr(PREDICTED_TURNS[s], measure)), float(getattr(MEASURED_TURNS[s], measure))))
         for s in SIDES
     )
     return min(values) * (1.0 - worst / 100.0), max(values) * (1.0 + worst / 100.0)

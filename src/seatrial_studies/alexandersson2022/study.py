@@ -6,13 +6,13 @@ from collections.abc import Callable
 from seatrial.core.results import Study
 from seatrial.core.values.versions import versions
 from seatrial_studies.alexandersson2022.published import SOURCE
-from seatrial_studies.alexandersson2022.repetition import repetition
-from seatrial_studies.alexandersson2022.tables import figures, tables, validated
+from seatrial_studies.alexandersson2022.reproduction import reproduce_benchmark
+from seatrial_studies.alexandersson2022.tables import figures, tables, validation_prediction
 from seatrial_studies.alexandersson2022.verdicts import checks, claims
-from seatrial_studies.ready import ready_trial
+from seatrial_studies.packaged_trials import packaged_trial
 
 
-def study(*, quick: bool, seed: int, progress: Callable[[str], None] | None) -> Study:
+def study(*, quick: bool, seed: int, report_progress: Callable[[str], None] | None) -> Study:
     """Identify KVLCC2 from twelve HSVA zigzags, predict the thirteenth and the 35 deg turns; the paper beside it.
 
     Args:
@@ -23,8 +23,8 @@ def study(*, quick: bool, seed: int, progress: Callable[[str], None] | None) -> 
         InputError: SEATRIAL_DATA does not lead to the records, or what `identify` raises.
     """
     began = time.perf_counter()
-    trial = ready_trial("kvlcc2_hsva.toml")
-    made = repetition(trial, quick=quick, seed=seed, progress=progress)
+    trial = packaged_trial("kvlcc2_hsva.toml")
+    made = reproduce_benchmark(trial, quick=quick, seed=seed, report_progress=report_progress)
     return Study(
         name="alexandersson2022",
         source=SOURCE,
@@ -34,7 +34,7 @@ def study(*, quick: bool, seed: int, progress: Callable[[str], None] | None) -> 
         checks=checks(made),
         tables=tables(made),
         figures=figures(made),
-        predictions=(validated(made), *(e.whole for e in made.left_out)),
+        predictions=(validation_prediction(made), *(e.prediction for e in made.left_out_runs)),
         findings=made.fit.findings,
         seed=seed,
         elapsed_s=time.perf_counter() - began,

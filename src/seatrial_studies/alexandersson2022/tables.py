@@ -5,48 +5,64 @@ import statistics
 import numpy as np
 
 from seatrial.core.results import Curve, Figure, Prediction, Table
-from seatrial.core.values import NOTATION, Record, display
-from seatrial_studies.alexandersson2022 import margins, published
-from seatrial_studies.alexandersson2022.left_out import WINDOW_S, LeftOut, jackknife_error
-from seatrial_studies.alexandersson2022.published import MEASURED_TURNS, OTHER_TURNS, PREDICTED_TURNS, SIDES, percent
-from seatrial_studies.alexandersson2022.repetition import Repetition
+from seatrial.core.values import NOTATION, Record, display_unit
+from seatrial_studies.alexandersson2022 import prediction_coverage, published
+from seatrial_studies.alexandersson2022.leave_one_out import WINDOW_S, LeftOutRun, jackknife_error
+from seatrial_studies.alexandersson2022.published import (
+    MEASURED_TURNS,
+    OTHER_TURNS,
+    PREDICTED_TURNS,
+    SIDES,
+    percent_deviation,
+)
+from seatrial_studies.alexandersson2022.reproduction import BenchmarkReproduction
 
 
-def tables(made: Repetition) -> tuple[Table, ...]:
+def tables(reproduction: BenchmarkReproduction) -> tuple[Table, ...]:
     """All tables; those of leave-one-run-out only where it was done."""
-    always = (beside(made), turns(made), *margins.tables(made.margins), offsets(made), noise(made))
-    return (*always, left_out(made.left_out), left_out_turns(made.left_out)) if made.left_out else always
+    always = (
+        comparison_table(reproduction),
+        turn_table(reproduction),
+        *prediction_coverage.tables(reproduction.coverage),
+        offset_table(reproduction),
+        noise_table(reproduction),
+    )
+    return (
+        (*always, left_out_table(reproduction.left_out_runs), left_out_turn_table(reproduction.left_out_runs))
+        if reproduction.left_out_runs
+        else always
+    )
 
 
-def validated(made: Repetition) -> Prediction:
+def validation_prediction(reproduction: BenchmarkReproduction) -> Prediction:
     """The prediction of the validation run."""
-    return made.fit.validation()[0]
+    return reproduction.fit.validation()[0]
 
 
-def beside(made: Repetition) -> Table:
+def comparison_table(reproduction: BenchmarkReproduction) -> Table:
     """The paper's numbers, those of its code run again, and ours."""
-    rms, again = validated(made).rms, "{:.1f} to {:.1f}"
+    rms, again = validation_prediction(reproduction).rms, "{:.1f} to {:.1f}"
     rows: list[tuple[str | float | None, ...]] = [
-        ("Z_35_05 open loop, heading rms [deg]", None, again.format(*published.AGAIN_HEADING), rms["psi_deg"]),
-        ("Z_35_05 open loop, position rms [m]", None, again.format(*published.AGAIN_POSITION), rms["position_m"]),
+        ("Z_35_05 open loop, heading rms [deg]", None, again.format(*published.RERUN_HEADING), rms["psi_deg"]),
+        ("Z_35_05 open loop, position rms [m]", None, again.format(*published.RERUN_POSITION), rms["position_m"]),
     ]
     for side in SIDES:
-        truth, paper, ours = MEASURED_TURNS[side], PREDICTED_TURNS[side], made.turns[side]
+        truth, paper, ours = MEASURED_TURNS[side], PREDICTED_TURNS[side], reproduction.turns[side]
         rows += [
             (
                 f"35 deg turn to {side}, advance against MARIN [%]",
-                percent(paper.advance, truth.advance),
-                f"{published.AGAIN_ADVANCE[side]:+.1f}",
-                percent(ours.advance, truth.advance),
+                percent_deviation(paper.advance, truth.advance),
+                f"{published.RERUN_ADVANCE[side]:+.1f}",
+                percent_deviation(ours.advance, truth.advance),
             ),
             (
                 f"35 deg turn to {side}, tactical diameter against MARIN [%]",
-                percent(paper.diameter, truth.diameter),
-                f"{published.AGAIN_DIAMETER[side]:+.1f}",
-                percent(ours.diameter, truth.diameter),
+                percent_deviation(paper.diameter, truth.diameter),
+                f"{published.RERUN_DIAMETER[side]:+.1f}",
+                percent_deviation(ours.diameter, truth.diameter),
             ),
         ]
-    rows.append(("computing time [s]", None, f"{published.AGAIN_SECONDS:g}", made.fit.elapsed_s))
+    rows.append(("computing time [s]", None, f"{published.RERUN_SECONDS:g}", reproduction.fit.elapsed_s))
     note = (
         "The published code was run again on the same records and trained without Z_35_05; its time is that of one "
         "machine. Ours is the whole of reading, checking, identifying and predicting 13 runs, compilation included."
@@ -54,11 +70,11 @@ def beside(made: Repetition) -> Table:
     return Table("The published numbers and ours", ("quantity", "paper", "its code again", "here"), tuple(rows), note)
 
 
-def turns(made: Repetition) -> Table:
+def turn_table(reproduction: BenchmarkReproduction) -> Table:
     """Simulated turns beside every named measured value."""
     rows: list[tuple[str | float | None, ...]] = []
     for side in SIDES:
-        ours, paper = made.turns[side], PREDICTED_TURNS[side]
+        ours, paper = reproduction.turns[side], PREDICTED_TURNS[side]
         rows.append((ours.source, side, ours.advance, ours.diameter, None, None))
         rows.append((paper.source, side, paper.advance, paper.diameter, None, None))
         for truth in (MEASURED_TURNS[side], *OTHER_TURNS):
@@ -68,8 +84,8 @@ def turns(made: Repetition) -> Table:
                     truth.side or "not told",
                     truth.advance,
                     truth.diameter,
-                    percent(ours.advance, truth.advance),
-                    percent(ours.diameter, truth.diameter),
+                    percent_deviation(ours.advance, truth.advance),
+                    percent_deviation(ours.diameter, truth.diameter),
                 )
             )
     header = ("source", "side", "advance [L]", "tactical diameter [L]", "advance, here [%]", "diameter, here [%]")
@@ -82,11 +98,11 @@ def turns(made: Repetition) -> Table:
     return Table("Turning circles with 35 deg of rudder", header, tuple(rows), note)
 
 
-def offsets(made: Repetition) -> Table:
+def offset_table(reproduction: BenchmarkReproduction) -> Table:
     """Nuisances of each training run."""
     rows = []
-    for offset in made.fit.offsets:
-        factor, unit = display(offset.unit)
+    for offset in reproduction.fit.offsets:
+        factor, unit = display_unit(offset.unit)
         error = None if offset.standard_error is None else factor * offset.standard_error
         rows.append((offset.group, f"{offset.name} [{unit}]", factor * offset.estimate, error))
     note = (
@@ -96,13 +112,13 @@ def offsets(made: Repetition) -> Table:
     return Table("Offsets by run", ("run", "offset", "estimate", "standard error"), tuple(rows), note)
 
 
-def noise(made: Repetition) -> Table:
+def noise_table(reproduction: BenchmarkReproduction) -> Table:
     """Noise from sample to sample beside what the model leaves."""
     rows = []
-    for item in made.fit.noise:
-        if item.channel in made.noise:
-            factor, unit = display(NOTATION[item.channel].unit)
-            sample = made.noise[item.channel]
+    for item in reproduction.fit.noise:
+        if item.channel in reproduction.noise_levels:
+            factor, unit = display_unit(NOTATION[item.channel].unit)
+            sample = reproduction.noise_levels[item.channel]
             ratio = item.standard_deviation / sample if sample > 0 else None
             rows.append((f"{item.channel} [{unit}]", factor * sample, factor * item.standard_deviation, ratio))
     note = (
@@ -112,10 +128,17 @@ def noise(made: Repetition) -> Table:
     return Table("Noise", ("channel", "sample to sample", "left by the model", "ratio"), tuple(rows), note)
 
 
-def left_out(entries: tuple[LeftOut, ...]) -> Table:
+def left_out_table(entries: tuple[LeftOutRun, ...]) -> Table:
     """Errors of each run when the others trained."""
     rows: list[tuple[str | float | None, ...]] = [
-        (e.run, e.whole.rms["psi_deg"], e.whole.rms["position_m"], e.windows, e.heading_deg, e.position_m)
+        (
+            e.run,
+            e.prediction.rms["psi_deg"],
+            e.prediction.rms["position_m"],
+            e.window_count,
+            e.window_heading_deg,
+            e.window_position_m,
+        )
         for e in entries
     ]
     for name, average in (("mean", statistics.fmean), ("median", statistics.median)):
@@ -132,7 +155,7 @@ def left_out(entries: tuple[LeftOut, ...]) -> Table:
     return Table("Leave one run out", header, tuple(rows), note)
 
 
-def left_out_turns(entries: tuple[LeftOut, ...]) -> Table:
+def left_out_turn_table(entries: tuple[LeftOutRun, ...]) -> Table:
     """What the turns owe to single runs."""
     rows: list[tuple[str | float | None, ...]] = [
         (e.run, *(x for side in SIDES for x in (e.turns[side].advance, e.turns[side].diameter))) for e in entries
@@ -143,12 +166,12 @@ def left_out_turns(entries: tuple[LeftOut, ...]) -> Table:
     return Table("Turning circles with one run left out", header, tuple(rows))
 
 
-def figures(made: Repetition) -> tuple[Figure, ...]:
+def figures(reproduction: BenchmarkReproduction) -> tuple[Figure, ...]:
     """Tracks of the simulated turns."""
-    length = made.fit.ship.length
-    curves = tuple(_track(record, side, length) for side, record in made.tracks.items())
+    length = reproduction.fit.ship.length
+    curves = tuple(_track_curve(record, side, length) for side, record in reproduction.tracks.items())
     return (Figure("Simulated 35 deg turns", "y0 / L", "x0 / L", curves, is_map=True),)
 
 
-def _track(record: Record, side: str, length: float) -> Curve:
+def _track_curve(record: Record, side: str, length: float) -> Curve:
     return Curve(side, np.asarray(record["y0"]) / length, np.asarray(record["x0"]) / length)

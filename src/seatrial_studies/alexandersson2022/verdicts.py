@@ -5,29 +5,36 @@ from collections import Counter
 from collections.abc import Sequence
 
 from seatrial.core.results import Check, Claim, Verdict
-from seatrial_studies.alexandersson2022 import margins, published
-from seatrial_studies.alexandersson2022.left_out import jackknife_error
-from seatrial_studies.alexandersson2022.published import MEASURED_TURNS, SIDES, percent, published_range
-from seatrial_studies.alexandersson2022.repetition import Repetition
-from seatrial_studies.alexandersson2022.tables import validated
+from seatrial_studies.alexandersson2022 import prediction_coverage, published
+from seatrial_studies.alexandersson2022.leave_one_out import jackknife_error
+from seatrial_studies.alexandersson2022.published import MEASURED_TURNS, SIDES, percent_deviation, published_range
+from seatrial_studies.alexandersson2022.reproduction import BenchmarkReproduction
+from seatrial_studies.alexandersson2022.tables import validation_prediction
 
-LONGER = "needs one run left out at a time: repeat without --quick"
-ACCEPTED_PERCENT, QUIET, TWO_SIDED_95 = 5.0, 3.0, 1.96
+NEEDS_FULL_VERSION = "needs one run left out at a time: repeat without --quick"
+ACCEPTED_PERCENT, QUIET_RATIO, TWO_SIDED_95 = 5.0, 3.0, 1.96
 HEADING_LIMIT, POSITION_LIMIT, FIT_LIMIT, IDENTIFY_LIMIT, WINDOW_LIMIT = 11.0, 6.0, 5.0, 18.0, 1.6
 
 
-def claims(made: Repetition) -> tuple[Claim, ...]:
+def claims(reproduction: BenchmarkReproduction) -> tuple[Claim, ...]:
     """What the paper, or the data it uses, states, and what the numbers say to it."""
-    return (turning(made), zigzag(made), filtering(made), certainty(made), choice(made), labels(made))
+    return (
+        turning_claim(reproduction),
+        zigzag_claim(reproduction),
+        filtering_claim(reproduction),
+        uncertainty_claim(reproduction),
+        model_choice_claim(reproduction),
+        column_labels_claim(reproduction),
+    )
 
 
-def turning(made: Repetition) -> Claim:
+def turning_claim(reproduction: BenchmarkReproduction) -> Claim:
     """Confirmed where both means over the sides stay within 5 %, as the paper counts.
 
     Refuted where they do not although the 35/5 zigzag is predicted as well as the paper's code does; where that fails
     too, our circles say nothing about the paper's.
     """
-    errors = {m: [_error(made, side, m) for side in SIDES] for m in ("advance", "diameter")}
+    errors = {m: [_turn_error(reproduction, side, m) for side in SIDES] for m in ("advance", "diameter")}
     worst = max(sum(map(abs, both)) / len(both) for both in errors.values())
     told = "; ".join(
         f"{name} {errors[m][0]:+.1f} % to port, {errors[m][1]:+.1f} % to starboard"
@@ -35,7 +42,7 @@ def turning(made: Repetition) -> Claim:
     )
     if worst <= ACCEPTED_PERCENT:
         verdict, tail = Verdict.CONFIRMED, "a second model structure from the same zigzags agrees"
-    elif zigzag(made).verdict is Verdict.CONFIRMED:
+    elif zigzag_claim(reproduction).verdict is Verdict.CONFIRMED:
         verdict = Verdict.REFUTED
         tail = (
             "a second model structure predicts the zigzag left aside as well as the paper's, but not the circles "
@@ -51,23 +58,27 @@ def turning(made: Repetition) -> Claim:
     )
 
 
-def zigzag(made: Repetition) -> Claim:
+def zigzag_claim(reproduction: BenchmarkReproduction) -> Claim:
     """Confirmed where neither error exceeds the larger one of the published code; a worse model refutes nothing."""
-    rms = validated(made).rms
-    good = rms["psi_deg"] <= published.AGAIN_HEADING[1] and rms["position_m"] <= published.AGAIN_POSITION[1]
+    rms = validation_prediction(reproduction).rms
+    good = rms["psi_deg"] <= published.RERUN_HEADING[1] and rms["position_m"] <= published.RERUN_POSITION[1]
     return Claim(
         "A model of zigzags with smaller angles predicts the 35/5 zigzag",
         Verdict.CONFIRMED if good else Verdict.UNKNOWABLE,
         f"ours, open loop from rudder and propeller rate: {rms['psi_deg']:.1f} deg and {rms['position_m']:.1f} m rms; "
-        f"the published code {_between(published.AGAIN_HEADING)} deg, {_between(published.AGAIN_POSITION)} m",
+        f"the published code {_range_text(published.RERUN_HEADING)} deg, {_range_text(published.RERUN_POSITION)} m",
     )
 
 
-def filtering(made: Repetition) -> Claim:
+def filtering_claim(reproduction: BenchmarkReproduction) -> Claim:
     """Refuted where unfiltered records with next to no noise predict the 35/5 zigzag as well; else not to be told."""
-    ratios = [n.standard_deviation / made.noise[n.channel] for n in made.fit.noise if made.noise.get(n.channel)]
-    quiet = bool(ratios) and min(ratios) > QUIET
-    refuted = quiet and zigzag(made).verdict is Verdict.CONFIRMED
+    ratios = [
+        n.standard_deviation / reproduction.noise_levels[n.channel]
+        for n in reproduction.fit.noise
+        if reproduction.noise_levels.get(n.channel)
+    ]
+    quiet = bool(ratios) and min(ratios) > QUIET_RATIO
+    refuted = quiet and zigzag_claim(reproduction).verdict is Verdict.CONFIRMED
     about = (
         f"what the model leaves is {min(ratios):.0f} times the noise from sample to sample or more: the records were "
         "smooth when they were stored, and what is left is model error"
@@ -86,37 +97,37 @@ def filtering(made: Repetition) -> Claim:
     )
 
 
-def certainty(made: Repetition) -> Claim:
+def uncertainty_claim(reproduction: BenchmarkReproduction) -> Claim:
     """Refuted where MARIN's tactical diameter lies outside the interval that leaving single runs out gives.
 
     That interval is the wider one: it sees model error that a regression's standard errors take for white noise.
     """
     claim = "Realisations drawn from the regression's standard errors tell how well the predicted circle is known"
-    if not made.left_out:
-        return Claim(claim, Verdict.UNKNOWABLE, LONGER)
+    if not reproduction.left_out_runs:
+        return Claim(claim, Verdict.UNKNOWABLE, NEEDS_FULL_VERSION)
     told, outside = [], False
     for side in SIDES:
-        error = jackknife_error([e.turns[side].diameter for e in made.left_out])
-        missed = abs(made.turns[side].diameter - MEASURED_TURNS[side].diameter)
+        error = jackknife_error([e.turns[side].diameter for e in reproduction.left_out_runs])
+        missed = abs(reproduction.turns[side].diameter - MEASURED_TURNS[side].diameter)
         outside |= not missed <= TWO_SIDED_95 * error
         told.append(
-            f"{side} standard error {100.0 * error / made.turns[side].diameter:.1f} %, "
-            f"error {_error(made, side, 'diameter'):+.1f} %"
+            f"{side} standard error {100.0 * error / reproduction.turns[side].diameter:.1f} %, "
+            f"error {_turn_error(reproduction, side, 'diameter'):+.1f} %"
         )
     return Claim(
         claim,
         Verdict.REFUTED if outside else Verdict.UNKNOWABLE,
         f"tactical diameter with one run left out at a time: {'; '.join(told)}. The paper's realisations hardly differ "
-        f"from one another, its own errors are +6.2 and +3.1 %. {_intervals(made)}",
+        f"from one another, its own errors are +6.2 and +3.1 %. {_interval_text(reproduction)}",
     )
 
 
-def choice(made: Repetition) -> Claim:
+def model_choice_claim(reproduction: BenchmarkReproduction) -> Claim:
     """Not to be told from one run; the evidence is how far the errors of single runs lie apart."""
     claim = "One validation run with larger angles than the training runs tells the best model structure"
-    if not made.left_out:
-        return Claim(claim, Verdict.UNKNOWABLE, LONGER)
-    heading = [e.whole.rms["psi_deg"] for e in made.left_out]
+    if not reproduction.left_out_runs:
+        return Claim(claim, Verdict.UNKNOWABLE, NEEDS_FULL_VERSION)
+    heading = [e.prediction.rms["psi_deg"] for e in reproduction.left_out_runs]
     return Claim(
         claim,
         Verdict.UNKNOWABLE,
@@ -125,14 +136,16 @@ def choice(made: Repetition) -> Claim:
     )
 
 
-def labels(made: Repetition) -> Claim:
+def column_labels_claim(reproduction: BenchmarkReproduction) -> Claim:
     """Refuted where the checks find the velocities' frame, the yaw rate and the rudder's sign wrong in every run."""
-    found = Counter(f.code for findings in made.labels.values() for f in findings)
+    found = Counter(f.code for findings in reproduction.label_findings.values() for f in findings)
     wanted = ("velocity-frame", "yaw-rate", "rudder-sign")
-    runs = len(made.labels)
-    refuted = runs > 0 and all(sum(c in {f.code for f in fs} for fs in made.labels.values()) == runs for c in wanted)
-    example = next((fs for fs in made.labels.values() if fs), ())
-    said = "; ".join(f"{f.what} ({f.evidence})" for f in example if f.code in wanted)
+    runs = len(reproduction.label_findings)
+    refuted = runs > 0 and all(
+        sum(c in {f.code for f in fs} for fs in reproduction.label_findings.values()) == runs for c in wanted
+    )
+    example = next((fs for fs in reproduction.label_findings.values() if fs), ())
+    said = "; ".join(f"{f.message} ({f.evidence})" for f in example if f.code in wanted)
     counts = ", ".join(f"{code} {found[code]}" for code in wanted)
     return Claim(
         "Columns 5 to 8 of the records are u, v, p, r, as their headers and published catalogues have it",
@@ -141,59 +154,66 @@ def labels(made: Repetition) -> Claim:
     )
 
 
-def checks(made: Repetition) -> tuple[Check, ...]:
+def checks(reproduction: BenchmarkReproduction) -> tuple[Check, ...]:
     """Our own numbers against limits that were set before."""
-    rms = validated(made).rms
+    rms = validation_prediction(reproduction).rms
     plain = [
         ("Z_35_05 open loop, heading rms [deg]", rms["psi_deg"], HEADING_LIMIT),
         ("Z_35_05 open loop, position rms [m]", rms["position_m"], POSITION_LIMIT),
-        ("fit, warm [s]", made.warm_fit_s, FIT_LIMIT),
-        ("identify as a whole [s]", made.fit.elapsed_s, IDENTIFY_LIMIT),
+        ("fit, warm [s]", reproduction.warm_fit_s, FIT_LIMIT),
+        ("identify as a whole [s]", reproduction.fit.elapsed_s, IDENTIFY_LIMIT),
     ]
     turned = [
-        within(f"35 deg turn to {side}, {name} [L]", float(getattr(made.turns[side], measure)), measure)
+        check_in_published_range(
+            f"35 deg turn to {side}, {name} [L]", float(getattr(reproduction.turns[side], measure)), measure
+        )
         for side in SIDES
         for measure, name in (("advance", "advance"), ("diameter", "tactical diameter"))
     ]
     windows = (
-        [("30 s windows of runs left out, heading rms [deg]", _windows(made), WINDOW_LIMIT)] if made.left_out else []
+        [("30 s windows of runs left out, heading rms [deg]", _mean_window_heading(reproduction), WINDOW_LIMIT)]
+        if reproduction.left_out_runs
+        else []
     )
-    plain_checks = (at_most(name, value, limit) for name, value, limit in (*plain, *windows))
-    return (*plain_checks, *turned, *margins.checks(made.margins))
+    plain_checks = (check_at_most(name, value, limit) for name, value, limit in (*plain, *windows))
+    return (*plain_checks, *turned, *prediction_coverage.checks(reproduction.coverage))
 
 
-def _intervals(made: Repetition) -> str:
+def _interval_text(reproduction: BenchmarkReproduction) -> str:
     kinds = (
-        ("which count what runs left out missed", made.margins.turns),
-        ("with the spread of tied models as well", made.margins.with_tied),
+        ("which count what runs left out missed", reproduction.coverage.turn_intervals),
+        ("with the spread of tied models as well", reproduction.coverage.tied_turn_intervals),
     )
     told = [
-        f"{how}, hold {sum(m.holds for m in turns)} of {len(turns)} of MARIN's values at half widths up to "
-        f"{max(m.half_width for m in turns):.1f} %, the farthest at {max(m.reach for m in turns):.2f} of its half width"
+        f"{how}, hold {sum(m.contains_measured for m in turns)} of {len(turns)} of MARIN's values at half widths up to "
+        f"{max(m.half_width for m in turns):.1f} %, the farthest at "
+        f"{max(m.relative_deviation for m in turns):.2f} of its half width"
         for how, turns in kinds
         if turns
     ]
     return f"Our own intervals, {'; '.join(told)}" if told else "Our own intervals could not be had"
 
 
-def _windows(made: Repetition) -> float:
-    return sum(e.heading_deg for e in made.left_out) / len(made.left_out)
+def _mean_window_heading(reproduction: BenchmarkReproduction) -> float:
+    return sum(e.window_heading_deg for e in reproduction.left_out_runs) / len(reproduction.left_out_runs)
 
 
-def at_most(name: str, value: float, limit: float) -> Check:
+def check_at_most(name: str, value: float, limit: float) -> Check:
     """A check that holds up to its limit; NaN does not hold."""
     return Check(name, value, limit, bool(value <= limit))
 
 
-def within(name: str, value: float, measure: str) -> Check:
+def check_in_published_range(name: str, value: float, measure: str) -> Check:
     """A turning measure against the published range, widened by the paper's own largest error."""
     lower, upper = published_range(measure)
     return Check(name, value, f"{lower:.2f} to {upper:.2f}", math.isfinite(value) and lower <= value <= upper)
 
 
-def _error(made: Repetition, side: str, measure: str) -> float:
-    return percent(float(getattr(made.turns[side], measure)), float(getattr(MEASURED_TURNS[side], measure)))
+def _turn_error(reproduction: BenchmarkReproduction, side: str, measure: str) -> float:
+    return percent_deviation(
+        float(getattr(reproduction.turns[side], measure)), float(getattr(MEASURED_TURNS[side], measure))
+    )
 
 
-def _between(values: Sequence[float]) -> str:
+def _range_text(values: Sequence[float]) -> str:
     return f"{values[0]:.1f} to {values[1]:.1f}"

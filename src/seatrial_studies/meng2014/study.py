@@ -5,22 +5,22 @@ import time
 import numpy as np
 
 from seatrial.core.results import Study
-from seatrial.core.values import Progress
+from seatrial.core.values import ProgressReporter
 from seatrial.core.values.versions import versions
 from seatrial.physics.models.heave_pitch import STIFFNESSES
-from seatrial_studies.meng2014.repetition import HEADINGS, SEA_STATE_3, SOURCE, repetition
+from seatrial_studies.meng2014.reproduction import HEADINGS, SEA_STATE_3, SOURCE, reproduce_searches
 from seatrial_studies.meng2014.tables import figures, tables
-from seatrial_studies.meng2014.verdicts import Evidence, Following, checks, claims
-from seatrial_studies.own_fit import NOISE, ours, problem
-from seatrial_studies.swarm_search import Data, sailed
+from seatrial_studies.meng2014.verdicts import CloudSwarmEvidence, UndetectedChange, checks, claims
+from seatrial_studies.output_error_fit import MOTION_NOISE, output_error_problem, output_error_results
+from seatrial_studies.swarm_search import SearchData, simulate_search_data
 
 QUESTION = "Does a cloud particle swarm identify heave and pitch coefficients from motions in waves with a moving fin?"
 
 # a sea too low to move the ship [m]
-CALM = 1e-6
+CALM_SEA_HEIGHT = 1e-6
 
 
-def study(*, quick: bool, seed: int, progress: Progress | None) -> Study:
+def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -> Study:
     """ICPSO and plain PSO at five headings; our fit on the same records; the twelve unknowns of the print.
 
     Args:
@@ -28,11 +28,11 @@ def study(*, quick: bool, seed: int, progress: Progress | None) -> Study:
         seed: of seas, fin, noise, boxes and searches.
     """
     began = time.perf_counter()
-    made = repetition(quick=quick, seed=seed, progress=progress)
-    if progress:
-        progress("our own fits")
-    own = {h: ours(made.seas[h], seed) for h in HEADINGS}
-    seen = Evidence(made, own, twelve_unknowns(seed), insensitive(made.seas[135][0]))
+    made = reproduce_searches(quick=quick, seed=seed, report_progress=report_progress)
+    if report_progress:
+        report_progress("our own fits")
+    own = {h: output_error_results(made.seas[h], seed) for h in HEADINGS}
+    seen = CloudSwarmEvidence(made, own, twelve_unknowns(seed), undetected_change(made.seas[135][0]))
     return Study(
         name="meng2014",
         source=SOURCE,
@@ -56,30 +56,32 @@ def twelve_unknowns(seed: int) -> dict[str, float]:
     known = {}
     for name, has_fin, heading, height in (
         ("beam waves alone", False, 90, SEA_STATE_3),
-        ("one fin alone", True, 135, CALM),
+        ("one fin alone", True, 135, CALM_SEA_HEIGHT),
         ("waves and fin", True, 135, SEA_STATE_3),
     ):
-        known[name] = _flattest(sailed(heading, np.random.default_rng([seed, 5]), height=height, has_fin=has_fin))
+        known[name] = _least_relative_curvature(
+            simulate_search_data(heading, np.random.default_rng([seed, 5]), height=height, has_fin=has_fin)
+        )
     return known
 
 
-def _flattest(data: Data) -> float:
-    clean = problem(data, data.states[:, [0, 2]])
+def _least_relative_curvature(data: SearchData) -> float:
+    clean = output_error_problem(data, data.states[:, [0, 2]])
     freed = data.model.parameters.freed(*STIFFNESSES)
-    made = type(clean)(data.model.with_parameters(freed), clean.data, NOISE, np.zeros(4))
-    hessian = made.normal(made.start(), made.known_starts()).hessian
+    made = type(clean)(data.model.with_parameters(freed), clean.data, MOTION_NOISE, np.zeros(4))
+    hessian = made.normal(made.start(), made.given_initial_states()).hessian
     scale = 1.0 / np.sqrt(np.diag(hessian))
     values = np.linalg.eigvalsh(hessian * scale[:, None] * scale[None, :])
     return float(abs(values[0]) / values[-1])
 
 
-def insensitive(data: Data) -> Following:
+def undetected_change(data: SearchData) -> UndetectedChange:
     """A step along the flattest direction of the eight, so long that the motions differ by no more than the noise."""
-    clean = problem(data, data.states[:, [0, 2]])
+    clean = output_error_problem(data, data.states[:, [0, 2]])
     size = np.abs(data.truth)
-    hessian = clean.normal(data.truth, clean.known_starts()).hessian * size[:, None] * size[None, :]
+    hessian = clean.normal(data.truth, clean.given_initial_states()).hessian * size[:, None] * size[None, :]
     values, vectors = np.linalg.eigh(hessian)
     change = vectors[:, 0] * np.sqrt(len(data.states) / values[0])
     moved = data.truth + change * size
-    rms = np.sqrt(2.0 * clean.cost(moved, clean.known_starts()) / (2.0 * len(data.states)))
-    return Following(change, float(rms * NOISE[0]), float(np.degrees(rms * NOISE[1])))
+    rms = np.sqrt(2.0 * clean.cost(moved, clean.given_initial_states()) / (2.0 * len(data.states)))
+    return UndetectedChange(change, float(rms * MOTION_NOISE[0]), float(np.degrees(rms * MOTION_NOISE[1])))

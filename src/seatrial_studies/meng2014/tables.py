@@ -5,26 +5,31 @@ import numpy as np
 from seatrial.core.results import Curve, Figure, Table
 from seatrial.physics.models.heave_pitch import COEFFICIENTS
 from seatrial.physics.simulate.population import trajectories
-from seatrial_studies.meng2014.assumed import assumed
-from seatrial_studies.meng2014.repetition import HEADINGS, Algorithm, Setting
-from seatrial_studies.meng2014.verdicts import Evidence
-from seatrial_studies.swarm_search import STEP, heave_pitch_candidates
+from seatrial_studies.meng2014.assumptions import assumption_table
+from seatrial_studies.meng2014.reproduction import HEADINGS, BoxPlacement, SwarmAlgorithm
+from seatrial_studies.meng2014.verdicts import CloudSwarmEvidence
+from seatrial_studies.swarm_search import STEP, candidate_matrices
 
-SHOWN = 135
+FIGURE_HEADING = 135
 
 
-def tables(seen: Evidence) -> tuple[Table, ...]:
+def tables(evidence: CloudSwarmEvidence) -> tuple[Table, ...]:
     """One a heading, their means, times, and what is assumed."""
-    return (*(_coefficients(seen, h) for h in HEADINGS), _means(seen), _times(seen), assumed(seen.made))
+    return (
+        *(_coefficients(evidence, h) for h in HEADINGS),
+        _means(evidence),
+        _times(evidence),
+        assumption_table(evidence.reproduction),
+    )
 
 
-def _coefficients(seen: Evidence, heading: int) -> Table:
-    found = seen.made.searches[Setting.OFF_CENTRE, heading, Algorithm.ICPSO]
-    narrow = seen.made.searches[Setting.CENTRED, heading, Algorithm.ICPSO]
-    own = seen.own[heading]
+def _coefficients(evidence: CloudSwarmEvidence, heading: int) -> Table:
+    found = evidence.reproduction.searches[BoxPlacement.OFF_CENTRE, heading, SwarmAlgorithm.ICPSO]
+    narrow = evidence.reproduction.searches[BoxPlacement.CENTRED, heading, SwarmAlgorithm.ICPSO]
+    own = evidence.output_error[heading]
     columns = [
         np.abs(found.truth), np.abs(found.points.mean(axis=0)), 100.0 * found.mean_error, 100.0 * narrow.mean_error,
-        100.0 * np.abs(own.noisy).mean(axis=0), 100.0 * own.bound.mean(axis=0),
+        100.0 * np.abs(own.noisy_errors).mean(axis=0), 100.0 * own.cramer_rao_bound.mean(axis=0),
     ]  # fmt: skip
     rows = tuple((name, *(float(c[k]) for c in columns)) for k, name in enumerate(COEFFICIENTS))
     header = ("", "truth", "ICPSO, mean", "ICPSO error %", "in \u00b110 % box, %", "ours, %", "bound, %")
@@ -34,44 +39,53 @@ def _coefficients(seen: Evidence, heading: int) -> Table:
     return Table(f"Coefficients at {heading}\u00b0", header, rows, note)
 
 
-def _means(seen: Evidence) -> Table:
+def _means(evidence: CloudSwarmEvidence) -> Table:
     rows = tuple(
-        (f"{h}\u00b0", *(seen.error(s, a, h) for s in Setting for a in Algorithm), seen.own_error(h)) for h in HEADINGS
+        (
+            f"{h}\u00b0",
+            *(evidence.mean_error(s, a, h) for s in BoxPlacement for a in SwarmAlgorithm),
+            evidence.output_error_percent(h),
+        )
+        for h in HEADINGS
     )
-    header = ("Heading", *(f"{a}, {box}" for box in ("\u00b150 %", "\u00b110 %") for a in Algorithm), "ours")
+    header = ("Heading", *(f"{a}, {box}" for box in ("\u00b150 %", "\u00b110 %") for a in SwarmAlgorithm), "ours")
     note = (
-        f"Over coefficients and runs, after {seen.made.iterations} iterations of 60; box \u00b150 % off centre or "
+        f"Over coefficients and runs, after {evidence.reproduction.iterations} iterations of 60; box "
+        "\u00b150 % off centre or "
         "\u00b110 % about the truth, which keeps what noise moves from going further."
     )
     return Table("Mean errors, %", header, rows, note)
 
 
-def _times(seen: Evidence) -> Table:
+def _times(evidence: CloudSwarmEvidence) -> Table:
     rows = tuple(
         (
             f"{h}\u00b0",
-            *(seen.made.searches[Setting.OFF_CENTRE, h, a].seconds for a in Algorithm),
-            seen.own[h].seconds,
+            *(evidence.reproduction.searches[BoxPlacement.OFF_CENTRE, h, a].seconds for a in SwarmAlgorithm),
+            evidence.output_error[h].seconds,
         )
         for h in HEADINGS
     )
-    return Table("Time of a run, s", ("Heading", *(str(a) for a in Algorithm), "ours"), rows, "Times vary by machine.")
+    return Table(
+        "Time of a run, s", ("Heading", *(str(a) for a in SwarmAlgorithm), "ours"), rows, "Times vary by machine."
+    )
 
 
-def figures(seen: Evidence) -> tuple[Figure, ...]:
+def figures(evidence: CloudSwarmEvidence) -> tuple[Figure, ...]:
     """Figures 2 and 3, convergence, and histories."""
-    return (*_curves(seen), _convergence(seen), _history(seen))
+    return (*_curves(evidence), _convergence(evidence), _history(evidence))
 
 
-def _curves(seen: Evidence) -> list[Figure]:
-    data = seen.made.seas[SHOWN][0]
-    found = seen.made.searches[Setting.OFF_CENTRE, SHOWN, Algorithm.ICPSO]
-    A, B = heave_pitch_candidates(found.points[:1])
+def _curves(evidence: CloudSwarmEvidence) -> list[Figure]:
+    data = evidence.reproduction.seas[FIGURE_HEADING][0]
+    found = evidence.reproduction.searches[BoxPlacement.OFF_CENTRE, FIGURE_HEADING, SwarmAlgorithm.ICPSO]
+    A, B = candidate_matrices(found.points[:1])
     y = trajectories(A, B, data.forcing, np.zeros(4))[0]
     samples = np.arange(len(y), dtype=np.float64)
     made = []
     note = (
-        f"{SHOWN}\u00b0, first run of ICPSO, every {STEP} s. That the curves coincide says little of the coefficients."
+        f"{FIGURE_HEADING}\u00b0, first run of ICPSO, every {STEP} s. That the curves coincide says "
+        "little of the coefficients."
     )
     for j, factor, title, unit in ((0, 100.0, "Figure 2: heave", "cm"), (1, 57.29578, "Figure 3: pitch", "deg")):
         measured = Curve("measured", samples, -factor * data.measured[:, j])
@@ -80,20 +94,26 @@ def _curves(seen: Evidence) -> list[Figure]:
     return made
 
 
-def _convergence(seen: Evidence) -> Figure:
+def _convergence(evidence: CloudSwarmEvidence) -> Figure:
     curves = []
-    for a in Algorithm:
-        history = seen.made.searches[Setting.OFF_CENTRE, SHOWN, a].history
+    for a in SwarmAlgorithm:
+        history = evidence.reproduction.searches[BoxPlacement.OFF_CENTRE, FIGURE_HEADING, a].best_fitness
         curves.append(Curve(str(a), np.arange(len(history), dtype=np.float64), np.log10(history)))
     return Figure(
-        "Convergence", "iteration", "log10 of the fitness (m and deg)", tuple(curves), f"{SHOWN}\u00b0, first run."
+        "Convergence",
+        "iteration",
+        "log10 of the fitness (m and deg)",
+        tuple(curves),
+        f"{FIGURE_HEADING}\u00b0, first run.",
     )
 
 
-def _history(seen: Evidence) -> Figure:
-    found = seen.made.searches[Setting.OFF_CENTRE, SHOWN, Algorithm.ICPSO]
+def _history(evidence: CloudSwarmEvidence) -> Figure:
+    found = evidence.reproduction.searches[BoxPlacement.OFF_CENTRE, FIGURE_HEADING, SwarmAlgorithm.ICPSO]
     iterations = np.arange(len(found.trace), dtype=np.float64)
     errors = 100.0 * (found.trace / found.truth - 1.0)
     names = ("a33", "a55", "b33", "b55", "b53")
     curves = tuple(Curve(n, iterations, errors[:, COEFFICIENTS.index(n)]) for n in names)
-    return Figure("Histories of coefficients", "iteration", "error, %", curves, f"ICPSO, {SHOWN}\u00b0, first run.")
+    return Figure(
+        "Histories of coefficients", "iteration", "error, %", curves, f"ICPSO, {FIGURE_HEADING}\u00b0, first run."
+    )

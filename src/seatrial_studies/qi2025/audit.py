@@ -9,19 +9,19 @@ from seatrial.core.values import Array
 from seatrial.physics.models.heave_pitch import COEFFICIENTS
 from seatrial.physics.models.qi2025 import HEADINGS, SIGNIFICANT_HEIGHT, SPEED
 from seatrial.physics.sea.encounter import encounter_frequency
-from seatrial.physics.sea.response import statistics
+from seatrial.physics.sea.response import motion_statistics
 from seatrial.physics.sea.spectrum import G, ittc
-from seatrial.physics.simulate.harmonics import frequency_response, plant
+from seatrial.physics.simulate.harmonics import frequency_response, linear_system
 from seatrial.physics.simulate.population import trajectories
-from seatrial_studies.qi2025.published import Algorithm, recomputed_error, true_values
-from seatrial_studies.seaway import box
-from seatrial_studies.swarm_search import Data, heave_pitch_candidates, sailed, theory_of
+from seatrial_studies.qi2025.published import SearchAlgorithm, recomputed_error, true_values
+from seatrial_studies.seaway import box_hull
+from seatrial_studies.swarm_search import SearchData, candidate_matrices, held_force_ship, simulate_search_data
 
-SATURATED = (-10.05, -9.3)
+SATURATED_RANGE = (-10.05, -9.3)
 
 
 @dataclass(frozen=True, eq=False)
-class Audit:
+class WildHorseAudit:
     """Numbers behind the verdicts.
 
     Attributes:
@@ -36,52 +36,52 @@ class Audit:
         beyond: PSO's printed values farther from the truth than 10.05 %, their number, the largest error in per cent.
     """
 
-    speeds: dict[int, tuple[float, float]]
+    implied_speeds: dict[int, tuple[float, float]]
     sign_effect: dict[int, tuple[float, float]]
-    saturated: tuple[int, int]
-    extremes: tuple[float, float]
-    significant: tuple[float, float]
-    kinematic: float
-    heights: tuple[float, float]
+    saturated_values: tuple[int, int]
+    median_extremes: tuple[float, float]
+    significant_amplitudes: tuple[float, float]
+    kinematic_pitch: float
+    spectrum_heights: tuple[float, float]
     step_rank: int
-    beyond: tuple[int, int, float]
+    beyond_box: tuple[int, int, float]
 
 
-def audit(seas: list[Data], seed: int) -> Audit:
+def audit(seas: list[SearchData], seed: int) -> WildHorseAudit:
     """Everything that needs no search; `seas` at 45 degrees."""
     tops = np.array([np.abs(s.states[:, [0, 2]]).max(axis=0) for s in seas])
     heave, pitch = _statistics_at_45()
-    return Audit(
-        {h: _speeds(h) for h in HEADINGS},
+    return WildHorseAudit(
+        {h: _implied_speeds(h) for h in HEADINGS},
         {h: _sign_effect(h, seed) for h in HEADINGS},
         _saturation(),
         (float(np.median(tops[:, 0])), math.degrees(float(np.median(tops[:, 1])))),
         (heave, pitch),
         _kinematic_pitch(),
-        _heights(),
+        _spectrum_heights(),
         _step_rank(seas[0]),
-        _beyond(),
+        _beyond_box(),
     )
 
 
-def _speeds(heading: int) -> tuple[float, float]:
+def _implied_speeds(heading: int) -> tuple[float, float]:
     a33, b35, b53 = (true_values(heading)[COEFFICIENTS.index(n)] for n in ("a33", "b35", "b53"))
     return float((b35 + b53) / (2.0 * a33)), float((b35 - b53) / (2.0 * a33))
 
 
 def _sign_effect(heading: int, seed: int) -> tuple[float, float]:
-    data = sailed(heading, np.random.default_rng([seed, 3, heading]))
+    data = simulate_search_data(heading, np.random.default_rng([seed, 3, heading]))
     turned = data.truth.copy()
     turned[COEFFICIENTS.index("b53")] *= -1.0
-    A, B = heave_pitch_candidates(np.stack([data.truth, turned]))
+    A, B = candidate_matrices(np.stack([data.truth, turned]))
     y = trajectories(A, B, data.forcing, np.zeros(4))
     change: Array = np.sqrt(np.mean((y[1] - y[0]) ** 2, axis=0)) / np.sqrt(np.mean(y[0] ** 2, axis=0))
     return float(change[0]), float(change[1])
 
 
 def _saturation() -> tuple[int, int]:
-    errors = np.concatenate([recomputed_error(h, Algorithm.WHO) for h in (90, 135)])
-    low, high = SATURATED
+    errors = np.concatenate([recomputed_error(h, SearchAlgorithm.WHO) for h in (90, 135)])
+    low, high = SATURATED_RANGE
     return int(np.sum((errors >= low) & (errors <= high))), len(errors)
 
 
@@ -90,10 +90,10 @@ def _statistics_at_45() -> tuple[float, float]:
     spectrum = ittc(SIGNIFICANT_HEIGHT)
     omega = np.linspace(*spectrum.band(), 2000)
     omega_e = encounter_frequency(omega, SPEED, math.radians(45.0))
-    response = frequency_response(plant(theory_of(45), ("z", "theta")), omega_e)[:, :, :2]
-    forces = np.stack(box().forces(omega, SPEED, math.radians(45.0)), axis=1)
+    response = frequency_response(linear_system(held_force_ship(45), ("z", "theta")), omega_e)[:, :, :2]
+    forces = np.stack(box_hull().forces(omega, SPEED, math.radians(45.0)), axis=1)
     motion = np.einsum("kyu,ku->ky", response, forces)
-    heave, pitch = (statistics(spectrum, omega, omega_e, motion[:, j]).significant for j in (0, 1))
+    heave, pitch = (motion_statistics(spectrum, omega, omega_e, motion[:, j]).significant for j in (0, 1))
     return heave, math.degrees(pitch)
 
 
@@ -103,23 +103,23 @@ def _kinematic_pitch() -> float:
     return math.degrees(slope * math.cos(math.radians(45.0)))
 
 
-def _heights() -> tuple[float, float]:
+def _spectrum_heights() -> tuple[float, float]:
     """4 sqrt(m0) with m0 = A / (4 B), A = 8.1e-3 g^2: the integral of eq. (13)."""
     heights = (4.0 * math.sqrt(8.1e-3 * G**2 * SIGNIFICANT_HEIGHT**power / (4.0 * 3.11)) for power in (3, 2))
     printed, mended = heights
     return printed, mended
 
 
-def _step_rank(data: Data, sample: int = 100, change: float = 1e-4) -> int:
+def _step_rank(data: SearchData, sample: int = 100, change: float = 1e-4) -> int:
     """Rank of the slopes of both motions after one step, by all coefficients in relative terms."""
     count = len(data.truth)
     points = data.truth * (1.0 + change * np.vstack([np.eye(count), -np.eye(count)]))
-    A, B = heave_pitch_candidates(points)
+    A, B = candidate_matrices(points)
     y = trajectories(A, B, data.forcing.one_step(sample), data.states[sample])[:, 1]
     slopes = (y[:count] - y[count:]) / (2.0 * change)
     return int(np.linalg.matrix_rank(slopes / np.abs(slopes).max(axis=0)))
 
 
-def _beyond() -> tuple[int, int, float]:
-    errors = np.abs(np.concatenate([recomputed_error(h, Algorithm.PSO) for h in HEADINGS]))
-    return int(np.sum(errors > -SATURATED[0])), len(errors), float(errors.max())
+def _beyond_box() -> tuple[int, int, float]:
+    errors = np.abs(np.concatenate([recomputed_error(h, SearchAlgorithm.PSO) for h in HEADINGS]))
+    return int(np.sum(errors > -SATURATED_RANGE[0])), len(errors), float(errors.max())

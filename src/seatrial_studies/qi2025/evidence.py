@@ -6,62 +6,66 @@ import numpy as np
 
 from seatrial.core.values import Array
 from seatrial.physics.models.qi2025 import HEADINGS
-from seatrial_studies.own_fit import Ours
-from seatrial_studies.qi2025.audit import Audit
-from seatrial_studies.qi2025.centre import CentreBias
-from seatrial_studies.qi2025.hold import HoldBias
-from seatrial_studies.qi2025.published import Algorithm, printed_error
-from seatrial_studies.qi2025.repetition import Repetition, Setting
+from seatrial_studies.output_error_fit import OutputErrorResults
+from seatrial_studies.qi2025.audit import WildHorseAudit
+from seatrial_studies.qi2025.centre_bias import CentreBias
+from seatrial_studies.qi2025.hold_bias import HoldBias
+from seatrial_studies.qi2025.published import SearchAlgorithm, printed_error
+from seatrial_studies.qi2025.reproduction import SearchSetting, WildHorseReproduction
 
 # a value counts as on its bound where it is off by no more than this share of it
-NEAR = 0.005
+ON_BOUND_SHARE = 0.005
 # of the printed means at the lower bound, the least far out (per cent)
-SATURATED_FROM = -9.3
+SATURATED_FROM_PERCENT = -9.3
 
 
 @dataclass(frozen=True, eq=False)
-class Evidence:
+class WildHorseEvidence:
     """Searches, the print worked through, our fits and the cost of a hold by heading, the bias to the middle."""
 
-    made: Repetition
-    audited: Audit
-    own: dict[int, Ours]
-    bias: dict[int, HoldBias]
-    centre: CentreBias
+    reproduction: WildHorseReproduction
+    audit: WildHorseAudit
+    output_error: dict[int, OutputErrorResults]
+    hold_bias: dict[int, HoldBias]
+    centre_bias: CentreBias
 
-    def of_mean(self, setting: Setting, algorithm: Algorithm) -> list[float]:
+    def errors_of_mean(self, setting: SearchSetting, algorithm: SearchAlgorithm) -> list[float]:
         """Error of the mean of the runs at each heading, per cent, mean over the coefficients: as the paper prints."""
-        return [100.0 * float(np.mean(self.made.searches[setting, h, algorithm].error_of_mean)) for h in HEADINGS]
+        return [
+            100.0 * float(np.mean(self.reproduction.searches[setting, h, algorithm].error_of_mean)) for h in HEADINGS
+        ]
 
-    def single(self, setting: Setting, algorithm: Algorithm) -> list[float]:
+    def single_run_errors(self, setting: SearchSetting, algorithm: SearchAlgorithm) -> list[float]:
         """Mean error of single runs at each heading, per cent."""
-        return [100.0 * float(np.mean(self.made.searches[setting, h, algorithm].mean_error)) for h in HEADINGS]
+        return [100.0 * float(np.mean(self.reproduction.searches[setting, h, algorithm].mean_error)) for h in HEADINGS]
 
-    def at_lower(self, setting: Setting, algorithm: Algorithm) -> float:
+    def share_at_lower_bound(self, setting: SearchSetting, algorithm: SearchAlgorithm) -> float:
         """Share of the values of all runs that lie on the lower bound."""
-        found = [self.made.searches[setting, h, algorithm] for h in HEADINGS]
-        return float(np.mean([np.abs(f.points / f.lower - 1.0) < NEAR for f in found]))
+        found = [self.reproduction.searches[setting, h, algorithm] for h in HEADINGS]
+        return float(np.mean([np.abs(f.points / f.lower_bounds - 1.0) < ON_BOUND_SHARE for f in found]))
 
-    def saturated_means(self, setting: Setting) -> int:
+    def saturated_means(self, setting: SearchSetting) -> int:
         """Of WHO's 16 means at 90 and 135 degrees, those as near the lower bound as the printed ones."""
-        found = [self.made.searches[setting, h, Algorithm.WHO] for h in (90, 135)]
-        return sum(int(np.sum(100.0 * (f.points.mean(axis=0) / f.truth - 1.0) <= SATURATED_FROM)) for f in found)
+        found = [self.reproduction.searches[setting, h, SearchAlgorithm.WHO] for h in (90, 135)]
+        return sum(
+            int(np.sum(100.0 * (f.points.mean(axis=0) / f.truth - 1.0) <= SATURATED_FROM_PERCENT)) for f in found
+        )
 
-    def seconds(self, algorithm: Algorithm) -> float:
+    def search_seconds(self, algorithm: SearchAlgorithm) -> float:
         """Time of a run, mean over the headings."""
-        return float(np.mean([self.made.searches[Setting.PAPER, h, algorithm].seconds for h in HEADINGS]))
+        return float(np.mean([self.reproduction.searches[SearchSetting.PAPER, h, algorithm].seconds for h in HEADINGS]))
 
     @property
-    def own_seconds(self) -> float:
+    def output_error_seconds(self) -> float:
         """Time of our noise-free fit, mean over the headings."""
-        return float(np.mean([o.seconds for o in self.own.values()]))
+        return float(np.mean([o.seconds for o in self.output_error.values()]))
 
 
-def below(errors: Array, heading: int) -> int:
+def count_below_printed(errors: Array, heading: int) -> int:
     """Of the eight relative errors (8,), those below IWHO's printed one."""
-    return int(np.sum(100.0 * np.abs(errors) < printed_error(heading, Algorithm.IWHO)))
+    return int(np.sum(100.0 * np.abs(errors) < printed_error(heading, SearchAlgorithm.IWHO)))
 
 
-def per_cent(values: list[float]) -> str:
+def percent_text(values: list[float]) -> str:
     """Numbers at the three headings."""
     return "/".join(f"{v:.2f}" for v in values) + " %"

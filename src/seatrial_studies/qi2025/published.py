@@ -6,7 +6,7 @@ import numpy as np
 
 from seatrial.core.values import Array
 from seatrial.physics.models.heave_pitch import COEFFICIENTS
-from seatrial.physics.models.qi2025 import HEADINGS, theory
+from seatrial.physics.models.qi2025 import HEADINGS, theoretical_coefficients
 
 SOURCE = (
     "Qi Zhigang, Zhang Hao, Li Bing, Lu Zhe: Ship parameter identification method based on improved wild horse "
@@ -14,7 +14,7 @@ SOURCE = (
 )
 
 
-class Algorithm(StrEnum):
+class SearchAlgorithm(StrEnum):
     """The optimisers that the paper compares."""
 
     PSO = "PSO"
@@ -23,79 +23,79 @@ class Algorithm(StrEnum):
 
 
 _ESTIMATES = {
-    (90, Algorithm.PSO): (9.446e5, 8.902e6, 2.830e8, 1.777e7, 7.901e5, 1.480e7, 4.077e8, 2.296e6),
-    (90, Algorithm.WHO): (8.098e5, 6.979e6, 2.336e8, 1.332e7, 8.496e5, 1.043e7, 2.637e8, 2.995e6),
-    (90, Algorithm.IWHO): (8.050e5, 7.720e6, 2.592e8, 1.477e7, 9.363e5, 1.155e7, 2.874e8, 3.322e6),
-    (135, Algorithm.PSO): (5.569e5, 5.248e6, 1.541e8, 9.509e6, 7.635e5, 7.879e6, 2.716e8, 1.616e6),
-    (135, Algorithm.WHO): (6.157e5, 2.955e6, 1.373e8, 7.090e6, 7.394e5, 8.486e6, 1.882e8, 2.073e6),
-    (135, Algorithm.IWHO): (6.304e5, 3.274e6, 1.524e8, 7.842e6, 8.028e5, 9.412e6, 2.087e8, 2.263e6),
-    (180, Algorithm.PSO): (5.815e5, 2.396e6, 1.348e8, 6.594e6, 7.782e5, 8.835e6, 1.944e8, 3.123e6),
-    (180, Algorithm.WHO): (6.102e5, 2.583e6, 1.368e8, 6.093e6, 7.058e5, 8.216e6, 1.825e8, 2.167e6),
-    (180, Algorithm.IWHO): (6.107e5, 2.652e6, 1.373e8, 6.610e6, 7.409e5, 8.960e6, 1.879e8, 2.360e6),
+    (90, SearchAlgorithm.PSO): (9.446e5, 8.902e6, 2.830e8, 1.777e7, 7.901e5, 1.480e7, 4.077e8, 2.296e6),
+    (90, SearchAlgorithm.WHO): (8.098e5, 6.979e6, 2.336e8, 1.332e7, 8.496e5, 1.043e7, 2.637e8, 2.995e6),
+    (90, SearchAlgorithm.IWHO): (8.050e5, 7.720e6, 2.592e8, 1.477e7, 9.363e5, 1.155e7, 2.874e8, 3.322e6),
+    (135, SearchAlgorithm.PSO): (5.569e5, 5.248e6, 1.541e8, 9.509e6, 7.635e5, 7.879e6, 2.716e8, 1.616e6),
+    (135, SearchAlgorithm.WHO): (6.157e5, 2.955e6, 1.373e8, 7.090e6, 7.394e5, 8.486e6, 1.882e8, 2.073e6),
+    (135, SearchAlgorithm.IWHO): (6.304e5, 3.274e6, 1.524e8, 7.842e6, 8.028e5, 9.412e6, 2.087e8, 2.263e6),
+    (180, SearchAlgorithm.PSO): (5.815e5, 2.396e6, 1.348e8, 6.594e6, 7.782e5, 8.835e6, 1.944e8, 3.123e6),
+    (180, SearchAlgorithm.WHO): (6.102e5, 2.583e6, 1.368e8, 6.093e6, 7.058e5, 8.216e6, 1.825e8, 2.167e6),
+    (180, SearchAlgorithm.IWHO): (6.107e5, 2.652e6, 1.373e8, 6.610e6, 7.409e5, 8.960e6, 1.879e8, 2.360e6),
 }
 _ERRORS = {
-    (90, Algorithm.PSO): (17.42, 15.66, 9.05, 20.17, 15.66, 27.72, 41.31, 30.91),
-    (90, Algorithm.WHO): (0.65, 9.98, 9.88, 9.94, 9.32, 10.02, 8.60, 9.90),
-    (90, Algorithm.IWHO): (0.06, 0.43, 0.12, 0.14, 0.06, 0.35, 0.38, 0.05),
-    (135, Algorithm.PSO): (11.70, 59.95, 1.01, 20.90, 4.96, 16.44, 29.88, 28.72),
-    (135, Algorithm.WHO): (2.44, 9.94, 9.97, 9.86, 7.96, 7.71, 10.01, 8.56),
-    (135, Algorithm.IWHO): (0.11, 0.21, 0.07, 0.29, 0.06, 0.18, 0.19, 0.18),
-    (180, Algorithm.PSO): (4.69, 10.03, 2.14, 0.25, 5.16, 1.30, 3.79, 32.57),
-    (180, Algorithm.WHO): (0.02, 7.81, 0.65, 7.84, 4.62, 8.21, 2.56, 8.02),
-    (180, Algorithm.IWHO): (0.09, 1.10, 0.29, 0.02, 0.12, 0.10, 0.32, 0.17),
+    (90, SearchAlgorithm.PSO): (17.42, 15.66, 9.05, 20.17, 15.66, 27.72, 41.31, 30.91),
+    (90, SearchAlgorithm.WHO): (0.65, 9.98, 9.88, 9.94, 9.32, 10.02, 8.60, 9.90),
+    (90, SearchAlgorithm.IWHO): (0.06, 0.43, 0.12, 0.14, 0.06, 0.35, 0.38, 0.05),
+    (135, SearchAlgorithm.PSO): (11.70, 59.95, 1.01, 20.90, 4.96, 16.44, 29.88, 28.72),
+    (135, SearchAlgorithm.WHO): (2.44, 9.94, 9.97, 9.86, 7.96, 7.71, 10.01, 8.56),
+    (135, SearchAlgorithm.IWHO): (0.11, 0.21, 0.07, 0.29, 0.06, 0.18, 0.19, 0.18),
+    (180, SearchAlgorithm.PSO): (4.69, 10.03, 2.14, 0.25, 5.16, 1.30, 3.79, 32.57),
+    (180, SearchAlgorithm.WHO): (0.02, 7.81, 0.65, 7.84, 4.62, 8.21, 2.56, 8.02),
+    (180, SearchAlgorithm.IWHO): (0.09, 1.10, 0.29, 0.02, 0.12, 0.10, 0.32, 0.17),
 }
-SECONDS = {
-    90: {Algorithm.PSO: 7.903, Algorithm.WHO: 0.935, Algorithm.IWHO: 1.122},
-    135: {Algorithm.PSO: 7.661, Algorithm.WHO: 0.928, Algorithm.IWHO: 1.194},
-    180: {Algorithm.PSO: 7.681, Algorithm.WHO: 0.972, Algorithm.IWHO: 1.180},
+PRINTED_SECONDS = {
+    90: {SearchAlgorithm.PSO: 7.903, SearchAlgorithm.WHO: 0.935, SearchAlgorithm.IWHO: 1.122},
+    135: {SearchAlgorithm.PSO: 7.661, SearchAlgorithm.WHO: 0.928, SearchAlgorithm.IWHO: 1.194},
+    180: {SearchAlgorithm.PSO: 7.681, SearchAlgorithm.WHO: 0.972, SearchAlgorithm.IWHO: 1.180},
 }
 # motions at 45 degrees that figures 1, 2 and figures 6, 7 show of the same condition: heave m, pitch degrees
 FIGURES_1_2, FIGURES_6_7 = (0.3, 0.3), (0.15, 0.15)
 # where figure 5 ends upwards, and the iterations at which its curve rises again
 FIGURE_5_TOP = 0.010
-REBOUNDS = (50, 150)
-PRINTED = sum(len(errors) for errors in _ERRORS.values())
+REBOUND_ITERATIONS = (50, 150)
+PRINTED_ERROR_COUNT = sum(len(errors) for errors in _ERRORS.values())
 
 
-def estimate(heading: int, algorithm: Algorithm) -> Array:
+def printed_estimate(heading: int, algorithm: SearchAlgorithm) -> Array:
     """Printed estimates, magnitudes, (8,) in the order of COEFFICIENTS."""
     return np.array(_ESTIMATES[heading, algorithm])
 
 
-def printed_error(heading: int, algorithm: Algorithm) -> Array:
+def printed_error(heading: int, algorithm: SearchAlgorithm) -> Array:
     """Printed relative errors, per cent, (8,): of the mean of ten runs."""
     return np.array(_ERRORS[heading, algorithm])
 
 
 def true_values(heading: int) -> Array:
     """Printed theoretical values, magnitudes, (8,)."""
-    values = theory(heading, printed_sign=True).values
+    values = theoretical_coefficients(heading, printed_sign=True).values
     return np.array([values[name] for name in COEFFICIENTS])
 
 
-def recomputed_error(heading: int, algorithm: Algorithm) -> Array:
+def recomputed_error(heading: int, algorithm: SearchAlgorithm) -> Array:
     """Relative errors of the printed estimates, per cent, (8,), with their sign."""
-    return 100.0 * (estimate(heading, algorithm) / true_values(heading) - 1.0)
+    return 100.0 * (printed_estimate(heading, algorithm) / true_values(heading) - 1.0)
 
 
-def mean_recomputed(heading: int, algorithm: Algorithm) -> float:
+def mean_recomputed_error(heading: int, algorithm: SearchAlgorithm) -> float:
     """Mean absolute error of the printed estimates, per cent."""
     return float(np.mean(np.abs(recomputed_error(heading, algorithm))))
 
 
-def printed_means() -> list[float]:
+def printed_mean_errors() -> list[float]:
     """Mean printed error of IWHO at each heading, per cent."""
-    return [float(np.mean(printed_error(heading, Algorithm.IWHO))) for heading in HEADINGS]
+    return [float(np.mean(printed_error(heading, SearchAlgorithm.IWHO))) for heading in HEADINGS]
 
 
-def misprinted() -> list[tuple[int, Algorithm, str, float, float]]:
+def misprinted_errors() -> list[tuple[int, SearchAlgorithm, str, float, float]]:
     """Printed errors that do not follow from the printed values: heading, algorithm, coefficient, printed, recomputed.
 
     Four printed digits of estimate and truth leave some .02 points of doubt.
     """
     found = []
     for heading in HEADINGS:
-        for algorithm in Algorithm:
+        for algorithm in SearchAlgorithm:
             again = np.abs(recomputed_error(heading, algorithm))
             for name, said, is_so in zip(COEFFICIENTS, printed_error(heading, algorithm), again, strict=True):
                 if abs(said - is_so) > 0.05:

@@ -3,24 +3,24 @@
 import time
 
 from seatrial.core.results import Study
-from seatrial.core.values import Progress
+from seatrial.core.values import ProgressReporter
 from seatrial.core.values.versions import versions
 from seatrial.physics.models.qi2025 import HEADINGS
-from seatrial_studies.own_fit import ours
+from seatrial_studies.output_error_fit import output_error_results
 from seatrial_studies.qi2025.audit import audit
-from seatrial_studies.qi2025.centre import centre_bias
-from seatrial_studies.qi2025.evidence import Evidence
+from seatrial_studies.qi2025.centre_bias import centre_bias
+from seatrial_studies.qi2025.evidence import WildHorseEvidence
 from seatrial_studies.qi2025.figures import figures
-from seatrial_studies.qi2025.hold import hold_bias
+from seatrial_studies.qi2025.hold_bias import hold_bias
 from seatrial_studies.qi2025.published import SOURCE
-from seatrial_studies.qi2025.repetition import SHOWN, repetition
+from seatrial_studies.qi2025.reproduction import FIGURE_HEADING, reproduce_searches
 from seatrial_studies.qi2025.tables import tables
 from seatrial_studies.qi2025.verdicts import checks, claims
 
 QUESTION = "Do wild horses identify heave and pitch coefficients from motions in waves, and how well need it be done?"
 
 
-def study(*, quick: bool, seed: int, progress: Progress | None) -> Study:
+def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -> Study:
     """PSO, WHO and IWHO at 90, 135 and 180 degrees as published and otherwise; the print audited; our fit beside it.
 
     Args:
@@ -28,11 +28,13 @@ def study(*, quick: bool, seed: int, progress: Progress | None) -> Study:
         seed: of seas, boxes and searches.
     """
     began = time.perf_counter()
-    made = repetition(quick=quick, seed=seed, progress=progress)
-    if progress:
-        progress("audit and our own fits")
-    own = {h: ours(made.seas[h], seed) for h in HEADINGS}
-    seen = Evidence(made, audit(made.seas[SHOWN], seed), own, hold_bias(seed), centre_bias(made.seas, seed))
+    made = reproduce_searches(quick=quick, seed=seed, report_progress=report_progress)
+    if report_progress:
+        report_progress("audit and our own fits")
+    own = {h: output_error_results(made.seas[h], seed) for h in HEADINGS}
+    seen = WildHorseEvidence(
+        made, audit(made.seas[FIGURE_HEADING], seed), own, hold_bias(seed), centre_bias(made.seas, seed)
+    )
     return Study(
         name="qi2025",
         source=SOURCE,

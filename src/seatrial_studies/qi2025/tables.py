@@ -5,57 +5,71 @@ import numpy as np
 from seatrial.core.results import Table
 from seatrial.physics.models.heave_pitch import COEFFICIENTS
 from seatrial.physics.models.qi2025 import HEADINGS
-from seatrial_studies.own_fit import Ours
-from seatrial_studies.qi2025.assumed import assumed
-from seatrial_studies.qi2025.centre import RUNS, CentreBias
-from seatrial_studies.qi2025.evidence import Evidence, below
-from seatrial_studies.qi2025.hold import HoldBias
+from seatrial_studies.output_error_fit import OutputErrorResults
+from seatrial_studies.qi2025.assumptions import assumption_table
+from seatrial_studies.qi2025.centre_bias import RUNS, CentreBias
+from seatrial_studies.qi2025.evidence import WildHorseEvidence, count_below_printed
+from seatrial_studies.qi2025.hold_bias import HoldBias
 from seatrial_studies.qi2025.published import (
-    SECONDS,
-    Algorithm,
-    estimate,
-    misprinted,
+    PRINTED_SECONDS,
+    SearchAlgorithm,
+    misprinted_errors,
     printed_error,
-    printed_means,
+    printed_estimate,
+    printed_mean_errors,
     true_values,
 )
-from seatrial_studies.qi2025.repetition import Repetition, Setting
+from seatrial_studies.qi2025.reproduction import SearchSetting, WildHorseReproduction
 
-PAPER = Setting.PAPER.value
-_GUESS = "Means over the coefficients. A guess at random in a box of ±10 % about the truth has 5 %."
+PAPER_SETTING = SearchSetting.PAPER.value
+_RANDOM_GUESS_NOTE = "Means over the coefficients. A guess at random in a box of ±10 % about the truth has 5 %."
 
 
-def tables(seen: Evidence) -> tuple[Table, ...]:
+def tables(evidence: WildHorseEvidence) -> tuple[Table, ...]:
     """All of them."""
-    made, own = seen.made, seen.own
+    made, own = evidence.reproduction, evidence.output_error
     values = (table for h in HEADINGS for table in (_values(made, h), _errors(made, own[h], h)))
     return (
-        *values, _below(own), *_settings(made), _tens(made), _saturation(seen), _middle(seen.centre), _times(made, own),
-        _misprints(), _hold(seen.bias), assumed(made),
-    )  # fmt: skip
+        *values,
+        _below_printed(own),
+        *_settings(made),
+        _ten_run_means(made),
+        _saturation(evidence),
+        _centre_bias(evidence.centre_bias),
+        _times(made, own),
+        _misprints(),
+        _hold_bias(evidence.hold_bias),
+        assumption_table(made),
+    )
 
 
-def _values(made: Repetition, heading: int) -> Table:
+def _values(reproduction: WildHorseReproduction, heading: int) -> Table:
     header, columns = ["", "theory"], [true_values(heading)]
-    for a in Algorithm:
+    for a in SearchAlgorithm:
         header += [f"{a} printed", f"{a} here"]
         columns += [
-            estimate(heading, a),
-            np.abs(made.searches[Setting.PAPER, heading, a].points.mean(axis=0)),
+            printed_estimate(heading, a),
+            np.abs(reproduction.searches[SearchSetting.PAPER, heading, a].points.mean(axis=0)),
         ]
     rows = tuple((name, *(float(c[k]) for c in columns)) for k, name in enumerate(COEFFICIENTS))
-    note = f"Table {2 + HEADINGS.index(heading)} of the paper, SI units. Here: mean of {made.runs} runs, {PAPER}."
+    note = (
+        f"Table {2 + HEADINGS.index(heading)} of the paper, SI units. Here: mean of "
+        f"{reproduction.run_count} runs, {PAPER_SETTING}."
+    )
     return Table(f"Coefficients at {heading}°", tuple(header), rows, note)
 
 
-def _errors(made: Repetition, own: Ours, heading: int) -> Table:
+def _errors(reproduction: WildHorseReproduction, output_error: OutputErrorResults, heading: int) -> Table:
     header, columns = [""], []
-    for a in Algorithm:
-        found = made.searches[Setting.PAPER, heading, a]
+    for a in SearchAlgorithm:
+        found = reproduction.searches[SearchSetting.PAPER, heading, a]
         header += [f"{a} printed", "of mean", "single"]
         columns += [printed_error(heading, a), 100.0 * found.error_of_mean, 100.0 * found.mean_error]
     header += ["ours", "ours, noise"]
-    columns += [100.0 * np.abs(own.exact).mean(axis=0), 100.0 * np.abs(own.noisy).mean(axis=0)]
+    columns += [
+        100.0 * np.abs(output_error.noise_free_errors).mean(axis=0),
+        100.0 * np.abs(output_error.noisy_errors).mean(axis=0),
+    ]
     rows = tuple((name, *(float(c[k]) for c in columns)) for k, name in enumerate(COEFFICIENTS))
     mean = ("mean", *(float(np.mean(c)) for c in columns))
     note = (
@@ -65,26 +79,33 @@ def _errors(made: Repetition, own: Ours, heading: int) -> Table:
     return Table(f"Errors at {heading}°, %", tuple(header), (*rows, mean), note)
 
 
-def _settings(made: Repetition) -> list[Table]:
+def _settings(reproduction: WildHorseReproduction) -> list[Table]:
     """One table a setting: what box, fitness and unit decide."""
     tables_ = []
-    for setting in made.settings:
+    for setting in reproduction.settings:
         rows = []
         for heading in HEADINGS:
-            found = [made.searches[setting, heading, a] for a in Algorithm]
+            found = [reproduction.searches[setting, heading, a] for a in SearchAlgorithm]
             cells = [100.0 * float(np.mean(v)) for f in found for v in (f.error_of_mean, f.mean_error)]
             rows.append((f"{heading}°", *cells))
-        header = ("Heading", *(f"{a}, {what}" for a in Algorithm for what in ("of mean", "single")))
-        tables_.append(Table(f"Errors in %: {setting.value}", header, tuple(rows), _GUESS if not tables_ else ""))
+        header = ("Heading", *(f"{a}, {what}" for a in SearchAlgorithm for what in ("of mean", "single")))
+        tables_.append(
+            Table(f"Errors in %: {setting.value}", header, tuple(rows), _RANDOM_GUESS_NOTE if not tables_ else "")
+        )
     return tables_
 
 
-def _times(made: Repetition, own: dict[int, Ours]) -> Table:
+def _times(reproduction: WildHorseReproduction, output_error: dict[int, OutputErrorResults]) -> Table:
     rows = []
     for h in HEADINGS:
-        here = [made.searches[Setting.PAPER, h, a].seconds for a in Algorithm]
-        rows.append((f"{h}°", *SECONDS[h].values(), *here, own[h].seconds))
-    header = ("Heading", *(f"{a} printed, s" for a in Algorithm), *(f"{a} here, s" for a in Algorithm), "ours, s")
+        here = [reproduction.searches[SearchSetting.PAPER, h, a].seconds for a in SearchAlgorithm]
+        rows.append((f"{h}°", *PRINTED_SECONDS[h].values(), *here, output_error[h].seconds))
+    header = (
+        "Heading",
+        *(f"{a} printed, s" for a in SearchAlgorithm),
+        *(f"{a} here, s" for a in SearchAlgorithm),
+        "ours, s",
+    )
     note = (
         "Table 5: 200 iterations of 40. Here all three judge their candidates by one simulator; times vary by machine."
     )
@@ -92,12 +113,12 @@ def _times(made: Repetition, own: dict[int, Ours]) -> Table:
 
 
 def _misprints() -> Table:
-    rows = tuple((f"{h}°", str(a), name, said, is_so) for h, a, name, said, is_so in misprinted())
+    rows = tuple((f"{h}°", str(a), name, said, is_so) for h, a, name, said, is_so in misprinted_errors())
     return Table("Printed errors that do not follow from the printed values",
                  ("Heading", "Algorithm", "Coefficient", "printed %", "recomputed %"), rows)  # fmt: skip
 
 
-def _hold(bias: dict[int, HoldBias]) -> Table:
+def _hold_bias(bias: dict[int, HoldBias]) -> Table:
     rows = tuple(
         (f"{h}°", *(100.0 * float(f(np.abs(e))) for e in (b.held, b.sampled, b.fine) for f in (np.mean, np.max)))
         for h, b in bias.items()
@@ -111,8 +132,10 @@ def _hold(bias: dict[int, HoldBias]) -> Table:
     return Table("What holding the wave force costs, %", header, rows, note)
 
 
-def _middle(centre: CentreBias) -> Table:
-    rows = tuple((str(a), 100.0 * centre.at_zero[a], 100.0 * centre.aside[a]) for a in Algorithm)
+def _centre_bias(centre: CentreBias) -> Table:
+    rows = tuple(
+        (str(a), 100.0 * centre.truth_at_centre[a], 100.0 * centre.truth_off_centre[a]) for a in SearchAlgorithm
+    )
     note = (
         "Unknowns as x in [-1, 1], ±10 % about the truth, one sample an iteration, pitch in rad; "
         f"{RUNS} runs at three headings."
@@ -121,13 +144,13 @@ def _middle(centre: CentreBias) -> Table:
     return Table("Drawn to the middle of the box", header, rows, note)
 
 
-def _tens(made: Repetition) -> Table:
+def _ten_run_means(reproduction: WildHorseReproduction) -> Table:
     rows = []
-    for (h, again), printed in zip(made.tens.items(), printed_means(), strict=True):
+    for (h, again), printed in zip(reproduction.ten_run_errors.items(), printed_mean_errors(), strict=True):
         own = 100.0 * again
         within = int(np.sum(own <= 3.0 * printed))
         rows.append((f"{h}°", printed, *map(float, (own[0], np.median(own), own.min(), own.max())), within))
-    count = len(next(iter(made.tens.values())))
+    count = len(next(iter(reproduction.ten_run_errors.values())))
     header = (
         "Heading",
         "printed %",
@@ -137,17 +160,17 @@ def _tens(made: Repetition) -> Table:
         "largest %",
         f"within 3 x printed, of {count}",
     )
-    note = f"IWHO's error of the mean of ten, {PAPER}: the ten runs made {count} times in other seas."
+    note = f"IWHO's error of the mean of ten, {PAPER_SETTING}: the ten runs made {count} times in other seas."
     return Table("What ten runs are worth", header, tuple(rows), note)
 
 
-def _saturation(seen: Evidence) -> Table:
-    hit, of = seen.audited.saturated
+def _saturation(evidence: WildHorseEvidence) -> Table:
+    hit, of = evidence.audit.saturated_values
     rows: list[tuple[str | float | None, ...]] = [("printed", None, hit)]
-    for setting in seen.made.settings:
-        if setting not in (Setting.OFF_CENTRE, Setting.WHOLE_OFF_CENTRE):
-            share = 100.0 * seen.at_lower(setting, Algorithm.WHO)
-            rows.append((setting.value, share, seen.saturated_means(setting)))
+    for setting in evidence.reproduction.settings:
+        if setting not in (SearchSetting.OFF_CENTRE, SearchSetting.WHOLE_OFF_CENTRE):
+            share = 100.0 * evidence.share_at_lower_bound(setting, SearchAlgorithm.WHO)
+            rows.append((setting.value, share, evidence.saturated_means(setting)))
     header = (
         "WHO, ±10 % about the truth",
         "values of single runs on the lower bound, %",
@@ -157,12 +180,21 @@ def _saturation(seen: Evidence) -> Table:
     return Table("Saturation at the lower bound", header, tuple(rows), note)
 
 
-def _below(own: dict[int, Ours]) -> Table:
+def _below_printed(output_error: dict[int, OutputErrorResults]) -> Table:
     rows = tuple(
-        (f"{h}°", *(below(e, h) for e in (
-            np.mean(np.abs(o.exact), axis=0), np.mean(np.abs(o.noisy), axis=0), np.mean(o.noisy, axis=0))))
-        for h, o in own.items()
-    )  # fmt: skip
+        (
+            f"{h}°",
+            *(
+                count_below_printed(e, h)
+                for e in (
+                    np.mean(np.abs(o.noise_free_errors), axis=0),
+                    np.mean(np.abs(o.noisy_errors), axis=0),
+                    np.mean(o.noisy_errors, axis=0),
+                )
+            ),
+        )
+        for h, o in output_error.items()
+    )
     total = ("of 24", *(sum(int(row[k]) for row in rows) for k in (1, 2, 3)))
     header = ("Heading", "noise-free, single fits", "1 cm / .02°, single fits", "1 cm / .02°, mean of ten")
     note = "Of eight entries a heading, how many of ours are below IWHO's printed error; the print is free of noise."

@@ -3,69 +3,78 @@
 import numpy as np
 
 from seatrial.core.results import Check, Claim
-from seatrial_studies.qi2025 import judged_method, judged_print, judged_searches
-from seatrial_studies.qi2025.evidence import Evidence, below
-from seatrial_studies.qi2025.published import Algorithm, misprinted, printed_means
-from seatrial_studies.qi2025.repetition import Setting
+from seatrial_studies.qi2025 import method_claims, print_claims, search_claims
+from seatrial_studies.qi2025.evidence import WildHorseEvidence, count_below_printed
+from seatrial_studies.qi2025.published import SearchAlgorithm, misprinted_errors, printed_mean_errors
+from seatrial_studies.qi2025.reproduction import SearchSetting
 
-TIMES_PRINTED, ON_BOUND, MISPRINTS, EXACT, FASTER, CONTINUOUS = 3.0, 0.5, 6, 1e-9, 50.0, 0.1
-RATIO = (0.7, 1.3)
+PRINTED_ERROR_FACTOR, ON_BOUND_SHARE, MISPRINT_COUNT, EXACT_ERROR, LEAST_TIME_RATIO, HOLD_BIAS_PERCENT = (
+    3.0,
+    0.5,
+    6,
+    1e-9,
+    50.0,
+    0.1,
+)
+BOUND_RATIO_RANGE = (0.7, 1.3)
 
 
-def claims(seen: Evidence) -> tuple[Claim, ...]:
+def claims(evidence: WildHorseEvidence) -> tuple[Claim, ...]:
     """Each with what it rests on."""
-    return (*judged_searches.claims(seen), *judged_print.claims(seen), *judged_method.claims(seen))
+    return (*search_claims.claims(evidence), *print_claims.claims(evidence), *method_claims.claims(evidence))
 
 
-def checks(seen: Evidence) -> tuple[Check, ...]:
+def checks(evidence: WildHorseEvidence) -> tuple[Check, ...]:
     """Ours; each can fail."""
-    return (*_searches(seen), *_ours(seen))
+    return (*_search_checks(evidence), *_output_error_checks(evidence))
 
 
-def _searches(seen: Evidence) -> list[Check]:
+def _search_checks(evidence: WildHorseEvidence) -> list[Check]:
     found = [
-        _at_most(
+        _check_at_most(
             f"IWHO's error of the mean of ten at {h} deg, median of {len(again)} tens, %",
             100.0 * float(np.median(again)),
-            TIMES_PRINTED * printed,
+            PRINTED_ERROR_FACTOR * printed,
         )
-        for (h, again), printed in zip(seen.made.tens.items(), printed_means(), strict=True)
+        for (h, again), printed in zip(evidence.reproduction.ten_run_errors.items(), printed_mean_errors(), strict=True)
     ]
-    share = seen.at_lower(Setting.CARRIED, Algorithm.WHO)
+    share = evidence.share_at_lower_bound(SearchSetting.MODEL_STATE, SearchAlgorithm.WHO)
     name = "WHO's values on the lower bound, candidates from the model's own state, share"
-    wrong = len(misprinted())
+    wrong = len(misprinted_errors())
     return [
         *found,
-        Check(name, share, f"at least {ON_BOUND:g}", share >= ON_BOUND),
-        Check("printed errors that do not recompute", wrong, f"{MISPRINTS}", wrong == MISPRINTS),
+        Check(name, share, f"at least {ON_BOUND_SHARE:g}", share >= ON_BOUND_SHARE),
+        Check("printed errors that do not recompute", wrong, f"{MISPRINT_COUNT}", wrong == MISPRINT_COUNT),
     ]
 
 
-def _ours(seen: Evidence) -> list[Check]:
-    entries = sum(below(np.mean(np.abs(o.exact), axis=0), h) for h, o in seen.own.items())
-    ratio = seen.seconds(Algorithm.IWHO) / seen.own_seconds
-    size = float(np.sqrt(np.mean([o.ratio**2 for o in seen.own.values()])))
+def _output_error_checks(evidence: WildHorseEvidence) -> list[Check]:
+    entries = sum(
+        count_below_printed(np.mean(np.abs(o.noise_free_errors), axis=0), h) for h, o in evidence.output_error.items()
+    )
+    ratio = evidence.search_seconds(SearchAlgorithm.IWHO) / evidence.output_error_seconds
+    size = float(np.sqrt(np.mean([o.error_over_bound**2 for o in evidence.output_error.values()])))
     return [
         Check("ours below IWHO's printed errors, noise-free, of 24", entries, "24", entries == 24),
-        _at_most(
+        _check_at_most(
             "our largest relative error, noise-free",
-            max(float(np.max(np.abs(o.exact))) for o in seen.own.values()),
-            EXACT,
+            max(float(np.max(np.abs(o.noise_free_errors))) for o in evidence.output_error.values()),
+            EXACT_ERROR,
         ),
-        _at_most(
+        _check_at_most(
             "our largest bias in continuous waves, noise-free, %",
-            max(100.0 * float(np.max(np.abs(b.fine))) for b in seen.bias.values()),
-            CONTINUOUS,
+            max(100.0 * float(np.max(np.abs(b.fine))) for b in evidence.hold_bias.values()),
+            HOLD_BIAS_PERCENT,
         ),
-        Check("IWHO's time over ours", ratio, f"at least {FASTER:g}", ratio >= FASTER),
+        Check("IWHO's time over ours", ratio, f"at least {LEAST_TIME_RATIO:g}", ratio >= LEAST_TIME_RATIO),
         Check(
             "our errors in noise over the Cramer-Rao bound",
             size,
-            f"{RATIO[0]} to {RATIO[1]}",
-            RATIO[0] <= size <= RATIO[1],
+            f"{BOUND_RATIO_RANGE[0]} to {BOUND_RATIO_RANGE[1]}",
+            BOUND_RATIO_RANGE[0] <= size <= BOUND_RATIO_RANGE[1],
         ),
     ]
 
 
-def _at_most(name: str, value: float, limit: float) -> Check:
+def _check_at_most(name: str, value: float, limit: float) -> Check:
     return Check(name, value, limit, bool(value <= limit))

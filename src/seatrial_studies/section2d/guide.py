@@ -10,9 +10,9 @@ import numpy as np
 
 from seatrial.core.values import Array
 from seatrial.estimation.problem.harmonic import harmonics
-from seatrial_studies.section2d.modes import jackknife
-from seatrial_studies.section2d.responses import steady
-from seatrial_studies.section2d.runs import Run
+from seatrial_studies.section2d.modes import jackknife_error
+from seatrial_studies.section2d.responses import steady_samples
+from seatrial_studies.section2d.runs import FlumeRun
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Friction:
     velocity: float
     damping: float
     force: float
-    third: float
+    third_harmonic_ratio: float
 
 
 @dataclass(frozen=True)
@@ -42,12 +42,12 @@ class Guide:
     level: float
     error: float
 
-    def velocity_of(self, damping: float) -> float:
+    def velocity_at_damping(self, damping: float) -> float:
         """m/s at which the damping is that many N s/m."""
         return float(np.exp((np.log(damping) - self.level) / self.exponent))
 
 
-def guide(runs: Sequence[Run], stiffness: float) -> Guide:
+def fit_guide_damping(runs: Sequence[FlumeRun], stiffness: float) -> Guide:
     """Of runs that sway freely.
 
     Args:
@@ -56,21 +56,21 @@ def guide(runs: Sequence[Run], stiffness: float) -> Guide:
     Raises:
         InputError: a run's steady stretch holds no whole wave period.
     """
-    made = tuple(f for f in (friction(r, stiffness) for r in runs if r.scenario in (3, 4)) if f.damping > 0.0)
+    made = tuple(f for f in (guide_friction(r, stiffness) for r in runs if r.scenario in (3, 4)) if f.damping > 0.0)
     if len(made) < 3:
         return Guide(made, float("nan"), float("nan"), float("nan"))
     points = np.log(np.array([(f.velocity, f.damping) for f in made]))
-    left = [_line(np.delete(points, k, axis=0))[0] for k in range(len(made))]
-    return Guide(made, *_line(points), jackknife(left))
+    left = [_fit_line(np.delete(points, k, axis=0))[0] for k in range(len(made))]
+    return Guide(made, *_fit_line(points), jackknife_error(left))
 
 
-def friction(run: Run, stiffness: float) -> Friction:
+def guide_friction(run: FlumeRun, stiffness: float) -> Friction:
     """One run's steady stretch.
 
     Raises:
         InputError: the stretch holds no whole wave period.
     """
-    rows, record = steady(run), run.record
+    rows, record = steady_samples(run), run.record
     time = record.time[rows]
     sway = harmonics(time, (record["S_1"] - record["S_2"])[rows], run.omega).first / stiffness
     force = harmonics(time, record["F_y"][rows], run.omega)
@@ -80,6 +80,6 @@ def friction(run: Run, stiffness: float) -> Friction:
     return Friction(run.name, abs(velocity), damping, damping * abs(velocity), third)
 
 
-def _line(points: Array) -> tuple[float, float]:
+def _fit_line(points: Array) -> tuple[float, float]:
     slope, level = np.polyfit(points[:, 0], points[:, 1], 1)
     return float(slope), float(level)

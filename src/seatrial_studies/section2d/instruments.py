@@ -5,28 +5,28 @@ import numpy as np
 from seatrial.core.results import Table
 from seatrial.core.values import Finding, Severity
 from seatrial_studies.section2d import tank
-from seatrial_studies.section2d.numbers import Numbers, is_long_enough
+from seatrial_studies.section2d.analysis import SectionAnalysis, is_long_enough
 
-Row = tuple[str | float | None, ...]
+TableRow = tuple[str | float | None, ...]
 DRIFT_LIMIT, LEAST_PERIOD_S = 0.001, 0.9
 
 
-def camera_gain(made: Numbers) -> tuple[float, float, float]:
+def camera_gain(analysis: SectionAnalysis) -> tuple[float, float, float]:
     """Median, smallest, largest ratio of accelerometers' to camera's heave, periods from .9 s on; NaN without."""
-    long = {r.name for r in made.runs if r.period >= LEAST_PERIOD_S}
-    gains = [c.gain for name, c in made.clocks.items() if name in long]
+    long = {r.name for r in analysis.runs if r.period >= LEAST_PERIOD_S}
+    gains = [c.gain for name, c in analysis.clocks.items() if name in long]
     return (float(np.median(gains)), min(gains), max(gains)) if gains else (np.nan, np.nan, np.nan)
 
 
-def findings(made: Numbers) -> tuple[Finding, ...]:
+def instrument_findings(analysis: SectionAnalysis) -> tuple[Finding, ...]:
     """Dead channels, a camera clock that drifts, a gain between camera and accelerometers."""
-    drifting = {name: c for name, c in made.clocks.items() if abs(c.drift) > DRIFT_LIMIT}
-    drifts = [1e3 * c.drift for c in drifting.values()]
-    median, least, most = camera_gain(made)
+    drifting = {name: c for name, c in analysis.clocks.items() if abs(c.clock_drift) > DRIFT_LIMIT}
+    drifts = [1e3 * c.clock_drift for c in drifting.values()]
+    median, least, most = camera_gain(analysis)
     clock = Finding(
         Severity.WARNING,
         "clock-drift",
-        f"the camera's clock runs apart from the accelerometers' in {len(drifting)} of {len(made.clocks)} runs",
+        f"the camera's clock runs apart from the accelerometers' in {len(drifting)} of {len(analysis.clocks)} runs",
         f"{min(drifts):+.1f} to {max(drifts):+.1f} ms per s" if drifts else "",
         "take phases from the accelerometers, from the camera amplitudes only",
     )
@@ -37,10 +37,15 @@ def findings(made: Numbers) -> tuple[Finding, ...]:
         f"factor {median:.3f}, from {least:.3f} to {most:.3f} over runs with periods from .9 s on",
         "estimate one gain along with the coefficients",
     )
-    return (*made.dead, *((clock,) if drifting else ()), *((gain,) if np.isfinite(median) else ()), *_short(made))
+    return (
+        *analysis.dead_channel_findings,
+        *((clock,) if drifting else ()),
+        *((gain,) if np.isfinite(median) else ()),
+        *_short_stretch_findings(analysis),
+    )
 
 
-def _short(made: Numbers) -> list[Finding]:
+def _short_stretch_findings(analysis: SectionAnalysis) -> list[Finding]:
     return [
         Finding(
             Severity.INFO,
@@ -49,15 +54,20 @@ def _short(made: Numbers) -> list[Finding]:
             f"period {r.period:.3f} s",
             "such waves need a shorter ramp or a longer flume; the run gives no response",
         )
-        for r in made.runs
+        for r in analysis.runs
         if not is_long_enough(r)
     ]
 
 
-def clock_table(made: Numbers) -> Table:
+def clock_table(analysis: SectionAnalysis) -> Table:
     """The camera run by run."""
-    rows: list[Row] = [(name, 1e3 * c.delay, 1e3 * c.drift, 1e3 * c.spread, c.gain) for name, c in made.clocks.items()]
-    rows += [(name, None, None, None, None) for name in sorted({f.what.split(":")[0] for f in made.dead})]
+    rows: list[TableRow] = [
+        (name, 1e3 * c.delay, 1e3 * c.clock_drift, 1e3 * c.delay_scatter, c.gain) for name, c in analysis.clocks.items()
+    ]
+    rows += [
+        (name, None, None, None, None)
+        for name in sorted({f.message.split(":")[0] for f in analysis.dead_channel_findings})
+    ]
     return Table(
         "The camera against the accelerometers, in heave",
         ("run", "delay of the camera [ms]", "drift [ms/s]", "scatter [ms]", "accelerometers / camera"),
@@ -67,10 +77,12 @@ def clock_table(made: Numbers) -> Table:
     )
 
 
-def spring_table(made: Numbers) -> Table:
+def spring_table(analysis: SectionAnalysis) -> Table:
     """Sway stiffness run by run."""
-    springs = made.springs
-    rows: list[Row] = [(s.run, s.lower, s.upper, s.explained, 1e3 * s.delay, 1e3 * s.drift) for s in springs.runs]
+    springs = analysis.sway_stiffness
+    rows: list[TableRow] = [
+        (s.run, s.lower, s.upper, s.explained_share, 1e3 * s.delay, 1e3 * s.drift) for s in springs.runs
+    ]
     rows.append(("mean of the runs used", springs.mean, None, None, None, None))
     rows.append(("standard error", springs.error, None, None, None, None))
     return Table(
@@ -83,29 +95,37 @@ def spring_table(made: Numbers) -> Table:
     )
 
 
-def guide_table(made: Numbers) -> Table:
+def guide_table(analysis: SectionAnalysis) -> Table:
     """The force in the sway guide run by run."""
-    rows: list[Row] = [
-        (f.run, f.velocity, f.damping, f.force, f.third) for f in sorted(made.guide.runs, key=lambda f: -f.velocity)
+    rows: list[TableRow] = [
+        (f.run, f.velocity, f.damping, f.force, f.third_harmonic_ratio)
+        for f in sorted(analysis.guide.runs, key=lambda f: -f.velocity)
     ]
     return Table(
         "The sway guide: holding force in phase with sway velocity",
         ("run", "velocity [m/s]", "as linear damping [N s/m]", "force [N]", "third harmonic / first"),
         tuple(rows),
-        f"The damping goes with velocity to the power {made.guide.exponent:.2f} ±{1.96 * made.guide.error:.2f} (95 %, "
+        f"The damping goes with velocity to the power {analysis.guide.exponent:.2f} "
+        f"±{1.96 * analysis.guide.error:.2f} (95 %, "
         "runs left out): 0 would be linear, -1 is dry friction, whose third harmonic is a third of the first. Sway is "
         "taken from the springs.",
     )
 
 
-def probe_table(made: Numbers) -> Table:
+def probe_table(analysis: SectionAnalysis) -> Table:
     """Places and gains."""
-    probes = made.probes
-    rows: list[Row] = [
+    probes = analysis.probes
+    rows: list[TableRow] = [
         (f"WP_{name[-1]}", float(x), float(g))
-        for name, x, g in zip(tank.PROBES, probes.places, probes.gains, strict=True)
+        for name, x, g in zip(tank.PROBES, probes.positions, probes.gains, strict=True)
     ]
-    rows.append(("model (the distance fitted with heave included)", tank.FIRST_PROBE_TO_MODEL + _beyond(made), None))
+    rows.append(
+        (
+            "model (the distance fitted with heave included)",
+            tank.FIRST_PROBE_TO_MODEL + _place_correction(analysis),
+            None,
+        )
+    )
     return Table(
         "Wave probes",
         ("probe", "place [m beyond WP_1]", "gain"),
@@ -115,22 +135,38 @@ def probe_table(made: Numbers) -> Table:
     )
 
 
-def wave_table(made: Numbers) -> Table:
+def wave_table(analysis: SectionAnalysis) -> Table:
     """Waves at the model, run by run."""
-    rows: list[Row] = [
-        (r.run.name, r.run.period, r.periods, 2e3 * r.wave, 2e3 * r.wave / (1e3 * tank.HEIGHTS[r.run.height]), r.paddle,
-         r.back, r.beyond)
-        for r in made.responses
-        if r.run.height in tank.HEIGHTS
-    ]  # fmt: skip
+    rows: list[TableRow] = [
+        (
+            r.run.name,
+            r.run.period,
+            r.period_count,
+            2e3 * r.wave_amplitude,
+            2e3 * r.wave_amplitude / (1e3 * tank.HEIGHTS[r.run.height_index]),
+            r.paddle_ratio,
+            r.reflected_ratio,
+            r.transmitted_ratio,
+        )
+        for r in analysis.responses
+        if r.run.height_index in tank.HEIGHTS
+    ]
     return Table(
         "Waves at the model",
-        ("run", "period [s]", "periods used", "height [mm]", "/ nominal", "amplitude / stroke", "back / onward",
-         "beyond / onward"),
+        (
+            "run",
+            "period [s]",
+            "periods used",
+            "height [mm]",
+            "/ nominal",
+            "amplitude / stroke",
+            "back / onward",
+            "beyond / onward",
+        ),
         tuple(rows),
         "The onward wave is what excites the model; the nominal heights are .024 and .040 m.",
-    )  # fmt: skip
+    )
 
 
-def _beyond(made: Numbers) -> float:
-    return made.heave.trained.oscillator.distance
+def _place_correction(analysis: SectionAnalysis) -> float:
+    return analysis.heave.half_of_periods.oscillator.distance

@@ -5,14 +5,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seatrial.estimation.problem.oscillator import Observed, Oscillator, OscillatorFit, Theory, fitted
-from seatrial.physics.hydro.multipoles import Motion, hydrodynamics
+from seatrial.estimation.problem.oscillator import (
+    MeasuredResponse,
+    Oscillator,
+    OscillatorFit,
+    SectionTheory,
+    fit_oscillator,
+)
+from seatrial.physics.hydro.multipoles import SectionMotion, section_hydrodynamics
 from seatrial_studies.section2d import tank
-from seatrial_studies.section2d.responses import Response, difference
+from seatrial_studies.section2d.responses import SectionResponse, relative_difference
 
 REPEATABILITY, CROSS_AXIS = 0.005, 0.02
-FREED = ("linear", "stiffness")
-_ROUNDS = 30
+EXTRA_COEFFICIENTS = ("linear_damping", "stiffness")
+_ITERATIONS = 30
 
 
 @dataclass(frozen=True)
@@ -27,29 +33,29 @@ class Mode:
         documented: natural period, s.
     """
 
-    motion: Motion
+    motion: SectionMotion
     scenario: int
     sign: float
     start: Oscillator
     free: tuple[str, ...]
     scales: dict[str, float]
-    cross: float
-    documented: float
+    cross_axis_share: float
+    documented_period: float
 
-    def measured(self, one: Response) -> complex:
+    def measured_response(self, response: SectionResponse) -> complex:
         """The response of this mode."""
-        return one.heave if self.motion is Motion.HEAVE else one.roll
+        return response.heave if self.motion is SectionMotion.HEAVE else response.roll
 
 
 @dataclass(frozen=True)
-class Score:
+class ResponseScore:
     """A measured response beside the predicted one, and whether it trained."""
 
-    response: Response
-    trained: bool
-    between: bool
-    amplitude: float
-    phase: float
+    response: SectionResponse
+    is_training: bool
+    is_interpolated: bool
+    amplitude_error: float
+    phase_error: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,127 +70,141 @@ class ModeFit:
     """
 
     mode: Mode
-    trained: OscillatorFit
-    scores: tuple[Score, ...]
-    whole: OscillatorFit
+    half_of_periods: OscillatorFit
+    scores: tuple[ResponseScore, ...]
+    all_periods: OscillatorFit
     period: float
-    beside: float
-    errors: dict[str, float]
+    viscous_damping: float
+    standard_errors: dict[str, float]
     period_error: float
-    beside_error: float
-    freed: dict[str, OscillatorFit]
+    viscous_damping_error: float
+    extended_fits: dict[str, OscillatorFit]
 
 
 HEAVE = Mode(
-    Motion.HEAVE,
+    SectionMotion.HEAVE,
     4,
     -1.0,
-    Oscillator(tank.MASS, tank.HEAVE_STIFFNESS, gain=1.1, quadratic=100.0),
-    ("gain", "delay", "distance", "added", "quadratic"),
+    Oscillator(tank.MASS, tank.HEAVE_STIFFNESS, gain=1.1, quadratic_damping=100.0),
+    ("gain", "delay", "distance", "extra_added_mass", "quadratic_damping"),
     {
         "gain": 1.0,
         "delay": 0.02,
         "distance": 0.02,
-        "added": 2.0,
-        "linear": 10.0,
-        "quadratic": 100.0,
+        "extra_added_mass": 2.0,
+        "linear_damping": 10.0,
+        "quadratic_damping": 100.0,
         "stiffness": 100.0,
     },
     CROSS_AXIS,
     tank.HEAVE_PERIOD,
 )
 ROLL = Mode(
-    Motion.ROLL,
+    SectionMotion.ROLL,
     6,
     1.0,
-    Oscillator(tank.ROLL_INERTIA, tank.ROLL_STIFFNESS, gain=0.3, delay=-0.02, quadratic=0.3),
-    ("gain", "delay", "added", "quadratic"),
-    {"gain": 0.1, "delay": 0.02, "added": 0.02, "linear": 0.1, "quadratic": 0.1, "stiffness": 1.0},
+    Oscillator(tank.ROLL_INERTIA, tank.ROLL_STIFFNESS, gain=0.3, delay=-0.02, quadratic_damping=0.3),
+    ("gain", "delay", "extra_added_mass", "quadratic_damping"),
+    {
+        "gain": 0.1,
+        "delay": 0.02,
+        "extra_added_mass": 0.02,
+        "linear_damping": 0.1,
+        "quadratic_damping": 0.1,
+        "stiffness": 1.0,
+    },
     0.0,
     tank.ROLL_PERIOD,
 )
 
 
-def theory_at(motion: Motion, omega: float, sign: float = 1.0) -> Theory:
+def theory_of_model(motion: SectionMotion, omega: float, sign: float = 1.0) -> SectionTheory:
     """Of the whole model."""
-    one = hydrodynamics(tank.FORM, omega, motion, tank.ROLL_AXIS)
-    return Theory(one.added * tank.LENGTH, one.damping * tank.LENGTH, sign * one.excitation * tank.LENGTH)
+    one = section_hydrodynamics(tank.FORM, omega, motion, tank.ROLL_AXIS)
+    return SectionTheory(one.added_mass * tank.LENGTH, one.damping * tank.LENGTH, sign * one.excitation * tank.LENGTH)
 
 
-def observed(mode: Mode, one: Response) -> Observed:
+def observation(mode: Mode, response: SectionResponse) -> MeasuredResponse:
     """A response with its spread: repeatability and what sway may leak into the accelerometers."""
-    value = mode.measured(one)
-    spread = float(np.hypot(REPEATABILITY, mode.cross * abs(one.sway / value)))
-    theory = theory_at(mode.motion, one.run.omega, mode.sign)
-    return Observed(one.run.omega, one.run.wavenumber, one.wave, value, spread, theory)
+    value = mode.measured_response(response)
+    spread = float(np.hypot(REPEATABILITY, mode.cross_axis_share * abs(response.sway / value)))
+    theory = theory_of_model(mode.motion, response.run.omega, mode.sign)
+    return MeasuredResponse(response.run.omega, response.run.wavenumber, response.wave_amplitude, value, spread, theory)
 
 
-def halves(indices: Sequence[int]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+def split_periods(indices: Sequence[int]) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Wave periods that train and that are held out: half of them, evenly spread from the longest to the shortest."""
     order = sorted(set(indices))
     chosen = {order[round(k)] for k in np.linspace(0, len(order) - 1, (len(order) + 1) // 2)}
     return tuple(k for k in order if k in chosen), tuple(k for k in order if k not in chosen)
 
 
-def mode_fit(mode: Mode, responses: Sequence[Response]) -> ModeFit:
+def fit_mode(mode: Mode, responses: Sequence[SectionResponse]) -> ModeFit:
     """Train, score, fit all, leave each period out.
 
     Raises:
         InputError: fewer wave periods than the unknowns need.
     """
     runs = [r for r in responses if r.run.scenario == mode.scenario]
-    train, _ = halves([r.run.index for r in runs])
+    train, _ = split_periods([r.run.period_index for r in runs])
 
-    def on(chosen: Callable[[Response], bool]) -> OscillatorFit:
-        return fitted(mode.start, [observed(mode, r) for r in runs if chosen(r)], mode.free, mode.scales)
+    def fit_on(chosen: Callable[[SectionResponse], bool]) -> OscillatorFit:
+        return fit_oscillator(mode.start, [observation(mode, r) for r in runs if chosen(r)], mode.free, mode.scales)
 
-    trained = on(lambda r: r.run.index in train)
-    whole = on(lambda _: True)
-    periods = sorted({r.run.index for r in runs})
-    left = [on(lambda r, out=k: r.run.index != out) for k in periods]
-    spread = {name: jackknife([getattr(f.oscillator, name) for f in left]) for name in mode.free}
+    trained = fit_on(lambda r: r.run.period_index in train)
+    whole = fit_on(lambda _: True)
+    periods = sorted({r.run.period_index for r in runs})
+    left = [fit_on(lambda r, out=k: r.run.period_index != out) for k in periods]
+    spread = {name: jackknife_error([getattr(f.oscillator, name) for f in left]) for name in mode.free}
     return ModeFit(
         mode,
         trained,
         tuple(_score(mode, trained, r, train) for r in runs),
         whole,
-        natural_period(mode, whole.oscillator),
-        beside(mode, whole.oscillator),
+        mode_natural_period(mode, whole.oscillator),
+        equivalent_viscous_damping(mode, whole.oscillator),
         spread,
-        jackknife([natural_period(mode, f.oscillator) for f in left]),
-        jackknife([beside(mode, f.oscillator) for f in left]),
-        {name: freed(mode, whole.oscillator, [observed(mode, r) for r in runs], name) for name in FREED},
+        jackknife_error([mode_natural_period(mode, f.oscillator) for f in left]),
+        jackknife_error([equivalent_viscous_damping(mode, f.oscillator) for f in left]),
+        {
+            name: fit_with_extra(mode, whole.oscillator, [observation(mode, r) for r in runs], name)
+            for name in EXTRA_COEFFICIENTS
+        },
     )
 
 
-def _score(mode: Mode, fit: OscillatorFit, one: Response, train: Sequence[int]) -> Score:
-    amplitude, phase = difference(fit.oscillator.seen(observed(mode, one)), mode.measured(one))
-    between = min(train) < one.run.index < max(train)
-    return Score(one, one.run.index in train, between, amplitude, phase)
+def _score(mode: Mode, fit: OscillatorFit, response: SectionResponse, train: Sequence[int]) -> ResponseScore:
+    amplitude, phase = relative_difference(
+        fit.oscillator.measured_response(observation(mode, response)), mode.measured_response(response)
+    )
+    between = min(train) < response.run.period_index < max(train)
+    return ResponseScore(response, response.run.period_index in train, between, amplitude, phase)
 
 
-def natural_period(mode: Mode, oscillator: Oscillator) -> float:
+def mode_natural_period(mode: Mode, oscillator: Oscillator) -> float:
     """s, undamped, with the added mass of that period."""
-    period = mode.documented
-    for _ in range(_ROUNDS):
-        added = theory_at(mode.motion, 2.0 * np.pi / period).added + oscillator.added
+    period = mode.documented_period
+    for _ in range(_ITERATIONS):
+        added = theory_of_model(mode.motion, 2.0 * np.pi / period).added_mass + oscillator.extra_added_mass
         period = tank.natural_period(oscillator.inertia + added, oscillator.stiffness)
     return period
 
 
-def beside(mode: Mode, oscillator: Oscillator) -> float:
+def equivalent_viscous_damping(mode: Mode, oscillator: Oscillator) -> float:
     """Damping beside the wave damping at the documented natural period, waves of the smaller nominal height."""
-    omega = 2.0 * np.pi / mode.documented
-    theory = theory_at(mode.motion, omega, mode.sign)
-    return oscillator.equivalent_damping(theory, omega, 0.5 * min(tank.HEIGHTS.values()))
+    omega = 2.0 * np.pi / mode.documented_period
+    theory = theory_of_model(mode.motion, omega, mode.sign)
+    return oscillator.extra_equivalent_damping(theory, omega, 0.5 * min(tank.HEIGHTS.values()))
 
 
-def freed(mode: Mode, start: Oscillator, used: Sequence[Observed], name: str) -> OscillatorFit:
+def fit_with_extra(
+    mode: Mode, start: Oscillator, observations: Sequence[MeasuredResponse], coefficient: str
+) -> OscillatorFit:
     """One coefficient more."""
-    return fitted(start, used, (*mode.free, name), mode.scales)
+    return fit_oscillator(start, observations, (*mode.free, coefficient), mode.scales)
 
 
-def jackknife(values: Sequence[float]) -> float:
+def jackknife_error(values: Sequence[float]) -> float:
     """Standard error from values with one period left out each (Tukey 1958, Ann. Math. Stat. 29, 614)."""
     given = np.asarray(values, dtype=float)
     return float(np.sqrt((len(given) - 1) / len(given) * np.sum((given - given.mean()) ** 2)))

@@ -6,17 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array
-from seatrial.data.check.conventions import signed
+from seatrial.data.check.conventions import with_standard_signs
 from seatrial.estimation.problem.harmonic import harmonics, whole_periods
-from seatrial.estimation.problem.separation import Probes, Waves, calibrated, separated
-from seatrial_studies.section2d.runs import STEADY, Run, Timing
-from seatrial_studies.section2d.tank import DEPTH, FIRST_PROBE_TO_MODEL, PLACES, PROBES
+from seatrial.estimation.problem.wave_separation import Probes, SeparatedWaves, calibrate_wave_probes, separate_waves
+from seatrial_studies.section2d.runs import STEADY_TIMING, FlumeRun, Timing
+from seatrial_studies.section2d.tank import DEPTH, FIRST_PROBE_TO_MODEL, PROBE_PLACES, PROBES
 
-ORDERS = (1, 2, 3)
+HARMONIC_ORDERS = (1, 2, 3)
 
 
 @dataclass(frozen=True, eq=False)
-class Response:
+class SectionResponse:
     """One run in its steady stretch; complex amplitudes per m of the wave that goes on, at the model.
 
     Attributes:
@@ -31,12 +31,12 @@ class Response:
         error: relative standard error of the heave amplitude by the harmonic fit.
     """
 
-    run: Run
-    periods: int
-    wave: float
-    paddle: float
-    back: float
-    beyond: float
+    run: FlumeRun
+    period_count: int
+    wave_amplitude: float
+    paddle_ratio: float
+    reflected_ratio: float
+    transmitted_ratio: float
     heave: complex
     roll: complex
     sway: complex
@@ -44,56 +44,56 @@ class Response:
     camera_heave: float
     camera_roll: float
     camera_sway: float
-    error: float
+    relative_error: float
 
 
-def calibrated_probes(runs: Sequence[Run]) -> Probes:
+def calibrate_probes(runs: Sequence[FlumeRun]) -> Probes:
     """Places and gains from those runs.
 
     Raises:
         InputError: no run.
     """
-    return calibrated([(r.elevations(PROBES), r.record.dt, r.omega) for r in runs], DEPTH, PLACES)
+    return calibrate_wave_probes([(r.elevations(PROBES), r.record.dt, r.omega) for r in runs], DEPTH, PROBE_PLACES)
 
 
-def waves_at_model(run: Run, probes: Probes) -> Waves:
+def waves_at_model(run: FlumeRun, probes: Probes) -> SeparatedWaves:
     """Both waves at the model's place, whole record."""
-    return separated(run.elevations(PROBES), run.record.dt, run.omega, probes, FIRST_PROBE_TO_MODEL)
+    return separate_waves(run.elevations(PROBES), run.record.dt, run.omega, probes, FIRST_PROBE_TO_MODEL)
 
 
-def steady(run: Run, timing: Timing = STEADY) -> slice:
+def steady_samples(run: FlumeRun, timing: Timing = STEADY_TIMING) -> slice:
     """The samples of whole periods in the window.
 
     Raises:
         InputError: the window holds no period.
     """
-    return whole_periods(run.record.time, *run.window(timing), run.omega)
+    return whole_periods(run.record.time, *run.steady_window(timing), run.omega)
 
 
-def response(run: Run, probes: Probes, timing: Timing = STEADY) -> Response:
+def measure_response(run: FlumeRun, probes: Probes, timing: Timing = STEADY_TIMING) -> SectionResponse:
     """Amplitudes of one run.
 
     Raises:
         InputError: the window holds no period.
     """
-    waves, rows, w = waves_at_model(run, probes), steady(run, timing), run.omega
-    record, time = signed(run.record), run.record.time[rows]
+    waves, rows, w = waves_at_model(run, probes), steady_samples(run, timing), run.omega
+    record, time = with_standard_signs(run.record), run.record.time[rows]
 
     def first(values: Array) -> complex:
-        return harmonics(time, values[rows], w, ORDERS).first
+        return harmonics(time, values[rows], w, HARMONIC_ORDERS).first
 
-    onward = first(waves.onward)
-    up = harmonics(time, -0.5 * (record["z_ddot_1"] + record["z_ddot_2"])[rows], w, ORDERS)
+    onward = first(waves.incident)
+    up = harmonics(time, -0.5 * (record["z_ddot_1"] + record["z_ddot_2"])[rows], w, HARMONIC_ORDERS)
     difference = first(record["z_ddot_2"] - record["z_ddot_1"])
     turned = [first(record[s]) for s in ("v_dot", "F_y")]
     camera = [abs(first(record[s])) for s in ("z", "phi", "y0")]
-    return Response(
+    return SectionResponse(
         run=run,
-        periods=round((time[-1] - time[0]) / run.period),
-        wave=abs(onward),
-        paddle=abs(onward) / _stroke(run),
-        back=abs(first(waves.back) / onward),
-        beyond=abs(first(record["zeta_6"]) / onward),
+        period_count=round((time[-1] - time[0]) / run.period),
+        wave_amplitude=abs(onward),
+        paddle_ratio=abs(onward) / _stroke_amplitude(run),
+        reflected_ratio=abs(first(waves.reflected) / onward),
+        transmitted_ratio=abs(first(record["zeta_6"]) / onward),
         heave=-up.first / w**2 / onward,
         roll=-difference / w**2 / onward,
         sway=-turned[0] / w**2 / onward,
@@ -101,17 +101,17 @@ def response(run: Run, probes: Probes, timing: Timing = STEADY) -> Response:
         camera_heave=camera[0] / abs(onward),
         camera_roll=camera[1] / abs(onward),
         camera_sway=camera[2] / abs(onward),
-        error=up.relative_error,
+        relative_error=up.relative_error,
     )
 
 
-def _stroke(run: Run) -> float:
-    _, full, left = run.strokes
+def _stroke_amplitude(run: FlumeRun) -> float:
+    _, full, left = run.stroke_times
     part = run.record.between(full, left)
     return abs(harmonics(part.time, part["x_wm"], run.omega, (1,)).first)
 
 
-def difference(one: complex, other: complex) -> tuple[float, float]:
+def relative_difference(one: complex, other: complex) -> tuple[float, float]:
     """One over the other: per cent of amplitude, degrees of phase."""
     ratio = one / other
     return 100.0 * (abs(ratio) - 1.0), float(np.degrees(np.angle(ratio)))

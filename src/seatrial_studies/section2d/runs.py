@@ -9,13 +9,13 @@ import numpy as np
 
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.read import read_record
-from seatrial.estimation.problem.harmonic import frequency_near
+from seatrial.estimation.problem.harmonic import best_fit_frequency
 from seatrial.physics.hydro.dispersion import group_velocity, wavenumber
 from seatrial_studies.section2d.tank import DEPTH, LAYOUT, ROUND_TRIP, TO_MODEL
 
 FOLDER = "section2d_waves"
 _TRIM_S = 0.5
-_ON, _FULL = 0.03, 0.97
+_STARTED_SHARE, _FULL_SHARE = 0.03, 0.97
 
 
 @dataclass(frozen=True)
@@ -27,19 +27,19 @@ class Timing:
         allowed: s of the beach's reflection that may be in: the beginning of a ramp 4 to 6 s long.
     """
 
-    settling: float = 1.5
-    allowed: float = 2.5
+    settling_s: float = 1.5
+    allowed_reflection_s: float = 2.5
 
 
-STEADY = Timing()
+STEADY_TIMING = Timing()
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class FlumeRun:
     """One run SPPH_rep: scenario S, period PP, height H."""
 
     record: Record
-    listed: "Listed"
+    nominal: "NominalWave"
 
     @property
     def name(self) -> str:
@@ -52,29 +52,29 @@ class Run:
         return int(self.name[0])
 
     @property
-    def index(self) -> int:
+    def period_index(self) -> int:
         """Of the wave period."""
         return int(self.name[1:3])
 
     @property
-    def height(self) -> int:
+    def height_index(self) -> int:
         """1 or 2."""
         return int(self.name[3])
 
     @cached_property
-    def strokes(self) -> tuple[float, float, float]:
+    def stroke_times(self) -> tuple[float, float, float]:
         """s: the paddle starts, reaches its full stroke, leaves it."""
         stroke = np.abs(self.record["x_wm"])
         most, time = float(stroke.max()), self.record.time
-        full = np.flatnonzero(stroke > _FULL * most)
-        return float(time[np.argmax(stroke > _ON * most)]), float(time[full[0]]), float(time[full[-1]])
+        full = np.flatnonzero(stroke > _FULL_SHARE * most)
+        return float(time[np.argmax(stroke > _STARTED_SHARE * most)]), float(time[full[0]]), float(time[full[-1]])
 
     @cached_property
     def omega(self) -> float:
         """rad/s, of the paddle at full stroke."""
-        _, full, left = self.strokes
+        _, full, left = self.stroke_times
         stretch = self.record.between(full + _TRIM_S, left - _TRIM_S)
-        return frequency_near(stretch.time, stretch["x_wm"], self.listed.omega)
+        return best_fit_frequency(stretch.time, stretch["x_wm"], self.nominal.omega)
 
     @property
     def period(self) -> float:
@@ -86,15 +86,15 @@ class Run:
         """rad/m, at the flume's depth."""
         return float(wavenumber(self.omega, DEPTH))
 
-    def window(self, timing: "Timing") -> tuple[float, float]:
+    def steady_window(self, timing: "Timing") -> tuple[float, float]:
         """s: from full waves at the model to the first of what the beach sends back.
 
         The front travels with the group velocity; reflections from the beach take 12 m more, as in periods.csv.
         """
-        on, full, left = self.strokes
+        on, full, left = self.stroke_times
         speed = float(group_velocity(self.omega, DEPTH))
-        start = full + TO_MODEL / speed + timing.settling
-        stop = min(on + (TO_MODEL + ROUND_TRIP) / speed + timing.allowed, left + TO_MODEL / speed)
+        start = full + TO_MODEL / speed + timing.settling_s
+        stop = min(on + (TO_MODEL + ROUND_TRIP) / speed + timing.allowed_reflection_s, left + TO_MODEL / speed)
         return start, stop
 
     def elevations(self, probes: tuple[str, ...]) -> Array:
@@ -117,14 +117,14 @@ def data_folder() -> Path:
 
 
 @dataclass(frozen=True)
-class Listed:
+class NominalWave:
     """A row of periods.csv: rad/s, and the wave number listed beside it, rad/m."""
 
     omega: float
     wavenumber: float
 
 
-def periods(path: Path) -> dict[int, Listed]:
+def read_periods(path: Path) -> dict[int, NominalWave]:
     """Index -> wave period as listed.
 
     Raises:
@@ -132,18 +132,18 @@ def periods(path: Path) -> dict[int, Listed]:
     """
     rows = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines() if line[:1].isdigit()]
     try:
-        return {int(row[0]): Listed(2.0 * np.pi / float(row[1]), float(row[3])) for row in rows}
+        return {int(row[0]): NominalWave(2.0 * np.pi / float(row[1]), float(row[3])) for row in rows}
     except (ValueError, IndexError, ZeroDivisionError):
         raise InputError(f"{path}: each row must hold index, period in s, frequency and wave number") from None
 
 
-def runs_of(folder: Path, scenarios: tuple[int, ...] = (3, 4, 6)) -> tuple[Run, ...]:
+def read_runs(folder: Path, scenarios: tuple[int, ...] = (3, 4, 6)) -> tuple[FlumeRun, ...]:
     """All runs of those scenarios, by name.
 
     Raises:
         InputError: none is there, or a file cannot be read.
     """
-    omegas = periods(folder / "periods.csv")
+    omegas = read_periods(folder / "periods.csv")
     paths = [p for s in scenarios for p in sorted((folder / f"{s}PPH").glob(f"{s}*.csv.gz"))]
     if not paths:
         raise InputError(f"{folder} holds no runs; it needs folders 3PPH, 4PPH, 6PPH with files like 4021_1.csv.gz")
@@ -153,5 +153,5 @@ def runs_of(folder: Path, scenarios: tuple[int, ...] = (3, 4, 6)) -> tuple[Run, 
         index = int(record.name[1:3]) if record.name[1:3].isdigit() else -1
         if index not in omegas:
             raise InputError(f"{path.name}: period {record.name[1:3]} is not in periods.csv; name files SPPH_rep")
-        made.append(Run(record, omegas[index]))
+        made.append(FlumeRun(record, omegas[index]))
     return tuple(made)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array
-from seatrial_studies.section2d.modes import jackknife
-from seatrial_studies.section2d.runs import Run
+from seatrial_studies.section2d.modes import jackknife_error
+from seatrial_studies.section2d.runs import FlumeRun
 from seatrial_studies.section2d.tank import SWAY_STIFFNESS
 
 LEAST_SWAY_M, LEAST_SHARE = 0.003, 0.9
@@ -17,7 +17,7 @@ _MARGIN_S = 2.0
 
 
 @dataclass(frozen=True)
-class Spring:
+class SpringRegression:
     """One run.
 
     Attributes:
@@ -31,46 +31,46 @@ class Spring:
     upper: float
     delay: float
     drift: float
-    explained: float
+    explained_share: float
 
     @property
-    def middle(self) -> float:
+    def geometric_mean(self) -> float:
         """N/m, the reduced major axis: geometric mean of both."""
         return float(np.sqrt(self.lower * self.upper))
 
 
 @dataclass(frozen=True)
-class Stiffness:
+class SwayStiffness:
     """Mean over the runs used, N/m, and its standard error from leaving runs out."""
 
-    runs: tuple[Spring, ...]
+    runs: tuple[SpringRegression, ...]
     mean: float
     error: float
 
     @property
-    def known(self) -> float:
+    def value(self) -> float:
         """N/m; the middle of the documented range where no run tells."""
         return self.mean if np.isfinite(self.mean) else sum(SWAY_STIFFNESS) / 2.0
 
 
-def stiffness(runs: Sequence[Run]) -> Stiffness:
+def sway_stiffness(runs: Sequence[FlumeRun]) -> SwayStiffness:
     """Of the runs in which the section sways freely, the camera lives and tensions follow sway.
 
     Runs whose tension is explained to less than nine tenths are left out: slack springs, camera clocks that jump.
     """
-    made = [one for run in runs if run.scenario in (3, 4) for one in spring(run)]
-    used = [s.middle for s in made if s.explained > LEAST_SHARE]
+    made = [one for run in runs if run.scenario in (3, 4) for one in spring_regression(run)]
+    used = [s.geometric_mean for s in made if s.explained_share > LEAST_SHARE]
     if len(used) < 2:
-        return Stiffness(tuple(made), float("nan"), float("nan"))
+        return SwayStiffness(tuple(made), float("nan"), float("nan"))
     means = [float(np.mean(used[:k] + used[k + 1 :])) for k in range(len(used))]
-    return Stiffness(tuple(made), float(np.mean(used)), jackknife(means))
+    return SwayStiffness(tuple(made), float(np.mean(used)), jackknife_error(means))
 
 
-def spring(run: Run) -> tuple[Spring, ...]:
+def spring_regression(run: FlumeRun) -> tuple[SpringRegression, ...]:
     """Empty where the camera is dead or the sway small."""
     from scipy.optimize import minimize
 
-    start, stop = run.strokes[1], float(run.record.time[-1]) - _MARGIN_S
+    start, stop = run.stroke_times[1], float(run.record.time[-1]) - _MARGIN_S
     part = run.record.between(start, stop)
     sway, whole = run.record["y0"], run.record.time
     if float(np.std(part["y0"])) < LEAST_SWAY_M:
@@ -93,4 +93,4 @@ def spring(run: Run) -> tuple[Spring, ...]:
     found = minimize(misfit, first, method="Nelder-Mead", options={"initial_simplex": corners, "xatol": 1e-5})
     slope = float(np.linalg.lstsq(features(found.x), tension, rcond=None)[0][0])
     explained = 1.0 - float(found.fun / np.sum((tension - tension.mean()) ** 2))
-    return (Spring(run.name, slope, slope / explained, float(found.x[0]), float(found.x[1]), explained),)
+    return (SpringRegression(run.name, slope, slope / explained, float(found.x[0]), float(found.x[1]), explained),)

@@ -3,11 +3,11 @@
 import time
 
 from seatrial.core.results import Study
-from seatrial.core.values import Progress
+from seatrial.core.values import ProgressReporter
 from seatrial.core.values.versions import versions
+from seatrial_studies.section2d.analysis import analyse_records
 from seatrial_studies.section2d.figures import figures
-from seatrial_studies.section2d.instruments import findings
-from seatrial_studies.section2d.numbers import numbers
+from seatrial_studies.section2d.instruments import instrument_findings
 from seatrial_studies.section2d.runs import data_folder
 from seatrial_studies.section2d.tables import tables
 from seatrial_studies.section2d.tank import SOURCE
@@ -19,7 +19,7 @@ QUESTION = (
 )
 
 
-def study(*, quick: bool, seed: int, progress: Progress | None) -> Study:
+def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -> Study:
     """Heave from the sway-heave runs, roll from the heave-roll runs, the coupled runs reported.
 
     Args:
@@ -30,7 +30,7 @@ def study(*, quick: bool, seed: int, progress: Progress | None) -> Study:
         InputError: SEATRIAL_DATA does not lead to the records, or they do not suffice.
     """
     began = time.perf_counter()
-    made = numbers(data_folder(), quick=quick, progress=progress)
+    made = analyse_records(data_folder(), quick=quick, report_progress=report_progress)
     return Study(
         name="section2d",
         source=SOURCE,
@@ -41,7 +41,7 @@ def study(*, quick: bool, seed: int, progress: Progress | None) -> Study:
         checks=checks(made),
         tables=tables(made),
         figures=figures(made),
-        findings=findings(made),
+        findings=instrument_findings(made),
         seed=seed,
         elapsed_s=time.perf_counter() - began,
         versions=versions(),

@@ -5,88 +5,88 @@ import numpy as np
 from seatrial.core.results import Table
 from seatrial.physics.hydro.multipoles import haskind_damping
 from seatrial_studies.section2d import tank
+from seatrial_studies.section2d.analysis import SectionAnalysis
 from seatrial_studies.section2d.instruments import clock_table, guide_table, probe_table, spring_table, wave_table
-from seatrial_studies.section2d.modes import HEAVE, ModeFit, observed, theory_at
-from seatrial_studies.section2d.numbers import Numbers
-from seatrial_studies.section2d.runs import STEADY
+from seatrial_studies.section2d.modes import HEAVE, ModeFit, observation, theory_of_model
+from seatrial_studies.section2d.runs import STEADY_TIMING
 
-Row = tuple[str | float | None, ...]
+TableRow = tuple[str | float | None, ...]
 UNITS = {
     "heave": {
         "gain": "",
         "delay": "s",
         "distance": "m",
-        "added": "kg",
-        "linear": "kg/s",
-        "quadratic": "kg/m",
+        "extra_added_mass": "kg",
+        "linear_damping": "kg/s",
+        "quadratic_damping": "kg/m",
         "stiffness": "N/m",
     },
     "roll": {
         "gain": "m",
         "delay": "s",
-        "added": "kg m^2",
-        "linear": "kg m^2/s",
-        "quadratic": "kg m^2",
+        "extra_added_mass": "kg m^2",
+        "linear_damping": "kg m^2/s",
+        "quadratic_damping": "kg m^2",
         "stiffness": "N m",
     },
 }
-MEANING = {
+COEFFICIENT_MEANINGS = {
     "gain": "gain",
     "delay": "delay of the accelerometers against the probes",
     "distance": "the model beyond its nominal place",
-    "added": "added mass beside the computed one",
-    "linear": "linear damping beside the wave damping",
-    "quadratic": "quadratic damping",
+    "extra_added_mass": "added mass beside the computed one",
+    "linear_damping": "linear damping beside the wave damping",
+    "quadratic_damping": "quadratic damping",
     "stiffness": "stiffness",
 }
-DAMPING = {"heave": f"{tank.RIG_DAMPING:g} (rig)", "roll": None}
+DOCUMENTED_DAMPING = {"heave": f"{tank.RIG_DAMPING:g} (rig)", "roll": None}
 TWO_SIDED_95 = 1.96
-LEAST_SEEN = 1e-6
+LEAST_CAMERA_SWAY = 1e-6
 
 
-def tables(made: Numbers) -> tuple[Table, ...]:
+def tables(analysis: SectionAnalysis) -> tuple[Table, ...]:
     """All tables, in the order of the page."""
     return (
-        scores(made.heave),
-        scores(made.roll),
-        coefficients(made),
-        by_period(made.heave),
-        by_period(made.roll),
-        separability(made),
-        repeatability(made),
-        coupled(made),
-        *((timings(made),) if made.timings else ()),
-        *((dampings(made),) if made.dampings else ()),
-        clock_table(made),
-        spring_table(made),
-        guide_table(made),
-        probe_table(made),
-        wave_table(made),
+        score_table(analysis.heave),
+        score_table(analysis.roll),
+        coefficient_table(analysis),
+        period_table(analysis.heave),
+        period_table(analysis.roll),
+        separability_table(analysis),
+        repeatability_table(analysis),
+        coupled_run_table(analysis),
+        *((timing_table(analysis),) if analysis.timing_fits else ()),
+        *((damping_table(analysis),) if analysis.damping_fits else ()),
+        clock_table(analysis),
+        spring_table(analysis),
+        guide_table(analysis),
+        probe_table(analysis),
+        wave_table(analysis),
     )
 
 
-def name(fit: ModeFit) -> str:
+def motion_name(fit: ModeFit) -> str:
     """heave or roll."""
     return fit.mode.motion.value
 
 
-def scores(fit: ModeFit) -> Table:
+def score_table(fit: ModeFit) -> Table:
     """Measured and predicted responses, trained and held out."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for s in sorted(fit.scores, key=lambda s: -s.response.run.period):
-        value = fit.mode.measured(s.response)
-        standing = "trained" if s.trained else "held out" if s.between else "held out, beyond the trained"
+        value = fit.mode.measured_response(s.response)
+        standing = "trained" if s.is_training else "held out" if s.is_interpolated else "held out, beyond the trained"
         rows.append(
             (s.response.run.name, s.response.run.period, standing, abs(value), float(np.degrees(np.angle(value))),
-             s.amplitude, s.phase)
+             s.amplitude_error, s.phase_error)
         )  # fmt: skip
-    numbers = 2 * len({s.response.run.index for s in fit.scores if s.trained})
+    numbers = 2 * len({s.response.run.period_index for s in fit.scores if s.is_training})
     exactly = " Its unknowns are as many as the trained numbers, which are met exactly." * (
         len(fit.mode.free) == numbers
     )
     what = "measured" if fit.mode is HEAVE else "accelerometers' difference"
     return Table(
-        f"{name(fit).capitalize()}: half of the periods train, the others are predicted",
+        f"{motion_name(fit).capitalize()}: half of the periods train, the others are predicted",
         (
             "run",
             "period [s]",
@@ -104,29 +104,57 @@ def scores(fit: ModeFit) -> Table:
     )
 
 
-def coefficients(made: Numbers) -> Table:
+def coefficient_table(analysis: SectionAnalysis) -> Table:
     """Estimates on all periods with both kinds of intervals, beside what is documented."""
-    rows: list[Row] = []
-    for fit in (made.heave, made.roll):
-        units, first = UNITS[name(fit)], f"{name(fit)}: "
+    rows: list[TableRow] = []
+    for fit in (analysis.heave, analysis.roll):
+        units, first = UNITS[motion_name(fit)], f"{motion_name(fit)}: "
         for key in fit.mode.free:
-            label = f"{first}{MEANING[key]} [{units[key] or '1'}]"
-            rows.append(_row(label, getattr(fit.whole.oscillator, key), fit.errors[key], fit.whole.errors[key]))
-        added = theory_at(fit.mode.motion, 2.0 * np.pi / fit.period).added + fit.whole.oscillator.added
-        label = f"{first}added mass at the natural period [{units['added']}]"
-        rows.append(_row(label, added, fit.errors["added"], fit.whole.errors["added"]))
-        off, told = 1e3 * (fit.period - fit.mode.documented), f"{fit.mode.documented:g} s"
-        rows.append(_row(f"{first}natural period, ms over the documented", off, 1e3 * fit.period_error, None, told))
-        label = f"{first}damping beside the wave damping, there, waves .024 m high [{units['linear']}]"
-        rows.append(_row(label, fit.beside, fit.beside_error, None, DAMPING[name(fit)]))
-        for key, free in fit.freed.items():
-            told = f"{fit.mode.start.stiffness:.4g} (hydrostatic)" if key == "stiffness" else DAMPING[name(fit)]
-            label = f"{first}{MEANING[key]}, freed as well [{units[key]}]"
-            rows.append(_row(label, getattr(free.oscillator, key), None, free.errors[key], told))
+            label = f"{first}{COEFFICIENT_MEANINGS[key]} [{units[key] or '1'}]"
+            rows.append(
+                _coefficient_row(
+                    label,
+                    getattr(fit.all_periods.oscillator, key),
+                    fit.standard_errors[key],
+                    fit.all_periods.errors[key],
+                )
+            )
+        added = (
+            theory_of_model(fit.mode.motion, 2.0 * np.pi / fit.period).added_mass
+            + fit.all_periods.oscillator.extra_added_mass
+        )
+        label = f"{first}added mass at the natural period [{units['extra_added_mass']}]"
+        rows.append(
+            _coefficient_row(
+                label, added, fit.standard_errors["extra_added_mass"], fit.all_periods.errors["extra_added_mass"]
+            )
+        )
+        off, told = 1e3 * (fit.period - fit.mode.documented_period), f"{fit.mode.documented_period:g} s"
+        rows.append(
+            _coefficient_row(f"{first}natural period, ms over the documented", off, 1e3 * fit.period_error, None, told)
+        )
+        label = f"{first}damping beside the wave damping, there, waves .024 m high [{units['linear_damping']}]"
+        rows.append(
+            _coefficient_row(
+                label, fit.viscous_damping, fit.viscous_damping_error, None, DOCUMENTED_DAMPING[motion_name(fit)]
+            )
+        )
+        for key, free in fit.extended_fits.items():
+            told = (
+                f"{fit.mode.start.stiffness:.4g} (hydrostatic)"
+                if key == "stiffness"
+                else DOCUMENTED_DAMPING[motion_name(fit)]
+            )
+            label = f"{first}{COEFFICIENT_MEANINGS[key]}, freed as well [{units[key]}]"
+            rows.append(_coefficient_row(label, getattr(free.oscillator, key), None, free.errors[key], told))
     low, high = tank.SWAY_STIFFNESS
     rows.append(
-        _row(
-            "sway: stiffness of the springs [N/m]", made.springs.mean, made.springs.error, None, f"{low:g} to {high:g}"
+        _coefficient_row(
+            "sway: stiffness of the springs [N/m]",
+            analysis.sway_stiffness.mean,
+            analysis.sway_stiffness.error,
+            None,
+            f"{low:g} to {high:g}",
         )
     )
     return Table(
@@ -140,31 +168,41 @@ def coefficients(made: Numbers) -> Table:
     )
 
 
-def _row(label: str, value: float, jack: float | None, white: float | None, documented: str | None = None) -> Row:
-    error = jack if jack is not None else white or 0.0
-    return (label, value, value - TWO_SIDED_95 * error, value + TWO_SIDED_95 * error, jack, white, documented)
+def _coefficient_row(
+    label: str, value: float, jackknife_error: float | None, residual_error: float | None, documented: str | None = None
+) -> TableRow:
+    error = jackknife_error if jackknife_error is not None else residual_error or 0.0
+    return (
+        label,
+        value,
+        value - TWO_SIDED_95 * error,
+        value + TWO_SIDED_95 * error,
+        jackknife_error,
+        residual_error,
+        documented,
+    )
 
 
-def by_period(fit: ModeFit) -> Table:
+def period_table(fit: ModeFit) -> Table:
     """Added mass, dampings and excitation at each wave period."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     seen: set[int] = set()
     for s in sorted(fit.scores, key=lambda s: -s.response.run.period):
         run = s.response.run
-        if run.index in seen:
+        if run.period_index in seen:
             continue
-        seen.add(run.index)
-        one, shaped = observed(fit.mode, s.response), fit.whole.oscillator
+        seen.add(run.period_index)
+        one, shaped = observation(fit.mode, s.response), fit.all_periods.oscillator
         excitation = abs(one.theory.excitation)
         haskind = haskind_damping(excitation / tank.LENGTH, run.omega) * tank.LENGTH
         rows.append(
-            (run.period, one.theory.added + shaped.added, one.theory.damping, haskind,
-             shaped.equivalent_damping(one.theory, run.omega, s.response.wave), excitation,
+            (run.period, one.theory.added_mass + shaped.extra_added_mass, one.theory.damping, haskind,
+             shaped.extra_equivalent_damping(one.theory, run.omega, s.response.wave_amplitude), excitation,
              float(np.degrees(np.angle(one.theory.excitation))))
         )  # fmt: skip
     mass, damping, force = ("kg", "kg/s", "N/m") if fit.mode is HEAVE else ("kg m^2", "kg m^2/s", "N m/m")
     return Table(
-        f"{name(fit).capitalize()}: coefficients by wave period",
+        f"{motion_name(fit).capitalize()}: coefficients by wave period",
         ("period [s]", f"added mass [{mass}]", f"wave damping [{damping}]", "by Haskind", "beside it",
          f"excitation [{force}]", "phase [deg]"),
         tuple(rows),
@@ -174,14 +212,19 @@ def by_period(fit: ModeFit) -> Table:
     )  # fmt: skip
 
 
-def separability(made: Numbers) -> Table:
+def separability_table(analysis: SectionAnalysis) -> Table:
     """Standard error of the added mass without ties."""
     names = ("constant", "linear in frequency", "quadratic in frequency")
-    rows: list[Row] = [
-        (names[order], *(None if not np.isfinite(e) else e for e in errors)) for order, errors in made.untied.items()
+    rows: list[TableRow] = [
+        (names[order], *(None if not np.isfinite(e) else e for e in errors))
+        for order, errors in analysis.untied_errors.items()
     ]
     rows.append(
-        ("tied by theory (Haskind's relation and the shape)", made.heave.errors["added"], made.roll.errors["added"])
+        (
+            "tied by theory (Haskind's relation and the shape)",
+            analysis.heave.standard_errors["extra_added_mass"],
+            analysis.roll.standard_errors["extra_added_mass"],
+        )
     )
     return Table(
         "Added mass without a tie",
@@ -194,9 +237,9 @@ def separability(made: Numbers) -> Table:
     )
 
 
-def repeatability(made: Numbers) -> Table:
+def repeatability_table(analysis: SectionAnalysis) -> Table:
     """Largest deviation from the mean of repeated runs."""
-    rows: list[Row] = [(", ".join(r.names), *r.heave, *r.roll) for r in made.repeats]
+    rows: list[TableRow] = [(", ".join(r.names), *r.heave, *r.roll) for r in analysis.repeated_runs]
     return Table(
         "Repeated runs",
         ("runs", "heave [%]", "[deg]", "difference of accelerometers [%]", "[deg]"),
@@ -206,14 +249,14 @@ def repeatability(made: Numbers) -> Table:
     )
 
 
-def coupled(made: Numbers) -> Table:
+def coupled_run_table(analysis: SectionAnalysis) -> Table:
     """Runs of the other holdings; heave as the sway-heave runs predict it."""
-    arm = abs(made.roll.whole.oscillator.gain)
-    rows: list[Row] = [
+    arm = abs(analysis.roll.all_periods.oscillator.gain)
+    rows: list[TableRow] = [
         (r.run.name, r.run.period, abs(r.heave), float(np.degrees(np.angle(r.heave))), amplitude, phase,
-         abs(r.roll) / arm, float(np.degrees(np.angle(r.roll * np.sign(made.roll.whole.oscillator.gain)))),
-         r.camera_sway if r.camera_sway > LEAST_SEEN else None)
-        for r, amplitude, phase in sorted(made.coupled, key=lambda c: (c[0].run.scenario, -c[0].run.period))
+         abs(r.roll) / arm, float(np.degrees(np.angle(r.roll * np.sign(analysis.roll.all_periods.oscillator.gain)))),
+         r.camera_sway if r.camera_sway > LEAST_CAMERA_SWAY else None)
+        for r, amplitude, phase in sorted(analysis.coupled_runs, key=lambda c: (c[0].run.scenario, -c[0].run.period))
     ]  # fmt: skip
     return Table(
         "Coupled runs: sway-heave-roll (3...), and heave in the heave-roll runs (6...)",
@@ -225,11 +268,11 @@ def coupled(made: Numbers) -> Table:
     )  # fmt: skip
 
 
-def timings(made: Numbers) -> Table:
+def timing_table(analysis: SectionAnalysis) -> Table:
     """Worst held-out errors had the stretch been another."""
-    rows: list[Row] = []
-    for timing, heave, roll in ((STEADY, made.heave, made.roll), *made.timings):
-        rows.append((timing.settling, timing.allowed, *worst(heave), *worst(roll)))
+    rows: list[TableRow] = []
+    for timing, heave, roll in ((STEADY_TIMING, analysis.heave, analysis.roll), *analysis.timing_fits):
+        rows.append((timing.settling_s, timing.allowed_reflection_s, *largest_errors(heave), *largest_errors(roll)))
     return Table(
         "Other steady stretches",
         ("settling [s]", "of the reflection allowed [s]", "heave [%]", "[deg]", "roll [%]", "[deg]"),
@@ -238,11 +281,11 @@ def timings(made: Numbers) -> Table:
     )
 
 
-def dampings(made: Numbers) -> Table:
+def damping_table(analysis: SectionAnalysis) -> Table:
     """Worst held-out errors had another law of damping been chosen."""
-    rows: list[Row] = [
-        (label, *worst(heave), heave.period, *worst(roll), roll.period)
-        for label, heave, roll in (("quadratic, in force", made.heave, made.roll), *made.dampings)
+    rows: list[TableRow] = [
+        (label, *largest_errors(heave), heave.period, *largest_errors(roll), roll.period)
+        for label, heave, roll in (("quadratic, in force", analysis.heave, analysis.roll), *analysis.damping_fits)
     ]
     return Table(
         "Other dampings beside the wave damping",
@@ -253,9 +296,9 @@ def dampings(made: Numbers) -> Table:
     )
 
 
-def worst(fit: ModeFit, shortest: float = 0.9) -> tuple[float, float]:
+def largest_errors(fit: ModeFit, shortest: float = 0.9) -> tuple[float, float]:
     """Largest amplitude and phase error at held-out periods between trained ones; NaN if there are none."""
-    held = [s for s in fit.scores if s.between and not s.trained and s.response.run.period >= shortest]
+    held = [s for s in fit.scores if s.is_interpolated and not s.is_training and s.response.run.period >= shortest]
     if not held:
         return float("nan"), float("nan")
-    return max(abs(s.amplitude) for s in held), max(abs(s.phase) for s in held)
+    return max(abs(s.amplitude_error) for s in held), max(abs(s.phase_error) for s in held)

@@ -2,7 +2,7 @@
 
 import math
 
-from seatrial.data.read import Column, Layout
+from seatrial.data.read import ColumnSpec, Layout
 from seatrial.physics.hydro.lewis import LewisForm
 
 SOURCE = (
@@ -14,7 +14,7 @@ BEAM, DRAUGHT, LENGTH = 0.40, 0.20, 0.586
 MASS, KG, GM, ROLL_RADIUS = 46.8, 0.108, 0.0629, 0.36 * BEAM
 DEPTH, WIDTH, TO_MODEL, ROUND_TRIP = 1.0, 0.6, 7.0, 12.0
 AREA_COEFFICIENT = MASS / (RHO * BEAM * DRAUGHT * LENGTH)
-FORM = LewisForm.of(BEAM, DRAUGHT, AREA_COEFFICIENT)
+FORM = LewisForm.from_dimensions(BEAM, DRAUGHT, AREA_COEFFICIENT)
 
 HEAVE_STIFFNESS = RHO * G * BEAM * LENGTH
 ROLL_STIFFNESS = MASS * G * GM
@@ -29,25 +29,25 @@ HEIGHTS = {1: 0.024, 2: 0.040}
 
 # not documented: a search over all spacings leaves this one arrangement of the probes (the mirrored one apart)
 PROBES = ("zeta_1", "zeta_2", "zeta_3", "zeta_4")
-PLACES = (1.95, 2.20, 2.50)
+PROBE_PLACES = (1.95, 2.20, 2.50)
 FIRST_PROBE_TO_MODEL = 4.06
 
 CAMERA = ("y0", "z", "phi")
 LAYOUT = Layout(
     "text",
-    Column("time", "Time [s]", "s"),
+    ColumnSpec("time", "Time [s]", "s"),
     (
-        Column("x_wm", "WM_Position", "m"),
-        *(Column(f"zeta_{k}", f"WP_{k} [m]", "m") for k in (1, 2, 3, 4, 6)),
-        Column("y0", "Sway [m]", "m"),
-        Column("z", "Heave [m]", "m", positive="up"),
-        Column("phi", "Roll [rad]", "rad"),
-        Column("S_1", "Tension_SB [N]", "N"),
-        Column("S_2", "Tension_PS [N]", "N"),
-        Column("F_y", "Force_Sway [N]", "N"),
-        Column("z_ddot_1", "ACC_Heave_SB [m/s2]", "m/s^2", positive="up"),
-        Column("z_ddot_2", "ACC_HEAVE_PS [m/s2]", "m/s^2", positive="up"),
-        Column("v_dot", "ACC_SWAY [m/s2]", "m/s^2"),
+        ColumnSpec("x_wm", "WM_Position", "m"),
+        *(ColumnSpec(f"zeta_{k}", f"WP_{k} [m]", "m") for k in (1, 2, 3, 4, 6)),
+        ColumnSpec("y0", "Sway [m]", "m"),
+        ColumnSpec("z", "Heave [m]", "m", positive="up"),
+        ColumnSpec("phi", "Roll [rad]", "rad"),
+        ColumnSpec("S_1", "Tension_SB [N]", "N"),
+        ColumnSpec("S_2", "Tension_PS [N]", "N"),
+        ColumnSpec("F_y", "Force_Sway [N]", "N"),
+        ColumnSpec("z_ddot_1", "ACC_Heave_SB [m/s2]", "m/s^2", positive="up"),
+        ColumnSpec("z_ddot_2", "ACC_HEAVE_PS [m/s2]", "m/s^2", positive="up"),
+        ColumnSpec("v_dot", "ACC_SWAY [m/s2]", "m/s^2"),
     ),
 )
 

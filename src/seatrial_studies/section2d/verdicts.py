@@ -5,49 +5,49 @@ import numpy as np
 from seatrial.core.results import Check, Claim, Verdict
 from seatrial.physics.hydro.dispersion import wavenumber
 from seatrial_studies.section2d import tank
+from seatrial_studies.section2d.analysis import SectionAnalysis
 from seatrial_studies.section2d.instruments import camera_gain
-from seatrial_studies.section2d.modes import ModeFit, theory_at
-from seatrial_studies.section2d.numbers import Numbers
-from seatrial_studies.section2d.tables import TWO_SIDED_95, name, worst
+from seatrial_studies.section2d.modes import ModeFit, theory_of_model
+from seatrial_studies.section2d.tables import TWO_SIDED_95, largest_errors, motion_name
 
 AMPLITUDE_LIMIT, PHASE_LIMIT, PERIOD_LIMIT = 1.5, 1.5, 1.0
 HEIGHT_LIMIT, WAVENUMBER_LIMIT, SEPARABLE_LIMIT, SHAPE_LIMIT = 5.0, 1.0, 20.0, 10.0
-HEIGHT_PERIOD_S = 0.85
-DEAD = ("3102_4", "4061_2")
+LEAST_HEIGHT_PERIOD_S = 0.85
+DEAD_CAMERA_RUNS = ("3102_4", "4061_2")
 
 
-def claims(made: Numbers) -> tuple[Claim, ...]:
+def claims(analysis: SectionAnalysis) -> tuple[Claim, ...]:
     """What is documented of the records, and what they say to it."""
     return (
-        natural(made.heave),
-        natural(made.roll),
-        sway_springs(made),
-        rig_damping(made),
-        separable(made),
-        shape(made),
-        metacentric_height(made),
-        heights(made),
-        wavenumbers(made),
-        one_clock(made),
+        natural_period_claim(analysis.heave),
+        natural_period_claim(analysis.roll),
+        sway_stiffness_claim(analysis),
+        rig_damping_claim(analysis),
+        separability_claim(analysis),
+        lewis_form_claim(analysis),
+        metacentric_height_claim(analysis),
+        wave_heights_claim(analysis),
+        wavenumbers_claim(analysis),
+        common_clock_claim(analysis),
     )
 
 
-def natural(fit: ModeFit) -> Claim:
+def natural_period_claim(fit: ModeFit) -> Claim:
     """Confirmed where the estimate lies within 1 %."""
-    off = 100.0 * (fit.period / fit.mode.documented - 1.0)
+    off = 100.0 * (fit.period / fit.mode.documented_period - 1.0)
     return Claim(
-        f"The natural period in {name(fit)} is {fit.mode.documented:g} s",
+        f"The natural period in {motion_name(fit)} is {fit.mode.documented_period:g} s",
         Verdict.CONFIRMED if abs(off) <= PERIOD_LIMIT else Verdict.REFUTED,
         f"{fit.period:.4f} s from forced motions, 95 % interval ±{TWO_SIDED_95 * fit.period_error:.4f} s by leaving "
         f"each wave period out; off by {off:+.2f} %",
     )
 
 
-def sway_springs(made: Numbers) -> Claim:
+def sway_stiffness_claim(analysis: SectionAnalysis) -> Claim:
     """Confirmed where the 95 % interval meets the documented range; not to be told without two usable runs."""
     low, high = tank.SWAY_STIFFNESS
-    mean, half = made.springs.mean, TWO_SIDED_95 * made.springs.error
-    used = [s for s in made.springs.runs if s.explained > 0.9]
+    mean, half = analysis.sway_stiffness.mean, TWO_SIDED_95 * analysis.sway_stiffness.error
+    used = [s for s in analysis.sway_stiffness.runs if s.explained_share > 0.9]
     if not np.isfinite(mean):
         verdict = Verdict.UNKNOWABLE
     else:
@@ -59,9 +59,9 @@ def sway_springs(made: Numbers) -> Claim:
     )
 
 
-def rig_damping(made: Numbers) -> Claim:
+def rig_damping_claim(analysis: SectionAnalysis) -> Claim:
     """Refuted as one number where the damping's exponent of velocity is not 0 within its 95 % interval."""
-    found, half = made.guide, TWO_SIDED_95 * made.guide.error
+    found, half = analysis.guide, TWO_SIDED_95 * analysis.guide.error
     claim = f"The rig damps sway with {tank.RIG_DAMPING:g} N s/m"
     if not np.isfinite(found.exponent):
         return Claim(claim, Verdict.UNKNOWABLE, "fewer than three runs sway freely")
@@ -74,30 +74,31 @@ def rig_damping(made: Numbers) -> Claim:
         f"the holding force in phase with sway velocity is {min(forces):.2f} to {max(forces):.2f} N (median "
         f"{np.median(forces):.2f}), as linear damping {min(dampings):.1f} to {max(dampings):.0f} N s/m: it goes with "
         f"velocity to the power {found.exponent:.2f} ±{half:.2f} (95 %), dry friction (-1) rather than one coefficient "
-        f"(0). The documented value is met at about {found.velocity_of(tank.RIG_DAMPING):.3f} m/s",
+        f"(0). The documented value is met at about {found.velocity_at_damping(tank.RIG_DAMPING):.3f} m/s",
     )
 
 
-def separable(made: Numbers) -> Claim:
+def separability_claim(analysis: SectionAnalysis) -> Claim:
     """Refuted where the added mass is not known within 20 kg once its course over frequency is free to first order."""
-    plain, linear = made.untied[0][0], made.untied[1][0]
+    plain, linear = analysis.untied_errors[0][0], analysis.untied_errors[1][0]
     return Claim(
         "Motions in regular waves tell added mass, damping and excitation without a computed shape",
         Verdict.REFUTED if linear > SEPARABLE_LIMIT else Verdict.CONFIRMED,
         f"at one period nothing separates them; over all periods the standard error of heave's added mass is "
-        f"{plain:.1f} kg if all are constant, {linear:.0f} kg if linear in frequency, {made.untied[2][0]:.0f} kg if "
-        f"quadratic. With Haskind's relation and the shape it is {made.heave.errors['added']:.1f} kg",
+        f"{plain:.1f} kg if all are constant, {linear:.0f} kg if linear in frequency, "
+        f"{analysis.untied_errors[2][0]:.0f} kg if "
+        f"quadratic. With Haskind's relation and the shape it is {analysis.heave.standard_errors['added']:.1f} kg",
     )
 
 
-def shape(made: Numbers) -> Claim:
+def lewis_form_claim(analysis: SectionAnalysis) -> Claim:
     """Confirmed where the added masses need less than 10 % of correction."""
     told, worst_share = [], 0.0
-    for fit in (made.heave, made.roll):
-        theory = theory_at(fit.mode.motion, 2.0 * np.pi / fit.period).added
-        share = 100.0 * fit.whole.oscillator.added / theory
+    for fit in (analysis.heave, analysis.roll):
+        theory = theory_of_model(fit.mode.motion, 2.0 * np.pi / fit.period).added_mass
+        share = 100.0 * fit.all_periods.oscillator.extra_added_mass / theory
         worst_share = max(worst_share, abs(share))
-        told.append(f"{name(fit)} {share:+.1f} %")
+        told.append(f"{motion_name(fit)} {share:+.1f} %")
     return Claim(
         "The section is a Lewis form with the documented beam, draught and mass",
         Verdict.CONFIRMED if worst_share < SHAPE_LIMIT else Verdict.REFUTED,
@@ -105,9 +106,9 @@ def shape(made: Numbers) -> Claim:
     )
 
 
-def metacentric_height(made: Numbers) -> Claim:
+def metacentric_height_claim(analysis: SectionAnalysis) -> Claim:
     """Refuted where GM of the form with the documented KG is off by more than 5 %."""
-    gm, roll = metacentre(), made.roll.freed["stiffness"]
+    gm, roll = form_metacentric_height(), analysis.roll.extended_fits["stiffness"]
     weight = tank.MASS * tank.G
     seen, half = roll.oscillator.stiffness / weight, TWO_SIDED_95 * roll.errors["stiffness"] / weight
     return Claim(
@@ -119,7 +120,7 @@ def metacentric_height(made: Numbers) -> Claim:
     )
 
 
-def metacentre() -> float:
+def form_metacentric_height() -> float:
     """GM [m] of the Lewis form with the documented centre of gravity: KB + BM - KG."""
     nodes, weights = np.polynomial.legendre.leggauss(60)
     theta, weights = 0.25 * np.pi * (nodes + 1.0), 0.25 * np.pi * weights
@@ -129,14 +130,14 @@ def metacentre() -> float:
     return tank.DRAUGHT - depth + tank.BEAM**3 / 12.0 / area - tank.KG
 
 
-def heights(made: Numbers) -> Claim:
+def wave_heights_claim(analysis: SectionAnalysis) -> Claim:
     """Confirmed where the mean of each nominal height is met within 5 %, periods from .85 s on."""
     told, good = [], True
     for key, nominal in tank.HEIGHTS.items():
         off = [
-            100.0 * (2.0 * r.wave / nominal - 1.0)
-            for r in made.responses
-            if r.run.height == key and r.run.period >= HEIGHT_PERIOD_S
+            100.0 * (2.0 * r.wave_amplitude / nominal - 1.0)
+            for r in analysis.responses
+            if r.run.height_index == key and r.run.period >= LEAST_HEIGHT_PERIOD_S
         ]
         if off:
             told.append(f"{nominal:g} m: {np.mean(off):+.1f} % ({min(off):+.1f} to {max(off):+.1f} %, {len(off)} runs)")
@@ -148,9 +149,9 @@ def heights(made: Numbers) -> Claim:
     )
 
 
-def wavenumbers(made: Numbers) -> Claim:
+def wavenumbers_claim(analysis: SectionAnalysis) -> Claim:
     """Refuted where a listed wave number is off by more than 1 % at the flume's depth."""
-    rows = sorted({(r.listed.omega, r.listed.wavenumber) for r in made.runs})
+    rows = sorted({(r.nominal.omega, r.nominal.wavenumber) for r in analysis.runs})
     off = {2.0 * np.pi / w: 100.0 * (k / float(wavenumber(w, tank.DEPTH)) - 1.0) for w, k in rows}
     worst_first = sorted(off.items(), key=lambda item: -abs(item[1]))
     told = " and ".join(f"{error:+.1f} % at {period:.2f} s" for period, error in worst_first[:2])
@@ -161,38 +162,38 @@ def wavenumbers(made: Numbers) -> Claim:
     )
 
 
-def one_clock(made: Numbers) -> Claim:
+def common_clock_claim(analysis: SectionAnalysis) -> Claim:
     """Refuted where the camera's clock drifts by more than 1 ms per s in some run or camera channels are dead."""
-    drift = max((abs(c.drift) for c in made.clocks.values()), default=0.0)
-    dead = sorted({f.what.split(":")[0] for f in made.dead})
+    drift = max((abs(c.clock_drift) for c in analysis.clocks.values()), default=0.0)
+    dead = sorted({f.message.split(":")[0] for f in analysis.dead_channel_findings})
     return Claim(
         "All channels of a run share one clock and one scale",
         Verdict.REFUTED if drift > 1e-3 or dead else Verdict.CONFIRMED,
         f"the camera drifts by up to {1e3 * drift:.0f} ms per s against the accelerometers, which show heave "
-        f"{camera_gain(made)[0]:.2f} times the camera's"
+        f"{camera_gain(analysis)[0]:.2f} times the camera's"
         + (f"; its channels are dead in {' and '.join(dead)}" if dead else ""),
     )
 
 
-def checks(made: Numbers) -> tuple[Check, ...]:
+def checks(analysis: SectionAnalysis) -> tuple[Check, ...]:
     """Our own numbers against limits that were set before."""
     rows = []
-    for fit in (made.heave, made.roll):
-        amplitude, phase = worst(fit)
-        off = abs(100.0 * (fit.period / fit.mode.documented - 1.0))
+    for fit in (analysis.heave, analysis.roll):
+        amplitude, phase = largest_errors(fit)
+        off = abs(100.0 * (fit.period / fit.mode.documented_period - 1.0))
         rows += [
-            (f"{name(fit)}, held-out periods from .9 s on, amplitude [%]", amplitude, AMPLITUDE_LIMIT),
-            (f"{name(fit)}, held-out periods from .9 s on, phase [deg]", phase, PHASE_LIMIT),
-            (f"{name(fit)}, natural period off the documented [%]", off, PERIOD_LIMIT),
+            (f"{motion_name(fit)}, held-out periods from .9 s on, amplitude [%]", amplitude, AMPLITUDE_LIMIT),
+            (f"{motion_name(fit)}, held-out periods from .9 s on, phase [deg]", phase, PHASE_LIMIT),
+            (f"{motion_name(fit)}, natural period off the documented [%]", off, PERIOD_LIMIT),
         ]
     low, high = tank.SWAY_STIFFNESS
-    half = TWO_SIDED_95 * made.springs.error
-    meets = bool(made.springs.mean - half <= high and made.springs.mean + half >= low)
-    dead = {f.what.split(":")[0] for f in made.dead}
-    known = {r.name for r in made.runs} & set(DEAD)
+    half = TWO_SIDED_95 * analysis.sway_stiffness.error
+    meets = bool(analysis.sway_stiffness.mean - half <= high and analysis.sway_stiffness.mean + half >= low)
+    dead = {f.message.split(":")[0] for f in analysis.dead_channel_findings}
+    known = {r.name for r in analysis.runs} & set(DEAD_CAMERA_RUNS)
     return (
         *(Check(what, value, limit, bool(value <= limit)) for what, value, limit in rows),
-        Check("sway stiffness [N/m]", made.springs.mean, f"{low:g} to {high:g} within its interval", meets),
+        Check("sway stiffness [N/m]", analysis.sway_stiffness.mean, f"{low:g} to {high:g} within its interval", meets),
         Check(
             "runs with dead camera channels",
             float(len(dead)),

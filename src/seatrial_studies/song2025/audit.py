@@ -3,42 +3,42 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from seatrial_studies.song2025.assumed_parameters import AssumedParameters, SignCheck, check_signs
 from seatrial_studies.song2025.audited_equations import (
-    Condition,
-    Dimensions,
-    Regression,
+    Equation14Fit,
+    Equation27Readings,
+    ForceDimensions,
     Thrust,
-    condition,
-    dimensions,
-    parentheses,
-    regressions,
-    thrust,
+    balancing_thrust,
+    equation_14_fits,
+    equation_27_readings,
+    force_dimensions,
+    parenthesis_factors,
 )
 from seatrial_studies.song2025.audited_motions import (
-    OneSided,
+    PortStarboardAsymmetry,
     ReversedTurn,
-    Undamped,
-    one_sided,
+    UndampedSway,
+    port_starboard_asymmetry,
     reversed_turn,
-    undamped,
+    undamped_sway,
 )
 from seatrial_studies.song2025.audited_tables import (
-    Conditions,
-    Implied,
-    Mass,
-    conditions,
-    implied_by_table_4,
-    mass,
+    FeatureConditions,
+    Table1Mass,
+    Table4Implication,
+    feature_conditions,
+    table_1_mass,
+    table_4_implications,
 )
-from seatrial_studies.song2025.choices import Choice, Held, held
-from seatrial_studies.song2025.crafts import reference
-from seatrial_studies.song2025.published import Equation, Run
+from seatrial_studies.song2025.craft_models import reference_record
+from seatrial_studies.song2025.published import MotionEquation, PublishedManoeuvre
 
-FRESH, SALT = 1000.0, 1025.0
+FRESH_WATER_DENSITY, SALT_WATER_DENSITY = 1000.0, 1025.0
 
 
 @dataclass(frozen=True, eq=False)
-class Audit:
+class SupportVectorAudit:
     """Numbers behind the verdicts on the print; no random number is drawn.
 
     Attributes:
@@ -56,35 +56,35 @@ class Audit:
         held: the signs of N_v and Y_vv again, under other choices.
     """
 
-    turn: ReversedTurn
-    undamped: Undamped
-    one_sided: OneSided
-    dimensions: Dimensions
-    parentheses: dict[Equation, float]
-    regressions: tuple[Regression, ...]
-    condition: Condition
-    conditions: Conditions
-    masses: tuple[Mass, Mass]
+    reversed_turn: ReversedTurn
+    undamped_sway: UndampedSway
+    asymmetry: PortStarboardAsymmetry
+    dimensions: ForceDimensions
+    parenthesis_factors: dict[MotionEquation, float]
+    equation_14_fits: tuple[Equation14Fit, ...]
+    equation_27_readings: Equation27Readings
+    table_3_conditions: FeatureConditions
+    table_1_masses: tuple[Table1Mass, Table1Mass]
     thrust: Thrust
-    implied: tuple[Implied, ...]
-    held: tuple[Held, ...]
+    table_4_implications: tuple[Table4Implication, ...]
+    sign_checks: tuple[SignCheck, ...]
 
 
-def audit(others: Sequence[Choice]) -> Audit:
+def audit(assumptions: Sequence[AssumedParameters]) -> SupportVectorAudit:
     """Everything: some 3 s, and .4 s for each of the `others` (`choices()` or some of them)."""
-    series = reference(Run.CONSECUTIVE)
-    of_features = conditions(series)
-    return Audit(
+    series = reference_record(PublishedManoeuvre.CONSECUTIVE)
+    of_features = feature_conditions(series)
+    return SupportVectorAudit(
         reversed_turn(),
-        undamped(),
-        one_sided(),
-        dimensions(),
-        parentheses(),
-        regressions(series),
-        condition(of_features.correlations[Equation.SWAY]),
+        undamped_sway(),
+        port_starboard_asymmetry(),
+        force_dimensions(),
+        parenthesis_factors(),
+        equation_14_fits(series),
+        equation_27_readings(of_features.correlations[MotionEquation.SWAY]),
         of_features,
-        (mass(FRESH), mass(SALT)),
-        thrust(),
-        implied_by_table_4(),
-        tuple(held(choice) for choice in others),
+        (table_1_mass(FRESH_WATER_DENSITY), table_1_mass(SALT_WATER_DENSITY)),
+        balancing_thrust(),
+        table_4_implications(),
+        tuple(check_signs(choice) for choice in assumptions),
     )

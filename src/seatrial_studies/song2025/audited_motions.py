@@ -9,22 +9,22 @@ import sympy as sp
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Record
 from seatrial.physics.simulate.channels import inputs_of
-from seatrial_studies.song2025.crafts import (
-    MENDED,
+from seatrial_studies.song2025.craft_models import (
+    CORRECTED,
     TRUTH,
-    Reading,
-    drift,
-    reference,
-    replayed,
-    rewritten,
-    sailed,
+    CoefficientSet,
+    drift_angle,
+    manoeuvre_record,
+    reference_record,
+    replay_inputs,
+    simulate_manoeuvre,
     symbol,
-    whole,
+    with_expressions,
 )
-from seatrial_studies.song2025.generalisation import accuracy
-from seatrial_studies.song2025.published import Accuracy, Column, Run, coefficients
+from seatrial_studies.song2025.generalisation import prediction_accuracy
+from seatrial_studies.song2025.published import Accuracy, PublishedManoeuvre, Table2Column, printed_coefficients
 
-ZIGZAGS, TURN = (10, 20, 35), 20
+ZIGZAGS, TURN_ANGLE = (10, 20, 35), 20
 
 
 @dataclass(frozen=True)
@@ -37,19 +37,21 @@ class ReversedTurn:
     """
 
     yaw_rates: tuple[float, float]
-    finished: tuple[int, int]
+    completed_zigzags: tuple[int, int]
 
 
 def reversed_turn() -> ReversedTurn:
     """Steady turn and zigzags of the CFD column with N_v negative and as printed."""
-    readings = (TRUTH, Reading(Column.CFD))
-    rates = [math.degrees(_last(whole(r.craft(), f"turning-circle:{TURN}"), "r")) for r in readings]
-    finished = [sum(sailed(r.craft(), f"zigzag:{a}/{a}").finished for a in ZIGZAGS) for r in readings]
+    readings = (TRUTH, CoefficientSet(Table2Column.CFD))
+    rates = [
+        math.degrees(_final_value(manoeuvre_record(r.craft(), f"turning-circle:{TURN_ANGLE}"), "r")) for r in readings
+    ]
+    finished = [sum(simulate_manoeuvre(r.craft(), f"zigzag:{a}/{a}").is_completed for a in ZIGZAGS) for r in readings]
     return ReversedTurn((rates[0], rates[1]), (finished[0], finished[1]))
 
 
 @dataclass(frozen=True)
-class Undamped:
+class UndampedSway:
     """What the sign of the improved column's Y_vv does, N_v mended, on the truth's nozzle history.
 
     Attributes:
@@ -59,27 +61,30 @@ class Undamped:
         reached: run -> largest drift of the truth, deg.
     """
 
-    diverges: dict[Run, float]
-    mended: dict[Run, Accuracy]
-    drift: float
-    reached: dict[Run, float]
+    divergence_times: dict[PublishedManoeuvre, float]
+    corrected_accuracy: dict[PublishedManoeuvre, Accuracy]
+    critical_drift: float
+    largest_drifts: dict[PublishedManoeuvre, float]
 
 
-def undamped() -> Undamped:
+def undamped_sway() -> UndampedSway:
     """The 20/20 and 35/35 zigzags and the 35 deg turn with the improved column's Y_vv of either sign."""
-    printed, mended = Reading(Column.IMPROVED, ("N_v",)).craft(), MENDED[2].craft()
-    references = {run: reference(run) for run in (Run.ZIGZAG_20, Run.ZIGZAG_35, Run.TURN_35)}
-    values = coefficients(Column.IMPROVED)
-    return Undamped(
-        {run: _diverges(printed, record) for run, record in references.items()},
-        {run: accuracy(record, replayed(mended, record)) for run, record in references.items()},
+    printed, mended = CoefficientSet(Table2Column.IMPROVED, ("N_v",)).craft(), CORRECTED[2].craft()
+    references = {
+        run: reference_record(run)
+        for run in (PublishedManoeuvre.ZIGZAG_20, PublishedManoeuvre.ZIGZAG_35, PublishedManoeuvre.TURN_35)
+    }
+    values = printed_coefficients(Table2Column.IMPROVED)
+    return UndampedSway(
+        {run: _divergence_time(printed, record) for run, record in references.items()},
+        {run: prediction_accuracy(record, replay_inputs(mended, record)) for run, record in references.items()},
         math.degrees(math.asin(-values["Y_v"] / values["Y_vv"])),
-        {run: float(np.max(np.abs(drift(record)))) for run, record in references.items()},
+        {run: float(np.max(np.abs(drift_angle(record)))) for run, record in references.items()},
     )
 
 
 @dataclass(frozen=True)
-class OneSided:
+class PortStarboardAsymmetry:
     """What alpha v in place of alpha u in Y_P, eq. (3), and |v|, |r| in Y_H, N_H, eq. (2), do to a symmetric craft.
 
     Attributes:
@@ -92,37 +97,39 @@ class OneSided:
             printed; infinite where it does not.
     """
 
-    asymmetry: dict[str, tuple[float, float]]
-    jet_turns: tuple[float, float]
+    force_asymmetry: dict[str, tuple[float, float]]
+    jet_yaw_rates: tuple[float, float]
     jet_drifts: tuple[float, float]
-    mended_turns: tuple[float, float]
-    hull_diverges: tuple[float, float]
+    corrected_yaw_rates: tuple[float, float]
+    hull_divergence_times: tuple[float, float]
 
 
-def one_sided() -> OneSided:
+def port_starboard_asymmetry() -> PortStarboardAsymmetry:
     """Forces at mirrored states, and turns to either side."""
     craft = TRUTH.craft()
     jet, hull = jet_as_printed(craft), hull_as_printed(craft)
-    record = whole(craft, Run.ZIGZAG_20)
+    record = manoeuvre_record(craft, PublishedManoeuvre.ZIGZAG_20)
     asymmetries = {
-        name: (asymmetry(craft, record, name), asymmetry(printed, record, name))
+        name: (force_asymmetry(craft, record, name), force_asymmetry(printed, record, name))
         for name, printed in (("Y_P", jet), ("Y_H", hull), ("N_H", hull))
     }
-    sides = (f"turning-circle:{TURN}", f"turning-circle:{TURN}:port")
-    turns, mended = [whole(jet, side) for side in sides], [whole(craft, side) for side in sides]
-    return OneSided(
+    sides = (f"turning-circle:{TURN_ANGLE}", f"turning-circle:{TURN_ANGLE}:port")
+    turns, mended = [manoeuvre_record(jet, side) for side in sides], [manoeuvre_record(craft, side) for side in sides]
+    return PortStarboardAsymmetry(
         asymmetries,
-        _pair([math.degrees(_last(turn, "r")) for turn in turns]),
-        _pair([float(drift(turn)[-1]) for turn in turns]),
-        _pair([math.degrees(_last(turn, "r")) for turn in mended]),
-        _pair([_diverges(hull, turn) for turn in mended]),
+        _pair([math.degrees(_final_value(turn, "r")) for turn in turns]),
+        _pair([float(drift_angle(turn)[-1]) for turn in turns]),
+        _pair([math.degrees(_final_value(turn, "r")) for turn in mended]),
+        _pair([_divergence_time(hull, turn) for turn in mended]),
     )
 
 
 def jet_as_printed(craft: Model) -> Model:
     """Side force of the jet with alpha v, eq. (3)."""
     rho, A_j, v_j, alpha, v, delta = (symbol(n) for n in ("rho", "A_j", "v_j", "alpha", "v", "delta"))
-    return rewritten(craft, "waterjet_jet_as_printed", {"Y_P": rho * A_j * v_j * (v_j - alpha * v) * sp.sin(delta)})
+    return with_expressions(
+        craft, "waterjet_jet_as_printed", {"Y_P": rho * A_j * v_j * (v_j - alpha * v) * sp.sin(delta)}
+    )
 
 
 def hull_as_printed(craft: Model) -> Model:
@@ -131,10 +138,10 @@ def hull_as_printed(craft: Model) -> Model:
     Y_v, Y_r, Y_vv, Y_vr, Y_rr, N_v, N_r, N_rr = (symbol(n) for n in craft.parameters.free_names[3:])
     Y_H = q * (Y_v * v * U + Y_r * r_L * U + Y_vv * sp.Abs(v) + Y_rr * sp.Abs(r_L) + Y_vr * sp.Abs(v) * r_L)
     N_H = q * L * (N_v * v * U + N_r * r_L * U + N_rr * sp.Abs(r_L))
-    return rewritten(craft, "waterjet_hull_as_printed", {"Y_H": Y_H, "N_H": N_H})
+    return with_expressions(craft, "waterjet_hull_as_printed", {"Y_H": Y_H, "N_H": N_H})
 
 
-def asymmetry(craft: Model, record: Record, binding: str) -> float:
+def force_asymmetry(craft: Model, record: Record, binding: str) -> float:
     """Rms of F(v, r, delta) + F(-v, -r, -delta) over that of F along a record; 0 where port and starboard are alike."""
     states, inputs = record.matrix(craft.states), inputs_of(craft, record)
     turned_states = states * np.array([-1.0 if s in ("v", "r", "psi", "y0") else 1.0 for s in craft.states])
@@ -143,12 +150,12 @@ def asymmetry(craft: Model, record: Record, binding: str) -> float:
     return _rms(here + there) / _rms(here)
 
 
-def _diverges(craft: Model, record: Record) -> float:
-    again = replayed(craft, record)
+def _divergence_time(craft: Model, record: Record) -> float:
+    again = replay_inputs(craft, record)
     return math.inf if len(again) == len(record) else float(again.time[-1])
 
 
-def _last(record: Record, channel: str) -> float:
+def _final_value(record: Record, channel: str) -> float:
     return float(record[channel][-1])
 
 

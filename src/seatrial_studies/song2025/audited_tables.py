@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array, Record
-from seatrial.estimation.regress.features import Motion
-from seatrial.estimation.regress.operators import Euler, Operator
-from seatrial.estimation.regress.pipeline import IMPROVED
-from seatrial.estimation.regress.system import systems
+from seatrial.estimation.regress.features import RegressionMotion
+from seatrial.estimation.regress.operators import DerivativeOperator, Euler
+from seatrial.estimation.regress.pipeline import DIFFERENCED_AND_CENTRED
+from seatrial.estimation.regress.system import build_systems
 from seatrial.physics.models.waterjet import waterjet
-from seatrial_studies.song2025.crafts import reference
+from seatrial_studies.song2025.craft_models import reference_record
 from seatrial_studies.song2025.published import (
     BEAM,
     BLOCK,
@@ -20,15 +20,19 @@ from seatrial_studies.song2025.published import (
     MASS,
     TABLE_3,
     TABLE_4,
-    Equation,
-    Run,
+    MotionEquation,
+    PublishedManoeuvre,
 )
 
-SWAPPED = {Equation.SURGE: Equation.SWAY, Equation.SWAY: Equation.SURGE, Equation.YAW: Equation.YAW}
+LABELS_EXCHANGED = {
+    MotionEquation.SURGE: MotionEquation.SWAY,
+    MotionEquation.SWAY: MotionEquation.SURGE,
+    MotionEquation.YAW: MotionEquation.YAW,
+}
 
 
 @dataclass(frozen=True)
-class Mass:
+class Table1Mass:
     """Density [kg/m^3], mass of the block rho C_b L B d [kg], and m' = m / (rho L^2 d / 2) with the printed mass."""
 
     density: float
@@ -36,13 +40,13 @@ class Mass:
     nondimensional: float
 
 
-def mass(density: float) -> Mass:
+def table_1_mass(density: float) -> Table1Mass:
     """What table 1's mass is worth with a density."""
-    return Mass(density, density * BLOCK * LENGTH * BEAM * DRAUGHT, MASS / (0.5 * density * LENGTH**2 * DRAUGHT))
+    return Table1Mass(density, density * BLOCK * LENGTH * BEAM * DRAUGHT, MASS / (0.5 * density * LENGTH**2 * DRAUGHT))
 
 
 @dataclass(frozen=True, eq=False)
-class Conditions:
+class FeatureConditions:
     """Condition numbers of the correlation matrices of each equation's features, table 3.
 
     Yaw's features v U, r U, r|r| are three of sway's five. Eigenvalues of a principal submatrix lie between those of
@@ -55,41 +59,41 @@ class Conditions:
         is_possible: whether sway's is at least yaw's, as printed and swapped.
     """
 
-    printed: dict[Equation, float]
-    swapped: dict[Equation, float]
-    plain: dict[Equation, float]
-    improved: dict[Equation, float]
-    correlations: dict[Equation, Array]
+    printed: dict[MotionEquation, float]
+    labels_exchanged: dict[MotionEquation, float]
+    plain: dict[MotionEquation, float]
+    improved: dict[MotionEquation, float]
+    correlations: dict[MotionEquation, Array]
     is_possible: tuple[bool, bool]
 
 
-def conditions(series: Record) -> Conditions:
+def feature_conditions(series: Record) -> FeatureConditions:
     """Of the consecutive zigzags, noise-free, at the record's own rate."""
-    plain, improved = correlations(series, Euler()), correlations(series, IMPROVED)
-    swapped = {equation: TABLE_3[SWAPPED[equation]] for equation in Equation}
-    return Conditions(
+    plain, improved = feature_correlations(series, Euler()), feature_correlations(series, DIFFERENCED_AND_CENTRED)
+    swapped = {equation: TABLE_3[LABELS_EXCHANGED[equation]] for equation in MotionEquation}
+    return FeatureConditions(
         dict(TABLE_3),
         swapped,
         {e: float(np.linalg.cond(a)) for e, a in plain.items()},
         {e: float(np.linalg.cond(a)) for e, a in improved.items()},
         plain,
-        (_nested(TABLE_3), _nested(swapped)),
+        (_is_nested(TABLE_3), _is_nested(swapped)),
     )
 
 
-def correlations(series: Record, operator: Operator) -> dict[Equation, Array]:
+def feature_correlations(series: Record, operator: DerivativeOperator) -> dict[MotionEquation, Array]:
     """Correlation matrices (k, k) of the features of each equation."""
     craft = waterjet()
-    made = systems(craft, [Motion.of(craft, series)], operator)
-    return {Equation(s.equations[0]): np.asarray(np.corrcoef(s.matrix, rowvar=False)) for s in made}
+    made = build_systems(craft, [RegressionMotion.from_record(craft, series)], operator)
+    return {MotionEquation(s.equations[0]): np.asarray(np.corrcoef(s.matrix, rowvar=False)) for s in made}
 
 
-def _nested(numbers: dict[Equation, float]) -> bool:
-    return numbers[Equation.SWAY] >= numbers[Equation.YAW]
+def _is_nested(numbers: dict[MotionEquation, float]) -> bool:
+    return numbers[MotionEquation.SWAY] >= numbers[MotionEquation.YAW]
 
 
 @dataclass(frozen=True)
-class Implied:
+class Table4Implication:
     """What a cell of table 4 says together with the reference's own motion.
 
     Attributes:
@@ -99,23 +103,23 @@ class Implied:
             error of the mean, which would explain some of the RMSE; NaN where no prediction has both.
     """
 
-    run: Run
+    run: PublishedManoeuvre
     channel: str
     deviation: float
     largest: float
-    least: float
-    amplitude: float
+    least_rmse: float
+    amplitude_ratio: float
 
 
-def implied_by_table_4() -> tuple[Implied, ...]:
+def table_4_implications() -> tuple[Table4Implication, ...]:
     """Every cell: RMSE^2 = s^2 + s0^2 - 2 CC s s0 + (error of the mean)^2, s and s0 the standard deviations."""
-    references = {run: reference(run) for run in TABLE_4}
-    return tuple(_implied(run, c, references[run][c]) for run, said in TABLE_4.items() for c in said.cc)
+    references = {run: reference_record(run) for run in TABLE_4}
+    return tuple(_table_4_implication(run, c, references[run][c]) for run, said in TABLE_4.items() for c in said.cc)
 
 
-def _implied(run: Run, channel: str, values: Array) -> Implied:
+def _table_4_implication(run: PublishedManoeuvre, channel: str, values: Array) -> Table4Implication:
     cc, deviation = TABLE_4[run].cc[channel], float(np.std(values))
     inner = cc**2 - 1.0 + (TABLE_4[run].rmse[channel] / deviation) ** 2
     amplitude = cc + math.sqrt(inner) if inner >= 0.0 else math.nan
     largest = float(np.max(np.abs(values)))
-    return Implied(run, channel, deviation, largest, deviation * math.sqrt(1.0 - cc**2), amplitude)
+    return Table4Implication(run, channel, deviation, largest, deviation * math.sqrt(1.0 - cc**2), amplitude)

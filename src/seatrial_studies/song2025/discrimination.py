@@ -9,11 +9,11 @@ from seatrial.core.results import Direction
 from seatrial.core.values import Array, Record
 from seatrial.data.example_series.series import SENSOR_NOISE
 from seatrial.estimation.information.directions import directions
-from seatrial.physics.simulate.batch import Batch
+from seatrial.physics.simulate.batch import SegmentBatch
 from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.replay import initial_state
-from seatrial_studies.song2025.crafts import TRUTH, replayed
-from seatrial_studies.song2025.generalisation import accuracy
+from seatrial_studies.song2025.craft_models import TRUTH, replay_inputs
+from seatrial_studies.song2025.generalisation import prediction_accuracy
 from seatrial_studies.song2025.published import Accuracy
 
 
@@ -28,13 +28,13 @@ class Discrimination:
         sensors: channel -> the noise whose standard deviation the RMSE is to be compared with, SI units.
     """
 
-    direction: Direction
+    weakest_direction: Direction
     changes: dict[str, float]
     accuracy: Accuracy
-    sensors: dict[str, float]
+    sensor_noise: dict[str, float]
 
     @property
-    def lost(self) -> dict[str, float]:
+    def cc_loss(self) -> dict[str, float]:
         """1 - CC by channel."""
         return {channel: 1.0 - cc for channel, cc in self.accuracy.cc.items()}
 
@@ -44,18 +44,18 @@ def discrimination(series: Record) -> Discrimination:
     craft = TRUTH.craft()
     names = craft.parameters.free_names
     sizes = np.array([p.characteristic_scale for p in craft.parameters.free])
-    weakest = directions(information(craft, series), names, sizes)[0]
+    weakest = directions(fisher_information(craft, series), names, sizes)[0]
     moved = {p.name: p.value + weakest.combination[p.name] * p.characteristic_scale for p in craft.parameters.free}
     changes = {p.name: moved[p.name] / p.value - 1.0 for p in craft.parameters.free}
-    found = accuracy(series, replayed(craft.with_values(moved), series))
+    found = prediction_accuracy(series, replay_inputs(craft.with_values(moved), series))
     return Discrimination(weakest, changes, found, {c: SENSOR_NOISE[c] for c in found.cc})
 
 
-def information(craft: Model, record: Record) -> Array:
+def fisher_information(craft: Model, record: Record) -> Array:
     """Fisher information of the free coefficients (k, k): output error, given initial state, white sensor noise."""
     outputs = tuple(SENSOR_NOISE)
     offsets = np.array([0, len(record)])
-    batch = Batch(craft, inputs_of(craft, record), offsets, record.dt, outputs, craft.parameters.free_names)
+    batch = SegmentBatch(craft, inputs_of(craft, record), offsets, record.dt, outputs, craft.parameters.free_names)
     start, none = initial_state(craft, record, {}), np.empty((1, 0))
     _, slopes, _ = batch.differentiate(0, 1, start[None], craft.parameters.values[None], none)
     weighted = slopes / np.array([SENSOR_NOISE[name] for name in outputs])[None, :, None]

@@ -3,39 +3,39 @@
 from dataclasses import dataclass
 
 from seatrial.estimation.information.sensitivity import IndirectSensitivity, UniqueSensitivity
-from seatrial_studies.song2025.audit import Audit
+from seatrial_studies.song2025.audit import SupportVectorAudit
 from seatrial_studies.song2025.discrimination import Discrimination
-from seatrial_studies.song2025.generalisation import Outcome
-from seatrial_studies.song2025.published import Column, Run
-from seatrial_studies.song2025.repetition import Repetition, Row
+from seatrial_studies.song2025.generalisation import RunComparison
+from seatrial_studies.song2025.published import PublishedManoeuvre, Table2Column
+from seatrial_studies.song2025.reproduction import EstimatorResult, SupportVectorReproduction
 
 
 @dataclass(frozen=True, eq=False)
-class Evidence:
+class SupportVectorEvidence:
     """Numbers of one run of the study.
 
     Attributes:
         turn_drift: deg in the steady 35 deg turn, truth and improved column mended.
     """
 
-    made: Repetition
-    audited: Audit
-    outcomes: tuple[Outcome, ...]
-    lost: Discrimination
-    indirect: IndirectSensitivity
-    unique: UniqueSensitivity
+    reproduction: SupportVectorReproduction
+    audit: SupportVectorAudit
+    comparisons: tuple[RunComparison, ...]
+    discrimination: Discrimination
+    indirect_sensitivity: IndirectSensitivity
+    unique_sensitivity: UniqueSensitivity
     turn_drift: tuple[float, float]
 
-    def outcome(self, column: Column, run: Run) -> Outcome:
+    def comparison(self, column: Table2Column, run: PublishedManoeuvre) -> RunComparison:
         """The mended column's run."""
-        return next(o for o in self.outcomes if o.reading.column is column and o.run is run)
+        return next(o for o in self.comparisons if o.coefficient_set.column is column and o.run is run)
 
-    def best_rival(self) -> Row:
+    def best_regression(self) -> EstimatorResult:
         """The regression with the smallest median error in sensor noise."""
-        return min((r for r in self.made.noisy if not r.note), key=lambda r: r.median)
+        return min((r for r in self.reproduction.noisy_results if not r.note), key=lambda r: r.median_error)
 
 
-def per_cent(value: float) -> str:
+def percent_text(value: float) -> str:
     """A share as text."""
     share = 100.0 * value
     return f"{share:.0f} %" if share >= 1000.0 else f"{share:.3g} %"

@@ -4,33 +4,47 @@ import numpy as np
 
 from seatrial.core.results import Bars, Curve, Figure, Matrix, Prediction
 from seatrial.physics.models.waterjet import COEFFICIENTS
-from seatrial_studies.song2025.crafts import TRUTH
-from seatrial_studies.song2025.evidence import Evidence
-from seatrial_studies.song2025.generalisation import CHANNELS, Outcome, force_series
-from seatrial_studies.song2025.published import SENSITIVE, Column, Equation, Run
-from seatrial_studies.song2025.repetition import Row, truth
+from seatrial_studies.song2025.craft_models import TRUTH
+from seatrial_studies.song2025.evidence import SupportVectorEvidence
+from seatrial_studies.song2025.generalisation import CHANNELS, RunComparison, hull_and_jet_forces
+from seatrial_studies.song2025.published import CALLED_SENSITIVE, MotionEquation, PublishedManoeuvre, Table2Column
+from seatrial_studies.song2025.reproduction import EstimatorResult, true_coefficients
 
-_SHOWN = (Run.ZIGZAG_20, Run.ZIGZAG_35, Run.TURN_35)
-_NUMBER = {Run.ZIGZAG_20: "4, 5", Run.ZIGZAG_35: "7, 8", Run.TURN_35: "9, 10"}
+_FIGURE_RUNS = (PublishedManoeuvre.ZIGZAG_20, PublishedManoeuvre.ZIGZAG_35, PublishedManoeuvre.TURN_35)
+_FIGURE_NUMBERS = {
+    PublishedManoeuvre.ZIGZAG_20: "4, 5",
+    PublishedManoeuvre.ZIGZAG_35: "7, 8",
+    PublishedManoeuvre.TURN_35: "9, 10",
+}
 _UNITS = {"u": "m/s", "v": "m/s", "r": "rad/s"}
 _POINTS = 500
-_NAMES = {Equation.SURGE: COEFFICIENTS[:3], Equation.SWAY: COEFFICIENTS[3:8], Equation.YAW: COEFFICIENTS[8:]}
-_WORDS = {Equation.SURGE: "surge", Equation.SWAY: "sway", Equation.YAW: "yaw"}
+_EQUATION_COEFFICIENTS = {
+    MotionEquation.SURGE: COEFFICIENTS[:3],
+    MotionEquation.SWAY: COEFFICIENTS[3:8],
+    MotionEquation.YAW: COEFFICIENTS[8:],
+}
+_EQUATION_NAMES = {MotionEquation.SURGE: "surge", MotionEquation.SWAY: "sway", MotionEquation.YAW: "yaw"}
 
 
-def figures(seen: Evidence) -> tuple[Figure | Bars | Matrix, ...]:
+def figures(evidence: SupportVectorEvidence) -> tuple[Figure | Bars | Matrix, ...]:
     """In the order of the page."""
-    drawn = [_table_2(seen), _estimators(seen), _noise(seen), *_sensitivity(seen), *_correlations(seen)]
-    for run in _SHOWN:
-        drawn += _motions(seen, run)
+    drawn = [
+        _table_2(evidence),
+        _estimators(evidence),
+        _noise(evidence),
+        *_sensitivity(evidence),
+        *_correlations(evidence),
+    ]
+    for run in _FIGURE_RUNS:
+        drawn += _motions(evidence, run)
     return tuple(drawn)
 
 
-def predictions(seen: Evidence) -> tuple[Prediction, ...]:
+def predictions(evidence: SupportVectorEvidence) -> tuple[Prediction, ...]:
     """The improved column, signs mended, on the truth's nozzle history, beside the truth."""
     made = []
-    for run in _SHOWN:
-        outcome = seen.outcome(Column.IMPROVED, run)
+    for run in _FIGURE_RUNS:
+        outcome = evidence.comparison(Table2Column.IMPROVED, run)
         if outcome.replayed_accuracy is not None:
             made.append(
                 Prediction(run, "validation", outcome.reference, outcome.replayed, outcome.replayed_accuracy.rmse,
@@ -39,13 +53,13 @@ def predictions(seen: Evidence) -> tuple[Prediction, ...]:
     return tuple(made)
 
 
-def _table_2(seen: Evidence) -> Bars:
-    made, true = seen.made, truth()
-    series = {f"paper, {c}": _printed(c, true) for c in (Column.ORIGINAL, Column.IMPROVED)}
+def _table_2(evidence: SupportVectorEvidence) -> Bars:
+    made, true = evidence.reproduction, true_coefficients()
+    series = {f"paper, {c}": _printed(c, true) for c in (Table2Column.ORIGINAL, Table2Column.IMPROVED)}
     series |= {
-        "ours, original": _shares(made.published[0]),
-        "ours, improved": _shares(made.published[1]),
-        "output error, sensor noise": _shares(made.ours),
+        "ours, original": _error_percentages(made.published[0]),
+        "ours, improved": _error_percentages(made.published[1]),
+        "output error, sensor noise": _error_percentages(made.output_error_noisy),
     }
     return Bars(
         "Table 2: errors of the coefficients", COEFFICIENTS, series, "error [% of the truth]",
@@ -54,33 +68,38 @@ def _table_2(seen: Evidence) -> Bars:
     )  # fmt: skip
 
 
-def _printed(column: Column, true: np.ndarray) -> tuple[float, ...]:
-    from seatrial_studies.song2025.published import coefficients
+def _printed(column: Table2Column, true: np.ndarray) -> tuple[float, ...]:
+    from seatrial_studies.song2025.published import printed_coefficients
 
-    return tuple(100.0 * abs(abs(v) / abs(t) - 1.0) for v, t in zip(coefficients(column).values(), true, strict=True))
+    return tuple(
+        100.0 * abs(abs(v) / abs(t) - 1.0) for v, t in zip(printed_coefficients(column).values(), true, strict=True)
+    )
 
 
-def _shares(row: Row) -> tuple[float, ...]:
+def _error_percentages(row: EstimatorResult) -> tuple[float, ...]:
     return tuple(100.0 * float(abs(e)) for e in row.errors)
 
 
-def _estimators(seen: Evidence) -> Bars:
-    made = seen.made
-    clean, noisy = (*made.clean, made.exact), (*made.noisy, made.ours)
+def _estimators(evidence: SupportVectorEvidence) -> Bars:
+    made = evidence.reproduction
+    clean, noisy = (
+        (*made.noise_free_results, made.output_error_noise_free),
+        (*made.noisy_results, made.output_error_noisy),
+    )
     return Bars(
         "Every estimator on the same series",
-        (*(r.name for r in made.clean), "output error"),
+        (*(r.name for r in made.noise_free_results), "output error"),
         {
-            "noise-free": tuple(100.0 * r.median for r in clean),
-            "sensor noise": tuple(100.0 * r.median for r in noisy),
+            "noise-free": tuple(100.0 * r.median_error for r in clean),
+            "sensor noise": tuple(100.0 * r.median_error for r in noisy),
         },
         "median error [%]",
         is_logarithmic=True,
     )
 
 
-def _noise(seen: Evidence) -> Bars:
-    sweep = seen.made.noise
+def _noise(evidence: SupportVectorEvidence) -> Bars:
+    sweep = evidence.reproduction.noise_sweep
     return Bars(
         "Noise of the velocities",
         tuple(f"{level:g} m/s" for level in sweep.levels),
@@ -91,8 +110,8 @@ def _noise(seen: Evidence) -> Bars:
     )
 
 
-def _sensitivity(seen: Evidence) -> tuple[Bars, Bars]:
-    alone, left = seen.indirect, seen.unique
+def _sensitivity(evidence: SupportVectorEvidence) -> tuple[Bars, Bars]:
+    alone, left = evidence.indirect_sensitivity, evidence.unique_sensitivity
     by_state = {s: tuple(float(x) for x in alone.matrix[:, j]) for j, s in enumerate(alone.states)}
     return (
         Bars(
@@ -100,7 +119,7 @@ def _sensitivity(seen: Evidence) -> tuple[Bars, Bars]:
             alone.names,
             {**by_state, "total": tuple(float(x) for x in alone.total)},
             "relative change of the motion for that of the coefficient",
-            f"The paper calls sensitive: {', '.join(SENSITIVE)}.",
+            f"The paper calls sensitive: {', '.join(CALLED_SENSITIVE)}.",
         ),
         Bars(
             "What other coefficients can undo",
@@ -113,32 +132,39 @@ def _sensitivity(seen: Evidence) -> tuple[Bars, Bars]:
     )
 
 
-def _correlations(seen: Evidence) -> list[Matrix]:
+def _correlations(evidence: SupportVectorEvidence) -> list[Matrix]:
     return [
-        Matrix(f"Figure 6: correlation of the features, {_WORDS[e]}", _NAMES[e], _NAMES[e], values)
-        for e, values in seen.audited.conditions.correlations.items()
+        Matrix(
+            f"Figure 6: correlation of the features, {_EQUATION_NAMES[e]}",
+            _EQUATION_COEFFICIENTS[e],
+            _EQUATION_COEFFICIENTS[e],
+            values,
+        )
+        for e, values in evidence.audit.table_3_conditions.correlations.items()
     ]
 
 
-def _motions(seen: Evidence, run: Run) -> list[Figure]:
-    outcome = seen.outcome(Column.IMPROVED, run)
+def _motions(evidence: SupportVectorEvidence, run: PublishedManoeuvre) -> list[Figure]:
+    outcome = evidence.comparison(Table2Column.IMPROVED, run)
     time, drawn = outcome.reference.time, []
     pairs = [("truth", outcome.reference), ("improved column, signs mended", outcome.replayed)]
-    if run is Run.ZIGZAG_20:
-        pairs.append(("original column, N_v mended", seen.outcome(Column.ORIGINAL, run).replayed))
+    if run is PublishedManoeuvre.ZIGZAG_20:
+        pairs.append(("original column, N_v mended", evidence.comparison(Table2Column.ORIGINAL, run).replayed))
     for c in CHANNELS:
         curves = tuple(_curve(name, r.time, r[c]) for name, r in pairs)
-        drawn.append(Figure(f"Figures {_NUMBER[run]}: {run}, {c}", "time [s]", f"{c} [{_UNITS[c]}]", curves))
-    own, other = force_series(TRUTH, outcome.reference), _forces(outcome)
+        drawn.append(Figure(f"Figures {_FIGURE_NUMBERS[run]}: {run}, {c}", "time [s]", f"{c} [{_UNITS[c]}]", curves))
+    own, other = hull_and_jet_forces(TRUTH, outcome.reference), _forces(outcome)
     for letter, values in own.items():
         curves = (_curve("truth", time, values), _curve("improved column, signs mended", time, other[letter]))
         unit = "N m" if letter == "N" else "N"
-        drawn.append(Figure(f"Figures {_NUMBER[run]}: {run}, {letter}", "time [s]", f"{letter} [{unit}]", curves))
+        drawn.append(
+            Figure(f"Figures {_FIGURE_NUMBERS[run]}: {run}, {letter}", "time [s]", f"{letter} [{unit}]", curves)
+        )
     return drawn
 
 
-def _forces(outcome: Outcome) -> dict[str, np.ndarray]:
-    return force_series(outcome.reading, outcome.replayed)
+def _forces(comparison: RunComparison) -> dict[str, np.ndarray]:
+    return hull_and_jet_forces(comparison.coefficient_set, comparison.replayed)
 
 
 def _curve(name: str, x: np.ndarray, y: np.ndarray) -> Curve:

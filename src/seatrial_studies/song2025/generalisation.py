@@ -10,8 +10,15 @@ from seatrial.core.values import Array, Record
 from seatrial.data.example_series.series import JET_VELOCITY
 from seatrial.physics.simulate.forces import forces
 from seatrial.physics.simulate.replay import trajectory
-from seatrial_studies.song2025.crafts import Reading, Sailed, drift, reference, replayed, sailed
-from seatrial_studies.song2025.published import APPROACH_SPEED, Accuracy, Run
+from seatrial_studies.song2025.craft_models import (
+    CoefficientSet,
+    ManoeuvreRun,
+    drift_angle,
+    reference_record,
+    replay_inputs,
+    simulate_manoeuvre,
+)
+from seatrial_studies.song2025.published import APPROACH_SPEED, Accuracy, PublishedManoeuvre
 
 CHANNELS = ("u", "v", "r")
 FORCES = {"X": "X_sum", "Y": "Y_sum", "N": "N_sum"}
@@ -19,7 +26,7 @@ STEADY_SECONDS, STEP = 1500.0, 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
+class RunComparison:
     """One run of one column beside the truth's.
 
     Attributes:
@@ -30,44 +37,46 @@ class Outcome:
         largest_drift: of the replayed motion, deg.
     """
 
-    reading: Reading
-    run: Run
+    coefficient_set: CoefficientSet
+    run: PublishedManoeuvre
     reference: Record
-    sailed: Sailed
+    steered: ManoeuvreRun
     replayed: Record
     steered_accuracy: Accuracy | None
     replayed_accuracy: Accuracy | None
     largest_drift: float
 
     @property
-    def diverges(self) -> float:
+    def divergence_time(self) -> float:
         """Seconds after which the replayed motion leaves all bounds; infinite where it does not."""
         return math.inf if len(self.replayed) == len(self.reference) else float(self.replayed.time[-1])
 
 
-def outcomes(readings: Sequence[Reading], runs: Sequence[Run]) -> tuple[Outcome, ...]:
+def compare_runs(
+    coefficient_sets: Sequence[CoefficientSet], runs: Sequence[PublishedManoeuvre]
+) -> tuple[RunComparison, ...]:
     """Every reading in every run: some .1 s each; a craft that never finishes the consecutive zigzags takes 3 s."""
-    references = {run: reference(run) for run in runs}
-    return tuple(outcome(reading, run, references[run]) for reading in readings for run in runs)
+    references = {run: reference_record(run) for run in runs}
+    return tuple(compare_run(reading, run, references[run]) for reading in coefficient_sets for run in runs)
 
 
-def outcome(reading: Reading, run: Run, truth: Record) -> Outcome:
+def compare_run(coefficient_set: CoefficientSet, run: PublishedManoeuvre, truth: Record) -> RunComparison:
     """One column in one run, beside the record `truth`."""
-    craft = reading.craft()
-    steered, again = sailed(craft, run), replayed(craft, truth)
-    return Outcome(
-        reading,
+    craft = coefficient_set.craft()
+    steered, again = simulate_manoeuvre(craft, run), replay_inputs(craft, truth)
+    return RunComparison(
+        coefficient_set,
         run,
         truth,
         steered,
         again,
-        None if steered.record is None else accuracy(truth, steered.record),
-        accuracy(truth, again) if len(again) == len(truth) else None,
-        float(np.max(np.abs(drift(again)))),
+        None if steered.record is None else prediction_accuracy(truth, steered.record),
+        prediction_accuracy(truth, again) if len(again) == len(truth) else None,
+        float(np.max(np.abs(drift_angle(again)))),
     )
 
 
-def accuracy(truth: Record, other: Record) -> Accuracy:
+def prediction_accuracy(truth: Record, other: Record) -> Accuracy:
     """Root mean square errors and correlation coefficients (Pearson) of u, v, r over the samples both have."""
     n = min(len(truth), len(other))
     pairs = {c: (truth[c][:n], other[c][:n]) for c in CHANNELS}
@@ -77,18 +86,18 @@ def accuracy(truth: Record, other: Record) -> Accuracy:
     )
 
 
-def force_series(reading: Reading, record: Record) -> dict[str, Array]:
+def hull_and_jet_forces(coefficient_set: CoefficientSet, record: Record) -> dict[str, Array]:
     """X, Y [N] and N [N m] of hull and jet that the column's model gives along a record, by letter, each (n,)."""
-    of_model = forces(reading.craft(), record)
+    of_model = forces(coefficient_set.craft(), record)
     return {letter: of_model[binding] for letter, binding in FORCES.items()}
 
 
-def steady_drift(reading: Reading, degrees: float) -> float:
+def steady_drift_angle(coefficient_set: CoefficientSet, degrees: float) -> float:
     """Drift angle [deg] of the turn that a nozzle held at `degrees` ends in; NaN where the simulation diverges."""
-    craft = reading.craft()
+    craft = coefficient_set.craft()
     count = round(STEADY_SECONDS / STEP)
     held = {"delta": math.radians(degrees), "v_j": JET_VELOCITY}
-    inputs = np.tile([-held[i.name] if i.is_turned else held[i.name] for i in craft.inputs], (count, 1))
+    inputs = np.tile([-held[i.name] if i.is_reversed else held[i.name] for i in craft.inputs], (count, 1))
     start = np.array([APPROACH_SPEED if state == "u" else 0.0 for state in craft.states])
     states, _ = trajectory(craft, inputs, STEP, start)
     u, v = (states[-1, craft.states.index(s)] for s in "uv")

@@ -12,7 +12,7 @@ SOURCE = (
 )
 
 
-class Column(StrEnum):
+class Table2Column(StrEnum):
     """The columns of table 2."""
 
     CFD = "CFD"
@@ -20,7 +20,7 @@ class Column(StrEnum):
     IMPROVED = "improved SVR"
 
 
-class Equation(StrEnum):
+class MotionEquation(StrEnum):
     """The equations of motion, by the state whose rate they give."""
 
     SURGE = "u"
@@ -28,7 +28,7 @@ class Equation(StrEnum):
     YAW = "r"
 
 
-class Run(StrEnum):
+class PublishedManoeuvre(StrEnum):
     """The manoeuvres of figures 4, 7, 9 and table 4, as programmes."""
 
     CONSECUTIVE = "consecutive-zigzags:5"
@@ -52,74 +52,112 @@ LENGTH, BEAM, BLOCK, DRAUGHT, MASS = 9.8, 3.17, 0.251, 0.71, 5540.0
 APPROACH_SPEED = 0.8  # m/s
 
 _TABLE_2 = {
-    Column.CFD: (
-        -0.03125, 0.04657, 0.00414, -0.27670, 0.08811, -1.00740, -0.16437, -0.07020, 0.17080, -0.05240, -0.04350
+    Table2Column.CFD: (
+        -0.03125,
+        0.04657,
+        0.00414,
+        -0.27670,
+        0.08811,
+        -1.00740,
+        -0.16437,
+        -0.07020,
+        0.17080,
+        -0.05240,
+        -0.04350,
     ),
-    Column.ORIGINAL: (-0.0302, 0.0693, 0.0277, -0.0309, 0.0920, -0.0860, -0.0151, -0.0973, 0.1506, -0.0511, -0.0414),
-    Column.IMPROVED: (-0.0314, 0.0470, 0.0031, -0.2534, 0.0861, 0.6083, -0.0331, -0.0699, 0.1701, -0.0521, -0.0430),
-}  # fmt: skip
+    Table2Column.ORIGINAL: (
+        -0.0302,
+        0.0693,
+        0.0277,
+        -0.0309,
+        0.0920,
+        -0.0860,
+        -0.0151,
+        -0.0973,
+        0.1506,
+        -0.0511,
+        -0.0414,
+    ),
+    Table2Column.IMPROVED: (
+        -0.0314,
+        0.0470,
+        0.0031,
+        -0.2534,
+        0.0861,
+        0.6083,
+        -0.0331,
+        -0.0699,
+        0.1701,
+        -0.0521,
+        -0.0430,
+    ),
+}
 
 # condition numbers of the correlation matrices, as labelled
-TABLE_3 = {Equation.SWAY: 50.189, Equation.SURGE: 7737.52, Equation.YAW: 6352.2}
+TABLE_3 = {MotionEquation.SWAY: 50.189, MotionEquation.SURGE: 7737.52, MotionEquation.YAW: 6352.2}
 
 TABLE_4 = {
-    Run.CONSECUTIVE: Accuracy(
+    PublishedManoeuvre.CONSECUTIVE: Accuracy(
         {"u": 0.0189, "v": 0.0090, "r": 0.0089}, {"u": 0.9890, "v": 0.9947, "r": 0.9955}
     ),
-    Run.ZIGZAG_35: Accuracy({"u": 0.0335, "v": 0.0853, "r": 0.0957}, {"u": 0.9853, "v": 0.9941, "r": 0.9938}),
-    Run.TURN_35: Accuracy({"u": 0.0164, "v": 0.0151, "r": 0.0023}, {"u": 0.9997, "v": 0.9984, "r": 0.9996}),
-}  # fmt: skip
+    PublishedManoeuvre.ZIGZAG_35: Accuracy(
+        {"u": 0.0335, "v": 0.0853, "r": 0.0957}, {"u": 0.9853, "v": 0.9941, "r": 0.9938}
+    ),
+    PublishedManoeuvre.TURN_35: Accuracy(
+        {"u": 0.0164, "v": 0.0151, "r": 0.0023}, {"u": 0.9997, "v": 0.9984, "r": 0.9996}
+    ),
+}
 
 # the text below figure 2; N_vv and N_vr, in no equation, must be N_vvr and N_vrr, and Y_rr stands twice, once for Y_vr
-SENSITIVE = ("X_uu", "X_rr", "Y_vv", "Y_rr", "Y_v", "Y_r", "N_v", "N_r", "N_rr")
-INSENSITIVE = ("X_vv", "N_vv", "N_vr")
+CALLED_SENSITIVE = ("X_uu", "X_rr", "Y_vv", "Y_rr", "Y_v", "Y_r", "N_v", "N_r", "N_rr")
+CALLED_INSENSITIVE = ("X_vv", "N_vv", "N_vr")
 # candidates of eq. (2) that Lasso takes out, eq. (13)
-DROPPED = ("N_vrr", "N_vvr")
+DROPPED_COEFFICIENTS = ("N_vrr", "N_vvr")
 
 # signs of table 2 that cannot be meant
-MISPRINTED = {Column.CFD: ("N_v",), Column.ORIGINAL: ("N_v",), Column.IMPROVED: ("N_v", "Y_vv")}
+MISPRINTED_SIGNS = {Table2Column.CFD: ("N_v",), Table2Column.ORIGINAL: ("N_v",), Table2Column.IMPROVED: ("N_v", "Y_vv")}
 
 
 @dataclass(frozen=True)
-class Statement:
+class SupportVectorStatement:
     """What the paper says, translated, and where."""
 
-    place: str
-    words: str
+    source: str
+    text: str
 
 
 STATEMENTS = {
-    "accurate": Statement(
+    "accurate": SupportVectorStatement(
         "conclusion 1, abstract",
         "SVR identifies the hydrodynamic coefficients of the modular model successfully, with high accuracy",
     ),
-    "improved": Statement(
+    "improved": SupportVectorStatement(
         "section 3.1",
         "the improved model's coefficients are closer to CFD's: differencing and centring can to some degree remove "
         "parameter drift",
     ),
-    "cleaning": Statement("conclusion 2", "thorough cleaning removes bad data and raises the accuracy"),
-    "lasso": Statement(
+    "cleaning": SupportVectorStatement("conclusion 2", "thorough cleaning removes bad data and raises the accuracy"),
+    "lasso": SupportVectorStatement(
         "conclusion 3", "Lasso takes out coefficients of little importance and so reduces multicollinearity"
     ),
-    "sensitive": Statement(
+    "sensitive": SupportVectorStatement(
         "section 1.3.2",
         "the coefficients kept are all of high sensitivity, those taken out of low sensitivity",
     ),
-    "collinear": Statement(
+    "collinear": SupportVectorStatement(
         "section 3.2",
         "multicollinearity remains and parameter drift cannot be avoided, but the model's validity is not affected",
     ),
-    "predicts": Statement(
+    "predicts": SupportVectorStatement(
         "sections 3.3, 4",
         "predicted motions and forces agree well with the reference; the white-box model predicts and generalises well",
     ),
-    "robust": Statement("abstract", "the model is robust"),
-    "wider": Statement("conclusion 1", "the modular model's speed can be extended to a wider range"),
+    "robust": SupportVectorStatement("abstract", "the model is robust"),
+    "wider": SupportVectorStatement("conclusion 1", "the modular model's speed can be extended to a wider range"),
 }
 
 # what a repetition has to choose
-OPEN = (
+NOT_PRINTED = (
     "added masses m_x, m_y, added inertia J_zz, inertia I_zz",
     "water density; 1000 is what makes the printed mass of C_b L B d",
     "jet area A_j, inflow fraction alpha, nozzle position x_T",
@@ -137,12 +175,12 @@ OPEN = (
 )
 
 
-def coefficients(which: Column) -> dict[str, float]:
+def printed_coefficients(column: Table2Column) -> dict[str, float]:
     """A column of table 2 as printed, by coefficient in the order of `COEFFICIENTS`."""
-    return dict(zip(COEFFICIENTS, _TABLE_2[which], strict=True))
+    return dict(zip(COEFFICIENTS, _TABLE_2[column], strict=True))
 
 
-def errors(which: Column) -> dict[str, float]:
+def printed_differences(column: Table2Column) -> dict[str, float]:
     """Relative differences of a column's printed values from the CFD column's, per cent, with their sign."""
-    true = coefficients(Column.CFD)
-    return {name: 100.0 * (value / true[name] - 1.0) for name, value in coefficients(which).items()}
+    true = printed_coefficients(Table2Column.CFD)
+    return {name: 100.0 * (value / true[name] - 1.0) for name, value in printed_coefficients(column).items()}

@@ -3,26 +3,26 @@
 import time
 
 from seatrial.core.results import Study
-from seatrial.core.values import Progress
+from seatrial.core.values import ProgressReporter
 from seatrial.core.values.versions import versions
-from seatrial.estimation.information.sensitivity import indirect, unique
+from seatrial.estimation.information.sensitivity import indirect_sensitivity, unique_sensitivity
+from seatrial_studies.song2025.assumed_parameters import assumed_parameter_sets
 from seatrial_studies.song2025.audit import audit
-from seatrial_studies.song2025.choices import choices
-from seatrial_studies.song2025.crafts import MENDED, TRUTH, reference
+from seatrial_studies.song2025.craft_models import CORRECTED, TRUTH, reference_record
 from seatrial_studies.song2025.discrimination import discrimination
-from seatrial_studies.song2025.evidence import Evidence
+from seatrial_studies.song2025.evidence import SupportVectorEvidence
 from seatrial_studies.song2025.figures import figures, predictions
-from seatrial_studies.song2025.generalisation import outcome, steady_drift
-from seatrial_studies.song2025.published import SOURCE, Run
-from seatrial_studies.song2025.repetition import repetition
+from seatrial_studies.song2025.generalisation import compare_run, steady_drift_angle
+from seatrial_studies.song2025.published import SOURCE, PublishedManoeuvre
+from seatrial_studies.song2025.reproduction import reproduce_regressions
 from seatrial_studies.song2025.tables import tables
 from seatrial_studies.song2025.verdicts import checks, claims
 
 QUESTION = "Do support vectors identify the coefficients of a waterjet craft from zigzags, and what does better?"
-TURN = 35.0
+TURN_ANGLE = 35.0
 
 
-def study(*, quick: bool, seed: int, progress: Progress | None) -> Study:
+def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -> Study:
     """Every table and figure beside ours.
 
     Args:
@@ -30,23 +30,28 @@ def study(*, quick: bool, seed: int, progress: Progress | None) -> Study:
         seed: of the sensors' noise and of the shuffled split.
     """
     began = time.perf_counter()
-    made = repetition(quick=quick, seed=seed, progress=progress)
-    if progress:
-        progress("the print")
-    audited = audit(choices()[: 1 if quick else None])
-    _, original, improved = MENDED
-    runs = (Run.CONSECUTIVE, Run.ZIGZAG_20, Run.ZIGZAG_35, Run.TURN_35)
-    seen = Evidence(
+    made = reproduce_regressions(quick=quick, seed=seed, report_progress=report_progress)
+    if report_progress:
+        report_progress("the print")
+    audited = audit(assumed_parameter_sets()[: 1 if quick else None])
+    _, original, improved = CORRECTED
+    runs = (
+        PublishedManoeuvre.CONSECUTIVE,
+        PublishedManoeuvre.ZIGZAG_20,
+        PublishedManoeuvre.ZIGZAG_35,
+        PublishedManoeuvre.TURN_35,
+    )
+    seen = SupportVectorEvidence(
         made,
         audited,
         (
-            *(outcome(improved, run, reference(run)) for run in runs),
-            outcome(original, Run.ZIGZAG_20, reference(Run.ZIGZAG_20)),
+            *(compare_run(improved, run, reference_record(run)) for run in runs),
+            compare_run(original, PublishedManoeuvre.ZIGZAG_20, reference_record(PublishedManoeuvre.ZIGZAG_20)),
         ),
         discrimination(made.series),
-        indirect(TRUTH.craft(), made.series),
-        unique(TRUTH.craft(), made.series),
-        (steady_drift(TRUTH, TURN), steady_drift(improved, TURN)),
+        indirect_sensitivity(TRUTH.craft(), made.series),
+        unique_sensitivity(TRUTH.craft(), made.series),
+        (steady_drift_angle(TRUTH, TURN_ANGLE), steady_drift_angle(improved, TURN_ANGLE)),
     )
     return Study(
         name="song2025",

@@ -7,30 +7,48 @@ import numpy as np
 from seatrial.core.results import Table
 from seatrial.core.values import Array
 from seatrial.physics.models.waterjet import COEFFICIENTS
-from seatrial_studies.song2025.evidence import Evidence, per_cent
+from seatrial_studies.song2025.evidence import SupportVectorEvidence, percent_text
 from seatrial_studies.song2025.generalisation import CHANNELS
-from seatrial_studies.song2025.misprints import misprints
-from seatrial_studies.song2025.published import DROPPED, OPEN, TABLE_3, TABLE_4, Column, Equation, coefficients
-from seatrial_studies.song2025.repetition import Row, truth
+from seatrial_studies.song2025.misprints import misprint_table
+from seatrial_studies.song2025.published import (
+    DROPPED_COEFFICIENTS,
+    NOT_PRINTED,
+    TABLE_3,
+    TABLE_4,
+    MotionEquation,
+    Table2Column,
+    printed_coefficients,
+)
+from seatrial_studies.song2025.reproduction import EstimatorResult, true_coefficients
 
-_WORDS = {Equation.SURGE: "surge", Equation.SWAY: "sway", Equation.YAW: "yaw"}
+_EQUATION_NAMES = {MotionEquation.SURGE: "surge", MotionEquation.SWAY: "sway", MotionEquation.YAW: "yaw"}
 
 
-def tables(seen: Evidence) -> tuple[Table, ...]:
+def tables(evidence: SupportVectorEvidence) -> tuple[Table, ...]:
     """In the order of the page."""
     return (
-        _coefficients(seen), _errors(seen), _estimators(seen), _sources(seen), _differences(seen), _noise(seen),
-        _selection(seen), _sensitivity(seen), _conditions(seen), _accuracy(seen), misprints(seen.audited),
-        _cleaning(seen), Table("What the paper leaves open", ("not printed",), tuple((words,) for words in OPEN)),
-    )  # fmt: skip
+        _coefficients(evidence),
+        _errors(evidence),
+        _estimators(evidence),
+        _tube_and_penalty(evidence),
+        _differences(evidence),
+        _noise(evidence),
+        _selection(evidence),
+        _sensitivity(evidence),
+        _conditions(evidence),
+        _accuracy(evidence),
+        misprint_table(evidence.audit),
+        _cleaning(evidence),
+        Table("What the paper leaves open", ("not printed",), tuple((words,) for words in NOT_PRINTED)),
+    )
 
 
-def _coefficients(seen: Evidence) -> Table:
-    made = seen.made
+def _coefficients(evidence: SupportVectorEvidence) -> Table:
+    made = evidence.reproduction
     header = ("coefficient", "CFD, N_v mended", "paper original", "paper improved", "our original", "our improved",
               "output error, sensor noise")  # fmt: skip
-    columns = [truth(), *(_printed(c) for c in (Column.ORIGINAL, Column.IMPROVED))]
-    columns += [row.values for row in (*made.published[:2], made.ours)]
+    columns = [true_coefficients(), *(_printed(c) for c in (Table2Column.ORIGINAL, Table2Column.IMPROVED))]
+    columns += [row.values for row in (*made.published[:2], made.output_error_noisy)]
     rows: list[tuple[str | float, ...]] = [
         (name, *(float(c[i]) for c in columns)) for i, name in enumerate(COEFFICIENTS)
     ]
@@ -43,23 +61,28 @@ def _coefficients(seen: Evidence) -> Table:
         "Paper's columns as printed: N_v with its sign turned in the first only. Ours: noise-free zigzags, "
         "standardised "
         "columns, C = 1, tube .1, scikit-learn's defaults, since none of them is printed; on the numbers as they come "
-        f"the same regression returns {int(np.sum(made.swallowed.values == 0.0))} zeros of {len(COEFFICIENTS)}. Output "
+        f"the same regression returns {int(np.sum(made.unscaled.values == 0.0))} zeros of {len(COEFFICIENTS)}. Output "
         "error has sensor noise besides",
     )
 
 
-def _printed(column: Column) -> Array:
-    return np.array(list(coefficients(column).values()))
+def _printed(column: Table2Column) -> Array:
+    return np.array(list(printed_coefficients(column).values()))
 
 
-def _bias(row: Row) -> str:
-    return " / ".join(f"{row.bias.get(e, 0.0):.1e}" for e in Equation)
+def _bias(row: EstimatorResult) -> str:
+    return " / ".join(f"{row.bias.get(e, 0.0):.1e}" for e in MotionEquation)
 
 
-def _errors(seen: Evidence) -> Table:
-    made, true = seen.made, truth()
-    printed = [np.abs(_printed(c)) / np.abs(true) - 1.0 for c in (Column.ORIGINAL, Column.IMPROVED)]
-    rows = [*printed, *(row.errors for row in made.published), made.exact.errors, made.ours.errors]
+def _errors(evidence: SupportVectorEvidence) -> Table:
+    made, true = evidence.reproduction, true_coefficients()
+    printed = [np.abs(_printed(c)) / np.abs(true) - 1.0 for c in (Table2Column.ORIGINAL, Table2Column.IMPROVED)]
+    rows = [
+        *printed,
+        *(row.errors for row in made.published),
+        made.output_error_noise_free.errors,
+        made.output_error_noisy.errors,
+    ]
     cells = [(name, *(100.0 * float(r[i]) for r in rows)) for i, name in enumerate(COEFFICIENTS)]
     cells.append(("median of magnitudes", *(100.0 * float(np.median(np.abs(r))) for r in rows)))
     return Table(
@@ -72,14 +95,21 @@ def _errors(seen: Evidence) -> Table:
     )  # fmt: skip
 
 
-def _estimators(seen: Evidence) -> Table:
+def _estimators(evidence: SupportVectorEvidence) -> Table:
     rows = [
-        (c.name, 100.0 * c.median, 100.0 * c.largest, 100.0 * n.median, 100.0 * n.largest, c.note or n.note)
-        for c, n in zip(seen.made.clean, seen.made.noisy, strict=True)
+        (
+            c.name,
+            100.0 * c.median_error,
+            100.0 * c.largest_error,
+            100.0 * n.median_error,
+            100.0 * n.largest_error,
+            c.note or n.note,
+        )
+        for c, n in zip(evidence.reproduction.noise_free_results, evidence.reproduction.noisy_results, strict=True)
     ]
-    exact, ours = seen.made.exact, seen.made.ours
-    rows.append(("output error", 100.0 * exact.median, 100.0 * exact.largest, 100.0 * ours.median,
-                 100.0 * ours.largest, ""))  # fmt: skip
+    exact, ours = evidence.reproduction.output_error_noise_free, evidence.reproduction.output_error_noisy
+    rows.append(("output error", 100.0 * exact.median_error, 100.0 * exact.largest_error, 100.0 * ours.median_error,
+                 100.0 * ours.largest_error, ""))  # fmt: skip
     return Table(
         "Every estimator on the same series: relative errors, per cent",
         ("estimator", "noise-free: median", "largest", "sensor noise: median", "largest", "note"),
@@ -89,10 +119,16 @@ def _estimators(seen: Evidence) -> Table:
     )
 
 
-def _sources(seen: Evidence) -> Table:
+def _tube_and_penalty(evidence: SupportVectorEvidence) -> Table:
     rows = [
-        (r.name, 100.0 * r.median, 100.0 * r.largest, _signs(r), "; ".join(f.code for f in r.findings))
-        for r in (seen.made.swallowed, *seen.made.tubes)
+        (
+            r.name,
+            100.0 * r.median_error,
+            100.0 * r.largest_error,
+            _wrong_signs(r),
+            "; ".join(f.code for f in r.findings),
+        )
+        for r in (evidence.reproduction.unscaled, *evidence.reproduction.tube_results)
     ]
     return Table(
         "Tube and penalty: support vectors on differenced and centred rows, noise-free",
@@ -104,12 +140,12 @@ def _sources(seen: Evidence) -> Table:
     )
 
 
-def _signs(row: Row) -> float:
-    return float(np.sum(row.values * truth() < 0.0))
+def _wrong_signs(row: EstimatorResult) -> float:
+    return float(np.sum(row.values * true_coefficients() < 0.0))
 
 
-def _differences(seen: Evidence) -> Table:
-    sweep = seen.made.differences
+def _differences(evidence: SupportVectorEvidence) -> Table:
+    sweep = evidence.reproduction.quasi_difference_sweep
     rows = [(rho, 100.0 * float(m)) for rho, m in zip(sweep.levels, sweep.medians["least squares"], strict=True)]
     return Table(
         "Quasi-differences, eq. (17), Euler, least squares, noise-free",
@@ -119,8 +155,8 @@ def _differences(seen: Evidence) -> Table:
     )
 
 
-def _noise(seen: Evidence) -> Table:
-    sweep = seen.made.noise
+def _noise(evidence: SupportVectorEvidence) -> Table:
+    sweep = evidence.reproduction.noise_sweep
     return Table(
         "White noise of the velocities and least squares: median error, per cent",
         ("noise of u and v, m/s", *sweep.medians),
@@ -132,25 +168,25 @@ def _noise(seen: Evidence) -> Table:
     )
 
 
-def _selection(seen: Evidence) -> Table:
+def _selection(evidence: SupportVectorEvidence) -> Table:
     rows = [
-        (s.setting, _list(s.dropped), " / ".join(f"{s.penalties[e]:.2g}" for e in Equation))
-        for s in seen.made.selections
+        (s.setting, _name_list(s.dropped), " / ".join(f"{s.penalties[e]:.2g}" for e in MotionEquation))
+        for s in evidence.reproduction.selections
     ]
     return Table(
         "Lasso with ten folds, penalties 1e-6 to 1e6: what it takes out of the thirteen candidates",
         ("data and rows", "taken out", "penalty u / v / r"),
         tuple(rows),
-        f"Paper: {_list(DROPPED)}. Both are zero in our truth; contiguous folds; scaled columns",
+        f"Paper: {_name_list(DROPPED_COEFFICIENTS)}. Both are zero in our truth; contiguous folds; scaled columns",
     )
 
 
-def _list(names: Sequence[str]) -> str:
+def _name_list(names: Sequence[str]) -> str:
     return ", ".join(names) or "none"
 
 
-def _sensitivity(seen: Evidence) -> Table:
-    alone, left = seen.indirect, seen.unique
+def _sensitivity(evidence: SupportVectorEvidence) -> Table:
+    alone, left = evidence.indirect_sensitivity, evidence.unique_sensitivity
     rows = [
         (name, *(float(x) for x in alone.matrix[i]), float(alone.total[i]), float((left.total / left.unique)[i] ** 2))
         for i, name in enumerate(alone.names)
@@ -164,9 +200,12 @@ def _sensitivity(seen: Evidence) -> Table:
     )
 
 
-def _conditions(seen: Evidence) -> Table:
-    known = seen.audited.conditions
-    rows = [(_WORDS[e], TABLE_3[e], known.swapped[e], known.plain[e], known.improved[e]) for e in Equation]
+def _conditions(evidence: SupportVectorEvidence) -> Table:
+    known = evidence.audit.table_3_conditions
+    rows = [
+        (_EQUATION_NAMES[e], TABLE_3[e], known.labels_exchanged[e], known.plain[e], known.improved[e])
+        for e in MotionEquation
+    ]
     return Table(
         "Table 3: condition numbers of the correlation matrices",
         ("equation", "printed", "labels of surge and sway exchanged", "ours", "ours, differenced and centred"),
@@ -176,10 +215,10 @@ def _conditions(seen: Evidence) -> Table:
     )
 
 
-def _accuracy(seen: Evidence) -> Table:
+def _accuracy(evidence: SupportVectorEvidence) -> Table:
     rows = []
     for run, said in TABLE_4.items():
-        found = seen.outcome(Column.IMPROVED, run).replayed_accuracy
+        found = evidence.comparison(Table2Column.IMPROVED, run).replayed_accuracy
         for c in CHANNELS:
             ours = (None, None) if found is None else (found.rmse[c], found.cc[c])
             rows.append((f"{run}, {c}", said.rmse[c], ours[0], said.cc[c], ours[1]))
@@ -187,17 +226,18 @@ def _accuracy(seen: Evidence) -> Table:
         "Table 4: the improved column, signs mended, on the truth's nozzle history",
         ("run", "RMSE printed", "RMSE ours", "CC printed", "CC ours"),
         tuple(rows),
-        f"m/s and rad/s. A move of 100 % along the weakest direction of the record ({seen.lost.direction.text}) costs "
-        f"{max(seen.lost.lost.values()):.1e} of CC",
+        f"m/s and rad/s. A move of 100 % along the weakest direction of the record "
+        f"({evidence.discrimination.weakest_direction.text}) costs "
+        f"{max(evidence.discrimination.cc_loss.values()):.1e} of CC",
     )
 
 
-def _cleaning(seen: Evidence) -> Table:
+def _cleaning(evidence: SupportVectorEvidence) -> Table:
     return Table(
         "Cleaning, eqs. (5)-(8): what each step takes",
         ("noise-free", "sensor noise"),
-        tuple(zip(*seen.made.cleaning, strict=True)),
+        tuple(zip(*evidence.reproduction.cleaning, strict=True)),
         f"Shuffled, a copy of the nearest training sample predicts the yaw rate within "
-        f"{per_cent(seen.made.leak.shuffled)} of its deviation; in blocks it misses by "
-        f"{per_cent(seen.made.leak.blocks)}: blocks are what a split needs",
+        f"{percent_text(evidence.reproduction.split_leakage.shuffled_error)} of its deviation; in blocks it misses by "
+        f"{percent_text(evidence.reproduction.split_leakage.block_error)}: blocks are what a split needs",
     )

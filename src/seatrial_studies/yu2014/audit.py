@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.core.values import Array
 from seatrial.numerics.optimise import Box
-from seatrial.numerics.optimise.random_weight_genetic import decoded, encoded, selection_probabilities
+from seatrial.numerics.optimise.random_weight_genetic import decode, encode, selection_probabilities
 from seatrial.physics.loops.fin import BOUNDS, GYRO, PUBLISHED_GAINS, SERVO, Preamplifier
 from seatrial_studies.yu2014.published import (
     ASPECT,
@@ -21,14 +21,14 @@ from seatrial_studies.yu2014.published import (
     TABLE_1,
     THICKNESS,
 )  # fmt: skip
-from seatrial_studies.yu2014.readings import SETTING, Motion, met, motion, performance
+from seatrial_studies.yu2014.published_loop import DESIGN_SEA, RollResponse, effective_slope, performance, roll_response
 
 LONGEST_CODE = 24
 PRINTED_DIGITS = 3
 
 
 @dataclass(frozen=True)
-class Fin:
+class FinInertia:
     """Section 2.3: mass [kg] and moment of inertia [kg m^2] about the stock, and the latter with one chord throughout.
 
     Attributes:
@@ -38,11 +38,11 @@ class Fin:
     chord: float
     mass: float
     inertia: float
-    consistent: float
+    consistent_inertia: float
 
 
 @dataclass(frozen=True, eq=False)
-class Audit:
+class FinGainAudit:
     """Numbers behind the verdicts on the print; no random number is drawn but for `roulette`.
 
     Attributes:
@@ -59,53 +59,53 @@ class Audit:
 
     target: float
     target_rounded: float
-    fin: Fin
-    integral: dict[Preamplifier, tuple[float, float]]
-    roulette: float
+    fin_inertia: FinInertia
+    fin_rate_readings: dict[Preamplifier, tuple[float, float]]
+    roulette_sum: float
     lower_reductions: int
     larger_rates: int
-    contradicting: tuple[str, ...]
-    bits: int
-    growth: float
-    motions: dict[Preamplifier, Motion]
-    steady: float
+    contradictory_rows: tuple[str, ...]
+    shortest_code_bits: int
+    runge_kutta_growth: float
+    roll_responses: dict[Preamplifier, RollResponse]
+    servo_gain: float
 
 
-def audit(seed: int) -> Audit:
+def audit(seed: int) -> FinGainAudit:
     """Everything, in some hundredths of a second."""
-    return Audit(
+    return FinGainAudit(
         FIN_LIMIT**2 / (2.0 * math.log(1.0 / SATURATION)),
         FIN_LIMIT**2 / (2.0 * 1.61),
-        fin(),
-        {reading: fin_rate(reading) for reading in Preamplifier},
+        fin_inertia(),
+        {reading: fin_rate_readings(reading) for reading in Preamplifier},
         roulette_sum(np.random.default_rng([seed, 3])),
         sum(row.genetic.reduction < row.traditional.reduction for row in TABLE_1),
         sum(row.traditional.rate > row.genetic.rate for row in TABLE_1),
-        contradicting(),
-        shortest_code(),
+        contradictory_rows(),
+        shortest_code_bits(),
         runge_kutta_growth(STEP, complex(GYRO.poles[0])),
-        {reading: motion(performance(reading)) for reading in Preamplifier},
+        {reading: roll_response(performance(reading)) for reading in Preamplifier},
         SERVO.gain,
     )
 
 
-def fin() -> Fin:
+def fin_inertia() -> FinInertia:
     """Mass of a plate, a third of it for the water, on a lever of a fifth of the chord."""
     mass = DENSITY * SPAN * CHORD * THICKNESS
-    return Fin(SPAN / ASPECT, mass, _inertia(mass, CHORD_OF_LEVER), _inertia(mass, CHORD))
+    return FinInertia(SPAN / ASPECT, mass, _stock_inertia(mass, CHORD_OF_LEVER), _stock_inertia(mass, CHORD))
 
 
-def _inertia(mass: float, chord: float) -> float:
+def _stock_inertia(mass: float, chord: float) -> float:
     return 4.0 / 3.0 * mass * (0.2 * chord) ** 2
 
 
-def fin_rate(reading: Preamplifier) -> tuple[float, float]:
+def fin_rate_readings(preamplifier: Preamplifier) -> tuple[float, float]:
     """rms of alpha / s [deg s] and of s alpha [deg/s] where the gains were set."""
-    of = performance(reading)
-    w = met(SETTING).omega_e
-    S = 1.0 / (1.0 + of.loop.open(w))
-    fins = of.loop.values @ of.loop.controller_terms(w) * of.loop.disturbance.at(w) * S
-    energy = np.abs(fins) ** 2 * met(SETTING).energy
+    of = performance(preamplifier)
+    w = effective_slope(DESIGN_SEA).omega_e
+    S = 1.0 / (1.0 + of.loop.open_loop(w))
+    fins = of.loop.gain_values @ of.loop.controller_terms(w) * of.loop.disturbance.frequency_response(w) * S
+    energy = np.abs(fins) ** 2 * effective_slope(DESIGN_SEA).energy
     return tuple(math.degrees(math.sqrt(float(np.sum(energy * w**power)))) for power in (-2, 2))  # type: ignore[return-value]
 
 
@@ -115,25 +115,25 @@ def roulette_sum(generator: np.random.Generator) -> float:
     return float(1.0 / share[:3].sum())
 
 
-def contradicting() -> tuple[str, ...]:
+def contradictory_rows() -> tuple[str, ...]:
     """Rows whose columns cannot come from one sea."""
     made = []
     for row in TABLE_1:
-        (low, high), (other_low, other_high) = row.traditional.uncontrolled_between, row.genetic.uncontrolled_between
+        (low, high), (other_low, other_high) = row.traditional.uncontrolled_bounds, row.genetic.uncontrolled_bounds
         if high < other_low or other_high < low:
             made.append(row.name)
     return tuple(made)
 
 
-def shortest_code() -> int:
+def shortest_code_bits() -> int:
     """Bits of the shortest code whose values round to all gains as they are printed."""
-    return next(bits for bits in range(2, LONGEST_CODE) if _holds(bits))
+    return next(bits for bits in range(2, LONGEST_CODE) if _represents_gains(bits))
 
 
-def _holds(bits: int) -> bool:
+def _represents_gains(bits: int) -> bool:
     values = np.array(list(PUBLISHED_GAINS.values()))
     box = Box(*(np.array([BOUNDS[name][side] for name in PUBLISHED_GAINS]) for side in (0, 1)))
-    nearest: Array = decoded(encoded(values, box, bits), box)
+    nearest: Array = decode(encode(values, box, bits), box)
     return bool(np.all(np.round(nearest, PRINTED_DIGITS) == values))
 
 

@@ -6,17 +6,17 @@ import numpy as np
 
 from seatrial.numerics.optimise import Normaliser
 from seatrial.physics.loops.fin import Preamplifier
-from seatrial_studies.yu2014.audit import Audit
-from seatrial_studies.yu2014.better import Better, Richer
-from seatrial_studies.yu2014.fitted import Fitted, best_of
-from seatrial_studies.yu2014.histories import Histories
+from seatrial_studies.yu2014.audit import FinGainAudit
+from seatrial_studies.yu2014.histories import RollHistories
+from seatrial_studies.yu2014.improved_gains import FiveGainDesign, ThreeGainOptimum
 from seatrial_studies.yu2014.published import TABLE_1
-from seatrial_studies.yu2014.readings import Fins, Motion, Sea, motion, performance
-from seatrial_studies.yu2014.searches import Searches
+from seatrial_studies.yu2014.published_loop import FinObjective, RollResponse, SeaCondition, performance, roll_response
+from seatrial_studies.yu2014.searches import FinGainSearches
+from seatrial_studies.yu2014.table_1_fit import Table1Fit, best_fit_of
 
 
 @dataclass(frozen=True, eq=False)
-class Evidence:
+class FinGainEvidence:
     """Numbers of one run of the study.
 
     Attributes:
@@ -29,38 +29,47 @@ class Evidence:
         three: the best of three gains by reading, with Ms <= 2 and with the paper's own Ms.
     """
 
-    audited: Audit
-    calibrated: dict[Preamplifier, float]
-    table_1: dict[Preamplifier, tuple[Motion, ...]]
-    fitted: tuple[Fitted, ...]
-    histories: Histories
-    variation: float
-    searched: tuple[Searches, ...]
-    in_time: tuple[float, float]
-    three: dict[Preamplifier, tuple[Better, Better]]
-    elsewhere: dict[Preamplifier, tuple[float, ...]]
-    richer: Richer
+    audit: FinGainAudit
+    calibrated_K_q: dict[Preamplifier, float]
+    table_1_responses: dict[Preamplifier, tuple[RollResponse, ...]]
+    table_1_fits: tuple[Table1Fit, ...]
+    histories: RollHistories
+    rms_variation: float
+    searches: tuple[FinGainSearches, ...]
+    time_domain_seconds: tuple[float, float]
+    three_gain_optima: dict[Preamplifier, tuple[ThreeGainOptimum, ThreeGainOptimum]]
+    ratios_elsewhere: dict[Preamplifier, tuple[float, ...]]
+    five_gain_design: FiveGainDesign
 
-    def fit(self, reading: Preamplifier) -> Fitted:
+    def fit(self, preamplifier: Preamplifier) -> Table1Fit:
         """In the sense of the heading with the smaller error."""
-        return best_of(self.fitted, reading)
+        return best_fit_of(self.table_1_fits, preamplifier)
 
     @property
-    def best_fit(self) -> Fitted:
+    def best_fit(self) -> Table1Fit:
         """Of both readings."""
-        return min(self.fitted, key=lambda f: f.error)
+        return min(self.table_1_fits, key=lambda f: f.log_error)
 
-    def of(self, reading: Preamplifier, fins: Fins = Fins.PRINTED, normaliser: Normaliser = Normaliser.MAX) -> Searches:
+    def searches_with(
+        self,
+        preamplifier: Preamplifier,
+        fin_objective: FinObjective = FinObjective.PRINTED,
+        normaliser: Normaliser = Normaliser.MAX,
+    ) -> FinGainSearches:
         """Searches of one setting."""
-        wanted = (reading, fins, normaliser)
-        return next(s for s in self.searched if (s.setting.reading, s.setting.fins, s.setting.normaliser) == wanted)
+        wanted = (preamplifier, fin_objective, normaliser)
+        return next(
+            s
+            for s in self.searches
+            if (s.setting.preamplifier, s.setting.fin_objective, s.setting.normaliser) == wanted
+        )
 
     @property
-    def seconds(self) -> float:
+    def search_seconds(self) -> float:
         """Of one search with its front, median."""
-        return float(np.median(np.concatenate([s.seconds for s in self.searched])))
+        return float(np.median(np.concatenate([s.seconds for s in self.searches])))
 
 
-def at_table_1(reading: Preamplifier) -> tuple[Motion, ...]:
+def responses_at_table_1(preamplifier: Preamplifier) -> tuple[RollResponse, ...]:
     """The paper's gains at every row of table 1, long-crested."""
-    return tuple(motion(performance(reading, Sea(row.speed, row.heading))) for row in TABLE_1)
+    return tuple(roll_response(performance(preamplifier, SeaCondition(row.speed, row.heading))) for row in TABLE_1)

@@ -15,7 +15,7 @@ SOURCE = (
 
 
 @dataclass(frozen=True)
-class Column:
+class ControllerResult:
     """One controller's numbers of a row: roll [deg], fin rate [deg/s], reduction of the roll [%]."""
 
     roll: float
@@ -28,25 +28,25 @@ class Column:
         return self.roll / (1.0 - 0.01 * self.reduction)
 
     @property
-    def uncontrolled_between(self) -> tuple[float, float]:
+    def uncontrolled_bounds(self) -> tuple[float, float]:
         """What rounding to the printed digits leaves open of it."""
         low = (self.roll - 0.005) / (1.0 - 0.01 * (self.reduction - 0.005))
         return low, (self.roll + 0.005) / (1.0 - 0.01 * (self.reduction + 0.005))
 
     @property
-    def logs(self) -> Array:
+    def log_values(self) -> Array:
         """Logarithms of roll, fin rate and what is left of the roll, (3,)."""
         return np.log([self.roll, self.rate, 1.0 - 0.01 * self.reduction])
 
 
 @dataclass(frozen=True)
-class Row:
+class Table1Row:
     """One row of table 1: speed [kn], heading to the waves [deg], both controllers."""
 
     speed: float
     heading: float
-    traditional: Column
-    genetic: Column
+    traditional: ControllerResult
+    genetic: ControllerResult
 
     @property
     def name(self) -> str:
@@ -55,24 +55,24 @@ class Row:
 
 
 TABLE_1 = (
-    Row(18.0, 45.0, Column(0.49, 5.3, 75.23), Column(0.47, 4.1, 76.35)),
-    Row(18.0, 90.0, Column(0.38, 5.07, 76.24), Column(0.39, 3.8, 75.92)),
-    Row(18.0, 135.0, Column(0.36, 4.7, 77.33), Column(0.35, 3.2, 79.58)),
-    Row(22.0, 45.0, Column(0.35, 3.2, 78.26), Column(0.33, 2.9, 80.38)),
-    Row(22.0, 90.0, Column(0.32, 2.4, 79.13), Column(0.31, 2.5, 82.96)),
-    Row(22.0, 135.0, Column(0.28, 2.6, 80.39), Column(0.25, 2.2, 84.43)),
+    Table1Row(18.0, 45.0, ControllerResult(0.49, 5.3, 75.23), ControllerResult(0.47, 4.1, 76.35)),
+    Table1Row(18.0, 90.0, ControllerResult(0.38, 5.07, 76.24), ControllerResult(0.39, 3.8, 75.92)),
+    Table1Row(18.0, 135.0, ControllerResult(0.36, 4.7, 77.33), ControllerResult(0.35, 3.2, 79.58)),
+    Table1Row(22.0, 45.0, ControllerResult(0.35, 3.2, 78.26), ControllerResult(0.33, 2.9, 80.38)),
+    Table1Row(22.0, 90.0, ControllerResult(0.32, 2.4, 79.13), ControllerResult(0.31, 2.5, 82.96)),
+    Table1Row(22.0, 135.0, ControllerResult(0.28, 2.6, 80.39), ControllerResult(0.25, 2.2, 84.43)),
 )
-SET_AT, SAME_AT_22 = TABLE_1[1], TABLE_1[4]
+DESIGN_ROW, DESIGN_ROW_AT_22_KN = TABLE_1[1], TABLE_1[4]
 
-GAINS = tuple(PUBLISHED_GAINS)
-FOUND = np.array(list(PUBLISHED_GAINS.values()))
-LOWER, UPPER = (np.array([BOUNDS[name][side] for name in GAINS]) for side in (0, 1))
+GAIN_NAMES = tuple(PUBLISHED_GAINS)
+PUBLISHED_VALUES = np.array(list(PUBLISHED_GAINS.values()))
+LOWER, UPPER = (np.array([BOUNDS[name][side] for name in GAIN_NAMES]) for side in (0, 1))
 HEIGHT = 3.3  # m, significant
 FIN_LIMIT, SATURATION = 22.0, 0.2  # deg, probability
 TARGET_DEG2 = 150.31  # as printed
 TARGET = math.radians(1.0) ** 2 * TARGET_DEG2
 INERTIA = 791.1611  # kg m^2
-RECORD, STEP = 1000.0, 0.1  # s
+RECORD_SECONDS, STEP = 1000.0, 0.1  # s
 
 # section 2.3, the fin
 SPAN, ASPECT, THICKNESS, DENSITY = 1.18, 0.53, 0.15, 7800.0
@@ -80,27 +80,31 @@ CHORD, CHORD_OF_LEVER = 2.22, 2.2
 
 
 @dataclass(frozen=True)
-class Statement:
+class FinGainStatement:
     """What the paper says, translated, and where."""
 
-    place: str
-    words: str
+    source: str
+    text: str
 
 
 STATEMENTS = {
-    "rate": Statement("section 4", "the fin rate under the traditional PID is larger than under the GA's"),
-    "reduction": Statement("section 4", "the GA's roll reduction is slightly lower than the traditional PID's"),
-    "energy": Statement("abstract, section 5", "the GA effectively lowers the stabiliser's energy loss"),
-    "set": Statement("section 5", "where the PID was set, reduction drops slightly, energy is optimised"),
-    "optimal": Statement("sections 3, 5", "a set of optimal gains is found; the overall performance is the best"),
-    "search": Statement("section 3", "random weights escape local optima and slow search"),
-    "global": Statement("section 4", "the gains are optimal for all sea states and speeds: a global optimisation"),
-    "saturation": Statement("section 2.3", "the objectives secure a fin saturation of at most 20 %"),
-    "loop": Statement("sections 1, 4", "with K_alpha constant, table 1 is what the loop does at 18 and 22 kn"),
+    "rate": FinGainStatement("section 4", "the fin rate under the traditional PID is larger than under the GA's"),
+    "reduction": FinGainStatement("section 4", "the GA's roll reduction is slightly lower than the traditional PID's"),
+    "energy": FinGainStatement("abstract, section 5", "the GA effectively lowers the stabiliser's energy loss"),
+    "set": FinGainStatement("section 5", "where the PID was set, reduction drops slightly, energy is optimised"),
+    "optimal": FinGainStatement(
+        "sections 3, 5", "a set of optimal gains is found; the overall performance is the best"
+    ),
+    "search": FinGainStatement("section 3", "random weights escape local optima and slow search"),
+    "global": FinGainStatement(
+        "section 4", "the gains are optimal for all sea states and speeds: a global optimisation"
+    ),
+    "saturation": FinGainStatement("section 2.3", "the objectives secure a fin saturation of at most 20 %"),
+    "loop": FinGainStatement("sections 1, 4", "with K_alpha constant, table 1 is what the loop does at 18 and 22 kn"),
 }
 
 # what a repetition has to choose, and what stands here
-OPEN = (
+NOT_PRINTED = (
     ("K_q of the preamplifier", "'adjustable'", "fitted: the GA's gains reduce the roll by 75.92 % at 18 kn, 90°"),
     ("the lag of 30 s", "a low-pass", "both readings: as printed, and as a washout 30 s / (30 s + 1)"),
     ("wave spectrum", "not printed", "one-parameter ITTC; short-crested cos² where the table is fitted"),

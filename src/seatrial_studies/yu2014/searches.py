@@ -13,37 +13,37 @@ from seatrial.physics.loops import Performance
 from seatrial.physics.loops.fin import Preamplifier
 from seatrial.physics.loops.state_space import state_space
 from seatrial.physics.simulate.population import Forcing, trajectories
-from seatrial_studies.yu2014.published import FOUND, LOWER, RECORD, STEP, UPPER
-from seatrial_studies.yu2014.readings import Fins, objectives, performance
+from seatrial_studies.yu2014.published import LOWER, PUBLISHED_VALUES, RECORD_SECONDS, STEP, UPPER
+from seatrial_studies.yu2014.published_loop import FinObjective, objective_values, performance
 
 SEEDS, QUICK_SEEDS = 12, 4
 BITS = 17
 BOX = Box(LOWER, UPPER)
-FRAGILE = 2.0
+FRAGILE_MS = 2.0
 
 
 @dataclass(frozen=True)
-class Setting:
+class GeneticSearchSetting:
     """What one set of searches is made with."""
 
-    reading: Preamplifier
-    fins: Fins = Fins.PRINTED
+    preamplifier: Preamplifier
+    fin_objective: FinObjective = FinObjective.PRINTED
     normaliser: Normaliser = Normaliser.MAX
 
 
 SETTINGS = tuple(
-    Setting(reading, fins, normaliser)
+    GeneticSearchSetting(reading, fins, normaliser)
     for reading in Preamplifier
     for fins, normaliser in (
-        (Fins.PRINTED, Normaliser.MAX),
-        (Fins.ONE_SIDED, Normaliser.MAX),
-        (Fins.PRINTED, Normaliser.BEST),
+        (FinObjective.PRINTED, Normaliser.MAX),
+        (FinObjective.ONE_SIDED, Normaliser.MAX),
+        (FinObjective.PRINTED, Normaliser.BEST),
     )
 )
 
 
 @dataclass(frozen=True, eq=False)
-class Searches:
+class FinGainSearches:
     """Answers of n seeds.
 
     Attributes:
@@ -53,58 +53,63 @@ class Searches:
         seconds: of each search with its front (n,).
     """
 
-    setting: Setting
+    setting: GeneticSearchSetting
     gains: Array
-    peak: Array
-    shares: Array
+    Ms: Array
+    objective_ratios: Array
     reduction: Array
-    beaten: NDArray[np.bool_]
+    is_dominated: NDArray[np.bool_]
     seconds: Array
 
     @property
-    def spread(self) -> Array:
+    def relative_spread(self) -> Array:
         """Of each gain, largest minus smallest over the width of the box, (3,)."""
         return np.ptp(self.gains, axis=0) / BOX.width
 
     @property
-    def nearest(self) -> float:
+    def distance_to_published(self) -> float:
         """How far the nearest answer is from the paper's: its worst gain, over the width of the box."""
-        return float((np.abs(self.gains - FOUND) / BOX.width).max(axis=1).min())
+        return float((np.abs(self.gains - PUBLISHED_VALUES) / BOX.width).max(axis=1).min())
 
     @property
-    def fragile(self) -> int:
+    def fragile_count(self) -> int:
         """How many have an Ms above 2."""
-        return int(np.sum(self.peak > FRAGILE))
+        return int(np.sum(self.Ms > FRAGILE_MS))
 
 
-def searches(setting: Setting, seeds: int, seed: int) -> Searches:
+def search_over_seeds(setting: GeneticSearchSetting, seeds: int, seed: int) -> FinGainSearches:
     """One search for each seed."""
-    of = performance(setting.reading)
-    made = [_one(of, setting, np.random.default_rng([seed, k])) for k in range(seeds)]
+    of = performance(setting.preamplifier)
+    made = [_timed_search(of, setting, np.random.default_rng([seed, k])) for k in range(seeds)]
     gains = np.stack([genetic.best[0] for genetic, _ in made])
     front = np.concatenate([genetic.front.objectives for genetic, _ in made])
-    found, paper = of.of(gains), objectives(of.of(FOUND, with_peak=False).variances, setting.fins)[0]
-    J = objectives(found.variances, setting.fins)
+    found, paper = (
+        of.evaluate(gains),
+        objective_values(of.evaluate(PUBLISHED_VALUES, with_Ms=False).variances, setting.fin_objective)[0],
+    )
+    J = objective_values(found.variances, setting.fin_objective)
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = np.where(paper > 0.0, J / paper, np.where(J > 0.0, np.inf, 1.0))
     front = front[non_dominated(front)]
     beaten = np.any((front[:, None] < J).all(axis=2), axis=0)
-    reduction = 100.0 * (1.0 - np.sqrt(found.variances[:, 0] / of.uncontrolled[0]))
-    return Searches(setting, gains, found.peak, shares, reduction, beaten, np.array([s for _, s in made]))
+    reduction = 100.0 * (1.0 - np.sqrt(found.variances[:, 0] / of.uncontrolled_variances[0]))
+    return FinGainSearches(setting, gains, found.Ms, shares, reduction, beaten, np.array([s for _, s in made]))
 
 
-def _one(of: Performance, setting: Setting, generator: np.random.Generator) -> tuple[RandomWeightGenetic, float]:
+def _timed_search(
+    loop_performance: Performance, setting: GeneticSearchSetting, generator: np.random.Generator
+) -> tuple[RandomWeightGenetic, float]:
     """A search and its time [s], the front included."""
     began = time.perf_counter()
     genetic = RandomWeightGenetic(BOX, generator, GeneticSettings(bits=BITS, normaliser=setting.normaliser))
     while not genetic.done:
-        variances = of.of(genetic.ask(), with_peak=False).variances
-        genetic.tell(objectives(variances, setting.fins))
+        variances = loop_performance.evaluate(genetic.ask(), with_Ms=False).variances
+        genetic.tell(objective_values(variances, setting.fin_objective))
     genetic.front  # noqa: B018
     return genetic, time.perf_counter() - began
 
 
-def in_time(seed: int) -> tuple[float, float]:
+def time_domain_seconds(seed: int) -> tuple[float, float]:
     """s one search would take with a record of 1000 s at .1 s for each gain set, exact zero-order hold.
 
     First compiled, a population in vector lanes: one is simulated, and its time multiplied by the generations. Then
@@ -113,10 +118,10 @@ def in_time(seed: int) -> tuple[float, float]:
     settings = GeneticSettings()
     generator = np.random.default_rng([seed, 4])
     states = state_space(performance(Preamplifier.WASHOUT).loop)
-    gains = np.concatenate([FOUND[None], BOX.drawn(generator, settings.population - 1)])
+    gains = np.concatenate([PUBLISHED_VALUES[None], BOX.random_points(generator, settings.population - 1)])
     A = states.A[0] + np.tensordot(gains, states.A[1:], 1)
     B = np.repeat(states.b[None, :, None], len(gains), axis=0)
-    slope = generator.normal(size=(round(RECORD / STEP) + 1, 1))
+    slope = generator.normal(size=(round(RECORD_SECONDS / STEP) + 1, 1))
     began = time.perf_counter()
     trajectories(A, B, Forcing(slope, STEP, is_held=True), np.zeros(A.shape[1]), (0,))
     compiled = time.perf_counter() - began

@@ -5,18 +5,18 @@ import time
 import numpy as np
 
 from seatrial.core.results import Study
-from seatrial.core.values import Progress
+from seatrial.core.values import ProgressReporter
 from seatrial.core.values.versions import versions
 from seatrial.physics.loops.fin import Preamplifier
 from seatrial_studies.yu2014.audit import audit
-from seatrial_studies.yu2014.better import CAP, best_of_three, richer, roll_and_rate_elsewhere
-from seatrial_studies.yu2014.evidence import Evidence, at_table_1
+from seatrial_studies.yu2014.evidence import FinGainEvidence, responses_at_table_1
 from seatrial_studies.yu2014.figures import figures
-from seatrial_studies.yu2014.fitted import fitted
-from seatrial_studies.yu2014.histories import histories, variation_of_rms
+from seatrial_studies.yu2014.histories import rms_variation, simulate_histories
+from seatrial_studies.yu2014.improved_gains import MS_LIMIT, design_five_gains, least_ratio_in_row, optimise_three_gains
 from seatrial_studies.yu2014.published import SOURCE, TABLE_1
-from seatrial_studies.yu2014.readings import calibrated, motion, performance
-from seatrial_studies.yu2014.searches import QUICK_SEEDS, SEEDS, SETTINGS, in_time, searches
+from seatrial_studies.yu2014.published_loop import calibrated_K_q, performance, roll_response
+from seatrial_studies.yu2014.searches import QUICK_SEEDS, SEEDS, SETTINGS, search_over_seeds, time_domain_seconds
+from seatrial_studies.yu2014.table_1_fit import fit_table_1
 from seatrial_studies.yu2014.tables import tables
 from seatrial_studies.yu2014.verdicts import checks, claims
 
@@ -24,7 +24,7 @@ QUESTION = "Does a genetic algorithm find the gains of a fin stabiliser that sav
 RATES = np.linspace(0.5, 1.75, 11)
 
 
-def study(*, quick: bool, seed: int, progress: Progress | None) -> Study:
+def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -> Study:
     """Every table and figure beside ours.
 
     Args:
@@ -32,26 +32,36 @@ def study(*, quick: bool, seed: int, progress: Progress | None) -> Study:
         seed: of the searches, the waves of the figures and the searches that beat the paper.
     """
     began = time.perf_counter()
-    if progress:
-        progress("the print, table 1")
-    all_fitted = tuple(fitted(r, following_is_zero=zero) for r in Preamplifier for zero in (True, False))
-    best = min(all_fitted, key=lambda f: f.error)
-    if progress:
-        progress("the published search")
-    searched = tuple(searches(setting, QUICK_SEEDS if quick else SEEDS, seed) for setting in SETTINGS)
-    if progress:
-        progress("what beats it")
+    if report_progress:
+        report_progress("the print, table 1")
+    all_fitted = tuple(fit_table_1(r, following_is_zero=zero) for r in Preamplifier for zero in (True, False))
+    best = min(all_fitted, key=lambda f: f.log_error)
+    if report_progress:
+        report_progress("the published search")
+    searched = tuple(search_over_seeds(setting, QUICK_SEEDS if quick else SEEDS, seed) for setting in SETTINGS)
+    if report_progress:
+        report_progress("what beats it")
     generator = np.random.default_rng([seed, 7])
     three = {
-        r: (best_of_three(r, CAP, generator), best_of_three(r, motion(performance(r)).peak, generator))
+        r: (
+            optimise_three_gains(r, MS_LIMIT, generator),
+            optimise_three_gains(r, roll_response(performance(r)).Ms, generator),
+        )
         for r in Preamplifier
     }
-    seen = Evidence(
-        audit(seed), {r: calibrated(r) for r in Preamplifier}, {r: at_table_1(r) for r in Preamplifier}, all_fitted,
-        histories(best, seed), variation_of_rms(best.reading), searched, in_time(seed), three,
-        {r: tuple(roll_and_rate_elsewhere(r, row, generator) for row in TABLE_1) for r in Preamplifier},
-        richer(seed, RATES[1::4] if quick else RATES),
-    )  # fmt: skip
+    seen = FinGainEvidence(
+        audit(seed),
+        {r: calibrated_K_q(r) for r in Preamplifier},
+        {r: responses_at_table_1(r) for r in Preamplifier},
+        all_fitted,
+        simulate_histories(best, seed),
+        rms_variation(best.preamplifier),
+        searched,
+        time_domain_seconds(seed),
+        three,
+        {r: tuple(least_ratio_in_row(r, row, generator) for row in TABLE_1) for r in Preamplifier},
+        design_five_gains(seed, RATES[1::4] if quick else RATES),
+    )
     return Study(
         name="yu2014",
         source=SOURCE,

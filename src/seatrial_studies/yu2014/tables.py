@@ -5,49 +5,61 @@ from collections.abc import Sequence
 from seatrial.core.results import Table
 from seatrial.physics.loops.fin import Preamplifier
 from seatrial.physics.loops.structures import FREQUENCIES_AND_DAMPINGS
-from seatrial_studies.yu2014.better import Compared
-from seatrial_studies.yu2014.evidence import Evidence
-from seatrial_studies.yu2014.misprints import misprints
-from seatrial_studies.yu2014.published import FOUND, GAINS, OPEN, TABLE_1, Column
-from seatrial_studies.yu2014.readings import WORDS
-from seatrial_studies.yu2014.searches import BITS, Searches
+from seatrial_studies.yu2014.evidence import FinGainEvidence
+from seatrial_studies.yu2014.improved_gains import FiveGainComparison
+from seatrial_studies.yu2014.misprints import misprint_table
+from seatrial_studies.yu2014.published import GAIN_NAMES, NOT_PRINTED, PUBLISHED_VALUES, TABLE_1, ControllerResult
+from seatrial_studies.yu2014.published_loop import PREAMPLIFIER_LABELS
+from seatrial_studies.yu2014.searches import BITS, FinGainSearches
 
-Cells = tuple[float, float, float]
+ResultCells = tuple[float, float, float]
 _HEADER = (
     "kn / °", "roll °: paper", "printed", "washout", "rate °/s: paper", "printed", "washout", "reduction %: paper",
     "printed", "washout",
 )  # fmt: skip
-_FIVE = (*GAINS, "KB", "KL")
+_FIVE_GAIN_NAMES = (*GAIN_NAMES, "KB", "KL")
 
 
-def tables(seen: Evidence) -> tuple[Table, ...]:
+def tables(evidence: FinGainEvidence) -> tuple[Table, ...]:
     """In the order of the page."""
     return (
-        _table_1(seen), _fitted_table_1(seen), _fitted_baseline(seen), _quantities(seen), _implied(), _scatter(seen),
-        *(_answers(seen, reading) for reading in Preamplifier), _times(seen), _three(seen), _five(seen),
-        misprints(seen.audited), Table("Left open by the paper", ("what", "print", "here"), OPEN),
-    )  # fmt: skip
+        _table_1(evidence),
+        _fitted_table_1(evidence),
+        _fitted_baseline(evidence),
+        _fitted_quantities(evidence),
+        _implied_uncontrolled_roll(),
+        _search_scatter(evidence),
+        *(_search_results(evidence, reading) for reading in Preamplifier),
+        _times(evidence),
+        _three_gains(evidence),
+        _five_gains(evidence),
+        misprint_table(evidence.audit),
+        Table("Left open by the paper", ("what", "print", "here"), NOT_PRINTED),
+    )
 
 
-def _table_1(seen: Evidence) -> Table:
-    made = [[(m.roll, m.rate, m.reduction) for m in seen.table_1[reading]] for reading in Preamplifier]
-    K_q = ", ".join(f"{WORDS[r]} {seen.calibrated[r]:.4g}" for r in Preamplifier)
+def _table_1(evidence: FinGainEvidence) -> Table:
+    made = [[(m.roll, m.rate, m.reduction) for m in evidence.table_1_responses[reading]] for reading in Preamplifier]
+    K_q = ", ".join(f"{PREAMPLIFIER_LABELS[r]} {evidence.calibrated_K_q[r]:.4g}" for r in Preamplifier)
     return Table(
         "Table 1, the GA's gains, beside ours with K_q fitted to one number of it",
         _HEADER,
-        _beside([_cells(row.genetic) for row in TABLE_1], made),
+        _comparison_rows([_cells(row.genetic) for row in TABLE_1], made),
         f"K_q fitted so that 18 / 90 reduces by 75.92 %: {K_q}. Long-crested ITTC sea of 3.3 m; our roll without fins "
-        f"there is {seen.table_1[Preamplifier.WASHOUT][1].free:.2f}° where the paper's numbers imply 1.6°: absolute "
+        f"there is {evidence.table_1_responses[Preamplifier.WASHOUT][1].uncontrolled:.2f}° where the "
+        "paper's numbers imply 1.6°: absolute "
         "levels do not match. K_alpha grows with the square of the speed; as the paper has it, constant, 22 / 90 "
         "would be 18 / 90 again",
     )
 
 
-def _cells(column: Column) -> Cells:
+def _cells(column: ControllerResult) -> ResultCells:
     return column.roll, column.rate, column.reduction
 
 
-def _beside(paper: Sequence[Cells], ours: Sequence[Sequence[Cells]]) -> tuple[tuple[str | float, ...], ...]:
+def _comparison_rows(
+    paper: Sequence[ResultCells], ours: Sequence[Sequence[ResultCells]]
+) -> tuple[tuple[str | float, ...], ...]:
     """Rows of table 1: for each quantity the paper's number and that of each reading."""
     return tuple(
         (row.name, *(cell for quantity in zip(paper[i], *(made[i] for made in ours), strict=True) for cell in quantity))
@@ -55,39 +67,47 @@ def _beside(paper: Sequence[Cells], ours: Sequence[Sequence[Cells]]) -> tuple[tu
     )
 
 
-def _fitted_table_1(seen: Evidence) -> Table:
-    fits = [seen.fit(reading) for reading in Preamplifier]
-    made = [[_cells(f.column(f.genetic, i)) for i in range(len(TABLE_1))] for f in fits]
-    errors = ", ".join(f"{WORDS[f.reading]} {f.error:.3f}" for f in fits)
+def _fitted_table_1(evidence: FinGainEvidence) -> Table:
+    fits = [evidence.fit(reading) for reading in Preamplifier]
+    made = [[_cells(f.row_result(f.genetic, i)) for i in range(len(TABLE_1))] for f in fits]
+    errors = ", ".join(f"{PREAMPLIFIER_LABELS[f.preamplifier]} {f.log_error:.3f}" for f in fits)
     return Table(
         "Table 1, the GA's gains, fitted",
         _HEADER,
-        _beside([_cells(row.genetic) for row in TABLE_1], made),
+        _comparison_rows([_cells(row.genetic) for row in TABLE_1], made),
         f"Fitted, not reproduced: K_q and one factor on all rolls and fin rates. Short-crested, cos². rms log error of "
         f"roll, fin rate and what is left of the roll: {errors}",
     )
 
 
-def _fitted_baseline(seen: Evidence) -> Table:
-    fits = [seen.fit(reading) for reading in Preamplifier]
-    made = [[_cells(f.column(f.traditional, i)) for i in range(len(TABLE_1))] for f in fits]
+def _fitted_baseline(evidence: FinGainEvidence) -> Table:
+    fits = [evidence.fit(reading) for reading in Preamplifier]
+    made = [[_cells(f.row_result(f.traditional, i)) for i in range(len(TABLE_1))] for f in fits]
     said = "; ".join(
-        f"{WORDS[f.reading]}: " + ", ".join(f"{n} {v:.2f}" for n, v in zip(GAINS, f.baseline, strict=True))
-        + f" ({f.at_bounds} at a bound), rms log error {f.baseline_error:.3f}"
+        f"{PREAMPLIFIER_LABELS[f.preamplifier]}: "
+        + ", ".join(f"{n} {v:.2f}" for n, v in zip(GAIN_NAMES, f.baseline, strict=True))
+        + f" ({f.gains_at_bounds} at a bound), rms log error {f.baseline_log_error:.3f}"
         for f in fits
-    )  # fmt: skip
+    )
     return Table(
         "Table 1, the traditional PID, fitted",
         _HEADER,
-        _beside([_cells(row.traditional) for row in TABLE_1], made),
+        _comparison_rows([_cells(row.traditional) for row in TABLE_1], made),
         f"The paper prints no gains of its baseline. These are fitted to its column, not reproduced: {said}",
     )
 
 
-def _quantities(seen: Evidence) -> Table:
+def _fitted_quantities(evidence: FinGainEvidence) -> Table:
     rows = [
-        (WORDS[f.reading], "following" if f.following_is_zero else "head", f.K_q, f.level, f.error, f.baseline_error)
-        for f in seen.fitted
+        (
+            PREAMPLIFIER_LABELS[f.preamplifier],
+            "following" if f.following_is_zero else "head",
+            f.K_q,
+            f.level,
+            f.log_error,
+            f.baseline_log_error,
+        )
+        for f in evidence.table_1_fits
     ]
     return Table(
         "Fitted quantities",
@@ -97,10 +117,10 @@ def _quantities(seen: Evidence) -> Table:
     )
 
 
-def _implied() -> Table:
+def _implied_uncontrolled_roll() -> Table:
     rows = [
         (row.name, row.traditional.uncontrolled, row.genetic.uncontrolled,
-         "yes" if _apart(row.traditional, row.genetic) else "no")
+         "yes" if _contradict(row.traditional, row.genetic) else "no")
         for row in TABLE_1
     ]  # fmt: skip
     return Table(
@@ -111,54 +131,70 @@ def _implied() -> Table:
     )
 
 
-def _apart(one: Column, other: Column) -> bool:
-    (low, high), (other_low, other_high) = one.uncontrolled_between, other.uncontrolled_between
+def _contradict(one: ControllerResult, other: ControllerResult) -> bool:
+    (low, high), (other_low, other_high) = one.uncontrolled_bounds, other.uncontrolled_bounds
     return high < other_low or other_high < low
 
 
-def _scatter(seen: Evidence) -> Table:
+def _search_scatter(evidence: FinGainEvidence) -> Table:
     rows = [
-        (WORDS[s.setting.reading], s.setting.fins.value, s.setting.normaliser.value,
-         *(f"{low:.3g} to {high:.3g}" for low, high in zip(s.gains.min(axis=0), s.gains.max(axis=0), strict=True)),
-         f"{s.peak.min():.2f} to {s.peak.max():.3g}", str(s.fragile),
-         f"{s.reduction.min():.1f} to {s.reduction.max():.1f}", str(s.beaten.sum()))
-        for s in seen.searched
-    ]  # fmt: skip
-    count = len(seen.searched[0].peak)
+        (
+            PREAMPLIFIER_LABELS[s.setting.preamplifier],
+            s.setting.fin_objective.value,
+            s.setting.normaliser.value,
+            *(f"{low:.3g} to {high:.3g}" for low, high in zip(s.gains.min(axis=0), s.gains.max(axis=0), strict=True)),
+            f"{s.Ms.min():.2f} to {s.Ms.max():.3g}",
+            str(s.fragile_count),
+            f"{s.reduction.min():.1f} to {s.reduction.max():.1f}",
+            str(s.is_dominated.sum()),
+        )
+        for s in evidence.searches
+    ]
+    count = len(evidence.searches[0].Ms)
     return Table(
         "The published search over seeds",
-        ("preamplifier", "fins", "normaliser", *GAINS, "Ms", "Ms above 2", "reduction %", "beaten in all objectives"),
+        (
+            "preamplifier",
+            "fins",
+            "normaliser",
+            *GAIN_NAMES,
+            "Ms",
+            "Ms above 2",
+            "reduction %",
+            "beaten in all objectives",
+        ),
         tuple(rows),
         f"{count} seeds each, population 50, 200 generations, codes of {BITS} bits, 18 kn, 90°, 3.3 m. The answer is "
         "the fittest of the last generation under equal weights; beaten: another seed evaluated a point with all three "
-        f"objectives smaller. Paper: {', '.join(f'{v:.5g}' for v in FOUND)}. With the best of the first generation as "
+        f"objectives smaller. Paper: {', '.join(f'{v:.5g}' for v in PUBLISHED_VALUES)}. With the best of "
+        "the first generation as "
         "normaliser J2 outweighs all: as a washout every seed ends at the edge of instability, where the fins move "
         "just as much as the target says",
     )
 
 
-def _answers(seen: Evidence, reading: Preamplifier) -> Table:
-    found: Searches = seen.of(reading)
+def _search_results(evidence: FinGainEvidence, preamplifier: Preamplifier) -> Table:
+    found: FinGainSearches = evidence.searches_with(preamplifier)
     rows = [
         (str(k + 1), *(float(v) for v in gains), float(peak), *(float(v) for v in shares), float(reduction))
         for k, (gains, peak, shares, reduction) in enumerate(
-            zip(found.gains, found.peak, found.shares, found.reduction, strict=True)
+            zip(found.gains, found.Ms, found.objective_ratios, found.reduction, strict=True)
         )
     ]
     return Table(
-        f"Answers of the published search, preamplifier {WORDS[reading]}",
-        ("seed", *GAINS, "Ms", "J1 / paper's", "J2 / paper's", "J3 / paper's", "reduction %"),
+        f"Answers of the published search, preamplifier {PREAMPLIFIER_LABELS[preamplifier]}",
+        ("seed", *GAIN_NAMES, "Ms", "J1 / paper's", "J2 / paper's", "J3 / paper's", "reduction %"),
         tuple(rows),
         "J2 as printed, normalised by the largest of the first generation",
     )
 
 
-def _times(seen: Evidence) -> Table:
-    compiled, single = seen.in_time
+def _times(evidence: FinGainEvidence) -> Table:
+    compiled, single = evidence.time_domain_seconds
     rows = (
-        ("variances in the frequency domain", seen.seconds, 1.0),
-        ("records of 1000 s, compiled, 50 at once in vector lanes", compiled, compiled / seen.seconds),
-        ("records of 1000 s, scipy's lsim one after another", single, single / seen.seconds),
+        ("variances in the frequency domain", evidence.search_seconds, 1.0),
+        ("records of 1000 s, compiled, 50 at once in vector lanes", compiled, compiled / evidence.search_seconds),
+        ("records of 1000 s, scipy's lsim one after another", single, single / evidence.search_seconds),
     )
     return Table(
         "Time of one published search of 10,000 evaluations",
@@ -169,39 +205,53 @@ def _times(seen: Evidence) -> Table:
     )
 
 
-def _three(seen: Evidence) -> Table:
+def _three_gains(evidence: FinGainEvidence) -> Table:
     rows = [
-        (WORDS[reading], f"{b.cap:.3g}", *(round(float(v), 3) for v in b.gains), b.peak, *(float(v) for v in b.shares))
+        (
+            PREAMPLIFIER_LABELS[reading],
+            f"{b.ms_limit:.3g}",
+            *(round(float(v), 3) for v in b.gains),
+            b.Ms,
+            *(float(v) for v in b.objective_ratios),
+        )
         for reading in Preamplifier
-        for b in seen.three[reading]
+        for b in evidence.three_gain_optima[reading]
     ]
     return Table(
         "Three gains against the paper's, in its own box",
-        ("preamplifier", "Ms at most", *GAINS, "Ms", "J1 / paper's", "J2 / paper's", "J3 / paper's"),
+        ("preamplifier", "Ms at most", *GAIN_NAMES, "Ms", "J1 / paper's", "J2 / paper's", "J3 / paper's"),
         tuple(rows),
         "The worst of the three objectives over the paper's, made small; the second Ms of each reading is that of the "
         "paper's gains. Where it stays at 1 the paper's gains lie on the front",
     )
 
 
-def _five(seen: Evidence) -> Table:
-    made = seen.richer
+def _five_gains(evidence: FinGainEvidence) -> Table:
+    made = evidence.five_gain_design
     rows = [
-        *(_compared(c, "searched in") for c in made.designed),
-        *(_compared(c, "held out") for c in made.held_out),
-        *(_compared(c, "three gains, same box") for c in made.three),
+        *(_comparison_row(c, "searched in") for c in made.design_seas),
+        *(_comparison_row(c, "held out") for c in made.held_out_seas),
+        *(_comparison_row(c, "three gains, same box") for c in made.three_gains),
     ]
     (band, _), (low, _) = FREQUENCIES_AND_DAMPINGS
-    gains = ", ".join(f"{n} {v:.2f}" for n, v in zip(_FIVE, made.gains, strict=True))
+    gains = ", ".join(f"{n} {v:.2f}" for n, v in zip(_FIVE_GAIN_NAMES, made.gains, strict=True))
     return Table(
         "Five gains, washout: variances over those of the paper's gains",
         ("sea, 18 kn, 90° unless said", "", "roll", "fin angle", "fin rate", "paper's reduction %", "ours %"),
         tuple(rows),
-        f"{gains}; Ms {made.peak:.2f}. KB: band-pass at {band:g} rad/s; KL: low-pass at {low:g} rad/s; KP, KI, KD in "
+        f"{gains}; Ms {made.Ms:.2f}. KB: band-pass at {band:g} rad/s; KL: low-pass at {low:g} rad/s; KP, KI, KD in "
         "the paper's box. Tuned for beam seas: in long waves that overtake slowly another set has to be scheduled",
     )
 
 
-def _compared(c: Compared, kind: str) -> tuple[str | float, ...]:
-    name = c.sea.name or "ITTC 3.3 m, long-crested"
-    return name, kind, c.roll, c.fin, c.rate, c.paper_reduction, c.reduction
+def _comparison_row(comparison: FiveGainComparison, kind: str) -> tuple[str | float, ...]:
+    name = comparison.sea.name or "ITTC 3.3 m, long-crested"
+    return (
+        name,
+        kind,
+        comparison.roll_ratio,
+        comparison.fin_ratio,
+        comparison.rate_ratio,
+        comparison.paper_reduction,
+        comparison.reduction,
+    )

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.control.loop_files import AUTOPILOT, FIN, model_file, nomoto, roll, written
+from tests.control.loop_files import AUTOPILOT, FIN, model_file, nomoto, roll, write_loop_file
 
-from seatrial.control.loopfile.load import task_of
+from seatrial.control.loopfile.load import tuning_task
 from seatrial.control.loopfile.schema import loop_schema
-from seatrial.control.task import Effectiveness, Seaway, Trials, Unrest
+from seatrial.control.task import Effectiveness, Seaway, SimulationSettings, SlowDisturbance
 from seatrial.core.values import InputError
-from seatrial.physics.loops import Seen
+from seatrial.physics.loops import LoopSignal
 from seatrial.physics.loops.fin import GYRO, SERVO, Preamplifier, fin_loop
 from seatrial.physics.sea.sea_state import sea_state
 
@@ -21,53 +21,53 @@ FIN_LINES = sum(bool(line.strip()) for line in FIN.splitlines())
 
 
 def test_a_fin_stabiliser_in_a_dozen_lines_is_the_published_loop(tmp_path: Path) -> None:
-    task = task_of(written(tmp_path, FIN))
+    task = tuning_task(write_loop_file(tmp_path, FIN))
     assert FIN_LINES <= 15
     published = fin_loop(Preamplifier.WASHOUT)
     w = np.geomspace(0.1, 10.0, 50)
-    assert np.allclose(task.loop.open(w), published.open(w), rtol=1e-12)
+    assert np.allclose(task.loop.open_loop(w), published.open_loop(w), rtol=1e-12)
     assert task.loop.gains.names == ("KP", "KI", "KD") and len(task.loop.gains.free) == 3
-    assert (task.restriction.limit, task.restriction.rate) == pytest.approx((math.radians(22), math.radians(25)))
-    assert math.isinf(task.restriction.stall) and task.restriction.peak == 2.0
+    assert (task.constraints.limit, task.constraints.rate) == pytest.approx((math.radians(22), math.radians(25)))
+    assert math.isinf(task.constraints.stall) and task.constraints.Ms == 2.0
     assert math.isclose(task.U, 9.26) and task.effectiveness is Effectiveness.SPEED_SQUARED
-    assert [(o.rows[0].seen, o.rows[0].size(np.array([2.0]))[0]) for o in task.objectives] == [
-        (Seen.OUTPUT, 1),
-        (Seen.ACTUATOR, 2),
+    assert [(o.variances[0].signal, o.variances[0].magnitude(np.array([2.0]))[0]) for o in task.objectives] == [
+        (LoopSignal.OUTPUT, 1),
+        (LoopSignal.ACTUATOR, 2),
     ]
-    assert task.trials == Trials() and task.demand is None and task.plan is None
+    assert task.simulation == SimulationSettings() and task.demand is None and task.schedule_grid is None
 
 
 def test_an_autopilot_in_a_dozen_lines_follows_a_demand(tmp_path: Path) -> None:
     model_file(tmp_path, nomoto())
-    task = task_of(written(tmp_path, AUTOPILOT))
+    task = tuning_task(write_loop_file(tmp_path, AUTOPILOT))
     w = np.geomspace(0.01, 1.0, 20)
-    assert np.allclose(task.loop.plant.at(w), 0.08 / (1j * w * (10.0j * w + 1.0)), rtol=1e-9)
-    assert task.vessel is not None and task.U == 7.0
+    assert np.allclose(task.loop.plant.frequency_response(w), 0.08 / (1j * w * (10.0j * w + 1.0)), rtol=1e-9)
+    assert task.trimmed_ship is not None and task.U == 7.0
     assert (task.loop.output, task.loop.actuator, task.loop.gains.names) == ("psi", "delta", ("KP", "KD"))
     assert task.demand is not None and task.demand.change == pytest.approx(math.radians(20.0))
     assert task.demand.time_constant == pytest.approx(100.0 / 7.0)
-    assert task.trials is None
-    (met,) = task.met
-    assert isinstance(met, Unrest) and (met.size, met.bandwidth, met.U) == (math.radians(1.0), 0.05, 7.0)
+    assert task.simulation is None
+    (met,) = task.disturbances
+    assert isinstance(met, SlowDisturbance) and (met.rms, met.bandwidth, met.U) == (math.radians(1.0), 0.05, 7.0)
 
 
 def test_fins_of_a_ship_known_by_a_decay(tmp_path: Path) -> None:
     """K_alpha of the loop file becomes the model's, her dimensions make the hull factor, amplitude adds damping."""
     known = model_file(tmp_path, roll())
     plant = ("roll = { num = [1.0], den = [1.43242, 0.3796, 1.0] }", 'model = "model.toml"')
-    task = task_of(written(tmp_path, FIN, plant))
-    assert task.vessel is not None and task.vessel.model.parameters["K_alpha"].value == 0.256
+    task = tuning_task(write_loop_file(tmp_path, FIN, plant))
+    assert task.trimmed_ship is not None and task.trimmed_ship.model.parameters["K_alpha"].value == 0.256
     assert task.loop.plant.gain == pytest.approx(0.256) and task.loop.disturbance.gain == pytest.approx(1.0)
-    sea = task.met[0]
+    sea = task.disturbances[0]
     assert isinstance(sea, Seaway) and sea.hull is not None and (sea.hull.L, sea.hull.T) == (100.0, 3.4)
-    swung = task_of(written(tmp_path, FIN, (plant[0], plant[1] + "\namplitude = 0.1")))
+    swung = tuning_task(write_loop_file(tmp_path, FIN, (plant[0], plant[1] + "\namplitude = 0.1")))
     added = np.array(swung.loop.disturbance.den) - np.array(task.loop.disturbance.den)
     # 8 / (3 pi) omega a b_2: equivalent linear damping of the quadratic part
     assert added[1] == pytest.approx(8.0 / (3.0 * math.pi) * math.sqrt(0.698) * 0.1 * 0.35, rel=0.02)
     other = tmp_path / "elsewhere"
     other.mkdir()
-    moved = written(other, FIN, plant)
-    assert task_of(moved, model_file=known).loop.plant == task.loop.plant
+    moved = write_loop_file(other, FIN, plant)
+    assert tuning_task(moved, model_file=known).loop.plant == task.loop.plant
 
 
 def test_fins_identified_with_the_roll_keep_their_value(tmp_path: Path) -> None:
@@ -77,20 +77,20 @@ def test_fins_identified_with_the_roll_keep_their_value(tmp_path: Path) -> None:
     fins = known.with_values({"K_alpha": 0.3})
     model_file(tmp_path, fins.with_parameters(fins.parameters.freed("K_alpha")))
     with pytest.raises(InputError, match="identified K_alpha; leave K_alpha out"):
-        task_of(written(tmp_path, FIN, plant))
+        tuning_task(write_loop_file(tmp_path, FIN, plant))
     faster = ("K_alpha = 0.256", 'at_speed = { value = 9, unit = "kn" }')
-    task = task_of(written(tmp_path, FIN, plant, faster))
+    task = tuning_task(write_loop_file(tmp_path, FIN, plant, faster))
     assert task.loop.plant.gain == pytest.approx(1.2) and task.effectiveness is Effectiveness.SPEED_SQUARED
     model_file(tmp_path, known)
     with pytest.raises(InputError, match="key 'K_alpha' is missing, and the model of"):
-        task_of(written(tmp_path, FIN, plant, faster))
+        tuning_task(write_loop_file(tmp_path, FIN, plant, faster))
 
 
 def test_the_fins_lift_with_the_square_of_the_speed(tmp_path: Path) -> None:
     half = ("K_alpha = 0.256", 'K_alpha = 0.256\nat_speed = { value = 36, unit = "kn" }')
-    assert task_of(written(tmp_path, FIN, half)).loop.plant.gain == pytest.approx(0.064)
+    assert tuning_task(write_loop_file(tmp_path, FIN, half)).loop.plant.gain == pytest.approx(0.064)
     constant = (half[0], half[1] + '\nlaw = "constant"')
-    task = task_of(written(tmp_path, FIN, constant))
+    task = tuning_task(write_loop_file(tmp_path, FIN, constant))
     assert task.loop.plant.gain == pytest.approx(0.256) and task.effectiveness is Effectiveness.CONSTANT
 
 
@@ -105,7 +105,7 @@ def test_the_fins_lift_with_the_square_of_the_speed(tmp_path: Path) -> None:
 def test_spectra_have_the_height_and_period_that_is_said(
     table: str, name: str, period: float | None, tmp_path: Path
 ) -> None:
-    (sea,) = task_of(written(tmp_path, FIN, ('spectrum = "ittc"\nheight = 3.3', table))).met
+    (sea,) = tuning_task(write_loop_file(tmp_path, FIN, ('spectrum = "ittc"\nheight = 3.3', table))).disturbances
     assert isinstance(sea, Seaway) and sea.spectrum.name == name
     assert sea.spectrum.significant_height == pytest.approx(2.0, rel=1e-9)
     if period:
@@ -116,7 +116,7 @@ def test_spectra_have_the_height_and_period_that_is_said(
 
 def test_a_sea_state_by_its_number_and_a_speed_of_its_own(tmp_path: Path) -> None:
     numbered = ('spectrum = "ittc"\nheight = 3.3', 'spectrum = "sea-state"\nstate = 5\nspeed = 5.0\nspreading = 1')
-    (sea,) = task_of(written(tmp_path, FIN, numbered)).met
+    (sea,) = tuning_task(write_loop_file(tmp_path, FIN, numbered)).disturbances
     assert isinstance(sea, Seaway) and sea.spectrum == sea_state(5).spectrum()
     assert (sea.U, sea.spreading, sea.beta) == (5.0, 1.0, pytest.approx(math.pi / 2))
 
@@ -124,9 +124,9 @@ def test_a_sea_state_by_its_number_and_a_speed_of_its_own(tmp_path: Path) -> Non
 def test_objectives_by_their_names(tmp_path: Path) -> None:
     aims = """
 minimise = ["roll", "fin", "fin_rate", "fin_off_target", "output_acceleration",
-    { what = "motion_interruptions", height = 5 }, { what = "motion_sickness", lever = 6 },
-    { what = "fin_off_target", target = { value = 10, unit = "deg" }, one_sided = false }]"""
-    task = task_of(written(tmp_path, aims + FIN))
+    { name = "motion_interruptions", height = 5 }, { name = "motion_sickness", lever = 6 },
+    { name = "fin_off_target", target = { value = 10, unit = "deg" }, one_sided = false }]"""
+    task = tuning_task(write_loop_file(tmp_path, aims + FIN))
     assert len(task.objectives) == 8
     # 22^2 / (2 ln 5) = 150.36 deg^2 at the limit of 22 deg, 20 % beyond it; Yu et al. print 150.31
     off = task.objectives[3].value
@@ -150,13 +150,17 @@ upper = 10
 [controller.gains.K2]
 value = 3
 fixed = true"""
-    task = task_of(
-        written(tmp_path, FIN, ('kind = "yu2014"', controller), ("[actuator]", "[actuator]\nservo = [{ lag = 0.5 }]"))
+    task = tuning_task(
+        write_loop_file(
+            tmp_path, FIN, ('kind = "yu2014"', controller), ("[actuator]", "[actuator]\nservo = [{ lag = 0.5 }]")
+        )
     )
     loop = task.loop
     assert loop.sensor[0].num == GYRO.num and [b.name for b in loop.filters] == ["filter 1", "filter 2"]
-    assert abs(loop.filters[0].at(np.array([3.0]))[0]) == pytest.approx(0.2)
-    assert loop.filters[1].gain == pytest.approx(1.0) and loop.terms[1].block.at(np.array([1.0]))[0] == pytest.approx(1)
+    assert abs(loop.filters[0].frequency_response(np.array([3.0]))[0]) == pytest.approx(0.2)
+    assert loop.filters[1].gain == pytest.approx(1.0) and loop.terms[1].block.frequency_response(np.array([1.0]))[
+        0
+    ] == pytest.approx(1)
     assert loop.servo[0].den == (0.5, 1.0)
     assert (loop.gains["K1"].value, loop.gains["K2"].value, loop.gains.free_names) == (5.0, 3.0, ("K1",))
 
@@ -169,36 +173,36 @@ upper = 20
 [controller.gains.KI]
 value = 0
 fixed = true
-[given."by hand"]
+[baselines."by hand"]
 KP = 10
 KI = 0
 KD = 30
 """
-    task = task_of(written(tmp_path, FIN + more))
+    task = tuning_task(write_loop_file(tmp_path, FIN + more))
     assert task.loop.gains["KP"].upper == 20.0 and task.loop.gains["KP"].value == 11.053
     assert task.loop.gains.free_names == ("KP", "KD")
-    assert task.rivals == {"by hand": {"KP": 10.0, "KI": 0.0, "KD": 30.0}}
+    assert task.baselines == {"by hand": {"KP": 10.0, "KI": 0.0, "KD": 30.0}}
     assert task.loop.servo == (SERVO,)
 
 
 def test_richer_controllers_keep_what_the_loop_has(tmp_path: Path) -> None:
     more = """
-[[richer]]
+[[extended_structures]]
 add = ["band-pass", "low-pass"]
-[[richer]]
+[[extended_structures]]
 name = "notched"
 add = ["notch", "band-pass"]
 band_pass = { omega = 1.5, damping = 0.3 }
 lower = -5
 upper = 10
 """
-    five, notched = task_of(written(tmp_path, FIN + more)).richer
+    five, notched = tuning_task(write_loop_file(tmp_path, FIN + more)).extended_structures
     assert five.gains.names == ("KP", "KI", "KD", "KB", "KL")
     assert [round(math.sqrt(t.block.den[-1]), 3) for t in five.terms[3:]] == [0.53, 2.7]
     assert notched.name == "notched" and notched.gains.names == ("KP", "KI", "KD", "KB")
     assert (notched.gains["KB"].lower, notched.gains["KB"].upper) == (-5.0, 10.0)
     own = 1.0 / math.sqrt(1.43242)
-    assert abs(notched.filters[0].at(np.array([own]))[0]) == pytest.approx(0.1)
+    assert abs(notched.filters[0].frequency_response(np.array([own]))[0]) == pytest.approx(0.1)
 
 
 def test_richer_controllers_leave_fixed_gains_and_bounds_alone(tmp_path: Path) -> None:
@@ -206,11 +210,11 @@ def test_richer_controllers_leave_fixed_gains_and_bounds_alone(tmp_path: Path) -
 [controller.gains]
 KP = { lower = 0, upper = 20 }
 KI = { value = 0.3, fixed = true }
-[[richer]]
+[[extended_structures]]
 add = ["band-pass", "low-pass"]
 upper = 10
 """
-    (five,) = task_of(written(tmp_path, FIN + more)).richer
+    (five,) = tuning_task(write_loop_file(tmp_path, FIN + more)).extended_structures
     assert five.gains["KI"].value == 0.3 and "KI" not in five.gains.free_names
     assert five.gains["KP"].upper == 20.0 and five.gains["KB"].upper == 10.0
     assert all(p.lower <= p.value <= p.upper for p in five.gains.free)
@@ -222,7 +226,7 @@ def test_gains_of_an_autopilot_in_any_bounds(tmp_path: Path) -> None:
         'parts = ["KP", "KD"]',
         "derivative_filter = 0.5\n[controller.gains]\nKP = { lower = 0, upper = 9 }\nKD = {}",
     )
-    loop = task_of(written(tmp_path, AUTOPILOT, bounds)).loop
+    loop = tuning_task(write_loop_file(tmp_path, AUTOPILOT, bounds)).loop
     assert loop.gains.names == ("KP", "KD") and loop.gains["KP"].upper == 9.0
     assert loop.terms[1].block.den == (0.5, 1.0)
 
@@ -233,8 +237,8 @@ def test_a_plant_as_a_transfer_function_takes_any_symbols(tmp_path: Path) -> Non
         'response = { num = [0.08], den = [10.0, 1.0, 0.0] }\noutput = "psi"\nactuator = "delta"\nspeed = 7',
     )
     demand = ('change = { value = 20, unit = "deg" }', "change = 0.3\ntime_constant = 15")
-    task = task_of(written(tmp_path, AUTOPILOT, given, demand))
-    assert task.vessel is None and task.loop.disturbance == task.loop.plant
+    task = tuning_task(write_loop_file(tmp_path, AUTOPILOT, given, demand))
+    assert task.trimmed_ship is None and task.loop.disturbance == task.loop.plant
     assert task.demand is not None and task.demand.duration == 450.0
 
 
@@ -262,7 +266,7 @@ KIND = 'kind = "yu2014"'
         ([('"ittc"\nheight = 3.3', '"jonswap"\nheight = 3.3\nperiod = 8\ngamma = 50')], "seas[1].gamma: the peak"),
         ([("value = 22", "value = -22")], "actuator.limit = -22 is not positive"),
         ([('{ value = 22, unit = "deg" }', "22")], "actuator.limit = 22 is half a turn or more"),
-        ([("[actuator]", "[limits]\npeak = 0.9\n[actuator]")], "limits.peak = 0.9: input should be greater than 1"),
+        ([("[actuator]", "[limits]\nMs = 0.9\n[actuator]")], "limits.Ms = 0.9: input should be greater than 1"),
         ([("[actuator]", "[limits]\nsaturation = -0.1\n[actuator]")], "limits.saturation = -0.1"),
         ([("[actuator]", "[actuator]\nservo = [{ num = [1.0, 0.0], den = [1.0] }]")], "servo[1]: block 'servo'"),
         ([("[actuator]", "[actuator]\nservo = [{ num = [1.0] }]")], "actuator.servo[1]: give num and den"),
@@ -282,8 +286,11 @@ KIND = 'kind = "yu2014"'
               "KD = { value = 1, fixed = true } }")],
             "every gain is fixed",
         ),
-        ([("[actuator]", "[given.hand]\nKP = 1\nKI = 1\nKd = 1\n[actuator]")], "hand: the controller has no gain 'Kd'"),
-        ([("[actuator]", "[given.hand]\nKP = 1\nKI = 1\n[actuator]")], "given.hand: gain KD is missing"),
+        (
+            [("[actuator]", "[baselines.hand]\nKP = 1\nKI = 1\nKd = 1\n[actuator]")],
+            "hand: the controller has no gain 'Kd'",
+        ),
+        ([("[actuator]", "[baselines.hand]\nKP = 1\nKI = 1\n[actuator]")], "baselines.hand: gain KD is missing"),
         ([('speed = { value = 18, unit = "kn" }', "")], "key 'plant.speed' is missing"),
         ([("K_alpha = 0.256", "K_alpha = -0.256")], "plant.fin.K_alpha = -0.256"),
         ([("[plant.fin]\nK_alpha = 0.256", "")], "plant: roll needs a table [plant.fin]"),
@@ -296,13 +303,16 @@ KIND = 'kind = "yu2014"'
         ([(ROLL, "den = [1.43242, 0.0, 1.0]")], "'fins to roll' swings undamped at 0.8355 rad/s"),
         ([("num = [1.0]", "num = [0.0]")], "plant.roll.num is zero"),
         ([("[actuator]", "[simulation]\nduration = 1e12\n[actuator]")], "simulation: 20 seas of 1e+12 s"),
-        ([("[plant]", 'minimise = ["yaw"]\n[plant]')], "minimise[1].what = 'yaw'"),
+        ([("[plant]", 'minimise = ["yaw"]\n[plant]')], "minimise[1].name = 'yaw'"),
         ([("[plant]", 'minimise = ["motion_sickness"]\n[plant]')], "minimise[1]: 'motion_sickness' needs a lever"),
         (
             [("[plant]", 'minimise = ["fin_off_target"]\n[plant]'), ('limit = { value = 22, unit = "deg" }', "")],
             "minimise[1]: there is neither a target nor an [actuator] limit",
         ),
-        ([("[actuator]", '[[richer]]\nadd = ["notch", "notch"]\n[actuator]')], "richer[1]: add names a part twice"),
+        (
+            [("[actuator]", '[[extended_structures]]\nadd = ["notch", "notch"]\n[actuator]')],
+            "extended_structures[1]: add names a part twice",
+        ),
         (
             [("[actuator]", "[schedule]\nspeeds = [9.0]\nheadings = [0.0, 1.0]\nheights = [3.0]\n[actuator]")],
             "schedule.headings: long-crested waves at 0 deg",
@@ -314,9 +324,9 @@ KIND = 'kind = "yu2014"'
     ],
 )  # fmt: skip
 def test_what_is_wrong_with_a_fin_file_is_said(changes: list[tuple[str, str]], says: str, tmp_path: Path) -> None:
-    path = written(tmp_path, FIN, *changes)
+    path = write_loop_file(tmp_path, FIN, *changes)
     with pytest.raises(InputError) as refused:
-        task_of(path)
+        tuning_task(path)
     said = str(refused.value)
     assert says in said and str(path) in said and "\n" not in said
 
@@ -324,17 +334,23 @@ def test_what_is_wrong_with_a_fin_file_is_said(changes: list[tuple[str, str]], s
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
-        ([("bandwidth = 0.05", "bandwidth = -1")], "unrest[1].bandwidth = -1 is not positive"),
-        ([('size = { value = 1, unit = "deg" }\n', "")], "key 'unrest[1].size' is missing"),
+        ([("bandwidth = 0.05", "bandwidth = -1")], "slow_disturbances[1].bandwidth = -1 is not positive"),
+        ([('rms = { value = 1, unit = "deg" }\n', "")], "key 'slow_disturbances[1].rms' is missing"),
         ([('model = "model.toml"', 'model = "absent.toml"')], "absent.toml' cannot be read"),
         ([('model = "model.toml"', 'model = "loop.toml"')], "loop.toml' is no seatrial model file"),
         ([('model = "model.toml"', 'model = "model.toml"\nactuator = "rudder"')], "plant.actuator: 'rudder' is no"),
         ([('model = "model.toml"', 'model = "model.toml"\noutput = "r"')], "plant: model 'nomoto' of"),
         ([('model = "model.toml"', 'model = "model.toml"\n[plant.fin]\nK_alpha = 1')], "key 'plant.speed' is missing"),
         ([('model = "model.toml"', 'model = "model.toml"\ninputs = { n = 10 }')], "plant.inputs.n: 'n' is no input"),
-        ([('[[unrest]]\nsize = { value = 1, unit = "deg" }\nbandwidth = 0.05', "")], "nothing disturbs the loop"),
-        ([("[[unrest]]", f"[[seas]]\nheight = 2\n{SEA}\n[[unrest]]")], "seas: a sea acts through its slope"),
-        ([("[demand]", 'minimise = ["roll"]\n[demand]')], "unknown key 'unrest[1].minimise'"),
+        (
+            [('[[slow_disturbances]]\nrms = { value = 1, unit = "deg" }\nbandwidth = 0.05', "")],
+            "nothing disturbs the loop",
+        ),
+        (
+            [("[[slow_disturbances]]", f"[[seas]]\nheight = 2\n{SEA}\n[[slow_disturbances]]")],
+            "seas: a sea acts through its slope",
+        ),
+        ([("[demand]", 'minimise = ["roll"]\n[demand]')], "unknown key 'slow_disturbances[1].minimise'"),
         ([("[plant]", 'minimise = ["roll"]\n[plant]')], "minimise[1]: 'roll' is a word of roll stabilisers"),
         ([('kind = "pid"\nparts = ["KP", "KD"]', 'kind = "yu2014"')], "controller.kind: 'yu2014' is a fin loop"),
         ([("value = 20", "value = 0")], "demand.change = 0 is not positive"),
@@ -354,9 +370,9 @@ def test_what_is_wrong_with_an_autopilot_file_is_said(
     changes: list[tuple[str, str]], says: str, tmp_path: Path
 ) -> None:
     model_file(tmp_path, nomoto())
-    path = written(tmp_path, AUTOPILOT, *changes)
+    path = write_loop_file(tmp_path, AUTOPILOT, *changes)
     with pytest.raises(InputError) as refused:
-        task_of(path)
+        tuning_task(path)
     assert says in str(refused.value) and "\n" not in str(refused.value)
 
 
@@ -364,14 +380,14 @@ def test_a_model_that_knows_no_fins_and_one_of_another_kind_are_refused(tmp_path
     plant = ("roll = { num = [1.0], den = [1.43242, 0.3796, 1.0] }", 'model = "model.toml"')
     model_file(tmp_path, roll())
     with pytest.raises(InputError, match=r"knows no fins; add \[plant.fin\]"):
-        task_of(written(tmp_path, FIN, plant, ("[plant.fin]\nK_alpha = 0.256", "")))
+        tuning_task(write_loop_file(tmp_path, FIN, plant, ("[plant.fin]\nK_alpha = 0.256", "")))
     with pytest.raises(InputError, match=r"model 'roll' of .* rolls and knows no fins.* name a model that is steered"):
-        task_of(written(tmp_path, AUTOPILOT))
+        tuning_task(write_loop_file(tmp_path, AUTOPILOT))
     model_file(tmp_path, nomoto())
     with pytest.raises(InputError, match=r"model 'nomoto' of .* has no K_alpha"):
-        task_of(written(tmp_path, FIN, plant))
+        tuning_task(write_loop_file(tmp_path, FIN, plant))
     with pytest.raises(InputError, match="no 'model' that a model file could take the place of"):
-        task_of(written(tmp_path, FIN), model_file=tmp_path / "model.toml")
+        tuning_task(write_loop_file(tmp_path, FIN), model_file=tmp_path / "model.toml")
 
 
 @pytest.mark.parametrize(("text", "says"), [("[plant\n", "is no valid TOML"), (None, "cannot be read")])
@@ -380,7 +396,7 @@ def test_no_toml_and_no_file_are_said(text: str | None, says: str, tmp_path: Pat
     if text is not None:
         path.write_text(text)
     with pytest.raises(InputError, match=says):
-        task_of(path)
+        tuning_task(path)
 
 
 def test_the_published_schema_is_that_in_force(repository: Path) -> None:
@@ -392,6 +408,6 @@ def test_the_loops_in_the_docs_are_tasks(repository: Path, tmp_path: Path) -> No
     model_file(tmp_path, nomoto())
     blocks = re.findall(r"^```toml\n(.*?)^```", (repository / "docs" / "loop-file.md").read_text(), re.M | re.S)
     assert len(blocks) == 2 and all(len(block.splitlines()) <= 15 for block in blocks)
-    fin, autopilot = (task_of(written(tmp_path, block), model_file=given) for block, given in zip(
+    fin, autopilot = (tuning_task(write_loop_file(tmp_path, block), model_file=given) for block, given in zip(
         blocks, (None, tmp_path / "model.toml"), strict=True))  # fmt: skip
     assert fin.demand is None and autopilot.demand is not None

@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 
-from seatrial.core.equations.augment import bias_of, biased, gust_of, lagged, with_biases, with_gusts, with_lags
+from seatrial.core.equations.augment import (
+    bias_name,
+    biased_name,
+    gust_name,
+    lagged_name,
+    with_biases,
+    with_gusts,
+    with_lags,
+)
 from seatrial.core.values import InputError
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate.replay import trajectory
@@ -15,7 +23,7 @@ INPUTS = 0.3 * np.sin(0.1 * np.arange(ROWS))[:, None]
 def test_a_gust_pushes_and_fades() -> None:
     """With r' = gust and nothing else, r = g0 tau (1 - exp(-t / tau)): damping and rudder switched off by T."""
     model = with_gusts(nomoto().with_values({"T": 1e12}), ("r",), memory=2.0)
-    assert model.states[-1] == gust_of("r") == "gust_r"
+    assert model.states[-1] == gust_name("r") == "gust_r"
     start = np.zeros(5)
     start[-1] = 0.01
     states, _ = trajectory(model, 0.0 * INPUTS, DT, start)
@@ -26,11 +34,11 @@ def test_a_gust_pushes_and_fades() -> None:
 
 def test_biases_are_added_to_what_is_read() -> None:
     model = with_biases(nomoto().with_values({"U": 1.0}), ("x0", "y0"))
-    assert model.outputs[-2:] == (biased("x0"), biased("y0"))
+    assert model.outputs[-2:] == (biased_name("x0"), biased_name("y0"))
     start = np.zeros(6)
     start[4:] = 3.0, -4.0
     states, outputs = trajectory(model, INPUTS, DT, start)
-    assert model.states[4:] == (bias_of("x0"), bias_of("y0"))
+    assert model.states[4:] == (bias_name("x0"), bias_name("y0"))
     np.testing.assert_array_equal(states[:, 4:], np.tile([3.0, -4.0], (ROWS, 1)))
     np.testing.assert_allclose(outputs[:, -2:], states[:, 2:4] + [3.0, -4.0], rtol=1e-14)
 
@@ -38,7 +46,7 @@ def test_biases_are_added_to_what_is_read() -> None:
 def test_a_lagging_channel_follows() -> None:
     model = with_lags(nomoto(), ("r",), 0.5)
     states, _ = trajectory(model, INPUTS, DT, np.zeros(5))
-    late = states[:, model.states.index(lagged("r"))]
+    late = states[:, model.states.index(lagged_name("r"))]
     np.testing.assert_allclose(0.5 * np.gradient(late, DT)[1:-1], (states[:, 0] - late)[1:-1], atol=2e-5)
 
 

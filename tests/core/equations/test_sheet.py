@@ -72,8 +72,8 @@ def test_particulars_come_from_the_ship(sheet: Sheet) -> None:
     sheet.rate(psi, r)
     model = sheet.model()
     with pytest.raises(InputError, match="model 'mine' needs L; give them under"):
-        model.of_ship(Ship("none"))
-    made = model.of_ship(Ship("tanker", {"L": 7.0, "B": 1.2}, "drawing"))
+        model.with_ship(Ship("none"))
+    made = model.with_ship(Ship("tanker", {"L": 7.0, "B": 1.2}, "drawing"))
     assert (made.parameters["L"].value, made.parameters["L"].source) == (7.0, "drawing")
 
 

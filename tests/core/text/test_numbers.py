@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from seatrial.core.text.numbers import duration, estimate, exact, fixed, significant
+from seatrial.core.text.numbers import duration, estimate_text, exact, fixed, significant
 
 
 @pytest.mark.parametrize(
@@ -18,13 +18,13 @@ from seatrial.core.text.numbers import duration, estimate, exact, fixed, signifi
     ],
 )
 def test_estimate_has_the_errors_second_digit(value: float, error: float, texts: tuple[str, str, str]) -> None:
-    made = estimate(value, error, value - 1.96 * error, value + 1.96 * error)
+    made = estimate_text(value, error, value - 1.96 * error, value + 1.96 * error)
     assert (made.value, made.error, made.power) == texts
 
 
 def test_without_an_error_the_value_prints_as_given() -> None:
-    assert estimate(1025.0, None, None, None).value == "1\u202f025"
-    assert estimate(1025.0, None, None, None).error == "–"
+    assert estimate_text(1025.0, None, None, None).value == "1\u202f025"
+    assert estimate_text(1025.0, None, None, None).error == "–"
 
 
 @pytest.mark.parametrize(

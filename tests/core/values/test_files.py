@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from seatrial.core.values import InputError
-from seatrial.core.values.files import writable_folder, write_together, write_whole
+from seatrial.core.values.files import writable_folder, write_atomically, write_files_atomically
 
 
 def test_the_test_of_writing_leaves_nothing_behind(tmp_path: Path) -> None:
@@ -28,7 +28,7 @@ def test_a_file_in_the_folders_place_is_said(tmp_path: Path) -> None:
 def test_a_folder_in_the_files_place_is_said_and_no_draft_stays(tmp_path: Path) -> None:
     (tmp_path / "taken").mkdir()
     with pytest.raises(InputError, match="taken' cannot be written"):
-        write_whole(tmp_path / "taken", b"content")
+        write_atomically(tmp_path / "taken", b"content")
     assert [place.name for place in tmp_path.iterdir()] == ["taken"]
 
 
@@ -36,6 +36,6 @@ def test_files_that_belong_together_are_written_together(tmp_path: Path) -> None
     (tmp_path / "b").mkdir()
     (tmp_path / "b" / "kept").touch()
     with pytest.raises(InputError, match="cannot be written"):
-        write_together(tmp_path / "b" / "kept" / "inside", {"one": b"1"})
-    assert write_together(tmp_path / "b", {"one": b"1", "two": b"2"}) == tmp_path / "b"
+        write_files_atomically(tmp_path / "b" / "kept" / "inside", {"one": b"1"})
+    assert write_files_atomically(tmp_path / "b", {"one": b"1", "two": b"2"}) == tmp_path / "b"
     assert sorted(place.name for place in (tmp_path / "b").iterdir()) == ["kept", "one", "two"]

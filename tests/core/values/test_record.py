@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from seatrial.core.values import Channel, InputError, Kind, Record
+from seatrial.core.values import Channel, InputError, Record, RecordKind
 
 finite = st.floats(-1e6, 1e6)
 
@@ -14,7 +14,7 @@ finite = st.floats(-1e6, 1e6)
 @pytest.fixture
 def record() -> Record:
     time = np.arange(0.0, 10.0, 0.1)
-    made = Record.of("run 1", time, {"u": 1.0 + 0.01 * time, "delta": np.sin(time)})
+    made = Record.from_arrays("run 1", time, {"u": 1.0 + 0.01 * time, "delta": np.sin(time)})
     rudder = made.channel("delta")
     port = Channel(rudder.values, rudder.unit, rudder.frame, "port", 1.5, "RUDDER [deg]")
     return made.with_channel("delta", port, "relabelled")
@@ -39,8 +39,8 @@ def test_pandas_round_trip(record: Record) -> None:
 
 def test_time_that_runs_backwards_is_refused_and_repeated_stamps_have_no_step() -> None:
     with pytest.raises(InputError, match="time runs backwards at sample 3"):
-        Record.of("r", np.array([0.0, 0.2, 0.1]), {"u": np.ones(3)})
-    repeated = Record.of("r", np.zeros(3), {"u": np.ones(3)})
+        Record.from_arrays("r", np.array([0.0, 0.2, 0.1]), {"u": np.ones(3)})
+    repeated = Record.from_arrays("r", np.zeros(3), {"u": np.ones(3)})
     with pytest.raises(InputError, match="uneven time base"):
         _ = repeated.dt
 
@@ -52,7 +52,7 @@ def test_xarray_round_trip(record: Record) -> None:
 
 @given(arrays.arrays(np.float64, st.tuples(st.just(3), st.integers(1, 20)), elements=finite))
 def test_pandas_round_trip_of_any_numbers(values: np.ndarray) -> None:
-    made = Record.of("any", np.arange(values.shape[1]) * 0.5, dict(zip(("u", "v", "r"), values, strict=True)))
+    made = Record.from_arrays("any", np.arange(values.shape[1]) * 0.5, dict(zip(("u", "v", "r"), values, strict=True)))
     assert_same(made, Record.from_pandas(made.to_pandas()))
 
 
@@ -73,7 +73,7 @@ def test_nothing_can_be_written_to(record: Record) -> None:
 
 def test_the_caller_s_array_is_copied() -> None:
     values = np.ones(3)
-    made = Record.of("copy", np.arange(3.0), {"u": values})
+    made = Record.from_arrays("copy", np.arange(3.0), {"u": values})
     values[0] = 9.0
     assert made["u"][0] == 1.0
 
@@ -85,13 +85,13 @@ def test_time_step_and_duration(record: Record) -> None:
 
 
 def test_an_uneven_time_base_has_no_step() -> None:
-    made = Record.of("uneven", np.array([0.0, 0.1, 0.3]), {"u": np.ones(3)})
+    made = Record.from_arrays("uneven", np.array([0.0, 0.1, 0.3]), {"u": np.ones(3)})
     with pytest.raises(InputError, match="'uneven' has an uneven time base"):
         _ = made.dt
 
 
 def test_one_sample_has_no_step() -> None:
-    made = Record.of("short", np.array([0.0]), {"u": np.ones(1)})
+    made = Record.from_arrays("short", np.array([0.0]), {"u": np.ones(1)})
     with pytest.raises(InputError, match="'short' has one sample"):
         _ = made.dt
 
@@ -126,17 +126,17 @@ def test_matrix_is_in_the_order_asked_for(record: Record) -> None:
 
 def test_provenance_says_what_was_done(record: Record) -> None:
     assert record.provenance.steps == ("relabelled",)
-    assert record.without("delta").named("b").name == "b"
-    assert record.kind is Kind.MEASURED
+    assert record.without("delta").renamed("b").name == "b"
+    assert record.kind is RecordKind.MEASURED
 
 
 def test_bad_records_are_refused() -> None:
     with pytest.raises(InputError, match="'empty' is empty"):
-        Record.of("empty", np.empty(0), {})
+        Record.from_arrays("empty", np.empty(0), {})
     with pytest.raises(InputError, match="channel 'u' has 2 samples, time 3"):
-        Record.of("ragged", np.arange(3.0), {"u": np.ones(2)})
+        Record.from_arrays("ragged", np.arange(3.0), {"u": np.ones(2)})
     with pytest.raises(InputError, match="unknown channel 'deltaa'; did you mean 'delta'"):
-        Record.of("name", np.arange(3.0), {"deltaa": np.ones(3)})
+        Record.from_arrays("name", np.arange(3.0), {"deltaa": np.ones(3)})
 
 
 def test_an_absent_channel_is_named(record: Record) -> None:

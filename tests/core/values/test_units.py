@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from seatrial.core.values import NOTATION, Finding, InputError, Severity, Ship, display, quantity, si
+from seatrial.core.values import NOTATION, Finding, InputError, Severity, Ship, display_unit, quantity, si_unit
 from seatrial.core.values.units import _UNITS
 
 
@@ -21,30 +21,30 @@ from seatrial.core.values.units import _UNITS
     ],
 )
 def test_factors(unit: str, factor: float, base: str) -> None:
-    assert si(unit)[0] == pytest.approx(factor, rel=1e-11)
-    assert si(unit)[1] == base
+    assert si_unit(unit)[0] == pytest.approx(factor, rel=1e-11)
+    assert si_unit(unit)[1] == base
 
 
 @pytest.mark.parametrize("unit", sorted(_UNITS))
 def test_every_si_unit_is_its_own(unit: str) -> None:
-    base = si(unit)[1]
-    assert si(base) == (1.0, base)
+    base = si_unit(unit)[1]
+    assert si_unit(base) == (1.0, base)
 
 
 def test_display_turns_angles_into_degrees() -> None:
-    assert display("rad") == (pytest.approx(57.29577951308232), "deg")
-    assert display("m") == (1.0, "m")
+    assert display_unit("rad") == (pytest.approx(57.29577951308232), "deg")
+    assert display_unit("m") == (1.0, "m")
 
 
 def test_an_unknown_unit_is_refused_and_the_nearest_named() -> None:
     with pytest.raises(InputError, match="unknown unit 'knt'; did you mean 'kn'"):
-        si("knt")
+        si_unit("knt")
 
 
 @pytest.mark.parametrize("symbol", sorted(NOTATION))
 def test_every_channel_has_an_si_unit_and_a_known_frame(symbol: str) -> None:
     q = quantity(symbol)
-    assert si(q.unit) == (1.0, q.unit)
+    assert si_unit(q.unit) == (1.0, q.unit)
     assert q.frame in {"body", "earth", "none"}
     assert q.latex and q.standard_name and q.meaning and q.positive
 

@@ -29,7 +29,7 @@ def zigzag(amplitude: float = 0.5, dt: float = 0.1, count: int = 3000, noise: fl
     values = {"x0": x, "y0": y, "psi": psi, "u": u, "v": v, "r": r, "delta": delta}
     sigma = {"x0": 0.02, "y0": 0.02, "psi": 2e-3, "u": 0.01, "v": 0.01, "r": 1e-3, "delta": 0.0}
     noisy = {k: a + noise * sigma[k] * rng.standard_normal(count) for k, a in values.items()}
-    return Record.of("zigzag", t, noisy)
+    return Record.from_arrays("zigzag", t, noisy)
 
 
 def mirrored(record: Record) -> Record:
@@ -43,7 +43,7 @@ def with_values(record: Record, **values: Array) -> Record:
     return replace(record, channels={**record.channels, **channels})
 
 
-def declared(record: Record, symbol: str, **changes: str | float) -> Record:
+def with_declaration(record: Record, symbol: str, **changes: str | float) -> Record:
     channel: Channel = replace(record.channel(symbol), **changes)  # type: ignore[arg-type]
     return replace(record, channels={**record.channels, symbol: channel})
 
@@ -53,4 +53,6 @@ def in_earth_axes(record: Record) -> Record:
     c, s = np.cos(record["psi"]), np.sin(record["psi"])
     u, v = record["u"], record["v"]
     turned = with_values(record, u=u * c - v * s, v=u * s + v * c)
-    return declared(declared(turned, "u", frame="earth", positive="north"), "v", frame="earth", positive="east")
+    return with_declaration(
+        with_declaration(turned, "u", frame="earth", positive="north"), "v", frame="earth", positive="east"
+    )

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.data.check.ship import declared, in_earth_axes, with_values, zigzag
+from tests.data.check.ship import in_earth_axes, with_declaration, with_values, zigzag
 
 from seatrial.core.values import InputError, Record
-from seatrial.data.check import canonical
+from seatrial.data.check import canonical_record
 
 
 def expect_equal(a: Record, b: Record, tolerance: float = 1e-12) -> None:
@@ -25,49 +25,49 @@ def conventions(draw: st.DrawFn) -> Record:
         record = in_earth_axes(record)
     for symbol in ("psi", "r", "delta"):
         if draw(st.booleans()):
-            record = declared(record, symbol, positive="port")
+            record = with_declaration(record, symbol, positive="port")
     if draw(st.booleans()):
-        record = declared(record, "y0", positive="west")
+        record = with_declaration(record, "y0", positive="west")
     for symbol in ("v", "x0", "y0"):
-        record = declared(record, symbol, reference_point=draw(st.floats(-3, 3)))
+        record = with_declaration(record, symbol, reference_point=draw(st.floats(-3, 3)))
     return record
 
 
 @given(conventions(), st.floats(-3, 3))
 @settings(max_examples=30)
 def test_twice_is_once(record: Record, point: float) -> None:
-    once = canonical(record, point)
-    twice = canonical(once, point)
+    once = canonical_record(record, point)
+    twice = canonical_record(once, point)
     for symbol in once.channels:
         np.testing.assert_array_equal(once[symbol], twice[symbol])
     assert once.provenance == twice.provenance
 
 
 def test_a_record_in_house_conventions_is_untouched() -> None:
-    expect_equal(canonical(zigzag()), zigzag(), 0.0)
+    expect_equal(canonical_record(zigzag()), zigzag(), 0.0)
 
 
 def test_earth_fixed_velocities_come_back_into_the_ship() -> None:
-    expect_equal(canonical(in_earth_axes(zigzag())), zigzag())
+    expect_equal(canonical_record(in_earth_axes(zigzag())), zigzag())
 
 
 @pytest.mark.parametrize(("symbol", "positive"), [("delta", "port"), ("psi", "port"), ("y0", "west"), ("u", "aft")])
 def test_signs_are_turned_as_declared(symbol: str, positive: str) -> None:
-    turned = with_values(declared(zigzag(), symbol, positive=positive), **{symbol: -zigzag()[symbol]})
-    expect_equal(canonical(turned), zigzag())
+    turned = with_values(with_declaration(zigzag(), symbol, positive=positive), **{symbol: -zigzag()[symbol]})
+    expect_equal(canonical_record(turned), zigzag())
 
 
 @given(st.floats(-5, 5), st.floats(-5, 5))
 @settings(max_examples=20)
 def test_reference_points_there_and_back(there: float, back: float) -> None:
-    moved = canonical(canonical(zigzag(count=200), there), back)
-    direct = canonical(zigzag(count=200), back)
+    moved = canonical_record(canonical_record(zigzag(count=200), there), back)
+    direct = canonical_record(zigzag(count=200), back)
     expect_equal(moved, direct, 1e-11)
 
 
 def test_the_shifted_point_moves_with_its_own_velocity() -> None:
     """Oracle: d(position)/dt at the new point equals the turned velocity there."""
-    record = canonical(zigzag(count=2000), 2.0)
+    record = canonical_record(zigzag(count=2000), 2.0)
     c, s = np.cos(record["psi"]), np.sin(record["psi"])
     east = record["u"] * s + record["v"] * c
     np.testing.assert_allclose(np.gradient(record["y0"], record.dt)[5:-5], east[5:-5], atol=2e-3)
@@ -80,7 +80,7 @@ def test_headings_are_unwrapped_over_holes() -> None:
     psi = np.linspace(0.0, 20.0, len(record))
     wrapped = (psi + np.pi) % (2 * np.pi) - np.pi
     wrapped[100:110] = np.nan
-    unwrapped = canonical(with_values(record, psi=wrapped))["psi"]
+    unwrapped = canonical_record(with_values(record, psi=wrapped))["psi"]
     known = np.isfinite(wrapped)
     np.testing.assert_allclose(unwrapped[known], psi[known], atol=1e-12)
     assert np.isnan(unwrapped[100:110]).all()
@@ -88,8 +88,8 @@ def test_headings_are_unwrapped_over_holes() -> None:
 
 def test_refusals() -> None:
     with pytest.raises(InputError, match="positive must be 'starboard' or 'port', not 'left'"):
-        canonical(declared(zigzag(), "delta", positive="left"))
+        canonical_record(with_declaration(zigzag(), "delta", positive="left"))
     with pytest.raises(InputError, match="needs channel 'r'"):
-        canonical(zigzag().without("r"), 1.0)
+        canonical_record(zigzag().without("r"), 1.0)
     with pytest.raises(InputError, match="heading 'psi'"):
-        canonical(in_earth_axes(zigzag()).without("psi", "x0", "y0"))
+        canonical_record(in_earth_axes(zigzag()).without("psi", "x0", "y0"))

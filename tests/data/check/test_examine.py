@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from tests.data.check.ship import declared, in_earth_axes, mirrored, with_values, zigzag
+from tests.data.check.ship import in_earth_axes, mirrored, with_declaration, with_values, zigzag
 
 from seatrial.core.values import Finding, Record, Severity
-from seatrial.data.check import canonical, examine, is_excited
+from seatrial.data.check import canonical_record, examine, is_excited
 
 
 def errors(record: Record) -> list[str]:
@@ -44,7 +44,7 @@ WRONG = {
     "velocity-sign": lambda r: with_values(r, v=-r["v"]),
     "heading-sign": lambda r: with_values(r, psi=-r["psi"], r=-r["r"], delta=-r["delta"]),
     "yaw-rate": lambda r: with_values(r, r=-r["r"]),
-    "rudder-sign": lambda r: declared(r, "delta", positive="port"),
+    "rudder-sign": lambda r: with_declaration(r, "delta", positive="port"),
     "speed-unit": lambda r: with_values(r, u=r["u"] * 3600 / 1852, v=r["v"] * 3600 / 1852),
 }
 
@@ -72,15 +72,15 @@ def sideways(noise: float) -> Record:
 def test_yaw_rate_in_degrees() -> None:
     record = zigzag(noise=1.0)
     assert errors(with_values(record, r=np.degrees(record["r"]))) == ["angle-unit"]
-    assert "'r' is in degrees" in found(with_values(record, r=np.degrees(record["r"])), "angle-unit").what
-    assert "'r' is in radians" in found(with_values(record, r=np.radians(record["r"])), "angle-unit").what
+    assert "'r' is in degrees" in found(with_values(record, r=np.degrees(record["r"])), "angle-unit").message
+    assert "'r' is in radians" in found(with_values(record, r=np.radians(record["r"])), "angle-unit").message
 
 
 def test_heading_in_radians_declared_in_degrees() -> None:
     record = zigzag(noise=1.0)
     wrong = with_values(record, psi=np.radians(record["psi"]))
     assert set(errors(wrong)) == {"angle-unit"}
-    assert "psi is in radians" in found(wrong, "angle-unit").what
+    assert "psi is in radians" in found(wrong, "angle-unit").message
 
 
 def test_rudder_in_degrees_or_radians() -> None:
@@ -92,7 +92,7 @@ def test_rudder_in_degrees_or_radians() -> None:
 
 def test_a_roll_rate_that_is_the_yaw_rate() -> None:
     record = zigzag(noise=1.0)
-    roll = Record.of("a", record.time, {"p": record["r"]}).channel("p")
+    roll = Record.from_arrays("a", record.time, {"p": record["r"]}).channel("p")
     other = with_values(record.with_channel("p", roll), r=0.1 * np.gradient(record["r"], record.dt))
     assert errors(other) == ["mislabelled", "yaw-rate"]
 
@@ -104,14 +104,14 @@ def test_another_reference_point_shows_in_closure_and_nowhere_else(distance: flo
     assert codes(shifted) == ["closure"]
     finding = found(shifted, "closure")
     assert finding.severity is Severity.ERROR
-    assert f"{distance:+.3g} m ahead" in finding.what
-    assert codes(declared(shifted, "v", reference_point=distance)) == []
+    assert f"{distance:+.3g} m ahead" in finding.message
+    assert codes(with_declaration(shifted, "v", reference_point=distance)) == []
 
 
 def test_a_current_shows_in_closure() -> None:
     record = zigzag()
     finding = found(with_values(record, x0=record["x0"] + 0.1 * record.time), "closure")
-    assert finding.severity is Severity.WARNING and "current or velocity bias of 0.1 m/s" in finding.what
+    assert finding.severity is Severity.WARNING and "current or velocity bias of 0.1 m/s" in finding.message
 
 
 @pytest.mark.parametrize("samples", [5, -8])
@@ -119,20 +119,20 @@ def test_lags_are_measured(samples: int) -> None:
     record = zigzag(noise=1.0)
     late = with_values(record, r=np.roll(record["r"], samples)).rows(slice(20, -20))
     finding = found(late, "lag")
-    assert ("lags behind" in finding.what) == (samples > 0)
-    assert float(finding.what.split("about ")[1].split(" s")[0]) == pytest.approx(abs(samples) * 0.1, abs=0.06)
+    assert ("lags behind" in finding.message) == (samples > 0)
+    assert float(finding.message.split("about ")[1].split(" s")[0]) == pytest.approx(abs(samples) * 0.1, abs=0.06)
 
 
 def test_rudder_that_never_moves() -> None:
     record = with_values(zigzag(noise=1.0), delta=np.full(3000, 0.01))
     finding = found(record, "no-excitation")
-    assert "never moves" in finding.what and "zigzag" in finding.advice
+    assert "never moves" in finding.message and "zigzag" in finding.advice
     assert not is_excited(record) and is_excited(zigzag())
 
 
 def test_dead_stuck_and_constant_channels() -> None:
     record = zigzag(noise=1.0)
-    n = Record.of("a", record.time, {"n": np.full(3000, 10.0)}).channel("n")
+    n = Record.from_arrays("a", record.time, {"n": np.full(3000, 10.0)}).channel("n")
     assert codes(record.with_channel("n", n)) == ["constant"]
     r = np.array(record["r"])
     r[1000:1400] = r[1000]
@@ -145,9 +145,9 @@ def test_getting_under_way_and_coasting() -> None:
     t = record.time
     n = np.where((t > 10) & (t < 280), 10.0, 0.0)
     u = 1.2 * (1 - np.exp(-np.maximum(t - 10, 0) / 15.0))
-    made = Record.of("start", t, {"u": u, "n": n})
+    made = Record.from_arrays("start", t, {"u": u, "n": n})
     assert codes(made) == ["stuck", "acceleration-phase", "propeller-stopped", "coasting"]
-    assert float(found(made, "acceleration-phase").what.split("t = ")[1].split()[0]) == pytest.approx(34, abs=4)
+    assert float(found(made, "acceleration-phase").message.split("t = ")[1].split()[0]) == pytest.approx(34, abs=4)
 
 
 def test_wrapped_heading_is_mentioned() -> None:
@@ -156,8 +156,8 @@ def test_wrapped_heading_is_mentioned() -> None:
     wrapped = with_values(record, psi=(psi + np.pi) % (2 * np.pi) - np.pi)
     finding = found(wrapped, "angle-wrap")
     assert finding.severity is Severity.INFO
-    assert "readings of psi jump by a whole turn" in finding.what
-    np.testing.assert_allclose(np.ptp(canonical(wrapped)["psi"]), np.ptp(psi))
+    assert "readings of psi jump by a whole turn" in finding.message
+    np.testing.assert_allclose(np.ptp(canonical_record(wrapped)["psi"]), np.ptp(psi))
 
 
 @pytest.mark.parametrize("spoil", [lambda r: r, *WRONG.values()])
@@ -168,8 +168,8 @@ def test_the_mirror_image_is_judged_alike(spoil) -> None:
 
 
 def test_every_finding_names_the_record_and_gives_numbers_and_advice() -> None:
-    record = declared(wrong_frame(zigzag(noise=1.0)), "delta", positive="port")
+    record = with_declaration(wrong_frame(zigzag(noise=1.0)), "delta", positive="port")
     for finding in examine(record):
-        assert "'zigzag'" in finding.what
+        assert "'zigzag'" in finding.message
         assert any(c.isdigit() for c in finding.evidence) and finding.advice
         assert not math.isnan(len(finding.text))

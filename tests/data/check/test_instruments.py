@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record
-from seatrial.data.check.instruments import clocks, dead_channels
+from seatrial.data.check.instruments import compare_instruments, dead_channel_findings
 
 TIME, OMEGA = 0.02 * np.arange(1200), 5.4
 
@@ -14,20 +14,22 @@ def test_delay_drift_and_gain_are_found(delay: float, drift: float, gain: float,
     centre = 0.5 * (TIME[0] + TIME[-1])
     late = TIME - delay - drift * (TIME - centre)
     first = np.cos(OMEGA * late) + 0.02 * rng.standard_normal(len(TIME))
-    found = clocks(TIME, first, gain * np.cos(OMEGA * TIME), OMEGA)
-    assert found.delay == pytest.approx(delay, abs=0.003) and found.drift == pytest.approx(drift, abs=4e-4)
-    assert found.gain == pytest.approx(gain, rel=0.01) and found.spread < 0.005
+    found = compare_instruments(TIME, first, gain * np.cos(OMEGA * TIME), OMEGA)
+    assert found.delay == pytest.approx(delay, abs=0.003) and found.clock_drift == pytest.approx(drift, abs=4e-4)
+    assert found.gain == pytest.approx(gain, rel=0.01) and found.delay_scatter < 0.005
 
 
 def test_a_delay_of_a_whole_period_cannot_be_told() -> None:
     period = 2.0 * np.pi / OMEGA
-    found = clocks(TIME, np.cos(OMEGA * (TIME - period - 0.05)), np.cos(OMEGA * TIME), OMEGA)
+    found = compare_instruments(TIME, np.cos(OMEGA * (TIME - period - 0.05)), np.cos(OMEGA * TIME), OMEGA)
     assert found.delay == pytest.approx(0.05, abs=0.003)
 
 
 def test_a_channel_that_never_moves_is_dead_and_others_are_not() -> None:
-    record = Record.of("run", TIME, {"z": np.zeros(len(TIME)), "phi": np.sin(TIME), "y0": np.full(len(TIME), 1e-19)})
-    found = dead_channels(record)
+    record = Record.from_arrays(
+        "run", TIME, {"z": np.zeros(len(TIME)), "phi": np.sin(TIME), "y0": np.full(len(TIME), 1e-19)}
+    )
+    found = dead_channel_findings(record)
     assert [f.code for f in found] == ["dead-channel"] * 2 and {"'z'", "'y0'"} <= {
-        w for f in found for w in f.what.split()
+        w for f in found for w in f.message.split()
     }

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Finding, Record, Severity
-from seatrial.data.check import examine, prepared
-from seatrial.data.read import Column, Layout, read_record
+from seatrial.data.check import examine, prepared_record
+from seatrial.data.read import ColumnSpec, Layout, read_record
 
 HSVA_FILES, ESSO_FILES = 13, 23
 
@@ -17,35 +17,35 @@ def hsva(naive: bool) -> Layout:
     """Columns as their headers call them, or as they are."""
     frame = "body" if naive else "earth"
     columns = [
-        Column("x0", 2, "m"),
-        Column("y0", 3, "m"),
-        Column("psi", 4, "deg"),
-        Column("u", 5, "m/s", frame=frame),
-        Column("v", 6, "m/s", frame=frame),
-        Column("p" if naive else "r", 7, "deg/s"),
-        Column("delta", 9, "deg", positive="starboard" if naive else "port"),
-        Column("n", 10, "rps"),
-        Column("thrust", 11, "N"),
-        Column("torque", 12, "N m"),
+        ColumnSpec("x0", 2, "m"),
+        ColumnSpec("y0", 3, "m"),
+        ColumnSpec("psi", 4, "deg"),
+        ColumnSpec("u", 5, "m/s", frame=frame),
+        ColumnSpec("v", 6, "m/s", frame=frame),
+        ColumnSpec("p" if naive else "r", 7, "deg/s"),
+        ColumnSpec("delta", 9, "deg", positive="starboard" if naive else "port"),
+        ColumnSpec("n", 10, "rps"),
+        ColumnSpec("thrust", 11, "N"),
+        ColumnSpec("torque", 12, "N m"),
     ]
-    unnamed = [Column("r", 8, "deg/s")] if naive else []
-    return Layout("text", Column("time", 1, "s"), (*columns, *unnamed), header_lines=5, encoding="cp1252")
+    unnamed = [ColumnSpec("r", 8, "deg/s")] if naive else []
+    return Layout("text", ColumnSpec("time", 1, "s"), (*columns, *unnamed), header_lines=5, encoding="cp1252")
 
 
 def esso_osaka(rudder: str) -> Layout:
     columns = (
-        Column("x0", "x_position_mid [m]", "m"),
-        Column("y0", "y_position_mid [m]", "m"),
-        Column("psi", "psi_hat [rad]", "rad"),
-        Column("u", "u_velo [m/s]", "m/s"),
-        Column("v", "vm_velo [m/s]", "m/s"),
-        Column("r", "r_angvelo [rad/s]", "rad/s"),
-        Column("n", "n_prop [rps]", "rps"),
-        Column("delta", "delta_rudder [rad]", "rad", positive=rudder),
-        Column("wind_speed", "wind_velo_true [m/s]", "m/s"),
-        Column("wind_direction", "wind_dir_true [rad]", "rad"),
+        ColumnSpec("x0", "x_position_mid [m]", "m"),
+        ColumnSpec("y0", "y_position_mid [m]", "m"),
+        ColumnSpec("psi", "psi_hat [rad]", "rad"),
+        ColumnSpec("u", "u_velo [m/s]", "m/s"),
+        ColumnSpec("v", "vm_velo [m/s]", "m/s"),
+        ColumnSpec("r", "r_angvelo [rad/s]", "rad/s"),
+        ColumnSpec("n", "n_prop [rps]", "rps"),
+        ColumnSpec("delta", "delta_rudder [rad]", "rad", positive=rudder),
+        ColumnSpec("wind_speed", "wind_velo_true [m/s]", "m/s"),
+        ColumnSpec("wind_direction", "wind_dir_true [rad]", "rad"),
     )
-    return Layout("text", Column("time", "t [s]", "s"), columns)
+    return Layout("text", ColumnSpec("time", "t [s]", "s"), columns)
 
 
 def all_records(files: list[Path], layout: Layout, expected: int) -> list[Record]:
@@ -70,7 +70,7 @@ def test_hsva_headers_are_refuted_on_every_file(data_folder: Path) -> None:
     for record in hsva_records(data_folder, naive=True):
         findings = examine(record)
         assert errors(findings) == ["mislabelled", "rudder-sign", "velocity-frame", "yaw-rate"], record.name
-        said = {f.code: f.what for f in findings}
+        said = {f.code: f.message for f in findings}
         assert "'column 5', 'column 6'" in said["velocity-frame"] and "earth-fixed" in said["velocity-frame"]
         assert "'p' (column 7) is in truth the yaw rate" in said["mislabelled"]
         assert "'r' (column 8) is not the yaw rate" in said["yaw-rate"]
@@ -84,11 +84,11 @@ def test_hsva_rightly_declared_has_no_error_and_no_warning(data_folder: Path) ->
 def test_hsva_at_another_reference_point_is_seen_in_closure(data_folder: Path) -> None:
     """v declared at the centre of gravity .2436 m ahead while it belongs to the positions' point."""
     for record in hsva_records(data_folder, naive=False)[2:]:
-        clean, _ = prepared(record)
+        clean, _ = prepared_record(record)
         v = clean.channel("v").with_values(clean["v"] + 0.2436 * clean["r"])
         closure = [f for f in examine(clean.with_channel("v", v)) if f.code == "closure"]
         if np.ptp(clean["psi"]) > 0.3:
-            said = closure[0].what.split("a point ")[1].split()[0]
+            said = closure[0].message.split("a point ")[1].split()[0]
             assert float(said) == pytest.approx(0.2436, abs=0.01), record.name
 
 
@@ -107,22 +107,22 @@ def test_esso_osaka_rudder_sign(data_folder: Path) -> None:
 
 def test_esso_osaka_empty_rows_are_reported_and_cut(data_folder: Path) -> None:
     (file,) = data_folder.glob("esso_osaka/zigzag/zigzag_31-Jul-2020_13_50_28.csv")
-    every = Layout("text", Column("time", 1, "s"), _all_columns(), header_lines=1)
+    every = Layout("text", ColumnSpec("time", 1, "s"), _all_columns(), header_lines=1)
     record = read_record(file, every)
     assert len(record) == 2028
     assert sum(int(np.isnan(c.values).sum()) for c in record.channels.values()) + np.isnan(record.time).sum() == 4251
-    clean, findings = prepared(record)
+    clean, findings = prepared_record(record)
     rows = next(f for f in findings if f.code == "empty-rows")
-    assert "327 empty rows" in rows.what and "4251 empty cells" in rows.evidence
+    assert "327 empty rows" in rows.message and "4251 empty cells" in rows.evidence
     assert len(clean) == 1701 and clean.is_uniform
     assert all(np.isfinite(c.values).all() for c in clean.channels.values())
 
 
-def _all_columns() -> tuple[Column, ...]:
+def _all_columns() -> tuple[ColumnSpec, ...]:
     units = ["m", "m/s", "m", "m/s", "rad", "rad/s", "rps", "rad", "m/s", "rad", "m/s", "rad"]
     symbols = ["x0", "u", "y0", "v", "psi", "r", "n", "delta", "wind_speed_relative", "wind_direction_relative"]
     symbols += ["wind_speed", "wind_direction"]
-    return tuple(Column(s, k + 2, unit) for k, (s, unit) in enumerate(zip(symbols, units, strict=True)))
+    return tuple(ColumnSpec(s, k + 2, unit) for k, (s, unit) in enumerate(zip(symbols, units, strict=True)))
 
 
 def test_esso_osaka_jumps_lags_and_phases(data_folder: Path) -> None:
@@ -133,7 +133,7 @@ def test_esso_osaka_jumps_lags_and_phases(data_folder: Path) -> None:
         found.update(findings.keys())
         if "jump" in findings:
             largest = max(largest, float(findings["jump"].evidence.split("up to ")[1].split()[0]))
-        lags.append(float(findings["closure"].what.split("a lag of ")[1].split()[0]))
+        lags.append(float(findings["closure"].message.split("a lag of ")[1].split()[0]))
     assert found["jump"] >= 20 and 0.6 < largest < 0.75
     assert found["acceleration-phase"] == ESSO_FILES
     assert found["coasting"] >= 18
@@ -143,11 +143,11 @@ def test_esso_osaka_jumps_lags_and_phases(data_folder: Path) -> None:
 def test_roll_decay_at_rest_raises_no_error(data_folder: Path) -> None:
     for file in sorted(data_folder.glob("kvlcc2_rolldecay/model_test_2*.csv")):
         columns = (
-            Column("x0", "x", "m"),
-            Column("y0", "y", "m"),
-            Column("phi", "phi", "rad"),
-            Column("psi", "psi", "rad"),
+            ColumnSpec("x0", "x", "m"),
+            ColumnSpec("y0", "y", "m"),
+            ColumnSpec("phi", "phi", "rad"),
+            ColumnSpec("psi", "psi", "rad"),
         )
-        record = read_record(file, Layout("text", Column("time", "time", "s"), columns))
+        record = read_record(file, Layout("text", ColumnSpec("time", "time", "s"), columns))
         assert errors(examine(record)) == []
-        assert prepared(record)[0].is_uniform
+        assert prepared_record(record)[0].is_uniform

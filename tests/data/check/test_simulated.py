@@ -32,7 +32,7 @@ def clean() -> Record:
         compiled.rates, compiled.outputs, inputs, offsets, 0, 1, dt, 1, start, p, ones, zeros, zeros,
         everything, 0, out, failed,
     )  # fmt: skip
-    record = Record.of("waterjet", time, {s: out[:, i] for i, s in enumerate(model.states)})
+    record = Record.from_arrays("waterjet", time, {s: out[:, i] for i, s in enumerate(model.states)})
     nozzle = Channel(frozen(inputs[:, delta]), "rad", "body", model.inputs[delta].direction)
     return record.with_channel("delta", nozzle)
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatrial.data.example_series.series import EXAMPLE_SEED, SENSOR_NOISE, demo_series, main, run, truth
+from seatrial.data.example_series.series import EXAMPLE_SEED, SENSOR_NOISE, demo_series, main, simulate_run, true_model
 from seatrial.physics.simulate import replay
 
 
@@ -17,7 +17,7 @@ def test_the_same_seed_gives_the_same_bits() -> None:
 
 def test_noise_has_the_stated_size_and_inputs_have_none() -> None:
     records, model = demo_series(3, executes=1)
-    clean = run(model, "consecutive-zigzags:1")
+    clean = simulate_run(model, "consecutive-zigzags:1")
     for symbol, deviation in SENSOR_NOISE.items():
         assert np.std(records[0][symbol] - clean[symbol]) == pytest.approx(deviation, rel=0.05)
     assert np.array_equal(records[0]["delta"], clean["delta"])
@@ -25,15 +25,15 @@ def test_noise_has_the_stated_size_and_inputs_have_none() -> None:
 
 def test_the_generator_is_finer_than_a_replay_at_ten_hertz() -> None:
     """The difference is there, and far below the sensor noise."""
-    clean = run(truth(), "zigzag:25/25")
-    coarse = replay(truth(), clean)
+    clean = simulate_run(true_model(), "zigzag:25/25")
+    coarse = replay(true_model(), clean)
     assert 1e-9 < np.max(np.abs(coarse["psi"] - clean["psi"])) < 0.1 * SENSOR_NOISE["psi"]
     assert np.max(np.hypot(coarse["x0"] - clean["x0"], coarse["y0"] - clean["y0"])) < 0.1 * SENSOR_NOISE["x0"]
 
 
 def test_held_out_runs_stay_within_the_models_reach() -> None:
     for record in demo_series(0, executes=1)[0][1:]:
-        smooth = run(truth(), record.name.replace("_", ":", 1).replace("_", "/"))
+        smooth = simulate_run(true_model(), record.name.replace("_", ":", 1).replace("_", "/"))
         assert np.degrees(np.abs(np.arctan2(smooth["v"], smooth["u"]))).max() < 20.0
 
 

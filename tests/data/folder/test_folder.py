@@ -7,22 +7,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.reporting.told import told
+from tests.reporting.complete_fit import complete_fit
 
 from seatrial.core.results import (
     Coefficient,
-    Disturbance,
     Fit,
     Measure,
     Method,
     Noise,
+    NoiseModel,
     Offset,
     Prediction,
     Residuals,
     Solution,
     Status,
 )
-from seatrial.core.values import Finding, InputError, Kind, Record, Severity, Ship
+from seatrial.core.values import Finding, InputError, Record, RecordKind, Severity, Ship
 from seatrial.data.folder.design_json import design_schema
 from seatrial.data.folder.fit_json import FitDocument, fit_json, fit_schema, strict_json
 from seatrial.data.folder.online_json import online_schema
@@ -31,11 +31,11 @@ from seatrial.data.trial.schema import trial_schema
 from seatrial.physics.models import model_named
 
 
-def record(name: str, kind: Kind = Kind.MEASURED) -> Record:
+def record(name: str, kind: RecordKind = RecordKind.MEASURED) -> Record:
     time = np.arange(0.0, 20.0, 0.1)
     speed = np.full(200, 0.8)
     rudder = np.where(time > 5.0, 0.3, 0.0)
-    return Record.of(name, time, {"u": speed, "psi": time / 3.0, "delta": rudder, "v_j": speed + 1.0}, kind)
+    return Record.from_arrays(name, time, {"u": speed, "psi": time / 3.0, "delta": rudder, "v_j": speed + 1.0}, kind)
 
 
 @pytest.fixture
@@ -56,12 +56,12 @@ def fit() -> Fit:
         noise=(Noise("u", "m/s", 0.02, 0.1, math.nan),),
         residuals=(Residuals("u", 10.0, np.arange(5.0) / 3.0, np.array([1.0, 0.1])),),
         predictions=(
-            Prediction("first", "training", first, record("first", Kind.SIMULATED), {"u": 0.1}, {}, 2.0),
+            Prediction("first", "training", first, record("first", RecordKind.SIMULATED), {"u": 0.1}, {}, 2.0),
             Prediction(
                 "second",
                 "validation",
                 second,
-                record("second", Kind.SIMULATED),
+                record("second", RecordKind.SIMULATED),
                 {"psi_deg": 1.0 / 3.0, "v": math.nan},
                 {"overshoot_1_deg": Measure(4.0, math.nan), "overshoot_2_deg": Measure(4.1, 3.9, 3.75, 4.5)},
                 2.0,
@@ -88,47 +88,47 @@ def test_a_fit_comes_back_from_its_folder(fit: Fit, tmp_path: Path) -> None:
     assert back.predictions[1].rms["psi_deg"] == 1.0 / 3.0
     assert np.array_equal(back.records[1]["psi"], fit.records[1]["psi"])
     assert back.predictions[1].measured is back.records[1]
-    assert back.predictions[0].simulated.kind is Kind.SIMULATED
+    assert back.predictions[0].simulated.kind is RecordKind.SIMULATED
 
 
 def test_what_the_records_tell_comes_back_to_the_last_bit(fit: Fit, tmp_path: Path) -> None:
-    full = told(fit)
+    full = complete_fit(fit)
     back = load_fit(save_fit(full, tmp_path))
     assert back.identifiability == full.identifiability
-    assert (back.disturbance, back.family) == (full.disturbance, full.family)
-    assert back.rivals == full.rivals and len(back.rivals) == 5
+    assert (back.noise_model, back.candidate_models) == (full.noise_model, full.candidate_models)
+    assert back.baselines == full.baselines and len(back.baselines) == 5
     for p, q in zip(back.predictions, full.predictions, strict=True):
-        assert (p.extrapolation, p.floor, p.spread, p.measures.keys()) == (
-            q.extrapolation, q.floor, q.spread, q.measures.keys(),
+        assert (p.extrapolation, p.noise_floor, p.tied_spread, p.measures.keys()) == (
+            q.extrapolation, q.noise_floor, q.tied_spread, q.measures.keys(),
         )  # fmt: skip
         assert list(p.half_width) == list(q.half_width)
         assert all(np.array_equal(p.half_width[s], q.half_width[s]) for s in q.half_width)
 
 
 def test_numbers_that_are_none_come_back_as_such(fit: Fit, tmp_path: Path) -> None:
-    unknown = Disturbance("output error", math.nan, {"u": math.inf}, {})
-    back = load_fit(save_fit(replace(fit, disturbance=unknown), tmp_path)).disturbance
+    unknown = NoiseModel("output error", math.nan, {"u": math.inf}, {})
+    back = load_fit(save_fit(replace(fit, noise_model=unknown), tmp_path)).noise_model
     assert back is not None and math.isnan(back.whiteness_p) and back.process == {"u": math.inf}
 
 
 def test_a_folder_from_before_is_read(fit: Fit, tmp_path: Path) -> None:
     path = save_fit(fit, tmp_path) / "result.json"
     table = json.loads(path.read_text())
-    for name in ("identifiability", "disturbance", "family", "rivals"):
+    for name in ("identifiability", "noise_model", "candidate_models", "baselines"):
         del table["detail"][name]
     for entry in table["detail"]["predictions"]:
-        for name in ("extrapolation", "half_width", "floor", "spread"):
+        for name in ("extrapolation", "half_width", "noise_floor", "tied_spread"):
             del entry[name]
     path.write_text(strict_json(table))
     back = load_fit(tmp_path)
-    assert (back.identifiability, back.disturbance, back.family, back.rivals) == (None, None, (), ())
+    assert (back.identifiability, back.noise_model, back.candidate_models, back.baselines) == (None, None, (), ())
     assert back.predictions[0].half_width == {}
 
 
 def test_a_damaged_entry_is_one_sentence(fit: Fit, tmp_path: Path) -> None:
-    path = save_fit(told(fit), tmp_path) / "result.json"
+    path = save_fit(complete_fit(fit), tmp_path) / "result.json"
     table = json.loads(path.read_text())
-    table["detail"]["disturbance"]["process"]["u"] = "much"
+    table["detail"]["noise_model"]["process"]["u"] = "much"
     path.write_text(strict_json(table))
     with pytest.raises(InputError, match=r"damaged \(process\.u: .*identify' again$"):
         load_fit(tmp_path)
@@ -137,8 +137,8 @@ def test_a_damaged_entry_is_one_sentence(fit: Fit, tmp_path: Path) -> None:
 def test_the_json_has_the_documented_entries_and_no_nan(fit: Fit) -> None:
     table = json.loads(strict_json(fit_json(fit)))
     assert list(table) == [
-        "coefficients", "intervals", "validation", "identifiability", "noise", "family", "seakeeping", "rolling",
-        "rivals", "findings", "elapsed_s", "versions", "seed",
+        "coefficients", "intervals", "validation", "identifiability", "noise", "candidate_models", "seakeeping", "roll",
+        "baselines", "findings", "elapsed_s", "versions", "seed",
     ]  # fmt: skip
     assert list(table["coefficients"][0]) == [
         "name", "unit", "estimate", "standard_error", "lower", "upper", "fixed", "truth",
@@ -155,12 +155,17 @@ def test_the_json_has_the_documented_entries_and_no_nan(fit: Fit) -> None:
 def test_what_was_not_examined_is_null_or_empty(fit: Fit) -> None:
     table = fit_json(fit)
     run = table["validation"][0]
-    assert (table["identifiability"], table["noise"], table["family"]) == (None, None, [])
-    assert (run["extrapolation_index"], run["extrapolation"], run["floor"], run["spread"]) == (None, {}, {}, {})
+    assert (table["identifiability"], table["noise"], table["candidate_models"]) == (None, None, [])
+    assert (run["extrapolation_index"], run["extrapolation"], run["noise_floor"], run["tied_spread"]) == (
+        None,
+        {},
+        {},
+        {},
+    )
 
 
 def test_what_the_records_tell_stands_in_the_json(fit: Fit) -> None:
-    full = told(fit)
+    full = complete_fit(fit)
     table = json.loads(strict_json(fit_json(full)))
     FitDocument.model_validate(table)
     known = full.identifiability
@@ -176,10 +181,10 @@ def test_what_the_records_tell_stands_in_the_json(fit: Fit) -> None:
     assert list(table["noise"]) == ["method", "whiteness_p", "process", "measurement", "text"]
     run = table["validation"][0]
     assert run["extrapolation_index"] == 1.9 and run["extrapolation"]["yaw_rate"] == 1.9
-    assert run["floor"]["position_m"] == 0.19 and run["spread"]["psi_deg"] == 0.31
+    assert run["noise_floor"]["position_m"] == 0.19 and run["tied_spread"]["psi_deg"] == 0.31
     assert run["measures"]["overshoot_2_deg"]["lower"] == 3.9 * 0.96
-    assert [m["chosen"] for m in table["family"]] == [True, False, False, False]
-    assert table["family"][-1]["heading_deg"] is None
+    assert [m["is_chosen"] for m in table["candidate_models"]] == [True, False, False, False]
+    assert table["candidate_models"][-1]["heading_deg"] is None
 
 
 def test_the_model_file_knows_the_approach(fit: Fit, tmp_path: Path) -> None:

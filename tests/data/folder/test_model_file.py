@@ -11,13 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.core.equations import Model, Sheet
-from seatrial.core.results import Margin
+from seatrial.core.results import IntervalBasis
 from seatrial.core.values import InputError, Prior, Ship
 from seatrial.data.folder.model_file import (
     ModelFile,
     ModelProvenance,
     model_text,
-    parsed_model,
+    parse_model,
     read_model,
     write_model,
 )
@@ -43,7 +43,7 @@ def whole_file() -> ModelFile:
 
 def test_everything_reads_back_to_the_last_bit() -> None:
     file = whole_file()
-    back = parsed_model(model_text(file), "model.toml")
+    back = parse_model(model_text(file), "model.toml")
     assert back.model.parameters == file.model.parameters
     assert np.array_equal(back.covariance, file.covariance)
     assert back.provenance == file.provenance
@@ -53,7 +53,7 @@ def test_everything_reads_back_to_the_last_bit() -> None:
 @given(numbers)
 def test_any_value_reads_back_to_the_last_bit(value: float) -> None:
     model = model_named("waterjet").with_values({"Y_v": value})
-    back = parsed_model(model_text(ModelFile(model)), "model.toml").model.parameters["Y_v"].value
+    back = parse_model(model_text(ModelFile(model)), "model.toml").model.parameters["Y_v"].value
     assert np.float64(back).tobytes() == np.float64(value).tobytes()
 
 
@@ -96,17 +96,17 @@ def test_rubbish_is_refused(tmp_path: Path, content: bytes, says: str) -> None:
 def test_a_file_with_other_parameters_is_refused() -> None:
     text = model_text(whole_file()).replace("[parameters.N_rr]", "[parameters.N_rx]")
     with pytest.raises(InputError, match="not those of model 'waterjet'"):
-        parsed_model(text, "model.toml")
+        parse_model(text, "model.toml")
 
 
 def test_a_damaged_file_is_refused() -> None:
     text = model_text(whole_file()).replace("value = 9.8", "worth = 9.8")
     with pytest.raises(InputError, match="damaged"):
-        parsed_model(text, "model.toml")
+        parse_model(text, "model.toml")
 
 
-def margin(count: int) -> Margin:
-    return Margin(
+def margin(count: int) -> IntervalBasis:
+    return IntervalBasis(
         np.diag(np.linspace(0.1, 1.0, count)), math.inf, 2.5, {"overshoot_deg": 1.2}, {"delta zero": 0.005},
         {"r": 1e-4}, {"rudder": 0.5}, ({"Y_v": -0.3}, {"Y_v": -0.2, "N_v": -0.1}),
     )  # fmt: skip
@@ -115,7 +115,7 @@ def margin(count: int) -> Margin:
 def test_what_intervals_are_made_of_reads_back_to_the_last_bit() -> None:
     file = whole_file()
     given = margin(len(file.model.parameters.free))
-    back = parsed_model(model_text(replace(file, margin=given)), "model.toml").margin
+    back = parse_model(model_text(replace(file, interval_basis=given)), "model.toml").interval_basis
     assert back is not None
     assert np.array_equal(back.covariance, given.covariance)
     assert vars(back) | {"covariance": 0} == vars(given) | {"covariance": 0}
@@ -134,16 +134,25 @@ def test_a_covariance_that_is_none_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("wrong", "says"),
     [
-        (lambda m, n: replace(m, covariance=np.eye(n - 1)), "margin.covariance has [0-9]+ rows for [0-9]+ free"),
-        (lambda m, n: replace(m, covariance=np.diag([-1.0, *[1.0] * (n - 1)])), "margin.covariance is not positive"),
-        (lambda m, n: replace(m, covariance=np.eye(n) + np.eye(n, k=1)), "margin.covariance is not a symmetric"),
-        (lambda m, n: replace(m, covariance=np.full((n, n), math.nan)), "margin.covariance is not a symmetric"),
-        (lambda m, _: replace(m, degrees_of_freedom=math.nan), "margin.degrees_of_freedom is nan"),
-        (lambda m, _: replace(m, tied=({"Y_w": 1.0},)), "margin.tied names 'Y_w'"),
+        (
+            lambda m, n: replace(m, covariance=np.eye(n - 1)),
+            "interval_basis.covariance has [0-9]+ rows for [0-9]+ free",
+        ),
+        (
+            lambda m, n: replace(m, covariance=np.diag([-1.0, *[1.0] * (n - 1)])),
+            "interval_basis.covariance is not positive",
+        ),
+        (
+            lambda m, n: replace(m, covariance=np.eye(n) + np.eye(n, k=1)),
+            "interval_basis.covariance is not a symmetric",
+        ),
+        (lambda m, n: replace(m, covariance=np.full((n, n), math.nan)), "interval_basis.covariance is not a symmetric"),
+        (lambda m, _: replace(m, degrees_of_freedom=math.nan), "interval_basis.degrees_of_freedom is nan"),
+        (lambda m, _: replace(m, tied=({"Y_w": 1.0},)), "interval_basis.tied names 'Y_w'"),
     ],
 )
-def test_a_margin_that_cannot_be_is_refused(wrong: Callable[[Margin, int], Margin], says: str) -> None:
+def test_a_margin_that_cannot_be_is_refused(wrong: Callable[[IntervalBasis, int], IntervalBasis], says: str) -> None:
     file = whole_file()
     count = len(file.model.parameters.free)
     with pytest.raises(InputError, match=rf"model file 'model\.toml'.*{says}"):
-        parsed_model(model_text(replace(file, margin=wrong(margin(count), count))), "model.toml")
+        parse_model(model_text(replace(file, interval_basis=wrong(margin(count), count))), "model.toml")

@@ -11,12 +11,12 @@ import control
 import numpy as np
 import pytest
 from scipy.io import loadmat
-from tests.reporting.tuned import fabricated_autopilot, fabricated_bare, fabricated_fin, heading_loop
+from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_bare, fabricated_fin, heading_loop
 
 from seatrial.core.results.tuning import Component, Tuning
 from seatrial.core.values import InputError
 from seatrial.data.folder.fit_json import strict_json
-from seatrial.data.folder.tuning_files import gains_text, loop_mat, read_gains, schedule_text
+from seatrial.data.folder.tuning_files import gains_toml, loop_mat, read_gains, schedule_csv
 from seatrial.data.folder.tuning_json import TuningDocument, tuning_json
 from seatrial.physics.loops import TransferLoop, margins
 from seatrial.physics.loops.fin import fin_loop
@@ -47,21 +47,21 @@ def written(tmp_path: Path, text: str) -> Path:
 def test_gains_come_back_to_the_last_bit(tuning: Tuning, tmp_path: Path) -> None:
     uneven = {name: value / 3.0 for name, value in tuning.chosen.gains.items()}
     told = replace(tuning, chosen=replace(tuning.chosen, gains=uneven))
-    assert read_gains(written(tmp_path, gains_text(told))) == uneven
+    assert read_gains(written(tmp_path, gains_toml(told))) == uneven
 
 
 def test_gains_stand_beside_what_they_keep(fin: Tuning) -> None:
-    table = tomllib.loads(gains_text(fin))
-    assert table["kept"]["limit_deg"] == pytest.approx(22.0)
-    assert table["kept"]["rate_deg_per_s"] == pytest.approx(25.0)
-    assert table["margins"]["Ms"] == fin.chosen.peak
+    table = tomllib.loads(gains_toml(fin))
+    assert table["constraints"]["limit_deg"] == pytest.approx(22.0)
+    assert table["constraints"]["rate_deg_per_s"] == pytest.approx(25.0)
+    assert table["margins"]["Ms"] == fin.chosen.Ms
     assert table["controller"]["seas"] == list(fin.seas)
     assert [slot["gains"] for slot in table["schedule"]] == [slot.gains for slot in fin.schedule]
 
 
 def test_what_is_unlimited_is_left_out() -> None:
-    bare = tomllib.loads(gains_text(fabricated_bare()))
-    assert set(bare["kept"]) == {"Ms", "saturation", "rate_saturation"}
+    bare = tomllib.loads(gains_toml(fabricated_bare()))
+    assert set(bare["constraints"]) == {"Ms", "saturation", "rate_saturation"}
     assert "Ms" not in bare["margins"] and "schedule" not in bare
 
 
@@ -93,11 +93,11 @@ def test_the_rebuilt_loop_closes_as_the_tuning_says(make, loop: TransferLoop) ->
     open_loop = control.tf(known["open_loop_num"], known["open_loop_den"])
     sensitivity = control.feedback(control.tf(1, 1), open_loop)
     fine = np.geomspace(tuning.chosen.omega[0], tuning.chosen.omega[-1], 40_001)
-    assert np.max(np.abs(sensitivity(1j * fine))) == pytest.approx(tuning.chosen.peak, rel=1e-6)
+    assert np.max(np.abs(sensitivity(1j * fine))) == pytest.approx(tuning.chosen.Ms, rel=1e-6)
     tuned = loop.with_gains(np.array(list(tuning.chosen.gains.values())))
-    assert margins(tuned).peak == tuning.chosen.peak
+    assert margins(tuned).Ms == tuning.chosen.Ms
     poles = np.sort_complex(control.feedback(open_loop, control.tf(1, 1)).poles())
-    assert poles == pytest.approx(np.sort_complex(tuned.closed_poles), rel=1e-6)
+    assert poles == pytest.approx(np.sort_complex(tuned.closed_loop_poles), rel=1e-6)
 
 
 def test_blocks_in_parallel_and_in_a_row_give_the_same_open_loop(fin: Tuning) -> None:
@@ -141,13 +141,13 @@ def test_a_loop_without_blocks_has_its_gains(fin: Tuning) -> None:
 
 
 def test_the_schedule_is_a_table(fin: Tuning) -> None:
-    rows = list(csv.DictReader(io.StringIO(schedule_text(fin))))
+    rows = list(csv.DictReader(io.StringIO(schedule_csv(fin))))
     assert len(rows) == len(fin.schedule)
     assert [float(row["heading [deg]"]) for row in rows[:3]] == [45.0, 90.0, 135.0]
     assert [float(row["KP"]) for row in rows] == [slot.gains["KP"] for slot in fin.schedule]
-    assert float(rows[0]["cost given"]) == pytest.approx(fin.schedule[0].others["given"], rel=1e-7)
+    assert float(rows[0]["cost given"]) == pytest.approx(fin.schedule[0].baseline_costs["given"], rel=1e-7)
     assert {row["feasible"] for row in rows} == {"yes", "no"}
-    assert schedule_text(fabricated_bare()) == ""
+    assert schedule_csv(fabricated_bare()) == ""
 
 
 def test_json_is_strict_and_as_documented(tuning: Tuning) -> None:
@@ -159,8 +159,8 @@ def test_json_is_strict_and_as_documented(tuning: Tuning) -> None:
 
 
 def test_infinite_is_null() -> None:
-    assert tuning_json(fabricated_bare())["chosen"]["peak"] is None
-    assert tuning_json(fabricated_autopilot())["restriction"]["stall"] is None
+    assert tuning_json(fabricated_bare())["chosen"]["Ms"] is None
+    assert tuning_json(fabricated_autopilot())["constraints"]["stall"] is None
 
 
 def test_the_documented_schema_is_the_code_s(repository: Path) -> None:

@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 
 from seatrial.core.values import InputError
-from seatrial.data.read import Column, Layout, format_of, read_record
+from seatrial.data.read import ColumnSpec, Layout, format_of, read_record
 
-TIME = Column("time", "t", "s")
-LAYOUT = Layout("text", TIME, (Column("u", "speed", "m/s"),))
-NUMBERED = Layout("text", Column("time", 1, "s"), (Column("u", 2, "m/s"),))
+TIME = ColumnSpec("time", "t", "s")
+LAYOUT = Layout("text", TIME, (ColumnSpec("u", "speed", "m/s"),))
+NUMBERED = Layout("text", ColumnSpec("time", 1, "s"), (ColumnSpec("u", 2, "m/s"),))
 
 
 def message(tmp_path: Path, content: str | bytes, layout: Layout = LAYOUT, name: str = "run.csv") -> str:
@@ -66,22 +66,22 @@ def test_wrong_column_names_the_nearest(tmp_path: Path) -> None:
 
 
 def test_wrong_column_number(tmp_path: Path) -> None:
-    layout = Layout("text", Column("time", 1, "s"), (Column("u", 7, "m/s"),))
+    layout = Layout("text", ColumnSpec("time", 1, "s"), (ColumnSpec("u", 7, "m/s"),))
     assert "wants column 7, but the file has 2 columns" in message(tmp_path, "0,1\n1,1\n", layout)
 
 
 def test_unknown_unit(tmp_path: Path) -> None:
-    layout = Layout("text", TIME, (Column("u", "speed", "knots"),))
+    layout = Layout("text", TIME, (ColumnSpec("u", "speed", "knots"),))
     assert "channel 'u': unknown unit 'knots'" in message(tmp_path, "t,speed\n0,1\n1,1\n", layout)
 
 
 def test_unit_of_another_quantity(tmp_path: Path) -> None:
-    layout = Layout("text", TIME, (Column("u", "speed", "deg"),))
+    layout = Layout("text", TIME, (ColumnSpec("u", "speed", "deg"),))
     assert "'u' is measured in m/s; unit 'deg' does not fit" in message(tmp_path, "t,speed\n0,1\n1,1\n", layout)
 
 
 def test_unknown_channel(tmp_path: Path) -> None:
-    layout = Layout("text", TIME, (Column("delt", "speed", "rad"),))
+    layout = Layout("text", TIME, (ColumnSpec("delt", "speed", "rad"),))
     assert "unknown channel 'delt'; did you mean 'delta'?" in message(tmp_path, "t,speed\n0,1\n1,1\n", layout)
 
 
@@ -115,11 +115,11 @@ def test_row_with_too_many_cells(tmp_path: Path) -> None:
 
 def test_channel_given_twice() -> None:
     with pytest.raises(InputError, match="channel 'u' is given twice"):
-        Layout("text", TIME, (Column("u", 2, "m/s"), Column("u", 3, "m/s")))
+        Layout("text", TIME, (ColumnSpec("u", 2, "m/s"), ColumnSpec("u", 3, "m/s")))
 
 
 def test_frame_that_does_not_exist(tmp_path: Path) -> None:
-    layout = Layout("text", TIME, (Column("u", "speed", "m/s", frame="ship"),))
+    layout = Layout("text", TIME, (ColumnSpec("u", "speed", "m/s", frame="ship"),))
     assert "frame must be body, earth or none, not 'ship'" in message(tmp_path, "t,speed\n0,1\n1,1\n", layout)
 
 

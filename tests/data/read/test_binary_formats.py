@@ -8,13 +8,13 @@ import pytest
 from scipy.io import savemat
 
 from seatrial.core.values import InputError
-from seatrial.data.read import Column, Layout, read_record
+from seatrial.data.read import ColumnSpec, Layout, read_record
 
 T, U = np.arange(6) * 0.1, np.array([1.0, 1.1, np.nan, 1.3, 1.4, 1.5])
 
 
 def layout(format: str, prefix: str = "") -> Layout:
-    return Layout(format, Column("time", f"{prefix}t", "s"), (Column("u", f"{prefix}speed", "m/s"),))  # type: ignore[arg-type]
+    return Layout(format, ColumnSpec("time", f"{prefix}t", "s"), (ColumnSpec("u", f"{prefix}speed", "m/s"),))  # type: ignore[arg-type]
 
 
 def expect(path: Path, wanted: Layout) -> None:
@@ -30,7 +30,7 @@ def test_matlab_vectors_structs_and_matrices(tmp_path: Path) -> None:
     savemat(path, {"run": {"t": T, "speed": U}})
     expect(path, layout("mat", "run."))
     savemat(path, {"data": np.column_stack([T, U])})
-    expect(path, Layout("mat", Column("time", 1, "s"), (Column("u", 2, "m/s"),)))
+    expect(path, Layout("mat", ColumnSpec("time", 1, "s"), (ColumnSpec("u", 2, "m/s"),)))
 
 
 def test_matlab_lengths_must_agree(tmp_path: Path) -> None:

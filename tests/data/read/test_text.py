@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.core.values import si
-from seatrial.data.read import Column, Layout, read_record
+from seatrial.core.values import si_unit
+from seatrial.data.read import ColumnSpec, Layout, read_record
 
-TIME = Column("time", "t", "s")
-NAMED = Layout("text", TIME, (Column("u", "speed", "kn"), Column("psi", "head", "deg")))
-NUMBERED = Layout("text", Column("time", 1, "s"), (Column("u", 2, "kn"), Column("psi", 3, "deg")))
+TIME = ColumnSpec("time", "t", "s")
+NAMED = Layout("text", TIME, (ColumnSpec("u", "speed", "kn"), ColumnSpec("psi", "head", "deg")))
+NUMBERED = Layout("text", ColumnSpec("time", 1, "s"), (ColumnSpec("u", 2, "kn"), ColumnSpec("psi", 3, "deg")))
 ROWS = [(0.0, 10.5, 90.0), (0.5, 10.25, 91.5), (1.0, 10.0, -180.0)]
 
 
@@ -73,9 +73,9 @@ def test_declared_conventions_are_kept_not_applied(tmp_path: Path) -> None:
     path = tmp_path / "run.csv"
     path.write_text("t,a,b,c\n0,1,2,3\n1,1,2,3\n")
     columns = (
-        Column("u", "a", "m/s", frame="earth"),
-        Column("v", "b", "m/s", frame="earth", reference_point=1.5),
-        Column("delta", "c", "deg", positive="port"),
+        ColumnSpec("u", "a", "m/s", frame="earth"),
+        ColumnSpec("v", "b", "m/s", frame="earth", reference_point=1.5),
+        ColumnSpec("delta", "c", "deg", positive="port"),
     )
     record = read_record(path, Layout("text", TIME, columns))
     assert (record.channel("u").frame, record.channel("u").positive) == ("earth", "north")
@@ -86,13 +86,13 @@ def test_declared_conventions_are_kept_not_applied(tmp_path: Path) -> None:
 def test_model_scale_becomes_full_scale(tmp_path: Path) -> None:
     path = tmp_path / "run.csv"
     path.write_text("t,speed,head\n0,1,2\n1,1,3\n")
-    record = read_record(path, Layout("text", TIME, (Column("u", "speed", "m/s"),), scale=100.0))
+    record = read_record(path, Layout("text", TIME, (ColumnSpec("u", "speed", "m/s"),), scale=100.0))
     np.testing.assert_allclose(record.time, [0.0, 10.0])
     np.testing.assert_allclose(record["u"], 10.0)
 
 
 @given(st.floats(-1e6, 1e6), st.sampled_from(["kn", "km/h", "mm", "deg", "deg/min", "rpm", "kN", "min"]))
 def test_conversion_to_si_and_back(value: float, unit: str) -> None:
-    factor, base = si(unit)
-    assert si(base) == (1.0, base)
+    factor, base = si_unit(unit)
+    assert si_unit(base) == (1.0, base)
     assert value * factor / factor == pytest.approx(value, rel=1e-14, abs=1e-300)

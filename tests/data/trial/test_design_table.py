@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.core.results import Actuator, Limits
+from seatrial.core.results import Actuator, TrialLimits
 from seatrial.core.values import InputError
-from seatrial.data.trial import load_trial, records_of
+from seatrial.data.trial import load_records, load_trial
 
 PLANNED = """
 question = "how to steer?"
@@ -56,15 +56,15 @@ def planned(tmp_path: Path) -> Path:
 
 
 def test_what_it_says_is_kept_in_si(planned: Path) -> None:
-    brief = load_trial(planned).design
+    brief = load_trial(planned).design_request
     assert brief is not None
     deg = math.pi / 180.0
     (delta,) = brief.actuators
     assert (delta.name, delta.hold) == ("delta", 4.0)
     assert (delta.lower, delta.upper, delta.rate) == pytest.approx((-35 * deg, 30 * deg, 10 * deg))
     assert brief.limits.drift == pytest.approx(20 * deg)
-    assert (brief.limits.room, brief.duration, brief.rate) == (500.0, 600.0, 5.0)
-    assert (brief.criterion, brief.draws, brief.prior) == ("mean", 7, 0.25)
+    assert (brief.limits.sea_room, brief.duration, brief.rate) == (500.0, 600.0, 5.0)
+    assert (brief.criterion, brief.draws, brief.prior_fraction) == ("mean", 7, 0.25)
     assert brief.speed == pytest.approx(2 * 1852 / 3600)
     assert brief.held == {"v_j": 1.866}
 
@@ -75,9 +75,9 @@ def test_what_it_does_not_say_is_free(planned: Path) -> None:
         'speed = { value = 2, unit = "kn" }\n', ""
     )
     planned.write_text(text)
-    brief = load_trial(planned).design
+    brief = load_trial(planned).design_request
     assert brief is not None
-    assert brief.limits == Limits()
+    assert brief.limits == TrialLimits()
     assert brief.actuators[0] == Actuator("delta", math.radians(-35), math.radians(30), math.inf, 4.0)
     assert brief.speed is None
 
@@ -85,7 +85,7 @@ def test_what_it_does_not_say_is_free(planned: Path) -> None:
 def test_records_are_missed_where_they_are_needed(planned: Path) -> None:
     trial = load_trial(planned)
     with pytest.raises(InputError, match=r"planned.toml: there are no \[\[records\]\] to read"):
-        records_of(trial)
+        load_records(trial)
 
 
 def test_neither_records_nor_a_design_is_refused(planned: Path) -> None:

@@ -6,8 +6,8 @@ import pytest
 
 from seatrial.core.values import InputError
 from seatrial.data.trial import load_trial
-from seatrial.data.trial.follow_table import fed_from, followed
-from seatrial.data.trial.trial import Feed, Role
+from seatrial.data.trial.follow_table import require_stream, with_source
+from seatrial.data.trial.trial import Role, StreamSource
 
 SHIP = '[ship]\nname = "craft"\nL = 9.8\n[model]\nname = "nomoto"\n'
 STREAM = """[follow]
@@ -37,10 +37,10 @@ def refused(folder: Path, text: str) -> str:
 
 
 def test_the_table_becomes_a_stream_with_the_house_s_defaults(tmp_path: Path) -> None:
-    stream = followed(load_trial(written(tmp_path, SHIP + STREAM)))
-    assert (stream.feed, stream.name, stream.file) == (Feed.FILE, "log", tmp_path / "log.csv")
-    assert (stream.rate, stream.whole, stream.forgetting, stream.longest_gap) == (10.0, 3600.0, None, 30.0)
-    assert (stream.host, stream.port, stream.page, stream.journal) == ("127.0.0.1", 0, 0, None)
+    stream = require_stream(load_trial(written(tmp_path, SHIP + STREAM)))
+    assert (stream.source, stream.name, stream.file) == (StreamSource.FILE, "log", tmp_path / "log.csv")
+    assert (stream.rate, stream.batch_window, stream.forgetting_time, stream.longest_gap) == (10.0, 3600.0, None, 30.0)
+    assert (stream.host, stream.port, stream.page_port, stream.journal) == ("127.0.0.1", 0, 0, None)
     delta = stream.layout.columns[1]
     assert (delta.source, delta.unit, delta.positive, stream.layout.format) == (3, "deg", "port", "text")
 
@@ -94,13 +94,13 @@ def test_a_sea_known_by_its_spectrum_alone_is_sent_to_identify(tmp_path: Path, r
 
 def test_another_source_takes_the_same_columns(tmp_path: Path) -> None:
     trial = load_trial(written(tmp_path, SHIP + STREAM))
-    moved = followed(fed_from(trial, "stdin"))
-    assert (moved.feed, moved.name, moved.layout) == (Feed.STDIN, "stdin", followed(trial).layout)
+    moved = require_stream(with_source(trial, "stdin"))
+    assert (moved.source, moved.name, moved.layout) == (StreamSource.STDIN, "stdin", require_stream(trial).layout)
     for feed, says in (("udp", "needs a port"), ("nmea-stdin", "other columns"), ("stdim", "did you mean 'stdin'?")):
         with pytest.raises(InputError, match=says.replace("?", r"\?")):
-            fed_from(trial, feed)
+            with_source(trial, feed)
 
 
 def test_a_trial_without_the_table_is_told_to_add_it(repository: Path) -> None:
     with pytest.raises(InputError, match=r"waterjet\.toml: there is no \[follow\]"):
-        followed(load_trial(repository / "examples" / "waterjet.toml"))
+        require_stream(load_trial(repository / "examples" / "waterjet.toml"))

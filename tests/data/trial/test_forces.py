@@ -7,8 +7,8 @@ import pytest
 
 from seatrial.core.equations import Model
 from seatrial.core.values import ForcePoints, InputError
-from seatrial.core.values.units import si
-from seatrial.data.trial.forces import points_of
+from seatrial.core.values.units import si_unit
+from seatrial.data.trial.forces import read_force_points
 from seatrial.data.trial.schema import ForcesTable
 from seatrial.physics.models.published import kvlcc2
 
@@ -37,7 +37,7 @@ def read(folder: Path, columns: dict[str, np.ndarray], reference_point: float = 
     """Write the columns, read them as `PLAIN` with changes says."""
     rows = [",".join(columns), *(",".join(f"{v:.17g}" for v in row) for row in zip(*columns.values(), strict=True))]
     (folder / "tank.csv").write_text("\n".join(rows) + "\n")
-    return points_of(ForcesTable.model_validate(PLAIN | changes), folder, model(), reference_point, "forces[1]")
+    return read_force_points(ForcesTable.model_validate(PLAIN | changes), folder, model(), reference_point, "forces[1]")
 
 
 def columns(**changes: np.ndarray) -> dict[str, np.ndarray]:
@@ -163,4 +163,4 @@ def test_motions_that_do_not_go_together_are_refused(tmp_path: Path) -> None:
 
 
 def test_units_of_forces_are_known() -> None:
-    assert si("kN m") == (1e3, "N m")
+    assert si_unit("kN m") == (1e3, "N m")

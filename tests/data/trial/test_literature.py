@@ -3,10 +3,10 @@
 import pytest
 
 from seatrial.core.values import InputError, Severity, Ship
-from seatrial.data.trial.literature import literature_priors, range_findings
-from seatrial.data.trial.model_choice import chosen_model
+from seatrial.data.trial.literature import literature_priors, prior_range_findings
+from seatrial.data.trial.model_table import build_trial_model
 from seatrial.data.trial.schema import ModelTable
-from seatrial.physics.hydro.empirical import CLARKE, Form, clarke, yoshimura
+from seatrial.physics.hydro.empirical import CLARKE, HullForm, clarke, yoshimura
 from seatrial.physics.models.published import kvlcc2_l7
 
 TANKER = kvlcc2_l7().ship
@@ -19,8 +19,8 @@ def table(**keys: object) -> ModelTable:
 
 def test_priors_and_starts_come_from_the_source_and_cite_it() -> None:
     sources = {"priors_from": ["kvlcc2", "clarke"], "prior_sd_percent": 25}
-    model = chosen_model(table(**sources), TANKER)
-    mean = clarke(Form.of_ship(TANKER)).values["Y_v"]
+    model = build_trial_model(table(**sources), TANKER)
+    mean = clarke(HullForm.from_ship(TANKER)).values["Y_v"]
     p = model.parameters["Y_v"]
     assert p.prior is not None
     assert (p.value, p.prior.mean) == (mean, mean)
@@ -34,35 +34,35 @@ def test_priors_and_starts_come_from_the_source_and_cite_it() -> None:
 
 def test_a_start_of_its_own_keeps_its_source_beside_the_priors() -> None:
     keys = {"parameter_set": "kvlcc2", "priors_from": "clarke", "prior_sd_percent": 25, "start": {"N_r": -0.05}}
-    model = chosen_model(table(**keys), TANKER)
+    model = build_trial_model(table(**keys), TANKER)
     assert model.parameters["Y_v"].value == -0.315
     assert "Yasukawa" in model.parameters["Y_v"].source
     assert f"prior: {CLARKE}" in model.parameters["Y_v"].source
     assert model.parameters["N_r"].value == -0.05
     prior = model.parameters["N_r"].prior
     assert prior is not None
-    assert prior.mean == clarke(Form.of_ship(TANKER)).values["N_r"]
+    assert prior.mean == clarke(HullForm.from_ship(TANKER)).values["N_r"]
 
 
 def test_stated_priors_win() -> None:
     keys = {"parameter_set": "kvlcc2", "priors_from": "clarke", "prior_sd_percent": 25}
-    model = chosen_model(table(**keys, priors={"Y_v": {"mean": -0.4, "sd": 0.01, "source": "own"}}), TANKER)
+    model = build_trial_model(table(**keys, priors={"Y_v": {"mean": -0.4, "sd": 0.01, "source": "own"}}), TANKER)
     prior = model.parameters["Y_v"].prior
     assert prior is not None
     assert (prior.mean, prior.standard_deviation, prior.source) == (-0.4, 0.01, "own")
 
 
 def test_later_sources_win() -> None:
-    form = Form.of_ship(TANKER)
+    form = HullForm.from_ship(TANKER)
     both = literature_priors(("clarke", "yoshimura"), TANKER, "mmg")
     assert both["Y_v"].mean == yoshimura(form).values["Y_v"]
     assert literature_priors(("yoshimura", "clarke"), TANKER, "mmg")["Y_v"].mean == clarke(form).values["Y_v"]
 
 
 def test_a_ship_outside_the_range_is_warned_of() -> None:
-    assert range_findings(("yoshimura", "kvlcc2"), TANKER) == ()
+    assert prior_range_findings(("yoshimura", "kvlcc2"), TANKER) == ()
     barge = Ship("barge", {"L": 60.0, "B": 30.0, "d": 2.0, "C_b": 0.95})
-    (finding,) = range_findings(("clarke",), barge)
+    (finding,) = prior_range_findings(("clarke",), barge)
     assert (finding.severity, finding.code) == (Severity.WARNING, "prior-range")
     assert "L/B 2" in finding.text
     assert "L/B 5-8" in finding.text
@@ -79,4 +79,4 @@ def test_what_cannot_be_is_refused() -> None:
         with pytest.raises(InputError, match=sentence):
             literature_priors(names, ship, model)
     with pytest.raises(InputError, match="priors_from says nothing about how far"):
-        chosen_model(table(parameter_set="kvlcc2", priors_from="clarke"), TANKER)
+        build_trial_model(table(parameter_set="kvlcc2", priors_from="clarke"), TANKER)

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Finding, InputError, Record, Severity
-from seatrial.data.trial import Trimming, load_trial, records_of, refuse_errors
-from seatrial.data.trial.records import trimmed
+from seatrial.data.trial import Trimming, load_records, load_trial, refuse_errors
+from seatrial.data.trial.records import apply_trimming
 
 
 def test_records_come_in_the_notation_tables_conventions(trial_file: Path) -> None:
-    records, _ = records_of(load_trial(trial_file))
+    records, _ = load_records(load_trial(trial_file))
     first = records[0].record
     assert [r.role for r in records] == ["train", "train", "validate"]
     assert first["u"][0] == pytest.approx(1.6 * 1852 / 3600)
@@ -23,7 +23,7 @@ def test_records_come_in_the_notation_tables_conventions(trial_file: Path) -> No
 def test_a_wrong_column_is_named(trial_file: Path) -> None:
     trial_file.write_text(trial_file.read_text().replace('"surge"', '"surges"'))
     with pytest.raises(InputError, match="surges"):
-        records_of(load_trial(trial_file))
+        load_records(load_trial(trial_file))
 
 
 def test_errors_refuse_unless_accepted() -> None:
@@ -36,15 +36,15 @@ def test_errors_refuse_unless_accepted() -> None:
 def _run_up() -> Record:
     time = np.arange(0.0, 60.0, 0.5)
     speed = np.minimum(time / 20.0, 1.0)
-    return Record.of("run-up", time, {"u": speed, "delta": np.where(time > 40.0, 0.3, 0.0)})
+    return Record.from_arrays("run-up", time, {"u": speed, "delta": np.where(time > 40.0, 0.3, 0.0)})
 
 
 def test_the_acceleration_run_is_dropped_on_request() -> None:
-    assert trimmed(_run_up(), Trimming(skip_acceleration=True)).time[0] == pytest.approx(18.0)
+    assert apply_trimming(_run_up(), Trimming(skip_acceleration=True)).time[0] == pytest.approx(18.0)
 
 
 def test_windows_and_rates() -> None:
-    record = trimmed(_run_up(), Trimming(from_s=10.0, to_s=30.0, rate=1.0))
+    record = apply_trimming(_run_up(), Trimming(from_s=10.0, to_s=30.0, rate=1.0))
     assert (record.time[0], record.time[-1], record.dt) == (10.0, 30.0, pytest.approx(1.0))
 
 
@@ -53,6 +53,6 @@ def test_the_ready_trial_files_pass_the_checks(
     example: str, runs: int, repository: Path, data_folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("SEATRIAL_DATA", str(data_folder.resolve()))
-    records, findings = records_of(load_trial(repository / "examples" / f"{example}.toml"))
+    records, findings = load_records(load_trial(repository / "examples" / f"{example}.toml"))
     assert len(records) >= runs
     assert not [f for f in findings if f.severity is Severity.ERROR]

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from seatrial.data.trial import load_trial
-from seatrial.estimation.design.asked import task_of
 from seatrial.estimation.design.design import design
-from seatrial.estimation.design.task import Task
+from seatrial.estimation.design.from_trial import design_task
+from seatrial.estimation.design.task import DesignTask
 
 
-def shortened(path: Path, duration: float) -> Task:
-    return replace(task_of(load_trial(path)), duration=duration, draws=2, question="")
+def shortened(path: Path, duration: float) -> DesignTask:
+    return replace(design_task(load_trial(path)), duration=duration, draws=2, question="")
 
 
 @pytest.mark.parametrize(
@@ -24,12 +24,12 @@ def test_the_example_is_designed_and_beats_its_standard_manoeuvres(
     repository: Path, example: str, duration: float, standard: str
 ) -> None:
     task = shortened(repository / "examples" / example, duration)
-    made = design(task, 0, confirming=0, generations=60)
-    against = {w.name: w for w in made.rivals}
+    made = design(task, 0, confirmation_runs=0, generations=60)
+    against = {w.name: w for w in made.baselines}
     assert made.coefficients == task.model.parameters.free_names
-    assert np.isfinite(made.designed.drawn).all()
+    assert np.isfinite(made.designed.sampled_relative_error).all()
     assert standard in against
     worth = {"worst": lambda w: w.worst, "mean": lambda w: w.mean}[made.criterion]
-    within = [w for w in made.rivals if w.drift <= task.limits.drift and w.room <= task.limits.room]
+    within = [w for w in made.baselines if w.drift <= task.limits.drift and w.distance <= task.limits.sea_room]
     assert worth(made.designed) < min(worth(w) for w in within)
     assert {a.name for a in task.actuators} == set(made.orders[0].values)

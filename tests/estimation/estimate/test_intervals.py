@@ -7,10 +7,10 @@ import pytest
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Prior, Record
-from seatrial.estimation.estimate.estimate import Estimate
-from seatrial.estimation.estimate.intervals import intervals
+from seatrial.estimation.estimate.intervals import estimate_uncertainty
+from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.problem.output_error import Nuisance, OutputError
-from seatrial.estimation.problem.segments import cut
+from seatrial.estimation.problem.segments import cut_segments
 from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate import replay
@@ -24,24 +24,26 @@ def model() -> Model:
     return nomoto().with_values({"K": 0.15, "T": 8.0})
 
 
-def made(model: Model, runs: int, seconds: float | None) -> Estimate:
+def made(model: Model, runs: int, seconds: float | None) -> PointEstimate:
     rng, records = np.random.default_rng(5), []
     for i in range(runs):
         time = 0.5 * np.arange(241)
         delta = 0.3 * np.sign(np.sin(0.12 * time + i))
-        record = replay(model, Record.of(f"run {i}", time, {"delta": delta}), {"r": 0.0})
+        record = replay(model, Record.from_arrays(f"run {i}", time, {"delta": delta}), {"r": 0.0})
         psi = record.channel("psi").with_values(record["psi"] + 0.01 * rng.standard_normal(241))
         r = record.channel("r").with_values(record["r"] + 0.005 * rng.standard_normal(241))
         records.append(record.with_channel("psi", psi).with_channel("r", r))
-    problem = OutputError(model, cut(model, records, ("r", "psi"), seconds), np.array([0.005, 0.01]), workers=1)
-    return Estimate(problem, levenberg_marquardt(problem, problem.start(), problem.measured_starts()))
+    problem = OutputError(
+        model, cut_segments(model, records, ("r", "psi"), seconds), np.array([0.005, 0.01]), workers=1
+    )
+    return PointEstimate(problem, levenberg_marquardt(problem, problem.start(), problem.measured_initial_states()))
 
 
 def test_white_residuals_get_the_information_matrix(model: Model) -> None:
     one = made(model, 6, None)
-    interval = intervals(one, WHITE).interval
+    interval = estimate_uncertainty(one, WHITE).interval
     assert interval.meaning.startswith("information matrix (residuals are white)")
-    np.testing.assert_allclose(interval.covariance, np.linalg.inv(one.optimum.normal.reduced()[1]), rtol=1e-8)
+    np.testing.assert_allclose(interval.covariance, np.linalg.inv(one.optimum.normal.without_local()[1]), rtol=1e-8)
 
 
 @pytest.mark.parametrize(
@@ -49,24 +51,26 @@ def test_white_residuals_get_the_information_matrix(model: Model) -> None:
 )
 def test_coloured_residuals_get_what_the_runs_allow(model: Model, runs: int, seconds: float, says: str) -> None:
     one = made(model, runs, seconds)
-    interval = intervals(one, COLOURED).interval
+    interval = estimate_uncertainty(one, COLOURED).interval
     assert says in interval.meaning
-    plain = intervals(one, WHITE).interval
+    plain = estimate_uncertainty(one, WHITE).interval
     ratio = interval.standard_error / plain.standard_error
     assert np.all((ratio > 0.3) & (ratio < 3.0)), "residuals of this record are white: all intervals agree roughly"
 
 
-def counted(one: Estimate, inflation: np.ndarray) -> Estimate:
+def counted(one: PointEstimate, inflation: np.ndarray) -> PointEstimate:
     """The same data with samples counted as their effective number, searched again."""
     problem = replace(one.problem, inflation=inflation)
-    return Estimate(problem, levenberg_marquardt(problem, one.shared, one.optimum.local))
+    return PointEstimate(problem, levenberg_marquardt(problem, one.common_parameters, one.optimum.local))
 
 
 def test_few_runs_and_segments_count_effective_samples_once(model: Model) -> None:
     one = made(model, 1, None)
     alike = np.array([9.0, 9.0])
-    widened = intervals(counted(one, alike), alike).interval
-    np.testing.assert_allclose(widened.standard_error, 3.0 * intervals(one, WHITE).interval.standard_error, rtol=1e-3)
+    widened = estimate_uncertainty(counted(one, alike), alike).interval
+    np.testing.assert_allclose(
+        widened.standard_error, 3.0 * estimate_uncertainty(one, WHITE).interval.standard_error, rtol=1e-3
+    )
     assert "effective number" in widened.meaning
 
 
@@ -74,7 +78,7 @@ def test_effective_samples_leave_the_optimum_without_priors(model: Model) -> Non
     """Equal inflation of all channels scales the cost and nothing else."""
     one = made(model, 2, None)
     again = counted(one, np.array([4.0, 4.0]))
-    np.testing.assert_allclose(again.shared, one.shared, rtol=1e-8)
+    np.testing.assert_allclose(again.common_parameters, one.common_parameters, rtol=1e-8)
     assert again.optimum.solution.value == pytest.approx(one.optimum.solution.value / 4.0, rel=1e-9)
 
 
@@ -83,9 +87,9 @@ def test_offsets_of_a_run_get_the_information_of_that_run(model: Model) -> None:
     one = made(model, 6, 30.0)
     zero = Nuisance(InputCorrection("delta", "zero"), Prior(0.0, 0.05), "rad")
     problem = replace(one.problem, nuisances=(zero,))
-    start = np.concatenate([one.shared, np.zeros(6)])
-    freed = Estimate(problem, levenberg_marquardt(problem, start, one.optimum.local))
-    interval = intervals(freed, COLOURED).interval
-    of_offsets = np.linalg.inv(freed.optimum.normal.reduced()[1])[-6:, -6:]
+    start = np.concatenate([one.common_parameters, np.zeros(6)])
+    freed = PointEstimate(problem, levenberg_marquardt(problem, start, one.optimum.local))
+    interval = estimate_uncertainty(freed, COLOURED).interval
+    of_offsets = np.linalg.inv(freed.optimum.normal.without_local()[1])[-6:, -6:]
     np.testing.assert_allclose(interval.covariance[-6:, -6:], of_offsets, rtol=1e-6, atol=1e-12)
     assert "jackknife" in interval.meaning

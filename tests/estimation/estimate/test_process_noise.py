@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record
-from seatrial.estimation.estimate.estimate import Estimate, estimate
-from seatrial.estimation.estimate.gate import boundary_quantile
-from seatrial.estimation.estimate.process_noise import ProcessNoise, is_worthwhile, prediction_error
-from seatrial.estimation.predict.draws import Scatter, drawn
-from seatrial.estimation.predict.floor import floor
+from seatrial.estimation.estimate.likelihood_ratio import boundary_quantile
+from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error
+from seatrial.estimation.estimate.process_noise import ProcessNoise, fit_prediction_error, has_noise
+from seatrial.estimation.predict.draws import PredictionUncertainty, draw_runs
+from seatrial.estimation.predict.process_noise_floor import process_noise_floor
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.estimation.problem.segments import cut
+from seatrial.estimation.problem.segments import cut_segments
 from seatrial.physics.models.nomoto import nomoto
 
 Array = NDArray[np.float64]
@@ -48,31 +48,33 @@ def yawing(rng: np.random.Generator, intensity: float, phase: float = 0.0, rows:
         kick = intensity * np.sqrt(h) * rng.standard_normal()
         state = state + np.array([h * (K * (delta[step] + slope) - state[0]) / T + kick, h * state[0]])
     noisy = kept + rng.standard_normal(kept.shape) * list(NOISE.values())
-    return Record.of("run", seconds(rows), {"delta": rudder(rows, phase), "r": noisy[:, 0], "psi": noisy[:, 1]})
+    return Record.from_arrays(
+        "run", seconds(rows), {"delta": rudder(rows, phase), "r": noisy[:, 0], "psi": noisy[:, 1]}
+    )
 
 
-def made_of(model: Model, intensity: float, seed: int, runs: int = 1) -> Estimate:
+def made_of(model: Model, intensity: float, seed: int, runs: int = 1) -> PointEstimate:
     rng = np.random.default_rng(seed)
     records = [replace(yawing(rng, intensity, 7.0 * i), name=f"run {i}") for i in range(runs)]
-    problem = OutputError(model, cut(model, records, ("r", "psi"), 20.0), np.array([1e-2, 1e-1]), workers=1)
-    return estimate(problem, problem.start(), problem.measured_starts(), {})
+    problem = OutputError(model, cut_segments(model, records, ("r", "psi"), 20.0), np.array([1e-2, 1e-1]), workers=1)
+    return fit_output_error(problem, problem.start(), problem.measured_initial_states(), {})
 
 
 @pytest.fixture(scope="module")
 def found(model: Model) -> ProcessNoise:
-    return prediction_error(made_of(model, INTENSITY, 3, runs=4))
+    return fit_prediction_error(made_of(model, INTENSITY, 3, runs=4))
 
 
 def test_process_noise_is_needed_and_suffices(found: ProcessNoise) -> None:
-    assert found.gate.is_needed
-    assert found.gate.is_white
-    assert "innovations are white" in found.gate.text
+    assert found.test.is_needed
+    assert found.test.is_white
+    assert "innovations are white" in found.test.summary
 
 
 def test_intensities_and_coefficients_are_found(found: ProcessNoise) -> None:
-    assert found.process == {"r": pytest.approx(INTENSITY, rel=0.1)}
-    assert found.measurement == {s: pytest.approx(v, rel=0.1) for s, v in NOISE.items()}
-    error = (found.shared - np.array([K, T])) / found.interval.standard_error
+    assert found.process_intensities == {"r": pytest.approx(INTENSITY, rel=0.1)}
+    assert found.measurement_noise == {s: pytest.approx(v, rel=0.1) for s, v in NOISE.items()}
+    error = (found.common_parameters - np.array([K, T])) / found.interval.standard_error
     assert np.all(np.abs(error) < 3.0)
     assert np.all(found.interval.standard_error / np.array([K, T]) < 0.05)
 
@@ -84,20 +86,20 @@ def test_slope_of_the_likelihood_vanishes(found: ProcessNoise) -> None:
         step = size * (np.arange(len(point)) == i)
         rise = found.problem.cost(point + step, NONE) - found.problem.cost(point - step, NONE)
         assert abs(rise / (2.0 * 0.05)) < 0.02
-    assert found.slope < 1e-3
+    assert found.newton_decrement < 1e-3
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_sensor_noise_is_no_process_noise(model: Model, seed: int) -> None:
-    none = prediction_error(made_of(model, 0.0, seed))
-    assert not none.gate.is_needed
-    assert not none.gate.holds
-    assert none.gate.text.startswith("no process noise")
+    none = fit_prediction_error(made_of(model, 0.0, seed))
+    assert not none.test.is_needed
+    assert not none.test.favours_prediction_error
+    assert none.test.summary.startswith("no process noise")
 
 
 def test_a_known_deviation_is_kept(model: Model) -> None:
-    held = prediction_error(made_of(model, INTENSITY, 5), {"psi": 3.1e-3})
-    assert held.measurement["psi"] == pytest.approx(3.1e-3, rel=1e-12)
+    held = fit_prediction_error(made_of(model, INTENSITY, 5), {"psi": 3.1e-3})
+    assert held.measurement_noise["psi"] == pytest.approx(3.1e-3, rel=1e-12)
 
 
 def test_a_channel_that_only_one_run_has(model: Model) -> None:
@@ -105,56 +107,59 @@ def test_a_channel_that_only_one_run_has(model: Model) -> None:
     measured = made.problem.data.measured.copy()
     measured[np.isin(np.repeat(made.problem.data.run, np.diff(made.problem.data.offsets)), [1]), 0] = np.nan
     gappy = replace(made, problem=replace(made.problem, data=replace(made.problem.data, measured=measured)))
-    assert prediction_error(gappy).process["r"] == pytest.approx(INTENSITY, rel=0.15)
+    assert fit_prediction_error(gappy).process_intensities["r"] == pytest.approx(INTENSITY, rel=0.15)
 
 
 def test_a_state_that_is_not_seen_is_refused(model: Model) -> None:
     with pytest.raises(InputError, match="'x0' would move nothing"):
-        prediction_error(made_of(model, 0.0, 0), driven=("x0",))
+        fit_prediction_error(made_of(model, 0.0, 0), driven_states=("x0",))
 
 
 def test_runs_left_out_by_one_step(found: ProcessNoise) -> None:
     """Against a full refit of the likelihood to the other runs."""
     problem = found.problem
-    assert found.left_out.shape == (4, 2)
+    assert found.leave_one_out.shape == (4, 2)
     rest = np.array([0, 2, 3])
     again = replace(
-        problem, runs=replace(problem.runs, data=problem.runs.data.taken(rest)), start=problem.start[rest],
+        problem, runs=replace(problem.runs, data=problem.runs.data.selected(rest)), start=problem.start[rest],
         start_variance=problem.start_variance[rest],
     )  # fmt: skip
     point = found.optimum.solution.point
     for _ in range(6):
         normal = again.normal(point, NONE)
         point = point - np.linalg.solve(normal.hessian, normal.gradient)
-    moved = (found.left_out[1] - found.shared) / found.interval.standard_error
-    np.testing.assert_allclose(moved, (point[:2] - found.shared) / found.interval.standard_error, atol=0.15)
+    moved = (found.leave_one_out[1] - found.common_parameters) / found.interval.standard_error
+    np.testing.assert_allclose(moved, (point[:2] - found.common_parameters) / found.interval.standard_error, atol=0.15)
 
 
 def test_the_estimate_it_leaves_is_one_over_whole_runs(found: ProcessNoise) -> None:
-    made = found.as_estimate()
+    made = found.as_point_estimate()
     assert made.problem.data.count == 4
-    np.testing.assert_array_equal(made.shared, found.shared)
-    np.testing.assert_array_equal(made.optimum.normal.reduced()[1], found.information)
+    np.testing.assert_array_equal(made.common_parameters, found.common_parameters)
+    np.testing.assert_array_equal(made.optimum.normal.without_local()[1], found.information)
     assert made.residuals().shape == made.problem.data.measured.shape
 
 
 def test_records_without_noise_have_no_likelihood(model: Model) -> None:
     made = made_of(model, 0.0, 0)
-    assert is_worthwhile(made)
+    assert has_noise(made)
     exact = replace(made, problem=replace(made.problem, noise=np.full(2, 1e-12)))
-    assert not is_worthwhile(exact)
+    assert not has_noise(exact)
 
 
 def test_floor_is_the_scatter_of_simulated_runs(model: Model) -> None:
     """400 nonlinear simulations with kicks every half second."""
     sailing = model.with_values({"U": 1.0})
-    record = Record.of("run", seconds(120), {"delta": rudder(120)})
-    template = OutputError(sailing, cut(sailing, [yawing(np.random.default_rng(0), 0.0, rows=120)], ("r", "psi"), None),
-                           np.ones(2))  # fmt: skip
+    record = Record.from_arrays("run", seconds(120), {"delta": rudder(120)})
+    template = OutputError(
+        sailing,
+        cut_segments(sailing, [yawing(np.random.default_rng(0), 0.0, rows=120)], ("r", "psi"), None),
+        np.ones(2),
+    )
     start, own = np.array([0.0, 0.4, 0.0, 0.0]), np.zeros(0)
-    made = floor(template, sailing, record, start, own, {"r": INTENSITY})
-    nothing = Scatter(np.zeros((2, 2)), np.zeros((0, 0)), np.array([INTENSITY, 0.0, 0.0, 0.0]), np.inf)
-    runs = drawn(template, sailing, record, start, own, nothing, np.random.default_rng(1), 400)
+    made = process_noise_floor(template, sailing, record, start, own, {"r": INTENSITY})
+    nothing = PredictionUncertainty(np.zeros((2, 2)), np.zeros((0, 0)), np.array([INTENSITY, 0.0, 0.0, 0.0]), np.inf)
+    runs = draw_runs(template, sailing, record, start, own, nothing, np.random.default_rng(1), 400)
     spread = np.sqrt(np.mean(np.var(runs, axis=0), axis=0))
     assert made["r"] == pytest.approx(spread[0], rel=0.05)
     assert made["psi_deg"] == pytest.approx(np.degrees(spread[1]), rel=0.1)

@@ -7,8 +7,8 @@ import pytest
 from tests.estimation.identify.conftest import TRUTH, square, steered
 
 from seatrial.core.values import InputError, Record
-from seatrial.estimation.estimate.start import weak_start
-from seatrial.estimation.identify import identified
+from seatrial.estimation.estimate.start import weak_form_start
+from seatrial.estimation.identify import estimate_model
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto, nomoto2
 from seatrial.physics.models.waterjet import COEFFICIENTS, waterjet
@@ -44,13 +44,13 @@ def test_coefficients_without_any_velocity_measured(record: Record) -> None:
     """From positions and heading alone, starting at zero."""
     bare = record.without("u", "v", "r")
     start = waterjet().with_values(dict.fromkeys(COEFFICIENTS, 0.0))
-    found = identified(start, [bare], ["a"], 9.8).model.parameters
+    found = estimate_model(start, [bare], ["a"], 9.8).model.parameters
     truth = waterjet().parameters
     assert max(abs(found[n].value / truth[n].value - 1) for n in COEFFICIENTS) < 1e-6
 
 
 def test_the_start_is_near_the_truth(record: Record) -> None:
-    point = weak_start(waterjet().with_values(dict.fromkeys(COEFFICIENTS, 0.0)), [record], 15.0)
+    point = weak_form_start(waterjet().with_values(dict.fromkeys(COEFFICIENTS, 0.0)), [record], 15.0)
     truth = np.array([waterjet().parameters[n].value for n in waterjet().parameters.free_names])
     np.testing.assert_allclose(point, truth, rtol=0.02)
 
@@ -61,7 +61,7 @@ def test_positions_nobody_measured_say_nothing_about_speed() -> None:
     model = nomoto().with_values({**TRUTH, "U": 2.0})
     record = steered(model, square(500), rng, {"r": 1e-3}).without("x0", "y0")
     free = model.with_parameters(model.parameters.freed("U")).with_values({"K": 0.1, "T": 10.0})
-    started = dict(zip(free.parameters.free_names, weak_start(free, [record], 6.0), strict=True))
+    started = dict(zip(free.parameters.free_names, weak_form_start(free, [record], 6.0), strict=True))
     assert started["U"] == 2.0
     assert started["K"] == pytest.approx(TRUTH["K"], rel=0.05)
     assert started["T"] == pytest.approx(TRUTH["T"], rel=0.1)
@@ -72,8 +72,8 @@ def test_a_hidden_state_leaves_the_start_to_the_model() -> None:
     model = nomoto2().with_values({"K": 0.15, "T_1": 15.0, "T_2": 3.0, "T_3": 5.0, "U": 1.0})
     record = manoeuvre(model, programme("zigzag:20/20"), dt=0.2, speed=1.0).without("r_rest")
     start = nomoto2().with_values({"U": 1.0})
-    np.testing.assert_array_equal(weak_start(start, [record], 10.0), [p.value for p in start.parameters.free])
-    found = identified(start, [record], ["a"], 7.0)
-    assert "r_rest" in found.start
+    np.testing.assert_array_equal(weak_form_start(start, [record], 10.0), [p.value for p in start.parameters.free])
+    found = estimate_model(start, [record], ["a"], 7.0)
+    assert "r_rest" in found.start_method
     values = [found.model.parameters[n].value for n in ("K", "T_1", "T_2", "T_3")]
     np.testing.assert_allclose(values, [0.15, 15.0, 3.0, 5.0], rtol=1e-6)

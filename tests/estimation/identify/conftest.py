@@ -46,7 +46,7 @@ def square(rows: int, dt: float = 0.5, period: float = 52.0, phase: float = 0.0,
     """A planned record: rudder hard over from side to side, slewing for a few samples."""
     time = dt * np.arange(rows)
     delta = size * np.clip(8.0 * np.sin(2 * np.pi * (time + phase) / period), -1.0, 1.0)
-    return Record.of("plan", time, {"delta": delta, "u": np.full(rows, 2.0)})
+    return Record.from_arrays("plan", time, {"delta": delta, "u": np.full(rows, 2.0)})
 
 
 def steered(
@@ -76,7 +76,7 @@ WriteTrial = Callable[..., Path]
 def trial_of(tmp_path: Path) -> WriteTrial:
     """Writes runs (name -> rudder zero) and the trial file over them, and gives its path."""
 
-    def made(
+    def write_runs(
         runs: Mapping[str, float],
         *,
         layout: str = "",
@@ -94,4 +94,4 @@ def trial_of(tmp_path: Path) -> WriteTrial:
         (tmp_path / "trial.toml").write_text(text)
         return tmp_path / "trial.toml"
 
-    return made
+    return write_runs

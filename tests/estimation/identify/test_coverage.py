@@ -8,7 +8,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from seatrial.estimation.estimate.settings import Intervals
+from seatrial.estimation.estimate.settings import IntervalMethod
 
 SERIES = 3
 
@@ -24,7 +24,7 @@ def coverage(repository: Path) -> ModuleType:
 
 def test_intervals_hold_what_is_measured(coverage: ModuleType) -> None:
     """Some 70 values of four ships: .85 is three standard deviations below .95 if a ship's values go together."""
-    told = coverage.series(SERIES, 3, Intervals.AUTO)
+    told = coverage.series(SERIES, 3, IntervalMethod.AUTO)
     assert len(told) > 12 * SERIES
     assert {t.kind for t in told} >= {"overshoot_deg", "tactical_diameter_L", "advance_L"}
     assert np.mean([t.is_inside for t in told]) >= 0.85
@@ -33,7 +33,7 @@ def test_intervals_hold_what_is_measured(coverage: ModuleType) -> None:
 
 
 def test_the_table_can_fail(coverage: ModuleType) -> None:
-    kinds = [coverage.Told(0, "turn", "advance_L", 3.0, 3.2, half) for half in (0.1, 0.3)]
-    rows = {line.what.split(" (")[0]: line for line in coverage.lines(kinds)}
+    kinds = [coverage.MeasureInterval(0, "turn", "advance_L", 3.0, 3.2, half) for half in (0.1, 0.3)]
+    rows = {line.quantity.split(" (")[0]: line for line in coverage.lines(kinds)}
     assert rows["turns: advance_L"].value == 0.5
     assert rows["pooled"].holds is False

@@ -75,7 +75,7 @@ def write(folder: Path, fusion: ModuleType, side: str) -> Path:
     rng, ship = np.random.default_rng(4), kvlcc2()
     run = fusion.noisy(fusion.manoeuvre(ship, fusion.programme("zigzag:20/20"), dt=0.5, inputs={"n": 10.4}), rng)
     table(folder / "zigzag.csv", {"time": run.time} | {s: run[s] for s in ("u", "v", "r", "psi", "delta", "n")})
-    points: ForcePoints = fusion.captive(ship, rng, 1.2, revolutions=10.4, percent=1.0)
+    points: ForcePoints = fusion.simulate_captive_points(ship, rng, 1.2, revolutions=10.4, percent=1.0)
     motion = {s: points.motion[s] for s in ("u", "v", "r", "delta")}
     table(folder / "tank.csv", motion | dict(points.forces))
     extra = "\n".join(
@@ -108,7 +108,7 @@ def test_points_and_record_give_the_coefficients(fused: Fit) -> None:
 
 def test_the_result_says_what_was_fused_and_cites_the_prior(fused: Fit) -> None:
     (said,) = [f for f in fused.findings if f.code == "force-points"]
-    assert "tank.csv" in said.what
+    assert "tank.csv" in said.message
     levels = [float(part.split()[-1]) for part in said.evidence.split(": ")[1].split(", ")]
     assert all(0.7 < level < 1.4 for level in levels), (
         "points and records are of one ship, their noise is the stated one"
@@ -123,7 +123,7 @@ def test_a_turned_force_is_refused_with_the_way_to_declare_it(tmp_path: Path, fu
 
 
 def test_the_predicted_turn_hardly_moves_with_the_prior(fusion: ModuleType) -> None:
-    alone, together = fusion.compared(seed=13)
+    alone, together = fusion.compare_with_captive(seed=13)
     assert together.points <= fusion.LIMIT
     loose = max(alone.predicted)
     missed = [abs(moved.predicted[loose] - moved.truth) for moved in (alone, together)]
@@ -132,7 +132,7 @@ def test_the_predicted_turn_hardly_moves_with_the_prior(fusion: ModuleType) -> N
 
 def test_points_of_another_ship_are_noticed(fusion: ModuleType) -> None:
     ship = kvlcc2()
-    points = fusion.captive(ship, np.random.default_rng(2), 1.2, revolutions=10.4)
+    points = fusion.simulate_captive_points(ship, np.random.default_rng(2), 1.2, revolutions=10.4)
     other = ship.with_values({"N_v": 1.5 * ship.parameters["N_v"].value})
     gap = StaticForces(other, points).residuals(other.parameters.values)
     assert np.sqrt(np.mean(gap["N"] ** 2)) > 2.0

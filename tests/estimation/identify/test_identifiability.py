@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 
 from seatrial.core.results import Identifiability
-from seatrial.core.values import ForcePoints, Includes, Prior, Record
-from seatrial.data.example_series.series import SENSOR_NOISE, noisy, run, truth
-from seatrial.estimation.estimate.estimate import Estimate
-from seatrial.estimation.estimate.fit import Identified
-from seatrial.estimation.estimate.settings import Criterion
-from seatrial.estimation.identify import Settings, identified
+from seatrial.core.values import ForceContent, ForcePoints, Prior, Record
+from seatrial.data.example_series.series import SENSOR_NOISE, simulate_run, true_model, with_sensor_noise
+from seatrial.estimation.estimate.fit import Estimation
+from seatrial.estimation.estimate.point_estimate import PointEstimate
+from seatrial.estimation.estimate.settings import FitCriterion
+from seatrial.estimation.identify import Settings, estimate_model
 from seatrial.estimation.identify.identifiability import consequences, identifiability, sensitivities
-from seatrial.estimation.identify.profile import LIMIT, profiles
+from seatrial.estimation.identify.profile import CHI_SQUARED_LIMIT, profiles
 from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.information.directions import directions
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.estimation.problem.segments import cut
+from seatrial.estimation.problem.segments import cut_segments
 from seatrial.estimation.problem.static_forces import StaticForces
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt
 from seatrial.physics.manoeuvres.programme import programme
@@ -38,17 +38,19 @@ ABKOWITZ = {
 @pytest.fixture(scope="module")
 def record() -> Record:
     """The consecutive zigzags of the demonstration, 2075 s."""
-    return noisy(run(truth(), f"consecutive-zigzags:{EXECUTES}").resampled(RATE), np.random.default_rng(3), 3)
+    return with_sensor_noise(
+        simulate_run(true_model(), f"consecutive-zigzags:{EXECUTES}").resampled(RATE), np.random.default_rng(3), 3
+    )
 
 
 @pytest.fixture(scope="module")
-def found(record: Record) -> Identified:
-    settings = Settings(criterion=Criterion.OUTPUT_ERROR, workers=1)
-    return identified(truth(), [record], [record.name], 9.8, settings)
+def found(record: Record) -> Estimation:
+    settings = Settings(criterion=FitCriterion.OUTPUT_ERROR, workers=1)
+    return estimate_model(true_model(), [record], [record.name], 9.8, settings)
 
 
 @pytest.fixture(scope="module")
-def told(found: Identified) -> Identifiability:
+def told(found: Estimation) -> Identifiability:
     return identifiability(found, (), {"u": 0.8, "v_j": 1.866}, 9.8)
 
 
@@ -63,10 +65,12 @@ def test_the_weakest_direction_is_the_one_of_this_craft(told: Identifiability) -
 
 def test_at_the_truth_the_weakest_direction_is_the_published_one() -> None:
     """-.70 X_rr +.49 X_vv +.47 Y_vr, 26 %, at 10 Hz; at another rate information goes with the number of samples."""
-    clean = run(truth(), f"consecutive-zigzags:{EXECUTES}").resampled(RATE)
+    clean = simulate_run(true_model(), f"consecutive-zigzags:{EXECUTES}").resampled(RATE)
     noise = np.array(list(SENSOR_NOISE.values()))
-    problem = OutputError(truth(), cut(truth(), [clean], tuple(SENSOR_NOISE), None), noise, workers=1)
-    information = problem.normal(problem.start(), problem.measured_starts()).reduced()[1]
+    problem = OutputError(
+        true_model(), cut_segments(true_model(), [clean], tuple(SENSOR_NOISE), None), noise, workers=1
+    )
+    information = problem.normal(problem.start(), problem.measured_initial_states()).without_local()[1]
     weakest = directions(information, problem.free, problem.start())[0]
     part = weakest.combination
     assert (part["X_rr"], part["X_vv"], part["Y_vr"]) == pytest.approx((0.70, -0.49, -0.47), abs=0.02)
@@ -79,45 +83,47 @@ def test_the_craft_is_stable_on_her_course(told: Identifiability) -> None:
     assert told.stability.lower > 0
 
 
-def test_a_wrong_added_mass_moves_the_estimates_as_foretold(found: Identified, record: Record) -> None:
+def test_a_wrong_added_mass_moves_the_estimates_as_foretold(found: Estimation, record: Record) -> None:
     """One Gauss-Newton step against a fit with the wrong value."""
     foretold = next(c for c in consequences(found) if c.parameter == "m_y")
-    model = truth()
+    model = true_model()
     wrong = model.with_values({"m_y": 1.02 * model.parameters["m_y"].value})
-    settings = Settings(criterion=Criterion.OUTPUT_ERROR, workers=1)
-    again = identified(wrong, [record], [record.name], 9.8, settings)
+    settings = Settings(criterion=FitCriterion.OUTPUT_ERROR, workers=1)
+    again = estimate_model(wrong, [record], [record.name], 9.8, settings)
     for name in ("Y_v", "X_vv", "Y_rr"):
-        i = found.made.problem.free.index(name)
-        moved = (again.made.shared[i] - found.made.shared[i]) / found.made.shared[i]
-        assert moved == pytest.approx(0.2 * foretold.moves[name], rel=0.15), name
-    assert foretold.moves["Y_v"] == pytest.approx(0.15, abs=0.02)
+        i = found.estimate.problem.free.index(name)
+        moved = (
+            again.estimate.common_parameters[i] - found.estimate.common_parameters[i]
+        ) / found.estimate.common_parameters[i]
+        assert moved == pytest.approx(0.2 * foretold.estimate_changes[name], rel=0.15), name
+    assert foretold.estimate_changes["Y_v"] == pytest.approx(0.15, abs=0.02)
     assert "Y_v by +16 %" in foretold.text and "hardly show it" in foretold.text
 
 
-def _fitted_with(found: Identified, name: str, factor: float) -> Optimum:
+def _fitted_with(found: Estimation, name: str, factor: float) -> Optimum:
     """The optimum of the same problem with another assumed value."""
-    problem = found.made.problem
+    problem = found.estimate.problem
     value = factor * problem.model.parameters[name].value
     wrong = replace(problem, model=problem.model.with_values({name: value}))
-    return levenberg_marquardt(wrong, found.made.shared, found.made.optimum.local)
+    return levenberg_marquardt(wrong, found.estimate.common_parameters, found.estimate.optimum.local)
 
 
-def test_thrust_five_per_cent_wrong_moves_the_yaw_moment_by_a_quarter(found: Identified) -> None:
+def test_thrust_five_per_cent_wrong_moves_the_yaw_moment_by_a_quarter(found: Estimation) -> None:
     """Hardly seen: chi squared grows by less than its own scatter, sqrt(2 N)."""
     foretold = next(c for c in consequences(found) if c.parameter == "A_j")
     again = _fitted_with(found, "A_j", 1.05)
-    i = found.made.problem.free.index("N_v")
-    moved = again.solution.point[i] / found.made.shared[i] - 1.0
+    i = found.estimate.problem.free.index("N_v")
+    moved = again.solution.point[i] / found.estimate.common_parameters[i] - 1.0
     assert moved == pytest.approx(0.24, abs=0.01)
-    assert 0.5 * foretold.moves["N_v"] == pytest.approx(moved, rel=0.1)
-    grown = 2.0 * (again.solution.value - found.made.optimum.solution.value)
-    assert 0.0 < grown < np.sqrt(2.0 * np.isfinite(found.made.problem.data.measured).sum())
+    assert 0.5 * foretold.estimate_changes["N_v"] == pytest.approx(moved, rel=0.1)
+    grown = 2.0 * (again.solution.value - found.estimate.optimum.solution.value)
+    assert 0.0 < grown < np.sqrt(2.0 * np.isfinite(found.estimate.problem.data.measured).sum())
 
 
-def test_the_misfit_is_the_growth_of_chi_squared_apart_from_what_noise_favours(found: Identified) -> None:
+def test_the_misfit_is_the_growth_of_chi_squared_apart_from_what_noise_favours(found: Estimation) -> None:
     """Noise prefers one sign of the change; the mean over both signs is what is foretold."""
     foretold = next(c for c in consequences(found) if c.parameter == "x_T")
-    least = found.made.optimum.solution.value
+    least = found.estimate.optimum.solution.value
     both = [2.0 * (_fitted_with(found, "x_T", 1.0 + s).solution.value - least) for s in (0.02, -0.02)]
     assert np.mean(both) == pytest.approx(0.04 * foretold.misfit, rel=0.1)
 
@@ -132,85 +138,87 @@ def _towed(percent: float) -> StaticForces:
         "delta": 0.0 * turn,
         "v_j": 1.866 + 0 * turn,
     }
-    points = ForcePoints("towed", motion, {"N": 0.0 * turn}, {"N": 1.0}, Includes.HYDRODYNAMIC, source="simulated")
-    moment = StaticForces(truth(), points).forces(truth().parameters.values)[:, 2]
+    points = ForcePoints("towed", motion, {"N": 0.0 * turn}, {"N": 1.0}, ForceContent.HYDRODYNAMIC, source="simulated")
+    moment = StaticForces(true_model(), points).forces(true_model().parameters.values)[:, 2]
     deviation = 0.01 * percent * float(np.max(np.abs(moment)))
-    return StaticForces(truth(), replace(points, forces={"N": moment}, sd={"N": deviation}))
+    return StaticForces(true_model(), replace(points, forces={"N": moment}, sd={"N": deviation}))
 
 
-def test_force_points_hold_what_a_wrong_assumption_would_move(found: Identified) -> None:
-    problem = replace(found.made.problem, others=(_towed(1.0),))
-    optimum = levenberg_marquardt(problem, found.made.shared, found.made.optimum.local)
-    fused = replace(found, made=replace(found.made, problem=problem, optimum=optimum))
+def test_force_points_hold_what_a_wrong_assumption_would_move(found: Estimation) -> None:
+    problem = replace(found.estimate.problem, extra_terms=(_towed(1.0),))
+    optimum = levenberg_marquardt(problem, found.estimate.common_parameters, found.estimate.optimum.local)
+    fused = replace(found, estimate=replace(found.estimate, problem=problem, optimum=optimum))
     alone, foretold = (next(c for c in consequences(f) if c.parameter == "A_j") for f in (found, fused))
     again = _fitted_with(fused, "A_j", 1.02)
     i = problem.free.index("N_v")
     moved = again.solution.point[i] / optimum.solution.point[i] - 1.0
-    assert abs(foretold.moves["N_v"]) < 0.5 * abs(alone.moves["N_v"])
-    assert 0.2 * foretold.moves["N_v"] == pytest.approx(moved, rel=0.1)
+    assert abs(foretold.estimate_changes["N_v"]) < 0.5 * abs(alone.estimate_changes["N_v"])
+    assert 0.2 * foretold.estimate_changes["N_v"] == pytest.approx(moved, rel=0.1)
 
 
 def test_what_defines_the_coefficients_is_not_assumed() -> None:
     """A switch between prime systems and the speed of an expansion are no facts about the ship."""
-    model = abkowitz().with_values(ABKOWITZ).of_ship(kvlcc2_l7().ship)
+    model = abkowitz().with_values(ABKOWITZ).with_ship(kvlcc2_l7().ship)
     record = manoeuvre(model, programme("zigzag:20/20"), speed=1.18, slew_rate=np.radians(15.8))
-    record = noisy(record.resampled(2.0), np.random.default_rng(5), 5)
-    settings = Settings(criterion=Criterion.OUTPUT_ERROR, workers=1)
-    told = consequences(identified(model, [record], [record.name], 7.0, settings))
+    record = with_sensor_noise(record.resampled(2.0), np.random.default_rng(5), 5)
+    settings = Settings(criterion=FitCriterion.OUTPUT_ERROR, workers=1)
+    told = consequences(estimate_model(model, [record], [record.name], 7.0, settings))
     assert {c.parameter for c in told} <= {"I_z", "x_G", "X_udot", "Y_vdot", "N_rdot"}
     assert "Y_vdot" in {c.parameter for c in told}
 
 
-def test_a_prior_of_an_assumed_value_does_not_show_in_the_misfit(found: Identified) -> None:
-    problem = found.made.problem
+def test_a_prior_of_an_assumed_value_does_not_show_in_the_misfit(found: Estimation) -> None:
+    problem = found.estimate.problem
     known = problem.model.parameters.with_priors({"m_y": Prior(4349.0, 1.0, "not used while m_y is fixed")})
-    made = replace(found.made, problem=replace(problem, model=problem.model.with_parameters(known)))
-    one, other = (next(c for c in consequences(f) if c.parameter == "m_y") for f in (found, replace(found, made=made)))
+    made = replace(found.estimate, problem=replace(problem, model=problem.model.with_parameters(known)))
+    one, other = (
+        next(c for c in consequences(f) if c.parameter == "m_y") for f in (found, replace(found, estimate=made))
+    )
     assert other.misfit == pytest.approx(one.misfit, rel=1e-9)
 
 
-def test_sensitivities_are_changes_of_the_simulated_outputs(found: Identified, record: Record) -> None:
+def test_sensitivities_are_changes_of_the_simulated_outputs(found: Estimation, record: Record) -> None:
     effect = {s.parameter: s for s in sensitivities(found)}["N_r"]
-    model, start = found.model, found.made.optimum.local[0]
-    initial = dict(zip(found.made.problem.starts, start, strict=True))
+    model, start = found.model, found.estimate.optimum.local[0]
+    initial = dict(zip(found.estimate.problem.starts, start, strict=True))
     value = model.parameters["N_r"].value
     up, down = (replay(model.with_values({"N_r": value * f}), record, initial) for f in (1.001, 0.999))
-    noise = dict(zip(found.made.problem.data.outputs, found.made.problem.noise, strict=True))
+    noise = dict(zip(found.estimate.problem.data.outputs, found.estimate.problem.noise, strict=True))
     for output in ("r", "psi"):
         slope = np.sqrt(np.mean(((up[output] - down[output]) / 0.002) ** 2)) / noise[output]
         assert effect.outputs[output] == pytest.approx(0.1 * slope, rel=1e-2)
 
 
-def test_the_profile_of_a_well_known_coefficient_is_its_interval(found: Identified) -> None:
-    (profile,) = profiles(found.made, found.interval.standard_error, ["N_rr"])
-    i = found.made.problem.free.index("N_rr")
-    centre, half = found.made.shared[i], found.interval.half_width[i]
+def test_the_profile_of_a_well_known_coefficient_is_its_interval(found: Estimation) -> None:
+    (profile,) = profiles(found.estimate, found.interval.standard_error, ["N_rr"])
+    i = found.estimate.problem.free.index("N_rr")
+    centre, half = found.estimate.common_parameters[i], found.interval.half_width[i]
     assert profile.lower == pytest.approx(centre - half, abs=0.15 * half)
     assert profile.upper == pytest.approx(centre + half, abs=0.15 * half)
-    assert np.all(np.diff(profile.values) > 0) and min(profile.costs) == 0.0 and max(profile.costs) > LIMIT
+    assert np.all(np.diff(profile.values) > 0) and min(profile.costs) == 0.0 and max(profile.costs) > CHI_SQUARED_LIMIT
 
 
-def test_a_profile_counts_the_prior_of_what_it_holds(found: Identified) -> None:
+def test_a_profile_counts_the_prior_of_what_it_holds(found: Estimation) -> None:
     """With a prior three of its deviations off, profile and information still agree, about the same minimum."""
-    problem, i = found.made.problem, found.made.problem.free.index("N_rr")
+    problem, i = found.estimate.problem, found.estimate.problem.free.index("N_rr")
     spread = float(found.interval.standard_error[i])
-    prior = Prior(float(found.made.shared[i]) + 3.0 * spread, spread, "off")
+    prior = Prior(float(found.estimate.common_parameters[i]) + 3.0 * spread, spread, "off")
     model = problem.model.with_parameters(problem.model.parameters.with_priors({"N_rr": prior}))
     held = replace(problem, model=model)
-    optimum = levenberg_marquardt(held, found.made.shared, found.made.optimum.local)
-    (profile,) = profiles(Estimate(held, optimum), found.interval.standard_error, ["N_rr"])
-    half = np.sqrt(LIMIT * inverse(optimum.normal.reduced()[1])[i, i])
-    assert abs(optimum.solution.point[i] - found.made.shared[i]) > spread
+    optimum = levenberg_marquardt(held, found.estimate.common_parameters, found.estimate.optimum.local)
+    (profile,) = profiles(PointEstimate(held, optimum), found.interval.standard_error, ["N_rr"])
+    half = np.sqrt(CHI_SQUARED_LIMIT * inverse(optimum.normal.without_local()[1])[i, i])
+    assert abs(optimum.solution.point[i] - found.estimate.common_parameters[i]) > spread
     assert profile.lower == pytest.approx(optimum.solution.point[i] - half, abs=0.05 * half)
     assert profile.upper == pytest.approx(optimum.solution.point[i] + half, abs=0.05 * half)
     assert profile.costs.count(0.0) == 1 and 9 <= len(profile.values) <= 11
 
 
-def test_a_profile_ends_at_a_bound(found: Identified) -> None:
-    problem, i = found.made.problem, found.made.problem.free.index("N_rr")
-    edge = float(found.made.shared[i] + found.interval.standard_error[i])
+def test_a_profile_ends_at_a_bound(found: Estimation) -> None:
+    problem, i = found.estimate.problem, found.estimate.problem.free.index("N_rr")
+    edge = float(found.estimate.common_parameters[i] + found.interval.standard_error[i])
     model = problem.model.with_parameters(problem.model.parameters.bounded("N_rr", -np.inf, edge))
-    made = replace(found.made, problem=replace(problem, model=model))
+    made = replace(found.estimate, problem=replace(problem, model=model))
     (profile,) = profiles(made, found.interval.standard_error, ["N_rr"])
     assert profile.upper is None and max(profile.values) <= edge
     assert profile.lower is not None
@@ -218,21 +226,21 @@ def test_a_profile_ends_at_a_bound(found: Identified) -> None:
 
 def test_prediction_error_has_no_profile_of_output_error(record: Record) -> None:
     """Its cost is another one; a comparison would give an interval of rounding's width."""
-    settings = Settings(criterion=Criterion.PREDICTION_ERROR, workers=1)
+    settings = Settings(criterion=FitCriterion.PREDICTION_ERROR, workers=1)
     short = record.between(0.0, 400.0)
-    filtered = identified(truth(), [short], [short.name], 9.8, settings)
+    filtered = estimate_model(true_model(), [short], [short.name], 9.8, settings)
     assert filtered.has_process_noise
-    assert profiles(filtered.made, filtered.interval.standard_error, ["N_rr"]) == ()
+    assert profiles(filtered.estimate, filtered.interval.standard_error, ["N_rr"]) == ()
 
 
-def test_a_direction_held_by_a_prior_does_not_count_as_told(found: Identified) -> None:
+def test_a_direction_held_by_a_prior_does_not_count_as_told(found: Estimation) -> None:
     """A prior much tighter than the records takes a parameter from them."""
-    problem = found.made.problem
+    problem = found.estimate.problem
     tight = {"X_rr": Prior(0.00414, 1e-7, "tight")}
     model = problem.model.with_parameters(problem.model.parameters.with_priors(tight))
     held = replace(problem, model=model)
-    normal = held.normal(found.made.shared, found.made.optimum.local)
-    made = replace(found.made, problem=held, optimum=replace(found.made.optimum, normal=normal))
-    told = identifiability(replace(found, made=made), (), {}, 9.8)
+    normal = held.normal(found.estimate.common_parameters, found.estimate.optimum.local)
+    made = replace(found.estimate, problem=held, optimum=replace(found.estimate.optimum, normal=normal))
+    told = identifiability(replace(found, estimate=made), (), {}, 9.8)
     assert told.effective_parameters == pytest.approx(10.0, abs=0.1)
     assert told.stability is None

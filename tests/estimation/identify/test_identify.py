@@ -8,9 +8,9 @@ from tests.estimation.identify.conftest import NOISE, TRUTH, WriteTrial
 
 from seatrial.core.values import Record
 from seatrial.data.trial import load_trial
-from seatrial.estimation.estimate.settings import Criterion
+from seatrial.estimation.estimate.settings import FitCriterion
 from seatrial.estimation.identify import identify
-from seatrial.estimation.identify.identify import settings_of
+from seatrial.estimation.identify.identify import settings_from_trial
 
 ZEROS = {"a": 0.02, "b": -0.03, "c": 0.0, "v_1": 0.05}
 OFFSETS = "[estimate]\noffsets = { delta = { sd = 3, unit = 'deg' } }"
@@ -85,9 +85,9 @@ gains = ["delta"]
 current = 0.2
 """
     trial = load_trial(trial_of({"a": 0.0}, more=more))
-    record = Record.of("a", np.arange(5.0), {"u": np.full(5, 2.0)})
-    settings = settings_of(trial, [record])
-    assert settings.criterion is Criterion.OUTPUT_ERROR
+    record = Record.from_arrays("a", np.arange(5.0), {"u": np.full(5, 2.0)})
+    settings = settings_from_trial(trial, [record])
+    assert settings.criterion is FitCriterion.OUTPUT_ERROR
     assert settings.robust is True
     assert settings.channels == ("psi",)
     assert settings.noise == pytest.approx({"psi": math.radians(1.0)})
@@ -97,8 +97,8 @@ current = 0.2
 
 def test_segment_lengths_are_counted_in_ship_lengths(trial_of: WriteTrial) -> None:
     trial = load_trial(trial_of({"a": 0.0}, more="[estimate]\nsegment_lengths = 3.0"))
-    record = Record.of("a", np.arange(5.0), {"u": np.full(5, 2.0)})
-    assert settings_of(trial, [record]).segment_seconds == pytest.approx(3.0 * 8.0 / 2.0)
+    record = Record.from_arrays("a", np.arange(5.0), {"u": np.full(5, 2.0)})
+    assert settings_from_trial(trial, [record]).segment_seconds == pytest.approx(3.0 * 8.0 / 2.0)
 
 
 def test_a_stated_segment_is_used_and_named(trial_of: WriteTrial) -> None:
@@ -110,7 +110,7 @@ def test_a_stated_segment_is_used_and_named(trial_of: WriteTrial) -> None:
 def test_a_bound_that_is_hit_is_a_finding(trial_of: WriteTrial) -> None:
     fit = identify(load_trial(trial_of({"a": 0.0}, model="bounds = { T = [9.0, 50.0] }")))
     (hit,) = [f for f in fit.findings if f.code == "bound-hit"]
-    assert "T" in hit.what
+    assert "T" in hit.message
     assert "[model.bounds]" in hit.advice
     assert next(c.estimate for c in fit.coefficients if c.name == "T") == 9.0
 

@@ -41,7 +41,7 @@ def test_the_table_can_fail(montecarlo: ModuleType) -> None:
     """Errors twice the bound under intervals of one bound."""
     bound, draws = np.full(3, 0.1), np.random.default_rng(3).standard_normal((50, 3))
     wrong = montecarlo.Series(("a", "b", "c"), np.ones(3), bound, 0.2 * draws, np.full((50, 3), 0.1), 49, 50, 1.0)
-    held = {line.what.split(" (")[0]: line.holds for line in montecarlo.lines(wrong)}
+    held = {line.quantity.split(" (")[0]: line.holds for line in montecarlo.lines(wrong)}
     assert held["runs converged"] is False
     assert held["a: RMSE / bound"] is False
     assert held["b: coverage"] is False

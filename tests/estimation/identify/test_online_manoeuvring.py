@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 
 from seatrial.core.results import Fit
-from seatrial.core.results.online import Phase, Sample, Snapshot
+from seatrial.core.results.online import EstimatorPhase, Sample, Snapshot
 from seatrial.core.values import NOTATION, Record
-from seatrial.data.read import Column, Layout, read_record
+from seatrial.data.read import ColumnSpec, Layout, read_record
 from seatrial.data.trial import Role, Trial, load_trial
-from seatrial.data.trial.release import released
-from seatrial.data.trial.trial import Feed, Stream
+from seatrial.data.trial.roll_decay_start import trim_to_decay_start
+from seatrial.data.trial.trial import Stream, StreamSource
 from seatrial.estimation.identify.identify import identify
-from seatrial.estimation.identify.online import Online
+from seatrial.estimation.identify.online import OnlineEstimator
 from seatrial.physics.models.qi2025 import SHIP
-from seatrial_studies.own_fit import started
-from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, Voyage, sailed
+from seatrial_studies.output_error_fit import with_physics_start
+from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, SeawayScenario, simulate_seaway_run
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -26,11 +26,11 @@ def _stream(name: str) -> tuple[Trial, Record]:
     """An example's trial without its runs, following the columns of its training run; and that run."""
     trial = load_trial(EXAMPLES / f"{name}.toml")
     (run,) = [r for r in trial.runs if r.role is Role.TRAIN]
-    raw = read_record(run.path, run.layout).named(run.name)
-    return replace(trial, runs=(), follow=Stream(Feed.STDIN, run.layout, 1.0 / raw.dt, name=run.name)), raw
+    raw = read_record(run.path, run.layout).renamed(run.name)
+    return replace(trial, runs=(), stream=Stream(StreamSource.STDIN, run.layout, 1.0 / raw.dt, name=run.name)), raw
 
 
-def _feed(estimator: Online, record: Record, stream: Stream, rows: slice = slice(None)) -> Snapshot:
+def _feed(estimator: OnlineEstimator, record: Record, stream: Stream, rows: slice = slice(None)) -> Snapshot:
     values = np.stack([record[c.symbol] for c in stream.layout.columns], axis=1)[rows]
     shown = None
     for time, row in zip(record.time[rows].tolist(), values, strict=True):
@@ -49,9 +49,9 @@ def _off(shown: Snapshot, fit: Fit) -> np.ndarray:
 def zigzags():
     """The waterjet craft's first zigzags, 10/10 and some 15/15, fed; what was shown last, and at the end."""
     trial, raw = _stream("waterjet")
-    estimator = Online(trial)
-    assert trial.follow is not None
-    shown = _feed(estimator, raw, trial.follow, slice(0, 900))
+    estimator = OnlineEstimator(trial)
+    assert trial.stream is not None
+    shown = _feed(estimator, raw, trial.stream, slice(0, 900))
     return trial, estimator, shown, estimator.relinearise()
 
 
@@ -65,8 +65,8 @@ def test_zigzags_end_at_the_batch_estimate(zigzags):
 
 def test_what_small_zigzags_do_not_tell_is_said(zigzags):
     *_, ended = zigzags
-    assert "X_rr" in ended.untold
-    assert not {"X_uu", "Y_v", "N_v", "N_r"} & set(ended.untold)
+    assert "X_rr" in ended.unidentified
+    assert not {"X_uu", "Y_v", "N_v", "N_r"} & set(ended.unidentified)
 
 
 def test_the_truth_lies_within_the_errors(zigzags):
@@ -77,20 +77,20 @@ def test_the_truth_lies_within_the_errors(zigzags):
 
 def test_a_straight_run_first_is_not_fatal():
     trial, raw = _stream("waterjet")
-    assert trial.follow is not None
-    estimator = Online(trial)
+    assert trial.stream is not None
+    estimator = OnlineEstimator(trial)
     straight = raw.rows(slice(0, 120))
     straight = straight.with_channel("delta", straight.channel("delta").with_values(np.zeros(120)))
-    early = _feed(estimator, straight, trial.follow)
-    assert early.phase is Phase.WAITING
+    early = _feed(estimator, straight, trial.stream)
+    assert early.phase is EstimatorPhase.WAITING
     assert "never moves" in early.advice
 
 
 def test_a_roll_decay_ends_at_the_batch_estimate():
     trial, raw = _stream("fin_decay")
-    assert trial.follow is not None
-    estimator = Online(trial)
-    shown = _feed(estimator, released(raw), trial.follow)
+    assert trial.stream is not None
+    estimator = OnlineEstimator(trial)
+    shown = _feed(estimator, trim_to_decay_start(raw), trial.stream)
     ended = estimator.relinearise()
     fit = identify(replace(trial, runs=estimator.raw_runs()))
     assert np.max(np.abs(_off(ended, fit))) < 0.01
@@ -102,15 +102,15 @@ def test_a_roll_decay_ends_at_the_batch_estimate():
 @pytest.fixture(scope="module")
 def outages():
     """Two minutes in waves with a fin; the motion sensor loses a second three times, the whole logger once."""
-    voyage = Voyage(135, duration=120.0)
-    made = sailed(voyage, np.random.default_rng(3))
-    record = made.noisy(np.random.default_rng(4), voyage)
+    voyage = SeawayScenario(135, duration=120.0)
+    made = simulate_seaway_run(voyage, np.random.default_rng(3))
+    record = made.with_sensor_noise(np.random.default_rng(4), voyage)
     channels = ("F3", "M5", "delta_f1", "z", "theta")
-    columns = tuple(Column(c, k + 2, NOTATION[c].unit) for k, c in enumerate(channels))
-    model = started(made.truth)
+    columns = tuple(ColumnSpec(c, k + 2, NOTATION[c].unit) for k, c in enumerate(channels))
+    model = with_physics_start(made.truth)
     trial = Trial(
         ship=SHIP, runs=(), model=model, noise={"z": HEAVE_NOISE, "theta": PITCH_NOISE},
-        follow=Stream(Feed.STDIN, Layout("text", Column("time", 1, "s"), columns), 10.0),
+        stream=Stream(StreamSource.STDIN, Layout("text", ColumnSpec("time", 1, "s"), columns), 10.0),
     )  # fmt: skip
     truth = np.array([made.truth.parameters[n].value for n in model.parameters.free_names])
     return trial, record, truth
@@ -128,16 +128,16 @@ def _with_outages(record: Record, symbols: tuple[str, ...], starts: tuple[int, .
 def test_one_second_without_motions_costs_accuracy_that_is_told(outages):
     """Holes of a second are interpolated straight, as in a batch fit: some per cent, and coloured residuals."""
     trial, record, truth = outages
-    best = _feed(Online(trial), record, trial.follow)
-    shown = _feed(Online(trial), _with_outages(record, ("z", "theta"), (200, 555, 900)), trial.follow)
-    assert shown.phase is Phase.WINDOW
+    best = _feed(OnlineEstimator(trial), record, trial.follow)
+    shown = _feed(OnlineEstimator(trial), _with_outages(record, ("z", "theta"), (200, 555, 900)), trial.follow)
+    assert shown.phase is EstimatorPhase.WINDOW
     assert np.mean(np.abs(shown.value / truth - 1.0)) < 0.04
     assert np.all(shown.standard_error > 1.5 * best.standard_error)
 
 
 def test_a_logger_that_stops_for_a_second_goes_on_in_a_new_run(outages):
     trial, record, truth = outages
-    estimator = Online(trial)
+    estimator = OnlineEstimator(trial)
     _feed(estimator, record, trial.follow, slice(0, 600))
     estimator.begin_run()
     shown = _feed(estimator, record, trial.follow, slice(610, None))

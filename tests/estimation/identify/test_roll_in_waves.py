@@ -4,15 +4,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.rolled import SHIP, rolled
+from tests.simulated_roll import SHIP, simulate_roll_record
 
 from seatrial.core.equations import Model
 from seatrial.core.results import Fit
 from seatrial.core.values import InputError, Record
 from seatrial.data.trial import load_trial
-from seatrial.estimation.estimate import Settings, identified
+from seatrial.estimation.estimate import Settings, estimate_model
 from seatrial.estimation.identify import identify
-from seatrial.estimation.identify.unknown_waves import is_rolled_by_unknown_waves, of_roll, problem_of, searched
+from seatrial.estimation.identify.unknown_waves import (
+    is_roll_in_unknown_waves,
+    maximum_likelihood,
+    roll_interval,
+    spectral_problem,
+)
 from seatrial.physics.models.roll import roll
 from seatrial.physics.sea.spectrum import Spectrum, bretschneider, jonswap
 
@@ -29,22 +34,22 @@ def freed(*names: str) -> Model:
 def test_a_recorded_wave_slope_gives_all_coefficients_back() -> None:
     """Within 3.5 standard errors; quadratic damping and softening restoring."""
     true = {**SHIP, "b_2": 0.3, "c_3": -0.2}
-    record = rolled(bretschneider(2.0, 9.0), 3, true, duration=400.0, dt=0.1)
+    record = simulate_roll_record(bretschneider(2.0, 9.0), 3, true, duration=400.0, dt=0.1)
     names = ("b_1", "b_2", "c_1", "c_3", "phi_0")
-    found = identified(freed(*names), [record], ["sea"], 100.0, Settings(workers=1))
-    off = (found.made.shared[:5] - [true[n] for n in names]) / found.interval.standard_error[:5]
+    found = estimate_model(freed(*names), [record], ["sea"], 100.0, Settings(workers=1))
+    off = (found.estimate.common_parameters[:5] - [true[n] for n in names]) / found.interval.standard_error[:5]
     assert np.abs(off).max() < 3.5
-    assert np.all(found.interval.standard_error[[0, 2]] < 0.02 * found.made.shared[[0, 2]])
-    assert not is_rolled_by_unknown_waves(found, [record])
+    assert np.all(found.interval.standard_error[[0, 2]] < 0.02 * found.estimate.common_parameters[[0, 2]])
+    assert not is_roll_in_unknown_waves(found, [record])
 
 
 def test_the_share_of_the_slope_that_she_feels_can_be_told_too() -> None:
     """The probe shows a slope a quarter too steep."""
-    record = rolled(bretschneider(2.0, 9.0), 4, duration=400.0, dt=0.1)
+    record = simulate_roll_record(bretschneider(2.0, 9.0), 4, duration=400.0, dt=0.1)
     steep = record.channel("alpha_w").with_values(1.25 * record["alpha_w"])
     model = freed("b_1", "c_1", "phi_0")
     model = model.with_parameters(model.parameters.freed("r_w"))
-    found = identified(model, [record.with_channel("alpha_w", steep)], ["sea"], 100.0, Settings(workers=1))
+    found = estimate_model(model, [record.with_channel("alpha_w", steep)], ["sea"], 100.0, Settings(workers=1))
     assert found.model.parameters["r_w"].value == pytest.approx(0.8, rel=2e-3)
 
 
@@ -54,9 +59,9 @@ def test_the_share_of_the_slope_that_she_feels_can_be_told_too() -> None:
 )
 def test_unmeasured_waves_leave_natural_period_and_damping_in_their_intervals(spectrum: Spectrum, seed: int) -> None:
     """From the roll angle alone, half an hour; damping to a third, the period to some per cent."""
-    problem = problem_of(rolled(spectrum, seed))
-    optimum = searched(problem)
-    interval = of_roll(problem, optimum)
+    problem = spectral_problem(simulate_roll_record(spectrum, seed))
+    optimum = maximum_likelihood(problem)
+    interval = roll_interval(problem, optimum)
     b_1, c_1 = np.exp(optimum.solution.point[[5, 6]])
     half = interval.half_width
     assert abs(b_1 - SHIP["b_1"]) < half[0] < 0.6 * b_1
@@ -87,32 +92,32 @@ name = "roll"
 
 def test_a_trial_of_roll_alone_becomes_a_fit_with_its_reason(tmp_path: Path) -> None:
     """Linear equivalent, and a spectrum in place of curves over amplitude."""
-    fit = trial_of(tmp_path, rolled(bretschneider(2.0, 12.0), 1))
+    fit = trial_of(tmp_path, simulate_roll_record(bretschneider(2.0, 12.0), 1))
     assert [c.name for c in fit.coefficients if not c.fixed] == ["b_1", "c_1"]
     assert "Whittle" in fit.method.criterion
     assert "equivalent-linear" in [f.code for f in fit.findings]
-    assert fit.rolling is not None
-    assert fit.rolling.natural_period.lower < PERIOD < fit.rolling.natural_period.upper
-    assert fit.rolling.amplitude == ()
-    assert len(fit.rolling.spectrum) > 100
+    assert fit.roll is not None
+    assert fit.roll.natural_period.lower < PERIOD < fit.roll.natural_period.upper
+    assert fit.roll.amplitude == ()
+    assert len(fit.roll.spectrum) > 100
 
 
 def test_waves_without_energy_at_the_natural_frequency_are_refused(tmp_path: Path) -> None:
     """They tell their own period, not the ship's."""
     with pytest.raises(InputError, match="waves have next to no energy at the natural frequency"):
-        trial_of(tmp_path, rolled(bretschneider(2.0, 6.5), 2))
+        trial_of(tmp_path, simulate_roll_record(bretschneider(2.0, 6.5), 2))
 
 
 def test_too_short_a_record_is_refused(tmp_path: Path) -> None:
     """With the number of swings it has."""
     with pytest.raises(InputError, match="swings in waves that nobody measured are too few"):
-        trial_of(tmp_path, rolled(bretschneider(2.0, 12.0), 1, duration=200.0))
+        trial_of(tmp_path, simulate_roll_record(bretschneider(2.0, 12.0), 1, duration=200.0))
 
 
 @pytest.mark.parametrize("growth", [0.0, 0.004])
 def test_roll_that_never_decays_is_refused(tmp_path: Path, growth: float) -> None:
     """Nothing drives her and she swings on: no damping can be told, and none is printed."""
     time = np.arange(0.0, 120.0, 0.1)
-    record = Record.of("sea", time, {"phi": 0.1 * np.exp(growth * time) * np.cos(0.7 * time)})
+    record = Record.from_arrays("sea", time, {"phi": 0.1 * np.exp(growth * time) * np.cos(0.7 * time)})
     with pytest.raises(InputError, match="record 'sea': the roll does not decay"):
         trial_of(tmp_path, record)

@@ -12,7 +12,7 @@ from seatrial.physics.models.qi2025 import SHIP
 from seatrial.physics.sea.realise import realise, wave_record
 from seatrial.physics.sea.spectrum import ittc
 from seatrial.physics.simulate.linear import LinearBatch
-from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, box
+from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, box_hull
 
 AT_REST = {"a33": 6e5, "b33": 8e5, "a35_0": 5e6, "b35_0": 3e6, "a55_0": 1.2e8, "b55_0": 1.6e8}
 DT = 0.05
@@ -33,8 +33,8 @@ def at_speed(U: float, omega_e: float) -> dict[str, float]:
 def write_run(path: Path, U: float, heading: int, seed: int) -> None:
     rng, omega_e, time = np.random.default_rng(seed), 1.8, np.arange(1801) * DT
     lines = realise(ittc(2.27), U, math.radians(heading), rng)
-    forces = wave_record(lines, time, box())
-    model = heave_pitch().with_values(at_speed(U, omega_e)).of_ship(SHIP)
+    forces = wave_record(lines, time, box_hull())
+    model = heave_pitch().with_values(at_speed(U, omega_e)).with_ship(SHIP)
     inputs = np.zeros((len(time), 4))
     inputs[:, 0], inputs[:, 1] = -forces["F3"], -forces["M5"]
     y, _ = LinearBatch(model, inputs, np.array([0, len(time)]), DT, ("z", "theta")).simulate(

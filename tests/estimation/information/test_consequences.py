@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.estimation.information.consequences import answer, words
+from seatrial.estimation.information.consequences import consequence_text, estimate_shifts
 
 
 @given(seed=st.integers(0, 1000), step=st.floats(-3.0, 3.0))
@@ -16,14 +16,14 @@ def test_the_answer_is_that_of_a_regression_with_the_wrong_value(seed: int, step
     fitted = np.array([0, 1, 3])
     data = matrix @ truth - matrix[:, 2] * (truth[2] + step)
     expected, left, *_ = np.linalg.lstsq(matrix[:, fitted], data)
-    moves, misfit = answer(matrix.T @ matrix, fitted, 2, step)
+    moves, misfit = estimate_shifts(matrix.T @ matrix, fitted, 2, step)
     np.testing.assert_allclose(moves, expected - truth[fitted], atol=1e-9)
     assert misfit == pytest.approx(float(left[0]), abs=1e-9)
 
 
 def test_an_assumed_value_that_a_fitted_one_can_replace_leaves_no_trace() -> None:
     matrix = np.array([[1.0, 2.0], [2.0, 4.0], [0.5, 1.0]])
-    moves, misfit = answer(matrix.T @ matrix, np.array([0]), 1, 0.1)
+    moves, misfit = estimate_shifts(matrix.T @ matrix, np.array([0]), 1, 0.1)
     assert moves[0] == pytest.approx(-0.2)
     assert misfit == pytest.approx(0.0, abs=1e-12)
 
@@ -32,12 +32,12 @@ def test_an_assumed_value_that_a_fitted_one_can_replace_leaves_no_trace() -> Non
     ("misfit", "says"), [(2.0, "hardly show it (they would grow by 0.1 %, chi squared by 2)"), (300.0, "would show it")]
 )
 def test_words_say_whether_the_residuals_show_it(misfit: float, says: str) -> None:
-    text = words("m_y", 0.1, {"Y_v": 0.1532, "N_v": -0.032, "N_r": 0.001}, misfit, 1000.0)
+    text = consequence_text("m_y", 0.1, {"Y_v": 0.1532, "N_v": -0.032, "N_r": 0.001}, misfit, 1000.0)
     assert text.startswith("were m_y 10 % larger, the estimates would shift, Y_v by +15 %, N_v by -3.2 %, and")
     assert says in text and "N_r" not in text
 
 
 def test_words_when_nothing_shifts() -> None:
-    assert words("x_G", 0.1, {"Y_v": 0.001}, 0.0, 1.0) == (
+    assert consequence_text("x_G", 0.1, {"Y_v": 0.001}, 0.0, 1.0) == (
         "were x_G 10 % larger, no estimate would shift by half a per cent"
     )

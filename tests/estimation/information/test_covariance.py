@@ -12,7 +12,7 @@ from seatrial.estimation.information.covariance import (
     from_information,
     inverse,
     jackknife,
-    left_out_steps,
+    jackknife_steps,
     sandwich,
     with_prior,
 )
@@ -42,7 +42,7 @@ def test_one_step_is_exact_where_the_problem_is_linear(runs: tuple[Array, Array]
     gradients, hessians = normal_equations(matrices, right, solve(matrices, right))
     refits = np.array([solve(np.delete(matrices, i, 0), np.delete(right, i, 0)) for i in range(RUNS)])
     exact = (RUNS - 1) / RUNS * (refits - refits.mean(axis=0)).T @ (refits - refits.mean(axis=0))
-    interval = jackknife(left_out_steps(hessians.sum(axis=0), gradients, hessians), "one-step")
+    interval = jackknife(jackknife_steps(hessians.sum(axis=0), gradients, hessians), "one-step")
     np.testing.assert_allclose(interval.covariance, exact, rtol=1e-8)
     assert interval.degrees_of_freedom == RUNS - 1
     assert interval.half_width[0] == pytest.approx(stats.t.ppf(0.975, RUNS - 1) * np.sqrt(exact[0, 0]))

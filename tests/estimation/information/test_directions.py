@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from seatrial.estimation.information.collinearity import collinearity, condition
-from seatrial.estimation.information.directions import directions, effective_parameters, relative
+from seatrial.estimation.information.collinearity import collinearity, condition_number
+from seatrial.estimation.information.directions import directions, effective_parameters, relative_information
 
 NAMES = ("a", "b", "c")
 
@@ -70,11 +70,13 @@ def test_effective_parameters_count_what_data_tell_against_a_prior() -> None:
 @given(arrays(float, 3, elements=st.floats(0.01, 100.0)))
 def test_variance_inflation_and_condition_know_no_units(sizes: np.ndarray) -> None:
     information = np.array([[4.0, 1.9, 0.1], [1.9, 1.0, 0.0], [0.1, 0.0, 9.0]])
-    here, there = (collinearity(m, NAMES) for m in (information, relative(information, sizes)))
+    here, there = (collinearity(m, NAMES) for m in (information, relative_information(information, sizes)))
     for one, other in zip(here, there, strict=True):
         assert one.partner == other.partner
         assert one.variance_inflation == pytest.approx(other.variance_inflation, rel=1e-6)
-    assert condition(relative(information, sizes)) == pytest.approx(condition(information), rel=1e-6)
+    assert condition_number(relative_information(information, sizes)) == pytest.approx(
+        condition_number(information), rel=1e-6
+    )
 
 
 def test_two_almost_equal_columns_are_each_other_s_partners(rng: np.random.Generator) -> None:
@@ -91,4 +93,4 @@ def test_two_almost_equal_columns_are_each_other_s_partners(rng: np.random.Gener
 
 
 def test_a_missing_direction_has_infinite_condition() -> None:
-    assert condition(np.ones((2, 2))) == np.inf
+    assert condition_number(np.ones((2, 2))) == np.inf

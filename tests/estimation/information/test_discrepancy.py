@@ -7,7 +7,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.estimation.information.discrepancy import GROWTH, NONE, Miss, discrepancy, excess, growth, kind_of
+from seatrial.estimation.information.discrepancy import (
+    GROWTH_POWER,
+    NO_DISCREPANCY,
+    HoldoutError,
+    discrepancy,
+    discrepancy_growth,
+    excess_sd,
+    measure_kind,
+)
 
 ROWS = 300
 
@@ -19,15 +27,15 @@ def errors(sd: float, foreseen: np.ndarray, rng: np.random.Generator, grown: np.
 
 def test_excess_is_recovered_from_errors_of_unequal_foresight(rng: np.random.Generator) -> None:
     foreseen = rng.uniform(0.1, 5.0, (ROWS, 40))
-    found = excess(errors(2.0, foreseen, rng), foreseen, np.ones((ROWS, 1)))
+    found = excess_sd(errors(2.0, foreseen, rng), foreseen, np.ones((ROWS, 1)))
     assert np.mean(found) == pytest.approx(2.0, rel=0.05)
 
 
 def test_errors_that_were_foreseen_leave_next_to_nothing(rng: np.random.Generator) -> None:
     foreseen = np.full((ROWS, 40), 3.0)
-    found = excess(errors(0.0, foreseen, rng), foreseen, np.ones((ROWS, 1)))
+    found = excess_sd(errors(0.0, foreseen, rng), foreseen, np.ones((ROWS, 1)))
     assert np.median(found) < 0.8
-    assert np.all(excess(0.5 * foreseen, foreseen, np.ones((ROWS, 1))) == 0.0)
+    assert np.all(excess_sd(0.5 * foreseen, foreseen, np.ones((ROWS, 1))) == 0.0)
 
 
 def test_missing_errors_do_not_count(rng: np.random.Generator) -> None:
@@ -36,15 +44,15 @@ def test_missing_errors_do_not_count(rng: np.random.Generator) -> None:
     more = np.vstack([made, np.full((50, 3), np.nan)])
     widened = np.vstack([foreseen, np.full((50, 3), np.nan)])
     np.testing.assert_allclose(
-        excess(more, widened, np.ones((ROWS + 50, 1))), excess(made, foreseen, np.ones((ROWS, 1))), rtol=1e-9
+        excess_sd(more, widened, np.ones((ROWS + 50, 1))), excess_sd(made, foreseen, np.ones((ROWS, 1))), rtol=1e-9
     )
 
 
 def test_runs_that_extrapolate_are_allowed_more(rng: np.random.Generator) -> None:
     """Errors of runs with index 2 are 4 times the discrepancy: what is found is that within the covered ground."""
-    grown = np.repeat([[1.0], [growth(2.0)]], ROWS // 2, axis=0)
+    grown = np.repeat([[1.0], [discrepancy_growth(2.0)]], ROWS // 2, axis=0)
     foreseen = np.full((ROWS, 40), 0.2)
-    found = excess(errors(1.0, foreseen, rng, grown), foreseen, grown)
+    found = excess_sd(errors(1.0, foreseen, rng, grown), foreseen, grown)
     assert np.mean(found) == pytest.approx(1.0, rel=0.05)
 
 
@@ -54,40 +62,44 @@ def test_excess_has_the_unit_of_the_errors(unit: float) -> None:
     foreseen = rng.uniform(0.1, 1.0, (30, 4))
     made = errors(1.0, foreseen, rng)
     one = np.ones((30, 1))
-    np.testing.assert_allclose(excess(unit * made, unit * foreseen, one), unit * excess(made, foreseen, one), rtol=1e-6)
+    np.testing.assert_allclose(
+        excess_sd(unit * made, unit * foreseen, one), unit * excess_sd(made, foreseen, one), rtol=1e-6
+    )
 
 
-def missed(run: int, rng: np.random.Generator, index: float = 1.0) -> Miss:
+def missed(run: int, rng: np.random.Generator, index: float = 1.0) -> HoldoutError:
     """A run whose heading error grows with the root of time, and whose overshoots are off by 1 deg."""
     time = np.arange(200)
-    error = 0.01 * np.sqrt(time) * rng.standard_normal() * growth(index)
+    error = 0.01 * np.sqrt(time) * rng.standard_normal() * discrepancy_growth(index)
     found = {f"overshoot_{k}_deg": (float(rng.standard_normal()), 0.1) for k in (1, 2, 3)}
     nothing = np.full(200, 1e-4)
-    return Miss(f"run {run}", 0.2, {"psi": error}, {"psi": nothing}, found, index)
+    return HoldoutError(f"run {run}", 0.2, {"psi": error}, {"psi": nothing}, found, index)
 
 
 def test_few_runs_tell_nothing(rng: np.random.Generator) -> None:
-    assert discrepancy([missed(0, rng), missed(1, rng)]) is NONE
-    assert NONE.of_measure("advance_L", 0.3, 2.0) == 0.3
+    assert discrepancy([missed(0, rng), missed(1, rng)]) is NO_DISCREPANCY
+    assert NO_DISCREPANCY.measure_sd("advance_L", 0.3, 2.0) == 0.3
 
 
 def test_the_curve_never_falls_and_follows_the_errors(rng: np.random.Generator) -> None:
     found = discrepancy([missed(k, rng) for k in range(400)])
-    curve = found.elapsed["psi"]
+    curve = found.sd_by_time["psi"]
     assert np.all(np.diff(curve) >= 0)
     np.testing.assert_allclose(curve[[25, 100, 199]], 0.01 * np.sqrt([25, 100, 199]), rtol=0.15)
-    assert found.kinds["overshoot_deg"] == pytest.approx(1.0, rel=0.1)
-    long = found.of_channel("psi", np.zeros(400), 0.2, 1.0)
+    assert found.sd_by_kind["overshoot_deg"] == pytest.approx(1.0, rel=0.1)
+    long = found.channel_sd("psi", np.zeros(400), 0.2, 1.0)
     np.testing.assert_allclose(long[200:], curve[-1])
-    np.testing.assert_allclose(found.of_channel("psi", np.zeros(200), 0.2, 2.0), 2.0**GROWTH * curve)
+    np.testing.assert_allclose(found.channel_sd("psi", np.zeros(200), 0.2, 2.0), 2.0**GROWTH_POWER * curve)
 
 
 def test_kinds_nobody_saw_get_the_factor(rng: np.random.Generator) -> None:
     """Overshoots miss ten times what was foreseen."""
     found = discrepancy([missed(k, rng) for k in range(400)])
     assert found.factor == pytest.approx(10.0, rel=0.1)
-    assert found.of_measure("tactical_diameter_L", 0.02, 2.0) == pytest.approx(0.02 * found.factor)
-    assert found.of_measure("overshoot_7_deg", 0.0, 2.0) == pytest.approx(2.0**GROWTH * found.kinds["overshoot_deg"])
+    assert found.measure_sd("tactical_diameter_L", 0.02, 2.0) == pytest.approx(0.02 * found.factor)
+    assert found.measure_sd("overshoot_7_deg", 0.0, 2.0) == pytest.approx(
+        2.0**GROWTH_POWER * found.sd_by_kind["overshoot_deg"]
+    )
 
 
 def test_both_axes_of_the_track_share_their_discrepancy(rng: np.random.Generator) -> None:
@@ -98,10 +110,10 @@ def test_both_axes_of_the_track_share_their_discrepancy(rng: np.random.Generator
         for k in range(5)
     ]  # fmt: skip
     found = discrepancy(track)
-    np.testing.assert_allclose(found.elapsed["x0"], found.elapsed["y0"])
-    np.testing.assert_allclose(found.elapsed["x0"], np.sqrt(0.5), rtol=1e-2)
+    np.testing.assert_allclose(found.sd_by_time["x0"], found.sd_by_time["y0"])
+    np.testing.assert_allclose(found.sd_by_time["x0"], np.sqrt(0.5), rtol=1e-2)
 
 
 def test_overshoots_are_of_one_kind() -> None:
-    assert kind_of("overshoot_12_deg") == "overshoot_deg"
-    assert kind_of("tactical_diameter_L") == "tactical_diameter_L"
+    assert measure_kind("overshoot_12_deg") == "overshoot_deg"
+    assert measure_kind("tactical_diameter_L") == "tactical_diameter_L"

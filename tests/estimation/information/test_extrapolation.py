@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record
-from seatrial.estimation.information.extrapolation import extrapolation, index_of, reach
+from seatrial.estimation.information.extrapolation import extrapolation, extrapolation_index, motion_envelope
 
 TIME = 0.1 * np.arange(2000)
 
@@ -12,7 +12,7 @@ TIME = 0.1 * np.arange(2000)
 def run(name: str, r: float, beta: float, delta: float, speed: float) -> Record:
     """A run that reaches exactly these, most of the time."""
     one = np.ones(len(TIME))
-    return Record.of(
+    return Record.from_arrays(
         name,
         TIME,
         {"u": speed * np.cos(beta) * one, "v": -speed * np.sin(beta) * one, "r": r * one, "delta": delta * one},
@@ -21,7 +21,7 @@ def run(name: str, r: float, beta: float, delta: float, speed: float) -> Record:
 
 def test_ratios_are_those_of_the_largest_values() -> None:
     train = [run("a", 0.02, 0.1, 0.2, 5.0), run("b", -0.04, -0.05, -0.3, 6.0)]
-    found = extrapolation(run("c", 0.06, 0.15, -0.45, 5.5), reach(train))
+    found = extrapolation(run("c", 0.06, 0.15, -0.45, 5.5), motion_envelope(train))
     assert found is not None
     assert found.ratios == pytest.approx({"yaw_rate": 1.5, "drift": 1.5, "rudder": 1.5, "speed": 5.5 / 6.0})
     assert found.index == pytest.approx(1.5)
@@ -30,26 +30,26 @@ def test_ratios_are_those_of_the_largest_values() -> None:
 @pytest.mark.parametrize(("speed", "ratio"), [(3.0, 5.0 / 3.0), (9.0, 1.5), (5.5, 5.5 / 6.0)])
 def test_speed_leaves_the_range_both_ways(speed: float, ratio: float) -> None:
     train = [run("a", 0.02, 0.1, 0.2, 5.0), run("b", 0.02, 0.1, 0.2, 6.0)]
-    found = extrapolation(run("c", 0.02, 0.1, 0.2, speed), reach(train))
+    found = extrapolation(run("c", 0.02, 0.1, 0.2, speed), motion_envelope(train))
     assert found is not None
     assert found.ratios["speed"] == pytest.approx(ratio)
 
 
 def test_a_run_covers_itself() -> None:
     one = run("a", 0.02, 0.1, 0.2, 5.0)
-    assert index_of(one, [one]) == pytest.approx(1.0)
+    assert extrapolation_index(one, [one]) == pytest.approx(1.0)
 
 
 def test_a_single_bad_sample_does_not_count() -> None:
     one = run("a", 0.02, 0.1, 0.2, 5.0)
     values = one["r"].copy()
     values[7] = 3.0
-    assert index_of(one.with_channel("r", one.channel("r").with_values(values)), [one]) == pytest.approx(1.0)
+    assert extrapolation_index(one.with_channel("r", one.channel("r").with_values(values)), [one]) == pytest.approx(1.0)
 
 
 def test_what_no_run_holds_is_not_compared() -> None:
-    rudder = Record.of("a", TIME, {"delta": 0.2 * np.ones(len(TIME))})
-    found = extrapolation(run("c", 0.06, 0.15, 0.3, 5.5), reach([rudder]))
+    rudder = Record.from_arrays("a", TIME, {"delta": 0.2 * np.ones(len(TIME))})
+    found = extrapolation(run("c", 0.06, 0.15, 0.3, 5.5), motion_envelope([rudder]))
     assert found is not None and found.ratios == pytest.approx({"rudder": 1.5})
-    assert extrapolation(Record.of("b", TIME, {"psi": TIME}), reach([rudder])) is None
-    assert index_of(Record.of("b", TIME, {"psi": TIME}), [rudder]) == 1.0
+    assert extrapolation(Record.from_arrays("b", TIME, {"psi": TIME}), motion_envelope([rudder])) is None
+    assert extrapolation_index(Record.from_arrays("b", TIME, {"psi": TIME}), [rudder]) == 1.0

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from seatrial.core.values import Channel, Kind, Record, frozen
-from seatrial.estimation.information.frequency_range import frequency_range, represented
+from seatrial.core.values import Channel, Record, RecordKind, frozen
+from seatrial.estimation.information.frequency_range import frequency_range, frequency_range_finding
 
 
 def recorded(values: np.ndarray, dt: float = 0.1) -> Record:
     time = frozen(np.arange(len(values)) * dt)
-    return Record("run", time, {"z": Channel.of("z", frozen(values))}, Kind.MEASURED)
+    return Record("run", time, {"z": Channel.from_notation("z", frozen(values))}, RecordKind.MEASURED)
 
 
 def test_two_tones_bound_the_range(rng: np.random.Generator) -> None:
@@ -36,4 +36,4 @@ def test_a_slow_sensor_is_taken_at_its_own_rate() -> None:
 
 def test_what_does_not_move_has_no_range_and_the_rest_is_said() -> None:
     assert frequency_range([recorded(np.zeros(500))], ["z"]) == {}
-    assert "1.1 to 2.4 rad/s" in represented({"z": (1.1, 2.4)}).what
+    assert "1.1 to 2.4 rad/s" in frequency_range_finding({"z": (1.1, 2.4)}).message

@@ -8,11 +8,11 @@ import pytest
 from seatrial.core.equations import Model, Sheet
 from seatrial.core.values import InputError, Record
 from seatrial.estimation.information.collinearity import collinearity
-from seatrial.estimation.information.sensitivity import indirect, orthogonal_parts, unique
+from seatrial.estimation.information.sensitivity import indirect_sensitivity, orthogonal_parts, unique_sensitivity
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.heave_pitch import heave_pitch
 from seatrial.physics.models.nomoto import nomoto
-from seatrial.physics.models.qi2025 import theory
+from seatrial.physics.models.qi2025 import theoretical_coefficients
 from seatrial.physics.models.waterjet import COEFFICIENTS, waterjet
 from seatrial.physics.simulate import replay
 from seatrial.physics.simulate.steer import manoeuvre
@@ -23,7 +23,7 @@ REST = {"r": 0.0}
 
 def step(rate: float = 20.0, duration: float = 60.0) -> Record:
     time = np.arange(int(duration * rate) + 1) / rate
-    return Record.of("step", time, {"delta": np.full(len(time), DELTA)})
+    return Record.from_arrays("step", time, {"delta": np.full(len(time), DELTA)})
 
 
 @pytest.fixture(scope="module")
@@ -43,13 +43,13 @@ def twins() -> Model:
 
 @pytest.mark.parametrize("change", [0.1, -0.1, 0.5])
 def test_a_state_proportional_to_the_coefficient_has_sensitivity_one(change: float) -> None:
-    found = indirect(nomoto(), step(), ["K"], change=change, initial=REST)
+    found = indirect_sensitivity(nomoto(), step(), ["K"], change=change, initial=REST)
     assert found.states == ("r",) and found.matrix == pytest.approx(np.ones((1, 1)), rel=1e-12)
 
 
 def test_a_time_constant_in_closed_form() -> None:
     """Of r = K delta (1 - exp(-t/T)) for T to 1.1 T: the change never turns its sign."""
-    found = indirect(nomoto(), step(), ["T"], initial=REST)
+    found = indirect_sensitivity(nomoto(), step(), ["T"], initial=REST)
     base, moved = (60.0 - tau * (1.0 - math.exp(-60.0 / tau)) for tau in (T, 1.1 * T))
     assert found.total[0] == pytest.approx((base - moved) / base / 0.1, rel=1e-4)
 
@@ -58,28 +58,33 @@ def test_a_small_change_gives_the_exact_slopes(zigzag: Record) -> None:
     """The mean magnitude of differences and their root mean square differ by form only: one state, one shape."""
     model, tiny = waterjet(), 1e-6
     scales = {"u": 1.0, "v": 1.0, "r": 1.0}
-    exact = unique(model, zigzag, ["Y_v"], scales)
+    exact = unique_sensitivity(model, zigzag, ["Y_v"], scales)
     base, moved = (
         replay(model.with_values({"Y_v": model.parameters["Y_v"].value * f}), zigzag).matrix(("u", "v", "r"))
         for f in (1.0, 1.0 + tiny)
     )
     slopes = (moved - base) / tiny
     assert exact.matrix[0] == pytest.approx(np.sqrt(np.mean(slopes**2, axis=0)), rel=1e-4)
-    found = indirect(model, zigzag, ["Y_v"], change=tiny)
+    found = indirect_sensitivity(model, zigzag, ["Y_v"], change=tiny)
     weights = np.r_[0.5, np.ones(len(base) - 2), 0.5]
     expected = weights @ np.abs(slopes) / (weights @ np.abs(base))
     assert found.matrix[0] == pytest.approx(expected, rel=1e-6)
 
 
 def test_total_is_the_sum_over_states(zigzag: Record) -> None:
-    found = indirect(waterjet(), zigzag)
+    found = indirect_sensitivity(waterjet(), zigzag)
     assert found.names == COEFFICIENTS and found.states == ("u", "v", "r")
     assert found.total == pytest.approx(found.matrix.sum(axis=1)) and np.all(found.matrix >= 0.0)
-    assert indirect(waterjet(), zigzag, states=["r"]).matrix[:, 0] == pytest.approx(found.matrix[:, 2], rel=1e-12)
+    assert indirect_sensitivity(waterjet(), zigzag, states=["r"]).matrix[:, 0] == pytest.approx(
+        found.matrix[:, 2], rel=1e-12
+    )
 
 
 def test_twins_are_strong_alone_and_nothing_beyond_each_other() -> None:
-    found, exact = indirect(twins(), step(), initial=REST), unique(twins(), step(), initial=REST)
+    found, exact = (
+        indirect_sensitivity(twins(), step(), initial=REST),
+        unique_sensitivity(twins(), step(), initial=REST),
+    )
     assert found.total[:2] == pytest.approx([0.6, 0.4], rel=1e-9)
     assert np.all(exact.total[:2] > 0.3)
     assert np.all(exact.unique[:2] < 1e-9 * exact.total[:2])
@@ -87,13 +92,13 @@ def test_twins_are_strong_alone_and_nothing_beyond_each_other() -> None:
 
 
 def test_the_unique_part_is_the_total_where_nothing_else_adjusts() -> None:
-    exact = unique(nomoto(), step(), ["T"], initial=REST)
+    exact = unique_sensitivity(nomoto(), step(), ["T"], initial=REST)
     assert exact.unique == pytest.approx(exact.total)
 
 
 def test_most_of_what_a_zigzag_shows_of_the_quadratic_sway_terms_others_can_stand_in_for(zigzag: Record) -> None:
     """By the indirect method Y_vr does far more than X_vv; beyond what the others can undo, it does not."""
-    found, exact = indirect(waterjet(), zigzag), unique(waterjet(), zigzag)
+    found, exact = indirect_sensitivity(waterjet(), zigzag), unique_sensitivity(waterjet(), zigzag)
     place = {name: i for i, name in enumerate(found.names)}
     assert found.total[place["Y_vr"]] > 20.0 * found.total[place["X_vv"]]
     assert exact.unique[place["Y_vr"]] < 1.5 * exact.unique[place["X_vv"]]
@@ -102,7 +107,7 @@ def test_most_of_what_a_zigzag_shows_of_the_quadratic_sway_terms_others_can_stan
 
 def test_two_coefficients_hide_the_same_share_of_each_other(zigzag: Record) -> None:
     """1 / (1 - rho^2) of two columns, whatever their lengths."""
-    pair = unique(waterjet(), zigzag, ["N_v", "N_r"])
+    pair = unique_sensitivity(waterjet(), zigzag, ["N_v", "N_r"])
     first, second = (pair.total / pair.unique) ** 2
     assert first == pytest.approx(second, rel=1e-9) and first > 2.0
 
@@ -124,7 +129,9 @@ def test_a_column_of_zeros_has_no_part_of_its_own(rng: np.random.Generator) -> N
 def test_scales_weigh_states_but_units_do_not(zigzag: Record) -> None:
     """A state's scale ten times larger counts ten times less; all ten times larger changes no ratio."""
     noise = {"u": 0.02, "v": 0.02, "r": 0.002}
-    one, ten = (unique(waterjet(), zigzag, scales={s: f * x for s, x in noise.items()}) for f in (1.0, 10.0))
+    one, ten = (
+        unique_sensitivity(waterjet(), zigzag, scales={s: f * x for s, x in noise.items()}) for f in (1.0, 10.0)
+    )
     assert one.unique == pytest.approx(10.0 * ten.unique, rel=1e-6)
     assert one.states == ("u", "v", "r") and one.matrix == pytest.approx(10.0 * ten.matrix)
 
@@ -132,31 +139,33 @@ def test_scales_weigh_states_but_units_do_not(zigzag: Record) -> None:
 def test_linear_models_go_the_exact_way() -> None:
     """Started at rest, all motion is the fin's and proportional to its lift slope."""
     time = np.arange(600) / 10.0
-    record = Record.of("fin", time, {"delta_f1": 0.2 * np.sin(0.9 * time)})
-    model = theory(135).applied(heave_pitch()).with_values({"lift_1": 2e6, "x_f1": -25.0})
+    record = Record.from_arrays("fin", time, {"delta_f1": 0.2 * np.sin(0.9 * time)})
+    model = theoretical_coefficients(135).applied_to(heave_pitch()).with_values({"lift_1": 2e6, "x_f1": -25.0})
     still = dict.fromkeys(model.states, 0.0)
-    assert indirect(model, record, ["lift_1"], initial=still).matrix == pytest.approx(np.ones((1, 4)), rel=1e-9)
-    exact = unique(model, record, ["lift_1", "a33", "b55"], initial=still)
+    assert indirect_sensitivity(model, record, ["lift_1"], initial=still).matrix == pytest.approx(
+        np.ones((1, 4)), rel=1e-9
+    )
+    exact = unique_sensitivity(model, record, ["lift_1", "a33", "b55"], initial=still)
     assert exact.states == model.states and np.all((exact.unique < exact.total) & (exact.unique > 0.0))
 
 
 def test_what_cannot_be_asked_is_refused(zigzag: Record) -> None:
     model = waterjet()
     with pytest.raises(InputError, match="a relative change of 0 is none"):
-        indirect(model, zigzag, change=0.0)
+        indirect_sensitivity(model, zigzag, change=0.0)
     with pytest.raises(InputError, match="'Y_v' of model 'waterjet' is zero"):
-        indirect(model.with_values({"Y_v": 0.0}), zigzag)
+        indirect_sensitivity(model.with_values({"Y_v": 0.0}), zigzag)
     with pytest.raises(InputError, match="'w' is no state"):
-        indirect(model, zigzag, states=["w"])
+        indirect_sensitivity(model, zigzag, states=["w"])
     with pytest.raises(InputError, match="unknown parameter 'Y_vvv'"):
-        indirect(model, zigzag, ["Y_vvv"])
+        indirect_sensitivity(model, zigzag, ["Y_vvv"])
     with pytest.raises(InputError, match="scale of 'r' is not positive"):
-        unique(model, zigzag, scales={"u": 1.0, "r": 0.0})
-    still = Record.of("still", zigzag.time, {"delta": 0.0 * zigzag.time, "v_j": np.full(len(zigzag), 1.866)})
+        unique_sensitivity(model, zigzag, scales={"u": 1.0, "r": 0.0})
+    still = Record.from_arrays("still", zigzag.time, {"delta": 0.0 * zigzag.time, "v_j": np.full(len(zigzag), 1.866)})
     with pytest.raises(InputError, match="state 'v' does not move in record 'still'"):
-        indirect(model, still, initial={"u": 0.9, "v": 0.0, "r": 0.0})
+        indirect_sensitivity(model, still, initial={"u": 0.9, "v": 0.0, "r": 0.0})
 
 
 def test_a_divergence_names_the_coefficient(zigzag: Record) -> None:
     with pytest.raises(InputError, match=r"with 'N_v' changed by -5e\+06 %: the simulation of record .* diverges"):
-        indirect(waterjet(), zigzag, ["N_v"], change=-5e4)
+        indirect_sensitivity(waterjet(), zigzag, ["N_v"], change=-5e4)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatrial.estimation.information.stability import stability, straight_course
+from seatrial.estimation.information.stability import stability, straight_course_rates
 from seatrial.physics.models.abkowitz import abkowitz
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.published import kvlcc2, kvlcc2_l7
@@ -40,7 +40,7 @@ def test_the_interval_is_that_of_drawn_ships(rng: np.random.Generator) -> None:
     spread = 0.01 * np.abs([model.parameters[n].value for n in names])
     found = stability(model, np.diag(spread**2), np.inf, SPEED, inputs, 9.8)
     drawn = [
-        np.linalg.det(straight_course(model.with_values(dict(zip(names, values, strict=True))), SPEED, inputs))
+        np.linalg.det(straight_course_rates(model.with_values(dict(zip(names, values, strict=True))), SPEED, inputs))
         for values in np.array([model.parameters[n].value for n in names]) + spread * rng.standard_normal((2000, 11))
     ]
     assert found is not None
@@ -61,7 +61,7 @@ def test_the_index_of_abkowitz_is_that_of_clarke() -> None:
     """Clarke, Gedling & Hine 1983: index from linear derivatives in rho/2 L^2 U^2."""
     linear = {"Y_v": -0.0207, "Y_r": 0.004, "N_v": -0.0090, "N_r": -0.0042}
     added = {"X_udot": -0.00145, "Y_vdot": -0.01465, "N_rdot": -0.0007, "U_n": 1.18}
-    model = abkowitz().with_values(linear | added).of_ship(kvlcc2_l7().ship)
+    model = abkowitz().with_values(linear | added).with_ship(kvlcc2_l7().ship)
     p, u = {q.name: q.value for q in model.parameters}, 1.18
     found = stability(model, np.zeros((len(model.parameters.free),) * 2), np.inf, u, np.zeros(1), p["L"])
     force = 0.5 * p["rho"] * p["L"] ** 2 * u

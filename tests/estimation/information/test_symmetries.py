@@ -11,8 +11,8 @@ import sympy as sp
 from seatrial.core.equations import Model, Sheet
 from seatrial.core.values import Array, InputError, Prior
 from seatrial.estimation.information.generator import Generator
-from seatrial.estimation.information.generators import generators, search
-from seatrial.estimation.information.symmetries import refuse_structural, structural
+from seatrial.estimation.information.generators import generators, search_symmetries
+from seatrial.estimation.information.symmetries import refuse_unidentifiable, structural_symmetries
 from seatrial.physics.models.abkowitz import abkowitz
 from seatrial.physics.models.mmg import mmg
 from seatrial.physics.models.nomoto import nomoto, nomoto2
@@ -133,7 +133,7 @@ NONE = {
     "nomoto2, heading only": (nomoto2, ("psi",)),
     "abkowitz": (lambda: abkowitz().with_values(SHIP), MOTION),
     "mmg kvlcc2": (kvlcc2, MOTION),
-    "mmg esso osaka": (lambda: esso_osaka().applied(mmg()), MOTION),
+    "mmg esso osaka": (lambda: esso_osaka().applied_to(mmg()), MOTION),
 }
 SOME = {
     "product": (product, ("r",), [("a", "b")]),
@@ -155,14 +155,14 @@ SOME = {
 @pytest.mark.parametrize("case", NONE)
 def test_models_without_a_symmetry_are_told_to_have_none(case: str) -> None:
     make, outputs = NONE[case]
-    assert structural(make(), outputs) == ()
-    refuse_structural(make(), outputs)
+    assert structural_symmetries(make(), outputs) == ()
+    refuse_unidentifiable(make(), outputs)
 
 
 @pytest.mark.parametrize("case", SOME)
 def test_symmetries_that_are_known_are_found(case: str) -> None:
     make, outputs, wanted = SOME[case]
-    assert [set(s.parameters) for s in structural(make(), outputs)] == [set(w) for w in wanted]
+    assert [set(s.parameters) for s in structural_symmetries(make(), outputs)] == [set(w) for w in wanted]
 
 
 def outcome(model: Model, outputs: Sequence[str], start: Array) -> Array:
@@ -199,16 +199,16 @@ def test_finite_steps_leave_every_compared_output_as_it_is(case: str, step: floa
     assert found
     for g in found:
         assert g.is_finite
-        moved = g.moved(model, step)
-        assert max(abs(v) for v in g.change(model).values()) > 0.5
+        moved = g.transformed_model(model, step)
+        assert max(abs(v) for v in g.relative_change(model).values()) > 0.5
         assert worst_difference(model, moved, outputs, begin(model)) < 1e-9
 
 
 def test_a_hidden_state_starts_where_it_then_belongs() -> None:
     model = hidden_shift()
     (g,) = generators(model, ("thrust",), model.parameters.free_names)
-    assert g.hidden == ("state",)
-    moved = g.moved(model, 0.3)
+    assert g.hidden_states == ("state",)
+    moved = g.transformed_model(model, 0.3)
     start = begin(model) - (moved.parameters["zero"].value - model.parameters["zero"].value)
     assert worst_difference(model, moved, ("thrust",), start) < 1e-9
     assert worst_difference(model, moved, ("thrust",), begin(model)) > 1e-3
@@ -226,8 +226,8 @@ def test_without_a_simple_law_the_direction_at_the_values_is_given() -> None:
     assert slope == pytest.approx(
         {"b": 1.0, "c": -0.8, "d": -1.0, "e": model.parameters["e"].value / model.parameters["d"].value}
     )
-    assert worst_difference(model, g.moved(model, 1e-6), ("r",), begin(model)) < 1e-10
-    (told,) = structural(model, ("r",))
+    assert worst_difference(model, g.transformed_model(model, 1e-6), ("r",), begin(model)) < 1e-10
+    (told,) = structural_symmetries(model, ("r",))
     assert told.text.startswith("b, c, d and e are felt in 3 combinations only and can change together (near their")
 
 
@@ -248,7 +248,7 @@ def exactly_moved(g: Generator, point: dict[str, mpmath.mpf], factor: Fraction) 
     """The finite transformation in exact arithmetic; a centre named after a parameter is minus that parameter."""
     moved = dict(point)
     for name in g.parameters:
-        about = -point[g.names[name].split(" + ")[0]] if name in g.names else mpmath.mpf(0)
+        about = -point[g.centred_terms[name].split(" + ")[0]] if name in g.centred_terms else mpmath.mpf(0)
         scale = mpmath.mpf(factor.numerator) / factor.denominator
         moved[name] = (
             about + (point[name] - about) * scale ** g.power[name]
@@ -285,7 +285,7 @@ def test_waterjet_scalings_by_symbols() -> None:
     for b in model.bindings:
         whole[sp.Symbol(b.name, real=True)] = b.expression.xreplace(whole)
     rates = [rate.expression.xreplace(whole) for rate in model.equations.rates]
-    for told in structural(model, MOTION):
+    for told in structural_symmetries(model, MOTION):
         change = {}
         for name in told.parameters:
             symbol = sp.Symbol(name, real=True)
@@ -302,24 +302,24 @@ def test_the_basis_is_complete_for_all_parameters() -> None:
     assert len(found) == 7
     assert all(g.is_finite for g in found)
     for g in found:
-        assert worst_difference(model, g.moved(model, 0.1), MOTION, begin(model)) < 1e-9
+        assert worst_difference(model, g.transformed_model(model, 0.1), MOTION, begin(model)) < 1e-9
 
 
-@pytest.mark.parametrize(("make", "nullity"), [(kvlcc2, 13), (lambda: esso_osaka().applied(mmg()), 13)])
+@pytest.mark.parametrize(("make", "nullity"), [(kvlcc2, 13), (lambda: esso_osaka().applied_to(mmg()), 13)])
 def test_directions_of_all_mmg_parameters_leave_the_motion_as_it_is(make: Callable[[], Model], nullity: int) -> None:
     """To first order of a small step, so the error is of second order."""
     model = make().with_values({"A_T": 0.3, "A_L": 1.1})
     found = generators(model, MOTION)
     assert len(found) == nullity
     for g in found:
-        error = worst_difference(model, g.moved(model, 1e-6), MOTION, begin(model))
+        error = worst_difference(model, g.transformed_model(model, 1e-6), MOTION, begin(model))
         assert error < (1e-9 if g.is_finite else 1e-8), g
 
 
 def test_rudder_force_of_mmg_is_known_only_as_products() -> None:
     model = kvlcc2()
     model = model.with_parameters(model.parameters.only_free(["f_alpha", "t_R", "a_H", "x_R_prime"]))
-    (told,) = structural(model, MOTION)[:1]
+    (told,) = structural_symmetries(model, MOTION)[:1]
     assert set(told.parameters) == {"f_alpha", "t_R", "a_H", "x_R_prime"}
     assert "f_alpha is divided by it" in told.text
     assert "1 - t_R" in told.text
@@ -327,7 +327,7 @@ def test_rudder_force_of_mmg_is_known_only_as_products() -> None:
 
 
 def test_the_words_for_the_waterjet() -> None:
-    first, second = structural(waterjet(), ("u", "v", "r", "psi"))
+    first, second = structural_symmetries(waterjet(), ("u", "v", "r", "psi"))
     assert first.text.startswith(
         "X_uu, X_vv, X_rr, Y_v, Y_r, Y_vv, Y_vr, Y_rr, N_v, N_r, N_rr, A_j, m + m_x, m + m_y and I_z + J_z can all be "
         "scaled together by one common factor without any change of u, v, r or psi: fix or give a prior for one of "
@@ -350,12 +350,12 @@ def test_the_words_for_the_waterjet() -> None:
     ],
 )
 def test_words_of_small_models(make: Callable[[], Model], words: str) -> None:
-    (told,) = structural(make(), ("r",))
+    (told,) = structural_symmetries(make(), ("r",))
     assert words in told.text
 
 
 def test_parameters_without_influence_are_told_with_the_reason() -> None:
-    off, absent = sorted(structural(switched_off(), ("r",)), key=lambda s: s.parameters)
+    off, absent = sorted(structural_symmetries(switched_off(), ("r",)), key=lambda s: s.parameters)
     assert off.parameters == ("C_X",)
     assert off.text == "C_X has no influence on r while A_T is 0: fix it, or change that value"
     assert absent.text == "unused enters no equation that reaches r: fix it"
@@ -364,33 +364,33 @@ def test_parameters_without_influence_are_told_with_the_reason() -> None:
 def test_free_parameters_that_trade_are_refused_unless_a_prior_settles_it() -> None:
     model = freed(waterjet(), "A_j", "m_x", "m_y", "J_z", "x_T")
     with pytest.raises(InputError, match=r"no record can tell the free parameters apart: .* one of m_x, m_y, A_j; and"):
-        refuse_structural(model, MOTION)
+        refuse_unidentifiable(model, MOTION)
     half = model.with_parameters(model.parameters.with_priors({"A_j": Prior(0.035, 0.003)}))
     with pytest.raises(InputError, match=r"apart: x_T, N_v, N_r, N_rr and I_z \+ J_z can"):
-        refuse_structural(half, MOTION)
+        refuse_unidentifiable(half, MOTION)
     both = half.with_parameters(half.parameters.with_priors({"x_T": Prior(-4.4, 0.1)}))
-    refuse_structural(both, MOTION)
-    assert "prior here for A_j" in structural(both, MOTION)[0].text
+    refuse_unidentifiable(both, MOTION)
+    assert "prior here for A_j" in structural_symmetries(both, MOTION)[0].text
 
 
 def test_fixing_one_of_those_named_for_each_settles_everything() -> None:
     model = freed(waterjet(), "A_j", "m_x", "m_y", "J_z", "x_T")
     for one in ("m_x", "m_y", "A_j"):
         for two in ("J_z", "x_T"):
-            refuse_structural(model.with_parameters(model.parameters.fixed(one, two)), MOTION)
+            refuse_unidentifiable(model.with_parameters(model.parameters.fixed(one, two)), MOTION)
 
 
 def test_measured_forces_tell_what_records_cannot() -> None:
     """Captive tests give the scale of all forces (S1) and of the yaw moment (S2); still air tells nothing of wind."""
     model = freed(waterjet(), "A_j", "m_x", "m_y", "J_z", "x_T")
     with pytest.raises(InputError, match="no record can tell"):
-        refuse_structural(model, MOTION)
-    refuse_structural(model, MOTION, ("X_sum", "Y_sum", "N_sum"))
+        refuse_unidentifiable(model, MOTION)
+    refuse_unidentifiable(model, MOTION, ("X_sum", "Y_sum", "N_sum"))
     with pytest.raises(InputError, match="apart: x_T, N_v, N_r, N_rr and I_z"):
-        refuse_structural(model, MOTION, ("X_sum", "Y_sum"))
-    tanker = esso_osaka().applied(mmg())
+        refuse_unidentifiable(model, MOTION, ("X_sum", "Y_sum"))
+    tanker = esso_osaka().applied_to(mmg())
     tanker = tanker.with_parameters(tanker.parameters.only_free(["C_X0", "C_X1", "C_X3", "C_Y1", "rho_air"]))
-    told = structural(tanker, MOTION, ("X_sum", "Y_sum", "N_sum"))
+    told = structural_symmetries(tanker, MOTION, ("X_sum", "Y_sum", "N_sum"))
     assert any("rho_air" in s.parameters for s in told)
 
 
@@ -399,30 +399,30 @@ def test_heading_alone_leaves_the_unit_of_speed_open() -> None:
     model = waterjet()
     among = [p.name for p in model.parameters if p.free or p.name in ("m_x", "m_y", "alpha")]
     (g,) = generators(model, ("psi",), among)
-    assert g.hidden == ("u", "v")
+    assert g.hidden_states == ("u", "v")
     assert g.power["alpha"] == 1
     start = begin(model)
     start[:2] /= 1.3
-    moved = g.moved(model, np.log(1.3))
+    moved = g.transformed_model(model, np.log(1.3))
     assert worst_difference(model, moved, ("psi",), start) < 1e-9
     assert worst_difference(model, moved, ("psi",), begin(model)) > 1e-3
-    told = [set(s.parameters) for s in structural(model, ("psi",))]
+    told = [set(s.parameters) for s in structural_symmetries(model, ("psi",))]
     assert len(told) == 3
     assert set(g.parameters) in told
 
 
 def test_a_state_behind_a_zero_reaches_nothing() -> None:
     """Without a speed the first-order model moves nobody: its positions tell nothing."""
-    (told,) = structural(nomoto(), ("x0", "y0"))
+    (told,) = structural_symmetries(nomoto(), ("x0", "y0"))
     assert told.text == "K and T have no influence on x0 or y0 while U is 0: fix them, or change that value"
-    assert structural(nomoto().with_values({"U": 2.0}), ("x0", "y0")) == ()
+    assert structural_symmetries(nomoto().with_values({"U": 2.0}), ("x0", "y0")) == ()
 
 
 def test_a_centre_that_is_another_parameter_is_named() -> None:
     """The rudder's lever counts from the point of the additional force: x_R - x_H scales with 1 + a_H."""
     model = kvlcc2()
     model = model.with_parameters(model.parameters.only_free(["f_alpha", "t_R", "a_H"]))
-    told = structural(model, MOTION)
+    told = structural_symmetries(model, MOTION)
     (rudder,) = [s for s in told if "f_alpha" in s.parameters]
     assert rudder.text.startswith(
         "1 - t_R, 1 + a_H and x_R_prime - x_H_prime can be multiplied by any factor if f_alpha is divided by it without"
@@ -436,7 +436,7 @@ def test_roots_of_negative_states_are_not_asked_for() -> None:
     inflow = sheet.input("inflow")
     a, b = free(sheet, "a b")
     sheet.rate(level, inflow - a * b * sp.sqrt(level))
-    assert [s.parameters for s in structural(sheet.model(), ("level",))] == [("a", "b")]
+    assert [s.parameters for s in structural_symmetries(sheet.model(), ("level",))] == [("a", "b")]
 
 
 def test_rates_that_are_never_finite_are_refused() -> None:
@@ -445,7 +445,7 @@ def test_rates_that_are_never_finite_are_refused() -> None:
     (a,) = free(sheet, "a")
     sheet.rate(level, a * sp.sqrt(-1 - level**2))
     with pytest.raises(InputError, match="gives no finite rates"):
-        structural(sheet.model(), ("level",))
+        structural_symmetries(sheet.model(), ("level",))
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -470,7 +470,7 @@ def test_products_of_powers_obey_the_rank_of_their_exponents(seed: int) -> None:
 def test_a_start_at_zero_is_no_knowledge() -> None:
     """Coefficients that start at 0 before a fit count as any value."""
     model = waterjet().with_values(dict.fromkeys(COEFFICIENTS, 0.0))
-    assert [set(s.parameters) for s in structural(model, MOTION)] == [set(w) for w in SOME["waterjet"][2]]
+    assert [set(s.parameters) for s in structural_symmetries(model, MOTION)] == [set(w) for w in SOME["waterjet"][2]]
 
 
 @pytest.mark.parametrize(
@@ -483,13 +483,13 @@ def test_a_start_at_zero_is_no_knowledge() -> None:
 )
 def test_bad_input(model: Model, outputs: tuple[str, ...], message: str) -> None:
     with pytest.raises(InputError, match=message):
-        structural(model, outputs)
+        structural_symmetries(model, outputs)
 
 
 def test_singular_values_have_a_gap_of_decades() -> None:
     for model in (waterjet(), kvlcc2(), abkowitz().with_values(SHIP)):
         model = model.with_parameters(model.parameters.only_free(model.parameters.names))
-        singular = np.linalg.svd(search(model, MOTION).effects, compute_uv=False)
+        singular = np.linalg.svd(search_symmetries(model, MOTION).effects, compute_uv=False)
         small = singular[singular < 1e-9]
         assert small.max() < 1e-13
         assert singular[len(singular) - len(small) - 1] > 1e-7

@@ -11,15 +11,15 @@ from seatrial.estimation.estimate.settings import Settings
 from seatrial.estimation.predict.cross_validation import (
     CrossValidation,
     Fold,
-    Protocol,
+    HoldoutProtocol,
     WindowError,
-    cross_validated,
-    fitted_folds,
-    fold_of,
-    own_nuisances,
-    unfitted,
+    assign_folds,
+    cross_validate,
+    cross_validate_unfitted,
+    fit_folds,
+    session_nuisances,
+    split_windows,
     window_errors,
-    windows,
 )
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
@@ -29,7 +29,7 @@ RUNS = ("zigzag:20/20", "zigzag:10/10", "turning-circle:20", "turning-circle:15:
 LABELS = ("zigzag", "zigzag", "turning", "turning")
 SESSIONS = ("monday", "tuesday", "monday", "wednesday")
 SETTINGS = Settings(segment_seconds=60.0, workers=1, corrections=(("delta", "zero", 0.05, "rad"),))
-PROTOCOL = Protocol(window_s=40.0)
+PROTOCOL = HoldoutProtocol(window_s=40.0)
 
 
 @pytest.fixture(scope="module")
@@ -40,38 +40,38 @@ def truth() -> Model:
 @pytest.fixture(scope="module")
 def records(truth: Model) -> list[Record]:
     return [
-        manoeuvre(truth, programme(text), dt=0.5, speed=1.0, duration=130.0).named(f"{label}_{i}")
+        manoeuvre(truth, programme(text), dt=0.5, speed=1.0, duration=130.0).renamed(f"{label}_{i}")
         for i, (text, label) in enumerate(zip(RUNS, LABELS, strict=True))
     ]
 
 
 @pytest.fixture(scope="module")
 def folds(truth: Model, records: list[Record]) -> tuple[Fold, ...]:
-    return fitted_folds(truth.with_values({"K": 0.1, "T": 10.0}), records, SESSIONS, LABELS, 7.0, SETTINGS, folds=2)
+    return fit_folds(truth.with_values({"K": 0.1, "T": 10.0}), records, SESSIONS, LABELS, 7.0, SETTINGS, folds=2)
 
 
 def test_every_fold_holds_out_its_share_of_every_label() -> None:
     labels = ["turning"] * 5 + ["zigzag"] * 4
-    dealt = fold_of(labels, 4)
+    dealt = assign_folds(labels, 4)
     assert dealt == [0, 1, 2, 3, 0, 0, 1, 2, 3]
     with pytest.raises(InputError, match=r"'zigzag' has 1 runs, fewer than 2 folds"):
-        fold_of(["turning", "turning", "zigzag"], 2)
+        assign_folds(["turning", "turning", "zigzag"], 2)
     with pytest.raises(InputError, match="1 folds hold nothing out"):
-        fold_of(labels, 1)
+        assign_folds(labels, 1)
 
 
 def test_windows_follow_one_another_and_the_remainder_is_dropped(records: list[Record]) -> None:
-    made = windows(records[2], PROTOCOL)
+    made = split_windows(records[2], PROTOCOL)
     assert [w.time[0] for w in made] == [0.0, 40.0, 80.0]
     assert all(w.duration == 40.0 for w in made)
-    assert len(windows(records[2], replace(PROTOCOL, first=2))) == 2
-    assert windows(records[2], Protocol(window_s=500.0)) == []
+    assert len(split_windows(records[2], replace(PROTOCOL, max_windows=2))) == 2
+    assert split_windows(records[2], HoldoutProtocol(window_s=500.0)) == []
 
 
 def test_a_model_of_the_right_form_predicts_runs_it_has_not_seen(
     folds: tuple[Fold, ...], records: list[Record]
 ) -> None:
-    made = cross_validated(folds, records, SESSIONS, LABELS, PROTOCOL)
+    made = cross_validate(folds, records, SESSIONS, LABELS, PROTOCOL)
     assert {w.run for w in made.windows} == {r.name for r in records}
     for label in made.labels:
         assert made.pooled(label).heading_deg < 1e-3
@@ -80,26 +80,35 @@ def test_a_model_of_the_right_form_predicts_runs_it_has_not_seen(
 
 def test_only_the_first_seconds_of_a_window_are_used(folds: tuple[Fold, ...], records: list[Record]) -> None:
     fold = folds[0]
-    record = records[fold.held[0]].between(0.0, 40.0)
+    record = records[fold.held_out[0]].between(0.0, 40.0)
     psi = record.channel("psi")
     shifted = psi.with_values(psi.values + np.where(record.time > 5.0, np.radians(10.0), 0.0))
-    own = own_nuisances(fold.found, SESSIONS[fold.held[0]])
-    found = window_errors(fold.found.made.problem, fold.found.model, [record.with_channel("psi", shifted)], [own],
-                          ["zigzag"], PROTOCOL)  # fmt: skip
+    own = session_nuisances(fold.estimation, SESSIONS[fold.held_out[0]])
+    found = window_errors(
+        fold.estimation.estimate.problem,
+        fold.estimation.model,
+        [record.with_channel("psi", shifted)],
+        [own],
+        ["zigzag"],
+        PROTOCOL,
+    )
     assert found[0].heading_deg == pytest.approx(10.0 * np.sqrt(np.mean(record.time > 5.0)), rel=1e-3)
 
 
 def test_a_session_not_trained_on_takes_the_training_mean(folds: tuple[Fold, ...]) -> None:
-    problem, shared = folds[0].found.made.problem, folds[0].found.made.shared
-    trained = [own_nuisances(folds[0].found, s) for s in problem.data.sessions]
+    problem, shared = folds[0].estimation.estimate.problem, folds[0].estimation.estimate.common_parameters
+    trained = [session_nuisances(folds[0].estimation, s) for s in problem.data.sessions]
     np.testing.assert_array_equal(np.concatenate(trained), shared[len(problem.free) :])
-    np.testing.assert_allclose(own_nuisances(folds[0].found, "sunday"), np.mean(trained, axis=0))
+    np.testing.assert_allclose(session_nuisances(folds[0].estimation, "sunday"), np.mean(trained, axis=0))
 
 
 def test_the_first_sample_as_it_is_and_models_as_they_are(truth: Model, records: list[Record]) -> None:
-    raw = unfitted(truth, records, LABELS, replace(PROTOCOL, initial_s=0.0))
+    raw = cross_validate_unfitted(truth, records, LABELS, replace(PROTOCOL, initial_s=0.0))
     assert raw.pooled("turning").position_m < 1e-9
-    assert unfitted(truth.with_values({"K": 0.1}), records, LABELS, PROTOCOL).pooled("turning").heading_deg > 5.0
+    assert (
+        cross_validate_unfitted(truth.with_values({"K": 0.1}), records, LABELS, PROTOCOL).pooled("turning").heading_deg
+        > 5.0
+    )
 
 
 def test_errors_are_pooled_by_label_and_scatter_between_folds() -> None:
@@ -108,13 +117,13 @@ def test_errors_are_pooled_by_label_and_scatter_between_folds() -> None:
     pooled = made.pooled("turning")
     assert (pooled.windows, pooled.position_m, pooled.heading_deg) == (3, pytest.approx(7 / 3), 4.0)
     assert pooled.rms_position_m == pytest.approx(np.sqrt(7.0))
-    assert made.scatter("turning") == (pytest.approx(2.5 / np.sqrt(2)), pytest.approx(1.5 / np.sqrt(2)))
+    assert made.fold_spread("turning") == (pytest.approx(2.5 / np.sqrt(2)), pytest.approx(1.5 / np.sqrt(2)))
     with pytest.raises(InputError, match="no window of 'zigzag' in fold 1"):
         made.pooled("zigzag", 1)
 
 
 def test_what_cannot_be_judged_is_refused(truth: Model, records: list[Record]) -> None:
     with pytest.raises(InputError, match="no run is as long as a window of 500 s"):
-        unfitted(truth, records, LABELS, Protocol(window_s=500.0))
+        cross_validate_unfitted(truth, records, LABELS, HoldoutProtocol(window_s=500.0))
     with pytest.raises(InputError, match="has no 'x0'; windows are judged by position and heading"):
-        unfitted(truth, [r.without("x0") for r in records], LABELS, PROTOCOL)
+        cross_validate_unfitted(truth, [r.without("x0") for r in records], LABELS, PROTOCOL)

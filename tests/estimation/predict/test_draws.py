@@ -5,9 +5,9 @@ import pytest
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Prior, Record
-from seatrial.estimation.predict.draws import Scatter, drawn, root, simulated
+from seatrial.estimation.predict.draws import PredictionUncertainty, draw_runs, simulate_points, square_root
 from seatrial.estimation.problem.output_error import Nuisance, OutputError
-from seatrial.estimation.problem.segments import cut
+from seatrial.estimation.problem.segments import cut_segments
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate.batch import InputCorrection
 
@@ -19,7 +19,9 @@ REST = np.zeros(len(nomoto().states))
 @pytest.fixture(scope="module")
 def record() -> Record:
     time = 0.5 * np.arange(121)
-    return Record.of("run", time, {"delta": 0.3 * np.sign(np.sin(0.12 * time)), "r": 0 * time, "psi": 0 * time})
+    return Record.from_arrays(
+        "run", time, {"delta": 0.3 * np.sign(np.sin(0.12 * time)), "r": 0 * time, "psi": 0 * time}
+    )
 
 
 @pytest.fixture(scope="module")
@@ -28,12 +30,14 @@ def model() -> Model:
 
 
 def problem(model: Model, record: Record, *nuisances: Nuisance) -> OutputError:
-    return OutputError(model, cut(model, [record], ("r", "psi"), None), np.ones(2), nuisances, workers=1)
+    return OutputError(model, cut_segments(model, [record], ("r", "psi"), None), np.ones(2), nuisances, workers=1)
 
 
-def scatter(model: Model, coefficients: np.ndarray, offsets: np.ndarray, process: tuple[float, float]) -> Scatter:
+def scatter(
+    model: Model, coefficients: np.ndarray, offsets: np.ndarray, process: tuple[float, float]
+) -> PredictionUncertainty:
     intensity = dict(zip(("r", "psi"), process, strict=True))
-    return Scatter(coefficients, offsets, np.array([intensity.get(s, 0.0) for s in model.states]), np.inf)
+    return PredictionUncertainty(coefficients, offsets, np.array([intensity.get(s, 0.0) for s in model.states]), np.inf)
 
 
 def test_scatter_of_the_outputs_is_that_of_the_coefficients(model: Model, record: Record) -> None:
@@ -42,9 +46,9 @@ def test_scatter_of_the_outputs_is_that_of_the_coefficients(model: Model, record
     spread = 0.005 * np.array([model.parameters[n].value for n in template.free])
     covariance = np.diag(spread**2)
     covariance[0, 1] = covariance[1, 0] = 0.5 * spread[0] * spread[1]
-    runs = drawn(template, model, record, REST, np.empty(0),
+    runs = draw_runs(template, model, record, REST, np.empty(0),
                  scatter(model, covariance, np.zeros((0, 0)), (0.0, 0.0)), np.random.default_rng(1), DRAWS)  # fmt: skip
-    start, values, corrections = template.unpacked(template.start(), np.zeros((1, len(template.starts))))
+    start, values, corrections = template.unpack(template.start(), np.zeros((1, len(template.starts))))
     _, slopes, _ = template._batch.differentiate(0, 1, start, values, corrections)
     place = [model.observables.index(o) for o in ("r", "psi")]
     for i, column in enumerate(place):
@@ -59,7 +63,7 @@ def test_offsets_are_drawn_beside_the_coefficients(model: Model, record: Record)
     template = problem(model, record, zero)
     still = record.with_channel("delta", record.channel("delta").with_values(np.zeros(len(record))))
     about = scatter(model, np.zeros((2, 2)), np.array([[0.01**2]]), (0.0, 0.0))
-    runs = drawn(template, model, still, REST, np.array([0.02]), about, np.random.default_rng(2), DRAWS)
+    runs = draw_runs(template, model, still, REST, np.array([0.02]), about, np.random.default_rng(2), DRAWS)
     final = runs[:, -1, model.observables.index("r")]
     assert np.mean(final) == pytest.approx(K * 0.02, rel=0.03)
     assert np.std(final) == pytest.approx(K * 0.01, rel=0.05)
@@ -70,7 +74,7 @@ def test_process_noise_is_integrated_white_noise(model: Model, record: Record) -
     template, q = problem(model, record), 1e-3
     still = record.with_channel("delta", record.channel("delta").with_values(np.zeros(len(record))))
     about = scatter(model, np.zeros((2, 2)), np.zeros((0, 0)), (q, 0.0))
-    runs = drawn(template, model, still, REST, np.empty(0), about, np.random.default_rng(3), DRAWS)
+    runs = draw_runs(template, model, still, REST, np.empty(0), about, np.random.default_rng(3), DRAWS)
     t = still.time
     rate = np.sqrt(q**2 * T / 2 * (1 - np.exp(-2 * t / T)))
     angle = np.sqrt(q**2 * T**2 * (t - 2 * T * (1 - np.exp(-t / T)) + T / 2 * (1 - np.exp(-2 * t / T))))
@@ -82,13 +86,13 @@ def test_process_noise_is_integrated_white_noise(model: Model, record: Record) -
 def test_the_middle_of_all_draws_is_the_prediction(model: Model, record: Record) -> None:
     template = problem(model, record)
     point = np.array([[model.parameters[n].value for n in template.free]])
-    alone = simulated(template, model, record, REST[None], point, np.empty((1, 0)))[0]
+    alone = simulate_points(template, model, record, REST[None], point, np.empty((1, 0)))[0]
     nothing = scatter(model, np.zeros((2, 2)), np.zeros((0, 0)), (0.0, 0.0))
-    runs = drawn(template, model, record, REST, np.empty(0), nothing, np.random.default_rng(4), 3)
+    runs = draw_runs(template, model, record, REST, np.empty(0), nothing, np.random.default_rng(4), 3)
     np.testing.assert_array_equal(runs, np.tile(alone, (3, 1, 1)))
 
 
 def test_the_root_of_a_singular_covariance() -> None:
     covariance = np.outer([1.0, 2.0], [1.0, 2.0])
-    np.testing.assert_allclose(root(covariance) @ root(covariance).T, covariance, atol=1e-12)
-    assert root(np.zeros((0, 0))).shape == (0, 0)
+    np.testing.assert_allclose(square_root(covariance) @ square_root(covariance).T, covariance, atol=1e-12)
+    assert square_root(np.zeros((0, 0))).shape == (0, 0)

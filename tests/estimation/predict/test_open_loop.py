@@ -6,8 +6,8 @@ import pytest
 from seatrial.core.equations import Sheet
 from seatrial.core.values import InputError, Record
 from seatrial.estimation.estimate.fit import ship_length_seconds
-from seatrial.estimation.identify import identified
-from seatrial.estimation.predict.open_loop import open_loop, prediction, session_means
+from seatrial.estimation.identify import estimate_model
+from seatrial.estimation.predict.open_loop import mean_nuisances, predict_run, simulate_open_loop
 from seatrial.physics.simulate import replay
 
 
@@ -21,12 +21,18 @@ def test_a_model_of_yaw_rate_alone_is_predicted_without_measures(rng: np.random.
     model = sheet.model()
     time = 0.2 * np.arange(1500)
     rudder = 0.2 * np.sign(np.sin(0.1 * time))
-    truth = replay(model, Record.of("run", time, {"delta": rudder, "u": np.ones(1500)}), {"r": 0.0})
+    truth = replay(model, Record.from_arrays("run", time, {"delta": rudder, "u": np.ones(1500)}), {"r": 0.0})
     noisy = truth["r"] + 1e-3 * rng.standard_normal(1500)
-    record = Record.of("run", time, {"r": noisy, "delta": rudder, "u": np.ones(1500)})
-    found = identified(model.with_values({"T": 3.0, "K": 0.1}), [record], ["run"], 10.0)
-    run = open_loop(found.made.problem, found.model, record, session_means(found.made.problem, found.made.shared), 10.0)
-    made = prediction(found.model, record, "validation", run, 10.0, 10.0)
+    record = Record.from_arrays("run", time, {"r": noisy, "delta": rudder, "u": np.ones(1500)})
+    found = estimate_model(model.with_values({"T": 3.0, "K": 0.1}), [record], ["run"], 10.0)
+    run = simulate_open_loop(
+        found.estimate.problem,
+        found.model,
+        record,
+        mean_nuisances(found.estimate.problem, found.estimate.common_parameters),
+        10.0,
+    )
+    made = predict_run(found.model, record, "validation", run, 10.0, 10.0)
     assert made.measures == {}
     assert set(made.rms) == {"r"}
     assert made.rms["r"] < 1.1e-3
@@ -34,7 +40,7 @@ def test_a_model_of_yaw_rate_alone_is_predicted_without_measures(rng: np.random.
 
 def test_records_without_speed_take_their_time_scale_from_the_segments(rng: np.random.Generator) -> None:
     time = 0.2 * np.arange(100)
-    silent = Record.of("run", time, {"r": rng.standard_normal(100)})
+    silent = Record.from_arrays("run", time, {"r": rng.standard_normal(100)})
     assert ship_length_seconds([silent], 10.0, 15.0) == 10.0
     for length in (None, np.inf):
         with pytest.raises(InputError, match="no forward speed"):

@@ -5,22 +5,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatrial.estimation.information.discrepancy import Miss
-from seatrial.estimation.predict.window_bands import Missed, covered
+from seatrial.estimation.information.discrepancy import HoldoutError
+from seatrial.estimation.predict.window_bands import HoldoutWindows, band_coverage
 
 T = 1.96
 ROWS = 100
 
 
-def miss(run: str, inside: int, size: float = 3.0) -> Miss:
+def miss(run: str, inside: int, size: float = 3.0) -> HoldoutError:
     """The first samples well inside a foreseen deviation of one, the others `size` of it away."""
     error = np.where(np.arange(ROWS) < inside, 0.1, size)
-    return Miss(run, 0.1, {"psi": error}, {"psi": np.ones(ROWS)})
+    return HoldoutError(run, 0.1, {"psi": error}, {"psi": np.ones(ROWS)})
 
 
-def held(*misses: Miss) -> float:
+def held(*misses: HoldoutError) -> float:
     """Share of one run's windows, against training runs too few to show a discrepancy."""
-    return covered(Missed(((miss("a", ROWS),),), (misses,), np.inf))[1][0].shares["psi"]
+    return band_coverage(HoldoutWindows(((miss("a", ROWS),),), (misses,), np.inf))[1][0].shares["psi"]
 
 
 def test_shares_are_those_of_samples() -> None:
@@ -44,5 +44,5 @@ def test_samples_that_were_not_measured_count_neither_way() -> None:
 def test_a_run_is_judged_by_what_other_runs_missed() -> None:
     """One of many runs is far off: the bands of the others know of it, its own do not."""
     runs = tuple((miss(f"{i}", 0, 0.1),) for i in range(9))
-    within, _ = covered(Missed((*runs, (miss("far", 0, 8.0),)), (), np.inf))
+    within, _ = band_coverage(HoldoutWindows((*runs, (miss("far", 0, 8.0),)), (), np.inf))
     assert [c.shares["psi"] for c in within] == [1.0] * 9 + [0.0]

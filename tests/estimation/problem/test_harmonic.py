@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError
-from seatrial.estimation.problem.harmonic import frequency_near, harmonics, whole_periods
+from seatrial.estimation.problem.harmonic import best_fit_frequency, harmonics, whole_periods
 
 OMEGA, DT = 5.2, 0.02
 TIME = 30.0 + DT * np.arange(round(6 * 2.0 * np.pi / OMEGA / DT))
@@ -42,7 +42,7 @@ def test_whole_periods_are_whole() -> None:
 
 def test_the_frequency_is_found_beside_the_nominal_one() -> None:
     values = np.cos(OMEGA * TIME + 0.3)
-    assert frequency_near(TIME, values, 1.01 * OMEGA) == pytest.approx(OMEGA, rel=1e-6)
+    assert best_fit_frequency(TIME, values, 1.01 * OMEGA) == pytest.approx(OMEGA, rel=1e-6)
 
 
 def test_what_has_no_harmonics_is_refused() -> None:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from seatrial.core.equations import Model
 from seatrial.core.values import Prior, Record
 from seatrial.estimation.problem.output_error import Nuisance, OutputError
-from seatrial.estimation.problem.segments import cut
+from seatrial.estimation.problem.segments import cut_segments
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate import replay
@@ -30,7 +30,7 @@ def planned(name: str, seed: int, rows: int = 160) -> Record:
     rng, time = np.random.default_rng(seed), 0.25 * np.arange(rows)
     corners = np.interp(time, np.arange(0.0, time[-1] + 4.0, 4.0), rng.uniform(-0.5, 0.5, int(time[-1] / 4) + 2))
     thrust = 1.866 + 0.2 * np.sin(0.2 * time)
-    return Record.of(name, time, {"delta": corners, "v_j": thrust})
+    return Record.from_arrays(name, time, {"delta": corners, "v_j": thrust})
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +59,7 @@ def problem(model: Model, records: tuple[Record, ...]) -> OutputError:
     sparse = records[1]["psi"].copy()
     sparse[10:40] = np.nan
     gappy = records[1].with_channel("psi", replace(records[1].channel("psi"), values=sparse))
-    data = cut(model, [records[0], gappy, records[2].without("u")], OUTPUTS, 10.0, ["x", "y", "x"])
+    data = cut_segments(model, [records[0], gappy, records[2].without("u")], OUTPUTS, 10.0, ["x", "y", "x"])
     told = model.with_parameters(model.parameters.with_priors({"Y_v": Prior(-0.3, 0.05)}))
     return OutputError(told, data, NOISE, NUISANCES, CURRENT, workers=1)
 
@@ -68,9 +68,9 @@ def point(problem: OutputError) -> tuple[Array, Array]:
     rng = np.random.default_rng(8)
     shared = problem.start()
     shared[: len(problem.free)] *= 1 + 0.1 * rng.standard_normal(len(problem.free))
-    own = shared[len(problem.free) :].reshape(-1, problem.kinds)
+    own = shared[len(problem.free) :].reshape(-1, problem.unknowns_per_session)
     own += np.array([0.03, -0.02, 0.02, 0.05, 0.31])
-    return shared, problem.measured_starts() + 0.01
+    return shared, problem.measured_initial_states() + 0.01
 
 
 def differences(problem: OutputError, shared: Array, local: Array) -> tuple[Array, Array]:
@@ -101,7 +101,7 @@ def test_gradient_with_all_nuisances(problem: OutputError, huber: float, inflati
 def test_hessian_is_the_jacobians_square(problem: OutputError) -> None:
     """Without noise the gradient's derivative is the Gauss-Newton Hessian: no second-order term is left."""
     shared, local = point(problem)
-    truth = problem.simulated(shared, local)
+    truth = problem.simulated_outputs(shared, local)
     exact = replace(
         problem, data=replace(problem.data, measured=np.where(np.isfinite(problem.data.measured), truth, np.nan))
     )
@@ -117,7 +117,7 @@ def test_hessian_is_the_jacobians_square(problem: OutputError) -> None:
 
 def test_shared_unknowns_are_laid_out_by_session(problem: OutputError) -> None:
     assert problem.free == ("X_uu", "Y_v", "N_v", "N_r")
-    assert problem.kinds == 5
+    assert problem.unknowns_per_session == 5
     assert problem.size == 4 + 2 * 5
     np.testing.assert_array_equal(problem.columns_of(1), [0, 1, 2, 3, 9, 10, 11, 12, 13])
     start = problem.start()
@@ -135,9 +135,9 @@ def test_priors_cost_what_they_say(problem: OutputError) -> None:
 
 
 def test_huber_counts_a_jump_linearly(model: Model, records: tuple[Record, ...]) -> None:
-    data = cut(model, records[:1], OUTPUTS, None)
+    data = cut_segments(model, records[:1], OUTPUTS, None)
     problem = OutputError(model, data, NOISE, huber=2.0, workers=1)
-    shared, local = problem.start(), problem.measured_starts()
+    shared, local = problem.start(), problem.measured_initial_states()
 
     def spoilt(by: float) -> float:
         measured = data.measured.copy()
@@ -157,7 +157,7 @@ def test_pinned_unknowns_have_no_room(problem: OutputError) -> None:
 
 def test_bounds_are_the_parameters(model: Model, records: tuple[Record, ...]) -> None:
     bounded = model.with_parameters(model.parameters.bounded("Y_v", -0.5, -0.1))
-    problem = OutputError(bounded, cut(model, records[:1], OUTPUTS, None), NOISE)
+    problem = OutputError(bounded, cut_segments(model, records[:1], OUTPUTS, None), NOISE)
     assert problem.lower[1] == -0.5
     assert problem.upper[1] == -0.1
 
@@ -170,14 +170,14 @@ def test_a_diverging_segment_costs_infinitely(problem: OutputError) -> None:
 
 def test_only_states_that_reach_an_output_start_free(records: tuple[Record, ...]) -> None:
     model = nomoto()
-    data = cut(model, [records[0]], ("r", "psi"), None)
+    data = cut_segments(model, [records[0]], ("r", "psi"), None)
     assert OutputError(model, data, np.ones(2)).starts == ("r", "psi")
-    data = cut(model, [records[0]], ("r", "psi", "x0"), None)
+    data = cut_segments(model, [records[0]], ("r", "psi", "x0"), None)
     assert OutputError(model, data, np.ones(3)).starts == ("r", "psi", "x0")
 
 
 def test_starts_skip_what_was_not_measured(problem: OutputError) -> None:
-    local = problem.measured_starts()
+    local = problem.measured_initial_states()
     assert local[0, 0] == problem.data.measured[0, 0]
     last = problem.data.offsets[-2]
     assert local[-1, 0] == 0.0
@@ -193,10 +193,10 @@ def test_workers_change_no_bit(problem: OutputError) -> None:
 
 def test_normal_equations_of_runs_add_up(problem: OutputError) -> None:
     shared, local = point(problem)
-    blocks, whole = problem.blocks(shared, local), problem.normal(shared, local)
+    blocks, whole = problem.segment_normals(shared, local), problem.normal(shared, local)
     runs = [np.flatnonzero(problem.data.run == r) for r in range(3)]
-    parts = [problem.assembled(blocks, shared, chosen, with_prior=False) for chosen in runs]
+    parts = [problem.assemble(blocks, shared, chosen, with_prior=False) for chosen in runs]
     mean, weight = problem.priors
     np.testing.assert_allclose(sum(p.gradient for p in parts) + weight * (shared - mean), whole.gradient, rtol=1e-10)
-    np.testing.assert_allclose(sum(p.reduced()[1] for p in parts) + np.diag(weight), whole.reduced()[1],
+    np.testing.assert_allclose(sum(p.without_local()[1] for p in parts) + np.diag(weight), whole.without_local()[1],
                                rtol=1e-6, atol=1e-6)  # fmt: skip

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from seatrial.core.values import Prior, Record
 from seatrial.estimation.problem.output_error import Nuisance, OutputError
-from seatrial.estimation.problem.prediction_error import PredictionError, whole_runs
-from seatrial.estimation.problem.segments import cut
+from seatrial.estimation.problem.prediction_error import PredictionError, join_segments
+from seatrial.estimation.problem.segments import cut_segments
 from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate import replay
 from seatrial.physics.simulate.batch import InputCorrection
@@ -24,7 +24,7 @@ NONE = np.zeros((0, 0))
 def record_of(name: str, seed: int, rows: int = 120) -> Record:
     rng, time = np.random.default_rng(seed), np.linspace(0.0, 0.25 * (rows - 1), rows)
     delta = np.interp(time, np.arange(0.0, 36.0, 4.0), rng.uniform(-0.5, 0.5, 9))
-    plan = Record.of(name, time, {"delta": delta, "v_j": 1.866 + 0.2 * np.sin(0.2 * time)})
+    plan = Record.from_arrays(name, time, {"delta": delta, "v_j": 1.866 + 0.2 * np.sin(0.2 * time)})
     record = replay(waterjet(), plan, START)
     for symbol, size in zip(OUTPUTS, NOISE, strict=True):
         channel = record.channel(symbol)
@@ -40,7 +40,7 @@ def runs() -> OutputError:
     model = waterjet()
     model = model.with_parameters(model.parameters.only_free(("X_uu", "Y_v", "N_r")))
     records = [record_of(name, seed) for seed, name in enumerate("abc")]
-    data = cut(model, records, OUTPUTS, None, ("day 1", "day 1", "day 2"))
+    data = cut_segments(model, records, OUTPUTS, None, ("day 1", "day 1", "day 2"))
     measured = data.measured.copy()
     measured[130:150, 3] = np.nan
     zero = Nuisance(InputCorrection("delta", "zero"), Prior(0.01, 0.03), "rad")
@@ -98,8 +98,8 @@ def test_without_process_noise_it_is_output_error(problem: PredictionError) -> N
 
 
 def test_runs_add_up(problem: PredictionError, point: Array) -> None:
-    blocks, whole = problem.blocks(point), problem.normal(point, NONE)
-    parts = [problem.assembled(blocks, point, np.array([r]), with_prior=False) for r in range(3)]
+    blocks, whole = problem.segment_normals(point), problem.normal(point, NONE)
+    parts = [problem.assemble(blocks, point, np.array([r]), with_prior=False) for r in range(3)]
     prior = problem.runs.priors
     np.testing.assert_allclose(
         np.sum([p.gradient for p in parts], axis=0)[: problem.runs.size]
@@ -117,9 +117,9 @@ def test_a_known_deviation_stays(problem: PredictionError) -> None:
 
 def test_segments_are_joined_again(runs: OutputError) -> None:
     records = [record_of(name, seed) for seed, name in enumerate("abc")]
-    pieces = replace(runs, data=cut(runs.model, records, OUTPUTS, 5.0, ("day 1", "day 1", "day 2")))
-    whole = cut(runs.model, records, OUTPUTS, None, ("day 1", "day 1", "day 2"))
-    joined, first = whole_runs(pieces)
+    pieces = replace(runs, data=cut_segments(runs.model, records, OUTPUTS, 5.0, ("day 1", "day 1", "day 2")))
+    whole = cut_segments(runs.model, records, OUTPUTS, None, ("day 1", "day 1", "day 2"))
+    joined, first = join_segments(pieces)
     np.testing.assert_array_equal(joined.data.measured, whole.measured)
     np.testing.assert_array_equal(joined.data.offsets, whole.offsets)
     np.testing.assert_array_equal(joined.data.session, whole.session)

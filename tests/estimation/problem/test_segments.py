@@ -9,13 +9,13 @@ import pytest
 from seatrial.core.equations import Model
 from seatrial.core.values import Channel, InputError, Record
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.estimation.problem.segments import compared_outputs, cut
+from seatrial.estimation.problem.segments import compared_outputs, cut_segments
 from seatrial.physics.models.nomoto import nomoto
 
 
 def record(name: str, rows: int, dt: float = 0.5, port: bool = False) -> Record:
     time = dt * np.arange(rows)
-    made = Record.of(name, time, {"r": np.sin(time), "psi": np.cos(time), "delta": 0.1 * time})
+    made = Record.from_arrays(name, time, {"r": np.sin(time), "psi": np.cos(time), "delta": 0.1 * time})
     return made.with_channel("delta", Channel(-0.1 * time, "rad", "body", "port")) if port else made
 
 
@@ -25,7 +25,7 @@ def model() -> Model:
 
 
 def test_neighbours_share_one_sample_and_nothing_is_lost(model: Model) -> None:
-    data = cut(model, [record("a", 101)], ("r", "psi"), 12.0)
+    data = cut_segments(model, [record("a", 101)], ("r", "psi"), 12.0)
     assert data.count == round(50.0 / 12.0)
     pieces = [data.measured[a:b] for a, b in pairwise(data.offsets)]
     for one, two in pairwise(pieces):
@@ -36,13 +36,15 @@ def test_neighbours_share_one_sample_and_nothing_is_lost(model: Model) -> None:
 
 
 def test_whole_runs_and_runs_shorter_than_a_segment(model: Model) -> None:
-    whole = cut(model, [record("a", 30), record("b", 50)], ("r",), None)
+    whole = cut_segments(model, [record("a", 30), record("b", 50)], ("r",), None)
     np.testing.assert_array_equal(whole.offsets, [0, 30, 80])
-    assert cut(model, [record("a", 30)], ("r",), 1e6).count == 1
+    assert cut_segments(model, [record("a", 30)], ("r",), 1e6).count == 1
 
 
 def test_runs_and_sessions_are_told_apart(model: Model) -> None:
-    data = cut(model, [record("a", 41), record("b", 41), record("c", 41)], ("r",), 10.0, ["day 2", "day 1", "day 2"])
+    data = cut_segments(
+        model, [record("a", 41), record("b", 41), record("c", 41)], ("r",), 10.0, ["day 2", "day 1", "day 2"]
+    )
     np.testing.assert_array_equal(data.run, [0, 0, 1, 1, 2, 2])
     np.testing.assert_array_equal(data.session, [0, 0, 1, 1, 0, 0])
     assert data.sessions == ("day 2", "day 1")
@@ -50,12 +52,12 @@ def test_runs_and_sessions_are_told_apart(model: Model) -> None:
 
 
 def test_inputs_take_the_models_sign(model: Model) -> None:
-    one, other = (cut(model, [record("a", 21, port=p)], ("r",), None).inputs for p in (False, True))
+    one, other = (cut_segments(model, [record("a", 21, port=p)], ("r",), None).inputs for p in (False, True))
     np.testing.assert_array_equal(one, other)
 
 
 def test_a_channel_that_was_not_measured_is_nan(model: Model) -> None:
-    data = cut(model, [record("a", 21), record("b", 21).without("r")], ("r", "psi"), None)
+    data = cut_segments(model, [record("a", 21), record("b", 21).without("r")], ("r", "psi"), None)
     assert np.all(np.isfinite(data.measured[:21]))
     assert np.all(np.isnan(data.measured[21:, 0]))
     assert np.all(np.isfinite(data.measured[21:, 1]))
@@ -73,14 +75,14 @@ def test_outputs_are_those_the_records_hold(model: Model) -> None:
 
 def test_rates_that_differ_and_short_records_are_refused(model: Model) -> None:
     with pytest.raises(InputError, match=r"record 'b' has a time step of 0\.25 s, the first one 0\.5 s"):
-        cut(model, [record("a", 21), record("b", 21, dt=0.25)], ("r",), None)
+        cut_segments(model, [record("a", 21), record("b", 21, dt=0.25)], ("r",), None)
     with pytest.raises(InputError, match="record 'a' has 2 samples; at least three"):
-        cut(model, [record("a", 2)], ("r",), None)
+        cut_segments(model, [record("a", 2)], ("r",), None)
 
 
 def test_segments_are_taken_in_any_order_and_number(model: Model) -> None:
-    data = cut(model, [record("a", 41), record("b", 61)], ("r", "psi"), 10.0)
-    taken = data.taken(np.array([3, 0, 3]))
+    data = cut_segments(model, [record("a", 41), record("b", 61)], ("r", "psi"), 10.0)
+    taken = data.selected(np.array([3, 0, 3]))
     assert taken.count == 3 and taken.runs == data.runs
     np.testing.assert_array_equal(taken.run, [1, 0, 1])
     for place, chosen in enumerate((3, 0, 3)):
@@ -91,9 +93,9 @@ def test_segments_are_taken_in_any_order_and_number(model: Model) -> None:
 
 
 def test_a_segment_taken_twice_costs_twice(model: Model) -> None:
-    data = cut(model, [record("a", 41)], ("r", "psi"), 10.0)
+    data = cut_segments(model, [record("a", 41)], ("r", "psi"), 10.0)
     problem = OutputError(model, data, np.array([0.1, 0.1]), workers=1)
-    shared, local = problem.start(), problem.measured_starts()
-    single = replace(problem, data=data.taken(np.array([1]))).cost(shared, local[[1]])
-    double = replace(problem, data=data.taken(np.array([1, 1]))).cost(shared, local[[1, 1]])
+    shared, local = problem.start(), problem.measured_initial_states()
+    single = replace(problem, data=data.selected(np.array([1]))).cost(shared, local[[1]])
+    double = replace(problem, data=data.selected(np.array([1, 1]))).cost(shared, local[[1, 1]])
     assert double == pytest.approx(2.0 * single, rel=1e-12)

@@ -6,11 +6,11 @@ from itertools import product
 import numpy as np
 import pytest
 
-from seatrial.core.values import Array, ForcePoints, Includes, InputError
+from seatrial.core.values import Array, ForceContent, ForcePoints, InputError
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.estimation.problem.segments import cut
+from seatrial.estimation.problem.segments import cut_segments
 from seatrial.estimation.problem.static_forces import StaticForces
-from seatrial.numerics.optimise import Normal, levenberg_marquardt
+from seatrial.numerics.optimise import NormalEquations, levenberg_marquardt
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.abkowitz import abkowitz
 from seatrial.physics.models.mmg import HULL, mmg
@@ -22,7 +22,7 @@ from seatrial.physics.simulate.steer import manoeuvre
 SPEED, LENGTH = 1.2, 7.0
 
 
-def points(includes: Includes = Includes.HYDRODYNAMIC, **forces: Array) -> ForcePoints:
+def points(includes: ForceContent = ForceContent.HYDRODYNAMIC, **forces: Array) -> ForcePoints:
     """Drift by yaw rate by rudder angle at one speed; forces zero unless given."""
     grid = np.array(list(product(np.radians((-15.0, -7.0, 0.0, 8.0, 16.0)), (-0.8, -0.3, 0.0, 0.5), (-0.4, 0.0, 0.6))))
     beta, r, delta = grid.T
@@ -34,14 +34,14 @@ def points(includes: Includes = Includes.HYDRODYNAMIC, **forces: Array) -> Force
     return ForcePoints("tank", motion, known, {"X": 0.3, "Y": 2.0, "N": 5.0}, includes)
 
 
-def measured_of(includes: Includes) -> ForcePoints:
+def measured_of(includes: ForceContent) -> ForcePoints:
     """The forces KVLCC2's published coefficients give, without noise."""
     forces = StaticForces(kvlcc2(), points(includes)).forces(kvlcc2().parameters.values)
     return points(includes, X=forces[:, 0], Y=forces[:, 1], N=forces[:, 2])
 
 
-@pytest.mark.parametrize("includes", list(Includes))
-def test_the_gradient_is_that_of_the_cost(includes: Includes) -> None:
+@pytest.mark.parametrize("includes", list(ForceContent))
+def test_the_gradient_is_that_of_the_cost(includes: ForceContent) -> None:
     term, values = StaticForces(kvlcc2(), points(includes)), kvlcc2().parameters.values
     free = [kvlcc2().parameters.index(n) for n in (*HULL, "a_H", "w_P0", "m_y_prime")]
     steps = [1e-5 * np.eye(len(values))[i] for i in free]
@@ -76,16 +76,18 @@ class Alone:
         del local
         return self.term.cost(self._values(shared))
 
-    def normal(self, shared: Array, local: Array) -> Normal:
+    def normal(self, shared: Array, local: Array) -> NormalEquations:
         """Of the points."""
         places = [self.term.model.parameters.index(n) for n in self.free]
         found = self.term.normal(self._values(shared), places)
         nothing = np.zeros((0, 0))
-        return Normal(found.cost, found.gradient, found.hessian, local, np.zeros((0, 0, 0)), nothing[:, :, None])
+        return NormalEquations(
+            found.cost, found.gradient, found.hessian, local, np.zeros((0, 0, 0)), nothing[:, :, None]
+        )
 
 
-@pytest.mark.parametrize("includes", list(Includes))
-def test_points_without_noise_give_back_the_hull(includes: Includes) -> None:
+@pytest.mark.parametrize("includes", list(ForceContent))
+def test_points_without_noise_give_back_the_hull(includes: ForceContent) -> None:
     problem = Alone(StaticForces(kvlcc2(), _without_inertia(measured_of(includes))), HULL)
     found = levenberg_marquardt(problem, np.zeros(len(HULL)), np.zeros((0, 0)))
     truth = [kvlcc2().parameters[n].value for n in HULL]
@@ -94,7 +96,7 @@ def test_points_without_noise_give_back_the_hull(includes: Includes) -> None:
 
 def _without_inertia(given: ForcePoints) -> ForcePoints:
     """`forces` gives what a balance feels where only pressures were wanted: take the rigid body out."""
-    if given.includes is not Includes.PRESSURE:
+    if given.includes is not ForceContent.PRESSURE:
         return given
     m, x_G = (kvlcc2().parameters[n].value for n in ("m", "x_G"))
     u, v, r = (given.motion[s] for s in ("u", "v", "r"))
@@ -104,7 +106,9 @@ def _without_inertia(given: ForcePoints) -> ForcePoints:
 
 def test_what_is_included_matters_only_in_a_turn() -> None:
     values, straight = kvlcc2().parameters.values, points().motion["r"] == 0
-    summed, held = (StaticForces(kvlcc2(), points(i)).forces(values) for i in (Includes.HYDRODYNAMIC, Includes.BALANCE))
+    summed, held = (
+        StaticForces(kvlcc2(), points(i)).forces(values) for i in (ForceContent.HYDRODYNAMIC, ForceContent.BALANCE)
+    )
     np.testing.assert_allclose(summed[straight], held[straight], rtol=1e-12)
     m = kvlcc2().parameters["m"].value
     turning = points().motion["r"] > 0
@@ -131,27 +135,29 @@ def test_values_nobody_measured_weigh_nothing() -> None:
 def test_the_problem_adds_points_to_all_runs_and_to_no_run_left_out() -> None:
     model = kvlcc2().with_parameters(kvlcc2().parameters.only_free(("Y_v", "N_r")))
     run = manoeuvre(model, programme("zigzag:10/10"), dt=0.5, duration=20.0, inputs={"n": 10.4})
-    plain = OutputError(model, cut(model, [run], ("u", "v", "r"), None), np.array([0.01, 0.01, 0.001]))
+    plain = OutputError(model, cut_segments(model, [run], ("u", "v", "r"), None), np.array([0.01, 0.01, 0.001]))
     term = StaticForces(model, points())
-    fused = replace(plain, others=(term,))
-    shared, local = plain.start() * 1.1, plain.measured_starts()
+    fused = replace(plain, extra_terms=(term,))
+    shared, local = plain.start() * 1.1, plain.measured_initial_states()
     own = term.normal(fused._parameter_values(shared), [model.parameters.index(n) for n in ("Y_v", "N_r")])
     with_points, without = fused.normal(shared, local), plain.normal(shared, local)
     np.testing.assert_allclose(with_points.gradient - without.gradient, own.gradient, rtol=1e-9)
     np.testing.assert_allclose(with_points.hessian - without.hessian, own.hessian, rtol=1e-9)
     assert with_points.cost == pytest.approx(fused.cost(shared, local))
     assert fused.cost(shared, local) == pytest.approx(plain.cost(shared, local) + own.cost)
-    np.testing.assert_allclose(fused.known_precision(shared), own.hessian)
+    np.testing.assert_allclose(fused.prior_precision(shared), own.hessian)
     pinned = replace(fused, pinned=shared)
     assert pinned.cost(shared, local) == replace(plain, pinned=shared).cost(shared, local), "only initial states move"
-    one, other = (p.assembled(p.blocks(shared, local), shared, np.arange(1), with_prior=False) for p in (fused, plain))
+    one, other = (
+        p.assemble(p.segment_normals(shared, local), shared, np.arange(1), with_prior=False) for p in (fused, plain)
+    )
     np.testing.assert_array_equal(one.hessian, other.hessian)
 
 
 def test_abkowitz_names_its_forces_too() -> None:
-    assert StaticForces(abkowitz(), points()).names == ("X_sum", "Y_sum", "N_sum")
+    assert StaticForces(abkowitz(), points()).force_names == ("X_sum", "Y_sum", "N_sum")
     with pytest.raises(InputError, match=r"abkowitz.*no forces X_H.*includes = \"hull\""):
-        StaticForces(abkowitz(), points(Includes.HULL))
+        StaticForces(abkowitz(), points(ForceContent.HULL))
 
 
 def test_models_and_points_that_do_not_go_together_are_refused() -> None:
@@ -160,10 +166,10 @@ def test_models_and_points_that_do_not_go_together_are_refused() -> None:
     motion = {s: x for s, x in points().motion.items() if s != "n"}
     with pytest.raises(InputError, match=r"do not say 'n'.*forces.motion"):
         StaticForces(kvlcc2(), replace(points(), motion=motion))
-    StaticForces(kvlcc2(), replace(points(Includes.HULL), motion=motion))
+    StaticForces(kvlcc2(), replace(points(ForceContent.HULL), motion=motion))
     loose = kvlcc2().with_parameters(kvlcc2().parameters.freed("m"))
     with pytest.raises(InputError, match=r"need a known 'm'.*fix it"):
-        StaticForces(loose, points(Includes.PRESSURE))
+        StaticForces(loose, points(ForceContent.PRESSURE))
     assert "X_sum" in {b.name for b in mmg().bindings}
 
 

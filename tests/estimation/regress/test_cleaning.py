@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.core.values import Array, Channel, InputError, Kind, Record
+from seatrial.core.values import Array, Channel, InputError, Record, RecordKind
 from seatrial.estimation.regress.cleaning import (
-    first_of_equals,
+    first_occurrences,
     standard_scores,
     without_duplicates,
     without_missing,
@@ -41,13 +41,13 @@ def records(draw: st.DrawFn) -> Record:
     gaps = draw(st.lists(st.sampled_from([0.1, 0.2, 3.0]), min_size=len(rows), max_size=len(rows)))
     u, v = np.array(rows).T
     number = np.arange(len(rows), dtype=float)
-    return Record.of("drawn", np.cumsum(gaps), {"u": u, "v": v, "x0": number}, Kind.SIMULATED)
+    return Record.from_arrays("drawn", np.cumsum(gaps), {"u": u, "v": v, "x0": number}, RecordKind.SIMULATED)
 
 
 def of(u: list[float], v: list[float] | None = None) -> Record:
     """A record of 10 Hz."""
     values = {"u": np.array(u)} | ({"v": np.array(v)} if v is not None else {})
-    return Record.of("run", 0.1 * np.arange(len(u)), values)
+    return Record.from_arrays("run", 0.1 * np.arange(len(u)), values)
 
 
 def kept(record: Record, cleaned: Record) -> Array:
@@ -134,7 +134,7 @@ def test_outliers_do_not_depend_on_unit_or_sign(record: Record, scale: float) ->
 
 def test_published_limits_on_normal_noise_take_what_the_normal_law_says(rng: np.random.Generator) -> None:
     """Beyond three deviations lies 0.270 % of a normal sample: 540 of 200 000, give or take 23."""
-    record = Record.of("noise", 0.1 * np.arange(200_000), {"r": 0.3 + 0.01 * rng.standard_normal(200_000)})
+    record = Record.from_arrays("noise", 0.1 * np.arange(200_000), {"r": 0.3 + 0.01 * rng.standard_normal(200_000)})
     assert len(record) - len(without_outliers(record, 3.0, ["r"])) == pytest.approx(540, abs=4 * 23.2)
 
 
@@ -145,7 +145,7 @@ def test_repetitions_are_found_next_to_one_another_and_apart() -> None:
 
 
 def test_a_missing_value_equals_nothing() -> None:
-    assert first_of_equals(np.array([[NAN, 1.0], [NAN, 1.0], [2.0, 1.0], [2.0, 1.0]])).tolist() == [1, 1, 1, 0]
+    assert first_occurrences(np.array([[NAN, 1.0], [NAN, 1.0], [2.0, 1.0], [2.0, 1.0]])).tolist() == [1, 1, 1, 0]
 
 
 def test_infinities_are_outliers_and_missing_values_are_not() -> None:
@@ -155,7 +155,7 @@ def test_infinities_are_outliers_and_missing_values_are_not() -> None:
 
 
 def test_a_sample_without_a_stamp_is_missing() -> None:
-    record = Record("run", np.array([0.0, NAN, 0.2]), {"u": Channel.of("u", np.ones(3))})
+    record = Record("run", np.array([0.0, NAN, 0.2]), {"u": Channel.from_notation("u", np.ones(3))})
     assert without_missing(record, ["u"]).time.tolist() == [0.0, 0.2]
 
 
@@ -196,7 +196,7 @@ def test_the_threshold_itself_stays() -> None:
 def test_what_makes_no_sense_is_refused_in_a_sentence(step: Step, said: str) -> None:
     values = {"u": np.array([1.0, -1.0, 1.0, -1.0]), "v": np.full(4, 2.0), "r": np.full(4, NAN)}
     with pytest.raises(InputError, match=said) as refusal:
-        step(Record.of("run", np.arange(4.0), values))
+        step(Record.from_arrays("run", np.arange(4.0), values))
     assert "'run'" in str(refusal.value)
     assert "\n" not in str(refusal.value)
 

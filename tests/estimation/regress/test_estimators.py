@@ -5,8 +5,8 @@ import pytest
 from tests.estimation.regress.linear import zigzags
 
 from seatrial.core.values import InputError
-from seatrial.data.example_series.series import noisy
-from seatrial.estimation.regress.named import regressions
+from seatrial.data.example_series.series import with_sensor_noise
+from seatrial.estimation.regress.standard_estimators import standard_estimators
 from seatrial.physics.models.waterjet import TABLE_2, waterjet
 
 TRUE = np.array(list(TABLE_2.values()))
@@ -15,8 +15,8 @@ BLANK = waterjet().with_values(dict.fromkeys(TABLE_2, 0.0))
 
 def errors(name: str, seed: int | None) -> np.ndarray:
     """Relative errors of one estimator on the zigzags, with sensor noise where a seed is given."""
-    record = zigzags() if seed is None else noisy(zigzags(), np.random.default_rng(seed), seed)
-    (estimator,) = [e for e in regressions(20.0) if e.name == name]
+    record = zigzags() if seed is None else with_sensor_noise(zigzags(), np.random.default_rng(seed), seed)
+    (estimator,) = [e for e in standard_estimators(20.0) if e.name == name]
     return np.abs(estimator.estimate(BLANK, [record]).values / TRUE - 1.0)
 
 
@@ -47,7 +47,7 @@ def test_differencing_makes_noise_fatal() -> None:
 
 def test_names_are_told_apart_and_a_hidden_state_is_refused() -> None:
     """One row a name; the craft without its sway velocity, heading and position cannot be regressed."""
-    names = [e.name for e in regressions(20.0)]
+    names = [e.name for e in standard_estimators(20.0)]
     assert len(set(names)) == len(names)
     with pytest.raises(InputError, match="neither holds nor implies 'v'"):
-        regressions(20.0)[0].estimate(BLANK, [zigzags().without("v", "x0", "y0")])
+        standard_estimators(20.0)[0].estimate(BLANK, [zigzags().without("v", "x0", "y0")])

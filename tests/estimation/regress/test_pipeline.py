@@ -10,20 +10,20 @@ import pytest
 from tests.estimation.regress.linear import zigzags
 
 from seatrial.core.values import InputError
-from seatrial.data.example_series.series import noisy
-from seatrial.estimation.regress.arithmetic import Lasso, LeastSquares
+from seatrial.data.example_series.series import with_sensor_noise
 from seatrial.estimation.regress.operators import Central, Euler
 from seatrial.estimation.regress.pipeline import Cleaning, Pipeline
+from seatrial.estimation.regress.solvers import Lasso, OrdinaryLeastSquares
 from seatrial.physics.models.waterjet import TABLE_2, waterjet
 
 TRUE = np.array(list(TABLE_2.values()))
-HALF = Pipeline(share=0.5)
+HALF = Pipeline(training_share=0.5)
 BLANK = waterjet().with_values(dict.fromkeys(TABLE_2, 0.0))
 
 
 def median_error(pipeline: Pipeline, seed: int | None = None) -> float:
     """Over the eleven coefficients."""
-    record = zigzags() if seed is None else noisy(zigzags(), np.random.default_rng(seed), seed)
+    record = zigzags() if seed is None else with_sensor_noise(zigzags(), np.random.default_rng(seed), seed)
     return float(np.median(np.abs(pipeline.estimate(BLANK, [record]).values / TRUE - 1.0)))
 
 
@@ -43,7 +43,7 @@ def test_the_constant_is_near_zero_where_the_regression_is_good() -> None:
 
 def test_what_is_not_selected_is_zero_and_told() -> None:
     """A large penalty leaves little."""
-    pipeline = replace(HALF, selection=Lasso((2000.0,)), operator=Central(), arithmetic=LeastSquares())
+    pipeline = replace(HALF, selection=Lasso((2000.0,)), operator=Central(), solver=OrdinaryLeastSquares())
     found = pipeline.estimate(BLANK, [zigzags()])
     dropped = [n for n, value in zip(TABLE_2, found.values, strict=True) if value == 0.0]
     assert dropped
@@ -59,7 +59,7 @@ def test_cleaning_looks_at_the_velocities() -> None:
     psi[1300] = np.nan
     spoiled = clean.with_channel("v", clean.channel("v").with_values(v))
     spoiled = spoiled.with_channel("psi", clean.channel("psi").with_values(psi))
-    kept = Cleaning().cleaned(waterjet(), spoiled)
+    kept = Cleaning().clean(waterjet(), spoiled)
     assert clean.time[1200] not in kept.time
     assert clean.time[1300] not in kept.time
     assert len(kept) > 0.7 * len(clean)

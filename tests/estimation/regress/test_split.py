@@ -9,8 +9,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from seatrial.core.values import Array, Channel, InputError, Kind, Record
-from seatrial.data.example_series.series import run, truth
+from seatrial.core.values import Array, Channel, InputError, Record, RecordKind
+from seatrial.data.example_series.series import simulate_run, true_model
 from seatrial.estimation.regress.cleaning import without_small
 from seatrial.estimation.regress.split import (
     blocks,
@@ -18,7 +18,7 @@ from seatrial.estimation.regress.split import (
     manoeuvre_seconds,
     record_folds,
     reversals,
-    shuffled,
+    shuffled_split,
     training_rows,
 )
 
@@ -29,7 +29,7 @@ PERIOD = 40.0
 @cache
 def zigzags() -> Record:
     """Ten executes of the waterjet craft, 755 s, without noise."""
-    return run(truth(), "consecutive-zigzags:2")
+    return simulate_run(true_model(), "consecutive-zigzags:2")
 
 
 def weaving(seconds: float, dt: float = 0.1) -> Record:
@@ -37,19 +37,19 @@ def weaving(seconds: float, dt: float = 0.1) -> Record:
     time = dt * np.arange(round(seconds / dt) + 1)
     phase = 2.0 * np.pi * time / PERIOD
     values = {"delta": 0.2 * np.sin(phase), "psi": 0.4 * np.sin(phase - 1.0)}
-    return Record.of("weaving", time, values, Kind.SIMULATED)
+    return Record.from_arrays("weaving", time, values, RecordKind.SIMULATED)
 
 
 @given(rows=st.integers(2, 400), share=shares)
 def test_blocks_partition_the_record_in_order(rows: int, share: float) -> None:
     assume(0 < round(share * rows) < rows)
-    record = Record.of("run", np.cumsum(np.ones(rows)), {"u": np.arange(float(rows))}, Kind.SIMULATED)
+    record = Record.from_arrays("run", np.cumsum(np.ones(rows)), {"u": np.arange(float(rows))}, RecordKind.SIMULATED)
     train, test = blocks(record, share)
     np.testing.assert_array_equal(np.concatenate([train["u"], test["u"]]), record["u"])
     np.testing.assert_array_equal(np.concatenate([train.time, test.time]), record.time)
     assert len(train) == training_rows(rows, share)
     assert abs(len(train) - share * rows) <= 0.5
-    assert {train.kind, test.kind} == {Kind.SIMULATED}
+    assert {train.kind, test.kind} == {RecordKind.SIMULATED}
 
 
 def test_the_published_split_puts_16800_of_21000_samples_into_training() -> None:
@@ -74,12 +74,12 @@ def test_folds_partition_the_rows_in_order_and_nearly_equally(rows: int, count: 
 @given(rows=st.integers(2, 300), share=shares, seed=st.integers(0, 5))
 def test_shuffled_rows_are_every_row_once_and_repeatable(rows: int, share: float, seed: int) -> None:
     assume(0 < round(share * rows) < rows)
-    train, test = shuffled(rows, share, np.random.default_rng(seed))
+    train, test = shuffled_split(rows, share, np.random.default_rng(seed))
     assert len(train) == training_rows(rows, share)
     np.testing.assert_array_equal(np.sort(np.concatenate([train, test])), np.arange(rows))
     assert np.all(np.diff(train) > 0)
     assert np.all(np.diff(test) > 0)
-    again = shuffled(rows, share, np.random.default_rng(seed))
+    again = shuffled_split(rows, share, np.random.default_rng(seed))
     np.testing.assert_array_equal(train, again[0])
 
 
@@ -94,7 +94,7 @@ def test_shuffling_leaks_and_blocks_do_not(rng: np.random.Generator) -> None:
     """Copying the neighbour, which knows no ship, predicts shuffled rows to a hundredth and blocks not at all."""
     r = zigzags()["r"]
     first, rows = training_rows(len(r), 0.7), np.arange(len(r))
-    assert copied(*shuffled(len(r), 0.7, rng), r) < 0.01
+    assert copied(*shuffled_split(len(r), 0.7, rng), r) < 0.01
     assert copied(rows[:first], rows[first:], r) > 0.9
 
 
@@ -117,7 +117,7 @@ def test_longest_manoeuvre_of_two_executes_is_the_time_between_them() -> None:
     time = 0.5 * np.arange(300)
     delta = np.select([time < 10.0, time < 70.0], [0.0, 0.3], -0.3)
     psi = np.radians(np.interp(time, [0.0, 10.0, 80.0, 150.0], [0.0, 0.0, 30.0, 5.0]))
-    record = Record.of("begun", time, {"delta": delta, "psi": psi})
+    record = Record.from_arrays("begun", time, {"delta": delta, "psi": psi})
     assert manoeuvre_seconds(record) == pytest.approx(60.0, abs=0.5)
 
 
@@ -222,6 +222,6 @@ def test_no_piece_may_be_empty() -> None:
 
 def test_missing_stamps_are_refused() -> None:
     time = np.array([0.0, 1.0, float("nan"), 3.0])
-    channels = {symbol: Channel.of(symbol, np.zeros(4)) for symbol in ("psi", "delta")}
+    channels = {symbol: Channel.from_notation(symbol, np.zeros(4)) for symbol in ("psi", "delta")}
     with pytest.raises(InputError, match="stamps are missing; rebuild its time base"):
         blocks(Record("run", time, channels), 0.5)

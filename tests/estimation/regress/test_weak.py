@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from seatrial.core.equations import Model, Sheet
 from seatrial.core.values import Prior
-from seatrial.estimation.regress.weak import WeakForm, shape, windows
+from seatrial.estimation.regress.weak import WeakForm, window_bounds, window_function
 from seatrial.numerics.optimise import Status, levenberg_marquardt
 
 Array = NDArray[np.float64]
@@ -45,16 +45,16 @@ def weak() -> WeakForm:
 
 
 def test_windows_cover_the_record_half_overlapping() -> None:
-    found = windows(101, 20)
+    found = window_bounds(101, 20)
     assert found[0] == (0, 40)
     assert {b - a for a, b in found} == {40}
     assert found[-1][1] == 100
     assert {b - a for a, b in zip([f[0] for f in found], [f[0] for f in found][1:], strict=False)} == {10}
-    assert windows(30, 100) == [(0, 28), (14, 42)][:1]
+    assert window_bounds(30, 100) == [(0, 28), (14, 42)][:1]
 
 
 def test_window_vanishes_with_its_slope_at_the_ends() -> None:
-    w, slope = shape(50, DT)
+    w, slope = window_function(50, DT)
     assert w[0] == w[-1] == slope[0] == slope[-1] == 0.0
     assert w[50] == 1.0
     np.testing.assert_allclose(slope[1:-1], np.gradient(w, DT)[1:-1], atol=2e-3)
@@ -81,7 +81,7 @@ def test_one_step_from_zero_recovers_what_enters_linearly(weak: WeakForm) -> Non
 
 
 def test_jacobian_and_gradient_against_differences(weak: WeakForm) -> None:
-    weak = replace(weak, spread=np.array([0.5, 2.0]))
+    weak = replace(weak, residual_sd=np.array([0.5, 2.0]))
     point, none = np.array([0.1, 0.5, 0.3]), np.zeros((0, 0))
     jacobian, normal = weak.linearised(point)[1], weak.normal(point, none)
     assert normal.cost == pytest.approx(weak.cost(point, none))
@@ -121,7 +121,7 @@ def test_noise_is_averaged_not_differentiated(weak: WeakForm, rng: np.random.Gen
 
 def test_priors_and_bounds_come_from_the_parameters(weak: WeakForm) -> None:
     parameters = weak.model.parameters.with_priors({"a": Prior(0.2, 1e-6)}).bounded("c", 0.1, 1.0)
-    weak = replace(weak, model=weak.model.with_parameters(parameters), spread=np.full(2, 1e-3))
+    weak = replace(weak, model=weak.model.with_parameters(parameters), residual_sd=np.full(2, 1e-3))
     found = levenberg_marquardt(weak, np.array([0.0, 0.0, 0.5]), np.zeros((0, 0))).solution.point
     assert found[0] == pytest.approx(0.2, abs=1e-3)
     assert found[2] == pytest.approx(0.1)

@@ -12,7 +12,7 @@ Index = np.ndarray
 
 
 @dataclass(frozen=True)
-class Case:
+class KernelCase:
     """Segments of one model; corrections one value an input."""
 
     model: Model

@@ -9,7 +9,7 @@ from scipy.linalg import expm
 
 from seatrial.core.equations import Model
 from seatrial.physics.simulate.batch import InputCorrection
-from seatrial.physics.simulate.filtering import Filter, Noisy
+from seatrial.physics.simulate.filtering import FilterPoint, KalmanFilter
 
 Array = NDArray[np.float64]
 K, C, B = 1.5, 0.3, 0.8
@@ -54,15 +54,15 @@ def measured() -> Array:
     return made
 
 
-def filter_of(model: Model, outputs: tuple[str, ...] = OUTPUTS) -> Filter:
+def filter_of(model: Model, outputs: tuple[str, ...] = OUTPUTS) -> KalmanFilter:
     inputs = np.full((ROWS, 1), 0.7)
     corrections = tuple(InputCorrection("delta", kind) for kind in ("zero", "gain", "delay"))
-    return Filter(model, inputs, np.array([0, ROWS]), DT, outputs, ("k", "c"), corrections, driven=("x0", "v"))
+    return KalmanFilter(model, inputs, np.array([0, ROWS]), DT, outputs, ("k", "c"), corrections, driven=("x0", "v"))
 
 
-def point(model: Model, **changes: float) -> Noisy:
+def point(model: Model, **changes: float) -> FilterPoint:
     values = model.with_values(changes).parameters.values
-    return Noisy(START[None], VARIANCE[None], values[None], np.array([[0.0, 1.0, 0.0]]), INTENSITY, DEVIATION)
+    return FilterPoint(START[None], VARIANCE[None], values[None], np.array([[0.0, 1.0, 0.0]]), INTENSITY, DEVIATION)
 
 
 def test_innovations_are_those_of_matrices(oscillator: Model, measured: Array) -> None:
@@ -131,7 +131,13 @@ def test_variances_grow_as_those_of_matrices(oscillator: Model) -> None:
 
 
 def test_a_run_that_leaves_all_bounds_is_told(explosive: Model) -> None:
-    run = Filter(explosive, np.zeros((100, 1)), np.array([0, 100]), 0.1, ("u",))
-    at = Noisy(np.array([[5.0]]), np.zeros((1, 1)), explosive.parameters.values[None], np.zeros((1, 0)), np.zeros(0),
-               np.ones(1))  # fmt: skip
+    run = KalmanFilter(explosive, np.zeros((100, 1)), np.array([0, 100]), 0.1, ("u",))
+    at = FilterPoint(
+        np.array([[5.0]]),
+        np.zeros((1, 1)),
+        explosive.parameters.values[None],
+        np.zeros((1, 0)),
+        np.zeros(0),
+        np.ones(1),
+    )
     assert run.innovations(0, np.full((100, 1), np.nan), at)[2]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numba import njit
 from scipy.linalg import expm
-from tests.numerics.kernels.case import Case
+from tests.numerics.kernels.case import KernelCase
 
 from seatrial.core.equations import Model
 from seatrial.numerics.kernels.steering import steer
@@ -21,11 +21,11 @@ def exact(start: np.ndarray, u: np.ndarray, time: np.ndarray) -> np.ndarray:
     return np.array([(expm(a * t) @ begin)[:2] for t in time])
 
 
-def ramp(model: Model, steps: int, substeps: int = 1) -> tuple[Case, np.ndarray]:
+def ramp(model: Model, steps: int, substeps: int = 1) -> tuple[KernelCase, np.ndarray]:
     time = np.linspace(0.0, 8.0, steps + 1)
     inputs = np.ascontiguousarray((0.2 + 0.1 * time)[:, None])
     start = np.array([[0.4, -0.2]])
-    case = Case(model, inputs, (0, steps + 1), 8.0 / steps, start, model.parameters.values[None], substeps)
+    case = KernelCase(model, inputs, (0, steps + 1), 8.0 / steps, start, model.parameters.values[None], substeps)
     return case, exact(start[0], inputs[:, 0], time)
 
 
@@ -53,10 +53,10 @@ def test_segments_do_not_touch_one_another(nonlinear: Model, rng: np.random.Gene
     inputs, start = rng.uniform(0.2, 0.8, (50, 2)), rng.normal(size=(3, 2))
     p = nonlinear.parameters.values * rng.uniform(0.9, 1.1, (3, 3))
     cuts = (0, 10, 35, 50)
-    together = Case(nonlinear, inputs, cuts, 0.1, start, p).run()[0]
+    together = KernelCase(nonlinear, inputs, cuts, 0.1, start, p).run()[0]
     for i in range(3):
         part = np.ascontiguousarray(inputs[cuts[i] : cuts[i + 1]])
-        alone = Case(nonlinear, part, (0, len(part)), 0.1, start[i : i + 1], p[i : i + 1]).run()[0]
+        alone = KernelCase(nonlinear, part, (0, len(part)), 0.1, start[i : i + 1], p[i : i + 1]).run()[0]
         np.testing.assert_array_equal(together[cuts[i] : cuts[i + 1]], alone)
 
 
@@ -64,17 +64,17 @@ def test_corrections_act_on_the_input(oscillator: Model) -> None:
     """Gain and offset scale and shift it; a delay of whole samples shifts the record, clamped to its first value."""
     case, _ = ramp(oscillator, 80)
     shifted = np.concatenate([np.repeat(case.inputs[:1], 3, axis=0), case.inputs[:-3]])
-    corrected = Case(
+    corrected = KernelCase(
         oscillator, case.inputs, case.offsets, case.dt, case.start, case.p, 1, (1.3,), (-0.05,), (3 * case.dt,)
     )
-    by_hand = Case(oscillator, 1.3 * shifted - 0.05, case.offsets, case.dt, case.start, case.p)
+    by_hand = KernelCase(oscillator, 1.3 * shifted - 0.05, case.offsets, case.dt, case.start, case.p)
     np.testing.assert_allclose(corrected.run()[0], by_hand.run()[0], rtol=1e-12, atol=1e-12)
 
 
 def test_divergence_is_flagged_with_its_sample_and_nan_fills_the_rest(explosive: Model) -> None:
     inputs = np.zeros((80, 1))
     start = np.array([[0.1], [1.0]])
-    y, failed = Case(explosive, inputs, (0, 40, 80), 0.1, start, np.ones((2, 1))).run()
+    y, failed = KernelCase(explosive, inputs, (0, 40, 80), 0.1, start, np.ones((2, 1))).run()
     assert failed[0] == -1
     assert np.isfinite(y[:40]).all()
     assert 10 <= failed[1] <= 14, "1 / (1 - t) leaves all bounds at t = 1"
@@ -83,7 +83,9 @@ def test_divergence_is_flagged_with_its_sample_and_nan_fills_the_rest(explosive:
 
 
 def test_a_segment_of_one_sample_is_its_start(oscillator: Model) -> None:
-    case = Case(oscillator, np.zeros((1, 1)), (0, 1), 0.1, np.array([[0.4, -0.2]]), oscillator.parameters.values[None])
+    case = KernelCase(
+        oscillator, np.zeros((1, 1)), (0, 1), 0.1, np.array([[0.4, -0.2]]), oscillator.parameters.values[None]
+    )
     y, failed = case.run()
     np.testing.assert_allclose(y[0, :2], [0.4, -0.2])
     assert failed[0] == -1
@@ -123,7 +125,7 @@ def test_a_diverging_loop_says_when(explosive: Model) -> None:
 def test_both_ways_agree_on_a_constant_input(nonlinear: Model, which: str) -> None:
     inputs = np.tile([0.3, 0.9], (30, 1))
     start, p = np.array([[0.2, 0.1]]), nonlinear.parameters.values[None]
-    y = Case(nonlinear, inputs, (0, 30), 0.1, start, p).run()[0][:, :2]
+    y = KernelCase(nonlinear, inputs, (0, 30), 0.1, start, p).run()[0][:, :2]
     x_out, u_out = np.empty((30, 2)), np.empty((30, 2))
     steer(nonlinear.compiled.rates, _idle, start[0], inputs[0].copy(), p[0], np.zeros(1), 0.1, x_out, u_out)
     np.testing.assert_allclose({"replay": y, "steer": x_out}[which], y, rtol=1e-13)

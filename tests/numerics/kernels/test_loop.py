@@ -5,7 +5,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from seatrial.numerics.kernels.loop import evaluate_loops, is_hurwitz, slopes_of_loop
+from seatrial.numerics.kernels.loop import evaluate_loops, is_hurwitz, variance_gradients
 
 EMPTY = np.empty((2, 0))
 scale = st.sampled_from([-3.0, -1e-3, 1.0, 50.0])
@@ -97,7 +97,7 @@ def test_the_peak_of_a_parabola_is_exact_and_of_no_loop_one() -> None:
 def test_slopes_equal_the_complex_step(rng: np.random.Generator) -> None:
     re, im, on_s, on_t = drawn(rng)
     k, out, h = np.array([0.3, -0.2]), np.empty((3, 2)), 1e-30
-    slopes_of_loop(k, re, im, on_s, on_t, out)
+    variance_gradients(k, re, im, on_s, on_t, out)
     for i in range(2):
         moved = k + 1j * h * np.eye(2)[i]
         x, y = 1.0 + moved @ re, moved @ im

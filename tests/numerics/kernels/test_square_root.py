@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatrial.numerics.kernels.square_root import across, forget, narrow, take
+from seatrial.numerics.kernels.square_root import forget, project_root, update_sample, update_scalar
 
 Array = np.ndarray
 N = 5
@@ -17,7 +17,7 @@ def root(rng: np.random.Generator) -> Array:
 def test_a_measurement_adds_its_information(root: Array, rng: np.random.Generator) -> None:
     z, h, v, e = rng.standard_normal(N), rng.standard_normal(N), np.empty(N), 0.7
     before, P = z.copy(), root @ root.T
-    narrow(root, z, v, across(root, h, v), 0.3, e)
+    update_scalar(root, z, v, project_root(root, h, v), 0.3, e)
     after = np.linalg.inv(np.linalg.inv(P) + np.outer(h, h) / 0.3)
     np.testing.assert_allclose(root @ root.T, after, rtol=1e-9)
     np.testing.assert_allclose(z - before, after @ h * e / 0.3, rtol=1e-9)
@@ -26,7 +26,7 @@ def test_a_measurement_adds_its_information(root: Array, rng: np.random.Generato
 def test_no_variance_at_all_does_no_harm(root: Array) -> None:
     root[2] = 0.0
     h, v, z = np.eye(N)[2], np.empty(N), np.zeros(N)
-    narrow(root, z, v, across(root, h, v), 1e-300, 1.0)
+    update_scalar(root, z, v, project_root(root, h, v), 1e-300, 1.0)
     assert np.all(np.isfinite(root))
     assert not np.any(root[2])
     assert not np.any(z)
@@ -50,7 +50,7 @@ def test_forgetting_ends_at_the_wide_belief() -> None:
 def taken(root: Array, measured: Array, limit: float = 6.0) -> tuple[Array, Array, Array]:
     """z, running and tally after one sample of two channels predicted as 0, variances 1."""
     z, h, running, tally = np.zeros(N), np.eye(2, N), np.zeros((2, 2)), np.zeros((2, 2), dtype=np.int64)
-    take(root, z, z.copy(), h, np.zeros(2), measured, np.ones(2), limit, 100.0, running, tally, np.empty(N))
+    update_sample(root, z, z.copy(), h, np.zeros(2), measured, np.ones(2), limit, 100.0, running, tally, np.empty(N))
     return z, running, tally
 
 

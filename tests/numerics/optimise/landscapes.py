@@ -14,22 +14,22 @@ from seatrial.numerics.optimise import (
     CovarianceAdaptation,
     DifferentialEvolution,
     EvolutionSettings,
+    FitnessMemory,
     HerdSettings,
     ImprovedHerdSettings,
     ImprovedWildHorse,
-    Memory,
     Optimiser,
     ParticleSwarm,
+    StrideVariant,
     SwarmSettings,
-    Variant,
     WildHorse,
 )
 
 Array = NDArray[np.float64]
-Make = Callable[[Box, np.random.Generator, int, int, Memory], Optimiser]
-REFERENCE = Variant.REFERENCE
+OptimiserFactory = Callable[[Box, np.random.Generator, int, int, FitnessMemory], Optimiser]
+REFERENCE = StrideVariant.REFERENCE
 
-KINDS: dict[str, Make] = {
+KINDS: dict[str, OptimiserFactory] = {
     "pso": lambda b, g, n, t, m: ParticleSwarm(b, g, SwarmSettings(n, t, memory=m)),
     "who paper": lambda b, g, n, t, m: WildHorse(b, g, HerdSettings(n, t, memory=m)),
     "who reference": lambda b, g, n, t, m: WildHorse(b, g, HerdSettings(n, t, variant=REFERENCE, memory=m)),
@@ -38,12 +38,12 @@ KINDS: dict[str, Make] = {
     "de": lambda b, g, n, t, m: DifferentialEvolution(b, g, EvolutionSettings(n, t, memory=m)),
     "cma": lambda b, g, n, t, m: CovarianceAdaptation(b, g, AdaptationSettings(n, t)),  # noqa: ARG005
 }
-REMEMBERING = [kind for kind in KINDS if kind != "cma"]
+WITH_MEMORY = [kind for kind in KINDS if kind != "cma"]
 
 
-def made(kind: str, box: Box, seed: int, population: int = 40, iterations: int = 200) -> Optimiser:
+def make_optimiser(kind: str, box: Box, seed: int, population: int = 40, iterations: int = 200) -> Optimiser:
     """An optimiser of a kind with its own seed."""
-    return KINDS[kind](box, np.random.default_rng(seed), population, iterations, Memory.KEEP)
+    return KINDS[kind](box, np.random.default_rng(seed), population, iterations, FitnessMemory.KEEP)
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import pytest
 from cmaes import CMA
 from scipy.optimize import differential_evolution
 from scipy.stats import mannwhitneyu
-from tests.numerics.optimise.landscapes import BOX, LEAST, SQUARE, Array, Landscape, made, rosenbrock, sphere
+from tests.numerics.optimise.landscapes import BOX, LEAST, SQUARE, Array, Landscape, make_optimiser, rosenbrock, sphere
 
 from seatrial.numerics.optimise import AdaptationSettings, Box, CovarianceAdaptation, SearchError, Status, search
 
@@ -27,12 +27,12 @@ def _scipys(landscape: Landscape, weight: float) -> list[float]:
 @pytest.mark.parametrize("function", [sphere, rosenbrock])
 def test_differential_evolution_reaches_what_scipys_does(function: Callable[[Array], Array]) -> None:
     landscape = Landscape(function, LEAST)
-    ours = [search(made("de", BOX, seed, iterations=80), landscape).value for seed in range(12)]
+    ours = [search(make_optimiser("de", BOX, seed, iterations=80), landscape).value for seed in range(12)]
     assert mannwhitneyu(ours, _scipys(landscape, 0.5)).pvalue > 0.05
 
 
 def test_the_comparison_sees_another_weight() -> None:
-    ours = [search(made("de", BOX, seed, iterations=80), SQUARE).value for seed in range(12)]
+    ours = [search(make_optimiser("de", BOX, seed, iterations=80), SQUARE).value for seed in range(12)]
     assert mannwhitneyu(ours, _scipys(SQUARE, 0.7)).pvalue < 0.001
 
 
@@ -60,7 +60,7 @@ def test_covariance_adaptation_stops_by_itself_where_nothing_is_left_to_gain() -
 def test_a_single_unknown_is_searched_too() -> None:
     box = Box(np.array([-1.0]), np.array([4.0]))
     for kind in ("pso", "who paper", "iwho", "icpso", "de", "cma"):
-        found = search(made(kind, box, 1), lambda x: (x[:, 0] - 0.7) ** 2)
+        found = search(make_optimiser(kind, box, 1), lambda x: (x[:, 0] - 0.7) ** 2)
         assert found.point[0] == pytest.approx(0.7, abs=1e-2), kind
 
 

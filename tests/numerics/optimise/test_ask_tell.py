@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.numerics.optimise.landscapes import BOX, KINDS, REMEMBERING, SQUARE, Array, made
+from tests.numerics.optimise.landscapes import BOX, KINDS, SQUARE, WITH_MEMORY, Array, make_optimiser
 
 from seatrial.numerics.optimise import (
     AdaptationSettings,
     Box,
     CloudSettings,
     EvolutionSettings,
+    FitnessMemory,
     HerdSettings,
     ImprovedHerdSettings,
-    Memory,
     SearchError,
     Status,
     SwarmSettings,
@@ -27,7 +27,7 @@ EVERY = pytest.mark.parametrize("kind", KINDS)
 
 @EVERY
 def test_asked_again_it_gives_the_same_points_whatever_was_done_to_them(kind: str) -> None:
-    optimiser = made(kind, BOX, 1)
+    optimiser = make_optimiser(kind, BOX, 1)
     for _ in range(3):
         points = optimiser.ask()
         kept = points.copy()
@@ -40,7 +40,7 @@ def test_asked_again_it_gives_the_same_points_whatever_was_done_to_them(kind: st
 
 @EVERY
 def test_same_seed_same_bits_another_seed_others(kind: str) -> None:
-    first, again, other = (search(made(kind, BOX, seed, iterations=30), SQUARE) for seed in (5, 5, 6))
+    first, again, other = (search(make_optimiser(kind, BOX, seed, iterations=30), SQUARE) for seed in (5, 5, 6))
     assert first.point.tobytes() == again.point.tobytes()
     assert first.history == again.history
     assert first.history != other.history
@@ -50,7 +50,7 @@ def test_same_seed_same_bits_another_seed_others(kind: str) -> None:
 @EVERY
 def test_a_callers_array_may_be_used_again(kind: str) -> None:
     """Kernels write every population's fitness into one array."""
-    kept, reused = made(kind, BOX, 5, iterations=20), made(kind, BOX, 5, iterations=20)
+    kept, reused = make_optimiser(kind, BOX, 5, iterations=20), make_optimiser(kind, BOX, 5, iterations=20)
     buffer = np.empty(40)
     while not kept.done:
         kept.tell(SQUARE(kept.ask()))
@@ -63,7 +63,7 @@ def test_a_callers_array_may_be_used_again(kind: str) -> None:
 
 @EVERY
 def test_the_record_tells_the_best_so_far(kind: str) -> None:
-    optimiser = made(kind, BOX, 2, iterations=25)
+    optimiser = make_optimiser(kind, BOX, 2, iterations=25)
     seen: list[float] = []
     assert optimiser.best[1] == np.inf
     while not optimiser.done:
@@ -85,7 +85,9 @@ def test_a_search_counts_what_it_evaluates_and_reports_its_progress(kind: str) -
         rows.append(len(points))
         return SQUARE(points)
 
-    solution = search(made(kind, BOX, 3, iterations=10), fitness, lambda count, value: heard.append((count, value)))
+    solution = search(
+        make_optimiser(kind, BOX, 3, iterations=10), fitness, lambda count, value: heard.append((count, value))
+    )
     assert solution.evaluations == sum(rows) == heard[-1][0] == 400
     assert solution.value == heard[-1][1]
     assert solution.status is Status.EXHAUSTED
@@ -96,7 +98,7 @@ def test_a_search_counts_what_it_evaluates_and_reports_its_progress(kind: str) -
 @settings(max_examples=15, deadline=None)
 def test_the_box_is_never_left(kind: str, seed: int, centre: float, width: float, size: int) -> None:
     box = Box(np.full(size, centre), np.full(size, centre) + width * np.arange(1, size + 1))
-    optimiser = made(kind, box, seed, population=14, iterations=8)
+    optimiser = make_optimiser(kind, box, seed, population=14, iterations=8)
     noise = np.random.default_rng(seed)
     while not optimiser.done:
         points = optimiser.ask()
@@ -109,19 +111,19 @@ def test_points_that_cannot_be_evaluated_are_avoided(kind: str) -> None:
     def fitness(points: Array) -> Array:
         return np.where(points[:, 0] > 2.5, np.inf, SQUARE(points))
 
-    assert search(made(kind, BOX, 4), fitness).value < 0.05
+    assert search(make_optimiser(kind, BOX, 4), fitness).value < 0.05
 
 
 @EVERY
 def test_where_nothing_can_be_evaluated_the_search_failed(kind: str) -> None:
-    solution = search(made(kind, BOX, 4, iterations=6), lambda points: np.full(len(points), np.inf))
+    solution = search(make_optimiser(kind, BOX, 4, iterations=6), lambda points: np.full(len(points), np.inf))
     assert solution.status is Status.FAILED
 
 
 @EVERY
 @pytest.mark.parametrize("value", [np.nan, -np.inf])
 def test_a_fitness_without_order_names_its_row(kind: str, value: float) -> None:
-    optimiser = made(kind, BOX, 1)
+    optimiser = make_optimiser(kind, BOX, 1)
     optimiser.tell(SQUARE(optimiser.ask()))
     told = SQUARE(optimiser.ask())
     told[7] = value
@@ -131,7 +133,7 @@ def test_a_fitness_without_order_names_its_row(kind: str, value: float) -> None:
 
 @EVERY
 def test_telling_out_of_turn_or_another_shape_is_refused(kind: str) -> None:
-    optimiser = made(kind, BOX, 1)
+    optimiser = make_optimiser(kind, BOX, 1)
     with pytest.raises(SearchError, match="before anything was asked"):
         optimiser.tell(np.zeros(40))
     optimiser.ask()
@@ -143,7 +145,7 @@ def test_telling_out_of_turn_or_another_shape_is_refused(kind: str) -> None:
 @pytest.mark.parametrize(("population", "iterations", "says"), [(1, 5, "needs"), (40, 0, "at least 1 iteration")])
 def test_too_small_a_search_is_refused(kind: str, population: int, iterations: int, says: str) -> None:
     with pytest.raises(SearchError, match=says):
-        made(kind, BOX, 1, population, iterations)
+        make_optimiser(kind, BOX, 1, population, iterations)
 
 
 @pytest.mark.parametrize(
@@ -164,9 +166,9 @@ def test_settings_without_a_value_are_refused(settings_made: Callable[[], object
         settings_made()
 
 
-@pytest.mark.parametrize("kind", REMEMBERING)
-@pytest.mark.parametrize("memory", Memory)
-def test_under_a_changing_fitness_only_re_evaluated_memories_are_comparable(kind: str, memory: Memory) -> None:
+@pytest.mark.parametrize("kind", WITH_MEMORY)
+@pytest.mark.parametrize("memory", FitnessMemory)
+def test_under_a_changing_fitness_only_re_evaluated_memories_are_comparable(kind: str, memory: FitnessMemory) -> None:
     """The fitness of iteration k has an offset of its own: what was remembered from another iteration is stale."""
     offsets = 10 + np.random.default_rng(9).exponential(50.0, 40)
     optimiser = KINDS[kind](BOX, np.random.default_rng(1), 40, 40, memory)
@@ -174,8 +176,8 @@ def test_under_a_changing_fitness_only_re_evaluated_memories_are_comparable(kind
         optimiser.tell(SQUARE(optimiser.ask()) + offset)
     now = SQUARE(optimiser.trace) + offsets
     fresh = np.allclose(optimiser.history, now, rtol=1e-13)
-    assert fresh is (memory is Memory.RE_EVALUATE)
-    if memory is Memory.RE_EVALUATE:
+    assert fresh is (memory is FitnessMemory.RE_EVALUATE)
+    if memory is FitnessMemory.RE_EVALUATE:
         assert SQUARE(optimiser.trace)[-1] < 0.1 * SQUARE(optimiser.trace)[0]
 
 

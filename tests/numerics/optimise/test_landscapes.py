@@ -5,7 +5,17 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from scipy.stats import mannwhitneyu
-from tests.numerics.optimise.landscapes import BOX, KINDS, LEAST, Array, Landscape, made, rastrigin, rosenbrock, sphere
+from tests.numerics.optimise.landscapes import (
+    BOX,
+    KINDS,
+    LEAST,
+    Array,
+    Landscape,
+    make_optimiser,
+    rastrigin,
+    rosenbrock,
+    sphere,
+)
 
 from seatrial.numerics.optimise import Box, search
 
@@ -17,8 +27,8 @@ SEEDS = range(5)
 @pytest.mark.parametrize("kind", KINDS)
 def test_it_finds_what_a_random_search_does_not(kind: str, function: Callable[[Array], Array], limit: float) -> None:
     landscape = Landscape(function, LEAST)
-    found = [search(made(kind, BOX, seed), landscape).value for seed in SEEDS]
-    drawn = [landscape(BOX.drawn(np.random.default_rng(seed), BUDGET)).min() for seed in SEEDS]
+    found = [search(make_optimiser(kind, BOX, seed), landscape).value for seed in SEEDS]
+    drawn = [landscape(BOX.random_points(np.random.default_rng(seed), BUDGET)).min() for seed in SEEDS]
     assert np.median(found) < limit < min(drawn)
 
 
@@ -26,7 +36,7 @@ def _ends(kind: str, lower: float, least: float) -> Array:
     """Decades of the value reached on a sphere in a box 10 wide."""
     box = Box(np.full(8, lower), np.full(8, lower + 10))
     landscape = Landscape(sphere, np.full(8, least))
-    return np.array([np.log10(search(made(kind, box, seed), landscape).value + 1e-300) for seed in SEEDS])
+    return np.array([np.log10(search(make_optimiser(kind, box, seed), landscape).value + 1e-300) for seed in SEEDS])
 
 
 @pytest.mark.parametrize("kind", KINDS)

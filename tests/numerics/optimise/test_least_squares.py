@@ -8,7 +8,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
-from seatrial.numerics.optimise import Normal, Optimum, Status, levenberg_marquardt
+from seatrial.numerics.optimise import NormalEquations, Optimum, Status, levenberg_marquardt
 
 Array = NDArray[np.float64]
 NONE = np.zeros((0, 0))
@@ -29,12 +29,12 @@ class Curve:
             e = self.residuals(shared)
         return 0.5 * float(e @ e) if np.all(np.isfinite(e)) else np.inf
 
-    def normal(self, shared: Array, local: Array) -> Normal:
+    def normal(self, shared: Array, local: Array) -> NormalEquations:
         assert local.size == 0
         with np.errstate(all="ignore"):
             e, j = self.residuals(shared), self.jacobian(shared)
         empty = np.zeros((0, len(shared), 0))
-        return Normal(0.5 * float(e @ e), j.T @ e, j.T @ j, np.zeros((0, 0)), np.zeros((0, 0, 0)), empty)
+        return NormalEquations(0.5 * float(e @ e), j.T @ e, j.T @ j, np.zeros((0, 0)), np.zeros((0, 0, 0)), empty)
 
 
 def solved(problem: Curve, start: list[float], evaluations: int = 200) -> Optimum:
@@ -99,7 +99,7 @@ def test_standard_errors_from_the_normal_equations() -> None:
     """Certified standard deviations of Misra1a's estimates."""
     found = solved(MISRA, [250.0, 5e-4])
     variance = 2 * found.solution.value / (len(MISRA_X) - 2)
-    errors = np.sqrt(np.diag(np.linalg.inv(found.normal.reduced()[1])) * variance)
+    errors = np.sqrt(np.diag(np.linalg.inv(found.normal.without_local()[1])) * variance)
     np.testing.assert_allclose(errors, [2.7070075241e00, 7.2668688436e-06], rtol=1e-6)
 
 
@@ -158,10 +158,10 @@ class Separate:
     def cost(self, shared: Array, local: Array) -> float:
         return 0.5 * float(np.sum(self._parts(shared, local)[0] ** 2))
 
-    def normal(self, shared: Array, local: Array) -> Normal:
+    def normal(self, shared: Array, local: Array) -> NormalEquations:
         e, j, k = self._parts(shared, local)
         count = len(local)
-        return Normal(
+        return NormalEquations(
             0.5 * float(np.sum(e**2)), j.T @ e.sum(axis=0), count * j.T @ j, e @ k,
             np.tile(k.T @ k, (count, 1, 1)), np.tile(j.T @ k, (count, 1, 1)),
         )  # fmt: skip
@@ -188,7 +188,7 @@ def test_eliminated_blocks_equal_the_joint_problem(rng: np.random.Generator) -> 
     np.testing.assert_allclose(apart.local.ravel(), joint.solution.point[2:], rtol=1e-5, atol=1e-8)
     assert apart.solution.value == pytest.approx(joint.solution.value, rel=1e-12)
     everything = np.linalg.inv(joint.normal.hessian)[:2, :2]
-    np.testing.assert_allclose(np.linalg.inv(apart.normal.reduced()[1]), everything, rtol=1e-5)
+    np.testing.assert_allclose(np.linalg.inv(apart.normal.without_local()[1]), everything, rtol=1e-5)
 
 
 def test_reduced_gradient_is_that_of_the_profile(rng: np.random.Generator) -> None:
@@ -203,7 +203,7 @@ def test_reduced_gradient_is_that_of_the_profile(rng: np.random.Generator) -> No
     made = problem.normal(point, local)
     local = local - np.linalg.solve(made.local_hessian, made.local_gradient[:, :, None])[:, :, 0]
     differences = [(profile(point + h) - profile(point - h)) / 2e-6 for h in 1e-6 * np.eye(2)]
-    np.testing.assert_allclose(problem.normal(point, local).reduced()[0], differences, rtol=1e-6)
+    np.testing.assert_allclose(problem.normal(point, local).without_local()[0], differences, rtol=1e-6)
 
 
 def test_status_says_what_to_do() -> None:

@@ -21,10 +21,10 @@ from seatrial.numerics.optimise import (
     search,
 )
 from seatrial.numerics.optimise.random_weight_genetic import (
-    crossed,
-    cuts,
-    decoded,
-    encoded,
+    cross_over,
+    crossover_points,
+    decode,
+    encode,
     normalisers,
     roulette,
     selection_probabilities,
@@ -51,22 +51,22 @@ def _run(objectives: Callable[[Array], Array], seed: int, made: GeneticSettings 
 @pytest.mark.parametrize("bits", [2, 16, 52])
 def test_codes_run_from_bound_to_bound(bits: int) -> None:
     ends = np.array([[False] * (2 * bits), [True] * (2 * bits)])
-    assert np.array_equal(decoded(ends, BOX), [BOX.lower, BOX.upper])
-    assert np.array_equal(encoded(np.array([BOX.lower, BOX.upper]), BOX, bits), ends)
+    assert np.array_equal(decode(ends, BOX), [BOX.lower, BOX.upper])
+    assert np.array_equal(encode(np.array([BOX.lower, BOX.upper]), BOX, bits), ends)
 
 
 @given(st.integers(2, 40), st.integers(0, 2**32))
 @settings(max_examples=30, deadline=None)
 def test_the_nearest_code_is_half_a_step_away_at_most(bits: int, seed: int) -> None:
-    points = BOX.drawn(np.random.default_rng(seed), 9)
-    codes = encoded(points, BOX, bits)
-    assert np.all(np.abs(decoded(codes, BOX) - points) <= BOX.width / (2.0**bits - 1) / 2 + 1e-12)
-    assert np.array_equal(encoded(decoded(codes, BOX), BOX, bits), codes)
+    points = BOX.random_points(np.random.default_rng(seed), 9)
+    codes = encode(points, BOX, bits)
+    assert np.all(np.abs(decode(codes, BOX) - points) <= BOX.width / (2.0**bits - 1) / 2 + 1e-12)
+    assert np.array_equal(encode(decode(codes, BOX), BOX, bits), codes)
 
 
 def test_the_highest_bit_comes_first_and_each_unknown_has_its_own() -> None:
     codes = np.array([[1, 0, 0, 0, 0, 1]], dtype=bool)
-    assert np.allclose(decoded(codes, BOX), [[-1 + 4 * 4 / 7, 2 + 5 * 1 / 7]])
+    assert np.allclose(decode(codes, BOX), [[-1 + 4 * 4 / 7, 2 + 5 * 1 / 7]])
 
 
 def test_roulette_follows_linear_scaling_over_the_whole_population() -> None:
@@ -88,13 +88,13 @@ def test_roulette_ends_belong_to_rows_that_can_be_chosen() -> None:
 
 def test_children_exchange_everything_from_one_point_on() -> None:
     mothers, fathers = np.zeros((3, 6), dtype=bool), np.ones((3, 6), dtype=bool)
-    children = crossed(mothers, fathers, np.array([1, 4, 6])).astype(int)
+    children = cross_over(mothers, fathers, np.array([1, 4, 6])).astype(int)
     assert children[:3].tolist() == [[0, 1, 1, 1, 1, 1], [0, 0, 0, 0, 1, 1], [0] * 6]
     assert np.array_equal(children[3:], 1 - children[:3])
 
 
 def test_pairs_cross_with_their_probability_at_every_point_alike() -> None:
-    cut = cuts(np.random.default_rng(2), 60000, 13, 0.8)
+    cut = crossover_points(np.random.default_rng(2), 60000, 13, 0.8)
     counts = np.bincount(cut, minlength=14)
     assert counts[0] == 0
     assert chisquare(counts[1:], 60000 * np.array([*[0.8 / 12] * 12, 0.2])).pvalue > 0.01
@@ -106,7 +106,7 @@ def test_bits_flip_with_their_probability() -> None:
     genetic._codes[:] = False
     genetic.ask()
     genetic.tell(np.ones((2000, 2)))
-    flips = encoded(genetic.ask(), BOX, 16)
+    flips = encode(genetic.ask(), BOX, 16)
     assert not flips[:2].any()
     share, count = flips[2:].mean(), flips[2:].size
     assert abs(share - 0.01) < 4 * np.sqrt(0.01 / count)

@@ -11,8 +11,8 @@ def test_two_steps_by_hand() -> None:
     settings = SwarmSettings(population=12, iterations=9, omega=0.6, c1=1.2, c2=0.9, velocity_limit=0.15)
     swarm = ParticleSwarm(BOX, np.random.default_rng(4), settings)
     draw = np.random.default_rng(4)
-    x = BOX.drawn(draw, 12)
-    v = (BOX.drawn(draw, 12) - x) / 2
+    x = BOX.random_points(draw, 12)
+    v = (BOX.random_points(draw, 12) - x) / 2
     own, value = x.copy(), np.full(12, np.inf)
     for _ in range(4):
         assert np.array_equal(swarm.ask(), x)

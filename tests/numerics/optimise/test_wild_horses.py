@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.stats import mannwhitneyu
-from tests.numerics.optimise.landscapes import BOX, LEAST, Array, Landscape, made, rastrigin, sphere
+from tests.numerics.optimise.landscapes import BOX, LEAST, Array, Landscape, make_optimiser, rastrigin, sphere
 
 from seatrial.numerics.optimise import (
     Box,
@@ -14,7 +14,7 @@ from seatrial.numerics.optimise import (
     ImprovedHerdSettings,
     ImprovedWildHorse,
     SearchError,
-    Variant,
+    StrideVariant,
     WildHorse,
     search,
 )
@@ -22,7 +22,9 @@ from seatrial.numerics.optimise import (
 SMALL = Box(BOX.lower[:4], BOX.upper[:4])
 
 
-def one_after_another(landscape: Landscape, box: Box, variant: Variant, seed: int, horses: int, tmax: int) -> float:
+def one_after_another(
+    landscape: Landscape, box: Box, variant: StrideVariant, seed: int, horses: int, tmax: int
+) -> float:
     """Eqs. 15-20 in loops: foals meet mates that have moved already, groups move in turn."""
     r = np.random.default_rng(seed)
     d, groups = box.size, int(np.ceil(0.25 * horses))
@@ -33,10 +35,10 @@ def one_after_another(landscape: Landscape, box: Box, variant: Variant, seed: in
     def stride() -> Array:
         inside = r.random(d) < 1 - t / tmax
         z = np.where(inside, r.random(d), r.random())
-        turn = 4 * z - 2 if variant is Variant.REFERENCE else r.uniform(-2, 2) * z
+        turn = 4 * z - 2 if variant is StrideVariant.REFERENCE else r.uniform(-2, 2) * z
         return 2 * z * np.cos(2 * np.pi * turn)
 
-    x = box.drawn(r, horses)
+    x = box.random_points(r, horses)
     leaders = [(f(p), p) for p in x[:groups]]
     herd = [[(f(p), p) for p in x[groups + g :: groups]] for g in range(groups)]
     step = np.zeros(d)
@@ -54,7 +56,7 @@ def one_after_another(landscape: Landscape, box: Box, variant: Variant, seed: in
                         new = step * (leaders[g][1] - p) + leaders[g][1]
                     new = np.clip(new, box.lower, box.upper)
                     herd[g][i] = (f(new), new)
-                if variant is Variant.PAPER:
+                if variant is StrideVariant.PAPER:
                     step = stride()
                 side = 1 if r.random() >= 0.5 else -1
                 trial = np.clip(step * (hole - leaders[g][1]) + side * hole, box.lower, box.upper)
@@ -67,13 +69,13 @@ def one_after_another(landscape: Landscape, box: Box, variant: Variant, seed: in
     return min(leaders, key=lambda horse: horse[0])[0]
 
 
-@pytest.mark.parametrize("variant", Variant)
-def test_moving_all_groups_at_once_reaches_what_one_after_another_does(variant: Variant) -> None:
+@pytest.mark.parametrize("variant", StrideVariant)
+def test_moving_all_groups_at_once_reaches_what_one_after_another_does(variant: StrideVariant) -> None:
     landscape = Landscape(sphere, LEAST[:4])
     turns = [one_after_another(landscape, SMALL, variant, seed, 20, 40) for seed in range(25)]
     settings = HerdSettings(20, 40, variant=variant)
     ours = [search(WildHorse(SMALL, np.random.default_rng(s), settings), landscape).value for s in range(25)]
-    improved = [search(made("iwho", SMALL, s, 20, 40), landscape).value for s in range(25)]
+    improved = [search(make_optimiser("iwho", SMALL, s, 20, 40), landscape).value for s in range(25)]
     assert mannwhitneyu(turns, ours).pvalue > 0.05
     assert mannwhitneyu(turns, improved).pvalue < 0.001  # the test sees another law for leaders
 
@@ -82,17 +84,17 @@ class Shown(ImprovedWildHorse):
     """Shows its weights, strides, leaders and foals."""
 
     def weights(self) -> Array:
-        return self._weights()
+        return self._waterhole_weights()
 
     def strides(self, count: int) -> tuple[Array, Array]:
         return self._strides(count)
 
     @property
     def herd(self) -> tuple[Array, Array, NDArray[np.int_]]:
-        return self._leader_fitness, self._foal_fitness, self._group
+        return self._leader_fitness, self._foal_fitness, self._group_of_foal
 
 
-def herd(fitness: list[float], *, iterations: int = 200, variant: Variant = Variant.PAPER) -> Shown:
+def herd(fitness: list[float], *, iterations: int = 200, variant: StrideVariant = StrideVariant.PAPER) -> Shown:
     """A herd of 3 leaders after its first population (foals 0-5, then leaders)."""
     settings = ImprovedHerdSettings(len(fitness), iterations, 1 / 3, variant=variant)
     horses = Shown(BOX, np.random.default_rng(0), settings)
@@ -124,7 +126,7 @@ def test_leaders_of_the_improved_herd_by_hand() -> None:
     draw = deepcopy(horses._generator)
     laws = set()
     for _ in range(8):
-        moved = horses._led(z, stride)
+        moved = horses._leader_trials(z, stride)
         side, q = draw.random(3), draw.uniform(-1, 1, (2, 3))
         for i in range(3):
             laws.add(bool(side[i] >= 0.5))
@@ -150,7 +152,7 @@ def test_strides_lose_their_independent_components_as_time_goes() -> None:
 
 
 def test_strides_of_the_reference_follow_from_z() -> None:
-    z, stride = herd([1.0] * 9, variant=Variant.REFERENCE).strides(50)
+    z, stride = herd([1.0] * 9, variant=StrideVariant.REFERENCE).strides(50)
     assert np.allclose(stride, 2 * z * np.cos(8 * np.pi * z), atol=1e-12)
 
 
@@ -161,7 +163,7 @@ def test_scattering_draws_one_horse_in_twenty_from_the_whole_box() -> None:
     for _ in range(2):
         asked = horses.ask()
         horses.tell(np.sum((asked - point) ** 2, axis=1))
-    far = [np.mean(np.any(horses._scattered(np.tile(point, (4000, 1))) != point, axis=1)) for _ in range(5)]
+    far = [np.mean(np.any(horses._scatter(np.tile(point, (4000, 1))) != point, axis=1)) for _ in range(5)]
     assert np.mean(far) == pytest.approx(0.05, abs=0.006)
 
 
@@ -176,10 +178,10 @@ def test_a_foal_mates_with_two_other_groups() -> None:
     horses.ask()
     horses.tell(Landscape(rastrigin, LEAST)(horses.ask()))
     worst = {}
-    for i, g in enumerate(horses._group):
+    for i, g in enumerate(horses._group_of_foal):
         if g not in worst or horses._foal_fitness[i] > horses._foal_fitness[worst[g]]:
             worst[g] = i
-    for foal, g in zip(horses.ask(), horses._group, strict=False):
+    for foal, g in zip(horses.ask(), horses._group_of_foal, strict=False):
         others = [horses._foals[worst[k]] for k in worst if k != g]
         pairs = [(a + b) / 2 for n, a in enumerate(others) for b in others[:n]]
         assert any(np.allclose(foal, pair, rtol=1e-13) for pair in pairs)

@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from seatrial.numerics.workers import mapped, mapped_in_processes, worker_count
+from seatrial.numerics.workers import map_in_processes, map_in_threads, worker_count
 
 
 def slow_square(x: float) -> float:
@@ -16,16 +16,16 @@ def slow_square(x: float) -> float:
 
 @pytest.mark.parametrize("workers", [1, 2, 5, None])
 def test_results_come_in_the_order_of_the_items(workers: int | None) -> None:
-    assert mapped(slow_square, range(20), workers=workers) == [x * x for x in range(20)]
+    assert map_in_threads(slow_square, range(20), workers=workers) == [x * x for x in range(20)]
 
 
 def test_processes_give_the_same() -> None:
-    assert mapped_in_processes(math.factorial, [5, 3, 8], workers=2) == [120, 6, 40320]
+    assert map_in_processes(math.factorial, [5, 3, 8], workers=2) == [120, 6, 40320]
 
 
 def test_no_items_give_no_results() -> None:
-    assert mapped(slow_square, []) == []
-    assert mapped_in_processes(slow_square, []) == []
+    assert map_in_threads(slow_square, []) == []
+    assert map_in_processes(slow_square, []) == []
 
 
 @pytest.mark.parametrize("workers", [1, 3])
@@ -35,7 +35,7 @@ def test_progress_counts_every_item_in_the_callers_thread(workers: int) -> None:
     def progress(done: int, total: int) -> None:
         seen.append((done, total, threading.current_thread().name))
 
-    mapped(slow_square, range(6), workers=workers, progress=progress)
+    map_in_threads(slow_square, range(6), workers=workers, report_progress=progress)
     assert [s[:2] for s in seen] == [(i, 6) for i in range(1, 7)]
     assert {s[2] for s in seen} == {threading.current_thread().name}
 
@@ -46,7 +46,7 @@ def test_an_error_is_raised_as_it_is(workers: int) -> None:
         return 1 / x
 
     with pytest.raises(ZeroDivisionError):
-        mapped(reciprocal, [1, 2, 0, 4], workers=workers)
+        map_in_threads(reciprocal, [1, 2, 0, 4], workers=workers)
 
 
 @pytest.mark.parametrize("workers", [1, 2])
@@ -63,7 +63,7 @@ def test_an_interrupt_returns_promptly_and_keeps_what_was_finished(workers: int)
 
     began = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
-        mapped(work, range(1000), workers=workers, progress=interrupt, keep=keep)
+        map_in_threads(work, range(1000), workers=workers, report_progress=interrupt, partial_results=keep)
     assert time.monotonic() - began < 2.0
     assert len(keep) >= 3
     assert all(result == 2 * place for place, result in keep)

@@ -62,7 +62,7 @@ def test_rows_are_forces_and_heave_comes_first() -> None:
     np.testing.assert_allclose(data.added_mass[:, 0, 0], OMEGA)
     assert data.added_mass[0, 0, 1] == 100.0 and data.added_mass[0, 1, 0] == 200.0
     np.testing.assert_allclose(data.stiffness, [[1.0, -X], [-X, X**2]])
-    assert data.infinite is None and data.depth == np.inf
+    assert data.added_mass_infinite is None and data.depth == np.inf
 
 
 def test_the_order_of_dimensions_and_rows_is_no_matter() -> None:
@@ -76,7 +76,7 @@ def test_infinite_frequency_is_set_apart() -> None:
     waves = ["Froude_Krylov_force", "diffraction_force"]
     ends[waves] = ends[waves] * np.nan
     data = hull_data(xr.concat([_dataset(), ends], dim="omega", data_vars="minimal"))
-    assert data.infinite is not None and data.infinite[0, 0] == OMEGA[-1]
+    assert data.added_mass_infinite is not None and data.added_mass_infinite[0, 0] == OMEGA[-1]
     np.testing.assert_array_equal(data.omega, OMEGA)
 
 

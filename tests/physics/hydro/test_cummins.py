@@ -5,8 +5,8 @@ import pytest
 
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.capytaine_data import HullData
-from seatrial.physics.hydro.cummins import Memory, memory_of, simulate_memory
-from seatrial.physics.hydro.strip_theory import at_speed
+from seatrial.physics.hydro.cummins import RetardationFunctions, retardation_functions, simulate_cummins
+from seatrial.physics.hydro.strip_theory import coefficients_at_speed
 from seatrial.physics.hydro.tabulated import WaveTable
 
 DECAY, TURN = 0.5, 1.2
@@ -15,11 +15,13 @@ A_INF = np.array([[6.0e5, 1.0e6], [1.0e6, 7.3e7]])
 MASS, C = np.diag([4.42e5, 9.945e7]), np.array([[3.15e6, 6.83e6], [6.83e6, 6.54e8]])
 
 
-def _known(dt: float, length: float) -> Memory:
+def _known(dt: float, length: float) -> RetardationFunctions:
     """K = k0 exp(-a t) (cos b t - a / b sin b t), whose integral exp(-a t) sin(b t) / b dies out."""
     t = dt * np.arange(round(length / dt) + 1)
     shape = np.exp(-DECAY * t) * (np.cos(TURN * t) - DECAY / TURN * np.sin(TURN * t))
-    return Memory(dt, shape[:, None, None] * K0, K0[0, 0] * np.exp(-DECAY * t) * np.sin(TURN * t) / TURN, A_INF)
+    return RetardationFunctions(
+        dt, shape[:, None, None] * K0, K0[0, 0] * np.exp(-DECAY * t) * np.sin(TURN * t) / TURN, A_INF
+    )
 
 
 def _transform(omega: Array) -> tuple[Array, Array]:
@@ -40,8 +42,8 @@ def _response_error(dt: float, U: float, omega_e: float) -> float:
     amplitude = np.array([1e5 + 2e4j, -3e6 + 1e6j])
     t = dt * np.arange(round(120.0 / dt))
     wave = np.exp(1j * omega_e * t)
-    states = simulate_memory(_known(dt, 25.0), MASS, C, U, np.real(wave[:, None] * amplitude))
-    added, damping = at_speed(*_transform(np.array([omega_e])), np.array([omega_e]), U)
+    states = simulate_cummins(_known(dt, 25.0), MASS, C, U, np.real(wave[:, None] * amplitude))
+    added, damping = coefficients_at_speed(*_transform(np.array([omega_e])), np.array([omega_e]), U)
     plant = C - omega_e**2 * (MASS + added[0]) + 1j * omega_e * damping[0]
     expected = np.linalg.solve(plant, amplitude)
     end = round(40.0 / dt)
@@ -63,14 +65,14 @@ def test_velocities_belong_to_the_positions() -> None:
     dt = 0.02
     t = dt * np.arange(2000)
     forces = np.column_stack([1e5 * np.sin(0.9 * t) ** 3, 2e6 * np.sin(1.3 * t) ** 3])
-    states = simulate_memory(_known(dt, 20.0), MASS, C, 6.0, forces)
+    states = simulate_cummins(_known(dt, 20.0), MASS, C, 6.0, forces)
     for position, velocity in ((0, 1), (2, 3)):
         slope = np.gradient(states[:, position], dt)[2:-2]
         assert np.max(np.abs(slope - states[2:-2, velocity])) < 1e-3 * np.max(np.abs(slope))
 
 
 def test_retardation_from_the_damping() -> None:
-    memory, known = memory_of(_hull(np.linspace(0.1, 6.0, 60)), 0.05, 25.0), _known(0.05, 25.0)
+    memory, known = retardation_functions(_hull(np.linspace(0.1, 6.0, 60)), 0.05, 25.0), _known(0.05, 25.0)
     later = slice(4, None)
     assert np.max(np.abs(memory.K[later] - known.K[later])) < 0.01 * K0.max()
     assert np.max(np.abs(memory.J - known.J)) < 0.01 * np.abs(known.J).max()
@@ -88,13 +90,13 @@ def test_memory_and_coefficients_are_one_another() -> None:
 
 def test_what_cannot_be_computed_is_refused() -> None:
     with pytest.raises(InputError, match="damping of heave is still"):
-        memory_of(_hull(np.linspace(0.1, 1.4, 20)), 0.05, 20.0)
+        retardation_functions(_hull(np.linspace(0.1, 1.4, 20)), 0.05, 20.0)
     with pytest.raises(InputError, match="time step"):
-        memory_of(_hull(np.linspace(0.1, 6.0, 20)), 0.0, 20.0)
+        retardation_functions(_hull(np.linspace(0.1, 6.0, 20)), 0.0, 20.0)
     memory, forces = _known(0.05, 20.0), np.zeros((100, 2))
     with pytest.raises(InputError, match="finite"):
-        simulate_memory(memory, MASS, C, 0.0, np.full((100, 2), np.nan))
+        simulate_cummins(memory, MASS, C, 0.0, np.full((100, 2), np.nan))
     with pytest.raises(InputError, match="speed"):
-        simulate_memory(memory, MASS, C, -1.0, forces)
+        simulate_cummins(memory, MASS, C, -1.0, forces)
     with pytest.raises(InputError, match="too long"):
-        simulate_memory(_known(0.5, 20.0), MASS, C, 0.0, forces)
+        simulate_cummins(_known(0.5, 20.0), MASS, C, 0.0, forces)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError
-from seatrial.physics.hydro.mesh import Panels, capytaine_dataset, from_sections, wigley
+from seatrial.physics.hydro.mesh import HullPanels, capytaine_dataset, hull_from_sections, wigley
 
 
-def _volume(hull: Panels) -> float:
+def _volume(hull: HullPanels) -> float:
     """Enclosed volume by the divergence theorem with (0, y, 0), from two triangles a panel; positive if facing out."""
     corners = hull.vertices[hull.faces]
     total = 0.0
@@ -46,7 +46,7 @@ def test_hulls_out_of_sense(L: float, B: float, T: float, along: int, words: str
 
 def test_a_half_breadth_out_of_sense() -> None:
     with pytest.raises(InputError, match="half breadth"):
-        from_sections(60.0, 2.0, lambda x, z: x + 0 * z, 8, 4)
+        hull_from_sections(60.0, 2.0, lambda x, z: x + 0 * z, 8, 4)
 
 
 def test_without_the_panel_code_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

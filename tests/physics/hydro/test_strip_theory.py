@@ -9,7 +9,7 @@ from hypothesis.extra.numpy import arrays
 from seatrial.core.values import InputError
 from seatrial.physics.hydro.dispersion import G
 from seatrial.physics.hydro.excitation import encounter_frequency
-from seatrial.physics.hydro.strip_theory import at_rest, at_speed, excitation_at_speed
+from seatrial.physics.hydro.strip_theory import coefficients_at_rest, coefficients_at_speed, excitation_at_speed
 
 N = 5
 OMEGA_E = np.array([-1.1, 0.3, 0.8, 1.7, 2.6])
@@ -29,17 +29,17 @@ PUBLISHED_B = np.array(
 def test_the_terms_are_antisymmetric(A: np.ndarray, B: np.ndarray, U: float) -> None:
     """Coefficients symmetric at rest: what the speed adds to 35 it takes from 53, and heave keeps its own."""
     A, B = A + A.transpose(0, 2, 1), B + B.transpose(0, 2, 1)
-    for rest, moving in zip((A, B), at_speed(A, B, OMEGA_E, U), strict=True):
+    for rest, moving in zip((A, B), coefficients_at_speed(A, B, OMEGA_E, U), strict=True):
         added = moving - rest
         np.testing.assert_allclose(added[:, 0, 1], -added[:, 1, 0], rtol=1e-9, atol=1e-10)
         assert np.all(added[:, 0, 0] == 0.0)
-    speedy = at_speed(A, B, OMEGA_E, U)[1]
+    speedy = coefficients_at_speed(A, B, OMEGA_E, U)[1]
     np.testing.assert_allclose(speedy[:, 0, 1] - speedy[:, 1, 0], 2 * U * A[:, 0, 0], rtol=1e-9, atol=1e-9)
 
 
 @given(matrices, matrices, speeds)
 def test_there_and_back(A: np.ndarray, B: np.ndarray, U: float) -> None:
-    back = at_rest(*at_speed(A, B, OMEGA_E, U), OMEGA_E, U)
+    back = coefficients_at_rest(*coefficients_at_speed(A, B, OMEGA_E, U), OMEGA_E, U)
     for one, other in zip((A, B), back, strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-9)
 
@@ -52,7 +52,7 @@ def test_published_coefficients_become_symmetric_at_rest() -> None:
     U = float(np.mean(implied))
     omega_e = np.sqrt(2 * U * B33 / (A[:, 1, 0] - A[:, 0, 1]))
     np.testing.assert_allclose(omega_e, [1.57, 1.80, 1.86], atol=0.01)
-    A0, B0 = at_rest(A, B, omega_e, U)
+    A0, B0 = coefficients_at_rest(A, B, omega_e, U)
     np.testing.assert_allclose(A0[:, 0, 1], A0[:, 1, 0], rtol=1e-12)
     rounding = 5e3 + 5e2 + 2 * U * 50
     np.testing.assert_allclose(B0[:, 0, 1], B0[:, 1, 0], rtol=0.0, atol=rounding)
@@ -69,7 +69,7 @@ def test_a_long_wave_carries_a_hull_at_any_speed(U: float, beta: float, a33: flo
     z_and_theta = np.column_stack([np.ones(1), 1j * q])
     froude_krylov = z_and_theta @ C.T
     diffraction = np.column_stack([-(omega**2) * a33, np.zeros(1)]).astype(complex)
-    A, B = at_speed(A, B, omega_e, U)
+    A, B = coefficients_at_speed(A, B, omega_e, U)
     force = excitation_at_speed(froude_krylov, diffraction, omega, omega_e, U)
     moved = np.linalg.solve(C - omega_e[0] ** 2 * A[0] + 1j * omega_e[0] * B[0], force[0])
     np.testing.assert_allclose(moved, z_and_theta[0], atol=1e-6 * omega[0] ** 2 / G)
@@ -89,7 +89,7 @@ def test_a_long_wave_carries_a_hull_at_any_speed(U: float, beta: float, a33: flo
 def test_bad_numbers_are_refused(change: dict, words: str) -> None:
     good = {"A": np.ones((2, 2, 2)), "B": np.ones((2, 2, 2)), "omega_e": np.array([1.0, 2.0]), "U": 5.0}
     with pytest.raises(InputError, match=words):
-        at_speed(**{**good, **change})
+        coefficients_at_speed(**{**good, **change})
 
 
 def test_excitation_needs_both_parts_alike() -> None:

@@ -35,7 +35,7 @@ def test_leading_zeros_fall_away() -> None:
 
 
 def test_response_gain_and_poles_of_a_lag_are_those_of_the_textbook() -> None:
-    np.testing.assert_allclose(FIRST.at(OMEGA), 2.0 / (1.0 + 3j * OMEGA), rtol=1e-14)
+    np.testing.assert_allclose(FIRST.frequency_response(OMEGA), 2.0 / (1.0 + 3j * OMEGA), rtol=1e-14)
     np.testing.assert_allclose(FIRST.poles, [-1.0 / 3.0])
     assert FIRST.gain == 2.0
     assert SECOND.gain == 0.0
@@ -43,15 +43,17 @@ def test_response_gain_and_poles_of_a_lag_are_those_of_the_textbook() -> None:
 
 
 def test_a_scaled_block_answers_in_proportion() -> None:
-    np.testing.assert_allclose(SECOND.scaled(-1.5).at(OMEGA), -1.5 * SECOND.at(OMEGA), rtol=1e-14)
+    np.testing.assert_allclose(
+        SECOND.scaled(-1.5).frequency_response(OMEGA), -1.5 * SECOND.frequency_response(OMEGA), rtol=1e-14
+    )
 
 
 @given(st.lists(st.tuples(numbers, numbers, numbers), min_size=0, max_size=5))
 def test_a_series_answers_as_the_product(drawn: list[tuple[float, float, float]]) -> None:
     blocks = [Block("b", (a,), (b, c)) for a, b, c in drawn]
     made = in_series("all", blocks)
-    product = np.prod([block.at(OMEGA) for block in blocks], axis=0)
-    np.testing.assert_allclose(made.at(OMEGA), product * np.ones_like(OMEGA), rtol=1e-11)
+    product = np.prod([block.frequency_response(OMEGA) for block in blocks], axis=0)
+    np.testing.assert_allclose(made.frequency_response(OMEGA), product * np.ones_like(OMEGA), rtol=1e-11)
     assert made.order == len(blocks)
 
 

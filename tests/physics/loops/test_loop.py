@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.physics.loops.loops_at_hand import second_order
+from tests.physics.loops.example_loops import second_order
 
 from seatrial.core.values import InputError, Parameter, Parameters
 from seatrial.physics.loops import Block, Term, TransferLoop
@@ -36,20 +36,22 @@ RICH = TransferLoop(
 def test_polynomials_equal_products_of_responses(loop: TransferLoop) -> None:
     d, n = loop.polynomials
     s = 1j * OMEGA
-    of_blocks = np.prod([b.at(OMEGA) for b in (*loop.sensor, *loop.filters, *loop.servo, loop.plant)], axis=0)
-    for row, term, seen in zip(n, loop.terms, loop.open_terms(OMEGA), strict=True):
-        expected = term.block.at(OMEGA) * of_blocks
+    of_blocks = np.prod(
+        [b.frequency_response(OMEGA) for b in (*loop.sensor, *loop.filters, *loop.servo, loop.plant)], axis=0
+    )
+    for row, term, seen in zip(n, loop.terms, loop.open_loop_terms(OMEGA), strict=True):
+        expected = term.block.frequency_response(OMEGA) * of_blocks
         np.testing.assert_allclose(np.polyval(row, s) / np.polyval(d, s), expected, rtol=1e-10)
         np.testing.assert_allclose(seen, expected, rtol=1e-10)
-    np.testing.assert_allclose(loop.open(OMEGA), loop.values @ loop.open_terms(OMEGA), rtol=1e-14)
+    np.testing.assert_allclose(loop.open_loop(OMEGA), loop.gain_values @ loop.open_loop_terms(OMEGA), rtol=1e-14)
 
 
 @pytest.mark.parametrize("loop", [*LOOPS, RICH, second_order(0.3)], ids=lambda loop: loop.name)
 def test_closed_poles_are_among_the_eigenvalues_of_the_states(loop: TransferLoop, rng: np.random.Generator) -> None:
     made, upper = state_space(loop), np.array([gain.upper for gain in loop.gains])
     for gains in rng.random((20, len(loop.terms))) * upper:
-        poles = loop.with_gains(gains).closed_poles
-        eigenvalues = np.linalg.eigvals(made.closed(gains))
+        poles = loop.with_gains(gains).closed_loop_poles
+        eigenvalues = np.linalg.eigvals(made.closed_loop_matrix(gains))
         nearest = np.abs(poles[:, None] - eigenvalues).min(axis=1)
         assert np.all(nearest <= 1e-5 * np.maximum(np.abs(poles), 1e-2))
         assert np.any(poles.real > 0.0) == np.any(eigenvalues.real > 0.0)
@@ -61,8 +63,8 @@ def test_denominators_in_common_are_counted_once() -> None:
 
 @pytest.mark.parametrize("loop", [*LOOPS, RICH], ids=lambda loop: loop.name)
 def test_the_controlled_response_is_that_to_the_disturbance_over_one_and_the_open_loop(loop: TransferLoop) -> None:
-    expected = loop.disturbance.at(OMEGA) / (1.0 + loop.open(OMEGA))
-    np.testing.assert_allclose(loop.controlled.at(OMEGA), expected, rtol=1e-9)
+    expected = loop.disturbance.frequency_response(OMEGA) / (1.0 + loop.open_loop(OMEGA))
+    np.testing.assert_allclose(loop.disturbance_response.frequency_response(OMEGA), expected, rtol=1e-9)
 
 
 def test_gains_in_another_order_than_terms_are_refused() -> None:

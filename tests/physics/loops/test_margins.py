@@ -5,12 +5,12 @@ import math
 import control
 import numpy as np
 import pytest
-from tests.physics.loops.loops_at_hand import second_order
+from tests.physics.loops.example_loops import second_order
 
 from seatrial.physics.loops import TransferLoop, margins
-from seatrial.physics.loops.exchange import open_loop_of
 from seatrial.physics.loops.fin import Preamplifier, fin_loop
-from seatrial.physics.loops.margins import band, sensitivity
+from seatrial.physics.loops.margins import frequency_band, sensitivity_magnitude
+from seatrial.physics.loops.python_control import open_loop_transfer_function
 
 OMEGA = np.geomspace(1e-4, 1e4, 40_001)
 PUBLISHED = [fin_loop(reading) for reading in Preamplifier]
@@ -25,8 +25,8 @@ def test_a_loop_of_second_order_has_the_margins_of_the_textbook(damping: float) 
     crossing = math.sqrt(math.sqrt(1.0 + 4.0 * square**2) - 2.0 * square)
     phase = math.atan2(2.0 * damping, crossing)
     assert found.is_stable
-    assert found.peak == pytest.approx(peak, rel=1e-9)
-    assert found.peak_at == pytest.approx(math.sqrt(x), rel=1e-4)
+    assert found.Ms == pytest.approx(peak, rel=1e-9)
+    assert found.Ms_frequency == pytest.approx(math.sqrt(x), rel=1e-4)
     assert found.phase == pytest.approx(phase, rel=1e-9)
     assert found.delay == pytest.approx(phase / crossing, rel=1e-9)
     assert found.gain == math.inf
@@ -35,13 +35,13 @@ def test_a_loop_of_second_order_has_the_margins_of_the_textbook(damping: float) 
 
 def test_without_gain_nothing_can_be_lost() -> None:
     found = margins(fin_loop().with_gains(np.zeros(3)))
-    assert (found.peak, found.gain, found.phase, found.delay) == (1.0, math.inf, math.inf, math.inf)
+    assert (found.Ms, found.gain, found.phase, found.delay) == (1.0, math.inf, math.inf, math.inf)
 
 
 def test_an_unstable_loop_has_none() -> None:
     found = margins(fin_loop().with_gains(np.array([100.0, 50.0, 0.0]) * 100.0))
     assert not found.is_stable
-    assert found.peak == math.inf
+    assert found.Ms == math.inf
     assert found.damping < 0.0
     assert math.isnan(found.gain) and math.isnan(found.phase) and math.isnan(found.delay)
 
@@ -50,13 +50,13 @@ def stable_loops() -> list[TransferLoop]:
     rng, made = np.random.default_rng(20261), []
     for loop in PUBLISHED:
         some = [loop.with_gains(k) for k in rng.random((60, 3)) * [100.0, 50.0, 100.0]]
-        made += [one for one in some if np.all(one.closed_poles.real < -1e-3)][:5]
+        made += [one for one in some if np.all(one.closed_loop_poles.real < -1e-3)][:5]
     return [*PUBLISHED, *made]
 
 
 def turns(loop: TransferLoop, turned: np.ndarray) -> float:
     """How often the curve 1 + L, L turned, goes around zero: 0 where the loop is stable (Nyquist 1932)."""
-    angle = np.angle(1.0 + loop.open(OMEGA) * np.exp(1j * turned))
+    angle = np.angle(1.0 + loop.open_loop(OMEGA) * np.exp(1j * turned))
     return float(np.sum(np.angle(np.exp(1j * np.diff(angle)))) / math.pi)
 
 
@@ -65,8 +65,8 @@ def test_margins_are_what_a_loop_bears_and_no_more() -> None:
         found = margins(loop)
         for share, stands in ((0.99, True), (1.01, False)):
             if math.isfinite(found.gain):
-                louder = loop.with_gains(share * found.gain * loop.values)
-                assert np.all(louder.closed_poles.real < 0.0) == stands
+                louder = loop.with_gains(share * found.gain * loop.gain_values)
+                assert np.all(louder.closed_loop_poles.real < 0.0) == stands
             if math.isfinite(found.delay):
                 assert (abs(turns(loop, -OMEGA * share * found.delay)) < 0.5) == stands
             if math.isfinite(found.phase):
@@ -79,26 +79,28 @@ def test_margins_are_what_a_loop_bears_and_no_more() -> None:
 
 def test_the_peak_is_the_largest_of_many_samples() -> None:
     for loop in stable_loops():
-        samples = sensitivity(loop, OMEGA)
-        assert margins(loop).peak == pytest.approx(samples.max(), rel=1e-5)
-        low, high = band(loop)
-        assert low <= margins(loop).peak_at <= high
+        samples = sensitivity_magnitude(loop, OMEGA)
+        assert margins(loop).Ms == pytest.approx(samples.max(), rel=1e-5)
+        low, high = frequency_band(loop)
+        assert low <= margins(loop).Ms_frequency <= high
 
 
 def test_phase_and_gain_keep_the_bounds_that_the_peak_sets() -> None:
     # GM >= Ms / (Ms - 1), PM >= 2 arcsin(1 / (2 Ms)) (Skogestad & Postlethwaite 2005, section 2.4.3)
     for loop in stable_loops():
         found = margins(loop)
-        assert found.gain >= found.peak / (found.peak - 1.0) - 1e-9
-        assert found.phase >= 2.0 * math.asin(0.5 / found.peak) - 1e-9
+        assert found.gain >= found.Ms / (found.Ms - 1.0) - 1e-9
+        assert found.phase >= 2.0 * math.asin(0.5 / found.Ms) - 1e-9
 
 
 @pytest.mark.parametrize("loop", PUBLISHED, ids=lambda loop: loop.name)
 def test_margins_are_those_of_python_control_among_all_its_crossings(loop: TransferLoop) -> None:
     found = margins(loop)
-    gains, phases, distances, _, at_phase, _ = control.stability_margins(open_loop_of(loop), returnall=True)
+    gains, phases, distances, _, at_phase, _ = control.stability_margins(
+        open_loop_transfer_function(loop), returnall=True
+    )
     assert found.gain == pytest.approx(min(g for g in gains if g > 1.0), rel=1e-6)
     # its sign tells the way L would have to turn: negative where it has to be sooner
     assert found.phase == pytest.approx(math.radians(np.abs(phases).min()), rel=1e-6)
     assert found.delay == pytest.approx(np.min(np.radians(phases % 360.0) / at_phase), rel=1e-6)
-    assert found.peak == pytest.approx(1.0 / distances.min(), rel=1e-6)
+    assert found.Ms == pytest.approx(1.0 / distances.min(), rel=1e-6)

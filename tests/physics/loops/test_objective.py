@@ -7,20 +7,20 @@ import pytest
 
 from seatrial.core.values import Array
 from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.loops import HullFactor, Objective, Performance, Seen, exposure
+from seatrial.physics.loops import HullFactor, LoopSignal, Objective, Performance, wave_slope_spectrum
 from seatrial.physics.loops.fin import ROLL, fin_loop
-from seatrial.physics.loops.objective import motion_interruptions, motion_sickness, off_target, variance
-from seatrial.physics.loops.performance import rows_of
-from seatrial.physics.sea.response import Statistics
+from seatrial.physics.loops.objective import motion_interruptions, motion_sickness, squared_deviation, variance
+from seatrial.physics.loops.performance import distinct_variances
+from seatrial.physics.sea.response import MotionStatistics
 from seatrial.physics.sea.response import motion_sickness as sickness_of
 from seatrial.physics.sea.spectrum import ittc
 
 OBJECTIVES = [
-    variance("roll", "rad^2", Seen.OUTPUT),
-    variance("roll acceleration", "rad^2/s^4", Seen.OUTPUT, 2),
-    variance("fin rate", "rad^2/s^2", Seen.ACTUATOR, 1),
-    off_target("fin", Seen.ACTUATOR, 0.02, one_sided=False),
-    off_target("fin above", Seen.ACTUATOR, 0.02, one_sided=True),
+    variance("roll", "rad^2", LoopSignal.OUTPUT),
+    variance("roll acceleration", "rad^2/s^4", LoopSignal.OUTPUT, 2),
+    variance("fin rate", "rad^2/s^2", LoopSignal.ACTUATOR, 1),
+    squared_deviation("fin", LoopSignal.ACTUATOR, 0.02, one_sided=False),
+    squared_deviation("fin above", LoopSignal.ACTUATOR, 0.02, one_sided=True),
     motion_interruptions(6.0),
     motion_sickness(8.0),
 ]
@@ -28,19 +28,19 @@ GAINS = np.array([11.053, 0.428, 32.736])
 
 
 def performance(objective: Objective, height: float = 3.3) -> tuple[Performance, list[int]]:
-    rows, places = rows_of((objective,))
-    sea = exposure(ittc(height), 9.26, math.pi / 2.0, ROLL, HullFactor(100.0, 10.5, 3.4))
+    rows, places = distinct_variances((objective,))
+    sea = wave_slope_spectrum(ittc(height), 9.26, math.pi / 2.0, ROLL, HullFactor(100.0, 10.5, 3.4))
     return Performance(fin_loop(), sea, rows), places[0]
 
 
 @pytest.mark.parametrize("objective", OBJECTIVES, ids=lambda objective: objective.name)
 def test_slopes_over_variances_equal_differences(objective: Objective) -> None:
     made, place = performance(objective)
-    v = made.of(GAINS).variances[:, place]
-    slope = objective.slope(v)[0]
-    assert slope.shape == (len(objective.rows),)
-    for i in range(len(objective.rows)):
-        step = np.eye(len(objective.rows))[i] * v[0, i] * 1e-6
+    v = made.evaluate(GAINS).variances[:, place]
+    slope = objective.gradient(v)[0]
+    assert slope.shape == (len(objective.variances),)
+    for i in range(len(objective.variances)):
+        step = np.eye(len(objective.variances))[i] * v[0, i] * 1e-6
         numeric = (objective.value(v + step) - objective.value(v - step))[0] / (2.0 * step[i])
         assert slope[i] == pytest.approx(numeric, rel=1e-6, abs=1e-9 * abs(slope).max())
 
@@ -50,9 +50,9 @@ def test_gradients_over_gains_equal_differences(objective: Objective) -> None:
     made, place = performance(objective)
 
     def value(k: Array) -> float:
-        return float(objective.value(made.of(k).variances[:, place])[0])
+        return float(objective.value(made.evaluate(k).variances[:, place])[0])
 
-    gradient = objective.slope(made.of(GAINS).variances[:, place])[0] @ made.slopes(GAINS)[place]
+    gradient = objective.gradient(made.evaluate(GAINS).variances[:, place])[0] @ made.variance_gradients(GAINS)[place]
     h = 1e-4
     numeric = [(value(GAINS + h * e) - value(GAINS - h * e)) / (2.0 * h) for e in np.eye(3)]
     np.testing.assert_allclose(gradient, numeric, rtol=1e-5, atol=1e-7 * np.abs(gradient).max() + 1e-30)
@@ -61,23 +61,23 @@ def test_gradients_over_gains_equal_differences(objective: Objective) -> None:
 @pytest.mark.parametrize("objective", OBJECTIVES, ids=lambda objective: objective.name)
 def test_an_unstable_loop_is_infinitely_bad(objective: Objective) -> None:
     made, place = performance(objective)
-    assert objective.value(made.of(np.array([100.0, 50.0, 0.0]) * 100.0).variances[:, place])[0] == np.inf
+    assert objective.value(made.evaluate(np.array([100.0, 50.0, 0.0]) * 100.0).variances[:, place])[0] == np.inf
 
 
 def test_variances_of_rate_and_acceleration_weigh_by_powers_of_the_frequency() -> None:
     omega = np.array([0.5, 2.0])
-    assert [variance("v", "", Seen.OUTPUT, n).rows[0].size(omega).tolist() for n in (0, 1, 2)] == [
+    assert [variance("v", "", LoopSignal.OUTPUT, n).variances[0].magnitude(omega).tolist() for n in (0, 1, 2)] == [
         [1.0, 1.0], [0.5, 2.0], [0.25, 4.0]
     ]  # fmt: skip
 
 
 def test_the_printed_objective_rewards_motion_below_its_target_and_the_one_sided_does_not() -> None:
-    printed, hinge = (off_target("fin", Seen.ACTUATOR, 3.0, one_sided=one) for one in (False, True))
+    printed, hinge = (squared_deviation("fin", LoopSignal.ACTUATOR, 3.0, one_sided=one) for one in (False, True))
     v = np.array([[1.0], [3.0], [5.0]])
     assert printed.value(v).tolist() == [4.0, 0.0, 4.0]
-    assert printed.slope(v).tolist() == [[-4.0], [0.0], [4.0]]
+    assert printed.gradient(v).tolist() == [[-4.0], [0.0], [4.0]]
     assert hinge.value(v).tolist() == [0.0, 0.0, 4.0]
-    assert hinge.slope(v).tolist() == [[0.0], [0.0], [4.0]]
+    assert hinge.gradient(v).tolist() == [[0.0], [0.0], [4.0]]
 
 
 def test_interruptions_equal_the_formula_by_hand() -> None:
@@ -87,8 +87,8 @@ def test_interruptions_equal_the_formula_by_hand() -> None:
     assert of.value(np.array([[1.0, 1.0]]))[0] == pytest.approx(by_hand, rel=1e-12)
     assert by_hand == pytest.approx(0.94, abs=0.01)
     omega = np.array([0.8])
-    assert of.rows[0].size(omega)[0] == pytest.approx(G + 5.0 * 0.64)
-    assert of.rows[1].size(omega)[0] == pytest.approx(0.8 * (G + 5.0 * 0.64))
+    assert of.variances[0].magnitude(omega)[0] == pytest.approx(G + 5.0 * 0.64)
+    assert of.variances[1].magnitude(omega)[0] == pytest.approx(0.8 * (G + 5.0 * 0.64))
 
 
 def test_interruptions_are_crossings_of_a_gaussian_record_counted() -> None:
@@ -109,15 +109,18 @@ def test_interruptions_are_crossings_of_a_gaussian_record_counted() -> None:
 def test_sickness_equals_that_of_the_same_motion_elsewhere() -> None:
     lever, of = 12.0, motion_sickness(12.0)
     made, place = performance(of, 6.0)
-    w = made.exposure.omega_e
-    motion = np.abs(lever * made.loop.disturbance.at(w) / (1.0 + made.loop.with_gains(GAINS).open(w))) ** 2
-    moments = [float(np.sum(w**n * motion * made.exposure.energy)) for n in (0, 2, 4)]
-    value = of.value(made.of(GAINS).variances[:, place])[0]
-    assert value == pytest.approx(sickness_of(Statistics(*moments)), rel=1e-9)
+    w = made.spectrum.omega_e
+    motion = (
+        np.abs(lever * made.loop.disturbance.frequency_response(w) / (1.0 + made.loop.with_gains(GAINS).open_loop(w)))
+        ** 2
+    )
+    moments = [float(np.sum(w**n * motion * made.spectrum.energy)) for n in (0, 2, 4)]
+    value = of.value(made.evaluate(GAINS).variances[:, place])[0]
+    assert value == pytest.approx(sickness_of(MotionStatistics(*moments)), rel=1e-9)
     assert 1e-4 < value < 0.5
 
 
 def test_sickness_does_not_ask_on_which_side_one_stands() -> None:
     omega = np.array([0.7])
     port, starboard = motion_sickness(-4.0), motion_sickness(4.0)
-    assert port.rows[1].size(omega) == starboard.rows[1].size(omega) == pytest.approx(4.0 * 0.49)
+    assert port.variances[1].magnitude(omega) == starboard.variances[1].magnitude(omega) == pytest.approx(4.0 * 0.49)

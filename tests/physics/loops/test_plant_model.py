@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.physics.loops.loops_at_hand import second_order
+from tests.physics.loops.example_loops import second_order
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError
@@ -44,7 +44,7 @@ def test_both_inputs_have_their_transfer_functions(loop: TransferLoop, order: in
     model = plant_model(loop)
     assert model.states[0] == loop.output
     assert len(model.states) == order
-    wanted = [loop.plant.at(OMEGA), loop.disturbance.at(OMEGA)]
+    wanted = [loop.plant.frequency_response(OMEGA), loop.disturbance.frequency_response(OMEGA)]
     assert responses(model) == pytest.approx(np.array(wanted), rel=1e-9)
 
 
@@ -55,7 +55,7 @@ def test_plants_of_one_order_share_their_equations() -> None:
 
 
 def test_a_loop_without_a_symbol_for_its_disturbance_gets_one() -> None:
-    assert plant_model(replace(fin_loop(), disturbed_by="")).input_names == ("alpha_f", "disturbance")
+    assert plant_model(replace(fin_loop(), disturbance_input="")).input_names == ("alpha_f", "disturbance")
 
 
 def test_a_plant_that_answers_at_once_is_refused() -> None:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.physics.loops.quadrature import gathered, nodes, weights
+from seatrial.physics.loops.quadrature import gather_nodes, nodes, weights
 
 
 @pytest.mark.parametrize("power", range(8))
@@ -28,7 +28,7 @@ def test_nodes_integrate_between_edges() -> None:
 
 def test_gathered_energy_weighs_smooth_functions_as_before(rng: np.random.Generator) -> None:
     omega, energy = np.abs(rng.normal(size=20_000)) * 3.0, rng.random(20_000)
-    few, made = gathered(omega, energy, 512)
+    few, made = gather_nodes(omega, energy, 512)
     assert few.shape == made.shape == (512,)
     assert few[0] > 0.0 and np.all(np.diff(few) > 0.0)
     for damping, limit in ((1.0, 1e-10), (0.16, 1e-8), (0.08, 1e-6), (0.05, 1e-5)):

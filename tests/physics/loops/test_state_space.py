@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.signal import lsim
-from tests.physics.loops.loops_at_hand import second_order
+from tests.physics.loops.example_loops import second_order
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError
 from seatrial.physics.loops import Block, TransferLoop
 from seatrial.physics.loops.fin import BOUNDS, PUBLISHED_GAINS, ROLL, Preamplifier, fin_loop
-from seatrial.physics.loops.state_space import canonical, loop_model, state_space
-from seatrial.physics.simulate.harmonics import frequency_response, plant
+from seatrial.physics.loops.state_space import controllable_form, loop_model, state_space
+from seatrial.physics.simulate.harmonics import frequency_response, linear_system
 from seatrial.physics.simulate.linear import LinearBatch
 
 OMEGA = np.geomspace(1e-2, 30.0, 25)
@@ -32,10 +32,10 @@ def model() -> Model:
     ids=lambda block: block.name,
 )
 def test_the_canonical_form_answers_as_the_block(block: Block) -> None:
-    A, b, c, d = canonical(block)
+    A, b, c, d = controllable_form(block)
     n = len(b)
     x = np.linalg.solve(1j * OMEGA[:, None, None] * np.eye(n) - A, np.broadcast_to(b[:, None], (25, n, 1)))[..., 0]
-    np.testing.assert_allclose(x @ c + d, block.at(OMEGA), rtol=1e-11)
+    np.testing.assert_allclose(x @ c + d, block.frequency_response(OMEGA), rtol=1e-11)
 
 
 @pytest.mark.parametrize("loop", LOOPS, ids=IDS)
@@ -45,11 +45,13 @@ def test_states_answer_as_the_loop(loop: TransferLoop, rng: np.random.Generator)
     assert made.A.shape == (4, n, n) and made.a.shape == (4, n) and len(set(made.names)) == n
     for gains in rng.random((5, 3)) * 30.0:
         b = np.broadcast_to(made.b[:, None], (25, n, 1))
-        x = np.linalg.solve(1j * OMEGA[:, None, None] * np.eye(n) - made.closed(gains), b)[..., 0]
-        L = gains @ loop.open_terms(OMEGA)
-        output = loop.disturbance.at(OMEGA) / (1.0 + L)
+        x = np.linalg.solve(1j * OMEGA[:, None, None] * np.eye(n) - made.closed_loop_matrix(gains), b)[..., 0]
+        L = gains @ loop.open_loop_terms(OMEGA)
+        output = loop.disturbance.frequency_response(OMEGA) / (1.0 + L)
         np.testing.assert_allclose(x @ made.c, output, rtol=1e-8)
-        np.testing.assert_allclose(x @ made.actuator(gains), -L / loop.plant.at(OMEGA) * output, rtol=1e-8)
+        np.testing.assert_allclose(
+            x @ made.actuator_row(gains), -L / loop.plant.frequency_response(OMEGA) * output, rtol=1e-8
+        )
 
 
 def test_gains_of_the_model_are_its_free_parameters(model: Model) -> None:
@@ -64,10 +66,10 @@ def test_gains_of_the_model_are_its_free_parameters(model: Model) -> None:
 
 def test_the_model_answers_as_the_loop_at_other_gains_too(model: Model) -> None:
     for gains in (np.array(list(PUBLISHED_GAINS.values())), np.array([30.0, 2.0, 5.0])):
-        of = plant(model.with_values(dict(zip(PUBLISHED_GAINS, gains, strict=True))), ("phi", "alpha_f"))
+        of = linear_system(model.with_values(dict(zip(PUBLISHED_GAINS, gains, strict=True))), ("phi", "alpha_f"))
         seen = frequency_response(of, OMEGA)[..., 0]
         loop = fin_loop().with_gains(gains)
-        phi = ROLL.at(OMEGA) / (1.0 + loop.open(OMEGA))
+        phi = ROLL.frequency_response(OMEGA) / (1.0 + loop.open_loop(OMEGA))
         np.testing.assert_allclose(seen[:, 0], phi, rtol=1e-8)
         np.testing.assert_allclose(seen[:, 1], -(gains @ loop.controller_terms(OMEGA)) * phi, rtol=1e-8)
 
@@ -79,8 +81,8 @@ def test_the_model_simulated_equals_lsim(model: Model, rng: np.random.Generator)
     batch = LinearBatch(model, slope[:, None], np.array([0, count]), dt, model.outputs)
     y, failed = batch.simulate(0, 1, np.zeros((1, len(model.states))), model.parameters.values[None], np.empty((1, 0)))
     assert failed.tolist() == [-1]
-    u, pieces = batch.fine(0)
-    of = plant(model, model.outputs)
+    u, pieces = batch.fine_inputs(0)
+    of = linear_system(model, model.outputs)
     _, expected, _ = lsim((of.A, of.B, of.C, of.D), u[:, 0], np.arange(len(u)) * dt / pieces)
     np.testing.assert_allclose(y, expected[::pieces], atol=1e-10 * np.abs(expected).max())
     assert np.abs(y[:, 0]).max() > 1e-3

@@ -15,7 +15,7 @@ Reader = Callable[[str], Record]
 def circle() -> Callable[..., Record]:
     """circle(side): a straight run of 10 s, then at once a circle of radius 20 m at 1 m/s, drift 0.1 rad, 540 deg."""
 
-    def made(side: int = 1, positive: str = "starboard") -> Record:
+    def make_circle(side: int = 1, positive: str = "starboard") -> Record:
         time = np.arange(0.0, 210.0, 0.1)
         rate, drift, radius = 0.05, 0.1, 20.0
         turned = rate * np.clip(time - 10.0, 0.0, None)
@@ -34,9 +34,9 @@ def circle() -> Callable[..., Record]:
         }
         sign = side if positive == "starboard" else -side
         delta = Channel(frozen(sign * np.where(over, np.radians(35.0), 0.0)), "rad", "body", positive)
-        return Record.of("circle", time, values).with_channel("delta", delta)
+        return Record.from_arrays("circle", time, values).with_channel("delta", delta)
 
-    return made
+    return make_circle
 
 
 def _angles(values: Array) -> Array:
@@ -59,7 +59,7 @@ def hsva(data_folder: Path) -> Reader:
             "r": _angles(table[:, 6]),
         }
         delta = Channel(frozen(_angles(table[:, 8])), "rad", "body", "port")
-        return Record.of(name, table[:, 0], values).with_channel("delta", delta)
+        return Record.from_arrays(name, table[:, 0], values).with_channel("delta", delta)
 
     return read
 
@@ -74,6 +74,6 @@ def esso(data_folder: Path) -> Reader:
             data_folder / "esso_osaka" / f"{name}.csv", delimiter=",", skip_header=1, encoding="cp1252"
         )
         table = table[np.isfinite(table[:, 0])]
-        return Record.of(name, table[:, 0], {s: table[:, i + 1] for i, s in enumerate(symbols)})
+        return Record.from_arrays(name, table[:, 0], {s: table[:, i + 1] for i, s in enumerate(symbols)})
 
     return read

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record, frozen
-from seatrial.physics.manoeuvres import Manoeuvre, criteria, measures, recognise
+from seatrial.physics.manoeuvres import ManoeuvreKind, imo_criteria, measures, recognise_manoeuvre
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate.steer import manoeuvre
@@ -38,9 +38,9 @@ def zigzag() -> Record:
 def test_a_drifting_heading_hides_no_overshoot(zigzag: Record, sign: float) -> None:
     rate = sign * math.radians(0.3)
     off = drifted(zigzag, rate)
-    assert recognise(off) is not Manoeuvre.ZIGZAG
+    assert recognise_manoeuvre(off) is not ManoeuvreKind.ZIGZAG
     assert "overshoot_1_deg" not in measures(off, LENGTH)
-    expected, found = measures(zigzag, LENGTH), measures(off, LENGTH, like=zigzag)
+    expected, found = measures(zigzag, LENGTH), measures(off, LENGTH, reference=zigzag)
     assert list(found) == list(expected)
     overshoots = [name for name in expected if name.startswith("overshoot_")]
     assert len(overshoots) == 4
@@ -56,15 +56,15 @@ def test_a_drifting_heading_hides_no_overshoot(zigzag: Record, sign: float) -> N
 
 def test_a_record_like_itself_has_its_own_measures(zigzag: Record, circle: Callable[..., Record]) -> None:
     for record in (zigzag, circle(-1, "port")):
-        assert measures(record, LENGTH, like=record) == measures(record, LENGTH)
+        assert measures(record, LENGTH, reference=record) == measures(record, LENGTH)
     counted = measures(zigzag, LENGTH, switching=math.radians(10.0))
-    assert measures(zigzag, LENGTH, switching=math.radians(10.0), like=zigzag) == counted
+    assert measures(zigzag, LENGTH, switching=math.radians(10.0), reference=zigzag) == counted
 
 
 def test_the_rudders_sign_is_the_measured_one(circle: Callable[..., Record]) -> None:
     """Only heading and track are the simulation's own: a rudder recorded to port, or not at all, changes nothing."""
     simulated = circle(1).without("delta")
-    assert measures(simulated, LENGTH, like=circle(1, "port")) == measures(circle(1), LENGTH)
+    assert measures(simulated, LENGTH, reference=circle(1, "port")) == measures(circle(1), LENGTH)
 
 
 def test_a_circle_is_measured_on_its_own_track(circle: Callable[..., Record]) -> None:
@@ -77,7 +77,7 @@ def test_a_circle_is_measured_on_its_own_track(circle: Callable[..., Record]) ->
         "x0": np.where(over, 40.0 * np.sin(turned), time - 10.0),
         "y0": np.where(over, 40.0 * (1.0 - np.cos(turned)), 0.0),
     }
-    found = measures(Record.of("wide", time, values), LENGTH, like=measured)
+    found = measures(Record.from_arrays("wide", time, values), LENGTH, reference=measured)
     assert found["advance_L"] == pytest.approx(4.0, abs=0.006)
     assert found["transfer_L"] == pytest.approx(4.0, abs=1e-3)
     assert found["tactical_diameter_L"] == pytest.approx(8.0, abs=1e-3)
@@ -89,7 +89,7 @@ def test_a_simulation_that_does_not_turn_back_lacks_that_overshoot_only(zigzag: 
     share = np.clip((zigzag.time - begins[1]) / (begins[2] - begins[1]), 0.0, 1.0)
     psi = zigzag.channel("psi")
     rising = zigzag.with_channel("psi", psi.with_values(frozen(psi.values + share * math.radians(90.0))))
-    found, expected = measures(rising, LENGTH, like=zigzag), measures(zigzag, LENGTH)
+    found, expected = measures(rising, LENGTH, reference=zigzag), measures(zigzag, LENGTH)
     assert "overshoot_1_deg" not in found
     assert found["overshoot_2_deg"] == pytest.approx(expected["overshoot_2_deg"], abs=0.1)
     assert found["overshoot_3_deg"] == pytest.approx(expected["overshoot_3_deg"], abs=1e-9)
@@ -99,20 +99,22 @@ def test_standards_are_those_of_the_measured_run() -> None:
     model = nomoto().with_values({"K": 0.08, "T": 12.0})
     record = manoeuvre(model, programme("zigzag:20/20"), slew_rate=math.radians(3.0), approach=20.0)
     off = drifted(record, math.radians(0.15))
-    assert [c.name for c in criteria(off, LENGTH, like=record)] == [c.name for c in criteria(record, LENGTH)]
+    assert [c.name for c in imo_criteria(off, LENGTH, reference=record)] == [
+        c.name for c in imo_criteria(record, LENGTH)
+    ]
 
 
 def test_other_times_are_refused(zigzag: Record) -> None:
     for other in (zigzag.between(0.0, 100.0), zigzag.resampled(5.0)):
         with pytest.raises(InputError, match="is not sampled at the times of"):
-            measures(other, LENGTH, like=zigzag)
+            measures(other, LENGTH, reference=zigzag)
 
 
 def test_every_hsva_run_predicted_with_a_drift_keeps_its_overshoots(hsva) -> None:
     for name in ("Z_15_01", "Z_25_05", "Z_35_05"):
         record = hsva(name)
         off = drifted(record, math.radians(20.0) / record.duration)
-        expected, found = measures(record, 7.0), measures(off, 7.0, like=record)
+        expected, found = measures(record, 7.0), measures(off, 7.0, reference=record)
         assert {k for k in expected if k.startswith("overshoot_")} <= set(found)
         for k in ("overshoot_1_deg", "overshoot_2_deg"):
             assert found[k] == pytest.approx(expected[k], abs=1.5)

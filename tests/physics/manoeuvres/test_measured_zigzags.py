@@ -10,13 +10,13 @@ SIDED = ("Z_10_10_P", "Z_10_10_S", "Z_20_10_P", "Z_20_10_S")
 
 @pytest.mark.parametrize("name", [*RUNS, *SIDED])
 def test_hsva_zigzags(hsva, name: str) -> None:
-    from seatrial.physics.manoeuvres import Manoeuvre, measures, recognise
+    from seatrial.physics.manoeuvres import ManoeuvreKind, measures, recognise_manoeuvre
     from seatrial.physics.manoeuvres.imo import switching_heading
-    from seatrial.physics.manoeuvres.observed import Observed
+    from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre
 
     record = hsva(name)
-    seen = Observed.of(record)
-    assert recognise(record) is Manoeuvre.ZIGZAG
+    seen = ObservedManoeuvre.from_record(record)
+    assert recognise_manoeuvre(record) is ManoeuvreKind.ZIGZAG
     rudder, heading = (float(part) for part in name.split("_")[1:3])
     found = measures(record, 7.0)
     assert found["rudder_deg"] == pytest.approx(rudder, abs=0.1)
@@ -29,10 +29,10 @@ def test_hsva_zigzags(hsva, name: str) -> None:
 
 
 def test_hsva_ten_ten_repeats_and_criteria(hsva) -> None:
-    from seatrial.physics.manoeuvres import criteria
+    from seatrial.physics.manoeuvres import imo_criteria
 
     for name in ("Z_10_10_P", "Z_10_10_S"):
-        found = {c.name: c for c in criteria(hsva(name), 7.0, scale=45.7, switching=math.radians(10.0))}
+        found = {c.name: c for c in imo_criteria(hsva(name), 7.0, scale=45.7, switching=math.radians(10.0))}
         assert found["overshoot_1_deg"].value == pytest.approx(9.7, abs=0.3)
         assert found["overshoot_1_deg"].limit == 20.0
         assert found["initial_turning_L"].value == pytest.approx(1.7, abs=0.1)
@@ -50,12 +50,14 @@ def test_hsva_ten_ten_repeats_and_criteria(hsva) -> None:
     ],
 )
 def test_esso_osaka_runs_with_course_keeping_before_them(esso, name: str, kind: str, side: int) -> None:
-    from seatrial.physics.manoeuvres.observed import Observed
+    from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre
 
-    seen = Observed.of(esso(name))
+    seen = ObservedManoeuvre.from_record(esso(name))
     assert seen.kind == kind
     if side:
-        assert math.copysign(1.0, seen.turn[0].angle if kind == "turning-circle" else seen.holds[0].angle) == side
+        assert (
+            math.copysign(1.0, seen.longest_hold[0].angle if kind == "turning-circle" else seen.holds[0].angle) == side
+        )
 
 
 def test_esso_osaka_turns_to_starboard_and_port_agree(esso) -> None:

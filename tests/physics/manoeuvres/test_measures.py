@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record
-from seatrial.physics.manoeuvres import Manoeuvre, criteria, measures, recognise
+from seatrial.physics.manoeuvres import ManoeuvreKind, imo_criteria, measures, recognise_manoeuvre
 from seatrial.physics.manoeuvres.imo import first_overshoot_limit, second_overshoot_limit
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
@@ -20,7 +20,7 @@ LENGTH = 10.0
 @pytest.mark.parametrize("positive", ["starboard", "port"])
 def test_circle_in_closed_form(circle: Callable[..., Record], side: int, positive: str) -> None:
     record = circle(side, positive)
-    assert recognise(record) is Manoeuvre.TURNING_CIRCLE
+    assert recognise_manoeuvre(record) is ManoeuvreKind.TURNING_CIRCLE
     found = measures(record, LENGTH)
     # the rudder jumps within one sample, of which the execute takes the middle: 0.05 m of track
     assert found["advance_L"] == pytest.approx(2.0, abs=0.006)
@@ -55,7 +55,7 @@ def test_nomoto_zigzag_against_fine_integration() -> None:
     model = nomoto().with_values({"K": 0.08, "T": 12.0})
     slew = math.radians(3.0)
     record = manoeuvre(model, programme("zigzag:20/20"), slew_rate=slew)
-    assert recognise(record) is Manoeuvre.ZIGZAG
+    assert recognise_manoeuvre(record) is ManoeuvreKind.ZIGZAG
     found = measures(record, LENGTH)
     first, second = fine_nomoto_zigzag(0.08, 12.0, math.radians(20.0), math.radians(20.0), slew)
     assert found["overshoot_1_deg"] == pytest.approx(math.degrees(first), abs=0.02)
@@ -79,7 +79,7 @@ def test_noise_moves_measures_little(rng: np.random.Generator) -> None:
     psi = clean.channel("psi").with_values(clean["psi"] + math.radians(0.2) * rng.standard_normal(len(clean)))
     delta = clean.channel("delta").with_values(clean["delta"] + math.radians(0.3) * rng.standard_normal(len(clean)))
     noisy = clean.with_channel("psi", psi).with_channel("delta", delta)
-    assert recognise(noisy) is Manoeuvre.ZIGZAG
+    assert recognise_manoeuvre(noisy) is ManoeuvreKind.ZIGZAG
     expected, found = measures(clean, LENGTH), measures(noisy, LENGTH)
     assert found["overshoot_1_deg"] == pytest.approx(expected["overshoot_1_deg"], abs=0.5)
     assert found["overshoot_2_deg"] == pytest.approx(expected["overshoot_2_deg"], abs=0.5)
@@ -88,17 +88,17 @@ def test_noise_moves_measures_little(rng: np.random.Generator) -> None:
 @pytest.mark.parametrize(
     ("text", "kind"),
     [
-        ("zigzag:10/10:port", Manoeuvre.ZIGZAG),
-        ("consecutive-zigzags:2", Manoeuvre.ZIGZAG),
-        ("turning-circle:20:port", Manoeuvre.TURNING_CIRCLE),
-        ("pull-out:15", Manoeuvre.PULL_OUT),
-        ("spiral:20", Manoeuvre.SPIRAL),
-        ("prbs:20:7:3", Manoeuvre.OTHER),
+        ("zigzag:10/10:port", ManoeuvreKind.ZIGZAG),
+        ("consecutive-zigzags:2", ManoeuvreKind.ZIGZAG),
+        ("turning-circle:20:port", ManoeuvreKind.TURNING_CIRCLE),
+        ("pull-out:15", ManoeuvreKind.PULL_OUT),
+        ("spiral:20", ManoeuvreKind.SPIRAL),
+        ("prbs:20:7:3", ManoeuvreKind.OTHER),
     ],
 )
-def test_programmes_are_recognised(text: str, kind: Manoeuvre) -> None:
+def test_programmes_are_recognised(text: str, kind: ManoeuvreKind) -> None:
     record = manoeuvre(nomoto(), programme(text), slew_rate=math.radians(4.0))
-    assert recognise(record) is kind
+    assert recognise_manoeuvre(record) is kind
 
 
 def test_pull_out_of_a_stable_ship_leaves_no_rate() -> None:
@@ -108,8 +108,8 @@ def test_pull_out_of_a_stable_ship_leaves_no_rate() -> None:
 
 def test_rudder_that_never_moves_shows_nothing() -> None:
     time = np.arange(50.0)
-    record = Record.of("straight", time, {"psi": 0.0 * time, "delta": 0.0 * time})
-    assert recognise(record) is Manoeuvre.OTHER
+    record = Record.from_arrays("straight", time, {"psi": 0.0 * time, "delta": 0.0 * time})
+    assert recognise_manoeuvre(record) is ManoeuvreKind.OTHER
     assert measures(record, LENGTH) == {}
 
 
@@ -126,9 +126,9 @@ def test_overshoot_limits_of_the_resolution() -> None:
 
 
 def test_criteria_of_a_turning_circle_say_where_they_apply(circle: Callable[..., Record]) -> None:
-    small = criteria(circle(), LENGTH)
+    small = imo_criteria(circle(), LENGTH)
     assert {c.name: c.limit for c in small} == {"advance_L": 4.5, "tactical_diameter_L": 5.0}
-    assert all(c.holds and not c.applies for c in small)
+    assert all(c.is_fulfilled and not c.applies for c in small)
     assert "100 m and more" in small[0].note
-    model = criteria(circle(), LENGTH, scale=20.0)
+    model = imo_criteria(circle(), LENGTH, scale=20.0)
     assert all(c.applies and "model scale 1:20" in c.note for c in model)

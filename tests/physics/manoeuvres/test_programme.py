@@ -7,7 +7,7 @@ from seatrial.core.values import InputError
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.manoeuvres.steering import COUNT, TABLE, Steering, rudder_angles
 
-STEERING = Steering(psi=0, r=1, delta=0, sign=1.0, slew_rate=0.05, dt=0.1, approach=0.0, time_unit=10.0)
+STEERING = Steering(psi=0, r=1, delta=0, sign=1.0, slew_rate=0.05, dt=0.1, approach=0.0, characteristic_time=10.0)
 
 
 def table(text: str) -> list[float]:

@@ -13,7 +13,7 @@ from seatrial.core.values import Array
 from seatrial.physics.models import MODELS, model_named
 from seatrial.physics.models.abkowitz import TERMS
 from seatrial.physics.models.published import esso_osaka, kvlcc2
-from seatrial.physics.models.qi2025 import SHIP, theory
+from seatrial.physics.models.qi2025 import SHIP, theoretical_coefficients
 
 MIRRORED = {"v", "r", "r_rest", "psi", "y0", "delta", "wind_direction"}
 # parameters that change sign in the mirror; those split by side change places
@@ -32,9 +32,13 @@ def filled(name: str, rng: np.random.Generator) -> Model:
         return model.with_values(ABKOWITZ_SHIP | INERTIA | {"prime": 0.7} | terms)
     if name == "heave_pitch_strip":
         at_rest = {"a33": 6e5, "b33": 8e5, "a35_0": 5e6, "b35_0": 3e6, "a55_0": 1e8, "b55_0": 1.5e8}
-        return model.with_values({**at_rest, "lift_1": 2e6, "x_f1": -25.0}).of_ship(SHIP)
+        return model.with_values({**at_rest, "lift_1": 2e6, "x_f1": -25.0}).with_ship(SHIP)
     if name.startswith("heave_pitch"):
-        return theory(135).applied(model).with_values({"lift_1": 2e6, "x_f1": -25.0, "lift_2": 1e6, "x_f2": 20.0})
+        return (
+            theoretical_coefficients(135)
+            .applied_to(model)
+            .with_values({"lift_1": 2e6, "x_f1": -25.0, "lift_2": 1e6, "x_f2": 20.0})
+        )
     small = {p.name: float(rng.normal(scale=0.01)) for p in model.parameters if p.value == 0.0}
     return model.with_values(small | ({"A_T": 0.3, "A_L": 1.1, "U_0": 0.02} if name == "mmg" else {}))
 
@@ -113,7 +117,7 @@ def _parity(term: str) -> float:
 def test_berthing_speeds_are_finite(n: float, u: float, r: float) -> None:
     from seatrial.physics.models.mmg import mmg
 
-    model = esso_osaka().applied(mmg())
+    model = esso_osaka().applied_to(mmg())
     x, inputs = np.array([u, 0.0, r, 0.0, 0.0, 0.0]), np.array([0.3, n, 1.0, 1.0])
     jacobian = np.zeros((6, 6 + 4 + len(model.parameters)))
     out = np.empty(6)
@@ -147,7 +151,7 @@ def test_positive_rudder_turns_to_starboard() -> None:
 def test_wind_from_starboard_pushes_to_port_and_headwind_astern() -> None:
     from seatrial.physics.models.mmg import mmg
 
-    model = esso_osaka().applied(mmg())
+    model = esso_osaka().applied_to(mmg())
     states = np.zeros((2, 6))
     beam_and_head = np.array([[0.0, 0.0, 2.0, math.pi / 2], [0.0, 0.0, 2.0, 0.0]])
     forces = model.forces(states, beam_and_head)
@@ -160,7 +164,7 @@ def test_a_current_carries_ship_and_apparent_wind(rng: np.random.Generator) -> N
     """Water moving with the air's own velocity: no wind is felt aboard a ship adrift."""
     from seatrial.physics.models.mmg import mmg
 
-    model = esso_osaka().applied(mmg()).with_values({"current_north": -1.2, "current_east": 0.0, "U_0": 1e-9})
+    model = esso_osaka().applied_to(mmg()).with_values({"current_north": -1.2, "current_east": 0.0, "U_0": 1e-9})
     states = np.zeros((1, 6))
     states[0, 3] = rng.uniform(-3, 3)
     forces = model.forces(states, np.array([[0.0, 0.0, 1.2, 0.0]]))
@@ -195,11 +199,11 @@ def test_two_processes_generate_the_same_text() -> None:
 
 
 def test_every_equation_names_its_source() -> None:
-    from seatrial.core.equations.latex import equations
+    from seatrial.core.equations.latex import latex_equations
 
     for name in MODELS:
         model = model_named(name)
         assert all(b.source for b in (*model.bindings, *model.equations.rates)), name
-        lines = equations(model)
+        lines = latex_equations(model)
         assert len(lines) == len(model.bindings) + len(model.states)
         assert all(line.latex.count("{") == line.latex.count("}") for line in lines)

@@ -83,7 +83,7 @@ def test_a_subset_of_terms_is_a_mask() -> None:
 def test_parameter_sets_complete_their_model() -> None:
     for name in PARAMETER_SETS:
         chosen = parameter_set(name)
-        assert not chosen.applied(model_named(chosen.model)).parameters.missing
+        assert not chosen.applied_to(model_named(chosen.model)).parameters.missing
         assert chosen.source
         assert chosen.ship.source
     with pytest.raises(InputError, match="did you mean 'kvlcc2'"):
@@ -93,4 +93,4 @@ def test_parameter_sets_complete_their_model() -> None:
 def test_a_ship_without_propeller_is_told_what_is_missing() -> None:
     ship = parameter_set("kvlcc2").ship
     with pytest.raises(InputError, match=r"needs .*k_0.*w_P0"):
-        mmg().of_ship(ship)
+        mmg().with_ship(ship)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record
-from seatrial.estimation.estimate.fit import swing_period, swings
-from seatrial.estimation.identify import identified
+from seatrial.estimation.estimate.fit import dominant_period, is_pure_roll
+from seatrial.estimation.identify import estimate_model
 from seatrial.physics.models.heave_pitch import heave_pitch
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.roll import roll
@@ -20,7 +20,7 @@ def decayed(noise: float = 0.0) -> Record:
     """Released at 20 deg; only the angle is measured."""
     states, _ = trajectory(roll().with_values(TRUE), np.zeros((ROWS, 2)), DT, np.array([0.35, 0.0]))
     phi = states[:, 0] + noise * np.random.default_rng(1).standard_normal(ROWS)
-    return Record.of("decay", DT * np.arange(ROWS), {"phi": phi})
+    return Record.from_arrays("decay", DT * np.arange(ROWS), {"phi": phi})
 
 
 def test_energy_falls_by_the_work_of_damping() -> None:
@@ -37,7 +37,7 @@ def test_energy_falls_by_the_work_of_damping() -> None:
 def test_a_held_slope_heels_her_to_its_own_side(channel: str, per_radian: float) -> None:
     """To the angle itself in a wave slope held long; to K_alpha times the angle of fins."""
     ship = roll().with_values({"b_1": 1.0, "c_1": 4.0, "K_alpha": 0.256})
-    slope = Record.of("held", DT * np.arange(ROWS), {channel: np.full(ROWS, 0.05)})
+    slope = Record.from_arrays("held", DT * np.arange(ROWS), {channel: np.full(ROWS, 0.05)})
     states, _ = trajectory(ship, inputs_of(ship, slope), DT, np.zeros(2))
     assert states[-1, 0] == pytest.approx(per_radian * 0.05, rel=1e-6)
 
@@ -47,30 +47,30 @@ def test_forced_rolling_is_that_of_the_transfer_function() -> None:
     T, damping = np.sqrt(1.43242), 0.3796
     ship = roll().with_values({"b_1": damping / T**2, "c_1": 1.0 / T**2})
     time = 0.02 * np.arange(8000)
-    wave = Record.of("wave", time, {"alpha_w": 0.02 * np.cos(time / T)})
+    wave = Record.from_arrays("wave", time, {"alpha_w": 0.02 * np.cos(time / T)})
     states, _ = trajectory(ship, inputs_of(ship, wave), 0.02, np.zeros(2))
     assert np.abs(states[-1000:, 0]).max() == pytest.approx(0.02 * T / damping, rel=1e-3)
 
 
 def test_coefficients_come_back_without_a_guess() -> None:
     """From the angle alone, exact without noise; within four standard errors of .05 deg of it."""
-    exact = identified(roll(), [decayed()], ["decay"], 5.0)
-    np.testing.assert_allclose(exact.made.shared[:7], list(TRUE.values()), rtol=1e-6)
-    noisy = identified(roll(), [decayed(np.radians(0.05))], ["decay"], 5.0)
-    wrong = np.abs(noisy.made.shared[:7] - list(TRUE.values())) / noisy.interval.standard_error[:7]
+    exact = estimate_model(roll(), [decayed()], ["decay"], 5.0)
+    np.testing.assert_allclose(exact.estimate.common_parameters[:7], list(TRUE.values()), rtol=1e-6)
+    noisy = estimate_model(roll(), [decayed(np.radians(0.05))], ["decay"], 5.0)
+    wrong = np.abs(noisy.estimate.common_parameters[:7] - list(TRUE.values())) / noisy.interval.standard_error[:7]
     assert wrong.max() < 4.0
 
 
 def test_the_period_is_that_of_the_swing() -> None:
     """Within a per cent of 2 pi / sqrt(c_1) at small angles; nothing that stands still has one."""
     time = DT * np.arange(ROWS)
-    assert swing_period(0.1 * np.cos(2.0 * time) + 0.3, DT) == pytest.approx(np.pi, rel=0.01)
+    assert dominant_period(0.1 * np.cos(2.0 * time) + 0.3, DT) == pytest.approx(np.pi, rel=0.01)
     with pytest.raises(InputError, match="never swings"):
-        swing_period(np.ones(50), DT)
+        dominant_period(np.ones(50), DT)
 
 
 def test_only_ships_without_heading_and_speed_swing() -> None:
     """A steered ship does not, whatever her model."""
-    assert swings(roll())
-    assert swings(heave_pitch())
-    assert not swings(nomoto())
+    assert is_pure_roll(roll())
+    assert is_pure_roll(heave_pitch())
+    assert not is_pure_roll(nomoto())

@@ -9,11 +9,11 @@ from scipy.integrate import quad
 from seatrial.core.values import InputError
 from seatrial.physics.hydro.excitation import BoxHull
 from seatrial.physics.sea.realise import (
-    Lines,
     Spacing,
+    WaveComponents,
     above_nyquist,
     realise,
-    refuse_short,
+    refuse_short_record,
     repetition_period,
     short_crested,
     spread_angle,
@@ -38,7 +38,7 @@ def test_the_published_sea_repeats_after_84_s_abeam() -> None:
     time = np.arange(0.0, 20.0, 0.1)
 
     def envelope(start: float) -> np.ndarray:
-        return np.abs(np.exp(1j * np.outer(time + start, lines.encounter)) @ lines.amplitude)
+        return np.abs(np.exp(1j * np.outer(time + start, lines.omega_e)) @ lines.amplitude)
 
     np.testing.assert_allclose(envelope(0.0), envelope(period), atol=1e-9)
 
@@ -99,24 +99,24 @@ def test_lines_above_nyquist_are_named() -> None:
 
 def test_a_record_shorter_than_the_longest_wave_is_refused() -> None:
     lines = realise(SEA, 0.0, math.pi, np.random.default_rng(0))
-    for made in (lambda: refuse_short(lines, 5.0), lambda: wave_record(lines, np.arange(0.0, 5.0, 0.1))):
+    for made in (lambda: refuse_short_record(lines, 5.0), lambda: wave_record(lines, np.arange(0.0, 5.0, 0.1))):
         with pytest.raises(InputError, match="too short for its longest wave"):
             made()
-    refuse_short(lines, 11.0)
+    refuse_short_record(lines, 11.0)
 
 
 def test_in_following_seas_only_the_longest_wave_has_to_pass() -> None:
     lines = realise(SEA, 9.26, 0.0, np.random.default_rng(0), count=200)
-    assert 2 * math.pi / np.abs(lines.encounter).min() > 600.0
-    refuse_short(lines, 60.0)
+    assert 2 * math.pi / np.abs(lines.omega_e).min() > 600.0
+    refuse_short_record(lines, 60.0)
 
 
 def test_all_lines_above_nyquist_are_told() -> None:
     lines = realise(SEA, 9.26, math.pi, np.random.default_rng(0))
     beyond = above_nyquist(lines, 0.5)
     assert 1 < beyond.size < len(lines.omega)
-    assert np.abs(lines.encounter[beyond]).min() > 2 * math.pi
-    assert np.abs(np.delete(lines.encounter, beyond)).max() <= 2 * math.pi
+    assert np.abs(lines.omega_e[beyond]).min() > 2 * math.pi
+    assert np.abs(np.delete(lines.omega_e, beyond)).max() <= 2 * math.pi
     with pytest.raises(InputError, match=f"{beyond.size} lines lie above"):
         wave_record(lines, np.arange(0.0, 100.0, 0.5))
 
@@ -129,9 +129,9 @@ def test_headway_and_other_spacings_do_not_repeat() -> None:
 
 
 def test_the_elevation_is_the_sum_of_its_cosines() -> None:
-    lines = Lines(np.array([0.5, 1.2]), np.array([1.0, 0.5j]), np.array([math.pi, 0.5]), 3.0)
+    lines = WaveComponents(np.array([0.5, 1.2]), np.array([1.0, 0.5j]), np.array([math.pi, 0.5]), 3.0)
     time = np.linspace(0.0, 30.0, 50)
-    first, second = lines.encounter
+    first, second = lines.omega_e
     np.testing.assert_allclose(lines.elevation(time), np.cos(first * time) - 0.5 * np.sin(second * time), atol=1e-12)
     assert lines.variance == pytest.approx(0.625)
 

@@ -6,7 +6,7 @@ import pytest
 from seatrial.core.values import Record
 from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate import inputs_of, replay
-from seatrial.physics.simulate.batch import Batch, InputCorrection
+from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
 
 ROWS, DT = 120, 0.25
 START = {"u": 0.9, "v": 0.02, "r": -0.01, "psi": 0.3, "x0": 5.0, "y0": -2.0}
@@ -17,19 +17,19 @@ def plan(shift: float = 0.0, zero: float = 0.0, gain: float = 1.0) -> Record:
     """A smooth steering programme, later by `shift`, with its nozzle angle times `gain` plus `zero`."""
     time = DT * np.arange(ROWS)
     delta = gain * 0.3 * np.sin(0.4 * (time - shift)) + zero
-    return Record.of("plan", time, {"delta": delta, "v_j": 1.8 + 0.1 * np.cos(0.1 * time)})
+    return Record.from_arrays("plan", time, {"delta": delta, "v_j": 1.8 + 0.1 * np.cos(0.1 * time)})
 
 
-def batch(records: tuple[Record, ...], corrections: tuple[InputCorrection, ...] = ()) -> Batch:
+def batch(records: tuple[Record, ...], corrections: tuple[InputCorrection, ...] = ()) -> SegmentBatch:
     model = waterjet()
     inputs = np.concatenate([inputs_of(model, r) for r in records])
-    return Batch(model, inputs, ROWS * np.arange(len(records) + 1), DT, OUTPUTS, corrections=corrections)
+    return SegmentBatch(model, inputs, ROWS * np.arange(len(records) + 1), DT, OUTPUTS, corrections=corrections)
 
 
-def simulated(of: Batch, corrections: np.ndarray) -> np.ndarray:
-    start = np.tile([START[s] for s in of.model.states], (of.count, 1))
-    values = np.tile(of.model.parameters.values, (of.count, 1))
-    return of.simulate(0, of.count, start, values, corrections)[0]
+def simulated(of: SegmentBatch, corrections: np.ndarray) -> np.ndarray:
+    start = np.tile([START[s] for s in of.model.states], (of.segment_count, 1))
+    values = np.tile(of.model.parameters.values, (of.segment_count, 1))
+    return of.simulate(0, of.segment_count, start, values, corrections)[0]
 
 
 def test_segments_equal_replays_bit_for_bit() -> None:

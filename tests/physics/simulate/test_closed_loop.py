@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 from scipy.signal import lsim
 
 from seatrial.core.values import Array, DivergedError, InputError, Parameter, Parameters, Record
-from seatrial.numerics.kernels.feedback import lifting
+from seatrial.numerics.kernels.feedback import effective_angle
 from seatrial.physics.loops import Block, Term, TransferLoop
 from seatrial.physics.loops.fin import Preamplifier, fin_loop
 from seatrial.physics.loops.state_space import plant_model, state_space
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.waterjet import waterjet
-from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop, closed_loop, held
+from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop, closed_loop, hold_equivalent
 
 WASHOUT, PRINTED = fin_loop(Preamplifier.WASHOUT), fin_loop(Preamplifier.PRINTED)
 FINS = {"actuator": "alpha_f", "disturbance_input": "alpha_w", "output": "phi"}
@@ -46,7 +46,7 @@ def swell(time: Array) -> Array:
 def rolled(loop: TransferLoop, dt: float, duration: float = 120.0, size: float = 1.0, **limits: float) -> Record:
     disturbance = size * swell(np.arange(0.0, duration, dt))
     return closed_loop(
-        plant_model(loop), loop, loop.values, disturbance, dt, limits=ActuatorLimits(**limits), **FINS
+        plant_model(loop), loop, loop.gain_values, disturbance, dt, limits=ActuatorLimits(**limits), **FINS
     )  # fmt: skip
 
 
@@ -54,8 +54,8 @@ def exact(loop: TransferLoop, time: Array, finer: int) -> tuple[Array, Array]:
     """Output and actuator by exact steps `finer` times shorter."""
     fine = np.linspace(time[0], time[-1], (len(time) - 1) * finer + 1)
     made = state_space(loop)
-    rows = np.stack([made.c, made.actuator(loop.values)])
-    system = (made.closed(loop.values), made.b[:, None], rows, np.zeros((2, 1)))
+    rows = np.stack([made.c, made.actuator_row(loop.gain_values)])
+    system = (made.closed_loop_matrix(loop.gain_values), made.b[:, None], rows, np.zeros((2, 1)))
     _, seen, _ = lsim(system, swell(fine), fine)
     return seen[::finer, 0], seen[::finer, 1]
 
@@ -88,14 +88,14 @@ def test_the_error_falls_with_the_square_of_the_step() -> None:
 def test_a_steady_wave_gives_the_frequency_response(omega: float, loop: TransferLoop) -> None:
     dt, periods = 0.05, 12
     time = np.arange(0.0, 400.0 + periods * 2.0 * math.pi / omega, dt)
-    record = closed_loop(plant_model(loop), loop, loop.values, 0.01 * np.sin(omega * time), dt, **FINS)
+    record = closed_loop(plant_model(loop), loop, loop.gain_values, 0.01 * np.sin(omega * time), dt, **FINS)
     late = time > 400.0
     table = np.stack([np.sin(omega * time), np.cos(omega * time), np.ones(len(time))], axis=1)[late]
     a, b, _ = np.linalg.lstsq(table, record["phi"][late] / 0.01, rcond=None)[0]
     at = np.array([omega])
-    wanted = complex((loop.disturbance.at(at) / (1.0 + loop.open(at)))[0])
+    wanted = complex((loop.disturbance.frequency_response(at) / (1.0 + loop.open_loop(at)))[0])
     # second order in the step, and as sensitive as the loop itself
-    sensitivity = 1.0 / abs(1.0 + complex(loop.open(at)[0]))
+    sensitivity = 1.0 / abs(1.0 + complex(loop.open_loop(at)[0]))
     assert abs(complex(a, b) - wanted) < (omega * dt) ** 2 * max(sensitivity, 1.0) * abs(wanted) + 1e-4 * abs(wanted)
 
 
@@ -115,9 +115,9 @@ def test_angle_and_rate_stay_within_their_limits(size: float, limit: float, rate
 def test_beyond_stall_the_effect_falls() -> None:
     """As steeply as it rose where nothing else is said, evenly on either side, and never turns round."""
     angles = np.radians([-40.0, -22.0, -18.0, 0.0, 10.0, 18.0, 20.0, 22.0, 40.0])
-    effective = [math.degrees(lifting(a, math.radians(18.0), 1.0)) for a in angles]
+    effective = [math.degrees(effective_angle(a, math.radians(18.0), 1.0)) for a in angles]
     assert effective == pytest.approx([0.0, -14.0, -18.0, 0.0, 10.0, 18.0, 16.0, 14.0, 0.0], abs=1e-9)
-    assert lifting(0.5, 0.3, 0.0) == 0.3
+    assert effective_angle(0.5, 0.3, 0.0) == 0.3
 
 
 def test_stall_costs_more_than_limits() -> None:
@@ -192,7 +192,7 @@ def test_values_held_act_as_the_smooth_series(omega: float) -> None:
 
     def error(dt: float) -> float:
         time = np.arange(0.0, 40.0, dt)
-        u = held(np.sin(omega * time))
+        u = hold_equivalent(np.sin(omega * time))
         speed = np.concatenate([[0.0], np.cumsum(u * dt)])[:-1]
         y = np.concatenate([[0.0], np.cumsum(speed * dt + 0.5 * u * dt**2)])[:-1]
         exactly = time / omega - np.sin(omega * time) / omega**2
@@ -207,24 +207,24 @@ def test_values_held_act_as_the_smooth_series(omega: float) -> None:
 def test_a_loop_that_runs_away_is_said_to() -> None:
     loop = fin_loop(Preamplifier.PRINTED)
     with pytest.raises(DivergedError, match=r"diverges.*left its bounds|runs away"):
-        closed_loop(plant_model(loop), loop, -3.0 * loop.values, np.full(40_001, 0.01), 0.1, **FINS)
+        closed_loop(plant_model(loop), loop, -3.0 * loop.gain_values, np.full(40_001, 0.01), 0.1, **FINS)
 
 
 def test_what_does_not_fit_is_named() -> None:
     model, w = plant_model(WASHOUT), np.zeros(10)
     with pytest.raises(InputError, match="needs 'theta' as state"):
-        closed_loop(model, WASHOUT, WASHOUT.values, w, 0.1, **{**FINS, "output": "theta"})
+        closed_loop(model, WASHOUT, WASHOUT.gain_values, w, 0.1, **{**FINS, "output": "theta"})
     with pytest.raises(InputError, match="needs 'delta' as input"):
-        closed_loop(model, WASHOUT, WASHOUT.values, w, 0.1, **{**FINS, "actuator": "delta"})
+        closed_loop(model, WASHOUT, WASHOUT.gain_values, w, 0.1, **{**FINS, "actuator": "delta"})
     with pytest.raises(InputError, match="3 finite gains: KP, KI, KD"):
         closed_loop(model, WASHOUT, np.ones(2), w, 0.1, **FINS)
     with pytest.raises(InputError, match="without gaps"):
-        closed_loop(model, WASHOUT, WASHOUT.values, np.full(10, np.nan), 0.1, **FINS)
+        closed_loop(model, WASHOUT, WASHOUT.gain_values, np.full(10, np.nan), 0.1, **FINS)
     with pytest.raises(InputError, match="same number of samples"):
-        closed_loop(model, WASHOUT, WASHOUT.values, w, 0.1, reference=np.zeros(9), **FINS)
+        closed_loop(model, WASHOUT, WASHOUT.gain_values, w, 0.1, reference=np.zeros(9), **FINS)
     with pytest.raises(InputError, match=r"step of a loop .* must be positive"):
-        closed_loop(model, WASHOUT, WASHOUT.values, w, 0.0, **FINS)
+        closed_loop(model, WASHOUT, WASHOUT.gain_values, w, 0.0, **FINS)
     with pytest.raises(InputError, match="2 finite values for 'start'"):
-        ClosedLoop(model, WASHOUT, WASHOUT.values, 0.1, "alpha_f", "alpha_w", "phi", start=np.zeros(3))
+        ClosedLoop(model, WASHOUT, WASHOUT.gain_values, 0.1, "alpha_f", "alpha_w", "phi", start=np.zeros(3))
     with pytest.raises(InputError, match="actuator's rate must be positive"):
         ActuatorLimits(rate=0.0)

@@ -5,8 +5,8 @@ import pytest
 from numpy.typing import NDArray
 
 from seatrial.physics.models.waterjet import waterjet
-from seatrial.physics.simulate.batch import Batch, InputCorrection
-from seatrial.physics.simulate.filtering import Filter, Noisy, corrected
+from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
+from seatrial.physics.simulate.filtering import FilterPoint, KalmanFilter, corrected_inputs
 
 Array = NDArray[np.float64]
 OUTPUTS = ("u", "v", "r", "psi", "x0", "y0")
@@ -27,10 +27,10 @@ def test_without_gain_it_simulates(inputs: Array, substeps: int, delay: float) -
     values = np.tile(model.parameters.values, (2, 1))
     own = np.array([[0.02, 1.1, delay], [-0.01, 0.9, delay]])
     names = ("Y_v", "N_r")
-    plain = Batch(model, inputs, offsets, DT, OUTPUTS, names, CORRECTIONS, substeps=substeps)
+    plain = SegmentBatch(model, inputs, offsets, DT, OUTPUTS, names, CORRECTIONS, substeps=substeps)
     y, s, _ = plain.differentiate(0, 2, START, values, own)
-    run = Filter(model, inputs, offsets, DT, OUTPUTS, names, CORRECTIONS, substeps=substeps)
-    at = Noisy(START, np.zeros((2, 6)), values, own, np.zeros(0), np.ones(6))
+    run = KalmanFilter(model, inputs, offsets, DT, OUTPUTS, names, CORRECTIONS, substeps=substeps)
+    at = FilterPoint(START, np.zeros((2, 6)), values, own, np.zeros(0), np.ones(6))
     for segment in range(2):
         rows = slice(segment * ROWS, (segment + 1) * ROWS)
         e, v, de, _, failed = run.sensitivities(segment, np.zeros((2 * ROWS, 6)), at)
@@ -42,11 +42,11 @@ def test_without_gain_it_simulates(inputs: Array, substeps: int, delay: float) -
 
 def test_corrections_have_their_derivatives(inputs: Array) -> None:
     gain, zero, delay = np.array([1.1, 0.9]), np.array([0.02, -0.1]), np.array([0.33, -0.4])
-    _, weights = corrected(inputs, DT, gain, zero, delay)
+    _, weights = corrected_inputs(inputs, DT, gain, zero, delay)
     for j in range(2):
         one = 1e-7 * (np.arange(2) == j)
         sides = [
-            [corrected(inputs, DT, gain + k * g, zero + k * z, delay + k * d)[0]
+            [corrected_inputs(inputs, DT, gain + k * g, zero + k * z, delay + k * d)[0]
              for z, g, d in ((one, 0.0, 0.0), (0.0, one, 0.0), (0.0, 0.0, one))]
             for k in (1, -1)
         ]  # fmt: skip

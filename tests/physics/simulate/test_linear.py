@@ -6,9 +6,9 @@ from scipy.integrate import solve_ivp
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array
-from seatrial.physics.models.heave_pitch import COEFFICIENTS, heave_pitch, heave_pitch_held
-from seatrial.physics.models.qi2025 import HEADINGS, theory
-from seatrial.physics.simulate.batch import Batch, InputCorrection
+from seatrial.physics.models.heave_pitch import COEFFICIENTS, heave_pitch, heave_pitch_zoh
+from seatrial.physics.models.qi2025 import HEADINGS, theoretical_coefficients
+from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
 from seatrial.physics.simulate.linear import LinearBatch
 
 FIN = {"lift_1": 7.9e5, "x_f1": -25.0}
@@ -17,8 +17,8 @@ CORRECTIONS = (InputCorrection("F3", "gain"), InputCorrection("M5", "delay"), In
 
 
 def ship(heading: int = 135, held: bool = False) -> Model:
-    model = theory(heading).applied(heave_pitch())
-    return (heave_pitch_held().with_parameters(model.parameters) if held else model).with_values(FIN)
+    model = theoretical_coefficients(heading).applied_to(heave_pitch())
+    return (heave_pitch_zoh().with_parameters(model.parameters) if held else model).with_values(FIN)
 
 
 def waves(time: Array) -> tuple[Array, Array]:
@@ -112,6 +112,6 @@ def test_runge_kutta_agrees_where_its_steps_are_fine(rng: np.random.Generator) -
     u[:, 2] = 0.0
     args = (model, u, np.array([0, 501]), 0.02, ("z", "theta"))
     point = (np.zeros((1, 4)), model.parameters.values[None], np.empty((1, 0)))
-    exact, rk4 = LinearBatch(*args).simulate(0, 1, *point)[0], Batch(*args).simulate(0, 1, *point)[0]
+    exact, rk4 = LinearBatch(*args).simulate(0, 1, *point)[0], SegmentBatch(*args).simulate(0, 1, *point)[0]
     scale = np.abs(exact).max(axis=0)  # inputs straight between samples there: (omega h)^2 / 12 = 2e-4
     np.testing.assert_allclose(exact / scale, rk4 / scale, atol=3e-4)

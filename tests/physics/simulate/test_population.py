@@ -10,10 +10,10 @@ from scipy.signal import lsim
 
 from seatrial.core.values import Array, InputError
 from seatrial.physics.models.heave_pitch import COEFFICIENTS
-from seatrial.physics.models.qi2025 import SHIP, theory
+from seatrial.physics.models.qi2025 import SHIP, theoretical_coefficients
 from seatrial.physics.simulate.population import (
     Forcing,
-    completed,
+    complete_parameters,
     discretised_hold,
     discretised_ramp,
     fitness,
@@ -27,9 +27,9 @@ AT_REST, SIGMA = np.zeros(4), np.array([0.01, 3.5e-4])
 
 
 def plants(rng: np.random.Generator, count: int, spread: float = 0.3) -> tuple[Array, Array]:
-    truth = np.array([theory(90).values[name] for name in COEFFICIENTS])
+    truth = np.array([theoretical_coefficients(90).values[name] for name in COEFFICIENTS])
     around = truth * (1.0 + spread * rng.uniform(-1.0, 1.0, (count, 8)))
-    return heave_pitch_matrices(completed(around, SHIP.particulars))
+    return heave_pitch_matrices(complete_parameters(around, SHIP.particulars))
 
 
 def waves(rng: np.random.Generator, rows: int = SAMPLES) -> Array:
@@ -135,7 +135,7 @@ def test_energy_decays_without_input(seed: int) -> None:
 
 
 def test_what_cannot_be_simulated_has_infinite_fitness(rng: np.random.Generator) -> None:
-    parameters = completed(np.full((5, 8), 1e5), SHIP.particulars)
+    parameters = complete_parameters(np.full((5, 8), 1e5), SHIP.particulars)
     parameters[1, 2] = np.nan
     parameters[2, 6:10] = -1e12
     parameters[3, 2], parameters[3, 3], parameters[3, 4], parameters[3, 5] = -SHIP.particulars["m"], 0.0, 0.0, 0.0
@@ -158,7 +158,7 @@ def test_one_sample_fitness_is_one_step(rng: np.random.Generator) -> None:
 
 
 def test_matrices_are_those_of_the_equations_of_motion(rng: np.random.Generator) -> None:
-    parameters = completed(rng.uniform(1e5, 1e6, (7, 8)), SHIP.particulars)
+    parameters = complete_parameters(rng.uniform(1e5, 1e6, (7, 8)), SHIP.particulars)
     A, B = heave_pitch_matrices(parameters)
     for row, a, b in zip(parameters, A, B, strict=True):
         m, i5, a33, a35, a55, a53, b33, b35, b55, b53, c33, c35, c53, c55 = row

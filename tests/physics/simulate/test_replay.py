@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.core.values import Channel, InputError, Kind, Record, frozen
+from seatrial.core.values import Channel, InputError, Record, RecordKind, frozen
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.waterjet import waterjet
@@ -18,7 +18,7 @@ K, T, DELTA = 0.1, 10.0, 0.2
 
 def step_record(rate: float = 10.0) -> Record:
     time = np.arange(int(60 * rate) + 1) / rate
-    return Record.of("step", time, {"delta": np.full(len(time), DELTA)})
+    return Record.from_arrays("step", time, {"delta": np.full(len(time), DELTA)})
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +33,7 @@ def test_step_response_of_nomoto_in_closed_form() -> None:
     decay = 1.0 - np.exp(-made.time / T)
     assert made["r"] == pytest.approx(K * DELTA * decay, abs=1e-9)
     assert made["psi"] == pytest.approx(K * DELTA * (made.time - T * decay), abs=1e-8)
-    assert made.kind is Kind.SIMULATED
+    assert made.kind is RecordKind.SIMULATED
 
 
 def test_substeps_are_of_fourth_order() -> None:

@@ -14,122 +14,125 @@ from seatrial.core.results import Verdict
 from seatrial.core.values import InputError
 from seatrial.data.folder.fit_json import strict_json
 from seatrial_studies.section2d import tank, verdicts
-from seatrial_studies.section2d.modes import halves, jackknife
-from seatrial_studies.section2d.numbers import Numbers, numbers
-from seatrial_studies.section2d.runs import STEADY, periods
+from seatrial_studies.section2d.analysis import SectionAnalysis, analyse_records
+from seatrial_studies.section2d.modes import jackknife_error, split_periods
+from seatrial_studies.section2d.runs import STEADY_TIMING, read_periods
 from seatrial_studies.section2d.study import study
-from seatrial_studies.section2d.tables import tables, worst
+from seatrial_studies.section2d.tables import largest_errors, tables
 
 
 @pytest.fixture(scope="module")
-def made(data_folder: Path) -> Iterator[Numbers]:
+def made(data_folder: Path) -> Iterator[SectionAnalysis]:
     folder = data_folder / "section2d_waves"
     if not folder.is_dir():
         pytest.skip("the section's records are not here")
-    yield numbers(folder, quick=True, progress=None)
+    yield analyse_records(folder, quick=True, report_progress=None)
 
 
-def test_periods_held_out_between_trained_ones_are_predicted(made: Numbers) -> None:
+def test_periods_held_out_between_trained_ones_are_predicted(made: SectionAnalysis) -> None:
     for fit in (made.heave, made.roll):
-        amplitude, phase = worst(fit)
+        amplitude, phase = largest_errors(fit)
         assert amplitude <= 1.5 and phase <= 1.5
-        held = [s for s in fit.scores if not s.trained]
-        assert len({s.response.run.index for s in held}) >= 2
+        held = [s for s in fit.scores if not s.is_training]
+        assert len({s.response.run.period_index for s in held}) >= 2
 
 
-def test_natural_periods_are_the_documented_ones(made: Numbers) -> None:
+def test_natural_periods_are_the_documented_ones(made: SectionAnalysis) -> None:
     assert made.heave.period == pytest.approx(tank.HEAVE_PERIOD, rel=0.01)
     assert made.roll.period == pytest.approx(tank.ROLL_PERIOD, rel=0.01)
 
 
-def test_nothing_of_a_held_out_period_trains(made: Numbers) -> None:
+def test_nothing_of_a_held_out_period_trains(made: SectionAnalysis) -> None:
     """Changing what was measured there leaves the trained oscillator as it is."""
-    from seatrial_studies.section2d.modes import HEAVE, mode_fit
+    from seatrial_studies.section2d.modes import HEAVE, fit_mode
 
-    held = {s.response.run.name for s in made.heave.scores if not s.trained}
+    held = {s.response.run.name for s in made.heave.scores if not s.is_training}
     bent = [replace(r, heave=1.1 * r.heave) if r.run.name in held else r for r in made.responses]
-    again = mode_fit(HEAVE, bent)
-    assert again.trained.oscillator == made.heave.trained.oscillator
-    assert worst(again)[0] > 5.0
+    again = fit_mode(HEAVE, bent)
+    assert again.half_of_periods.oscillator == made.heave.half_of_periods.oscillator
+    assert largest_errors(again)[0] > 5.0
 
 
-def test_sway_stiffness_meets_the_documented_range(made: Numbers) -> None:
+def test_sway_stiffness_meets_the_documented_range(made: SectionAnalysis) -> None:
     low, high = tank.SWAY_STIFFNESS
-    assert made.springs.mean - 2.0 * made.springs.error <= high and made.springs.mean + 2.0 * made.springs.error >= low
-    assert made.springs.error < 1.0
+    assert (
+        made.sway_stiffness.mean - 2.0 * made.sway_stiffness.error <= high
+        and made.sway_stiffness.mean + 2.0 * made.sway_stiffness.error >= low
+    )
+    assert made.sway_stiffness.error < 1.0
 
 
-def test_friction_in_the_guide_is_dry(made: Numbers) -> None:
+def test_friction_in_the_guide_is_dry(made: SectionAnalysis) -> None:
     assert made.guide.exponent + 2.0 * made.guide.error < -0.5
     near = [f for f in made.guide.runs if f.run.startswith("3102")]
-    assert all(7.0 < f.damping < 9.0 and f.third == pytest.approx(1.0 / 3.0, abs=0.08) for f in near)
-    assert verdicts.rig_damping(made).verdict is Verdict.REFUTED
+    assert all(7.0 < f.damping < 9.0 and f.third_harmonic_ratio == pytest.approx(1.0 / 3.0, abs=0.08) for f in near)
+    assert verdicts.rig_damping_claim(made).verdict is Verdict.REFUTED
     linear = replace(made, guide=replace(made.guide, exponent=0.05, error=0.2))
-    assert verdicts.rig_damping(linear).verdict is Verdict.CONFIRMED
+    assert verdicts.rig_damping_claim(linear).verdict is Verdict.CONFIRMED
 
 
-def test_dead_camera_channels_are_found_and_no_others(made: Numbers) -> None:
-    assert {f.what.split(":")[0] for f in made.dead} == {"3102_4", "4061_2"}
+def test_dead_camera_channels_are_found_and_no_others(made: SectionAnalysis) -> None:
+    assert {f.message.split(":")[0] for f in made.dead_channel_findings} == {"3102_4", "4061_2"}
 
 
-def test_the_waves_have_their_nominal_height(made: Numbers) -> None:
-    ratios = [2.0 * r.wave / tank.HEIGHTS[r.run.height] for r in made.responses if r.run.period > 0.85]
+def test_the_waves_have_their_nominal_height(made: SectionAnalysis) -> None:
+    ratios = [2.0 * r.wave_amplitude / tank.HEIGHTS[r.run.height_index] for r in made.responses if r.run.period > 0.85]
     assert np.mean(ratios) == pytest.approx(1.0, abs=0.03) and np.ptp(ratios) < 0.06
 
 
-def test_energy_is_not_made_by_the_section(made: Numbers) -> None:
-    assert all(r.back**2 + r.beyond**2 < 1.05 for r in made.responses)
+def test_energy_is_not_made_by_the_section(made: SectionAnalysis) -> None:
+    assert all(r.reflected_ratio**2 + r.transmitted_ratio**2 < 1.05 for r in made.responses)
 
 
-def test_the_stretch_lies_between_ramp_and_reflection(made: Numbers) -> None:
+def test_the_stretch_lies_between_ramp_and_reflection(made: SectionAnalysis) -> None:
     for r in made.responses:
-        start, stop = r.run.window(STEADY)
-        assert r.run.strokes[1] < start < stop <= r.run.record.time[-1]
+        start, stop = r.run.steady_window(STEADY_TIMING)
+        assert r.run.stroke_times[1] < start < stop <= r.run.record.time[-1]
 
 
-def test_accelerometers_and_camera_differ_by_the_known_gain(made: Numbers) -> None:
+def test_accelerometers_and_camera_differ_by_the_known_gain(made: SectionAnalysis) -> None:
     from seatrial_studies.section2d.instruments import camera_gain
 
     assert camera_gain(made)[0] == pytest.approx(1.13, abs=0.03)
 
 
-def test_without_a_tie_the_added_mass_is_open(made: Numbers) -> None:
-    plain, linear, quadratic = (made.untied[k][0] for k in (0, 1, 2))
+def test_without_a_tie_the_added_mass_is_open(made: SectionAnalysis) -> None:
+    plain, linear, quadratic = (made.untied_errors[k][0] for k in (0, 1, 2))
     assert plain < 1.0 < 20.0 < linear < quadratic
 
 
-def test_claims_and_checks_can_come_out_the_other_way(made: Numbers) -> None:
-    off = replace(made, heave=replace(made.heave, period=1.25), dead=())
-    assert verdicts.natural(off.heave).verdict is Verdict.REFUTED
+def test_claims_and_checks_can_come_out_the_other_way(made: SectionAnalysis) -> None:
+    off = replace(made, heave=replace(made.heave, period=1.25), dead_channel_findings=())
+    assert verdicts.natural_period_claim(off.heave).verdict is Verdict.REFUTED
     assert [c.name for c in verdicts.checks(off) if not c.holds] == [
         "heave, natural period off the documented [%]",
         "runs with dead camera channels",
     ]
-    assert verdicts.one_clock(replace(made, dead=(), clocks={})).verdict is Verdict.CONFIRMED
+    assert verdicts.common_clock_claim(replace(made, dead_channel_findings=(), clocks={})).verdict is Verdict.CONFIRMED
     assert all(c.holds for c in verdicts.checks(made))
 
 
-def test_every_table_has_as_many_cells_as_its_header(made: Numbers) -> None:
+def test_every_table_has_as_many_cells_as_its_header(made: SectionAnalysis) -> None:
     for table in tables(made):
         assert table.rows and all(len(row) == len(table.header) for row in table.rows), table.title
 
 
 def test_half_of_the_periods_train_and_the_extremes_are_among_them() -> None:
-    assert halves([2, 4, 6, 8, 10, 11, 13, 4]) == ((2, 6, 10, 13), (4, 8, 11))
-    assert halves([4, 6, 9, 11, 11]) == ((4, 11), (6, 9))
+    assert split_periods([2, 4, 6, 8, 10, 11, 13, 4]) == ((2, 6, 10, 13), (4, 8, 11))
+    assert split_periods([4, 6, 9, 11, 11]) == ((4, 11), (6, 9))
 
 
 def test_the_jackknife_of_a_mean_is_its_standard_error(rng: np.random.Generator) -> None:
     x = rng.standard_normal(12)
     left = [float(np.mean(np.delete(x, k))) for k in range(12)]
-    assert jackknife(left) == pytest.approx(float(np.std(x, ddof=1) / np.sqrt(12)))
+    assert jackknife_error(left) == pytest.approx(float(np.std(x, ddof=1) / np.sqrt(12)))
 
 
-def test_the_command_writes_a_page(made: Numbers, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_command_writes_a_page(made: SectionAnalysis, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     module = importlib.import_module("seatrial_studies.section2d.study")
     monkeypatch.setattr(module, "data_folder", lambda: tmp_path)
-    monkeypatch.setattr(module, "numbers", lambda *_, **__: made)
-    done = study(quick=True, seed=0, progress=None)
+    monkeypatch.setattr(module, "analyse_records", lambda *_, **__: made)
+    done = study(quick=True, seed=0, report_progress=None)
     page = api.save_study(done, tmp_path / "out")
     table = json.loads(strict_json(done.as_table()))
     assert table["study"] == "section2d" and len(table["checks"]) == 8 and "Haskind" in page.read_text()
@@ -152,4 +155,4 @@ def test_without_the_records_it_says_one_sentence(
 def test_a_broken_list_of_periods_is_named(tmp_path: Path) -> None:
     (tmp_path / "periods.csv").write_text("index,period_s\n1,1.2\n")
     with pytest.raises(InputError, match="index, period in s"):
-        periods(tmp_path / "periods.csv")
+        read_periods(tmp_path / "periods.csv")

@@ -8,99 +8,101 @@ from seatrial.data.example_series.series import JET_VELOCITY
 from seatrial_studies.song2025 import audited_equations as equations
 from seatrial_studies.song2025 import audited_motions as motions
 from seatrial_studies.song2025 import audited_tables as tables
+from seatrial_studies.song2025.assumed_parameters import assumed_parameter_sets
 from seatrial_studies.song2025.audit import audit
-from seatrial_studies.song2025.choices import choices
-from seatrial_studies.song2025.crafts import TRUTH, reference
-from seatrial_studies.song2025.published import APPROACH_SPEED, TABLE_3, Equation, Run
+from seatrial_studies.song2025.craft_models import TRUTH, reference_record
+from seatrial_studies.song2025.published import APPROACH_SPEED, TABLE_3, MotionEquation, PublishedManoeuvre
 
 
 @pytest.fixture(scope="module")
 def seen():
-    return audit(choices()[1:3])
+    return audit(assumed_parameter_sets()[1:3])
 
 
 def test_with_the_printed_n_v_the_turn_reverses_and_no_zigzag_finishes(seen):
-    mended, printed = seen.turn.yaw_rates
+    mended, printed = seen.reversed_turn.yaw_rates
     assert mended == pytest.approx(2.21, abs=0.01)
     assert printed < 0.0
-    assert seen.turn.finished == (3, 0)
+    assert seen.reversed_turn.completed_zigzags == (3, 0)
 
 
 def test_with_the_printed_y_vv_sway_is_driven_and_every_run_diverges(seen):
-    assert all(math.isfinite(s) for s in seen.undamped.diverges.values())
-    assert seen.undamped.drift == pytest.approx(24.6, abs=0.1)
+    assert all(math.isfinite(s) for s in seen.undamped_sway.divergence_times.values())
+    assert seen.undamped_sway.critical_drift == pytest.approx(24.6, abs=0.1)
 
 
 def test_with_y_vv_turned_table_4_s_correlations_come_back(seen):
-    for run in (Run.ZIGZAG_35, Run.TURN_35):
-        assert all(cc > 0.995 for cc in seen.undamped.mended[run].cc.values())
+    for run in (PublishedManoeuvre.ZIGZAG_35, PublishedManoeuvre.TURN_35):
+        assert all(cc > 0.995 for cc in seen.undamped_sway.corrected_accuracy[run].cc.values())
 
 
 def test_the_signs_are_misprints_whatever_was_chosen(seen):
-    assert [h.choice for h in seen.held] == ["fresh water", "m_x 0.67 times"]
-    for of in seen.held:
-        assert of.confirms
-        assert min(of.cc.values()) > 0.995
+    assert [h.assumption for h in seen.sign_checks] == ["fresh water", "m_x 0.67 times"]
+    for of in seen.sign_checks:
+        assert of.confirms_misprints
+        assert min(of.corrected_cc.values()) > 0.995
 
 
 def test_choices_move_one_parameter_each():
-    values = [dict(c.values) for c in choices()]
+    values = [dict(c.values) for c in assumed_parameter_sets()]
     assert values[0] == {}
     assert all(len(v) == 1 for v in values[1:])
     assert len({tuple(v.items()) for v in values}) == len(values)
 
 
 def test_alpha_v_makes_turns_differ_by_side(seen):
-    starboard, port = seen.one_sided.jet_turns
+    starboard, port = seen.asymmetry.jet_yaw_rates
     assert starboard > 1.05 * -port > 0.0
-    left, right = seen.one_sided.mended_turns
+    left, right = seen.asymmetry.corrected_yaw_rates
     assert left == pytest.approx(-right, rel=1e-9)
 
 
 def test_even_forces_do_not_turn_with_the_craft(seen):
-    for mended, printed in seen.one_sided.asymmetry.values():
+    for mended, printed in seen.asymmetry.force_asymmetry.values():
         assert mended == 0.0
         assert printed > 0.05
-    assert all(math.isfinite(s) for s in seen.one_sided.hull_diverges)
+    assert all(math.isfinite(s) for s in seen.asymmetry.hull_divergence_times)
 
 
 def test_only_v_abs_v_is_a_force(seen):
-    assert seen.dimensions.mended == seen.dimensions.force != seen.dimensions.printed
+    assert seen.dimensions.corrected == seen.dimensions.force != seen.dimensions.printed
 
 
 def test_without_parentheses_accelerations_are_off_by_orders(seen):
-    assert all(factor > 1e5 for factor in seen.parentheses.values())
+    assert all(factor > 1e5 for factor in seen.parenthesis_factors.values())
 
 
 def test_only_the_mended_regression_gives_the_truth(seen):
-    for of in seen.regressions:
+    for of in seen.equation_14_fits:
         worst = max(abs(e) for e in of.errors.values())
-        assert worst < 1e-9 if of.reading.endswith("mended") else worst > 90.0, of.reading
+        assert worst < 1e-9 if of.variant.endswith("mended") else worst > 90.0, of.variant
 
 
 def test_the_wrong_sign_of_ur_hardly_shows_in_the_residual(seen):
-    of = next(r for r in seen.regressions if "u r" in r.reading)
+    of = next(r for r in seen.equation_14_fits if "u r" in r.variant)
     assert of.residual < 0.01
     assert of.errors["Y_r"] < -300.0
 
 
 def test_the_norm_of_the_inverse_makes_equations_27_and_28_one(seen):
-    assert seen.condition.with_inverse == pytest.approx(seen.condition.by_values, rel=1e-6)
-    assert seen.condition.without_inverse < 25.0
+    assert seen.equation_27_readings.with_inverse == pytest.approx(
+        seen.equation_27_readings.by_singular_values, rel=1e-6
+    )
+    assert seen.equation_27_readings.without_inverse < 25.0
 
 
 def test_sway_holds_yaw_s_features_so_that_table_3_s_labels_cannot_be(seen):
-    ours = seen.conditions
+    ours = seen.table_3_conditions
     assert ours.is_possible == (False, True)
     for of in (ours.plain, ours.improved):
-        assert of[Equation.SWAY] >= of[Equation.YAW]
-    yaw_in_sway = ours.correlations[Equation.SWAY][[0, 1, 4]][:, [0, 1, 4]]
-    assert yaw_in_sway == pytest.approx(ours.correlations[Equation.YAW], rel=1e-9)
-    assert ours.swapped[Equation.SURGE] == TABLE_3[Equation.SWAY]
+        assert of[MotionEquation.SWAY] >= of[MotionEquation.YAW]
+    yaw_in_sway = ours.correlations[MotionEquation.SWAY][[0, 1, 4]][:, [0, 1, 4]]
+    assert yaw_in_sway == pytest.approx(ours.correlations[MotionEquation.YAW], rel=1e-9)
+    assert ours.labels_exchanged[MotionEquation.SURGE] == TABLE_3[MotionEquation.SWAY]
 
 
 def test_fresh_water_gives_the_printed_mass(seen):
-    fresh, salt = seen.masses
+    fresh, salt = seen.table_1_masses
     assert fresh.block == pytest.approx(5540.0, abs=5.0)
     assert salt.block > 5660.0
     assert (fresh.nondimensional, salt.nondimensional) == pytest.approx((0.16249, 0.158528), abs=5e-6)
@@ -114,24 +116,24 @@ def test_thrust_balances_resistance_at_the_series_jet_velocity(seen):
 
 
 def test_table_4_s_yaw_error_in_the_35_zigzag_exceeds_the_yaw_rate(seen):
-    of = next(i for i in seen.implied if (i.run, i.channel) == (Run.ZIGZAG_35, "r"))
+    of = next(i for i in seen.table_4_implications if (i.run, i.channel) == (PublishedManoeuvre.ZIGZAG_35, "r"))
     assert of.largest < 0.0957
-    assert of.amplitude > 3.5
-    assert all(i.amplitude < 1.8 for i in seen.implied if i is not of)
+    assert of.amplitude_ratio > 3.5
+    assert all(i.amplitude_ratio < 1.8 for i in seen.table_4_implications if i is not of)
 
 
 def test_a_symmetric_craft_has_no_asymmetry_at_any_state():
-    record = reference(Run.TURN_35)
-    assert motions.asymmetry(TRUTH.craft(), record, "Y_sum") == pytest.approx(0.0, abs=1e-12)
-    assert motions.asymmetry(TRUTH.craft(), record, "X_sum") == pytest.approx(2.0, abs=1e-12)
+    record = reference_record(PublishedManoeuvre.TURN_35)
+    assert motions.force_asymmetry(TRUTH.craft(), record, "Y_sum") == pytest.approx(0.0, abs=1e-12)
+    assert motions.force_asymmetry(TRUTH.craft(), record, "X_sum") == pytest.approx(2.0, abs=1e-12)
 
 
 def test_identifications_hold_with_any_motion():
-    for of in equations.identifications(reference(Run.TURN_35)).values():
-        found = of.solved()
+    for of in equations.equation_14_systems(reference_record(PublishedManoeuvre.TURN_35)).values():
+        found = of.solve()
         truth = TRUTH.craft().parameters
         assert found == pytest.approx({n: truth[n].value for n in found}, rel=1e-6)
 
 
 def test_mass_is_in_proportion_to_density():
-    assert tables.mass(2.0).block == pytest.approx(2.0 * tables.mass(1.0).block)
+    assert tables.table_1_mass(2.0).block == pytest.approx(2.0 * tables.table_1_mass(1.0).block)

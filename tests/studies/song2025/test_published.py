@@ -3,21 +3,21 @@
 import pytest
 
 from seatrial.physics.models.waterjet import COEFFICIENTS, TABLE_2, waterjet
-from seatrial_studies.song2025.crafts import MENDED, PRINTED, TRUTH
+from seatrial_studies.song2025.craft_models import CORRECTED, PRINTED, TRUTH
 from seatrial_studies.song2025.published import (
     DRAUGHT,
     LENGTH,
     MASS,
-    MISPRINTED,
-    Column,
-    coefficients,
-    errors,
+    MISPRINTED_SIGNS,
+    Table2Column,
+    printed_coefficients,
+    printed_differences,
 )
 
 
 def test_the_cfd_column_with_n_v_turned_is_the_model_s_truth():
     assert TRUTH.craft().parameters.values == pytest.approx(waterjet().parameters.values, abs=0.0)
-    differing = [n for n in COEFFICIENTS if coefficients(Column.CFD)[n] != TABLE_2[n]]
+    differing = [n for n in COEFFICIENTS if printed_coefficients(Table2Column.CFD)[n] != TABLE_2[n]]
     assert differing == ["N_v"]
 
 
@@ -27,15 +27,15 @@ def test_particulars_are_the_model_s():
 
 
 def test_mending_turns_only_the_signs_named():
-    for printed, mended in zip(PRINTED, MENDED, strict=True):
+    for printed, mended in zip(PRINTED, CORRECTED, strict=True):
         turned = tuple(
             n for n in COEFFICIENTS if printed.craft().parameters[n].value == -mended.craft().parameters[n].value
         )
-        assert turned == tuple(n for n in COEFFICIENTS if n in MISPRINTED[printed.column])
+        assert turned == tuple(n for n in COEFFICIENTS if n in MISPRINTED_SIGNS[printed.column])
 
 
 def test_improved_is_nearer_than_original_but_for_y_vv():
-    original, improved = errors(Column.ORIGINAL), errors(Column.IMPROVED)
+    original, improved = printed_differences(Table2Column.ORIGINAL), printed_differences(Table2Column.IMPROVED)
     farther = [n for n in COEFFICIENTS if abs(improved[n]) > abs(original[n])]
     assert farther == ["Y_vv"]
     assert improved["Y_vv"] == pytest.approx(-160.4, abs=0.1)

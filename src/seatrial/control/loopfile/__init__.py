@@ -1,1 +1,1 @@
-"""The loop file: what is controlled, by what, against what; TOML to a `Task`."""
+"""The loop file: what is controlled, by what, against what; TOML to a `TuningTask`."""

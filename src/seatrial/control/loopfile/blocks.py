@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from seatrial.control.loopfile.amounts import positive
+from seatrial.control.loopfile.quantities import positive_value
 from seatrial.control.loopfile.schema import BlockTable
 from seatrial.core.values import InputError
 from seatrial.physics.loops import Block
@@ -34,29 +34,33 @@ def blocks(tables: Sequence[BlockTable], where: str) -> tuple[Block, ...]:
     )
 
 
-def said(block: Block) -> str:
+def block_text(block: Block) -> str:
     """A transfer function on one line."""
-    return f"({_polynomial(block.num)}) / ({_polynomial(block.den)})"
+    return f"({_polynomial_text(block.num)}) / ({_polynomial_text(block.den)})"
 
 
 def _filter(table: BlockTable, where: str) -> Block | None:
     if table.lag is not None:
-        return Block("lag", (1.0,), (positive(table.lag, "s", f"{where}.lag"), 1.0))
+        return Block("lag", (1.0,), (positive_value(table.lag, "s", f"{where}.lag"), 1.0))
     if table.notch is not None:
         return notch(
-            positive(table.notch.omega, "rad/s", f"{where}.notch.omega"), table.notch.damping, table.notch.depth
+            positive_value(table.notch.omega, "rad/s", f"{where}.notch.omega"), table.notch.damping, table.notch.depth
         )
     if table.low_pass is not None:
-        return low_pass(positive(table.low_pass.omega, "rad/s", f"{where}.low_pass.omega"), table.low_pass.damping)
+        return low_pass(
+            positive_value(table.low_pass.omega, "rad/s", f"{where}.low_pass.omega"), table.low_pass.damping
+        )
     if table.band_pass is not None:
-        return band_pass(positive(table.band_pass.omega, "rad/s", f"{where}.band_pass.omega"), table.band_pass.damping)
+        return band_pass(
+            positive_value(table.band_pass.omega, "rad/s", f"{where}.band_pass.omega"), table.band_pass.damping
+        )
     if table.high_pass is not None:
-        w, z = positive(table.high_pass.omega, "rad/s", f"{where}.high_pass.omega"), table.high_pass.damping
+        w, z = positive_value(table.high_pass.omega, "rad/s", f"{where}.high_pass.omega"), table.high_pass.damping
         return Block("high-pass", (1.0, 0.0, 0.0), (1.0, 2.0 * z * w, w**2))
     return None
 
 
-def _polynomial(coefficients: tuple[float, ...]) -> str:
+def _polynomial_text(coefficients: tuple[float, ...]) -> str:
     parts = []
     for power, c in zip(range(len(coefficients) - 1, -1, -1), coefficients, strict=True):
         if c:

@@ -1,4 +1,4 @@
-"""A loop file into a `Task`: plant, controller, what disturbs it, what is to be small and what must be kept."""
+"""A loop file into a `TuningTask`: plant, controller, what disturbs it, what is to be small and what must be kept."""
 
 import math
 import tomllib
@@ -7,23 +7,23 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from seatrial.control.loopfile.aims import objective
-from seatrial.control.loopfile.amounts import amount, angle, positive, rate, unit_of
-from seatrial.control.loopfile.diagram import loop_asked
-from seatrial.control.loopfile.plant import Plant, hull_of, plant_asked
-from seatrial.control.loopfile.schema import AimTable, DemandTable, LoopFile, SimulationTable
-from seatrial.control.loopfile.structure import richer
-from seatrial.control.loopfile.weather import met_by, plan_of, refuse_calm
-from seatrial.control.task import Demand, Task, Trials, refuse_unstable
+from seatrial.control.loopfile.disturbances import loop_disturbances, refuse_calm, schedule_grid
+from seatrial.control.loopfile.extended_structures import extended_structure
+from seatrial.control.loopfile.loop import loop_from_tables
+from seatrial.control.loopfile.objectives import objective
+from seatrial.control.loopfile.plant import LoopPlant, hull_factor, plant_from_table
+from seatrial.control.loopfile.quantities import angle_value, positive_value, rate_value, si_value, symbol_unit
+from seatrial.control.loopfile.schema import DemandTable, LoopFile, ObjectiveTable, SimulationTable
+from seatrial.control.task import Demand, SimulationSettings, TuningTask, refuse_unstable
 from seatrial.core.equations import Model
-from seatrial.core.results.tuning import Restriction
-from seatrial.core.values import InputError, nearest
-from seatrial.data.trial.complaints import complaint
+from seatrial.core.results.tuning import ControllerConstraints
+from seatrial.core.values import InputError, spelling_hint
+from seatrial.data.trial.schema_errors import schema_error
 from seatrial.physics.loops import Objective, TransferLoop
 
-_CHANGES = 30.0
+_TIME_CONSTANTS = 30.0
 _MOST_STEPS = 1e7
-_LONGEST = 1e4
+_MOST_TIME_CONSTANTS = 1e4
 
 
 def parse_loop(path: Path) -> LoopFile:
@@ -41,10 +41,10 @@ def parse_loop(path: Path) -> LoopFile:
     try:
         return LoopFile.model_validate(table)
     except ValidationError as error:
-        raise complaint(error, LoopFile, str(path)) from None
+        raise schema_error(error, LoopFile, str(path)) from None
 
 
-def task_of(path: Path, own_model: Model | None = None, model_file: Path | None = None) -> Task:
+def tuning_task(path: Path, own_model: Model | None = None, model_file: Path | None = None) -> TuningTask:
     """The tuning that a loop file asks for.
 
     Args:
@@ -56,94 +56,101 @@ def task_of(path: Path, own_model: Model | None = None, model_file: Path | None 
     """
     file = parse_loop(path)
     try:
-        return _task(file, plant_asked(file.plant, path.resolve().parent, own_model, model_file))
+        return _task_from_tables(file, plant_from_table(file.plant, path.resolve().parent, own_model, model_file))
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
 
 
-def _task(file: LoopFile, plant: Plant) -> Task:
-    loop = loop_asked(file.controller, file.actuator.servo, plant, file.name or f"{plant.actuator} on {plant.output}")
+def _task_from_tables(file: LoopFile, plant: LoopPlant) -> TuningTask:
+    loop = loop_from_tables(
+        file.controller, file.actuator.servo, plant, file.name or f"{plant.actuator} on {plant.output}"
+    )
     demand = None if file.demand is None else _demand(file.demand, plant)
     if demand is None:
         refuse_unstable(loop)
-    restriction = _restriction(file, plant)
-    met = met_by(file, plant, hull_of(file.hull, plant.ship))
-    plan = None if file.schedule is None else plan_of(file.schedule)
+    restriction = _constraints(file, plant)
+    met = loop_disturbances(file, plant, hull_factor(file.hull, plant.ship))
+    plan = None if file.schedule is None else schedule_grid(file.schedule)
     refuse_calm(met, loop, plan)
     objectives = tuple(objective(aim, plant, restriction, f"minimise[{i}]") for i, aim in enumerate(file.minimise, 1))
-    _refuse_twice(file.minimise, objectives)
-    return Task(
+    _refuse_duplicates(file.minimise, objectives)
+    return TuningTask(
         question=file.question,
         name=loop.name,
-        plant=plant.said,
+        plant=plant.description,
         loop=loop,
-        met=met,
+        disturbances=met,
         objectives=objectives,
-        restriction=restriction,
+        constraints=restriction,
         U=plant.U,
         effectiveness=plant.effectiveness,
-        rivals=_rivals(file.given, loop),
-        richer=tuple(richer(loop, table, f"richer[{i}]") for i, table in enumerate(file.richer, start=1)),
-        plan=plan,
-        trials=_trials(file.simulation, len(file.seas), demand),
-        vessel=plant.vessel,
+        baselines=_baselines(file.baselines, loop),
+        extended_structures=tuple(
+            extended_structure(loop, table, f"extended_structures[{i}]")
+            for i, table in enumerate(file.extended_structures, start=1)
+        ),
+        schedule_grid=plan,
+        simulation=_simulation_settings(file.simulation, len(file.seas), demand),
+        trimmed_ship=plant.trimmed_ship,
         demand=demand,
     )
 
 
-def _refuse_twice(aims: Sequence[AimTable], objectives: Sequence[Objective]) -> None:
+def _refuse_duplicates(tables: Sequence[ObjectiveTable], objectives: Sequence[Objective]) -> None:
     """`roll` and `output` are one thing, an off-target with another target is not."""
-    keys = [(made.name, aim.model_dump(exclude={"what"})) for aim, made in zip(aims, objectives, strict=True)]
+    keys = [(made.name, aim.model_dump(exclude={"name"})) for aim, made in zip(tables, objectives, strict=True)]
     for i, key in enumerate(keys, start=1):
         if key in keys[: i - 1]:
             raise InputError(f"minimise[{i}]: the {key[0]} is asked for twice; name it once")
 
 
-def _restriction(file: LoopFile, plant: Plant) -> Restriction:
+def _constraints(file: LoopFile, plant: LoopPlant) -> ControllerConstraints:
     """Limits in SI; angles of half a turn were meant as degrees."""
-    table, unit = file.actuator, unit_of(plant.actuator)
+    table, unit = file.actuator, symbol_unit(plant.actuator)
 
     def largest(key: str) -> float:
         given = getattr(table, key)
         if given is None:
             return math.inf
         where = f"actuator.{key}"
-        return angle(given, where) if unit == "rad" else positive(given, unit, where)
+        return angle_value(given, where) if unit == "rad" else positive_value(given, unit, where)
 
-    return Restriction(
-        peak=file.limits.peak,
+    return ControllerConstraints(
+        Ms=file.limits.Ms,
         saturation=file.limits.saturation,
         rate_saturation=file.limits.rate_saturation,
         limit=largest("limit"),
-        rate=math.inf if table.rate is None else rate(table.rate, unit, "actuator.rate"),
+        rate=math.inf if table.rate is None else rate_value(table.rate, unit, "actuator.rate"),
         stall=largest("stall"),
     )
 
 
-def _rivals(given: Mapping[str, Mapping[str, float]], loop: TransferLoop) -> dict[str, Mapping[str, float]]:
+def _baselines(baselines: Mapping[str, Mapping[str, float]], loop: TransferLoop) -> dict[str, Mapping[str, float]]:
     names = loop.gains.names
-    for rival, gains in given.items():
+    for rival, gains in baselines.items():
         for name in gains:
             if name not in names:
-                raise InputError(f"given.{rival}: the controller has no gain '{name}'{nearest(name, [*names])}")
+                raise InputError(
+                    f"baselines.{rival}: the controller has no gain '{name}'{spelling_hint(name, [*names])}"
+                )
         for name in names:
             if name not in gains:
-                raise InputError(f"given.{rival}: gain {name} is missing; add it")
-    return dict(given)
+                raise InputError(f"baselines.{rival}: gain {name} is missing; add it")
+    return dict(baselines)
 
 
-def _trials(table: SimulationTable | None, seas: int, demand: Demand | None) -> Trials | None:
+def _simulation_settings(table: SimulationTable | None, seas: int, demand: Demand | None) -> SimulationSettings | None:
     """The house's own for a stabiliser in a sea; none where a demand is followed or no seeds are wanted."""
     if table is None:
-        return Trials() if demand is None and seas else None
+        return SimulationSettings() if demand is None and seas else None
     if not table.seeds:
         return None
     if not seas:
         raise InputError("simulation: there is no block [[seas]] to simulate; leave the table out, or add one")
     if table.seeds == 1:
         raise InputError("simulation.seeds = 1 gives no interval; give two or more, or 0 for no simulation")
-    duration = positive(table.duration, "s", "simulation.duration")
-    step = positive(table.step, "s", "simulation.step")
+    duration = positive_value(table.duration, "s", "simulation.duration")
+    step = positive_value(table.step, "s", "simulation.step")
     if step * 100.0 > duration:
         raise InputError(f"simulation: steps of {step:g} s are no simulation of {duration:g} s; make them shorter")
     if table.seeds * duration / step > _MOST_STEPS:
@@ -151,29 +158,31 @@ def _trials(table: SimulationTable | None, seas: int, demand: Demand | None) -> 
             f"simulation: {table.seeds} seas of {duration:g} s in steps of {step:g} s are more than {_MOST_STEPS:.0e} "
             "steps; take a shorter duration, longer steps or fewer seeds"
         )
-    return Trials(table.seeds, duration, step)
+    return SimulationSettings(table.seeds, duration, step)
 
 
-def _demand(table: DemandTable, plant: Plant) -> Demand:
+def _demand(table: DemandTable, plant: LoopPlant) -> Demand:
     """Without a time constant the ship's length over her speed; without a duration thirty time constants."""
     if plant.disturbed_by == "alpha_w":
         raise InputError("demand: a roll stabiliser follows no demand; leave the table out")
-    unit = unit_of(plant.output)
+    unit = symbol_unit(plant.output)
     change = (
-        angle(table.change, "demand.change", 20.0) if unit == "rad" else amount(table.change, unit, "demand.change")
+        angle_value(table.change, "demand.change", 20.0)
+        if unit == "rad"
+        else si_value(table.change, unit, "demand.change")
     )
     if not change:
         raise InputError("demand.change = 0 asks for nothing; give a change")
     if table.time_constant is not None:
-        T = positive(table.time_constant, "s", "demand.time_constant")
+        T = positive_value(table.time_constant, "s", "demand.time_constant")
     elif plant.ship is not None and "L" in plant.ship.particulars:
         T = plant.ship.length / plant.U
     else:
         raise InputError("key 'demand.time_constant' is missing, and the ship's length is not known; add it in s")
-    duration = _CHANGES * T if table.duration is None else positive(table.duration, "s", "demand.duration")
-    if not T <= duration <= _LONGEST * T:
+    duration = _TIME_CONSTANTS * T if table.duration is None else positive_value(table.duration, "s", "demand.duration")
+    if not T <= duration <= _MOST_TIME_CONSTANTS * T:
         raise InputError(
             f"demand.duration = {duration:g} s is no time to follow a demand of time constant {T:.4g} s; give one to "
-            f"{_LONGEST:g} time constants"
+            f"{_MOST_TIME_CONSTANTS:g} time constants"
         )
     return Demand(change, table.overshoot, T, duration)

@@ -4,15 +4,15 @@ import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from seatrial.control.loopfile.amounts import amount, angle, positive, unit_of
-from seatrial.control.loopfile.blocks import block, said
+from seatrial.control.loopfile.blocks import block, block_text
+from seatrial.control.loopfile.quantities import angle_value, positive_value, si_value, symbol_unit
 from seatrial.control.loopfile.schema import BlockTable, FinTable, HullTable, PlantTable
-from seatrial.control.ship.vessel import described, plant_of, vessel
-from seatrial.control.task import Effectiveness, Vessel
+from seatrial.control.ship.trimmed_ship import plant_and_disturbance, plant_text, trim_ship
+from seatrial.control.task import Effectiveness, TrimmedShip
 from seatrial.core.equations import Model
-from seatrial.core.values import InputError, Ship, nearest
+from seatrial.core.values import InputError, Ship, spelling_hint
 from seatrial.data.folder.model_file import ModelFile, read_model_file
-from seatrial.data.trial.runs import expanded
+from seatrial.data.trial.runs import expand_variables
 from seatrial.physics.loops import Block, HullFactor
 from seatrial.physics.loops.fin import K_alpha_at
 
@@ -22,12 +22,12 @@ _KNOTS = 3600.0 / 1852.0
 
 
 @dataclass(frozen=True, eq=False)
-class Plant:
+class LoopPlant:
     """What is controlled, at the speed U [m/s].
 
     Attributes:
         response: actuator to output; disturbance: what disturbs to output.
-        said: where it comes from, in words; vessel, ship: of a model file, else none.
+        description: where it comes from; trimmed_ship, ship: of a model file, else none.
     """
 
     response: Block
@@ -37,12 +37,14 @@ class Plant:
     disturbed_by: str
     U: float
     effectiveness: Effectiveness
-    said: str
-    vessel: Vessel | None = None
+    description: str
+    trimmed_ship: TrimmedShip | None = None
     ship: Ship | None = None
 
 
-def plant_asked(table: PlantTable, home: Path, own_model: Model | None = None, model_file: Path | None = None) -> Plant:
+def plant_from_table(
+    table: PlantTable, home: Path, own_model: Model | None = None, model_file: Path | None = None
+) -> LoopPlant:
     """The plant that the table describes.
 
     Args:
@@ -53,29 +55,29 @@ def plant_asked(table: PlantTable, home: Path, own_model: Model | None = None, m
         InputError: no such file, another kind of model, no speed, no fin.
     """
     if table.model is not None:
-        return _of_model(table, model_file or home / expanded(table.model), own_model)
+        return _plant_of_model(table, model_file or home / expand_variables(table.model), own_model)
     if model_file is not None:
         raise InputError("plant: there is no 'model' that a model file could take the place of; leave --from out")
     if table.roll is not None and table.fin is not None:
-        return _of_roll(_moving(table.roll, "roll", "plant.roll"), table, table.fin)
+        return _plant_of_roll(_responding_block(table.roll, "roll", "plant.roll"), table, table.fin)
     assert table.response is not None and table.output is not None and table.actuator is not None
-    response = _moving(table.response, "plant", "plant.response")
-    return Plant(
+    response = _responding_block(table.response, "plant", "plant.response")
+    return LoopPlant(
         response, response, table.output, table.actuator, table.actuator, _speed(table),
         Effectiveness.CONSTANT,
-        f"{table.actuator} to {table.output} as given: {said(response)}",
+        f"{table.actuator} to {table.output} as given: {block_text(response)}",
     )  # fmt: skip
 
 
-def hull_of(table: HullTable | None, ship: Ship | None) -> HullFactor | None:
+def hull_factor(table: HullTable | None, ship: Ship | None) -> HullFactor | None:
     """The box of the table, or of the ship's own L, B, d; none where neither is known."""
     if table is not None:
-        return HullFactor(*(positive(getattr(table, key), "m", f"hull.{key}") for key in ("L", "B", "T")))
+        return HullFactor(*(positive_value(getattr(table, key), "m", f"hull.{key}") for key in ("L", "B", "T")))
     own = {} if ship is None else ship.particulars
     return HullFactor(own["L"], own["B"], own["d"]) if {"L", "B", "d"} <= set(own) else None
 
 
-def _moving(table: BlockTable, name: str, where: str) -> Block:
+def _responding_block(table: BlockTable, name: str, where: str) -> Block:
     """A block whose output answers."""
     made = block(table, name, where)
     if not any(made.num):
@@ -85,58 +87,58 @@ def _moving(table: BlockTable, name: str, where: str) -> Block:
 
 def _speed(table: PlantTable) -> float:
     if table.speed is not None:
-        return positive(table.speed, "m/s", "plant.speed")
+        return positive_value(table.speed, "m/s", "plant.speed")
     if table.fin is not None and table.fin.at_speed is not None:
-        return positive(table.fin.at_speed, "m/s", "plant.fin.at_speed")
+        return positive_value(table.fin.at_speed, "m/s", "plant.fin.at_speed")
     raise InputError("key 'plant.speed' is missing; add it, such as { value = 18, unit = \"kn\" }")
 
 
-def _of_roll(roll: Block, table: PlantTable, fin: FinTable) -> Plant:
+def _plant_of_roll(roll: Block, table: PlantTable, fin: FinTable) -> LoopPlant:
     U = _speed(table)
-    K_alpha, law, words = _fin(fin, fin.K_alpha or 0.0, U)
-    return Plant(
+    K_alpha, law, words = _fin_effect(fin, fin.K_alpha or 0.0, U)
+    return LoopPlant(
         replace(roll.scaled(K_alpha), name="fins to roll"), roll, *FINS, U, law,
-        f"roll as given: {said(roll)}, {words}",
+        f"roll as given: {block_text(roll)}, {words}",
     )  # fmt: skip
 
 
-def _fin(table: FinTable, known: float, U: float) -> tuple[float, Effectiveness, str]:
+def _fin_effect(table: FinTable, known_K_alpha: float, U: float) -> tuple[float, Effectiveness, str]:
     """K_alpha at the speed U from the known one, how it goes with the speed, and both in words."""
     law = Effectiveness(table.law)
-    at = U if table.at_speed is None else positive(table.at_speed, "m/s", "plant.fin.at_speed")
-    K_alpha = known if law is Effectiveness.CONSTANT else K_alpha_at(U, at, known)
+    at = U if table.at_speed is None else positive_value(table.at_speed, "m/s", "plant.fin.at_speed")
+    K_alpha = known_K_alpha if law is Effectiveness.CONSTANT else K_alpha_at(U, at, known_K_alpha)
     how = "at any speed" if law is Effectiveness.CONSTANT else "growing with the square of the speed"
     return K_alpha, law, f"fins worth {K_alpha:.4g} rad of wave slope for each radian at {U * _KNOTS:.3g} kn, {how}"
 
 
-def _of_model(table: PlantTable, path: Path, own_model: Model | None) -> Plant:
+def _plant_of_model(table: PlantTable, path: Path, own_model: Model | None) -> LoopPlant:
     file = read_model_file(path, own_model)
-    output, actuator, disturbance = _names(table, file, path)
+    output, actuator, disturbance = _signal_names(table, file, path)
     words, law, speed = "", Effectiveness.CONSTANT, None if table.speed is None else _speed(table)
     if table.fin is not None:
         speed = _speed(table)
-        K_alpha, law, words = _fin(table.fin, _known_fins(table.fin, file.model, path), speed)
+        K_alpha, law, words = _fin_effect(table.fin, _known_K_alpha(table.fin, file.model, path), speed)
         file = replace(file, model=file.model.with_values({"K_alpha": K_alpha}))
     elif "K_alpha" in file.model.parameters and not file.model.parameters["K_alpha"].value:
         raise InputError(
             f"plant: model '{file.model.name}' of '{path}' rolls and knows no fins; add [plant.fin] with K_alpha, or "
             "name a model that is steered"
         )
-    amplitude = None if table.amplitude is None else angle(table.amplitude, "plant.amplitude", 10.0)
-    inputs = {name: amount(value, unit_of(name), f"plant.inputs.{name}") for name, value in table.inputs.items()}
+    amplitude = None if table.amplitude is None else angle_value(table.amplitude, "plant.amplitude", 10.0)
+    inputs = {name: si_value(value, symbol_unit(name), f"plant.inputs.{name}") for name, value in table.inputs.items()}
     for name in inputs:
-        _known(name, file.model.input_names, f"plant.inputs.{name}", file.model, "input")
-    ship = vessel(file, output=output, actuator=actuator, disturbance=disturbance, speed=speed, inputs=inputs)
-    response, disturbed = plant_of(ship, amplitude)
+        _demand_known(name, file.model.input_names, f"plant.inputs.{name}", file.model, "input")
+    ship = trim_ship(file, output=output, actuator=actuator, disturbance=disturbance, speed=speed, inputs=inputs)
+    response, disturbed = plant_and_disturbance(ship, amplitude)
     about = "" if amplitude is None else f"linearised at a roll of {math.degrees(amplitude):.3g} deg"
-    return Plant(
+    return LoopPlant(
         response, disturbed, output, actuator, disturbance or actuator,
         _trim_speed(ship, file) if speed is None else speed, law,
-        ", ".join(part for part in (described(ship), about, words) if part), ship, file.ship,
+        ", ".join(part for part in (plant_text(ship), about, words) if part), ship, file.ship,
     )  # fmt: skip
 
 
-def _names(table: PlantTable, file: ModelFile, path: Path) -> tuple[str, str, str]:
+def _signal_names(table: PlantTable, file: ModelFile, path: Path) -> tuple[str, str, str]:
     """Output, actuator and disturbance: as said, or those by which a model of its kind is controlled."""
     model, given = file.model, (table.output, table.actuator, table.disturbance)
     for name, known, key, what in zip(
@@ -147,7 +149,7 @@ def _names(table: PlantTable, file: ModelFile, path: Path) -> tuple[str, str, st
         strict=True,
     ):
         if name:
-            _known(name, known, key, model, what)
+            _demand_known(name, known, key, model, what)
     for own in (FINS, STEERING):
         has_them = own[0] in model.observables and set(own[1:]) - {""} <= set(model.input_names)
         if has_them and table.output in (None, own[0]) and table.actuator in (None, own[1]):
@@ -160,12 +162,12 @@ def _names(table: PlantTable, file: ModelFile, path: Path) -> tuple[str, str, st
     return table.output, table.actuator, table.disturbance or ""
 
 
-def _known(name: str, names: tuple[str, ...], where: str, model: Model, what: str) -> None:
+def _demand_known(name: str, names: tuple[str, ...], where: str, model: Model, kind: str) -> None:
     if name not in names:
-        raise InputError(f"{where}: '{name}' is no {what} of model '{model.name}'{nearest(name, [*names])}")
+        raise InputError(f"{where}: '{name}' is no {kind} of model '{model.name}'{spelling_hint(name, [*names])}")
 
 
-def _known_fins(table: FinTable, model: Model, path: Path) -> float:
+def _known_K_alpha(table: FinTable, model: Model, path: Path) -> float:
     """K_alpha of the loop file, or of the model where that was identified."""
     if "K_alpha" not in model.parameters:
         raise InputError(f"plant.fin: model '{model.name}' of '{path}' has no K_alpha; leave the table out")
@@ -177,7 +179,7 @@ def _known_fins(table: FinTable, model: Model, path: Path) -> float:
     return own.value if table.K_alpha is None else table.K_alpha
 
 
-def _trim_speed(ship: Vessel, file: ModelFile) -> float:
+def _trim_speed(ship: TrimmedShip, file: ModelFile) -> float:
     model = file.model
     if "u" in model.states:
         return float(ship.state[model.states.index("u")])

@@ -1,40 +1,40 @@
-"""What a loop file may say: pydantic models, strict; unknown keys are refused by `seatrial.data.trial.complaints`."""
+"""The tables of a loop file: strict pydantic models; `seatrial.data.trial.schema_errors` words what they refuse."""
 
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from seatrial.data.trial.schema import Amount, SiAmount, Strict, Unit
+from seatrial.data.trial.schema import Amount, SiAmount, StrictTable, Unit
 
 Coefficients = Annotated[tuple[float, ...], Field(min_length=1)]
 Share = Annotated[float, Field(gt=0, lt=1)]
 Positive = Annotated[float, Field(gt=0)]
 
 
-def _as_amounts(value: object) -> object:
+def _as_quantities(value: object) -> object:
     """Bare numbers are amounts in SI units."""
     return {"values": value} if isinstance(value, list) else value
 
 
-def _as_aim(value: object) -> object:
-    return {"what": value} if isinstance(value, str) else value
+def _as_objective(value: object) -> object:
+    return {"name": value} if isinstance(value, str) else value
 
 
-class Amounts(Strict):
+class Quantities(StrictTable):
     """Numbers of one unit; without one they are SI."""
 
     values: Annotated[tuple[float, ...], Field(min_length=1)]
     unit: Unit | None = None
 
-    def each(self) -> tuple[Amount, ...]:
+    def quantities(self) -> tuple[Amount, ...]:
         """One by one."""
         return tuple(Amount(value=value, unit=self.unit) for value in self.values)
 
 
-SiAmounts = Annotated[Amounts, BeforeValidator(_as_amounts)]
+SiQuantities = Annotated[Quantities, BeforeValidator(_as_quantities)]
 
 
-class NotchTable(Strict):
+class NotchTable(StrictTable):
     """(s^2 + 2 depth damping omega s + omega^2) / (s^2 + 2 damping omega s + omega^2): `depth` is what passes."""
 
     omega: SiAmount
@@ -42,14 +42,14 @@ class NotchTable(Strict):
     depth: Annotated[float, Field(ge=0, lt=1)] = 0.1
 
 
-class PassTable(Strict):
+class PassTable(StrictTable):
     """Of second order: low-pass omega^2, band-pass 2 damping omega s, high-pass s^2, over the polynomial of both."""
 
     omega: SiAmount
     damping: Positive = 0.7
 
 
-class BlockTable(Strict):
+class BlockTable(StrictTable):
     """One transfer function: coefficients of s with the highest power first, or a filter by its kind (`lag` in s)."""
 
     name: str = ""
@@ -77,7 +77,7 @@ class TermTable(BlockTable):
     gain: str
 
 
-class FinTable(Strict):
+class FinTable(StrictTable):
     """`[plant.fin]`: wave slope to which a radian of fin angle is equivalent, at which speed, and how it grows.
 
     Without `K_alpha` the model file's own is taken.
@@ -88,7 +88,7 @@ class FinTable(Strict):
     law: Literal["constant", "U^2"] = "U^2"
 
 
-class PlantTable(Strict):
+class PlantTable(StrictTable):
     """`[plant]`: what is controlled, as transfer functions or as a model file of `identify`.
 
     `roll`: wave slope to roll angle, with `fin`; `response`: actuator to output; `model`: the path of a model file.
@@ -118,7 +118,7 @@ class PlantTable(Strict):
         return self
 
 
-class GainTable(Strict):
+class GainTable(StrictTable):
     """`[controller.gains.NAME]`: where it may lie, or its value alone where it is fixed."""
 
     value: float | None = None
@@ -135,7 +135,7 @@ class GainTable(Strict):
         return self
 
 
-class ControllerTable(Strict):
+class ControllerTable(StrictTable):
     """`[controller]`: `yu2014` (the published fin loop), `pid` (on the output error) or `blocks` (terms one by one)."""
 
     kind: Literal["yu2014", "pid", "blocks"]
@@ -163,8 +163,8 @@ class ControllerTable(Strict):
         return self
 
 
-class RicherTable(Strict):
-    """`[[richer]]`: a controller with more structure, to be compared; `lower`, `upper`: bounds of each gain added.
+class ExtendedStructureTable(StrictTable):
+    """`[[extended_structures]]`: a loop with more terms, to be compared; `lower`, `upper`: bounds of each gain added.
 
     band_pass, low_pass, notch: where they are set; without, at multiples of the frequency at which the plant swings.
     """
@@ -188,7 +188,7 @@ class RicherTable(Strict):
         return self
 
 
-class ActuatorTable(Strict):
+class ActuatorTable(StrictTable):
     """`[actuator]`: largest excursion from the steady value, largest rate, angle of stall, and the servo's blocks."""
 
     limit: SiAmount | None = None
@@ -197,7 +197,7 @@ class ActuatorTable(Strict):
     servo: tuple[BlockTable, ...] = ()
 
 
-class SeaTable(Strict):
+class SeawayTable(StrictTable):
     """One `[[seas]]` block: a spectrum, met under a heading (0 following, 180 degrees head) at a speed."""
 
     spectrum: Literal["ittc", "ittc2", "bretschneider", "jonswap", "sea-state"] = "ittc"
@@ -220,15 +220,15 @@ class SeaTable(Strict):
         return self
 
 
-class UnrestTable(Strict):
-    """One `[[unrest]]` block: a slow disturbance of rms `size` that acts like the actuator; bandwidth in rad/s."""
+class SlowDisturbanceTable(StrictTable):
+    """One `[[slow_disturbances]]` block: its rms, acting like the actuator; bandwidth in rad/s."""
 
-    size: SiAmount
+    rms: SiAmount
     bandwidth: SiAmount
     speed: SiAmount | None = None
 
 
-class HullTable(Strict):
+class HullTable(StrictTable):
     """`[hull]`: the box over which the slope of short waves is averaged."""
 
     L: SiAmount
@@ -236,16 +236,16 @@ class HullTable(Strict):
     T: SiAmount
 
 
-Aim = Literal[
+ObjectiveName = Literal[
     "output", "output_rate", "output_acceleration", "actuator", "actuator_rate", "actuator_off_target",
     "roll", "roll_rate", "fin", "fin_rate", "fin_off_target", "motion_interruptions", "motion_sickness",
 ]  # fmt: skip
 
 
-class AimTable(Strict):
+class ObjectiveTable(StrictTable):
     """One thing to be made small; `height` above the axis and `friction` of interruptions, `lever` of sickness."""
 
-    what: Aim
+    name: ObjectiveName
     height: SiAmount | None = None
     friction: Positive = 0.25
     lever: SiAmount | None = None
@@ -259,32 +259,32 @@ class AimTable(Strict):
             "motion_sickness": {"lever"},
             "fin_off_target": {"target", "one_sided"},
             "actuator_off_target": {"target", "one_sided"},
-        }.get(self.what, set())
-        for key in sorted(self.model_fields_set - own - {"what"}):
-            raise ValueError(f"'{self.what}' knows no '{key}'; leave it out")
+        }.get(self.name, set())
+        for key in sorted(self.model_fields_set - own - {"name"}):
+            raise ValueError(f"'{self.name}' knows no '{key}'; leave it out")
         for key in {"height", "lever"} & own:
             if getattr(self, key) is None:
-                raise ValueError(f"'{self.what}' needs a {key} in metres")
+                raise ValueError(f"'{self.name}' needs a {key} in metres")
         return self
 
 
-class LimitsTable(Strict):
+class LimitsTable(StrictTable):
     """`[limits]`: largest Ms, and shares of amplitudes beyond the actuator's limit and rate."""
 
-    peak: Annotated[float, Field(gt=1)] = 2.0
+    Ms: Annotated[float, Field(gt=1)] = 2.0
     saturation: Share = 0.2
     rate_saturation: Share = 0.2
 
 
-class ScheduleTable(Strict):
+class ScheduleTable(StrictTable):
     """`[schedule]`: conditions, every combination of which gets gains of its own."""
 
-    speeds: SiAmounts
-    headings: SiAmounts
-    heights: SiAmounts
+    speeds: SiQuantities
+    headings: SiQuantities
+    heights: SiQuantities
 
 
-class SimulationTable(Strict):
+class SimulationTable(StrictTable):
     """`[simulation]`: the nonlinear check; no seeds, no check."""
 
     seeds: Annotated[int, Field(ge=0, le=1000)] = 20
@@ -292,7 +292,7 @@ class SimulationTable(Strict):
     step: SiAmount = Amount(value=0.05)
 
 
-class DemandTable(Strict):
+class DemandTable(StrictTable):
     """`[demand]`: a change of the output that the loop has to follow, and the largest overshoot as a share of it."""
 
     change: SiAmount
@@ -301,7 +301,7 @@ class DemandTable(Strict):
     duration: SiAmount | None = None
 
 
-class LoopFile(Strict):
+class LoopFile(StrictTable):
     """The whole file."""
 
     question: str = ""
@@ -310,15 +310,15 @@ class LoopFile(Strict):
     controller: ControllerTable
     actuator: ActuatorTable = ActuatorTable()
     hull: HullTable | None = None
-    seas: tuple[SeaTable, ...] = ()
-    unrest: tuple[UnrestTable, ...] = ()
-    minimise: Annotated[tuple[Annotated[AimTable, BeforeValidator(_as_aim)], ...], Field(min_length=1)] = (
-        AimTable(what="output"),
-        AimTable(what="actuator_rate"),
+    seas: tuple[SeawayTable, ...] = ()
+    slow_disturbances: tuple[SlowDisturbanceTable, ...] = ()
+    minimise: Annotated[tuple[Annotated[ObjectiveTable, BeforeValidator(_as_objective)], ...], Field(min_length=1)] = (
+        ObjectiveTable(name="output"),
+        ObjectiveTable(name="actuator_rate"),
     )
     limits: LimitsTable = LimitsTable()
-    given: dict[str, dict[str, float]] = Field(default_factory=dict)
-    richer: tuple[RicherTable, ...] = ()
+    baselines: dict[str, dict[str, float]] = Field(default_factory=dict)
+    extended_structures: tuple[ExtendedStructureTable, ...] = ()
     schedule: ScheduleTable | None = None
     simulation: SimulationTable | None = None
     demand: DemandTable | None = None

@@ -9,20 +9,20 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 from seatrial.physics.simulate.approach import RUDDER, approach_speed, held_inputs
-from seatrial.physics.simulate.channels import AT_REST
+from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
 
-_TURNS = 30
+_ITERATIONS = 30
 _MOST_RUDDER = 0.6
 _POSE = ("psi", "x0", "y0")
 
 
-def driven(
-    model: Model, approach: Mapping[str, float], speed: float | None, given: Mapping[str, float] | None
+def held_inputs_at_speed(
+    model: Model, approach: Mapping[str, float], speed: float | None, given_inputs: Mapping[str, float] | None
 ) -> tuple[Model, Array]:
     """The model and its held inputs in its own signs, with what drives her found where a speed is asked for."""
-    names, own = model.input_names, dict(given or {})
-    known = {k: v for k, v in approach.items() if k in names and k != RUDDER and k not in AT_REST} | own
-    drives = [n for n in names if n != RUDDER and n not in AT_REST and n != "u" and n != "omega_e"]
+    names, own = model.input_names, dict(given_inputs or {})
+    known = {k: v for k, v in approach.items() if k in names and k != RUDDER and k not in ZERO_BY_DEFAULT} | own
+    drives = [n for n in names if n != RUDDER and n not in ZERO_BY_DEFAULT and n != "u" and n != "omega_e"]
     if speed is None:
         return model, held_inputs(model, known, RUDDER)
     if not speed > 0.0:
@@ -30,7 +30,7 @@ def driven(
     if "u" in names:
         return model, held_inputs(model, known | {"u": speed}, RUDDER)
     if "u" not in model.states:
-        return _at_nominal(model, speed), held_inputs(model, known, RUDDER)
+        return _at_nominal_speed(model, speed), held_inputs(model, known, RUDDER)
     free = [n for n in drives if n not in own]
     if len(free) != 1:
         held = held_inputs(model, known, RUDDER)
@@ -42,11 +42,11 @@ def driven(
             )
         return model, held
     held = held_inputs(model, known | {free[0]: known.get(free[0], 0.0)}, RUDDER)
-    held[names.index(free[0])] = _drive(model, held, free[0], speed)
+    held[names.index(free[0])] = _balancing_input(model, held, free[0], speed)
     return model, held
 
 
-def _at_nominal(model: Model, speed: float) -> Model:
+def _at_nominal_speed(model: Model, speed: float) -> Model:
     if "U" not in model.parameters:
         return model
     U = model.parameters["U"].value
@@ -58,7 +58,7 @@ def _at_nominal(model: Model, speed: float) -> Model:
     return model.with_values({"U": speed})
 
 
-def _drive(model: Model, held: Array, name: str, speed: float) -> float:
+def _balancing_input(model: Model, held: Array, name: str, speed: float) -> float:
     """The input at which surge is in balance on a straight course at u = `speed`."""
     place, k = model.input_names.index(name), model.states.index("u")
     state, inputs, rates = np.zeros(len(model.states)), held.copy(), np.empty(len(model.states))
@@ -76,7 +76,7 @@ def _drive(model: Model, held: Array, name: str, speed: float) -> float:
     return float(brentq(surge, tried[least - 1], tried[least], xtol=1e-12))
 
 
-def trimmed(model: Model, held: Array) -> tuple[Array, Array]:
+def find_trim(model: Model, held: Array) -> tuple[Array, Array]:
     """State (nx,) and inputs (nu,) of steady motion: a straight course if there is a heading, else rest.
 
     The rudder carries what asymmetry asks for. held: (nu,) in the model's signs.
@@ -95,7 +95,7 @@ def trimmed(model: Model, held: Array) -> tuple[Array, Array]:
     if steers:
         columns.append(nx + model.input_names.index(RUDDER))
     unknown, rates = np.concatenate([state, inputs]), np.empty(nx)
-    for _ in range(_TURNS):
+    for _ in range(_ITERATIONS):
         x, u = np.ascontiguousarray(unknown[:nx]), np.ascontiguousarray(unknown[nx:])
         model.compiled.rates(0.0, x, u, model.parameters.values, rates)
         slopes = jacobian_at(model, x[None], u, of_outputs=False)[0][np.ix_(rows, columns)]

@@ -1,7 +1,7 @@
 """Models written once as named bindings; code, Jacobians and LaTeX are generated from them."""
 
-from seatrial.core.equations.bindings import Binding, Equations, Input
+from seatrial.core.equations.bindings import Binding, Input, ModelEquations
 from seatrial.core.equations.model import Model
 from seatrial.core.equations.sheet import Sheet
 
-__all__ = ["Binding", "Equations", "Input", "Model", "Sheet"]
+__all__ = ["Binding", "Input", "Model", "ModelEquations", "Sheet"]

@@ -37,13 +37,13 @@ class Input:
         return self.positive or (quantity(self.name).positive if self.name in NOTATION else "none")
 
     @property
-    def is_turned(self) -> bool:
+    def is_reversed(self) -> bool:
         """Whether it points against the notation table's positive direction."""
         return self.name in NOTATION and self.direction != quantity(self.name).positive
 
 
 @dataclass(frozen=True, eq=False)
-class Equations:
+class ModelEquations:
     """The equations of a model, whatever the values of its parameters; models that differ in values share them.
 
     Attributes:
@@ -72,7 +72,7 @@ class Equations:
         return tuple(i.name for i in self.inputs)
 
     @property
-    def measurable(self) -> tuple[Binding, ...]:
+    def output_bindings(self) -> tuple[Binding, ...]:
         """The bindings of the outputs, in the order of `outputs`."""
         by_name = {b.name: b for b in self.bindings}
         return tuple(by_name[name] for name in self.outputs)

@@ -17,10 +17,10 @@ from types import ModuleType
 
 import numpy as np
 
-from seatrial.core.equations.bindings import Equations
+from seatrial.core.equations.bindings import ModelEquations
 from seatrial.core.equations.generate import bindings_text, source_text, tangent_text
 from seatrial.core.values import Index
-from seatrial.core.values.files import write_whole
+from seatrial.core.values.files import write_atomically
 from seatrial.numerics.kernels.cache import cache_folder
 
 # of everything that decides how the text comes about: a changed generator finds no old index
@@ -28,14 +28,14 @@ _GENERATOR = hashlib.sha256(b"".join(p.read_bytes() for p in sorted(Path(__file_
 
 
 @dataclass(frozen=True)
-class Compiled:
+class CompiledEquations:
     """Functions of one set of equations.
 
     Attributes:
         rates_pattern, outputs_pattern: structural nonzeros of their Jacobians, (row, column) with columns [x | u | p].
     """
 
-    equations: Equations
+    equations: ModelEquations
     rates: Callable[..., None]
     rates_tangent: Callable[..., None]
     outputs: Callable[..., None]
@@ -46,17 +46,19 @@ class Compiled:
     @cached_property
     def bindings(self) -> Callable[..., None]:
         """Every binding in order: the breakdown of forces."""
-        return _module(self.equations, "bindings", bindings_text).bindings
+        return _load_or_generate(self.equations, "bindings", bindings_text).bindings
 
-    def tangent_of(self, names: tuple[str, ...]) -> Callable[..., None]:
+    def tangent_function(self, names: tuple[str, ...]) -> Callable[..., None]:
         """The named bindings, in that order, with their exact Jacobians by [x | u | p]."""
-        return _module(self.equations, "_".join(("tangent", *names)), lambda e: tangent_text(e, names)).tangent
+        return _load_or_generate(
+            self.equations, "_".join(("tangent", *names)), lambda e: tangent_text(e, names)
+        ).tangent
 
 
-def _written(text: str) -> Path:
+def _write_module(text: str) -> Path:
     path = cache_folder() / "generated" / f"model_{hashlib.sha256(text.encode()).hexdigest()[:24]}.py"
     if not path.exists():
-        write_whole(path, text.encode())
+        write_atomically(path, text.encode())
     return path
 
 
@@ -70,36 +72,36 @@ def _load(path: Path) -> ModuleType:
     return module
 
 
-def is_cached(equations: Equations) -> bool:
+def is_cached(equations: ModelEquations) -> bool:
     """Whether the generated module lies in the cache folder, and so its machine code."""
-    return _index(equations, "index").exists()
+    return _index_path(equations, "index").exists()
 
 
-def _index(equations: Equations, kind: str) -> Path:
+def _index_path(equations: ModelEquations, kind: str) -> Path:
     return cache_folder() / "generated" / f"{kind}_{_GENERATOR[:12]}_{equations.digest[:24]}.txt"
 
 
-def _module(equations: Equations, kind: str, text: Callable[[Equations], str]) -> ModuleType:
+def _load_or_generate(equations: ModelEquations, kind: str, text: Callable[[ModelEquations], str]) -> ModuleType:
     """The generated module; the index from equation hash to module spares generating the text again."""
-    index = _index(equations, kind)
+    index = _index_path(equations, kind)
     if index.exists():
         path = index.parent / index.read_text(encoding="utf-8").strip()
         if path.exists():
             return _load(path)
-    path = _written(text(equations))
-    write_whole(index, path.name.encode())
+    path = _write_module(text(equations))
+    write_atomically(index, path.name.encode())
     return _load(path)
 
 
 @lru_cache(maxsize=64)
-def compiled(equations: Equations) -> Compiled:
+def compile_equations(equations: ModelEquations) -> CompiledEquations:
     """Generate, load and compile the functions of a set of equations."""
-    module = _module(equations, "index", source_text)
+    module = _load_or_generate(equations, "index", source_text)
 
     def table(pairs: list[tuple[int, int]]) -> Index:
         return np.array(pairs, dtype=np.int64).reshape(-1, 2)
 
-    return Compiled(
+    return CompiledEquations(
         equations,
         module.rates,
         module.rates_tangent,

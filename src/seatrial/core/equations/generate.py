@@ -8,9 +8,9 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from seatrial.core.equations.bindings import Binding, Equations
+from seatrial.core.equations.bindings import Binding, ModelEquations
 from seatrial.core.equations.differentiate import partials
-from seatrial.core.equations.printer import Lines, mangled
+from seatrial.core.equations.printer import CodeLines, mangled
 
 _HEADER = '''"""Generated from the equations of model {name!r}; do not edit."""
 import math
@@ -25,13 +25,13 @@ def _signature(name: str, kind: str, arguments: str) -> list[str]:
     return [f"@njit({kind}, **LEAN)", f"def {name}(t_, x, u, p, {arguments}):"]
 
 
-def _unpack(equations: Equations, expressions: Sequence[Binding]) -> list[str]:
+def _unpack(equations: ModelEquations, expressions: Sequence[Binding]) -> list[str]:
     used = {str(s) for b in expressions for s in b.expression.free_symbols}
     sources = (("x", equations.states), ("u", equations.input_names), ("p", equations.parameters))
     return [f"    {mangled(n)} = {array}[{i}]" for array, names in sources for i, n in enumerate(names) if n in used]
 
 
-def _needed(equations: Equations, wanted: Sequence[Binding]) -> list[Binding]:
+def _required_bindings(equations: ModelEquations, wanted: Sequence[Binding]) -> list[Binding]:
     """The bindings that `wanted` rests on, in order."""
     names = {str(s) for b in wanted for s in b.expression.free_symbols} | {b.name for b in wanted}
     kept = []
@@ -42,9 +42,9 @@ def _needed(equations: Equations, wanted: Sequence[Binding]) -> list[Binding]:
     return kept[::-1]
 
 
-def _function(equations: Equations, name: str, wanted: Sequence[Binding]) -> list[str]:
-    needed = _needed(equations, wanted)
-    lines = Lines(_signature(name, "FUNCTION_SIGNATURE", "out") + _unpack(equations, [*needed, *wanted]))
+def _function_lines(equations: ModelEquations, name: str, wanted: Sequence[Binding]) -> list[str]:
+    needed = _required_bindings(equations, wanted)
+    lines = CodeLines(_signature(name, "FUNCTION_SIGNATURE", "out") + _unpack(equations, [*needed, *wanted]))
     for b in needed:
         lines.assign(mangled(b.name), b.expression)
     bound = {b.name for b in needed}
@@ -53,7 +53,7 @@ def _function(equations: Equations, name: str, wanted: Sequence[Binding]) -> lis
     return [*lines.text, "    return", ""]
 
 
-def _factors(lines: Lines, binding: Binding) -> dict[str, str]:
+def _local_partials(lines: CodeLines, binding: Binding) -> dict[str, str]:
     """Append the local partial derivatives of a binding; return the text of each, by symbol."""
     name, texts = binding.name, {}
     for symbol, value in partials(binding.expression).items():
@@ -65,12 +65,12 @@ def _factors(lines: Lines, binding: Binding) -> dict[str, str]:
     return texts
 
 
-def _product(left: str, right: str) -> str:
-    return "*".join(text for text in (left, right) if text != "1.0") or "1.0"
+def _product(first: str, second: str) -> str:
+    return "*".join(text for text in (first, second) if text != "1.0") or "1.0"
 
 
 def _adjoint_row(
-    lines: Lines, row: int, seed: dict[str, str], needed: Sequence[Binding], local: dict[str, dict[str, str]]
+    lines: CodeLines, row: int, seed: dict[str, str], needed: Sequence[Binding], local: dict[str, dict[str, str]]
 ) -> dict[str, str]:
     """Append the derivatives of one output by each binding, last to first; return those by states, inputs, parameters.
 
@@ -90,19 +90,21 @@ def _adjoint_row(
     return {symbol: " + ".join(terms) for symbol, terms in flow.items()}
 
 
-def _tangent(equations: Equations, name: str, wanted: Sequence[Binding]) -> tuple[list[str], list[tuple[int, int]]]:
+def _tangent_lines(
+    equations: ModelEquations, name: str, wanted: Sequence[Binding]
+) -> tuple[list[str], list[tuple[int, int]]]:
     base = (*equations.states, *equations.input_names, *equations.parameters)
-    needed = _needed(equations, wanted)
-    lines = Lines(_signature(name, "TANGENT_SIGNATURE", "out, jac") + _unpack(equations, [*needed, *wanted]))
+    needed = _required_bindings(equations, wanted)
+    lines = CodeLines(_signature(name, "TANGENT_SIGNATURE", "out, jac") + _unpack(equations, [*needed, *wanted]))
     local = {}
     for b in needed:
         lines.assign(mangled(b.name), b.expression)
-        local[b.name] = _factors(lines, b)
+        local[b.name] = _local_partials(lines, b)
     pattern = []
     for row, b in enumerate(wanted):
         output = Binding(f"out{row}", sp.Symbol(b.name, real=True) if b.name in local else b.expression)
         lines.assign(f"out[{row}]", output.expression)
-        slopes = _adjoint_row(lines, row, _factors(lines, output), needed, local)
+        slopes = _adjoint_row(lines, row, _local_partials(lines, output), needed, local)
         for column, z in enumerate(base):
             if z in slopes:
                 pattern.append((row, column))
@@ -110,14 +112,14 @@ def _tangent(equations: Equations, name: str, wanted: Sequence[Binding]) -> tupl
     return [*lines.text, "    return", ""], pattern
 
 
-def source_text(equations: Equations) -> str:
+def source_text(equations: ModelEquations) -> str:
     """The generated module as text; the same equations give the same text in every process."""
-    rates_tangent, rates_pattern = _tangent(equations, "rates_tangent", equations.rates)
-    outputs_tangent, outputs_pattern = _tangent(equations, "outputs_tangent", equations.measurable)
+    rates_tangent, rates_pattern = _tangent_lines(equations, "rates_tangent", equations.rates)
+    outputs_tangent, outputs_pattern = _tangent_lines(equations, "outputs_tangent", equations.output_bindings)
     lines = [
-        *_function(equations, "rates", equations.rates),
+        *_function_lines(equations, "rates", equations.rates),
         *rates_tangent,
-        *_function(equations, "outputs", equations.measurable),
+        *_function_lines(equations, "outputs", equations.output_bindings),
         *outputs_tangent,
         f"RATES_PATTERN = {sorted(rates_pattern)}",
         f"OUTPUTS_PATTERN = {sorted(outputs_pattern)}",
@@ -126,12 +128,12 @@ def source_text(equations: Equations) -> str:
     return _HEADER.format(name=equations.name) + "\n".join(lines)
 
 
-def bindings_text(equations: Equations) -> str:
+def bindings_text(equations: ModelEquations) -> str:
     """The module of the breakdown of forces as text."""
-    return _HEADER.format(name=equations.name) + "\n".join(_function(equations, "bindings", equations.bindings))
+    return _HEADER.format(name=equations.name) + "\n".join(_function_lines(equations, "bindings", equations.bindings))
 
 
-def tangent_text(equations: Equations, names: Sequence[str]) -> str:
+def tangent_text(equations: ModelEquations, names: Sequence[str]) -> str:
     """The module of some bindings with their exact Jacobians as text."""
     wanted = [b for name in names for b in equations.bindings if b.name == name]
-    return _HEADER.format(name=equations.name) + "\n".join(_tangent(equations, "tangent", wanted)[0])
+    return _HEADER.format(name=equations.name) + "\n".join(_tangent_lines(equations, "tangent", wanted)[0])

@@ -15,7 +15,7 @@ _GREEK = {
 
 
 @dataclass(frozen=True)
-class Equation:
+class LatexEquation:
     """One line: the name it defines, LaTeX without dollar signs, unit and source; `is_rate` for d/dt of a state."""
 
     name: str
@@ -25,7 +25,7 @@ class Equation:
     is_rate: bool
 
 
-def symbol(name: str) -> str:
+def latex_symbol(name: str) -> str:
     r"""LaTeX of an ASCII name: ``x_P_prime`` -> ``x'_{P}``, ``gamma_R`` -> ``\gamma_{R}``, ``sin_psi`` -> upright."""
     head, *rest = name.split("_")
     prime = "'" if rest and rest[-1] == "prime" else ""
@@ -39,21 +39,21 @@ def symbol(name: str) -> str:
     return f"{head}{prime}_{{{upright}}}" if below else f"{head}{prime}"
 
 
-def symbols(model: Model) -> dict[str, str]:
+def latex_symbols(model: Model) -> dict[str, str]:
     """Name -> LaTeX for every symbol of the model: the parameter's own, the notation table's, else from the name."""
     names = [*model.states, *model.input_names, *(b.name for b in model.bindings)]
-    made = {n: NOTATION[n].latex if n in NOTATION else symbol(n) for n in names}
-    return made | {p.name: p.latex or symbol(p.name) for p in model.parameters}
+    made = {n: NOTATION[n].latex if n in NOTATION else latex_symbol(n) for n in names}
+    return made | {p.name: p.latex or latex_symbol(p.name) for p in model.parameters}
 
 
-def equations(model: Model) -> list[Equation]:
+def latex_equations(model: Model) -> list[LatexEquation]:
     """All bindings in order, then all rates."""
-    known = symbols(model)
+    known = latex_symbols(model)
     names = {sp.Symbol(name, real=True): text for name, text in known.items()}
 
-    def line(binding: Binding, left: str, *, is_rate: bool) -> Equation:
+    def line(binding: Binding, left_side: str, *, is_rate: bool) -> LatexEquation:
         right = sp.latex(binding.expression, symbol_names=names, fold_short_frac=False)
-        return Equation(binding.name, f"{left} = {right}", binding.source, binding.unit, is_rate)
+        return LatexEquation(binding.name, f"{left_side} = {right}", binding.source, binding.unit, is_rate)
 
     lines = [line(b, known[b.name], is_rate=False) for b in model.bindings]
     return lines + [line(b, f"\\dot{{{known[b.name]}}}", is_rate=True) for b in model.equations.rates]

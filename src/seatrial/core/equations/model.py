@@ -6,8 +6,8 @@ from typing import Self
 
 import numpy as np
 
-from seatrial.core.equations.bindings import Binding, Equations, Input
-from seatrial.core.equations.compiled import Compiled, compiled
+from seatrial.core.equations.bindings import Binding, Input, ModelEquations
+from seatrial.core.equations.compiled import CompiledEquations, compile_equations
 from seatrial.core.values import Array, InputError, Parameters, Ship
 from seatrial.numerics.kernels.evaluate import evaluate
 
@@ -16,7 +16,7 @@ from seatrial.numerics.kernels.evaluate import evaluate
 class Model:
     """Equations with the parameters, free and fixed, in the equations' order."""
 
-    equations: Equations
+    equations: ModelEquations
     parameters: Parameters
 
     @property
@@ -65,9 +65,9 @@ class Model:
         return self.equations.is_affine
 
     @property
-    def compiled(self) -> Compiled:
+    def compiled(self) -> CompiledEquations:
         """The generated machine code: rates, outputs, bindings and exact Jacobians (cached between processes)."""
-        return compiled(self.equations)
+        return compile_equations(self.equations)
 
     def with_parameters(self, parameters: Parameters) -> Self:
         """The same equations with other parameters (same names, same order).
@@ -83,7 +83,7 @@ class Model:
         """Other parameter values."""
         return self.with_parameters(self.parameters.with_values(values, source))
 
-    def of_ship(self, ship: Ship) -> Self:
+    def with_ship(self, ship: Ship) -> Self:
         """Particulars the model knows by name, taken from the ship.
 
         Raises:

@@ -59,11 +59,11 @@ class _Printer(PythonCodePrinter):
         return text
 
 
-class Lines:
+class CodeLines:
     """Lines of one generated function; every angle's sine and cosine are computed once, before their first use."""
 
-    def __init__(self, first: Sequence[str]) -> None:
-        self.text = list(first)
+    def __init__(self, header: Sequence[str]) -> None:
+        self.text = list(header)
         self._angles: dict[sp.Expr, int] = {}
         self._printer = _Printer({"fully_qualified_modules": True})
 

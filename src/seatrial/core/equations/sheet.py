@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from seatrial.core.equations.bindings import Binding, Equations, Input
+from seatrial.core.equations.bindings import Binding, Input, ModelEquations
 from seatrial.core.equations.model import Model
 from seatrial.core.values import InputError, Parameter, Parameters
 
@@ -45,13 +45,13 @@ class Sheet:
         self._outputs: list[str] = []
 
     @property
-    def _known(self) -> set[str]:
+    def _declared_names(self) -> set[str]:
         return {*self._states, *(item.name for item in (*self._inputs, *self._parameters, *self._bindings))}
 
-    def _new(self, name: str) -> sp.Symbol:
+    def _declare(self, name: str) -> sp.Symbol:
         if not name.isidentifier():
             raise InputError(f"model '{self.name}': '{name}' is no ASCII identifier")
-        if name in self._known:
+        if name in self._declared_names:
             raise InputError(f"model '{self.name}': the name '{name}' is used twice")
         return sp.Symbol(name, real=True)
 
@@ -59,7 +59,7 @@ class Sheet:
         """Declare states, names separated by spaces; symbols of the notation table are measured channels."""
         symbols = []
         for name in names.split():
-            symbols.append(self._new(name))
+            symbols.append(self._declare(name))
             self._states.append(name)
         return tuple(symbols)
 
@@ -68,7 +68,7 @@ class Sheet:
 
         is_held: linear models keep it constant from sample to sample (a command); else it runs on between them.
         """
-        symbol = self._new(name)
+        symbol = self._declare(name)
         self._inputs.append(Input(name, positive, is_held))
         return symbol
 
@@ -87,7 +87,7 @@ class Sheet:
         latex: str = "",
     ) -> sp.Symbol:
         """Declare a parameter; without a value it is a particular that the ship must give."""
-        symbol = self._new(name)
+        symbol = self._declare(name)
         self._parameters.append(
             Parameter(name, value, unit, lower, upper, scale, None, free, source or self.source, meaning, latex)
         )
@@ -95,7 +95,7 @@ class Sheet:
 
     def bind(self, name: str, expression: sp.Expr | float, source: str = "", unit: str = "1") -> sp.Symbol:
         """Name an expression of states, inputs, parameters and earlier bindings; returns its symbol."""
-        symbol = self._new(name)
+        symbol = self._declare(name)
         self._check(sp.sympify(expression), f"binding '{name}'")
         self._bindings.append(Binding(name, sp.sympify(expression), source, unit))
         return symbol
@@ -116,7 +116,7 @@ class Sheet:
         return symbol
 
     def _check(self, expression: sp.Expr, where: str) -> None:
-        strangers = sorted({str(s) for s in expression.free_symbols} - self._known)
+        strangers = sorted({str(s) for s in expression.free_symbols} - self._declared_names)
         if strangers:
             raise InputError(f"model '{self.name}', {where}: unknown symbol '{strangers[0]}'; declare it first")
 
@@ -127,7 +127,7 @@ class Sheet:
             raise InputError(f"model '{self.name}': no rate given for state '{absent[0]}'")
         rates = tuple(Binding(s, self._rates[s].expression, self._rates[s].source) for s in self._states)
         parameters = Parameters(tuple(self._parameters))
-        equations = Equations(
+        equations = ModelEquations(
             self.name,
             self.source,
             tuple(self._inputs),

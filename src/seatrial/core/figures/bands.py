@@ -4,7 +4,7 @@ import numpy as np
 
 from seatrial.core.figures.plot import Panel, Stroke, clipped, path, thinned
 from seatrial.core.results import Prediction
-from seatrial.core.values import Array, display
+from seatrial.core.values import Array, display_unit
 
 BAND = "#1b4f7230"
 SAMPLE = Stroke(BAND, 9.0)
@@ -20,11 +20,11 @@ def has_band(prediction: Prediction) -> bool:
 
 def edges(values: Array, half_width: Array, unit: str) -> tuple[Array, Array]:
     """Lower and upper edge about `values`, which are in the unit people read; the half width is in SI."""
-    half = half_width * display(unit)[0]
+    half = half_width * display_unit(unit)[0]
     return values - half, values + half
 
 
-def room(curves: list[Array], band: tuple[Array, Array]) -> list[Array]:
+def visible_edges(curves: list[Array], band: tuple[Array, Array]) -> list[Array]:
     """The band's edges as far as the axes should follow them: no further than the curves' own span beyond it."""
     known = np.concatenate([c[np.isfinite(c)] for c in curves])
     if known.size == 0:
@@ -59,9 +59,9 @@ def along_track(panel: Panel, across: Array, along: Array, halves: tuple[Array, 
     return _area(panel, *sides)
 
 
-def _area(panel: Panel, there: Array, back: Array) -> str:
+def _area(panel: Panel, one_edge: Array, other_edge: Array) -> str:
     """The closed area between two lines, shape (n, 2) each; places without a value are left out."""
-    known = np.isfinite(there).all(axis=1) & np.isfinite(back).all(axis=1)
-    outline = np.vstack([there[known], back[known][::-1]])
+    known = np.isfinite(one_edge).all(axis=1) & np.isfinite(other_edge).all(axis=1)
+    outline = np.vstack([one_edge[known], other_edge[known][::-1]])
     drawn = path(panel.px(outline[:, 0]), panel.py(outline[:, 1]), _NONE, BAND)
     return clipped(panel, drawn) if known.sum() > 1 else ""

@@ -29,24 +29,24 @@ GROUP, WIDEST_BAR = 0.82, 34.0
 _LETTER, _DECADES = 6.1, 9
 
 
-def bars(drawn: Bars) -> str:
+def bars(chart: Bars) -> str:
     """One figure with its legend above; what has no bar is marked: a dash for none, 0 or ∞. Empty without values."""
-    if not drawn.labels or not drawn.series:
+    if not chart.labels or not chart.series:
         return ""
-    legend, top = _legend(tuple(drawn.series))
-    panel = _panel(drawn, top)
-    parts = [legend, _axis(panel, drawn)]
-    for k in range(len(drawn.labels)):
-        parts += _group(panel, drawn, k)
-    base = float(panel.py(panel.y[0] if drawn.is_logarithmic else 0.0))
-    parts.append(segment(panel.left, base, panel.left + panel.width, base, Stroke(AXIS, 0.9)))
-    names, depth = _labels(panel, drawn.labels)
-    return drawing([*parts, names], panel.top + panel.height + depth, drawn.title)
+    legend, top = _legend(tuple(chart.series))
+    panel = _panel(chart, top)
+    parts = [legend, _axis(panel, chart)]
+    for k in range(len(chart.labels)):
+        parts += _group(panel, chart, k)
+    base = float(panel.py(panel.y[0] if chart.is_logarithmic else 0.0))
+    parts.append(segment(panel.left_edge, base, panel.left_edge + panel.width, base, Stroke(AXIS, 0.9)))
+    names, depth = _labels(panel, chart.labels)
+    return drawing([*parts, names], panel.top + panel.height + depth, chart.title)
 
 
-def _panel(drawn: Bars, top: float) -> Panel:
-    values = [v for row in drawn.series.values() for v in row if v is not None and math.isfinite(v)]
-    if drawn.is_logarithmic:
+def _panel(chart: Bars, top: float) -> Panel:
+    values = [v for row in chart.series.values() for v in row if v is not None and math.isfinite(v)]
+    if chart.is_logarithmic:
         powers = [math.log10(v) for v in values if v > 0.0] or [0.0]
         low, high = math.floor(min(powers) - 0.1), math.ceil(max(powers) + 0.02)
         ends = (float(low), float(max(high, low + 1)))
@@ -54,18 +54,18 @@ def _panel(drawn: Bars, top: float) -> Panel:
         low, high = min([0.0, *values]), max([0.0, *values])
         room = 0.06 * (high - low) or 1.0
         ends = (low - room if low < 0.0 else 0.0, high + room if high > 0.0 or low == 0.0 else 0.0)
-    return Panel(LEFT, top, WIDTH - LEFT - 8, HEIGHT, (-0.5, len(drawn.labels) - 0.5), ends)
+    return Panel(LEFT, top, WIDTH - LEFT - 8, HEIGHT, (-0.5, len(chart.labels) - 0.5), ends)
 
 
-def _axis(panel: Panel, drawn: Bars) -> str:
-    right, parts = panel.left + panel.width, []
-    for value in _decades(panel.y) if drawn.is_logarithmic else ticks(*panel.y, 5):
+def _axis(panel: Panel, chart: Bars) -> str:
+    right, parts = panel.left_edge + panel.width, []
+    for value in _decades(panel.y) if chart.is_logarithmic else ticks(*panel.y, 5):
         y = float(panel.py(value))
-        words = exact(10.0**value) if drawn.is_logarithmic else tick_text(value, panel.y)
-        parts.append(segment(panel.left, y, right, y, Stroke(FAINT, 0.8)))
-        parts.append(text(panel.left - 5, y + 3.6, words, anchor="end", size=10))
-    parts.append(segment(panel.left, panel.top, panel.left, panel.top + panel.height, Stroke(AXIS, 0.8)))
-    parts.append(text(14, panel.top + panel.height / 2, drawn.unit, anchor="middle", turn=-90))
+        words = exact(10.0**value) if chart.is_logarithmic else tick_text(value, panel.y)
+        parts.append(segment(panel.left_edge, y, right, y, Stroke(FAINT, 0.8)))
+        parts.append(text(panel.left_edge - 5, y + 3.6, words, anchor="end", size=10))
+    parts.append(segment(panel.left_edge, panel.top, panel.left_edge, panel.top + panel.height, Stroke(AXIS, 0.8)))
+    parts.append(text(14, panel.top + panel.height / 2, chart.unit, anchor="middle", turn=-90))
     return "".join(parts)
 
 
@@ -75,21 +75,21 @@ def _decades(ends: tuple[float, float]) -> list[float]:
     return [float(power) for power in range(low, high + 1, 1 + (high - low) // _DECADES)]
 
 
-def _group(panel: Panel, drawn: Bars, k: int) -> list[str]:
+def _group(panel: Panel, chart: Bars, k: int) -> list[str]:
     """The bars of one label, side by side about its place."""
-    count = len(drawn.series)
-    width = min(WIDEST_BAR, GROUP * panel.width / len(drawn.labels) / count)
+    count = len(chart.series)
+    width = min(WIDEST_BAR, GROUP * panel.width / len(chart.labels) / count)
     first = float(panel.px(k)) - 0.5 * width * count
-    base = panel.y[0] if drawn.is_logarithmic else 0.0
+    base = panel.y[0] if chart.is_logarithmic else 0.0
     parts = []
-    for j, row in enumerate(drawn.series.values()):
+    for j, row in enumerate(chart.series.values()):
         value, left = row[k], first + j * width
-        mark = _mark(value, is_logarithmic=drawn.is_logarithmic)
+        mark = _mark(value, is_logarithmic=chart.is_logarithmic)
         if value is None or mark:
             at = float(panel.py(base)) - 4
             parts.append(text(left + width / 2, at, mark, anchor="middle", size=10, colour=INK))
             continue
-        ends = sorted(float(panel.py(v)) for v in (base, math.log10(value) if drawn.is_logarithmic else value))
+        ends = sorted(float(panel.py(v)) for v in (base, math.log10(value) if chart.is_logarithmic else value))
         thick = max(width - 1.0, 0.8 * width)
         parts.append(rectangle(left, ends[0], thick, max(ends[1] - ends[0], 0.6), SHADES[j % len(SHADES)]))
     return parts

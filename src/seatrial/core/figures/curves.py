@@ -24,19 +24,19 @@ STROKES = (
 HEIGHT = 300.0
 
 
-def curves(drawn: Figure) -> str:
+def curves(figure: Figure) -> str:
     """One figure of a study with its legend at the side."""
-    x, y = span([c.x for c in drawn.curves]), span([c.y for c in drawn.curves])
+    x, y = span([c.x for c in figure.curves]), span([c.y for c in figure.curves])
     width = WIDTH - 280
     panel = Panel(64, 12, width, HEIGHT, x, y)
-    if drawn.is_map:
+    if figure.is_map:
         scale = max((x[1] - x[0]) / width, (y[1] - y[0]) / (1.4 * HEIGHT))
         panel = Panel(64, 12, (x[1] - x[0]) / scale, (y[1] - y[0]) / scale, x, y)
-    parts = [axes(panel, x_ticks=7, y_ticks=6, x_label=drawn.x_label, y_label=drawn.y_label)]
-    for k, one in enumerate(drawn.curves):
+    parts = [axes(panel, x_ticks=7, y_ticks=6, x_label=figure.x_label, y_label=figure.y_label)]
+    for k, one in enumerate(figure.curves):
         stroke = STROKES[k % len(STROKES)]
-        parts.append(panel.curve(*(thinned if drawn.is_map else decimated)(one.x, one.y), stroke))
+        parts.append(panel.curve(*(thinned if figure.is_map else decimated)(one.x, one.y), stroke))
         at = 22 + 18 * k
         parts.append(segment(WIDTH - 200, at, WIDTH - 166, at, stroke))
         parts.append(text(WIDTH - 158, at + 4, one.name))
-    return drawing(parts, max(panel.height + 54, 30 + 18 * len(drawn.curves)), drawn.title)
+    return drawing(parts, max(panel.height + 54, 30 + 18 * len(figure.curves)), figure.title)

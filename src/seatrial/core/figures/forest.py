@@ -9,7 +9,7 @@ from seatrial.core.results import Coefficient
 
 NARROWEST, WIDEST = 1.0, 120.0
 ROW = 19.0
-_PRIOR, _INTERVAL, _KNOWN = Stroke("#d3dae0", 9.0), Stroke(ACCENT, 2.2), Stroke(SECOND, 1.3)
+_PRIOR, _INTERVAL, _TRUTH = Stroke("#d3dae0", 9.0), Stroke(ACCENT, 2.2), Stroke(SECOND, 1.3)
 
 
 def forest(coefficients: Sequence[Coefficient]) -> str:
@@ -17,9 +17,11 @@ def forest(coefficients: Sequence[Coefficient]) -> str:
     free = [c for c in coefficients if not c.fixed and c.estimate != 0 and c.lower is not None and c.upper is not None]
     if not free:
         return ""
-    reach = _reach(free)
+    reach = _axis_limit(free)
     margin = 8.0 * max(len(c.name) for c in free) + 12
-    panel = Panel(margin, 26, WIDTH - margin - 14, ROW * len(free), (-reach, reach), (-0.5, len(free) - 0.5), down=True)
+    panel = Panel(
+        margin, 26, WIDTH - margin - 14, ROW * len(free), (-reach, reach), (-0.5, len(free) - 0.5), is_y_down=True
+    )
     name = "deviation from the estimate, per cent of the estimate"
     parts = [axes(panel, x_ticks=8, y_ticks=1, y_labels=False, x_label=name), _legend(free)]
     parts.append(
@@ -31,7 +33,7 @@ def forest(coefficients: Sequence[Coefficient]) -> str:
     return drawing(parts, panel.top + panel.height + 36, "forest plot of the free coefficients")
 
 
-def _reach(free: Sequence[Coefficient]) -> float:
+def _axis_limit(free: Sequence[Coefficient]) -> float:
     ends = [abs(_deviation(c, x)) for c in free for x in (c.lower, c.upper, c.truth) if x is not None]
     return float(np.clip(1.12 * max(ends), NARROWEST, WIDEST))
 

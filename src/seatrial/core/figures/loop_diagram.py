@@ -17,7 +17,7 @@ _PALE = "#eef3f7"
 ROLES = ("sensor", "term", "filter", "servo", "plant", "disturbance")
 
 
-def in_order(components: Sequence[Component]) -> list[Component]:
+def signal_order(components: Sequence[Component]) -> list[Component]:
     """As a signal passes them; roles that are not known last."""
     return sorted(components, key=lambda c: ROLES.index(c.role) if c.role in ROLES else len(ROLES))
 
@@ -37,7 +37,7 @@ def diagram(components: Sequence[Component], output: str, actuator: str) -> str:
     parts, x = [_sum(26.0, middle, "−"), _arrow(0.0, 18.0, middle)], 26.0 + RADIUS
     for column in columns:
         if column[0].role == "plant":
-            parts.append(text(x + GAP / 2, middle - 6, _letter(actuator), anchor="middle", size=10.5))
+            parts.append(text(x + GAP / 2, middle - 6, _symbol(actuator), anchor="middle", size=10.5))
         parts += _parallel(column, x, middle, width)
         x += GAP + width
         if len(column) > 1:
@@ -45,16 +45,16 @@ def diagram(components: Sequence[Component], output: str, actuator: str) -> str:
             parts.append(_sum(x + RADIUS, middle, "", is_added=True))
             x += 2 * RADIUS
     if of["disturbance"]:
-        parts += _disturbed(of["disturbance"][0], x + GAP + RADIUS, x, middle, width)
+        parts += _disturbance_path(of["disturbance"][0], x + GAP + RADIUS, x, middle, width)
         x += GAP + 2 * RADIUS
     end, low = x + 40.0, middle + 0.5 * ROW * tallest + 22
-    parts += [_arrow(x, end, middle), text(end + 4, middle + 4, _letter(output))]
+    parts += [_arrow(x, end, middle), text(end + 4, middle + 4, _symbol(output))]
     back = (x + end) / 2
     parts += [segment(back, middle, back, low, WIRE), segment(26.0, low, back, low, WIRE), _upwards(26.0, low, middle)]
     return drawing(parts, low + 12, "block diagram of the loop", end + 26)
 
 
-def _letter(name: str) -> str:
+def _symbol(name: str) -> str:
     return label(name, "1")
 
 
@@ -72,7 +72,7 @@ def _parallel(column: Sequence[Component], x: float, middle: float, width: float
                 parts.append(_arrow(left + width, join - RADIUS, y))
             else:
                 parts.append(segment(left + width, y, join, y, WIRE))
-                parts.append(_into(join, y, middle))
+                parts.append(_arrow_into_sum(join, y, middle))
         else:
             parts.append(_arrow(x, left, y))
         parts.append(_box(left, y, width, c))
@@ -81,7 +81,7 @@ def _parallel(column: Sequence[Component], x: float, middle: float, width: float
     return parts
 
 
-def _disturbed(c: Component, x: float, from_x: float, middle: float, width: float) -> list[str]:
+def _disturbance_path(c: Component, x: float, from_x: float, middle: float, width: float) -> list[str]:
     """The disturbance's block above, its answer added to the plant's."""
     y = middle - ROW - 0.5 * HEIGHT
     left = x - 0.5 * width
@@ -95,16 +95,16 @@ def _disturbed(c: Component, x: float, from_x: float, middle: float, width: floa
     ]
 
 
-def _box(left: float, y: float, width: float, c: Component) -> str:
+def _box(left_edge: float, y: float, width: float, c: Component) -> str:
     words = f"{c.gain} · {c.name}" if c.gain else c.name
     lines = textwrap.wrap(words, max(6, int(width / 5.6)))[:3] or [c.role]
     first = y + 3.6 - 6.0 * (len(lines) - 1)
     frame = (
-        f'<rect x="{left:.1f}" y="{y - HEIGHT / 2:.1f}" width="{width:.1f}" height="{HEIGHT:.1f}" rx="3" '
+        f'<rect x="{left_edge:.1f}" y="{y - HEIGHT / 2:.1f}" width="{width:.1f}" height="{HEIGHT:.1f}" rx="3" '
         f'fill="{_PALE}" stroke="{ACCENT}" stroke-width="1"/>'
     )
     return frame + "".join(
-        text(left + width / 2, first + 12.0 * k, line, anchor="middle", size=10) for k, line in enumerate(lines)
+        text(left_edge + width / 2, first + 12.0 * k, line, anchor="middle", size=10) for k, line in enumerate(lines)
     )
 
 
@@ -133,6 +133,6 @@ def _upwards(x: float, y1: float, middle: float) -> str:
     return segment(x, y1, x, y2 + 5, WIRE) + _head(x, y2, 0.0, -1.0)
 
 
-def _into(x: float, y: float, middle: float) -> str:
+def _arrow_into_sum(x: float, y: float, middle: float) -> str:
     """From a row above or below into the sum."""
     return _downwards(x, y, middle - RADIUS) if y < middle else _upwards(x, y, middle)

@@ -27,24 +27,27 @@ from seatrial.core.values import Array
 LEFT, HEIGHT, MOST = 58.0, 220.0, 6
 CHOSEN, LIMIT = Stroke(ACCENT, 2.2), Stroke(SECOND, 1.1, "5 3")
 # rivals: dashes tell them apart without colour
-OTHERS = (Stroke(INK, 1.1, "6 2.5"), *STROKES[2:])
+BASELINE_STROKES = (Stroke(INK, 1.1, "6 2.5"), *STROKES[2:])
 SIDE, REAL, IMAGINARY = 380.0, (-2.4, 1.4), (-1.9, 1.9)
 
 
-def styled(tuning: Tuning) -> list[tuple[Controller, Stroke]]:
+def styled_controllers(tuning: Tuning) -> list[tuple[Controller, Stroke]]:
     """The chosen controller and the first rivals, those whose loop is known."""
-    some = [(tuning.chosen, CHOSEN), *((c, OTHERS[k % len(OTHERS)]) for k, c in enumerate(tuning.rivals))]
+    some = [
+        (tuning.chosen, CHOSEN),
+        *((c, BASELINE_STROKES[k % len(BASELINE_STROKES)]) for k, c in enumerate(tuning.baselines)),
+    ]
     return [(c, stroke) for c, stroke in some if len(c.omega) > 1][:MOST]
 
 
 def sensitivities(tuning: Tuning) -> str:
     """|S| with the largest Ms allowed, and |T|, side by side; empty where no loop is known."""
-    drawn = styled(tuning)
+    drawn = styled_controllers(tuning)
     if not drawn:
         return ""
     low, high = (f([f(np.log10(c.omega)) for c, _ in drawn]) for f in (np.min, np.max))
     x = Scale((float(low), float(high)), is_logarithmic=True)
-    allowed = tuning.restriction.peak
+    allowed = tuning.constraints.Ms
     head, top = legend([(c.name, stroke) for c, stroke in drawn])
     width = (WIDTH - 2 * LEFT - 30) / 2
     parts = [head]
@@ -53,26 +56,26 @@ def sensitivities(tuning: Tuning) -> str:
         ("sensitivity |S|", [1.0 / np.abs(d) for _, d in loops]),
         ("complementary sensitivity |T|", [np.abs((d - 1.0) / d) for _, d in loops]),
     )):  # fmt: skip
-        y = Scale((0.0, _reach(sizes, allowed)), is_logarithmic=False)
+        y = Scale((0.0, _axis_top(sizes, allowed)), is_logarithmic=False)
         panel = Panel(LEFT + (width + LEFT + 16) * k, top + 20, width, HEIGHT, x.ends, y.ends)
         parts.append(grid(panel, x, y, x_label="ω [rad/s]", title=title))
         rows = zip(loops, sizes, drawn, strict=True)
         lines = [panel.curve(np.log10(w), size, stroke) for (w, _), size, (_, stroke) in rows]
         parts.append(clipped(panel, "".join(reversed(lines))))
         if k == 0 and math.isfinite(allowed):
-            parts.append(_level(panel, allowed))
+            parts.append(_limit_line(panel, allowed))
     return drawing(parts, top + 20 + HEIGHT + 36, "sensitivities over frequency")
 
 
 def nyquist(tuning: Tuning) -> str:
     """The open loop near -1 for positive frequencies, with the circle that the largest Ms keeps free."""
-    drawn = styled(tuning)
+    drawn = styled_controllers(tuning)
     if not drawn:
         return ""
     width = SIDE * (REAL[1] - REAL[0]) / (IMAGINARY[1] - IMAGINARY[0])
     head, top = legend([(c.name, stroke) for c, stroke in drawn], right=LEFT + width + 40)
     panel = Panel(LEFT, top + 8, width, SIDE, REAL, IMAGINARY)
-    radius = 1.0 / tuning.restriction.peak
+    radius = 1.0 / tuning.constraints.Ms
     parts = [head, axes(panel, x_ticks=7, y_ticks=7, x_label="Re L", y_label="Im L")]
     inside = [_circle(panel, 0.0, 1.0, Stroke(GREY, 0.9))]
     if 0.0 < radius < math.inf:
@@ -84,23 +87,23 @@ def nyquist(tuning: Tuning) -> str:
     parts.append(text(x + 6, y - 5, "−1", size=10))
     if 0.0 < radius < math.inf:
         above = float(panel.py(radius)) - 5
-        words = f"Ms = {tuning.restriction.peak:.3g}"
+        words = f"Ms = {tuning.constraints.Ms:.3g}"
         parts.append(text(x, above, words, anchor="middle", size=10, colour=SECOND))
     return drawing(parts, panel.top + SIDE + 40, "open loop near -1", LEFT + width + 40)
 
 
-def _reach(sizes: list[Array], allowed: float) -> float:
+def _axis_top(sizes: list[Array], max_Ms: float) -> float:
     """Top of the axis: everything of stable loops that keep near the limit; what is far beyond is cut off."""
     highest = max((float(np.max(s[np.isfinite(s)], initial=0.0)) for s in sizes), default=1.0)
-    roof = 2.5 * allowed if math.isfinite(allowed) else math.inf
-    least = 1.15 * allowed if math.isfinite(allowed) else 1.2
+    roof = 2.5 * max_Ms if math.isfinite(max_Ms) else math.inf
+    least = 1.15 * max_Ms if math.isfinite(max_Ms) else 1.2
     return max(least, min(1.08 * highest, roof))
 
 
-def _level(panel: Panel, allowed: float) -> str:
-    y = float(panel.py(allowed))
-    words = text(panel.left + 5, y - 4, f"Ms = {allowed:.3g} allowed", size=10, colour=SECOND)
-    return segment(panel.left, y, panel.left + panel.width, y, LIMIT) + words
+def _limit_line(panel: Panel, max_Ms: float) -> str:
+    y = float(panel.py(max_Ms))
+    words = text(panel.left_edge + 5, y - 4, f"Ms = {max_Ms:.3g} allowed", size=10, colour=SECOND)
+    return segment(panel.left_edge, y, panel.left_edge + panel.width, y, LIMIT) + words
 
 
 def _circle(panel: Panel, centre: float, radius: float, stroke: Stroke, fill: str = "none") -> str:

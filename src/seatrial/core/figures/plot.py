@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from seatrial.core.values import Array, display
+from seatrial.core.values import Array, display_unit
 from seatrial.core.values.notation import NOTATION
 
 WIDTH = 864.0
@@ -43,22 +43,22 @@ PLAIN = Stroke(INK, 0.9)
 class Panel:
     """A rectangle of the page (left, top, width, height in px) and the ranges it shows; `down`: y grows downwards."""
 
-    left: float
+    left_edge: float
     top: float
     width: float
     height: float
     x: tuple[float, float]
     y: tuple[float, float]
-    down: bool = False
+    is_y_down: bool = False
 
     def px(self, x: Array | float) -> Array:
         """Horizontal places in px."""
-        return self.left + (np.asarray(x, float) - self.x[0]) / (self.x[1] - self.x[0]) * self.width
+        return self.left_edge + (np.asarray(x, float) - self.x[0]) / (self.x[1] - self.x[0]) * self.width
 
     def py(self, y: Array | float) -> Array:
         """Vertical places in px, counted downwards."""
         share = (np.asarray(y, float) - self.y[0]) / (self.y[1] - self.y[0])
-        return self.top + (share if self.down else 1.0 - share) * self.height
+        return self.top + (share if self.is_y_down else 1.0 - share) * self.height
 
     def curve(self, x: Array, y: Array, stroke: Stroke) -> str:
         """A line through the points; NaN leaves a gap."""
@@ -84,14 +84,14 @@ def segment(x1: float, y1: float, x2: float, y2: float, stroke: Stroke) -> str:
 
 def clipped(panel: Panel, parts: str) -> str:
     """Parts drawn inside a panel only."""
-    box = f"{panel.left:.1f} {panel.top:.1f} {panel.width:.1f} {panel.height:.1f}"
+    box = f"{panel.left_edge:.1f} {panel.top:.1f} {panel.width:.1f} {panel.height:.1f}"
     x, y, width, height = box.split()
     return f'<svg x="{x}" y="{y}" width="{width}" height="{height}" viewBox="{box}">{parts}</svg>' if parts else ""
 
 
-def rectangle(left: float, top: float, width: float, height: float, fill: str) -> str:
+def rectangle(left_edge: float, top: float, width: float, height: float, fill: str) -> str:
     """A filled rectangle in px."""
-    return f'<rect x="{left:.1f}" y="{top:.1f}" width="{width:.1f}" height="{height:.1f}" fill="{fill}"/>'
+    return f'<rect x="{left_edge:.1f}" y="{top:.1f}" width="{width:.1f}" height="{height:.1f}" fill="{fill}"/>'
 
 
 def text(x: float, y: float, words: str, *, anchor: str = "start", size: float = 11, colour: str = INK,
@@ -116,7 +116,7 @@ def drawing(parts: Sequence[str], height: float, title: str, width: float = WIDT
 def axes(panel: Panel, *, x_ticks: int = 5, y_ticks: int = 4, x_labels: bool = True, y_labels: bool = True,
          x_label: str = "", y_label: str = "", title: str = "", size: float = 10) -> str:  # fmt: skip
     """Grid, axis lines, tick labels and names of a panel."""
-    bottom, right = panel.top + panel.height, panel.left + panel.width
+    bottom, right = panel.top + panel.height, panel.left_edge + panel.width
     grid, line = Stroke(FAINT, 0.8), Stroke(AXIS, 0.8)
     parts = []
     for value in ticks(*panel.x, x_ticks):
@@ -126,21 +126,21 @@ def axes(panel: Panel, *, x_ticks: int = 5, y_ticks: int = 4, x_labels: bool = T
             parts.append(text(at, bottom + size + 3, tick_text(value, panel.x), anchor="middle", size=size))
     for value in ticks(*panel.y, y_ticks):
         at = float(panel.py(value))
-        parts.append(segment(panel.left, at, right, at, grid))
+        parts.append(segment(panel.left_edge, at, right, at, grid))
         if y_labels:
             words = tick_text(value, panel.y)
-            parts.append(text(panel.left - 4, at + 0.36 * size, words, anchor="end", size=size))
+            parts.append(text(panel.left_edge - 4, at + 0.36 * size, words, anchor="end", size=size))
     parts += [
-        segment(panel.left, panel.top, panel.left, bottom, line),
-        segment(panel.left, bottom, right, bottom, line),
+        segment(panel.left_edge, panel.top, panel.left_edge, bottom, line),
+        segment(panel.left_edge, bottom, right, bottom, line),
     ]
     if x_label:
-        parts.append(text(panel.left + panel.width / 2, bottom + 2 * size + 8, x_label, anchor="middle"))
+        parts.append(text(panel.left_edge + panel.width / 2, bottom + 2 * size + 8, x_label, anchor="middle"))
     if y_label:
         middle = panel.top + panel.height / 2
-        parts.append(text(panel.left - 38, middle, y_label, anchor="middle", turn=-90))
+        parts.append(text(panel.left_edge - 38, middle, y_label, anchor="middle", turn=-90))
     if title:
-        parts.append(text(panel.left, panel.top - 6, title))
+        parts.append(text(panel.left_edge, panel.top - 6, title))
     return "".join(parts)
 
 
@@ -155,13 +155,13 @@ def legend(entries: Sequence[tuple[str, Stroke]], right: float, y: float) -> str
     return "".join(parts)
 
 
-def ticks(low: float, high: float, about: int) -> list[float]:
+def ticks(low: float, high: float, count: int) -> list[float]:
     """Round numbers within a range, about so many: steps of 1, 2 or 5 times a power of ten."""
     if not high > low:
         return [low]
-    power = 10.0 ** math.floor(math.log10((high - low) / max(1, about)))
+    power = 10.0 ** math.floor(math.log10((high - low) / max(1, count)))
     choices = [_multiples(low, high, m * power) for m in (0.5, 1.0, 2.0, 5.0, 10.0)]
-    return min(choices, key=lambda values: (len(values) < 2, abs(len(values) - about)))
+    return min(choices, key=lambda values: (len(values) < 2, abs(len(values) - count)))
 
 
 def _multiples(low: float, high: float, step: float) -> list[float]:
@@ -169,9 +169,9 @@ def _multiples(low: float, high: float, step: float) -> list[float]:
     return [k * step + 0.0 for k in range(first, last + 1)]
 
 
-def tick_text(value: float, shown: tuple[float, float]) -> str:
+def tick_text(value: float, axis_range: tuple[float, float]) -> str:
     """A tick's number, a true minus sign, powers of ten far from one."""
-    reach = max(abs(shown[0]), abs(shown[1]))
+    reach = max(abs(axis_range[0]), abs(axis_range[1]))
     if abs(value) < 1e-9 * reach:
         return "0"
     words = f"{value:.6g}" if 1e-3 <= reach < 1e6 else f"{value:.3g}"
@@ -208,19 +208,19 @@ def thinned(x: Array, y: Array, points: int = POINTS) -> tuple[Array, Array]:
 
 def label(name: str, unit: str) -> str:
     """A channel's letter with the unit people read."""
-    shown_unit = display(unit)[1]
+    shown_unit = display_unit(unit)[1]
     letter = _SYMBOLS.get(name, name)
     return letter if shown_unit == "1" else f"{letter} [{shown_unit}]"
 
 
-def unit_of(channel: str) -> str:
+def channel_si_unit(channel: str) -> str:
     """SI unit of a channel of the notation table, ``1`` for others."""
     return NOTATION[channel].unit if channel in NOTATION else "1"
 
 
-def shown(name: str, values: Array, unit: str) -> Array:
+def display_values(name: str, values: Array, unit: str) -> Array:
     """Values in the unit people read; headings without wrap, beginning within a half turn of north."""
-    return (_unwrapped(values) if name == "psi" else values) * display(unit)[0]
+    return (_unwrapped(values) if name == "psi" else values) * display_unit(unit)[0]
 
 
 def _unwrapped(angle: Array) -> Array:

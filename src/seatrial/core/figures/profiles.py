@@ -7,8 +7,8 @@ import numpy as np
 
 from seatrial.core.figures.plot import ACCENT, SECOND, WIDTH, Panel, Stroke, axes, drawing, segment, text
 from seatrial.core.results import Profile
-from seatrial.core.text.words import unit as unit_of_people
-from seatrial.core.values import display
+from seatrial.core.text.words import unit_text as unit_of_people
+from seatrial.core.values import display_unit
 
 COLUMNS, HEIGHT, GAP, LEFT = 3, 120.0, 46.0, 48.0
 BOUND, HIGHEST = 3.84, 12.0
@@ -27,7 +27,7 @@ def profiles(items: Sequence[Profile], units: Mapping[str, str]) -> str:
 
 
 def _panel(profile: Profile, unit: str, box: tuple[float, float, float, float]) -> str:
-    values = np.array(profile.values) * display(unit)[0]
+    values = np.array(profile.values) * display_unit(unit)[0]
     costs = np.array(profile.costs)
     order = np.argsort(values)
     shown = unit_of_people(unit)
@@ -36,11 +36,11 @@ def _panel(profile: Profile, unit: str, box: tuple[float, float, float, float]) 
     name = f"{profile.parameter} [{shown}]" if shown else profile.parameter
     inside = np.where(costs <= highest, costs, np.nan)
     limit = float(panel.py(BOUND))
-    ends = [end * display(unit)[0] for end in (profile.lower, profile.upper) if end is not None]
+    ends = [end * display_unit(unit)[0] for end in (profile.lower, profile.upper) if end is not None]
     return "".join([
         axes(panel, x_ticks=3, y_ticks=3, title=name, y_label="χ² lost"),
-        segment(panel.left, limit, panel.left + panel.width, limit, Stroke(SECOND, 1.0, "4 2.5")),
-        text(panel.left + panel.width - 2, limit - 4, "95 %", anchor="end", size=9.5, colour=SECOND),
+        segment(panel.left_edge, limit, panel.left_edge + panel.width, limit, Stroke(SECOND, 1.0, "4 2.5")),
+        text(panel.left_edge + panel.width - 2, limit - 4, "95 %", anchor="end", size=9.5, colour=SECOND),
         panel.curve(values[order], inside[order], Stroke(ACCENT, 1.6)),
         *(segment(float(panel.px(x)), limit, float(panel.px(x)), panel.top + HEIGHT, Stroke(SECOND, 0.8))
           for x in ends),

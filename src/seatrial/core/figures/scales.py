@@ -34,19 +34,19 @@ class Scale:
     ends: tuple[float, float]
     is_logarithmic: bool
 
-    def at(self, values: Array) -> Array:
+    def coordinates(self, values: Array) -> Array:
         """Values as the panel's coordinates; NaN where there is no logarithm."""
         if not self.is_logarithmic:
             return np.where(np.isfinite(values), values, np.nan)
         positive = np.isfinite(values) & (values > 0.0)
         return np.where(positive, np.log10(np.where(positive, values, 1.0)), np.nan)
 
-    def ticks(self, about: int) -> list[tuple[float, str]]:
+    def ticks(self, count: int) -> list[tuple[float, str]]:
         """Coordinates and texts of the ticks."""
         if not self.is_logarithmic:
-            return [(v, tick_text(v, self.ends)) for v in ticks(*self.ends, about)]
+            return [(v, tick_text(v, self.ends)) for v in ticks(*self.ends, count)]
         choices = [_decades(self.ends, steps) for steps in ((1,), (1, 3), (1, 2, 5))]
-        return min(choices, key=lambda made: (len(made) < 2, abs(len(made) - about)))
+        return min(choices, key=lambda candidate: (len(candidate) < 2, abs(len(candidate) - count)))
 
 
 def _decades(ends: tuple[float, float], steps: tuple[int, ...]) -> list[tuple[float, str]]:
@@ -64,26 +64,26 @@ def scale_of(values: Sequence[Array], margin: float = 0.06) -> Scale:
 
 
 def grid(panel: Panel, x: Scale, y: Scale, *, x_label: str = "", y_label: str = "", title: str = "",
-         about: tuple[int, int] = (5, 5)) -> str:  # fmt: skip
+         tick_counts: tuple[int, int] = (5, 5)) -> str:  # fmt: skip
     """Grid, axis lines, tick labels and names; `about`: numbers of ticks along x and y."""
-    bottom, right = panel.top + panel.height, panel.left + panel.width
+    bottom, right = panel.top + panel.height, panel.left_edge + panel.width
     faint, line, parts = Stroke(FAINT, 0.8), Stroke(AXIS, 0.8), []
-    for at, words in x.ticks(about[0]):
+    for at, words in x.ticks(tick_counts[0]):
         place = float(panel.px(at))
         parts.append(segment(place, panel.top, place, bottom, faint))
         parts.append(text(place, bottom + 13, words, anchor="middle", size=10))
-    for at, words in y.ticks(about[1]):
+    for at, words in y.ticks(tick_counts[1]):
         place = float(panel.py(at))
-        parts.append(segment(panel.left, place, right, place, faint))
-        parts.append(text(panel.left - 4, place + 3.6, words, anchor="end", size=10))
+        parts.append(segment(panel.left_edge, place, right, place, faint))
+        parts.append(text(panel.left_edge - 4, place + 3.6, words, anchor="end", size=10))
     parts += [
-        segment(panel.left, panel.top, panel.left, bottom, line),
-        segment(panel.left, bottom, right, bottom, line),
+        segment(panel.left_edge, panel.top, panel.left_edge, bottom, line),
+        segment(panel.left_edge, bottom, right, bottom, line),
     ]
-    parts.append(text((panel.left + right) / 2, bottom + 29, x_label, anchor="middle") if x_label else "")
+    parts.append(text((panel.left_edge + right) / 2, bottom + 29, x_label, anchor="middle") if x_label else "")
     middle = panel.top + panel.height / 2
-    parts.append(text(panel.left - 42, middle, y_label, anchor="middle", turn=-90) if y_label else "")
-    parts.append(text(panel.left, panel.top - 7, title) if title else "")
+    parts.append(text(panel.left_edge - 42, middle, y_label, anchor="middle", turn=-90) if y_label else "")
+    parts.append(text(panel.left_edge, panel.top - 7, title) if title else "")
     return "".join(parts)
 
 
@@ -105,7 +105,7 @@ class Mark:
     edge: str
     fill: str = "none"
 
-    def drawn(self, px: Array, py: Array) -> str:
+    def svg(self, px: Array, py: Array) -> str:
         """One path for all places [px]; those that are NaN are left out."""
         known = np.isfinite(px) & np.isfinite(py)
         places = list(zip(px[known], py[known], strict=True))
@@ -130,18 +130,20 @@ class Mark:
 Entry = tuple[str, Mark | Stroke]
 
 
-def legend(entries: Sequence[Entry], left: float = 0.0, top: float = 4.0, right: float = WIDTH) -> tuple[str, float]:
+def legend(
+    entries: Sequence[Entry], left_edge: float = 0.0, top: float = 4.0, right: float = WIDTH
+) -> tuple[str, float]:
     """A sample of its mark or line before each name, wrapped, and where the next thing may begin [px]."""
-    parts, x = [], left
+    parts, x = [], left_edge
     for words, kind in entries:
         sample = 30.0 if isinstance(kind, Stroke) else 16.0
         width = sample + _LETTER * len(words) + 22
-        if x > left and x + width > right:
-            x, top = left, top + 18.0
+        if x > left_edge and x + width > right:
+            x, top = left_edge, top + 18.0
         if isinstance(kind, Stroke):
             parts.append(segment(x, top + 6, x + sample - 6, top + 6, kind))
         else:
-            parts.append(kind.drawn(np.array([x + 6]), np.array([top + 6])))
+            parts.append(kind.svg(np.array([x + 6]), np.array([top + 6])))
         parts.append(text(x + sample, top + 10, words, colour=INK))
         x += width
     return "".join(parts), top + 20.0 if entries else top

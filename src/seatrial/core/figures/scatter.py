@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from statistics import median
 
-from seatrial.core.figures.decades import decade_axis, decade_panel
+from seatrial.core.figures.log_rows import decade_axis, decade_panel
 from seatrial.core.figures.plot import ACCENT, FAINT, GREY, INK, SECOND, Stroke, drawing, segment, text
 
 LEAST = 0.1
@@ -27,13 +27,13 @@ def scatter(rows: Mapping[str, Mapping[str, tuple[float, bool]]], label: str) ->
     for k, (name, row) in enumerate(rows.items()):
         y = float(panel.py(k))
         at = {one: float(panel.px(math.log10(max(LEAST, size)))) for one, (size, _) in row.items()}
-        parts.append(text(panel.left - 8, y + 4, name, anchor="end", size=10.5))
-        parts.append(segment(panel.left, y, panel.left + panel.width, y, Stroke(FAINT, 0.8)))
+        parts.append(text(panel.left_edge - 8, y + 4, name, anchor="end", size=10.5))
+        parts.append(segment(panel.left_edge, y, panel.left_edge + panel.width, y, Stroke(FAINT, 0.8)))
         parts.append(segment(min(at.values()), y, max(at.values()), y, Stroke(GREY, 0.7)))
         parts += [_dot(at[one], y, is_near=near) for one, (_, near) in row.items()]
         middle = float(panel.px(math.log10(max(LEAST, median(size for size, _ in row.values())))))
         parts.append(segment(middle, y - 7, middle, y + 7, _TICK))
-        worst = max(row, key=lambda one, of=row: of[one][0])
+        worst = max(row, key=lambda one, row_sizes=row: row_sizes[one][0])
         parts.append(text(at[worst] + 7, y + 3.5, worst, size=9, colour=SECOND))
     return drawing(parts, panel.top + panel.height + 38, label)
 

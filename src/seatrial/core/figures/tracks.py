@@ -33,18 +33,18 @@ _OUTLINE = np.vstack([_HULL, _HULL[::-1] * [1, -1], _HULL[:1]])
 
 
 @dataclass(frozen=True)
-class View:
+class TrackView:
     """How a track lies on the page: north up, or (`lying`) north to the right and east downwards."""
 
-    lying: bool
+    is_rotated: bool
 
-    def across(self, record: Record) -> Array:
+    def horizontal(self, record: Record) -> Array:
         """The coordinate that runs to the right [m]."""
-        return record["x0"] if self.lying else record["y0"]
+        return record["x0"] if self.is_rotated else record["y0"]
 
-    def along(self, record: Record) -> Array:
+    def vertical(self, record: Record) -> Array:
         """The other coordinate [m]: up, or down where the track lies."""
-        return record["y0"] if self.lying else record["x0"]
+        return record["y0"] if self.is_rotated else record["x0"]
 
 
 def has_track(record: Record) -> bool:
@@ -92,15 +92,15 @@ def _row(records: Sequence[Record], length: float, prefix: str, top: float, colu
     parts = []
     for k, record in enumerate(records):
         north, east = extents([record])
-        view = View(lying=is_slender([record]) and north > east)
-        panel = fitted([record], view, length, (tile * k + LEFT, top + TOP, inner, height))
+        view = TrackView(is_rotated=is_slender([record]) and north > east)
+        panel = equal_scale_panel([record], view, length, (tile * k + LEFT, top + TOP, inner, height))
         y_ticks = 2 if columns == STRIP_COLUMNS else 4
         parts.append(axes(panel, title=record.name.removeprefix(prefix), y_ticks=y_ticks, x_ticks=4))
-        parts.append(drawn(panel, view, record, length, PLAIN))
+        parts.append(track_svg(panel, view, record, length, PLAIN))
     return parts, top + height + TOP + BELOW
 
 
-def overlay(prediction: Prediction, length: float, top: float, room: float) -> tuple[str, float, bool]:
+def overlay(prediction: Prediction, length: float, top: float, panel_width: float) -> tuple[str, float, bool]:
     """Measured and simulated track in one panel of width `room`; the parts, their height, and whether it is a strip.
 
     Long and narrow tracks become a strip as wide as the page.
@@ -109,37 +109,39 @@ def overlay(prediction: Prediction, length: float, top: float, room: float) -> t
     both = [measured, simulated]
     north, east = extents(both)
     slender = is_slender(both)
-    view = View(lying=slender and north > east)
-    width = (WIDTH - LEFT - 8) if slender else room - LEFT - 8
+    view = TrackView(is_rotated=slender and north > east)
+    width = (WIDTH - LEFT - 8) if slender else panel_width - LEFT - 8
     height = max(60.0, width * (min(north, east) + length) / (max(north, east) + length)) if slender else width
-    panel = fitted(both, view, length, (LEFT, top, width, height))
-    names = ("x₀, north [m]", "y₀, east [m]") if view.lying else ("y₀, east [m]", "x₀, north [m]")
+    panel = equal_scale_panel(both, view, length, (LEFT, top, width, height))
+    names = ("x₀, north [m]", "y₀, east [m]") if view.is_rotated else ("y₀, east [m]", "x₀, north [m]")
     parts = [
         axes(panel, x_label=names[0], y_label=names[1], x_ticks=9 if slender else 5, y_ticks=3 if slender else 5),
         _envelope(panel, view, prediction),
-        drawn(panel, view, measured, length, MEASURED, fill="#d4d4d4"),
-        drawn(panel, view, simulated, length, SIMULATED),
+        track_svg(panel, view, measured, length, MEASURED, fill="#d4d4d4"),
+        track_svg(panel, view, simulated, length, SIMULATED),
     ]
     return "".join(parts), height + 48.0, slender
 
 
-def _envelope(panel: Panel, view: View, prediction: Prediction) -> str:
+def _envelope(panel: Panel, view: TrackView, prediction: Prediction) -> str:
     """The 95 % band of the simulated track; empty without half widths."""
     north, east = (prediction.half_width.get(s) for s in ("x0", "y0"))
     if north is None or east is None:
         return ""
-    halves = (north, east) if view.lying else (east, north)
+    halves = (north, east) if view.is_rotated else (east, north)
     simulated = prediction.simulated
-    return bands.along_track(panel, view.across(simulated), view.along(simulated), halves)
+    return bands.along_track(panel, view.horizontal(simulated), view.vertical(simulated), halves)
 
 
-def fitted(records: Sequence[Record], view: View, length: float, box: tuple[float, float, float, float]) -> Panel:
+def equal_scale_panel(
+    records: Sequence[Record], view: TrackView, length: float, box: tuple[float, float, float, float]
+) -> Panel:
     """A panel in the box that shows all tracks at equal scales."""
     left, top, width, height = box
-    x = _widened(span([view.across(r) for r in records], 0.0), length)
-    y = _widened(span([view.along(r) for r in records], 0.0), length)
+    x = _widened(span([view.horizontal(r) for r in records], 0.0), length)
+    y = _widened(span([view.vertical(r) for r in records], 0.0), length)
     scale = max((x[1] - x[0]) / width, (y[1] - y[0]) / height)
-    return Panel(left, top, width, height, _about(x, scale * width), _about(y, scale * height), view.lying)
+    return Panel(left, top, width, height, _centred(x, scale * width), _centred(y, scale * height), view.is_rotated)
 
 
 def _widened(ends: tuple[float, float], length: float) -> tuple[float, float]:
@@ -147,24 +149,26 @@ def _widened(ends: tuple[float, float], length: float) -> tuple[float, float]:
     return ends[0] - room, ends[1] + room
 
 
-def _about(ends: tuple[float, float], size: float) -> tuple[float, float]:
+def _centred(ends: tuple[float, float], size: float) -> tuple[float, float]:
     middle = 0.5 * (ends[0] + ends[1])
     return middle - 0.5 * size, middle + 0.5 * size
 
 
-def drawn(panel: Panel, view: View, record: Record, length: float, stroke: Stroke, fill: str = "none") -> str:
+def track_svg(panel: Panel, view: TrackView, record: Record, length: float, stroke: Stroke, fill: str = "none") -> str:
     """One track, with ships where the heading is known."""
-    parts = [panel.curve(*thinned(view.across(record), view.along(record)), stroke)]
+    parts = [panel.curve(*thinned(view.horizontal(record), view.vertical(record)), stroke)]
     if "psi" in record and length > 0:
         outline_stroke = Stroke(stroke.colour if fill == "none" else "#9a9a9a", 0.8)
         for i in np.linspace(0, len(record) - 1, SHIPS).astype(int):
-            north, east = hull(float(record["x0"][i]), float(record["y0"][i]), float(record["psi"][i]), length).T
-            across, along = (north, east) if view.lying else (east, north)
+            north, east = hull_outline(
+                float(record["x0"][i]), float(record["y0"][i]), float(record["psi"][i]), length
+            ).T
+            across, along = (north, east) if view.is_rotated else (east, north)
             parts.append(path(panel.px(across), panel.py(along), outline_stroke, fill))
     return "".join(parts)
 
 
-def hull(north: float, east: float, heading: float, length: float) -> Array:
+def hull_outline(north: float, east: float, heading: float, length: float) -> Array:
     """Outline of the ship, shape (n, 2): north, east [m]; heading [rad]."""
     c, s = math.cos(heading), math.sin(heading)
     return _OUTLINE @ np.array([[c, s], [-s, c]]) * length + [north, east]

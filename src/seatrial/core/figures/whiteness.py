@@ -11,6 +11,7 @@ from seatrial.core.figures.plot import (
     Panel,
     Stroke,
     axes,
+    channel_si_unit,
     decimated,
     drawing,
     label,
@@ -18,10 +19,9 @@ from seatrial.core.figures.plot import (
     segment,
     span,
     text,
-    unit_of,
 )  # fmt: skip
 from seatrial.core.results import Residuals
-from seatrial.core.values import Array, display
+from seatrial.core.values import Array, display_unit
 
 BINS, WIDEST, HEIGHT, GAP = 41, 4.5, 76.0, 26.0
 STEMS = 60
@@ -47,8 +47,8 @@ def whiteness(residuals: Sequence[Residuals]) -> str:
 
 
 def _series(one: Residuals, top: float, *, last: bool) -> str:
-    unit = unit_of(one.channel)
-    values = one.values * display(unit)[0]
+    unit = channel_si_unit(one.channel)
+    values = one.values * display_unit(unit)[0]
     at = np.arange(len(values), dtype=float)
     panel = Panel(66, top, 320, HEIGHT, (0.0, float(max(1, len(values) - 1))), span([values]))
     drawn = axes(panel, x_ticks=4, y_ticks=3, x_label="sample" if last else "", y_label=label(one.channel, unit))
@@ -64,9 +64,9 @@ def _autocorrelation(one: Residuals, top: float, *, last: bool) -> str:
     panel = Panel(446, top, 210, HEIGHT, (-0.02 * lags[-1], lags[-1] * 1.02 or 1.0), (low, 1.05))
     parts = [axes(panel, x_ticks=4, y_ticks=3, x_label="lag [s]" if last else "")]
     edge = float(panel.py(band))
-    parts.append(rectangle(panel.left, edge, panel.width, float(panel.py(-band)) - edge, "#d9e4ec"))
+    parts.append(rectangle(panel.left_edge, edge, panel.width, float(panel.py(-band)) - edge, "#d9e4ec"))
     zero = float(panel.py(0))
-    parts.append(segment(panel.left, zero, panel.left + panel.width, zero, Stroke("#999", 0.6)))
+    parts.append(segment(panel.left_edge, zero, panel.left_edge + panel.width, zero, Stroke("#999", 0.6)))
     if len(lags) <= STEMS:
         stems = zip(panel.px(lags), panel.py(rho), strict=True)
         parts += [segment(float(x), zero, float(x), float(y), Stroke(ACCENT, 1.6)) for x, y in stems]

@@ -1,16 +1,17 @@
 """Solutions, fits and studies read in the field's terms."""
 
-from seatrial.core.results.design import Actuator, Confirmation, Design, Limits, Order, Worth
+from seatrial.core.results.baseline import Baseline, OpenLoopScores
+from seatrial.core.results.design import Actuator, Confirmation, Design, ManoeuvrePrecision, TimedOrder, TrialLimits
 from seatrial.core.results.fit import (
+    CandidateModel,
     Coefficient,
-    Disturbance,
     Extrapolation,
     Fit,
-    Margin,
+    IntervalBasis,
     Measure,
-    Member,
     Method,
     Noise,
+    NoiseModel,
     Offset,
     Prediction,
     Residuals,
@@ -25,8 +26,7 @@ from seatrial.core.results.identifiability import (
     Stability,
     Symmetry,
 )
-from seatrial.core.results.rival import Rival, Sailed
-from seatrial.core.results.rolling import Estimated, Rolling
+from seatrial.core.results.roll import IntervalEstimate, RollCharacteristics
 from seatrial.core.results.seakeeping import PointMotion, Seakeeping
 from seatrial.core.results.study import Bars, Check, Claim, Curve, Figure, Matrix, Study, Table, Verdict
 from seatrial.numerics.optimise import Solution, Status
@@ -34,6 +34,8 @@ from seatrial.numerics.optimise import Solution, Status
 __all__ = [
     "Actuator",
     "Bars",
+    "Baseline",
+    "CandidateModel",
     "Check",
     "Claim",
     "Coefficient",
@@ -43,28 +45,25 @@ __all__ = [
     "Curve",
     "Design",
     "Direction",
-    "Disturbance",
-    "Estimated",
     "Extrapolation",
     "Figure",
     "Fit",
     "Identifiability",
-    "Limits",
-    "Margin",
+    "IntervalBasis",
+    "IntervalEstimate",
+    "ManoeuvrePrecision",
     "Matrix",
     "Measure",
-    "Member",
     "Method",
     "Noise",
+    "NoiseModel",
     "Offset",
-    "Order",
+    "OpenLoopScores",
     "PointMotion",
     "Prediction",
     "Profile",
     "Residuals",
-    "Rival",
-    "Rolling",
-    "Sailed",
+    "RollCharacteristics",
     "Seakeeping",
     "Sensitivity",
     "Solution",
@@ -73,6 +72,7 @@ __all__ = [
     "Study",
     "Symmetry",
     "Table",
+    "TimedOrder",
+    "TrialLimits",
     "Verdict",
-    "Worth",
 ]

@@ -22,19 +22,19 @@ class Actuator:
 
 
 @dataclass(frozen=True)
-class Limits:
+class TrialLimits:
     """What the trial may not leave: drift angle [rad] and distance from where it begins [m]; infinite: free.
 
     They bind the ship as assumed; `for_every_ship`: each one drawn from the prior, too.
     """
 
     drift: float = float("inf")
-    room: float = float("inf")
+    sea_room: float = float("inf")
     for_every_ship: bool = False
 
 
 @dataclass(frozen=True, eq=False)
-class Worth:
+class ManoeuvrePrecision:
     """What one manoeuvre of the trial's duration tells of each coefficient.
 
     Attributes:
@@ -47,27 +47,27 @@ class Worth:
     """
 
     name: str
-    relative: Array
-    drawn: Array
+    relative_error: Array
+    sampled_relative_error: Array
     drift: float
-    room: float
-    drawn_drift: Array
-    drawn_room: Array
+    distance: float
+    sampled_drift: Array
+    sampled_distance: Array
     executed: Record
 
     @property
     def worst(self) -> float:
         """The least well told coefficient's relative standard error."""
-        return float(self.relative.max())
+        return float(self.relative_error.max())
 
     @property
     def mean(self) -> float:
         """Root mean square of the relative standard errors."""
-        return float((self.relative**2).mean() ** 0.5)
+        return float((self.relative_error**2).mean() ** 0.5)
 
 
 @dataclass(frozen=True)
-class Order:
+class TimedOrder:
     """One line of the helmsman's table: at `time` [s] set `values` (input -> SI, record's signs)."""
 
     time: float
@@ -85,7 +85,7 @@ class Confirmation:
     """
 
     runs: int
-    converged: int
+    converged_runs: int
     error: Array
     bound: Array
 
@@ -112,12 +112,12 @@ class Design:
     rate: float
     duration: float
     actuators: tuple[Actuator, ...]
-    limits: Limits
+    limits: TrialLimits
     criterion: str
-    spread: Array
-    designed: Worth
-    rivals: tuple[Worth, ...]
-    orders: tuple[Order, ...]
+    relative_spread: Array
+    designed: ManoeuvrePrecision
+    baselines: tuple[ManoeuvrePrecision, ...]
+    orders: tuple[TimedOrder, ...]
     plan: Record
     solution: Solution
     confirmation: Confirmation | None

@@ -3,9 +3,9 @@
 from dataclasses import dataclass, field
 
 from seatrial.core.equations import Model
+from seatrial.core.results.baseline import Baseline
 from seatrial.core.results.identifiability import Identifiability
-from seatrial.core.results.rival import Rival
-from seatrial.core.results.rolling import Rolling
+from seatrial.core.results.roll import RollCharacteristics
 from seatrial.core.results.seakeeping import Seakeeping
 from seatrial.core.values import Array, Finding, Record, Ship
 from seatrial.numerics.optimise import Solution
@@ -73,7 +73,7 @@ class Measure:
 
 
 @dataclass(frozen=True)
-class Disturbance:
+class NoiseModel:
     """What is between model and record: process noise in the states, measurement noise in the channels.
 
     Attributes:
@@ -105,7 +105,7 @@ class Extrapolation:
 
 
 @dataclass(frozen=True, eq=False)
-class Margin:
+class IntervalBasis:
     """What intervals of any further prediction of a fit are made of.
 
     Attributes:
@@ -122,15 +122,15 @@ class Margin:
     covariance: Array
     degrees_of_freedom: float
     factor: float = 1.0
-    kinds: dict[str, float] = field(default_factory=dict)
+    measure_deviation: dict[str, float] = field(default_factory=dict)
     offsets: dict[str, float] = field(default_factory=dict)
     process: dict[str, float] = field(default_factory=dict)
-    covered: dict[str, float] = field(default_factory=dict)
+    training_envelope: dict[str, float] = field(default_factory=dict)
     tied: tuple[dict[str, float], ...] = ()
 
 
 @dataclass(frozen=True)
-class Member:
+class CandidateModel:
     """One model of the declared family, scored over whole runs left out.
 
     Attributes:
@@ -143,11 +143,11 @@ class Member:
     """
 
     name: str
-    free: int
+    free_count: int
     heading_deg: float | None
     position_m: float | None
-    tied: bool
-    chosen: bool = False
+    is_tied: bool
+    is_chosen: bool = False
     note: str = ""
     roll_deg: float | None = None
 
@@ -175,8 +175,8 @@ class Prediction:
     initial_seconds: float
     extrapolation: Extrapolation | None = None
     half_width: dict[str, Array] = field(default_factory=dict)
-    floor: dict[str, float] = field(default_factory=dict)
-    spread: dict[str, float] = field(default_factory=dict)
+    noise_floor: dict[str, float] = field(default_factory=dict)
+    tied_spread: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -240,12 +240,12 @@ class Fit:
     elapsed_s: float
     versions: dict[str, str]
     identifiability: Identifiability | None = None
-    disturbance: Disturbance | None = None
-    family: tuple[Member, ...] = ()
-    margin: Margin | None = None
+    noise_model: NoiseModel | None = None
+    candidate_models: tuple[CandidateModel, ...] = ()
+    interval_basis: IntervalBasis | None = None
     seakeeping: Seakeeping | None = None
-    rivals: tuple[Rival, ...] = ()
-    rolling: Rolling | None = None
+    baselines: tuple[Baseline, ...] = ()
+    roll: RollCharacteristics | None = None
 
     def validation(self) -> tuple[Prediction, ...]:
         """The predictions of runs that were not fitted."""

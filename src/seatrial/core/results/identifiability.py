@@ -70,7 +70,7 @@ class Consequence:
 
     parameter: str
     change: float
-    moves: dict[str, float]
+    estimate_changes: dict[str, float]
     misfit: float
     text: str
 

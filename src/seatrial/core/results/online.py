@@ -17,7 +17,7 @@ class Sample:
     values: Array
 
 
-class Phase(StrEnum):
+class EstimatorPhase(StrEnum):
     """How the numbers of a snapshot come about.
 
     WAITING: too little has been seen; values are the start, standard errors infinite.
@@ -31,7 +31,7 @@ class Phase(StrEnum):
 
 
 @dataclass(frozen=True)
-class Change:
+class CoefficientChange:
     """Whether the latest stretch tells other coefficients than what came before (Hausman 1978, Econometrica 46).
 
     Attributes:
@@ -42,14 +42,14 @@ class Change:
 
     since: float
     statistic: float
-    freedom: int
+    degrees_of_freedom: int
     p: float
-    is_told: bool
-    most: str
+    is_significant: bool
+    most_changed: str
 
 
 @dataclass(frozen=True)
-class Counts:
+class SampleCounts:
     """What happened to the samples of a stream.
 
     Attributes:
@@ -71,7 +71,7 @@ class Counts:
     checksum: int = 0
     dropped: int = 0
     truncated: int = 0
-    last: str = ""
+    last_problem: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,13 +89,13 @@ class Snapshot:
     time: float
     samples: int
     runs: int
-    phase: Phase
+    phase: EstimatorPhase
     names: tuple[str, ...]
     units: tuple[str, ...]
     value: Array
     standard_error: Array
     noise: dict[str, float] = field(default_factory=dict)
-    untold: tuple[str, ...] = ()
+    unidentified: tuple[str, ...] = ()
     advice: str = ""
-    change: Change | None = None
+    change: CoefficientChange | None = None
     findings: tuple[Finding, ...] = ()

@@ -14,9 +14,9 @@ class PointMotion:
 
     place: str
     x: float
-    significant: float
-    acceleration: float
-    sickness: float
+    significant_amplitude: float
+    rms_acceleration: float
+    sickness_incidence: float
 
 
 @dataclass(frozen=True)
@@ -46,5 +46,5 @@ class Seakeeping:
     pitch_density: tuple[float, ...]
     heave_significant: float
     pitch_significant: float
-    periods: tuple[float, float]
+    zero_crossing_periods: tuple[float, float]
     points: tuple[PointMotion, ...]

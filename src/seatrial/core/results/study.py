@@ -163,15 +163,17 @@ class Study:
         return {
             "study": self.name,
             "source": self.source,
-            "tables": [asdict(t) | {"rows": [[_told(cell) for cell in row] for row in t.rows]} for t in self.tables],
+            "tables": [
+                asdict(t) | {"rows": [[_finite_or_none(cell) for cell in row] for row in t.rows]} for t in self.tables
+            ],
             "claims": [asdict(claim) for claim in self.claims],
-            "checks": [asdict(check) | {"value": _told(check.value)} for check in self.checks],
+            "checks": [asdict(check) | {"value": _finite_or_none(check.value)} for check in self.checks],
             "seed": self.seed,
             "elapsed_s": self.elapsed_s,
             "versions": dict(self.versions),
         }
 
 
-def _told(cell: str | float | None) -> str | float | None:
+def _finite_or_none(cell: str | float | None) -> str | float | None:
     """None for numbers that are none: JSON knows neither NaN nor infinity."""
     return cell if cell is None or isinstance(cell, str) or math.isfinite(cell) else None

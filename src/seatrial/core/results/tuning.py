@@ -27,7 +27,7 @@ class Component:
 
 
 @dataclass(frozen=True)
-class Restriction:
+class ControllerConstraints:
     """What every controller must keep.
 
     Attributes:
@@ -36,7 +36,7 @@ class Restriction:
         limit, rate, stall: of the actuator [rad, rad/s, rad]; infinite where there is none.
     """
 
-    peak: float = 2.0
+    Ms: float = 2.0
     saturation: float = 0.2
     rate_saturation: float = 0.2
     limit: float = float("inf")
@@ -64,20 +64,20 @@ class Controller:
     objectives: Array
     rms: dict[str, float]
     reduction: float
-    peak: float
+    Ms: float
     gain_margin: float
     phase_margin: float
     delay_margin: float
     damping: float
     saturation: float
     rate_saturation: float
-    broken: tuple[str, ...]
+    violated: tuple[str, ...]
     omega: Array
     open_loop: Complex
 
 
 @dataclass(frozen=True, eq=False)
-class Front:
+class ParetoFront:
     """Controllers of which none is better than another in all objectives.
 
     Attributes:
@@ -86,16 +86,16 @@ class Front:
     """
 
     name: str
-    names: tuple[str, ...]
+    gain_names: tuple[str, ...]
     gains: Array
     objectives: Array
-    peak: Array
+    Ms: Array
     evaluations: int
     hypervolume: float = float("nan")
 
 
 @dataclass(frozen=True, eq=False)
-class Sailed:
+class SeawaySimulation:
     """One controller in nonlinear simulation over seeds; reductions of rms, 0 to 1, shape (seeds,).
 
     Attributes:
@@ -111,17 +111,17 @@ class Sailed:
     record: Record
 
     @property
-    def lost(self) -> float:
+    def saturation_loss(self) -> float:
         """Reduction lost to angle and rate limits, mean over seeds."""
         return float(np.mean(self.linear - self.limited))
 
 
 @dataclass(frozen=True)
-class Paired:
+class PairedDifference:
     """Reduction of the chosen controller minus that of another on the same seas: mean and 95 % interval."""
 
-    other: str
-    what: str
+    baseline: str
+    stage: str
     mean: float
     lower: float
     upper: float
@@ -129,7 +129,7 @@ class Paired:
 
 
 @dataclass(frozen=True, eq=False)
-class Slot:
+class OperatingPoint:
     """One condition of the schedule: U [m/s], beta [rad], height [m]; costs of its gains and of others there.
 
     A cost is the output's rms over that without control.
@@ -140,14 +140,14 @@ class Slot:
     height: float
     gains: dict[str, float]
     cost: float
-    peak: float
+    Ms: float
     saturation: float
-    others: dict[str, float]
+    baseline_costs: dict[str, float]
     is_feasible: bool
 
 
 @dataclass(frozen=True)
-class Bound:
+class PerformanceBound:
     """What no linear controller of its kind does better: output variance over that of the chosen one.
 
     `at`: what is held equal (actuator rate energy), the spectrum and the Ms; `note`: what it means.
@@ -155,12 +155,12 @@ class Bound:
 
     name: str
     ratio: float
-    at: str
+    conditions: str
     note: str
 
 
 @dataclass(frozen=True, eq=False)
-class Manoeuvre:
+class ManoeuvreResponse:
     """One controller carried through a demand, nonlinear model and limits: a course or speed change, a zigzag.
 
     Attributes:
@@ -179,7 +179,7 @@ class Manoeuvre:
     stable_draws: int
     draws: int
     worst_overshoot: float
-    drawn: Array
+    sampled_outputs: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,18 +203,18 @@ class Tuning:
     actuator: str
     objectives: tuple[str, ...]
     units: tuple[str, ...]
-    restriction: Restriction
+    constraints: ControllerConstraints
     chosen: Controller
     reasons: tuple[str, ...]
-    rivals: tuple[Controller, ...]
-    front: Front
-    richer: tuple[Front, ...]
+    baselines: tuple[Controller, ...]
+    front: ParetoFront
+    extended_fronts: tuple[ParetoFront, ...]
     components: tuple[Component, ...]
-    sailed: tuple[Sailed, ...]
-    paired: tuple[Paired, ...]
-    schedule: tuple[Slot, ...]
-    bounds: tuple[Bound, ...]
-    manoeuvres: tuple[Manoeuvre, ...]
+    seaway_simulations: tuple[SeawaySimulation, ...]
+    paired_differences: tuple[PairedDifference, ...]
+    schedule: tuple[OperatingPoint, ...]
+    bounds: tuple[PerformanceBound, ...]
+    manoeuvres: tuple[ManoeuvreResponse, ...]
     findings: tuple[Finding, ...]
     solution: Solution
     seed: int

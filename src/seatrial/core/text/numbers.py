@@ -4,13 +4,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-MINUS, THIN, DASH = "\u2212", "\u202f", "\u2013"
+MINUS, THIN_SPACE, DASH = "\u2212", "\u202f", "\u2013"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 LARGEST, SMALLEST = 1e7, 1e-4
 
 
 @dataclass(frozen=True)
-class Estimate:
+class EstimateText:
     """A value with its standard error and interval as text; `power` is their common factor, mostly empty."""
 
     value: str
@@ -25,7 +25,7 @@ def fixed(value: float | None, decimals: int) -> str:
     if value is None or not math.isfinite(value):
         return DASH
     nearest = round(value, decimals) + 0.0
-    text = f"{abs(nearest):,.{max(decimals, 0)}f}".replace(",", THIN)
+    text = f"{abs(nearest):,.{max(decimals, 0)}f}".replace(",", THIN_SPACE)
     return (MINUS if nearest < 0 else "") + text
 
 
@@ -52,16 +52,16 @@ def rounded(value: float) -> str:
 def exact(value: float | None, digits: int = 6) -> str:
     """A given value as somebody wrote it: up to `digits` significant digits, no trailing zeros."""
     text = significant(value, digits)
-    mantissa, times, power = text.partition(THIN + "×")
+    mantissa, times, power = text.partition(THIN_SPACE + "×")
     if "." in mantissa:
         mantissa = mantissa.rstrip("0").rstrip(".")
     return mantissa + times + power
 
 
-def estimate(value: float, error: float | None, lower: float | None, upper: float | None) -> Estimate:
+def estimate_text(value: float, error: float | None, lower: float | None, upper: float | None) -> EstimateText:
     """Value, standard error and interval with the decimals of the error's second significant digit."""
     if error is None or not math.isfinite(error) or error <= 0 or not math.isfinite(value):
-        return Estimate(exact(value), significant(error, 2), significant(lower), significant(upper))
+        return EstimateText(exact(value), significant(error, 2), significant(lower), significant(upper))
     largest = max(abs(value), error)
     power = 0 if SMALLEST * 10 <= largest < LARGEST else _exponent(largest, 2)
     factor = 10.0**power
@@ -70,27 +70,27 @@ def estimate(value: float, error: float | None, lower: float | None, upper: floa
     def text(x: float | None) -> str:
         return fixed(None if x is None else x / factor, decimals)
 
-    return Estimate(text(value), text(error), text(lower), text(upper), power_of_ten(power) if power else "")
+    return EstimateText(text(value), text(error), text(lower), text(upper), power_of_ten(power) if power else "")
 
 
-def column(values: Sequence[float | None]) -> list[str]:
+def column_texts(values: Sequence[float | None]) -> list[str]:
     """Numbers below one another with the same decimals: two significant digits of the smaller ones."""
     known = sorted(abs(v) for v in values if v is not None and math.isfinite(v) and v != 0)
     decimals = max(0, 1 - _exponent(known[len(known) // 4], 2)) if known else 0
     return [fixed(v, decimals) for v in values]
 
 
-def percent(part: float | None, whole: float) -> str:
+def percent(part: float | None, total: float) -> str:
     """`part` in per cent of `whole`, two significant digits."""
-    if part is None or whole == 0 or not math.isfinite(part / whole):
+    if part is None or total == 0 or not math.isfinite(part / total):
         return DASH
-    share = 100.0 * abs(part / whole)
+    share = 100.0 * abs(part / total)
     return "> 999" if share > 999 else significant(share, 2)
 
 
 def power_of_ten(exponent: int) -> str:
     """`` ×10⁻⁵``."""
-    return f"{THIN}×{THIN}10{str(exponent).translate(SUPERSCRIPTS)}"
+    return f"{THIN_SPACE}×{THIN_SPACE}10{str(exponent).translate(SUPERSCRIPTS)}"
 
 
 def duration(seconds: float) -> str:

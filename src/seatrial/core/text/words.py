@@ -8,8 +8,8 @@ import numpy as np
 
 from seatrial.core.results import Extrapolation, Measure
 from seatrial.core.text.numbers import fixed, significant
-from seatrial.core.values import Array, display
-from seatrial.core.values.arrays import correlation_of
+from seatrial.core.values import Array, display_unit
+from seatrial.core.values.arrays import correlation_matrix
 from seatrial.core.values.notation import NOTATION
 
 _MEASURES = {
@@ -28,12 +28,12 @@ _MEASURES = {
     "period_s": ("period", "s"),
 }
 _UNIT_ENDINGS = (("_deg_s", "deg/s"), ("_deg", "deg"), ("_L", "L"), ("_s", "s"))
-STRONG = 0.9
-INSIDE, EDGE = 1.05, 1.2
-FINER = 2
+STRONG_CORRELATION = 0.9
+INSIDE_INDEX, EDGE_INDEX = 1.05, 1.2
+EXTRA_DECIMALS = 2
 
 
-def measure(name: str) -> tuple[str, str]:
+def measure_label(name: str) -> tuple[str, str]:
     """Name and unit of a manoeuvring measure: ``overshoot_1_deg`` -> 1st overshoot, deg."""
     if name in _MEASURES:
         return _MEASURES[name]
@@ -46,13 +46,13 @@ def measure(name: str) -> tuple[str, str]:
     return name.replace("_", " "), ""
 
 
-def decimals(unit: str, m: Measure) -> int:
+def measure_decimals(unit: str, m: Measure) -> int:
     """Decimals of a measure in that unit, so many that two digits of its interval's width are seen."""
     usual = {"deg": 1, "L": 2, "s": 1, "m/s": 3, "deg/s": 2}.get(unit, 3)
     width = m.upper - m.lower if m.upper is not None and m.lower is not None else 0.0
     if not 0.0 < width < math.inf:
         return usual
-    return min(usual + FINER, max(usual, 1 - math.floor(math.log10(width))))
+    return min(usual + EXTRA_DECIMALS, max(usual, 1 - math.floor(math.log10(width))))
 
 
 def is_inside(m: Measure) -> bool | None:
@@ -68,21 +68,21 @@ def ordinal(number: int) -> str:
     return f"{number}{ending}"
 
 
-def channel(name: str) -> str:
+def channel_meaning(name: str) -> str:
     """What a channel is: ``psi`` -> heading."""
     return NOTATION[name].meaning if name in NOTATION else name
 
 
-def unit(si: str) -> str:
+def unit_text(si: str) -> str:
     """The unit people read, empty for numbers."""
-    shown = display(si)[1]
+    shown = display_unit(si)[1]
     return "" if shown == "1" else shown.replace("^2", "²").replace("^3", "³")
 
 
-def listed(items: Sequence[str], most: int = 6) -> str:
+def enumeration(items: Sequence[str], max_items: int = 6) -> str:
     """a, b and c; from `most` on: a, b, c and 5 more."""
-    if len(items) > most:
-        return f"{', '.join(items[: most - 1])} and {len(items) - most + 1} more"
+    if len(items) > max_items:
+        return f"{', '.join(items[: max_items - 1])} and {len(items) - max_items + 1} more"
     return " and ".join([", ".join(items[:-1]), items[-1]]) if len(items) > 1 else "".join(items)
 
 
@@ -113,7 +113,7 @@ def interval(lower: float | None, upper: float | None, decimals: int) -> str:
     return f"[{fixed(lower, decimals)}, {fixed(upper, decimals)}]"
 
 
-_REACHES = {
+_EXTRAPOLATION_CLAUSES = {
     "yaw_rate": ("turns {} times as fast as", "{} times the yaw rate"),
     "drift": ("drifts at {} times the angle of", "{} times the drift angle"),
     "rudder": ("uses {} times the rudder of", "{} times the rudder"),
@@ -121,62 +121,68 @@ _REACHES = {
 }
 
 
-def reach(index: float) -> str:
+def extrapolation_zone(index: float) -> str:
     """Where a run lies: inside the training runs, at their edge, or beyond; empty where that is not known."""
     if math.isnan(index):
         return ""
-    if index <= INSIDE:
+    if index <= INSIDE_INDEX:
         return "inside"
-    return "edge" if index <= EDGE else "beyond"
+    return "edge" if index <= EDGE_INDEX else "beyond"
 
 
-def times(ratio: float) -> str:
+def ratio_text(ratio: float) -> str:
     """A ratio with two digits, ∞ where there is no bound."""
     return "∞" if math.isinf(ratio) else significant(ratio, 2)
 
 
-def extrapolated(e: Extrapolation) -> str:
+def extrapolation_text(e: Extrapolation) -> str:
     """How far a run leaves the training runs, and how to read its intervals."""
-    index = times(e.index)
-    if reach(e.index) == "inside":
+    index = ratio_text(e.index)
+    if extrapolation_zone(e.index) == "inside":
         return f"{index}: the run stays inside what the training runs covered."
-    outside = sorted((item for item in e.ratios.items() if item[1] > INSIDE), key=lambda item: -item[1])
-    how = _how_far(outside) if outside else "the run goes beyond the training runs"
-    if reach(e.index) == "edge":
+    outside = sorted((item for item in e.ratios.items() if item[1] > INSIDE_INDEX), key=lambda item: -item[1])
+    how = _extrapolation_clause(outside) if outside else "the run goes beyond the training runs"
+    if extrapolation_zone(e.index) == "edge":
         return f"{index}: {how}, just beyond their edge."
     return f"{index}: {how}. Read its intervals as lower limits."
 
 
-def _how_far(outside: Sequence[tuple[str, float]]) -> str:
+def _extrapolation_clause(outside: Sequence[tuple[str, float]]) -> str:
     """The first ratio as a clause, the others after it."""
-    told = [(_REACHES.get(name, (f"reaches in {name} {{}} times", f"{{}} times in {name}")), times(ratio))
-            for name, ratio in outside]  # fmt: skip
+    told = [
+        (
+            _EXTRAPOLATION_CLAUSES.get(name, (f"reaches in {name} {{}} times", f"{{}} times in {name}")),
+            ratio_text(ratio),
+        )
+        for name, ratio in outside
+    ]
     (clause, _), first = told[0]
     others = [also.format(ratio) for (_, also), ratio in told[1:]]
-    return f"the run {clause.format(first)} any training run" + (f", with {listed(others)}" if others else "")
+    return f"the run {clause.format(first)} any training run" + (f", with {enumeration(others)}" if others else "")
 
 
-def without(prefix: str) -> str:
+def prefix_note(prefix: str) -> str:
     """A sentence for captions whose names are shortened."""
     return f" Names without their common beginning, {prefix}" if prefix else ""
 
 
-def correlated(names: Sequence[str], covariance: Array) -> str:
+def correlation_text(names: Sequence[str], covariance: Array) -> str:
     """Which coefficients the records hardly tell apart."""
     if len(names) < 2 or covariance.shape != (len(names), len(names)):
         return ""
-    matrix = np.nan_to_num(np.tril(correlation_of(covariance), k=-1))
+    matrix = np.nan_to_num(np.tril(correlation_matrix(covariance), k=-1))
     order = np.argsort(-np.abs(matrix), axis=None)
     pairs = [(int(i // len(names)), int(i % len(names))) for i in order[:4]]
-    strong = [(i, j) for i, j in pairs if abs(matrix[i, j]) >= STRONG]
-    count = int(np.sum(np.abs(matrix) >= STRONG))
+    strong = [(i, j) for i, j in pairs if abs(matrix[i, j]) >= STRONG_CORRELATION]
+    count = int(np.sum(np.abs(matrix) >= STRONG_CORRELATION))
     if not strong:
         i, j = pairs[0]
         if i == j:
             return "None is correlated with another."
         return f"The strongest is {fixed(matrix[i, j], 2)}, between {names[i]} and {names[j]}."
-    told = listed([f"{names[i]} and {names[j]} ({fixed(matrix[i, j], 2)})" for i, j in strong])
+    told = enumeration([f"{names[i]} and {names[j]} ({fixed(matrix[i, j], 2)})" for i, j in strong])
     return (
-        f"{counted(count, 'pair').capitalize()} at {STRONG} or above in size; the strongest: {told}. The records "
+        f"{counted(count, 'pair').capitalize()} at {STRONG_CORRELATION} or above in size; the strongest: "
+        f"{told}. The records "
         "determine such coefficients mainly together: take them as a set, not one by one."
     )

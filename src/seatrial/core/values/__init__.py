@@ -1,15 +1,15 @@
 """The nouns everybody knows: records, channels, parameters, ships, findings, units, notation."""
 
 from seatrial.core.values.arrays import Array, Index, frozen
-from seatrial.core.values.errors import DivergedError, InputError, nearest
+from seatrial.core.values.errors import DivergedError, InputError, spelling_hint
 from seatrial.core.values.finding import Finding, Severity
-from seatrial.core.values.force_points import ForcePoints, Includes
+from seatrial.core.values.force_points import ForceContent, ForcePoints
 from seatrial.core.values.notation import NOTATION, Quantity, quantity
 from seatrial.core.values.parameters import Parameter, Parameters, Prior
-from seatrial.core.values.progress import Progress
-from seatrial.core.values.record import Channel, Kind, Provenance, Record
+from seatrial.core.values.progress import ProgressReporter
+from seatrial.core.values.record import Channel, Provenance, Record, RecordKind
 from seatrial.core.values.ship import Ship
-from seatrial.core.values.units import display, si
+from seatrial.core.values.units import display_unit, si_unit
 
 __all__ = [
     "NOTATION",
@@ -17,23 +17,23 @@ __all__ = [
     "Channel",
     "DivergedError",
     "Finding",
+    "ForceContent",
     "ForcePoints",
-    "Includes",
     "Index",
     "InputError",
-    "Kind",
     "Parameter",
     "Parameters",
     "Prior",
-    "Progress",
+    "ProgressReporter",
     "Provenance",
     "Quantity",
     "Record",
+    "RecordKind",
     "Severity",
     "Ship",
-    "display",
+    "display_unit",
     "frozen",
-    "nearest",
     "quantity",
-    "si",
+    "si_unit",
+    "spelling_hint",
 ]

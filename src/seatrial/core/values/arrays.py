@@ -14,7 +14,7 @@ def frozen(values: ArrayLike) -> Array:
     return array
 
 
-def correlation_of(covariance: Array) -> Array:
+def correlation_matrix(covariance: Array) -> Array:
     """Return a covariance (n, n) scaled to a unit diagonal; rows without a variance are NaN."""
     spread = np.sqrt(np.where(np.diag(covariance) > 0, np.diag(covariance), np.nan))
     return covariance / np.outer(spread, spread)

@@ -9,9 +9,9 @@ class DivergedError(InputError):
     """A simulation that leaves all bounds."""
 
 
-def nearest(name: str, known: list[str]) -> str:
+def spelling_hint(name: str, valid_names: list[str]) -> str:
     """A hint naming the known word most like `name`, or an empty string."""
     import difflib
 
-    close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-    return f"; did you mean '{close[0]}'?" if close else f"; known are {', '.join(known)}"
+    close = difflib.get_close_matches(name, valid_names, n=1, cutoff=0.5)
+    return f"; did you mean '{close[0]}'?" if close else f"; known are {', '.join(valid_names)}"

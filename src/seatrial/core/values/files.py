@@ -9,7 +9,7 @@ from pathlib import Path
 from seatrial.core.values.errors import InputError
 
 
-def write_whole(path: Path, content: bytes) -> None:
+def write_atomically(path: Path, content: bytes) -> None:
     """Write beside the target, then rename.
 
     Raises:
@@ -29,7 +29,7 @@ def write_whole(path: Path, content: bytes) -> None:
         raise InputError(f"'{path}' cannot be written ({error.strerror}); choose another place") from None
 
 
-def write_together(folder: Path, contents: Mapping[str, bytes]) -> Path:
+def write_files_atomically(folder: Path, contents: Mapping[str, bytes]) -> Path:
     """Write files of a folder beside it first, then move them in; others in it are left alone. Returns the folder.
 
     Raises:

@@ -26,11 +26,11 @@ class Finding:
 
     severity: Severity
     code: str
-    what: str
+    message: str
     evidence: str = ""
     advice: str = ""
 
     @property
     def text(self) -> str:
         """What and evidence in one line."""
-        return f"{self.what} ({self.evidence})" if self.evidence else self.what
+        return f"{self.message} ({self.evidence})" if self.evidence else self.message

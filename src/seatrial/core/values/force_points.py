@@ -8,12 +8,12 @@ from types import MappingProxyType
 import numpy as np
 
 from seatrial.core.values.arrays import Array, frozen
-from seatrial.core.values.errors import InputError, nearest
+from seatrial.core.values.errors import InputError, spelling_hint
 
 FORCES = ("X", "Y", "N")
 
 
-class Includes(StrEnum):
+class ForceContent(StrEnum):
     """What the forces of a table hold; at zero yaw rate the last three are the same.
 
     Attributes:
@@ -45,7 +45,7 @@ class ForcePoints:
     motion: Mapping[str, Array]
     forces: Mapping[str, Array]
     sd: Mapping[str, float]
-    includes: Includes = Includes.HYDRODYNAMIC
+    includes: ForceContent = ForceContent.HYDRODYNAMIC
     weight: float = 1.0
     source: str = ""
     columns: Mapping[str, str] = field(default_factory=dict)
@@ -55,16 +55,16 @@ class ForcePoints:
         forces = {symbol: frozen(values) for symbol, values in self.forces.items()}
         for name, value in (("motion", motion), ("forces", forces), ("sd", dict(self.sd))):
             object.__setattr__(self, name, MappingProxyType(value))
-        self._demand()
+        self._validate()
 
-    def _demand(self) -> None:
+    def _validate(self) -> None:
         where = f"force points '{self.name}'"
         for symbol in ("u", "v", "r"):
             if symbol not in self.motion:
                 raise InputError(f"{where} lack '{symbol}'; give it, a constant if need be")
         for symbol in self.forces:
             if symbol not in FORCES:
-                raise InputError(f"{where}: unknown force '{symbol}'{nearest(symbol, list(FORCES))}")
+                raise InputError(f"{where}: unknown force '{symbol}'{spelling_hint(symbol, list(FORCES))}")
             if not np.isfinite(self.sd.get(symbol, np.nan)) or self.sd[symbol] <= 0:
                 raise InputError(f"{where}: '{symbol}' has no positive standard deviation; give sd or sd_percent")
         if not self.forces or not any(np.isfinite(values).any() for values in self.forces.values()):

@@ -27,7 +27,7 @@ _EXPONENTS: dict[str, float] = {
 }
 
 
-def factor(unit: str, ratio: float) -> float:
+def froude_factor(unit: str, ratio: float) -> float:
     """Factor from model to ship for a quantity of SI `unit` at length ratio `ratio` = L_ship / L_model.
 
     Raises:
@@ -40,7 +40,7 @@ def factor(unit: str, ratio: float) -> float:
     return float(ratio ** _EXPONENTS[unit])
 
 
-def scaled(record: Record, ratio: float) -> Record:
+def froude_scaled(record: Record, ratio: float) -> Record:
     """The record at `ratio` times its scale (ratio > 1: model to ship; the inverse is `1 / ratio`).
 
     Lengths and reference points x ratio, time and velocities x ratio^1/2, rates x ratio^-1/2, forces x ratio^3,
@@ -51,17 +51,17 @@ def scaled(record: Record, ratio: float) -> Record:
     """
     if ratio == 1.0:
         return record
-    length = factor("m", ratio)
+    length = froude_factor("m", ratio)
     channels = {
         symbol: replace(
-            channel.with_values(channel.values * factor(channel.unit, ratio)),
+            channel.with_values(channel.values * froude_factor(channel.unit, ratio)),
             reference_point=channel.reference_point * length,
         )
         for symbol, channel in record.channels.items()
     }
     return replace(
         record,
-        time=record.time * factor("s", ratio),
+        time=record.time * froude_factor("s", ratio),
         channels=channels,
-        provenance=record.provenance.then(f"Froude-scaled by {ratio:g}"),
+        provenance=record.provenance.with_step(f"Froude-scaled by {ratio:g}"),
     )

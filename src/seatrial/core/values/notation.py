@@ -6,7 +6,7 @@ body-fixed x forward, y starboard, z down (ITTC 2021 symbols; SNAME 1950; Fossen
 
 from dataclasses import dataclass
 
-from seatrial.core.values.errors import InputError, nearest
+from seatrial.core.values.errors import InputError, spelling_hint
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ def quantity(symbol: str) -> Quantity:
         InputError: the symbol is not in the table; the nearest one is named.
     """
     if symbol not in NOTATION:
-        raise InputError(f"unknown channel '{symbol}'{nearest(symbol, sorted(NOTATION))}")
+        raise InputError(f"unknown channel '{symbol}'{spelling_hint(symbol, sorted(NOTATION))}")
     return NOTATION[symbol]
 
 

@@ -9,7 +9,7 @@ from typing import Self
 import numpy as np
 
 from seatrial.core.values.arrays import Array
-from seatrial.core.values.errors import InputError, nearest
+from seatrial.core.values.errors import InputError, spelling_hint
 
 
 @dataclass(frozen=True)
@@ -77,13 +77,13 @@ class Parameters:
         return len(self.items)
 
     def __contains__(self, name: str) -> bool:
-        return name in self._places
+        return name in self._index_by_name
 
     def __getitem__(self, name: str) -> Parameter:
         return self.items[self.index(name)]
 
     @cached_property
-    def _places(self) -> dict[str, int]:
+    def _index_by_name(self) -> dict[str, int]:
         return {p.name: i for i, p in enumerate(self.items)}
 
     @cached_property
@@ -113,11 +113,11 @@ class Parameters:
 
     def index(self, name: str) -> int:
         """Position of a name."""
-        if name not in self._places:
-            raise InputError(f"unknown parameter '{name}'{nearest(name, list(self.names))}")
-        return self._places[name]
+        if name not in self._index_by_name:
+            raise InputError(f"unknown parameter '{name}'{spelling_hint(name, list(self.names))}")
+        return self._index_by_name[name]
 
-    def _changed(self, changes: Mapping[str, Mapping[str, object]]) -> Self:
+    def _with_changes(self, changes: Mapping[str, Mapping[str, object]]) -> Self:
         for name in changes:
             self.index(name)
         return replace(self, items=tuple(replace(p, **changes.get(p.name, {})) for p in self.items))  # type: ignore[arg-type]
@@ -125,7 +125,7 @@ class Parameters:
     def with_values(self, values: Mapping[str, float], source: str | None = None) -> Self:
         """New values, and their source if given."""
         extra = {} if source is None else {"source": source}
-        return self._changed({name: {"value": float(value), **extra} for name, value in values.items()})
+        return self._with_changes({name: {"value": float(value), **extra} for name, value in values.items()})
 
     def with_free_values(self, point: Array) -> Self:
         """Values of the free parameters, in order."""
@@ -133,25 +133,25 @@ class Parameters:
 
     def fixed(self, *names: str) -> Self:
         """The named parameters fixed at their values."""
-        return self._changed({name: {"free": False} for name in names})
+        return self._with_changes({name: {"free": False} for name in names})
 
     def freed(self, *names: str) -> Self:
         """The named parameters free."""
-        return self._changed({name: {"free": True} for name in names})
+        return self._with_changes({name: {"free": True} for name in names})
 
     def only_free(self, names: Iterable[str]) -> Self:
         """Exactly the named parameters free."""
         wanted = set(names)
-        return self._changed({n: {"free": n in wanted} for n in (*self.names, *wanted)})
+        return self._with_changes({n: {"free": n in wanted} for n in (*self.names, *wanted)})
 
     def bounded(self, name: str, lower: float, upper: float) -> Self:
         """Bounds of one parameter."""
-        return self._changed({name: {"lower": lower, "upper": upper}})
+        return self._with_changes({name: {"lower": lower, "upper": upper}})
 
     def with_priors(self, priors: Mapping[str, Prior]) -> Self:
         """Gaussian priors by name."""
-        return self._changed({name: {"prior": prior} for name, prior in priors.items()})
+        return self._with_changes({name: {"prior": prior} for name, prior in priors.items()})
 
     def without_priors(self) -> Self:
         """No priors at all."""
-        return self._changed({name: {"prior": None} for name in self.names})
+        return self._with_changes({name: {"prior": None} for name in self.names})

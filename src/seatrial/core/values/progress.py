@@ -2,4 +2,4 @@
 
 from collections.abc import Callable
 
-Progress = Callable[[str], None]
+ProgressReporter = Callable[[str], None]

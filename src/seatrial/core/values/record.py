@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from seatrial.core.values.arrays import Array, frozen
-from seatrial.core.values.errors import InputError, nearest
+from seatrial.core.values.errors import InputError, spelling_hint
 from seatrial.core.values.notation import quantity
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import xarray
 
 
-class Kind(StrEnum):
+class RecordKind(StrEnum):
     """Where a record comes from; a planned one has inputs only."""
 
     MEASURED = "measured"
@@ -46,7 +46,7 @@ class Channel:
     label: str = ""
 
     @classmethod
-    def of(cls, symbol: str, values: Array) -> Self:
+    def from_notation(cls, symbol: str, values: Array) -> Self:
         """A channel in the notation table's own unit, frame and sign."""
         q = quantity(symbol)
         return cls(frozen(values), q.unit, q.frame, q.positive)
@@ -71,11 +71,11 @@ class Provenance:
     steps: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, metadata: Mapping[str, Any]) -> Self:
+    def from_metadata(cls, metadata: Mapping[str, Any]) -> Self:
         """The inverse of `dataclasses.asdict`, by way of JSON."""
         return cls(metadata["source"], metadata["sha256"], tuple(metadata["steps"]))
 
-    def then(self, step: str) -> Self:
+    def with_step(self, step: str) -> Self:
         """The same with one more step."""
         return replace(self, steps=(*self.steps, step))
 
@@ -94,7 +94,7 @@ class Record:
     name: str
     time: Array
     channels: Mapping[str, Channel]
-    kind: Kind = Kind.MEASURED
+    kind: RecordKind = RecordKind.MEASURED
     provenance: Provenance = field(default_factory=Provenance)
 
     def __post_init__(self) -> None:
@@ -107,12 +107,14 @@ class Record:
                 raise InputError(
                     f"record '{self.name}': channel '{symbol}' has {len(channel.values)} samples, time {len(self.time)}"
                 )
-        _demand_forward(self.name, self.time)
+        _check_time_order(self.name, self.time)
 
     @classmethod
-    def of(cls, name: str, time: Array, values: Mapping[str, Array], kind: Kind = Kind.MEASURED) -> Self:
+    def from_arrays(
+        cls, name: str, time: Array, values: Mapping[str, Array], kind: RecordKind = RecordKind.MEASURED
+    ) -> Self:
         """A record of channels in the notation table's own units, frames and signs."""
-        return cls(name, time, {symbol: Channel.of(symbol, array) for symbol, array in values.items()}, kind)
+        return cls(name, time, {symbol: Channel.from_notation(symbol, array) for symbol, array in values.items()}, kind)
 
     @property
     def metadata(self) -> dict[str, Any]:
@@ -140,7 +142,9 @@ class Record:
             InputError: the record has no such channel.
         """
         if symbol not in self.channels:
-            raise InputError(f"record '{self.name}' has no channel '{symbol}'{nearest(symbol, list(self.channels))}")
+            raise InputError(
+                f"record '{self.name}' has no channel '{symbol}'{spelling_hint(symbol, list(self.channels))}"
+            )
         return self.channels[symbol]
 
     @property
@@ -175,14 +179,14 @@ class Record:
 
     def with_channel(self, symbol: str, channel: Channel, step: str = "") -> Self:
         """The same record with one channel added or replaced."""
-        provenance = self.provenance.then(step) if step else self.provenance
+        provenance = self.provenance.with_step(step) if step else self.provenance
         return replace(self, channels={**self.channels, symbol: channel}, provenance=provenance)
 
     def without(self, *symbols: str) -> Self:
         """The same record without the named channels."""
         return replace(self, channels={s: c for s, c in self.channels.items() if s not in symbols})
 
-    def named(self, name: str) -> Self:
+    def renamed(self, name: str) -> Self:
         """The same record under another name."""
         return replace(self, name=name)
 
@@ -216,7 +220,7 @@ class Record:
         time = self.time[0] + np.arange(count) / rate
         made = {s: c.with_values(np.interp(time, self.time, c.values)) for s, c in self.channels.items()}
         return replace(
-            self, time=frozen(time), channels=made, provenance=self.provenance.then(f"resampled to {rate:g} Hz")
+            self, time=frozen(time), channels=made, provenance=self.provenance.with_step(f"resampled to {rate:g} Hz")
         )
 
     def to_pandas(self) -> "pandas.DataFrame":
@@ -232,9 +236,11 @@ class Record:
         """The inverse of `to_pandas`; without metadata the notation table's conventions are taken."""
         about = frame.attrs
         known = about.get("channels", {})
-        channels = {str(s): _channel(str(s), frame[s].to_numpy(float), known.get(s)) for s in frame.columns}
-        provenance = Provenance.of(about["provenance"]) if "provenance" in about else Provenance()
-        kind = Kind(about.get("kind", Kind.MEASURED))
+        channels = {
+            str(s): _channel_from_metadata(str(s), frame[s].to_numpy(float), known.get(s)) for s in frame.columns
+        }
+        provenance = Provenance.from_metadata(about["provenance"]) if "provenance" in about else Provenance()
+        kind = RecordKind(about.get("kind", RecordKind.MEASURED))
         return cls(about.get("name", name), frame.index.to_numpy(float), channels, kind, provenance)
 
     def to_xarray(self) -> "xarray.Dataset":
@@ -247,11 +253,14 @@ class Record:
     @classmethod
     def from_xarray(cls, dataset: "xarray.Dataset") -> Self:
         """The inverse of `to_xarray`, but for kind and provenance, which a dataset does not keep."""
-        channels = {str(s): _channel(str(s), a.to_numpy().astype(float), dict(a.attrs)) for s, a in dataset.items()}
+        channels = {
+            str(s): _channel_from_metadata(str(s), a.to_numpy().astype(float), dict(a.attrs))
+            for s, a in dataset.items()
+        }
         return cls(str(dataset.attrs.get("name", "record")), dataset["time"].to_numpy().astype(float), channels)
 
 
-def _demand_forward(name: str, time: Array) -> None:
+def _check_time_order(name: str, time: Array) -> None:
     known = np.flatnonzero(np.isfinite(time))
     back = np.flatnonzero(np.diff(time[known]) < 0)
     if back.size:
@@ -262,5 +271,5 @@ def _demand_forward(name: str, time: Array) -> None:
         )
 
 
-def _channel(symbol: str, values: Array, metadata: dict | None) -> Channel:
-    return Channel(frozen(values), **metadata) if metadata else Channel.of(symbol, values)
+def _channel_from_metadata(symbol: str, values: Array, metadata: dict | None) -> Channel:
+    return Channel(frozen(values), **metadata) if metadata else Channel.from_notation(symbol, values)

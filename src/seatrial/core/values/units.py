@@ -2,7 +2,7 @@
 
 import math
 
-from seatrial.core.values.errors import InputError, nearest
+from seatrial.core.values.errors import InputError, spelling_hint
 
 # unit -> (factor to SI, SI unit); exact by definition (SI brochure 2019; 1 kn = 1852 m/h)
 _UNITS: dict[str, tuple[float, str]] = {
@@ -43,17 +43,17 @@ _UNITS: dict[str, tuple[float, str]] = {
 }
 
 
-def si(unit: str) -> tuple[float, str]:
+def si_unit(unit: str) -> tuple[float, str]:
     """Factor and SI unit of `unit`.
 
     Raises:
         InputError: the unit is unknown; the nearest known one is named.
     """
     if unit not in _UNITS:
-        raise InputError(f"unknown unit '{unit}'{nearest(unit, sorted(_UNITS))}")
+        raise InputError(f"unknown unit '{unit}'{spelling_hint(unit, sorted(_UNITS))}")
     return _UNITS[unit]
 
 
-def display(unit: str) -> tuple[float, str]:
+def display_unit(unit: str) -> tuple[float, str]:
     """Factor from SI and the unit people read: degrees for angles, otherwise SI."""
     return {"rad": (180.0 / math.pi, "deg"), "rad/s": (180.0 / math.pi, "deg/s")}.get(unit, (1.0, unit))

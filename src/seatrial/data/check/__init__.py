@@ -1,9 +1,17 @@
 """Findings on records: judges declared conventions against the data, repairs, converts; refuses to guess."""
 
-from seatrial.data.check.conventions import canonical
-from seatrial.data.check.examine import examine, prepared
-from seatrial.data.check.mend import parts, repair
+from seatrial.data.check.conventions import canonical_record
+from seatrial.data.check.examine import examine, prepared_record
+from seatrial.data.check.repair import complete_segments, repair
 from seatrial.data.check.rudder import is_excited
-from seatrial.data.check.stamps import timebase
+from seatrial.data.check.timestamps import rebuild_time_base
 
-__all__ = ["canonical", "examine", "is_excited", "parts", "prepared", "repair", "timebase"]
+__all__ = [
+    "canonical_record",
+    "complete_segments",
+    "examine",
+    "is_excited",
+    "prepared_record",
+    "rebuild_time_base",
+    "repair",
+]

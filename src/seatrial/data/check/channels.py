@@ -3,15 +3,21 @@
 import numpy as np
 
 from seatrial.core.values import Array, Finding, Record, Severity
-from seatrial.data.check.frames import best_reading
-from seatrial.data.check.mend import INPUTS
-from seatrial.data.check.motion import motion_of
-from seatrial.data.check.rates import heading_rate
-from seatrial.data.check.signal import jackknifed, slope, smoothed, stretches, window
+from seatrial.data.check.motion import recorded_motion
+from seatrial.data.check.repair import INPUT_CHANNELS
+from seatrial.data.check.signal import (
+    jackknife_least_squares,
+    mask_intervals,
+    smoothed,
+    smoothed_derivative,
+    window_length,
+)
+from seatrial.data.check.velocity_conventions import best_convention
+from seatrial.data.check.yaw_rate_consistency import heading_rate
 
-OUTPUTS = ("x0", "y0", "psi", "u", "v", "r", "phi", "p", "theta", "z", "u_dot", "v_dot")
-STUCK_SAMPLES, STUCK_PART = 20, 0.02
-LAG_ERRORS, LAG_SAMPLES = 4.0, 1.5
+OUTPUT_CHANNELS = ("x0", "y0", "psi", "u", "v", "r", "phi", "p", "theta", "z", "u_dot", "v_dot")
+STUCK_SAMPLES, STUCK_FRACTION = 20, 0.02
+LAG_STANDARD_ERRORS, LAG_SAMPLES = 4.0, 1.5
 
 
 def channel_findings(record: Record) -> tuple[Finding, ...]:
@@ -23,10 +29,10 @@ def channel_findings(record: Record) -> tuple[Finding, ...]:
         if values.size < 2:
             continue
         if np.ptp(values) == 0:
-            found.append(_constant(record, symbol, float(values[0])))
-        elif symbol in OUTPUTS:
-            found += _stuck(record, symbol, channel.values)
-        if channel.unit == "rad" and symbol not in INPUTS:
+            found.append(_constant_finding(record, symbol, float(values[0])))
+        elif symbol in OUTPUT_CHANNELS:
+            found += _stuck_findings(record, symbol, channel.values)
+        if channel.unit == "rad" and symbol not in INPUT_CHANNELS:
             wraps[symbol] = int(np.sum(np.abs(np.diff(values)) > np.pi))
     wraps = {symbol: count for symbol, count in wraps.items() if count}
     if wraps:
@@ -36,19 +42,19 @@ def channel_findings(record: Record) -> tuple[Finding, ...]:
     return tuple(found)
 
 
-def _constant(record: Record, symbol: str, value: float) -> Finding:
+def _constant_finding(record: Record, symbol: str, value: float) -> Finding:
     evidence = f"{value:.6g} {record.channel(symbol).unit} throughout"
-    if symbol in OUTPUTS:
+    if symbol in OUTPUT_CHANNELS:
         what = f"record '{record.name}': channel '{symbol}' is dead, it never changes"
         return Finding(Severity.WARNING, "dead-channel", what, evidence, "leave the channel out or mend the sensor")
     what = f"record '{record.name}': channel '{symbol}' is constant"
     return Finding(Severity.INFO, "constant", what, evidence, "its effect cannot be told from a constant force")
 
 
-def _stuck(record: Record, symbol: str, values: Array) -> list[Finding]:
+def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]:
     """The longest run of one repeated value, where it lasts over twenty samples and a fiftieth of the record."""
-    first, last = max(stretches(np.diff(values) == 0), key=lambda ends: ends[1] - ends[0], default=(0, 0))
-    if last - first < max(STUCK_SAMPLES, STUCK_PART * len(values)):
+    first, last = max(mask_intervals(np.diff(values) == 0), key=lambda ends: ends[1] - ends[0], default=(0, 0))
+    if last - first < max(STUCK_SAMPLES, STUCK_FRACTION * len(values)):
         return []
     what = f"record '{record.name}': channel '{symbol}' is stuck for {last - first + 1} samples"
     evidence = (
@@ -62,12 +68,12 @@ def lag_findings(record: Record) -> tuple[Finding, ...]:
     found = []
     for what, lag in (
         ("u, v lag behind the positions", velocity_lag(record)),
-        ("r lags behind the heading", rate_lag(record)),
+        ("r lags behind the heading", yaw_rate_lag(record)),
     ):
         if lag is None:
             continue
         delay, error = lag
-        if abs(delay) > LAG_SAMPLES * record.dt and abs(delay) > LAG_ERRORS * error:
+        if abs(delay) > LAG_SAMPLES * record.dt and abs(delay) > LAG_STANDARD_ERRORS * error:
             said = what if delay > 0 else what.replace("lag behind", "lead").replace("lags behind", "leads")
             found.append(
                 Finding(
@@ -87,37 +93,41 @@ def velocity_lag(record: Record) -> tuple[float, float] | None:
     A reference point d ahead is fitted along (its lever is the turned yaw rate), so that it does not pass for a lag.
     None where positions are missing or the declared frame is refuted.
     """
-    motion = motion_of(record)
-    if motion is None or best_reading(motion).changes:
+    motion = recorded_motion(record)
+    if motion is None or best_convention(motion).changes:
         return None
-    length = motion.length
+    length = motion.window_samples
     levers = (-np.sin(motion.psi), np.cos(motion.psi))
     turning = np.gradient(motion.psi, motion.dt)
     features, levered, target = [], [], []
-    for position, velocity, lever in zip(motion.measured, motion.velocity(motion.readings[0]), levers, strict=True):
-        features.append(slope(velocity, motion.dt, length))
+    for position, velocity, lever in zip(
+        motion.position_derivative, motion.velocity(motion.conventions[0]), levers, strict=True
+    ):
+        features.append(smoothed_derivative(velocity, motion.dt, length))
         levered.append(smoothed(turning * lever, length))
         target.append(position - smoothed(velocity, length))
-    return _delay(features, target, levered)
+    return _estimate_delay(features, target, levered)
 
 
-def rate_lag(record: Record) -> tuple[float, float] | None:
+def yaw_rate_lag(record: Record) -> tuple[float, float] | None:
     """The same for r against the heading; None where they do not belong together."""
     turning = heading_rate(record)
     if turning is None or "r" not in record:
         return None
-    length = window(len(record))
+    length = window_length(len(record))
     r = smoothed(record["r"], length)
     if np.ptp(r) == 0 or np.corrcoef(r, turning)[0, 1] < 0.8:
         return None
-    return _delay([slope(record["r"], record.dt, length)], [turning - r])
+    return _estimate_delay([smoothed_derivative(record["r"], record.dt, length)], [turning - r])
 
 
-def _delay(features: list[Array], target: list[Array], *others: list[Array]) -> tuple[float, float] | None:
+def _estimate_delay(
+    features: list[Array], target: list[Array], *nuisance_features: list[Array]
+) -> tuple[float, float] | None:
     """Components interleaved in time, so that blocks of rows are blocks of time; one offset for each component."""
-    rate, misfit, *rest = (np.stack(part, axis=1).ravel() for part in (features, target, *others))
+    rate, misfit, *rest = (np.stack(part, axis=1).ravel() for part in (features, target, *nuisance_features))
     if not np.any(rate):
         return None
     offsets = np.tile(np.eye(len(features)), (len(features[0]), 1))
-    answer, errors = jackknifed(np.column_stack([rate, *rest, offsets]), misfit)
+    answer, errors = jackknife_least_squares(np.column_stack([rate, *rest, offsets]), misfit)
     return float(answer[0]), float(errors[0])

@@ -8,11 +8,11 @@ from seatrial.core.values import Array, Channel, InputError, Record, quantity
 from seatrial.core.values.notation import OPPOSITE, positive_direction
 from seatrial.data.check.signal import unwrapped
 
-_PAIRS = (("u", "v"), ("u_dot", "v_dot"))
-_TURNING = ("psi", "wind_direction", "wind_direction_relative")
+_VELOCITY_PAIRS = (("u", "v"), ("u_dot", "v_dot"))
+_UNWRAPPED_CHANNELS = ("psi", "wind_direction", "wind_direction_relative")
 
 
-def canonical(record: Record, reference_point: float = 0.0) -> Record:
+def canonical_record(record: Record, reference_point: float = 0.0) -> Record:
     """The record in the notation table's conventions, by its declared metadata only.
 
     Every channel points in the table's positive direction (positive rudder turns to starboard), u and v are body-fixed,
@@ -22,22 +22,22 @@ def canonical(record: Record, reference_point: float = 0.0) -> Record:
     Raises:
         InputError: a positive direction is unknown, or the heading or yaw rate a conversion needs is missing.
     """
-    return _shifted(_in_body_axes(signed(record)), reference_point)
+    return _moved_to_reference_point(_in_body_axes(with_standard_signs(record)), reference_point)
 
 
-def signed(record: Record) -> Record:
+def with_standard_signs(record: Record) -> Record:
     """Signs and unwrapping only; frames and reference points as they were.
 
     Raises:
         InputError: a positive direction is neither the notation table's nor its opposite.
     """
-    flipped = [s for s, c in record.channels.items() if _is_flipped(s, c, record.name)]
-    channels = {s: _pointed(s, c, flip=s in flipped) for s, c in record.channels.items()}
-    provenance = record.provenance.then(f"sign of {', '.join(flipped)} turned") if flipped else record.provenance
+    flipped = [s for s, c in record.channels.items() if _has_opposite_sign(s, c, record.name)]
+    channels = {s: _with_standard_sign(s, c, flip=s in flipped) for s, c in record.channels.items()}
+    provenance = record.provenance.with_step(f"sign of {', '.join(flipped)} turned") if flipped else record.provenance
     return replace(record, channels=channels, provenance=provenance)
 
 
-def _is_flipped(symbol: str, channel: Channel, record: str) -> bool:
+def _has_opposite_sign(symbol: str, channel: Channel, record: str) -> bool:
     wanted = positive_direction(symbol, channel.frame)
     if channel.positive == wanted:
         return False
@@ -47,16 +47,16 @@ def _is_flipped(symbol: str, channel: Channel, record: str) -> bool:
     return True
 
 
-def _pointed(symbol: str, channel: Channel, *, flip: bool) -> Channel:
+def _with_standard_sign(symbol: str, channel: Channel, *, flip: bool) -> Channel:
     values = -channel.values if flip else channel.values
-    if symbol in _TURNING:
+    if symbol in _UNWRAPPED_CHANNELS:
         values = unwrapped(values)
     return replace(channel.with_values(values), positive=positive_direction(symbol, channel.frame))
 
 
 def _in_body_axes(record: Record) -> Record:
     """u = x0' cos(psi) + y0' sin(psi), v = -x0' sin(psi) + y0' cos(psi) (Fossen 2021, eq. 2.42 inverted)."""
-    for a, b in _PAIRS:
+    for a, b in _VELOCITY_PAIRS:
         frames = {s: record.channel(s).frame for s in (a, b) if s in record}
         if "earth" not in frames.values():
             continue
@@ -67,39 +67,40 @@ def _in_body_axes(record: Record) -> Record:
             )
         c, s = np.cos(record["psi"]), np.sin(record["psi"])
         north, east = record.channel(a), record.channel(b)
-        record = record.with_channel(a, _body(a, north, north.values * c + east.values * s))
+        record = record.with_channel(a, _body_fixed_channel(a, north, north.values * c + east.values * s))
         record = record.with_channel(
-            b, _body(b, east, east.values * c - north.values * s), f"{a}, {b} turned into the ship's axes"
+            b, _body_fixed_channel(b, east, east.values * c - north.values * s), f"{a}, {b} turned into the ship's axes"
         )
     return record
 
 
-def _body(symbol: str, channel: Channel, values: Array) -> Channel:
+def _body_fixed_channel(symbol: str, channel: Channel, values: Array) -> Channel:
     return replace(channel.with_values(values), frame="body", positive=quantity(symbol).positive)
 
 
-def _shifted(record: Record, point: float) -> Record:
+def _moved_to_reference_point(record: Record, reference_point: float) -> Record:
     """v_P = v + d r, x_P = x + d cos(psi), y_P = y + d sin(psi), d = distance to P (Fossen 2021, section 2.3)."""
     moved = []
     for symbol, needed in (("v", "r"), ("v_dot", "r"), ("x0", "psi"), ("y0", "psi")):
         if symbol not in record:
             continue
         channel = record.channel(symbol)
-        distance = point - channel.reference_point
+        distance = reference_point - channel.reference_point
         if distance != 0.0:
             if needed not in record:
                 raise InputError(
                     f"record '{record.name}': moving '{symbol}' to a point {distance:+g} m off needs channel '{needed}'"
                 )
             values = channel.values + distance * _lever(symbol, record)
-            record = record.with_channel(symbol, replace(channel.with_values(values), reference_point=point))
+            record = record.with_channel(symbol, replace(channel.with_values(values), reference_point=reference_point))
             moved.append(symbol)
-    same = {s: replace(record.channel(s), reference_point=point) for s in ("u", "u_dot") if s in record}
+    same = {s: replace(record.channel(s), reference_point=reference_point) for s in ("u", "u_dot") if s in record}
     record = replace(record, channels={**record.channels, **same})
     if not moved:
         return record
     return replace(
-        record, provenance=record.provenance.then(f"{', '.join(moved)} referred to {point:g} m from midship")
+        record,
+        provenance=record.provenance.with_step(f"{', '.join(moved)} referred to {reference_point:g} m from midship"),
     )
 
 

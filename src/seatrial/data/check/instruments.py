@@ -7,11 +7,11 @@ import numpy as np
 
 from seatrial.core.values import Array, Finding, Record, Severity
 
-DEAD_CHANGES = 3
+MIN_CHANGES = 3
 
 
 @dataclass(frozen=True)
-class Clocks:
+class InstrumentComparison:
     """One instrument against another in a steady regular wave.
 
     Attributes:
@@ -22,18 +22,18 @@ class Clocks:
     """
 
     delay: float
-    drift: float
+    clock_drift: float
     gain: float
-    spread: float
+    delay_scatter: float
 
 
-def dead_channels(record: Record, symbols: Iterable[str] | None = None) -> tuple[Finding, ...]:
+def dead_channel_findings(record: Record, symbols: Iterable[str] | None = None) -> tuple[Finding, ...]:
     """Channels that hold (nearly) one value throughout while the record lasts; one finding each."""
     made = []
     for symbol in symbols if symbols is not None else record.channels:
         values = record[symbol]
         changes = int(np.count_nonzero(np.diff(values)))
-        if changes < DEAD_CHANGES:
+        if changes < MIN_CHANGES:
             made.append(
                 Finding(
                     Severity.ERROR,
@@ -46,7 +46,9 @@ def dead_channels(record: Record, symbols: Iterable[str] | None = None) -> tuple
     return tuple(made)
 
 
-def clocks(time: Array, first: Array, second: Array, omega: float, periods: float = 2.0) -> Clocks:
+def compare_instruments(
+    time: Array, first: Array, second: Array, omega: float, periods: float = 2.0
+) -> InstrumentComparison:
     """Delay, drift and gain between two channels of one motion from their phases in sliding windows.
 
     Args:
@@ -66,7 +68,7 @@ def clocks(time: Array, first: Array, second: Array, omega: float, periods: floa
     slope, offset = np.polyfit(middle - centre, delays, 1) if len(middle) > 2 else (0.0, float(delays.mean()))
     period = 2.0 * np.pi / omega
     left = delays - offset - slope * (middle - centre)
-    return Clocks(
+    return InstrumentComparison(
         float((offset + 0.5 * period) % period - 0.5 * period),
         float(slope),
         float(np.median(np.abs(two) / np.maximum(np.abs(one), 1e-300))),

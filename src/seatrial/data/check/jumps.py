@@ -5,13 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array
-from seatrial.data.check.signal import Rows
+from seatrial.data.check.signal import RowIndices
 
-REACH = 15
-STEP_RATIO, STEP_SIZE = 4.0, 6.0
+HALF_WINDOW = 15
+STEP_RATIO, MEDIAN_STEP_RATIO = 4.0, 6.0
 HELD_RATIO, LONGEST_HOLD = 0.35, 50
 SPIKE_RATIO, NEIGHBOURS = 4.0, 8
-_NONE: Rows = np.empty(0, dtype=np.intp)
+_NO_ROWS: RowIndices = np.empty(0, dtype=np.intp)
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,9 @@ class Jumps:
         held: samples to replace: the position stood still there before it caught up.
     """
 
-    rows: Rows
+    rows: RowIndices
     sizes: Array
-    held: Rows
+    held: RowIndices
 
 
 def track_jumps(x: Array, y: Array) -> Jumps:
@@ -36,27 +36,27 @@ def track_jumps(x: Array, y: Array) -> Jumps:
     """
     steps = np.hypot(np.diff(x), np.diff(y))
     rows = np.arange(len(steps))
-    first, last = np.maximum(rows - REACH, 0), np.minimum(rows + 1 + REACH, len(x) - 1)
+    first, last = np.maximum(rows - HALF_WINDOW, 0), np.minimum(rows + 1 + HALF_WINDOW, len(x) - 1)
     mean = np.hypot(x[last] - x[first], y[last] - y[first]) / np.maximum(last - first, 1)
     moving = steps[steps > 0]
     typical = float(np.median(moving)) if moving.size else 0.0
-    jumped = np.flatnonzero((steps > STEP_RATIO * mean) & (steps > STEP_SIZE * typical))
+    jumped = np.flatnonzero((steps > STEP_RATIO * mean) & (steps > MEDIAN_STEP_RATIO * typical))
     held = [_held_before(j, steps, mean) for j in jumped.tolist()]
-    return Jumps(jumped + 1, steps[jumped], np.unique(np.concatenate([*held, _NONE])))
+    return Jumps(jumped + 1, steps[jumped], np.unique(np.concatenate([*held, _NO_ROWS])))
 
 
-def _held_before(j: int, steps: Array, mean: Array) -> Rows:
+def _held_before(j: int, steps: Array, mean: Array) -> RowIndices:
     """Samples held before step j, or none where the jump does not match the distance missed."""
     count = 0
     while count < LONGEST_HOLD and j - 1 - count >= 0 and steps[j - 1 - count] < HELD_RATIO * mean[j]:
         count += 1
     missed = (count + 1) * mean[j]
     if count == 0 or not 0.3 * missed < steps[j] < 2.5 * missed:
-        return _NONE
+        return _NO_ROWS
     return np.arange(j - count + 1, j + 1, dtype=np.intp)
 
 
-def spikes(values: Array) -> Rows:
+def spike_rows(values: Array) -> RowIndices:
     """Rows of single samples that leave and return in steps over four times any other step within eight samples.
 
     values: shape (n,), no NaN. The step must also exceed three times the record's 95 % step, and five times its
@@ -66,7 +66,7 @@ def spikes(values: Array) -> Rows:
     sizes = np.abs(steps)
     moving = sizes[sizes > 0]
     if moving.size == 0 or len(values) < 2 * NEIGHBOURS:
-        return _NONE
+        return _NO_ROWS
     floor = max(3.0 * float(np.quantile(sizes, 0.95)), 5.0 * float(moving.min()))
     both = np.minimum(sizes[:-1], sizes[1:])
     candidates = np.flatnonzero((steps[:-1] * steps[1:] < 0) & (both > floor))

@@ -5,13 +5,13 @@ import math
 import numpy as np
 
 from seatrial.core.values import Array, Finding, Record, Severity
-from seatrial.data.check.rates import heading_rate
-from seatrial.data.check.signal import Mask, jackknifed, slope, smoothed, window
+from seatrial.data.check.signal import Mask, jackknife_least_squares, smoothed, smoothed_derivative, window_length
+from seatrial.data.check.yaw_rate_consistency import heading_rate
 from seatrial.physics.manoeuvres.track import speed
 
-STILL = math.radians(0.2)
-CLEAR, POOLED, DOUBTFUL = 5.0, 3.5, 2.0
-ANGLES = "run a zigzag, for example 10/10 or 20/20"
+MIN_RUDDER_RANGE = math.radians(0.2)
+CERTAIN_T, POOLED_T, DOUBTFUL_T = 5.0, 3.5, 2.0
+ZIGZAG_ADVICE = "run a zigzag, for example 10/10 or 20/20"
 
 
 def is_excited(record: Record) -> bool:
@@ -19,7 +19,7 @@ def is_excited(record: Record) -> bool:
     if "delta" not in record:
         return False
     delta = record["delta"][np.isfinite(record["delta"])]
-    return delta.size > 1 and float(np.ptp(delta)) > STILL
+    return delta.size > 1 and float(np.ptp(delta)) > MIN_RUDDER_RANGE
 
 
 def rudder_findings(record: Record) -> tuple[Finding, ...]:
@@ -29,13 +29,13 @@ def rudder_findings(record: Record) -> tuple[Finding, ...]:
     if not is_excited(record):
         what = f"record '{record.name}': the rudder never moves, so nothing can be learnt about steering"
         span = f"range {math.degrees(float(np.ptp(record['delta']))):.2g} deg"
-        return (Finding(Severity.WARNING, "no-excitation", what, span, ANGLES),)
-    first, steady = _ratio(response(record)), _ratio(steady_turning(record))
+        return (Finding(Severity.WARNING, "no-excitation", what, span, ZIGZAG_ADVICE),)
+    first, steady = _t_ratio(yaw_acceleration_response(record)), _t_ratio(steady_turning_response(record))
     pooled = (first + steady) / math.sqrt(2.0) if max(first, steady) < 0 else 0.0
-    if min(first, pooled) > -DOUBTFUL:
+    if min(first, pooled) > -DOUBTFUL_T:
         return ()
     label = record.channel("delta").label
-    is_clear = first < -CLEAR or pooled < -POOLED
+    is_clear = first < -CERTAIN_T or pooled < -POOLED_T
     return (
         Finding(
             Severity.ERROR if is_clear else Severity.WARNING,
@@ -49,44 +49,44 @@ def rudder_findings(record: Record) -> tuple[Finding, ...]:
     )
 
 
-def _ratio(estimate: tuple[float, float] | None) -> float:
+def _t_ratio(estimate: tuple[float, float] | None) -> float:
     return 0.0 if estimate is None else estimate[0] / max(estimate[1], 1e-300)
 
 
-def response(record: Record) -> tuple[float, float] | None:
+def yaw_acceleration_response(record: Record) -> tuple[float, float] | None:
     """Yaw acceleration per rudder angle [1/s^2] and its standard error, or None where the heading tells nothing.
 
     First-order response dr/dt = a r + b delta + c (Nomoto 1957, eq. 1) by least squares on smoothed signals, errors by
     block jackknife; where the propeller also turns astern only the samples with it ahead count.
     """
-    yaw = _yaw(record)
+    yaw = _yaw_rate_signal(record)
     if yaw is None:
         return None
-    length = window(len(record))
+    length = window_length(len(record))
     delta = smoothed(record["delta"], length)
-    ahead = _ahead(record, length)
-    if ahead.sum() < 30 or np.ptp(delta[ahead]) < STILL:
+    ahead = _propeller_ahead(record, length)
+    if ahead.sum() < 30 or np.ptp(delta[ahead]) < MIN_RUDDER_RANGE:
         return None
     features = np.column_stack([smoothed(yaw, length), delta, np.ones_like(delta)])
-    coefficients, errors = jackknifed(features[ahead], slope(yaw, record.dt, length)[ahead])
+    coefficients, errors = jackknife_least_squares(features[ahead], smoothed_derivative(yaw, record.dt, length)[ahead])
     return float(coefficients[1]), float(errors[1])
 
 
-def steady_turning(record: Record) -> tuple[float, float] | None:
+def steady_turning_response(record: Record) -> tuple[float, float] | None:
     """Yaw rate per (speed times lagged rudder) [1/m] and its standard error, or None as for `response`.
 
     r = K U delta_T + c with delta_T the rudder behind a first-order lag T, the one of twelve that correlates best:
     the sign of a long turn, to which the initial response adds little.
     """
-    yaw = _yaw(record)
+    yaw = _yaw_rate_signal(record)
     if yaw is None:
         return None
-    length = window(len(record))
-    r, ahead = smoothed(yaw, length), _ahead(record, length)
+    length = window_length(len(record))
+    r, ahead = smoothed(yaw, length), _propeller_ahead(record, length)
     U = speed(record)
     best, best_match = None, 0.0
     for samples in np.geomspace(length / 2, len(record) / 3, 12):
-        effect = smoothed(_lagged(record["delta"], samples) * (1.0 if U is None else U), length)
+        effect = smoothed(_first_order_lag(record["delta"], samples) * (1.0 if U is None else U), length)
         if ahead.sum() < 30 or np.ptp(effect[ahead]) == 0 or np.ptp(r[ahead]) == 0:
             continue
         match = abs(float(np.corrcoef(effect[ahead], r[ahead])[0, 1]))
@@ -94,11 +94,11 @@ def steady_turning(record: Record) -> tuple[float, float] | None:
             best, best_match = effect, match
     if best is None:
         return None
-    coefficients, errors = jackknifed(np.column_stack([best, np.ones_like(best)])[ahead], r[ahead])
+    coefficients, errors = jackknife_least_squares(np.column_stack([best, np.ones_like(best)])[ahead], r[ahead])
     return float(coefficients[0]), float(errors[0])
 
 
-def _lagged(values: Array, samples: float) -> Array:
+def _first_order_lag(values: Array, samples: float) -> Array:
     """First-order lag of the given number of samples, started at rest at the first value."""
     from scipy.signal import lfilter
 
@@ -106,19 +106,19 @@ def _lagged(values: Array, samples: float) -> Array:
     return np.asarray(lfilter([a], [1.0, a - 1.0], values, zi=[values[0] * (1.0 - a)])[0])
 
 
-def _yaw(record: Record) -> Array | None:
+def _yaw_rate_signal(record: Record) -> Array | None:
     """The measured yaw rate where it follows the heading, otherwise the heading's derivative."""
     turning = heading_rate(record)
     if turning is None:
         return None
     if "r" in record:
-        r = smoothed(record["r"], window(len(record)))
+        r = smoothed(record["r"], window_length(len(record)))
         if np.corrcoef(r, turning)[0, 1] > 0.8:
             return record["r"]
     return np.gradient(record["psi"], record.dt)
 
 
-def _ahead(record: Record, length: int) -> Mask:
+def _propeller_ahead(record: Record, length: int) -> Mask:
     count = len(record) - length + 1
     if "n" not in record or record["n"].max() <= 0:
         return np.ones(count, dtype=bool)

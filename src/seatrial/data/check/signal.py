@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from seatrial.core.values import Array
 
-Rows = NDArray[np.intp]
+RowIndices = NDArray[np.intp]
 Mask = NDArray[np.bool_]
-BLOCKS = 8
+JACKKNIFE_BLOCKS = 8
 
 
-def window(count: int) -> int:
+def window_length(count: int) -> int:
     """Odd length of the smoothing window in samples: a sixtieth of the record, between 11 and a quarter of it."""
     return max(3, min(max(11, count // 60), count // 4)) | 1
 
@@ -23,18 +23,18 @@ def smoothed(values: Array, length: int) -> Array:
     return np.asarray(np.convolve(values, weights / weights.sum(), "valid"), dtype=np.float64)
 
 
-def slope(values: Array, dt: float, length: int) -> Array:
+def smoothed_derivative(values: Array, dt: float, length: int) -> Array:
     """Smoothed central differences, on the samples of `smoothed`."""
     return smoothed(np.gradient(values, dt), length)
 
 
-def size(*components: Array) -> float:
+def trimmed_rms(*components: Array) -> float:
     """Root mean square of a vector's length over the 95 % smallest: a few bad samples do not count."""
     squares = np.sort(np.sum([c**2 for c in components], axis=0))
     return float(np.sqrt(np.mean(squares[: max(1, int(0.95 * len(squares)))])))
 
 
-def integral(rate: Array, dt: float) -> Array:
+def cumulative_integral(rate: Array, dt: float) -> Array:
     """Trapezoidal integral from the first sample on, same shape."""
     return np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1])) * dt])
 
@@ -47,29 +47,31 @@ def sample_noise(values: Array) -> float:
     return float(np.sqrt(np.nanmean(np.diff(values, 3) ** 2) / 20.0)) if len(values) > 3 else 0.0
 
 
-def solved(features: Array, target: Array) -> tuple[Array, float]:
+def least_squares(features: Array, target: Array) -> tuple[Array, float]:
     """Least squares: coefficients and rms of the residual."""
     answer = np.asarray(np.linalg.lstsq(features, target, rcond=None)[0], dtype=np.float64)
     return answer, float(np.sqrt(np.mean((target - features @ answer) ** 2)))
 
 
-def jackknifed(features: Array, target: Array) -> tuple[Array, Array]:
+def jackknife_least_squares(features: Array, target: Array) -> tuple[Array, Array]:
     """Least-squares coefficients with standard errors from leaving out one of eight blocks of rows at a time.
 
     Delete-one-block jackknife (Efron & Tibshirani 1993, eq. 11.5): honest where residuals are autocorrelated.
     """
-    edges = np.linspace(0, len(target), BLOCKS + 1).astype(int)
+    edges = np.linspace(0, len(target), JACKKNIFE_BLOCKS + 1).astype(int)
     keep = np.ones(len(target), dtype=bool)
     partial = []
     for first, last in pairwise(edges):
         keep[first:last] = False
-        partial.append(solved(features[keep], target[keep])[0])
+        partial.append(least_squares(features[keep], target[keep])[0])
         keep[first:last] = True
     spread = np.array(partial) - np.mean(partial, axis=0)
-    return solved(features, target)[0], np.sqrt((BLOCKS - 1) / BLOCKS * np.sum(spread**2, axis=0))
+    return least_squares(features, target)[0], np.sqrt(
+        (JACKKNIFE_BLOCKS - 1) / JACKKNIFE_BLOCKS * np.sum(spread**2, axis=0)
+    )
 
 
-def stretches(mask: Mask) -> list[tuple[int, int]]:
+def mask_intervals(mask: Mask) -> list[tuple[int, int]]:
     """First row and row after the last of every unbroken stretch of a mask, in order."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(int)))
     return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from seatrial.core.values.files import write_whole
+from seatrial.core.values.files import write_atomically
 from seatrial.data.example_series.series import HELD_OUT, demo_series, file_name, write_csv
 
 _TRIAL = """\
@@ -53,5 +53,5 @@ def write_demo(folder: Path, seed: int) -> Path:
     validate = ", ".join(f'"{file_name(text)}"' for text in HELD_OUT)
     truth = "\n".join(f"{p.name} = {p.value!r}" for p in craft.parameters.free)
     path = folder / "trial.toml"
-    write_whole(path, _TRIAL.format(seed=seed, validate=validate, truth=truth).encode())
+    write_atomically(path, _TRIAL.format(seed=seed, validate=validate, truth=truth).encode())
     return path

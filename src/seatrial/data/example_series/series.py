@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Record, display
-from seatrial.core.values.files import write_whole
+from seatrial.core.values import Record, display_unit
+from seatrial.core.values.files import write_atomically
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate.steer import manoeuvre
@@ -21,13 +21,13 @@ from seatrial.physics.simulate.steer import manoeuvre
 SENSOR_NOISE = {"u": 0.02, "v": 0.02, "r": math.radians(0.1), "psi": math.radians(0.2), "x0": 0.5, "y0": 0.5}
 JET_VELOCITY = 1.866
 SLEW_RATE = math.radians(4.0)
-FINE_STEP, RATE, APPROACH = 0.01, 10.0, 10.0
+FINE_STEP, SAMPLE_RATE, APPROACH_S = 0.01, 10.0, 10.0
 HELD_OUT = ("zigzag:25/25", "turning-circle:20")
 EXAMPLE_RATE, EXAMPLE_SEED = 2.0, 2025
 EXAMPLE_COLUMNS = ("x0", "y0", "psi", "u", "v", "r", "delta", "v_j")
 
 
-def truth() -> Model:
+def true_model() -> Model:
     """The craft with the coefficients that estimates are compared with."""
     return waterjet()
 
@@ -44,38 +44,43 @@ def demo_series(seed: int, executes: int = 5) -> tuple[tuple[Record, ...], Model
         seed: every record has a stream of its own, so that one does not depend on the others' lengths.
         executes: executes of each zigzag angle.
     """
-    craft = truth()
+    craft = true_model()
     texts = (f"consecutive-zigzags:{executes}", *HELD_OUT)
     streams = np.random.SeedSequence(seed).spawn(len(texts))
     records = tuple(
-        noisy(run(craft, text), np.random.default_rng(stream), seed)
+        with_sensor_noise(simulate_run(craft, text), np.random.default_rng(stream), seed)
         for text, stream in zip(texts, streams, strict=True)
     )
     return records, craft
 
 
-def run(craft: Model, text: str) -> Record:
+def simulate_run(craft: Model, programme_text: str) -> Record:
     """One noise-free manoeuvre of the series, sampled at 10 Hz, named after its programme."""
     fine = manoeuvre(
-        craft, programme(text), dt=FINE_STEP, inputs={"v_j": JET_VELOCITY}, slew_rate=SLEW_RATE, approach=APPROACH
+        craft,
+        programme(programme_text),
+        dt=FINE_STEP,
+        inputs={"v_j": JET_VELOCITY},
+        slew_rate=SLEW_RATE,
+        approach=APPROACH_S,
     )
-    kept = fine.resampled(RATE)
-    step = f"generated in steps of {FINE_STEP:g} s, every {round(1.0 / (FINE_STEP * RATE))}th kept"
-    return replace(kept, name=file_name(text), provenance=kept.provenance.then(step))
+    kept = fine.resampled(SAMPLE_RATE)
+    step = f"generated in steps of {FINE_STEP:g} s, every {round(1.0 / (FINE_STEP * SAMPLE_RATE))}th kept"
+    return replace(kept, name=file_name(programme_text), provenance=kept.provenance.with_step(step))
 
 
-def noisy(record: Record, rng: np.random.Generator, seed: int) -> Record:
+def with_sensor_noise(record: Record, rng: np.random.Generator, seed: int) -> Record:
     """The record with white Gaussian sensor noise (`SENSOR_NOISE`) on its measured channels."""
     channels = dict(record.channels)
     for symbol, deviation in SENSOR_NOISE.items():
         values = record[symbol] + deviation * rng.standard_normal(len(record))
         channels[symbol] = record.channel(symbol).with_values(values)
-    return replace(record, channels=channels, provenance=record.provenance.then(f"sensor noise, seed {seed}"))
+    return replace(record, channels=channels, provenance=record.provenance.with_step(f"sensor noise, seed {seed}"))
 
 
-def file_name(text: str) -> str:
+def file_name(programme_text: str) -> str:
     """A programme's text as the name of a record or file."""
-    return text.replace(":", "_").replace("/", "_")
+    return programme_text.replace(":", "_").replace("/", "_")
 
 
 def write_csv(record: Record, path: Path, columns: Sequence[str] = EXAMPLE_COLUMNS) -> None:
@@ -84,10 +89,10 @@ def write_csv(record: Record, path: Path, columns: Sequence[str] = EXAMPLE_COLUM
     Raises:
         InputError: the place cannot be written.
     """
-    header = ",".join(["time [s]", *(f"{s} [{display(record.channel(s).unit)[1]}]" for s in columns)])
-    values = [record.time, *(record[s] * display(record.channel(s).unit)[0] for s in columns)]
+    header = ",".join(["time [s]", *(f"{s} [{display_unit(record.channel(s).unit)[1]}]" for s in columns)])
+    values = [record.time, *(record[s] * display_unit(record.channel(s).unit)[0] for s in columns)]
     rows = [",".join(_number(value) for value in row) for row in zip(*values, strict=True)]
-    write_whole(path, ("\n".join([header, *rows]) + "\n").encode())
+    write_atomically(path, ("\n".join([header, *rows]) + "\n").encode())
 
 
 def _number(value: float) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.core.values import Array, Channel, Kind, Provenance, Record, frozen
+from seatrial.core.values import Array, Channel, Provenance, Record, RecordKind, frozen
 
 
 def npz_bytes(arrays: Mapping[str, Array]) -> bytes:
@@ -27,13 +27,13 @@ def record_arrays(record: Record, prefix: str) -> dict[str, Array]:
     return {f"{prefix}/t": record.time} | {f"{prefix}/{s}": c.values for s, c in record.channels.items()}
 
 
-def record_from(table: Mapping[str, Any], arrays: Mapping[str, Array], prefix: str) -> Record:
+def record_from_arrays(table: Mapping[str, Any], arrays: Mapping[str, Array], prefix: str) -> Record:
     """The inverse of `Record.metadata` and `record_arrays`."""
     channels = {s: Channel(arrays[f"{prefix}/{s}"], **about) for s, about in table["channels"].items()}
-    provenance = Provenance.of(table["provenance"])
-    return Record(table["name"], arrays[f"{prefix}/t"], channels, Kind(table["kind"]), provenance)
+    provenance = Provenance.from_metadata(table["provenance"])
+    return Record(table["name"], arrays[f"{prefix}/t"], channels, RecordKind(table["kind"]), provenance)
 
 
-def distinct(records: Sequence[Record]) -> list[Record]:
+def distinct_records(records: Sequence[Record]) -> list[Record]:
     """Each record object once, in order."""
     return list({id(record): record for record in records}.values())

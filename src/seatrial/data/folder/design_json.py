@@ -4,8 +4,8 @@ from typing import Any
 
 from pydantic import Field
 
-from seatrial.core.results import Confirmation, Design, Worth
-from seatrial.core.results.worths import diverged, worst_drawn
+from seatrial.core.results import Confirmation, Design, ManoeuvrePrecision
+from seatrial.core.results.design_ranking import count_diverged, worst_sampled_error
 from seatrial.core.values import Array
 from seatrial.data.folder.fit_entries import Entry, Number
 from seatrial.data.folder.fit_json import FindingEntry, finding_entry
@@ -27,7 +27,7 @@ class LimitsEntry(Entry):
     """What the trial may not leave; null: free."""
 
     drift: Number
-    room: Number
+    sea_room: Number
     for_every_ship: bool = Field(description="whether they bind the drawn ships, too")
 
 
@@ -37,14 +37,20 @@ class WorthEntry(Entry):
     name: str
     worst: Number = Field(description="largest of `relative`")
     mean: Number = Field(description="root mean square of `relative`")
-    worst_drawn: Number = Field(description="largest over all drawn ships that do not diverge; null: none drawn")
+    worst_sampled_error: Number = Field(
+        description="largest over all drawn ships that do not diverge; null: none drawn"
+    )
     diverged: int = Field(description="drawn ships that the simulation loses")
-    relative: dict[str, Number] = Field(description="coefficient -> relative standard error, by the model's own values")
-    drawn: list[dict[str, Number]] = Field(description="the same for each drawn ship; null where it diverges")
+    relative_error: dict[str, Number] = Field(
+        description="coefficient -> relative standard error, by the model's own values"
+    )
+    sampled_relative_error: list[dict[str, Number]] = Field(
+        description="the same for each drawn ship; null where it diverges"
+    )
     drift: Number = Field(description="largest drift angle of the ship as assumed, rad")
-    room: Number = Field(description="largest distance of the ship as assumed from the beginning, m")
-    drawn_drift: list[Number] = Field(description="the same for each drawn ship")
-    drawn_room: list[Number]
+    distance: Number = Field(description="largest distance of the ship as assumed from the beginning, m")
+    sampled_drift: list[Number] = Field(description="the same for each drawn ship")
+    sampled_distance: list[Number]
 
 
 class OrderEntry(Entry):
@@ -58,7 +64,7 @@ class ConfirmationEntry(Entry):
     """Fits of simulated noisy records: error found and error foretold, over the magnitude of each coefficient."""
 
     runs: int
-    converged: int
+    converged_runs: int
     error: dict[str, Number]
     bound: dict[str, Number]
 
@@ -78,11 +84,11 @@ class DesignDocument(Entry):
     actuators: list[ActuatorEntry]
     limits: LimitsEntry
     values: dict[str, Number] = Field(description="coefficient -> the value it is designed for")
-    spread: dict[str, Number] = Field(
+    relative_spread: dict[str, Number] = Field(
         description="coefficient -> share by which drawn ships differ; standard deviation where it has a prior"
     )
     designed: WorthEntry
-    rivals: list[WorthEntry] = Field(description="standard manoeuvres of equal duration")
+    baselines: list[WorthEntry] = Field(description="standard manoeuvres of equal duration")
     orders: list[OrderEntry]
     confirmation: ConfirmationEntry | None = Field(description="null: not tried")
     findings: list[FindingEntry]
@@ -109,9 +115,9 @@ def design_json(design: Design) -> dict[str, Any]:
         actuators=[ActuatorEntry.model_validate(a) for a in design.actuators],
         limits=LimitsEntry.model_validate(design.limits),
         values={name: parameters[name].value for name in names},
-        spread=_by_name(names, design.spread),
+        relative_spread=_by_name(names, design.relative_spread),
         designed=_worth(design.designed, names),
-        rivals=[_worth(rival, names) for rival in design.rivals],
+        baselines=[_worth(rival, names) for rival in design.baselines],
         orders=[OrderEntry.model_validate(order) for order in design.orders],
         confirmation=_confirmation(known, names) if known else None,
         findings=[finding_entry(f) for f in design.findings],
@@ -133,26 +139,26 @@ def _by_name(names: tuple[str, ...], values: Array) -> dict[str, Number]:
     return {name: float(value) for name, value in zip(names, values, strict=True)}
 
 
-def _worth(worth: Worth, names: tuple[str, ...]) -> WorthEntry:
+def _worth(worth: ManoeuvrePrecision, names: tuple[str, ...]) -> WorthEntry:
     return WorthEntry(
         name=worth.name,
         worst=worth.worst,
         mean=worth.mean,
-        worst_drawn=worst_drawn(worth),
-        diverged=diverged(worth),
-        relative=_by_name(names, worth.relative),
-        drawn=[_by_name(names, row) for row in worth.drawn],
+        worst_sampled_error=worst_sampled_error(worth),
+        diverged=count_diverged(worth),
+        relative_error=_by_name(names, worth.relative_error),
+        sampled_relative_error=[_by_name(names, row) for row in worth.sampled_relative_error],
         drift=worth.drift,
-        room=worth.room,
-        drawn_drift=[float(angle) for angle in worth.drawn_drift],
-        drawn_room=[float(distance) for distance in worth.drawn_room],
+        distance=worth.distance,
+        sampled_drift=[float(angle) for angle in worth.sampled_drift],
+        sampled_distance=[float(distance) for distance in worth.sampled_distance],
     )
 
 
-def _confirmation(known: Confirmation, names: tuple[str, ...]) -> ConfirmationEntry:
+def _confirmation(confirmation: Confirmation, names: tuple[str, ...]) -> ConfirmationEntry:
     return ConfirmationEntry(
-        runs=known.runs,
-        converged=known.converged,
-        error=_by_name(names, known.error),
-        bound=_by_name(names, known.bound),
+        runs=confirmation.runs,
+        converged_runs=confirmation.converged_runs,
+        error=_by_name(names, confirmation.error),
+        bound=_by_name(names, confirmation.bound),
     )

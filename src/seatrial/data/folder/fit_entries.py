@@ -58,7 +58,7 @@ class ConsequenceEntry(Entry):
 
     parameter: str
     change: Number = Field(description="relative")
-    moves: dict[str, Number] = Field(description="relative change of the estimates, largest first")
+    estimate_changes: dict[str, Number] = Field(description="relative change of the estimates, largest first")
     misfit: Number = Field(description="increase of chi squared by which the records would show it")
     text: str
 
@@ -111,9 +111,9 @@ class PointMotionEntry(Entry):
 
     place: str
     x: Number = Field(description="m forward of the origin")
-    significant: Number = Field(description="amplitude, m")
-    acceleration: Number = Field(description="rms, m/s^2")
-    sickness: Number = Field(description="share of people sick within two hours")
+    significant_amplitude: Number = Field(description="amplitude, m")
+    rms_acceleration: Number = Field(description="rms, m/s^2")
+    sickness_incidence: Number = Field(description="share of people sick within two hours")
 
 
 class SeakeepingEntry(Entry):
@@ -134,7 +134,7 @@ class SeakeepingEntry(Entry):
     pitch_density: list[Number] = Field(description="deg^2 s/rad over omega")
     heave_significant: Number = Field(description="amplitude, m")
     pitch_significant: Number = Field(description="amplitude, degrees")
-    periods: list[Number] = Field(description="mean zero crossing of heave and pitch, s")
+    zero_crossing_periods: list[Number] = Field(description="mean zero crossing of heave and pitch, s")
     points: list[PointMotionEntry]
 
 
@@ -152,7 +152,7 @@ class RollingEntry(Entry):
     natural_period: EstimatedEntry = Field(description="s, at small angles")
     damping_ratio: EstimatedEntry = Field(description="linear damping over critical damping, 1")
     gyradius: EstimatedEntry | None = Field(description="m, in roll with added inertia, given or assumed")
-    assumed: str = Field(description="where the gyradius comes from")
+    gyradius_source: str = Field(description="where the gyradius comes from")
     metacentric_height: EstimatedEntry | None = Field(description="m, range with that of the gyradius")
     amplitude: list[Number] = Field(description="rad")
     damping: list[Number] = Field(description="equivalent linear damping over amplitude, 1/s")
@@ -191,7 +191,9 @@ class RivalEntry(Entry):
 
     name: str
     values: dict[str, Number] = Field(description="SI; empty where the estimator failed")
-    gap: dict[str, Number] = Field(description="difference from the fit's estimates in their standard errors")
+    normalised_difference: dict[str, Number] = Field(
+        description="difference from the fit's estimates in their standard errors"
+    )
     error: dict[str, Number] = Field(description="relative, where the true value is known and not zero")
     training: SailedEntry
     validation: SailedEntry
@@ -205,10 +207,10 @@ class FamilyEntry(Entry):
     """One model of the family, scored over whole runs left out."""
 
     name: str
-    free: int
+    free_count: int
     heading_deg: Number = Field(description="rms, null where the fit failed")
     position_m: Number
     roll_deg: Number = Field(description="rms over whole runs, of a ship that swings about a rest; else null")
-    tied: bool = Field(description="not told from the best one by its runs")
-    chosen: bool
+    is_tied: bool = Field(description="not told from the best one by its runs")
+    is_chosen: bool
     note: str

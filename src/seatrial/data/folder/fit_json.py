@@ -53,8 +53,10 @@ class ValidationEntry(Entry):
     extrapolation: dict[str, Number] = Field(
         description="yaw_rate, drift, rudder, speed of the run over those of the training runs; empty: not known"
     )
-    floor: dict[str, Number] = Field(description="rms, keys as in rms, that process noise alone would leave")
-    spread: dict[str, Number] = Field(description="standard deviation over tied models, keys as in measures and rms")
+    noise_floor: dict[str, Number] = Field(description="rms, keys as in rms, that process noise alone would leave")
+    tied_spread: dict[str, Number] = Field(
+        description="standard deviation over tied models, keys as in measures and rms"
+    )
 
 
 class FitDocument(Entry):
@@ -65,10 +67,12 @@ class FitDocument(Entry):
     validation: list[ValidationEntry]
     identifiability: IdentifiabilityEntry | None = Field(description="what the records can tell; null: not examined")
     noise: NoiseEntry | None = Field(description="criterion of the fit and the noise it allows for; null: not examined")
-    family: list[FamilyEntry] = Field(description="models compared over whole runs left out; empty: none declared")
+    candidate_models: list[FamilyEntry] = Field(
+        description="models compared over whole runs left out; empty: none declared"
+    )
     seakeeping: SeakeepingEntry | None = Field(description="the ship in the waves of the trial; null: none known")
-    rolling: RollingEntry | None = Field(description="what a roll model's coefficients mean; null: another model")
-    rivals: list[RivalEntry] = Field(description="estimators on the same runs, the fit first; empty: not compared")
+    roll: RollingEntry | None = Field(description="what a roll model's coefficients mean; null: another model")
+    baselines: list[RivalEntry] = Field(description="estimators on the same runs, the fit first; empty: not compared")
     findings: list[FindingEntry]
     elapsed_s: float
     versions: dict[str, str]
@@ -83,8 +87,8 @@ def _validation(p: Prediction) -> ValidationEntry:
         measures={name: MeasureEntry.model_validate(m) for name, m in p.measures.items()},
         extrapolation_index=reach.index if reach else None,
         extrapolation=dict(reach.ratios) if reach else {},
-        floor=dict(p.floor),
-        spread=dict(p.spread),
+        noise_floor=dict(p.noise_floor),
+        tied_spread=dict(p.tied_spread),
     )
 
 
@@ -95,17 +99,17 @@ def finding_entry(f: Finding) -> FindingEntry:
 
 def fit_json(fit: Fit) -> dict[str, Any]:
     """The documented schema, ready for `strict_json`."""
-    known, disturbance = fit.identifiability, fit.disturbance
+    known, disturbance = fit.identifiability, fit.noise_model
     document = FitDocument(
         coefficients=[CoefficientEntry.model_validate(c) for c in fit.coefficients],
         intervals=fit.method.intervals,
         validation=[_validation(p) for p in fit.validation()],
         identifiability=IdentifiabilityEntry.model_validate(known) if known else None,
         noise=NoiseEntry.model_validate(disturbance) if disturbance else None,
-        family=[FamilyEntry.model_validate(member) for member in fit.family],
+        candidate_models=[FamilyEntry.model_validate(member) for member in fit.candidate_models],
         seakeeping=SeakeepingEntry.model_validate(fit.seakeeping) if fit.seakeeping else None,
-        rolling=RollingEntry.model_validate(fit.rolling) if fit.rolling else None,
-        rivals=[RivalEntry.model_validate(rival) for rival in fit.rivals],
+        roll=RollingEntry.model_validate(fit.roll) if fit.roll else None,
+        baselines=[RivalEntry.model_validate(rival) for rival in fit.baselines],
         findings=[finding_entry(f) for f in fit.findings],
         elapsed_s=fit.elapsed_s,
         versions=fit.versions,

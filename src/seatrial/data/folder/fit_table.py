@@ -8,37 +8,37 @@ from typing import Any, TypeVar, get_type_hints
 from pydantic import TypeAdapter, ValidationError
 
 from seatrial.core.results import (
+    Baseline,
+    CandidateModel,
     Coefficient,
-    Disturbance,
     Extrapolation,
     Fit,
     Identifiability,
     Measure,
-    Member,
     Method,
     Noise,
+    NoiseModel,
     Offset,
     Prediction,
     Residuals,
-    Rival,
-    Rolling,
+    RollCharacteristics,
     Seakeeping,
     Solution,
     Status,
 )
 from seatrial.core.values import Array, Finding, Record, Severity, Ship
-from seatrial.data.folder.archive import record_from
+from seatrial.data.folder.archive import record_from_arrays
 from seatrial.data.folder.model_file import ModelFile
 
 T = TypeVar("T")
 
 
-def detail_table(fit: Fit, records: list[Record], place: Mapping[int, int]) -> dict[str, Any]:
+def detail_table(fit: Fit, records: list[Record], record_index: Mapping[int, int]) -> dict[str, Any]:
     """What the documented part leaves out and a report needs."""
     solution = fit.solution
     return {
         "question": fit.question,
-        "ship": _plain(
+        "ship": _json_value(
             {
                 "name": fit.ship.name,
                 "particulars": dict(fit.ship.particulars),
@@ -46,8 +46,8 @@ def detail_table(fit: Fit, records: list[Record], place: Mapping[int, int]) -> d
                 "scale": fit.ship.scale,
             }
         ),
-        "coefficients": [_plain(c) for c in fit.coefficients],
-        "solution": _plain(
+        "coefficients": [_json_value(c) for c in fit.coefficients],
+        "solution": _json_value(
             {
                 "value": solution.value,
                 "status": solution.status.name,
@@ -56,65 +56,65 @@ def detail_table(fit: Fit, records: list[Record], place: Mapping[int, int]) -> d
                 "seed": solution.seed,
             }
         ),
-        "method": _plain(fit.method),
-        "offsets": [_plain(o) for o in fit.offsets],
-        "noise": [_plain(n) for n in fit.noise],
+        "method": _json_value(fit.method),
+        "offsets": [_json_value(o) for o in fit.offsets],
+        "noise": [_json_value(n) for n in fit.noise],
         "residuals": [{"channel": r.channel, "rate": r.rate} for r in fit.residuals],
-        "findings": [_plain(f) for f in fit.findings],
+        "findings": [_json_value(f) for f in fit.findings],
         "records": [r.metadata for r in records],
-        "used": [place[id(r)] for r in fit.records],
+        "used": [record_index[id(r)] for r in fit.records],
         "predictions": [
             {
                 "record": p.record,
                 "role": p.role,
-                "measured": place[id(p.measured)],
-                "simulated": place[id(p.simulated)],
-                "rms": _plain(p.rms),
-                "measures": {name: _plain(m) for name, m in p.measures.items()},
+                "measured": record_index[id(p.measured)],
+                "simulated": record_index[id(p.simulated)],
+                "rms": _json_value(p.rms),
+                "measures": {name: _json_value(m) for name, m in p.measures.items()},
                 "initial_seconds": p.initial_seconds,
-                "extrapolation": _nested(p.extrapolation),
+                "extrapolation": _lossless_value(p.extrapolation),
                 "half_width": list(p.half_width),
-                "floor": _nested(p.floor),
-                "spread": _nested(p.spread),
+                "noise_floor": _lossless_value(p.noise_floor),
+                "tied_spread": _lossless_value(p.tied_spread),
             }
             for p in fit.predictions
         ],
-        "identifiability": _nested(fit.identifiability),
-        "disturbance": _nested(fit.disturbance),
-        "family": _nested(fit.family),
-        "seakeeping": _nested(fit.seakeeping),
-        "rolling": _nested(fit.rolling),
-        "rivals": _nested(fit.rivals),
+        "identifiability": _lossless_value(fit.identifiability),
+        "noise_model": _lossless_value(fit.noise_model),
+        "candidate_models": _lossless_value(fit.candidate_models),
+        "seakeeping": _lossless_value(fit.seakeeping),
+        "roll": _lossless_value(fit.roll),
+        "baselines": _lossless_value(fit.baselines),
     }
 
 
 def band_arrays(fit: Fit) -> dict[str, Array]:
     """Half widths of all bands under the names `fit_from` looks for."""
     return {
-        f"{_band(k)}/{channel}": half_width
+        f"{_half_width_prefix(k)}/{channel}": half_width
         for k, p in enumerate(fit.predictions)
         for channel, half_width in p.half_width.items()
     }
 
 
-def _band(prediction: int) -> str:
+def _half_width_prefix(prediction: int) -> str:
     return f"prediction{prediction}/half_width"
 
 
-def _nested(value: Any) -> Any:
+def _lossless_value(value: Any) -> Any:
     """As `_plain`, but numbers that are none stay known by their names: ``inf``, ``-inf``, ``nan``."""
     if is_dataclass(value) and not isinstance(value, type):
-        return _nested(asdict(value))
+        return _lossless_value(asdict(value))
     if isinstance(value, Mapping):
-        return {str(key): _nested(inner) for key, inner in value.items()}
+        return {str(key): _lossless_value(inner) for key, inner in value.items()}
     if isinstance(value, list | tuple):
-        return [_nested(inner) for inner in value]
+        return [_lossless_value(inner) for inner in value]
     if isinstance(value, float):
         return float(value) if math.isfinite(value) else str(float(value))
     return value
 
 
-def _restored(kind: Any, table: Any) -> Any:
+def _validated(kind: Any, table: Any) -> Any:
     """The value of that type, the inverse of `_nested`; TypeError where the table is damaged."""
     try:
         return TypeAdapter(kind).validate_python(table)
@@ -123,48 +123,48 @@ def _restored(kind: Any, table: Any) -> Any:
         raise TypeError(f"{'.'.join(str(part) for part in first['loc'])}: {first['msg']}") from None
 
 
-def _plain(value: Any) -> Any:
+def _json_value(value: Any) -> Any:
     """Dataclasses, tuples and numbers as JSON has them."""
     if is_dataclass(value) and not isinstance(value, type):
-        return _plain(asdict(value))
+        return _json_value(asdict(value))
     if isinstance(value, Mapping):
-        return {str(key): _plain(inner) for key, inner in value.items()}
+        return {str(key): _json_value(inner) for key, inner in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(inner) for inner in value]
+        return [_json_value(inner) for inner in value]
     if isinstance(value, float):
         return float(value) if math.isfinite(value) else None
     return value
 
 
-def _made(kind: type[T], table: Mapping[str, Any]) -> T:
+def _flat_dataclass(kind: type[T], table: Mapping[str, Any]) -> T:
     """A flat dataclass from its table; null in a field that must be a number is NaN."""
     hints = get_type_hints(kind)
     return kind(**{key: math.nan if value is None and hints[key] is float else value for key, value in table.items()})
 
 
-def fit_from(table: Mapping[str, Any], file: ModelFile, arrays: Mapping[str, Array]) -> Fit:
+def fit_from_tables(table: Mapping[str, Any], file: ModelFile, arrays: Mapping[str, Array]) -> Fit:
     """The inverse of `detail_table`: result.json's tables, the model file and the arrays put together again."""
     detail = table["detail"]
-    records = [record_from(entry, arrays, f"record{i}") for i, entry in enumerate(detail["records"])]
+    records = [record_from_arrays(entry, arrays, f"record{i}") for i, entry in enumerate(detail["records"])]
     solution, method = detail["solution"], detail["method"]
     return Fit(
         question=detail["question"],
-        ship=_made(Ship, detail["ship"]),
+        ship=_flat_dataclass(Ship, detail["ship"]),
         model=file.model,
-        coefficients=tuple(_made(Coefficient, c) for c in detail["coefficients"]),
+        coefficients=tuple(_flat_dataclass(Coefficient, c) for c in detail["coefficients"]),
         covariance=file.covariance,
-        margin=file.margin,
+        interval_basis=file.interval_basis,
         solution=Solution(
             arrays["solution"],
-            _number(solution["value"]),
+            _nan_if_null(solution["value"]),
             Status[solution["status"]],
             solution["evaluations"],
-            tuple(_number(h) for h in solution["history"]),
+            tuple(_nan_if_null(h) for h in solution["history"]),
             solution["seed"],
         ),
         method=Method(**{**method, "reasons": tuple(method["reasons"])}),
-        offsets=tuple(_made(Offset, o) for o in detail["offsets"]),
-        noise=tuple(_made(Noise, n) for n in detail["noise"]),
+        offsets=tuple(_flat_dataclass(Offset, o) for o in detail["offsets"]),
+        noise=tuple(_flat_dataclass(Noise, n) for n in detail["noise"]),
         residuals=tuple(
             Residuals(
                 r["channel"], r["rate"], arrays[f"residuals/{r['channel']}"], arrays[f"autocorrelation/{r['channel']}"]
@@ -177,16 +177,16 @@ def fit_from(table: Mapping[str, Any], file: ModelFile, arrays: Mapping[str, Arr
         seed=table["seed"],
         elapsed_s=table["elapsed_s"],
         versions=table["versions"],
-        identifiability=_restored(Identifiability | None, detail.get("identifiability")),
-        disturbance=_restored(Disturbance | None, detail.get("disturbance")),
-        family=_restored(tuple[Member, ...], detail.get("family", [])),
-        seakeeping=_restored(Seakeeping | None, detail.get("seakeeping")),
-        rolling=_restored(Rolling | None, detail.get("rolling")),
-        rivals=_restored(tuple[Rival, ...], detail.get("rivals", [])),
+        identifiability=_validated(Identifiability | None, detail.get("identifiability")),
+        noise_model=_validated(NoiseModel | None, detail.get("noise_model")),
+        candidate_models=_validated(tuple[CandidateModel, ...], detail.get("candidate_models", [])),
+        seakeeping=_validated(Seakeeping | None, detail.get("seakeeping")),
+        roll=_validated(RollCharacteristics | None, detail.get("roll")),
+        baselines=_validated(tuple[Baseline, ...], detail.get("baselines", [])),
     )
 
 
-def _number(value: float | None) -> float:
+def _nan_if_null(value: float | None) -> float:
     return math.nan if value is None else value
 
 
@@ -198,11 +198,13 @@ def _prediction(
         role=entry["role"],
         measured=records[entry["measured"]],
         simulated=records[entry["simulated"]],
-        rms={key: _number(value) for key, value in entry["rms"].items()},
-        measures={name: _made(Measure, m) for name, m in entry["measures"].items()},
+        rms={key: _nan_if_null(value) for key, value in entry["rms"].items()},
+        measures={name: _flat_dataclass(Measure, m) for name, m in entry["measures"].items()},
         initial_seconds=entry["initial_seconds"],
-        extrapolation=_restored(Extrapolation | None, entry.get("extrapolation")),
-        half_width={channel: arrays[f"{_band(number)}/{channel}"] for channel in entry.get("half_width", ())},
-        floor=_restored(dict[str, float], entry.get("floor", {})),
-        spread=_restored(dict[str, float], entry.get("spread", {})),
+        extrapolation=_validated(Extrapolation | None, entry.get("extrapolation")),
+        half_width={
+            channel: arrays[f"{_half_width_prefix(number)}/{channel}"] for channel in entry.get("half_width", ())
+        },
+        noise_floor=_validated(dict[str, float], entry.get("noise_floor", {})),
+        tied_spread=_validated(dict[str, float], entry.get("tied_spread", {})),
     )

@@ -14,14 +14,14 @@ import numpy as np
 import tomli_w
 
 from seatrial.core.equations import Model
-from seatrial.core.results import Margin
+from seatrial.core.results import IntervalBasis
 from seatrial.core.values import Array, InputError, Parameter, Parameters, Prior, Record, Ship, frozen
-from seatrial.core.values.files import write_whole
+from seatrial.core.values.files import write_atomically
 from seatrial.physics.models import model_named
 
 FORMAT = 1
 _ROUNDING, _ASYMMETRY = 1e-8, 1e-6
-_TABLES_OF_MARGIN = ("kinds", "offsets", "process", "covered")
+_TABLES_OF_MARGIN = ("measure_deviation", "offsets", "process", "training_envelope")
 CONVENTIONS = (
     "SI units and radians; x forward, y starboard, z down, psi clockwise; "
     "unit '1' marks a coefficient made nondimensional as its model's source says"
@@ -60,10 +60,10 @@ class ModelFile:
     provenance: ModelProvenance = ModelProvenance()
     ship: Ship | None = None
     approach: Mapping[str, float] = field(default_factory=dict)
-    margin: Margin | None = None
+    interval_basis: IntervalBasis | None = None
 
 
-def provenance_of(
+def model_provenance(
     records: Sequence[tuple[Record, str]], method: str, seed: int, versions: Mapping[str, str]
 ) -> ModelProvenance:
     """Provenance from (record, role) pairs."""
@@ -90,9 +90,9 @@ def model_text(file: ModelFile) -> str:
     table["approach"] = _floats(file.approach)
     table["parameters"] = {p.name: _parameter_table(p) for p in model.parameters}
     if covariance.size:
-        table["covariance"] = {"of": list(free), "rows": _rows(covariance)}
-    if file.margin is not None:
-        table["margin"] = _margin_table(file.margin)
+        table["covariance"] = {"parameters": list(free), "rows": _rows(covariance)}
+    if file.interval_basis is not None:
+        table["interval_basis"] = _uncertainty_table(file.interval_basis)
     return tomli_w.dumps(table | {"provenance": _provenance_table(file.provenance)})
 
 
@@ -100,7 +100,7 @@ def _rows(matrix: Array) -> list[list[float]]:
     return [[float(c) for c in row] for row in matrix]
 
 
-def _margin_table(margin: Margin) -> dict[str, Any]:
+def _uncertainty_table(margin: IntervalBasis) -> dict[str, Any]:
     return {
         "degrees_of_freedom": float(margin.degrees_of_freedom),
         "factor": float(margin.factor),
@@ -110,20 +110,22 @@ def _margin_table(margin: Margin) -> dict[str, Any]:
     }
 
 
-def _margin(table: Mapping[str, Any], where: str, parameters: Parameters) -> Margin | None:
-    if "margin" not in table:
+def _uncertainty(table: Mapping[str, Any], where: str, parameters: Parameters) -> IntervalBasis | None:
+    if "interval_basis" not in table:
         return None
-    entry = table["margin"]
+    entry = table["interval_basis"]
     degrees, tied = float(entry["degrees_of_freedom"]), tuple(_floats(one) for one in entry["tied"])
-    covariance = _matrix(entry["covariance"], f"{where}': margin.covariance")
+    covariance = _covariance_matrix(entry["covariance"], f"{where}': interval_basis.covariance")
     if len(covariance) != len(parameters.free):
-        raise ValueError(f"margin.covariance has {len(covariance)} rows for {len(parameters.free)} free parameters")
+        raise ValueError(
+            f"interval_basis.covariance has {len(covariance)} rows for {len(parameters.free)} free parameters"
+        )
     if not degrees > 0.0:
-        raise ValueError(f"margin.degrees_of_freedom is {degrees:g}")
+        raise ValueError(f"interval_basis.degrees_of_freedom is {degrees:g}")
     if strangers := [name for one in tied for name in one if name not in parameters]:
-        raise ValueError(f"margin.tied names '{strangers[0]}', which is no parameter of the model")
+        raise ValueError(f"interval_basis.tied names '{strangers[0]}', which is no parameter of the model")
     tables = {name: _floats(entry[name]) for name in _TABLES_OF_MARGIN}
-    return Margin(covariance, degrees, float(entry["factor"]), tied=tied, **tables)
+    return IntervalBasis(covariance, degrees, float(entry["factor"]), tied=tied, **tables)
 
 
 def _floats(numbers: Mapping[str, float]) -> dict[str, float]:
@@ -136,7 +138,7 @@ def write_model(file: ModelFile, path: str | Path) -> None:
     Raises:
         InputError: the place cannot be written.
     """
-    write_whole(Path(path), model_text(file).encode())
+    write_atomically(Path(path), model_text(file).encode())
 
 
 def read_model(path: str | Path, own_model: Model | None = None) -> Model:
@@ -159,10 +161,10 @@ def read_model_file(path: str | Path, own_model: Model | None = None) -> ModelFi
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
         raise InputError(f"model file '{path}' cannot be read ({reason}); check the path") from None
-    return parsed_model(text, str(path), own_model)
+    return parse_model(text, str(path), own_model)
 
 
-def parsed_model(text: str, where: str, own_model: Model | None = None) -> ModelFile:
+def parse_model(text: str, where: str, own_model: Model | None = None) -> ModelFile:
     """The inverse of `model_text`; raises as `read_model`."""
     try:
         table = tomllib.loads(text)
@@ -173,17 +175,19 @@ def parsed_model(text: str, where: str, own_model: Model | None = None) -> Model
             f"'{where}' is no seatrial model file of format {FORMAT}; give the model.toml of a result folder"
         )
     try:
-        model = _equations(table["model"], where, own_model)
+        model = _model_with_equations(table["model"], where, own_model)
         items = tuple(_parameter(name, entry) for name, entry in table["parameters"].items())
         if tuple(p.name for p in items) != model.parameters.names:
             raise InputError(f"model file '{where}': its parameters are not those of model '{model.name}'")
-        covariance = _matrix(table.get("covariance", {}).get("rows", []), f"{where}': covariance")
+        covariance = _covariance_matrix(table.get("covariance", {}).get("rows", []), f"{where}': covariance")
         provenance = _provenance(table["provenance"])
         approach = {name: float(value) for name, value in table["approach"].items()}
         made = model.with_parameters(Parameters(items))
         if covariance.size and len(covariance) != len(made.parameters.free):
             raise ValueError(f"covariance has {len(covariance)} rows for {len(made.parameters.free)} free parameters")
-        return ModelFile(made, covariance, provenance, _ship(table), approach, _margin(table, where, made.parameters))
+        return ModelFile(
+            made, covariance, provenance, _ship(table), approach, _uncertainty(table, where, made.parameters)
+        )
     except (KeyError, TypeError, AttributeError, ValueError) as error:
         if isinstance(error, InputError):
             raise
@@ -197,7 +201,7 @@ def _ship(table: Mapping[str, Any]) -> Ship | None:
     return Ship(table["ship"]["name"], particulars, table["ship"]["source"], float(table["ship"]["scale"]))
 
 
-def _matrix(rows: Sequence[Sequence[float]], where: str) -> Array:
+def _covariance_matrix(rows: Sequence[Sequence[float]], where: str) -> Array:
     """A covariance; one that is not finite, not symmetric, or negative in any direction beyond rounding is refused."""
     matrix = np.array(rows, dtype=float).reshape(len(rows), len(rows))
     scale = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
@@ -216,7 +220,7 @@ def _matrix(rows: Sequence[Sequence[float]], where: str) -> Array:
     return frozen(matrix)
 
 
-def _equations(entry: Mapping[str, Any], where: str, own_model: Model | None) -> Model:
+def _model_with_equations(entry: Mapping[str, Any], where: str, own_model: Model | None) -> Model:
     name = str(entry["name"])
     if own_model is not None and own_model.name == name:
         model = own_model

@@ -5,7 +5,7 @@ from typing import Any
 
 from pydantic import Field
 
-from seatrial.core.results.online import Counts, Snapshot
+from seatrial.core.results.online import SampleCounts, Snapshot
 from seatrial.data.folder.fit_entries import Entry, FindingEntry, Number
 from seatrial.data.folder.fit_json import finding_entry
 
@@ -17,7 +17,7 @@ class OnlineCoefficientEntry(Entry):
     unit: str
     estimate: Number
     standard_error: Number = Field(description="null where nothing is known")
-    told: bool = Field(description="false where the samples so far do not tell it")
+    is_identified: bool = Field(description="false where the samples so far do not tell it")
 
 
 class ChangeEntry(Entry):
@@ -25,10 +25,10 @@ class ChangeEntry(Entry):
 
     since: Number = Field(description="s on the stream's clock")
     statistic: Number
-    freedom: int
+    degrees_of_freedom: int
     p: Number
-    is_told: bool
-    most: str
+    is_significant: bool
+    most_changed: str
 
 
 class CountsEntry(Entry):
@@ -44,7 +44,7 @@ class CountsEntry(Entry):
     checksum: int
     dropped: int
     truncated: int
-    last: str = Field(description="the latest trouble in words")
+    last_problem: str = Field(description="the latest trouble in words")
 
 
 class OnlineDocument(Entry):
@@ -62,7 +62,7 @@ class OnlineDocument(Entry):
     findings: list[FindingEntry]
 
 
-def online_json(snapshot: Snapshot | None, counts: Counts) -> dict[str, Any]:
+def online_json(snapshot: Snapshot | None, counts: SampleCounts) -> dict[str, Any]:
     """The documented schema, ready for `strict_json`; None where no sample came."""
     told = CountsEntry.model_validate(asdict(counts))
     if snapshot is None:
@@ -78,7 +78,11 @@ def online_json(snapshot: Snapshot | None, counts: Counts) -> dict[str, Any]:
         phase=snapshot.phase.value,
         coefficients=[
             OnlineCoefficientEntry(
-                name=name, unit=unit, estimate=value, standard_error=error, told=name not in snapshot.untold
+                name=name,
+                unit=unit,
+                estimate=value,
+                standard_error=error,
+                is_identified=name not in snapshot.unidentified,
             )
             for name, unit, value, error in rows
         ],

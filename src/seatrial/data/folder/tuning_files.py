@@ -13,9 +13,9 @@ import numpy as np
 import tomli_w
 from numpy.typing import NDArray
 
-from seatrial.core.results.tuning import Component, Controller, Slot, Tuning
+from seatrial.core.results.tuning import Component, Controller, OperatingPoint, Tuning
 from seatrial.core.values import InputError
-from seatrial.data.folder.orders import shown_unit
+from seatrial.data.folder.orders import channel_display_unit
 
 FORMAT = 1
 # the text that begins a MAT-file is 116 bytes long and names no date here, so that the same loop gives the same bytes
@@ -24,7 +24,7 @@ _RESERVED = {"end", "function", "otherwise", "switch", "case", "parfor", "spmd",
 Rational = tuple[NDArray[Any], NDArray[Any]]
 
 
-def gains_text(tuning: Tuning) -> str:
+def gains_toml(tuning: Tuning) -> str:
     """``gains.toml``: chosen gains, what they were tuned for and keep, their margins, the schedule if there is one.
 
     Angles are in degrees where the key says so; what is infinite (no limit, any margin) is left out.
@@ -33,13 +33,13 @@ def gains_text(tuning: Tuning) -> str:
         "format": FORMAT,
         "controller": {"name": tuning.name, "plant": tuning.plant, "output": tuning.output,
                        "actuator": tuning.actuator, "seas": list(tuning.seas)},
-        "gains": _numbers(tuning.chosen.gains),
-        "margins": _margins(tuning.chosen),
-        "kept": _kept(tuning),
-        "provenance": {"seed": tuning.seed, "versions": tuning.versions, "broken": list(tuning.chosen.broken)},
+        "gains": _finite_numbers(tuning.chosen.gains),
+        "margins": _margin_table(tuning.chosen),
+        "constraints": _constraint_table(tuning),
+        "provenance": {"seed": tuning.seed, "versions": tuning.versions, "violated": list(tuning.chosen.violated)},
     }  # fmt: skip
     if tuning.schedule:
-        table["schedule"] = [_slot(slot) for slot in tuning.schedule]
+        table["schedule"] = [_schedule_entry(slot) for slot in tuning.schedule]
     return tomli_w.dumps(table)
 
 
@@ -64,19 +64,40 @@ def read_gains(path: str | Path) -> dict[str, float]:
     return {name: float(value) for name, value in gains.items()}
 
 
-def schedule_text(tuning: Tuning) -> str:
+def schedule_csv(tuning: Tuning) -> str:
     """The schedule as CSV, a line for each condition; empty without one."""
     if not tuning.schedule:
         return ""
     first = tuning.schedule[0]
-    heads = ["U [m/s]", "heading [deg]", "height [m]", *first.gains, "cost", *(f"cost {name}" for name in first.others),
-             "Ms", "saturation", "feasible"]  # fmt: skip
+    heads = [
+        "U [m/s]",
+        "heading [deg]",
+        "height [m]",
+        *first.gains,
+        "cost",
+        *(f"cost {name}" for name in first.baseline_costs),
+        "Ms",
+        "saturation",
+        "feasible",
+    ]
     rows = [
-        [_text(x) for x in (s.U, math.degrees(s.beta), s.height, *s.gains.values(), s.cost, *s.others.values(), s.peak,
-                            s.saturation)] + ["yes" if s.is_feasible else "no"]
+        [
+            _number_text(x)
+            for x in (
+                s.U,
+                math.degrees(s.beta),
+                s.height,
+                *s.gains.values(),
+                s.cost,
+                *s.baseline_costs.values(),
+                s.Ms,
+                s.saturation,
+            )
+        ]
+        + ["yes" if s.is_feasible else "no"]
         for s in tuning.schedule
-    ]  # fmt: skip
-    return "\n".join(",".join(cells) for cells in [[_cell(h) for h in heads], *rows]) + "\n"
+    ]
+    return "\n".join(",".join(cells) for cells in [[_csv_cell(h) for h in heads], *rows]) + "\n"
 
 
 def loop_mat(tuning: Tuning) -> bytes:
@@ -89,15 +110,15 @@ def loop_mat(tuning: Tuning) -> bytes:
     from scipy.io import savemat
 
     gains = tuning.chosen.gains
-    content: dict[str, Any] = {"gains": {_word(name): value for name, value in gains.items()}}
-    for name, component in _named(tuning.components, {*content, *_POLYNOMIALS}).items():
+    content: dict[str, Any] = {"gains": {_matlab_name(name): value for name, value in gains.items()}}
+    for name, component in _matlab_names(tuning.components, {*content, *_POLYNOMIALS}).items():
         content[name] = {
             "num": np.array(component.num), "den": np.array(component.den), "role": component.role,
             "name": component.name, "gain": component.gain,
             "value": gains.get(component.gain, 1.0) if component.gain else 1.0,
         }  # fmt: skip
     if any(c.role == "term" for c in tuning.components):
-        controller, loop = controller_of(tuning), open_loop_of(tuning)
+        controller, loop = controller_polynomials(tuning), open_loop_polynomials(tuning)
         content |= dict(zip(_POLYNOMIALS, (*controller, *loop), strict=True))
     made = BytesIO()
     savemat(made, content, format="5", long_field_names=True, oned_as="row")  # type: ignore[arg-type]
@@ -107,7 +128,7 @@ def loop_mat(tuning: Tuning) -> bytes:
 _POLYNOMIALS = ("controller_num", "controller_den", "open_loop_num", "open_loop_den")
 
 
-def controller_of(tuning: Tuning) -> Rational:
+def controller_polynomials(tuning: Tuning) -> Rational:
     """K(s) = sensors * (sum of gain_i term_i) * filters * servo as num and den, highest power first.
 
     Raises:
@@ -126,9 +147,9 @@ def controller_of(tuning: Tuning) -> Rational:
     return _product(sum_of_terms, tuple(c for c in tuning.components if c.role in ("sensor", "filter", "servo")))
 
 
-def open_loop_of(tuning: Tuning) -> Rational:
+def open_loop_polynomials(tuning: Tuning) -> Rational:
     """L(s) = P(s) K(s) as num and den; the loop is closed negatively."""
-    return _product(controller_of(tuning), tuple(c for c in tuning.components if c.role == "plant"))
+    return _product(controller_polynomials(tuning), tuple(c for c in tuning.components if c.role == "plant"))
 
 
 def _product(first: Rational, components: tuple[Component, ...]) -> Rational:
@@ -138,32 +159,32 @@ def _product(first: Rational, components: tuple[Component, ...]) -> Rational:
     return num, den
 
 
-def _named(components: tuple[Component, ...], taken: set[str]) -> dict[str, Component]:
+def _matlab_names(components: tuple[Component, ...], reserved: set[str]) -> dict[str, Component]:
     """Each block under a name of its own that MATLAB takes for a variable."""
     made: dict[str, Component] = {}
     for c in components:
-        word = stem = _word(c.name if c.name.startswith(c.role) else f"{c.role}_{c.name}")
+        word = stem = _matlab_name(c.name if c.name.startswith(c.role) else f"{c.role}_{c.name}")
         count = 2
-        while word in made or word in taken:
+        while word in made or word in reserved:
             word, count = f"{stem}_{count}", count + 1
         made[word] = c
     return made
 
 
-def _word(name: str) -> str:
+def _matlab_name(name: str) -> str:
     """Letters, digits and underscores, a letter first, at most 60."""
     word = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")[:60] or "unnamed"
     return f"x_{word}" if not word[0].isalpha() else f"{word}_" if word.lower() in _RESERVED else word
 
 
-def _numbers(values: dict[str, float]) -> dict[str, float]:
+def _finite_numbers(values: dict[str, float]) -> dict[str, float]:
     """Finite numbers only, none of them NumPy's."""
     return {name: float(value) for name, value in values.items() if math.isfinite(value)}
 
 
-def _margins(c: Controller) -> dict[str, float]:
-    return _numbers({
-        "Ms": c.peak,
+def _margin_table(c: Controller) -> dict[str, float]:
+    return _finite_numbers({
+        "Ms": c.Ms,
         "gain_margin": c.gain_margin,
         "phase_margin_deg": math.degrees(c.phase_margin),
         "delay_margin_s": c.delay_margin,
@@ -174,12 +195,12 @@ def _margins(c: Controller) -> dict[str, float]:
     })  # fmt: skip
 
 
-def _kept(tuning: Tuning) -> dict[str, float]:
+def _constraint_table(tuning: Tuning) -> dict[str, float]:
     """The restrictions, keys of angles ending in their unit."""
-    r, (factor, unit) = tuning.restriction, shown_unit(tuning.actuator)
+    r, (factor, unit) = tuning.constraints, channel_display_unit(tuning.actuator)
     ending = "" if unit == "1" else f"_{unit}".replace("/", "_per_")
-    return _numbers({
-        "Ms": r.peak,
+    return _finite_numbers({
+        "Ms": r.Ms,
         "saturation": r.saturation,
         "rate_saturation": r.rate_saturation,
         f"limit{ending}": r.limit * factor,
@@ -188,17 +209,20 @@ def _kept(tuning: Tuning) -> dict[str, float]:
     })  # fmt: skip
 
 
-def _slot(slot: Slot) -> dict[str, Any]:
+def _schedule_entry(point: OperatingPoint) -> dict[str, Any]:
     return {
-        "U": float(slot.U), "heading_deg": math.degrees(slot.beta), "height": float(slot.height),
-        "gains": _numbers(slot.gains), **_numbers({"cost": slot.cost, "Ms": slot.peak, "saturation": slot.saturation}),
-        "feasible": bool(slot.is_feasible),
-    }  # fmt: skip
+        "U": float(point.U),
+        "heading_deg": math.degrees(point.beta),
+        "height": float(point.height),
+        "gains": _finite_numbers(point.gains),
+        **_finite_numbers({"cost": point.cost, "Ms": point.Ms, "saturation": point.saturation}),
+        "feasible": bool(point.is_feasible),
+    }
 
 
-def _text(value: float) -> str:
+def _number_text(value: float) -> str:
     return f"{value:.8g}" if math.isfinite(value) else ""
 
 
-def _cell(words: str) -> str:
-    return '"' + words.replace('"', '""') + '"' if re.search(r'[",\n]', words) else words
+def _csv_cell(text: str) -> str:
+    return '"' + text.replace('"', '""') + '"' if re.search(r'[",\n]', text) else text

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
-from seatrial.core.results.tuning import Controller, Front, Sailed, Tuning
+from seatrial.core.results.tuning import Controller, ParetoFront, SeawaySimulation, Tuning
 from seatrial.core.values import Array
 from seatrial.data.folder.fit_entries import Entry, Number
 from seatrial.data.folder.fit_json import FindingEntry, finding_entry
@@ -27,7 +27,7 @@ class ComponentEntry(Entry):
 class RestrictionEntry(Entry):
     """What every controller must keep."""
 
-    peak: Number = Field(description="largest Ms")
+    Ms: Number = Field(description="largest Ms")
     saturation: Number = Field(description="largest share of actuator amplitudes beyond its limit")
     rate_saturation: Number = Field(description="largest share of rate amplitudes beyond its rate")
     limit: Number = Field(description="of the actuator, SI; null: none")
@@ -45,14 +45,14 @@ class ControllerEntry(Entry):
     reduction: Number = Field(
         description="of the output's rms against no control, 0 to 1; null: nothing to compare with"
     )
-    peak: Number = Field(description="Ms, the largest |S|; null: unstable")
+    Ms: Number = Field(description="Ms, the largest |S|; null: unstable")
     gain_margin: Number = Field(description="factor by which the loop gain may grow; null: any")
     phase_margin: Number = Field(description="rad; null: the loop gain never crosses one")
     delay_margin: Number = Field(description="s of dead time that the loop bears; null: any")
     damping: Number = Field(description="least damping ratio of a closed-loop pole")
     saturation: Number = Field(description="share of actuator amplitudes beyond the limit, worst of the seas")
     rate_saturation: Number = Field(description="the same of rate amplitudes")
-    broken: list[str] = Field(description="restrictions not kept, in words; empty: feasible")
+    violated: list[str] = Field(description="restrictions not kept, in words; empty: feasible")
     omega: list[float] = Field(description="rad/s at which the open loop is given")
     open_loop: list[tuple[Number, Number]] = Field(description="L there, real and imaginary part; S = 1 / (1 + L)")
 
@@ -61,10 +61,10 @@ class FrontEntry(Entry):
     """Controllers of which none is better than another in all objectives; one line of each list for each controller."""
 
     name: str
-    names: list[str] = Field(description="of the gains, columns of `gains`")
+    gain_names: list[str] = Field(description="of the gains, columns of `gains`")
     gains: list[list[float]]
     objectives: list[list[Number]] = Field(description="columns in the order of the document's `objectives`")
-    peak: list[Number] = Field(description="Ms")
+    Ms: list[Number] = Field(description="Ms")
     evaluations: int
     hypervolume: Number = Field(description="over that of a brute-force grid; null: no grid")
 
@@ -76,14 +76,14 @@ class SailedEntry(Entry):
     linear: list[Number] = Field(description="without limits")
     limited: list[Number] = Field(description="with limits of angle and rate")
     stalled: list[Number] = Field(description="with stall, too")
-    lost: Number = Field(description="reduction lost to angle and rate limits, mean over the seeds")
+    saturation_loss: Number = Field(description="reduction lost to angle and rate limits, mean over the seeds")
 
 
 class PairedEntry(Entry):
     """Reduction of the chosen controller minus that of another on the same seas, with its 95 % interval."""
 
-    other: str
-    what: str
+    baseline: str
+    stage: str
     mean: Number
     lower: Number
     upper: Number
@@ -98,9 +98,9 @@ class SlotEntry(Entry):
     height: float = Field(description="significant wave height, m")
     gains: dict[str, float]
     cost: Number
-    peak: Number = Field(description="Ms")
+    Ms: Number = Field(description="Ms")
     saturation: Number
-    others: dict[str, Number] = Field(description="costs of other gains there")
+    baseline_costs: dict[str, Number] = Field(description="costs of other gains there")
     is_feasible: bool
 
 
@@ -109,7 +109,7 @@ class BoundEntry(Entry):
 
     name: str
     ratio: Number = Field(description="output variance over that of the reference controller")
-    at: str = Field(description="what is held equal, the spectrum and the Ms")
+    conditions: str = Field(description="what is held equal, the spectrum and the Ms")
     note: str
 
 
@@ -137,15 +137,15 @@ class TuningDocument(Entry):
     output: str = Field(description="symbol of what is to stay small")
     actuator: str
     objectives: dict[str, str] = Field(description="name -> unit, in order")
-    restriction: RestrictionEntry
+    constraints: RestrictionEntry
     chosen: ControllerEntry = Field(description="the recommendation")
     reasons: list[str]
-    rivals: list[ControllerEntry] = Field(description="given gains and other choices")
+    baselines: list[ControllerEntry] = Field(description="given gains and other choices")
     front: FrontEntry
-    richer: list[FrontEntry] = Field(description="fronts of more structure")
+    extended_fronts: list[FrontEntry] = Field(description="fronts of more structure")
     components: list[ComponentEntry] = Field(description="blocks of the chosen loop")
-    sailed: list[SailedEntry]
-    paired: list[PairedEntry]
+    seaway_simulations: list[SailedEntry]
+    paired_differences: list[PairedEntry]
     schedule: list[SlotEntry]
     bounds: list[BoundEntry]
     manoeuvres: list[ManoeuvreEntry]
@@ -167,15 +167,15 @@ def tuning_json(tuning: Tuning) -> dict[str, Any]:
         output=tuning.output,
         actuator=tuning.actuator,
         objectives=dict(zip(tuning.objectives, tuning.units, strict=True)),
-        restriction=RestrictionEntry.model_validate(tuning.restriction),
+        constraints=RestrictionEntry.model_validate(tuning.constraints),
         chosen=_controller(tuning.chosen, tuning.objectives),
         reasons=list(tuning.reasons),
-        rivals=[_controller(rival, tuning.objectives) for rival in tuning.rivals],
+        baselines=[_controller(rival, tuning.objectives) for rival in tuning.baselines],
         front=_front(tuning.front),
-        richer=[_front(front) for front in tuning.richer],
+        extended_fronts=[_front(front) for front in tuning.extended_fronts],
         components=[ComponentEntry.model_validate(c) for c in tuning.components],
-        sailed=[_sailed(s) for s in tuning.sailed],
-        paired=[PairedEntry.model_validate(p) for p in tuning.paired],
+        seaway_simulations=[_sailed(s) for s in tuning.seaway_simulations],
+        paired_differences=[PairedEntry.model_validate(p) for p in tuning.paired_differences],
         schedule=[SlotEntry.model_validate(s) for s in tuning.schedule],
         bounds=[BoundEntry.model_validate(b) for b in tuning.bounds],
         manoeuvres=[ManoeuvreEntry.model_validate(m) for m in tuning.manoeuvres],
@@ -205,32 +205,36 @@ def _controller(c: Controller, objectives: tuple[str, ...]) -> ControllerEntry:
         objectives=dict(zip(objectives, _listed(c.objectives), strict=True)),
         rms=c.rms,  # type: ignore[arg-type]
         reduction=c.reduction,
-        peak=c.peak,
+        Ms=c.Ms,
         gain_margin=c.gain_margin,
         phase_margin=c.phase_margin,
         delay_margin=c.delay_margin,
         damping=c.damping,
         saturation=c.saturation,
         rate_saturation=c.rate_saturation,
-        broken=list(c.broken),
+        violated=list(c.violated),
         omega=_listed(c.omega),
         open_loop=list(zip(_listed(c.open_loop.real), _listed(c.open_loop.imag), strict=True)),
     )
 
 
-def _front(front: Front) -> FrontEntry:
+def _front(front: ParetoFront) -> FrontEntry:
     return FrontEntry(
         name=front.name,
-        names=list(front.names),
+        gain_names=list(front.gain_names),
         gains=_listed(front.gains),
         objectives=_listed(front.objectives),
-        peak=_listed(front.peak),
+        Ms=_listed(front.Ms),
         evaluations=front.evaluations,
         hypervolume=front.hypervolume,
     )
 
 
-def _sailed(s: Sailed) -> SailedEntry:
+def _sailed(s: SeawaySimulation) -> SailedEntry:
     return SailedEntry(
-        name=s.name, linear=_listed(s.linear), limited=_listed(s.limited), stalled=_listed(s.stalled), lost=s.lost
+        name=s.name,
+        linear=_listed(s.linear),
+        limited=_listed(s.limited),
+        stalled=_listed(s.stalled),
+        saturation_loss=s.saturation_loss,
     )

@@ -3,14 +3,14 @@
 import hashlib
 from pathlib import Path
 
-from seatrial.core.values import InputError, Record, nearest
-from seatrial.data.read.assemble import assembled
-from seatrial.data.read.layout import Column, Format, Layout
+from seatrial.core.values import InputError, Record, spelling_hint
+from seatrial.data.read.assemble import assemble_record
+from seatrial.data.read.layout import ColumnSpec, Format, Layout
 from seatrial.data.read.mat import read_mat
 from seatrial.data.read.netcdf import read_netcdf
 from seatrial.data.read.parquet import read_parquet
-from seatrial.data.read.sheet import Reader
-from seatrial.data.read.table import read_table, write_record
+from seatrial.data.read.raw_table import Reader
+from seatrial.data.read.record_csv import read_record_csv, write_record_csv
 from seatrial.data.read.text import read_text
 
 READERS: dict[Format, Reader] = {"text": read_text, "mat": read_mat, "parquet": read_parquet, "netcdf": read_netcdf}
@@ -38,7 +38,9 @@ def format_of(path: Path) -> Format:
     """
     suffix = Path(path.name.removesuffix(".gz")).suffix.lower()
     if suffix not in _SUFFIXES:
-        raise InputError(f"{path.name}: the format cannot be told from '{suffix}'; give format = one of {_known()}")
+        raise InputError(
+            f"{path.name}: the format cannot be told from '{suffix}'; give format = one of {_known_formats()}"
+        )
     return _SUFFIXES[suffix]
 
 
@@ -52,17 +54,26 @@ def read_record(path: Path, layout: Layout) -> Record:
             a channel without numbers, fewer than two samples.
     """
     if layout.format not in READERS:
-        raise InputError(f"unknown format '{layout.format}'{nearest(layout.format, sorted(READERS))}")
+        raise InputError(f"unknown format '{layout.format}'{spelling_hint(layout.format, sorted(READERS))}")
     if not path.is_file():
         raise InputError(f"{path} does not exist; check the path and SEATRIAL_DATA")
     if path.stat().st_size == 0:
         raise InputError(f"{path.name} is empty; leave it out or replace it")
     sheet = READERS[layout.format](path, layout)
-    return assembled(sheet, layout, hashlib.sha256(path.read_bytes()).hexdigest())
+    return assemble_record(sheet, layout, hashlib.sha256(path.read_bytes()).hexdigest())
 
 
-def _known() -> str:
+def _known_formats() -> str:
     return ", ".join(sorted(READERS))
 
 
-__all__ = ["READERS", "Column", "Format", "Layout", "format_of", "read_record", "read_table", "write_record"]
+__all__ = [
+    "READERS",
+    "ColumnSpec",
+    "Format",
+    "Layout",
+    "format_of",
+    "read_record",
+    "read_record_csv",
+    "write_record_csv",
+]

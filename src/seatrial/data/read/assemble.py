@@ -5,33 +5,33 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.core.values import Array, Channel, InputError, Provenance, Record, frozen, quantity
-from seatrial.core.values.froude import scaled
+from seatrial.core.values.froude import froude_scaled
 from seatrial.data.read.layout import Layout
-from seatrial.data.read.sheet import Sheet
+from seatrial.data.read.raw_table import RawTable
 
 
-def assembled(sheet: Sheet, layout: Layout, sha256: str) -> Record:
+def assemble_record(table: RawTable, layout: Layout, sha256: str) -> Record:
     """The record of a sheet; empty cells stay NaN, frames and signs stay as declared.
 
     Raises:
         InputError: time runs backwards, fewer than two samples, a channel without any number, wrong unit.
     """
-    time = sheet.numbers(layout.time) * layout.time.factor("s")
-    _demand_time(time, sheet, layout)
+    time = table.numbers(layout.time) * layout.time.si_factor("s")
+    _require_increasing_time(time, table, layout)
     columns = []
     for column in layout.columns:
-        values = sheet.numbers(column) * column.factor(quantity(column.symbol).unit)
+        values = table.numbers(column) * column.si_factor(quantity(column.symbol).unit)
         if np.all(np.isnan(values)):
             raise InputError(
-                f"{sheet.file}: {column.place} (channel '{column.symbol}') holds no number at all; leave it out"
+                f"{table.file}: {column.display_name} (channel '{column.symbol}') holds no number at all; leave it out"
             )
         columns.append(values)
-    labels = tuple(sheet.label(column) for column in layout.columns)
-    provenance = Provenance(sheet.file, sha256, (f"read as {layout.format}",))
-    return as_declared(stem(sheet.file), layout, time, np.stack(columns, axis=1), labels, provenance)
+    labels = tuple(table.label(column) for column in layout.columns)
+    provenance = Provenance(table.file, sha256, (f"read as {layout.format}",))
+    return record_from_values(record_name(table.file), layout, time, np.stack(columns, axis=1), labels, provenance)
 
 
-def as_declared(
+def record_from_values(
     name: str,
     layout: Layout,
     time: Array,
@@ -40,7 +40,7 @@ def as_declared(
     provenance: Provenance | None = None,
 ) -> Record:
     """The record of rows that are numbers already: time (n,) [s], the layout's columns (n, k) [SI], as declared."""
-    named = labels or tuple(column.label or column.place for column in layout.columns)
+    named = labels or tuple(column.label or column.display_name for column in layout.columns)
     channels = {
         column.symbol: Channel(
             frozen(values[:, k]),
@@ -52,24 +52,24 @@ def as_declared(
         )
         for k, column in enumerate(layout.columns)
     }
-    return scaled(Record(name, time, channels, provenance=provenance or Provenance(name)), layout.scale)
+    return froude_scaled(Record(name, time, channels, provenance=provenance or Provenance(name)), layout.scale)
 
 
-def stem(file: str) -> str:
+def record_name(file: str) -> str:
     """The record's name: the file name without its suffixes."""
     path = Path(file.removesuffix(".gz"))
     return path.stem if path.suffix else path.name
 
 
-def _demand_time(time: Array, sheet: Sheet, layout: Layout) -> None:
+def _require_increasing_time(time: Array, table: RawTable, layout: Layout) -> None:
     known = np.flatnonzero(np.isfinite(time))
     if known.size < 2:
         count = "no time stamp" if known.size == 0 else "one sample"
-        raise InputError(f"{sheet.file} has {count} in {layout.time.place}; a record needs at least two")
+        raise InputError(f"{table.file} has {count} in {layout.time.display_name}; a record needs at least two")
     back = np.flatnonzero(np.diff(time[known]) < 0)
     if back.size:
         row = known[back[0] + 1]
         raise InputError(
-            f"{sheet.file}: row {sheet.first_row + row}: time runs backwards from {time[known[back[0]]]:g} s "
+            f"{table.file}: row {table.first_row + row}: time runs backwards from {time[known[back[0]]]:g} s "
             f"to {time[row]:g} s; sort or split the file"
         )

@@ -3,17 +3,17 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from seatrial.core.values import InputError, quantity, si
+from seatrial.core.values import InputError, quantity, si_unit
 from seatrial.core.values.notation import positive_direction
 
 Format = Literal["text", "mat", "parquet", "netcdf"]
 Separator = Literal["auto", ",", ";", "tab", "whitespace"]
 
-_FRAMES = ("body", "earth", "none")
+_FRAME_NAMES = ("body", "earth", "none")
 
 
 @dataclass(frozen=True)
-class Column:
+class ColumnSpec:
     """One column of a file and what it holds.
 
     Attributes:
@@ -35,7 +35,7 @@ class Column:
     label: str = ""
 
     @property
-    def place(self) -> str:
+    def display_name(self) -> str:
         """How messages name the column."""
         return f"column {self.source}" if isinstance(self.source, int) else f"column '{self.source}'"
 
@@ -47,7 +47,7 @@ class Column:
             InputError: neither ``body``, ``earth`` nor ``none``.
         """
         frame = self.frame or quantity(self.symbol).frame
-        if frame not in _FRAMES:
+        if frame not in _FRAME_NAMES:
             raise InputError(f"channel '{self.symbol}': frame must be body, earth or none, not '{frame}'")
         return frame
 
@@ -56,18 +56,18 @@ class Column:
         """The positive direction in force."""
         return self.positive or positive_direction(self.symbol, self.declared_frame)
 
-    def factor(self, wanted: str) -> float:
-        """Factor from the file's unit to the SI unit `wanted`.
+    def si_factor(self, expected: str) -> float:
+        """Factor from the file's unit to the SI unit `expected`.
 
         Raises:
             InputError: the unit is unknown or measures something else.
         """
         try:
-            factor, unit = si(self.unit)
+            factor, unit = si_unit(self.unit)
         except InputError as error:
             raise InputError(f"channel '{self.symbol}': {error}") from None
-        if unit != wanted:
-            raise InputError(f"channel '{self.symbol}' is measured in {wanted}; unit '{self.unit}' does not fit")
+        if unit != expected:
+            raise InputError(f"channel '{self.symbol}' is measured in {expected}; unit '{self.unit}' does not fit")
         return factor
 
 
@@ -88,8 +88,8 @@ class Layout:
     """
 
     format: Format
-    time: Column
-    columns: tuple[Column, ...]
+    time: ColumnSpec
+    columns: tuple[ColumnSpec, ...]
     header_lines: int = 0
     encoding: str = "utf-8"
     separator: Separator = "auto"
@@ -107,6 +107,6 @@ class Layout:
             raise InputError(f"header_lines must be 0 or more, not {self.header_lines}")
 
     @property
-    def has_names(self) -> bool:
+    def has_named_columns(self) -> bool:
         """Whether some column is wanted by name."""
         return any(isinstance(column.source, str) for column in (self.time, *self.columns))

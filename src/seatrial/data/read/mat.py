@@ -7,12 +7,12 @@ import numpy as np
 
 from seatrial.core.values import InputError
 from seatrial.data.read.layout import Layout
-from seatrial.data.read.sheet import Sheet
+from seatrial.data.read.raw_table import RawTable
 
 _HDF5 = b"\x89HDF"
 
 
-def read_mat(path: Path, layout: Layout) -> Sheet:
+def read_mat(path: Path, layout: Layout) -> RawTable:
     """Vectors become columns under their names (``run.u`` for a field of a struct); a matrix under its numbers.
 
     Column numbers count through the columns of the largest matrix of the file.
@@ -22,20 +22,20 @@ def read_mat(path: Path, layout: Layout) -> Sheet:
     """
     with path.open("rb") as file:
         head = file.read(520)
-    variables = _version_7(path) if _HDF5 in head[:8] or head[512:516] == _HDF5 else _version_5(path)
-    return _sheet(path.name, variables, layout)
+    variables = _read_version_7(path) if _HDF5 in head[:8] or head[512:516] == _HDF5 else _read_version_5(path)
+    return _raw_table(path.name, variables, layout)
 
 
-def _version_5(path: Path) -> dict[str, np.ndarray]:
+def _read_version_5(path: Path) -> dict[str, np.ndarray]:
     from scipy.io import loadmat
 
     try:
-        return _flat(loadmat(path, squeeze_me=True, struct_as_record=True))
+        return _flatten(loadmat(path, squeeze_me=True, struct_as_record=True))
     except Exception as error:  # scipy raises half a dozen unrelated types on damaged files
         raise InputError(f"{path.name} is not a readable MATLAB file ({error}); save it again with -v7") from None
 
 
-def _flat(variables: Mapping, prefix: str = "") -> dict[str, np.ndarray]:
+def _flatten(variables: Mapping, prefix: str = "") -> dict[str, np.ndarray]:
     found: dict[str, np.ndarray] = {}
     for name, value in variables.items():
         if name.startswith("__"):
@@ -43,13 +43,13 @@ def _flat(variables: Mapping, prefix: str = "") -> dict[str, np.ndarray]:
         array = np.asarray(value)
         if array.dtype.names and array.size == 1:
             fields = {field: array[field].item() for field in array.dtype.names}
-            found |= _flat(fields, f"{prefix}{name}.")
+            found |= _flatten(fields, f"{prefix}{name}.")
         elif array.dtype.kind in "fiub":
             found[prefix + name] = array.astype(float)
     return found
 
 
-def _version_7(path: Path) -> dict[str, np.ndarray]:
+def _read_version_7(path: Path) -> dict[str, np.ndarray]:
     try:
         import h5py  # type: ignore[import-untyped]
     except ImportError:
@@ -70,11 +70,11 @@ def _version_7(path: Path) -> dict[str, np.ndarray]:
     return found
 
 
-def _sheet(file: str, variables: dict[str, np.ndarray], layout: Layout) -> Sheet:
+def _raw_table(file: str, variables: dict[str, np.ndarray], layout: Layout) -> RawTable:
     matrices = [value for value in variables.values() if value.ndim == 2]
     matrix = max(matrices, key=np.size, default=np.empty((0, 0)))
-    if not layout.has_names:
-        return Sheet(file, ("",) * matrix.shape[1], tuple(matrix.T))
+    if not layout.has_named_columns:
+        return RawTable(file, ("",) * matrix.shape[1], tuple(matrix.T))
     vectors = {name: np.atleast_1d(value) for name, value in variables.items() if value.ndim <= 1}
     time = vectors.get(str(layout.time.source), np.empty(0))
     same = {name: value for name, value in vectors.items() if value.size == time.size or time.size == 0}
@@ -84,4 +84,4 @@ def _sheet(file: str, variables: dict[str, np.ndarray], layout: Layout) -> Sheet
                 f"{file}: '{column.source}' has {vectors[str(column.source)].size} samples, time has {time.size}; "
                 "give a variable of the same length"
             )
-    return Sheet(file, tuple(same), tuple(same.values()))
+    return RawTable(file, tuple(same), tuple(same.values()))

@@ -6,10 +6,10 @@ import numpy as np
 
 from seatrial.core.values import InputError
 from seatrial.data.read.layout import Layout
-from seatrial.data.read.sheet import Sheet
+from seatrial.data.read.raw_table import RawTable
 
 
-def read_netcdf(path: Path, layout: Layout) -> Sheet:
+def read_netcdf(path: Path, layout: Layout) -> RawTable:
     """The one-dimensional variables that share the time variable's dimension.
 
     Raises:
@@ -29,4 +29,4 @@ def read_netcdf(path: Path, layout: Layout) -> Sheet:
     vectors = {str(name): array for name, array in dataset.variables.items() if array.ndim == 1}
     wanted = vectors[layout.time.source].dims if layout.time.source in vectors else None
     same = {name: np.asarray(array) for name, array in vectors.items() if wanted is None or array.dims == wanted}
-    return Sheet(path.name, tuple(same), tuple(same.values()))
+    return RawTable(path.name, tuple(same), tuple(same.values()))

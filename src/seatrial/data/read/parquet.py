@@ -4,10 +4,10 @@ from pathlib import Path
 
 from seatrial.core.values import InputError
 from seatrial.data.read.layout import Layout
-from seatrial.data.read.sheet import Sheet
+from seatrial.data.read.raw_table import RawTable
 
 
-def read_parquet(path: Path, layout: Layout) -> Sheet:  # noqa: ARG001
+def read_parquet(path: Path, layout: Layout) -> RawTable:  # noqa: ARG001
     """Every column of the table under its name; an index becomes the first columns.
 
     Raises:
@@ -23,6 +23,6 @@ def read_parquet(path: Path, layout: Layout) -> Sheet:  # noqa: ARG001
         table = parquet.read_table(path)
     except (OSError, ValueError) as error:
         raise InputError(f"{path.name} is not a readable Parquet file ({error})") from None
-    return Sheet(
+    return RawTable(
         path.name, tuple(table.column_names), tuple(column.to_numpy(zero_copy_only=False) for column in table.columns)
     )

@@ -7,13 +7,13 @@ from pathlib import Path
 
 from seatrial.core.values import InputError
 from seatrial.data.read.layout import Layout
-from seatrial.data.read.sheet import Sheet
+from seatrial.data.read.raw_table import RawTable
 
-TABLE_MARK = "# seatrial record"
+RECORD_MARK = "# seatrial record"
 _SEPARATORS = {",": ",", ";": ";", "tab": "\t", "whitespace": r"\s+"}
 
 
-def decoded(path: Path, encoding: str) -> str:
+def decoded_text(path: Path, encoding: str) -> str:
     """The text of a file.
 
     Raises:
@@ -41,22 +41,22 @@ def decoded(path: Path, encoding: str) -> str:
         raise InputError(f"{path.name}: unknown encoding '{encoding}'; try 'utf-8' or 'cp1252'") from None
 
 
-def separator(line: str, layout: Layout) -> str:
+def detect_separator(sample_line: str, layout: Layout) -> str:
     """The separator of the layout, or the one the line shows."""
     if layout.separator != "auto":
         return _SEPARATORS[layout.separator]
     for candidate in ("\t", ";"):
-        if candidate in line.strip(" \r\n"):
+        if candidate in sample_line.strip(" \r\n"):
             return candidate
-    return "," if "," in line and layout.decimal != "," else r"\s+"
+    return "," if "," in sample_line and layout.decimal != "," else r"\s+"
 
 
-def _names(line: str, mark: str) -> list[str]:
-    cells = re.split(mark, line.strip()) if mark == r"\s+" else line.split(mark)
+def _column_names(line: str, column_separator: str) -> list[str]:
+    cells = re.split(column_separator, line.strip()) if column_separator == r"\s+" else line.split(column_separator)
     return [cell.strip().strip('"') for cell in cells]
 
 
-def read_text(path: Path, layout: Layout) -> Sheet:
+def read_text(path: Path, layout: Layout) -> RawTable:
     """The sheet of a text file; a leading ``# seatrial record`` line is skipped and not counted.
 
     Raises:
@@ -64,14 +64,14 @@ def read_text(path: Path, layout: Layout) -> Sheet:
     """
     import pandas as pd
 
-    lines = decoded(path, layout.encoding).removeprefix("\ufeff").splitlines()
+    lines = decoded_text(path, layout.encoding).removeprefix("\ufeff").splitlines()
     while lines and not lines[-1].strip():
         lines.pop()
-    first = int(bool(lines) and lines[0].startswith(TABLE_MARK))
-    start = first + (max(layout.header_lines, 1) if layout.has_names else layout.header_lines)
+    first = int(bool(lines) and lines[0].startswith(RECORD_MARK))
+    start = first + (max(layout.header_lines, 1) if layout.has_named_columns else layout.header_lines)
     if start >= len(lines):
         raise InputError(f"{path.name} has no data lines: {len(lines)} lines, {start} of them header")
-    mark = separator(next(line for line in lines[start:] if line.strip()), layout)
+    mark = detect_separator(next(line for line in lines[start:] if line.strip()), layout)
     try:
         frame = pd.read_csv(
             io.StringIO("\n".join(lines[start:])),
@@ -85,14 +85,14 @@ def read_text(path: Path, layout: Layout) -> Sheet:
         found = re.search(r"Expected (\d+) fields in line (\d+), saw (\d+)", str(error))
         where = f"row {start + int(found[2])} has {found[3]} cells instead of {found[1]}" if found else str(error)
         raise InputError(f"{path.name}: {where}; check the separator and header_lines") from None
-    names = _names(lines[start - 1], mark) if layout.has_names else []
+    names = _column_names(lines[start - 1], mark) if layout.has_named_columns else []
     width = frame.shape[1]
     padded = (*names[:width], *[""] * (width - len(names)))
-    cells = tuple(_cells(frame.iloc[:, k].tolist(), layout.decimal) for k in range(width))
-    return Sheet(path.name, padded, cells, start + 1)
+    cells = tuple(_normalised_cells(frame.iloc[:, k].tolist(), layout.decimal) for k in range(width))
+    return RawTable(path.name, padded, cells, start + 1)
 
 
-def _cells(cells: list, decimal: str) -> list[str]:
+def _normalised_cells(cells: list, decimal: str) -> list[str]:
     """The cells as text with a decimal point; short rows leave NaN, which counts as empty."""
     text = [cell if isinstance(cell, str) else "" for cell in cells]
     return text if decimal == "." else [cell.replace(decimal, ".") for cell in text]

@@ -10,7 +10,7 @@ from seatrial.core.values import Record
 # how much of each record before its first rudder execution is taken for the approach, s
 APPROACH_SECONDS = 2.0
 # an execution is what reaches this part of the record's largest rudder angle
-EXECUTION = 0.2
+EXECUTION_FRACTION = 0.2
 
 
 def first_execution(record: Record) -> int:
@@ -20,21 +20,21 @@ def first_execution(record: Record) -> int:
         InputError: the record has no channel delta.
     """
     rudder = np.abs(record["delta"])
-    return int(np.argmax(rudder >= EXECUTION * np.max(rudder)))
+    return int(np.argmax(rudder >= EXECUTION_FRACTION * np.max(rudder)))
 
 
-def approach_of(records: Sequence[Record], model: Model) -> dict[str, float]:
+def approach_condition(records: Sequence[Record], model: Model) -> dict[str, float]:
     """Surge velocity and inputs other than rudder and wind: median over records of each one's approach."""
     symbols = ["u", *(name for name in model.input_names if name != "delta" and not name.startswith("wind"))]
     found = {}
     for symbol in symbols:
-        values = [_approach(r, symbol) for r in records if symbol in r]
+        values = [_approach_value(r, symbol) for r in records if symbol in r]
         if values:
             found[symbol] = float(np.median(values))
     return found
 
 
-def _approach(record: Record, symbol: str) -> float:
+def _approach_value(record: Record, symbol: str) -> float:
     stop = float(record.time[0])
     if "delta" in record:
         stop = float(record.time[first_execution(record)])

@@ -4,47 +4,47 @@ import math
 from collections.abc import Mapping
 
 from seatrial.core.equations import Model
-from seatrial.core.results import Actuator, Limits
-from seatrial.core.values import NOTATION, InputError, nearest, si
+from seatrial.core.results import Actuator, TrialLimits
+from seatrial.core.values import NOTATION, InputError, si_unit, spelling_hint
 from seatrial.data.trial.schema import Amount, DesignTable, InputTable
-from seatrial.data.trial.trial import Brief
+from seatrial.data.trial.trial import DesignRequest
 
 _HALF_TURN = math.pi
-_FEWEST_SAMPLES = 20
+_MIN_SAMPLES = 20
 
 
-def brief_of(table: DesignTable, model: Model, length: float) -> Brief:
+def design_request(table: DesignTable, model: Model, length: float) -> DesignRequest:
     """The brief that the table describes, for a ship of that length [m].
 
     Raises:
         InputError: an amount of another kind, an unknown input, one both moved and held, a limit that cannot be kept.
     """
-    duration = _positive(table.duration, "s", "design.duration")
-    if duration * table.rate < _FEWEST_SAMPLES:
+    duration = _positive_si_amount(table.duration, "s", "design.duration")
+    if duration * table.rate < _MIN_SAMPLES:
         raise InputError(
-            f"design.duration: {duration:g} s at {table.rate:g} Hz are fewer than {_FEWEST_SAMPLES} samples; "
+            f"design.duration: {duration:g} s at {table.rate:g} Hz are fewer than {_MIN_SAMPLES} samples; "
             "make it longer, or raise design.rate"
         )
-    return Brief(
+    return DesignRequest(
         duration=duration,
         rate=table.rate,
         actuators=tuple(_actuator(name, entry, model, duration) for name, entry in table.inputs.items()),
-        held=_held(table.held, tuple(table.inputs), model),
+        held=_constant_inputs(table.held, tuple(table.inputs), model),
         limits=_limits(table, length),
-        speed=_speed(table.speed, model),
+        speed=_approach_speed(table.speed, model),
         criterion=table.criterion,
         draws=table.draws,
-        prior=table.prior_percent / 100.0,
+        prior_fraction=table.prior_percent / 100.0,
     )
 
 
 def _actuator(name: str, table: InputTable, model: Model, duration: float) -> Actuator:
     where = f"design.inputs.{name}"
-    _known_input(name, where, model)
-    factor = _factor(table.unit, _unit_of(name), f"{where}.unit")
+    _require_input(name, where, model)
+    factor = _si_factor(table.unit, _input_unit(name), f"{where}.unit")
     if table.hold > duration:
         raise InputError(f"{where}.hold = {table.hold:g} s is longer than the trial of {duration:g} s; shorten it")
-    if _unit_of(name) == "rad" and max(abs(table.lower), abs(table.upper)) * factor >= _HALF_TURN:
+    if _input_unit(name) == "rad" and max(abs(table.lower), abs(table.upper)) * factor >= _HALF_TURN:
         raise InputError(
             f"{where}: {math.degrees(max(abs(table.lower), abs(table.upper)) * factor):g} degrees are no angle to "
             f'order; write the range with its unit, such as unit = "deg"'
@@ -53,17 +53,17 @@ def _actuator(name: str, table: InputTable, model: Model, duration: float) -> Ac
     return Actuator(name, table.lower * factor, table.upper * factor, rate, table.hold)
 
 
-def _held(amounts: Mapping[str, Amount], moved: tuple[str, ...], model: Model) -> dict[str, float]:
+def _constant_inputs(amounts: Mapping[str, Amount], designed_inputs: tuple[str, ...], model: Model) -> dict[str, float]:
     for name in amounts:
-        _known_input(name, f"design.held.{name}", model)
-        if name in moved:
+        _require_input(name, f"design.held.{name}", model)
+        if name in designed_inputs:
             raise InputError(f"design: input '{name}' is named under both 'inputs' and 'held'; keep one")
-    return {name: _amount(amount, _unit_of(name), f"design.held.{name}") for name, amount in amounts.items()}
+    return {name: _si_amount(amount, _input_unit(name), f"design.held.{name}") for name, amount in amounts.items()}
 
 
-def _limits(table: DesignTable, length: float) -> Limits:
-    drift = math.inf if table.drift is None else _positive(table.drift, "rad", "design.drift")
-    room = math.inf if table.sea_room is None else _positive(table.sea_room, "m", "design.sea_room")
+def _limits(table: DesignTable, length: float) -> TrialLimits:
+    drift = math.inf if table.drift is None else _positive_si_amount(table.drift, "rad", "design.drift")
+    room = math.inf if table.sea_room is None else _positive_si_amount(table.sea_room, "m", "design.sea_room")
     if math.isfinite(drift) and drift >= _HALF_TURN:
         raise InputError(
             f"design.drift: {math.degrees(drift):g} degrees are no limit of a drift angle; write it with its unit, "
@@ -73,39 +73,41 @@ def _limits(table: DesignTable, length: float) -> Limits:
         raise InputError(
             f"design.sea_room: {room:g} m are less than the ship's length of {length:g} m; no manoeuvre keeps within"
         )
-    return Limits(drift, room, table.every_ship)
+    return TrialLimits(drift, room, table.every_ship)
 
 
-def _speed(amount: Amount | None, model: Model) -> float | None:
+def _approach_speed(amount: Amount | None, model: Model) -> float | None:
     if amount is None:
         return None
     if "u" not in model.states:
         raise InputError(f"design.speed: model '{model.name}' has no surge velocity u to approach with; leave it out")
-    return _positive(amount, "m/s", "design.speed")
+    return _positive_si_amount(amount, "m/s", "design.speed")
 
 
-def _known_input(name: str, where: str, model: Model) -> None:
+def _require_input(name: str, where: str, model: Model) -> None:
     if name not in model.input_names:
-        raise InputError(f"{where}: '{name}' is no input of model '{model.name}'{nearest(name, [*model.input_names])}")
+        raise InputError(
+            f"{where}: '{name}' is no input of model '{model.name}'{spelling_hint(name, [*model.input_names])}"
+        )
 
 
-def _unit_of(name: str) -> str:
+def _input_unit(name: str) -> str:
     return NOTATION[name].unit if name in NOTATION else "1"
 
 
-def _factor(unit: str, kind: str, where: str) -> float:
-    factor, known = si(unit)
-    if known != kind:
-        raise InputError(f"{where}: '{unit}' is no unit of what is measured in {kind}; write one that is")
+def _si_factor(unit: str, expected: str, where: str) -> float:
+    factor, known = si_unit(unit)
+    if known != expected:
+        raise InputError(f"{where}: '{unit}' is no unit of what is measured in {expected}; write one that is")
     return factor
 
 
-def _amount(amount: Amount, kind: str, where: str) -> float:
-    return amount.value * (_factor(amount.unit, kind, where) if amount.unit else 1.0)
+def _si_amount(amount: Amount, si_unit: str, where: str) -> float:
+    return amount.value * (_si_factor(amount.unit, si_unit, where) if amount.unit else 1.0)
 
 
-def _positive(amount: Amount, kind: str, where: str) -> float:
-    value = _amount(amount, kind, where)
+def _positive_si_amount(amount: Amount, si_unit: str, where: str) -> float:
+    value = _si_amount(amount, si_unit, where)
     if not value > 0.0:
         raise InputError(f"{where} = {amount.value:g} is not positive; give a positive one")
     return value

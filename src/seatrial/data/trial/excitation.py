@@ -5,18 +5,18 @@ from pathlib import Path
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Ship
-from seatrial.data.trial.schema import ExcitationTable, SeaTable, WavesTable
-from seatrial.data.trial.trial import Waves
+from seatrial.data.trial.schema import ExcitationTable, SpectrumTable, WavesTable
+from seatrial.data.trial.trial import WaveEncounter
 from seatrial.physics.hydro.dispersion import G
 from seatrial.physics.hydro.excitation import BoxHull, Excitation
 from seatrial.physics.sea.encounter import speed_factor
 from seatrial.physics.sea.spectrum import Spectrum, bretschneider, ittc, ittc_two_parameter, jonswap
 
-_FASTEST_FROUDE = 1.0
-_BOX = ("L", "B", "d", "c33", "c35", "c53", "c55")
+_MAX_FROUDE = 1.0
+_BOX_DIMENSIONS = ("L", "B", "d", "c33", "c35", "c53", "c55")
 
 
-def excitation_of(table: ExcitationTable | None, ship: Ship, model: Model, base: Path) -> Excitation | None:
+def excitation_of(table: ExcitationTable | None, ship: Ship, model: Model, data_folder: Path) -> Excitation | None:
     """The excitation that the table names; files lie under `base`.
 
     Raises:
@@ -30,24 +30,26 @@ def excitation_of(table: ExcitationTable | None, ship: Ship, model: Model, base:
     if table.source == "table":
         from seatrial.physics.hydro.transfer_file import read_transfer
 
-        return read_transfer(base / str(table.file))
+        return read_transfer(data_folder / str(table.file))
     if table.source == "capytaine":
         from seatrial.physics.hydro.capytaine_data import HullExcitation, read_capytaine
 
-        return HullExcitation(read_capytaine(base / str(table.file)))
-    return _box(ship, model)
+        return HullExcitation(read_capytaine(data_folder / str(table.file)))
+    return _box_excitation(ship, model)
 
 
-def _box(ship: Ship, model: Model) -> BoxHull:
+def _box_excitation(ship: Ship, model: Model) -> BoxHull:
     known = {p.name: p.value for p in model.parameters} | dict(ship.particulars)
-    for name in _BOX:
+    for name in _BOX_DIMENSIONS:
         if name not in known:
             raise InputError(f"[excitation] source = 'box' needs ship.{name}; add it")
-    L, B, T, c33, c35, c53, c55 = (known[name] for name in _BOX)
+    L, B, T, c33, c35, c53, c55 = (known[name] for name in _BOX_DIMENSIONS)
     return BoxHull(L, B, T, c33, c35, c53, c55)
 
 
-def waves_of(table: WavesTable | None, excitation: Excitation | None, length: float, where: str) -> Waves | None:
+def wave_encounter(
+    table: WavesTable | None, excitation: Excitation | None, length: float, where: str
+) -> WaveEncounter | None:
     """How a block's runs met the waves; None for records that carry their wave forces themselves. length: m.
 
     Raises:
@@ -56,7 +58,7 @@ def waves_of(table: WavesTable | None, excitation: Excitation | None, length: fl
     if table is None:
         return None
     froude = table.speed.in_si / math.sqrt(G * length)
-    if froude > _FASTEST_FROUDE:
+    if froude > _MAX_FROUDE:
         raise InputError(
             f"{where}.waves: {table.speed.in_si:.3g} m/s is a Froude number of {froude:.2g} at L = {length:g} m, where "
             "no strip theory holds; is the speed in knots?"
@@ -68,10 +70,10 @@ def waves_of(table: WavesTable | None, excitation: Excitation | None, length: fl
     except InputError as error:
         raise InputError(f"{where}.waves: {error}") from None
     spectrum = None if table.sea is None else _spectrum(table.sea)
-    return Waves(excitation, table.speed.in_si, table.heading.in_si, spectrum)
+    return WaveEncounter(excitation, table.speed.in_si, table.heading.in_si, spectrum)
 
 
-def _spectrum(table: SeaTable) -> Spectrum:
+def _spectrum(table: SpectrumTable) -> Spectrum:
     height, period = table.height.in_si, 0.0 if table.period is None else table.period.in_si
     match table.spectrum:
         case "ittc":

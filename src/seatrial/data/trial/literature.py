@@ -3,8 +3,16 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from seatrial.core.values import Finding, InputError, Severity, Ship, nearest
-from seatrial.physics.hydro.empirical import Estimate, Form, added_mass, clarke, interaction, kijima, yoshimura
+from seatrial.core.values import Finding, InputError, Severity, Ship, spelling_hint
+from seatrial.physics.hydro.empirical import (
+    EmpiricalEstimate,
+    HullForm,
+    added_mass,
+    clarke,
+    interaction_coefficients,
+    kijima,
+    yoshimura,
+)
 from seatrial.physics.models.published import PARAMETER_SETS, parameter_set
 
 
@@ -16,23 +24,23 @@ class LiteraturePrior:
     source: str
 
 
-def _interaction(form: Form, ship: Ship) -> Estimate:
+def _interaction(form: HullForm, ship: Ship) -> EmpiricalEstimate:
     missing = [n for n in ("H_R", "A_R") if n not in ship.particulars]
     if missing:
         raise InputError(
             f"ship '{ship.name}' lacks {' and '.join(missing)} for priors_from = \"interaction\"; add it under [ship]"
         )
-    return interaction(form, ship.particulars["H_R"] ** 2 / ship.particulars["A_R"])
+    return interaction_coefficients(form, ship.particulars["H_R"] ** 2 / ship.particulars["A_R"])
 
 
-FORMULAS: dict[str, Callable[[Form, Ship], Estimate]] = {
+FORMULAS: dict[str, Callable[[HullForm, Ship], EmpiricalEstimate]] = {
     "clarke": lambda form, _: clarke(form),
     "kijima": lambda form, _: kijima(form),
     "yoshimura": lambda form, _: yoshimura(form),
     "zhou": lambda form, _: added_mass(form),
     "interaction": _interaction,
 }
-_FORMULAS_MODEL = "mmg"
+_FORMULA_MODEL = "mmg"
 
 
 def literature_priors(names: Sequence[str], ship: Ship, model: str) -> dict[str, LiteraturePrior]:
@@ -45,9 +53,9 @@ def literature_priors(names: Sequence[str], ship: Ship, model: str) -> dict[str,
     """
     priors: dict[str, LiteraturePrior] = {}
     for name in names:
-        _demand(name, model)
+        _require_source_for_model(name, model)
         if name in FORMULAS:
-            estimate = FORMULAS[name](Form.of_ship(ship), ship)
+            estimate = FORMULAS[name](HullForm.from_ship(ship), ship)
             values, source = estimate.values, estimate.source
         else:
             published = parameter_set(name)
@@ -56,11 +64,13 @@ def literature_priors(names: Sequence[str], ship: Ship, model: str) -> dict[str,
     return priors
 
 
-def _demand(name: str, model: str) -> None:
+def _require_source_for_model(name: str, model: str) -> None:
     known = sorted((*FORMULAS, *PARAMETER_SETS))
     if name not in known:
-        raise InputError(f"model.priors_from: unknown source '{name}'{nearest(name, known)}; known: {', '.join(known)}")
-    own = _FORMULAS_MODEL if name in FORMULAS else parameter_set(name).model
+        raise InputError(
+            f"model.priors_from: unknown source '{name}'{spelling_hint(name, known)}; known: {', '.join(known)}"
+        )
+    own = _FORMULA_MODEL if name in FORMULAS else parameter_set(name).model
     if own != model:
         raise InputError(
             f"model.priors_from: '{name}' gives coefficients of model '{own}', in its prime system, not of '{model}'; "
@@ -68,12 +78,12 @@ def _demand(name: str, model: str) -> None:
         )
 
 
-def range_findings(names: Sequence[str], ship: Ship) -> tuple[Finding, ...]:
+def prior_range_findings(names: Sequence[str], ship: Ship) -> tuple[Finding, ...]:
     """Warnings `prior-range` for formulas whose data did not hold ships of this form."""
     made = []
     for name in names:
         if name in FORMULAS:
-            form = Form.of_ship(ship)
+            form = HullForm.from_ship(ship)
             estimate = FORMULAS[name](form, ship)
             if not estimate.valid:
                 own = f"C_b {form.C_b:.3g}, L/B {form.L / form.B:.3g}, B/d {form.B / form.d:.3g}"

@@ -6,17 +6,17 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from seatrial.core.equations import Model
-from seatrial.core.values import NOTATION, InputError, Ship, nearest
-from seatrial.data.check.captive import force_findings
-from seatrial.data.trial.complaints import complaint
-from seatrial.data.trial.design_table import brief_of
+from seatrial.core.values import NOTATION, InputError, Ship, spelling_hint
+from seatrial.data.check.captive_forces import force_findings
+from seatrial.data.trial.design_table import design_request
 from seatrial.data.trial.excitation import excitation_of
 from seatrial.data.trial.follow_table import stream_of
-from seatrial.data.trial.forces import points_of
-from seatrial.data.trial.literature import range_findings
-from seatrial.data.trial.model_choice import chosen_model, ship_of
-from seatrial.data.trial.runs import expanded, refuse_untrained, runs_of
+from seatrial.data.trial.forces import read_force_points
+from seatrial.data.trial.literature import prior_range_findings
+from seatrial.data.trial.model_table import build_trial_model, ship_of
+from seatrial.data.trial.runs import expand_variables, require_training_run, runs_of
 from seatrial.data.trial.schema import EstimateTable, FamilyTable, TrialFile
+from seatrial.data.trial.schema_errors import schema_error
 from seatrial.data.trial.trial import Estimate, Family, Trial
 
 
@@ -36,7 +36,7 @@ def parse_trial(path: Path) -> TrialFile:
     try:
         file = TrialFile.model_validate(table)
     except ValidationError as error:
-        raise complaint(error, TrialFile, str(path)) from None
+        raise schema_error(error, TrialFile, str(path)) from None
     if not file.records and file.design is None and file.follow is None:
         raise InputError(
             f"{path}: key 'records' is missing; add it, or a [design] table for 'seatrial design', or [follow] for "
@@ -60,33 +60,33 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
     file = parse_trial(path)
     try:
         ship = ship_of(file.ship)
-        model = chosen_model(file.model, ship, own_model)
+        model = build_trial_model(file.model, ship, own_model)
         known = set(NOTATION)
         for number, block in enumerate(file.records, start=1):
-            _refuse_strangers(f"records[{number}].channels", list(block.channels), known)
+            _refuse_unknown_names(f"records[{number}].channels", list(block.channels), known)
         if file.follow is not None:
-            _refuse_strangers("follow.channels", list(file.follow.channels), known)
-        _refuse_strangers("noise", list(file.noise), known)
-        _refuse_strangers("estimate.channels", list(file.estimate.channels), set(model.observables))
-        _refuse_strangers("estimate.offsets", list(file.estimate.offsets), known)
-        _refuse_strangers("estimate.gains", list(file.estimate.gains), known)
-        _refuse_strangers("estimate.delays", list(file.estimate.delays), set(model.input_names))
+            _refuse_unknown_names("follow.channels", list(file.follow.channels), known)
+        _refuse_unknown_names("noise", list(file.noise), known)
+        _refuse_unknown_names("estimate.channels", list(file.estimate.channels), set(model.observables))
+        _refuse_unknown_names("estimate.offsets", list(file.estimate.offsets), known)
+        _refuse_unknown_names("estimate.gains", list(file.estimate.gains), known)
+        _refuse_unknown_names("estimate.delays", list(file.estimate.delays), set(model.input_names))
         for structure, names in (file.family.structures if file.family else {}).items():
-            _refuse_strangers(f"family.structures.'{structure}'", list(names), set(model.parameters.names))
+            _refuse_unknown_names(f"family.structures.'{structure}'", list(names), set(model.parameters.names))
         if own_model is None:
-            _refuse_strangers("truth", list(file.truth), set(model.parameters.names))
-        unit = _force_unit(model, ship)
-        ranges = range_findings(file.model.priors_from, ship)
+            _refuse_unknown_names("truth", list(file.truth), set(model.parameters.names))
+        unit = _reference_force(model, ship)
+        ranges = prior_range_findings(file.model.priors_from, ship)
         home = path.resolve().parent
-        base = home / expanded(file.data.folder)
+        base = home / expand_variables(file.data.folder)
         excitation = excitation_of(file.excitation, ship, model, base)
         runs = runs_of(file.records, file.data.folder, home, excitation, ship.length) if file.records else ()
         if runs and file.follow is None:
-            refuse_untrained(runs)
+            require_training_run(runs)
         stream = None if file.follow is None else stream_of(file.follow, base, home, excitation, ship.length)
-        brief = None if file.design is None else brief_of(file.design, model, ship.length)
+        brief = None if file.design is None else design_request(file.design, model, ship.length)
         forces = tuple(
-            points_of(block, base, model, file.model.reference_point, f"forces[{i}]")
+            read_force_points(block, base, model, file.model.reference_point, f"forces[{i}]")
             for i, block in enumerate(file.forces, start=1)
         )
     except InputError as error:
@@ -104,8 +104,8 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         path=path,
         forces=forces,
         family=None if file.family is None else _family(file.family),
-        design=brief,
-        follow=stream,
+        design_request=brief,
+        stream=stream,
         findings=(*ranges, *(finding for points in forces for finding in force_findings(points, unit))),
     )
 
@@ -114,16 +114,16 @@ def _family(table: FamilyTable) -> Family:
     return Family(table.structures, table.prior_factors, table.segment_factors)
 
 
-def _force_unit(model: Model, ship: Ship) -> float | None:
+def _reference_force(model: Model, ship: Ship) -> float | None:
     """rho/2 L d [kg/m^2], where ship or model know them."""
     known = {p.name: p.value for p in model.parameters} | dict(ship.particulars)
     return known["rho"] / 2 * known["L"] * known["d"] if {"rho", "L", "d"} <= set(known) else None
 
 
-def _refuse_strangers(where: str, names: list[str], known: set[str]) -> None:
+def _refuse_unknown_names(where: str, names: list[str], valid_names: set[str]) -> None:
     for name in names:
-        if name not in known:
-            raise InputError(f"{where}: unknown name '{name}'{nearest(name, sorted(known))}")
+        if name not in valid_names:
+            raise InputError(f"{where}: unknown name '{name}'{spelling_hint(name, sorted(valid_names))}")
 
 
 def _estimate(table: EstimateTable) -> Estimate:

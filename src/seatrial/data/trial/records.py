@@ -5,15 +5,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.core.values import Finding, InputError, Record, Severity
-from seatrial.data.check import examine, prepared
+from seatrial.data.check import examine, prepared_record
 from seatrial.data.read import read_record
 from seatrial.data.trial.approach import first_execution
-from seatrial.data.trial.release import released
-from seatrial.data.trial.trial import Role, Run, Trial, Trimming, Waves
-from seatrial.physics.sea.felt import with_wave_forces
+from seatrial.data.trial.roll_decay_start import trim_to_decay_start
+from seatrial.data.trial.trial import Role, Trial, TrialRun, Trimming, WaveEncounter
+from seatrial.physics.sea.wave_forces import with_wave_forces
 
 # speed at the end of an acceleration run as a part of the speed at the first execution
-_ACCELERATED = 0.9
+_ACCELERATED_FRACTION = 0.9
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,10 +23,10 @@ class TrialRecord:
     record: Record
     role: Role
     session: str
-    waves: Waves | None = None
+    waves: WaveEncounter | None = None
 
 
-def records_of(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ...]]:
+def load_records(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ...]]:
     """Read, repair and check every run that is not left out; the trial's own findings come first.
 
     Raises:
@@ -38,41 +38,41 @@ def records_of(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ..
     made, findings = [], list(trial.findings)
     for run in trial.runs:
         if run.role is not Role.LEAVE_OUT:
-            record, said = checked(run, trial.reference_point)
+            record, said = load_run(run, trial.reference_point)
             made.append(TrialRecord(record, run.role, run.session, run.waves))
             findings += said
     return tuple(made), tuple(findings)
 
 
-def checked(run: Run, reference_point: float) -> tuple[Record, list[Finding]]:
+def load_run(run: TrialRun, reference_point: float) -> tuple[Record, list[Finding]]:
     """One run read, examined as it is, repaired, made canonical, given its wave forces, trimmed and resampled."""
-    raw = read_record(run.path, run.layout).named(run.name) if run.raw is None else run.raw
-    record, _ = prepared(raw, reference_point)
+    raw = read_record(run.path, run.layout).renamed(run.name) if run.raw_record is None else run.raw_record
+    record, _ = prepared_record(raw, reference_point)
     if run.waves is not None and run.waves.spectrum is None:
         record = with_wave_forces(record, run.waves.excitation, run.waves.U, run.waves.beta)
-    return trimmed(record, run.trimming), list(examine(raw))
+    return apply_trimming(record, run.trimming), list(examine(raw))
 
 
-def trimmed(record: Record, rules: Trimming) -> Record:
+def apply_trimming(record: Record, trimming: Trimming) -> Record:
     """The part of the record that the rules keep, at their rate.
 
     Raises:
         InputError: nothing is left, or the channels a rule needs are absent.
     """
-    if rules.from_s is not None or rules.to_s is not None:
-        start = record.time[0] if rules.from_s is None else rules.from_s
-        stop = record.time[-1] if rules.to_s is None else rules.to_s
+    if trimming.from_s is not None or trimming.to_s is not None:
+        start = record.time[0] if trimming.from_s is None else trimming.from_s
+        stop = record.time[-1] if trimming.to_s is None else trimming.to_s
         record = record.between(float(start), float(stop))
-    if rules.skip_acceleration:
-        record = record.rows(slice(_accelerated(record), None))
-    if rules.from_release:
-        record = released(record)
-    return record if rules.rate is None else record.resampled(rules.rate)
+    if trimming.skip_acceleration:
+        record = record.rows(slice(_acceleration_end_row(record), None))
+    if trimming.from_release:
+        record = trim_to_decay_start(record)
+    return record if trimming.rate is None else record.resampled(trimming.rate)
 
 
-def _accelerated(record: Record) -> int:
+def _acceleration_end_row(record: Record) -> int:
     speed = record["u"]
-    return int(np.argmax(speed >= _ACCELERATED * speed[first_execution(record)]))
+    return int(np.argmax(speed >= _ACCELERATED_FRACTION * speed[first_execution(record)]))
 
 
 def refuse_errors(findings: tuple[Finding, ...], accept: tuple[str, ...]) -> tuple[Finding, ...]:

@@ -6,18 +6,18 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from seatrial.core.values import InputError, nearest, quantity, si
-from seatrial.data.read import Column, Format, Layout, format_of
-from seatrial.data.trial.excitation import waves_of
+from seatrial.core.values import InputError, quantity, si_unit, spelling_hint
+from seatrial.data.read import ColumnSpec, Format, Layout, format_of
+from seatrial.data.trial.excitation import wave_encounter
 from seatrial.data.trial.schema import ChannelColumn, ColumnsTable, RecordsTable
-from seatrial.data.trial.trial import Role, Run, Trimming, run_name
+from seatrial.data.trial.trial import Role, TrialRun, Trimming, run_name
 from seatrial.physics.hydro.excitation import Excitation
 
-_DAY = re.compile(r"\d{4}-\d{2}-\d{2}|\d{1,2}-[A-Z][a-z]{2}-\d{4}|(?<!\d)(?:19|20)\d{6}(?!\d)")
+_DATE = re.compile(r"\d{4}-\d{2}-\d{2}|\d{1,2}-[A-Z][a-z]{2}-\d{4}|(?<!\d)(?:19|20)\d{6}(?!\d)")
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 
 
-def expanded(text: str) -> str:
+def expand_variables(text: str) -> str:
     """`text` with every ${NAME} replaced by the environment variable; a folder in it counts from the working folder.
 
     Raises:
@@ -37,10 +37,10 @@ def expanded(text: str) -> str:
 def runs_of(
     blocks: Sequence[RecordsTable],
     folder: str,
-    home: Path,
+    trial_folder: Path,
     excitation: Excitation | None = None,
     length: float = 1.0,
-) -> tuple[Run, ...]:
+) -> tuple[TrialRun, ...]:
     """Every run of every block, each with one role; files in sorted order.
 
     excitation, length [m]: of the ships that met waves.
@@ -48,7 +48,7 @@ def runs_of(
     Raises:
         InputError: a glob or a role pattern that matches nothing, a run with two roles, a name used twice.
     """
-    base = home / expanded(folder)
+    base = trial_folder / expand_variables(folder)
     runs = [
         run
         for i, block in enumerate(blocks, start=1)
@@ -61,7 +61,7 @@ def runs_of(
     return tuple(runs)
 
 
-def refuse_untrained(runs: Sequence[Run]) -> None:
+def require_training_run(runs: Sequence[TrialRun]) -> None:
     """Raises:
     InputError: none of the runs is one to train on.
     """
@@ -69,21 +69,23 @@ def refuse_untrained(runs: Sequence[Run]) -> None:
         raise InputError("no run is left to train on; narrow 'validate' or 'leave_out'")
 
 
-def _block_runs(block: RecordsTable, base: Path, where: str, excitation: Excitation | None, length: float) -> list[Run]:
-    paths = sorted({path for text in block.files for path in _found(text, base, where)})
+def _block_runs(
+    block: RecordsTable, data_folder: Path, where: str, excitation: Excitation | None, length: float
+) -> list[TrialRun]:
+    paths = sorted({path for text in block.files for path in _matching_files(text, data_folder, where)})
     trimming = Trimming(block.from_s, block.to_s, block.skip_acceleration, block.rate, block.from_release)
     roles = _roles(block, [run_name(p) for p in paths], where)
-    met = waves_of(block.waves, excitation, length, where)
+    met = wave_encounter(block.waves, excitation, length, where)
     layouts = [layout_of(block, block.format or format_of(path), where, block.scale) for path in paths]
     return [
-        Run(path, layout, role, session_of(path, block.session), trimming, block.source, met)
+        TrialRun(path, layout, role, session_of(path, block.session), trimming, block.source, met)
         for path, layout, role in zip(paths, layouts, roles, strict=True)
     ]
 
 
-def _found(text: str, base: Path, where: str) -> list[Path]:
-    pattern = Path(expanded(text))
-    full = base / pattern
+def _matching_files(text: str, data_folder: Path, where: str) -> list[Path]:
+    pattern = Path(expand_variables(text))
+    full = data_folder / pattern
     if full.is_file():
         return [full]
     if not any(c in text for c in "*?["):
@@ -101,7 +103,7 @@ def _roles(block: RecordsTable, names: Sequence[str], where: str) -> list[Role]:
     for role, texts in patterns.items():
         for text in texts:
             if not any(fnmatch.fnmatchcase(name, text) for name in names):
-                raise InputError(f"{where}.{role}: no run is called '{text}'{nearest(text, list(names))}")
+                raise InputError(f"{where}.{role}: no run is called '{text}'{spelling_hint(text, list(names))}")
     default = Role.LEAVE_OUT if block.train else Role.TRAIN
     roles = []
     for name in names:
@@ -123,22 +125,22 @@ def session_of(path: Path, rule: str) -> str:
     name = run_name(path)
     if rule == "run":
         return name
-    match = (_DAY if rule == "day" else re.compile(rule)).search(name)
+    match = (_DATE if rule == "day" else re.compile(rule)).search(name)
     if match is None:
         what = "no date is found" if rule == "day" else f"'{rule}' matches nothing"
         raise InputError(f"session: {what} in the file name '{path.name}'; give another rule, or 'run'")
     return match.group(1) if match.re.groups else match.group(0)
 
 
-def layout_of(block: ColumnsTable, kind: Format, where: str, scale: float = 1.0) -> Layout:
+def layout_of(block: ColumnsTable, file_format: Format, where: str, scale: float = 1.0) -> Layout:
     """How to parse one file or stream of the block, in the terms of `seatrial.data.read`.
 
     Raises:
         InputError: a unit of another kind than the channel's.
     """
     return Layout(
-        format=kind,
-        time=Column("time", block.time.column, block.time.unit),
+        format=file_format,
+        time=ColumnSpec("time", block.time.column, block.time.unit),
         columns=tuple(_column(s, c, f"{where}.channels.{s}") for s, c in block.channels.items()),
         header_lines=block.header_lines,
         encoding=block.encoding,
@@ -148,8 +150,10 @@ def layout_of(block: ColumnsTable, kind: Format, where: str, scale: float = 1.0)
     )
 
 
-def _column(symbol: str, column: ChannelColumn, where: str) -> Column:
+def _column(symbol: str, column: ChannelColumn, where: str) -> ColumnSpec:
     known = quantity(symbol)
-    if si(column.unit)[1] != known.unit:
+    if si_unit(column.unit)[1] != known.unit:
         raise InputError(f"{where}.unit: '{column.unit}' is no unit of {known.meaning}, which is in {known.unit}")
-    return Column(symbol, column.column, column.unit, column.frame or "", column.positive or "", column.reference_point)
+    return ColumnSpec(
+        symbol, column.column, column.unit, column.frame or "", column.positive or "", column.reference_point
+    )

@@ -1,23 +1,23 @@
-"""What a trial file may say: pydantic models, strict; unknown keys are refused by `seatrial.data.trial.complaints`."""
+"""The tables of a trial file: strict pydantic models; `seatrial.data.trial.schema_errors` words what they refuse."""
 
 import re
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
-from seatrial.core.values import si
+from seatrial.core.values import si_unit
 from seatrial.data.read.layout import Format, Separator
 
 
-class Strict(BaseModel):
+class StrictTable(BaseModel):
     """A table of the trial file: no unknown keys, immutable."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
-def _known_unit(unit: object) -> object:
+def _valid_unit(unit: object) -> object:
     if isinstance(unit, str):
-        si(unit)
+        si_unit(unit)
     return unit
 
 
@@ -26,7 +26,7 @@ def _as_amount(value: object) -> object:
     return {"value": value} if isinstance(value, int | float) and not isinstance(value, bool) else value
 
 
-def _as_spread(value: object) -> object:
+def _as_standard_deviation(value: object) -> object:
     return {"sd": value} if isinstance(value, int | float) and not isinstance(value, bool) else value
 
 
@@ -38,7 +38,9 @@ def _as_nuisances(value: object) -> object:
     """Channel names alone: the estimator's own prior. Numbers: standard deviations in SI units."""
     if isinstance(value, list):
         return {name: {} for name in value}
-    return {name: _as_spread(spread) for name, spread in value.items()} if isinstance(value, dict) else value
+    return (
+        {name: _as_standard_deviation(spread) for name, spread in value.items()} if isinstance(value, dict) else value
+    )
 
 
 def _valid_pattern(session: object) -> object:
@@ -50,11 +52,11 @@ def _valid_pattern(session: object) -> object:
     return session
 
 
-Unit = Annotated[str, BeforeValidator(_known_unit)]
-Words = Annotated[tuple[str, ...], BeforeValidator(_as_tuple)]
+Unit = Annotated[str, BeforeValidator(_valid_unit)]
+Strings = Annotated[tuple[str, ...], BeforeValidator(_as_tuple)]
 
 
-class Amount(Strict):
+class Amount(StrictTable):
     """A number with its unit; without one it is SI."""
 
     value: float
@@ -63,10 +65,10 @@ class Amount(Strict):
     @property
     def in_si(self) -> float:
         """The value in SI units."""
-        return self.value * (si(self.unit)[0] if self.unit else 1.0)
+        return self.value * (si_unit(self.unit)[0] if self.unit else 1.0)
 
 
-class Spread(Strict):
+class StandardDeviation(StrictTable):
     """A standard deviation with its unit; without one it is SI."""
 
     sd: Annotated[float, Field(gt=0)] | None = None
@@ -75,12 +77,12 @@ class Spread(Strict):
     @property
     def in_si(self) -> float | None:
         """The standard deviation in SI units, None where it is not stated."""
-        return None if self.sd is None else self.sd * (si(self.unit)[0] if self.unit else 1.0)
+        return None if self.sd is None else self.sd * (si_unit(self.unit)[0] if self.unit else 1.0)
 
 
 SiAmount = Annotated[Amount, BeforeValidator(_as_amount)]
-SiSpread = Annotated[Spread, BeforeValidator(_as_spread)]
-Nuisances = Annotated[dict[str, Spread], BeforeValidator(_as_nuisances)]
+SiStandardDeviation = Annotated[StandardDeviation, BeforeValidator(_as_standard_deviation)]
+Nuisances = Annotated[dict[str, StandardDeviation], BeforeValidator(_as_nuisances)]
 Bound = Annotated[float, Field(allow_inf_nan=True)]
 
 
@@ -100,14 +102,14 @@ class ShipTable(BaseModel):
         return {symbol: amount.in_si for symbol, amount in (self.__pydantic_extra__ or {}).items()}
 
 
-class TimeColumn(Strict):
+class TimeColumn(StrictTable):
     """Where the time stands: header name, or number counted from 1."""
 
     column: str | Annotated[int, Field(ge=1)]
     unit: Unit = "s"
 
 
-class ChannelColumn(Strict):
+class ChannelColumn(StrictTable):
     """Where a channel stands and what its numbers mean; frame and sign default to the notation table's."""
 
     column: str | Annotated[int, Field(ge=1)]
@@ -118,7 +120,7 @@ class ChannelColumn(Strict):
     reference_point: float = 0.0
 
 
-class SeaTable(Strict):
+class SpectrumTable(StrictTable):
     """The spectrum of a sea whose elevation nobody recorded; `period`: mean T_1 for ittc2, else of the peak."""
 
     spectrum: Literal["ittc", "ittc2", "bretschneider", "jonswap"]
@@ -133,7 +135,7 @@ class SeaTable(Strict):
         return self
 
 
-class WavesTable(Strict):
+class WavesTable(StrictTable):
     """`[records.waves]`: heading to the waves (0 following, 180 degrees head; rad without a unit) and ship speed.
 
     `sea`: where neither the elevation nor the wave forces were recorded.
@@ -141,10 +143,10 @@ class WavesTable(Strict):
 
     heading: SiAmount
     speed: SiAmount
-    sea: SeaTable | None = None
+    sea: SpectrumTable | None = None
 
 
-class ColumnsTable(Strict):
+class ColumnsTable(StrictTable):
     """Where time and channels stand, in a file or in a stream."""
 
     header_lines: Annotated[int, Field(ge=0)] = 0
@@ -169,13 +171,13 @@ class ColumnsTable(Strict):
 class RecordsTable(ColumnsTable):
     """One `[[records]]` block: files of one layout, their roles and trimming."""
 
-    files: Words
+    files: Strings
     format: Format | None = None
     scale: Annotated[float, Field(gt=0)] = 1.0
     source: str = ""
-    train: Words = ()
-    validate_: Words = Field((), alias="validate")
-    leave_out: Words = ()
+    train: Strings = ()
+    validate_: Strings = Field((), alias="validate")
+    leave_out: Strings = ()
     session: Annotated[str, BeforeValidator(_valid_pattern)] = "run"
     rate: Annotated[float, Field(gt=0)] | None = None
     from_s: float | None = None
@@ -203,8 +205,8 @@ class FollowTable(ColumnsTable):
     port: Annotated[int, Field(ge=1, le=65535)] | None = None
     rate: Annotated[float, Field(gt=0)]
     waves: WavesTable | None = None
-    whole_s: Annotated[float, Field(gt=0)] = 3600.0
-    forgetting_s: Annotated[float, Field(gt=0)] | None = None
+    batch_window_s: Annotated[float, Field(gt=0)] = 3600.0
+    forgetting_time_s: Annotated[float, Field(gt=0)] | None = None
     longest_gap_s: Annotated[float, Field(gt=0)] = 30.0
     page: Annotated[int, Field(ge=0, le=65535)] = 0
     journal: str | None = None
@@ -222,7 +224,7 @@ class FollowTable(ColumnsTable):
         return self
 
 
-class MotionColumn(Strict):
+class MotionColumn(StrictTable):
     """A motion or input of force points: a column of the table, or one value for all points.
 
     Unit 1: v over U, r L over U. A drift angle must say which way the bow points from the course when it is positive.
@@ -241,7 +243,7 @@ class MotionColumn(Strict):
         return self
 
 
-class ForceColumn(Strict):
+class ForceColumn(StrictTable):
     """A measured force: its column, unit (1 in a prime system), positive direction and standard deviation in it."""
 
     column: str | Annotated[int, Field(ge=1)]
@@ -250,7 +252,7 @@ class ForceColumn(Strict):
     sd: Annotated[float, Field(gt=0)] | None = None
 
 
-class ForcesTable(Strict):
+class ForcesTable(StrictTable):
     """One `[[forces]]` block: static force points of captive tests or CFD."""
 
     file: str
@@ -271,7 +273,7 @@ class ForcesTable(Strict):
     source: str = ""
 
     @model_validator(mode="after")
-    def _motion_is_known(self) -> Self:
+    def _motion_is_complete(self) -> Self:
         told = set(self.motion)
         if len(told & {"u", "U"}) != 1:
             raise ValueError("motion needs the surge velocity u or the speed U, one of them")
@@ -282,13 +284,13 @@ class ForcesTable(Strict):
         return self
 
 
-class DataTable(Strict):
+class DataTable(StrictTable):
     """`[data]`: where record files are sought, relative to the trial file; ${NAME} is an environment variable."""
 
     folder: str = "."
 
 
-class PriorTable(Strict):
+class PriorTable(StrictTable):
     """Gaussian prior of one parameter, in its own unit."""
 
     mean: float | None = None
@@ -296,7 +298,7 @@ class PriorTable(Strict):
     source: str = ""
 
 
-class ModelTable(Strict):
+class ModelTable(StrictTable):
     """`[model]`: which equations, which values, what is free."""
 
     name: str
@@ -308,10 +310,10 @@ class ModelTable(Strict):
     bounds: dict[str, tuple[Bound, Bound]] = {}
     priors: dict[str, PriorTable] = {}
     prior_sd_percent: Annotated[float, Field(gt=0)] | None = None
-    priors_from: Words = ()
+    priors_from: Strings = ()
 
 
-class ExcitationTable(Strict):
+class ExcitationTable(StrictTable):
     """`[excitation]`: how an elevation becomes a wave force.
 
     `box`: closed form for the ship's L, B, d and stiffness; `table`: complex transfer functions in a CSV or NetCDF
@@ -328,7 +330,7 @@ class ExcitationTable(Strict):
         return self
 
 
-class EstimateTable(Strict):
+class EstimateTable(StrictTable):
     """`[estimate]`: settings of the estimator; what is not given follows the decision table."""
 
     criterion: Literal["auto", "output-error", "multiple-shooting", "prediction-error"] = "auto"
@@ -350,7 +352,7 @@ class EstimateTable(Strict):
         return self
 
 
-class FamilyTable(Strict):
+class FamilyTable(StrictTable):
     """`[family]`: models to compare by runs left out; a structure frees further parameters."""
 
     structures: dict[str, tuple[str, ...]] = {}
@@ -358,7 +360,7 @@ class FamilyTable(Strict):
     segment_factors: tuple[Annotated[float, Field(gt=0)], ...] = ()
 
 
-class InputTable(Strict):
+class InputTable(StrictTable):
     """`[design.inputs.NAME]`: what may be done with an input, in `unit`; `rate` in it per second, `hold` in s."""
 
     lower: float
@@ -376,7 +378,7 @@ class InputTable(Strict):
         return self
 
 
-class DesignTable(Strict):
+class DesignTable(StrictTable):
     """`[design]`: the manoeuvre that is sought: how long, with which inputs, within which limits."""
 
     duration: SiAmount
@@ -392,7 +394,7 @@ class DesignTable(Strict):
     every_ship: bool = False
 
 
-class TrialFile(Strict):
+class TrialFile(StrictTable):
     """The whole file; records may be missing where a manoeuvre is only to be designed, or a stream to be followed."""
 
     question: str = ""
@@ -404,7 +406,7 @@ class TrialFile(Strict):
     forces: tuple[ForcesTable, ...] = ()
     excitation: ExcitationTable | None = None
     family: FamilyTable | None = None
-    noise: dict[str, SiSpread] = {}
+    noise: dict[str, SiStandardDeviation] = {}
     truth: dict[str, float] = {}
     estimate: EstimateTable = EstimateTable()
     design: DesignTable | None = None

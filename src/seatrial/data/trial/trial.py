@@ -6,7 +6,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from seatrial.core.equations import Model
-from seatrial.core.results import Actuator, Limits
+from seatrial.core.results import Actuator, TrialLimits
 from seatrial.core.values import Finding, ForcePoints, Record, Ship
 from seatrial.data.read import Layout
 from seatrial.physics.hydro.excitation import Excitation
@@ -45,7 +45,7 @@ class Trimming:
 
 
 @dataclass(frozen=True)
-class Waves:
+class WaveEncounter:
     """How a run met the waves: ship speed [m/s], heading [rad, 0 following, pi head], and what they do to her.
 
     `spectrum`: of the sea, where its elevation was not recorded.
@@ -58,7 +58,7 @@ class Waves:
 
 
 @dataclass(frozen=True)
-class Run:
+class TrialRun:
     """One record file of the trial: where it lies, how to parse it, what it is for, what it shares offsets with.
 
     raw: the record as it was read where it has been read already; the file is then left alone.
@@ -70,8 +70,8 @@ class Run:
     session: str
     trimming: Trimming = Trimming()
     source: str = ""
-    waves: Waves | None = None
-    raw: Record | None = field(default=None, compare=False, repr=False)
+    waves: WaveEncounter | None = None
+    raw_record: Record | None = field(default=None, compare=False, repr=False)
 
     @property
     def name(self) -> str:
@@ -120,7 +120,7 @@ class Family:
 
 
 @dataclass(frozen=True)
-class Brief:
+class DesignRequest:
     """What a manoeuvre that is to be designed must keep to, SI.
 
     Attributes:
@@ -136,14 +136,14 @@ class Brief:
     rate: float
     actuators: tuple[Actuator, ...]
     held: Mapping[str, float] = field(default_factory=dict)
-    limits: Limits = field(default_factory=Limits)
+    limits: TrialLimits = field(default_factory=TrialLimits)
     speed: float | None = None
     criterion: str = "worst"
     draws: int = 24
-    prior: float = 0.3
+    prior_fraction: float = 0.3
 
 
-class Feed(StrEnum):
+class StreamSource(StrEnum):
     """Where the samples of a stream come from; NMEA 0183 sentences or lines of columns."""
 
     FILE = "file"
@@ -168,18 +168,18 @@ class Stream:
         page: port of the local page, 0 none; journal: where what was admitted is kept, None beside the result.
     """
 
-    feed: Feed
+    source: StreamSource
     layout: Layout
     rate: float
     name: str = "stream"
     file: Path | None = None
     host: str = "127.0.0.1"
     port: int = 0
-    waves: Waves | None = None
-    whole: float = 3600.0
-    forgetting: float | None = None
+    waves: WaveEncounter | None = None
+    batch_window: float = 3600.0
+    forgetting_time: float | None = None
     longest_gap: float = 30.0
-    page: int = 0
+    page_port: int = 0
     journal: Path | None = None
 
 
@@ -202,7 +202,7 @@ class Trial:
     """
 
     ship: Ship
-    runs: tuple[Run, ...]
+    runs: tuple[TrialRun, ...]
     model: Model
     estimate: Estimate = Estimate()
     noise: Mapping[str, float] = field(default_factory=dict)
@@ -213,10 +213,10 @@ class Trial:
     path: Path | None = None
     forces: tuple[ForcePoints, ...] = ()
     family: Family | None = None
-    design: Brief | None = None
-    follow: Stream | None = None
+    design_request: DesignRequest | None = None
+    stream: Stream | None = None
     findings: tuple[Finding, ...] = ()
 
-    def of_role(self, role: Role) -> tuple[Run, ...]:
+    def runs_with_role(self, role: Role) -> tuple[TrialRun, ...]:
         """The runs of one role, in order of their files."""
         return tuple(run for run in self.runs if run.role is role)

@@ -8,35 +8,40 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results import Confirmation
 from seatrial.core.values import Array, InputError, Record
-from seatrial.estimation.design.ships import Ships
-from seatrial.estimation.design.task import Task
-from seatrial.estimation.design.worth import Bench
-from seatrial.estimation.estimate.start import start
+from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator
+from seatrial.estimation.design.ships import PriorShips
+from seatrial.estimation.design.task import DesignTask
+from seatrial.estimation.estimate.start import find_start
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.estimation.problem.segments import cut
+from seatrial.estimation.problem.segments import cut_segments
 from seatrial.numerics.optimise import Solution, levenberg_marquardt
-from seatrial.numerics.workers import mapped
+from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.simulate.replay import replay
 
-WINDOW_HOLDS = 1.5
+WINDOW_PER_HOLD = 1.5
 # of the criterion: a move of some 1e-4 standard errors
-NEGLIGIBLE = 1e-8
+NEGLIGIBLE_DECREASE = 1e-8
 
 
-def confirmed(
-    task: Task, made: Array, planned: Record, ships: Ships, seed: int, progress: Callable[[str], None]
+def confirm_design(
+    task: DesignTask,
+    model_inputs: Array,
+    planned: Record,
+    ships: PriorShips,
+    seed: int,
+    report_progress: Callable[[str], None],
 ) -> Confirmation:
-    """One noisy record and one fit for every ship; `made` are the plan's inputs at the sensors' rate."""
-    foretold = Bench(task, ships, 1.0 / task.rate).told(made).relative
+    """One noisy record and one fit for every ship; `model_inputs` are the plan's inputs at the sensors' rate."""
+    foretold = ManoeuvreEvaluator(task, ships, 1.0 / task.rate).evaluate(model_inputs).relative_errors
     streams = np.random.SeedSequence(seed).spawn(ships.count)
 
     def fitted(number: int) -> Solution | None:
-        ship = _with(task.model, ships.parameters[number])
-        record = _noisy(task, ship, planned, np.random.default_rng(streams[number]))
-        return None if record is None else _fitted(task, record)
+        ship = _model_with_values(task.model, ships.parameters[number])
+        record = _simulate_trial(task, ship, planned, np.random.default_rng(streams[number]))
+        return None if record is None else _fit_record(task, record)
 
-    progress(f"confirming: {ships.count} simulated trials")
-    results = mapped(fitted, list(range(ships.count)))
+    report_progress(f"confirming: {ships.count} simulated trials")
+    results = map_in_threads(fitted, list(range(ships.count)))
     places = [task.model.parameters.index(n) for n in task.model.parameters.free_names]
     scale = np.array([p.characteristic_scale for p in task.model.parameters.free])
     errors, bounds = [], []
@@ -49,35 +54,35 @@ def confirmed(
     return Confirmation(ships.count, len(errors), _rms(errors or none), _rms(bounds or none))
 
 
-def _fitted(task: Task, record: Record) -> Solution:
+def _fit_record(task: DesignTask, record: Record) -> Solution:
     """Output error from the weak form's start and from the model's own values; the better of the two."""
     outputs = tuple(task.sensors)
     problem = OutputError(
-        task.model, cut(task.model, [record], outputs, None), np.array(list(task.sensors.values())), workers=1
+        task.model, cut_segments(task.model, [record], outputs, None), np.array(list(task.sensors.values())), workers=1
     )
-    local = np.array([[task.start[task.model.states.index(s)] for s in problem.starts]])
+    local = np.array([[task.initial_state[task.model.states.index(s)] for s in problem.starts]])
     found = [
-        levenberg_marquardt(problem, shared, local, negligible=NEGLIGIBLE).solution
-        for shared in (*_without_guess(task, problem, record), problem.start())
+        levenberg_marquardt(problem, shared, local, negligible=NEGLIGIBLE_DECREASE).solution
+        for shared in (*_weak_form_start(task, problem, record), problem.start())
     ]
     return min(found, key=lambda solution: solution.value)
 
 
-def _without_guess(task: Task, problem: OutputError, record: Record) -> list[Array]:
+def _weak_form_start(task: DesignTask, problem: OutputError, record: Record) -> list[Array]:
     """The weak form's start; none where the sensors do not show every state."""
     try:
-        return [start(problem, [record], WINDOW_HOLDS * task.shortest_hold).shared]
+        return [find_start(problem, [record], WINDOW_PER_HOLD * task.shortest_hold).common_parameters]
     except InputError:
         return []
 
 
-def _with(model: Model, values: Array) -> Model:
+def _model_with_values(model: Model, values: Array) -> Model:
     return model.with_values(dict(zip(model.parameters.names, values.tolist(), strict=True)))
 
 
-def _noisy(task: Task, ship: Model, planned: Record, generator: np.random.Generator) -> Record | None:
+def _simulate_trial(task: DesignTask, ship: Model, planned: Record, generator: np.random.Generator) -> Record | None:
     """Sensors and inputs of a ship that follows the plan; None where she is lost."""
-    start = dict(zip(ship.states, task.start.tolist(), strict=True))
+    start = dict(zip(ship.states, task.initial_state.tolist(), strict=True))
     try:
         sailed = replay(ship, planned, start)
     except InputError:

@@ -7,60 +7,67 @@ from operator import attrgetter
 
 import numpy as np
 
-from seatrial.core.results import Design, Worth
+from seatrial.core.results import Design, ManoeuvrePrecision
 from seatrial.core.values import InputError
 from seatrial.core.values.versions import versions
-from seatrial.estimation.design.confirm import confirmed
-from seatrial.estimation.design.findings import findings, refuse_left
-from seatrial.estimation.design.orders import inputs, plan, rows, split, table
-from seatrial.estimation.design.search import GENERATIONS, Yardstick, coarse, finer, search
-from seatrial.estimation.design.ships import ships, spread
-from seatrial.estimation.design.standards import Standard, standards
-from seatrial.estimation.design.task import Task
-from seatrial.estimation.design.worth import Bench, executed, worth
-from seatrial.estimation.information.symmetries import refuse_structural
+from seatrial.estimation.design.confirm import confirm_design
+from seatrial.estimation.design.findings import findings, refuse_violated_limits
+from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator, assess_manoeuvre, simulate_plan
+from seatrial.estimation.design.orders import input_series, order_table, orders_at, planned_record, sample_count
+from seatrial.estimation.design.search import GENERATIONS, DesignObjective, at_sensor_rate, search_orders, search_step
+from seatrial.estimation.design.ships import draw_ships, relative_spread
+from seatrial.estimation.design.standard_manoeuvres import StandardManoeuvre, standard_manoeuvres
+from seatrial.estimation.design.task import DesignTask
+from seatrial.estimation.information.symmetries import refuse_unidentifiable
 
-CONFIRMED_WITH = 20
+CONFIRMATION_RUNS = 20
 
 
 def design(
-    task: Task,
+    task: DesignTask,
     seed: int = 0,
-    progress: Callable[[str], None] = lambda _: None,
-    confirming: int = CONFIRMED_WITH,
+    report_progress: Callable[[str], None] = lambda _: None,
+    confirmation_runs: int = CONFIRMATION_RUNS,
     generations: int = GENERATIONS,
 ) -> Design:
     """The manoeuvre that tells the task's coefficients best within its limits, beside the standard ones.
 
     Args:
         seed: of the ships, the search and the noise; the same seed gives the same bits.
-        confirming: simulated trials that are fitted to confirm the bound; 0: none.
+        confirmation_runs: simulated trials that are fitted to confirm the bound; 0: none.
         generations: of the evolution strategy.
 
     Raises:
         InputError: no record of these sensors could tell the coefficients apart, or the limits cannot be kept.
     """
     began = time.perf_counter()
-    refuse_structural(task.model, tuple(task.sensors), ())
+    refuse_unidentifiable(task.model, tuple(task.sensors), ())
     seeds = np.random.SeedSequence(seed).generate_state(3)
-    bench = Bench(task, ships(task, int(seeds[0])), coarse(task))
-    progress("standard manoeuvres")
-    standard = standards(bench)
-    _refuse_unkept(bench, standard)
-    yardstick = Yardstick.of(bench, standard)
-    found = search(yardstick, int(seeds[1]), progress, generations)
-    fine, orders = finer(bench), split(task, found.solution.point)
-    made = inputs(task, orders, fine.dt)
-    planned = plan(task, made, fine.dt)
-    progress("scoring at the sensors' rate")
-    designed = worth("designed", fine, made, executed(task, planned, "designed"))
+    bench = ManoeuvreEvaluator(task, draw_ships(task, int(seeds[0])), search_step(task))
+    report_progress("standard manoeuvres")
+    standard = standard_manoeuvres(bench)
+    _refuse_impossible_limits(bench, standard)
+    yardstick = DesignObjective.from_standards(bench, standard)
+    found = search_orders(yardstick, int(seeds[1]), report_progress, generations)
+    fine, orders = at_sensor_rate(bench), orders_at(task, found.solution.point)
+    made = input_series(task, orders, fine.dt)
+    planned = planned_record(task, made, fine.dt)
+    report_progress("scoring at the sensors' rate")
+    designed = assess_manoeuvre("designed", fine, made, simulate_plan(task, planned, "designed"))
     if not found.is_interrupted:
-        refuse_left(task, designed)
-    others = tuple(_scored(fine, one) for one in standard)
+        refuse_violated_limits(task, designed)
+    others = tuple(_evaluate_standard(fine, one) for one in standard)
     tried, interrupted = None, found.is_interrupted
-    if confirming and not interrupted:
+    if confirmation_runs and not interrupted:
         try:
-            tried = confirmed(task, made, planned, ships(task, int(seeds[2]), confirming - 1), int(seeds[2]), progress)
+            tried = confirm_design(
+                task,
+                made,
+                planned,
+                draw_ships(task, int(seeds[2]), confirmation_runs - 1),
+                int(seeds[2]),
+                report_progress,
+            )
         except KeyboardInterrupt:
             interrupted = True
     return Design(
@@ -74,10 +81,10 @@ def design(
         actuators=task.actuators,
         limits=task.limits,
         criterion=task.criterion.value,
-        spread=spread(task),
+        relative_spread=relative_spread(task),
         designed=designed,
-        rivals=others,
-        orders=table(task, orders),
+        baselines=others,
+        orders=order_table(task, orders),
         plan=planned,
         solution=found.solution,
         confirmation=tried,
@@ -88,16 +95,16 @@ def design(
     )
 
 
-def _refuse_unkept(bench: Bench, standard: list[Standard]) -> None:
+def _refuse_impossible_limits(evaluator: ManoeuvreEvaluator, standards: list[StandardManoeuvre]) -> None:
     """Refuse a limit that the ship assumed leaves without any order and under every standard manoeuvre."""
-    task = bench.task
-    told = bench.told(np.tile(task.quiet, (rows(task, bench.dt), 1)))
+    task = evaluator.task
+    told = evaluator.evaluate(np.tile(task.neutral_inputs, (sample_count(task, evaluator.dt), 1)))
     for what, reached, limit, factor, unit in (
         ("drift angle", attrgetter("drift"), task.limits.drift, math.degrees(1.0), "deg"),
-        ("distance", attrgetter("room"), task.limits.room, 1.0, "m"),
+        ("distance", attrgetter("distance"), task.limits.sea_room, 1.0, "m"),
     ):
         value = reached(told)[0]
-        if value > limit and all(reached(bench.told(r.made(bench)))[0] > limit for r in standard):
+        if value > limit and all(reached(evaluator.evaluate(r.inputs_for(evaluator)))[0] > limit for r in standards):
             raise InputError(
                 f"[design] cannot be kept: without any order the ship reaches a {what} of {factor * value:.3g} {unit}, "
                 f"and more than the {factor * limit:.3g} {unit} allowed under every standard manoeuvre, too; "
@@ -105,7 +112,12 @@ def _refuse_unkept(bench: Bench, standard: list[Standard]) -> None:
             )
 
 
-def _scored(fine: Bench, standard: Standard) -> Worth:
-    made = standard.made(fine)
+def _evaluate_standard(evaluator: ManoeuvreEvaluator, standard: StandardManoeuvre) -> ManoeuvrePrecision:
+    made = standard.inputs_for(evaluator)
     own = made[0] if made.ndim == 3 else made
-    return worth(standard.name, fine, made, executed(fine.task, plan(fine.task, own, fine.dt), standard.name))
+    return assess_manoeuvre(
+        standard.name,
+        evaluator,
+        made,
+        simulate_plan(evaluator.task, planned_record(evaluator.task, own, evaluator.dt), standard.name),
+    )

@@ -4,30 +4,30 @@ import math
 
 import numpy as np
 
-from seatrial.core.results import Confirmation, Worth
-from seatrial.core.results.worths import diverged, keeps, leaving
+from seatrial.core.results import Confirmation, ManoeuvrePrecision
+from seatrial.core.results.design_ranking import count_diverged, count_outside_limits, is_within_limits
 from seatrial.core.values import Finding, InputError, Severity
-from seatrial.estimation.design.task import Task
+from seatrial.estimation.design.task import DesignTask
 
 _FAR_DRIFT = math.radians(45.0)
-_MANY, _MOST = 0.2, 0.8
+_MANY_LEAVING, _ENOUGH_CONVERGED = 0.2, 0.8
 
 
-def refuse_left(task: Task, designed: Worth) -> None:
+def refuse_violated_limits(task: DesignTask, designed: ManoeuvrePrecision) -> None:
     """Refuse limits that no orders found keep.
 
     Raises:
         InputError: which limit, what the best orders reach, what is allowed.
     """
-    if keeps(designed, task.limits):
+    if is_within_limits(designed, task.limits):
         return
     every = task.limits.for_every_ship
-    drift = float(np.max([designed.drift, *(designed.drawn_drift if every else ())]))
-    room = float(np.max([designed.room, *(designed.drawn_room if every else ())]))
+    drift = float(np.max([designed.drift, *(designed.sampled_drift if every else ())]))
+    room = float(np.max([designed.distance, *(designed.sampled_distance if every else ())]))
     if drift > task.limits.drift:
         said = f"a drift angle of {math.degrees(drift):.3g} deg, {math.degrees(task.limits.drift):.3g} deg are allowed"
     else:
-        said = f"{room:.3g} m from the start, {task.limits.room:.3g} m are allowed"
+        said = f"{room:.3g} m from the start, {task.limits.sea_room:.3g} m are allowed"
     whom = "some ship of the prior reaches" if every else "the ship reaches"
     raise InputError(
         f"[design] cannot be kept: under the best of all orders tried {whom} {said}; widen that limit, shorten the "
@@ -36,26 +36,35 @@ def refuse_left(task: Task, designed: Worth) -> None:
 
 
 def findings(
-    task: Task, designed: Worth, confirmation: Confirmation | None, *, is_interrupted: bool
+    task: DesignTask, designed: ManoeuvrePrecision, confirmation: Confirmation | None, *, is_interrupted: bool
 ) -> tuple[Finding, ...]:
     """Everything worth a warning, the gravest first."""
     found = list[Finding]()
     if is_interrupted:
         found.append(_warning("interrupted", "the work was interrupted; this is the best so far",
                               "let it finish for a better manoeuvre"))  # fmt: skip
-        if not keeps(designed, task.limits):
+        if not is_within_limits(designed, task.limits):
             found.append(_warning("leaves-limits", "these orders leave the limits", "let the search finish"))
-    return (*found, *_untold(task, designed), *_straying(task, designed), *_unconfirmed(designed, confirmation))
+    return (
+        *found,
+        *_unidentifiable(task, designed),
+        *_limit_violations(task, designed),
+        *_confirmation_findings(designed, confirmation),
+    )
 
 
 def _warning(code: str, text: str, advice: str) -> Finding:
     return Finding(Severity.WARNING, code, text, "", advice)
 
 
-def _untold(task: Task, designed: Worth) -> list[Finding]:
+def _unidentifiable(task: DesignTask, designed: ManoeuvrePrecision) -> list[Finding]:
     names = task.model.parameters.free_names
-    own = designed.relative > 1.0
-    some = np.any(np.nan_to_num(designed.drawn) > 1.0, axis=0) & ~own if len(designed.drawn) else np.zeros_like(own)
+    own = designed.relative_error > 1.0
+    some = (
+        np.any(np.nan_to_num(designed.sampled_relative_error) > 1.0, axis=0) & ~own
+        if len(designed.sampled_relative_error)
+        else np.zeros_like(own)
+    )
     found = []
     if own.any():
         listed = ", ".join(n for n, bad in zip(names, own, strict=True) if bad)
@@ -70,14 +79,14 @@ def _untold(task: Task, designed: Worth) -> list[Finding]:
     return found
 
 
-def _straying(task: Task, designed: Worth) -> list[Finding]:
-    found, count = [], len(designed.drawn)
-    farthest = max([designed.drift, *designed.drawn_drift.tolist()])
-    if straying := leaving(designed, task.limits):
-        severity = Severity.WARNING if straying > _MANY * count else Severity.INFO
+def _limit_violations(task: DesignTask, designed: ManoeuvrePrecision) -> list[Finding]:
+    found, count = [], len(designed.sampled_relative_error)
+    farthest = max([designed.drift, *designed.sampled_drift.tolist()])
+    if straying := count_outside_limits(designed, task.limits):
+        severity = Severity.WARNING if straying > _MANY_LEAVING * count else Severity.INFO
         found.append(Finding(severity, "straying", f"{straying} of {count} ships drawn from the prior leave the limits "
                              f"under these orders, with up to {math.degrees(farthest):.0f} deg of drift and "
-                             f"{max(designed.drawn_room.tolist()):.0f} m from the start", "",
+                             f"{max(designed.sampled_distance.tolist()):.0f} m from the start", "",
                              "watch both and abort there; design.every_ship = true binds them, too"))  # fmt: skip
     elif farthest > _FAR_DRIFT:
         found.append(_warning("drift", f"the manoeuvre reaches a drift angle of {math.degrees(farthest):.0f} deg for "
@@ -86,13 +95,24 @@ def _straying(task: Task, designed: Worth) -> list[Finding]:
     return found
 
 
-def _unconfirmed(designed: Worth, confirmation: Confirmation | None) -> list[Finding]:
+def _confirmation_findings(designed: ManoeuvrePrecision, confirmation: Confirmation | None) -> list[Finding]:
     found = []
-    if lost := diverged(designed):
-        found.append(_warning("lost", f"{lost} of {len(designed.drawn)} ships drawn from the prior cannot be simulated "
-                              "under these orders", "narrow the prior or the inputs' ranges"))  # fmt: skip
-    if confirmation is not None and confirmation.converged < _MOST * confirmation.runs:
-        found.append(_warning("unconfirmed", f"only {confirmation.converged} of {confirmation.runs} simulated trials "
-                              "could be fitted, so that the errors foretold are not confirmed",
-                              "narrow the prior, measure more channels, or lengthen the trial"))  # fmt: skip
+    if lost := count_diverged(designed):
+        found.append(
+            _warning(
+                "lost",
+                f"{lost} of {len(designed.sampled_relative_error)} ships drawn from the prior cannot be simulated "
+                "under these orders",
+                "narrow the prior or the inputs' ranges",
+            )
+        )
+    if confirmation is not None and confirmation.converged_runs < _ENOUGH_CONVERGED * confirmation.runs:
+        found.append(
+            _warning(
+                "unconfirmed",
+                f"only {confirmation.converged_runs} of {confirmation.runs} simulated trials "
+                "could be fitted, so that the errors foretold are not confirmed",
+                "narrow the prior, measure more channels, or lengthen the trial",
+            )
+        )
     return found

@@ -8,14 +8,14 @@ from enum import StrEnum
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.results import Actuator, Limits
-from seatrial.core.values import Array, InputError, Ship, nearest
+from seatrial.core.results import Actuator, TrialLimits
+from seatrial.core.values import Array, InputError, Ship, spelling_hint
 from seatrial.physics.simulate.approach import approach_speed, held_inputs
 
 _FEWEST_ORDERS = 4
 
 
-class Criterion(StrEnum):
+class DesignCriterion(StrEnum):
     """Which relative standard error is made small: of the least well told coefficient, or their root mean square."""
 
     WORST = "worst"
@@ -23,14 +23,14 @@ class Criterion(StrEnum):
 
 
 @dataclass(frozen=True, eq=False)
-class Task:
+class DesignTask:
     """A manoeuvre to be designed; SI, angles in the record's signs.
 
     Attributes:
         sensors: observable -> standard deviation of its noise; rate: Hz at which they are recorded.
         held: inputs that stay constant; absent wind, waves and fins are at rest.
         speed: approach speed u [m/s]; None: where surge balances.
-        draws: ships drawn from the prior, besides the model itself; spread: they differ from it by up to this share in
+        draws: ships drawn from the prior, besides the model; relative_spread: they differ by up to this share in
             every free coefficient that has no prior of its own.
         covariance: of the free coefficients where the model comes from a fit; then the ships are drawn from it.
 
@@ -45,12 +45,12 @@ class Task:
     rate: float
     duration: float
     actuators: tuple[Actuator, ...]
-    limits: Limits = field(default_factory=Limits)
+    limits: TrialLimits = field(default_factory=TrialLimits)
     held: Mapping[str, float] = field(default_factory=dict)
     speed: float | None = None
-    criterion: Criterion = Criterion.WORST
+    criterion: DesignCriterion = DesignCriterion.WORST
     draws: int = 24
-    spread: float = 0.3
+    relative_spread: float = 0.3
     covariance: Array | None = None
 
     def __post_init__(self) -> None:
@@ -60,7 +60,7 @@ class Task:
             if name not in self.model.observables:
                 known = [*self.model.observables]
                 raise InputError(
-                    f"[noise] {name} is nothing that model '{self.model.name}' shows{nearest(name, known)}"
+                    f"[noise] {name} is nothing that model '{self.model.name}' shows{spelling_hint(name, known)}"
                 )
         if not self.actuators:
             raise InputError("a design needs an input that may be moved: give [design.inputs]")
@@ -70,22 +70,22 @@ class Task:
             raise InputError(f"model '{self.model.name}' has no free coefficient to design for")
 
     @property
-    def neutral(self) -> dict[str, float]:
+    def neutral_positions(self) -> dict[str, float]:
         """Where every actuator stands before the first order: at zero, else in the middle of its range."""
         return {a.name: 0.0 if a.lower <= 0.0 <= a.upper else 0.5 * (a.lower + a.upper) for a in self.actuators}
 
     @property
-    def quiet(self) -> Array:
+    def neutral_inputs(self) -> Array:
         """All inputs before the first order, in the model's signs, shape (nu,)."""
         first = self.actuators[0].name
-        others = {n: v for n, v in self.neutral.items() if n != first}
+        others = {n: v for n, v in self.neutral_positions.items() if n != first}
         values = held_inputs(self.model, {**self.held, **others}, first)
         place = self.model.input_names.index(first)
-        values[place] = self.neutral[first] * (-1.0 if self.model.inputs[place].is_turned else 1.0)
+        values[place] = self.neutral_positions[first] * (-1.0 if self.model.inputs[place].is_reversed else 1.0)
         return values
 
     @property
-    def start(self) -> Array:
+    def initial_state(self) -> Array:
         """The state before the first order, shape (nx,): a straight course, or rest for a model without surge.
 
         Raises:
@@ -93,7 +93,7 @@ class Task:
         """
         state = np.zeros(len(self.model.states))
         if "u" in self.model.states:
-            speed = approach_speed(self.model, self.quiet) if self.speed is None else self.speed
+            speed = approach_speed(self.model, self.neutral_inputs) if self.speed is None else self.speed
             state[self.model.states.index("u")] = speed
         return state
 
@@ -107,7 +107,7 @@ def _demand_movable(actuator: Actuator, model: Model, duration: float) -> None:
     name = f"design input '{actuator.name}'"
     if actuator.name not in model.input_names:
         known = list(model.input_names)
-        raise InputError(f"{name} is no input of model '{model.name}'{nearest(actuator.name, known)}")
+        raise InputError(f"{name} is no input of model '{model.name}'{spelling_hint(actuator.name, known)}")
     if not (math.isfinite(actuator.lower) and math.isfinite(actuator.upper) and actuator.lower < actuator.upper):
         raise InputError(f"{name} cannot move from {actuator.lower:g} to {actuator.upper:g}; give a range, lower first")
     if not actuator.rate > 0.0:

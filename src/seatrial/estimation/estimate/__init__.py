@@ -1,6 +1,6 @@
 """Start, search, criterion, intervals: from records to an estimate (the decision table of docs/estimation.md)."""
 
-from seatrial.estimation.estimate.fit import Identified, identified
-from seatrial.estimation.estimate.settings import Intervals, Settings
+from seatrial.estimation.estimate.fit import Estimation, estimate_model
+from seatrial.estimation.estimate.settings import IntervalMethod, Settings
 
-__all__ = ["Identified", "Intervals", "Settings", "identified"]
+__all__ = ["Estimation", "IntervalMethod", "Settings", "estimate_model"]

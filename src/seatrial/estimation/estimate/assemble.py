@@ -8,7 +8,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Prior, Record
 from seatrial.estimation.estimate.settings import Settings
 from seatrial.estimation.problem.output_error import Nuisance, OutputError
-from seatrial.estimation.problem.segments import compared_outputs, cut
+from seatrial.estimation.problem.segments import compared_outputs, cut_segments
 from seatrial.estimation.problem.static_forces import StaticForces
 from seatrial.physics.simulate.batch import InputCorrection
 
@@ -20,14 +20,14 @@ def _nuisances(settings: Settings) -> tuple[Nuisance, ...]:
     )
 
 
-def _current(settings: Settings) -> tuple[tuple[str, Prior], ...]:
+def _current_priors(settings: Settings) -> tuple[tuple[str, Prior], ...]:
     if settings.current <= 0:
         return ()
     prior = Prior(0.0, settings.current, "house default")
     return (("current_north", prior), ("current_east", prior))
 
 
-def output_error(
+def output_error_problem(
     model: Model, records: Sequence[Record], sessions: Sequence[str], seconds: float, settings: Settings
 ) -> OutputError:
     """The records in segments of `seconds` (infinite: whole runs); each channel's noise a tenth of its spread.
@@ -39,8 +39,8 @@ def output_error(
             force points that the model cannot be compared with.
     """
     outputs = compared_outputs(model, records, settings.channels)
-    data = cut(model, records, outputs, None if np.isinf(seconds) else seconds, sessions)
+    data = cut_segments(model, records, outputs, None if np.isinf(seconds) else seconds, sessions)
     spread = np.nanstd(data.measured, axis=0)
-    others = (*(StaticForces(model, points) for points in settings.forces), *settings.others)
-    return OutputError(model, data, np.maximum(0.1 * spread, 1e-9), _nuisances(settings), _current(settings),
-                       substeps=settings.substeps, workers=settings.workers, others=others)  # fmt: skip
+    others = (*(StaticForces(model, points) for points in settings.forces), *settings.extra_terms)
+    return OutputError(model, data, np.maximum(0.1 * spread, 1e-9), _nuisances(settings), _current_priors(settings),
+                       substeps=settings.substeps, workers=settings.workers, extra_terms=others)  # fmt: skip

@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.core.values import Array, InputError
-from seatrial.estimation.estimate.estimate import Estimate
+from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.process_noise import ProcessNoise
-from seatrial.estimation.estimate.replicates import Counted, drawn, left_out, stepped
-from seatrial.estimation.estimate.settings import WHITE_INFLATION, Intervals
+from seatrial.estimation.estimate.resampling import ReportCount, bootstrap_fits, full_jackknife, one_step_jackknife
+from seatrial.estimation.estimate.settings import WHITE_INFLATION, IntervalMethod
 from seatrial.estimation.information.covariance import (
     Interval,
     bootstrap,
@@ -20,7 +20,7 @@ from seatrial.estimation.information.covariance import (
 )
 
 RUNS_FOR_JACKKNIFE = 4
-BOOTSTRAPS = 40
+BOOTSTRAP_FITS = 40
 _BLOCKS_FOR_SANDWICH = 10
 
 
@@ -36,17 +36,17 @@ class Uncertainty:
     """
 
     interval: Interval
-    left_out: Array | None = None
-    agreement: float | None = None
+    leave_one_out: Array | None = None
+    one_step_ratio: float | None = None
     information: Array | None = None
 
 
-def intervals(
-    made: Estimate,
+def estimate_uncertainty(
+    estimate: PointEstimate,
     inflation: Array,
-    kind: Intervals = Intervals.AUTO,
+    kind: IntervalMethod = IntervalMethod.AUTO,
     rng: np.random.Generator | None = None,
-    progress: Counted | None = None,
+    report_progress: ReportCount | None = None,
 ) -> Uncertainty:
     """Information matrix where residuals are white; else one-step jackknife over runs, or a sandwich over segments.
 
@@ -56,75 +56,85 @@ def intervals(
     Raises:
         InputError: fewer runs than the wanted kind needs.
     """
-    problem, hessian = made.problem, made.optimum.normal.reduced()[1]
+    problem, hessian = estimate.problem, estimate.optimum.normal.without_local()[1]
     runs = len(problem.data.runs)
     refuse_few_runs(kind, runs)
-    steps = stepped(made) if runs >= RUNS_FOR_JACKKNIFE else None
+    steps = one_step_jackknife(estimate) if runs >= RUNS_FOR_JACKKNIFE else None
 
     def over_runs(interval: Interval) -> Interval:
-        known = with_prior(interval, hessian, problem.known_precision(made.shared))
+        known = with_prior(interval, hessian, problem.prior_precision(estimate.common_parameters))
         return _offsets_by_information(known, hessian, len(problem.free))
 
-    if kind is Intervals.JACKKNIFE:
-        points = left_out(made, problem.workers, progress)
-        full, fast = jackknife(points, ""), jackknife(_demanded(steps), "")
+    if kind is IntervalMethod.JACKKNIFE:
+        points = full_jackknife(estimate, problem.workers, report_progress)
+        full, fast = jackknife(points, ""), jackknife(_required(steps), "")
         share = fast.standard_error / np.maximum(full.standard_error, 1e-300)
         agreement = float(np.median(share[: len(problem.free)]))
         meaning = f"jackknife over {runs} runs, each refitted (one step would give {agreement:.2f} of these errors)"
         return Uncertainty(over_runs(replace(full, meaning=meaning)), points, agreement)
-    if kind is Intervals.BOOTSTRAP:
-        points = drawn(made, BOOTSTRAPS, rng or np.random.default_rng(0), problem.workers, progress)
-        return Uncertainty(over_runs(bootstrap(points, runs, f"bootstrap over {runs} runs, {BOOTSTRAPS} draws")), steps)
+    if kind is IntervalMethod.BOOTSTRAP:
+        points = bootstrap_fits(
+            estimate, BOOTSTRAP_FITS, rng or np.random.default_rng(0), problem.workers, report_progress
+        )
+        return Uncertainty(
+            over_runs(bootstrap(points, runs, f"bootstrap over {runs} runs, {BOOTSTRAP_FITS} draws")), steps
+        )
     if np.max(inflation) <= WHITE_INFLATION:
         return Uncertainty(from_information(hessian), steps)
     if steps is not None:
         return Uncertainty(over_runs(jackknife(steps, f"one-step jackknife over {runs} runs")), steps)
     if problem.data.count >= _BLOCKS_FOR_SANDWICH:
-        return Uncertainty(with_prior(sandwich(hessian, _scores(made)), hessian, problem.known_precision(made.shared)))
+        return Uncertainty(
+            with_prior(
+                sandwich(hessian, _segment_gradients(estimate)),
+                hessian,
+                problem.prior_precision(estimate.common_parameters),
+            )
+        )
     meaning = "information matrix, correlated samples counted as their effective number"
     return Uncertainty(replace(from_information(hessian), meaning=meaning))
 
 
-def of_innovations(noise: ProcessNoise, kind: Intervals) -> Uncertainty:
+def innovations_uncertainty(noise: ProcessNoise, kind: IntervalMethod) -> Uncertainty:
     """Intervals of a prediction-error estimate: its information matrix; runs left out where innovations are not white.
 
     Full refits and a bootstrap would cost a search each and are not offered: one step stands for them, and says so.
     """
-    runs = len(noise.runs.data.runs)
-    steps = noise.left_out if runs >= RUNS_FOR_JACKKNIFE else None
-    wanted = kind in (Intervals.JACKKNIFE, Intervals.BOOTSTRAP)
-    if steps is not None and (wanted or not noise.gate.is_white):
+    runs = len(noise.output_error.data.runs)
+    steps = noise.leave_one_out if runs >= RUNS_FOR_JACKKNIFE else None
+    wanted = kind in (IntervalMethod.JACKKNIFE, IntervalMethod.BOOTSTRAP)
+    if steps is not None and (wanted or not noise.test.is_white):
         made = jackknife(steps, f"one-step jackknife over {runs} runs, prediction error")
-        precision = noise.runs.known_precision(noise.shared)
+        precision = noise.output_error.prior_precision(noise.common_parameters)
         widened = with_prior(made, noise.information, precision)
-        count = len(noise.runs.free)
+        count = len(noise.output_error.free)
         return Uncertainty(_offsets_by_information(widened, noise.information, count), steps)
     return Uncertainty(noise.interval, steps)
 
 
-def refuse_few_runs(kind: Intervals, runs: int) -> None:
+def refuse_few_runs(kind: IntervalMethod, runs: int) -> None:
     """Raises:
     InputError: a jackknife or bootstrap was asked for and there are too few runs.
     """
-    if kind in (Intervals.JACKKNIFE, Intervals.BOOTSTRAP) and runs < RUNS_FOR_JACKKNIFE:
+    if kind in (IntervalMethod.JACKKNIFE, IntervalMethod.BOOTSTRAP) and runs < RUNS_FOR_JACKKNIFE:
         raise InputError(
             f"intervals by {kind} leave whole runs out and need at least {RUNS_FOR_JACKKNIFE} training runs, the trial "
             f"has {runs}; add runs, or leave the choice of intervals to the program"
         )
 
 
-def _demanded(steps: Array | None) -> Array:
+def _required(steps: Array | None) -> Array:
     assert steps is not None
     return steps
 
 
-def _scores(made: Estimate) -> Array:
+def _segment_gradients(estimate: PointEstimate) -> Array:
     """Gradient of every segment with its initial state eliminated, shape (segments, k)."""
-    problem = made.problem
-    blocks = problem.blocks(made.shared, made.optimum.local)
+    problem = estimate.problem
+    blocks = problem.segment_normals(estimate.common_parameters, estimate.optimum.local)
     return np.array(
         [
-            problem.assembled(blocks, made.shared, np.array([s]), with_prior=False).reduced()[0]
+            problem.assemble(blocks, estimate.common_parameters, np.array([s]), with_prior=False).without_local()[0]
             for s in range(problem.data.count)
         ]
     )

@@ -11,25 +11,29 @@ from itertools import pairwise
 
 import numpy as np
 
-from seatrial.core.equations.augment import MEMORY, gust_of
-from seatrial.core.values import Array, Index, InputError, Progress, nearest
+from seatrial.core.equations.augment import GUST_MEMORY, gust_name
+from seatrial.core.values import Array, Index, InputError, ProgressReporter, spelling_hint
 from seatrial.data.check.signal import sample_noise
-from seatrial.estimation.estimate.estimate import Estimate, rounding_level
-from seatrial.estimation.estimate.gate import Gate, colour, gate
-from seatrial.estimation.information.covariance import Interval, from_information, left_out_steps
+from seatrial.estimation.estimate.likelihood_ratio import (
+    ProcessNoiseTest,
+    innovation_correlation,
+    likelihood_ratio_test,
+)
+from seatrial.estimation.estimate.point_estimate import PointEstimate, rounding_level
+from seatrial.estimation.information.covariance import Interval, from_information, jackknife_steps
 from seatrial.estimation.problem.output_error import OutputError, SegmentNormals
-from seatrial.estimation.problem.prediction_error import PredictionError, whole_runs
-from seatrial.numerics.optimise import Normal, Optimum, Solution, Status, levenberg_marquardt
+from seatrial.estimation.problem.prediction_error import PredictionError, join_segments
+from seatrial.numerics.optimise import NormalEquations, Optimum, Solution, Status, levenberg_marquardt
 
-KINEMATIC = ("psi", "phi", "theta", "x0", "y0", "z0", "z")
-_DIFFUSE = 10.0
-_SCANNED = 10.0 ** np.arange(-3.0, 0.5, 0.5)
-_ROUGH, _NEGLIGIBLE, _EXACT = 1.0, 1e-3, 1e-3
+KINEMATIC_STATES = ("psi", "phi", "theta", "x0", "y0", "z0", "z")
+_DIFFUSE_FACTOR = 10.0
+_SCAN_SHARES = 10.0 ** np.arange(-3.0, 0.5, 0.5)
+_ROUGH, _NEGLIGIBLE, _MAX_DECREMENT = 1.0, 1e-3, 1e-3
 _NEWTON_STEPS = 6
-_NO_LOCAL = np.zeros((0, 0))
-_SHORT = 24
-_SAMPLES = 3000
-_HOPELESS = 3.0
+_NO_INITIAL_STATES = np.zeros((0, 0))
+_FEW_EVALUATIONS = 24
+_MAX_SAMPLES = 3000
+_HOPELESS_INFLATION = 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,50 +51,50 @@ class ProcessNoise:
 
     problem: PredictionError
     optimum: Optimum
-    slope: float
-    gate: Gate
-    runs: OutputError
-    colours: str = ""
+    newton_decrement: float
+    test: ProcessNoiseTest
+    output_error: OutputError
+    disturbance_model: str = ""
 
     @property
-    def shared(self) -> Array:
+    def common_parameters(self) -> Array:
         """Coefficients and what the sessions have of their own, as in the output-error problem."""
-        return self.optimum.solution.point[self._places]
+        return self.optimum.solution.point[self._common_indices]
 
     @property
-    def process(self) -> dict[str, float]:
+    def process_intensities(self) -> dict[str, float]:
         """Intensity of each state's process noise, SI over the root of a second; 0 where there is none.
 
         Of a gust with a memory that of the white noise with the same effect over longer times.
         """
         names, q = self.problem.process, self.problem.split(self.optimum.solution.point)[1]
         found = dict(zip(names, map(float, q), strict=True))
-        memory = self.added.get(MEMORY, 1.0)
-        found |= {s: found[gust_of(s)] * memory for s in self.runs.model.states if gust_of(s) in found}
-        return {s: v for s, v in found.items() if s in self.runs.model.states}
+        memory = self.added_parameters.get(GUST_MEMORY, 1.0)
+        found |= {s: found[gust_name(s)] * memory for s in self.output_error.model.states if gust_name(s) in found}
+        return {s: v for s, v in found.items() if s in self.output_error.model.states}
 
     @property
-    def added(self) -> dict[str, float]:
+    def added_parameters(self) -> dict[str, float]:
         """Parameters the model has beyond the caller's: time constants [s]."""
         free, point = self.problem.runs.free, self.optimum.solution.point
-        return {n: float(point[i]) for i, n in enumerate(free) if n not in self.runs.free}
+        return {n: float(point[i]) for i, n in enumerate(free) if n not in self.output_error.free}
 
     @property
-    def measurement(self) -> dict[str, float]:
+    def measurement_noise(self) -> dict[str, float]:
         """Standard deviation of each channel's noise, SI."""
         r = self.problem.split(self.optimum.solution.point)[2]
-        return dict(zip(self.runs.data.outputs, map(float, r), strict=True))
+        return dict(zip(self.output_error.data.outputs, map(float, r), strict=True))
 
     @cached_property
-    def _places(self) -> Index:
+    def _common_indices(self) -> Index:
         """Positions of `shared` among the unknowns."""
-        first, last = len(self.runs.free), self.problem.runs.size
+        first, last = len(self.output_error.free), self.problem.runs.size
         return np.concatenate([np.arange(first), np.arange(len(self.problem.runs.free), last)])
 
     @cached_property
     def information(self) -> Array:
         """Information of `shared`, priors counted, the noise unknowns eliminated where they are not on a bound."""
-        return self._reduced(self.optimum.normal)[1]
+        return self._eliminate_noise(self.optimum.normal)[1]
 
     @property
     def interval(self) -> Interval:
@@ -98,84 +102,85 @@ class ProcessNoise:
         return replace(from_information(self.information), meaning="information matrix of the innovations")
 
     @property
-    def left_out(self) -> Array:
+    def leave_one_out(self) -> Array:
         """`shared` with each run left out by one Newton step from stored normal equations, (runs, k)."""
-        blocks, point, runs = self._blocks, self.optimum.solution.point, self.problem.runs.data
+        blocks, point, runs = self._segment_normals, self.optimum.solution.point, self.problem.runs.data
         parts = [
-            self.problem.assembled(blocks, point, runs.of_run(int(r)), with_prior=False) for r in np.unique(runs.run)
+            self.problem.assemble(blocks, point, runs.run_segments(int(r)), with_prior=False)
+            for r in np.unique(runs.run)
         ]
-        free = self._free
+        free = self._free_indices
         gradients = np.array([p.gradient[free] for p in parts])
         hessians = np.array([p.hessian[np.ix_(free, free)] for p in parts])
-        steps = left_out_steps(self.optimum.normal.hessian[np.ix_(free, free)], gradients, hessians)
+        steps = jackknife_steps(self.optimum.normal.hessian[np.ix_(free, free)], gradients, hessians)
         moved = np.tile(point, (len(parts), 1))
         moved[:, free] += steps
-        return moved[:, self._places]
+        return moved[:, self._common_indices]
 
-    def as_estimate(self) -> Estimate:
+    def as_point_estimate(self) -> PointEstimate:
         """The same point as an estimate over whole runs: noise levels, initial states, and the reduced information."""
-        runs = replace(self.runs, noise=np.array(list(self.measurement.values())))
+        runs = replace(self.output_error, noise=np.array(list(self.measurement_noise.values())))
         states = [runs.model.states.index(s) for s in runs.starts]
-        gradient, hessian = self._reduced(self.optimum.normal)
-        normal = Normal(self.optimum.normal.cost, gradient, hessian, _NO_LOCAL, np.zeros((0, 0, 0)),
+        gradient, hessian = self._eliminate_noise(self.optimum.normal)
+        normal = NormalEquations(self.optimum.normal.cost, gradient, hessian, _NO_INITIAL_STATES, np.zeros((0, 0, 0)),
                         np.zeros((0, len(gradient), 0)))  # fmt: skip
-        solution = replace(self.optimum.solution, point=self.shared)
-        return Estimate(runs, Optimum(solution, self.problem.start[:, states], normal))
+        solution = replace(self.optimum.solution, point=self.common_parameters)
+        return PointEstimate(runs, Optimum(solution, self.problem.start[:, states], normal))
 
     @cached_property
-    def _blocks(self) -> SegmentNormals:
-        return replace(self.problem, steps=None).blocks(self.optimum.solution.point)
+    def _segment_normals(self) -> SegmentNormals:
+        return replace(self.problem, steps=None).segment_normals(self.optimum.solution.point)
 
     @cached_property
-    def _free(self) -> Index:
+    def _free_indices(self) -> Index:
         point, low, high = self.optimum.solution.point, self.problem.lower, self.problem.upper
         inside = (point > low) & (point < high)
         inside[: self.problem.runs.size] = True
         return np.flatnonzero(inside)
 
-    def _reduced(self, normal: Normal) -> tuple[Array, Array]:
-        kept, others = self._places, np.setdiff1d(self._free, self._places)
+    def _eliminate_noise(self, normal: NormalEquations) -> tuple[Array, Array]:
+        kept, others = self._common_indices, np.setdiff1d(self._free_indices, self._common_indices)
         cross = normal.hessian[np.ix_(kept, others)]
         solved = np.linalg.solve(normal.hessian[np.ix_(others, others)], cross.T)
         return normal.gradient[kept], normal.hessian[np.ix_(kept, kept)] - cross @ solved
 
 
-def is_worthwhile(made: Estimate) -> bool:
+def has_noise(estimate: PointEstimate) -> bool:
     """Whether the records have noise at all: rounding errors have no likelihood."""
-    return bool(np.all(made.problem.noise > 2.0 * rounding_level(made.problem)))
+    return bool(np.all(estimate.problem.noise > 2.0 * rounding_level(estimate.problem)))
 
 
-def intensities(made: Estimate, known: Mapping[str, float]) -> dict[str, float]:
+def implied_intensities(estimate: PointEstimate, known_noise: Mapping[str, float]) -> dict[str, float]:
     """Intensity of each state's process noise that suits the estimate as it is, from some of its runs.
 
     What the model does not explain counts as noise here, so this bounds the process noise from above. Runs are taken
     evenly until they have some thousand samples.
     """
-    data = made.problem.data
-    count = min(len(data.runs), max(1, round(len(data.runs) * _SAMPLES / len(data.inputs))))
+    data = estimate.problem.data
+    count = min(len(data.runs), max(1, round(len(data.runs) * _MAX_SAMPLES / len(data.inputs))))
     runs = np.unique(np.linspace(0, len(data.runs) - 1, count).round().astype(int))
-    chosen = np.concatenate([data.of_run(int(r)) for r in runs])
-    problem = replace(made.problem, data=data.taken(chosen))
-    part = Estimate(problem, replace(made.optimum, local=made.optimum.local[chosen]))
-    begun = _begun(part, known, ())
-    squares = _intensities(begun, part)[: len(begun.process)]
+    chosen = np.concatenate([data.run_segments(int(r)) for r in runs])
+    problem = replace(estimate.problem, data=data.selected(chosen))
+    part = PointEstimate(problem, replace(estimate.optimum, local=estimate.optimum.local[chosen]))
+    begun = _initial_problem(part, known_noise, ())
+    squares = _fit_intensities(begun, part)[: len(begun.process)]
     return dict(zip(begun.process, np.sqrt(squares).tolist(), strict=True))
 
 
-def suited(made: Estimate, known: Mapping[str, float]) -> ProcessNoise:
+def implied_process_noise(estimate: PointEstimate, known_noise: Mapping[str, float]) -> ProcessNoise:
     """Noise in the states and in the channels that suits the estimate as it is, over all its runs, with its gate."""
-    problem = _begun(made, known, ())
-    return _unfinished(problem, np.concatenate([made.shared, _intensities(problem, made)]))
+    problem = _initial_problem(estimate, known_noise, ())
+    return _without_search(problem, np.concatenate([estimate.common_parameters, _fit_intensities(problem, estimate)]))
 
 
-def prediction_error(
-    made: Estimate,
-    known: Mapping[str, float] | None = None,
-    driven: tuple[str, ...] = (),
+def fit_prediction_error(
+    estimate: PointEstimate,
+    known_noise: Mapping[str, float] | None = None,
+    driven_states: tuple[str, ...] = (),
     *,
     thorough: bool = False,
     evaluations: int = 60,
-    progress: Progress | None = None,
+    report_progress: ProgressReporter | None = None,
 ) -> ProcessNoise:
     """Coefficients, process and measurement noise together by maximum likelihood, from an output-error estimate.
 
@@ -195,47 +200,49 @@ def prediction_error(
     Raises:
         InputError: a driven state is none of the model's, or reaches no compared channel.
     """
-    tell = progress or (lambda _: None)
-    problem = _begun(made, known or {}, driven)
+    tell = report_progress or (lambda _: None)
+    problem = _initial_problem(estimate, known_noise or {}, driven_states)
     tell("process noise: intensities")
-    point = np.concatenate([made.shared, _intensities(problem, made)])
-    if not thorough and np.max(colour(problem, point)[1]) > _HOPELESS:
-        return _unfinished(problem, point)
-    exact, found, slope = searched(problem, point, evaluations, tell)
-    cost, before = _without(problem, made, found.solution.point)
-    verdict = gate(exact, found.solution.point, found.normal.cost, cost, before)
+    point = np.concatenate([estimate.common_parameters, _fit_intensities(problem, estimate)])
+    if not thorough and np.max(innovation_correlation(problem, point)[1]) > _HOPELESS_INFLATION:
+        return _without_search(problem, point)
+    exact, found, slope = search_prediction_error(problem, point, evaluations, tell)
+    cost, before = _cost_without_process_noise(problem, estimate, found.solution.point)
+    verdict = likelihood_ratio_test(exact, found.solution.point, found.normal.cost, cost, before)
     return ProcessNoise(exact, found, slope, verdict, problem.runs)
 
 
-def searched(
-    problem: PredictionError, point: Array, evaluations: int, tell: Progress
+def search_prediction_error(
+    problem: PredictionError, point: Array, evaluations: int, report_progress: ProgressReporter
 ) -> tuple[PredictionError, Optimum, float]:
     """The problem with steps for exact gradients, its optimum, and the Newton decrement left there."""
 
     def counted(count: int, cost: float) -> None:
-        tell(f"prediction error, evaluation {count}: {cost:.6g}")
+        report_progress(f"prediction error, evaluation {count}: {cost:.6g}")
 
     found = levenberg_marquardt(
-        problem, point, _NO_LOCAL, negligible=_NEGLIGIBLE, evaluations=evaluations, progress=counted
+        problem, point, _NO_INITIAL_STATES, negligible=_NEGLIGIBLE, evaluations=evaluations, report_progress=counted
     )
-    tell("prediction error: exact gradient")
-    return _polished(problem, found)
+    report_progress("prediction error: exact gradient")
+    return _refine(problem, found)
 
 
-def _unfinished(problem: PredictionError, point: Array) -> ProcessNoise:
+def _without_search(problem: PredictionError, point: Array) -> ProcessNoise:
     """Intensities alone, the coefficients as they were: no search can make these innovations white."""
-    normal = problem.normal(point, _NO_LOCAL)
-    found = Optimum(Solution(point, normal.cost, Status.STALLED, 1), _NO_LOCAL, normal)
+    normal = problem.normal(point, _NO_INITIAL_STATES)
+    found = Optimum(Solution(point, normal.cost, Status.STALLED, 1), _NO_INITIAL_STATES, normal)
     quiet = replace(problem, process=())
     held = np.concatenate([point[: problem.runs.size], point[problem.runs.size + len(problem.process) :]])
-    verdict = gate(problem, point, normal.cost, quiet.cost(held, _NO_LOCAL), None)
+    verdict = likelihood_ratio_test(problem, point, normal.cost, quiet.cost(held, _NO_INITIAL_STATES), None)
     return ProcessNoise(problem, found, np.nan, verdict, problem.runs)
 
 
-def _begun(made: Estimate, known: Mapping[str, float], driven: tuple[str, ...]) -> PredictionError:
+def _initial_problem(
+    estimate: PointEstimate, known_noise: Mapping[str, float], driven_states: tuple[str, ...]
+) -> PredictionError:
     """The problem with its initial states."""
-    problem, first = whole_runs(made.problem)
-    measured, local = problem.measured_starts(), made.optimum.local[first]
+    problem, first = join_segments(estimate.problem)
+    measured, local = problem.measured_initial_states(), estimate.optimum.local[first]
     model, outputs = problem.model, problem.data.outputs
     start = np.zeros((problem.data.count, len(model.states)))
     variance = np.zeros_like(start)
@@ -243,60 +250,63 @@ def _begun(made: Estimate, known: Mapping[str, float], driven: tuple[str, ...]) 
         i = model.states.index(state)
         if state in outputs:
             start[:, i] = measured[:, m]
-            variance[:, i] = (_DIFFUSE * problem.noise[outputs.index(state)]) ** 2
+            variance[:, i] = (_DIFFUSE_FACTOR * problem.noise[outputs.index(state)]) ** 2
         else:
-            column = made.optimum.local[:, m]
+            column = estimate.optimum.local[:, m]
             start[:, i] = local[:, m]
             variance[:, i] = max(np.std(column), 0.1 * np.max(np.abs(column)), 1e-3) ** 2
-    chosen = driven or tuple(s for s in problem.starts if s not in KINEMATIC)
+    chosen = driven_states or tuple(s for s in problem.starts if s not in KINEMATIC_STATES)
     for state in chosen:
         if state not in problem.starts:
             raise InputError(
-                f"process noise on '{state}' would move nothing that is measured{nearest(state, list(problem.starts))}"
+                f"process noise on '{state}' would move nothing that is "
+                f"measured{spelling_hint(state, list(problem.starts))}"
             )
-    held = np.array([known.get(o, np.nan) for o in outputs])
+    held = np.array([known_noise.get(o, np.nan) for o in outputs])
     return PredictionError(problem, chosen, start, variance, held)
 
 
-def _longest(problem: OutputError) -> float:
+def _longest_run(problem: OutputError) -> float:
     return float(np.max(np.diff(problem.data.offsets))) * problem.data.dt
 
 
-def _spread(made: Estimate, states: tuple[str, ...]) -> Array:
+def _state_spread(estimate: PointEstimate, states: tuple[str, ...]) -> Array:
     """How far each state moves in the records: measured, or else over the initial states of segments."""
-    outputs, starts = made.problem.data.outputs, made.problem.starts
+    outputs, starts = estimate.problem.data.outputs, estimate.problem.starts
     spread = []
     for state in states:
         if state in outputs:
-            spread.append(np.nanstd(made.problem.data.measured[:, outputs.index(state)]))
+            spread.append(np.nanstd(estimate.problem.data.measured[:, outputs.index(state)]))
         else:
-            spread.append(np.std(made.optimum.local[:, starts.index(state)]) if state in starts else 0.0)
+            spread.append(np.std(estimate.optimum.local[:, starts.index(state)]) if state in starts else 0.0)
     return np.maximum(spread, 1e-6)
 
 
-def _intensities(problem: PredictionError, made: Estimate) -> Array:
+def _fit_intensities(problem: PredictionError, estimate: PointEstimate) -> Array:
     """Squared intensities and variances that suit the coefficients as they are: a scan, then a search."""
-    runs, begin = problem.runs, made.shared
+    runs, begin = problem.runs, estimate.common_parameters
     held = runs.model.with_values(dict(zip(runs.free, begin[: len(runs.free)], strict=True)))
     held = held.with_parameters(held.parameters.fixed(*held.parameters.names))
     own = begin[len(runs.free) :]
-    alone = replace(problem, runs=replace(runs, model=held, pinned=own, others=()))
-    deviation = np.clip(_sample_noise(runs), 1e-2 * runs.noise, runs.noise)
-    whole = _spread(made, problem.process) / np.sqrt(_longest(runs))
-    scanned = [_balanced(alone, np.concatenate([own, (share * whole) ** 2, deviation**2])) for share in _SCANNED]
+    alone = replace(problem, runs=replace(runs, model=held, pinned=own, extra_terms=()))
+    deviation = np.clip(_channel_noise(runs), 1e-2 * runs.noise, runs.noise)
+    whole = _state_spread(estimate, problem.process) / np.sqrt(_longest_run(runs))
+    scanned = [
+        _balance_noise(alone, np.concatenate([own, (share * whole) ** 2, deviation**2])) for share in _SCAN_SHARES
+    ]
     best = min(scanned, key=lambda one: one[0])[1]
-    found = levenberg_marquardt(alone, best, _NO_LOCAL, negligible=_ROUGH, evaluations=_SHORT)
+    found = levenberg_marquardt(alone, best, _NO_INITIAL_STATES, negligible=_ROUGH, evaluations=_FEW_EVALUATIONS)
     return found.solution.point[len(own) :]
 
 
-def _sample_noise(runs: OutputError) -> Array:
+def _channel_noise(runs: OutputError) -> Array:
     """White noise on each channel from third differences, median over runs; infinite where none can be computed."""
     pieces = [runs.data.measured[a:b] for a, b in pairwise(runs.data.offsets)]
     columns = [[p[:, i] for p in pieces if np.any(np.isfinite(np.diff(p[:, i], 3)))] for i in range(len(runs.noise))]
     return np.array([np.median([sample_noise(c) for c in mine]) if mine else np.inf for mine in columns])
 
 
-def _balanced(problem: PredictionError, point: Array) -> tuple[float, Array]:
+def _balance_noise(problem: PredictionError, point: Array) -> tuple[float, Array]:
     """Cost and point after two rounds of setting each channel's variance by its innovations' size."""
     ny = len(problem.runs.noise)
     for _ in range(2):
@@ -307,31 +317,35 @@ def _balanced(problem: PredictionError, point: Array) -> tuple[float, Array]:
         point[-ny:] *= np.clip(squares, 1e-4, 1e4)
         point[-ny - len(problem.process) : -ny] *= np.clip(np.median(squares), 1e-2, 1e2)
         point = np.clip(point, problem.lower, problem.upper)
-    return problem.cost(point, _NO_LOCAL), point
+    return problem.cost(point, _NO_INITIAL_STATES), point
 
 
-def _polished(problem: PredictionError, found: Optimum) -> tuple[PredictionError, Optimum, float]:
+def _refine(problem: PredictionError, optimum: Optimum) -> tuple[PredictionError, Optimum, float]:
     """Newton steps by the exact gradient, none where it vanishes already; with the decrement that is left."""
-    point, count = found.solution.point, found.solution.evaluations
-    exact = replace(problem, steps=problem.difference_steps(point, found.normal.hessian))
-    normal = exact.normal(point, _NO_LOCAL)
+    point, count = optimum.solution.point, optimum.solution.evaluations
+    exact = replace(problem, steps=problem.difference_steps(point, optimum.normal.hessian))
+    normal = exact.normal(point, _NO_INITIAL_STATES)
     for _ in range(_NEWTON_STEPS):
-        step, slope = _newton(exact, point, normal)
+        step, slope = _newton_step(exact, point, normal)
         trials = (np.clip(point + share * step, exact.lower, exact.upper) for share in (1.0, 0.5, 0.25, 0.125))
-        better = next((p for p in trials if exact.cost(p, _NO_LOCAL) < normal.cost), None) if slope > _EXACT else None
+        better = (
+            next((p for p in trials if exact.cost(p, _NO_INITIAL_STATES) < normal.cost), None)
+            if slope > _MAX_DECREMENT
+            else None
+        )
         if better is None:
             break
-        point, normal, count = better, exact.normal(better, _NO_LOCAL), count + 1
-    slope = _newton(exact, point, normal)[1]
-    status = Status.CONVERGED if slope <= _EXACT else Status.STALLED
-    history = (*found.solution.history, normal.cost)
+        point, normal, count = better, exact.normal(better, _NO_INITIAL_STATES), count + 1
+    slope = _newton_step(exact, point, normal)[1]
+    status = Status.CONVERGED if slope <= _MAX_DECREMENT else Status.STALLED
+    history = (*optimum.solution.history, normal.cost)
     solution = replace(
-        found.solution, point=point, value=normal.cost, status=status, evaluations=count, history=history
+        optimum.solution, point=point, value=normal.cost, status=status, evaluations=count, history=history
     )
-    return exact, Optimum(solution, _NO_LOCAL, normal), slope
+    return exact, Optimum(solution, _NO_INITIAL_STATES, normal), slope
 
 
-def _newton(problem: PredictionError, point: Array, normal: Normal) -> tuple[Array, float]:
+def _newton_step(problem: PredictionError, point: Array, normal: NormalEquations) -> tuple[Array, float]:
     """Newton step of the unknowns that no bound holds, and half the squared gradient in the information's metric."""
     low, high, slope = problem.lower, problem.upper, normal.gradient
     free = (low < high) & ~((point <= low) & (slope > 0)) & ~((point >= high) & (slope < 0))
@@ -343,15 +357,17 @@ def _newton(problem: PredictionError, point: Array, normal: Normal) -> tuple[Arr
     return step, float(0.5 * gradient @ solved)
 
 
-def _without(problem: PredictionError, made: Estimate, point: Array) -> tuple[float, Array | None]:
+def _cost_without_process_noise(
+    problem: PredictionError, estimate: PointEstimate, point: Array
+) -> tuple[float, Array | None]:
     """Minus the log-likelihood without process noise at its own optimum, and innovations there."""
     quiet = replace(problem, process=())
     k = problem.runs.size
     deviation = point[k + len(problem.process) :]
-    begins = [np.concatenate([p, deviation]) for p in (point[:k], made.shared)]
-    costs = [quiet.cost(p, _NO_LOCAL) for p in begins]
+    begins = [np.concatenate([p, deviation]) for p in (point[:k], estimate.common_parameters)]
+    costs = [quiet.cost(p, _NO_INITIAL_STATES) for p in begins]
     if not np.any(np.isfinite(costs)):
         return np.inf, None
     begin = begins[int(np.argmin(costs))]
-    found = levenberg_marquardt(quiet, begin, _NO_LOCAL, negligible=1e-2, evaluations=_SHORT)
+    found = levenberg_marquardt(quiet, begin, _NO_INITIAL_STATES, negligible=1e-2, evaluations=_FEW_EVALUATIONS)
     return found.normal.cost, quiet.innovations(found.solution.point).normalised

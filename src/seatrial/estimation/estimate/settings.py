@@ -4,25 +4,25 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from seatrial.core.values import ForcePoints
-from seatrial.estimation.problem.addend import Addend
+from seatrial.estimation.problem.data_term import DataTerm
 
 SEGMENT_SHIP_LENGTHS = 1.5
 """Length of a multiple-shooting segment, in ship lengths travelled (1.5 L/U)."""
 
-WINDOW_SHIP_LENGTHS = 1.5
+WEAK_FORM_SHIP_LENGTHS = 1.5
 """Half width of the weak form's windows, in ship lengths travelled."""
 
-HUBER = 3.0
+HUBER_LIMIT = 3.0
 """Residuals beyond this many standard deviations count linearly where the loss is robust."""
 
 WHITE_INFLATION = 1.3
 """Residuals whose correlation inflates the variance of a mean by less than this count as white."""
 
-START_SECONDS_LENGTHS = 1.0
+INITIAL_STATE_SHIP_LENGTHS = 1.0
 """The initial state of a validation run comes from its first L/U seconds."""
 
 
-class Criterion(StrEnum):
+class FitCriterion(StrEnum):
     """What is minimised; `auto` is the decision table's choice."""
 
     AUTO = "auto"
@@ -31,7 +31,7 @@ class Criterion(StrEnum):
     PREDICTION_ERROR = "prediction-error"
 
 
-class Intervals(StrEnum):
+class IntervalMethod(StrEnum):
     """Where intervals come from; `auto` is the decision table's choice."""
 
     AUTO = "auto"
@@ -59,7 +59,7 @@ class Settings:
         intervals: where intervals come from; seed: of what is drawn for them.
     """
 
-    criterion: Criterion = Criterion.AUTO
+    criterion: FitCriterion = FitCriterion.AUTO
     segment_seconds: float | None = None
     channels: tuple[str, ...] = ()
     robust: bool = False
@@ -70,6 +70,6 @@ class Settings:
     evaluations: int = 60
     workers: int | None = None
     forces: tuple[ForcePoints, ...] = ()
-    others: tuple[Addend, ...] = ()
-    intervals: Intervals = Intervals.AUTO
+    extra_terms: tuple[DataTerm, ...] = ()
+    intervals: IntervalMethod = IntervalMethod.AUTO
     seed: int = 0

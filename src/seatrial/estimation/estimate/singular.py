@@ -3,13 +3,13 @@
 import numpy as np
 
 from seatrial.core.values import Array, InputError
-from seatrial.estimation.information.directions import together
+from seatrial.estimation.information.directions import signed_terms
 
 _SINGULAR = 1e-11
-_INVOLVED, _NAMED = 0.1, 8
+_MIN_INFLUENCE, _MAX_NAMED = 0.1, 8
 
 
-def weakest(hessian: Array, names: tuple[str, ...], values: Array) -> tuple[float, str]:
+def weakest_direction(hessian: Array, names: tuple[str, ...], values: Array) -> tuple[float, str]:
     """Relative curvature along the weakest direction and the direction in words, e.g. ``1 N_v +1 N_r +1.9 J_z``.
 
     The numbers are relative changes of the parameters, in units of the median one; those that move the outputs most
@@ -24,10 +24,10 @@ def weakest(hessian: Array, names: tuple[str, ...], values: Array) -> tuple[floa
     scale = 1.0 / np.sqrt(diagonal)
     curvature, vectors = np.linalg.eigh(hessian * scale[:, None] * scale[None, :])
     influence = vectors[:, 0]
-    order = [i for i in np.argsort(-np.abs(influence)) if abs(influence[i]) > _INVOLVED][:_NAMED]
+    order = [i for i in np.argsort(-np.abs(influence)) if abs(influence[i]) > _MIN_INFLUENCE][:_MAX_NAMED]
     change = influence[order] * scale[order] / np.copysign(size, values)[order]
     change = change / (np.sign(change[0]) * np.median(np.abs(change)))
-    terms = together({names[i]: float(c) for i, c in zip(order, change, strict=True)}, "+.2g")
+    terms = signed_terms({names[i]: float(c) for i, c in zip(order, change, strict=True)}, "+.2g")
     return float(curvature[0] / curvature[-1]), terms.removeprefix("+")
 
 
@@ -37,7 +37,7 @@ def refuse_singular(hessian: Array, names: tuple[str, ...], values: Array) -> No
     Raises:
         InputError: the direction that cannot be told, and what to do.
     """
-    curvature, direction = weakest(hessian, names, values)
+    curvature, direction = weakest_direction(hessian, names, values)
     if curvature < _SINGULAR:
         raise InputError(
             f"the records cannot tell the direction {direction} (relative change of each parameter): moving along it "

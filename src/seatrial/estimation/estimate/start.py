@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Record
-from seatrial.estimation.estimate.estimate import residual_spread
+from seatrial.estimation.estimate.point_estimate import residual_spread
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.regress.weak import WeakForm
 from seatrial.numerics.optimise import levenberg_marquardt
@@ -16,33 +16,33 @@ from seatrial.physics.simulate.states import hidden_states, measured_states
 
 
 @dataclass(frozen=True, eq=False)
-class Start:
+class SearchStart:
     """Unknowns from which to search, the problem with the noise they leave, and where they come from in words."""
 
     problem: OutputError
-    shared: Array
-    local: Array
-    how: str
+    common_parameters: Array
+    initial_states: Array
+    origin: str
 
 
-def start(problem: OutputError, records: Sequence[Record], seconds: float) -> Start:
+def find_start(problem: OutputError, records: Sequence[Record], seconds: float) -> SearchStart:
     """Coefficients by the weak form with windows of half width `seconds`, initial states as measured.
 
     The model's own values take their place where a state is hidden, or where the weak form's diverge.
     """
-    local = problem.measured_starts()
+    local = problem.measured_initial_states()
     hidden, how = hidden_states(problem.model, records), "weak form of the equations, no guess"
     if hidden:
         how = f"the model's own values: nobody measures {', '.join(hidden)}, a state of the weak form"
-    shared = _with_coefficients(problem, weak_start(problem.model, records, seconds))
-    simulated = problem.simulated(shared, local)
+    shared = _with_coefficients(problem, weak_form_start(problem.model, records, seconds))
+    simulated = problem.simulated_outputs(shared, local)
     if not np.all(np.isfinite(simulated)):
         shared, how = problem.start(), "the model's own values: those of the weak form diverge"
-        simulated = problem.simulated(shared, local)
+        simulated = problem.simulated_outputs(shared, local)
     if np.all(np.isfinite(simulated)):
         left = simulated - problem.data.measured
         problem = replace(problem, noise=residual_spread(replace(problem, huber=1.0), left))
-    return Start(problem, shared, local, how)
+    return SearchStart(problem, shared, local, how)
 
 
 def _with_coefficients(problem: OutputError, point: Array) -> Array:
@@ -52,7 +52,7 @@ def _with_coefficients(problem: OutputError, point: Array) -> Array:
     return shared
 
 
-def weak_start(model: Model, records: Sequence[Record], seconds: float, rounds: int = 3) -> Array:
+def weak_form_start(model: Model, records: Sequence[Record], seconds: float, rounds: int = 3) -> Array:
     """Free parameters from the weak form over all records, shape (free,); priors pull as far as the data leave room.
 
     Equations of states that stay constant in a record (positions nobody measured) are left out. A model with hidden
@@ -70,6 +70,6 @@ def weak_start(model: Model, records: Sequence[Record], seconds: float, rounds: 
     for _ in range(rounds):
         residual = problem.linearised(point)[0]
         spread = np.maximum(np.sqrt(np.mean(residual**2, axis=0)), floor)
-        problem = replace(problem, spread=np.where(known, spread, np.inf))
+        problem = replace(problem, residual_sd=np.where(known, spread, np.inf))
         point = levenberg_marquardt(problem, point, np.zeros((0, 0)), evaluations=30).solution.point
     return point

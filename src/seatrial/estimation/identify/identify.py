@@ -7,57 +7,57 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.results import Fit
-from seatrial.core.values import NOTATION, Array, DivergedError, InputError, Progress, Record
+from seatrial.core.values import NOTATION, Array, DivergedError, InputError, ProgressReporter, Record
 from seatrial.core.values.versions import versions
-from seatrial.data.trial import Role, Trial, TrialRecord, records_of, refuse_errors
-from seatrial.data.trial.approach import approach_of
-from seatrial.data.trial.release import refuse_undecayed
-from seatrial.estimation.estimate.agreement import agreement
-from seatrial.estimation.estimate.fit import Identified, identified, swings, unit_of_time
+from seatrial.data.trial import Role, Trial, TrialRecord, load_records, refuse_errors
+from seatrial.data.trial.approach import approach_condition
+from seatrial.data.trial.roll_decay_start import require_decay
+from seatrial.estimation.estimate.fit import Estimation, characteristic_time, estimate_model, is_pure_roll
+from seatrial.estimation.estimate.force_consistency import force_consistency
 from seatrial.estimation.estimate.settings import (
-    START_SECONDS_LENGTHS,
-    WINDOW_SHIP_LENGTHS,
-    Criterion,
-    Intervals,
+    INITIAL_STATE_SHIP_LENGTHS,
+    WEAK_FORM_SHIP_LENGTHS,
+    FitCriterion,
+    IntervalMethod,
     Settings,
 )
 from seatrial.estimation.estimate.singular import refuse_singular
-from seatrial.estimation.estimate.unmeasured import refuse_unmeasured_waves
-from seatrial.estimation.identify import outcome
-from seatrial.estimation.identify.compare import with_rivals
-from seatrial.estimation.identify.family import WINDOW_SHIP_LENGTHS as FAMILY_WINDOW
-from seatrial.estimation.identify.family import Considered, considered, with_ensemble
+from seatrial.estimation.estimate.unmeasured_waves import refuse_unmeasured_waves
+from seatrial.estimation.identify import fit_result
+from seatrial.estimation.identify.baselines import with_baselines
 from seatrial.estimation.identify.identifiability import identifiability
+from seatrial.estimation.identify.model_selection import HOLDOUT_WINDOW_SHIP_LENGTHS as HOLDOUT_WINDOW
+from seatrial.estimation.identify.model_selection import SelectedModel, select_model, with_model_spread
 from seatrial.estimation.identify.profile import profiles
-from seatrial.estimation.identify.rolling import rolling
+from seatrial.estimation.identify.roll_characteristics import roll_characteristics
+from seatrial.estimation.identify.roll_model_selection import select_roll_model
 from seatrial.estimation.identify.seakeeping import seakeeping
-from seatrial.estimation.identify.spectral import spectral_fit
-from seatrial.estimation.identify.swinging import chosen_by_runs
-from seatrial.estimation.identify.unknown_waves import fit_in_unknown_waves, is_free_decay, is_rolled_by_unknown_waves
-from seatrial.estimation.information.frequency_range import frequency_range, represented
-from seatrial.estimation.information.symmetries import refuse_structural, structural
-from seatrial.estimation.predict.forecast import forecast
+from seatrial.estimation.identify.spectral import fit_spectrum
+from seatrial.estimation.identify.unknown_waves import fit_in_unknown_waves, is_free_decay, is_roll_in_unknown_waves
+from seatrial.estimation.information.frequency_range import frequency_range, frequency_range_finding
+from seatrial.estimation.information.symmetries import refuse_unidentifiable, structural_symmetries
+from seatrial.estimation.predict.predict_runs import predict_runs
 from seatrial.estimation.problem.segments import compared_outputs
 from seatrial.estimation.problem.static_forces import StaticForces
 
-_OFFSET_SPREAD = {"rad": float(np.radians(2.0)), "m/s": 0.1, "rps": 0.1}
-_GAIN_SPREAD = 0.1
-_DELAY_SPREAD = 0.2
+_OFFSET_DEVIATION = {"rad": float(np.radians(2.0)), "m/s": 0.1, "rps": 0.1}
+_GAIN_DEVIATION = 0.1
+_DELAY_DEVIATION = 0.2
 
 
-def settings_of(trial: Trial, records: Sequence[Record]) -> Settings:
+def settings_from_trial(trial: Trial, records: Sequence[Record]) -> Settings:
     """The trial's wishes as settings; offsets without a stated spread get the house's."""
     wishes = trial.estimate
     seconds = wishes.segment_s
     if seconds is None and wishes.segment_lengths:
-        seconds = wishes.segment_lengths * unit_of_time(trial.model, records, trial.ship.length)
+        seconds = wishes.segment_lengths * characteristic_time(trial.model, records, trial.ship.length)
     units = {name: NOTATION[name].unit for name in wishes.offsets}
-    zeros = [(name, "zero", spread or _OFFSET_SPREAD.get(units[name], 0.1), units[name])
+    zeros = [(name, "zero", spread or _OFFSET_DEVIATION.get(units[name], 0.1), units[name])
              for name, spread in wishes.offsets.items()]  # fmt: skip
-    gains = [(name, "gain", spread or _GAIN_SPREAD, "1") for name, spread in wishes.gains.items()]
-    delays = [(name, "delay", spread or _DELAY_SPREAD, "s") for name, spread in wishes.delays.items()]
+    gains = [(name, "gain", spread or _GAIN_DEVIATION, "1") for name, spread in wishes.gains.items()]
+    delays = [(name, "delay", spread or _DELAY_DEVIATION, "s") for name, spread in wishes.delays.items()]
     return Settings(
-        criterion=Criterion(wishes.criterion), segment_seconds=seconds, robust=wishes.robust,
+        criterion=FitCriterion(wishes.criterion), segment_seconds=seconds, robust=wishes.robust,
         noise=dict(trial.noise), channels=wishes.channels, current=wishes.current,
         corrections=(*zeros, *gains, *delays), forces=trial.forces,
     )  # fmt: skip
@@ -70,9 +70,9 @@ def _by_role(records: Sequence[TrialRecord], role: Role) -> list[TrialRecord]:
 def identify(
     trial: Trial,
     seed: int = 0,
-    progress: Progress | None = None,
+    report_progress: ProgressReporter | None = None,
     *,
-    intervals: Intervals = Intervals.AUTO,
+    intervals: IntervalMethod = IntervalMethod.AUTO,
     choose: bool = False,
     compare: bool = False,
 ) -> Fit:
@@ -89,7 +89,7 @@ def identify(
             few for the intervals that are wanted.
     """
     began = time.perf_counter()
-    records, findings = records_of(trial)
+    records, findings = load_records(trial)
     findings = refuse_errors(findings, trial.accept)
     rate = trial.estimate.rate
     if rate is not None:
@@ -99,63 +99,63 @@ def identify(
         raise InputError("the trial has no training run; leave at least one file out of 'validate' and 'leave_out'")
     runs, sessions, length = [r.record for r in train], [r.session for r in train], trial.ship.length
     if any(r.waves is not None and r.waves.spectrum is not None for r in train):
-        fit = spectral_fit(trial, train, findings, seed, began)
-        window = WINDOW_SHIP_LENGTHS * unit_of_time(trial.model, runs, length)
-        return with_rivals(fit, runs, window) if compare else fit
-    settings = replace(settings_of(trial, runs), intervals=intervals, seed=seed)
-    forces = tuple(name for points in trial.forces for name in StaticForces(trial.model, points).names)
+        fit = fit_spectrum(trial, train, findings, seed, began)
+        window = WEAK_FORM_SHIP_LENGTHS * characteristic_time(trial.model, runs, length)
+        return with_baselines(fit, runs, window) if compare else fit
+    settings = replace(settings_from_trial(trial, runs), intervals=intervals, seed=seed)
+    forces = tuple(name for points in trial.forces for name in StaticForces(trial.model, points).force_names)
     outputs = compared_outputs(trial.model, runs, settings.channels)
-    refuse_structural(trial.model, outputs, forces)
-    symmetries = structural(trial.model, outputs, forces)
-    found = identified(trial.model, runs, sessions, length, settings, progress)
-    if settings.criterion is Criterion.AUTO and is_rolled_by_unknown_waves(found, runs):
+    refuse_unidentifiable(trial.model, outputs, forces)
+    symmetries = structural_symmetries(trial.model, outputs, forces)
+    found = estimate_model(trial.model, runs, sessions, length, settings, report_progress)
+    if settings.criterion is FitCriterion.AUTO and is_roll_in_unknown_waves(found, runs):
         return fit_in_unknown_waves(trial, runs, findings, seed, began)
     if is_free_decay(found, runs):
         for run in runs:
-            refuse_undecayed(run)
+            require_decay(run)
     refuse_unmeasured_waves(found, runs)
-    refuse_singular(*_data_and_prior(found))
-    untold = outcome.untold(found)
-    unit = unit_of_time(trial.model, runs, length, trial.estimate.segment_s)
-    others = Considered(found, (), ())
-    seconds = trial.estimate.initial_s or START_SECONDS_LENGTHS * unit
-    if choose and swings(trial.model):
+    refuse_singular(*_coefficient_information(found))
+    untold = fit_result.unidentified(found)
+    unit = characteristic_time(trial.model, runs, length, trial.estimate.segment_s)
+    others = SelectedModel(found, (), ())
+    seconds = trial.estimate.initial_s or INITIAL_STATE_SHIP_LENGTHS * unit
+    if choose and is_pure_roll(trial.model):
         kept_out = [r.record for r in _by_role(records, Role.VALIDATE)]
-        others = chosen_by_runs(
-            found, trial.model, runs, sessions, kept_out, length, seconds, settings, trial.family, progress
+        others = select_roll_model(
+            found, trial.model, runs, sessions, kept_out, length, seconds, settings, trial.family, report_progress
         )
-    elif choose or intervals is Intervals.JACKKNIFE:
-        others = considered(
-            found, trial.model, runs, sessions, length, FAMILY_WINDOW * unit, settings, trial.family,
-            choose=choose, progress=progress,
+    elif choose or intervals is IntervalMethod.JACKKNIFE:
+        others = select_model(
+            found, trial.model, runs, sessions, length, HOLDOUT_WINDOW * unit, settings, trial.family,
+            choose=choose, report_progress=report_progress,
         )  # fmt: skip
-    found, tied = others.found, others.tied
+    found, tied = others.estimation, others.tied
     try:
-        told = forecast(found, records, seconds, length, seed, progress, tied)
+        told = predict_runs(found, records, seconds, length, seed, report_progress, tied)
     except DivergedError as error:
-        raise InputError(outcome.not_sailed(found, error)) from None
-    found = with_ensemble(found, tied)
-    known = identifiability(found, symmetries, approach_of(runs, found.model), length)
-    if intervals is Intervals.PROFILE:
-        drawn = profiles(found.made, found.interval.standard_error, found.made.problem.free, progress)
+        raise InputError(fit_result.divergence_message(found, error)) from None
+    found = with_model_spread(found, tied)
+    known = identifiability(found, symmetries, approach_condition(runs, found.model), length)
+    if intervals is IntervalMethod.PROFILE:
+        drawn = profiles(found.estimate, found.interval.standard_error, found.estimate.problem.free, report_progress)
         known = replace(known, profiles=drawn)
-    unprofiled = intervals is Intervals.PROFILE and not known.profiles
-    said = (*agreement(found.made), *untold, *outcome.bounds_hit(found), *outcome.unconverged(found))
-    said += (outcome.NO_PROFILE,) if unprofiled else ()
+    unprofiled = intervals is IntervalMethod.PROFILE and not known.profiles
+    said = (*force_consistency(found.estimate), *untold, *fit_result.bounds_hit(found), *fit_result.unconverged(found))
+    said += (fit_result.NO_PROFILE,) if unprofiled else ()
     shown = frequency_range(runs, outputs) if trial.model.is_affine else {}
-    said += (represented(shown),) if shown else ()
+    said += (frequency_range_finding(shown),) if shown else ()
     fit = Fit(
         question=trial.question
         or f"Which {trial.model.name} model explains these records, and how well does it predict?",
         ship=trial.ship,
         model=found.model,
-        coefficients=outcome.coefficients(found, trial.truth, known.profiles),
-        covariance=found.interval.covariance[: len(found.made.problem.free), : len(found.made.problem.free)],
-        solution=found.made.optimum.solution,
-        method=outcome.method(found),
-        offsets=outcome.offsets(found),
-        noise=outcome.noise(found),
-        residuals=outcome.residuals(found),
+        coefficients=fit_result.coefficients(found, trial.truth, known.profiles),
+        covariance=found.interval.covariance[: len(found.estimate.problem.free), : len(found.estimate.problem.free)],
+        solution=found.estimate.optimum.solution,
+        method=fit_result.method(found),
+        offsets=fit_result.offsets(found),
+        noise=fit_result.noise(found),
+        residuals=fit_result.residuals(found),
         predictions=told.predictions,
         findings=(*findings, *others.findings, *said),
         records=tuple(r.record for r in records),
@@ -163,16 +163,20 @@ def identify(
         elapsed_s=time.perf_counter() - began,
         versions=versions(),
         identifiability=known,
-        disturbance=found.disturbance,
-        family=others.rows,
-        margin=told.margin,
+        noise_model=found.noise_model,
+        candidate_models=others.candidates,
+        interval_basis=told.interval_basis,
         seakeeping=seakeeping(found.model, train, length),
-        rolling=rolling(found.model, found.interval, found.made.problem.free, runs, trial.ship),
+        roll=roll_characteristics(found.model, found.interval, found.estimate.problem.free, runs, trial.ship),
     )
-    return with_rivals(fit, runs, WINDOW_SHIP_LENGTHS * unit, progress) if compare else fit
+    return with_baselines(fit, runs, WEAK_FORM_SHIP_LENGTHS * unit, report_progress) if compare else fit
 
 
-def _data_and_prior(found: Identified) -> tuple[Array, tuple[str, ...], Array]:
-    problem = found.made.problem
+def _coefficient_information(estimation: Estimation) -> tuple[Array, tuple[str, ...], Array]:
+    problem = estimation.estimate.problem
     count = len(problem.free)
-    return found.made.optimum.normal.reduced()[1][:count, :count], problem.free, found.made.shared[:count]
+    return (
+        estimation.estimate.optimum.normal.without_local()[1][:count, :count],
+        problem.free,
+        estimation.estimate.common_parameters[:count],
+    )

@@ -11,30 +11,30 @@ from seatrial.core.results import Fit, Method
 from seatrial.core.values import Array, Finding, InputError, Record
 from seatrial.core.values.versions import versions
 from seatrial.data.trial import Trial, TrialRecord
-from seatrial.data.trial.trial import Waves
-from seatrial.estimation.estimate.singular import weakest
-from seatrial.estimation.identify.outcome import estimated
+from seatrial.data.trial.trial import WaveEncounter
+from seatrial.estimation.estimate.singular import weakest_direction
+from seatrial.estimation.identify.fit_result import coefficient_table
 from seatrial.estimation.identify.seakeeping import seakeeping
 from seatrial.estimation.information.covariance import from_information
-from seatrial.estimation.information.frequency_range import frequency_range, represented
+from seatrial.estimation.information.frequency_range import frequency_range, frequency_range_finding
 from seatrial.estimation.problem.segments import compared_outputs
-from seatrial.estimation.problem.spectral import Spectral, fine_grid, transformed
+from seatrial.estimation.problem.spectral_likelihood import SpectralLikelihood, fine_grid, hann_transform
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt
 from seatrial.physics.sea.force_spectrum import force_density
 from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.harmonics import Complex
 
 # sensors are first thought this many times worse, so that the search sees the shape before the detail
-_COARSE = (100.0, 30.0, 10.0, 3.0)
+_NOISE_FACTORS = (100.0, 30.0, 10.0, 3.0)
 # relative standard error beyond which a coefficient is not printed, and misfit of a band beyond which the sea is wrong
-_VAGUE, _MISFIT, _BANDS, _SIGMAS = 0.25, 0.5, 5, 4.0
+_MAX_RELATIVE_ERROR, _MAX_MISFIT, _BANDS, _SIGMAS = 0.25, 0.5, 5, 4.0
 # coherence of force and moment over the whole band beyond which they count as one
-_AS_ONE = 0.99
-_NONE = np.zeros((0, 0))
+_MAX_COHERENCE = 0.99
+_NO_INITIAL_STATES = np.zeros((0, 0))
 
 
-def spectral_fit(
-    trial: Trial, records: Sequence[TrialRecord], findings: tuple[Finding, ...], seed: int, began: float
+def fit_spectrum(
+    trial: Trial, records: Sequence[TrialRecord], findings: tuple[Finding, ...], seed: int, started: float
 ) -> Fit:
     """The fit of one run by the likelihood of its spectrum; sensor noise must be stated under [noise].
 
@@ -47,29 +47,42 @@ def spectral_fit(
     record, waves = records[0].record, records[0].waves
     assert waves is not None
     problem = spectral_problem(trial.model, record, waves, dict(trial.noise))
-    _refuse_one_force(problem, record)
-    optimum = _searched(problem)
+    _refuse_coherent_forces(problem, record)
+    optimum = _maximum_likelihood(problem)
     point, information = optimum.solution.point, optimum.normal.hessian
     _refuse_misfit(problem, point)
-    _refuse_vague(problem, point, information)
+    _refuse_uncertain(problem, point, information)
     interval = replace(from_information(information), meaning="Fisher information of the spectral likelihood")
     model = trial.model.with_values(dict(zip(problem.free, map(float, point), strict=True)))
     reason = "neither elevation nor wave force was recorded: the spectrum of the sea stands for them, without phases"
     return Fit(
         question=trial.question or f"Which {model.name} model explains the spectra of these motions?",
-        ship=trial.ship, model=model,
-        coefficients=estimated(model.parameters, problem.free, point, interval, trial.truth),
-        covariance=interval.covariance, solution=optimum.solution,
-        method=Method("likelihood of the motions' spectra (Whittle)", "the model's own values, sensors first taken as "
-                      "worse than they are", interval.meaning, (reason,), {"frequencies": len(problem.omega)}),
-        offsets=(), noise=(), residuals=(), predictions=(),
-        findings=(*findings, represented(frequency_range([record], problem.outputs))), records=(record,), seed=seed,
-        elapsed_s=time.perf_counter() - began, versions=versions(),
+        ship=trial.ship,
+        model=model,
+        coefficients=coefficient_table(model.parameters, problem.free, point, interval, trial.truth),
+        covariance=interval.covariance,
+        solution=optimum.solution,
+        method=Method(
+            "likelihood of the motions' spectra (Whittle)",
+            "the model's own values, sensors first taken as worse than they are",
+            interval.meaning,
+            (reason,),
+            {"frequencies": len(problem.omega)},
+        ),
+        offsets=(),
+        noise=(),
+        residuals=(),
+        predictions=(),
+        findings=(*findings, frequency_range_finding(frequency_range([record], problem.outputs))),
+        records=(record,),
+        seed=seed,
+        elapsed_s=time.perf_counter() - started,
+        versions=versions(),
         seakeeping=seakeeping(model, records, trial.ship.length),
-    )  # fmt: skip
+    )
 
 
-def spectral_problem(model: Model, record: Record, waves: Waves, noise: dict[str, float]) -> Spectral:
+def spectral_problem(model: Model, record: Record, waves: WaveEncounter, noise: dict[str, float]) -> SpectralLikelihood:
     """The problem of one record.
 
     Raises:
@@ -82,9 +95,9 @@ def spectral_problem(model: Model, record: Record, waves: Waves, noise: dict[str
         if not np.all(np.isfinite(record[name])):
             raise InputError(f"record '{record.name}': channel '{name}' has gaps, which a spectrum cannot have")
     assert waves.spectrum is not None
-    omega, motions = transformed(np.stack([record[o] for o in outputs], axis=1), record.dt)
-    _, inputs = transformed(inputs_of(model, record), record.dt)
-    low, high = _band(motions, noise, outputs, record.dt)
+    omega, motions = hann_transform(np.stack([record[o] for o in outputs], axis=1), record.dt)
+    _, inputs = hann_transform(inputs_of(model, record), record.dt)
+    low, high = _usable_bins(motions, noise, outputs, record.dt)
     kept = slice(low, high)
     fine = fine_grid(omega[kept])
     half = 0.5 * (fine[1] - fine[0])
@@ -94,10 +107,12 @@ def spectral_problem(model: Model, record: Record, waves: Waves, noise: dict[str
     felt = force_density(waves.spectrum, waves.excitation, waves.U, waves.beta, np.maximum(edges, 0.0))
     density[:, place[0] : place[1] + 1, place[0] : place[1] + 1] = felt
     levels = np.array([noise[o] for o in outputs])
-    return Spectral(model, omega[kept], outputs, motions[kept], inputs[kept], fine, density, levels, record.dt)
+    return SpectralLikelihood(
+        model, omega[kept], outputs, motions[kept], inputs[kept], fine, density, levels, record.dt
+    )
 
 
-def _band(motions: Complex, noise: dict[str, float], outputs: Sequence[str], dt: float) -> tuple[int, int]:
+def _usable_bins(motions: Complex, noise: dict[str, float], outputs: Sequence[str], dt: float) -> tuple[int, int]:
     """Bins from the third on up to where no motion rises above its sensor's noise."""
     level = np.array([noise[o] ** 2 for o in outputs]) * dt / np.pi
     above = np.flatnonzero(np.any(np.abs(motions) ** 2 > 20.0 * level, axis=1))
@@ -105,22 +120,24 @@ def _band(motions: Complex, noise: dict[str, float], outputs: Sequence[str], dt:
     return 8, max(last, 32)
 
 
-def _searched(problem: Spectral) -> Optimum:
+def _maximum_likelihood(problem: SpectralLikelihood) -> Optimum:
     point = problem.start()
-    for factor in _COARSE:
+    for factor in _NOISE_FACTORS:
         coarse = replace(problem, noise=problem.noise * factor)
-        point = levenberg_marquardt(coarse, point, _NONE, negligible=1e-3).solution.point
-    return levenberg_marquardt(problem, point, _NONE, negligible=1e-6)
+        point = levenberg_marquardt(coarse, point, _NO_INITIAL_STATES, negligible=1e-3).solution.point
+    return levenberg_marquardt(problem, point, _NO_INITIAL_STATES, negligible=1e-6)
 
 
-def _refuse_one_force(problem: Spectral, record: Record) -> None:
+def _refuse_coherent_forces(problem: SpectralLikelihood, record: Record) -> None:
     """Raises:
     InputError: heave force and pitch moment of the waves move as one all over the band, as abeam.
     """
     first, second = (problem.model.input_names.index(n) for n in ("F3", "M5"))
-    across = np.abs(np.sum(problem.waves[:, first, second])) ** 2
-    own = np.sum(problem.waves[:, first, first].real) * np.sum(problem.waves[:, second, second].real)
-    if across > _AS_ONE * own:
+    across = np.abs(np.sum(problem.input_densities[:, first, second])) ** 2
+    own = np.sum(problem.input_densities[:, first, first].real) * np.sum(
+        problem.input_densities[:, second, second].real
+    )
+    if across > _MAX_COHERENCE * own:
         raise InputError(
             f"record '{record.name}': in this sea the waves' force and moment keep one ratio at all frequencies "
             f"(coherence {across / own:.3f}), which its spectrum cannot take apart; "
@@ -128,14 +145,14 @@ def _refuse_one_force(problem: Spectral, record: Record) -> None:
         )
 
 
-def _refuse_misfit(problem: Spectral, point: Array) -> None:
+def _refuse_misfit(problem: SpectralLikelihood, point: Array) -> None:
     """Raises:
     InputError: a band in which the motions are not those that sea and model would give.
     """
     share = problem.misfit(point)
     for piece in np.array_split(np.arange(len(share)), _BANDS):
         mean = float(np.mean(share[piece]))
-        if abs(mean - 1.0) > max(_MISFIT, _SIGMAS / np.sqrt(len(piece))):
+        if abs(mean - 1.0) > max(_MAX_MISFIT, _SIGMAS / np.sqrt(len(piece))):
             low, high = problem.omega[piece[[0, -1]]]
             raise InputError(
                 f"sea and model do not explain the motions met between {low:.2g} and {high:.2g} rad/s: they have "
@@ -143,14 +160,15 @@ def _refuse_misfit(problem: Spectral, point: Array) -> None:
             )
 
 
-def _refuse_vague(problem: Spectral, point: Array, information: Array) -> None:
+def _refuse_uncertain(problem: SpectralLikelihood, point: Array, information: Array) -> None:
     """Raises:
     InputError: a coefficient whose standard error is more than a quarter of it.
     """
     error = from_information(information).standard_error / np.abs(point)
     worst = int(np.argmax(error))
-    if error[worst] > _VAGUE:
+    if error[worst] > _MAX_RELATIVE_ERROR:
         raise InputError(
             f"the sea's spectrum cannot tell {problem.free[worst]} (standard error {100 * error[worst]:.0f} %) nor the "
-            f"direction {weakest(information, problem.free, point)[1]}; record the elevation or the wave forces"
+            f"direction {weakest_direction(information, problem.free, point)[1]}; record the elevation or "
+            "the wave forces"
         )

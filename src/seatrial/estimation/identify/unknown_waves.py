@@ -7,84 +7,97 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.results import Fit, Method, Rolling
+from seatrial.core.results import Fit, Method, RollCharacteristics
 from seatrial.core.values import Array, Finding, InputError, Record, Severity
 from seatrial.core.values.versions import versions
 from seatrial.data.trial import Trial
-from seatrial.estimation.estimate.fit import Identified, swings
-from seatrial.estimation.identify.outcome import estimated
-from seatrial.estimation.identify.rolling import rolling
+from seatrial.estimation.estimate.fit import Estimation, is_pure_roll
+from seatrial.estimation.identify.fit_result import coefficient_table
+from seatrial.estimation.identify.roll_characteristics import roll_characteristics
 from seatrial.estimation.information.covariance import Interval, inverse
-from seatrial.estimation.problem.spectral import transformed
+from seatrial.estimation.problem.spectral_likelihood import hann_transform
 from seatrial.estimation.problem.unknown_waves import DAMPING, RESTORING, UnknownWaves
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt
 
-WAVES, FREE = "alpha_w", ("b_1", "c_1")
-_UNEXPLAINED = 0.5
-_BAND = (0.45, 3.0)
+WAVE_SLOPE, FREE_COEFFICIENTS = "alpha_w", ("b_1", "c_1")
+_MAX_RESIDUAL_SHARE = 0.5
+_BAND_EDGES = (0.45, 3.0)
 # share of the waves' largest density that must be left at the natural frequency, and relative standard errors
-_LEAST, _VAGUE_DAMPING, _VAGUE_RESTORING = 0.05, 0.4, 0.15
-_MISFIT, _BANDS, _SIGMAS = 0.5, 5, 4.0
-_SMOOTH, _SWINGS = 9, 40
-_NONE = np.zeros((0, 0))
+_MIN_WAVE_SHARE, _MAX_DAMPING_ERROR, _MAX_RESTORING_ERROR = 0.05, 0.4, 0.15
+_MAX_MISFIT, _BANDS, _SIGMAS = 0.5, 5, 4.0
+_SMOOTHING_BINS, _MIN_CYCLES = 9, 40
+_NO_INITIAL_STATES = np.zeros((0, 0))
 
 
-def is_rolled_by_unknown_waves(found: Identified, records: Sequence[Record]) -> bool:
+def is_roll_in_unknown_waves(estimation: Estimation, records: Sequence[Record]) -> bool:
     """Whether the ship swings, no input was recorded, and no initial state explains half of what she does."""
-    return _is_undriven_roll(found, records) and not _is_explained(found)
+    return _is_unforced_roll(estimation, records) and not _is_explained(estimation)
 
 
-def is_free_decay(found: Identified, records: Sequence[Record]) -> bool:
+def is_free_decay(estimation: Estimation, records: Sequence[Record]) -> bool:
     """Whether the ship swings, no input was recorded, and her initial state explains it."""
-    return _is_undriven_roll(found, records) and _is_explained(found)
+    return _is_unforced_roll(estimation, records) and _is_explained(estimation)
 
 
-def _is_undriven_roll(found: Identified, records: Sequence[Record]) -> bool:
-    model = found.model
-    if not swings(model) or WAVES not in model.input_names or not all("phi" in r for r in records):
+def _is_unforced_roll(estimation: Estimation, records: Sequence[Record]) -> bool:
+    model = estimation.model
+    if not is_pure_roll(model) or WAVE_SLOPE not in model.input_names or not all("phi" in r for r in records):
         return False
     return not any(n in r and np.ptp(r[n]) > 0.0 for n in model.input_names for r in records)
 
 
-def _is_explained(found: Identified) -> bool:
-    measured = found.shooting.problem.data.measured
-    left, moved = np.nanstd(found.shooting.residuals(), axis=0), np.nanstd(measured, axis=0)
-    return bool(np.all(left <= _UNEXPLAINED * moved))
+def _is_explained(estimation: Estimation) -> bool:
+    measured = estimation.shooting.problem.data.measured
+    left, moved = np.nanstd(estimation.shooting.residuals(), axis=0), np.nanstd(measured, axis=0)
+    return bool(np.all(left <= _MAX_RESIDUAL_SHARE * moved))
 
 
 def fit_in_unknown_waves(
-    trial: Trial, records: Sequence[Record], findings: tuple[Finding, ...], seed: int, began: float
+    trial: Trial, records: Sequence[Record], findings: tuple[Finding, ...], seed: int, started: float
 ) -> Fit:
     """The fit of one run by the likelihood of its roll's spectrum.
 
     Raises:
         InputError: more than one training run, gaps, too short a record, or waves that cannot be told from the ship.
     """
-    record = _only(records)
-    problem = problem_of(record)
-    optimum = searched(problem)
-    interval = of_roll(problem, optimum)
+    record = _single_record(records)
+    problem = spectral_problem(record)
+    optimum = maximum_likelihood(problem)
+    interval = roll_interval(problem, optimum)
     b_1, c_1 = np.exp(optimum.solution.point[[DAMPING, RESTORING]]).tolist()
-    _refuse_untold(problem, optimum, interval)
-    model = _linear(trial.model, b_1, c_1, float(np.mean(record["phi"])))
-    known = rolling(model, interval, FREE, [record], trial.ship)
+    _refuse_unidentifiable(problem, optimum, interval)
+    model = _linear_model(trial.model, b_1, c_1, float(np.mean(record["phi"])))
+    known = roll_characteristics(model, interval, FREE_COEFFICIENTS, [record], trial.ship)
     return Fit(
         question=trial.question or "What are natural period and damping of this ship's roll in waves?",
-        ship=trial.ship, model=model,
-        coefficients=estimated(model.parameters, FREE, np.array([b_1, c_1]), interval, trial.truth),
-        covariance=interval.covariance, solution=optimum.solution,
-        method=Method("likelihood of the roll's spectrum (Whittle), the sea's own spectrum estimated with it",
-                      "the largest roll, waves longer and shorter than it", interval.meaning,
-                      ("no input was recorded and no initial state explains the motion: waves that nobody measured",),
-                      {"frequencies": len(problem.omega)}),
-        offsets=(), noise=(), residuals=(), predictions=(),
-        findings=(*findings, _equivalent(record), *_unused(trial.model)), records=(record,),
-        seed=seed, elapsed_s=time.perf_counter() - began, versions=versions(),
-        rolling=None if known is None else _with_spectrum(known, problem, optimum.solution.point),
-    )  # fmt: skip
+        ship=trial.ship,
+        model=model,
+        coefficients=coefficient_table(
+            model.parameters, FREE_COEFFICIENTS, np.array([b_1, c_1]), interval, trial.truth
+        ),
+        covariance=interval.covariance,
+        solution=optimum.solution,
+        method=Method(
+            "likelihood of the roll's spectrum (Whittle), the sea's own spectrum estimated with it",
+            "the largest roll, waves longer and shorter than it",
+            interval.meaning,
+            ("no input was recorded and no initial state explains the motion: waves that nobody measured",),
+            {"frequencies": len(problem.omega)},
+        ),
+        offsets=(),
+        noise=(),
+        residuals=(),
+        predictions=(),
+        findings=(*findings, _linear_equivalent_finding(record), *_unused_prior_findings(trial.model)),
+        records=(record,),
+        seed=seed,
+        elapsed_s=time.perf_counter() - started,
+        versions=versions(),
+        roll=None if known is None else _with_spectrum(known, problem, optimum.solution.point),
+    )
 
 
-def problem_of(record: Record) -> UnknownWaves:
+def spectral_problem(record: Record) -> UnknownWaves:
     """The band about the largest roll.
 
     Raises:
@@ -93,104 +106,107 @@ def problem_of(record: Record) -> UnknownWaves:
     phi = record["phi"]
     if not np.all(np.isfinite(phi)):
         raise InputError(f"record '{record.name}': channel 'phi' has gaps, which a spectrum cannot have; repair it")
-    omega, motion = transformed(phi[:, None], record.dt)
+    omega, motion = hann_transform(phi[:, None], record.dt)
     power = np.abs(motion[:, 0]) ** 2
     centre = float(omega[np.argmax(_smoothed(power))])
-    if record.duration * centre < 2.0 * np.pi * _SWINGS:
+    if record.duration * centre < 2.0 * np.pi * _MIN_CYCLES:
         raise InputError(
             f"record '{record.name}': {record.duration * centre / (2.0 * np.pi):.0f} swings in waves that nobody "
-            f"measured are too few for a spectrum; record {_SWINGS} at least, or the wave slope {WAVES}"
+            f"measured are too few for a spectrum; record {_MIN_CYCLES} at least, or the wave slope {WAVE_SLOPE}"
         )
-    low, high = (edge * centre for edge in _BAND)
-    return UnknownWaves(omega, power, centre).between(low, high)
+    low, high = (edge * centre for edge in _BAND_EDGES)
+    return UnknownWaves(omega, power, centre).band_limited(low, high)
 
 
-def searched(problem: UnknownWaves) -> Optimum:
+def maximum_likelihood(problem: UnknownWaves) -> Optimum:
     """The best of several beginnings."""
-    found = [levenberg_marquardt(problem, begin, _NONE, negligible=1e-6, evaluations=100) for begin in problem.starts()]
+    found = [
+        levenberg_marquardt(problem, begin, _NO_INITIAL_STATES, negligible=1e-6, evaluations=100)
+        for begin in problem.start_points()
+    ]
     return min(found, key=lambda one: one.solution.value)
 
 
-def of_roll(problem: UnknownWaves, optimum: Optimum) -> Interval:
+def roll_interval(problem: UnknownWaves, optimum: Optimum) -> Interval:
     """Of b_1 and c_1; unknowns of the sea that end on a bound count as known."""
     point = optimum.solution.point
     inside = np.flatnonzero((point > problem.lower) & (point < problem.upper))
     places = [int(np.flatnonzero(inside == k)[0]) for k in (DAMPING, RESTORING) if k in inside]
-    if len(places) < len(FREE):
+    if len(places) < len(FREE_COEFFICIENTS):
         raise InputError("the roll's spectrum shows no resonance; record a decay in calm water, or the wave slope")
     covariance = inverse(optimum.normal.hessian[np.ix_(inside, inside)])[np.ix_(places, places)]
     size = np.exp(point[[DAMPING, RESTORING]])
     return Interval(covariance * np.outer(size, size), np.inf, "Fisher information of the spectral likelihood")
 
 
-def _only(records: Sequence[Record]) -> Record:
+def _single_record(records: Sequence[Record]) -> Record:
     if len(records) != 1:
         raise InputError(
             f"roll in waves that nobody measured is fitted one run at a time; the trial trains on {len(records)}; "
-            f"leave the others out, or record the wave slope {WAVES}"
+            f"leave the others out, or record the wave slope {WAVE_SLOPE}"
         )
     return records[0]
 
 
-def _linear(model: Model, b_1: float, c_1: float, rest: float) -> Model:
+def _linear_model(model: Model, b_1: float, c_1: float, rest: float) -> Model:
     values = dict.fromkeys(("b_2", "b_3", "c_3", "c_5"), 0.0) | {"b_1": b_1, "c_1": c_1, "phi_0": rest}
     made = model.with_values(values)
-    parameters = made.parameters.fixed(*(n for n in made.parameters.free_names if n not in FREE))
-    return made.with_parameters(parameters.freed(*FREE))
+    parameters = made.parameters.fixed(*(n for n in made.parameters.free_names if n not in FREE_COEFFICIENTS))
+    return made.with_parameters(parameters.freed(*FREE_COEFFICIENTS))
 
 
-def _refuse_untold(problem: UnknownWaves, optimum: Optimum, interval: Interval) -> None:
+def _refuse_unidentifiable(problem: UnknownWaves, optimum: Optimum, interval: Interval) -> None:
     """Raises:
     InputError: waves without energy at the natural frequency, a spectrum that is not met, or vague coefficients.
     """
     point, power = optimum.solution.point, problem.power
     advice = "record the wave slope alpha_w, or a decay in calm water"
-    moment, natural = problem.moment(point, problem.omega), np.exp(0.5 * point[[RESTORING]])
-    share = float(problem.moment(point, natural)[0] / np.max(moment))
-    if share < _LEAST:
+    moment, natural = problem.moment_density(point, problem.omega), np.exp(0.5 * point[[RESTORING]])
+    share = float(problem.moment_density(point, natural)[0] / np.max(moment))
+    if share < _MIN_WAVE_SHARE:
         raise InputError(
             f"the waves have next to no energy at the natural frequency ({100 * share:.1f} % of their peak), so that "
             f"the roll tells their period and not the ship's; {advice}"
         )
-    ratio = power / problem.expected(point)
+    ratio = power / problem.windowed_density(point)
     for piece in np.array_split(np.arange(len(ratio)), _BANDS):
         mean = float(np.mean(ratio[piece]))
-        if abs(mean - 1.0) > max(_MISFIT, _SIGMAS * np.sqrt(35.0 / 18.0 / len(piece))):
+        if abs(mean - 1.0) > max(_MAX_MISFIT, _SIGMAS * np.sqrt(35.0 / 18.0 / len(piece))):
             low, high = problem.omega[piece[[0, -1]]]
             raise InputError(
                 f"no sea of one peak explains the roll between {low:.2g} and {high:.2g} rad/s, which has {mean:.2g} "
                 f"times the power expected there; {advice}"
             )
     error = interval.standard_error / np.exp(point[[DAMPING, RESTORING]])
-    if error[0] > _VAGUE_DAMPING or error[1] > _VAGUE_RESTORING:
+    if error[0] > _MAX_DAMPING_ERROR or error[1] > _MAX_RESTORING_ERROR:
         raise InputError(
             f"the roll's spectrum cannot tell the ship from the waves (standard errors of b_1 {100 * error[0]:.0f} %, "
             f"c_1 {100 * error[1]:.0f} %); record longer, {advice}"
         )
 
 
-def _equivalent(record: Record) -> Finding:
+def _linear_equivalent_finding(record: Record) -> Finding:
     rms = float(np.degrees(np.std(record["phi"])))
     what = f"b_1 and c_1 are the linear equivalent of roll in this sea, {rms:.2g} deg rms"
     evidence = "other coefficients held at zero; the sea is taken to have one peak (JONSWAP) and to fall off with depth"
     return Finding(Severity.INFO, "equivalent-linear", what, evidence, "a decay tells damping over amplitude")
 
 
-def _unused(model: Model) -> list[Finding]:
+def _unused_prior_findings(model: Model) -> list[Finding]:
     names = [p.name for p in model.parameters.free if p.prior is not None]
     what = f"the priors of {', '.join(names)} were not used"
     return [Finding(Severity.WARNING, "prior-not-used", what, "the likelihood of a spectrum has none")] if names else []
 
 
 def _smoothed(power: Array) -> Array:
-    window = np.hanning(_SMOOTH + 2)[1:-1]
+    window = np.hanning(_SMOOTHING_BINS + 2)[1:-1]
     return np.asarray(np.convolve(power, window / window.sum(), "same"), dtype=np.float64)
 
 
-def _with_spectrum(known: Rolling, problem: UnknownWaves, point: Array) -> Rolling:
+def _with_spectrum(roll: RollCharacteristics, problem: UnknownWaves, point: Array) -> RollCharacteristics:
     """Recorded and expected densities over frequency in place of curves over amplitude, which a line has none of."""
-    rows = zip(problem.omega, _smoothed(problem.power), problem.expected(point), strict=True)
+    rows = zip(problem.omega, _smoothed(problem.power), problem.windowed_density(point), strict=True)
     return replace(
-        known, amplitude=(), damping=(), damping_lower=(), damping_upper=(), period=(), period_lower=(),
+        roll, amplitude=(), damping=(), damping_lower=(), damping_upper=(), period=(), period_lower=(),
         period_upper=(), swings=(), spectrum=tuple((float(w), float(s), float(e)) for w, s, e in rows),
     )  # fmt: skip

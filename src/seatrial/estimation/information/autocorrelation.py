@@ -8,13 +8,13 @@ from scipy import stats
 from seatrial.core.values import Array
 
 
-def autocorrelation(pieces: Sequence[Array], lags: int) -> Array:
-    """Autocorrelation at lags 0..lags, averaged over pieces; NaN samples count as zero. Shape (lags + 1,).
+def autocorrelation(residuals: Sequence[Array], lags: int) -> Array:
+    """Autocorrelation at lags 0..lags, averaged over the series; NaN samples count as zero. Shape (lags + 1,).
 
     Box, Jenkins & Reinsel 2008, eq. (2.1.12), with the mean left in: a residual's mean is part of its colour.
     """
     total = np.zeros(lags + 1)
-    for piece in pieces:
+    for piece in residuals:
         e = np.where(np.isfinite(piece), piece, 0.0)
         size = 2 ** int(np.ceil(np.log2(len(e) + lags + 1)))
         spectrum = np.fft.rfft(e, size)

@@ -8,9 +8,9 @@ from seatrial.core.results import Collinearity
 from seatrial.core.values import Array
 
 
-def condition(information: Array) -> float:
+def condition_number(information: Array) -> float:
     """Condition number of the information scaled to unit diagonal; infinite where a direction is missing."""
-    values = np.linalg.eigvalsh(_unit(information))
+    values = np.linalg.eigvalsh(_unit_diagonal(information))
     return float(values[-1] / values[0]) if values[0] > 1e-15 * values[-1] else np.inf
 
 
@@ -19,7 +19,7 @@ def collinearity(information: Array, names: Sequence[str]) -> tuple[Collinearity
 
     Marquardt 1970, Technometrics 12, 591.
     """
-    unit = _unit(information)
+    unit = _unit_diagonal(information)
     values, vectors = np.linalg.eigh(unit)
     covariance = (vectors / np.maximum(values, 1e-14 * values[-1])) @ vectors.T
     factors = np.diag(covariance)
@@ -34,6 +34,6 @@ def collinearity(information: Array, names: Sequence[str]) -> tuple[Collinearity
     )
 
 
-def _unit(information: Array) -> Array:
+def _unit_diagonal(information: Array) -> Array:
     scale = 1.0 / np.sqrt(np.maximum(np.diag(information), 1e-300))
     return information * scale[:, None] * scale[None, :]

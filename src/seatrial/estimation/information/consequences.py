@@ -11,11 +11,11 @@ import numpy as np
 
 from seatrial.core.values import Array, Index
 
-_NAMED, _LEAST = 4, 0.005
-_SEEN = 0.05
+_MOST_NAMED, _LEAST_SHIFT = 4, 0.005
+_VISIBLE_GROWTH = 0.05
 
 
-def answer(information: Array, fitted: Index, assumed: int, step: float) -> tuple[Array, float]:
+def estimate_shifts(information: Array, fitted: Index, assumed: int, step: float) -> tuple[Array, float]:
     """Changes of the fitted parameters, (len(fitted),), and the growth of chi squared, for a step of the assumed one.
 
     information: shape (n, n); fitted, assumed: positions in it.
@@ -25,15 +25,21 @@ def answer(information: Array, fitted: Index, assumed: int, step: float) -> tupl
     return moves, max(float(step * (information[assumed, assumed] * step + cross @ moves)), 0.0)
 
 
-def words(name: str, change: float, moves: Mapping[str, float], misfit: float, left: float) -> str:
-    """In words; change and moves are relative, largest first; misfit: growth of chi squared; left: what it is now."""
-    shifts = [f"{n} by {float(f'{100 * m:.2g}'):+g} %" for n, m in list(moves.items())[:_NAMED] if abs(m) >= _LEAST]
+def consequence_text(
+    name: str, change: float, shifts_by_name: Mapping[str, float], chi_squared_growth: float, chi_squared: float
+) -> str:
+    """A sentence; change and shifts_by_name are relative, the largest first; chi_squared: without the change."""
+    shifts = [
+        f"{n} by {float(f'{100 * m:.2g}'):+g} %"
+        for n, m in list(shifts_by_name.items())[:_MOST_NAMED]
+        if abs(m) >= _LEAST_SHIFT
+    ]
     first = f"were {name} {100 * change:.0f} % larger, "
     if not shifts:
         return f"{first}no estimate would shift by half a per cent"
-    growth = float(np.sqrt(1.0 + misfit / left) - 1.0) if left > 0 else np.inf
-    shown = "show it" if growth >= _SEEN else "hardly show it"
+    growth = float(np.sqrt(1.0 + chi_squared_growth / chi_squared) - 1.0) if chi_squared > 0 else np.inf
+    shown = "show it" if growth >= _VISIBLE_GROWTH else "hardly show it"
     return (
         f"{first}the estimates would shift, {', '.join(shifts)}, and the residuals would {shown} "
-        f"(they would grow by {100 * growth:.2g} %, chi squared by {misfit:.2g})"
+        f"(they would grow by {100 * growth:.2g} %, chi squared by {chi_squared_growth:.2g})"
     )

@@ -43,7 +43,7 @@ def from_information(hessian: Array) -> Interval:
     return Interval(inverse(hessian), np.inf, "information matrix (residuals are white)")
 
 
-def left_out_steps(hessian: Array, run_gradients: Array, run_hessians: Array) -> Array:
+def jackknife_steps(hessian: Array, run_gradients: Array, run_hessians: Array) -> Array:
     """One Gauss-Newton step from the joint optimum for each run left out, theta_(-i) - theta = (H - H_i)^-1 g_i.
 
     From the stored normal equations (Hinkley 1977): run_gradients (n, k), run_hessians (n, k, k); returns (n, k).

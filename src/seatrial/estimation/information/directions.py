@@ -12,13 +12,13 @@ from seatrial.core.results import Direction
 from seatrial.core.values import Array
 from seatrial.estimation.information.covariance import inverse
 
-_NAMED, _SHARE = 5, 0.25
-_HELD = 0.9
-_KNOWN, _VAGUE, _ANYTHING = 0.1, 1.0, 10.0
-_LEAST = 1e-24
+_MOST_NAMED, _SHARE = 5, 0.25
+_NARROWED = 0.9
+_WELL_DETERMINED, _POORLY_DETERMINED, _UNDETERMINED = 0.1, 1.0, 10.0
+_NO_INFORMATION = 1e-24
 
 
-def relative(information: Array, sizes: Array) -> Array:
+def relative_information(information: Array, sizes: Array) -> Array:
     """Information of relative changes, shape (n, n); sizes (n,) are the parameters' characteristic sizes."""
     return information * sizes[:, None] * sizes[None, :]
 
@@ -31,51 +31,51 @@ def directions(
     information: of the data alone, shape (n, n), other unknowns eliminated; precision: what is known besides (priors,
     force points), which the words mention where it narrows a direction that the data leave open.
     """
-    scaled = relative(information, sizes)
+    scaled = relative_information(information, sizes)
     values, vectors = np.linalg.eigh(scaled)
-    least = _LEAST * max(float(values[-1]), 1e-300)
+    least = _NO_INFORMATION * max(float(values[-1]), 1e-300)
     deviations = [float(1.0 / np.sqrt(value)) if value > least else np.inf for value in values]
     held = deviations
     if precision is not None and np.any(precision):
-        posterior = inverse(scaled + relative(precision, sizes))
+        posterior = inverse(scaled + relative_information(precision, sizes))
         held = [float(np.sqrt(v @ posterior @ v)) for v in vectors.T]
     return tuple(_direction(vectors[:, k], deviations[k], held[k], names) for k in range(len(values)))
 
 
-def _direction(vector: Array, deviation: float, held: float, names: Sequence[str]) -> Direction:
+def _direction(vector: Array, deviation: float, posterior_deviation: float, names: Sequence[str]) -> Direction:
     order = np.argsort(-np.abs(vector), kind="stable")
     signed = vector * np.sign(vector[order[0]])
     combination = {names[int(i)]: float(signed[i]) for i in order}
-    text = words(combination, deviation)
-    if deviation > _KNOWN and held < _HELD * deviation:
-        text += f"; what is known besides the records holds it to {_percent(held)}"
+    text = direction_text(combination, deviation)
+    if deviation > _WELL_DETERMINED and posterior_deviation < _NARROWED * deviation:
+        text += f"; what is known besides the records holds it to {_percent(posterior_deviation)}"
     return Direction(combination, deviation, text)
 
 
-def together(changes: Mapping[str, float], form: str = "+.2f") -> str:
+def signed_terms(changes: Mapping[str, float], form: str = "+.2f") -> str:
     """Parameters with their relative changes, e.g. ``+0.91 X_rr -0.34 X_vv``."""
     return " ".join(f"{change:{form}} {name}" for name, change in changes.items())
 
 
 def _percent(deviation: float) -> str:
-    return f"{float(f'{100 * deviation:.2g}'):g} %" if deviation < _ANYTHING else "any amount"
+    return f"{float(f'{100 * deviation:.2g}'):g} %" if deviation < _UNDETERMINED else "any amount"
 
 
-def words(combination: Mapping[str, float], deviation: float) -> str:
+def direction_text(combination: Mapping[str, float], deviation: float) -> str:
     """A direction in words: who moves with whom, and how well that is known."""
-    large = [n for n, c in combination.items() if abs(c) >= _SHARE * max(map(abs, combination.values()))][:_NAMED]
+    large = [n for n, c in combination.items() if abs(c) >= _SHARE * max(map(abs, combination.values()))][:_MOST_NAMED]
     known = _percent(deviation)
     if len(large) == 1:
         (name,) = large
-        if deviation <= _KNOWN:
+        if deviation <= _WELL_DETERMINED:
             return f"{name} is determined to {known}"
-        if deviation <= _VAGUE:
+        if deviation <= _POORLY_DETERMINED:
             return f"{name} is determined vaguely, to {known}"
         return f"{name} is not determined: it may be wrong by {known}"
-    terms = together({n: combination[n] for n in large})
-    if deviation <= _KNOWN:
+    terms = signed_terms({n: combination[n] for n in large})
+    if deviation <= _WELL_DETERMINED:
         return f"the combination {terms} (relative changes) is determined to {known}"
-    if deviation <= _VAGUE:
+    if deviation <= _POORLY_DETERMINED:
         return f"along {terms} (relative changes) the records leave {known} open: these trade against each other"
     return f"along {terms} (relative changes) the records tell nothing: these may be wrong together by {known}"
 
@@ -87,5 +87,5 @@ def effective_parameters(information: Array, precision: Array) -> float:
     to 100 % counts one (both matrices then in relative changes).
     """
     if not np.any(precision):
-        return float(np.sum(np.linalg.eigvalsh(information) > _VAGUE**-2))
+        return float(np.sum(np.linalg.eigvalsh(information) > _POORLY_DETERMINED**-2))
     return float(np.trace(np.linalg.solve(information + precision, information)))

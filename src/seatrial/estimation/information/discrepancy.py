@@ -15,20 +15,20 @@ from scipy.optimize import isotonic_regression
 
 from seatrial.core.values import Array
 
-_VALUES, _RUNS = 4, 3
-_TRACK = ("psi", "x0", "y0")
+_FEWEST_VALUES, _FEWEST_RUNS = 4, 3
+_TRACK_CHANNELS = ("psi", "x0", "y0")
 
-GROWTH = 2.0
+GROWTH_POWER = 2.0
 """Power of the extrapolation index with which the discrepancy grows (benchmarks/extrapolation.py)."""
 
 
 @dataclass(frozen=True, eq=False)
-class Miss:
+class HoldoutError:
     """How one run left out was missed.
 
     Attributes:
         run: its name; dt: s.
-        errors, foreseen: channel (psi, x0, y0) -> error and foreseen standard deviation at every sample, (n,), SI.
+        errors, predicted_sd: channel (psi, x0, y0) -> error and predicted standard deviation at every sample, (n,), SI.
         measures: measure -> (error, foreseen standard deviation), in the measure's unit.
         index: extrapolation index of the run against the others.
     """
@@ -36,7 +36,7 @@ class Miss:
     run: str
     dt: float
     errors: dict[str, Array]
-    foreseen: dict[str, Array]
+    predicted_sd: dict[str, Array]
     measures: dict[str, tuple[float, float]] = field(default_factory=dict)
     index: float = 1.0
 
@@ -46,86 +46,92 @@ class Discrepancy:
     """Standard deviations that come on top of the foreseen ones, within the ground the training runs cover.
 
     Attributes:
-        kinds: kind of measure -> standard deviation in its unit.
+        sd_by_kind: kind of measure -> standard deviation in its unit.
         factor: by which the foreseen standard deviation of a measure is multiplied that no training run shows (the
             ratio of Birge 1932, Phys. Rev. 40, 207, over the kinds they show).
-        dt: s; elapsed: channel -> standard deviation by time since the initial state, shape (n,), SI.
+        dt: s; sd_by_time: channel -> standard deviation by time since the initial state, shape (n,), SI.
     """
 
-    kinds: dict[str, float]
+    sd_by_kind: dict[str, float]
     factor: float
     dt: float
-    elapsed: dict[str, Array]
+    sd_by_time: dict[str, Array]
 
-    def of_measure(self, name: str, foreseen: float, index: float) -> float:
+    def measure_sd(self, name: str, predicted_sd: float, index: float) -> float:
         """Standard deviation of a measure, discrepancy included; `index`: how far the run extrapolates."""
-        extra = self.kinds.get(kind_of(name))
-        return self.factor * foreseen if extra is None else float(np.hypot(foreseen, growth(index) * extra))
+        extra = self.sd_by_kind.get(measure_kind(name))
+        return (
+            self.factor * predicted_sd
+            if extra is None
+            else float(np.hypot(predicted_sd, discrepancy_growth(index) * extra))
+        )
 
-    def of_channel(self, channel: str, foreseen: Array, dt: float, index: float) -> Array:
+    def channel_sd(self, channel: str, predicted_sd: Array, dt: float, index: float) -> Array:
         """Standard deviation of a channel along a prediction, shape (n,); constant beyond the longest run left out."""
-        if channel not in self.elapsed:
-            return foreseen
-        known = self.elapsed[channel]
-        at = np.interp(dt * np.arange(len(foreseen)), self.dt * np.arange(len(known)), known)
-        return np.hypot(foreseen, growth(index) * at)
+        if channel not in self.sd_by_time:
+            return predicted_sd
+        known = self.sd_by_time[channel]
+        at = np.interp(dt * np.arange(len(predicted_sd)), self.dt * np.arange(len(known)), known)
+        return np.hypot(predicted_sd, discrepancy_growth(index) * at)
 
 
-NONE = Discrepancy({}, 1.0, 1.0, {})
+NO_DISCREPANCY = Discrepancy({}, 1.0, 1.0, {})
 
 
-def growth(index: float) -> float:
+def discrepancy_growth(index: float) -> float:
     """How much larger the discrepancy is of a run that extrapolates: the index squared, never less than one."""
-    return max(index, 1.0) ** GROWTH
+    return max(index, 1.0) ** GROWTH_POWER
 
 
-def kind_of(measure: str) -> str:
+def measure_kind(measure: str) -> str:
     """The kind a measure belongs to: its name without numbers, so that all overshoots count together."""
     return "_".join(part for part in measure.split("_") if not part.isdigit())
 
 
-def discrepancy(missed: Sequence[Miss]) -> Discrepancy:
+def discrepancy(holdout_errors: Sequence[HoldoutError]) -> Discrepancy:
     """What these misses have in excess of what was foreseen; none where there are too few runs."""
-    if len({m.run for m in missed}) < _RUNS:
-        return NONE
+    if len({m.run for m in holdout_errors}) < _FEWEST_RUNS:
+        return NO_DISCREPANCY
     pairs: dict[str, list[tuple[float, float, float]]] = {}
-    for miss in missed:
+    for miss in holdout_errors:
         for name, pair in miss.measures.items():
-            pairs.setdefault(kind_of(name), []).append((*pair, growth(miss.index)))
-    known = {kind: np.array(values) for kind, values in pairs.items() if len(values) >= _VALUES}
-    kinds = {kind: float(excess(v[:, :1], v[:, 1:2], v[:, 2:])[0]) for kind, v in known.items()}
+            pairs.setdefault(measure_kind(name), []).append((*pair, discrepancy_growth(miss.index)))
+    known = {kind: np.array(values) for kind, values in pairs.items() if len(values) >= _FEWEST_VALUES}
+    kinds = {kind: float(excess_sd(v[:, :1], v[:, 1:2], v[:, 2:])[0]) for kind, v in known.items()}
     ratios = [np.mean((v[:, 0] / np.maximum(v[:, 1], 1e-300)) ** 2) for v in known.values()]
     factor = float(np.sqrt(max(np.median(ratios), 1.0))) if ratios else 1.0
-    elapsed = {c: _elapsed(missed, c) for c in _TRACK if all(c in m.errors for m in missed)}
+    elapsed = {
+        c: _elapsed_excess_sd(holdout_errors, c) for c in _TRACK_CHANNELS if all(c in m.errors for m in holdout_errors)
+    }
     if {"x0", "y0"} <= set(elapsed):
         both = np.sqrt(0.5 * (elapsed["x0"] ** 2 + elapsed["y0"] ** 2))
         elapsed |= {"x0": both, "y0": both}
-    return Discrepancy(kinds, factor, missed[0].dt, elapsed)
+    return Discrepancy(kinds, factor, holdout_errors[0].dt, elapsed)
 
 
-def _elapsed(missed: Sequence[Miss], channel: str) -> Array:
+def _elapsed_excess_sd(holdout_errors: Sequence[HoldoutError], channel: str) -> Array:
     """Excess standard deviation by elapsed time; it grows, so isotonic regression of the excess variance."""
-    longest = max(len(m.errors[channel]) for m in missed)
-    error, expected = np.full((2, len(missed), longest), np.nan)
-    for row, miss in enumerate(missed):
+    longest = max(len(m.errors[channel]) for m in holdout_errors)
+    error, expected = np.full((2, len(holdout_errors), longest), np.nan)
+    for row, miss in enumerate(holdout_errors):
         error[row, : len(miss.errors[channel])] = miss.errors[channel]
-        expected[row, : len(miss.foreseen[channel])] = miss.foreseen[channel]
+        expected[row, : len(miss.predicted_sd[channel])] = miss.predicted_sd[channel]
     count = np.maximum(np.isfinite(error).sum(axis=0), 1e-9)
-    grown = np.array([[growth(miss.index)] for miss in missed])
-    return np.sqrt(np.maximum(isotonic_regression(excess(error, expected, grown) ** 2, weights=count).x, 0.0))
+    grown = np.array([[discrepancy_growth(miss.index)] for miss in holdout_errors])
+    return np.sqrt(np.maximum(isotonic_regression(excess_sd(error, expected, grown) ** 2, weights=count).x, 0.0))
 
 
-def excess(errors: Array, foreseen: Array, grown: Array) -> Array:
+def excess_sd(errors: Array, predicted_sd: Array, growth_factors: Array) -> Array:
     """Standard deviation d of each column for which errors of variance f^2 + (g d)^2 have the size they have, (n,).
 
     Solves sum e^2 / (f^2 + g^2 d^2) = number of errors (Paule & Mandel 1982, J. Res. NBS 87, 377) by bisection; 0 where
-    the errors are no larger than foreseen. errors, foreseen: (m, n), NaN where there is none; grown: (m, 1).
+    the errors are no larger than foreseen. errors, predicted_sd: (m, n), or NaN; growth_factors: (m, 1).
     """
     count = np.isfinite(errors).sum(axis=0)
-    square, expected = np.where(np.isfinite(errors), errors, 0.0) ** 2, np.nan_to_num(foreseen) ** 2
+    square, expected = np.where(np.isfinite(errors), errors, 0.0) ** 2, np.nan_to_num(predicted_sd) ** 2
     low, high = np.zeros(errors.shape[1]), np.max(square, axis=0) + 1e-300
     for _ in range(60):
         middle = 0.5 * (low + high)
-        large = np.sum(square / (expected + grown**2 * middle), axis=0) > count
+        large = np.sum(square / (expected + growth_factors**2 * middle), axis=0) > count
         low, high = np.where(large, middle, low), np.where(large, high, middle)
     return np.sqrt(np.where(low > 0.0, high, 0.0))

@@ -7,8 +7,8 @@ from scipy.signal import welch
 
 from seatrial.core.values import NOTATION, Array, Finding, Record, Severity
 
-SHARE = 0.9
-_PIECES = 4
+POWER_SHARE = 0.9
+_WELCH_SEGMENTS = 4
 
 
 def frequency_range(records: Sequence[Record], channels: Sequence[str]) -> dict[str, tuple[float, float]]:
@@ -18,37 +18,37 @@ def frequency_range(records: Sequence[Record], channels: Sequence[str]) -> dict[
     """
     found = {}
     for channel in channels:
-        pieces = [_known(r, channel) for r in records if channel in r]
-        powers = [_power(values, dt) for values, dt in pieces if len(values) > 16 and np.ptp(values) > 0.0]
+        pieces = [_measured_samples(r, channel) for r in records if channel in r]
+        powers = [_power_spectrum(values, dt) for values, dt in pieces if len(values) > 16 and np.ptp(values) > 0.0]
         if powers:
-            found[channel] = _middle(powers)
+            found[channel] = _central_band(powers)
     return found
 
 
-def _known(record: Record, channel: str) -> tuple[Array, float]:
+def _measured_samples(record: Record, channel: str) -> tuple[Array, float]:
     """The measured samples of a channel and their step: motions may be sampled more slowly than the record."""
     good = np.flatnonzero(np.isfinite(record[channel]))
     step = int(np.median(np.diff(good))) if len(good) > 1 else 1
     return record[channel][good], record.dt * step
 
 
-def _power(values: Array, dt: float) -> tuple[Array, Array]:
-    length = max(16, 2 * len(values) // (_PIECES + 1))
+def _power_spectrum(values: Array, dt: float) -> tuple[Array, Array]:
+    length = max(16, 2 * len(values) // (_WELCH_SEGMENTS + 1))
     frequency, power = welch(values - np.mean(values), 1.0 / dt, nperseg=min(length, len(values)))
     return 2.0 * np.pi * frequency, power * len(values) * dt
 
 
-def _middle(powers: Sequence[tuple[Array, Array]]) -> tuple[float, float]:
+def _central_band(powers: Sequence[tuple[Array, Array]]) -> tuple[float, float]:
     omega = np.concatenate([w for w, _ in powers])
     weight = np.concatenate([p * (w[1] - w[0]) for w, p in powers])
     order = np.argsort(omega, kind="stable")
     share = np.cumsum(weight[order]) / np.sum(weight)
-    tail = 0.5 * (1.0 - SHARE)
+    tail = 0.5 * (1.0 - POWER_SHARE)
     low, high = (float(omega[order][np.searchsorted(share, s)]) for s in (tail, 1.0 - tail))
     return low, high
 
 
-def represented(ranges: Mapping[str, tuple[float, float]]) -> Finding:
+def frequency_range_finding(ranges: Mapping[str, tuple[float, float]]) -> Finding:
     """What it means for the coefficients."""
     told = ", ".join(f"{NOTATION[c].meaning} {low:.2g} to {high:.2g} rad/s" for c, (low, high) in ranges.items())
     low, high = min(a for a, _ in ranges.values()), max(b for _, b in ranges.values())
@@ -58,6 +58,6 @@ def represented(ranges: Mapping[str, tuple[float, float]]) -> Finding:
         f"the constant coefficients stand for frequencies of encounter from {low:.2g} to {high:.2g} rad/s; outside "
         f"they "
         "extrapolate, for added mass and damping change with frequency",
-        f"{100 * SHARE:.0f} % of the power: {told}",
+        f"{100 * POWER_SHARE:.0f} % of the power: {told}",
         "for another range, record other headings or speeds, or another sea, and fit them apart",
     )

@@ -27,15 +27,15 @@ class Generator:
         power: by parameter, small integers; with a shift of 0 the parameter is multiplied by e^(power s).
         shift: by parameter, SI.
         is_finite: whether that holds for finite steps; if not, `shift` is the direction at the model's values.
-        hidden: states that nobody measures and that have to change as well.
-        names: parameter -> how it is written where it scales about another centre than 0, ``m + m_x``.
+        hidden_states: those that nobody measures and that have to change as well.
+        centred_terms: parameter -> how it is written where it scales about another centre than 0, ``m + m_x``.
     """
 
     power: dict[str, int]
     shift: dict[str, float]
     is_finite: bool
-    hidden: tuple[str, ...]
-    names: dict[str, str]
+    hidden_states: tuple[str, ...]
+    centred_terms: dict[str, str]
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -46,7 +46,7 @@ class Generator:
         """The value about which a parameter scales."""
         return -self.shift[name] / self.power[name] if self.shift[name] else 0.0
 
-    def moved(self, model: Model, step: float) -> Model:
+    def transformed_model(self, model: Model, step: float) -> Model:
         """The model after a finite step s, with the same outputs if the hidden states start where they now belong."""
         values = {}
         for name in self.parameters:
@@ -56,7 +56,7 @@ class Generator:
             values[name] = centre + (value - centre) * growth if power else value + self.shift[name] * step
         return model.with_values(values)
 
-    def change(self, model: Model) -> dict[str, float]:
+    def relative_change(self, model: Model) -> dict[str, float]:
         """Parameter -> relative change for a unit step; absolute where the value is zero and is not multiplied."""
         made = {}
         for name in self.parameters:
@@ -65,7 +65,7 @@ class Generator:
         return made
 
     @property
-    def length(self) -> int:
+    def description_length(self) -> int:
         """How long it takes to say: factors that differ, shifts, members, centres."""
         factors = {p for p in self.power.values() if p}
         shifts = sum(1 for p in self.power.values() if not p)
@@ -73,7 +73,7 @@ class Generator:
         return 10 * (len(factors) + shifts) + len(self.power) + 3 * centres
 
 
-def about_centre(centre: float, name: str, value: float) -> str:
+def centred_term(centre: float, name: str, value: float) -> str:
     if centre < 0.0:
         return f"{-centre:.4g} + {name}"
     return f"{centre:.4g} - {name}" if value < centre else f"{name} - {centre:.4g}"
@@ -91,10 +91,10 @@ def affine_law(theta: Array, delta: Array) -> tuple[list[int], list[float]] | No
             return None
         powers.append(power)
         shifts.append(0.0 if abs(level) < EXACT * scale else level)
-    return _whole(powers, shifts)
+    return _integer_powers(powers, shifts)
 
 
-def _whole(powers: Sequence[Fraction], shifts: Sequence[float]) -> tuple[list[int], list[float]]:
+def _integer_powers(powers: Sequence[Fraction], shifts: Sequence[float]) -> tuple[list[int], list[float]]:
     """Integer powers without a common divisor, the majority positive."""
     many = lcm(*(p.denominator for p in powers))
     numbers = [int(p * many) for p in powers]
@@ -102,11 +102,11 @@ def _whole(powers: Sequence[Fraction], shifts: Sequence[float]) -> tuple[list[in
     return [round(float(p) * factor) for p in powers], [s * factor if s else 0.0 for s in shifts]
 
 
-def combined(one: Generator, other: Generator, sign: int, order: Sequence[str]) -> Generator:
+def combine_generators(one: Generator, other: Generator, sign: int, order: Sequence[str]) -> Generator:
     """Both at once."""
     power = {n: one.power.get(n, 0) + sign * other.power.get(n, 0) for n in order}
     parts = {n: (one.shift.get(n, 0.0), sign * other.shift.get(n, 0.0)) for n in order}
     shift = {n: 0.0 if abs(a + b) < EXACT * max(abs(a), abs(b)) else a + b for n, (a, b) in parts.items()}
     kept = [n for n in order if power[n] or shift[n]]
-    names = {n: w for n, w in (other.names | one.names).items() if n in kept and power[n] and shift[n]}
+    names = {n: w for n, w in (other.centred_terms | one.centred_terms).items() if n in kept and power[n] and shift[n]}
     return Generator({n: power[n] for n in kept}, {n: shift[n] for n in kept}, True, (), names)

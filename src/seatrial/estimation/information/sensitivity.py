@@ -10,12 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Array, InputError, Record, nearest
+from seatrial.core.values import Array, InputError, Record, spelling_hint
 from seatrial.physics.simulate import inputs_of, replay
-from seatrial.physics.simulate.linear import batch_for
+from seatrial.physics.simulate.linear import batch_class
 from seatrial.physics.simulate.replay import ZERO_STARTS, initial_state
 
-CHANGE = 0.1
+RELATIVE_CHANGE = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,12 +55,12 @@ class UniqueSensitivity:
     unique: Array
 
 
-def indirect(
+def indirect_sensitivity(
     model: Model,
     record: Record,
     names: Sequence[str] | None = None,
     states: Sequence[str] | None = None,
-    change: float = CHANGE,
+    change: float = RELATIVE_CHANGE,
     initial: Mapping[str, float] | None = None,
 ) -> IndirectSensitivity:
     """Indirect sensitivities: each coefficient changed, the record's inputs replayed, the states compared over time.
@@ -86,21 +86,21 @@ def indirect(
     if not np.isfinite(change) or change == 0.0:
         raise InputError(f"a relative change of {change:g} is none: give one like 0.1 or -0.1")
     wanted, seen = _coefficients(model, names), _states(model, states)
-    base = _simulated(model, record, initial, seen)
-    sizes = _sizes(base, seen, record)
+    base = _simulated_states(model, record, initial, seen)
+    sizes = _mean_magnitudes(base, seen, record)
     rows = []
     for name in wanted:
         moved = model.with_values({name: model.parameters[name].value * (1.0 + change)})
         try:
-            other = _simulated(moved, record, initial, seen)
+            other = _simulated_states(moved, record, initial, seen)
         except InputError as error:
             raise InputError(f"with '{name}' changed by {100.0 * change:+g} %: {error}") from error
-        rows.append(_over_time(np.abs(other - base)) / sizes / abs(change))
+        rows.append(_time_mean(np.abs(other - base)) / sizes / abs(change))
     matrix = np.array(rows).reshape(len(wanted), len(seen))
     return IndirectSensitivity(wanted, seen, change, matrix, matrix.sum(axis=1))
 
 
-def unique(
+def unique_sensitivity(
     model: Model,
     record: Record,
     names: Sequence[str] | None = None,
@@ -117,18 +117,18 @@ def unique(
     Args:
         names: coefficients, by default the free ones; those left out do not adjust.
         scales: state -> its scale, e.g. its noise, in SI units; by default all states but the pose, each over its mean
-            magnitude, as in `indirect`.
-        initial: as in `indirect`; it does not adjust.
+            magnitude, as in `indirect_sensitivity`.
+        initial: as in `indirect_sensitivity`; it does not adjust.
 
     Raises:
-        InputError: as `indirect`, or a scale is not positive.
+        InputError: as `indirect_sensitivity`, or a scale is not positive.
     """
     wanted, seen = _coefficients(model, names), _states(model, None if scales is None else list(scales))
-    base = _simulated(model, record, initial, seen)
-    sizes = _sizes(base, seen, record) if scales is None else np.array([scales[s] for s in seen])
+    base = _simulated_states(model, record, initial, seen)
+    sizes = _mean_magnitudes(base, seen, record) if scales is None else np.array([scales[s] for s in seen])
     if not np.all(np.isfinite(sizes) & (sizes > 0.0)):
         raise InputError(f"the scale of '{seen[int(np.argmin(sizes > 0.0))]}' is not positive")
-    slopes = _slopes(model, record, initial, wanted, seen) / sizes[:, None]
+    slopes = _log_slopes(model, record, initial, wanted, seen) / sizes[:, None]
     matrix = np.sqrt(np.mean(slopes**2, axis=0)).T
     total = np.sqrt(np.sum(matrix**2, axis=1))
     columns = slopes.reshape(-1, len(wanted)) / np.sqrt(len(record))
@@ -160,34 +160,36 @@ def _states(model: Model, states: Sequence[str] | None) -> tuple[str, ...]:
         return tuple(s for s in model.states if s not in ZERO_STARTS)
     for state in states:
         if state not in model.states:
-            raise InputError(f"'{state}' is no state of model '{model.name}'{nearest(state, list(model.states))}")
+            raise InputError(f"'{state}' is no state of model '{model.name}'{spelling_hint(state, list(model.states))}")
     return tuple(states)
 
 
-def _simulated(model: Model, record: Record, initial: Mapping[str, float] | None, states: tuple[str, ...]) -> Array:
+def _simulated_states(
+    model: Model, record: Record, initial: Mapping[str, float] | None, states: tuple[str, ...]
+) -> Array:
     return replay(model, record, initial).matrix(states)
 
 
-def _over_time(values: Array) -> Array:
+def _time_mean(values: Array) -> Array:
     """Mean over the record by the trapezoidal rule, values (n, m): shape (m,)."""
     return 0.5 * np.mean(values[1:] + values[:-1], axis=0)
 
 
-def _sizes(base: Array, states: Sequence[str], record: Record) -> Array:
+def _mean_magnitudes(base: Array, states: Sequence[str], record: Record) -> Array:
     """Mean magnitude of each state, shape (m,)."""
-    sizes = _over_time(np.abs(base))
+    sizes = _time_mean(np.abs(base))
     if not np.all(sizes > 0.0):
         still = states[int(np.argmin(sizes))]
         raise InputError(f"state '{still}' does not move in record '{record.name}': leave it out of `states`")
     return sizes
 
 
-def _slopes(
+def _log_slopes(
     model: Model, record: Record, initial: Mapping[str, float] | None, names: tuple[str, ...], states: tuple[str, ...]
 ) -> Array:
     """Exact slopes of the states by ln of the coefficients, shape (n, m, k)."""
     inputs, start = inputs_of(model, record), initial_state(model, record, initial or {})
-    batch = batch_for(model)(model, inputs, np.array([0, len(inputs)]), record.dt, states, names)
+    batch = batch_class(model)(model, inputs, np.array([0, len(inputs)]), record.dt, states, names)
     values = model.parameters.values[None]
     _, slopes, _ = batch.differentiate(0, 1, start[None], values, np.empty((1, 0)))
     return slopes * np.array([model.parameters[name].value for name in names])

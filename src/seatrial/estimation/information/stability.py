@@ -16,33 +16,33 @@ from seatrial.core.values import Array
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 
 _STEP = 1e-4
-_ASIDE, _ALIKE = 1e-12, 0.01
+_LATERAL_OFFSET, _EQUAL_SIDES = 1e-12, 0.01
 
 
-def straight_course(model: Model, speed: float, inputs: Array) -> Array:
+def straight_course_rates(model: Model, speed: float, inputs: Array) -> Array:
     """Linearised rates of sway and yaw (or yaw alone) on a straight course, shape (2, 2) or (1, 1), SI.
 
-    The mean over both sides (`begun_turns`). speed: m/s; inputs (nu,) in the model's signs, rudder amidships.
+    The mean over both sides (`one_sided_rates`). speed: m/s; inputs (nu,) in the model's signs, rudder amidships.
     """
-    return begun_turns(model, speed, inputs).mean(axis=0)
+    return one_sided_rates(model, speed, inputs).mean(axis=0)
 
 
-def begun_turns(model: Model, speed: float, inputs: Array) -> Array:
+def one_sided_rates(model: Model, speed: float, inputs: Array) -> Array:
     """The same for a turn just begun to starboard (r > 0 > v) and one to port, shape (2, n, n).
 
     They differ where a coefficient does (gamma_R): such a model has a kink on the straight course itself.
     """
-    aside = {s: _ASIDE * speed * (-1.0 if s == "v" else 1.0) for s in lateral(model)}
+    aside = {s: _LATERAL_OFFSET * speed * (-1.0 if s == "v" else 1.0) for s in lateral_states(model)}
     states = np.array([[speed if s == "u" else side * aside.get(s, 0.0) for s in model.states] for side in (1.0, -1.0)])
     nx, width = len(model.states), len(model.states) + len(model.inputs) + len(model.parameters)
     out, jacobian = np.empty((2, nx)), np.zeros((2, nx, width))
     both = np.tile(inputs, (2, 1)), np.tile(model.parameters.values, (2, 1))
     evaluate_tangent(model.compiled.rates_tangent, states, *both, 1.0, out, jacobian)
-    place = [model.states.index(s) for s in lateral(model)]
+    place = [model.states.index(s) for s in lateral_states(model)]
     return jacobian[np.ix_([0, 1], place, place)]
 
 
-def lateral(model: Model) -> tuple[str, ...]:
+def lateral_states(model: Model) -> tuple[str, ...]:
     """States that decide on course stability: sway and yaw, or yaw and what nobody measures; empty without yaw rate."""
     if "r" not in model.states:
         return ()
@@ -56,19 +56,19 @@ def stability(
 
     covariance: of the free coefficients, (n, n); length in m.
     """
-    if not lateral(model):
+    if not lateral_states(model):
         return None
     unit = length / speed
 
     def index_of(one: Model) -> float:
-        return _index(straight_course(one, speed, inputs), unit)
+        return _index(straight_course_rates(one, speed, inputs), unit)
 
     centre = index_of(model)
     slope = _gradient(model, index_of)
     half = float(stats.t.ppf(0.975, degrees_of_freedom)) * float(np.sqrt(max(slope @ covariance @ slope, 0.0)))
-    slowest = float(np.max(np.linalg.eigvals(straight_course(model, speed, inputs)).real)) * unit
-    starboard, port = (_index(rates, unit) for rates in begun_turns(model, speed, inputs))
-    text = _words(centre, half, slowest) + _of_sides(starboard, port)
+    slowest = float(np.max(np.linalg.eigvals(straight_course_rates(model, speed, inputs)).real)) * unit
+    starboard, port = (_index(rates, unit) for rates in one_sided_rates(model, speed, inputs))
+    text = _stability_text(centre, half, slowest) + _asymmetry_text(starboard, port)
     return Stability(centre, centre - half, centre + half, text)
 
 
@@ -76,16 +76,16 @@ def _index(rates: Array, unit: float) -> float:
     return float(np.linalg.det(-rates) * unit ** len(rates))
 
 
-def _gradient(model: Model, index_of: Callable[[Model], float]) -> Array:
+def _gradient(model: Model, stability_index: Callable[[Model], float]) -> Array:
     made = []
     for p in model.parameters.free:
         step = _STEP * p.characteristic_scale
-        up, down = (index_of(model.with_values({p.name: p.value + s})) for s in (step, -step))
+        up, down = (stability_index(model.with_values({p.name: p.value + s})) for s in (step, -step))
         made.append((up - down) / (2.0 * step))
     return np.array(made)
 
 
-def _words(index: float, half: float, slowest: float) -> str:
+def _stability_text(index: float, half: float, slowest: float) -> str:
     told = "whether the ship is stable on her course cannot be told"
     if abs(index) > half:
         told = f"the ship is {'stable' if index > 0 else 'unstable'} on her course"
@@ -95,8 +95,8 @@ def _words(index: float, half: float, slowest: float) -> str:
     return f"{told}: at the estimate a disturbance {grown} by a factor e in {abs(1.0 / slowest):.2g} ship lengths"
 
 
-def _of_sides(starboard: float, port: float) -> str:
+def _asymmetry_text(starboard: float, port: float) -> str:
     """What is said where turns to both sides do not begin alike."""
-    if abs(starboard - port) <= _ALIKE * max(abs(starboard), abs(port)):
+    if abs(starboard - port) <= _EQUAL_SIDES * max(abs(starboard), abs(port)):
         return ""
     return f"; the sides differ: C is {starboard:+.2g} beginning a turn to starboard and {port:+.2g} to port"

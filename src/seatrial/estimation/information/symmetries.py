@@ -11,16 +11,16 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results import Symmetry
 from seatrial.core.values import InputError
-from seatrial.data.trial.model_choice import COMMON_PARTICULARS
-from seatrial.estimation.information.conditions import conditions
+from seatrial.data.trial.model_table import COMMON_PARTICULARS
 from seatrial.estimation.information.generator import Generator
-from seatrial.estimation.information.generators import Search, search
-from seatrial.estimation.information.symmetry_words import Silence, sentence, silence
+from seatrial.estimation.information.generators import SymmetrySearch, search_symmetries
+from seatrial.estimation.information.invariance import invariance_conditions
+from seatrial.estimation.information.symmetry_text import NoInfluence, no_influence_text, symmetry_text
 
-_ALIVE = 1e-7
+_LEAST_INFLUENCE = 1e-7
 
 
-def structural(model: Model, outputs: Sequence[str], forces: Sequence[str] = ()) -> tuple[Symmetry, ...]:
+def structural_symmetries(model: Model, outputs: Sequence[str], forces: Sequence[str] = ()) -> tuple[Symmetry, ...]:
     """What no record of these outputs can tell about the free parameters, whatever the manoeuvre, in words.
 
     Beside the free parameters those count as unknown that are fixed at an assumed value other than zero; particulars
@@ -32,76 +32,90 @@ def structural(model: Model, outputs: Sequence[str], forces: Sequence[str] = ())
     Raises:
         InputError: an output the model does not have, or a parameter without a value.
     """
-    where = search(model, outputs, forces)
+    where = search_symmetries(model, outputs, forces)
     free = [i for i, p in enumerate(model.parameters) if p.free]
     assumed = [i for i, p in enumerate(model.parameters) if not p.free and p.value and p.name not in COMMON_PARTICULARS]
-    alone, _, together = where.independent([free, assumed, sorted((*free, *assumed))])
-    return (*_told(where, alone), *_told(where, together))
+    alone, _, together = where.independent_generators([free, assumed, sorted((*free, *assumed))])
+    return (*_describe_symmetries(where, alone), *_describe_symmetries(where, together))
 
 
-def refuse_structural(model: Model, outputs: Sequence[str], forces: Sequence[str] = ()) -> None:
+def refuse_unidentifiable(model: Model, outputs: Sequence[str], forces: Sequence[str] = ()) -> None:
     """Refuse free parameters without a prior that can change together without changing any compared output or force.
 
     Raises:
         InputError: which, and what to do.
     """
     loose = [i for i, p in enumerate(model.parameters) if p.free and p.prior is None]
-    where = search(model, outputs, forces)
-    (found,) = where.independent([loose])
+    where = search_symmetries(model, outputs, forces)
+    (found,) = where.independent_generators([loose])
     if found:
-        told = "; and ".join(s.text for s in _told(where, found))
+        told = "; and ".join(s.text for s in _describe_symmetries(where, found))
         raise InputError(f"no record can tell the free parameters apart: {told} (under [model.fixed], [model.priors])")
 
 
-def _told(where: Search, found: Sequence[Generator]) -> tuple[Symmetry, ...]:
+def _describe_symmetries(symmetry_search: SymmetrySearch, changes: Sequence[Generator]) -> tuple[Symmetry, ...]:
     """With their sentences; parameters that are silent for the same reason share one."""
-    parameters, outputs = where.model.parameters, where.conditions.shown
-    silent: dict[Silence, list[str]] = {}
-    for g in (g for g in found if len(g.parameters) == 1):
-        silent.setdefault(_reason(where, g), []).append(g.parameters[0])
-    told = [Symmetry(tuple(s), silence(s, reason, outputs), dict.fromkeys(s, 1.0)) for reason, s in silent.items()]
-    for g, decisive in _in_order(where.shortened([g for g in found if len(g.parameters) > 1])):
-        told.append(Symmetry(g.parameters, sentence(g, parameters, decisive, outputs), g.change(where.model)))
+    parameters, outputs = symmetry_search.model.parameters, symmetry_search.conditions.compared_quantities
+    silent: dict[NoInfluence, list[str]] = {}
+    for g in (g for g in changes if len(g.parameters) == 1):
+        silent.setdefault(_no_influence_reason(symmetry_search, g), []).append(g.parameters[0])
+    told = [
+        Symmetry(tuple(s), no_influence_text(s, reason, outputs), dict.fromkeys(s, 1.0)) for reason, s in silent.items()
+    ]
+    for g, decisive in _with_decisive_parameters(
+        symmetry_search.simplified([g for g in changes if len(g.parameters) > 1])
+    ):
+        told.append(
+            Symmetry(
+                g.parameters, symmetry_text(g, parameters, decisive, outputs), g.relative_change(symmetry_search.model)
+            )
+        )
     return tuple(told)
 
 
-def _in_order(found: Sequence[Generator]) -> list[tuple[Generator, tuple[str, ...]]]:
+def _with_decisive_parameters(changes: Sequence[Generator]) -> list[tuple[Generator, tuple[str, ...]]]:
     """Each with the parameters of which one settles it: whoever fixes one for each has settled all (triangular)."""
-    left, made = list(found), []
+    left, made = list(changes), []
     while left:
-        own = [_own(g, left) for g in left]
+        own = [_unshared_parameters(g, left) for g in left]
         best = max(range(len(left)), key=lambda k: (bool(own[k]), len(left[k].parameters)))
         decisive = tuple(own[best]) or left[best].parameters
         made.append((left.pop(best), decisive))
     return made
 
 
-def _own(generator: Generator, others: Sequence[Generator]) -> list[str]:
+def _unshared_parameters(generator: Generator, other_changes: Sequence[Generator]) -> list[str]:
     """Parameters that no other generator changes."""
-    shared = {n for g in others if g is not generator for n in g.parameters}
+    shared = {n for g in other_changes if g is not generator for n in g.parameters}
     return [n for n in generator.parameters if n not in shared]
 
 
-def _reason(where: Search, silent: Generator) -> Silence:
+def _no_influence_reason(symmetry_search: SymmetrySearch, generator: Generator) -> NoInfluence:
     """Why a parameter has no influence of its own."""
-    i = where.model.parameters.names.index(silent.parameters[0])
-    if i not in where.conditions.entering:
-        return Silence(enters=False)
-    if silent.hidden:
-        return Silence(hidden=silent.hidden)
-    held = [k for k, p in enumerate(where.model.parameters) if k != i and not p.free]
-    off = _switches(where, i, [k for k in held if not where.at[k]])
-    return Silence(switches=off or _switches(where, i, [k for k in held if where.at[k]]))
+    i = symmetry_search.model.parameters.names.index(generator.parameters[0])
+    if i not in symmetry_search.conditions.entering_parameters:
+        return NoInfluence(is_in_equations=False)
+    if generator.hidden_states:
+        return NoInfluence(hidden_states=generator.hidden_states)
+    held = [k for k, p in enumerate(symmetry_search.model.parameters) if k != i and not p.free]
+    off = _disabling_values(symmetry_search, i, [k for k in held if not symmetry_search.values[k]])
+    return NoInfluence(
+        disabling_values=off or _disabling_values(symmetry_search, i, [k for k in held if symmetry_search.values[k]])
+    )
 
 
-def _switches(where: Search, silent: int, held: Sequence[int]) -> tuple[str, ...]:
+def _disabling_values(
+    symmetry_search: SymmetrySearch, parameter: int, fixed_parameters: Sequence[int]
+) -> tuple[str, ...]:
     """Those held parameters which give the silent one an influence when they alone are changed."""
     rng = np.random.default_rng(4)
     found = []
-    for k in held:
-        values = where.drawn(where.at, [k], rng)
-        now = conditions(where.model, where.conditions.outputs, values, where.conditions.forces)
-        if np.linalg.norm(now.effects(values, where.sizes)[:, silent]) > _ALIVE:
-            p = where.model.parameters.items[k]
+    for k in fixed_parameters:
+        values = symmetry_search.perturbed_values(symmetry_search.values, [k], rng)
+        now = invariance_conditions(
+            symmetry_search.model, symmetry_search.conditions.outputs, values, symmetry_search.conditions.forces
+        )
+        if np.linalg.norm(now.effects(values, symmetry_search.sizes)[:, parameter]) > _LEAST_INFLUENCE:
+            p = symmetry_search.model.parameters.items[k]
             found.append(f"{p.name} is {p.value:.4g}")
     return tuple(found)

@@ -11,20 +11,20 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Array, InputError, Progress, Record
-from seatrial.estimation.estimate.fit import Identified, identified
+from seatrial.core.values import Array, InputError, ProgressReporter, Record
+from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.settings import Settings
-from seatrial.estimation.predict.open_loop import session_means
+from seatrial.estimation.predict.open_loop import mean_nuisances
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.estimation.problem.segments import compared_outputs, cut
+from seatrial.estimation.problem.segments import compared_outputs, cut_segments
 from seatrial.numerics.optimise import levenberg_marquardt
-from seatrial.numerics.workers import mapped
+from seatrial.numerics.workers import map_in_threads
 
 _TRACK = ("x0", "y0", "psi")
 
 
 @dataclass(frozen=True)
-class Protocol:
+class HoldoutProtocol:
     """How held-out runs are judged.
 
     Attributes:
@@ -35,7 +35,7 @@ class Protocol:
 
     window_s: float = 50.0
     initial_s: float = 5.0
-    first: int | None = None
+    max_windows: int | None = None
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class WindowError:
 
 
 @dataclass(frozen=True)
-class Pooled:
+class PooledError:
     """Windows of one label together.
 
     Attributes:
@@ -79,7 +79,7 @@ class CrossValidation:
         """Labels in the order in which they occur."""
         return tuple(dict.fromkeys(w.label for w in self.windows))
 
-    def pooled(self, label: str, fold: int | None = None) -> Pooled:
+    def pooled(self, label: str, fold: int | None = None) -> PooledError:
         """All windows of a label, or those of one fold.
 
         Raises:
@@ -90,9 +90,9 @@ class CrossValidation:
             raise InputError(f"no window of '{label}'{'' if fold is None else f' in fold {fold}'}; use fewer folds")
         errors = np.array([(w.position_m, w.heading_deg) for w in mine])
         mean, rms = np.mean(errors, axis=0), np.sqrt(np.mean(errors**2, axis=0))
-        return Pooled(label, len(mine), float(mean[0]), float(mean[1]), float(rms[0]), float(rms[1]))
+        return PooledError(label, len(mine), float(mean[0]), float(mean[1]), float(rms[0]), float(rms[1]))
 
-    def scatter(self, label: str) -> tuple[float, float]:
+    def fold_spread(self, label: str) -> tuple[float, float]:
         """Standard deviation over folds of the pooled position [m] and heading error [deg]."""
         of_label = sorted({w.fold for w in self.windows if w.label == label})
         each = [self.pooled(label, fold) for fold in of_label]
@@ -100,7 +100,7 @@ class CrossValidation:
         return float(spread[0]), float(spread[1])
 
 
-def fold_of(labels: Sequence[str], folds: int) -> list[int]:
+def assign_folds(labels: Sequence[str], folds: int) -> list[int]:
     """Fold of each run: the runs of every label are dealt out in turn, so that each fold has its share of all.
 
     Raises:
@@ -119,30 +119,32 @@ def fold_of(labels: Sequence[str], folds: int) -> list[int]:
     return made
 
 
-def windows(record: Record, protocol: Protocol) -> list[Record]:
+def split_windows(record: Record, protocol: HoldoutProtocol) -> list[Record]:
     """The record's windows, one after another; empty where it is shorter than one."""
     steps = round(protocol.window_s / record.dt)
     count = (len(record) - 1) // steps
-    return [record.rows(slice(i * steps, (i + 1) * steps + 1)) for i in range(count)][: protocol.first]
+    return [record.rows(slice(i * steps, (i + 1) * steps + 1)) for i in range(count)][: protocol.max_windows]
 
 
 @dataclass(frozen=True, eq=False)
-class _Pieces:
+class _WindowSet:
     """Stretches of records with the record each comes from; `owns` holds the nuisances of each record."""
 
     records: list[Record]
-    whose: list[int]
-    owns: Sequence[Array]
+    record_indices: list[int]
+    nuisances: Sequence[Array]
 
     @classmethod
-    def of(cls, records: Sequence[Record], owns: Sequence[Array], protocol: Protocol) -> "_Pieces":
-        cut_up = [windows(record, protocol) for record in records]
+    def from_records(
+        cls, records: Sequence[Record], nuisances: Sequence[Array], protocol: HoldoutProtocol
+    ) -> "_WindowSet":
+        cut_up = [split_windows(record, protocol) for record in records]
         whose = [i for i, found in enumerate(cut_up) for _ in found]
         if not whose:
             raise InputError(f"no run is as long as a window of {protocol.window_s:g} s; give shorter windows")
-        return cls([piece for found in cut_up for piece in found], whose, owns)
+        return cls([piece for found in cut_up for piece in found], whose, nuisances)
 
-    def beginnings(self, seconds: float) -> "_Pieces":
+    def first_seconds(self, seconds: float) -> "_WindowSet":
         """Their first seconds, five samples at least."""
         short = [p.between(p.time[0], p.time[0] + max(seconds, 4 * p.dt)) for p in self.records]
         return replace(self, records=short)
@@ -150,14 +152,14 @@ class _Pieces:
     def problem(self, template: OutputError, model: Model, outputs: tuple[str, ...]) -> tuple[OutputError, Array]:
         """One segment a piece with everything but initial states pinned, and the pinned unknowns."""
         fixed = model.with_parameters(model.parameters.fixed(*model.parameters.names))
-        data = cut(fixed, self.records, outputs, None, [str(i) for i in self.whose])
-        pinned = np.concatenate([self.owns[int(i)] for i in data.sessions])
+        data = cut_segments(fixed, self.records, outputs, None, [str(i) for i in self.record_indices])
+        pinned = np.concatenate([self.nuisances[int(i)] for i in data.sessions])
         place = {o: i for i, o in enumerate(template.data.outputs)}
         noise = np.array([template.noise[place[o]] if o in place else 1.0 for o in outputs])
         return replace(template, model=fixed, data=data, noise=noise, inflation=None, pinned=pinned), pinned
 
 
-def _initial(template: OutputError, model: Model, pieces: _Pieces, seconds: float) -> dict[str, Array]:
+def _initial_states(template: OutputError, model: Model, pieces: _WindowSet, seconds: float) -> dict[str, Array]:
     """Initial states by name, each (pieces,): estimated from the first seconds, as measured where `seconds` is 0."""
     if seconds <= 0:
         count = len(pieces.records)
@@ -165,8 +167,8 @@ def _initial(template: OutputError, model: Model, pieces: _Pieces, seconds: floa
             s: np.array([p[s][0] for p in pieces.records]) if s in pieces.records[0] else np.zeros(count)
             for s in model.states
         }
-    problem, pinned = pieces.beginnings(seconds).problem(template, model, template.data.outputs)
-    found = levenberg_marquardt(problem, pinned, problem.measured_starts(), evaluations=40)
+    problem, pinned = pieces.first_seconds(seconds).problem(template, model, template.data.outputs)
+    found = levenberg_marquardt(problem, pinned, problem.measured_initial_states(), evaluations=40)
     return dict(zip(problem.starts, found.local.T, strict=True))
 
 
@@ -174,9 +176,9 @@ def window_errors(
     template: OutputError,
     model: Model,
     records: Sequence[Record],
-    owns: Sequence[Array],
+    nuisances: Sequence[Array],
     labels: Sequence[str],
-    protocol: Protocol,
+    protocol: HoldoutProtocol,
     fold: int = 0,
 ) -> list[WindowError]:
     """Errors of all windows of `records`, simulated open loop with the nuisances `owns`, shape (kinds,) a record.
@@ -187,13 +189,13 @@ def window_errors(
     Raises:
         InputError: a record lacks position or heading, no record holds a window, or a simulation diverges.
     """
-    _demand_track(records)
-    pieces = _Pieces.of(records, owns, protocol)
-    start = _initial(template, model, pieces, protocol.initial_s)
+    _require_track(records)
+    pieces = _WindowSet.from_records(records, nuisances, protocol)
+    start = _initial_states(template, model, pieces, protocol.initial_s)
     problem, pinned = pieces.problem(template, model, _TRACK)
-    simulated = problem.simulated(pinned, np.stack([start[s] for s in problem.starts], axis=1))
+    simulated = problem.simulated_outputs(pinned, np.stack([start[s] for s in problem.starts], axis=1))
     made = []
-    for piece, index, (a, b) in zip(pieces.records, pieces.whose, pairwise(problem.data.offsets), strict=True):
+    for piece, index, (a, b) in zip(pieces.records, pieces.record_indices, pairwise(problem.data.offsets), strict=True):
         if not np.all(np.isfinite(simulated[a:b])):
             raise InputError(
                 f"the simulation of run '{piece.name}' from {piece.time[0]:g} s diverges; check the bounds"
@@ -207,7 +209,7 @@ def window_errors(
     return made
 
 
-def _demand_track(records: Sequence[Record]) -> None:
+def _require_track(records: Sequence[Record]) -> None:
     for record in records:
         for channel in _TRACK:
             if channel not in record:
@@ -216,11 +218,11 @@ def _demand_track(records: Sequence[Record]) -> None:
                 )
 
 
-def own_nuisances(found: Identified, session: str) -> Array:
+def session_nuisances(estimation: Estimation, session: str) -> Array:
     """Nuisances of a session: its own estimate where it was in training, else the training mean; shape (kinds,)."""
-    problem, shared = found.made.problem, found.made.shared
+    problem, shared = estimation.estimate.problem, estimation.estimate.common_parameters
     if session not in problem.data.sessions:
-        return session_means(problem, shared)
+        return mean_nuisances(problem, shared)
     return shared[problem.columns_of(problem.data.sessions.index(session))[len(problem.free) :]]
 
 
@@ -228,11 +230,11 @@ def own_nuisances(found: Identified, session: str) -> Array:
 class Fold:
     """A fit and the indices of the runs held out from it."""
 
-    held: tuple[int, ...]
-    found: Identified
+    held_out: tuple[int, ...]
+    estimation: Estimation
 
 
-def fitted_folds(
+def fit_folds(
     model: Model,
     records: Sequence[Record],
     sessions: Sequence[str],
@@ -242,7 +244,7 @@ def fitted_folds(
     *,
     folds: int = 4,
     workers: int = 1,
-    progress: Progress | None = None,
+    report_progress: ProgressReporter | None = None,
 ) -> tuple[Fold, ...]:
     """Fit the training runs of each fold.
 
@@ -254,24 +256,26 @@ def fitted_folds(
     Raises:
         InputError: folds that cannot be filled, or what `identified` raises.
     """
-    dealt = fold_of(labels, folds)
+    dealt = assign_folds(labels, folds)
 
     def one(fold: int) -> Fold:
         train = [i for i, f in enumerate(dealt) if f != fold]
-        if progress:
-            progress(f"fold {fold + 1} of {folds}: {len(train)} runs train, {len(dealt) - len(train)} are held out")
-        found = identified(model, [records[i] for i in train], [sessions[i] for i in train], length, settings)
+        if report_progress:
+            report_progress(
+                f"fold {fold + 1} of {folds}: {len(train)} runs train, {len(dealt) - len(train)} are held out"
+            )
+        found = estimate_model(model, [records[i] for i in train], [sessions[i] for i in train], length, settings)
         return Fold(tuple(i for i, f in enumerate(dealt) if f == fold), found)
 
-    return tuple(mapped(one, range(folds), workers=workers))
+    return tuple(map_in_threads(one, range(folds), workers=workers))
 
 
-def cross_validated(
+def cross_validate(
     folds: Sequence[Fold],
     records: Sequence[Record],
     sessions: Sequence[str],
     labels: Sequence[str],
-    protocol: Protocol | None = None,
+    protocol: HoldoutProtocol | None = None,
 ) -> CrossValidation:
     """Predict windows of each fold's held-out runs with its fit; records, sessions and labels as in `fitted_folds`.
 
@@ -281,19 +285,21 @@ def cross_validated(
     Raises:
         InputError: as `window_errors`.
     """
-    protocol, made = protocol or Protocol(), []
+    protocol, made = protocol or HoldoutProtocol(), []
     for number, fold in enumerate(folds):
-        owns = [own_nuisances(fold.found, sessions[i]) for i in fold.held]
-        held, kinds = [records[i] for i in fold.held], [labels[i] for i in fold.held]
-        made += window_errors(fold.found.made.problem, fold.found.model, held, owns, kinds, protocol, number)
-    return CrossValidation(tuple(made), tuple(fold.found.elapsed_s for fold in folds))
+        owns = [session_nuisances(fold.estimation, sessions[i]) for i in fold.held_out]
+        held, kinds = [records[i] for i in fold.held_out], [labels[i] for i in fold.held_out]
+        made += window_errors(
+            fold.estimation.estimate.problem, fold.estimation.model, held, owns, kinds, protocol, number
+        )
+    return CrossValidation(tuple(made), tuple(fold.estimation.elapsed_s for fold in folds))
 
 
-def unfitted(
+def cross_validate_unfitted(
     model: Model,
     records: Sequence[Record],
     labels: Sequence[str],
-    protocol: Protocol | None = None,
+    protocol: HoldoutProtocol | None = None,
     settings: Settings | None = None,
 ) -> CrossValidation:
     """The same windows by a model as it is, without nuisances: what published coefficients predict. One fold.
@@ -304,9 +310,9 @@ def unfitted(
         InputError: as `window_errors`.
     """
     settings = settings or Settings()
-    data = cut(model, records, compared_outputs(model, records, settings.channels), None)
+    data = cut_segments(model, records, compared_outputs(model, records, settings.channels), None)
     spread = np.maximum(np.nanstd(data.measured, axis=0), 1e-9)
     noise = np.array([settings.noise.get(o, size) for o, size in zip(data.outputs, spread, strict=True)])
     template = OutputError(model, data, noise, substeps=settings.substeps, workers=settings.workers)
     owns = [np.empty(0)] * len(records)
-    return CrossValidation(tuple(window_errors(template, model, records, owns, labels, protocol or Protocol())))
+    return CrossValidation(tuple(window_errors(template, model, records, owns, labels, protocol or HoldoutProtocol())))

@@ -11,13 +11,13 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, Record
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.simulate.channels import inputs_of
-from seatrial.physics.simulate.linear import batch_for
+from seatrial.physics.simulate.linear import batch_class
 
-_KICK_S = 0.5
+_KICK_SECONDS = 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class Scatter:
+class PredictionUncertainty:
     """What makes a run differ from its prediction, as far as the training runs show it.
 
     Attributes:
@@ -33,22 +33,24 @@ class Scatter:
     degrees_of_freedom: float
 
 
-def simulated(template: OutputError, model: Model, record: Record, start: Array, points: Array, owns: Array) -> Array:
+def simulate_points(
+    template: OutputError, model: Model, record: Record, start: Array, points: Array, nuisances: Array
+) -> Array:
     """All observables along a record's inputs for many sets of unknowns, shape (m, rows, observables).
 
     template: the problem whose unknowns these are; start: initial states (m, nx); points: free coefficients (m, n);
     owns: a session's own unknowns (m, k). NaN after a divergence.
     """
-    return _carried(template, model, record.dt, inputs_of(model, record), start, points, owns)
+    return _simulate(template, model, record.dt, inputs_of(model, record), start, points, nuisances)
 
 
-def drawn(
+def draw_runs(
     template: OutputError,
     model: Model,
     record: Record,
     start: Array,
-    own: Array,
-    scatter: Scatter,
+    nuisances: Array,
+    uncertainty: PredictionUncertainty,
     rng: np.random.Generator,
     count: int,
 ) -> Array:
@@ -57,22 +59,22 @@ def drawn(
     start: initial state (nx,), the same for all; own: the session's own unknowns (k,).
     """
     point = np.array([model.parameters[n].value for n in template.free])
-    points = point + rng.standard_normal((count, len(point))) @ root(scatter.coefficients).T
-    owns = own + rng.standard_normal((count, len(own))) @ root(scatter.offsets).T
+    points = point + rng.standard_normal((count, len(point))) @ square_root(uncertainty.coefficients).T
+    owns = nuisances + rng.standard_normal((count, len(nuisances))) @ square_root(uncertainty.offsets).T
     inputs, begin = inputs_of(model, record), np.tile(start, (count, 1))
-    if not np.any(scatter.process):
-        return _carried(template, model, record.dt, inputs, begin, points, owns)
-    steps = max(1, round(_KICK_S / record.dt))
-    kick = scatter.process * np.sqrt(steps * record.dt)
+    if not np.any(uncertainty.process):
+        return _simulate(template, model, record.dt, inputs, begin, points, owns)
+    steps = max(1, round(_KICK_SECONDS / record.dt))
+    kick = uncertainty.process * np.sqrt(steps * record.dt)
     pieces = []
     for first in range(0, len(inputs) - 1, steps):
-        piece = _carried(template, model, record.dt, inputs[first : first + steps + 1], begin, points, owns)
+        piece = _simulate(template, model, record.dt, inputs[first : first + steps + 1], begin, points, owns)
         pieces.append(piece if first == 0 else piece[:, 1:])
         begin = piece[:, -1, : len(model.states)] + kick * rng.standard_normal((count, len(kick)))
     return np.concatenate(pieces, axis=1)
 
 
-def root(covariance: Array) -> Array:
+def square_root(covariance: Array) -> Array:
     """A square root of a covariance that may be singular, shape (n, n)."""
     if covariance.size == 0:
         return covariance
@@ -80,15 +82,15 @@ def root(covariance: Array) -> Array:
     return vectors * np.sqrt(np.maximum(values, 0.0))
 
 
-def _carried(
-    template: OutputError, model: Model, dt: float, inputs: Array, start: Array, points: Array, owns: Array
+def _simulate(
+    template: OutputError, model: Model, dt: float, inputs: Array, start: Array, points: Array, nuisances: Array
 ) -> Array:
     count, parameters = len(points), model.parameters
     split = len(template.session_parameters)
     values = np.tile(parameters.values, (count, 1))
     values[:, [parameters.index(n) for n in template.free]] = points
-    values[:, [parameters.index(n) for n, _ in template.session_parameters]] = owns[:, :split]
-    batch = batch_for(model)(
+    values[:, [parameters.index(n) for n, _ in template.session_parameters]] = nuisances[:, :split]
+    batch = batch_class(model)(
         model,
         np.tile(inputs, (count, 1)),
         np.arange(count + 1) * len(inputs),
@@ -97,5 +99,5 @@ def _carried(
         corrections=tuple(n.correction for n in template.nuisances),
         substeps=template.substeps,
     )
-    y, _ = batch.simulate(0, count, start, values, np.ascontiguousarray(owns[:, split:]))
+    y, _ = batch.simulate(0, count, start, values, np.ascontiguousarray(nuisances[:, split:]))
     return y.reshape(count, len(inputs), -1)

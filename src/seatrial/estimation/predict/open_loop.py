@@ -7,54 +7,60 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results import Measure, Prediction
 from seatrial.core.values import Array, Record
-from seatrial.estimation.predict.draws import simulated
+from seatrial.estimation.predict.draws import simulate_points
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.estimation.problem.segments import cut
+from seatrial.estimation.problem.segments import cut_segments
 from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.physics.manoeuvres import measures
-from seatrial.physics.simulate.bounds import demand_bounded
 from seatrial.physics.simulate.channels import inputs_of, record_of
+from seatrial.physics.simulate.divergence import require_bounded
 
 
-def initial_state(template: OutputError, model: Model, record: Record, own: Array, seconds: float) -> Array:
+def estimate_initial_state(
+    template: OutputError, model: Model, record: Record, nuisances: Array, seconds: float
+) -> Array:
     """Output-error estimate of the initial state from the first `seconds` of a record, model held, shape (nx,)."""
     beginning = record.between(record.time[0], record.time[0] + max(seconds, 4 * record.dt))
     held = model.with_parameters(model.parameters.fixed(*model.parameters.names))
-    data = cut(held, [beginning], template.data.outputs, None)
-    problem = replace(template, model=held, data=data, pinned=own, inflation=None)
-    found = levenberg_marquardt(problem, own, problem.measured_starts(), evaluations=40)
+    data = cut_segments(held, [beginning], template.data.outputs, None)
+    problem = replace(template, model=held, data=data, pinned=nuisances, inflation=None)
+    found = levenberg_marquardt(problem, nuisances, problem.measured_initial_states(), evaluations=40)
     known = dict(zip(problem.starts, found.local[0], strict=True))
     return np.array([known.get(s, 0.0) for s in model.states])
 
 
 @dataclass(frozen=True, eq=False)
-class OpenLoop:
+class OpenLoopRun:
     """One run simulated: all observables of the model as channels, and the initial state it began with, (nx,)."""
 
     record: Record
-    start: Array
+    initial_state: Array
 
 
-def open_loop(template: OutputError, model: Model, record: Record, own: Array, seconds: float) -> OpenLoop:
+def simulate_open_loop(
+    template: OutputError, model: Model, record: Record, nuisances: Array, seconds: float
+) -> OpenLoopRun:
     """The record simulated over its whole length from its inputs.
 
     Raises:
         InputError: the simulation diverges (which run, which channel, when).
     """
-    start = initial_state(template, model, record, own, seconds)
+    start = estimate_initial_state(template, model, record, nuisances, seconds)
     point = np.array([[model.parameters[n].value for n in template.free]])
-    made = as_record(model, record, simulated(template, model, record, start[None], point, own[None])[0])
-    demand_bounded(model, record.time, np.stack([made[s] for s in model.states], axis=1), f"run '{record.name}'")
-    return OpenLoop(made, start)
+    made = observables_record(
+        model, record, simulate_points(template, model, record, start[None], point, nuisances[None])[0]
+    )
+    require_bounded(model, record.time, np.stack([made[s] for s in model.states], axis=1), f"run '{record.name}'")
+    return OpenLoopRun(made, start)
 
 
-def as_record(model: Model, record: Record, y: Array) -> Record:
+def observables_record(model: Model, record: Record, y: Array) -> Record:
     """Observables along a record's inputs, shape (rows, observables), as a record."""
     nx = len(model.states)
     return record_of(model, record.name, record.time, y[:, :nx], y[:, nx:], inputs_of(model, record))
 
 
-def rms(measured: Record, simulated: Record) -> dict[str, float]:
+def rms_errors(measured: Record, simulated: Record) -> dict[str, float]:
     """Root-mean-square differences: angles in degrees, position and heave in m, u, v in m/s, r in rad/s."""
 
     def difference(symbol: str) -> Array:
@@ -79,23 +85,27 @@ def is_steered(record: Record, model: Model) -> bool:
     return {"psi", "delta"} <= set(record.channels) and "psi" in model.states
 
 
-def compared(record: Record, simulated: Record, length: float) -> dict[str, Measure]:
+def compare_measures(record: Record, simulated: Record, length: float) -> dict[str, Measure]:
     """Measures of a run and of its simulation, both at the measured executes."""
-    of_measured, of_simulated = measures(record, length), measures(simulated, length, like=record)
+    of_measured, of_simulated = measures(record, length), measures(simulated, length, reference=record)
     return {k: Measure(of_measured.get(k), of_simulated.get(k)) for k in dict.fromkeys([*of_measured, *of_simulated])}
 
 
-def prediction(model: Model, record: Record, role: str, made: OpenLoop, seconds: float, length: float) -> Prediction:
+def predict_run(
+    model: Model, record: Record, role: str, simulation: OpenLoopRun, seconds: float, length: float
+) -> Prediction:
     """One run open loop beside its measurement, with rms and manoeuvring measures."""
-    pairs = compared(record, made.record, length) if is_steered(record, model) else {}
-    return Prediction(record.name, role, record, made.record, rms(record, made.record), pairs, seconds)
+    pairs = compare_measures(record, simulation.record, length) if is_steered(record, model) else {}
+    return Prediction(
+        record.name, role, record, simulation.record, rms_errors(record, simulation.record), pairs, seconds
+    )
 
 
-def session_means(template: OutputError, shared: Array) -> Array:
+def mean_nuisances(template: OutputError, shared: Array) -> Array:
     """Mean of each nuisance over the training sessions: what an unseen session is given."""
-    return offsets_of(template, shared).mean(axis=0)
+    return nuisance_table(template, shared).mean(axis=0)
 
 
-def offsets_of(template: OutputError, shared: Array) -> Array:
+def nuisance_table(template: OutputError, shared: Array) -> Array:
     """What each training session has of its own, shape (sessions, k)."""
-    return shared[len(template.free) :].reshape(len(template.data.sessions), template.kinds)
+    return shared[len(template.free) :].reshape(len(template.data.sessions), template.unknowns_per_session)

@@ -8,16 +8,16 @@ from scipy import stats
 
 from seatrial.core.values import Array, InputError
 from seatrial.data.trial import TrialRecord
-from seatrial.estimation.estimate.fit import Identified
-from seatrial.estimation.information.discrepancy import Miss, discrepancy
-from seatrial.estimation.information.extrapolation import index_of
-from seatrial.estimation.predict.cross_validation import Protocol, windows
-from seatrial.estimation.predict.forecast import scatter_of
-from seatrial.estimation.predict.margins import missed_track, without
+from seatrial.estimation.estimate.fit import Estimation
+from seatrial.estimation.information.discrepancy import HoldoutError, discrepancy
+from seatrial.estimation.information.extrapolation import extrapolation_index
+from seatrial.estimation.predict.cross_validation import HoldoutProtocol, split_windows
+from seatrial.estimation.predict.predict_runs import prediction_uncertainty
+from seatrial.estimation.predict.prediction_intervals import holdout_model, track_holdout_error
 
 
 @dataclass(frozen=True)
-class Covered:
+class BandCoverage:
     """Share of the measured samples, over all windows of a run, in the 95 % band of each channel (psi, x0, y0)."""
 
     run: str
@@ -26,57 +26,71 @@ class Covered:
 
 
 @dataclass(frozen=True, eq=False)
-class Missed:
+class HoldoutWindows:
     """How windows were missed, for each training run by the estimate without it, and for each run held out."""
 
-    trained: tuple[tuple[Miss, ...], ...]
-    held: tuple[tuple[Miss, ...], ...]
+    training: tuple[tuple[HoldoutError, ...], ...]
+    held_out: tuple[tuple[HoldoutError, ...], ...]
     degrees_of_freedom: float
 
 
-def missed_windows(
-    found: Identified, train: Sequence[TrialRecord], held: Sequence[TrialRecord], protocol: Protocol, seed: int = 0
-) -> Missed:
+def holdout_windows(
+    estimation: Estimation,
+    train: Sequence[TrialRecord],
+    held_out: Sequence[TrialRecord],
+    protocol: HoldoutProtocol,
+    seed: int = 0,
+) -> HoldoutWindows:
     """Every window of the training runs predicted without its run, and of the runs held out with all.
 
     Raises:
         InputError: fewer runs than a jackknife needs.
     """
-    left_out = found.uncertainty.left_out
+    left_out = estimation.uncertainty.leave_one_out
     if left_out is None:
         raise InputError("bands are judged by runs left out; the trial has too few training runs, add some")
-    problem, scatter, rng = found.made.problem, scatter_of(found), np.random.default_rng(seed)
+    problem, scatter, rng = estimation.estimate.problem, prediction_uncertainty(estimation), np.random.default_rng(seed)
 
-    def of(item: TrialRecord, point: Array, others: Sequence[TrialRecord]) -> tuple[Miss, ...]:
-        index = index_of(item.record, [o.record for o in others])
-        by = without(problem, point, item.session)
-        pieces = windows(item.record, protocol)
-        made = [missed_track(problem, by, piece, protocol.initial_s, scatter, rng) for piece in pieces]
+    def predict_windows_of(
+        item: TrialRecord, point: Array, training_runs: Sequence[TrialRecord]
+    ) -> tuple[HoldoutError, ...]:
+        index = extrapolation_index(item.record, [o.record for o in training_runs])
+        by = holdout_model(problem, point, item.session)
+        pieces = split_windows(item.record, protocol)
+        made = [track_holdout_error(problem, by, piece, protocol.initial_s, scatter, rng) for piece in pieces]
         return tuple(replace(m, index=index) for m in made if m is not None)
 
-    trained = tuple(of(item, left_out[i], [*train[:i], *train[i + 1 :]]) for i, item in enumerate(train))
-    return Missed(trained, tuple(of(item, found.made.shared, train) for item in held), scatter.degrees_of_freedom)
+    trained = tuple(
+        predict_windows_of(item, left_out[i], [*train[:i], *train[i + 1 :]]) for i, item in enumerate(train)
+    )
+    return HoldoutWindows(
+        trained,
+        tuple(predict_windows_of(item, estimation.estimate.common_parameters, train) for item in held_out),
+        scatter.degrees_of_freedom,
+    )
 
 
-def covered(missed: Missed) -> tuple[tuple[Covered, ...], tuple[Covered, ...]]:
+def band_coverage(holdout: HoldoutWindows) -> tuple[tuple[BandCoverage, ...], tuple[BandCoverage, ...]]:
     """How much of the training runs and of the runs held out lies within their bands.
 
     The discrepancy of a training run is that of the other training runs.
     """
-    t, trained = float(stats.t.ppf(0.975, missed.degrees_of_freedom)), missed.trained
+    t, trained = float(stats.t.ppf(0.975, holdout.degrees_of_freedom)), holdout.training
     everything = [m for mine in trained for m in mine]
-    within = tuple(_share(own, [m for other in trained if other is not own for m in other], t) for own in trained)
-    return within, tuple(_share(own, everything, t) for own in missed.held)
+    within = tuple(
+        _run_coverage(own, [m for other in trained if other is not own for m in other], t) for own in trained
+    )
+    return within, tuple(_run_coverage(own, everything, t) for own in holdout.held_out)
 
 
-def _share(own: Sequence[Miss], others: Sequence[Miss], t: float) -> Covered:
-    known = discrepancy(others)
+def _run_coverage(run_errors: Sequence[HoldoutError], other_errors: Sequence[HoldoutError], t: float) -> BandCoverage:
+    known = discrepancy(other_errors)
     inside: dict[str, list[float]] = {}
-    for miss in own:
+    for miss in run_errors:
         for channel, error in miss.errors.items():
-            half = t * known.of_channel(channel, miss.foreseen[channel], miss.dt, miss.index)
+            half = t * known.channel_sd(channel, miss.predicted_sd[channel], miss.dt, miss.index)
             seen = np.isfinite(error)
             if seen.any():
                 inside.setdefault(channel, []).append(float(np.mean((np.abs(error) <= half)[seen])))
     shares = {channel: float(np.mean(each)) for channel, each in inside.items()}
-    return Covered(own[0].run if own else "", len(own), shares)
+    return BandCoverage(run_errors[0].run if run_errors else "", len(run_errors), shares)

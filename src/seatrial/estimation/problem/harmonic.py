@@ -86,7 +86,7 @@ def whole_periods(time: Array, start: float, stop: float, omega: float) -> slice
     return slice(first, int(np.searchsorted(time, start + count * period)))
 
 
-def frequency_near(time: Array, values: Array, omega: float, within: float = 0.02) -> float:
+def best_fit_frequency(time: Array, values: Array, omega: float, relative_range: float = 0.02) -> float:
     """The frequency [rad/s] at which one harmonic fits best, within a share of `omega` to either side.
 
     Raises:
@@ -96,7 +96,7 @@ def frequency_near(time: Array, values: Array, omega: float, within: float = 0.0
 
     found = minimize_scalar(
         lambda w: harmonics(time, values, float(w), (1,)).noise,
-        bounds=(omega * (1.0 - within), omega * (1.0 + within)),
+        bounds=(omega * (1.0 - relative_range), omega * (1.0 + relative_range)),
         method="bounded",
         options={"xatol": 1e-6},
     )

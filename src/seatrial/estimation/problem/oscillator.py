@@ -15,51 +15,59 @@ from numpy.typing import NDArray
 from seatrial.core.values import Array, InputError
 
 Complex = NDArray[np.complex128]
-NAMES = ("gain", "delay", "distance", "added", "linear", "quadratic", "stiffness")
-_ROUNDS = 60
+OSCILLATOR_PARAMETERS = (
+    "gain",
+    "delay",
+    "distance",
+    "extra_added_mass",
+    "linear_damping",
+    "quadratic_damping",
+    "stiffness",
+)
+_ITERATIONS = 60
 
 
 @dataclass(frozen=True)
-class Theory:
+class SectionTheory:
     """Of the whole section at one frequency: added mass, damping, complex excitation per m of wave amplitude."""
 
-    added: float
+    added_mass: float
     damping: float
     excitation: complex
 
 
 @dataclass(frozen=True)
-class Observed:
+class MeasuredResponse:
     """A measured response.
 
     Attributes:
         omega, wavenumber: rad/s, rad/m.
-        wave: wave amplitude, m.
+        wave_amplitude: m.
         response: complex, per m of wave amplitude.
-        spread: relative standard deviation expected of it.
+        relative_sd: relative standard deviation expected of it.
         theory: at this frequency.
     """
 
     omega: float
     wavenumber: float
-    wave: float
+    wave_amplitude: float
     response: complex
-    spread: float
-    theory: Theory
+    relative_sd: float
+    theory: SectionTheory
 
 
 @dataclass(frozen=True)
 class Oscillator:
-    """(inertia + a + added) x'' + (b + linear) x' + quadratic x'|x'| + stiffness x = X, as instruments show it.
+    """(m + a + da) x'' + (b + b_1) x' + b_2 x'|x'| + c x = X as instruments show it, m inertia and c stiffness.
 
     Attributes:
         inertia, stiffness: known.
         gain: of measured response over computed one; negative where the measured axis points the other way.
         delay: s, of the response's channels against the waves'.
         distance: m, of the section beyond the place to which the wave is referred.
-        added: kg (kg m^2) beside the theory's.
-        linear: kg/s (kg m^2/s) beside the theory's.
-        quadratic: kg/m (kg m^2), damping force over |velocity| velocity.
+        extra_added_mass: da, kg (kg m^2), beside the theory's a.
+        linear_damping: b_1, kg/s (kg m^2/s), beside the theory's b.
+        quadratic_damping: b_2, kg/m (kg m^2), damping force over |velocity| velocity.
     """
 
     inertia: float
@@ -67,35 +75,41 @@ class Oscillator:
     gain: float = 1.0
     delay: float = 0.0
     distance: float = 0.0
-    added: float = 0.0
-    linear: float = 0.0
-    quadratic: float = 0.0
+    extra_added_mass: float = 0.0
+    linear_damping: float = 0.0
+    quadratic_damping: float = 0.0
 
-    def motion(self, theory: Theory, omega: float, wave: float) -> complex:
+    def motion_response(self, theory: SectionTheory, omega: float, wave_amplitude: float) -> complex:
         """The motion itself per m of wave amplitude, quadratic damping by its equivalent 8 omega |x| / (3 pi).
 
         Equal work over a period (Himeno 1981, Univ. of Michigan report 239); the amplitude is found by iteration.
         """
-        spring = self.stiffness - omega**2 * (self.inertia + theory.added + self.added)
+        spring = self.stiffness - omega**2 * (self.inertia + theory.added_mass + self.extra_added_mass)
         size = 0.0
         response = 0j
-        for _ in range(_ROUNDS):
-            damping = theory.damping + self.linear + self.quadratic * 8.0 / (3.0 * np.pi) * omega * size * wave
+        for _ in range(_ITERATIONS):
+            damping = (
+                theory.damping
+                + self.linear_damping
+                + self.quadratic_damping * 8.0 / (3.0 * np.pi) * omega * size * wave_amplitude
+            )
             response = theory.excitation / (spring + 1j * omega * damping)
             if abs(abs(response) - size) < 1e-10 * abs(response):
                 break
             size = 0.5 * (size + abs(response))
         return complex(response)
 
-    def equivalent_damping(self, theory: Theory, omega: float, wave: float) -> float:
+    def extra_equivalent_damping(self, theory: SectionTheory, omega: float, wave_amplitude: float) -> float:
         """Both parts beside the theory's, as kg/s (kg m^2/s) at that wave amplitude."""
-        size = abs(self.motion(theory, omega, wave)) * wave
-        return self.linear + self.quadratic * 8.0 / (3.0 * np.pi) * omega * size
+        size = abs(self.motion_response(theory, omega, wave_amplitude)) * wave_amplitude
+        return self.linear_damping + self.quadratic_damping * 8.0 / (3.0 * np.pi) * omega * size
 
-    def seen(self, one: Observed) -> complex:
+    def measured_response(self, measurement: MeasuredResponse) -> complex:
         """The response as it would be measured."""
-        turned = np.exp(-1j * (one.wavenumber * self.distance + one.omega * self.delay))
-        return complex(self.gain * turned * self.motion(one.theory, one.omega, one.wave))
+        turned = np.exp(-1j * (measurement.wavenumber * self.distance + measurement.omega * self.delay))
+        return complex(
+            self.gain * turned * self.motion_response(measurement.theory, measurement.omega, measurement.wave_amplitude)
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,10 +122,10 @@ class OscillatorFit:
     misfit: float
 
 
-def fitted(
+def fit_oscillator(
     start: Oscillator,
-    observed: Sequence[Observed],
-    free: Sequence[str] = NAMES,
+    measurements: Sequence[MeasuredResponse],
+    free: Sequence[str] = OSCILLATOR_PARAMETERS,
     scales: Mapping[str, float] | None = None,
 ) -> OscillatorFit:
     """Least squares on relative complex errors over their spreads.
@@ -125,25 +139,27 @@ def fitted(
     """
     from scipy.optimize import least_squares
 
-    unknown = [name for name in free if name not in NAMES]
+    unknown = [name for name in free if name not in OSCILLATOR_PARAMETERS]
     if unknown:
-        raise InputError(f"an oscillator has no '{unknown[0]}' to be free; choose from {', '.join(NAMES)}")
-    frequencies = {round(o.omega, 6) for o in observed}
+        raise InputError(
+            f"an oscillator has no '{unknown[0]}' to be free; choose from {', '.join(OSCILLATOR_PARAMETERS)}"
+        )
+    frequencies = {round(o.omega, 6) for o in measurements}
     if len(free) > 2 * len(frequencies):
         raise InputError(
             f"{len(free)} unknowns cannot be told from {len(frequencies)} wave periods, which give two numbers each; "
             "fix some or add periods"
         )
     sizes = np.array([(scales or {}).get(name, 1.0) for name in free])
-    measured = np.array([o.response for o in observed])
-    spreads = np.array([o.spread for o in observed])
+    measured = np.array([o.response for o in measurements])
+    spreads = np.array([o.relative_sd for o in measurements])
 
-    def at(point: Array) -> Oscillator:
+    def oscillator_at(point: Array) -> Oscillator:
         return replace(start, **{name: float(v) for name, v in zip(free, point * sizes, strict=True)})
 
     def residuals(point: Array) -> Array:
-        shaped = at(point)
-        left = (np.array([shaped.seen(o) for o in observed]) / measured - 1.0) / spreads
+        shaped = oscillator_at(point)
+        left = (np.array([shaped.measured_response(o) for o in measurements]) / measured - 1.0) / spreads
         return np.concatenate([left.real, left.imag])
 
     first = np.array([getattr(start, name) for name in free]) / sizes
@@ -153,4 +169,4 @@ def fitted(
     jacobian = np.asarray(found.jac)
     covariance = variance * np.linalg.pinv(jacobian.T @ jacobian)
     errors = {name: float(s * e) for name, s, e in zip(free, sizes, np.sqrt(np.diag(covariance)), strict=True)}
-    return OscillatorFit(at(found.x), tuple(free), errors, float(np.sqrt(np.mean(found.fun**2))))
+    return OscillatorFit(oscillator_at(found.x), tuple(free), errors, float(np.sqrt(np.mean(found.fun**2))))

@@ -12,14 +12,14 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, Prior
-from seatrial.estimation.problem.addend import Addend
+from seatrial.estimation.problem.data_term import DataTerm
 from seatrial.estimation.problem.segments import Segments
-from seatrial.numerics.optimise import Normal
-from seatrial.numerics.workers import mapped
-from seatrial.physics.simulate.batch import Batch, InputCorrection
-from seatrial.physics.simulate.linear import batch_for
+from seatrial.numerics.optimise import NormalEquations
+from seatrial.numerics.workers import map_in_threads
+from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
+from seatrial.physics.simulate.linear import batch_class
 
-_ROWS_A_PIECE = 4000
+_ROWS_PER_RANGE = 4000
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class OutputError:
         huber: residuals beyond this many standard deviations count linearly (Huber 1964); infinite: squares only.
         session_parameters: model parameters estimated once a session (a current), with their priors.
         pinned: shared unknowns held at these values, for predictions: only initial states move.
-        others: data besides the records that say something about the model parameters (static force points).
+        extra_terms: data besides the records that say something about the model parameters (static force points).
     """
 
     model: Model
@@ -59,7 +59,7 @@ class OutputError:
     substeps: int = 1
     workers: int | None = None
     pinned: Array | None = None
-    others: tuple[Addend, ...] = ()
+    extra_terms: tuple[DataTerm, ...] = ()
 
     @cached_property
     def free(self) -> tuple[str, ...]:
@@ -68,43 +68,43 @@ class OutputError:
         return tuple(n for n in self.model.parameters.free_names if n not in own)
 
     @cached_property
-    def _batch(self) -> Batch:
-        batch = batch_for(self.model)(
+    def _batch(self) -> SegmentBatch:
+        batch = batch_class(self.model)(
             self.model, self.data.inputs, self.data.offsets, self.data.dt, self.data.outputs,
             (*self.free, *(name for name, _ in self.session_parameters)),
             tuple(n.correction for n in self.nuisances), (), self.substeps,
         )  # fmt: skip
-        return replace(batch, starts=batch.influential_states())
+        return replace(batch, initial_states=batch.influential_states())
 
     @property
     def starts(self) -> tuple[str, ...]:
         """States whose initial value is estimated in every segment."""
-        return self._batch.starts
+        return self._batch.initial_states
 
     @property
-    def kinds(self) -> int:
+    def unknowns_per_session(self) -> int:
         """Number of unknowns a session has of its own."""
         return len(self.session_parameters) + len(self.nuisances)
 
     @property
     def size(self) -> int:
         """Number of shared unknowns."""
-        return len(self.free) + self.kinds * len(self.data.sessions)
+        return len(self.free) + self.unknowns_per_session * len(self.data.sessions)
 
-    def _edge(self, of_free: list[float], elsewhere: float) -> Array:
+    def _bounds(self, free_bounds: list[float], other_bound: float) -> Array:
         if self.pinned is not None:
             return self.pinned
-        return np.concatenate([of_free, np.full(self.size - len(self.free), elsewhere)])
+        return np.concatenate([free_bounds, np.full(self.size - len(self.free), other_bound)])
 
     @property
     def lower(self) -> Array:
         """Lower bounds of the shared unknowns."""
-        return self._edge([self.model.parameters[n].lower for n in self.free], -np.inf)
+        return self._bounds([self.model.parameters[n].lower for n in self.free], -np.inf)
 
     @property
     def upper(self) -> Array:
         """Upper bounds of the shared unknowns."""
-        return self._edge([self.model.parameters[n].upper for n in self.free], np.inf)
+        return self._bounds([self.model.parameters[n].upper for n in self.free], np.inf)
 
     @cached_property
     def priors(self) -> tuple[Array, Array]:
@@ -125,10 +125,10 @@ class OutputError:
 
     def columns_of(self, session: int) -> np.ndarray:
         """Positions among the shared unknowns of a session's sensitivity columns."""
-        own = len(self.free) + session * self.kinds
-        return np.concatenate([np.arange(len(self.free)), own + np.arange(self.kinds)])
+        own = len(self.free) + session * self.unknowns_per_session
+        return np.concatenate([np.arange(len(self.free)), own + np.arange(self.unknowns_per_session)])
 
-    def measured_starts(self) -> Array:
+    def measured_initial_states(self) -> Array:
         """Initial states from each segment's first measured samples, (segments, len(starts)); zero if unmeasured."""
         local = np.zeros((self.data.count, len(self.starts)))
         for m, state in enumerate(self.starts):
@@ -140,33 +140,33 @@ class OutputError:
                         local[s, m] = column[a + good[0]]
         return local
 
-    def unpacked(self, shared: Array, local: Array) -> tuple[Array, Array, Array]:
+    def unpack(self, shared: Array, local: Array) -> tuple[Array, Array, Array]:
         """Full initial states, model parameters and corrections of each segment."""
         count, parameters = self.data.count, self.model.parameters
         values = np.tile(parameters.values, (count, 1))
-        values[:, self._places] = shared[: len(self.free)]
-        own = shared[len(self.free) :].reshape(len(self.data.sessions), self.kinds)[self.data.session]
+        values[:, self._free_indices] = shared[: len(self.free)]
+        own = shared[len(self.free) :].reshape(len(self.data.sessions), self.unknowns_per_session)[self.data.session]
         split = len(self.session_parameters)
         values[:, [parameters.index(n) for n, _ in self.session_parameters]] = own[:, :split]
         start = np.zeros((count, len(self.model.states)))
         start[:, [self.model.states.index(s) for s in self.starts]] = local
         return start, values, np.ascontiguousarray(own[:, split:])
 
-    def _pieces(self) -> list[tuple[int, int]]:
+    def _work_ranges(self) -> list[tuple[int, int]]:
         """Ranges of segments of some thousand rows each: the units of work."""
         edges, first = [], 0
         for s in range(1, self.data.count + 1):
-            if s == self.data.count or self.data.offsets[s] - self.data.offsets[first] >= _ROWS_A_PIECE:
+            if s == self.data.count or self.data.offsets[s] - self.data.offsets[first] >= _ROWS_PER_RANGE:
                 edges.append((first, s))
                 first = s
         return edges
 
-    def _scaled(self, simulated: Array, rows: slice) -> Array:
+    def _scaled_residuals(self, simulated: Array, rows: slice) -> Array:
         residual = (simulated - self.data.measured[rows]) / self.noise
         return np.where(np.isfinite(self.data.measured[rows]), residual, 0.0)
 
     @cached_property
-    def _trust(self) -> Array:
+    def _effective_share(self) -> Array:
         """Effective over actual number of samples, by channel."""
         return np.ones(len(self.noise)) if self.inflation is None else 1.0 / self.inflation
 
@@ -174,11 +174,13 @@ class OutputError:
         """Half the robust sum of squares of effective samples, and the weight of each residual (Huber 1964)."""
         size = np.abs(scaled)
         if np.isinf(self.huber) or not np.any(size > self.huber):
-            return 0.5 * float(np.sum(self._trust * scaled**2)), np.broadcast_to(self._trust, scaled.shape)
+            return 0.5 * float(np.sum(self._effective_share * scaled**2)), np.broadcast_to(
+                self._effective_share, scaled.shape
+            )
         inside = size <= self.huber
         loss = np.where(inside, 0.5 * scaled**2, self.huber * (size - 0.5 * self.huber))
         weight = np.where(inside, 1.0, self.huber / np.maximum(size, 1e-300))
-        return float(np.sum(self._trust * loss)), self._trust * weight
+        return float(np.sum(self._effective_share * loss)), self._effective_share * weight
 
     def _prior_cost(self, shared: Array) -> float:
         mean, weight = self.priors
@@ -187,51 +189,53 @@ class OutputError:
     def _parameter_values(self, shared: Array) -> Array:
         """All model parameters as the runs share them."""
         values = self.model.parameters.values
-        values[self._places] = shared[: len(self.free)]
+        values[self._free_indices] = shared[: len(self.free)]
         return values
 
     @cached_property
-    def _places(self) -> list[int]:
+    def _free_indices(self) -> list[int]:
         return [self.model.parameters.index(n) for n in self.free]
 
     @property
-    def _told_by(self) -> tuple[Addend, ...]:
+    def _active_terms(self) -> tuple[DataTerm, ...]:
         """The other data; none where only initial states move, which they say nothing about."""
-        return () if self.pinned is not None else self.others
+        return () if self.pinned is not None else self.extra_terms
 
-    def known_precision(self, shared: Array) -> Array:
+    def prior_precision(self, shared: Array) -> Array:
         """Information (size, size) of priors and other data, which stay when runs are left out."""
         precision, k = np.diag(self.priors[1]), len(self.free)
-        for other in self._told_by:
-            precision[:k, :k] += other.normal(self._parameter_values(shared), self._places).hessian
+        for other in self._active_terms:
+            precision[:k, :k] += other.normal(self._parameter_values(shared), self._free_indices).hessian
         return precision
 
-    def _other_cost(self, shared: Array) -> float:
-        return sum(other.cost(self._parameter_values(shared)) for other in self._told_by)
+    def _extra_cost(self, shared: Array) -> float:
+        return sum(other.cost(self._parameter_values(shared)) for other in self._active_terms)
 
-    def simulated(self, shared: Array, local: Array) -> Array:
+    def simulated_outputs(self, shared: Array, local: Array) -> Array:
         """Simulated outputs of all segments, shape (rows, ny); NaN after a divergence."""
-        start, values, corrections = self.unpacked(shared, local)
-        pieces = mapped(lambda p: self._batch.simulate(*p, start, values, corrections)[0], self._pieces(),
+        start, values, corrections = self.unpack(shared, local)
+        pieces = map_in_threads(lambda p: self._batch.simulate(*p, start, values, corrections)[0], self._work_ranges(),
                         workers=self.workers)  # fmt: skip
         return np.concatenate(pieces)
 
     def cost(self, shared: Array, local: Array) -> float:
         """Half the (robust) sum of squares and the prior's; infinite if any segment diverges."""
-        y = self.simulated(shared, local)
+        y = self.simulated_outputs(shared, local)
         if not np.all(np.isfinite(y)):
             return np.inf
-        return self._loss(self._scaled(y, slice(None)))[0] + self._prior_cost(shared) + self._other_cost(shared)
+        return (
+            self._loss(self._scaled_residuals(y, slice(None)))[0] + self._prior_cost(shared) + self._extra_cost(shared)
+        )
 
-    def blocks(self, shared: Array, local: Array) -> "SegmentNormals":
+    def segment_normals(self, shared: Array, local: Array) -> "SegmentNormals":
         """Gauss-Newton blocks of every segment, prior left out."""
-        start, values, corrections = self.unpacked(shared, local)
-        n, m = len(self.free) + self.kinds, len(self.starts)
+        start, values, corrections = self.unpack(shared, local)
+        n, m = len(self.free) + self.unknowns_per_session, len(self.starts)
 
         def piece(bounds: tuple[int, int]) -> tuple[Array, Array, Array]:
             y, s, _ = self._batch.differentiate(*bounds, start, values, corrections)
             base = self.data.offsets[bounds[0]]
-            scaled = self._scaled(y, slice(base, base + len(y)))
+            scaled = self._scaled_residuals(y, slice(base, base + len(y)))
             costs, gradients, hessians = [], [], []
             for k in range(*bounds):
                 rows = slice(self.data.offsets[k] - base, self.data.offsets[k + 1] - base)
@@ -243,20 +247,23 @@ class OutputError:
                 hessians.append(jacobian.T @ jacobian)
             return np.array(costs), np.array(gradients), np.array(hessians)
 
-        parts = mapped(piece, self._pieces(), workers=self.workers)
+        parts = map_in_threads(piece, self._work_ranges(), workers=self.workers)
         costs, gradients, hessians = (np.concatenate([p[i] for p in parts]) for i in range(3))
         return SegmentNormals(costs, gradients, hessians, n)
 
     def slopes(self, shared: Array, local: Array) -> Array:
         """Derivatives of the outputs by a session's columns (`columns_of`), then by initial states, (rows, ny, n)."""
-        start, values, corrections = self.unpacked(shared, local)
-        parts = mapped(lambda p: self._batch.differentiate(*p, start, values, corrections)[1], self._pieces(),
-                       workers=self.workers)  # fmt: skip
+        start, values, corrections = self.unpack(shared, local)
+        parts = map_in_threads(
+            lambda p: self._batch.differentiate(*p, start, values, corrections)[1],
+            self._work_ranges(),
+            workers=self.workers,
+        )
         return np.concatenate(parts)
 
     def sensitivities(self, shared: Array, local: Array) -> Array:
         """Rms slope of each output, in units of its noise, by each free parameter, (ny, free); initial states held."""
-        start, values, corrections = self.unpacked(shared, local)
+        start, values, corrections = self.unpack(shared, local)
         known = np.isfinite(self.data.measured)
 
         def piece(bounds: tuple[int, int]) -> Array:
@@ -264,40 +271,44 @@ class OutputError:
             rows = slice(self.data.offsets[bounds[0]], self.data.offsets[bounds[1]])
             return np.einsum("tyf,ty->yf", s[:, :, : len(self.free)] ** 2, known[rows].astype(float))
 
-        total = np.sum(mapped(piece, self._pieces(), workers=self.workers), axis=0)
+        total = np.sum(map_in_threads(piece, self._work_ranges(), workers=self.workers), axis=0)
         return np.sqrt(total / np.maximum(known.sum(axis=0), 1)[:, None]) / self.noise[:, None]
 
-    def normal(self, shared: Array, local: Array) -> Normal:
+    def normal(self, shared: Array, local: Array) -> NormalEquations:
         """The Gauss-Newton model at a point."""
-        return self.assembled(self.blocks(shared, local), shared, np.arange(self.data.count), with_prior=True)
+        return self.assemble(self.segment_normals(shared, local), shared, np.arange(self.data.count), with_prior=True)
 
-    def assembled(self, blocks: "SegmentNormals", shared: Array, chosen: Index, *, with_prior: bool) -> Normal:
+    def assemble(
+        self, blocks: "SegmentNormals", shared: Array, segments: Index, *, with_prior: bool
+    ) -> NormalEquations:
         """The normal equations of some segments (all for the fit, those of one run for the jackknife).
 
         with_prior: whether what is known besides the records is in them: priors and other data.
         """
         n, gradient, hessian = blocks.shared, np.zeros(self.size), np.zeros((self.size, self.size))
-        cross = np.zeros((len(chosen), self.size, blocks.gradients.shape[1] - n))
-        for session in np.unique(self.data.session[chosen]):
-            inside = np.flatnonzero(self.data.session[chosen] == session)
+        cross = np.zeros((len(segments), self.size, blocks.gradients.shape[1] - n))
+        for session in np.unique(self.data.session[segments]):
+            inside = np.flatnonzero(self.data.session[segments] == session)
             columns = self.columns_of(int(session))
-            picked = chosen[inside]
+            picked = segments[inside]
             gradient[columns] += blocks.gradients[picked, :n].sum(axis=0)
             hessian[np.ix_(columns, columns)] += blocks.hessians[picked, :n, :n].sum(axis=0)
             cross[np.ix_(inside, columns)] = blocks.hessians[picked, :n, n:]
-        cost = float(blocks.costs[chosen].sum())
+        cost = float(blocks.costs[segments].sum())
         if with_prior:
             mean, weight = self.priors
             cost += self._prior_cost(shared)
             gradient += weight * (shared - mean)
             hessian += np.diag(weight)
             k = len(self.free)
-            for other in self._told_by:
-                more = other.normal(self._parameter_values(shared), self._places)
+            for other in self._active_terms:
+                more = other.normal(self._parameter_values(shared), self._free_indices)
                 cost += more.cost
                 gradient[:k] += more.gradient
                 hessian[:k, :k] += more.hessian
-        return Normal(cost, gradient, hessian, blocks.gradients[chosen, n:], blocks.hessians[chosen, n:, n:], cross)
+        return NormalEquations(
+            cost, gradient, hessian, blocks.gradients[segments, n:], blocks.hessians[segments, n:, n:], cross
+        )
 
 
 @dataclass(frozen=True, eq=False)

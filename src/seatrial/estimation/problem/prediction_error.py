@@ -14,16 +14,16 @@ import numpy as np
 
 from seatrial.core.values import Array, Index
 from seatrial.estimation.problem.output_error import OutputError, SegmentNormals
-from seatrial.numerics.optimise import Normal
-from seatrial.numerics.workers import mapped
-from seatrial.physics.simulate.filtering import Filter, Noisy
+from seatrial.numerics.optimise import NormalEquations
+from seatrial.numerics.workers import map_in_threads
+from seatrial.physics.simulate.filtering import FilterPoint, KalmanFilter
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 
 @dataclass(frozen=True, eq=False)
-class Innovations:
+class KalmanInnovations:
     """Innovations e (measured - predicted) and their variances, both (rows, ny), SI; NaN where nothing was measured.
 
     Attributes:
@@ -68,26 +68,26 @@ class PredictionError:
     @property
     def size(self) -> int:
         """Number of unknowns."""
-        return self.runs.size + self.noises
+        return self.runs.size + self.noise_count
 
     @property
-    def noises(self) -> int:
+    def noise_count(self) -> int:
         """Number of intensities and standard deviations."""
         return len(self.process) + len(self.runs.data.outputs)
 
     @property
     def lower(self) -> Array:
         """Lower bounds: no process noise."""
-        return self._edge(self.runs.lower, 0.0, (1e-4 * self.runs.noise) ** 2)
+        return self._bounds(self.runs.lower, 0.0, (1e-4 * self.runs.noise) ** 2)
 
     @property
     def upper(self) -> Array:
         """Upper bounds."""
-        return self._edge(self.runs.upper, np.inf, (1e4 * self.runs.noise) ** 2)
+        return self._bounds(self.runs.upper, np.inf, (1e4 * self.runs.noise) ** 2)
 
-    def _edge(self, own: Array, process: float, unknown: Array) -> Array:
-        known = np.where(np.isfinite(self.measurement), self.measurement**2, unknown)
-        return np.concatenate([own, np.full(len(self.process), process), known])
+    def _bounds(self, run_bounds: Array, process_bound: float, variance_bounds: Array) -> Array:
+        known = np.where(np.isfinite(self.measurement), self.measurement**2, variance_bounds)
+        return np.concatenate([run_bounds, np.full(len(self.process), process_bound), known])
 
     def split(self, shared: Array) -> tuple[Array, Array, Array]:
         """Unknowns of the runs, intensities of `process`, standard deviations of the channels, the latter two SI."""
@@ -99,90 +99,90 @@ class PredictionError:
         return np.concatenate([self.runs.columns_of(session), np.arange(self.runs.size, self.size)])
 
     @cached_property
-    def _filter(self) -> Filter:
+    def _filter(self) -> KalmanFilter:
         runs = self.runs
         names = (*runs.free, *(name for name, _ in runs.session_parameters))
-        return Filter(
+        return KalmanFilter(
             runs.model, runs.data.inputs, runs.data.offsets, runs.data.dt, runs.data.outputs, names,
             tuple(n.correction for n in runs.nuisances), (), runs.substeps, self.process,
         )  # fmt: skip
 
-    def noisy(self, shared: Array) -> Noisy:
+    def filter_point(self, shared: Array) -> FilterPoint:
         """A point as the filter sees it."""
         own, intensity, deviation = self.split(shared)
-        _, values, corrections = self.runs.unpacked(own, np.zeros((self.runs.data.count, len(self.runs.starts))))
-        return Noisy(self.start, self.start_variance, values, corrections, intensity, deviation)
+        _, values, corrections = self.runs.unpack(own, np.zeros((self.runs.data.count, len(self.runs.starts))))
+        return FilterPoint(self.start, self.start_variance, values, corrections, intensity, deviation)
 
     def transitions(self, run: int, shared: Array, local: Array) -> tuple[Array, Array]:
         """Transition matrices of a run from sample to sample, (rows - 1, nx, nx), outputs by states (rows, ny, nx).
 
         Along the motion without noise from initial states `local`; shared: the unknowns of `runs`.
         """
-        start, values, corrections = self.runs.unpacked(shared, local)
+        start, values, corrections = self.runs.unpack(shared, local)
         return self._filter.transitions(run, start, values, corrections)
 
-    def innovations(self, shared: Array) -> Innovations:
+    def innovations(self, shared: Array) -> KalmanInnovations:
         """Of all runs, one after the other; infinite for a run that diverges."""
-        at, measured = self.noisy(shared), self.runs.data.measured
+        at, measured = self.filter_point(shared), self.runs.data.measured
 
         def one(segment: int) -> tuple[Array, Array]:
             e, v, failed = self._filter.innovations(segment, measured, at)
             return (np.full_like(e, np.inf), np.ones_like(v)) if failed else (e, v)
 
-        parts = self._mapped(one, range(self.runs.data.count))
+        parts = self._map(one, range(self.runs.data.count))
         e, v = (np.concatenate([p[i] for p in parts]) for i in range(2))
         missing = np.isnan(self.runs.data.measured)
-        return Innovations(np.where(missing, np.nan, e), np.where(missing, np.nan, v))
+        return KalmanInnovations(np.where(missing, np.nan, e), np.where(missing, np.nan, v))
 
-    def _mapped(self, function: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
-        return mapped(function, items, workers=self.runs.workers)
+    def _map(self, function: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
+        return map_in_threads(function, items, workers=self.runs.workers)
 
     def _loss(self, shared: Array, segment: int) -> tuple[float, Array, Array]:
         """Minus the log-likelihood of a run, with its innovations and variances."""
-        e, v, failed = self._filter.innovations(segment, self.runs.data.measured, self.noisy(shared))
-        return _likelihood(e, v) if not failed else np.inf, e, v
+        e, v, failed = self._filter.innovations(segment, self.runs.data.measured, self.filter_point(shared))
+        return _negative_log_likelihood(e, v) if not failed else np.inf, e, v
 
     def cost(self, shared: Array, local: Array) -> float:  # noqa: ARG002
         """Minus the log-likelihood, and half the priors' squares; infinite if any run diverges."""
-        costs = self._mapped(lambda s: self._loss(shared, s)[0], range(self.runs.data.count))
-        return float(sum(costs)) + self._known(shared).cost
+        costs = self._map(lambda s: self._loss(shared, s)[0], range(self.runs.data.count))
+        return float(sum(costs)) + self._prior_normal(shared).cost
 
-    def _known(self, shared: Array) -> Normal:
+    def _prior_normal(self, shared: Array) -> NormalEquations:
         """Priors and data besides the records."""
-        n = len(self.runs.free) + self.runs.kinds
+        n = len(self.runs.free) + self.runs.unknowns_per_session
         nothing = SegmentNormals(np.zeros(0), np.zeros((0, n)), np.zeros((0, n, n)), n)
-        return self.runs.assembled(nothing, shared[: self.runs.size], np.zeros(0, dtype=np.int64), with_prior=True)
+        return self.runs.assemble(nothing, shared[: self.runs.size], np.zeros(0, dtype=np.int64), with_prior=True)
 
-    def blocks(self, shared: Array) -> SegmentNormals:
+    def segment_normals(self, shared: Array) -> SegmentNormals:
         """Cost, gradient and information of every run, by the columns of its session; priors left out.
 
         Information is the expected one, sum [de de' / S + dS dS' / (2 S^2)] (Astrom 1980, eq. (3.11)).
         """
         runs = range(self.runs.data.count)
-        parts = self._frozen(shared, runs) if self.steps is None else self._exact(shared, runs)
+        parts = self._frozen_gain_normals(shared, runs) if self.steps is None else self._exact_normals(shared, runs)
         costs, gradients, hessians = (np.array([p[i] for p in parts]) for i in range(3))
         return SegmentNormals(costs, gradients, hessians, gradients.shape[1])
 
-    def _frozen(self, shared: Array, runs: Sequence[int]) -> list[tuple[float, Array, Array]]:
-        width, at = len(self.runs.free) + self.runs.kinds + self.noises, self.noisy(shared)
+    def _frozen_gain_normals(self, shared: Array, runs: Sequence[int]) -> list[tuple[float, Array, Array]]:
+        width, at = len(self.runs.free) + self.runs.unknowns_per_session + self.noise_count, self.filter_point(shared)
 
         def one(segment: int) -> tuple[float, Array, Array]:
             e, v, de, dv, failed = self._filter.sensitivities(segment, self.runs.data.measured, at)
             if failed:
                 return np.inf, np.zeros(width), np.eye(width)
-            gradient, hessian = _projected(e, v, de)
-            noise = slice(width - self.noises, width)
-            by_variance, information = _varied(e, v, dv)
+            gradient, hessian = _mean_information(e, v, de)
+            noise = slice(width - self.noise_count, width)
+            by_variance, information = _variance_information(e, v, dv)
             gradient[noise] += by_variance
             hessian[noise, noise] += information
-            return _likelihood(e, v), gradient, hessian
+            return _negative_log_likelihood(e, v), gradient, hessian
 
-        return self._mapped(one, runs)
+        return self._map(one, runs)
 
-    def _exact(self, shared: Array, runs: Sequence[int]) -> list[tuple[float, Array, Array]]:
+    def _exact_normals(self, shared: Array, runs: Sequence[int]) -> list[tuple[float, Array, Array]]:
         """The same from central differences of the innovations themselves, whatever they depend on."""
         session = self.runs.data.session
-        ahead, behind = self._sides(shared)
+        ahead, behind = self._difference_points(shared)
         items = [(s, c, side) for s in runs for c in self.columns_of(int(session[s])) for side in (ahead, behind)]
 
         def moved(item: tuple[int, int, Array]) -> tuple[Array, Array]:
@@ -191,7 +191,7 @@ class PredictionError:
             point[column] = side[column]
             return self._loss(point, segment)[1:]
 
-        sides, made = iter(self._mapped(moved, items)), []
+        sides, made = iter(self._map(moved, items)), []
         for segment in runs:
             cost, e, v = self._loss(shared, segment)
             columns = self.columns_of(int(session[segment]))
@@ -202,33 +202,35 @@ class PredictionError:
             if not np.isfinite(cost):
                 made.append((cost, np.zeros(len(columns)), np.eye(len(columns))))
                 continue
-            mean, spread = _projected(e, v, de), _varied(e, v, dv)
+            mean, spread = _mean_information(e, v, de), _variance_information(e, v, dv)
             made.append((cost, mean[0] + spread[0], mean[1] + spread[1]))
         return made
 
-    def _sides(self, shared: Array) -> tuple[Array, Array]:
+    def _difference_points(self, shared: Array) -> tuple[Array, Array]:
         """Every unknown a step ahead and a step behind, within its bounds."""
         assert self.steps is not None
         return np.minimum(shared + self.steps, self.upper), np.maximum(shared - self.steps, self.lower)
 
-    def normal(self, shared: Array, local: Array) -> Normal:  # noqa: ARG002
+    def normal(self, shared: Array, local: Array) -> NormalEquations:  # noqa: ARG002
         """The Gauss-Newton model at a point: gradient and expected information."""
-        return self.assembled(self.blocks(shared), shared, np.arange(self.runs.data.count), with_prior=True)
+        return self.assemble(self.segment_normals(shared), shared, np.arange(self.runs.data.count), with_prior=True)
 
-    def assembled(self, blocks: SegmentNormals, shared: Array, chosen: Index, *, with_prior: bool) -> Normal:
+    def assemble(self, blocks: SegmentNormals, shared: Array, segments: Index, *, with_prior: bool) -> NormalEquations:
         """The normal equations of some runs; with_prior: with what is known besides the records."""
         gradient, hessian = np.zeros(self.size), np.zeros((self.size, self.size))
-        for segment in chosen:
+        for segment in segments:
             columns = self.columns_of(int(self.runs.data.session[segment]))
             gradient[columns] += blocks.gradients[segment]
             hessian[np.ix_(columns, columns)] += blocks.hessians[segment]
-        cost = float(blocks.costs[chosen].sum())
+        cost = float(blocks.costs[segments].sum())
         if with_prior:
-            known, k = self._known(shared), self.runs.size
+            known, k = self._prior_normal(shared), self.runs.size
             cost += known.cost
             gradient[:k] += known.gradient
             hessian[:k, :k] += known.hessian
-        return Normal(cost, gradient, hessian, np.zeros((0, 0)), np.zeros((0, 0, 0)), np.zeros((0, self.size, 0)))
+        return NormalEquations(
+            cost, gradient, hessian, np.zeros((0, 0)), np.zeros((0, 0, 0)), np.zeros((0, self.size, 0))
+        )
 
     def difference_steps(self, shared: Array, hessian: Array, share: float = 0.02) -> Array:
         """Steps for an exact gradient, (size,): a share of what each unknown may move with the others held.
@@ -241,32 +243,32 @@ class PredictionError:
         return steps
 
 
-def _likelihood(e: Array, v: Array) -> float:
+def _negative_log_likelihood(e: Array, v: Array) -> float:
     """1/2 sum [e^2 / v + log v]; infinite if a variance is not positive."""
     if not (np.all(np.isfinite(e)) and np.all(v > 0)):
         return np.inf
     return 0.5 * float(np.sum(e**2 / v + np.log(v)))
 
 
-def _projected(e: Array, v: Array, de: Array) -> tuple[Array, Array]:
+def _mean_information(e: Array, v: Array, de: Array) -> tuple[Array, Array]:
     """sum e de / v and sum de de' / v: gradient and information by the mean."""
     root = np.sqrt(v)
     jacobian = (de / root[:, :, None]).reshape(-1, de.shape[2])
     return jacobian.T @ (e / root).ravel(), jacobian.T @ jacobian
 
 
-def _varied(e: Array, v: Array, dv: Array) -> tuple[Array, Array]:
+def _variance_information(e: Array, v: Array, dv: Array) -> tuple[Array, Array]:
     """1/2 sum (1 - e^2 / v) dv / v and 1/2 sum dv dv' / v^2: gradient and information by the variance."""
     relative = (dv / v[:, :, None]).reshape(-1, dv.shape[2])
     return 0.5 * relative.T @ (1.0 - e**2 / v).ravel(), 0.5 * relative.T @ relative
 
 
-def whole_runs(problem: OutputError) -> tuple[OutputError, Index]:
+def join_segments(problem: OutputError) -> tuple[OutputError, Index]:
     """The problem with the segments of each run joined again, and the first segment of each of its runs."""
     data = problem.data
     rows, firsts, kept = [], [], []
     for run in range(len(data.runs)):
-        mine = data.of_run(run)
+        mine = data.run_segments(run)
         if not len(mine):
             continue
         first = int(mine[0])

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Array, Index, InputError, Record, nearest
+from seatrial.core.values import Array, Index, InputError, Record, spelling_hint
 from seatrial.physics.simulate.channels import inputs_of
 
 
@@ -36,40 +36,40 @@ class Segments:
         """Number of segments."""
         return len(self.run)
 
-    def of_run(self, run: int) -> Index:
+    def run_segments(self, run: int) -> Index:
         """The segments of a run."""
         return np.flatnonzero(self.run == run)
 
-    def taken(self, chosen: Index) -> "Segments":
+    def selected(self, indices: Index) -> "Segments":
         """Only the chosen segments, in that order, repeated where one is chosen twice; runs and sessions stay."""
-        rows = [np.arange(int(self.offsets[s]), int(self.offsets[s + 1])) for s in chosen]
+        rows = [np.arange(int(self.offsets[s]), int(self.offsets[s + 1])) for s in indices]
         kept = np.concatenate(rows)
         return replace(
             self,
             inputs=np.ascontiguousarray(self.inputs[kept]),
             measured=self.measured[kept],
             offsets=np.concatenate([[0], np.cumsum([len(r) for r in rows])]).astype(np.int64),
-            run=self.run[chosen],
-            session=self.session[chosen],
+            run=self.run[indices],
+            session=self.session[indices],
         )
 
 
-def compared_outputs(model: Model, records: Sequence[Record], wanted: Sequence[str] = ()) -> tuple[str, ...]:
+def compared_outputs(model: Model, records: Sequence[Record], requested: Sequence[str] = ()) -> tuple[str, ...]:
     """Observables of the model that at least one record holds; only the wanted ones where some are named.
 
     Raises:
         InputError: there is none, or a wanted one is no observable of the model or in no record.
     """
     found = tuple(o for o in model.observables if any(o in r for r in records))
-    for name in wanted:
+    for name in requested:
         if name not in found:
-            raise InputError(f"channel '{name}' cannot be compared{nearest(name, list(found))}")
+            raise InputError(f"channel '{name}' cannot be compared{spelling_hint(name, list(found))}")
     if not found:
         raise InputError(f"no record holds any output of model '{model.name}': {', '.join(model.observables)}")
-    return tuple(o for o in found if not wanted or o in wanted)
+    return tuple(o for o in found if not requested or o in requested)
 
 
-def _bounds(rows: int, length: int) -> list[tuple[int, int]]:
+def _segment_bounds(rows: int, length: int) -> list[tuple[int, int]]:
     """Overlapping-by-one pieces of about `length` steps, as even as possible."""
     steps = rows - 1
     pieces = max(1, round(steps / length))
@@ -77,14 +77,14 @@ def _bounds(rows: int, length: int) -> list[tuple[int, int]]:
     return [(int(a), int(b) + 1) for a, b in pairwise(edges)]
 
 
-def cut(
+def cut_segments(
     model: Model,
     records: Sequence[Record],
     outputs: tuple[str, ...],
-    seconds: float | None,
+    segment_seconds: float | None,
     sessions: Sequence[str] | None = None,
 ) -> Segments:
-    """Cut records (all of one time step) into pieces of about `seconds`; None keeps whole runs.
+    """Cut records (all of one time step) into pieces of about `segment_seconds`; None keeps whole runs.
 
     Neighbouring pieces share one sample. Each record belongs to the session of the same index (default: its own).
 
@@ -102,8 +102,8 @@ def cut(
             raise InputError(f"record '{record.name}' has {len(record)} samples; at least three are needed")
         u = inputs_of(model, record)
         y = np.stack([record[o] if o in record else np.full(len(record), np.nan) for o in outputs], axis=1)
-        length = len(record) - 1 if seconds is None else max(2, round(seconds / dt))
-        for first, last in _bounds(len(record), length):
+        length = len(record) - 1 if segment_seconds is None else max(2, round(segment_seconds / dt))
+        for first, last in _segment_bounds(len(record), length):
             inputs.append(u[first:last])
             measured.append(y[first:last])
             lengths.append(last - first)

@@ -16,19 +16,24 @@ from functools import cached_property
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import NOTATION, Array, ForcePoints, Includes, InputError
+from seatrial.core.values import NOTATION, Array, ForceContent, ForcePoints, InputError
 from seatrial.core.values.force_points import FORCES
-from seatrial.estimation.problem.addend import Contribution
+from seatrial.estimation.problem.data_term import Contribution
 from seatrial.numerics.kernels.evaluate import evaluate
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 
-_SUFFIX = {Includes.HULL: "H", Includes.HYDRODYNAMIC: "sum", Includes.PRESSURE: "m", Includes.BALANCE: "m"}
-_STILL = ("wind_speed", "wind_direction")
+_SUFFIX = {
+    ForceContent.HULL: "H",
+    ForceContent.HYDRODYNAMIC: "sum",
+    ForceContent.PRESSURE: "m",
+    ForceContent.BALANCE: "m",
+}
+_CALM_INPUTS = ("wind_speed", "wind_direction")
 
 
 @dataclass(frozen=True, eq=False)
 class StaticForces:
-    """One table of points beside a model; an `Addend` of the output-error problem.
+    """One table of points beside a model; a `DataTerm` of the output-error problem.
 
     Raises:
         InputError: the model names no such forces, an input it needs is not among the points, or its mass is free.
@@ -40,25 +45,25 @@ class StaticForces:
     def __post_init__(self) -> None:
         model, points = self.model, self.points
         known = {b.name for b in model.bindings}
-        if not set(self.names) <= known or not {"u", "v", "r"} <= set(model.states):
+        if not set(self.force_names) <= known or not {"u", "v", "r"} <= set(model.states):
             raise InputError(
-                f"model '{model.name}' has no forces {', '.join(self.names)} to compare the force points "
+                f"model '{model.name}' has no forces {', '.join(self.force_names)} to compare the force points "
                 f"'{points.name}' (includes = \"{points.includes}\") with; use mmg, or leave [[forces]] out"
             )
-        absent = [n for n in model.input_names if n not in points.motion and n not in _STILL]
-        if absent and points.includes is not Includes.HULL:
+        absent = [n for n in model.input_names if n not in points.motion and n not in _CALM_INPUTS]
+        if absent and points.includes is not ForceContent.HULL:
             raise InputError(
                 f"force points '{points.name}' do not say '{absent[0]}', an input of model '{model.name}'; "
                 f"give a column or a value for it under forces.motion"
             )
         for name in ("m", "x_G"):
-            if points.includes is Includes.PRESSURE and name in model.parameters and model.parameters[name].free:
+            if points.includes is ForceContent.PRESSURE and name in model.parameters and model.parameters[name].free:
                 raise InputError(
                     f"force points '{points.name}' without inertia need a known '{name}', which is free; fix it"
                 )
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def force_names(self) -> tuple[str, ...]:
         """The model's forces that the points are compared with."""
         return tuple(f"{force}_{_SUFFIX[self.points.includes]}" for force in FORCES)
 
@@ -73,14 +78,14 @@ class StaticForces:
         rest, columns = np.zeros(len(self.points)), []
         for one in self.model.inputs:
             values = self.points.motion.get(one.name, rest)
-            columns.append(-values if one.is_turned and one.name in NOTATION else values)
+            columns.append(-values if one.is_reversed and one.name in NOTATION else values)
         return np.ascontiguousarray(np.stack(columns, axis=1))
 
     @cached_property
     def _measured(self) -> Array:
         missing = np.full(len(self.points), np.nan)
         table = np.stack([self.points.forces.get(force, missing) for force in FORCES], axis=1)
-        if self.points.includes is not Includes.PRESSURE:
+        if self.points.includes is not ForceContent.PRESSURE:
             return table
         mass, x_G = (self.model.parameters[n].value if n in self.model.parameters else 0.0 for n in ("m", "x_G"))
         u, v, r = (self.points.motion[s] for s in ("u", "v", "r"))
@@ -101,12 +106,12 @@ class StaticForces:
         columns = {b.name: i for i, b in enumerate(self.model.bindings)}
         out = np.empty((len(self.points), len(columns)))
         evaluate(self.model.compiled.bindings, self._states, self._inputs, values, 0.0, out)
-        return out[:, [columns[n] for n in self.names]]
+        return out[:, [columns[n] for n in self.force_names]]
 
     def _linearised(self, values: Array) -> tuple[Array, Array]:
         rows, width = len(self.points), len(self.model.states) + len(self.model.inputs)
         out, jac = np.empty((rows, 3)), np.zeros((rows, 3, width + len(values)))
-        tangent, every = self.model.compiled.tangent_of(self.names), np.tile(values, (rows, 1))
+        tangent, every = self.model.compiled.tangent_function(self.force_names), np.tile(values, (rows, 1))
         evaluate_tangent(tangent, self._states, self._inputs, every, 0.0, out, jac)
         return out, jac[:, :, width:]
 

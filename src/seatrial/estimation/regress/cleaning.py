@@ -34,11 +34,11 @@ def without_outliers(record: Record, limit: float, channels: Sequence[str]) -> R
     Raises:
         InputError: a channel is unknown, constant or without values; the limit is not positive; nothing would stay.
     """
-    _demand_named(record, channels, "without_outliers")
+    _demand_channels(record, channels, "without_outliers")
     if not 0.0 < limit < np.inf:
         raise InputError(f"record '{record.name}': the limit of standard scores is {limit:g}; give one above 0, e.g. 3")
     out = np.any([np.abs(_scores(record, symbol)) > limit for symbol in channels], axis=0)
-    return _left(record, ~out, f"outliers, standard score above {limit:g} in {', '.join(channels)}")
+    return _keep_samples(record, ~out, f"outliers, standard score above {limit:g} in {', '.join(channels)}")
 
 
 def without_duplicates(record: Record, channels: Sequence[str]) -> Record:
@@ -50,8 +50,10 @@ def without_duplicates(record: Record, channels: Sequence[str]) -> Record:
     Raises:
         InputError: a channel is unknown, or none is named.
     """
-    _demand_named(record, channels, "without_duplicates")
-    return _left(record, first_of_equals(record.matrix(tuple(channels))), f"repetitions in {', '.join(channels)}")
+    _demand_channels(record, channels, "without_duplicates")
+    return _keep_samples(
+        record, first_occurrences(record.matrix(tuple(channels))), f"repetitions in {', '.join(channels)}"
+    )
 
 
 def without_missing(record: Record, channels: Sequence[str]) -> Record:
@@ -62,9 +64,9 @@ def without_missing(record: Record, channels: Sequence[str]) -> Record:
     Raises:
         InputError: a channel is unknown, none is named, or nothing would stay.
     """
-    _demand_named(record, channels, "without_missing")
+    _demand_channels(record, channels, "without_missing")
     whole = np.isfinite(record.matrix(tuple(channels))).all(axis=1) & np.isfinite(record.time)
-    return _left(record, whole, f"missing values in {', '.join(channels)}")
+    return _keep_samples(record, whole, f"missing values in {', '.join(channels)}")
 
 
 def without_small(record: Record, thresholds: Mapping[str, float]) -> Record:
@@ -79,7 +81,7 @@ def without_small(record: Record, thresholds: Mapping[str, float]) -> Record:
     Raises:
         InputError: a channel is unknown, none is named, a threshold is negative or no number, or nothing would stay.
     """
-    _demand_named(record, tuple(thresholds), "without_small")
+    _demand_channels(record, tuple(thresholds), "without_small")
     for symbol, threshold in thresholds.items():
         if not 0.0 <= threshold < np.inf:
             raise InputError(
@@ -89,7 +91,7 @@ def without_small(record: Record, thresholds: Mapping[str, float]) -> Record:
     # Song et al. 2025, eq. (8): |z_i| >= Lambda stays
     small = np.any([np.abs(record[symbol]) < threshold for symbol, threshold in thresholds.items()], axis=0)
     told = ", ".join(f"|{symbol}| < {size:g} {record.channel(symbol).unit}" for symbol, size in thresholds.items())
-    return _left(record, ~small, f"small values, {told}")
+    return _keep_samples(record, ~small, f"small values, {told}")
 
 
 def standard_scores(values: Array) -> Array:
@@ -103,7 +105,7 @@ def standard_scores(values: Array) -> Array:
     return (values - np.mean(known)) / np.std(known)
 
 
-def first_of_equals(rows: Array) -> Mask:
+def first_occurrences(rows: Array) -> Mask:
     """Whether each row is the first of its equals, shape (n,) of rows (n, k); NaN equals nothing."""
     order = np.lexsort(rows.T)  # stable: equal rows stay in their order
     ranked = rows[order]
@@ -125,18 +127,20 @@ def _scores(record: Record, symbol: str) -> Array:
     return standard_scores(values)
 
 
-def _demand_named(record: Record, channels: Sequence[str], step: str) -> None:
+def _demand_channels(record: Record, channels: Sequence[str], step: str) -> None:
     if not channels:
         raise InputError(f"record '{record.name}': {step} was given no channel to look at; name one at least")
     for symbol in channels:
         record.channel(symbol)
 
 
-def _left(record: Record, stays: Mask, what: str) -> Record:
+def _keep_samples(record: Record, mask: Mask, description: str) -> Record:
     """The samples that stay, the step told in the provenance."""
-    gone = int(np.count_nonzero(~stays))
+    gone = int(np.count_nonzero(~mask))
     if gone == len(record):
-        raise InputError(f"record '{record.name}': all {gone} samples would go ({what}); change limits or channels")
-    kept = {symbol: channel.with_values(channel.values[stays]) for symbol, channel in record.channels.items()}
-    step = f"{gone} of {len(record)} samples left out: {what}"
-    return replace(record, time=record.time[stays], channels=kept, provenance=record.provenance.then(step))
+        raise InputError(
+            f"record '{record.name}': all {gone} samples would go ({description}); change limits or channels"
+        )
+    kept = {symbol: channel.with_values(channel.values[mask]) for symbol, channel in record.channels.items()}
+    step = f"{gone} of {len(record)} samples left out: {description}"
+    return replace(record, time=record.time[mask], channels=kept, provenance=record.provenance.with_step(step))

@@ -8,15 +8,20 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Finding, Record
-from seatrial.estimation.regress.arithmetic import Arithmetic, LeastSquares, Solved, instrumental
-from seatrial.estimation.regress.features import Motion
-from seatrial.estimation.regress.operators import Operator
-from seatrial.estimation.regress.system import System, systems
+from seatrial.estimation.regress.features import RegressionMotion
+from seatrial.estimation.regress.operators import DerivativeOperator
+from seatrial.estimation.regress.solvers import (
+    LinearSolver,
+    OrdinaryLeastSquares,
+    RegressionSolution,
+    solve_with_instruments,
+)
+from seatrial.estimation.regress.system import RegressionSystem, build_systems
 from seatrial.physics.simulate.replay import replay
 
 
 @dataclass(frozen=True, eq=False)
-class Regressed:
+class RegressionEstimate:
     """Values of the free coefficients (k,) in the model's order; the constant each equation allowed itself besides."""
 
     values: Array
@@ -29,7 +34,7 @@ class Regressed:
         return model.with_values(dict(zip(model.parameters.free_names, self.values.tolist(), strict=True)))
 
 
-class Estimator(Protocol):
+class RegressionEstimator(Protocol):
     """From a model and records to coefficients, whatever values the model comes with."""
 
     @property
@@ -37,7 +42,7 @@ class Estimator(Protocol):
         """What tables call it."""
         ...
 
-    def estimate(self, model: Model, records: Sequence[Record]) -> Regressed:
+    def estimate(self, model: Model, records: Sequence[Record]) -> RegressionEstimate:
         """The free coefficients from all records together.
 
         Raises:
@@ -47,17 +52,17 @@ class Estimator(Protocol):
 
 
 @dataclass(frozen=True)
-class Regression:
-    """An arithmetic on the rows that an operator makes."""
+class LinearRegression:
+    """A linear solver on the rows that an operator makes."""
 
     name: str
-    operator: Operator
-    arithmetic: Arithmetic
+    operator: DerivativeOperator
+    solver: LinearSolver
 
-    def estimate(self, model: Model, records: Sequence[Record]) -> Regressed:
+    def estimate(self, model: Model, records: Sequence[Record]) -> RegressionEstimate:
         """The coefficients, system by system."""
-        made = systems(model, [Motion.of(model, r) for r in records], self.operator)
-        return gathered(model, made, self.arithmetic.solve)
+        made = build_systems(model, [RegressionMotion.from_record(model, r) for r in records], self.operator)
+        return solve_systems(model, made, self.solver.solve)
 
 
 @dataclass(frozen=True)
@@ -65,34 +70,36 @@ class InstrumentalVariables:
     """Instruments simulated by the model that least squares found, then again by their own (Young & Jakeman 1979)."""
 
     name: str
-    operator: Operator
-    rounds: int = 3
+    operator: DerivativeOperator
+    iterations: int = 3
 
-    def estimate(self, model: Model, records: Sequence[Record]) -> Regressed:
-        """The coefficients after `rounds` of simulation; the records' inputs drive it from their first sample.
+    def estimate(self, model: Model, records: Sequence[Record]) -> RegressionEstimate:
+        """The coefficients after `iterations` of simulation; the records' inputs drive it from their first sample.
 
         Raises:
             InputError: besides those of regression, a simulation that diverges.
         """
-        made = systems(model, [Motion.of(model, r) for r in records], self.operator)
-        found = gathered(model, made, LeastSquares().solve)
-        for _ in range(self.rounds):
+        made = build_systems(model, [RegressionMotion.from_record(model, r) for r in records], self.operator)
+        found = solve_systems(model, made, OrdinaryLeastSquares().solve)
+        for _ in range(self.iterations):
             ship = found.in_model(model)
-            free_of_noise = [Motion.of(model, replay(ship, r)) for r in records]
-            instruments = {s.equations: s for s in systems(model, free_of_noise, self.operator)}
-            found = gathered(model, made, lambda s, z=instruments: instrumental(s, z[s.equations]))
+            free_of_noise = [RegressionMotion.from_record(model, replay(ship, r)) for r in records]
+            instruments = {s.equations: s for s in build_systems(model, free_of_noise, self.operator)}
+            found = solve_systems(model, made, lambda s, z=instruments: solve_with_instruments(s, z[s.equations]))
         return found
 
 
-def gathered(model: Model, made: Sequence[System], solve: Callable[[System], Solved]) -> Regressed:
+def solve_systems(
+    model: Model, linear_systems: Sequence[RegressionSystem], solve: Callable[[RegressionSystem], RegressionSolution]
+) -> RegressionEstimate:
     """Every system solved, the coefficients in the model's order."""
     names = model.parameters.free_names
     values = np.zeros(len(names))
     bias, findings, settings = {}, [], {}
-    for system in made:
+    for system in linear_systems:
         solved = solve(system)
         values[[names.index(n) for n in system.names]] = solved.coefficients
         bias[system.title] = solved.bias
         findings += solved.findings
         settings |= {f"{system.title}: {key}": value for key, value in solved.settings.items()}
-    return Regressed(values, bias, tuple(findings), settings)
+    return RegressionEstimate(values, bias, tuple(findings), settings)

@@ -12,22 +12,22 @@ from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.states import hidden_states, measured_states
 
-_PROBE = 1.37
-_EVEN = 1e-3
+_PROBE_FACTOR = 1.37
+_TIME_TOLERANCE = 1e-3
 
 
-def demand_positive(what: str, value: float) -> None:
+def demand_positive(name: str, value: float) -> None:
     """Refuse a setting that is not a positive number.
 
     Raises:
         InputError: naming it.
     """
     if not 0.0 < value < np.inf:
-        raise InputError(f"{what} is {value:g}; give a positive number")
+        raise InputError(f"{name} is {value:g}; give a positive number")
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class RegressionMotion:
     """What a record says of a model: times (n,) [s], states (n, nx), inputs (n, nu) in the model's signs.
 
     Times may have gaps, where cleaning took samples away.
@@ -38,7 +38,7 @@ class Motion:
     inputs: Array
 
     @classmethod
-    def of(cls, model: Model, record: Record) -> Self:
+    def from_record(cls, model: Model, record: Record) -> Self:
         """The motion of a record; velocities that were not measured are derived where that can be done.
 
         Raises:
@@ -64,9 +64,9 @@ class Motion:
         """The usual time step [s]."""
         return float(np.median(np.diff(self.time)))
 
-    def stretches(self) -> list[slice]:
+    def gapless_slices(self) -> list[slice]:
         """The stretches without a gap."""
-        gaps = np.flatnonzero(np.abs(np.diff(self.time) - self.dt) > _EVEN * self.dt) + 1
+        gaps = np.flatnonzero(np.abs(np.diff(self.time) - self.dt) > _TIME_TOLERANCE * self.dt) + 1
         return [slice(int(a), int(b)) for a, b in pairwise([0, *gaps, len(self.time)])]
 
     def rows(self, index: slice) -> Self:
@@ -76,13 +76,13 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class Features:
-    """dx/dt = known + slope theta: known (n, nx), slope (n, nx, k), k the free coefficients of the model."""
+    """dx/dt = known_rates + slope theta: (n, nx), slope (n, nx, k), k the free coefficients of the model."""
 
-    known: Array
+    known_rates: Array
     slope: Array
 
 
-def features(model: Model, motion: Motion) -> Features:
+def features(model: Model, motion: RegressionMotion) -> Features:
     """The features of every rate at every sample, from the generated Jacobian.
 
     Raises:
@@ -92,7 +92,7 @@ def features(model: Model, motion: Motion) -> Features:
     free = [model.parameters.index(n) for n in model.parameters.free_names]
     rates, slope = _tangent(model, motion, values)
     probe = values.copy()
-    probe[free] = _PROBE * values[free] + np.where(values[free] == 0.0, 1.0, 0.0)
+    probe[free] = _PROBE_FACTOR * values[free] + np.where(values[free] == 0.0, 1.0, 0.0)
     moved = np.abs(_tangent(model, motion, probe)[1] - slope).max(axis=(0, 1))
     curved = np.flatnonzero(moved > 1e-9 * np.abs(slope).max(axis=(0, 1)))
     if curved.size:
@@ -104,7 +104,7 @@ def features(model: Model, motion: Motion) -> Features:
     return Features(rates - slope @ values[free], slope)
 
 
-def _tangent(model: Model, motion: Motion, values: Array) -> tuple[Array, Array]:
+def _tangent(model: Model, motion: RegressionMotion, values: Array) -> tuple[Array, Array]:
     nx, nu, n = len(model.states), len(model.inputs), len(motion.time)
     rates, jacobian = np.empty((n, nx)), np.zeros((n, nx, nx + nu + len(values)))
     x, u = np.ascontiguousarray(motion.states), np.ascontiguousarray(motion.inputs)

@@ -8,17 +8,17 @@ from dataclasses import dataclass, field
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Finding, Record
-from seatrial.estimation.regress.arithmetic import Arithmetic, Lasso, Solved
 from seatrial.estimation.regress.cleaning import without_duplicates, without_missing, without_outliers, without_small
-from seatrial.estimation.regress.estimators import Regressed, gathered
-from seatrial.estimation.regress.features import Motion
-from seatrial.estimation.regress.operators import Centred, Differenced, Euler, Operator
+from seatrial.estimation.regress.estimators import RegressionEstimate, solve_systems
+from seatrial.estimation.regress.features import RegressionMotion
+from seatrial.estimation.regress.operators import Centred, DerivativeOperator, Differenced, Euler
+from seatrial.estimation.regress.solvers import Lasso, LinearSolver, RegressionSolution
 from seatrial.estimation.regress.split import blocks
 from seatrial.estimation.regress.support_vectors import SupportVectors
-from seatrial.estimation.regress.system import System, systems
+from seatrial.estimation.regress.system import RegressionSystem, build_systems
 
 # section 1.4: differenced and centred
-IMPROVED = Centred(Differenced(Euler()))
+DIFFERENCED_AND_CENTRED = Centred(Differenced(Euler()))
 
 
 @dataclass(frozen=True)
@@ -26,15 +26,15 @@ class Cleaning:
     """The four steps of section 1.2 over the model's states and inputs as far as the record holds them.
 
     Attributes:
-        score: largest standard score that stays, eq. (5); constant channels have none.
-        small: least absolute value that stays, eq. (8), of the states that are velocities, as a share of each one's
+        max_score: largest standard score that stays, eq. (5); constant channels have none.
+        min_share: least absolute value that stays, eq. (8), of the states that are velocities, as a share of each one's
             standard deviation; 0 keeps all.
     """
 
-    score: float = 3.0
-    small: float = 1e-3
+    max_score: float = 3.0
+    min_share: float = 1e-3
 
-    def cleaned(self, model: Model, record: Record) -> Record:
+    def clean(self, model: Model, record: Record) -> Record:
         """What is left of a record.
 
         Raises:
@@ -43,13 +43,13 @@ class Cleaning:
         held = [s for s in (*model.states, *model.input_names) if s in record]
         known = without_missing(record, held)
         moving = [s for s in _velocities(model) if s in known and float(known[s].std()) > 0.0]
-        kept = without_duplicates(without_outliers(known, self.score, moving), held)
-        return without_small(kept, {s: self.small * float(known[s].std()) for s in moving})
+        kept = without_duplicates(without_outliers(known, self.max_score, moving), held)
+        return without_small(kept, {s: self.min_share * float(known[s].std()) for s in moving})
 
 
 @dataclass(frozen=True)
 class Pipeline:
-    """Cleaning, the first `share` of each record, Lasso's selection on Euler's rows, then an arithmetic on others.
+    """Cleaning, `training_share` of each record, Lasso's selection on Euler's rows, then an arithmetic on others.
 
     Attributes:
         selection: which coefficients stay; None keeps all.
@@ -58,32 +58,36 @@ class Pipeline:
 
     name: str = "published pipeline, improved (Song et al. 2025)"
     cleaning: Cleaning = field(default_factory=Cleaning)
-    share: float = 0.8
+    training_share: float = 0.8
     selection: Lasso | None = field(default_factory=Lasso)
-    operator: Operator = IMPROVED
-    arithmetic: Arithmetic = field(default_factory=SupportVectors)
+    operator: DerivativeOperator = DIFFERENCED_AND_CENTRED
+    solver: LinearSolver = field(default_factory=SupportVectors)
 
-    def estimate(self, model: Model, records: Sequence[Record]) -> Regressed:
+    def estimate(self, model: Model, records: Sequence[Record]) -> RegressionEstimate:
         """The coefficients; those that were not selected are zero.
 
         Raises:
             InputError: cleaning leaves nothing, or a training block is shorter than a manoeuvre.
         """
-        cleaned = [self.cleaning.cleaned(model, record) for record in records]
-        motions = [Motion.of(model, blocks(record, self.share)[0]) for record in cleaned]
+        cleaned = [self.cleaning.clean(model, record) for record in records]
+        motions = [RegressionMotion.from_record(model, blocks(record, self.training_share)[0]) for record in cleaned]
         findings: list[Finding] = []
         kept = dict[tuple[str, ...], tuple[str, ...]]()
-        for system in systems(model, motions, Euler()):
-            kept[system.equations], said = self._selected(system)
+        for system in build_systems(model, motions, Euler()):
+            kept[system.equations], said = self._select_coefficients(system)
             findings += said
-        made = [s.of(kept[s.equations]) for s in systems(model, motions, self.operator) if kept[s.equations]]
-        found = gathered(model, made, self.arithmetic.solve)
-        return Regressed(found.values, found.bias, (*findings, *found.findings), found.settings)
+        made = [
+            s.restricted_to(kept[s.equations])
+            for s in build_systems(model, motions, self.operator)
+            if kept[s.equations]
+        ]
+        found = solve_systems(model, made, self.solver.solve)
+        return RegressionEstimate(found.values, found.bias, (*findings, *found.findings), found.settings)
 
-    def _selected(self, system: System) -> tuple[tuple[str, ...], tuple[Finding, ...]]:
+    def _select_coefficients(self, system: RegressionSystem) -> tuple[tuple[str, ...], tuple[Finding, ...]]:
         if self.selection is None:
             return system.names, ()
-        solved: Solved = self.selection.solve(system)
+        solved: RegressionSolution = self.selection.solve(system)
         return tuple(n for n, c in zip(system.names, solved.coefficients, strict=True) if c != 0.0), solved.findings
 
 

@@ -11,11 +11,11 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.values import Array, Index, InputError, Record
-from seatrial.physics.manoeuvres.observed import Manoeuvre, Observed
+from seatrial.physics.manoeuvres.recognition import ManoeuvreKind, ObservedManoeuvre
 
 # a reversal of heading counts from 2 deg or a tenth of the record's range of headings on, so that noise is none
-LEAST_REVERSAL, REVERSAL = float(np.radians(2.0)), 0.1
-CIRCLE = 2.0 * float(np.pi)
+MIN_REVERSAL, REVERSAL_SHARE = float(np.radians(2.0)), 0.1
+FULL_CIRCLE = 2.0 * float(np.pi)
 
 
 def blocks(record: Record, share: float) -> tuple[Record, Record]:
@@ -36,9 +36,9 @@ def blocks(record: Record, share: float) -> tuple[Record, Record]:
     shortest = min(pieces, key=_seconds)
     if shortest.duration < longest:
         piece = "the training block" if shortest is pieces[0] else "the test block"
-        raise InputError(f"{_too_short(record, piece, shortest, longest)}; {_other_share(record, longest)}")
+        raise InputError(f"{_too_short(record, piece, shortest, longest)}; {_advise_share(record, longest)}")
     train, test = (
-        _told(piece, f"{role} block: samples {begin + 1} to {begin + len(piece)} of {count}")
+        _with_step(piece, f"{role} block: samples {begin + 1} to {begin + len(piece)} of {count}")
         for piece, role, begin in zip(pieces, ("training", "test"), (0, first), strict=True)
     )
     return train, test
@@ -55,7 +55,7 @@ def record_folds(record: Record, count: int) -> tuple[Index, ...]:
     shortest = _shortest(record, made)
     if shortest.duration < longest:
         piece = f"the shortest of {count} folds"
-        raise InputError(f"{_too_short(record, piece, shortest, longest)}; {_fewer_folds(record, longest, count)}")
+        raise InputError(f"{_too_short(record, piece, shortest, longest)}; {_advise_folds(record, longest, count)}")
     return made
 
 
@@ -70,7 +70,7 @@ def folds(rows: int, count: int) -> tuple[Index, ...]:
     return tuple(np.array_split(np.arange(rows, dtype=np.int64), count))
 
 
-def shuffled(rows: int, share: float, rng: np.random.Generator) -> tuple[Index, Index]:
+def shuffled_split(rows: int, share: float, rng: np.random.Generator) -> tuple[Index, Index]:
     """Rows drawn at random for training, and the rest for testing, each in ascending order: to show how it leaks.
 
     Nearly every row for testing has a row for training next to it, from which it can be had without any model. Use
@@ -112,10 +112,10 @@ def manoeuvre_seconds(record: Record) -> float:
         return 0.0
     if not np.isfinite(record.time).all():
         raise InputError(f"record '{record.name}': stamps are missing; rebuild its time base or use without_missing")
-    seen = Observed.of(record)
-    at = record.time[reversals(seen.psi, max(LEAST_REVERSAL, REVERSAL * float(np.ptp(seen.psi))))]
+    seen = ObservedManoeuvre.from_record(record)
+    at = record.time[reversals(seen.psi, max(MIN_REVERSAL, REVERSAL_SHARE * float(np.ptp(seen.psi))))]
     times = [np.diff(seen.executes), at[2:] - at[:-2]]
-    if seen.kind in (Manoeuvre.TURNING_CIRCLE, Manoeuvre.PULL_OUT):
+    if seen.kind in (ManoeuvreKind.TURNING_CIRCLE, ManoeuvreKind.PULL_OUT):
         times.append(np.array([_turn_seconds(seen)]))
     return float(np.max(np.concatenate(times), initial=0.0))
 
@@ -142,11 +142,11 @@ def reversals(values: Array, least: float) -> Index:
     return np.array(found, dtype=np.int64)
 
 
-def _turn_seconds(seen: Observed) -> float:
-    execute = seen.turn[1]
-    turned = np.abs(seen.psi - seen.psi_at(execute))
-    round_once = np.flatnonzero((seen.record.time > execute) & (turned >= CIRCLE))
-    end = seen.record.time[round_once[0]] if len(round_once) else seen.record.time[-1]
+def _turn_seconds(observed: ObservedManoeuvre) -> float:
+    execute = observed.longest_hold[1]
+    turned = np.abs(observed.psi - observed.psi_at(execute))
+    round_once = np.flatnonzero((observed.record.time > execute) & (turned >= FULL_CIRCLE))
+    end = observed.record.time[round_once[0]] if len(round_once) else observed.record.time[-1]
     return float(end) - execute
 
 
@@ -165,7 +165,7 @@ def _too_short(record: Record, piece: str, shortest: Record, longest: float) -> 
     )
 
 
-def _other_share(record: Record, longest: float) -> str:
+def _advise_share(record: Record, longest: float) -> str:
     """The shares of which both blocks are long enough, in hundredths."""
     time, count = record.time, len(record)
     fewest = int(np.searchsorted(time, time[0] + longest)) + 1
@@ -178,12 +178,12 @@ def _other_share(record: Record, longest: float) -> str:
     return f"take a share between {lowest / 100:.2f} and {highest / 100:.2f}"
 
 
-def _fewer_folds(record: Record, longest: float, count: int) -> str:
+def _advise_folds(record: Record, longest: float, count: int) -> str:
     most = min(count - 1, int(record.duration / longest))
     while most > 1 and _shortest(record, folds(len(record), most)).duration < longest:
         most -= 1
     return f"give {most} folds at most" if most > 1 else "take a longer record"
 
 
-def _told(piece: Record, step: str) -> Record:
-    return replace(piece, provenance=piece.provenance.then(step))
+def _with_step(piece: Record, step: str) -> Record:
+    return replace(piece, provenance=piece.provenance.with_step(step))

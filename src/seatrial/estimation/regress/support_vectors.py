@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Finding, InputError, Severity
-from seatrial.estimation.regress.arithmetic import Solved, scales
 from seatrial.estimation.regress.features import demand_positive
-from seatrial.estimation.regress.system import System
+from seatrial.estimation.regress.solvers import RegressionSolution, scale_system
+from seatrial.estimation.regress.system import RegressionSystem
 
 _MANY_ROWS = 3000
 _STEPS = 500_000
@@ -20,29 +20,29 @@ class SupportVectors:
 
     Attributes:
         penalty: C; tube: half width epsilon within which a residual costs nothing.
-        standardised: whether columns and target are first brought to unit root mean square; else penalty and tube act
+        is_standardised: whether columns and target are brought to unit root mean square; else penalty and tube act
             on the numbers as they come, and a tube of .1 swallows a target of .03 whole.
-        rows: samples at most, evenly taken; the paper thins its record, too (section 1.2).
+        max_rows: samples at most, evenly taken; the paper thins its record, too (section 1.2).
     """
 
     penalty: float = 1.0
     tube: float = 0.1
-    standardised: bool = True
-    rows: int = _MANY_ROWS
+    is_standardised: bool = True
+    max_rows: int = _MANY_ROWS
 
     def __post_init__(self) -> None:
         demand_positive("penalty C of the support vectors", self.penalty)
         if not 0.0 <= self.tube < np.inf:
             raise InputError(f"a tube of {self.tube:g} is none; give 0 or more")
 
-    def solve(self, system: System) -> Solved:
+    def solve(self, system: RegressionSystem) -> RegressionSolution:
         """The weights and the bias b of eq. (26), which should be near zero for the weights to count."""
         from sklearn.exceptions import ConvergenceWarning
         from sklearn.svm import SVR
 
-        scaled = scales(system)
-        thin = slice(None, None, max(1, len(system.target) // self.rows))
-        matrix, target = (scaled.matrix, scaled.values) if self.standardised else (system.matrix, system.target)
+        scaled = scale_system(system)
+        thin = slice(None, None, max(1, len(system.target) // self.max_rows))
+        matrix, target = (scaled.matrix, scaled.target) if self.is_standardised else (system.matrix, system.target)
         machine = SVR(kernel="linear", C=self.penalty, epsilon=self.tube, cache_size=500, max_iter=_STEPS)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ConvergenceWarning)
@@ -53,16 +53,16 @@ class SupportVectors:
             else np.zeros(len(system.names))
         )
         bias = float(np.ravel(machine.intercept_)[0])
-        back = scaled.back(weights) if self.standardised else weights
-        unit = scaled.target if self.standardised else 1.0
+        back = scaled.unscaled(weights) if self.is_standardised else weights
+        unit = scaled.target_scale if self.is_standardised else 1.0
         share = float(len(machine.support_)) / len(target[thin])
         reach = float(np.abs(target[thin]).max())
-        findings = () if weights.any() else (_swallowed(system, self.tube, reach),)
-        findings += () if int(np.max(machine.n_iter_)) < _STEPS else (_unconverged(system),)
-        return Solved(back, unit * bias, findings, {"support vectors (share)": share})
+        findings = () if weights.any() else (_zero_weights_finding(system, self.tube, reach),)
+        findings += () if int(np.max(machine.n_iter_)) < _STEPS else (_not_converged_finding(system),)
+        return RegressionSolution(back, unit * bias, findings, {"support vectors (share)": share})
 
 
-def _swallowed(system: System, tube: float, reach: float) -> Finding:
+def _zero_weights_finding(system: RegressionSystem, tube: float, reach: float) -> Finding:
     return Finding(
         Severity.WARNING,
         "tube-too-wide",
@@ -73,7 +73,7 @@ def _swallowed(system: System, tube: float, reach: float) -> Finding:
     )
 
 
-def _unconverged(system: System) -> Finding:
+def _not_converged_finding(system: RegressionSystem) -> Finding:
     return Finding(
         Severity.WARNING,
         "not-converged",

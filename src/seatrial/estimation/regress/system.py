@@ -8,15 +8,15 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError
-from seatrial.estimation.regress.features import Motion
-from seatrial.estimation.regress.operators import Operator, Rows
+from seatrial.estimation.regress.features import RegressionMotion
+from seatrial.estimation.regress.operators import DerivativeOperator, RegressionRows
 
-_ALIKE = 1e-12
+_COLLINEAR = 1e-12
 _NAMED = 0.05
 
 
 @dataclass(frozen=True, eq=False)
-class System:
+class RegressionSystem:
     """target = matrix @ coefficients + noise.
 
     Attributes:
@@ -34,13 +34,15 @@ class System:
         """What reports call it."""
         return ", ".join(self.equations)
 
-    def of(self, names: Sequence[str]) -> Self:
+    def restricted_to(self, names: Sequence[str]) -> Self:
         """Only these of its coefficients; the others are zero."""
         kept = [self.names.index(n) for n in names]
         return replace(self, names=tuple(names), matrix=self.matrix[:, kept])
 
 
-def systems(model: Model, motions: Sequence[Motion], operator: Operator) -> tuple[System, ...]:
+def build_systems(
+    model: Model, motions: Sequence[RegressionMotion], operator: DerivativeOperator
+) -> tuple[RegressionSystem, ...]:
     """The systems of all runs together, one for each set of equations that shares coefficients.
 
     Raises:
@@ -49,20 +51,20 @@ def systems(model: Model, motions: Sequence[Motion], operator: Operator) -> tupl
     of_runs = [rows for motion in motions if len((rows := operator.rows(model, motion)).time)]
     if not of_runs:
         raise InputError("no run is long enough for the regression's windows; give longer runs or shorter windows")
-    rows = Rows(
+    rows = RegressionRows(
         np.concatenate([r.time for r in of_runs]),
         np.concatenate([r.target for r in of_runs]),
         np.concatenate([r.slope for r in of_runs]),
         of_runs[0].step,
     )
     names = model.parameters.free_names
-    made = tuple(_system(model, rows, equations, columns, names) for equations, columns in _sets(model))
+    made = tuple(_system(model, rows, equations, columns, names) for equations, columns in _coupled_equations(model))
     for system in made:
         refuse_degenerate(system)
     return made
 
 
-def refuse_degenerate(system: System) -> None:
+def refuse_degenerate(system: RegressionSystem) -> None:
     """Refuse features that do not act, that are combinations of one another, or too few rows.
 
     Raises:
@@ -82,7 +84,7 @@ def refuse_degenerate(system: System) -> None:
             "record a manoeuvre in which it acts, or fix it under [model]"
         )
     _, values, directions = np.linalg.svd(system.matrix / size, full_matrices=False)
-    if values[-1] <= _ALIKE * values[0]:
+    if values[-1] <= _COLLINEAR * values[0]:
         share = np.abs(directions[-1])
         alike = [n for n, s in zip(system.names, share, strict=True) if s > _NAMED * share.max()]
         raise InputError(
@@ -91,7 +93,7 @@ def refuse_degenerate(system: System) -> None:
         )
 
 
-def _sets(model: Model) -> list[tuple[list[int], list[int]]]:
+def _coupled_equations(model: Model) -> list[tuple[list[int], list[int]]]:
     """States and places among the free coefficients of each set of equations that shares some (structural)."""
     nx, nu = len(model.states), len(model.inputs)
     place = {nx + nu + model.parameters.index(n): c for c, n in enumerate(model.parameters.free_names)}
@@ -109,9 +111,11 @@ def _sets(model: Model) -> list[tuple[list[int], list[int]]]:
     return [(sorted(states), sorted(columns)) for states, columns in sets]
 
 
-def _system(model: Model, rows: Rows, equations: list[int], columns: list[int], names: tuple[str, ...]) -> System:
+def _system(
+    model: Model, rows: RegressionRows, equations: list[int], columns: list[int], names: tuple[str, ...]
+) -> RegressionSystem:
     spread = [float(np.std(rows.target[:, i])) or 1.0 for i in equations] if len(equations) > 1 else [1.0]
-    return System(
+    return RegressionSystem(
         tuple(model.states[i] for i in equations),
         tuple(names[c] for c in columns),
         np.concatenate([rows.slope[:, i][:, columns] / s for i, s in zip(equations, spread, strict=True)]),

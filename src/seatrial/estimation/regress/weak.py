@@ -15,18 +15,18 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array
 from seatrial.numerics.kernels.integrate import DIVERGED
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
-from seatrial.numerics.optimise import Normal
+from seatrial.numerics.optimise import NormalEquations
 
 _POWER = 4
 
 
-def windows(rows: int, half: int) -> list[tuple[int, int]]:
+def window_bounds(rows: int, half: int) -> list[tuple[int, int]]:
     """First and last row of each window, half-overlapping; the whole record where it is short."""
     half = min(half, (rows - 1) // 2)
     return [(start, start + 2 * half) for start in range(0, rows - 2 * half, max(1, half // 2))]
 
 
-def shape(half: int, dt: float) -> tuple[Array, Array]:
+def window_function(half: int, dt: float) -> tuple[Array, Array]:
     """The window (1 - s^2)^4 and its time derivative on 2 half + 1 samples."""
     s = np.linspace(-1.0, 1.0, 2 * half + 1)
     return (1 - s**2) ** _POWER, -2 * _POWER * s * (1 - s**2) ** (_POWER - 1) / (half * dt)
@@ -38,16 +38,16 @@ class WeakForm:
 
     Attributes:
         states, inputs: one array a run, (rows, nx) and (rows, nu), model's signs.
-        seconds: half width of the windows.
-        spread: standard deviation of each rate's windowed residual, shape (nx,).
+        half_width: of the windows, s.
+        residual_sd: standard deviation of each rate's windowed residual, shape (nx,).
     """
 
     model: Model
     states: tuple[Array, ...]
     inputs: tuple[Array, ...]
     dt: float
-    seconds: float
-    spread: Array
+    half_width: float
+    residual_sd: Array
 
     @property
     def _free(self) -> Sequence[int]:
@@ -65,7 +65,7 @@ class WeakForm:
 
     @cached_property
     def _half(self) -> int:
-        return max(2, round(self.seconds / self.dt))
+        return max(2, round(self.half_width / self.dt))
 
     def linearised(self, point: Array) -> tuple[Array, Array]:
         """Windowed residuals (windows, nx) and their derivatives (windows, nx, free)."""
@@ -76,8 +76,8 @@ class WeakForm:
             out, jac = np.empty((len(x), nx)), np.zeros((len(x), nx, nx + nu + len(values)))
             evaluate_tangent(self.model.compiled.rates_tangent, x, u, np.tile(values, (len(x), 1)), self.dt, out, jac)
             jac = jac[:, :, [nx + nu + i for i in self._free]]
-            for first, last in windows(len(x), self._half):
-                w, w_dot = shape((last - first) // 2, self.dt)
+            for first, last in window_bounds(len(x), self._half):
+                w, w_dot = window_function((last - first) // 2, self.dt)
                 piece = slice(first, last + 1)
                 middle = x[(first + last) // 2]
                 residuals.append(self.dt * (w_dot @ (x[piece] - middle) + w @ out[piece]))
@@ -95,16 +95,16 @@ class WeakForm:
     def cost(self, shared: Array, local: Array) -> float:
         """Half the weighted sum of squares with the prior's."""
         del local
-        scaled = self.linearised(shared)[0] / self.spread
+        scaled = self.linearised(shared)[0] / self.residual_sd
         value = 0.5 * float(np.sum(scaled**2)) + self._prior(shared)[0]
         return value if value < DIVERGED**2 else np.inf
 
-    def normal(self, shared: Array, local: Array) -> Normal:
+    def normal(self, shared: Array, local: Array) -> NormalEquations:
         """The Gauss-Newton model at a point."""
         residual, jacobian = self.linearised(shared)
-        scaled = (residual / self.spread).ravel()
-        j = (jacobian / self.spread[:, None]).reshape(len(scaled), -1)
+        scaled = (residual / self.residual_sd).ravel()
+        j = (jacobian / self.residual_sd[:, None]).reshape(len(scaled), -1)
         cost, gradient, hessian = self._prior(shared)
         empty = np.zeros((0, len(shared), 0))
-        return Normal(0.5 * float(scaled @ scaled) + cost, j.T @ scaled + gradient, j.T @ j + hessian,
+        return NormalEquations(0.5 * float(scaled @ scaled) + cost, j.T @ scaled + gradient, j.T @ j + hessian,
                       local, np.zeros((len(local), 0, 0)), empty)  # fmt: skip

@@ -16,25 +16,43 @@ from numba import njit
 from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
 
 (
-    ORDER, COUNT, OUTPUT, ACTUATOR, DISTURBED, TRIM, EFFECT, LIMIT, SLEW, STALL, LOSS,
-    STEP, ANGLE, EFFECTIVE, EXCESS, HOLDING, BEFORE, EARLIER, ERROR, HEAD,
-) = range(20)  # fmt: skip
+    CONTROLLER_ORDER,
+    COUNT,
+    OUTPUT,
+    ACTUATOR,
+    DISTURBED_INPUT,
+    TRIM,
+    EFFECT,
+    LIMIT,
+    SLEW,
+    STALL,
+    LOSS,
+    STEP,
+    ANGLE,
+    EFFECTIVE_ANGLE,
+    SATURATION_EXCESS,
+    ANTI_WINDUP,
+    OUTPUT_LAST,
+    OUTPUT_BEFORE_LAST,
+    ERROR_LAST,
+    HEAD_SIZE,
+) = range(20)
 
 
 @njit(inline="always", **OPTIONS)
-def law_size(n):
+def controller_size(n):
     """Places of one law: E (n, n), g0 (n), g1 (n), and the order a step ahead: row (n), r0, r1."""
     return n * n + 3 * n + 2
 
 
 @njit(inline="always", **OPTIONS)
-def within(value, bound):
+def clamp(value, bound):
     """The value, cut to +- bound."""
     return min(max(value, -bound), bound)
 
 
 @njit(**OPTIONS)
-def lifting(angle, stall, loss):
+def effective_angle(angle, stall, loss):
     """The angle that would lift as much without stall: beyond it, `loss` is lost for each unit, down to nothing."""
     size = abs(angle)
     if size <= stall:
@@ -44,11 +62,11 @@ def lifting(angle, stall, loss):
 
 
 @njit(inline="always", **OPTIONS)
-def _advance(memory, law, states, n, before, now):
+def _advance(memory, law, states, n, last_error, error):
     """States over the step that ends now."""
     g0, g1, scratch = law + n * n, law + n * n + n, states + n
     for i in range(n):
-        total = memory[g0 + i] * before + memory[g1 + i] * now
+        total = memory[g0 + i] * last_error + memory[g1 + i] * error
         for j in range(n):
             total += memory[law + i * n + j] * memory[states + j]
         memory[scratch + i] = total
@@ -57,19 +75,19 @@ def _advance(memory, law, states, n, before, now):
 
 
 @njit(inline="always", **OPTIONS)
-def _row(memory, at, states, n):
+def _row_times_states(memory, start, states, n):
     total = 0.0
     for i in range(n):
-        total += memory[at + i] * memory[states + i]
+        total += memory[start + i] * memory[states + i]
     return total
 
 
 @njit(COMMAND_SIGNATURE, **OPTIONS)
-def controller(_, x, memory, u):
+def linear_controller(_, x, memory, u):
     """Order, angle, effect; slow states are held while a limit bites and they would drive further into it."""
-    n, count, k = int(memory[ORDER]), int(memory[COUNT]), int(memory[STEP])
-    size = law_size(n)
-    slow = HEAD + 2 * size
+    n, count, k = int(memory[CONTROLLER_ORDER]), int(memory[COUNT]), int(memory[STEP])
+    size = controller_size(n)
+    slow = HEAD_SIZE + 2 * size
     states = slow + n + 1
     reference = states + 2 * n
     disturbance = reference + count + 1
@@ -78,32 +96,32 @@ def controller(_, x, memory, u):
     error = memory[reference + k] - y
     ahead = y
     if k > 0:
-        _advance(memory, HEAD + int(memory[HOLDING]) * size, states, n, memory[ERROR], error)
-        ahead = 2.0 * y - memory[BEFORE]
+        _advance(memory, HEAD_SIZE + int(memory[ANTI_WINDUP]) * size, states, n, memory[ERROR_LAST], error)
+        ahead = 2.0 * y - memory[OUTPUT_LAST]
     if k > 1:
-        ahead += y - 2.0 * memory[BEFORE] + memory[EARLIER]
-    excess = memory[EXCESS]
-    drift = _row(memory, slow, states, n) + memory[slow + n] * error
-    memory[HOLDING] = 1.0 if excess * drift > 0.0 else 0.0
-    law = HEAD + int(memory[HOLDING]) * size
+        ahead += y - 2.0 * memory[OUTPUT_LAST] + memory[OUTPUT_BEFORE_LAST]
+    excess = memory[SATURATION_EXCESS]
+    drift = _row_times_states(memory, slow, states, n) + memory[slow + n] * error
+    memory[ANTI_WINDUP] = 1.0 if excess * drift > 0.0 else 0.0
+    law = HEAD_SIZE + int(memory[ANTI_WINDUP]) * size
     row = law + n * n + 2 * n
     coming = memory[reference + k + 1] - ahead
-    order = _row(memory, row, states, n) + memory[row + n] * error + memory[row + n + 1] * coming
+    order = _row_times_states(memory, row, states, n) + memory[row + n] * error + memory[row + n + 1] * coming
     angle = memory[ANGLE]
-    new = angle + within(within(order, memory[LIMIT]) - angle, memory[SLEW])
+    new = angle + clamp(clamp(order, memory[LIMIT]) - angle, memory[SLEW])
     is_free = abs(order) <= memory[LIMIT] and abs(order - angle) <= memory[SLEW]
-    memory[EXCESS] = 0.0 if is_free else order - new
+    memory[SATURATION_EXCESS] = 0.0 if is_free else order - new
     stall, loss = memory[STALL], memory[LOSS]
-    lift = lifting(new, stall, loss)
-    mean = (2.0 * lift + 5.0 * lifting(angle, stall, loss) - memory[EFFECTIVE]) / 6.0
-    memory[EFFECTIVE] = lifting(angle, stall, loss)
-    place, disturbed = int(memory[ACTUATOR]), int(memory[DISTURBED])
+    lift = effective_angle(new, stall, loss)
+    mean = (2.0 * lift + 5.0 * effective_angle(angle, stall, loss) - memory[EFFECTIVE_ANGLE]) / 6.0
+    memory[EFFECTIVE_ANGLE] = effective_angle(angle, stall, loss)
+    place, disturbed = int(memory[ACTUATOR]), int(memory[DISTURBED_INPUT])
     u[place] = memory[TRIM] + memory[EFFECT] * mean
     if disturbed == place:
         u[place] += memory[disturbance + k]
     elif disturbed >= 0:
         u[disturbed] = memory[disturbance + k]
-    memory[ERROR], memory[EARLIER], memory[BEFORE] = error, memory[BEFORE], y
+    memory[ERROR_LAST], memory[OUTPUT_BEFORE_LAST], memory[OUTPUT_LAST] = error, memory[OUTPUT_LAST], y
     memory[ANGLE] = new
     memory[angles + k + 1] = new
     memory[STEP] = k + 1.0

@@ -14,41 +14,41 @@ import numpy as np
 from numba import njit
 
 from seatrial.numerics.kernels.integrate import DIVERGED
-from seatrial.numerics.kernels.sensitivity import push
+from seatrial.numerics.kernels.sensitivity import propagate_tangent
 from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, TANGENT, VECTOR
 
 
 @njit(inline="always", **OPTIONS)
-def carried(s, spread, process, noisy, dt, work):
+def propagate_covariance(transition, covariance, process, noisy_states, dt, work):
     """spread <- Phi (spread + Q/2) Phi' + Q/2, Phi the first columns of s, Q = diag(process) dt.
 
     spread[0] is the covariance, spread[1:] its derivatives by the process variances of the noisy states, then by those
     of the measurements.
     """
-    nx = spread.shape[1]
-    for m in range(spread.shape[0]):
+    nx = covariance.shape[1]
+    for m in range(covariance.shape[0]):
         for half in range(2):
             if m == 0:
                 for i in range(nx):
-                    spread[m, i, i] += 0.5 * process[i] * dt
-            elif m <= noisy.size:
-                i = noisy[m - 1]
-                spread[m, i, i] += 0.5 * dt
+                    covariance[m, i, i] += 0.5 * process[i] * dt
+            elif m <= noisy_states.size:
+                i = noisy_states[m - 1]
+                covariance[m, i, i] += 0.5 * dt
             if half == 1:
                 break
             for i in range(nx):
                 for j in range(nx):
                     total = 0.0
                     for k in range(nx):
-                        total += s[i, k] * spread[m, k, j]
+                        total += transition[i, k] * covariance[m, k, j]
                     work[i, j] = total
             for i in range(nx):
                 for j in range(i + 1):
                     total = 0.0
                     for k in range(nx):
-                        total += work[i, k] * s[j, k]
-                    spread[m, i, j] = total
-                    spread[m, j, i] = total
+                        total += work[i, k] * transition[j, k]
+                    covariance[m, i, j] = total
+                    covariance[m, j, i] = total
 
 
 @njit(
@@ -60,25 +60,25 @@ def carried(s, spread, process, noisy, dt, work):
     ),
     **LEAN,
 )
-def _innovate(
+def _filter_innovations(
     f, g, inputs, weights, dt, substeps, x0, variance0, p,
-    chain, link_p, link_u, g_link_p, g_link_u, select, noisy, process, measurement, measured,
+    chain, link_p, link_u, g_link_p, g_link_u, select, noisy_states, process, measurement, measured,
     e_out, v_out, de_out, dv_out, variance_out,
-    work_x, work_s, work_u, work_w, jac, g_jac, g_value, spread, work, across,
+    work_x, work_s, work_u, work_w, jac, g_jac, g_value, covariance, work, covariance_times_h,
 ):  # fmt: skip
     nx, ny, rows = x0.size, select.size, measured.shape[0]
-    width, covs = de_out.shape[2], spread.shape[0]
+    width, covs = de_out.shape[2], covariance.shape[0]
     quiet = width - (covs - 1)
     x, k, y, acc, ahead, h, gain = work_x[0], work_x[1], work_x[2], work_x[3], work_x[4], work_x[5], work_x[6]
     s, sk, sy, sacc = work_s[0], work_s[1], work_s[2], work_s[3]
     step = dt / substeps
     for i in range(nx):
-        x[i], spread[0, i, i] = x0[i], variance0[i]
+        x[i], covariance[0, i, i] = x0[i], variance0[i]
     for row in range(rows):
         t = row * dt
         if variance_out.shape[0] > 0:
             for i in range(nx):
-                variance_out[row, i] = spread[0, i, i]
+                variance_out[row, i] = covariance[0, i, i]
         if g_value.size > 0:
             g(t, x, inputs[row], p, g_value, g_jac)
             for i in range(nx):
@@ -107,12 +107,12 @@ def _innovate(
                 for i in range(nx):
                     total = 0.0
                     for j in range(nx):
-                        total += spread[m, i, j] * h[j]
-                    across[m, i] = total
+                        total += covariance[m, i, j] * h[j]
+                    covariance_times_h[m, i] = total
             for i in range(nx):
-                v += h[i] * across[0, i]
+                v += h[i] * covariance_times_h[0, i]
             for i in range(nx):
-                gain[i] = across[0, i] / v
+                gain[i] = covariance_times_h[0, i] / v
             e_out[row, channel], v_out[row, channel] = e, v
             size += e * e / v
             for c in range(width):
@@ -134,19 +134,19 @@ def _innovate(
                 for c in range(width):
                     s[i, nx + c] += gain[i] * de_out[row, channel, c]
             for m in range(1, covs):
-                dv = 1.0 if m - 1 - noisy.size == channel else 0.0
+                dv = 1.0 if m - 1 - noisy_states.size == channel else 0.0
                 for i in range(nx):
-                    dv += h[i] * across[m, i]
+                    dv += h[i] * covariance_times_h[m, i]
                 dv_out[row, channel, m - 1] = dv
                 for i in range(nx):
-                    s[i, nx + quiet + m - 1] += (across[m, i] - gain[i] * dv) * (e / v)
-                    across[m, i] -= 0.5 * gain[i] * dv
+                    s[i, nx + quiet + m - 1] += (covariance_times_h[m, i] - gain[i] * dv) * (e / v)
+                    covariance_times_h[m, i] -= 0.5 * gain[i] * dv
             for i in range(nx):
-                across[0, i] *= 0.5
+                covariance_times_h[0, i] *= 0.5
             for m in range(covs):
                 for i in range(nx):
                     for j in range(nx):
-                        spread[m, i, j] -= across[m, i] * gain[j] + gain[i] * across[m, j]
+                        covariance[m, i, j] -= covariance_times_h[m, i] * gain[j] + gain[i] * covariance_times_h[m, j]
         if row == rows - 1:
             break
         for i in range(nx):
@@ -166,7 +166,7 @@ def _innovate(
             for stage in range(4):  # as `rk4_tangent_step`, but a loop: a third of the code to compile
                 place = (stage + 1) // 2
                 f(t + (m + 0.5 * place) * step, y, work_u[place], p, k, jac)
-                push(jac, chain, link_p, link_u, work_w[place], sy, sk)
+                propagate_tangent(jac, chain, link_p, link_u, work_w[place], sy, sk)
                 weight = step / 6.0 if place != 1 else step / 3.0
                 ahead_by = step if stage == 2 else 0.5 * step
                 for i in range(nx):
@@ -180,15 +180,15 @@ def _innovate(
                 x[i] += acc[i]
                 for c in range(nx + width):
                     s[i, c] += sacc[i, c]
-        carried(s, spread, process, noisy, dt, work)
+        propagate_covariance(s, covariance, process, noisy_states, dt, work)
         if not size < DIVERGED:
             return row + 1
     return -1
 
 
-def innovate(
+def filter_innovations(
     f, g, inputs, weights, dt, substeps, x0, variance0, p,
-    chain, link_p, link_u, g_link_p, g_link_u, select, ng, noisy, process, measurement, measured,
+    chain, link_p, link_u, g_link_p, g_link_u, select, ng, noisy_states, process, measurement, measured,
     e_out, v_out, de_out, dv_out, variance_out,
 ):  # fmt: skip
     """Filter one run: innovations e_out (measured - predicted) and their variances v_out, (rows, ny).
@@ -206,8 +206,8 @@ def innovate(
     nx, nu, width = x0.size, inputs.shape[1], de_out.shape[2]
     whole, covs = nx + nu + p.size, 1 + dv_out.shape[2]
     outputs = ng if np.any(select >= nx) else 0
-    return _innovate(f, g, inputs, weights, dt, substeps, x0, variance0, p,
-                     chain, link_p, link_u, g_link_p, g_link_u, select, noisy, process, measurement, measured,
+    return _filter_innovations(f, g, inputs, weights, dt, substeps, x0, variance0, p,
+                     chain, link_p, link_u, g_link_p, g_link_u, select, noisy_states, process, measurement, measured,
                      e_out, v_out, de_out, dv_out, variance_out,
                      np.empty((7, nx)), np.zeros((4, nx, nx + width)), np.empty((3, nu)), np.empty((3, 3 * nu)),
                      np.zeros((nx, whole)), np.zeros((outputs, whole)), np.empty(outputs), np.zeros((covs, nx, nx)),

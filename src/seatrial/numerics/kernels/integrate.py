@@ -64,7 +64,7 @@ def rk4_step(f, t, x, u0, um, u1, p, h, k1, k2, k3, k4, y):
 )
 def _replay(
     f, g, inputs, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay, select, y_out, failed,
-    work_x, work_u, extra,
+    work_x, work_u, g_value,
 ):  # fmt: skip
     nx, nu = x0.shape[1], inputs.shape[1]
     x, y, k1, k2, k3, k4 = work_x[0], work_x[1], work_x[2], work_x[3], work_x[4], work_x[5]
@@ -83,9 +83,9 @@ def _replay(
         for row in range(first, last):
             t = (row - first) * dt
             if needs_g:
-                g(t, x, u0, par, extra)
+                g(t, x, u0, par, g_value)
             for i in range(select.size):
-                y_out[row, i] = x[select[i]] if select[i] < nx else extra[select[i] - nx]
+                y_out[row, i] = x[select[i]] if select[i] < nx else g_value[select[i] - nx]
             if row == last - 1:
                 break
             effective_input(inputs, first, last, row + 1, gain_s, offset_s, delay_s, dt, u1)

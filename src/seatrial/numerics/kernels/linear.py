@@ -13,7 +13,7 @@ from seatrial.numerics.kernels.types import CUBE, I8, INDEX, LEAN, MATRIX, OPTIO
 
 
 @njit(void(TANGENT, I8, I8, INDEX, VECTOR, MATRIX, CUBE, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX), **LEAN)
-def _affine(f, nx, nu, wanted, p, value, slope, x, u, out, jac, rest):
+def _affine_matrices(f, nx, nu, parameter_index, p, value, slope, x, u, out, jac, slope_at_origin):
     rows = value.shape[0]
     for i in range(nx):
         x[i] = 0.0
@@ -24,9 +24,9 @@ def _affine(f, nx, nu, wanted, p, value, slope, x, u, out, jac, rest):
         for k in range(nx + nu):
             value[i, k] = jac[i, k]
         value[i, nx + nu] = out[i]
-        for q in range(wanted.size):
-            rest[i, q] = jac[i, nx + nu + wanted[q]]
-            slope[q, i, nx + nu] = rest[i, q]
+        for q in range(parameter_index.size):
+            slope_at_origin[i, q] = jac[i, nx + nu + parameter_index[q]]
+            slope[q, i, nx + nu] = slope_at_origin[i, q]
     for k in range(nx + nu):
         if k < nx:
             x[k] = 1.0
@@ -34,15 +34,15 @@ def _affine(f, nx, nu, wanted, p, value, slope, x, u, out, jac, rest):
             u[k - nx] = 1.0
         f(0.0, x, u, p, out, jac)
         for i in range(rows):
-            for q in range(wanted.size):
-                slope[q, i, k] = jac[i, nx + nu + wanted[q]] - rest[i, q]
+            for q in range(parameter_index.size):
+                slope[q, i, k] = jac[i, nx + nu + parameter_index[q]] - slope_at_origin[i, q]
         if k < nx:
             x[k] = 0.0
         else:
             u[k - nx] = 0.0
 
 
-def affine(f, rows, nx, nu, wanted, p):
+def affine_matrices(f, rows, nx, nu, parameter_index, p):
     """Matrix [A | B | c] of an affine function and its derivatives by the parameters of index `wanted`.
 
     f: a function with its Jacobian, columns [x | u | p]. As f is affine in x and u at fixed p, its slope by a parameter
@@ -51,10 +51,22 @@ def affine(f, rows, nx, nu, wanted, p):
     Returns (rows, nx + nu + 1) and (len(wanted), rows, nx + nu + 1).
     """
     width = nx + nu
-    value, slope = np.zeros((rows, width + 1)), np.zeros((len(wanted), rows, width + 1))
+    value, slope = np.zeros((rows, width + 1)), np.zeros((len(parameter_index), rows, width + 1))
     if rows:
-        _affine(f, nx, nu, wanted, p, value, slope, np.empty(nx), np.empty(max(nu, 1)), np.empty(rows),
-                np.zeros((rows, width + len(p))), np.empty((rows, max(len(wanted), 1))))  # fmt: skip
+        _affine_matrices(
+            f,
+            nx,
+            nu,
+            parameter_index,
+            p,
+            value,
+            slope,
+            np.empty(nx),
+            np.empty(max(nu, 1)),
+            np.empty(rows),
+            np.zeros((rows, width + len(p))),
+            np.empty((rows, max(len(parameter_index), 1))),
+        )
     return value, slope
 
 
@@ -88,18 +100,18 @@ def _observe(c, d, x, u, out):
 
 
 @njit(void(CUBE, CUBE, CUBE, CUBE, CUBE, INDEX, MATRIX, INDEX, I8, MATRIX, MATRIX, INDEX, VECTOR, VECTOR), **LEAN)
-def _replay(e, g0, g1, c, d, which, inputs, offsets, fine, x0, y_out, failed, x, y):
+def _replay(e, g0, g1, c, d, matrix_index, inputs, offsets, substeps, x0, y_out, failed, x, y):
     for s in range(offsets.size - 1):
-        first, last, w = offsets[s], offsets[s + 1], which[s]
+        first, last, w = offsets[s], offsets[s + 1], matrix_index[s]
         for i in range(x.size):
             x[i] = x0[s, i]
-        row = (first - offsets[0]) * fine - s * (fine - 1)
+        row = (first - offsets[0]) * substeps - s * (substeps - 1)
         for k in range(first, last):
             _observe(c[w], d[w], x, inputs[row], y_out[k])
             if k == last - 1:
                 break
             size = 0.0
-            for _ in range(fine):
+            for _ in range(substeps):
                 size = _advance(e[w], g0[w], g1[w], x, inputs[row], inputs[row + 1], y)
                 row += 1
             if not size < DIVERGED:
@@ -110,7 +122,7 @@ def _replay(e, g0, g1, c, d, which, inputs, offsets, fine, x0, y_out, failed, x,
                 break
 
 
-def replay(e, g0, g1, c, d, which, inputs, offsets, fine, x0, y_out, failed):
+def replay(e, g0, g1, c, d, matrix_index, inputs, offsets, substeps, x0, y_out, failed):
     """Run segments whose matrices are e[which[s]], ...; write y at every sample.
 
     Segment s owns rows offsets[s]..offsets[s+1] of y_out. `inputs` holds `fine` steps to a sample (its last sample
@@ -118,7 +130,7 @@ def replay(e, g0, g1, c, d, which, inputs, offsets, fine, x0, y_out, failed):
     failed[s] becomes the sample at which the solution left all bounds (or was not finite), else stays -1.
     """
     nx = x0.shape[1]
-    _replay(e, g0, g1, c, d, which, inputs, offsets, fine, x0, y_out, failed, np.empty(nx), np.empty(nx))
+    _replay(e, g0, g1, c, d, matrix_index, inputs, offsets, substeps, x0, y_out, failed, np.empty(nx), np.empty(nx))
 
 
 @njit(
@@ -129,21 +141,21 @@ def replay(e, g0, g1, c, d, which, inputs, offsets, fine, x0, y_out, failed):
     **LEAN,
 )
 def _replay_tangent(
-    e, g0, g1, c, d, de, dg0, dg1, dc, dd, which, inputs, offsets, fine,
-    x0, shifts, weights, starts, y_out, s_out, failed, x, y, s, t,
+    e, g0, g1, c, d, de, dg0, dg1, dc, dd, matrix_index, inputs, offsets, substeps,
+    x0, correction_columns, weights, start_column, y_out, s_out, failed, x, y, s, t,
 ):  # fmt: skip
     nx, nu, ncol, count = x.size, inputs.shape[1], s.shape[1], de.shape[3]
     for seg in range(offsets.size - 1):
-        first, last, w = offsets[seg], offsets[seg + 1], which[seg]
+        first, last, w = offsets[seg], offsets[seg + 1], matrix_index[seg]
         ew, g0w, g1w, cw, dw = e[w], g0[w], g1[w], c[w], d[w]
         dew, dg0w, dg1w, dcw, ddw = de[w], dg0[w], dg1[w], dc[w], dd[w]
         for i in range(nx):
             x[i] = x0[seg, i]
             for q in range(ncol):
                 s[i, q] = 0.0
-            if starts[i] >= 0:
-                s[i, starts[i]] = 1.0
-        row = (first - offsets[0]) * fine - seg * (fine - 1)
+            if start_column[i] >= 0:
+                s[i, start_column[i]] = 1.0
+        row = (first - offsets[0]) * substeps - seg * (substeps - 1)
         for k in range(first, last):
             _observe(cw, dw, x, inputs[row], y_out[k])
             for i in range(y_out.shape[1]):
@@ -159,12 +171,12 @@ def _replay_tangent(
                 for j in range(nu):
                     for q in range(count):
                         s_out[k, i, q] += ddw[i, j, q] * inputs[row, j]
-                for q in range(shifts.shape[0]):
-                    s_out[k, i, shifts[q, 1]] += dw[i, shifts[q, 0]] * weights[row, q]
+                for q in range(correction_columns.shape[0]):
+                    s_out[k, i, correction_columns[q, 1]] += dw[i, correction_columns[q, 0]] * weights[row, q]
             if k == last - 1:
                 break
             size = 0.0
-            for _ in range(fine):
+            for _ in range(substeps):
                 for i in range(nx):
                     for q in range(ncol):
                         t[i, q] = 0.0
@@ -179,9 +191,9 @@ def _replay_tangent(
                         b0, b1 = inputs[row, j], inputs[row + 1, j]
                         for q in range(count):
                             t[i, q] += b0 * dg0w[i, j, q] + b1 * dg1w[i, j, q]
-                    for q in range(shifts.shape[0]):
-                        j = shifts[q, 0]
-                        t[i, shifts[q, 1]] += g0w[i, j] * weights[row, q] + g1w[i, j] * weights[row + 1, q]
+                    for q in range(correction_columns.shape[0]):
+                        j = correction_columns[q, 0]
+                        t[i, correction_columns[q, 1]] += g0w[i, j] * weights[row, q] + g1w[i, j] * weights[row + 1, q]
                 for i in range(nx):
                     for q in range(ncol):
                         s[i, q] = t[i, q]
@@ -196,15 +208,58 @@ def _replay_tangent(
 
 
 def replay_tangent(
-    e, g0, g1, c, d, de, dg0, dg1, dc, dd, which, inputs, offsets, fine, x0, shifts, weights, starts, y_out, s_out,
+    e,
+    g0,
+    g1,
+    c,
+    d,
+    de,
+    dg0,
+    dg1,
+    dc,
+    dd,
+    matrix_index,
+    inputs,
+    offsets,
+    substeps,
+    x0,
+    correction_columns,
+    weights,
+    start_column,
+    y_out,
+    s_out,
     failed,
-):  # fmt: skip
+):
     """`replay` with sensitivities: columns of parameters (last axis of de, ...), of input corrections, of starts.
 
     shifts: (corrections, 2), input column and sensitivity column of each; weights: (fine rows, corrections), derivative
     of that input by its correction. starts: (nx,), sensitivity column of each initial state or -1.
     """
     nx, ncol = x0.shape[1], s_out.shape[2]
-    _replay_tangent(e, g0, g1, c, d, de, dg0, dg1, dc, dd, which, inputs, offsets, fine, x0, shifts, weights, starts,
-                    y_out, s_out, failed, np.empty(nx), np.empty(nx), np.empty((nx, ncol)),
-                    np.empty((nx, ncol)))  # fmt: skip
+    _replay_tangent(
+        e,
+        g0,
+        g1,
+        c,
+        d,
+        de,
+        dg0,
+        dg1,
+        dc,
+        dd,
+        matrix_index,
+        inputs,
+        offsets,
+        substeps,
+        x0,
+        correction_columns,
+        weights,
+        start_column,
+        y_out,
+        s_out,
+        failed,
+        np.empty(nx),
+        np.empty(nx),
+        np.empty((nx, ncol)),
+        np.empty((nx, ncol)),
+    )

@@ -11,13 +11,13 @@ import numpy as np
 from numba import njit
 
 from seatrial.numerics.kernels.integrate import DIVERGED
-from seatrial.numerics.kernels.lanes import LANES, add_scaled, scratch, spread
-from seatrial.numerics.kernels.linear import _affine
+from seatrial.numerics.kernels.linear import _affine_matrices
+from seatrial.numerics.kernels.simd import LANES, add_scaled, aligned_scratch, broadcast
 from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TANGENT, VECTOR
 
-_SMALL = 0.25
-_TERMS = 11
-_MOST = 60
+_SERIES_NORM = 0.25
+_SERIES_TERMS = 11
+_MOST_HALVINGS = 60
 
 
 @njit(inline="always", **OPTIONS)
@@ -37,13 +37,13 @@ def _slope_of_product(w, z, out, a, da, b, db, rows, inner, columns):
     for i in range(rows):
         for j in range(columns):
             slot = out + i * columns + j
-            spread(w, slot, 0.0)
+            broadcast(w, slot, 0.0)
             add_scaled(w, slot, da + i * inner, 1, z, b + j, columns, inner)
             add_scaled(w, slot, db + j, columns, z, a + i * inner, 1, inner)
 
 
 @njit(inline="always", **OPTIONS)
-def _halved(z, a, n, h):
+def _scale_by_halving(z, a, n, h):
     """A <- A h / 2^k until it is small. Returns k, or the most if it stays large or is not finite."""
     size = 0.0
     for i in range(n):
@@ -53,7 +53,7 @@ def _halved(z, a, n, h):
         size = max(size, row)
     size *= h
     count, step = 0, h
-    while not size <= _SMALL and count < _MOST:
+    while not size <= _SERIES_NORM and count < _MOST_HALVINGS:
         size *= 0.5
         step *= 0.5
         count += 1
@@ -63,7 +63,7 @@ def _halved(z, a, n, h):
 
 
 @njit(inline="always", **OPTIONS)
-def _blend(z, out, factor, a, b, c, size):
+def _scaled_sum(z, out, factor, a, b, c, size):
     for m in range(size):
         z[out + m] = factor * (z[a + m] + z[b + m] + (z[c + m] if c >= 0 else 0.0))
 
@@ -76,8 +76,8 @@ def _propagate(z, w, n, h):
     """
     nn, wide = n * n, n * n * LANES
     e, p, r, power, new, newer = nn, 2 * nn, 3 * nn, 4 * nn, 5 * nn, 6 * nn
-    halvings = _halved(z, 0, n, h)
-    if halvings == _MOST:
+    halvings = _scale_by_halving(z, 0, n, h)
+    if halvings == _MOST_HALVINGS:
         return False
     for m in range(nn):
         one = 1.0 if m % (n + 1) == 0 else 0.0
@@ -86,7 +86,7 @@ def _propagate(z, w, n, h):
     for m in range(wide):
         w[m] *= step
         w[e * LANES + m] = w[p * LANES + m] = w[r * LANES + m] = w[power * LANES + m] = 0.0
-    for k in range(1, _TERMS + 1):
+    for k in range(1, _SERIES_TERMS + 1):
         over, first, second = 1.0 / k, 1.0 / (k + 1), 1.0 / ((k + 1) * (k + 2))
         _slope_of_product(w, z, new, power, power, 0, 0, n, n, n)
         for m in range(wide):
@@ -106,124 +106,142 @@ def _propagate(z, w, n, h):
         _slope_of_product(w, z, new, e, e, r, r, n, n, n)
         _slope_of_product(w, z, newer, e, e, p, p, n, n, n)
         _slope_of_product(w, z, power, e, e, e, e, n, n, n)
-        _blend(w, r * LANES, 0.25, new * LANES, p * LANES, r * LANES, wide)
-        _blend(w, p * LANES, 0.5, newer * LANES, p * LANES, -1, wide)
+        _scaled_sum(w, r * LANES, 0.25, new * LANES, p * LANES, r * LANES, wide)
+        _scaled_sum(w, p * LANES, 0.5, newer * LANES, p * LANES, -1, wide)
         for m in range(wide):
             w[e * LANES + m] = w[power * LANES + m]
         _product(z, new, e, r, n, n, n)
         _product(z, newer, e, p, n, n, n)
         _product(z, power, e, e, n, n, n)
-        _blend(z, r, 0.25, new, p, r, nn)
-        _blend(z, p, 0.5, newer, p, -1, nn)
+        _scaled_sum(z, r, 0.25, new, p, r, nn)
+        _scaled_sum(z, p, 0.5, newer, p, -1, nn)
         for m in range(nn):
             z[e + m] = z[power + m]
     return True
 
 
 @njit(inline="always", **OPTIONS)
-def _drive(z, n, h, used, straight, at_b, at_gamma):
+def _discrete_input_matrix(z, n, h, active_inputs, ramp_inputs, b_start, gamma_start):
     """Gamma from P, R and B (n, used): [h P B - h R B | h R B], the ramp R only in columns that run straight."""
-    nb, nn = used.size, n * n
-    nv = nb + straight.size
+    nb, nn = active_inputs.size, n * n
+    nv = nb + ramp_inputs.size
     for i in range(n):
         for j in range(nb):
             total = 0.0
             for m in range(n):
-                total += z[2 * nn + i * n + m] * z[at_b + m * nb + j]
-            z[at_gamma + i * nv + j] = h * total
-        for k in range(straight.size):
-            j, total = straight[k], 0.0
+                total += z[2 * nn + i * n + m] * z[b_start + m * nb + j]
+            z[gamma_start + i * nv + j] = h * total
+        for k in range(ramp_inputs.size):
+            j, total = ramp_inputs[k], 0.0
             for m in range(n):
-                total += z[3 * nn + i * n + m] * z[at_b + m * nb + j]
-            z[at_gamma + i * nv + nb + k] = h * total
-            z[at_gamma + i * nv + j] -= h * total
+                total += z[3 * nn + i * n + m] * z[b_start + m * nb + j]
+            z[gamma_start + i * nv + nb + k] = h * total
+            z[gamma_start + i * nv + j] -= h * total
 
 
 @njit(inline="always", **OPTIONS)
-def _slope_of_drive(w, z, n, h, used, straight, at_b, at_gamma):
+def _slope_of_input_matrix(w, z, n, h, active_inputs, ramp_inputs, b_start, gamma_start):
     """The slope of `_drive`, B and its slope at the same places of z and w."""
-    nb, nn = used.size, n * n
-    nv = nb + straight.size
+    nb, nn = active_inputs.size, n * n
+    nv = nb + ramp_inputs.size
     for i in range(n):
         for j in range(nb):
-            out = at_gamma + i * nv + j
-            spread(w, out, 0.0)
-            add_scaled(w, out, 2 * nn + i * n, 1, z, at_b + j, nb, n)
-            add_scaled(w, out, at_b + j, nb, z, 2 * nn + i * n, 1, n)
+            out = gamma_start + i * nv + j
+            broadcast(w, out, 0.0)
+            add_scaled(w, out, 2 * nn + i * n, 1, z, b_start + j, nb, n)
+            add_scaled(w, out, b_start + j, nb, z, 2 * nn + i * n, 1, n)
             for lane in range(LANES):
                 w[out * LANES + lane] *= h
-        for k in range(straight.size):
-            j, out = straight[k], at_gamma + i * nv + nb + k
-            spread(w, out, 0.0)
-            add_scaled(w, out, 3 * nn + i * n, 1, z, at_b + j, nb, n)
-            add_scaled(w, out, at_b + j, nb, z, 3 * nn + i * n, 1, n)
+        for k in range(ramp_inputs.size):
+            j, out = ramp_inputs[k], gamma_start + i * nv + nb + k
+            broadcast(w, out, 0.0)
+            add_scaled(w, out, 3 * nn + i * n, 1, z, b_start + j, nb, n)
+            add_scaled(w, out, b_start + j, nb, z, 3 * nn + i * n, 1, n)
             for lane in range(LANES):
                 w[out * LANES + lane] *= h
-                w[(at_gamma + i * nv + j) * LANES + lane] -= w[out * LANES + lane]
+                w[(gamma_start + i * nv + j) * LANES + lane] -= w[out * LANES + lane]
 
 
 @njit(inline="always", **OPTIONS)
-def _placed(z, n, plant, used):
+def _load_plant(z, n, plant, active_inputs):
     """A and B of the plant into z; returns where B begins."""
     at_b = 7 * n * n
     for i in range(n):
         for j in range(n):
             z[i * n + j] = plant[i, j]
-        for j in range(used.size):
-            z[at_b + i * used.size + j] = plant[i, n + used[j]]
+        for j in range(active_inputs.size):
+            z[at_b + i * active_inputs.size + j] = plant[i, n + active_inputs[j]]
     return at_b
 
 
 @njit(inline="always", **OPTIONS)
-def _advance(z, n, nv, at_gamma, at):
+def _advance(z, n, nv, gamma_start, state_start):
     """The state behind [v | x] at `at` moves one step; returns its size."""
-    size, new = 0.0, at + nv + n
+    size, new = 0.0, state_start + nv + n
     for i in range(n):
         total = 0.0
         for j in range(nv):
-            total += z[at_gamma + i * nv + j] * z[at + j]
+            total += z[gamma_start + i * nv + j] * z[state_start + j]
         for j in range(n):
-            total += z[n * n + i * n + j] * z[at + nv + j]
+            total += z[n * n + i * n + j] * z[state_start + nv + j]
         z[new + i] = total
     for i in range(n):
-        z[at + nv + i] = z[new + i]
+        z[state_start + nv + i] = z[new + i]
         size += abs(z[new + i])
     return size
 
 
 @njit(inline="always", **OPTIONS)
-def _loaded(w, n, dplant, first, used, at_b):
+def _load_plant_slopes(w, n, dplant, first_parameter, active_inputs, b_start):
     """Slopes of A and B by the parameters from `first` on; zero in lanes beyond the last."""
     for lane in range(LANES):
-        q = first + lane
+        q = first_parameter + lane
         is_parameter = q < dplant.shape[0]
         for i in range(n):
             for j in range(n):
                 w[(i * n + j) * LANES + lane] = dplant[q, i, j] if is_parameter else 0.0
-            for j in range(used.size):
-                w[(at_b + i * used.size + j) * LANES + lane] = dplant[q, i, n + used[j]] if is_parameter else 0.0
+            for j in range(active_inputs.size):
+                w[(b_start + i * active_inputs.size + j) * LANES + lane] = (
+                    dplant[q, i, n + active_inputs[j]] if is_parameter else 0.0
+                )
 
 
 @njit(inline="always", **OPTIONS)
-def _marched(
-    n, plant, dplant, used, straight, h, v, fine, x0, starts, select, measured, weight, residual, jacobian, z, w,
-):  # fmt: skip
-    nb, nv, nn, ny = used.size, v.shape[1], n * n, select.size
+def _simulate_with_slopes(
+    n,
+    plant,
+    dplant,
+    active_inputs,
+    ramp_inputs,
+    h,
+    v,
+    substeps,
+    x0,
+    start_column,
+    select,
+    measured,
+    weight,
+    residual,
+    jacobian,
+    z,
+    w,
+):
+    nb, nv, nn, ny = active_inputs.size, v.shape[1], n * n, select.size
     samples = measured.shape[0]
     for first in range(0, jacobian.shape[1], LANES):
-        at_b = _placed(z, n, plant, used)
+        at_b = _load_plant(z, n, plant, active_inputs)
         at_gamma = at_b + n * nb
         at = at_gamma + n * nv
-        _loaded(w, n, dplant, first, used, at_b)
+        _load_plant_slopes(w, n, dplant, first, active_inputs, at_b)
         if not _propagate(z, w, n, h):
             return False
-        _drive(z, n, h, used, straight, at_b, at_gamma)
-        _slope_of_drive(w, z, n, h, used, straight, at_b, at_gamma)
+        _discrete_input_matrix(z, n, h, active_inputs, ramp_inputs, at_b, at_gamma)
+        _slope_of_input_matrix(w, z, n, h, active_inputs, ramp_inputs, at_b, at_gamma)
         here, there = at, at + n
         for i in range(n):
             z[at + nv + i] = x0[i]
             for lane in range(LANES):
-                w[(here + i) * LANES + lane] = 1.0 if starts[i] == first + lane else 0.0
+                w[(here + i) * LANES + lane] = 1.0 if start_column[i] == first + lane else 0.0
         for k in range(samples):
             for i in range(ny):
                 row, state = k * ny + i, select[i]
@@ -236,11 +254,11 @@ def _marched(
             if k == samples - 1:
                 break
             size = 0.0
-            for step in range(k * fine, k * fine + fine):
+            for step in range(k * substeps, k * substeps + substeps):
                 for j in range(nv):
                     z[at + j] = v[step, j]
                 for i in range(n):
-                    spread(w, there + i, 0.0)
+                    broadcast(w, there + i, 0.0)
                     add_scaled(w, there + i, at_gamma + i * nv, 1, z, at, 1, nv)
                     add_scaled(w, there + i, nn + i * n, 1, z, at + nv, 1, n)
                     add_scaled(w, there + i, here, 1, z, nn + i * n, 1, n)
@@ -258,25 +276,87 @@ def _marched(
     ),
     **LEAN,
 )
-def _slopes(
-    f, nu, wanted, used, straight, p, h, v, fine, x0, starts, select, measured, weight, residual,
-    jacobian, plant, dplant, x, u, out, jac, rest, z, w,
-):  # fmt: skip
+def _residuals_and_jacobian(
+    f,
+    nu,
+    parameter_index,
+    active_inputs,
+    ramp_inputs,
+    p,
+    h,
+    v,
+    substeps,
+    x0,
+    start_column,
+    select,
+    measured,
+    weight,
+    residual,
+    jacobian,
+    plant,
+    dplant,
+    x,
+    u,
+    out,
+    jac,
+    slope_at_origin,
+    z,
+    w,
+):
     n = x0.size
-    _affine(f, n, nu, wanted, p, plant, dplant, x, u, out, jac, rest)
+    _affine_matrices(f, n, nu, parameter_index, p, plant, dplant, x, u, out, jac, slope_at_origin)
     if n == 4:
-        return _marched(
-            4, plant, dplant, used, straight, h, v, fine, x0, starts, select, measured, weight, residual, jacobian, z, w
-        )  # fmt: skip
-    return _marched(
-        n, plant, dplant, used, straight, h, v, fine, x0, starts, select, measured, weight, residual, jacobian, z, w
-    )  # fmt: skip
+        return _simulate_with_slopes(
+            4,
+            plant,
+            dplant,
+            active_inputs,
+            ramp_inputs,
+            h,
+            v,
+            substeps,
+            x0,
+            start_column,
+            select,
+            measured,
+            weight,
+            residual,
+            jacobian,
+            z,
+            w,
+        )
+    return _simulate_with_slopes(
+        n,
+        plant,
+        dplant,
+        active_inputs,
+        ramp_inputs,
+        h,
+        v,
+        substeps,
+        x0,
+        start_column,
+        select,
+        measured,
+        weight,
+        residual,
+        jacobian,
+        z,
+        w,
+    )
 
 
-def _room(nx, nu, count, used, straight, p):
+def _allocate_scratch(nx, nu, count, active_inputs, ramp_inputs, p):
     """Scratch of `_affine`, and the length of z."""
     width, rows = nx + nu + 1, max(count, 1)
-    size = 7 * nx * nx + nx * (2 * len(used) + len(straight)) + 2 * nx + len(used) + len(straight) + nx
+    size = (
+        7 * nx * nx
+        + nx * (2 * len(active_inputs) + len(ramp_inputs))
+        + 2 * nx
+        + len(active_inputs)
+        + len(ramp_inputs)
+        + nx
+    )
     plant, jacobian = np.empty((nx, width)), np.zeros((nx, nx + nu + len(p)))
     return (
         plant,
@@ -289,7 +369,23 @@ def _room(nx, nu, count, used, straight, p):
     ), size
 
 
-def slopes(f, nu, wanted, used, straight, p, h, v, fine, x0, starts, columns, select, measured, weight):
+def residuals_and_jacobian(
+    f,
+    nu,
+    parameter_index,
+    active_inputs,
+    ramp_inputs,
+    p,
+    h,
+    v,
+    substeps,
+    x0,
+    start_column,
+    columns,
+    select,
+    measured,
+    weight,
+):
     """Residuals weight (x - measured), (samples ny,), and their Jacobian (samples ny, columns); zero where unmeasured.
 
     f: rates with Jacobian, nu inputs; used: columns of [u | 1] that act; straight: places in `used` of inputs that are
@@ -299,7 +395,26 @@ def slopes(f, nu, wanted, used, straight, p, h, v, fine, x0, starts, columns, se
     None in place of both if the run leaves all bounds.
     """
     residual, jacobian = np.empty(measured.size), np.empty((measured.size, -(-columns // LANES) * LANES))
-    room, size = _room(len(x0), nu, len(wanted), used, straight, p)
-    is_fine = _slopes(f, nu, wanted, used, straight, p, h, v, fine, x0, starts, select, measured, weight, residual,
-                      jacobian, *room, np.empty(size), scratch(size))  # fmt: skip
+    room, size = _allocate_scratch(len(x0), nu, len(parameter_index), active_inputs, ramp_inputs, p)
+    is_fine = _residuals_and_jacobian(
+        f,
+        nu,
+        parameter_index,
+        active_inputs,
+        ramp_inputs,
+        p,
+        h,
+        v,
+        substeps,
+        x0,
+        start_column,
+        select,
+        measured,
+        weight,
+        residual,
+        jacobian,
+        *room,
+        np.empty(size),
+        aligned_scratch(size),
+    )
     return (residual, jacobian[:, :columns]) if is_fine else None

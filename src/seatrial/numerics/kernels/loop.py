@@ -9,7 +9,7 @@ from numba import njit, void
 from seatrial.numerics.kernels.types import F8, I8, MATRIX, OPTIONS, VECTOR
 
 # sums over frequencies may be taken in any order: four or eight at once
-_SUMS = {**OPTIONS, "fastmath": {"contract", "reassoc", "nsz", "arcp"}}
+_ANY_ORDER_SUMS = {**OPTIONS, "fastmath": {"contract", "reassoc", "nsz", "arcp"}}
 
 
 @njit(I8(VECTOR, I8), **OPTIONS)
@@ -31,8 +31,8 @@ def is_hurwitz(row, n):
     return 1
 
 
-@njit(void(VECTOR, MATRIX, MATRIX, VECTOR, VECTOR), **_SUMS)
-def _open(k, re, im, x, y):
+@njit(void(VECTOR, MATRIX, MATRIX, VECTOR, VECTOR), **_ANY_ORDER_SUMS)
+def _return_difference(k, re, im, x, y):
     """1 + L at each frequency: x + j y."""
     for f in range(x.size):
         x[f] = 1.0 + k[0] * re[0, f]
@@ -43,8 +43,8 @@ def _open(k, re, im, x, y):
             y[f] += k[i] * im[i, f]
 
 
-@njit(F8(VECTOR, VECTOR), **_SUMS)
-def _nearest(x, y):
+@njit(F8(VECTOR, VECTOR), **_ANY_ORDER_SUMS)
+def _least_return_difference(x, y):
     """Least |1 + L| along the curve x + j y: a complex parabola through the nearest sample and its neighbours."""
     count = x.size
     least = np.inf
@@ -71,8 +71,8 @@ def _nearest(x, y):
     return np.sqrt(min(zx * zx + zy * zy, least))
 
 
-@njit(void(MATRIX, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX), **_SUMS)
-def evaluate_loops(k, d, n, re, im, on_s, on_t, wide_re, wide_im, peak, out):
+@njit(void(MATRIX, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX), **_ANY_ORDER_SUMS)
+def evaluate_loops(k, d, n, re, im, s_weights, t_weights, band_re, band_im, Ms, out):
     """Sensitivity peak and variances of loops; infinite where a loop is unstable.
 
     k: gains (m, g). d (n + 1,), n (g, n + 1): characteristic polynomial d + k n. re, im: L_i (g, f) at the frequencies
@@ -82,7 +82,7 @@ def evaluate_loops(k, d, n, re, im, on_s, on_t, wide_re, wide_im, peak, out):
     order = d.size - 1
     row, x, y = np.empty(order + 1), np.empty(re.shape[1]), np.empty(re.shape[1])
     s, t = np.empty(re.shape[1]), np.empty(re.shape[1])
-    wide_x, wide_y = np.empty(wide_re.shape[1]), np.empty(wide_re.shape[1])
+    wide_x, wide_y = np.empty(band_re.shape[1]), np.empty(band_re.shape[1])
     for m in range(k.shape[0]):
         for j in range(order + 1):
             total = d[j]
@@ -90,31 +90,31 @@ def evaluate_loops(k, d, n, re, im, on_s, on_t, wide_re, wide_im, peak, out):
                 total += k[m, i] * n[i, j]
             row[j] = total
         if is_hurwitz(row, order) == 0:
-            peak[m] = np.inf
+            Ms[m] = np.inf
             for j in range(out.shape[1]):
                 out[m, j] = np.inf
             continue
         if wide_x.size > 0:
-            _open(k[m], wide_re, wide_im, wide_x, wide_y)
-            peak[m] = max(1.0 / _nearest(wide_x, wide_y), 1.0)
-        _open(k[m], re, im, x, y)
+            _return_difference(k[m], band_re, band_im, wide_x, wide_y)
+            Ms[m] = max(1.0 / _least_return_difference(wide_x, wide_y), 1.0)
+        _return_difference(k[m], re, im, x, y)
         for f in range(x.size):
             s[f] = 1.0 / (x[f] * x[f] + y[f] * y[f])
             t[f] = ((x[f] - 1.0) * (x[f] - 1.0) + y[f] * y[f]) * s[f]
-        for j in range(on_s.shape[0]):
+        for j in range(s_weights.shape[0]):
             total = 0.0
             for f in range(x.size):
-                total += on_s[j, f] * s[f]
+                total += s_weights[j, f] * s[f]
             out[m, j] = total
-        for j in range(on_t.shape[0]):
+        for j in range(t_weights.shape[0]):
             total = 0.0
             for f in range(x.size):
-                total += on_t[j, f] * t[f]
-            out[m, on_s.shape[0] + j] = total
+                total += t_weights[j, f] * t[f]
+            out[m, s_weights.shape[0] + j] = total
 
 
-@njit(void(VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX), **_SUMS)
-def slopes_of_loop(k, re, im, on_s, on_t, out):
+@njit(void(VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX), **_ANY_ORDER_SUMS)
+def variance_gradients(k, re, im, s_weights, t_weights, out):
     """d variance / d gain of one loop, (rs + rt, g).
 
     With z = 1 + L: d|S|^2 = -2 Re(conj(z) L_i) |S|^4, d|L S|^2 = 2 Re(conj(L) L_i) |S|^2 + |L|^2 d|S|^2.
@@ -122,20 +122,20 @@ def slopes_of_loop(k, re, im, on_s, on_t, out):
     count = re.shape[1]
     x, y = np.empty(count), np.empty(count)
     ds, dt = np.empty(count), np.empty(count)
-    _open(k, re, im, x, y)
+    _return_difference(k, re, im, x, y)
     for i in range(k.size):
         for f in range(count):
             s = 1.0 / (x[f] * x[f] + y[f] * y[f])
             size = (x[f] - 1.0) * (x[f] - 1.0) + y[f] * y[f]
             ds[f] = -2.0 * (x[f] * re[i, f] + y[f] * im[i, f]) * s * s
             dt[f] = 2.0 * ((x[f] - 1.0) * re[i, f] + y[f] * im[i, f]) * s + size * ds[f]
-        for j in range(on_s.shape[0]):
+        for j in range(s_weights.shape[0]):
             total = 0.0
             for f in range(count):
-                total += on_s[j, f] * ds[f]
+                total += s_weights[j, f] * ds[f]
             out[j, i] = total
-        for j in range(on_t.shape[0]):
+        for j in range(t_weights.shape[0]):
             total = 0.0
             for f in range(count):
-                total += on_t[j, f] * dt[f]
-            out[on_s.shape[0] + j, i] = total
+                total += t_weights[j, f] * dt[f]
+            out[s_weights.shape[0] + j, i] = total

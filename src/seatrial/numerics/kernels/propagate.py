@@ -13,8 +13,8 @@ from numba import njit, void
 
 from seatrial.numerics.kernels.types import CUBE, F8, LEAN, MATRIX, OPTIONS, QUARTIC
 
-_SMALL = 0.25
-_TERMS = 11
+_SERIES_NORM = 0.25
+_SERIES_TERMS = 11
 
 
 @njit(inline="always", **OPTIONS)
@@ -29,14 +29,14 @@ def _add_product(a, b, factor, out):
 
 
 @njit(inline="always", **OPTIONS)
-def _set(a, value):
+def _fill(a, value):
     for i in range(a.shape[0]):
         for j in range(a.shape[1]):
             a[i, j] = value
 
 
 @njit(inline="always", **OPTIONS)
-def _halvings(a, h):
+def _count_halvings(a, h):
     size = 0.0
     for i in range(a.shape[0]):
         row = 0.0
@@ -45,19 +45,19 @@ def _halvings(a, h):
         size = max(size, row)
     size *= h
     count = 0
-    while size > _SMALL and count < 60:
+    while size > _SERIES_NORM and count < 60:
         size *= 0.5
         count += 1
     return count
 
 
 @njit(inline="always", **OPTIONS)
-def _double(value, slope, one, two, three):
+def _double_derivatives(value, slope, one, two, three):
     """Derivatives over twice the step, in place; `value` is still that over one."""
     n = one.shape[0]
-    _set(one, 0.0)
-    _set(two, 0.0)
-    _set(three, 0.0)
+    _fill(one, 0.0)
+    _fill(two, 0.0)
+    _fill(three, 0.0)
     _add_product(slope[0], value[2], 1.0, one)
     _add_product(value[0], slope[2], 1.0, one)
     _add_product(slope[0], value[1], 1.0, two)
@@ -74,29 +74,29 @@ def _double(value, slope, one, two, three):
 @njit(void(MATRIX, CUBE, F8, CUBE, QUARTIC, CUBE, CUBE), **LEAN)
 def _propagators(a, da, h, value, slope, power, dpower):
     n, count = a.shape[0], da.shape[0]
-    halvings = _halvings(a, h)
+    halvings = _count_halvings(a, h)
     if halvings >= 60:
         for m in range(3):
-            _set(value[m], math.nan)
+            _fill(value[m], math.nan)
             for q in range(count):
-                _set(slope[q, m], math.nan)
+                _fill(slope[q, m], math.nan)
         return
     step = h * 0.5**halvings
     term, following = power[0], power[1]
-    _set(term, 0.0)
+    _fill(term, 0.0)
     for m in range(3):
-        _set(value[m], 0.0)
+        _fill(value[m], 0.0)
     for i in range(n):
         term[i, i] = 1.0
         value[0, i, i], value[1, i, i], value[2, i, i] = 1.0, 1.0, 0.5
     for q in range(count):
-        _set(dpower[q], 0.0)
+        _fill(dpower[q], 0.0)
         for m in range(3):
-            _set(slope[q, m], 0.0)
-    for k in range(1, _TERMS + 1):
+            _fill(slope[q, m], 0.0)
+    for k in range(1, _SERIES_TERMS + 1):
         first, second = 1.0 / (k + 1), 1.0 / ((k + 1) * (k + 2))
         for q in range(count):
-            _set(following, 0.0)
+            _fill(following, 0.0)
             _add_product(dpower[q], a, step / k, following)
             _add_product(term, da[q], step / k, following)
             for i in range(n):
@@ -106,7 +106,7 @@ def _propagators(a, da, h, value, slope, power, dpower):
                     slope[q, 0, i, j] += d
                     slope[q, 1, i, j] += d * first
                     slope[q, 2, i, j] += d * second
-        _set(following, 0.0)
+        _fill(following, 0.0)
         _add_product(term, a, step / k, following)
         for i in range(n):
             for j in range(n):
@@ -117,9 +117,9 @@ def _propagators(a, da, h, value, slope, power, dpower):
                 value[2, i, j] += d * second
     for _ in range(halvings):
         for q in range(count):
-            _double(value, slope[q], dpower[q], term, following)
-        _set(term, 0.0)
-        _set(following, 0.0)
+            _double_derivatives(value, slope[q], dpower[q], term, following)
+        _fill(term, 0.0)
+        _fill(following, 0.0)
         _add_product(value[0], value[2], 1.0, term)
         _add_product(value[0], value[1], 1.0, following)
         for i in range(n):
@@ -128,7 +128,7 @@ def _propagators(a, da, h, value, slope, power, dpower):
         for i in range(n):
             for j in range(n):
                 value[1, i, j] = 0.5 * (following[i, j] + value[1, i, j])
-        _set(term, 0.0)
+        _fill(term, 0.0)
         _add_product(value[0], value[0], 1.0, term)
         for i in range(n):
             for j in range(n):

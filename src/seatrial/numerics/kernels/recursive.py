@@ -9,10 +9,10 @@ from numba import njit
 
 from seatrial.numerics.kernels.integrate import DIVERGED
 from seatrial.numerics.kernels.sensitivity import rk4_tangent_step
-from seatrial.numerics.kernels.square_root import forget, take
+from seatrial.numerics.kernels.square_root import forget, update_sample
 from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, TANGENT, VECTOR
 
-_BELIEF = (VECTOR, MATRIX)
+_GAUSSIAN_STATE = (VECTOR, MATRIX)
 _SAMPLES = (MATRIX, MATRIX, I8, I8)
 _NOISE = (VECTOR, F8, F8, MATRIX, TABLE)
 _FORGETTING = (MATRIX, F8, I8, INDEX)
@@ -20,42 +20,70 @@ _SCRATCH = (VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, MATRIX)
 
 
 @njit(inline="always", **OPTIONS)
-def _carried(root, step, k, carried):
+def _propagate_root(root, step, k, work):
     """State rows of the root after a step whose derivatives are `step` (nx, k + nx)."""
     nx, n = step.shape
     for i in range(nx):
         for j in range(n):
-            carried[i, j] = 0.0
+            work[i, j] = 0.0
         for m in range(n):
             a = step[i, m]
             if a != 0.0:
                 for j in range(n):
-                    carried[i, j] += a * root[m, j]
+                    work[i, j] += a * root[m, j]
     for i in range(nx):
         for j in range(n):
-            root[k + i, j] = carried[i, j]
+            root[k + i, j] = work[i, j]
 
 
 @njit(inline="always", **OPTIONS)
-def _forgotten(root, z, widest, kept, every, since, v):
-    since[0] += 1
-    if kept < 1.0 and since[0] >= every:
-        forget(root, z, widest, kept, v)
-        since[0] = 0
+def _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, samples_since, v):
+    samples_since[0] += 1
+    if forgetting_factor < 1.0 and samples_since[0] >= forget_every:
+        forget(root, z, floor_root, forgetting_factor, v)
+        samples_since[0] = 0
 
 
 @njit(
     I8(
         *(CUBE, CUBE, CUBE, CUBE, MATRIX, MATRIX, VECTOR),
-        *(*_BELIEF, *_SAMPLES, MATRIX, *_NOISE, *_FORGETTING, *_SCRATCH, VECTOR, VECTOR),
+        *(*_GAUSSIAN_STATE, *_SAMPLES, MATRIX, *_NOISE, *_FORGETTING, *_SCRATCH, VECTOR, VECTOR),
     ),
     **LEAN,
 )
-def follow_linear(
-    de, dg, dc, dd, plant, seen, at,
-    z, root, inputs, measured, first, begins, slopes, variance, limit, memory, running, tally, widest, kept, every,
-    since, v, before, predicted, h, step, carried, w, x,
-):  # fmt: skip
+def filter_linear(
+    de,
+    dg,
+    dc,
+    dd,
+    step_matrix,
+    output_matrix,
+    expansion_point,
+    z,
+    root,
+    inputs,
+    measured,
+    first_row,
+    is_run_start,
+    slopes,
+    variance,
+    limit,
+    memory,
+    running_means,
+    counts,
+    floor_root,
+    forgetting_factor,
+    forget_every,
+    samples_since,
+    v,
+    z_reference,
+    predicted,
+    h,
+    step,
+    work,
+    w,
+    x,
+):
     """Take in rows first.. of an affine model; returns the row at which the state left all bounds, or -1.
 
     plant (nx, nx + nw), seen (ny, nx + nu + 1): the step and the outputs about the coefficients `at`, columns state,
@@ -65,10 +93,10 @@ def follow_linear(
     the row before. variance (ny,) and limit, memory, running, tally: see `take`; widest, kept: see `forget`, which is
     done every so many samples, `since` counting them.
     """
-    k, nx, nu = at.size, x.size, inputs.shape[1]
+    k, nx, nu = expansion_point.size, x.size, inputs.shape[1]
     ny = variance.size
-    for row in range(first, measured.shape[0]):
-        if row > first or begins == 0:
+    for row in range(first_row, measured.shape[0]):
+        if row > first_row or is_run_start == 0:
             for j in range(nu):
                 w[j], w[nu + j] = inputs[row - 1, j], inputs[row, j]
                 w[2 * nu + j], w[3 * nu + j] = slopes[row - 1, j], slopes[row, j]
@@ -80,23 +108,23 @@ def follow_linear(
                     step[i, c] = 0.0
                 for m in range(nx):
                     a = z[k + m]
-                    step[i, k + m] = plant[i, m]
-                    total += plant[i, m] * a
+                    step[i, k + m] = step_matrix[i, m]
+                    total += step_matrix[i, m] * a
                     for c in range(k):
                         step[i, c] += a * de[i, m, c]
                 for m in range(w.size):
                     a = w[m]
                     if a != 0.0:
-                        total += plant[i, nx + m] * a
+                        total += step_matrix[i, nx + m] * a
                         for c in range(k):
                             step[i, c] += a * dg[i, m, c]
                 for c in range(k):
-                    total += step[i, c] * (z[c] - at[c])
+                    total += step[i, c] * (z[c] - expansion_point[c])
                 x[i] = total
                 size += abs(total)
             for i in range(nx):
                 z[k + i] = x[i]
-            _carried(root, step, k, carried)
+            _propagate_root(root, step, k, work)
             if not size < DIVERGED:
                 return row
         for i in range(ny):
@@ -105,56 +133,92 @@ def follow_linear(
                 h[i, c] = 0.0
             for m in range(nx):
                 a = z[k + m]
-                h[i, k + m] = seen[i, m]
-                total += seen[i, m] * a
+                h[i, k + m] = output_matrix[i, m]
+                total += output_matrix[i, m] * a
                 for c in range(k):
                     h[i, c] += a * dc[i, m, c]
             for m in range(nu + 1):
                 a = inputs[row, m] if m < nu else 1.0
                 if a != 0.0:
-                    total += seen[i, nx + m] * a
+                    total += output_matrix[i, nx + m] * a
                     for c in range(k):
                         h[i, c] += a * dd[i, m, c]
             for c in range(k):
-                total += h[i, c] * (z[c] - at[c])
+                total += h[i, c] * (z[c] - expansion_point[c])
             predicted[i] = total
         for j in range(z.size):
-            before[j] = z[j]
-        take(root, z, before, h, predicted, measured[row], variance, limit, memory, running, tally, v)
-        _forgotten(root, z, widest, kept, every, since, v)
+            z_reference[j] = z[j]
+        update_sample(
+            root, z, z_reference, h, predicted, measured[row], variance, limit, memory, running_means, counts, v
+        )
+        _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, samples_since, v)
     return -1
 
 
 @njit(
     I8(
         *(TANGENT, TANGENT, F8, I8, VECTOR, INDEX, TABLE, TABLE, TABLE, INDEX),
-        *(*_BELIEF, *_SAMPLES, *_NOISE, *_FORGETTING, *_SCRATCH),
+        *(*_GAUSSIAN_STATE, *_SAMPLES, *_NOISE, *_FORGETTING, *_SCRATCH),
         *(MATRIX, CUBE, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR),
     ),
     **LEAN,
 )
-def follow(
-    f, g, dt, substeps, p, places, chain, link_p, link_u, select,
-    z, root, inputs, measured, first, begins, variance, limit, memory, running, tally, widest, kept, every, since,
-    v, before, predicted, h, step, carried,
-    work_x, work_s, work_u, work_w, jac, g_jac, g_value,
-):  # fmt: skip
+def filter_runge_kutta(
+    f,
+    g,
+    dt,
+    substeps,
+    p,
+    coefficient_index,
+    chain,
+    link_p,
+    link_u,
+    select,
+    z,
+    root,
+    inputs,
+    measured,
+    first_row,
+    is_run_start,
+    variance,
+    limit,
+    memory,
+    running_means,
+    counts,
+    floor_root,
+    forgetting_factor,
+    forget_every,
+    samples_since,
+    v,
+    z_reference,
+    predicted,
+    h,
+    step,
+    work,
+    work_x,
+    work_s,
+    work_u,
+    work_w,
+    jac,
+    g_jac,
+    g_value,
+):
     """The same for any model by Runge-Kutta steps, inputs running straight between samples, as `sensitivity` has it.
 
     places: of the coefficients in p, whose other values stay. No model depends on time itself: it counts as 0.
     links as in `simulate.batch`, columns [coefficients | state]; select: outputs, states first, then those of g.
     """
-    k, nx, nu = places.size, jac.shape[0], inputs.shape[1]
+    k, nx, nu = coefficient_index.size, jac.shape[0], inputs.shape[1]
     ny = select.size
     x, rate, y, acc = work_x[0], work_x[1], work_x[2], work_x[3]
     u0, um, ub, u1 = work_u[0], work_u[1], work_u[2], work_u[3]
     length = dt / substeps
-    for row in range(first, measured.shape[0]):
+    for row in range(first_row, measured.shape[0]):
         for c in range(k):
-            p[places[c]] = z[c]
+            p[coefficient_index[c]] = z[c]
         for i in range(nx):
             x[i] = z[k + i]
-        if row > first or begins == 0:
+        if row > first_row or is_run_start == 0:
             for i in range(nx):
                 for c in range(k + nx):
                     work_s[0, i, c] = 1.0 if c == k + i else 0.0
@@ -175,7 +239,7 @@ def follow(
                 z[k + i] = x[i]
                 for c in range(k + nx):
                     step[i, c] = work_s[0, i, c]
-            _carried(root, step, k, carried)
+            _propagate_root(root, step, k, work)
             if not size < DIVERGED:
                 return row
         if g_value.size > 0:
@@ -190,11 +254,13 @@ def follow(
             else:
                 predicted[i] = g_value[here]
                 for c in range(k):
-                    h[i, c] = g_jac[here, nx + nu + places[c]]
+                    h[i, c] = g_jac[here, nx + nu + coefficient_index[c]]
                 for j in range(nx):
                     h[i, k + j] = g_jac[here, j]
         for j in range(z.size):
-            before[j] = z[j]
-        take(root, z, before, h, predicted, measured[row], variance, limit, memory, running, tally, v)
-        _forgotten(root, z, widest, kept, every, since, v)
+            z_reference[j] = z[j]
+        update_sample(
+            root, z, z_reference, h, predicted, measured[row], variance, limit, memory, running_means, counts, v
+        )
+        _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, samples_since, v)
     return -1

@@ -16,7 +16,7 @@ OFFSET, GAIN, DELAY = 0, 1, 2
 
 
 @njit(inline="always", **OPTIONS)
-def input_weights(inputs, first, last, k, gain, delay, dt, out):
+def input_derivatives(inputs, first, last, k, gain, delay, dt, out):
     """d(effective input)/d(offset, gain, delay) at sample k, three slots an input; clamped, no delay is felt."""
     for j in range(gain.size):
         delayed = k - delay[j] / dt
@@ -29,7 +29,7 @@ def input_weights(inputs, first, last, k, gain, delay, dt, out):
 
 
 @njit(inline="always", **OPTIONS)
-def push(jac, chain, link_p, link_u, w, s, out):
+def propagate_tangent(jac, chain, link_p, link_u, w, s, out):
     """out = jac_x s + jac_p + jac_u w, over structural nonzeros: chain (row, state), links (row, jac column, ...)."""
     ncol = out.shape[1]
     for i in range(out.shape[0]):
@@ -52,7 +52,7 @@ def rk4_tangent_step(f, chain, link_p, link_u, t, x, s, u0, um, u1, w0, wm, w1, 
     nx, ncol = s.shape
     size = 0.0
     f(t, x, u0, p, k, jac)
-    push(jac, chain, link_p, link_u, w0, s, sk)
+    propagate_tangent(jac, chain, link_p, link_u, w0, s, sk)
     for i in range(nx):
         acc[i] = k[i]
         y[i] = x[i] + 0.5 * h * k[i]
@@ -63,7 +63,7 @@ def rk4_tangent_step(f, chain, link_p, link_u, t, x, s, u0, um, u1, w0, wm, w1, 
     for stage in range(2):
         c = 0.5 * h if stage == 0 else h
         f(t + 0.5 * h, y, um, p, k, jac)
-        push(jac, chain, link_p, link_u, wm, sy, sk)
+        propagate_tangent(jac, chain, link_p, link_u, wm, sy, sk)
         for i in range(nx):
             acc[i] += 2.0 * k[i]
             y[i] = x[i] + c * k[i]
@@ -72,7 +72,7 @@ def rk4_tangent_step(f, chain, link_p, link_u, t, x, s, u0, um, u1, w0, wm, w1, 
                 sacc[i, j] += 2.0 * sk[i, j]
                 sy[i, j] = s[i, j] + c * sk[i, j]
     f(t + h, y, u1, p, k, jac)
-    push(jac, chain, link_p, link_u, w1, sy, sk)
+    propagate_tangent(jac, chain, link_p, link_u, w1, sy, sk)
     for i in range(nx):
         x[i] += h / 6.0 * (acc[i] + k[i])
         size += abs(x[i])
@@ -114,12 +114,12 @@ def _replay_tangent(
                 s[i, j] = 1.0 if j == start_column[i] else 0.0
         effective_input(inputs, first, last, first, gain_s, offset_s, delay_s, dt, u0)
         if needs_w:
-            input_weights(inputs, first, last, first, gain_s, delay_s, dt, w0)
+            input_derivatives(inputs, first, last, first, gain_s, delay_s, dt, w0)
         for row in range(first, last):
             t = (row - first) * dt
             if needs_g:
                 g(t, x, u0, par, g_value, g_jac)
-                push(g_jac, g_chain, g_link_p, g_link_u, w0, s, g_s)
+                propagate_tangent(g_jac, g_chain, g_link_p, g_link_u, w0, s, g_s)
             for i in range(select.size):
                 is_state = select[i] < nx
                 y_out[row, i] = x[select[i]] if is_state else g_value[select[i] - nx]
@@ -129,7 +129,7 @@ def _replay_tangent(
                 break
             effective_input(inputs, first, last, row + 1, gain_s, offset_s, delay_s, dt, u1)
             if needs_w:
-                input_weights(inputs, first, last, row + 1, gain_s, delay_s, dt, w1)
+                input_derivatives(inputs, first, last, row + 1, gain_s, delay_s, dt, w1)
             size = 0.0
             for m in range(substeps):
                 for j in range(nu):

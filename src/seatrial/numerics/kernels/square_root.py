@@ -12,11 +12,11 @@ from numba import njit
 from seatrial.numerics.kernels.types import OPTIONS
 
 # what `take` counts, by channel: measurements taken, outliers among them
-TAKEN, OUTLYING = 0, 1
+USED, OUTLIERS = 0, 1
 
 
 @njit(inline="always", **OPTIONS)
-def across(root, h, v):
+def project_root(root, h, v):
     """v = R' h; returns its square, the variance of h' z."""
     n = h.size
     for j in range(n):
@@ -33,10 +33,10 @@ def across(root, h, v):
 
 
 @njit(inline="always", **OPTIONS)
-def narrow(root, z, v, spread, variance, e):
+def update_scalar(root, z, v, predicted_variance, variance, e):
     """A measurement of variance `variance` lies e beyond its prediction; v, spread as `across` left them."""
     n = z.size
-    total = spread + variance
+    total = predicted_variance + variance
     shrink = 1.0 / (total + math.sqrt(variance * total))
     for i in range(n):
         w = 0.0
@@ -49,7 +49,9 @@ def narrow(root, z, v, spread, variance, e):
 
 
 @njit(inline="always", **OPTIONS)
-def take(root, z, before, h, predicted, measured, variance, limit, memory, running, tally, v):
+def update_sample(
+    root, z, z_reference, h, predicted, measured, variance, huber_limit, memory, running_means, counts, v
+):
     """All channels of one sample, NaN being no measurement.
 
     h (ny, n), predicted (ny,): slopes and values at z = `before`. An innovation beyond `limit` standard deviations
@@ -63,35 +65,35 @@ def take(root, z, before, h, predicted, measured, variance, limit, memory, runni
         if math.isnan(e):
             continue
         for j in range(n):
-            e -= h[channel, j] * (z[j] - before[j])
-        spread = across(root, h[channel], v)
+            e -= h[channel, j] * (z[j] - z_reference[j])
+        spread = project_root(root, h[channel], v)
         r = variance[channel]
         size = math.sqrt(e * e / (spread + r))
-        tally[TAKEN, channel] += 1
+        counts[USED, channel] += 1
         cut = 1.0
-        if size > limit:
-            tally[OUTLYING, channel] += 1
-            cut = limit / size
-        weight = 1.0 / min(tally[TAKEN, channel] * 1.0, memory)
-        running[channel, 0] += weight * ((cut * size) ** 2 - running[channel, 0])
-        running[channel, 1] += weight * ((cut * e) ** 2 - running[channel, 1])
+        if size > huber_limit:
+            counts[OUTLIERS, channel] += 1
+            cut = huber_limit / size
+        weight = 1.0 / min(counts[USED, channel] * 1.0, memory)
+        running_means[channel, 0] += weight * ((cut * size) ** 2 - running_means[channel, 0])
+        running_means[channel, 1] += weight * ((cut * e) ** 2 - running_means[channel, 1])
         r /= cut
-        most = limit * math.sqrt(spread + r)
-        narrow(root, z, v, spread, r, min(max(e, -most), most))
+        most = huber_limit * math.sqrt(spread + r)
+        update_scalar(root, z, v, spread, r, min(max(e, -most), most))
 
 
 @njit(inline="always", **OPTIONS)
-def forget(root, z, widest, kept, v):
+def forget(root, z, floor_root, forgetting_factor, v):
     """The geometric mean of the belief (power `kept`) and a wide one about the same point (power 1 - kept).
 
     Information <- kept * information + (1 - kept) * widest' widest: exponential forgetting that ends at the wide belief
     where nothing is learnt (Kulhavy & Zarrop 1993, section 3). widest (rows, n): root of the wide belief's information.
     """
     n = z.size
-    grown = math.sqrt(1.0 / kept)
+    grown = math.sqrt(1.0 / forgetting_factor)
     for i in range(n):
         for j in range(n):
             root[i, j] *= grown
-    for m in range(widest.shape[0]):
-        spread = across(root, widest[m], v)
-        narrow(root, z, v, spread, 1.0 / (1.0 - kept), 0.0)
+    for m in range(floor_root.shape[0]):
+        spread = project_root(root, floor_root[m], v)
+        update_scalar(root, z, v, spread, 1.0 / (1.0 - forgetting_factor), 0.0)

@@ -10,7 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
-from seatrial.numerics.optimise.least_squares import LeastSquares
+from seatrial.numerics.optimise.least_squares import LeastSquaresProblem
 from seatrial.numerics.optimise.solution import Array, Solution, Status
 
 
@@ -58,7 +58,7 @@ class Box:
         """Points of the unit box, shape (..., d), in this one."""
         return np.clip(self.lower + unit * self.width, self.lower, self.upper)
 
-    def drawn(self, generator: np.random.Generator, count: int) -> Array:
+    def random_points(self, generator: np.random.Generator, count: int) -> Array:
         """Points drawn uniformly, shape (count, d)."""
         return self.scaled(generator.random((count, self.size)))
 
@@ -105,7 +105,7 @@ class Optimiser(Protocol):
 def search(
     optimiser: Optimiser,
     fitness: Callable[[Array], Array],
-    progress: Callable[[int, float], None] | None = None,
+    report_progress: Callable[[int, float], None] | None = None,
 ) -> Solution:
     """Ask and tell until the optimiser is done; `fitness` takes (n, d) and gives (n,).
 
@@ -119,16 +119,16 @@ def search(
         points = optimiser.ask()
         optimiser.tell(fitness(points))
         evaluations += len(points)
-        if progress:
-            progress(evaluations, optimiser.best[1])
+        if report_progress:
+            report_progress(evaluations, optimiser.best[1])
     point, value = optimiser.best
     status = optimiser.status if np.isfinite(value) else Status.FAILED
     return Solution(point, value, status, evaluations, optimiser.history, optimiser.seed)
 
 
-def fitness_of(problem: LeastSquares, local: Array | None = None) -> Callable[[Array], Array]:
+def fitness_function(problem: LeastSquaresProblem, local_unknowns: Array | None = None) -> Callable[[Array], Array]:
     """Half the sum of squares of a least-squares problem at each row, local unknowns (s, m) held where given."""
-    held = np.zeros((0, 0)) if local is None else local
+    held = np.zeros((0, 0)) if local_unknowns is None else local_unknowns
 
     def fitness(points: Array) -> Array:
         return np.array([problem.cost(point, held) for point in points])

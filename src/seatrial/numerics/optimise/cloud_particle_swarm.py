@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.numerics.optimise.ask_tell import Box, SearchError
-from seatrial.numerics.optimise.pso import ParticleSwarm, SwarmSettings
+from seatrial.numerics.optimise.particle_swarm import ParticleSwarm, SwarmSettings
 from seatrial.numerics.optimise.solution import Array
 
 
@@ -61,8 +61,8 @@ class CloudParticleSwarm(ParticleSwarm):
     """
 
     def __init__(self, box: Box, generator: np.random.Generator, settings: CloudSettings | None = None) -> None:
-        self.cloud = settings or CloudSettings()
-        super().__init__(box, generator, self.cloud)
+        self.cloud_settings = settings or CloudSettings()
+        super().__init__(box, generator, self.cloud_settings)
 
     def _learn(self, points: Array, fitness: Array) -> None:
         if np.min(fitness) < 0:
@@ -74,8 +74,8 @@ class CloudParticleSwarm(ParticleSwarm):
         super()._learn(points, fitness)
 
     def _inertia(self) -> Array:
-        c = self.cloud
-        ratio = self._ratio()
+        c = self.cloud_settings
+        ratio = self._fitness_ratio()
         # En' ~ N(En, He), then eq. 6 with Ex = 5 w1 - w2
         entropy = self._generator.normal(c.entropy, c.hyper_entropy, len(ratio))
         away = (ratio - (5 * c.w1 - c.w2)) / np.where(entropy == 0.0, np.finfo(float).tiny, entropy)
@@ -83,17 +83,17 @@ class CloudParticleSwarm(ParticleSwarm):
         return np.where(ratio > c.b, c.w2, np.where(ratio < c.a, c.w1, cloud))[:, None]
 
     def _move(self) -> None:
-        good = self._ratio() > self.cloud.b
+        good = self._fitness_ratio() > self.cloud_settings.b
         super()._move()
         count = len(self._x)
-        entropy = self.cloud.spread * (1 - self.iteration / self.iterations) * self.box.width
+        entropy = self.cloud_settings.spread * (1 - self.iteration / self.iterations) * self.box.width
         # cloud drops round the best: En' ~ N(En, He), x ~ N(best, En')
         width = entropy * (1 + 0.1 * self._generator.standard_normal((count, 1)))
         drops = self.best[0] + width * self._generator.standard_normal(self._x.shape)
-        mutating = (self._generator.random(count) < self.cloud.mutation) & ~good
+        mutating = (self._generator.random(count) < self.cloud_settings.mutation) & ~good
         self._x = np.where(mutating[:, None], np.clip(drops, self.box.lower, self.box.upper), self._x)
 
-    def _ratio(self) -> Array:
+    def _fitness_ratio(self) -> Array:
         """Best fitness over each particle's own, shape (population,); 1 where both are 0, 0 where infinite."""
         best, own = self.best[1], self._fitness
         usable = np.isfinite(own) & (own > 0)

@@ -6,7 +6,7 @@ from math import floor, log
 import numpy as np
 
 from seatrial.numerics.optimise.ask_tell import Box, SearchError
-from seatrial.numerics.optimise.population import Population, refuse_settings_without_value
+from seatrial.numerics.optimise.population import Population, reject_nonfinite_settings
 from seatrial.numerics.optimise.solution import Array, Status
 
 
@@ -27,7 +27,7 @@ class AdaptationSettings:
     resampling: int = 20
 
     def __post_init__(self) -> None:
-        refuse_settings_without_value(self)
+        reject_nonfinite_settings(self)
         if self.population is not None and self.population < 4:
             raise SearchError(f"The evolution strategy needs at least 4 points a generation, not {self.population}.")
         if not self.step > 0:
@@ -61,35 +61,35 @@ class CovarianceAdaptation(Population):
             seed=int(generator.integers(2**32)),
             population_size=self.settings.population or 4 + floor(3 * log(box.size)),
         )
-        self._unit = np.zeros((0, box.size))
-        self._best, self._value = box.scaled(unit.mean(axis=1)), np.inf
-        self._settled = False
+        self._unit_points = np.zeros((0, box.size))
+        self._best, self._best_fitness = box.scaled(unit.mean(axis=1)), np.inf
+        self._has_converged = False
 
     @property
     def best(self) -> tuple[Array, float]:
         """Best point so far and its fitness."""
-        return self._best.copy(), self._value
+        return self._best.copy(), self._best_fitness
 
     @property
     def done(self) -> bool:
         """Whether the generations are spent, or the strategy cannot improve."""
-        return super().done or self._settled
+        return super().done or self._has_converged
 
     @property
     def status(self) -> Status:
         """Converged, to a minimum that need not be the least one, where the strategy stopped by itself."""
-        return Status.CONVERGED if self._settled else Status.EXHAUSTED
+        return Status.CONVERGED if self._has_converged else Status.EXHAUSTED
 
     def _propose(self) -> Array:
-        self._unit = np.array([self._strategy.ask() for _ in range(self._strategy.population_size)])
-        return self.box.scaled(self._unit)
+        self._unit_points = np.array([self._strategy.ask() for _ in range(self._strategy.population_size)])
+        return self.box.scaled(self._unit_points)
 
     def _learn(self, points: Array, fitness: Array) -> None:
         first = int(np.argmin(fitness))
-        if fitness[first] < self._value:
-            self._best, self._value = points[first].copy(), float(fitness[first])
+        if fitness[first] < self._best_fitness:
+            self._best, self._best_fitness = points[first].copy(), float(fitness[first])
         known = np.isfinite(fitness)
         worst = 2 * np.max(np.abs(fitness[known])) + 1 if known.any() else 1.0
         ranked = np.where(known, fitness, worst)
-        self._strategy.tell(list(zip(self._unit, ranked.tolist(), strict=True)))
-        self._settled = bool(known.any() and self._strategy.should_stop())
+        self._strategy.tell(list(zip(self._unit_points, ranked.tolist(), strict=True)))
+        self._has_converged = bool(known.any() and self._strategy.should_stop())

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.numerics.optimise.ask_tell import Box, SearchError
-from seatrial.numerics.optimise.population import Memory, Population, refuse_settings_without_value
+from seatrial.numerics.optimise.population import FitnessMemory, Population, reject_nonfinite_settings
 from seatrial.numerics.optimise.solution import Array
 
 
@@ -25,10 +25,10 @@ class EvolutionSettings:
     iterations: int = 200
     F: float = 0.5
     CR: float = 0.9
-    memory: Memory = Memory.KEEP
+    memory: FitnessMemory = FitnessMemory.KEEP
 
     def __post_init__(self) -> None:
-        refuse_settings_without_value(self)
+        reject_nonfinite_settings(self)
         if self.population < 4:
             raise SearchError(f"Differential evolution needs at least 4 vectors, not {self.population}.")
         if not 0 <= self.CR <= 1:
@@ -45,7 +45,7 @@ class DifferentialEvolution(Population):
     def __init__(self, box: Box, generator: np.random.Generator, settings: EvolutionSettings | None = None) -> None:
         self.settings = settings or EvolutionSettings()
         super().__init__(box, generator, self.settings.iterations)
-        self._x = box.drawn(generator, self.settings.population)
+        self._x = box.random_points(generator, self.settings.population)
         self._fitness = np.full(len(self._x), np.inf)
 
     @property
@@ -57,8 +57,8 @@ class DifferentialEvolution(Population):
     def _propose(self) -> Array:
         if self.iteration == 0:
             return self._x
-        trials = self._trials()
-        return trials if self.settings.memory is Memory.KEEP else np.concatenate([trials, self._x])
+        trials = self._trial_vectors()
+        return trials if self.settings.memory is FitnessMemory.KEEP else np.concatenate([trials, self._x])
 
     def _learn(self, points: Array, fitness: Array) -> None:
         count = len(self._x)
@@ -68,7 +68,7 @@ class DifferentialEvolution(Population):
         self._x = np.where(better[:, None], points[:count], self._x)
         self._fitness = np.where(better, fitness[:count], self._fitness)
 
-    def _trials(self) -> Array:
+    def _trial_vectors(self) -> Array:
         x, generator, box = self._x, self._generator, self.box
         count, size = x.shape
         order = generator.random((count, count))

@@ -37,24 +37,24 @@ class ImprovedWildHorse(WildHorse):
     """
 
     def __init__(self, box: Box, generator: np.random.Generator, settings: ImprovedHerdSettings | None = None) -> None:
-        self.improved = settings or ImprovedHerdSettings()
-        super().__init__(box, generator, self.improved)
+        self.improved_settings = settings or ImprovedHerdSettings()
+        super().__init__(box, generator, self.improved_settings)
 
-    def _scattered(self, points: Array) -> Array:
-        anew = self._generator.random((len(points), 1)) < self.improved.scatter
-        return np.where(anew, self.box.drawn(self._generator, len(points)), points)  # eq. 21
+    def _scatter(self, points: Array) -> Array:
+        anew = self._generator.random((len(points), 1)) < self.improved_settings.scatter
+        return np.where(anew, self.box.random_points(self._generator, len(points)), points)  # eq. 21
 
-    def _led(self, z: Array, stride: Array) -> Array:
+    def _leader_trials(self, z: Array, stride: Array) -> Array:
         waterhole = self.best[0]
         ahead = self._generator.random((len(stride), 1)) >= 0.5
         q1, q2 = self._generator.uniform(-1, 1, (2, len(stride), 1))
-        near = stride * (waterhole - self._leaders) + self._weights()[:, None] * waterhole  # eq. 23
+        near = stride * (waterhole - self._leaders) + self._waterhole_weights()[:, None] * waterhole  # eq. 23
         rival = waterhole - z * (self._leaders * q1 - self._leaders * q2)  # eq. 24
         return np.where(ahead, near, rival)  # eq. 25
 
-    def _weights(self) -> Array:
+    def _waterhole_weights(self) -> Array:
         """Weight of the waterhole for each leader, eq. 22, shape (groups,)."""
-        low, high = self.improved.omega_min, self.improved.omega_max
+        low, high = self.improved_settings.omega_min, self.improved_settings.omega_max
         own = self._leader_fitness
         known = np.concatenate([own, self._foal_fitness])
         known = known[np.isfinite(known)]

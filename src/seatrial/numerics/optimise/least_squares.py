@@ -19,7 +19,7 @@ _EXHAUSTED = 1e-20
 
 
 @dataclass(frozen=True, eq=False)
-class Normal:
+class NormalEquations:
     """Gauss-Newton model of half the sum of squares about one point.
 
     Attributes:
@@ -35,17 +35,17 @@ class Normal:
     local_hessian: Array
     cross: Array
 
-    def reduced(self) -> tuple[Array, Array]:
+    def without_local(self) -> tuple[Array, Array]:
         """Gradient and Hessian of the shared unknowns with the local ones eliminated at their optimum."""
         if self.local_gradient.size == 0:
             return self.gradient, self.hessian
-        solved = np.linalg.solve(_guarded(self.local_hessian), np.swapaxes(self.cross, 1, 2))
+        solved = np.linalg.solve(_with_ridge(self.local_hessian), np.swapaxes(self.cross, 1, 2))
         hessian = self.hessian - np.einsum("sij,sjk->ik", self.cross, solved)
         gradient = self.gradient - np.einsum("sj,sjk->k", self.local_gradient, solved)
         return gradient, hessian
 
 
-class LeastSquares(Protocol):
+class LeastSquaresProblem(Protocol):
     """What the optimiser asks of a problem; `local` has shape (s, m), possibly with m = 0."""
 
     @property
@@ -62,7 +62,7 @@ class LeastSquares(Protocol):
         """Half the sum of squares; infinite where the model cannot be evaluated."""
         ...
 
-    def normal(self, shared: Array, local: Array) -> Normal:
+    def normal(self, shared: Array, local: Array) -> NormalEquations:
         """The Gauss-Newton model at a point."""
         ...
 
@@ -73,34 +73,34 @@ class Optimum:
 
     solution: Solution
     local: Array
-    normal: Normal
+    normal: NormalEquations
 
 
-def _guarded(blocks: Array) -> Array:
+def _with_ridge(blocks: Array) -> Array:
     """Blocks with a relative rounding-size ridge, so that an unobservable local direction stays put."""
     diagonal = np.einsum("sii->si", blocks)
     ridge = 1e-12 * diagonal + 1e-14 * (diagonal.max(axis=1, keepdims=True) + 1e-300)
     return blocks + np.einsum("si,ij->sij", ridge, np.eye(blocks.shape[1]))
 
 
-def _step(normal: Normal, damping: float, low: Array, high: Array) -> tuple[Array, Array]:
+def _step(normal: NormalEquations, damping: float, low: Array, high: Array) -> tuple[Array, Array]:
     """The damped Gauss-Newton step with low <= shared step <= high."""
     hessian = normal.hessian.copy()
     diagonal = hessian.reshape(-1)[:: len(hessian) + 1]
     diagonal += damping * np.where(diagonal > 0, diagonal, 1.0)
     if not normal.local_gradient.size:
-        return _boxed(hessian, normal.gradient, low, high), normal.local_gradient
-    local = _guarded(normal.local_hessian)
+        return _solve_bounded(hessian, normal.gradient, low, high), normal.local_gradient
+    local = _with_ridge(normal.local_hessian)
     local = local + damping * np.einsum("sii,ij->sij", local, np.eye(local.shape[1]))
     right = np.concatenate([np.swapaxes(normal.cross, 1, 2), normal.local_gradient[:, :, None]], axis=2)
     solved = np.linalg.solve(local, right)
     hessian = hessian - np.einsum("sij,sjk->ik", normal.cross, solved[:, :, :-1])
     gradient = normal.gradient - np.einsum("sij,sj->i", normal.cross, solved[:, :, -1])
-    step = _boxed(hessian, gradient, low, high)
+    step = _solve_bounded(hessian, gradient, low, high)
     return step, -solved[:, :, -1] - solved[:, :, :-1] @ step
 
 
-def _boxed(hessian: Array, gradient: Array, low: Array, high: Array) -> Array:
+def _solve_bounded(hessian: Array, gradient: Array, low: Array, high: Array) -> Array:
     """Minimiser of the quadratic model in a box that holds zero (active sets; Stark & Parker 1995, BVLS)."""
     free = _solve(hessian, -gradient)
     if ((free >= low) & (free <= high)).all():
@@ -140,7 +140,7 @@ def _solve(matrix: Array, right: Array) -> Array:
     return scale * (np.linalg.lstsq(scaled, scale * right, rcond=1e-13)[0] if failed else found)
 
 
-def _predicted(normal: Normal, step: Array, local_step: Array) -> float:
+def _predicted_decrease(normal: NormalEquations, step: Array, local_step: Array) -> float:
     """Decrease of the quadratic model along a step."""
     linear = normal.gradient @ step
     curved = step @ normal.hessian @ step
@@ -151,19 +151,19 @@ def _predicted(normal: Normal, step: Array, local_step: Array) -> float:
     return float(-linear - 0.5 * curved)
 
 
-def _clipped(point: Array, problem: LeastSquares) -> Array:
+def _clip_to_bounds(point: Array, problem: LeastSquaresProblem) -> Array:
     return np.minimum(np.maximum(point, problem.lower), problem.upper)
 
 
 def levenberg_marquardt(
-    problem: LeastSquares,
+    problem: LeastSquaresProblem,
     shared: Array,
     local: Array,
     *,
     tolerance: float = 1e-10,
     negligible: float = 0.0,
     evaluations: int = 100,
-    progress: Callable[[int, float], None] | None = None,
+    report_progress: Callable[[int, float], None] | None = None,
 ) -> Optimum:
     """Minimise from a start; stops when the model promises less than `tolerance` of the cost, or rounding is reached.
 
@@ -172,7 +172,7 @@ def levenberg_marquardt(
 
     Deterministic. The result's status says how it ended; bounds of the shared unknowns are never left.
     """
-    shared = _clipped(shared, problem)
+    shared = _clip_to_bounds(shared, problem)
     normal = problem.normal(shared, local)
     count, damping, growth = 1, 1e-4, 2.0
     history = [normal.cost]
@@ -183,14 +183,14 @@ def levenberg_marquardt(
     while count < evaluations:
         low, high = problem.lower - shared, problem.upper - shared
         step, local_step = _step(normal, damping, low, high)
-        trial = _clipped(shared + step, problem)
+        trial = _clip_to_bounds(shared + step, problem)
         trial_local = local + local_step
-        predicted = _predicted(normal, trial - shared, local_step)
+        predicted = _predicted_decrease(normal, trial - shared, local_step)
         enough = max(tolerance * normal.cost, negligible)
         if predicted <= enough:  # else the undamped step, the model's minimum, promises more than enough too
             newton, local_newton = _step(normal, 0.0, low, high)
-            if _predicted(normal, newton, local_newton) <= enough:
-                trial = _clipped(shared + newton, problem)
+            if _predicted_decrease(normal, newton, local_newton) <= enough:
+                trial = _clip_to_bounds(shared + newton, problem)
                 last = problem.normal(trial, local + local_newton)
                 count += 1
                 if last.cost <= normal.cost:
@@ -212,10 +212,10 @@ def levenberg_marquardt(
             damping, growth, rejected = max(damping, 1e-8) * growth, growth * 2.0, rejected + 1
             if predicted <= 1e-14 * normal.cost or rejected > 25:
                 rounding = max(_ROUNDING * normal.cost, _EXHAUSTED * history[0])
-                promised = _predicted(normal, *_step(normal, 0.0, low, high))
+                promised = _predicted_decrease(normal, *_step(normal, 0.0, low, high))
                 status = Status.CONVERGED if promised <= rounding else Status.STALLED
                 break
         history.append(normal.cost)
-        if progress:
-            progress(count, normal.cost)
+        if report_progress:
+            report_progress(count, normal.cost)
     return Optimum(Solution(shared, normal.cost, status, count, tuple(history)), local, normal)

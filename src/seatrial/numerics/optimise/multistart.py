@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.numerics.optimise.ask_tell import Box, SearchError
-from seatrial.numerics.optimise.least_squares import LeastSquares, Optimum, levenberg_marquardt
-from seatrial.numerics.optimise.population import seed_of
+from seatrial.numerics.optimise.least_squares import LeastSquaresProblem, Optimum, levenberg_marquardt
+from seatrial.numerics.optimise.population import integer_seed
 from seatrial.numerics.optimise.solution import Array, Solution
 
 
 @dataclass(frozen=True)
-class Restarts:
+class RestartSettings:
     """How often, and until when, to start again.
 
     Attributes:
@@ -23,18 +23,18 @@ class Restarts:
         negligible: promised decrease below which a start ends.
     """
 
-    acceptable: float
-    most: int = 4
+    acceptable_cost: float
+    max_restarts: int = 4
     evaluations: int = 100
     negligible: float = 0.0
 
     def __post_init__(self) -> None:
-        if self.most < 0 or self.evaluations < 1:
+        if self.max_restarts < 0 or self.evaluations < 1:
             raise SearchError(
-                f"A search of {self.most} restarts with {self.evaluations} evaluations each is none; "
+                f"A search of {self.max_restarts} restarts with {self.evaluations} evaluations each is none; "
                 "give 0 or more restarts and 1 or more evaluations."
             )
-        if np.isnan(self.acceptable):
+        if np.isnan(self.acceptable_cost):
             raise SearchError("The acceptable value is NaN; give the largest half sum of squares that is taken.")
 
 
@@ -50,7 +50,7 @@ class Multistart:
 
     optimum: Optimum
     restarts: int
-    accepted: bool
+    is_accepted: bool
 
     @property
     def solution(self) -> Solution:
@@ -59,14 +59,14 @@ class Multistart:
 
 
 def multistart(
-    problem: LeastSquares,
+    problem: LeastSquaresProblem,
     start: Array,
     box: Box,
     generator: np.random.Generator,
-    restarts: Restarts,
+    restarts: RestartSettings,
     *,
     local: Array | None = None,
-    scaled: Callable[[Array], Array] | None = None,
+    transform: Callable[[Array], Array] | None = None,
 ) -> Multistart:
     """Start at `start`, then at points drawn from the box, until the value is acceptable; the best one is returned.
 
@@ -85,10 +85,10 @@ def multistart(
     best: Optimum | None = None
     evaluations, history, count = 0, [], -1
     at = start
-    while best is None or (not best.solution.value <= restarts.acceptable and count < restarts.most):
+    while best is None or (not best.solution.value <= restarts.acceptable_cost and count < restarts.max_restarts):
         if best is not None:
-            drawn = box.drawn(generator, 1)[0]
-            at = scaled(drawn) if scaled else drawn
+            drawn = box.random_points(generator, 1)[0]
+            at = transform(drawn) if transform else drawn
         found = levenberg_marquardt(problem, at, held, evaluations=restarts.evaluations, negligible=restarts.negligible)
         count += 1
         evaluations += found.solution.evaluations
@@ -96,5 +96,5 @@ def multistart(
             best = found
         history.append(best.solution.value)
     s = best.solution
-    solution = Solution(s.point, s.value, s.status, evaluations, tuple(history), seed_of(generator))
-    return Multistart(Optimum(solution, best.local, best.normal), count, s.value <= restarts.acceptable)
+    solution = Solution(s.point, s.value, s.status, evaluations, tuple(history), integer_seed(generator))
+    return Multistart(Optimum(solution, best.local, best.normal), count, s.value <= restarts.acceptable_cost)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
 
-class Memory(Enum):
+class FitnessMemory(Enum):
     """What becomes of the fitness of remembered points (own bests, leaders) from one iteration to the next.
 
     KEEP: it stays, right where the fitness is one function.
@@ -41,8 +41,8 @@ class Population(ABC):
         self.box = box
         self.iterations = iterations
         self._generator = generator
-        self._seed = seed_of(generator)
-        self._asked: Array | None = None
+        self._seed = integer_seed(generator)
+        self._pending_points: Array | None = None
         self._history: list[float] = []
         self._trace: list[Array] = []
 
@@ -61,9 +61,9 @@ class Population(ABC):
 
     def ask(self) -> Array:
         """Points to evaluate next, shape (n, d), the caller's own; asked again, the same until told."""
-        if self._asked is None:
-            self._asked = np.clip(self._propose(), self.box.lower, self.box.upper)
-        return self._asked.copy()
+        if self._pending_points is None:
+            self._pending_points = np.clip(self._propose(), self.box.lower, self.box.upper)
+        return self._pending_points.copy()
 
     def tell(self, fitness: Array) -> None:
         """Fitness of the points asked about, shape (n,).
@@ -71,25 +71,25 @@ class Population(ABC):
         Raises:
             SearchError: nothing was asked; a fitness of another shape; NaN or minus infinity, naming the row.
         """
-        if self._asked is None:
+        if self._pending_points is None:
             raise SearchError("A fitness was told before anything was asked; call ask() first.")
         told = np.array(fitness, dtype=np.float64)
-        self._refuse(self._asked, told)
-        self._learn(self._asked, told)
-        self._asked = None
+        self._validate(self._pending_points, told)
+        self._learn(self._pending_points, told)
+        self._pending_points = None
         point, value = self.best
         self._history.append(value)
         self._trace.append(point)
 
-    def _refuse(self, points: Array, told: Array) -> None:
+    def _validate(self, points: Array, values: Array) -> None:
         """Raise SearchError where what was told about the points (n, d) cannot be a fitness (n,)."""
-        if told.shape != (len(points),):
-            raise SearchError(f"A fitness for {len(points)} points has shape {told.shape}; give one number a point.")
-        wrong = np.flatnonzero(np.isnan(told) | (told == -np.inf))
+        if values.shape != (len(points),):
+            raise SearchError(f"A fitness for {len(points)} points has shape {values.shape}; give one number a point.")
+        wrong = np.flatnonzero(np.isnan(values) | (values == -np.inf))
         if wrong.size:
             row = wrong[0]
             raise SearchError(
-                f"The fitness of row {row} in iteration {self.iteration} is {told[row]} "
+                f"The fitness of row {row} in iteration {self.iteration} is {values[row]} "
                 f"at {np.array2string(points[row], precision=6)}; "
                 "return infinity where the model cannot be evaluated."
             )
@@ -125,7 +125,7 @@ class Population(ABC):
         return self._seed
 
 
-def refuse_settings_without_value(settings: "DataclassInstance") -> None:
+def reject_nonfinite_settings(settings: "DataclassInstance") -> None:
     """Raise SearchError where a number among the settings is NaN or infinite: it would move points nowhere."""
     for field in fields(settings):
         value = getattr(settings, field.name)
@@ -133,7 +133,7 @@ def refuse_settings_without_value(settings: "DataclassInstance") -> None:
             raise SearchError(f"Setting {field.name} is {value}; give a finite number.")
 
 
-def seed_of(generator: np.random.Generator) -> int | None:
+def integer_seed(generator: np.random.Generator) -> int | None:
     """Seed of a generator, where it is one whole number and the generator is not a descendant."""
     sequence = generator.bit_generator.seed_seq
     if isinstance(sequence, np.random.SeedSequence) and not sequence.spawn_key and isinstance(sequence.entropy, int):

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from seatrial.numerics.optimise.ask_tell import Box, SearchError
 from seatrial.numerics.optimise.dominance import non_dominated
-from seatrial.numerics.optimise.population import Population, refuse_settings_without_value
+from seatrial.numerics.optimise.population import Population, reject_nonfinite_settings
 from seatrial.numerics.optimise.solution import Array
 
 Bits = NDArray[np.bool_]
@@ -51,7 +51,7 @@ class GeneticSettings:
     normaliser: Normaliser = Normaliser.MAX
 
     def __post_init__(self) -> None:
-        refuse_settings_without_value(self)
+        reject_nonfinite_settings(self)
         if self.objectives < 1:
             raise SearchError(f"A search needs at least 1 objective, not {self.objectives}.")
         if self.population < self.objectives + 2:
@@ -69,7 +69,7 @@ class GeneticSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class Front:
+class NonDominatedSet:
     """Points no other evaluated point beats: points (k, d) and their objectives (k, m), by the first objective."""
 
     points: Array
@@ -109,34 +109,34 @@ class RandomWeightGenetic(Population):
         J is the mean of the normalised objectives.
         """
         if self._scale is None:
-            return decoded(self._codes[0], self.box), np.inf
-        J = self._sums(np.full(self.settings.objectives, 1 / self.settings.objectives))
+            return decode(self._codes[0], self.box), np.inf
+        J = self._weighted_sums(np.full(self.settings.objectives, 1 / self.settings.objectives))
         first = int(np.argmin(J))
         return self._points[-1][first].copy(), float(J[first])
 
     @property
-    def front(self) -> Front:
+    def front(self) -> NonDominatedSet:
         """Points that no other point of all generations beats: the set the paper updates every generation."""
         points, objectives = np.concatenate(self._points), np.concatenate(self._objectives)
         rows = non_dominated(objectives)
-        return Front(points[rows], objectives[rows])
+        return NonDominatedSet(points[rows], objectives[rows])
 
     def _propose(self) -> Array:
         if self.iteration:
-            self._codes = self._bred()
-        return decoded(self._codes, self.box)
+            self._codes = self._next_codes()
+        return decode(self._codes, self.box)
 
-    def _refuse(self, points: Array, told: Array) -> None:
+    def _validate(self, points: Array, values: Array) -> None:
         expected = (len(points), self.settings.objectives)
-        if told.shape != expected:
+        if values.shape != expected:
             raise SearchError(
-                f"The objectives of {expected[0]} points have shape {told.shape}; give {expected[1]} numbers a point."
+                f"The objectives of {expected[0]} points have shape {values.shape}; give {expected[1]} numbers a point."
             )
-        wrong = np.argwhere(np.isnan(told) | (told < 0))
+        wrong = np.argwhere(np.isnan(values) | (values < 0))
         if wrong.size:
             row, column = wrong[0]
             raise SearchError(
-                f"Objective {column} of row {row} in generation {self.iteration} is {told[row, column]} at "
+                f"Objective {column} of row {row} in generation {self.iteration} is {values[row, column]} at "
                 f"{np.array2string(points[row], precision=6)}; fitness is 1/J: give a number that is not negative, and "
                 "infinity where the model cannot be evaluated."
             )
@@ -147,22 +147,24 @@ class RandomWeightGenetic(Population):
         if self._scale is None:
             self._scale = normalisers(fitness, self.settings.normaliser)
 
-    def _sums(self, weights: Array) -> Array:
+    def _weighted_sums(self, weights: Array) -> Array:
         """J of the last generation (yu2014 eq. 7), shape (n,); infinite where a point cannot be."""
         scale = np.ones(self.settings.objectives) if self._scale is None else self._scale
         return np.sum(self._objectives[-1] * (weights / scale), axis=1)
 
-    def _bred(self) -> Bits:
+    def _next_codes(self) -> Bits:
         """The next population's codes: elite, then children of parents drawn by roulette."""
         settings, generator = self.settings, self._generator
         r = generator.integers(1, settings.largest_weight, settings.objectives, endpoint=True)
-        J = self._sums(r / r.sum())  # eq. 6
+        J = self._weighted_sums(r / r.sum())  # eq. 6
         elite = self._codes[np.argmin(self._objectives[-1], axis=0)] if np.isfinite(J).any() else self._codes[:0]
         count = settings.population - len(elite)
         pairs = (count + 1) // 2
         p = selection_probabilities(1 / np.maximum(J, np.finfo(float).tiny))  # eq. 8
         mothers, fathers = self._codes[roulette(p, generator.random((2, pairs)))]
-        children = crossed(mothers, fathers, cuts(generator, pairs, self._codes.shape[1], settings.Pc))[:count]
+        children = cross_over(mothers, fathers, crossover_points(generator, pairs, self._codes.shape[1], settings.Pc))[
+            :count
+        ]
         return np.concatenate([elite, children ^ (generator.random(children.shape) < settings.Pm)])
 
 
@@ -189,32 +191,32 @@ def selection_probabilities(fitness: Array) -> Array:
     return scaled / scaled.sum()
 
 
-def roulette(probabilities: Array, drawn: Array) -> NDArray[np.intp]:
+def roulette(probabilities: Array, uniforms: Array) -> NDArray[np.intp]:
     """Rows on which numbers drawn from [0, 1), any shape, fall; rows of probability zero never."""
     edges = np.cumsum(probabilities)
-    return np.searchsorted(edges, drawn * edges[-1], side="right").clip(max=np.flatnonzero(probabilities)[-1])
+    return np.searchsorted(edges, uniforms * edges[-1], side="right").clip(max=np.flatnonzero(probabilities)[-1])
 
 
-def cuts(generator: np.random.Generator, pairs: int, length: int, Pc: float) -> NDArray[np.int64]:
+def crossover_points(generator: np.random.Generator, pairs: int, length: int, Pc: float) -> NDArray[np.int64]:
     """First bit each pair exchanges, from 1 to length - 1, or the length where it exchanges none; shape (pairs,)."""
     crossing = generator.random(pairs) < Pc
     return np.where(crossing, generator.integers(1, length, pairs), length)
 
 
-def crossed(mothers: Bits, fathers: Bits, cut: NDArray[np.int64]) -> Bits:
+def cross_over(mothers: Bits, fathers: Bits, crossover_point: NDArray[np.int64]) -> Bits:
     """Children of pairs, shape (2 pairs, length): all codes are exchanged from the cut on."""
-    tail = np.arange(mothers.shape[1]) >= cut[:, None]
+    tail = np.arange(mothers.shape[1]) >= crossover_point[:, None]
     return np.concatenate([np.where(tail, fathers, mothers), np.where(tail, mothers, fathers)])
 
 
-def decoded(codes: Bits, box: Box) -> Array:
+def decode(codes: Bits, box: Box) -> Array:
     """Points (..., d) of codes (..., d * bits), highest bit first: all zeros lower bound, all ones upper bound."""
     digits = codes.reshape(*codes.shape[:-1], box.size, -1)
     bits = digits.shape[-1]
     return box.scaled(digits @ 2.0 ** np.arange(bits - 1, -1, -1) / (2.0**bits - 1))
 
 
-def encoded(points: Array, box: Box, bits: int) -> Bits:
+def encode(points: Array, box: Box, bits: int) -> Bits:
     """Codes (..., d * bits) nearest to points (..., d) of the box."""
     steps = np.rint((points - box.lower) / box.width * (2.0**bits - 1)).astype(np.int64)
     digits = steps[..., None] >> np.arange(bits - 1, -1, -1) & 1

@@ -6,11 +6,11 @@ from enum import Enum
 import numpy as np
 
 from seatrial.numerics.optimise.ask_tell import Box, SearchError
-from seatrial.numerics.optimise.population import Memory, Population, refuse_settings_without_value
+from seatrial.numerics.optimise.population import FitnessMemory, Population, reject_nonfinite_settings
 from seatrial.numerics.optimise.solution import Array
 
 
-class Variant(Enum):
+class StrideVariant(Enum):
     """How a stride turns.
 
     PAPER: cos(2 pi R Z) with one R in [-2, 2] for each horse (eq. 15); leaders draw their own Z and R.
@@ -39,11 +39,11 @@ class HerdSettings:
     iterations: int = 200
     stallions: float = 0.25
     crossover: float = 0.13
-    variant: Variant = Variant.PAPER
-    memory: Memory = Memory.KEEP
+    variant: StrideVariant = StrideVariant.PAPER
+    memory: FitnessMemory = FitnessMemory.KEEP
 
     def __post_init__(self) -> None:
-        refuse_settings_without_value(self)
+        reject_nonfinite_settings(self)
         groups = self.groups
         if groups < 3 or self.population < 2 * groups:
             raise SearchError(
@@ -77,12 +77,12 @@ class WildHorse(Population):
         self.settings = settings or HerdSettings()
         super().__init__(box, generator, self.settings.iterations)
         groups = self.settings.groups
-        horses = box.drawn(generator, self.settings.population)
+        horses = box.random_points(generator, self.settings.population)
         self._leaders, self._foals = horses[:groups], horses[groups:]
         self._leader_fitness = np.full(groups, np.inf)
         self._foal_fitness = np.full(len(self._foals), np.inf)
-        self._group = np.arange(len(self._foals)) % groups
-        self._last = len(self._foals) - 1 - (len(self._foals) - 1 - np.arange(groups)) % groups
+        self._group_of_foal = np.arange(len(self._foals)) % groups
+        self._last_foal = len(self._foals) - 1 - (len(self._foals) - 1 - np.arange(groups)) % groups
 
     @property
     def best(self) -> tuple[Array, float]:
@@ -95,15 +95,15 @@ class WildHorse(Population):
             return np.concatenate([self._foals, self._leaders])
         z, stride = self._strides(len(self._foals))
         mating = self._generator.random((len(self._foals), 1)) < self.settings.crossover
-        leaders = self._leaders[self._group]
+        leaders = self._leaders[self._group_of_foal]
         grazed = stride * (leaders - self._foals) + leaders  # eq. 15
-        foals = np.where(mating, self._mated(), grazed)
-        if self.settings.variant is Variant.REFERENCE:
-            z, stride = z[self._last], stride[self._last]
+        foals = np.where(mating, self._mating_foals(), grazed)
+        if self.settings.variant is StrideVariant.REFERENCE:
+            z, stride = z[self._last_foal], stride[self._last_foal]
         else:
             z, stride = self._strides(len(self._leaders))
-        moved = self._scattered(np.concatenate([foals, self._led(z, stride)]))
-        return moved if self.settings.memory is Memory.KEEP else np.concatenate([moved, self._leaders])
+        moved = self._scatter(np.concatenate([foals, self._leader_trials(z, stride)]))
+        return moved if self.settings.memory is FitnessMemory.KEEP else np.concatenate([moved, self._leaders])
 
     def _learn(self, points: Array, fitness: Array) -> None:
         count, groups = len(self._foals), len(self._leaders)
@@ -122,34 +122,38 @@ class WildHorse(Population):
         fading = 1 - (self.iteration + 1) / self.iterations  # eq. 17; the first population is T = 1
         inside = generator.random(shape) < fading
         z = np.where(inside, generator.random(shape), generator.random((count, 1)))
-        if self.settings.variant is Variant.REFERENCE:
+        if self.settings.variant is StrideVariant.REFERENCE:
             return z, 2 * z * np.cos(2 * np.pi * (4 * z - 2))
         turn = generator.uniform(-2, 2, (count, 1))
         return z, 2 * z * np.cos(2 * np.pi * turn * z)
 
-    def _mated(self) -> Array:
+    def _mating_foals(self) -> Array:
         """For each foal the mean of the worst foals of two other groups, eq. 18; shape (foals, d)."""
         groups, count = len(self._leaders), len(self._foals)
         first = self._generator.integers(groups - 1, size=count)
         second = self._generator.integers(groups - 2, size=count)
         second += second >= first
-        worst = self._foals[_in_groups(self._foal_fitness, groups, -np.inf).argmax(axis=0) * groups + np.arange(groups)]
-        return (worst[(self._group + 1 + first) % groups] + worst[(self._group + 1 + second) % groups]) / 2
+        worst = self._foals[
+            _fitness_by_group(self._foal_fitness, groups, -np.inf).argmax(axis=0) * groups + np.arange(groups)
+        ]
+        return (
+            worst[(self._group_of_foal + 1 + first) % groups] + worst[(self._group_of_foal + 1 + second) % groups]
+        ) / 2
 
-    def _led(self, z: Array, stride: Array) -> Array:  # noqa: ARG002
+    def _leader_trials(self, z: Array, stride: Array) -> Array:  # noqa: ARG002
         """A trial for each leader, eq. 19; shape (groups, d)."""
         waterhole = self.best[0]
         side = np.where(self._generator.random((len(stride), 1)) >= 0.5, 1.0, -1.0)
         return stride * (waterhole - self._leaders) + side * waterhole
 
-    def _scattered(self, points: Array) -> Array:
+    def _scatter(self, points: Array) -> Array:
         """Points moved against all laws: none."""
         return points
 
     def _exchange(self) -> None:
         """A foal better than its leader takes its place, eq. 20."""
         groups = len(self._leaders)
-        first = _in_groups(self._foal_fitness, groups, np.inf).argmin(axis=0) * groups + np.arange(groups)
+        first = _fitness_by_group(self._foal_fitness, groups, np.inf).argmin(axis=0) * groups + np.arange(groups)
         rising = np.flatnonzero(self._foal_fitness[first] < self._leader_fitness)
         foals = first[rising]
         risen, risen_fitness = self._foals[foals], self._foal_fitness[foals]
@@ -157,7 +161,7 @@ class WildHorse(Population):
         self._leaders[rising], self._leader_fitness[rising] = risen, risen_fitness
 
 
-def _in_groups(fitness: Array, groups: int, missing: float) -> Array:
+def _fitness_by_group(fitness: Array, groups: int, missing: float) -> Array:
     """Fitness of foals dealt out to groups in turn, shape (foals in the largest group, groups)."""
     rows = -(-len(fitness) // groups)
     table = np.full(rows * groups, missing)

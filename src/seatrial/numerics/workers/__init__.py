@@ -1,5 +1,5 @@
 """One ordered map over threads or processes."""
 
-from seatrial.numerics.workers.pool import mapped, mapped_in_processes, worker_count
+from seatrial.numerics.workers.pool import map_in_processes, map_in_threads, worker_count
 
-__all__ = ["mapped", "mapped_in_processes", "worker_count"]
+__all__ = ["map_in_processes", "map_in_threads", "worker_count"]

@@ -10,7 +10,7 @@ from typing import TypeVar
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
-Progress = Callable[[int, int], None]
+CountReporter = Callable[[int, int], None]
 
 _POLL = 0.1  # s between looks at the keyboard
 
@@ -28,13 +28,13 @@ def worker_count(workers: int | None = None) -> int:
     return workers
 
 
-def mapped(
+def map_in_threads(
     function: Callable[[Item], Result],
     items: Sequence[Item],
     *,
     workers: int | None = None,
-    progress: Progress | None = None,
-    keep: list[tuple[int, Result]] | None = None,
+    report_progress: CountReporter | None = None,
+    partial_results: list[tuple[int, Result]] | None = None,
 ) -> list[Result]:
     """`[function(item) for item in items]` over threads of this process.
 
@@ -48,19 +48,19 @@ def mapped(
         Exception: what `function` raised first.
     """
     count = min(worker_count(workers), len(items))
-    kept = [] if keep is None else keep
+    kept = [] if partial_results is None else partial_results
     if count <= 1:
-        return _in_turn(function, items, progress, kept)
-    return _gathered(ThreadPoolExecutor(count), function, items, progress, kept)
+        return _map_sequentially(function, items, report_progress, kept)
+    return _gather(ThreadPoolExecutor(count), function, items, report_progress, kept)
 
 
-def mapped_in_processes(
+def map_in_processes(
     function: Callable[[Item], Result],
     items: Sequence[Item],
     *,
     workers: int | None = None,
-    progress: Progress | None = None,
-    keep: list[tuple[int, Result]] | None = None,
+    report_progress: CountReporter | None = None,
+    partial_results: list[tuple[int, Result]] | None = None,
 ) -> list[Result]:
     """`mapped` over processes, for Python code that holds the lock; function, items and results must pickle.
 
@@ -70,34 +70,34 @@ def mapped_in_processes(
     from concurrent.futures import ProcessPoolExecutor
 
     count = min(worker_count(workers), len(items))
-    kept = [] if keep is None else keep
+    kept = [] if partial_results is None else partial_results
     if count <= 1:
-        return _in_turn(function, items, progress, kept)
+        return _map_sequentially(function, items, report_progress, kept)
     pool = ProcessPoolExecutor(count, mp_context=multiprocessing.get_context("spawn"))
-    return _gathered(pool, function, items, progress, kept)
+    return _gather(pool, function, items, report_progress, kept)
 
 
-def _in_turn(
+def _map_sequentially(
     function: Callable[[Item], Result],
     items: Sequence[Item],
-    progress: Progress | None,
-    kept: list[tuple[int, Result]],
+    report_progress: CountReporter | None,
+    partial_results: list[tuple[int, Result]],
 ) -> list[Result]:
     results = []
     for place, item in enumerate(items):
         results.append(function(item))
-        kept.append((place, results[-1]))
-        if progress:
-            progress(place + 1, len(items))
+        partial_results.append((place, results[-1]))
+        if report_progress:
+            report_progress(place + 1, len(items))
     return results
 
 
-def _gathered(
+def _gather(
     pool: Executor,
     function: Callable[[Item], Result],
     items: Sequence[Item],
-    progress: Progress | None,
-    kept: list[tuple[int, Result]],
+    report_progress: CountReporter | None,
+    partial_results: list[tuple[int, Result]],
 ) -> list[Result]:
     places = {pool.submit(function, item): place for place, item in enumerate(items)}
     finished: dict[int, Result] = {}
@@ -108,9 +108,9 @@ def _gathered(
             for future in sorted(done, key=places.__getitem__):
                 place = places[future]
                 finished[place] = future.result()
-                kept.append((place, finished[place]))
-                if progress:
-                    progress(len(finished), len(items))
+                partial_results.append((place, finished[place]))
+                if report_progress:
+                    report_progress(len(finished), len(items))
     except BaseException:
         pool.shutdown(wait=False, cancel_futures=True)
         raise

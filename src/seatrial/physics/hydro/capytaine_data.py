@@ -14,17 +14,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from seatrial.core.values import Array, InputError, nearest
+from seatrial.core.values import Array, InputError, spelling_hint
 from seatrial.physics.hydro.dispersion import wavenumber
 from seatrial.physics.hydro.excitation import Complex, checked_waves
-from seatrial.physics.hydro.strip_theory import at_speed, excitation_at_speed
+from seatrial.physics.hydro.strip_theory import coefficients_at_speed, excitation_at_speed
 from seatrial.physics.hydro.tabulated import WaveTable, interpolated, refuse_outside
 
 if TYPE_CHECKING:
     import xarray as xr
 
 DOFS = ["Heave", "Pitch"]
-_NEEDED = ("added_mass", "radiation_damping", "diffraction_force", "Froude_Krylov_force", "hydrostatic_stiffness")
+_REQUIRED_VARIABLES = (
+    "added_mass",
+    "radiation_damping",
+    "diffraction_force",
+    "Froude_Krylov_force",
+    "hydrostatic_stiffness",
+)
 
 
 @dataclass(frozen=True)
@@ -34,7 +40,7 @@ class HullData:
     Attributes:
         omega: rad/s (n,), rising.
         added_mass, damping: (n, 2, 2), heave first; rows are forces, columns motions.
-        infinite: added mass at infinite frequency (2, 2), if it was computed.
+        added_mass_infinite: added mass at infinite frequency (2, 2), if it was computed.
         froude_krylov, diffraction: WaveTable, values (n, h, 2) per metre of wave amplitude.
         stiffness: (2, 2).
         depth: of the water, m; infinite for deep.
@@ -43,7 +49,7 @@ class HullData:
     omega: Array
     added_mass: Array
     damping: Array
-    infinite: Array | None
+    added_mass_infinite: Array | None
     froude_krylov: WaveTable
     diffraction: WaveTable
     stiffness: Array
@@ -53,13 +59,13 @@ class HullData:
         """Added mass and damping (k, 2, 2) at the frequencies of encounter (k,), with the speed terms of strip theory.
 
         Raises:
-            InputError: |omega_e| outside the data (not extrapolated), or as `strip_theory.at_speed`.
+            InputError: |omega_e| outside the data (not extrapolated), or as `strip_theory.coefficients_at_speed`.
         """
         felt = np.abs(omega_e)
         refuse_outside("the hull data", "frequency of encounter", "rad/s", self.omega, felt)
         inside = np.clip(felt, self.omega[0], self.omega[-1])
         A, B = (np.real(interpolated(self.omega, table, inside)) for table in (self.added_mass, self.damping))
-        return at_speed(A, B, omega_e, U)
+        return coefficients_at_speed(A, B, omega_e, U)
 
 
 @dataclass(frozen=True)
@@ -76,7 +82,9 @@ class HullExcitation:
         """
         w, heading = checked_waves(omega, U, beta)
         omega_e = w - wavenumber(w, self.data.depth) * U * np.cos(heading)
-        incident, scattered = (table.at(w, U, heading) for table in (self.data.froude_krylov, self.data.diffraction))
+        incident, scattered = (
+            table.interpolate(w, U, heading) for table in (self.data.froude_krylov, self.data.diffraction)
+        )
         total = excitation_at_speed(incident, scattered, w, omega_e, U)
         return total[:, 0], total[:, 1]
 
@@ -110,24 +118,24 @@ def hull_data(dataset: xr.Dataset, name: str = "the dataset") -> HullData:
         InputError: a variable, a degree of freedom or heading is missing, the dataset was computed with forward speed
             or about a point that is not midship, or holds NaN.
     """
-    for key in _NEEDED:
+    for key in _REQUIRED_VARIABLES:
         if key not in dataset:
-            raise InputError(f"{name} has no variable '{key}'{nearest(key, [str(v) for v in dataset.data_vars])}")
-    _refuse_others(dataset, name)
-    dataset = _one_body(dataset, name).sortby("omega")
+            raise InputError(f"{name} has no variable '{key}'{spelling_hint(key, [str(v) for v in dataset.data_vars])}")
+    _refuse_other_conventions(dataset, name)
+    dataset = _heave_and_pitch(dataset, name).sortby("omega")
     finite = np.isfinite(dataset["omega"].values)
     at = dataset.isel(omega=finite)
     omega = np.asarray(at["omega"].values, dtype=np.float64)
     pair = ("omega", "influenced_dof", "radiating_dof")
-    A, B = (_real(at[key].transpose(*pair), f"{name}: {key}") for key in ("added_mass", "radiation_damping"))
-    limit = _real(dataset["added_mass"].isel(omega=~finite).transpose(*pair), f"{name}: added_mass")
+    A, B = (_real_values(at[key].transpose(*pair), f"{name}: {key}") for key in ("added_mass", "radiation_damping"))
+    limit = _real_values(dataset["added_mass"].isel(omega=~finite).transpose(*pair), f"{name}: added_mass")
     tables = [_wave_table(at, key, name) for key in ("Froude_Krylov_force", "diffraction_force")]
-    C = _real(dataset["hydrostatic_stiffness"].transpose(*pair[1:]), f"{name}: hydrostatic_stiffness")
+    C = _real_values(dataset["hydrostatic_stiffness"].transpose(*pair[1:]), f"{name}: hydrostatic_stiffness")
     depth = float(dataset["water_depth"]) if "water_depth" in dataset.coords else np.inf
     return HullData(omega, A, B, limit[-1] if limit.size else None, tables[0], tables[1], C, depth)
 
 
-def _refuse_others(dataset: xr.Dataset, name: str) -> None:
+def _refuse_other_conventions(dataset: xr.Dataset, name: str) -> None:
     """Forward speed and other reference points."""
     if "forward_speed" in dataset.coords and np.any(dataset["forward_speed"].values != 0.0):
         raise InputError(
@@ -138,7 +146,7 @@ def _refuse_others(dataset: xr.Dataset, name: str) -> None:
         raise InputError(f"{name} turns about a point that is not midship; give the rotation centre x = 0")
 
 
-def _one_body(dataset: xr.Dataset, name: str) -> xr.Dataset:
+def _heave_and_pitch(dataset: xr.Dataset, name: str) -> xr.Dataset:
     """Heave and pitch, one water depth, one period axis."""
     for dimension in ("influenced_dof", "radiating_dof"):
         known = [str(v) for v in np.atleast_1d(dataset[dimension].values)] if dimension in dataset.coords else []
@@ -173,8 +181,8 @@ def _wave_table(dataset: xr.Dataset, key: str, name: str) -> WaveTable:
     )
 
 
-def _real(array: xr.DataArray, what: str) -> Array:
+def _real_values(array: xr.DataArray, name: str) -> Array:
     values = np.asarray(array.values, dtype=np.float64)
     if not np.all(np.isfinite(values)):
-        raise InputError(f"{what} holds NaN; leave out the frequencies that were not solved")
+        raise InputError(f"{name} holds NaN; leave out the frequencies that were not solved")
     return values

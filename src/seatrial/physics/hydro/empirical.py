@@ -19,7 +19,7 @@ FUJII = "Fujii & Tuda 1961, gradient of rudder lift"
 
 
 @dataclass(frozen=True)
-class Form:
+class HullForm:
     """Main dimensions of a hull in metres, block coefficient, mass' = mass / (rho/2 L^2 d), x_G' = x_G / L."""
 
     L: float
@@ -29,7 +29,7 @@ class Form:
     x_G_prime: float = 0.0
 
     @classmethod
-    def of_ship(cls, ship: Ship) -> "Form":
+    def from_ship(cls, ship: Ship) -> "HullForm":
         """The form of a ship.
 
         Raises:
@@ -43,7 +43,7 @@ class Form:
         return cls(p["L"], p["B"], p["d"], p["C_b"], p.get("x_G", 0.0) / p["L"])
 
     @property
-    def aspect(self) -> float:
+    def aspect_ratio(self) -> float:
         """k = 2 d / L."""
         return 2 * self.d / self.L
 
@@ -59,7 +59,7 @@ class Form:
 
 
 @dataclass(frozen=True)
-class Estimate:
+class EmpiricalEstimate:
     """Values of one method, its source, and whether the form lies where the method was fitted."""
 
     values: dict[str, float]
@@ -71,13 +71,13 @@ class Estimate:
 Range = tuple[float, float]
 
 
-def _within(form: Form, C_b: Range, L_B: Range, B_d: Range) -> tuple[bool, str]:
+def _validity(form: HullForm, C_b: Range, L_B: Range, B_d: Range) -> tuple[bool, str]:
     pairs = ((form.C_b, C_b), (form.L / form.B, L_B), (form.B / form.d, B_d))
     limits = f"C_b {C_b[0]:g}-{C_b[1]:g}, L/B {L_B[0]:g}-{L_B[1]:g}, B/d {B_d[0]:g}-{B_d[1]:g}"
     return all(low <= value <= high for value, (low, high) in pairs), limits
 
 
-def added_mass(form: Form) -> Estimate:
+def added_mass(form: HullForm) -> EmpiricalEstimate:
     """m_x', m_y', J_z' by Zhou's regression; outside merchant proportions it is an extrapolation."""
     C_b, L_B, d_B, dL_BB = form.C_b, form.L / form.B, form.d / form.B, form.d * form.L / form.B**2
     x = 0.398 + 11.97 * C_b * (1 + 3.73 * d_B) - 2.89 * C_b * L_B * (1 + 1.13 * d_B)
@@ -87,10 +87,10 @@ def added_mass(form: Form) -> Estimate:
     z = 0.01 * (33 - 76.85 * C_b * (1 - 0.784 * C_b) + 3.43 * L_B * (1 - 0.63 * C_b))
     m = form.mass_prime
     values = {"m_x_prime": m * x / 100, "m_y_prime": m * y, "J_z_prime": m * z**2}
-    return Estimate(values, ZHOU, *_within(form, (0.5, 0.85), (4.0, 8.0), (2.2, 4.0)))
+    return EmpiricalEstimate(values, ZHOU, *_validity(form, (0.5, 0.85), (4.0, 8.0), (2.2, 4.0)))
 
 
-def clarke(form: Form) -> Estimate:
+def clarke(form: HullForm) -> EmpiricalEstimate:
     """Linear derivatives and added masses by Clarke's regression (there over rho/2 L^2 U^2, here times L/d).
 
     Y_r, N_v and N_r here are hydrodynamic parts at constant speed, without rigid-body terms.
@@ -105,28 +105,28 @@ def clarke(form: Form) -> Estimate:
         "m_y_prime": S * (1 + 0.16 * form.C_b * B_d - 5.1 * B_L**2),
         "J_z_prime": S * (1 / 12 + 0.017 * form.C_b * B_d - 0.33 * B_L),
     }
-    return Estimate(values, CLARKE, *_within(form, (0.5, 0.85), (5.0, 8.0), (2.0, 4.5)))
+    return EmpiricalEstimate(values, CLARKE, *_validity(form, (0.5, 0.85), (5.0, 8.0), (2.0, 4.5)))
 
 
-def kijima(form: Form) -> Estimate:
+def kijima(form: HullForm) -> EmpiricalEstimate:
     """Linear derivatives by Kijima; his Y_r' - (m' + m_x') = -1.5 C_b B/L becomes Y_r' with the added mass of Zhou."""
-    k, m_x = form.aspect, added_mass(form).values["m_x_prime"]
+    k, m_x = form.aspect_ratio, added_mass(form).values["m_x_prime"]
     values = {
         "Y_v": -(math.pi / 2 * k + 1.4 * form.fullness),
         "Y_r": form.mass_prime + m_x - 1.5 * form.fullness,
         "N_v": -k,
         "N_r": -0.54 * k + k**2,
     }
-    return Estimate(values, KIJIMA, *_within(form, (0.5, 0.85), (5.0, 8.0), (2.0, 4.5)))
+    return EmpiricalEstimate(values, KIJIMA, *_validity(form, (0.5, 0.85), (5.0, 8.0), (2.0, 4.5)))
 
 
-def yoshimura(form: Form) -> Estimate:
+def yoshimura(form: HullForm) -> EmpiricalEstimate:
     """All hull coefficients of the MMG standard method but R_0, by the regressions of Yoshimura & Masumoto.
 
     Linear ones are good to about 25 % on KVLCC2, cubic ones only to their order of magnitude; X_rr with x_G m_y' rests
     on one transcription.
     """
-    C_b, L_B, f, k = form.C_b, form.L / form.B, form.fullness, form.aspect
+    C_b, L_B, f, k = form.C_b, form.L / form.B, form.fullness, form.aspect_ratio
     m_x, m_y = (added_mass(form).values[n] for n in ("m_x_prime", "m_y_prime"))
     values = {
         "X_vv": 1.15 * f - 0.18,
@@ -146,10 +146,10 @@ def yoshimura(form: Form) -> Estimate:
         "N_vrr": -0.075 * (1 - C_b) * L_B - 0.098,
         "N_rrr": 0.25 * f - 0.056,
     }
-    return Estimate(values, YOSHIMURA, *_within(form, (0.5, 0.85), (2.5, 7.0), (2.1, 3.8)))
+    return EmpiricalEstimate(values, YOSHIMURA, *_validity(form, (0.5, 0.85), (2.5, 7.0), (2.1, 3.8)))
 
 
-def interaction(form: Form, aspect_ratio: float) -> Estimate:
+def interaction_coefficients(form: HullForm, aspect_ratio: float) -> EmpiricalEstimate:
     """Wake, rudder and interaction coefficients; `aspect_ratio` of the rudder is H_R^2 / A_R."""
     f = form.fullness
     values = {
@@ -168,10 +168,10 @@ def interaction(form: Form, aspect_ratio: float) -> Estimate:
         f"w_P0 Taylor; t_R, l_R, gamma_R, kappa {YOSHIMURA}; a_H Quadvlieg 2013; x_H Aoki et al. 2006; "
         f"epsilon Kijima et al. 1990; f_alpha {FUJII}; through MANSIM"
     )
-    return Estimate(values, source, *_within(form, (0.5, 0.85), (4.0, 8.0), (2.0, 4.5)))
+    return EmpiricalEstimate(values, source, *_validity(form, (0.5, 0.85), (4.0, 8.0), (2.0, 4.5)))
 
 
-def cross_flow(C_D: float, C_rY: float, C_rN: float) -> dict[str, float]:
+def cross_flow_coefficients(C_D: float, C_rY: float, C_rN: float) -> dict[str, float]:
     """Cubic coefficients that stand in for a cross-flow drag integral of Yoshimura's low-speed model.
 
     -C_D integral of |v' + C x r'| (v' + C x r') over x in [-1/2, 1/2], C = C_rY for the force and C_rN for the

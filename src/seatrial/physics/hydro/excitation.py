@@ -12,7 +12,7 @@ from seatrial.physics.hydro.dispersion import G
 
 Complex = NDArray[np.complex128]
 
-FASTEST = 50.0
+MAX_SHIP_SPEED = 50.0
 
 
 class Excitation(Protocol):
@@ -129,8 +129,8 @@ def checked_waves(omega: ArrayLike, U: float, beta: ArrayLike) -> tuple[Array, A
     heading = np.asarray(beta, dtype=np.float64)
     if w.ndim != 1 or not np.all(np.isfinite(w) & (w > 0.0)):
         raise InputError("wave frequencies must be positive and finite [rad/s]; leave out zero and NaN")
-    if not (np.isfinite(U) and 0.0 <= U <= FASTEST):
-        raise InputError(f"the ship speed must lie between 0 and {FASTEST:g} m/s, not {U:g}; is it in knots?")
+    if not (np.isfinite(U) and 0.0 <= U <= MAX_SHIP_SPEED):
+        raise InputError(f"the ship speed must lie between 0 and {MAX_SHIP_SPEED:g} m/s, not {U:g}; is it in knots?")
     if not np.all(np.isfinite(heading) & (np.abs(heading) <= 2 * np.pi)):
         raise InputError(
             "the heading to the waves must lie within +-2 pi rad (0 following, pi head); is it in degrees?"

@@ -26,7 +26,7 @@ class LewisForm:
     draught: float
 
     @classmethod
-    def of(cls, beam: float, draught: float, area_coefficient: float) -> Self:
+    def from_dimensions(cls, beam: float, draught: float, area_coefficient: float) -> Self:
         """The form with that beam, draught [m] and area / (beam draught).
 
         a1, a3 from B / 2d and sigma (von Kerczek & Tuck 1969, J. Ship Research 13, 284-289).

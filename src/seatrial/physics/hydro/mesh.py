@@ -16,11 +16,13 @@ from seatrial.physics.hydro.dispersion import G
 if TYPE_CHECKING:
     import xarray as xr
 
-MISSING = "computing hydrodynamic data needs the panel code Capytaine; install it with: pip install 'seatrial[hydro]'"
+MISSING_CAPYTAINE = (
+    "computing hydrodynamic data needs the panel code Capytaine; install it with: pip install 'seatrial[hydro]'"
+)
 
 
 @dataclass(frozen=True)
-class Panels:
+class HullPanels:
     """The wetted hull at rest: vertices (v, 3) in m, x forward from midship, y to port, z up from the water line.
 
     `faces` (f, 4) holds indices of vertices, counterclockwise seen from the water.
@@ -30,7 +32,7 @@ class Panels:
     faces: Index
 
 
-def wigley(L: float, B: float, T: float, *, along: int = 40, down: int = 8) -> Panels:
+def wigley(L: float, B: float, T: float, *, along: int = 40, down: int = 8) -> HullPanels:
     """The parabolic hull of Wigley 1942: y = B / 2 (1 - (2 x / L)^2) (1 - (z / T)^2).
 
     Block coefficient 4/9, waterplane coefficient 2/3; `along` by `down` panels a side.
@@ -39,10 +41,12 @@ def wigley(L: float, B: float, T: float, *, along: int = 40, down: int = 8) -> P
         InputError: a dimension is not positive or there are fewer than 4 by 2 panels.
     """
     half = _positive(B, "B") / 2
-    return from_sections(L, T, lambda x, z: half * (1 - x**2) * (1 - z**2), along, down)
+    return hull_from_sections(L, T, lambda x, z: half * (1 - x**2) * (1 - z**2), along, down)
 
 
-def from_sections(L: float, T: float, half_breadth: Callable[[Array, Array], Array], along: int, down: int) -> Panels:
+def hull_from_sections(
+    L: float, T: float, half_breadth: Callable[[Array, Array], Array], along: int, down: int
+) -> HullPanels:
     """Panels of the hull y = half_breadth(2 x / L, z / T) [m], closed at stem, stern and keel.
 
     Args:
@@ -68,11 +72,11 @@ def from_sections(L: float, T: float, half_breadth: Callable[[Array, Array], Arr
     quads = np.column_stack([corner, corner + 1, corner + down + 2, corner + down + 1])
     starboard = port * np.array([1.0, -1.0, 1.0])
     faces = np.vstack([quads, quads[:, ::-1] + len(port)]).astype(np.int64)
-    return Panels(np.vstack([port, starboard]), faces)
+    return HullPanels(np.vstack([port, starboard]), faces)
 
 
 def solve_hull(
-    hull: Panels | str | Path,
+    hull: HullPanels | str | Path,
     omega: Array,
     headings: Array,
     *,
@@ -85,7 +89,7 @@ def solve_hull(
 
 
 def capytaine_dataset(
-    hull: Panels | str | Path,
+    hull: HullPanels | str | Path,
     omega: Array,
     headings: Array,
     *,
@@ -111,7 +115,7 @@ def capytaine_dataset(
         import capytaine as cpt  # pyright: ignore[reportMissingImports]
         import xarray as xr
     except ImportError:
-        raise InputError(MISSING) from None
+        raise InputError(MISSING_CAPYTAINE) from None
     w = np.asarray(omega, dtype=np.float64)
     if w.ndim != 1 or w.size < 2 or not np.all(np.isfinite(w) & (w > 0.0)):
         raise InputError("hydrodynamic data need at least two positive, finite frequencies [rad/s]")
@@ -119,7 +123,7 @@ def capytaine_dataset(
     _positive(rho, "rho")
     cpt.set_logging("ERROR")
     body = _body(hull, centre_of_mass)
-    _refuse_coarse(body, float(w.max()))
+    _refuse_coarse_mesh(body, float(w.max()))
     # the Prony decomposition in Python starts from random numbers; the one in Fortran gives the same every time
     green = cpt.Delhommeau(finite_depth_prony_decomposition_method="fortran")
     solver = cpt.BEMSolver(green_function=green)
@@ -137,11 +141,11 @@ def capytaine_dataset(
     return joined.merge(solved[everywhere], compat="override")
 
 
-def _body(hull: Panels | str | Path, centre_of_mass: tuple[float, float, float]) -> Any:
+def _body(hull: HullPanels | str | Path, centre_of_mass: tuple[float, float, float]) -> Any:
     """The floating body with heave, pitch and a lid against irregular frequencies."""
     import capytaine as cpt  # pyright: ignore[reportMissingImports]
 
-    if isinstance(hull, Panels):
+    if isinstance(hull, HullPanels):
         mesh = cpt.Mesh(hull.vertices, hull.faces, name="hull")
     else:
         if not Path(hull).is_file():
@@ -157,7 +161,7 @@ def _body(hull: Panels | str | Path, centre_of_mass: tuple[float, float, float])
     )
 
 
-def _refuse_coarse(body: Any, omega: float) -> None:
+def _refuse_coarse_mesh(body: Any, omega: float) -> None:
     """Raise InputError beyond the shortest wave that Capytaine vouches for, eight of the largest panel radius."""
     highest = float(np.sqrt(2 * np.pi * G / body.minimal_computable_wavelength))
     if omega > highest:

@@ -21,7 +21,7 @@ RHO = 1000.0
 TERMS, NODES = 16, 100
 
 
-class Motion(StrEnum):
+class SectionMotion(StrEnum):
     """A motion of the section; heave down."""
 
     SWAY = "sway"
@@ -30,22 +30,24 @@ class Motion(StrEnum):
 
 
 @dataclass(frozen=True)
-class Hydrodynamics:
+class SectionHydrodynamics:
     """Per m of length at one frequency.
 
     Attributes:
-        added, damping: kg/m and kg/(s m), for roll kg m and kg m/s.
+        added_mass, damping: kg/m and kg/(s m), for roll kg m and kg m/s.
         excitation: complex force (moment) on the held section per m of wave amplitude, along the motion.
-        radiated: outgoing wave amplitude to one side per velocity of the motion, s (s m for roll).
+        radiated_amplitude: outgoing wave amplitude to one side per velocity of the motion, s (s m for roll).
     """
 
-    added: float
+    added_mass: float
     damping: float
     excitation: complex
-    radiated: float
+    radiated_amplitude: float
 
 
-def hydrodynamics(form: LewisForm, omega: float, motion: Motion, axis: float = 0.0) -> Hydrodynamics:
+def section_hydrodynamics(
+    form: LewisForm, omega: float, motion: SectionMotion, axis: float = 0.0
+) -> SectionHydrodynamics:
     """Radiation by the multipoles, excitation by Green's theorem over the contour (Haskind 1957; Newman 1977, chap. 6).
 
     Args:
@@ -67,9 +69,11 @@ def hydrodynamics(form: LewisForm, omega: float, motion: Motion, axis: float = 0
     radiation = force * 2.0 * np.sum(weights * potential * flux)
     excitation = -force * 2.0 * np.sum(weights * (wave * flux - potential * crossing))
     height = omega * np.pi * abs(strength) / G
-    if motion is not Motion.HEAVE:
+    if motion is not SectionMotion.HEAVE:
         height *= omega**2 / G
-    return Hydrodynamics(float(radiation.imag / omega), float(radiation.real), complex(excitation), float(height))
+    return SectionHydrodynamics(
+        float(radiation.imag / omega), float(radiation.real), complex(excitation), float(height)
+    )
 
 
 def haskind_damping(excitation: float, omega: float, depth: float = np.inf) -> float:
@@ -83,26 +87,28 @@ def haskind_damping(excitation: float, omega: float, depth: float = np.inf) -> f
     return excitation**2 / (2.0 * RHO * G * float(group_velocity(omega, depth)))
 
 
-def _flux(motion: Motion, x: Array, y: Array, dx: Array, dy: Array, axis: float) -> Array:
+def _flux(motion: SectionMotion, x: Array, y: Array, dx: Array, dy: Array, axis: float) -> Array:
     """Velocity of the unit motion into the section times element: U_x dy - U_y dx from keel to waterline."""
-    if motion is Motion.HEAVE:
+    if motion is SectionMotion.HEAVE:
         return -dx
-    return dy if motion is Motion.SWAY else -(x * dx + (y - axis) * dy)
+    return dy if motion is SectionMotion.SWAY else -(x * dx + (y - axis) * dy)
 
 
-def _potential(form: LewisForm, omega: float, motion: Motion, theta: Array, axis: float) -> tuple[Complex, complex]:
+def _potential(
+    form: LewisForm, omega: float, motion: SectionMotion, theta: Array, axis: float
+) -> tuple[Complex, complex]:
     """Potential on the contour at unit velocity, and the strength of the source or dipole at the origin.
 
     The stream function on the body is that of the body's own motion up to a constant: least squares over the contour.
     """
     nu = omega**2 / G
     x, y = form.points(theta)
-    if motion is Motion.HEAVE:
+    if motion is SectionMotion.HEAVE:
         first = _source(x, y, nu)
         target, parity = -x, 0
     else:
         first = _dipole(x, y, nu)
-        target, parity = (y if motion is Motion.SWAY else -0.5 * (x**2 + (y - axis) ** 2)), 1
+        target, parity = (y if motion is SectionMotion.SWAY else -0.5 * (x**2 + (y - axis) ** 2)), 1
     even = parity == 0
     phis = [first[0], *_multipoles(form, nu, theta, parity, np.cos if even else np.sin)]
     psis = [first[1], *_multipoles(form, nu, theta, parity, np.sin if even else _minus_cos), np.ones_like(theta)]
@@ -153,11 +159,11 @@ def _dipole(x: Array, y: Array, nu: float) -> tuple[Complex, Complex]:
     return cosine.real - 1j * sine.real, cosine.imag - 1j * sine.imag
 
 
-def _incident(omega: float, motion: Motion, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Complex, Complex]:
+def _incident(omega: float, motion: SectionMotion, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Complex, Complex]:
     """Potential (i g / omega) e^(-nu y - i nu x) and its flux; only the part symmetric like the motion counts."""
     nu = omega**2 / G
     amplitude = 1j * G / omega * np.exp(-nu * y)
-    if motion is Motion.HEAVE:
+    if motion is SectionMotion.HEAVE:
         wave, along = amplitude * np.cos(nu * x), -nu * amplitude * np.sin(nu * x)
     else:
         wave, along = -1j * amplitude * np.sin(nu * x), -1j * nu * amplitude * np.cos(nu * x)

@@ -9,10 +9,10 @@ heave first, at the frequencies of encounter (n,).
 import numpy as np
 
 from seatrial.core.values import Array, InputError
-from seatrial.physics.hydro.excitation import FASTEST, Complex
+from seatrial.physics.hydro.excitation import MAX_SHIP_SPEED, Complex
 
 
-def at_speed(A: Array, B: Array, omega_e: Array, U: float) -> tuple[Array, Array]:
+def coefficients_at_speed(A: Array, B: Array, omega_e: Array, U: float) -> tuple[Array, Array]:
     """Added mass and damping at the speed U [m/s] from those at rest.
 
     A35 = A35_0 - U / omega_e^2 B33, A53 = A53_0 + U / omega_e^2 B33, A55 = A55_0 + U^2 / omega_e^2 A33,
@@ -26,8 +26,8 @@ def at_speed(A: Array, B: Array, omega_e: Array, U: float) -> tuple[Array, Array
     return A + more_A, B + more_B
 
 
-def at_rest(A: Array, B: Array, omega_e: Array, U: float) -> tuple[Array, Array]:
-    """The inverse of `at_speed`; raises as it does."""
+def coefficients_at_rest(A: Array, B: Array, omega_e: Array, U: float) -> tuple[Array, Array]:
+    """The inverse of `coefficients_at_speed`; raises as it does."""
     more_A, more_B = _speed_terms(A, B, omega_e, U)
     return A - more_A, B - more_B
 
@@ -38,7 +38,7 @@ def excitation_at_speed(
     """Excitation (n, 2) at the speed U from its two parts (n, 2) at rest, at the wave frequencies `omega`.
 
     The diffraction of a section is proportional to omega omega_e there, so that at rest is taken omega_e / omega
-    times, and the moment gains -U / (i omega_e) F3_D = i U / omega F3_D. With the coefficients of `at_speed` a hull in
+    times, and the moment gains -U / (i omega_e) F3_D = i U / omega F3_D. With `coefficients_at_speed` a hull in
     a long wave then moves with it at any speed. Omega_e / omega times is exact for the part in phase with the water's
     acceleration; a part in phase with its velocity should not be scaled, but cannot be told apart in a total.
 
@@ -67,8 +67,8 @@ def _speed_terms(A: Array, B: Array, omega_e: Array, U: float) -> tuple[Array, A
         )
     if not (np.all(np.isfinite(A)) and np.all(np.isfinite(B)) and np.all(np.isfinite(omega_e))):
         raise InputError("added mass, damping and frequencies of encounter must be finite; leave out NaN and infinity")
-    if not (np.isfinite(U) and 0.0 <= U <= FASTEST):
-        raise InputError(f"the ship speed must lie between 0 and {FASTEST:g} m/s, not {U:g}; is it in knots?")
+    if not (np.isfinite(U) and 0.0 <= U <= MAX_SHIP_SPEED):
+        raise InputError(f"the ship speed must lie between 0 and {MAX_SHIP_SPEED:g} m/s, not {U:g}; is it in knots?")
     if np.any(omega_e == 0.0):
         raise InputError(
             "strip theory has no speed terms at a frequency of encounter of zero, where the ship runs with the wave; "

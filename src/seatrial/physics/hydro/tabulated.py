@@ -46,9 +46,9 @@ class WaveTable:
                 f"{self.name} has no finite value at omega = {self.omega[i]:g} rad/s and heading "
                 f"{np.degrees(self.headings[j]):g} degrees; fill or leave out that frequency"
             )
-        self._refuse_jumps()
+        self._refuse_phase_jumps()
 
-    def at(self, omega: Array, U: float, beta: Array | float) -> Complex:
+    def interpolate(self, omega: Array, U: float, beta: Array | float) -> Complex:
         """Values (k, m) at the frequencies (k,) and one heading, or one for each.
 
         Raises:
@@ -66,7 +66,7 @@ class WaveTable:
             out[rows] = interpolated(self.headings, np.moveaxis(along[rows], 1, 0), np.array([inside]))[0]
         return out
 
-    def _refuse_jumps(self) -> None:
+    def _refuse_phase_jumps(self) -> None:
         """Neighbours in frequency that both carry a fifth of the largest value and differ by over a quarter turn."""
         size = np.abs(self.values)
         loud = np.minimum(size[1:], size[:-1]) > 0.2 * size.max(axis=(0, 1))
@@ -80,19 +80,19 @@ class WaveTable:
             )
 
 
-def interpolated(x: Array, values: Complex | Array, at: Array) -> Complex:
+def interpolated(x: Array, values: Complex | Array, points: Array) -> Complex:
     """PCHIP along the first axis, real and imaginary parts each; a single row holds at its own point only."""
     if x.size == 1:
-        return np.repeat(np.asarray(values, dtype=np.complex128), at.size, axis=0)
-    return PchipInterpolator(x, np.real(values))(at) + 1j * PchipInterpolator(x, np.imag(values))(at)
+        return np.repeat(np.asarray(values, dtype=np.complex128), points.size, axis=0)
+    return PchipInterpolator(x, np.real(values))(points) + 1j * PchipInterpolator(x, np.imag(values))(points)
 
 
-def refuse_outside(name: str, what: str, unit: str, known: Array, asked: Array) -> None:
-    """Raise InputError naming the range of a table if `asked` leaves it by more than rounding."""
-    slack = _ROUNDING * max(1.0, abs(float(known[-1])))
-    outside = asked[(asked < known[0] - slack) | (asked > known[-1] + slack)]
+def refuse_outside(name: str, quantity: str, unit: str, grid: Array, values: Array) -> None:
+    """Raise InputError naming the range of a table if `values` leaves it by more than rounding."""
+    slack = _ROUNDING * max(1.0, abs(float(grid[-1])))
+    outside = values[(values < grid[0] - slack) | (values > grid[-1] + slack)]
     if outside.size:
         raise InputError(
-            f"{name} covers {what} {known[0]:g} to {known[-1]:g} {unit}, so it cannot give {outside[0]:g} {unit}; "
+            f"{name} covers {quantity} {grid[0]:g} to {grid[-1]:g} {unit}, so it cannot give {outside[0]:g} {unit}; "
             "it is not extrapolated"
         )

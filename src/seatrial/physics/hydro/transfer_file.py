@@ -5,13 +5,13 @@ from pathlib import Path
 
 import numpy as np
 
-from seatrial.core.values import Array, InputError, nearest
+from seatrial.core.values import Array, InputError, spelling_hint
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.hydro.tabulated import WaveTable
 
-PARTS = ("F3_real", "F3_imag", "M5_real", "M5_imag")
-POLAR = ("F3_amplitude", "F3_phase_deg", "M5_amplitude", "M5_phase_deg")
-_PATIENCE = 1e-6
+CARTESIAN_COLUMNS = ("F3_real", "F3_imag", "M5_real", "M5_imag")
+POLAR_COLUMNS = ("F3_amplitude", "F3_phase_deg", "M5_amplitude", "M5_phase_deg")
+_SPEED_TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -32,9 +32,9 @@ class TabulatedExcitation:
         Raises:
             InputError: frequency, heading or speed not in the table; nothing is extrapolated.
         """
-        if self.speed is not None and abs(U - self.speed) > _PATIENCE * max(1.0, self.speed):
+        if self.speed is not None and abs(U - self.speed) > _SPEED_TOLERANCE * max(1.0, self.speed):
             raise InputError(f"{self.table.name} holds at {self.speed:g} m/s, so it cannot give forces at {U:g} m/s")
-        values = self.table.at(omega, U, beta)
+        values = self.table.interpolate(omega, U, beta)
         return values[:, 0], values[:, 1]
 
 
@@ -70,14 +70,14 @@ def read_transfer(
     for name in ("omega", "heading_deg", *names):
         _refuse_gaps(file.name, name, columns[name])
     values = _complex_values(names, [columns[name] for name in names])
-    return TabulatedExcitation(_gridded(file.name, columns["omega"], columns["heading_deg"], values), speed)
+    return TabulatedExcitation(_to_table(file.name, columns["omega"], columns["heading_deg"], values), speed)
 
 
 def _complex_values(names: tuple[str, ...], columns: list[Array]) -> Complex:
     """F3 and M5 (rows, 2) from the four columns."""
     one, two, three, four = columns
     values = np.empty((one.size, 2), dtype=np.complex128)
-    if names == PARTS:
+    if names == CARTESIAN_COLUMNS:
         values[:, 0], values[:, 1] = one + 1j * two, three + 1j * four
     else:
         values[:, 0], values[:, 1] = one * np.exp(1j * np.radians(two)), three * np.exp(1j * np.radians(four))
@@ -116,10 +116,10 @@ def _netcdf_columns(file: Path) -> dict[str, Array]:
 
 def _value_names(name: str, columns: dict[str, Array]) -> tuple[str, ...]:
     """Which of the two sets of columns the file has."""
-    wanted = POLAR if any(key in columns for key in POLAR) else PARTS
+    wanted = POLAR_COLUMNS if any(key in columns for key in POLAR_COLUMNS) else CARTESIAN_COLUMNS
     for key in ("omega", *wanted):
         if key not in columns:
-            raise InputError(f"{name} has no column '{key}'{nearest(key, list(columns))}")
+            raise InputError(f"{name} has no column '{key}'{spelling_hint(key, list(columns))}")
     if columns["omega"].size == 0:
         raise InputError(f"{name} has a header but no rows")
     return wanted
@@ -131,7 +131,7 @@ def _refuse_gaps(name: str, key: str, column: Array) -> None:
         raise InputError(f"{name} has no number in column '{key}', row {row + 1} below the header")
 
 
-def _gridded(name: str, omega: Array, heading_deg: Array, values: Complex) -> WaveTable:
+def _to_table(name: str, omega: Array, heading_deg: Array, values: Complex) -> WaveTable:
     """Rows in any order to the grid (n, h, 2)."""
     frequencies, i = np.unique(omega, return_inverse=True)
     angles, j = np.unique(heading_deg, return_inverse=True)

@@ -1,25 +1,25 @@
 """Linear feedback loops: blocks, a loop linear in its gains, what a sea does to it, its margins."""
 
 from seatrial.physics.loops.block import Block, in_series
-from seatrial.physics.loops.exposure import Exposure, HullFactor, exposure
+from seatrial.physics.loops.encounter_spectrum import EncounterSpectrum, HullFactor, wave_slope_spectrum
 from seatrial.physics.loops.loop import Term, TransferLoop
-from seatrial.physics.loops.margins import Margins, margins
-from seatrial.physics.loops.objective import Objective, Row, Seen
-from seatrial.physics.loops.performance import Evaluation, Performance
+from seatrial.physics.loops.margins import StabilityMargins, margins
+from seatrial.physics.loops.objective import LoopSignal, Objective, WeightedVariance
+from seatrial.physics.loops.performance import LoopEvaluation, Performance
 
 __all__ = [
     "Block",
-    "Evaluation",
-    "Exposure",
+    "EncounterSpectrum",
     "HullFactor",
-    "Margins",
+    "LoopEvaluation",
+    "LoopSignal",
     "Objective",
     "Performance",
-    "Row",
-    "Seen",
+    "StabilityMargins",
     "Term",
     "TransferLoop",
-    "exposure",
+    "WeightedVariance",
     "in_series",
     "margins",
+    "wave_slope_spectrum",
 ]

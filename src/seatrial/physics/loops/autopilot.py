@@ -14,15 +14,15 @@ from seatrial.physics.loops.block import Block
 from seatrial.physics.loops.loop import Term, TransferLoop
 
 FOSSEN = "pole placement, Fossen 2021, section 15.3"
-DAMPING = 0.8
+DAMPING_RATIO = 0.8
 _SLOWEST, _START, _FASTEST = 0.75, 1.5, 6.0
-_STRONGEST = 10.0
-_FILTER = 0.1
-_LEAST = 1e-9
+_LARGEST_KD = 10.0
+_FILTER_RATIO = 0.1
+_NEGLIGIBLE_POLE = 1e-9
 MEANINGS = {"KP": "proportional gain", "KI": "gain of the integral", "KD": "gain of the filtered derivative"}
 UNITS = {"KP": "1", "KI": "1/s", "KD": "s"}
 Gains = dict[str, float]
-Bounded = tuple[float, float, float]
+GainRange = tuple[float, float, float]
 
 
 def steering_gear(time_constant: float) -> Block:
@@ -42,7 +42,7 @@ def heading_loop(
     derivative_filter: float | None = None,
     integral_lag: float = math.inf,
     actuator: str = "delta",
-    disturbed_by: str = "",
+    disturbance_input: str = "",
 ) -> TransferLoop:
     """PD or PID on the heading error: KP + KI / s + KD s / (tau s + 1), from psi to the rudder [rad].
 
@@ -59,14 +59,14 @@ def heading_loop(
     scale = mean_pole(plant)
 
     def placed(omega: float) -> Gains:
-        inverse, slope = _local(plant, omega, integrators=1)
+        inverse, slope = _equivalent_lag(plant, omega, integrators=1)
         KP = omega**2 * slope
-        return {"KP": KP, "KI": 0.1 * omega * KP, "KD": 2.0 * DAMPING * omega * slope - inverse}
+        return {"KP": KP, "KI": 0.1 * omega * KP, "KD": 2.0 * DAMPING_RATIO * omega * slope - inverse}
 
-    gains, sign = _between([placed(c * scale) for c in (_SLOWEST, _START, _FASTEST)], "KP")
-    tau = _FILTER / (_FASTEST * scale) if derivative_filter is None else derivative_filter
-    return _loop(
-        name, plant, disturbance, servo, sign, gains, parts, tau, integral_lag, ("psi", actuator, disturbed_by)
+    gains, sign = _gain_ranges([placed(c * scale) for c in (_SLOWEST, _START, _FASTEST)], "KP")
+    tau = _FILTER_RATIO / (_FASTEST * scale) if derivative_filter is None else derivative_filter
+    return _pid_loop(
+        name, plant, disturbance, servo, sign, gains, parts, tau, integral_lag, ("psi", actuator, disturbance_input)
     )
 
 
@@ -77,7 +77,7 @@ def speed_loop(
     *,
     name: str = "speed control",
     actuator: str = "n",
-    disturbed_by: str = "",
+    disturbance_input: str = "",
 ) -> TransferLoop:
     """PI on the speed error, from u to what drives her (propeller rate or jet velocity, its SI unit).
 
@@ -87,12 +87,12 @@ def speed_loop(
     scale = mean_pole(plant)
 
     def placed(omega: float) -> Gains:
-        inverse, slope = _local(plant, omega, integrators=0)
-        return {"KP": 2.0 * DAMPING * omega * slope - inverse, "KI": omega**2 * slope}
+        inverse, slope = _equivalent_lag(plant, omega, integrators=0)
+        return {"KP": 2.0 * DAMPING_RATIO * omega * slope - inverse, "KI": omega**2 * slope}
 
-    gains, sign = _between([placed(c * scale) for c in (_SLOWEST, _START, _FASTEST)], "KI")
-    parts, names = ("KP", "KI"), ("u", actuator, disturbed_by)
-    return _loop(name, plant, disturbance, servo, sign, gains, parts, math.inf, math.inf, names)
+    gains, sign = _gain_ranges([placed(c * scale) for c in (_SLOWEST, _START, _FASTEST)], "KI")
+    parts, names = ("KP", "KI"), ("u", actuator, disturbance_input)
+    return _pid_loop(name, plant, disturbance, servo, sign, gains, parts, math.inf, math.inf, names)
 
 
 def pitch_loop(
@@ -105,7 +105,7 @@ def pitch_loop(
     derivative_filter: float | None = None,
     output: str = "theta",
     actuator: str = "delta_f1",
-    disturbed_by: str = "M5",
+    disturbance_input: str = "M5",
 ) -> TransferLoop:
     """PID on pitch (or heave) by a fin; gains in units of what the plant's resonance needs.
 
@@ -117,16 +117,16 @@ def pitch_loop(
     if not (math.isfinite(plant.gain) and plant.gain):
         raise InputError(f"block '{plant.name}' has no restoring: a constant actuator gives no constant answer")
     omega = np.geomspace(0.05, 20.0, 400) * mean_pole(plant)
-    place = int(np.argmax(np.abs(plant.at(omega))))
-    top, damped = float(omega[place]), 1.0 / float(np.abs(plant.at(omega[place : place + 1]))[0])
+    place = int(np.argmax(np.abs(plant.frequency_response(omega))))
+    top, damped = float(omega[place]), 1.0 / float(np.abs(plant.frequency_response(omega[place : place + 1]))[0])
     start = {"KP": 0.0, "KI": 0.0, "KD": damped / top}
     stiff = 1.0 / abs(plant.gain)
-    most = {"KP": 2.0 * stiff, "KI": 0.5 * top * stiff, "KD": _STRONGEST * damped / top}
-    sign = math.copysign(1.0, float(np.imag(1.0 / plant.at(omega[place : place + 1]))[0]))
-    tau = _FILTER / top if derivative_filter is None else derivative_filter
+    most = {"KP": 2.0 * stiff, "KI": 0.5 * top * stiff, "KD": _LARGEST_KD * damped / top}
+    sign = math.copysign(1.0, float(np.imag(1.0 / plant.frequency_response(omega[place : place + 1]))[0]))
+    tau = _FILTER_RATIO / top if derivative_filter is None else derivative_filter
     gains = {gain: (0.0, start[gain], most[gain]) for gain in start}
-    names = (output, actuator, disturbed_by)
-    return _loop(name, plant, disturbance, servo, sign, gains, parts, tau, math.inf, names)
+    names = (output, actuator, disturbance_input)
+    return _pid_loop(name, plant, disturbance, servo, sign, gains, parts, tau, math.inf, names)
 
 
 def mean_pole(plant: Block) -> float:
@@ -136,22 +136,22 @@ def mean_pole(plant: Block) -> float:
         InputError: it has none.
     """
     sizes = np.abs(plant.poles)
-    some = sizes[sizes > _LEAST * sizes.max(initial=0.0)]
+    some = sizes[sizes > _NEGLIGIBLE_POLE * sizes.max(initial=0.0)]
     if not some.size:
         raise InputError(f"block '{plant.name}' has no pole off the origin; there is no frequency to scale gains by")
     return float(np.exp(np.mean(np.log(some))))
 
 
-def _local(plant: Block, omega: float, *, integrators: int) -> tuple[float, float]:
+def _equivalent_lag(plant: Block, omega: float, *, integrators: int) -> tuple[float, float]:
     """1 / K and T / K of the lag K / (T s + 1), behind so many integrators, that P is at that frequency."""
     s = 1j * omega
-    inverse = complex(1.0 / (s**integrators * plant.at(np.array([omega]))[0]))
+    inverse = complex(1.0 / (s**integrators * plant.frequency_response(np.array([omega]))[0]))
     return inverse.real, inverse.imag / omega
 
 
-def _between(placed: list[Gains], leading: str) -> tuple[dict[str, Bounded], float]:
+def _gain_ranges(placements: list[Gains], leading: str) -> tuple[dict[str, GainRange], float]:
     """Lower bound, value and upper bound of each gain, none negative, and the sign of the plant."""
-    low, start, most = placed
+    low, start, most = placements
     sign = math.copysign(1.0, most[leading])
     made = {}
     for gain, value in most.items():
@@ -161,9 +161,9 @@ def _between(placed: list[Gains], leading: str) -> tuple[dict[str, Bounded], flo
     return made, sign
 
 
-def _loop(
+def _pid_loop(
     name: str, plant: Block, disturbance: Block, servo: tuple[Block, ...], sign: float,
-    gains: dict[str, Bounded], parts: tuple[str, ...], tau: float, lag: float, names: tuple[str, str, str],
+    gains: dict[str, GainRange], parts: tuple[str, ...], tau: float, lag: float, names: tuple[str, str, str],
 ) -> TransferLoop:  # fmt: skip
     if not parts or set(parts) - set(gains):
         raise InputError(f"loop '{name}': its gains are {', '.join(gains)}, not {', '.join(parts) or 'none'}")
@@ -183,12 +183,12 @@ def _loop(
         servo=servo,
         plant=plant,
         disturbance=disturbance,
-        gains=Parameters(tuple(_gain(gain, *gains[gain]) for gain in parts)),
+        gains=Parameters(tuple(_gain_parameter(gain, *gains[gain]) for gain in parts)),
         output=output,
         actuator=actuator,
-        disturbed_by=disturbed_by or actuator,
+        disturbance_input=disturbed_by or actuator,
     )
 
 
-def _gain(name: str, lower: float, value: float, upper: float) -> Parameter:
+def _gain_parameter(name: str, lower: float, value: float, upper: float) -> Parameter:
     return Parameter(name, value, UNITS[name], lower, upper, free=True, source=FOSSEN, meaning=MEANINGS[name])

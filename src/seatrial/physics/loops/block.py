@@ -56,7 +56,7 @@ class Block:
         """At s = 0; infinite where it integrates."""
         return self.num[-1] / self.den[-1] if self.den[-1] else math.inf
 
-    def at(self, omega: Array) -> Complex:
+    def frequency_response(self, omega: Array) -> Complex:
         """Frequency response at omega [rad/s], any shape."""
         s = 1j * np.asarray(omega, dtype=np.float64)
         return np.asarray(np.polyval(self.num, s) / np.polyval(self.den, s), dtype=np.complex128)

@@ -73,6 +73,6 @@ def fin_loop(
     )
 
 
-def K_alpha_at(U: float, U_of: float, K_alpha: float = K_ALPHA) -> float:
-    """Fin effectiveness at U, known at U_of [m/s]: lift grows with the square of the speed."""
-    return K_alpha * (U / U_of) ** 2
+def K_alpha_at(U: float, U_reference: float, K_alpha: float = K_ALPHA) -> float:
+    """Fin effectiveness at U, known at U_reference [m/s]: lift grows with the square of the speed."""
+    return K_alpha * (U / U_reference) ** 2

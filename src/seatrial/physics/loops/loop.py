@@ -32,7 +32,7 @@ class TransferLoop:
         terms: parallel, one for each gain.
         plant: P, from the actuator to the output; disturbance: D, from w to the output.
         gains: one parameter for each term, in order: value, bounds, free or fixed.
-        output, actuator, disturbed_by: symbols of y, a and w.
+        output, actuator, disturbance_input: symbols of y, a and w.
 
     Raises:
         InputError: gains and terms do not go together, or a gain lacks a bound.
@@ -48,7 +48,7 @@ class TransferLoop:
     gains: Parameters
     output: str = "phi"
     actuator: str = "alpha_f"
-    disturbed_by: str = "alpha_w"
+    disturbance_input: str = "alpha_w"
 
     def __post_init__(self) -> None:
         if tuple(term.gain for term in self.terms) != self.gains.names or not self.terms:
@@ -58,7 +58,7 @@ class TransferLoop:
                 raise InputError(f"loop '{self.name}': gain {gain.name} needs finite bounds to be tuned")
 
     @property
-    def values(self) -> Array:
+    def gain_values(self) -> Array:
         """The gains, shape (g,)."""
         return self.gains.values
 
@@ -88,26 +88,26 @@ class TransferLoop:
 
     def controller_terms(self, omega: Array) -> Complex:
         """What each gain multiplies between y and a, shape (g, n), at omega (n,) [rad/s]."""
-        common = in_series("common", (*self.sensor, *self.filters, *self.servo)).at(omega)
-        return np.stack([term.block.at(omega) * common for term in self.terms])
+        common = in_series("common", (*self.sensor, *self.filters, *self.servo)).frequency_response(omega)
+        return np.stack([term.block.frequency_response(omega) * common for term in self.terms])
 
-    def open_terms(self, omega: Array) -> Complex:
+    def open_loop_terms(self, omega: Array) -> Complex:
         """L_i, shape (g, n): L = sum gain_i L_i."""
-        return self.controller_terms(omega) * self.plant.at(omega)
+        return self.controller_terms(omega) * self.plant.frequency_response(omega)
 
-    def open(self, omega: Array) -> Complex:
+    def open_loop(self, omega: Array) -> Complex:
         """L at its gains, shape (n,)."""
-        return self.values @ self.open_terms(omega)
+        return self.gain_values @ self.open_loop_terms(omega)
 
     @property
-    def controlled(self) -> Block:
+    def disturbance_response(self) -> Block:
         """D S at the loop's gains, from the disturbance to the output; nothing cancels."""
         d, n = self.polynomials
-        num, den = np.polymul(self.disturbance.num, d), np.polymul(self.disturbance.den, d + self.values @ n)
+        num, den = np.polymul(self.disturbance.num, d), np.polymul(self.disturbance.den, d + self.gain_values @ n)
         return Block("controlled", tuple(num), tuple(den))
 
     @property
-    def closed_poles(self) -> Complex:
+    def closed_loop_poles(self) -> Complex:
         """Roots of the characteristic polynomial at the loop's gains, rad/s."""
         d, n = self.polynomials
-        return np.asarray(np.roots(d + self.values @ n), dtype=np.complex128)
+        return np.asarray(np.roots(d + self.gain_values @ n), dtype=np.complex128)

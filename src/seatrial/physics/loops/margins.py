@@ -15,12 +15,12 @@ _SAMPLES = 2000
 
 
 @dataclass(frozen=True)
-class Margins:
+class StabilityMargins:
     """Of one loop; nan where it is unstable.
 
     Attributes:
-        is_stable: all closed-loop poles lie left of the axis; peak: Ms, the largest |S|, infinite if unstable;
-        peak_at: rad/s.
+        is_stable: all closed-loop poles lie left of the axis; Ms: the largest |S|, infinite if unstable;
+        Ms_frequency: rad/s.
         gain: the factor that the loop gain may grow by, infinite if any.
         phase: rad, positive: the least that L may turn, either way, where its size is one; infinite if it never is.
         delay: s of dead time that the loop bears: the least lag up to -1 over the frequency, infinite if any.
@@ -28,15 +28,15 @@ class Margins:
     """
 
     is_stable: bool
-    peak: float
-    peak_at: float
+    Ms: float
+    Ms_frequency: float
     gain: float
     phase: float
     delay: float
     damping: float
 
 
-def band(loop: TransferLoop) -> tuple[float, float]:
+def frequency_band(loop: TransferLoop) -> tuple[float, float]:
     """Frequencies [rad/s] between which everything of the loop happens.
 
     A little more than from the slowest to the fastest of its poles and zeros; beside the open ones those that swing
@@ -44,63 +44,63 @@ def band(loop: TransferLoop) -> tuple[float, float]:
     """
     d, n = loop.polynomials
     bounds = np.array([gain.upper for gain in loop.gains])
-    closed = d + loop.values @ n, d + np.where(np.isfinite(bounds), bounds, loop.values) @ n
+    closed = d + loop.gain_values @ n, d + np.where(np.isfinite(bounds), bounds, loop.gain_values) @ n
     swinging = [roots[np.abs(roots.imag) > 0.5 * np.abs(roots.real)] for roots in (np.roots(row) for row in closed)]
     roots = np.abs(np.concatenate([np.roots(d), *(np.roots(row) for row in n), *swinging]))
     some = roots[roots > 1e-6]
     return (0.3 * float(some.min()), 2.0 * float(some.max())) if some.size else (1e-2, 1e2)
 
 
-def sensitivity(loop: TransferLoop, omega: Array) -> Array:
+def sensitivity_magnitude(loop: TransferLoop, omega: Array) -> Array:
     """|S| of the loop at omega [rad/s], (n,)."""
-    return 1.0 / np.abs(1.0 + loop.open(omega))
+    return 1.0 / np.abs(1.0 + loop.open_loop(omega))
 
 
-def peak_of(loop: TransferLoop) -> tuple[float, float]:
+def sensitivity_peak(loop: TransferLoop) -> tuple[float, float]:
     """Ms and where it is [rad/s], to rounding, by a search about the largest sample; the loop must be stable."""
-    u = _samples(loop)
-    place = int(np.argmax(sensitivity(loop, np.exp(u))))
+    u = _log_frequencies(loop)
+    place = int(np.argmax(sensitivity_magnitude(loop, np.exp(u))))
     ends = u[max(place - 1, 0)], u[min(place + 1, _SAMPLES - 1)]
     found = minimize_scalar(
-        lambda v: -float(sensitivity(loop, np.exp(np.array([v])))[0]), bounds=ends, method="bounded",
+        lambda v: -float(sensitivity_magnitude(loop, np.exp(np.array([v])))[0]), bounds=ends, method="bounded",
         options={"xatol": 1e-9},
     )  # fmt: skip
     return max(-float(found.fun), 1.0), math.exp(float(found.x))
 
 
-def margins(loop: TransferLoop) -> Margins:
+def margins(loop: TransferLoop) -> StabilityMargins:
     """The margins at the loop's gains; Ms to rounding, by a search about the largest sample."""
-    poles = loop.closed_poles
+    poles = loop.closed_loop_poles
     damping = float(np.min(-poles.real / np.maximum(np.abs(poles), 1e-300)))
     if not np.all(poles.real < 0.0):
-        return Margins(False, math.inf, math.nan, math.nan, math.nan, math.nan, damping)
-    peak, at = peak_of(loop)
-    turned, axis = _crossings(loop, lambda z: np.abs(z) - 1.0), _crossings(loop, lambda z: z.imag)
-    lag = np.mod(np.angle(loop.open(turned)) + math.pi, 2.0 * math.pi)
-    factors = -1.0 / loop.open(axis).real
-    return Margins(
-        True, peak, at, _least(factors[factors > 1.0]), _least(np.minimum(lag, 2.0 * math.pi - lag)),
-        _least(lag / turned), damping,
+        return StabilityMargins(False, math.inf, math.nan, math.nan, math.nan, math.nan, damping)
+    peak, at = sensitivity_peak(loop)
+    turned, axis = _crossing_frequencies(loop, lambda z: np.abs(z) - 1.0), _crossing_frequencies(loop, lambda z: z.imag)
+    lag = np.mod(np.angle(loop.open_loop(turned)) + math.pi, 2.0 * math.pi)
+    factors = -1.0 / loop.open_loop(axis).real
+    return StabilityMargins(
+        True, peak, at, _minimum(factors[factors > 1.0]), _minimum(np.minimum(lag, 2.0 * math.pi - lag)),
+        _minimum(lag / turned), damping,
     )  # fmt: skip
 
 
-def _samples(loop: TransferLoop) -> Array:
+def _log_frequencies(loop: TransferLoop) -> Array:
     """Logarithms of frequencies over the band and all closed poles: a weak loop that integrates crosses one early."""
-    low, high = band(loop)
-    poles = np.abs(loop.closed_poles)
+    low, high = frequency_band(loop)
+    poles = np.abs(loop.closed_loop_poles)
     return np.linspace(math.log(min(low, 0.3 * poles.min())), math.log(max(high, 2.0 * poles.max())), _SAMPLES)
 
 
-def _crossings(loop: TransferLoop, of: Callable[[Complex], Array]) -> Array:
+def _crossing_frequencies(loop: TransferLoop, function: Callable[[Complex], Array]) -> Array:
     """Frequencies [rad/s] at which a function of L changes its sign."""
-    u = _samples(loop)
-    rises = np.flatnonzero(np.diff(np.sign(of(loop.open(np.exp(u))))))
+    u = _log_frequencies(loop)
+    rises = np.flatnonzero(np.diff(np.sign(function(loop.open_loop(np.exp(u))))))
 
     def along(v: float) -> float:
-        return float(of(loop.open(np.exp(np.array([v]))))[0])
+        return float(function(loop.open_loop(np.exp(np.array([v]))))[0])
 
     return np.exp(np.array([float(brentq(along, u[i], u[i + 1], xtol=1e-13)) for i in rises]))  # type: ignore[arg-type]
 
 
-def _least(values: Array) -> float:
+def _minimum(values: Array) -> float:
     return float(values.min()) if values.size else math.inf

@@ -13,7 +13,7 @@ from seatrial.core.values import Array
 from seatrial.physics.hydro.dispersion import G
 
 
-class Seen(Enum):
+class LoopSignal(Enum):
     """Where a variance is taken."""
 
     OUTPUT = "output"
@@ -21,11 +21,11 @@ class Seen(Enum):
 
 
 @dataclass(frozen=True)
-class Row:
-    """The variance of an operator on the output or the actuator: `size` is |W(j omega)| at omega [rad/s]."""
+class WeightedVariance:
+    """The variance of an operator on the output or the actuator: `magnitude` is |W(j omega)| at omega [rad/s]."""
 
-    seen: Seen
-    size: Callable[[Array], Array]
+    signal: LoopSignal
+    magnitude: Callable[[Array], Array]
 
 
 @dataclass(frozen=True)
@@ -33,39 +33,45 @@ class Objective:
     """A number to be made small, of one or more variances.
 
     Attributes:
-        rows: the variances it is made of, r.
-        value: variances (n, r) -> (n,); slope: variances (n, r) -> derivatives (n, r).
+        variances: the variances it is made of, r.
+        value: variances (n, r) -> (n,); gradient: variances (n, r) -> derivatives (n, r).
     """
 
     name: str
     unit: str
-    rows: tuple[Row, ...]
+    variances: tuple[WeightedVariance, ...]
     value: Callable[[Array], Array]
-    slope: Callable[[Array], Array]
+    gradient: Callable[[Array], Array]
 
 
 @cache
-def _power(n: int) -> Callable[[Array], Array]:
+def _frequency_power(n: int) -> Callable[[Array], Array]:
     return lambda omega: omega**n
 
 
-def _first(variances: Array) -> Array:
+def _first_variance(variances: Array) -> Array:
     return variances[:, 0]
 
 
-def variance(name: str, unit: str, seen: Seen, power: int = 0) -> Objective:
+def variance(name: str, unit: str, signal: LoopSignal, power: int = 0) -> Objective:
     """Variance of the output or the actuator (power 0), of its rate (1), of its acceleration (2)."""
-    return Objective(name, unit, (Row(seen, _power(power)),), _first, np.ones_like)
+    return Objective(name, unit, (WeightedVariance(signal, _frequency_power(power)),), _first_variance, np.ones_like)
 
 
-def off_target(name: str, seen: Seen, target: float, *, one_sided: bool) -> Objective:
+def squared_deviation(name: str, signal: LoopSignal, target: float, *, one_sided: bool) -> Objective:
     """(variance - target)^2 [unit^4] (Yu et al. 2014, eq. (2)); one-sided: only what exceeds the target counts."""
 
     def miss(variances: Array) -> Array:
         off = variances - target
         return np.maximum(off, 0.0) if one_sided else off
 
-    return Objective(name, "", (Row(seen, _power(0)),), lambda v: miss(v)[:, 0] ** 2, lambda v: 2.0 * miss(v))
+    return Objective(
+        name,
+        "",
+        (WeightedVariance(signal, _frequency_power(0)),),
+        lambda v: miss(v)[:, 0] ** 2,
+        lambda v: 2.0 * miss(v),
+    )
 
 
 def motion_interruptions(height: float, friction: float = 0.25) -> Objective:
@@ -88,7 +94,7 @@ def motion_interruptions(height: float, friction: float = 0.25) -> Objective:
         of = value(v)
         return np.stack([of * ((friction * G) ** 2 / (2.0 * v[:, 0] ** 2) - 0.5 / v[:, 0]), 0.5 * of / v[:, 1]], axis=1)
 
-    rows = (Row(Seen.OUTPUT, lateral), Row(Seen.OUTPUT, lambda w: w * lateral(w)))
+    rows = (WeightedVariance(LoopSignal.OUTPUT, lateral), WeightedVariance(LoopSignal.OUTPUT, lambda w: w * lateral(w)))
     return Objective("motion interruptions", "1/min", rows, value, slope)
 
 
@@ -117,5 +123,8 @@ def motion_sickness(lever: float) -> Objective:
             axis=1,
         )
 
-    rows = (Row(Seen.OUTPUT, lambda w: abs(lever) * w), Row(Seen.OUTPUT, lambda w: abs(lever) * w**2))
+    rows = (
+        WeightedVariance(LoopSignal.OUTPUT, lambda w: abs(lever) * w),
+        WeightedVariance(LoopSignal.OUTPUT, lambda w: abs(lever) * w**2),
+    )
     return Objective("motion sickness", "1", rows, value, slope)

@@ -10,26 +10,26 @@ from functools import cached_property
 import numpy as np
 
 from seatrial.core.values import Array, InputError
-from seatrial.numerics.kernels.loop import evaluate_loops, slopes_of_loop
-from seatrial.physics.loops.exposure import Exposure
+from seatrial.numerics.kernels.loop import evaluate_loops, variance_gradients
+from seatrial.physics.loops.encounter_spectrum import EncounterSpectrum
 from seatrial.physics.loops.loop import TransferLoop
-from seatrial.physics.loops.margins import band
-from seatrial.physics.loops.objective import Objective, Row, Seen
+from seatrial.physics.loops.margins import frequency_band
+from seatrial.physics.loops.objective import LoopSignal, Objective, WeightedVariance
 
-_WIDE = 192
+_MS_SAMPLES = 192
 
 
 @dataclass(frozen=True, eq=False)
-class Evaluation:
+class LoopEvaluation:
     """Loops evaluated, m of them.
 
     Attributes:
         variances: of the rows, (m, r); infinite where unstable.
-        peak: Ms, the largest |S| (m,), by a parabola of L through samples; infinite where unstable.
+        Ms: the largest |S| (m,), by a parabola of L through samples; infinite where unstable.
     """
 
     variances: Array
-    peak: Array
+    Ms: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,11 +37,11 @@ class Performance:
     """The loop in one exposure.
 
     Variances are exact to 1e-8 up to Ms 5, at nodes that settle without control; to 1e-4 up to 10, to one in a hundred
-    up to 20, and worth nothing beyond 50. An exposure whose `response` is `TransferLoop.controlled` resolves any loop.
+    up to 20, and worth nothing beyond 50. An exposure whose `response` is `disturbance_response` resolves any loop.
     A loop slower than .002 rad/s in following seas, where waves keep up with the ship, may be .1 % off.
 
     Attributes:
-        rows: variances computed, in this order; those on the output must stand first.
+        variances: variances computed, in this order; those on the output must stand first.
 
     Raises:
         InputError: the plant does nothing at a frequency of the exposure, or rows on the actuator precede rows on the
@@ -49,14 +49,14 @@ class Performance:
     """
 
     loop: TransferLoop
-    exposure: Exposure
-    rows: tuple[Row, ...]
+    spectrum: EncounterSpectrum
+    variances: tuple[WeightedVariance, ...]
 
     def __post_init__(self) -> None:
-        seen = [row.seen is Seen.ACTUATOR for row in self.rows]
+        seen = [row.signal is LoopSignal.ACTUATOR for row in self.variances]
         if seen != sorted(seen):
             raise InputError("rows on the output must precede rows on the actuator")
-        dead = self.exposure.omega_e[self.loop.plant.at(self.exposure.omega_e) == 0.0]
+        dead = self.spectrum.omega_e[self.loop.plant.frequency_response(self.spectrum.omega_e) == 0.0]
         if dead.size:
             raise InputError(
                 f"the actuator {self.loop.actuator} of loop '{self.loop.name}' does not move {self.loop.output} at "
@@ -64,23 +64,23 @@ class Performance:
             )
 
     @cached_property
-    def _weights(self) -> tuple[Array, Array]:
+    def _node_weights(self) -> tuple[Array, Array]:
         """What |S|^2 and |L S|^2 weigh at each node: |W D|^2 and |W D / P|^2 times the energy."""
-        w = self.exposure.omega_e
-        free = np.abs(self.loop.disturbance.at(w)) ** 2 * self.exposure.energy
-        moved = free / np.abs(self.loop.plant.at(w)) ** 2
-        outputs = [row.size(w) ** 2 * free for row in self.rows if row.seen is Seen.OUTPUT]
-        actuators = [row.size(w) ** 2 * moved for row in self.rows if row.seen is Seen.ACTUATOR]
+        w = self.spectrum.omega_e
+        free = np.abs(self.loop.disturbance.frequency_response(w)) ** 2 * self.spectrum.energy
+        moved = free / np.abs(self.loop.plant.frequency_response(w)) ** 2
+        outputs = [row.magnitude(w) ** 2 * free for row in self.variances if row.signal is LoopSignal.OUTPUT]
+        actuators = [row.magnitude(w) ** 2 * moved for row in self.variances if row.signal is LoopSignal.ACTUATOR]
         shape = (-1, len(w))
         return np.ascontiguousarray(np.reshape(outputs, shape)), np.ascontiguousarray(np.reshape(actuators, shape))
 
     @cached_property
-    def _tables(self) -> tuple[Array, Array, Array, Array]:
-        seen = self.loop.open_terms(self.exposure.omega_e)
-        wide = self.loop.open_terms(np.geomspace(*band(self.loop), _WIDE))
+    def _open_loop_tables(self) -> tuple[Array, Array, Array, Array]:
+        seen = self.loop.open_loop_terms(self.spectrum.omega_e)
+        wide = self.loop.open_loop_terms(np.geomspace(*frequency_band(self.loop), _MS_SAMPLES))
         return tuple(np.ascontiguousarray(part) for part in (seen.real, seen.imag, wide.real, wide.imag))  # type: ignore[return-value]
 
-    def of(self, gains: Array, *, with_peak: bool = True) -> Evaluation:
+    def evaluate(self, gains: Array, *, with_Ms: bool = True) -> LoopEvaluation:
         """Loops with the gains (m, g); without the peak, `peak` tells only whether a loop is stable (zero).
 
         Raises:
@@ -90,40 +90,40 @@ class Performance:
         if k.shape[1] != len(self.loop.terms):
             raise InputError(f"loop '{self.loop.name}' has {len(self.loop.terms)} gains, not {k.shape[1]}")
         d, n = self.loop.polynomials
-        re, im, wide_re, wide_im = self._tables
-        if not with_peak:
+        re, im, wide_re, wide_im = self._open_loop_tables
+        if not with_Ms:
             wide_re, wide_im = wide_re[:, :0].copy(), wide_im[:, :0].copy()
-        peak, out = np.zeros(len(k)), np.empty((len(k), len(self.rows)))
-        evaluate_loops(k, np.array(d), np.array(n), re, im, *self._weights, wide_re, wide_im, peak, out)
-        return Evaluation(out, peak)
+        peak, out = np.zeros(len(k)), np.empty((len(k), len(self.variances)))
+        evaluate_loops(k, np.array(d), np.array(n), re, im, *self._node_weights, wide_re, wide_im, peak, out)
+        return LoopEvaluation(out, peak)
 
-    def slopes(self, gains: Array) -> Array:
+    def variance_gradients(self, gains: Array) -> Array:
         """d variances / d gains at one point (g,), shape (r, g); the loop must be stable."""
-        re, im, _, _ = self._tables
-        out = np.empty((len(self.rows), len(gains)))
-        slopes_of_loop(np.ascontiguousarray(gains, dtype=np.float64), re, im, *self._weights, out)
+        re, im, _, _ = self._open_loop_tables
+        out = np.empty((len(self.variances), len(gains)))
+        variance_gradients(np.ascontiguousarray(gains, dtype=np.float64), re, im, *self._node_weights, out)
         return out
 
-    def peak_slope(self, gains: Array) -> Array:
-        """d Ms / d gains (g,) of what `of` gives, by the same parabola: its place does not count to first order."""
-        _, _, re, im = self._tables
+    def Ms_gradient(self, gains: Array) -> Array:
+        """d Ms / d gains (g,) of what `evaluate` gives, by the same parabola: its place has no first-order effect."""
+        _, _, re, im = self._open_loop_tables
         terms = re + 1j * im
         z = 1.0 + gains @ terms
         place = int(np.clip(np.argmin(np.abs(z)), 1, len(z) - 2))
         near = np.array([z[place - 1], z[place], z[place + 1]])
-        u = _turning(near)
+        u = _closest_to_zero(near)
         weights = np.array([0.5 * u * (u - 1.0), 1.0 - u**2, 0.5 * u * (u + 1.0)])
         at = weights @ near
         return -np.real(np.conj(at) * (terms[:, place - 1 : place + 2] @ weights)) / np.abs(at) ** 3
 
     @property
-    def uncontrolled(self) -> Array:
+    def uncontrolled_variances(self) -> Array:
         """The variances with all gains at zero, (r,): those on the actuator vanish."""
-        on_s, on_t = self._weights
+        on_s, on_t = self._node_weights
         return np.concatenate([on_s.sum(axis=1), np.zeros(len(on_t))])
 
 
-def _turning(near: np.ndarray) -> float:
+def _closest_to_zero(near: np.ndarray) -> float:
     """Where in -1 to 1 the complex parabola through three points comes nearest to zero."""
     b, c = 0.5 * (near[2] - near[0]), 0.5 * (near[2] + near[0]) - near[1]
     u = 0.0
@@ -136,8 +136,8 @@ def _turning(near: np.ndarray) -> float:
     return u
 
 
-def rows_of(objectives: tuple[Objective, ...]) -> tuple[tuple[Row, ...], list[list[int]]]:
+def distinct_variances(objectives: tuple[Objective, ...]) -> tuple[tuple[WeightedVariance, ...], list[list[int]]]:
     """All different rows of some objectives, outputs first, and for each objective where its own stand."""
-    different = dict.fromkeys(row for objective in objectives for row in objective.rows)
-    rows = sorted(different, key=lambda row: row.seen is Seen.ACTUATOR)
-    return tuple(rows), [[rows.index(row) for row in objective.rows] for objective in objectives]
+    different = dict.fromkeys(row for objective in objectives for row in objective.variances)
+    rows = sorted(different, key=lambda row: row.signal is LoopSignal.ACTUATOR)
+    return tuple(rows), [[rows.index(row) for row in objective.variances] for objective in objectives]

@@ -8,18 +8,18 @@ from scipy.special import bernoulli
 from seatrial.core.values import Array
 
 _ORDER = 8
-_ENDS = 1.0 + np.linalg.solve(
+_END_WEIGHTS = 1.0 + np.linalg.solve(
     np.vander(np.arange(float(_ORDER)), increasing=True).T, bernoulli(_ORDER)[1:] / np.arange(1.0, _ORDER + 1.0)
 )
 # rad/s: below, gathered nodes are even in frequency, above in its logarithm
-_LINEAR = 0.05
+_LINEAR_BELOW = 0.05
 
 
 def weights(count: int) -> Array:
     """Of trapezoids (count,), 16 or more, in steps: of order 8 at both ends (Gregory 1670; Euler-Maclaurin)."""
     made = np.ones(count)
-    made[:_ORDER] *= _ENDS
-    made[: -_ORDER - 1 : -1] *= _ENDS
+    made[:_ORDER] *= _END_WEIGHTS
+    made[: -_ORDER - 1 : -1] *= _END_WEIGHTS
     return made
 
 
@@ -35,13 +35,13 @@ def nodes(edges: tuple[float, ...], count: int) -> tuple[Array, Array]:
     return np.concatenate(made), np.concatenate(width)
 
 
-def gathered(omega: Array, energy: Array, count: int) -> tuple[Array, Array]:
+def gather_nodes(omega: Array, energy: Array, count: int) -> tuple[Array, Array]:
     """The same sums over energy on `count` nodes: each energy goes to its eight neighbours by Lagrange.
 
     What is summed must be smooth over arsinh(20 omega), as the response of a loop is. Single energies may come out
     negative.
     """
-    x = np.arcsinh(omega / _LINEAR)
+    x = np.arcsinh(omega / _LINEAR_BELOW)
     step = float(x.max()) / (count - 0.5)
     # the first one stands half a step from zero, where plants may integrate
     at = x / step - 0.5
@@ -52,4 +52,4 @@ def gathered(omega: Array, energy: Array, count: int) -> tuple[Array, Array]:
         others = place[place != j]
         share = np.prod((u[:, None] - others) / (j - others), axis=1)
         made += np.bincount(first + j, share * energy, count)
-    return _LINEAR * np.sinh((np.arange(count) + 0.5) * step), made
+    return _LINEAR_BELOW * np.sinh((np.arange(count) + 0.5) * step), made

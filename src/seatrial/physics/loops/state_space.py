@@ -26,16 +26,16 @@ class StateSpace:
     c: Array
     a: Array
 
-    def closed(self, gains: Array) -> Array:
+    def closed_loop_matrix(self, gains: Array) -> Array:
         """A at those gains, (n, n)."""
         return self.A[0] + np.tensordot(gains, self.A[1:], 1)
 
-    def actuator(self, gains: Array) -> Array:
+    def actuator_row(self, gains: Array) -> Array:
         """Row that gives the actuator, (n,)."""
         return self.a[0] + gains @ self.a[1:]
 
 
-def canonical(block: Block) -> tuple[Array, Array, Array, float]:
+def controllable_form(block: Block) -> tuple[Array, Array, Array, float]:
     """A, b, c, d of a block: controllable form with each state scaled by the size of the poles."""
     den = np.array(block.den) / block.den[0]
     num = np.concatenate([np.zeros(len(den) - len(block.num)), np.array(block.num) / block.den[0]])
@@ -68,7 +68,7 @@ def state_space(loop: TransferLoop) -> StateSpace:
     def through(signal: Array) -> Array:
         """The next block's answer to a signal, (1 + g, n) over the states."""
         at, block = next(place)
-        own_A, own_b, own_c, d = canonical(block)
+        own_A, own_b, own_c, d = controllable_form(block)
         A[0, at, at] += own_A
         A[:, at] += own_b[:, None] * signal[:, None, :]
         out = d * signal
@@ -79,11 +79,11 @@ def state_space(loop: TransferLoop) -> StateSpace:
         if len(block.num) == len(block.den):
             raise InputError(f"the {what} of loop '{loop.name}' answers at once; give the lag that every real one has")
     at, plant = next(place)
-    plant_A, plant_b, plant_c = _observable(plant, None if own else loop.disturbance)
+    plant_A, plant_b, plant_c = _observable_form(plant, None if own else loop.disturbance)
     A[0, at, at], c[at] = plant_A, plant_c
     if own:
         into, block = next(place)
-        own_A, own_b, own_c, _ = canonical(block)
+        own_A, own_b, own_c, _ = controllable_form(block)
         A[0, into, into], b[into], c[into] = own_A, own_b, own_c
     else:
         b[at] = plant_b[:, 1]
@@ -97,11 +97,11 @@ def state_space(loop: TransferLoop) -> StateSpace:
     for _ in (*loop.filters, *loop.servo):
         ordered = through(ordered)
     A[:, at] += plant_b[:, 0][:, None] * ordered[:, None, :]
-    names = tuple(f"x_{i}_{_word(block.name)}" for i, block in enumerate(blocks) for _ in range(block.order))
+    names = tuple(f"x_{i}_{_identifier(block.name)}" for i, block in enumerate(blocks) for _ in range(block.order))
     return StateSpace(tuple(f"{name}_{i}" for i, name in enumerate(names)), A, b, c, ordered)
 
 
-def _observable(plant: Block, disturbance: Block | None) -> tuple[Array, Array, Array]:
+def _observable_form(plant: Block, disturbance: Block | None) -> tuple[Array, Array, Array]:
     """A (n, n), b (n, 2) of actuator and disturbance, c (n,): observable form, so that both share the states."""
     den, n = np.array(plant.den) / plant.den[0], plant.order
     A = np.diag(np.ones(max(n - 1, 0)), 1)
@@ -114,7 +114,7 @@ def _observable(plant: Block, disturbance: Block | None) -> tuple[Array, Array, 
     return A, b, np.eye(n)[0]
 
 
-def _word(name: str) -> str:
+def _identifier(name: str) -> str:
     return "".join(character if character.isalnum() else "_" for character in name)
 
 
@@ -124,9 +124,9 @@ def loop_model(loop: TransferLoop) -> Model:
     The input is the disturbance, measurable outputs are the loop's output and actuator; all angles in rad.
     """
     made = state_space(loop)
-    sheet = Sheet(f"{_word(loop.name)}_loop", "assembled from the loop's blocks", "a closed loop, linear")
+    sheet = Sheet(f"{_identifier(loop.name)}_loop", "assembled from the loop's blocks", "a closed loop, linear")
     x = sheet.states(" ".join(made.names))
-    w = sheet.input(loop.disturbed_by)
+    w = sheet.input(loop.disturbance_input)
     gains = [
         sheet.parameter(p.name, p.value, p.unit, p.meaning, p.source, free=p.free, lower=p.lower, upper=p.upper)
         for p in loop.gains
@@ -156,14 +156,14 @@ def plant_model(loop: TransferLoop) -> Model:
     Raises:
         InputError: plant or disturbance answers at once.
     """
-    den, pushed, met = _common(loop.plant, loop.disturbance)
+    den, pushed, met = _over_common_denominator(loop.plant, loop.disturbance)
     n = len(den) - 1
     if max(len(pushed), len(met)) > n:
         raise InputError(f"the plant of loop '{loop.name}' answers at once; give the lag that every real one has")
     sheet = Sheet(f"linear_plant_{n}", "assembled from the loop's blocks", "a plant known by its transfer functions")
     x = sheet.states(" ".join([loop.output, *(f"x_{i}" for i in range(1, n))]))
-    own = loop.disturbed_by not in ("", loop.actuator)
-    u, w = sheet.input(loop.actuator), sheet.input(loop.disturbed_by if own else "disturbance")
+    own = loop.disturbance_input not in ("", loop.actuator)
+    u, w = sheet.input(loop.actuator), sheet.input(loop.disturbance_input if own else "disturbance")
     sides = (("a", den[1:], "denominator"), ("b", pushed, loop.plant.name), ("d", met, loop.disturbance.name))
     rows = []
     for letter, values, meaning in sides:
@@ -174,7 +174,7 @@ def plant_model(loop: TransferLoop) -> Model:
     return sheet.model()
 
 
-def _common(plant: Block, disturbance: Block) -> tuple[Array, Array, Array]:
+def _over_common_denominator(plant: Block, disturbance: Block) -> tuple[Array, Array, Array]:
     """Common denominator, leading 1, and both numerators over it; the larger where one denominator holds the other."""
     p, d = np.array(plant.den), np.array(disturbance.den)
     over_p, over_d = _quotient(p, d), _quotient(d, p)
@@ -188,11 +188,11 @@ def _common(plant: Block, disturbance: Block) -> tuple[Array, Array, Array]:
     return den / top, np.polymul(plant.num, left) / top, np.polymul(disturbance.num, right) / top
 
 
-def _quotient(whole: Array, part: Array) -> Array | None:
+def _quotient(dividend: Array, divisor: Array) -> Array | None:
     """whole / part where it leaves no rest."""
-    if len(part) > len(whole):
+    if len(divisor) > len(dividend):
         return None
-    quotient, rest = np.polydiv(whole, part)
-    if np.any(np.abs(rest) > 1e-12 * np.abs(whole).max()):
+    quotient, rest = np.polydiv(dividend, divisor)
+    if np.any(np.abs(rest) > 1e-12 * np.abs(dividend).max()):
         return None
     return np.atleast_1d(np.asarray(quotient, dtype=np.float64))

@@ -16,14 +16,14 @@ from seatrial.physics.loops.fin import PUBLISHED_GAINS
 from seatrial.physics.loops.loop import Term, TransferLoop
 from seatrial.physics.loops.margins import margins
 
-ADDED = ("KB", "KL")
-LARGEST = 100.0
+ADDED_GAINS = ("KB", "KL")
+ADDED_GAIN_LIMIT = 100.0
 # Found by `python benchmarks/fin_structures.py`: CMA-ES over both frequencies and dampings, the five gains by SLSQP at
 # each, for the least mean roll variance in three beam seas of 3.3 m (ITTC, JONSWAP, ITTC short-crested) with no more
 # fin-rate energy than the published gains in any and Ms <= 1.9; frequencies and dampings rounded, gains found again
 # and rounded so that no sea asks for more rate.
 FREQUENCIES_AND_DAMPINGS = (0.53, 0.66), (2.7, 0.4)
-FOUND = {"KP": 34.2, "KI": 0.0, "KD": 0.0, "KB": 24.4, "KL": -32.8}
+SEARCHED_GAINS = {"KP": 34.2, "KI": 0.0, "KD": 0.0, "KB": 24.4, "KL": -32.8}
 SOURCE = "searched, see seatrial.physics.loops.structures"
 
 
@@ -62,13 +62,13 @@ def notch(omega: float, damping: float, depth: float) -> Block:
     return Block("notch", (1.0, depth * width, omega**2), (1.0, width, omega**2))
 
 
-def _positive(block: str, what: str, value: float) -> float:
+def _positive(block: str, quantity: str, value: float) -> float:
     if not (np.isfinite(value) and value > 0.0):
-        raise InputError(f"{block}: the {what} must be positive, not {value:g}")
+        raise InputError(f"{block}: the {quantity} must be positive, not {value:g}")
     return value
 
 
-def with_structure(loop: TransferLoop, *extra: Term, gains: tuple[Parameter, ...]) -> TransferLoop:
+def with_terms(loop: TransferLoop, *extra: Term, gains: tuple[Parameter, ...]) -> TransferLoop:
     """The loop with more terms beside its own; `gains`: one for each, in the order of the terms.
 
     Raises:
@@ -93,7 +93,7 @@ def with_filters(loop: TransferLoop, *filters: Block) -> TransferLoop:
 BAND_PASS, LOW_PASS = band_pass(*FREQUENCIES_AND_DAMPINGS[0]), low_pass(*FREQUENCIES_AND_DAMPINGS[1])
 
 
-def five_gains(loop: TransferLoop, band: Block = BAND_PASS, low: Block = LOW_PASS) -> TransferLoop:
+def five_gain_loop(loop: TransferLoop, band: Block = BAND_PASS, low: Block = LOW_PASS) -> TransferLoop:
     """A fin loop with a band-pass (KB) and a low-pass (KL) beside its three terms; added gains may be negative.
 
     Its gains are those found for the published loop with washout where they keep this loop stable with Ms <= 2; its
@@ -104,11 +104,11 @@ def five_gains(loop: TransferLoop, band: Block = BAND_PASS, low: Block = LOW_PAS
     """
     meanings = ("gain of the band-pass", "gain of the low-pass")
     gains = tuple(
-        Parameter(name, 0.0, "1", -LARGEST, LARGEST, free=True, source=SOURCE, meaning=meaning)
-        for name, meaning in zip(ADDED, meanings, strict=True)
+        Parameter(name, 0.0, "1", -ADDED_GAIN_LIMIT, ADDED_GAIN_LIMIT, free=True, source=SOURCE, meaning=meaning)
+        for name, meaning in zip(ADDED_GAINS, meanings, strict=True)
     )
-    made = with_structure(loop, Term("KB", band), Term("KL", low), gains=gains)
+    made = with_terms(loop, Term("KB", band), Term("KL", low), gains=gains)
     if loop.gains.names != tuple(PUBLISHED_GAINS):
         return made
-    found = replace(made, gains=made.gains.with_values(FOUND, SOURCE))
-    return found if margins(found).peak <= 2.0 else made
+    found = replace(made, gains=made.gains.with_values(SEARCHED_GAINS, SOURCE))
+    return found if margins(found).Ms <= 2.0 else made

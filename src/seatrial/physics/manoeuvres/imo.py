@@ -10,21 +10,21 @@ import numpy as np
 
 from seatrial.core.values import InputError, Record
 from seatrial.physics.manoeuvres.measures import measures
-from seatrial.physics.manoeuvres.observed import Manoeuvre, Observed
+from seatrial.physics.manoeuvres.recognition import ManoeuvreKind, ObservedManoeuvre
 
 RESOLUTION = "IMO MSC.137(76)"
-LEAST_LENGTH = 100.0
-NEAR = 1.0
+MINIMUM_LENGTH = 100.0
+RUDDER_TOLERANCE = 1.0
 
 
 @dataclass(frozen=True)
-class Criterion:
+class ImoCriterion:
     """One standard and how the ship does.
 
     Attributes:
         name: the measure's name, e.g. ``advance_L``.
         value, limit: in the unit the name ends in; the standard holds where value <= limit.
-        holds: whether it does.
+        is_fulfilled: whether it does.
         source: the paragraph.
         applies: whether the resolution applies to a ship of this length at full scale.
         note: what the reader must know, e.g. that the record is at model scale.
@@ -33,19 +33,19 @@ class Criterion:
     name: str
     value: float
     limit: float
-    holds: bool
+    is_fulfilled: bool
     source: str
     applies: bool
     note: str
 
 
-def criteria(
+def imo_criteria(
     record: Record,
     length: float,
     scale: float = 1.0,
     switching: float | None = None,
-    like: Record | None = None,
-) -> tuple[Criterion, ...]:
+    reference: Record | None = None,
+) -> tuple[ImoCriterion, ...]:
     """The standards that the record's manoeuvre allows to judge; empty where it allows none.
 
     Angles and lengths over L are the same at model scale; the time L/V on which overshoot limits rest is scaled by the
@@ -56,25 +56,25 @@ def criteria(
         length: of the ship as recorded [m].
         scale: model scale 1:scale; 1 for full scale.
         switching: switching heading [rad] of a zigzag where it is known; by default the heading at the executes.
-        like: record whose manoeuvre and executes this one shares, as in `measures`; it tells which standards apply.
+        reference: record whose manoeuvre and executes this one shares, as in `measures`; it decides which apply.
 
     Raises:
         InputError: as `measures`, or the scale is not positive.
     """
     if not scale > 0.0:
         raise InputError(f"the scale 1:{scale:g} is not positive")
-    found = measures(record, length, switching, like)
-    seen = Observed.of(record if like is None else like)
+    found = measures(record, length, switching, reference)
+    seen = ObservedManoeuvre.from_record(record if reference is None else reference)
     match seen.kind:
-        case Manoeuvre.TURNING_CIRCLE:
-            wanted = _turning(found)
-        case Manoeuvre.ZIGZAG:
-            wanted = _zigzag(seen, found, length, scale, switching)
+        case ManoeuvreKind.TURNING_CIRCLE:
+            wanted = _turning_limits(found)
+        case ManoeuvreKind.ZIGZAG:
+            wanted = _zigzag_limits(seen, found, length, scale, switching)
         case _:
             wanted = []
     applies, note = _scope(length * scale, scale)
     return tuple(
-        Criterion(name, found[name], limit, found[name] <= limit, f"{RESOLUTION}, {paragraph}", applies, note)
+        ImoCriterion(name, found[name], limit, found[name] <= limit, f"{RESOLUTION}, {paragraph}", applies, note)
         for name, limit, paragraph in wanted
         if name in found
     )
@@ -90,32 +90,36 @@ def second_overshoot_limit(time: float) -> float:
     return float(np.clip(17.5 + 0.75 * time, 25.0, 40.0))
 
 
-def _turning(found: dict[str, float]) -> list[tuple[str, float, str]]:
-    if found["rudder_deg"] < 35.0 - NEAR:
+def _turning_limits(values: dict[str, float]) -> list[tuple[str, float, str]]:
+    if values["rudder_deg"] < 35.0 - RUDDER_TOLERANCE:
         return []
     return [("advance_L", 4.5, "5.3.1"), ("tactical_diameter_L", 5.0, "5.3.1")]
 
 
-def _zigzag(
-    seen: Observed, found: dict[str, float], length: float, scale: float, switching: float | None
+def _zigzag_limits(
+    manoeuvre: ObservedManoeuvre, values: dict[str, float], length: float, scale: float, switching: float | None
 ) -> list[tuple[str, float, str]]:
-    rudder, heading = found["rudder_deg"], math.degrees(switching) if switching else switching_heading(seen)
+    rudder, heading = values["rudder_deg"], math.degrees(switching) if switching else switching_heading(manoeuvre)
     wanted: list[tuple[str, float, str]] = []
-    if abs(rudder - 10.0) <= NEAR:
+    if abs(rudder - 10.0) <= RUDDER_TOLERANCE:
         wanted.append(("initial_turning_L", 2.5, "5.3.2"))
-    if abs(rudder - 10.0) <= NEAR and abs(heading - 10.0) <= 0.2 * 10.0 and found.get("approach_speed", 0.0) > 0.0:
-        time = length / found["approach_speed"] * math.sqrt(scale)
+    if (
+        abs(rudder - 10.0) <= RUDDER_TOLERANCE
+        and abs(heading - 10.0) <= 0.2 * 10.0
+        and values.get("approach_speed", 0.0) > 0.0
+    ):
+        time = length / values["approach_speed"] * math.sqrt(scale)
         wanted.append(("overshoot_1_deg", first_overshoot_limit(time), "5.3.3.1"))
         wanted.append(("overshoot_2_deg", second_overshoot_limit(time), "5.3.3.2"))
-    if abs(rudder - 20.0) <= NEAR and abs(heading - 20.0) <= 0.2 * 20.0:
+    if abs(rudder - 20.0) <= RUDDER_TOLERANCE and abs(heading - 20.0) <= 0.2 * 20.0:
         wanted.append(("overshoot_1_deg", 25.0, "5.3.3.3"))
     return wanted
 
 
-def switching_heading(seen: Observed) -> float:
+def switching_heading(manoeuvre: ObservedManoeuvre) -> float:
     """Median heading off the course [deg] at the second and later executes of a zigzag; NaN where there are none."""
-    course = seen.psi_at(seen.executes[0])
-    off = [abs(seen.psi_at(t) - course) for t in seen.executes[1:]]
+    course = manoeuvre.psi_at(manoeuvre.executes[0])
+    off = [abs(manoeuvre.psi_at(t) - course) for t in manoeuvre.executes[1:]]
     return math.degrees(float(np.median(off))) if off else math.nan
 
 
@@ -125,7 +129,7 @@ def _scope(full_length: float, scale: float) -> tuple[bool, str]:
         notes.append(
             f"model scale 1:{scale:g}: compared in ship lengths and Froude-scaled time; scale effects not removed"
         )
-    applies = full_length >= LEAST_LENGTH
+    applies = full_length >= MINIMUM_LENGTH
     if not applies:
-        notes.append(f"the resolution is for ships of {LEAST_LENGTH:g} m and more; this one has {full_length:g} m")
+        notes.append(f"the resolution is for ships of {MINIMUM_LENGTH:g} m and more; this one has {full_length:g} m")
     return applies, "; ".join(notes)

@@ -6,16 +6,16 @@ IMO MSC.137(76) and MSC/Circ.1053 (2002); ITTC 7.5-02-06-01 (free running model 
 import numpy as np
 
 from seatrial.core.values import Array, InputError, Record
-from seatrial.physics.manoeuvres.observed import Manoeuvre, Observed
-from seatrial.physics.manoeuvres.track import Swing, mean_between, speed, steady
+from seatrial.physics.manoeuvres.recognition import ManoeuvreKind, ObservedManoeuvre
+from seatrial.physics.manoeuvres.track import Swing, mean_between, speed, steady_turning
 
-QUARTER, HALF = float(np.radians(90.0)), float(np.radians(180.0))
-TEN = float(np.radians(10.0))
-PEAK = 0.04
+QUARTER_TURN, HALF_TURN = float(np.radians(90.0)), float(np.radians(180.0))
+INITIAL_TURN = float(np.radians(10.0))
+PEAK_HALF_WIDTH = 0.04
 
 
 def measures(
-    record: Record, length: float, switching: float | None = None, like: Record | None = None
+    record: Record, length: float, switching: float | None = None, reference: Record | None = None
 ) -> dict[str, float]:
     """Measures of the manoeuvre the record shows, by name; those it does not allow are absent.
 
@@ -24,7 +24,7 @@ def measures(
         length: of the ship [m], the unit of names ending in ``_L``.
         switching: switching heading [rad] of a zigzag where it is known; overshoots are counted from it. By default
             they are counted from the heading at which the rudder began to move.
-        like: record of the same rudder history at the same times, e.g. the measured run of which `record` is the open
+        reference: record of the same rudder history and times, e.g. the measured run of which `record` is the open
             loop simulation. Manoeuvre and executes are then made out on it, so that a heading that drifts off hides
             nothing; headings, tracks and speeds are `record`'s own. By default all is read from `record`.
 
@@ -37,34 +37,38 @@ def measures(
         side turned to, drift positive with the bow into the turn, residual rate positive to that side.
 
     Raises:
-        InputError: psi or delta is missing or empty, the length is not positive, or `like` has other times.
+        InputError: psi or delta is missing or empty, the length is not positive, or `reference` has other times.
     """
     if not length > 0.0:
         raise InputError(f"the ship's length {length:g} m is not positive; measures need it")
-    seen = Observed.of(record) if like is None else Observed.of(like).alongside(record)
+    seen = (
+        ObservedManoeuvre.from_record(record)
+        if reference is None
+        else ObservedManoeuvre.from_record(reference).transferred_to(record)
+    )
     match seen.kind:
-        case Manoeuvre.ZIGZAG:
-            return _zigzag(seen, length, switching)
-        case Manoeuvre.TURNING_CIRCLE:
-            return _turning_circle(seen, length)
-        case Manoeuvre.PULL_OUT:
-            return _pull_out(seen)
+        case ManoeuvreKind.ZIGZAG:
+            return _zigzag_measures(seen, length, switching)
+        case ManoeuvreKind.TURNING_CIRCLE:
+            return _turning_circle_measures(seen, length)
+        case ManoeuvreKind.PULL_OUT:
+            return _pull_out_measures(seen)
         case _:
             return {}
 
 
-def _zigzag(seen: Observed, length: float, switching: float | None) -> dict[str, float]:
-    times, hold = list(seen.executes), seen.holds[0]
-    first = Swing(seen, times[0], float(np.sign(hold.angle)))
-    made = _start(seen, first, hold.angle)
-    peaks = _peaks(seen)
+def _zigzag_measures(manoeuvre: ObservedManoeuvre, length: float, switching: float | None) -> dict[str, float]:
+    times, hold = list(manoeuvre.executes), manoeuvre.holds[0]
+    first = Swing(manoeuvre, times[0], float(np.sign(hold.angle)))
+    made = _approach_measures(manoeuvre, first, hold.angle)
+    peaks = _peaks(manoeuvre)
     for k, (_, beyond) in peaks.items():
-        counted = beyond if switching is None else beyond + _off_course(seen, k) - abs(switching)
+        counted = beyond if switching is None else beyond + _heading_off_course(manoeuvre, k) - abs(switching)
         made[f"overshoot_{k}_deg"] = float(np.degrees(counted))
-    reached = first.time_of(TEN)
+    reached = first.time_of(INITIAL_TURN)
     if reached is not None and (len(times) < 3 or reached < times[2]):
         made["initial_turning_time_s"] = reached - times[0]
-        travelled = _travelled(seen.record, times[0], reached)
+        travelled = _distance_run(manoeuvre.record, times[0], reached)
         if travelled is not None:
             made["initial_turning_L"] = travelled / length
     periods = [peaks[k + 2][0] - at for k, (at, _) in peaks.items() if k + 2 in peaks]
@@ -73,31 +77,33 @@ def _zigzag(seen: Observed, length: float, switching: float | None) -> dict[str,
     return made
 
 
-def _start(seen: Observed, swing: Swing, angle: float) -> dict[str, float]:
+def _approach_measures(manoeuvre: ObservedManoeuvre, swing: Swing, angle: float) -> dict[str, float]:
     made = {"rudder_deg": float(np.degrees(abs(angle)))}
-    flow = speed(seen.record)
-    before = None if flow is None else mean_between(seen.record, flow, swing.start - 1.0, swing.start)
+    flow = speed(manoeuvre.record)
+    before = None if flow is None else mean_between(manoeuvre.record, flow, swing.start - 1.0, swing.start)
     return made if before is None else {**made, "approach_speed": before}
 
 
-def _peaks(seen: Observed) -> dict[int, tuple[float, float]]:
+def _peaks(manoeuvre: ObservedManoeuvre) -> dict[int, tuple[float, float]]:
     """Extremes of heading by the number of the overshoot: time [s], and angle [rad] beyond the heading at the execute.
 
     Overshoot k follows execute k + 1; it is absent where the ship did not turn back before the next execute.
     """
-    times, record, made = seen.executes, seen.record, {}
+    times, record, made = manoeuvre.executes, manoeuvre.record, {}
     for k in range(1, len(times)):
-        stop = times[k + 1] if k + 1 < len(times) else float(record.time[seen.holds[k].last - 1])
-        side = float(np.sign(seen.holds[k - 1].angle))
-        peak = _peak(record.time, side * (seen.psi - seen.psi_at(times[k])), times[k], stop)
+        stop = times[k + 1] if k + 1 < len(times) else float(record.time[manoeuvre.holds[k].last - 1])
+        side = float(np.sign(manoeuvre.holds[k - 1].angle))
+        peak = _peak(record.time, side * (manoeuvre.psi - manoeuvre.psi_at(times[k])), times[k], stop)
         if peak is not None:
             made[k] = peak
     return made
 
 
-def _off_course(seen: Observed, k: int) -> float:
+def _heading_off_course(manoeuvre: ObservedManoeuvre, k: int) -> float:
     """Heading [rad] off the first course at execute k + 1, positive to the side of the hold before it."""
-    return float(np.sign(seen.holds[k - 1].angle)) * (seen.psi_at(seen.executes[k]) - seen.psi_at(seen.executes[0]))
+    return float(np.sign(manoeuvre.holds[k - 1].angle)) * (
+        manoeuvre.psi_at(manoeuvre.executes[k]) - manoeuvre.psi_at(manoeuvre.executes[0])
+    )
 
 
 def _peak(time: Array, heading: Array, start: float, stop: float) -> tuple[float, float] | None:
@@ -106,7 +112,7 @@ def _peak(time: Array, heading: Array, start: float, stop: float) -> tuple[float
     if len(rows) < 5:
         return None
     top = int(np.argmax(heading[rows]))
-    half = max(2, round(PEAK * len(rows)))
+    half = max(2, round(PEAK_HALF_WIDTH * len(rows)))
     if top + half >= len(rows):
         return None
     about, highest = rows[max(top - half, 0) : top + half + 1], rows[top]
@@ -119,7 +125,7 @@ def _peak(time: Array, heading: Array, start: float, stop: float) -> tuple[float
     return (sampled[0] + float(at), float(c + at * (b + at * a))) if t[0] <= at <= t[-1] else sampled
 
 
-def _travelled(record: Record, start: float, stop: float) -> float | None:
+def _distance_run(record: Record, start: float, stop: float) -> float | None:
     """Distance run through the water (or over ground, as the velocities are) between two times [m]."""
     flow = speed(record)
     if flow is None:
@@ -130,11 +136,11 @@ def _travelled(record: Record, start: float, stop: float) -> float | None:
     return float(np.sum(0.5 * (values[1:] + values[:-1]) * np.diff(time)))
 
 
-def _turning_circle(seen: Observed, length: float) -> dict[str, float]:
-    hold, execute = seen.turn
-    swing = Swing(seen, execute, float(np.sign(hold.angle)))
-    made = _start(seen, swing, hold.angle)
-    quarter, half = swing.time_of(QUARTER), swing.time_of(HALF)
+def _turning_circle_measures(manoeuvre: ObservedManoeuvre, length: float) -> dict[str, float]:
+    hold, execute = manoeuvre.longest_hold
+    swing = Swing(manoeuvre, execute, float(np.sign(hold.angle)))
+    made = _approach_measures(manoeuvre, swing, hold.angle)
+    quarter, half = swing.time_of(QUARTER_TURN), swing.time_of(HALF_TURN)
     at_quarter = swing.displacement(quarter) if quarter is not None else None
     at_half = swing.displacement(half) if half is not None else None
     if quarter is not None:
@@ -143,15 +149,15 @@ def _turning_circle(seen: Observed, length: float) -> dict[str, float]:
         made |= {"advance_L": at_quarter[0] / length, "transfer_L": at_quarter[1] / length}
     if at_half is not None:
         made["tactical_diameter_L"] = at_half[1] / length
-    return made | steady(swing, float(seen.record.time[hold.last - 1]), length, made.get("approach_speed"))
+    return made | steady_turning(swing, float(manoeuvre.record.time[hold.last - 1]), length, made.get("approach_speed"))
 
 
-def _pull_out(seen: Observed) -> dict[str, float]:
+def _pull_out_measures(manoeuvre: ObservedManoeuvre) -> dict[str, float]:
     """Yaw rate left when the rudder has been amidships: mean over the last tenth of that time."""
-    hold, execute = seen.turn
-    swing = Swing(seen, execute, float(np.sign(hold.angle)))
-    made = _start(seen, swing, hold.angle)
-    released, stop = float(seen.record.time[hold.last - 1]), float(seen.record.time[-1])
+    hold, execute = manoeuvre.longest_hold
+    swing = Swing(manoeuvre, execute, float(np.sign(hold.angle)))
+    made = _approach_measures(manoeuvre, swing, hold.angle)
+    released, stop = float(manoeuvre.record.time[hold.last - 1]), float(manoeuvre.record.time[-1])
     last = stop - 0.1 * (stop - released)
-    rate = swing.side * (seen.psi_at(stop) - seen.psi_at(last)) / (stop - last)
+    rate = swing.side * (manoeuvre.psi_at(stop) - manoeuvre.psi_at(last)) / (stop - last)
     return {**made, "residual_yaw_rate_deg_s": float(np.degrees(rate))}

@@ -11,9 +11,9 @@ from seatrial.physics.manoeuvres.steering import Steering
 SIDES = {"starboard": 1, "port": -1}
 ZIGZAG_EXECUTES = 5
 LENGTHS_PER_EXECUTE = 40.0
-TURN = 540.0
+TURNING_CIRCLE_TURN = 540.0
 PULL_OUT_TURN = 360.0
-SPIRAL_HOLD = 15.0
+SPIRAL_HOLD_LENGTHS = 15.0
 
 
 @dataclass(frozen=True)
@@ -25,14 +25,14 @@ class Programme:
         kind: its first word, e.g. ``zigzag``.
         helmsman: compiled command(t, x, memory, u).
         memory: makes the helmsman's initial memory for a ship's steering.
-        lengths: ship lengths after which it ends at the latest; it ends earlier when the helmsman has finished.
+        maximum_lengths: ship lengths after which it ends at the latest; it ends earlier when the helmsman has finished.
     """
 
     text: str
     kind: str
     helmsman: Callable[..., None]
     memory: Callable[[Steering], Array]
-    lengths: float
+    maximum_lengths: float
 
 
 def programme(text: str) -> Programme:
@@ -65,34 +65,34 @@ def _angle(text: str, largest: float = 90.0) -> float:
     return angle
 
 
-def _take_side(fields: list[str]) -> tuple[int, list[str]]:
+def _split_side(fields: list[str]) -> tuple[int, list[str]]:
     if fields and fields[-1] in SIDES:
         return SIDES[fields[-1]], fields[:-1]
     return 1, fields
 
 
-def _at_most(fields: list[str], count: int) -> None:
+def _refuse_extra_fields(fields: list[str], count: int) -> None:
     if len(fields) > count:
         raise InputError(f"'{fields[count]}' is one field too many")
 
 
 def _zigzag(text: str, fields: list[str]) -> Programme:
-    side, fields = _take_side(fields)
-    _at_most(fields, 1)
+    side, fields = _split_side(fields)
+    _refuse_extra_fields(fields, 1)
     rudder, heading = (_angle(a) for a in fields[0].split("/"))
-    return _zigzags(text, "zigzag", [(rudder, heading)] * ZIGZAG_EXECUTES, side)
+    return _zigzag_programme(text, "zigzag", [(rudder, heading)] * ZIGZAG_EXECUTES, side)
 
 
-def _consecutive(text: str, fields: list[str]) -> Programme:
-    _at_most(fields, 1)
+def _consecutive_zigzags(text: str, fields: list[str]) -> Programme:
+    _refuse_extra_fields(fields, 1)
     each = int(fields[0]) if fields else ZIGZAG_EXECUTES
     if not 1 <= each <= 50:
         raise InputError(f"{each} executes of each angle are not between 1 and 50")
     executes = [(angle, angle) for angle in (10.0, 15.0, 20.0, 25.0, 30.0) for _ in range(each)]
-    return _zigzags(text, "consecutive-zigzags", executes, 1)
+    return _zigzag_programme(text, "consecutive-zigzags", executes, 1)
 
 
-def _zigzags(text: str, kind: str, executes: list[tuple[float, float]], side: int) -> Programme:
+def _zigzag_programme(text: str, kind: str, executes: list[tuple[float, float]], side: int) -> Programme:
     table = zigzag.table(executes, side)
     count = len(executes)
     return Programme(
@@ -101,32 +101,32 @@ def _zigzags(text: str, kind: str, executes: list[tuple[float, float]], side: in
 
 
 def _turning_circle(text: str, fields: list[str]) -> Programme:
-    side, fields = _take_side(fields)
-    _at_most(fields, 1)
-    table = side * math.radians(_angle(fields[0])), side * math.radians(TURN)
+    side, fields = _split_side(fields)
+    _refuse_extra_fields(fields, 1)
+    table = side * math.radians(_angle(fields[0])), side * math.radians(TURNING_CIRCLE_TURN)
     return Programme(text, "turning-circle", turning.helmsman, lambda steering: steering.memory(1, table), 150.0)
 
 
 def _pull_out(text: str, fields: list[str]) -> Programme:
-    side, fields = _take_side(fields)
-    _at_most(fields, 1)
+    side, fields = _split_side(fields)
+    _refuse_extra_fields(fields, 1)
     table = side * math.radians(_angle(fields[0] if fields else "20")), side * math.radians(PULL_OUT_TURN)
     return Programme(text, "pull-out", turning.helmsman, lambda steering: steering.memory(2, table), 200.0)
 
 
 def _spiral(text: str, fields: list[str]) -> Programme:
-    side, fields = _take_side(fields)
-    _at_most(fields, 1)
+    side, fields = _split_side(fields)
+    _refuse_extra_fields(fields, 1)
     steps = schedule.spiral_steps(_angle(fields[0]) if fields else 25.0, side)
 
     def memory(steering: Steering) -> Array:
-        return steering.memory(len(steps), (SPIRAL_HOLD * steering.time_unit, *steps))
+        return steering.memory(len(steps), (SPIRAL_HOLD_LENGTHS * steering.characteristic_time, *steps))
 
-    return Programme(text, "spiral", schedule.helmsman, memory, SPIRAL_HOLD * len(steps) + 10.0)
+    return Programme(text, "spiral", schedule.helmsman, memory, SPIRAL_HOLD_LENGTHS * len(steps) + 10.0)
 
 
 def _prbs(text: str, fields: list[str]) -> Programme:
-    _at_most(fields, 3)
+    _refuse_extra_fields(fields, 3)
     amplitude = _angle(fields[0]) if fields else 20.0
     stated = len(fields) > 1 and fields[1] != ""
     hold = float(fields[1]) if stated else 0.0
@@ -135,14 +135,14 @@ def _prbs(text: str, fields: list[str]) -> Programme:
     steps = schedule.binary_sequence(amplitude, int(fields[2]) if len(fields) > 2 else 0)
 
     def memory(steering: Steering) -> Array:
-        return steering.memory(len(steps), (hold or steering.time_unit, *steps))
+        return steering.memory(len(steps), (hold or steering.characteristic_time, *steps))
 
     return Programme(text, "prbs", schedule.helmsman, memory, 200.0)
 
 
 _KINDS: dict[str, tuple[Callable[[str, list[str]], Programme], str]] = {
     "zigzag": (_zigzag, "zigzag:20/20 or zigzag:10/10:port"),
-    "consecutive-zigzags": (_consecutive, "consecutive-zigzags:5"),
+    "consecutive-zigzags": (_consecutive_zigzags, "consecutive-zigzags:5"),
     "turning-circle": (_turning_circle, "turning-circle:35 or turning-circle:35:port"),
     "pull-out": (_pull_out, "pull-out:20"),
     "spiral": (_spiral, "spiral:25"),

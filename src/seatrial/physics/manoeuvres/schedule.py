@@ -7,17 +7,25 @@ import numpy as np
 from numba import njit
 
 from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
-from seatrial.physics.manoeuvres.steering import DT, SINCE, STAGE, TABLE, next_stage, turn_rudder, under_way
+from seatrial.physics.manoeuvres.steering import (
+    DT,
+    STAGE,
+    STAGE_START,
+    TABLE,
+    is_past_approach,
+    next_stage,
+    turn_rudder,
+)
 
-REGISTER = 9
+REGISTER_BITS = 9
 
 
 @njit(COMMAND_SIGNATURE, **OPTIONS)
 def helmsman(t, x, memory, u):
     """Table: holding time [s], then the rudder orders [rad, positive to starboard]."""
     order = 0.0
-    if under_way(t, x, memory):
-        if t - memory[SINCE] >= memory[TABLE] - 0.5 * memory[DT]:
+    if is_past_approach(t, x, memory):
+        if t - memory[STAGE_START] >= memory[TABLE] - 0.5 * memory[DT]:
             next_stage(t, memory)
         order = memory[TABLE + int(memory[STAGE])]
     turn_rudder(memory, order, u)
@@ -34,6 +42,6 @@ def binary_sequence(amplitude: float, seed: int) -> tuple[float, ...]:
     """Rudder orders [rad] of one period of a maximum length sequence, 2^9 - 1 switching times; the seed shifts it."""
     from scipy.signal import max_len_seq
 
-    state = np.random.default_rng(seed).permutation([1] * 5 + [0] * (REGISTER - 5))
-    bits = max_len_seq(REGISTER, state=state)[0]
+    state = np.random.default_rng(seed).permutation([1] * 5 + [0] * (REGISTER_BITS - 5))
+    bits = max_len_seq(REGISTER_BITS, state=state)[0]
     return tuple(float(a) for a in np.radians(amplitude) * (2.0 * bits - 1.0))

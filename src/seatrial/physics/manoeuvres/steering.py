@@ -14,7 +14,7 @@ from numba import njit
 from seatrial.core.values import Array
 from seatrial.numerics.kernels.types import OPTIONS
 
-PSI, R, DELTA, SIGN, SLEW, DT, APPROACH, COURSE, ANGLE, FINISHED, STAGE, SINCE, COUNT, TABLE = range(14)
+PSI, R, DELTA, SIGN, SLEW, DT, APPROACH, COURSE, ANGLE, FINISHED, STAGE, STAGE_START, COUNT, TABLE = range(14)
 NOT_FINISHED = -1.0
 
 
@@ -29,7 +29,7 @@ class Steering:
         slew_rate: rad/s.
         dt: step of the simulation [s].
         approach: s before the first execute.
-        time_unit: L/U0 [s], the time in which the ship travels her own length.
+        characteristic_time: L/U0 [s], the time in which the ship travels her own length.
     """
 
     psi: int
@@ -39,7 +39,7 @@ class Steering:
     slew_rate: float
     dt: float
     approach: float
-    time_unit: float
+    characteristic_time: float
 
     def memory(self, count: int, table: Sequence[float]) -> Array:
         """The helmsman's initial memory, shape (TABLE + len(table),): `count` stages, described in `table`."""
@@ -59,17 +59,17 @@ def turn_rudder(memory, order, u):
 
 
 @njit(**OPTIONS)
-def under_way(t, x, memory):
+def is_past_approach(t, x, memory):
     """Whether the approach is over; the heading of that moment becomes the original course."""
     if memory[STAGE] == 0.0:
         if t < memory[APPROACH] - 0.5 * memory[DT]:
             return False
-        memory[COURSE], memory[STAGE], memory[SINCE] = x[int(memory[PSI])], 1.0, t
+        memory[COURSE], memory[STAGE], memory[STAGE_START] = x[int(memory[PSI])], 1.0, t
     return True
 
 
 @njit(**OPTIONS)
-def deviation(x, memory):
+def heading_deviation(x, memory):
     """Heading off the original course [rad] half a step ahead, so that executes at samples are not late on average."""
     place = int(memory[R])
     lead = 0.5 * memory[DT] * x[place] if place >= 0 else 0.0
@@ -85,12 +85,12 @@ def next_stage(t, memory):
         memory[FINISHED] = t
     else:
         memory[STAGE] += 1.0
-        memory[SINCE] = t
+        memory[STAGE_START] = t
 
 
-def rudder_angles(held: Array) -> Array:
+def rudder_angles(step_means: Array) -> Array:
     """Rudder angle at the samples, shape (n,), from the step means a helmsman wrote, shape (n,); amidships at first."""
-    signs = np.where(np.arange(len(held)) % 2, 1.0, -1.0)
-    angles = np.zeros(len(held))
-    angles[1:] = np.cumsum(2.0 * signs[:-1] * held[:-1]) * signs[:-1]
+    signs = np.where(np.arange(len(step_means)) % 2, 1.0, -1.0)
+    angles = np.zeros(len(step_means))
+    angles[1:] = np.cumsum(2.0 * signs[:-1] * step_means[:-1]) * signs[:-1]
     return np.round(angles, 14) + 0.0

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array, Record
-from seatrial.physics.manoeuvres.observed import Observed
+from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre
 
 
 @dataclass(frozen=True, eq=False)
@@ -13,19 +13,19 @@ class Swing:
     """A heading change to one side from the time of an execute.
 
     Attributes:
-        seen: the record.
+        manoeuvre: the record with its executes.
         start: time of the execute [s].
         side: +1 to starboard, -1 to port.
     """
 
-    seen: Observed
+    manoeuvre: ObservedManoeuvre
     start: float
     side: float
 
     def time_of(self, change: float) -> float | None:
         """First time [s] at which the heading has changed by `change` [rad] to this side, or None."""
-        time = self.seen.record.time
-        deviation = self.side * (self.seen.psi - self.seen.psi_at(self.start)) - change
+        time = self.manoeuvre.record.time
+        deviation = self.side * (self.manoeuvre.psi - self.manoeuvre.psi_at(self.start)) - change
         rows = np.flatnonzero((deviation >= 0.0) & (time >= self.start))
         if not len(rows):
             return None
@@ -40,7 +40,7 @@ class Swing:
 
         The course is the heading at the execute (MSC.137(76), definitions 4.2.3 and 4.2.4).
         """
-        record = self.seen.record
+        record = self.manoeuvre.record
         if "x0" not in record or "y0" not in record:
             return None
         known = np.isfinite(record["x0"]) & np.isfinite(record["y0"])
@@ -48,7 +48,7 @@ class Swing:
             return None
         when = (self.start, time)
         dx, dy = (float(np.diff(np.interp(when, record.time[known], record[s][known]))[0]) for s in ("x0", "y0"))
-        course = self.seen.psi_at(self.start)
+        course = self.manoeuvre.psi_at(self.start)
         along = dx * np.cos(course) + dy * np.sin(course)
         across = -dx * np.sin(course) + dy * np.cos(course)
         return float(along), float(self.side * across)
@@ -71,16 +71,16 @@ def mean_between(record: Record, values: Array, start: float, stop: float) -> fl
     return nearest if np.isfinite(nearest) else None
 
 
-def steady(swing: Swing, stop: float, length: float, approach: float | None) -> dict[str, float]:
+def steady_turning(swing: Swing, stop: float, length: float, approach: float | None) -> dict[str, float]:
     """Steady turning measures over the last 180 deg of heading before `stop` [s]; none before 360 deg are turned.
 
     Yaw rate [deg/s], drift [deg] (positive with the bow into the turn), final diameter 2 U / r [L], loss of speed.
     """
-    turned = swing.side * (swing.seen.psi_at(stop) - swing.seen.psi_at(swing.start))
+    turned = swing.side * (swing.manoeuvre.psi_at(stop) - swing.manoeuvre.psi_at(swing.start))
     begin = swing.time_of(turned - np.pi)
     if turned < 2.0 * np.pi - 1e-3 or begin is None:
         return {}
-    record = swing.seen.record
+    record = swing.manoeuvre.record
     rate = np.pi / (stop - begin)
     made = {"steady_yaw_rate_deg_s": float(np.degrees(rate))}
     flow = speed(record)

@@ -8,13 +8,13 @@ from numba import njit
 from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
 from seatrial.physics.manoeuvres.steering import (
     APPROACH,
-    SINCE,
     STAGE,
+    STAGE_START,
     TABLE,
-    deviation,
+    heading_deviation,
+    is_past_approach,
     next_stage,
     turn_rudder,
-    under_way,
 )
 
 
@@ -25,11 +25,11 @@ def helmsman(t, x, memory, u):
     A second stage puts the rudder amidships for as long as the turn has taken.
     """
     order = 0.0
-    if under_way(t, x, memory):
+    if is_past_approach(t, x, memory):
         if memory[STAGE] == 1.0:
-            over = deviation(x, memory) / memory[TABLE + 1] >= 1.0
+            over = heading_deviation(x, memory) / memory[TABLE + 1] >= 1.0
         else:
-            over = t - memory[SINCE] >= memory[SINCE] - memory[APPROACH]
+            over = t - memory[STAGE_START] >= memory[STAGE_START] - memory[APPROACH]
         if over:
             next_stage(t, memory)
         order = memory[TABLE] if memory[STAGE] == 1.0 else 0.0

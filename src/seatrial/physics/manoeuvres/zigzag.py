@@ -7,17 +7,24 @@ import numpy as np
 from numba import njit
 
 from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
-from seatrial.physics.manoeuvres.steering import STAGE, TABLE, deviation, next_stage, turn_rudder, under_way
+from seatrial.physics.manoeuvres.steering import (
+    STAGE,
+    TABLE,
+    heading_deviation,
+    is_past_approach,
+    next_stage,
+    turn_rudder,
+)
 
 
 @njit(COMMAND_SIGNATURE, **OPTIONS)
 def helmsman(t, x, memory, u):
     """Table: order and switching heading [rad, positive to starboard] of every execute."""
     order = 0.0
-    if under_way(t, x, memory):
+    if is_past_approach(t, x, memory):
         place = TABLE + 2 * (int(memory[STAGE]) - 1)
         switching = memory[place + 1]
-        if deviation(x, memory) * np.sign(switching) >= abs(switching):
+        if heading_deviation(x, memory) * np.sign(switching) >= abs(switching):
             next_stage(t, memory)
         order = memory[TABLE + 2 * (int(memory[STAGE]) - 1)]
     turn_rudder(memory, order, u)

@@ -11,12 +11,12 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from seatrial.core.values import InputError, nearest
+from seatrial.core.values import InputError, spelling_hint
 
 if TYPE_CHECKING:
     from seatrial.core.equations import Model
 
-GROUP = "seatrial.models"
+ENTRY_POINT_GROUP = "seatrial.models"
 
 
 def _waterjet() -> "Model":
@@ -55,10 +55,10 @@ def _heave_pitch() -> "Model":
     return heave_pitch()
 
 
-def _heave_pitch_held() -> "Model":
-    from seatrial.physics.models.heave_pitch import heave_pitch_held
+def _heave_pitch_zoh() -> "Model":
+    from seatrial.physics.models.heave_pitch import heave_pitch_zoh
 
-    return heave_pitch_held()
+    return heave_pitch_zoh()
 
 
 def _heave_pitch_strip() -> "Model":
@@ -80,13 +80,13 @@ MODELS: dict[str, Callable[[], "Model"]] = {
     "abkowitz": _abkowitz,
     "mmg": _mmg,
     "heave_pitch": _heave_pitch,
-    "heave_pitch_held": _heave_pitch_held,
+    "heave_pitch_zoh": _heave_pitch_zoh,
     "heave_pitch_strip": _heave_pitch_strip,
     "roll": _roll,
 }
 
 
-def _checked(model: object, where: str) -> "Model":
+def _require_model(model: object, where: str) -> "Model":
     from seatrial.core.equations import Model
 
     if not isinstance(model, Model):
@@ -102,10 +102,10 @@ def model_named(name: str) -> "Model":
     """
     if name in MODELS:
         return MODELS[name]()
-    installed = {point.name: point for point in entry_points(group=GROUP)}
+    installed = {point.name: point for point in entry_points(group=ENTRY_POINT_GROUP)}
     if name not in installed:
-        raise InputError(f"unknown model '{name}'{nearest(name, sorted((*MODELS, *installed)))}")
-    return _checked(installed[name].load()(), f"installed model '{name}'")
+        raise InputError(f"unknown model '{name}'{spelling_hint(name, sorted((*MODELS, *installed)))}")
+    return _require_model(installed[name].load()(), f"installed model '{name}'")
 
 
 def model_from_file(path: Path) -> "Model":
@@ -130,4 +130,4 @@ def model_from_file(path: Path) -> "Model":
         )
         place = f"{path}, line {line or getattr(error, 'lineno', 0)}"
         raise InputError(f"model file {place}: {type(error).__name__}: {error}; mend the file") from error
-    return _checked(made, f"model file {path}")
+    return _require_model(made, f"model file {path}")

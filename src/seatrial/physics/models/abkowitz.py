@@ -49,7 +49,7 @@ def _series(sheet: Sheet, force: str, terms: Sequence[str], variables: dict[str,
 
 
 @cache
-def _full() -> Model:
+def _full_model() -> Model:
     sheet = Sheet("abkowitz", ABKOWITZ, "Taylor expansion to third order")
     u, v, r, psi, x0, y0 = sheet.states("u v r psi x0 y0")
     delta = sheet.input("delta")
@@ -101,5 +101,5 @@ def abkowitz(terms: Sequence[str] = STANDARD) -> Model:
     Raises:
         InputError: a term is unknown; the nearest is named.
     """
-    model = _full()
+    model = _full_model()
     return model.with_parameters(model.parameters.only_free(terms))

@@ -16,7 +16,7 @@ DAMPINGS = {"b33": "kg/s", "b35": "kg m/s", "b55": "kg m^2/s", "b53": "kg m/s"}
 STIFFNESSES = {"c33": "N/m", "c35": "N/rad", "c53": "N m/m", "c55": "N m/rad"}
 COEFFICIENTS = (*MASSES, *DAMPINGS)
 STRIP = "Salvesen, Tuck & Faltinsen 1970, speed terms without a transom"
-_AT_REST = (
+_ZERO_SPEED_COEFFICIENTS = (
     ("a33", "kg", "added mass, heave"),
     ("b33", "kg/s", "damping, heave"),
     ("a35_0", "kg m", "added mass between heave and pitch, at rest"),
@@ -24,8 +24,8 @@ _AT_REST = (
     ("a55_0", "kg m^2", "added moment of inertia, at rest"),
     ("b55_0", "kg m^2/s", "damping, pitch, at rest"),
 )
-_WORDS = {"a": "added mass", "b": "damping", "c": "restoring"}
-_PAIRS = {"33": "heave", "35": "heave from pitch", "53": "pitch from heave", "55": "pitch"}
+_COEFFICIENT_KINDS = {"a": "added mass", "b": "damping", "c": "restoring"}
+_COUPLINGS = {"33": "heave", "35": "heave from pitch", "53": "pitch from heave", "55": "pitch"}
 START_DAMPING_RATIO = 0.3
 
 
@@ -33,7 +33,7 @@ def _coefficients(sheet: Sheet) -> dict[str, sp.Symbol]:
     named = {}
     for name, unit in (MASSES | DAMPINGS | STIFFNESSES).items():
         free = name in COEFFICIENTS
-        meaning = f"{_WORDS[name[0]]}, {_PAIRS[name[1:]]}"
+        meaning = f"{_COEFFICIENT_KINDS[name[0]]}, {_COUPLINGS[name[1:]]}"
         latex = f"{name[0]}_{{{name[1:]}}}"
         named[name] = sheet.parameter(name, unit=unit, meaning=meaning, source=QI, free=free, latex=latex)
     return named
@@ -48,7 +48,7 @@ def _fin(sheet: Sheet, number: int) -> tuple[sp.Expr, sp.Expr]:
     return lift, -x * lift
 
 
-def _written(name: str, meaning: str, *, is_held: bool = False) -> Model:
+def _assembled_model(name: str, meaning: str, *, is_held: bool = False) -> Model:
     sheet = Sheet(name, QI, meaning)
     states = sheet.states("z z_dot theta theta_dot")
     _plant(sheet, states, _coefficients(sheet), is_held=is_held)
@@ -87,13 +87,13 @@ def heave_pitch() -> Model:
     Inputs F3 [N], M5 [N m] of the waves, continuous between samples; delta_f1, delta_f2 [rad] of the fins, held.
     Free: a33 a35 a55 a53 b33 b35 b55 b53; c33 c35 c53 c55 may be freed too. The ship gives m, I5 and the stiffnesses.
     """
-    return _written("heave_pitch", "heave and pitch in waves")
+    return _assembled_model("heave_pitch", "heave and pitch in waves")
 
 
 @cache
-def heave_pitch_held() -> Model:
+def heave_pitch_zoh() -> Model:
     """The same with the wave force held over each sample, as the papers discretise it (Qi et al. 2025, eq. (8))."""
-    return _written("heave_pitch_held", "heave and pitch, wave force held between samples", is_held=True)
+    return _assembled_model("heave_pitch_zoh", "heave and pitch, wave force held between samples", is_held=True)
 
 
 @cache
@@ -108,11 +108,11 @@ def heave_pitch_strip() -> Model:
     states = sheet.states("z z_dot theta theta_dot")
     u, omega_e = sheet.input("u", is_held=True), sheet.input("omega_e", is_held=True)
     at_rest = {}
-    for name, unit, meaning in _AT_REST:
+    for name, unit, meaning in _ZERO_SPEED_COEFFICIENTS:
         latex = f"{name[0]}_{{{name[1:3]}}}" + ("^0" if name.endswith("_0") else "")
         at_rest[name] = sheet.parameter(name, unit=unit, meaning=meaning, source=STRIP, free=True, latex=latex)
     c = {
-        name: sheet.parameter(name, unit=unit, meaning=f"restoring, {_PAIRS[name[1:]]}", source=QI)
+        name: sheet.parameter(name, unit=unit, meaning=f"restoring, {_COUPLINGS[name[1:]]}", source=QI)
         for name, unit in STIFFNESSES.items()
     }
     a33, b33, a35, b35 = (at_rest[n] for n in ("a33", "b33", "a35_0", "b35_0"))
@@ -128,7 +128,7 @@ def heave_pitch_strip() -> Model:
     return sheet.model()
 
 
-def physics_start(values: dict[str, float]) -> dict[str, float]:
+def physical_start_values(values: dict[str, float]) -> dict[str, float]:
     """The eight coefficients where nothing is known of them, from m, I5, c33 and c55.
 
     Added mass as large as the mass, no coupling, damping ratio .3 in both motions.

@@ -71,16 +71,16 @@ def _motion(sheet: Sheet, u: sp.Symbol, v: sp.Symbol, r: sp.Symbol, delta: sp.Sy
     )  # fmt: skip
 
 
-def _hull(sheet: Sheet, at: _Motion) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
+def _hull(sheet: Sheet, motion: _Motion) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
     c = {name: _coefficient(sheet, name, free=True) for name in HULL}
     Y_0, N_0 = (_coefficient(sheet, n, "asymmetry of the hull") for n in ("Y_0", "N_0"))
     N_rr = _coefficient(sheet, "N_rr", "yaw drag r|r|, for turning on the spot")
-    v, r_L, U, s = at.v, at.r_L, at.U, at.s_u
+    v, r_L, U, s = motion.v, motion.r_L, motion.U, motion.s_u
     r_s = sheet.bind("r_s", s * r_L, "r' U, odd in the direction of advance", "m/s")
     v_s = sheet.bind("v_s", s * v, "v, odd in the direction of advance", "m/s")
     X_H = sheet.bind(
         "X_H",
-        at.q
+        motion.q
         * (
             s * (-c["R_0"] * U**2 + c["X_vv"] * v**2 + c["X_rr"] * r_L**2 + c["X_vvvv"] * v**4 / U**2)
             + c["X_vr"] * v * r_L
@@ -91,14 +91,16 @@ def _hull(sheet: Sheet, at: _Motion) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
     cubic = c["Y_vvv"] * v**3 + c["Y_vvr"] * v**2 * r_s + c["Y_vrr"] * v * r_L**2 + c["Y_rrr"] * r_s * r_L**2
     Y_H = sheet.bind(
         "Y_H",
-        at.q * (Y_0 * U**2 + c["Y_v"] * v * U + c["Y_r"] * r_s * U + cubic / U),
+        motion.q * (Y_0 * U**2 + c["Y_v"] * v * U + c["Y_r"] * r_s * U + cubic / U),
         f"{YASUKAWA}, hull force polynomial; Y_0 {EXTENSION}",
         "N",
     )
     cubic = c["N_vvv"] * v_s * v**2 + c["N_vvr"] * v**2 * r_L + c["N_vrr"] * v_s * r_L**2 + c["N_rrr"] * r_L**3
     N_H = sheet.bind(
         "N_H",
-        at.q * at.L * (N_0 * U**2 + c["N_v"] * v_s * U + c["N_r"] * r_L * U + cubic / U + N_rr * r_L * sp.Abs(r_L)),
+        motion.q
+        * motion.L
+        * (N_0 * U**2 + c["N_v"] * v_s * U + c["N_r"] * r_L * U + cubic / U + N_rr * r_L * sp.Abs(r_L)),
         f"{YASUKAWA}, hull force polynomial; N_0, N_rr {EXTENSION}",
         "N m",
     )
@@ -116,24 +118,24 @@ class _Propeller:
     N_P: sp.Symbol
 
 
-def _inflow(sheet: Sheet, at: _Motion) -> sp.Symbol:
+def _propeller_inflow(sheet: Sheet, motion: _Motion) -> sp.Symbol:
     """Axial inflow u (1 - w_P) of the propeller; no wake where the ship goes astern."""
     x_P = sheet.parameter("x_P_prime", -0.48, meaning="propeller position over L", source=YASUKAWA, latex="x'_P")
     w_P0 = sheet.parameter("w_P0", meaning="wake fraction straight ahead", latex="w_{P0}")
     C_1 = sheet.parameter("C_1", 0.0, meaning="change of wake with drift, rate", latex="C_1")
     C_2p = sheet.parameter("C_2_plus", 1.0, meaning="limit of 1 - w_P over 1 - w_P0, beta_P > 0", latex="C_2^+")
     C_2m = sheet.parameter("C_2_minus", 1.0, meaning="limit of 1 - w_P over 1 - w_P0, beta_P < 0", latex="C_2^-")
-    beta_P = sheet.bind("beta_P", at.beta - x_P * at.r_L / at.U, f"{YASUKAWA}, beta_P", "rad")
+    beta_P = sheet.bind("beta_P", motion.beta - x_P * motion.r_L / motion.U, f"{YASUKAWA}, beta_P", "rad")
     C_2 = sheet.bind("C_2", sp.Piecewise((C_2p, beta_P > 0), (C_2m, True)), f"{YASUKAWA}, change of wake with beta_P")
     w_P = sheet.bind(
         "w_P",
         1 - (1 - w_P0) * (1 + (1 - sp.exp(-C_1 * sp.Abs(beta_P))) * (C_2 - 1)),
         f"{YASUKAWA}, change of wake with beta_P",
     )
-    return sheet.bind("u_P", sp.Piecewise((at.u * (1 - w_P), at.u > 0), (at.u, True)), "u (1 - w_P)", "m/s")
+    return sheet.bind("u_P", sp.Piecewise((motion.u * (1 - w_P), motion.u > 0), (motion.u, True)), "u (1 - w_P)", "m/s")
 
 
-def _propeller(sheet: Sheet, at: _Motion, n: sp.Symbol) -> _Propeller:
+def _propeller(sheet: Sheet, motion: _Motion, n: sp.Symbol) -> _Propeller:
     D_P = sheet.parameter("D_P", unit="m", meaning="propeller diameter")
     t_P = sheet.parameter("t_P", meaning="thrust deduction", latex="t_P")
     k_0, k_1, k_2 = (sheet.parameter(f"k_{i}", meaning=f"K_T polynomial, J_P^{i}") for i in range(3))
@@ -147,27 +149,27 @@ def _propeller(sheet: Sheet, at: _Motion, n: sp.Symbol) -> _Propeller:
         _coefficient(sheet, name, "side force or moment of the propeller astern")
         for name in ("Y_nn", "Y_nu", "N_nn", "N_nu")
     )
-    u_P = _inflow(sheet, at)
+    u_P = _propeller_inflow(sheet, motion)
     n_D = sheet.bind("n_D", n * D_P, "n D_P", "m/s")
-    u_a = sheet.bind("u_a", sp.Piecewise((at.u, at.u < J_a * n_D), (J_a * n_D, True)), KITAGAWA, "m/s")
-    u_s = sheet.bind("u_s", sp.Piecewise((at.u, at.u < J_s * n_D), (J_s * n_D, True)), KITAGAWA, "m/s")
+    u_a = sheet.bind("u_a", sp.Piecewise((motion.u, motion.u < J_a * n_D), (J_a * n_D, True)), KITAGAWA, "m/s")
+    u_s = sheet.bind("u_s", sp.Piecewise((motion.u, motion.u < J_s * n_D), (J_s * n_D, True)), KITAGAWA, "m/s")
     driven = sp.Piecewise((n_D * (k_0 * n_D + k_1 * u_P), n >= 0), (n_D * (a_0 * n_D + a_1 * u_a), True))
     thrust = sheet.output(
         "thrust",
-        at.rho * D_P**2 * (driven + k_2 * u_P * sp.Abs(u_P)),
+        motion.rho * D_P**2 * (driven + k_2 * u_P * sp.Abs(u_P)),
         f"{YASUKAWA}, thrust, T = rho n^2 D_P^4 K_T; astern {KITAGAWA}",
         "N",
     )
     X_P = sheet.bind("X_P", (1 - t_P) * thrust, f"{YASUKAWA}, propeller force", "N")
     side = sp.Piecewise((sp.Integer(0), n >= 0), (n_D * (Y_nn * n_D + Y_nu * u_s), True))
-    Y_P = sheet.bind("Y_P", Y_T * thrust + at.q * side, f"{EXTENSION}; astern {KITAGAWA}", "N")
+    Y_P = sheet.bind("Y_P", Y_T * thrust + motion.q * side, f"{EXTENSION}; astern {KITAGAWA}", "N")
     turn = sp.Piecewise((sp.Integer(0), n >= 0), (n_D * (N_nn * n_D + N_nu * u_s), True))
-    N_P = sheet.bind("N_P", at.L * (N_T * thrust + at.q * turn), f"{EXTENSION}; astern {KITAGAWA}", "N m")
+    N_P = sheet.bind("N_P", motion.L * (N_T * thrust + motion.q * turn), f"{EXTENSION}; astern {KITAGAWA}", "N m")
     return _Propeller(u_P, n_D, D_P, thrust, X_P, Y_P, N_P)
 
 
 def _rudder_inflow(
-    sheet: Sheet, at: _Motion, by: _Propeller, n: sp.Symbol, H_R: sp.Symbol
+    sheet: Sheet, motion: _Motion, propeller: _Propeller, n: sp.Symbol, H_R: sp.Symbol
 ) -> tuple[sp.Symbol, sp.Symbol]:
     epsilon = sheet.parameter("epsilon", meaning="wake ratio, rudder over propeller", latex=r"\varepsilon")
     kappa = sheet.parameter("kappa", meaning="slipstream acceleration at the rudder", latex=r"\kappa")
@@ -181,34 +183,41 @@ def _rudder_inflow(
     gamma_p = sheet.parameter("gamma_R_plus", meaning="flow straightening, beta_R > 0", latex=r"\gamma_R^+")
     gamma_m = sheet.parameter("gamma_R_minus", meaning="flow straightening, beta_R < 0", latex=r"\gamma_R^-")
     l_R = sheet.parameter("l_R_prime", meaning="effective position of the rudder over L", latex=r"\ell'_R")
-    eta = sheet.bind("eta", by.D_P / H_R, f"{YASUKAWA}, eta = D_P / H_R")
-    z = sheet.bind("z", by.u_P**2 + 8 / sp.pi * by.thrust / (at.rho * by.D_P**2), "square of the slipstream", "m^2/s^2")
-    z_root = sheet.bind("z_root", sp.sqrt(z**2 + at.U_0**4), EXTENSION, "m^2/s^2")
+    eta = sheet.bind("eta", propeller.D_P / H_R, f"{YASUKAWA}, eta = D_P / H_R")
+    z = sheet.bind(
+        "z",
+        propeller.u_P**2 + 8 / sp.pi * propeller.thrust / (motion.rho * propeller.D_P**2),
+        "square of the slipstream",
+        "m^2/s^2",
+    )
+    z_root = sheet.bind("z_root", sp.sqrt(z**2 + motion.U_0**4), EXTENSION, "m^2/s^2")
     u_inf = sheet.bind("u_inf", sp.sqrt((z + z_root) / 2), "slipstream far aft, positive part of z", "m/s")
-    backwash = sp.Piecewise((sp.Integer(0), n >= 0), (kappa_a * by.n_D, True))
+    backwash = sp.Piecewise((sp.Integer(0), n >= 0), (kappa_a * propeller.n_D, True))
     u_slip = sheet.bind(
         "u_slip",
-        epsilon * (by.u_P + kappa * (u_inf - by.u_P)) + backwash,
+        epsilon * (propeller.u_P + kappa * (u_inf - propeller.u_P)) + backwash,
         f"{YASUKAWA}, u_R inside the slipstream; astern {KITAGAWA}",
         "m/s",
     )
-    u_free = sheet.bind("u_free", epsilon * by.u_P, f"{YASUKAWA}, u_R", "m/s")
+    u_free = sheet.bind("u_free", epsilon * propeller.u_P, f"{YASUKAWA}, u_R", "m/s")
     square = sheet.bind(
         "u_R_2",
         eta * u_slip * sp.Abs(u_slip) + (1 - eta) * u_free * sp.Abs(u_free),
         f"{YASUKAWA}, u_R, squared",
         "m^2/s^2",
     )
-    root = sheet.bind("u_R_abs", sp.sqrt(square**2 + at.U_0**4), EXTENSION, "m^2/s^2")
+    root = sheet.bind("u_R_abs", sp.sqrt(square**2 + motion.U_0**4), EXTENSION, "m^2/s^2")
     u_R = sheet.bind("u_R", square / sp.sqrt(root), f"{YASUKAWA}, u_R", "m/s")
-    v_B = sheet.bind("v_B", at.U * at.beta - l_R * at.r_L, f"{YASUKAWA}, U beta_R", "m/s")
+    v_B = sheet.bind("v_B", motion.U * motion.beta - l_R * motion.r_L, f"{YASUKAWA}, U beta_R", "m/s")
     gamma_R = sheet.bind(
         "gamma_R", sp.Piecewise((gamma_p, v_B > 0), (gamma_m, True)), f"{YASUKAWA}, gamma_R by the side of beta_R"
     )
     return u_R, sheet.bind("v_R", gamma_R * v_B, f"{YASUKAWA}, v_R", "m/s")
 
 
-def _rudder(sheet: Sheet, at: _Motion, by: _Propeller, n: sp.Symbol) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
+def _rudder(
+    sheet: Sheet, motion: _Motion, propeller: _Propeller, n: sp.Symbol
+) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
     A_R = sheet.parameter("A_R", unit="m^2", meaning="movable rudder area")
     H_R = sheet.parameter("H_R", unit="m", meaning="rudder span")
     x_R = sheet.parameter("x_R_prime", -0.5, meaning="rudder position over L", source=YASUKAWA, latex="x'_R")
@@ -217,23 +226,23 @@ def _rudder(sheet: Sheet, at: _Motion, by: _Propeller, n: sp.Symbol) -> tuple[sp
     a_H = sheet.parameter("a_H", meaning="rudder force increase", latex="a_H")
     x_H = sheet.parameter("x_H_prime", meaning="position of the additional force over L", latex="x'_H")
     Y_dd, N_dd = (_coefficient(sheet, name, "even in the rudder angle, single screw") for name in ("Y_dd", "N_dd"))
-    u_R, v_R = _rudder_inflow(sheet, at, by, n, H_R)
-    sine = sheet.bind("sin_delta", sp.sin(at.delta_R), "of the rudder angle")
-    cosine = sheet.bind("cos_delta", sp.cos(at.delta_R), "of the rudder angle")
-    U_R = sheet.bind("U_R", sp.sqrt(u_R**2 + v_R**2 + at.U_0**2), f"{YASUKAWA}, U_R", "m/s")
+    u_R, v_R = _rudder_inflow(sheet, motion, propeller, n, H_R)
+    sine = sheet.bind("sin_delta", sp.sin(motion.delta_R), "of the rudder angle")
+    cosine = sheet.bind("cos_delta", sp.cos(motion.delta_R), "of the rudder angle")
+    U_R = sheet.bind("U_R", sp.sqrt(u_R**2 + v_R**2 + motion.U_0**2), f"{YASUKAWA}, U_R", "m/s")
     F_N = sheet.bind(
         "F_N",
-        at.rho / 2 * A_R * f_alpha * U_R * (u_R * sine - v_R * cosine),
+        motion.rho / 2 * A_R * f_alpha * U_R * (u_R * sine - v_R * cosine),
         f"{YASUKAWA}, normal force: U_R sin(alpha_R) = u_R sin(delta) - v_R cos(delta)",
         "N",
     )
-    even = sheet.bind("even", at.q * (at.U * at.delta_R) ** 2, EXTENSION, "N")
+    even = sheet.bind("even", motion.q * (motion.U * motion.delta_R) ** 2, EXTENSION, "N")
     F_C = sheet.bind("F_C", F_N * cosine, "athwartships part of the normal force", "N")
     X_R = sheet.bind("X_R", -(1 - t_R) * F_N * sine, f"{YASUKAWA}, rudder forces", "N")
     Y_R = sheet.bind("Y_R", -(1 + a_H) * F_C + Y_dd * even, f"{YASUKAWA}, rudder forces; Y_dd {EXTENSION}", "N")
     N_R = sheet.bind(
         "N_R",
-        at.L * (-(x_R + a_H * x_H) * F_C + N_dd * even),
+        motion.L * (-(x_R + a_H * x_H) * F_C + N_dd * even),
         f"{YASUKAWA}, rudder forces; N_dd {EXTENSION}",
         "N m",
     )
@@ -241,7 +250,7 @@ def _rudder(sheet: Sheet, at: _Motion, by: _Propeller, n: sp.Symbol) -> tuple[sp
 
 
 def _wind(
-    sheet: Sheet, at: _Motion, psi: sp.Symbol, current: tuple[sp.Symbol, sp.Symbol]
+    sheet: Sheet, motion: _Motion, psi: sp.Symbol, current: tuple[sp.Symbol, sp.Symbol]
 ) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
     """Wind force; the apparent wind is that of the ship over ground, current included."""
     speed, direction = sheet.input("wind_speed"), sheet.input("wind_direction")
@@ -259,9 +268,9 @@ def _wind(
     )
     air_north = sheet.bind("air_north", north + speed * sp.cos(direction), "water against air", "m/s")
     air_east = sheet.bind("air_east", east + speed * sp.sin(direction), "water against air", "m/s")
-    u_A = sheet.bind("u_A", at.u + air_north * cosine + air_east * sine, "apparent wind from ahead", "m/s")
-    v_A = sheet.bind("v_A", at.v - air_north * sine + air_east * cosine, "apparent wind from starboard", "m/s")
-    V_A = sheet.bind("V_A", sp.sqrt(u_A**2 + v_A**2 + at.U_0**2), "apparent wind speed", "m/s")
+    u_A = sheet.bind("u_A", motion.u + air_north * cosine + air_east * sine, "apparent wind from ahead", "m/s")
+    v_A = sheet.bind("v_A", motion.v - air_north * sine + air_east * cosine, "apparent wind from starboard", "m/s")
+    V_A = sheet.bind("V_A", sp.sqrt(u_A**2 + v_A**2 + motion.U_0**2), "apparent wind speed", "m/s")
     k = sheet.bind("cos_gamma", u_A / V_A, "of the apparent direction, off the bow")
     s = sheet.bind("sin_gamma", v_A / V_A, "of the apparent direction, positive from starboard")
     q_A = sheet.bind("q_A", rho_air / 2 * V_A**2, "dynamic pressure of the wind", "N/m^2")
@@ -270,10 +279,10 @@ def _wind(
     C_N = sheet.bind("C_N", c["C_N1"] * s + c["C_N2"] * 2 * s * k + c["C_N3"] * (3 * s - 4 * s**3), WIND)
     X_W = sheet.bind("X_W", q_A * A_T * C_X, WIND, "N")
     Y_W = sheet.bind("Y_W", q_A * A_L * C_Y, WIND, "N")
-    return X_W, Y_W, sheet.bind("N_W", q_A * A_L * at.L * C_N, WIND, "N m")
+    return X_W, Y_W, sheet.bind("N_W", q_A * A_L * motion.L * C_N, WIND, "N m")
 
 
-def _rates(sheet: Sheet, at: _Motion, X: sp.Symbol, Y: sp.Symbol, N: sp.Symbol) -> None:
+def _accelerations(sheet: Sheet, motion: _Motion, X: sp.Symbol, Y: sp.Symbol, N: sp.Symbol) -> None:
     """Accelerations; X_m, Y_m, N_m are what a balance feels that holds the ship in steady motion."""
     m = sheet.parameter("m", unit="kg", meaning="mass")
     x_G = sheet.parameter("x_G", unit="m", meaning="centre of gravity forward of midship")
@@ -282,19 +291,19 @@ def _rates(sheet: Sheet, at: _Motion, X: sp.Symbol, Y: sp.Symbol, N: sp.Symbol) 
     m_y = sheet.parameter("m_y_prime", meaning="sway added mass over rho/2 L^2 d", latex="m'_y")
     J_z = sheet.parameter("J_z_prime", meaning="yaw added inertia over rho/2 L^4 d", latex="J'_z")
     equation = f"{YASUKAWA}, equations of motion"
-    unit = sheet.bind("m_L", at.q * at.L, "rho/2 L^2 d", "kg")
+    unit = sheet.bind("m_L", motion.q * motion.L, "rho/2 L^2 d", "kg")
     M_u = sheet.bind("M_u", m + m_x * unit, equation, "kg")
     M_v = sheet.bind("M_v", m + m_y * unit, equation, "kg")
     M_c = sheet.bind("M_c", m * x_G, equation, "kg m")
-    M_r = sheet.bind("M_r", I_z + M_c * x_G + J_z * unit * at.L**2, equation, "kg m^2")
+    M_r = sheet.bind("M_r", I_z + M_c * x_G + J_z * unit * motion.L**2, equation, "kg m^2")
     D = sheet.bind("D_M", M_v * M_r - M_c**2, "determinant of the inertia matrix", "kg^2 m^2")
-    u_r = sheet.bind("u_r", at.u * at.r, equation, "m/s^2")
-    X_m = sheet.bind("X_m", X + M_v * at.v * at.r + M_c * at.r**2, equation, "N")
+    u_r = sheet.bind("u_r", motion.u * motion.r, equation, "m/s^2")
+    X_m = sheet.bind("X_m", X + M_v * motion.v * motion.r + M_c * motion.r**2, equation, "N")
     Y_m = sheet.bind("Y_m", Y - M_u * u_r, equation, "N")
     N_m = sheet.bind("N_m", N - M_c * u_r, equation, "N m")
-    sheet.rate(at.u, X_m / M_u, equation)
-    sheet.rate(at.v, (Y_m * M_r - N_m * M_c) / D, f"{equation}, inertia matrix inverted")
-    sheet.rate(at.r, (N_m * M_v - Y_m * M_c) / D, f"{equation}, inertia matrix inverted")
+    sheet.rate(motion.u, X_m / M_u, equation)
+    sheet.rate(motion.v, (Y_m * M_r - N_m * M_c) / D, f"{equation}, inertia matrix inverted")
+    sheet.rate(motion.r, (N_m * M_v - Y_m * M_c) / D, f"{equation}, inertia matrix inverted")
 
 
 @cache
@@ -318,5 +327,5 @@ def mmg() -> Model:
     X = sheet.bind("X_sum", X_H + by.X_P + X_R + X_W, f"{YASUKAWA}, X of the equations of motion", "N")
     Y = sheet.bind("Y_sum", Y_H + by.Y_P + Y_R + Y_W, f"{YASUKAWA}, Y of the equations of motion", "N")
     N = sheet.bind("N_sum", N_H + by.N_P + N_R + N_W, f"{YASUKAWA}, N_m of the equations of motion", "N m")
-    _rates(sheet, at, X, Y, N)
+    _accelerations(sheet, at, X, Y, N)
     return sheet.model()

@@ -13,8 +13,8 @@ from seatrial.physics.models.pose import pose_rates
 
 NOMOTO = "Nomoto et al. 1957, Int. Shipbuilding Progress 4(35), 354-370"
 NORRBIN = "Norrbin 1963, cubic manoeuvring characteristic"
-SECOND = "Nomoto et al. 1957, transfer function of second order, observer form"
-CHOSEN = "start value, chosen"
+NOMOTO_SECOND_ORDER = "Nomoto et al. 1957, transfer function of second order, observer form"
+CHOSEN_START = "start value, chosen"
 
 
 def _speed(sheet: Sheet) -> sp.Symbol:
@@ -36,8 +36,8 @@ def nomoto() -> Model:
     r, psi, x0, y0 = sheet.states("r psi x0 y0")
     delta = _rudder(sheet)
     U = _speed(sheet)
-    K = sheet.parameter("K", 0.1, "1/s", "gain", CHOSEN, free=True)
-    T = sheet.parameter("T", 10.0, "s", "time constant", CHOSEN, free=True)
+    K = sheet.parameter("K", 0.1, "1/s", "gain", CHOSEN_START, free=True)
+    T = sheet.parameter("T", 10.0, "s", "time constant", CHOSEN_START, free=True)
     alpha = sheet.parameter(
         "alpha", 0.0, "s^2/rad^2", "cubic manoeuvring coefficient", "linear unless freed", scale=1.0
     )
@@ -57,15 +57,17 @@ def nomoto2() -> Model:
     r, r_rest, psi, x0, y0 = sheet.states("r r_rest psi x0 y0")
     delta = _rudder(sheet)
     U = _speed(sheet)
-    K = sheet.parameter("K", 0.1, "1/s", "gain", CHOSEN, free=True)
-    T_1 = sheet.parameter("T_1", 20.0, "s", "slow time constant", CHOSEN, free=True)
-    T_2 = sheet.parameter("T_2", 2.0, "s", "fast time constant", CHOSEN, free=True)
-    T_3 = sheet.parameter("T_3", 4.0, "s", "time constant of the zero", CHOSEN, free=True)
+    K = sheet.parameter("K", 0.1, "1/s", "gain", CHOSEN_START, free=True)
+    T_1 = sheet.parameter("T_1", 20.0, "s", "slow time constant", CHOSEN_START, free=True)
+    T_2 = sheet.parameter("T_2", 2.0, "s", "fast time constant", CHOSEN_START, free=True)
+    T_3 = sheet.parameter("T_3", 4.0, "s", "time constant of the zero", CHOSEN_START, free=True)
     alpha = sheet.parameter(
         "alpha", 0.0, "s^2/rad^2", "cubic manoeuvring coefficient", "linear unless freed", scale=1.0
     )
-    r_dot = sheet.bind("r_dot", r_rest + K * T_3 / (T_1 * T_2) * delta, SECOND, "rad/s^2")
-    sheet.rate(r, r_dot, SECOND)
-    sheet.rate(r_rest, (K * delta - r - alpha * r**3 - (T_1 + T_2) * r_dot) / (T_1 * T_2), f"{SECOND}; {NORRBIN}")
+    r_dot = sheet.bind("r_dot", r_rest + K * T_3 / (T_1 * T_2) * delta, NOMOTO_SECOND_ORDER, "rad/s^2")
+    sheet.rate(r, r_dot, NOMOTO_SECOND_ORDER)
+    sheet.rate(
+        r_rest, (K * delta - r - alpha * r**3 - (T_1 + T_2) * r_dot) / (T_1 * T_2), f"{NOMOTO_SECOND_ORDER}; {NORRBIN}"
+    )
     pose_rates(sheet, U, sp.Integer(0), r, psi, x0, y0)
     return sheet.model()

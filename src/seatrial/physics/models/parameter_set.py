@@ -28,10 +28,10 @@ class ParameterSet:
     def __post_init__(self) -> None:
         object.__setattr__(self, "values", MappingProxyType(dict(self.values)))
 
-    def applied(self, model: Model) -> Model:
+    def applied_to(self, model: Model) -> Model:
         """`model` with the ship's particulars and these values.
 
         Raises:
             InputError: the model lacks one of the parameters, or still misses a value.
         """
-        return model.with_values(self.values, source=self.source).of_ship(self.ship)
+        return model.with_values(self.values, source=self.source).with_ship(self.ship)

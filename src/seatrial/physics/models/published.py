@@ -7,9 +7,9 @@ from collections.abc import Callable, Mapping
 from functools import cache, partial
 
 from seatrial.core.equations import Model
-from seatrial.core.values import InputError, Ship, nearest
+from seatrial.core.values import InputError, Ship, spelling_hint
 from seatrial.physics.models.parameter_set import ParameterSet
-from seatrial.physics.models.qi2025 import HEADINGS, theory
+from seatrial.physics.models.qi2025 import HEADINGS, theoretical_coefficients
 
 YASUKAWA = "Yasukawa & Yoshimura 2015, J Mar Sci Technol 20, 37-52, doi 10.1007/s00773-014-0293-y"
 MIYAUCHI = "Miyauchi et al. 2022, J Mar Sci Technol 27, 1065-1083, doi 10.1007/s00773-022-00889-3, captive tests"
@@ -84,14 +84,14 @@ _ESSO_NOTE = (
 @cache
 def esso_osaka() -> ParameterSet:
     """The 3 m model of Esso Osaka (free-running data set of Osaka University): captive-test values, converted."""
-    from seatrial.physics.hydro.empirical import cross_flow
+    from seatrial.physics.hydro.empirical import cross_flow_coefficients
 
     ship = Ship(
         "Esso Osaka 3 m model", _ESSO_SHIP, "FRT-DS-ESSO data set, Wakita et al. 2022, Miyauchi et al. 2022", 108.33
     )
     unit = 0.5 * 998.0 * 3.0**4 * 0.201
     converted = {
-        **cross_flow(0.9665, 2.217, 0.8097),
+        **cross_flow_coefficients(0.9665, 2.217, 0.8097),
         "J_z_prime": 0.0286 - _ESSO_SHIP["I_z"] / unit,
         "C_1": 1.5, "C_2_plus": 2.6, "C_2_minus": 2.6,
         "kappa": 0.288 / 1.42, "kappa_astern": 0.144 * (8 * 0.22 / 3.141592653589793) ** 0.5,
@@ -105,7 +105,7 @@ PARAMETER_SETS: dict[str, Callable[[], ParameterSet]] = {
     "kvlcc2": kvlcc2_l7,
     "kvlcc2-full": kvlcc2_full,
     "esso-osaka": esso_osaka,
-    **{f"qi2025-{heading}": partial(theory, heading) for heading in HEADINGS},
+    **{f"qi2025-{heading}": partial(theoretical_coefficients, heading) for heading in HEADINGS},
 }
 
 
@@ -116,7 +116,7 @@ def parameter_set(name: str) -> ParameterSet:
         InputError: there is none of that name; the nearest is given.
     """
     if name not in PARAMETER_SETS:
-        raise InputError(f"unknown parameter set '{name}'{nearest(name, sorted(PARAMETER_SETS))}")
+        raise InputError(f"unknown parameter set '{name}'{spelling_hint(name, sorted(PARAMETER_SETS))}")
     return PARAMETER_SETS[name]()
 
 
@@ -124,4 +124,4 @@ def kvlcc2() -> Model:
     """The MMG model of the 7 m KVLCC2 with its published coefficients."""
     from seatrial.physics.models.mmg import mmg
 
-    return kvlcc2_l7().applied(mmg())
+    return kvlcc2_l7().applied_to(mmg())

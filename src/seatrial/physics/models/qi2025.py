@@ -19,23 +19,23 @@ SHIP = Ship(
     SOURCE,
 )  # fmt: skip
 # in the order of COEFFICIENTS, magnitudes as printed
-_PRINTED = {
+_PRINTED_COEFFICIENTS = {
     90: (8.045e5, 7.753e6, 2.595e8, 1.479e7, 9.369e5, 1.159e7, 2.885e8, 3.324e6),
     135: (6.311e5, 3.281e6, 1.525e8, 7.865e6, 8.033e5, 9.429e6, 2.091e8, 2.267e6),
     180: (6.101e5, 2.663e6, 1.377e8, 6.611e6, 7.400e5, 8.951e6, 1.873e8, 2.356e6),
 }
-HEADINGS = tuple(_PRINTED)
+HEADINGS = tuple(_PRINTED_COEFFICIENTS)
 
 
-def theory(heading: int, *, printed_sign: bool = False) -> ParameterSet:
+def theoretical_coefficients(heading: int, *, printed_sign: bool = False) -> ParameterSet:
     """The theoretical coefficients at a heading of 90, 135 or 180 degrees, 18 kn; b53 negative unless as printed.
 
     Raises:
         InputError: the paper gives none at this heading.
     """
-    if heading not in _PRINTED:
+    if heading not in _PRINTED_COEFFICIENTS:
         raise InputError(f"Qi et al. 2025 give no theoretical values at {heading} degrees; known are 90, 135, 180")
-    values = dict(zip(COEFFICIENTS, _PRINTED[heading], strict=True))
+    values = dict(zip(COEFFICIENTS, _PRINTED_COEFFICIENTS[heading], strict=True))
     if not printed_sign:
         values["b53"] = -values["b53"]
     note = "b53 positive as printed" if printed_sign else "b53 negative by strip theory; the tables drop the sign"

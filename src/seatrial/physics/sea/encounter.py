@@ -12,14 +12,14 @@ from numpy.typing import ArrayLike
 
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.hydro.excitation import FASTEST, encounter_frequency
+from seatrial.physics.hydro.excitation import MAX_SHIP_SPEED, encounter_frequency
 from seatrial.physics.sea.spectrum import Spectrum
 
-__all__ = ["encounter_density", "encounter_frequency", "speed_factor", "wave_of", "waves_met"]
+__all__ = ["encounter_density", "encounter_frequency", "speed_factor", "wave_frequency", "waves_at_encounter"]
 
-_BEAM = 1e-12
+_BEAM_TOLERANCE = 1e-12
 # rad/s: ripples beyond this do not exist, and a ship so slow as to overtake nothing else stands still
-_RIPPLES = 1e6
+_HIGHEST_FREQUENCY = 1e6
 
 
 def speed_factor(U: float, beta: float) -> float:
@@ -28,17 +28,17 @@ def speed_factor(U: float, beta: float) -> float:
     Raises:
         InputError: U [m/s] is negative or beyond any ship, or beta [rad] lies outside 0 to pi.
     """
-    if not 0.0 <= U <= FASTEST:
-        raise InputError(f"the ship speed must lie between 0 and {FASTEST:g} m/s, not {U:g}; is it in knots?")
+    if not 0.0 <= U <= MAX_SHIP_SPEED:
+        raise InputError(f"the ship speed must lie between 0 and {MAX_SHIP_SPEED:g} m/s, not {U:g}; is it in knots?")
     if not 0.0 <= beta <= math.pi:
         raise InputError(
             f"the heading to the waves must lie between 0 and pi rad (head), not {beta:g}; is it in degrees?"
         )
     cosine = math.cos(beta)
-    return U * cosine / G if abs(cosine) > _BEAM else 0.0
+    return U * cosine / G if abs(cosine) > _BEAM_TOLERANCE else 0.0
 
 
-def waves_met(omega_e: float, U: float, beta: float) -> tuple[float, ...]:
+def waves_at_encounter(omega_e: float, U: float, beta: float) -> tuple[float, ...]:
     """The wave frequencies [rad/s] met at |omega_e| = `omega_e` [rad/s], rising: one, in following seas up to three.
 
     Two only where |omega_e| is the turning point 1 / (4 q) itself.
@@ -48,11 +48,11 @@ def waves_met(omega_e: float, U: float, beta: float) -> tuple[float, ...]:
     """
     if not (math.isfinite(omega_e) and omega_e > 0.0):
         raise InputError(f"a frequency of encounter must be positive, not {omega_e:g} rad/s")
-    branches = _branches(np.array([omega_e]), speed_factor(U, beta))
+    branches = _waves_by_branch(np.array([omega_e]), speed_factor(U, beta))
     return tuple(np.unique(np.concatenate(branches)).tolist())
 
 
-def wave_of(omega_e: ArrayLike, U: float, beta: float) -> Array:
+def wave_frequency(omega_e: ArrayLike, U: float, beta: float) -> Array:
     """The one wave frequency [rad/s] of each frequency of encounter [rad/s, >= 0] in head and beam seas, any shape.
 
     Raises:
@@ -64,7 +64,7 @@ def wave_of(omega_e: ArrayLike, U: float, beta: float) -> Array:
             f"at {math.degrees(beta):.0f} deg and {U:.3g} m/s one frequency of encounter has up to three waves, which "
             "a record of the elevation on board does not tell apart; give the waves themselves, or F3 and M5"
         )
-    return _first(np.asarray(omega_e, dtype=np.float64), q)
+    return _longest_wave(np.asarray(omega_e, dtype=np.float64), q)
 
 
 def encounter_density(spectrum: Spectrum, U: float, beta: float, edges: ArrayLike) -> Array:
@@ -82,33 +82,33 @@ def encounter_density(spectrum: Spectrum, U: float, beta: float, edges: ArrayLik
     return np.diff(_energy_within(spectrum, felt, speed_factor(U, beta))) / np.diff(felt)
 
 
-def _energy_within(spectrum: Spectrum, felt: Array, q: float) -> Array:
-    """Energy [m^2] of all waves with |omega - q omega^2| <= felt, shape of `felt`."""
-    if q * _RIPPLES <= 1.0:
-        return spectrum.energy_between(0.0, _first(felt, q))
-    within = spectrum.energy_between(0.0, _overtaken(felt, q))
-    slow = 4.0 * q * felt < 1.0
-    within[slow] -= spectrum.energy_between(_first(felt[slow], q), _second(felt[slow], q))
+def _energy_within(spectrum: Spectrum, omega_e: Array, q: float) -> Array:
+    """Energy [m^2] of all waves with |omega - q omega^2| <= omega_e, shape of `omega_e`."""
+    if q * _HIGHEST_FREQUENCY <= 1.0:
+        return spectrum.energy_between(0.0, _longest_wave(omega_e, q))
+    within = spectrum.energy_between(0.0, _overtaken_wave(omega_e, q))
+    slow = 4.0 * q * omega_e < 1.0
+    within[slow] -= spectrum.energy_between(_longest_wave(omega_e[slow], q), _middle_wave(omega_e[slow], q))
     return within
 
 
-def _branches(felt: Array, q: float) -> list[Array]:
+def _waves_by_branch(omega_e: Array, q: float) -> list[Array]:
     """Roots of |omega - q omega^2| = felt, branch by branch."""
-    if q * _RIPPLES <= 1.0:
-        return [_first(felt, q)]
-    slow = felt[4.0 * q * felt <= 1.0]
-    return [_first(slow, q), _second(slow, q), _overtaken(felt, q)]
+    if q * _HIGHEST_FREQUENCY <= 1.0:
+        return [_longest_wave(omega_e, q)]
+    slow = omega_e[4.0 * q * omega_e <= 1.0]
+    return [_longest_wave(slow, q), _middle_wave(slow, q), _overtaken_wave(omega_e, q)]
 
 
-def _first(felt: Array, q: float) -> Array:
+def _longest_wave(omega_e: Array, q: float) -> Array:
     """The longest wave: the root of omega - q omega^2 = felt that goes with felt to zero, free of cancellation."""
-    return np.asarray(2.0 * felt / (1.0 + np.sqrt(np.maximum(1.0 - 4.0 * q * felt, 0.0))), dtype=np.float64)
+    return np.asarray(2.0 * omega_e / (1.0 + np.sqrt(np.maximum(1.0 - 4.0 * q * omega_e, 0.0))), dtype=np.float64)
 
 
-def _second(felt: Array, q: float) -> Array:
-    return (1.0 + np.sqrt(1.0 - 4.0 * q * felt)) / (2.0 * q)
+def _middle_wave(omega_e: Array, q: float) -> Array:
+    return (1.0 + np.sqrt(1.0 - 4.0 * q * omega_e)) / (2.0 * q)
 
 
-def _overtaken(felt: Array, q: float) -> Array:
+def _overtaken_wave(omega_e: Array, q: float) -> Array:
     """The wave that the ship overtakes: omega - q omega^2 = -felt."""
-    return (1.0 + np.sqrt(1.0 + 4.0 * q * felt)) / (2.0 * q)
+    return (1.0 + np.sqrt(1.0 + 4.0 * q * omega_e)) / (2.0 * q)

@@ -7,16 +7,16 @@ from enum import Enum
 import numpy as np
 from scipy.special import betaincinv
 
-from seatrial.core.values import Array, Channel, Index, InputError, Kind, Provenance, Record, frozen
+from seatrial.core.values import Array, Channel, Index, InputError, Provenance, Record, RecordKind, frozen
 from seatrial.physics.hydro.excitation import Complex, Excitation
 from seatrial.physics.sea.encounter import encounter_frequency, speed_factor
 from seatrial.physics.sea.spectrum import Spectrum
 
-LINES = 30
+DEFAULT_COMPONENTS = 30
 
 
 @dataclass(frozen=True, eq=False)
-class Lines:
+class WaveComponents:
     """Harmonics of a sea: elevation at the ship's origin Re sum amplitude exp(i omega_e t), metres up.
 
     Each line has a frequency of its own, so that its energy is |amplitude|^2 / 2 in every realisation; two lines of one
@@ -38,13 +38,13 @@ class Lines:
         return float(0.5 * np.sum(np.abs(self.amplitude) ** 2))
 
     @property
-    def encounter(self) -> Array:
+    def omega_e(self) -> Array:
         """Signed frequencies of encounter, rad/s; negative where the ship overtakes the wave."""
         return encounter_frequency(self.omega, self.U, self.direction)
 
     def elevation(self, time: Array) -> Array:
         """Elevation [m] at the ship's origin at `time` [s]."""
-        return harmonic_sum(self.encounter, self.amplitude, time)
+        return harmonic_sum(self.omega_e, self.amplitude, time)
 
     def forces(self, excitation: Excitation) -> Complex:
         """Complex amplitudes of F3 [N, up] and M5 [N m, bow down] of each line, (n, 2)."""
@@ -68,7 +68,7 @@ class Spacing(Enum):
     JITTERED = "the energy of equal intervals, each at a random place of its interval: the sea does not repeat"
 
 
-def _drawn(
+def _frequencies_and_amplitudes(
     spacing: Spacing, spectrum: Spectrum, band: tuple[float, float], count: int, rng: np.random.Generator
 ) -> tuple[Array, Array]:
     """Frequencies and amplitudes."""
@@ -87,7 +87,7 @@ def _drawn(
             return edges[:-1] + rng.uniform(size=count) * np.diff(edges), np.sqrt(2.0 * energy)
 
 
-def _phases(rng: np.random.Generator, shape: int | tuple[int, ...]) -> Complex:
+def _random_phases(rng: np.random.Generator, shape: int | tuple[int, ...]) -> Complex:
     return np.asarray(np.exp(1j * rng.uniform(0.0, 2.0 * np.pi, shape)), dtype=np.complex128)
 
 
@@ -97,10 +97,10 @@ def realise(
     beta: float,
     rng: np.random.Generator,
     *,
-    count: int = LINES,
+    count: int = DEFAULT_COMPONENTS,
     spacing: Spacing = Spacing.EQUAL_INTERVAL,
     band: tuple[float, float] | None = None,
-) -> Lines:
+) -> WaveComponents:
     """A long-crested sea of `count` lines with phases drawn uniformly; band in rad/s, 0.1 to 99 % of the energy.
 
     Raises:
@@ -118,11 +118,11 @@ def realise(
             f"the {spectrum.name} spectrum has no energy between {chosen[0]:g} and {chosen[1]:g} rad/s; "
             f"it peaks at {spectrum.modal_frequency:.3g} rad/s"
         )
-    omega, height = _drawn(spacing, spectrum, chosen, count, rng)
-    return Lines(omega, height * _phases(rng, count), np.full(count, float(beta)), U)
+    omega, height = _frequencies_and_amplitudes(spacing, spectrum, chosen, count, rng)
+    return WaveComponents(omega, height * _random_phases(rng, count), np.full(count, float(beta)), U)
 
 
-def short_crested(lines: Lines, rng: np.random.Generator, exponent: float = 1.0) -> Lines:
+def short_crested(components: WaveComponents, rng: np.random.Generator, exponent: float = 1.0) -> WaveComponents:
     """The lines spread about their heading by cos^2s over +- 90 deg, whose integral is one.
 
     D = Gamma(s + 1) / (sqrt(pi) Gamma(s + 1/2)) cos^2s(chi); s = 1 is the 2 / pi cos^2 of the ITTC (St. Denis & Pierson
@@ -134,9 +134,9 @@ def short_crested(lines: Lines, rng: np.random.Generator, exponent: float = 1.0)
     """
     if not exponent > 0.0:
         raise InputError(f"the spreading exponent s of a short-crested sea must be positive, not {exponent:g}")
-    shares = rng.permutation((np.arange(len(lines.omega)) + 0.5) / len(lines.omega))
-    heading = lines.direction + spread_angle(shares, exponent)
-    return replace(lines, direction=np.arccos(np.cos(heading)))
+    shares = rng.permutation((np.arange(len(components.omega)) + 0.5) / len(components.omega))
+    heading = components.direction + spread_angle(shares, exponent)
+    return replace(components, direction=np.arccos(np.cos(heading)))
 
 
 def spread_angle(share: Array, exponent: float) -> Array:
@@ -145,29 +145,29 @@ def spread_angle(share: Array, exponent: float) -> Array:
     return np.sign(share - 0.5) * np.arcsin(sine)
 
 
-def above_nyquist(lines: Lines, dt: float) -> Index:
+def above_nyquist(components: WaveComponents, dt: float) -> Index:
     """Which lines are met at more than half the sampling rate of a step of `dt` [s]."""
-    return np.flatnonzero(np.abs(lines.encounter) > np.pi / dt)
+    return np.flatnonzero(np.abs(components.omega_e) > np.pi / dt)
 
 
-def refuse_above_nyquist(lines: Lines, dt: float) -> None:
+def refuse_above_nyquist(components: WaveComponents, dt: float) -> None:
     """Refuse a time step that cannot show all lines.
 
     Raises:
         InputError: how many lines are beyond half the sampling rate, and the furthest of them.
     """
-    beyond = above_nyquist(lines, dt)
+    beyond = above_nyquist(components, dt)
     if beyond.size:
-        met = np.abs(lines.encounter)
+        met = np.abs(components.omega_e)
         worst = int(np.argmax(met))
         count = "one line lies" if beyond.size == 1 else f"{beyond.size} lines lie"
         raise InputError(
             f"{count} above the Nyquist frequency {np.pi / dt:.3g} rad/s of a step of {dt:g} s: the wave of "
-            f"{lines.omega[worst]:.3g} rad/s is met at {met[worst]:.3g} rad/s; shorten the step or the band"
+            f"{components.omega[worst]:.3g} rad/s is met at {met[worst]:.3g} rad/s; shorten the step or the band"
         )
 
 
-def refuse_short(lines: Lines, duration: float) -> None:
+def refuse_short_record(components: WaveComponents, duration: float) -> None:
     """Refuse a record that does not last one period of its longest wave, as met.
 
     In following seas shorter waves may run along with the ship for any time; they are not asked for.
@@ -175,40 +175,43 @@ def refuse_short(lines: Lines, duration: float) -> None:
     Raises:
         InputError: how long it would have to be.
     """
-    longest = int(np.argmin(lines.omega))
-    met = abs(float(lines.encounter[longest]))
+    longest = int(np.argmin(components.omega))
+    met = abs(float(components.omega_e[longest]))
     if duration * met < 2.0 * np.pi:
         needed = f"needs {2.0 * np.pi / met:.3g} s" if met > 0.0 else "runs along with the ship for ever"
         raise InputError(
-            f"the record of {duration:g} s is too short for its longest wave: that of {lines.omega[longest]:.3g} rad/s "
+            f"the record of {duration:g} s is too short for its longest wave: that of "
+            f"{components.omega[longest]:.3g} rad/s "
             f"{needed} to pass; record longer, or raise the lower end of the band"
         )
 
 
-def repetition_period(lines: Lines) -> float:
+def repetition_period(components: WaveComponents) -> float:
     """s after which the envelope of the elevation repeats, 2 pi / d omega_e; infinite where lines lie unevenly.
 
     Finite for `Spacing.EQUAL_INTERVAL` at rest and in beam seas; elsewhere headway shifts the lines unevenly.
     """
-    met = np.sort(lines.encounter)
+    met = np.sort(components.omega_e)
     gaps = np.diff(met)
     if gaps.size == 0 or np.ptp(gaps) > 1e-9 * np.abs(met).max():
         return math.inf
     return float(2.0 * np.pi / gaps.mean())
 
 
-def wave_record(lines: Lines, time: Array, excitation: Excitation | None = None) -> Record:
+def wave_record(components: WaveComponents, time: Array, excitation: Excitation | None = None) -> Record:
     """The sea as a planned record: zeta [m, up], and with an excitation F3 [N, up] and M5 [N m, bow down].
 
     Raises:
         InputError: the time step cannot show all lines, or the time is too short for the longest wave.
     """
-    plan = Record.of("sea", time, {"zeta": lines.elevation(time)}, Kind.PLANNED)
-    refuse_above_nyquist(lines, plan.dt)
-    refuse_short(lines, plan.duration)
+    plan = Record.from_arrays("sea", time, {"zeta": components.elevation(time)}, RecordKind.PLANNED)
+    refuse_above_nyquist(components, plan.dt)
+    refuse_short_record(components, plan.duration)
     channels = dict(plan.channels)
     if excitation is not None:
-        amplitude = lines.forces(excitation)
+        amplitude = components.forces(excitation)
         for j, symbol in enumerate(("F3", "M5")):
-            channels[symbol] = Channel.of(symbol, frozen(harmonic_sum(lines.encounter, amplitude[:, j], time)))
+            channels[symbol] = Channel.from_notation(
+                symbol, frozen(harmonic_sum(components.omega_e, amplitude[:, j], time))
+            )
     return replace(plan, channels=channels, provenance=Provenance("sum of harmonics"))

@@ -13,12 +13,12 @@ from scipy.special import ndtr
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.dispersion import G
 from seatrial.physics.hydro.excitation import Complex
-from seatrial.physics.sea.realise import Lines
+from seatrial.physics.sea.realise import WaveComponents
 from seatrial.physics.sea.spectrum import Spectrum
 
 
 @dataclass(frozen=True)
-class Statistics:
+class MotionStatistics:
     """Of one motion in a sea, SI.
 
     Attributes:
@@ -94,7 +94,7 @@ def response_over_encounter(density: Array, omega: Array, omega_e: Array, edges:
     return np.diff(within) / np.diff(edges)
 
 
-def statistics(spectrum: Spectrum, omega: Array, omega_e: Array, operator: Complex) -> Statistics:
+def motion_statistics(spectrum: Spectrum, omega: Array, omega_e: Array, operator: Complex) -> MotionStatistics:
     """Statistics of the motion `operator`, all arrays (n,), rad/s; trapezoids over rising omega.
 
     Raises:
@@ -102,7 +102,7 @@ def statistics(spectrum: Spectrum, omega: Array, omega_e: Array, operator: Compl
     """
     if len(omega) < 2 or np.any(np.diff(omega) <= 0.0):
         raise InputError("the wave frequencies of a response must be two or more, and rise")
-    _demand_finite(omega, operator)
+    _require_finite(omega, operator)
     share = float(spectrum.energy_between(omega[0], omega[-1])) / spectrum.moment(0)
     if share < 1e-3:
         raise InputError(
@@ -116,19 +116,19 @@ def statistics(spectrum: Spectrum, omega: Array, omega_e: Array, operator: Compl
             f"{spectrum.modal_frequency:.3g} rad/s"
         )
     m0, m2, m4 = (float(np.trapezoid(omega_e**n * density, omega)) for n in (0, 2, 4))
-    return Statistics(m0, m2, m4)
+    return MotionStatistics(m0, m2, m4)
 
 
-def statistics_of_lines(lines: Lines, operator: Complex) -> Statistics:
+def statistics_of_components(components: WaveComponents, operator: Complex) -> MotionStatistics:
     """The same of one realisation, long- or short-crested: sums of |H a|^2 / 2 over its lines, `operator` (n,).
 
     Raises:
         InputError: an operator is not finite.
     """
-    _demand_finite(lines.omega, operator)
-    energy = 0.5 * np.abs(operator * lines.amplitude) ** 2
-    m0, m2, m4 = (float(np.sum(lines.encounter**n * energy)) for n in (0, 2, 4))
-    return Statistics(m0, m2, m4)
+    _require_finite(components.omega, operator)
+    energy = 0.5 * np.abs(operator * components.amplitude) ** 2
+    m0, m2, m4 = (float(np.sum(components.omega_e**n * energy)) for n in (0, 2, 4))
+    return MotionStatistics(m0, m2, m4)
 
 
 def vertical_motion(heave: Complex, pitch: Complex, x: float) -> Complex:
@@ -137,11 +137,11 @@ def vertical_motion(heave: Complex, pitch: Complex, x: float) -> Complex:
 
 
 def vertical_acceleration(heave: Complex, pitch: Complex, omega_e: Array, x: float) -> Complex:
-    """Upward acceleration at x, -omega_e^2 (z - x theta) [m/s^2 per m]; the root of `Statistics.m4` is its rms."""
+    """Upward acceleration at x, -omega_e^2 (z - x theta) [m/s^2 per m]; `MotionStatistics.m4` is its variance."""
     return -(omega_e**2) * vertical_motion(heave, pitch, x)
 
 
-def motion_sickness(motion: Statistics) -> float:
+def motion_sickness(motion: MotionStatistics) -> float:
     """Share of people sick within two hours in a vertical motion, 0 to 1 (O'Hanlon & McCauley 1974; Lloyd 1989).
 
     Phi((log10(a / g) - mu) / .4), mu = -.819 + 2.32 log10(omega_e)^2, a = .798 sqrt(m4) the mean absolute acceleration,
@@ -154,7 +154,7 @@ def motion_sickness(motion: Statistics) -> float:
     return float(ndtr((math.log10(mean_absolute / G) - mu) / 0.4))
 
 
-def motion_sickness_after(motion: Statistics, minutes: float) -> float:
+def motion_sickness_after(motion: MotionStatistics, minutes: float) -> float:
     """Share of people sick within that time in a vertical motion, 0 to 1 (McCauley et al. 1976, HFR report 1733-2).
 
     Phi(z_a) Phi(z_t'), z_a = 2.128 log10(a) - 9.277 log10(f) - 5.809 log10(f)^2 - 1.851,
@@ -175,7 +175,7 @@ def motion_sickness_after(motion: Statistics, minutes: float) -> float:
     return float(ndtr(z_a) * ndtr(z_t))
 
 
-def _demand_finite(omega: Array, operator: Complex) -> None:
+def _require_finite(omega: Array, operator: Complex) -> None:
     if np.shape(operator) != np.shape(omega):
         raise InputError(
             f"give one operator for each of the {np.size(omega)} wave frequencies, not {np.size(operator)}"

@@ -12,10 +12,10 @@ from seatrial.physics.hydro.dispersion import G
 
 SIGMA_BELOW, SIGMA_ABOVE = 0.07, 0.09
 # beyond nine sigma the raised peak adds less than a rounding error
-_REACH = 9.0
-_CALM = 0.1
+_PEAK_REACH = 9.0
+_LOWEST_RATIO = 0.1
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
-_HALVINGS = 64
+_BISECTIONS = 64
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Spectrum:
         """T1 = 2 pi m0 / m1, s."""
         return 2.0 * math.pi * self.moment(0) / self.moment(1)
 
-    def of_height(self, height: float) -> "Spectrum":
+    def with_height(self, height: float) -> "Spectrum":
         """The sea of that significant height [m] and the same steepness and shape: periods go with its root.
 
         Raises:
@@ -61,7 +61,7 @@ class Spectrum:
     def density(self, omega: ArrayLike) -> Array:
         """S [m^2 s/rad] at `omega` [rad/s], any shape; zero where omega is not positive."""
         x = np.asarray(omega, dtype=np.float64) / self.modal_frequency
-        return np.asarray(self._plain(x) * self._raised(x), dtype=np.float64)
+        return np.asarray(self._base_density(x) * self._peak_factor(x), dtype=np.float64)
 
     def moment(self, n: float) -> float:
         """m_n = int omega^n S d omega [m^2 (rad/s)^n] = A B^(n/4 - 1) Gamma(1 - n/4) / 4, and what the peak adds.
@@ -72,13 +72,13 @@ class Spectrum:
         if n >= 4:
             raise InputError(f"moment {n:g} of the {self.name} spectrum is infinite; take a band of frequencies")
         plain = self.A / 4.0 * self.B ** (n / 4.0 - 1.0) * float(gamma_function(1.0 - n / 4.0))
-        return plain + float(self._added(np.array(np.inf), n))
+        return plain + float(self._peak_excess(np.array(np.inf), n))
 
     def share_below(self, omega: ArrayLike) -> Array:
         """Share of the energy below `omega` [rad/s], any shape: exp(-B / omega^4), and what the peak adds."""
         x = np.asarray(omega, dtype=np.float64) / self.modal_frequency
-        plain = self.A / (4.0 * self.B) * np.exp(-1.25 / np.maximum(x, _CALM) ** 4)
-        return np.asarray((plain + self._added(x, 0.0)) / self.moment(0), dtype=np.float64)
+        plain = self.A / (4.0 * self.B) * np.exp(-1.25 / np.maximum(x, _LOWEST_RATIO) ** 4)
+        return np.asarray((plain + self._peak_excess(x, 0.0)) / self.moment(0), dtype=np.float64)
 
     def energy_between(self, lower: ArrayLike, upper: ArrayLike) -> Array:
         """int S [m^2] from `lower` to `upper` [rad/s], shapes that go together."""
@@ -97,7 +97,7 @@ class Spectrum:
         if self.gamma == 1.0:
             return np.asarray(plain, dtype=np.float64)
         low, high = np.zeros_like(part), np.maximum(plain, 2.0 * self.modal_frequency)
-        for _ in range(_HALVINGS):
+        for _ in range(_BISECTIONS):
             middle = 0.5 * (low + high)
             above = self.share_below(middle) > part
             low, high = np.where(above, low, middle), np.where(above, middle, high)
@@ -114,25 +114,25 @@ class Spectrum:
         first, last = self.frequency_of_share([lower, upper])
         return float(first), float(last)
 
-    def _plain(self, x: Array) -> Array:
+    def _base_density(self, x: Array) -> Array:
         """Density without the raised peak at omega = x omega_p; exp(-1.25 / x^4) is zero below x = .1."""
-        safe = np.maximum(x, _CALM)
+        safe = np.maximum(x, _LOWEST_RATIO)
         return self.A / (safe * self.modal_frequency) ** 5 * np.exp(-1.25 / safe**4)
 
-    def _raised(self, x: Array) -> Array:
+    def _peak_factor(self, x: Array) -> Array:
         sigma = np.where(x <= 1.0, SIGMA_BELOW, SIGMA_ABOVE)
         return self.gamma ** np.exp(-0.5 * ((x - 1.0) / sigma) ** 2)
 
-    def _added(self, x: Array, n: float) -> Array:
+    def _peak_excess(self, x: Array, n: float) -> Array:
         """int of omega^n S (1 - gamma^-r) up to x omega_p: Gauss-Legendre below and above the kink at the peak."""
         if self.gamma == 1.0:
             return np.zeros_like(x)
         added = np.zeros_like(x)
-        for start, stop in ((1.0 - _REACH * SIGMA_BELOW, 1.0), (1.0, 1.0 + _REACH * SIGMA_ABOVE)):
+        for start, stop in ((1.0 - _PEAK_REACH * SIGMA_BELOW, 1.0), (1.0, 1.0 + _PEAK_REACH * SIGMA_ABOVE)):
             half = 0.5 * (np.clip(x, start, stop) - start)
             at = start + half[..., None] * (1.0 + _NODES)
             # nodes never touch the kink, so each side has its own sigma
-            values = at**n * self._plain(at) * (self._raised(at) - 1.0)
+            values = at**n * self._base_density(at) * (self._peak_factor(at) - 1.0)
             added = added + half * (values @ _WEIGHTS)
         return self.modal_frequency ** (n + 1.0) * added
 
@@ -181,7 +181,7 @@ def jonswap(height: float, peak_period: float, gamma: float = 3.3) -> Spectrum:
     return replace(raw, A=raw.A * height**2 / (16.0 * raw.moment(0)))
 
 
-def _positive(what: str, value: float, unit: str) -> float:
+def _positive(quantity: str, value: float, unit: str) -> float:
     if not (math.isfinite(value) and value > 0.0):
-        raise InputError(f"the {what} of a sea must be positive, not {value:g} {unit}")
+        raise InputError(f"the {quantity} of a sea must be positive, not {value:g} {unit}")
     return value

@@ -6,28 +6,28 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Array, InputError, Record, nearest
-from seatrial.physics.simulate.channels import AT_REST, inputs_of
+from seatrial.core.values import Array, InputError, Record, spelling_hint
+from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT, inputs_of
 
 RUDDER = "delta"
-_FASTEST = 100.0
+_MAX_SPEED = 100.0
 
 
-def held_inputs(model: Model, given: Mapping[str, float], rudder: str) -> Array:
+def held_inputs(model: Model, values_by_name: Mapping[str, float], rudder: str) -> Array:
     """Constant inputs in the model's signs, shape (nu,), rudder amidships; absent wind channels mean still air.
 
     Raises:
         InputError: an input is missing, unknown, or the rudder is among those given.
     """
     known = [name for name in model.input_names if name != rudder]
-    for name in given:
+    for name in values_by_name:
         if name not in known:
-            raise InputError(f"'{name}' is no held input of model '{model.name}'{nearest(name, known)}")
+            raise InputError(f"'{name}' is no held input of model '{model.name}'{spelling_hint(name, known)}")
     values = np.zeros(len(model.inputs))
     for j, item in enumerate(model.inputs):
-        if item.name in given:
-            values[j] = -given[item.name] if item.is_turned else given[item.name]
-        elif item.name != rudder and item.name not in AT_REST:
+        if item.name in values_by_name:
+            values[j] = -values_by_name[item.name] if item.is_reversed else values_by_name[item.name]
+        elif item.name != rudder and item.name not in ZERO_BY_DEFAULT:
             raise InputError(f"model '{model.name}' needs the input '{item.name}'; give the value it is held at")
     return values
 
@@ -48,7 +48,7 @@ def approach_speed(model: Model, held: Array) -> float:
         model.compiled.rates(0.0, state, held, parameters, rates)
         return float(rates[place])
 
-    speeds = np.geomspace(1e-3, _FASTEST, 60)
+    speeds = np.geomspace(1e-3, _MAX_SPEED, 60)
     for low, high in pairwise(speeds):
         if surge(low) > 0.0 >= surge(high):
             return float(brentq(surge, low, high, xtol=1e-12))
@@ -73,7 +73,7 @@ def straight_run(model: Model, plan: Record, speed: float | None = None) -> dict
     return start
 
 
-def time_unit(model: Model, start: Array, known: float | None) -> float:
+def characteristic_time(model: Model, start: Array, given_speed: float | None) -> float:
     """L/U [s] from the start's u, the speed given, or the model's parameter U; else a Nomoto model's time constant.
 
     Raises:
@@ -84,7 +84,7 @@ def time_unit(model: Model, start: Array, known: float | None) -> float:
     if "u" in model.states:
         speed = float(start[model.states.index("u")])
     else:
-        speed = known or (model.parameters["U"].value if "U" in names else 0.0)
+        speed = given_speed or (model.parameters["U"].value if "U" in names else 0.0)
     if length > 0.0 and speed > 0.0:
         return length / speed
     for constant in ("T", "T_1"):

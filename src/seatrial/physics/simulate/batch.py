@@ -28,7 +28,7 @@ class InputCorrection:
 
 
 @dataclass(frozen=True, eq=False)
-class Batch:
+class SegmentBatch:
     """Segments laid end to end: rows offsets[s]..offsets[s+1] of `inputs` belong to segment s.
 
     Attributes:
@@ -46,29 +46,29 @@ class Batch:
     outputs: tuple[str, ...]
     parameters: tuple[str, ...] = ()
     corrections: tuple[InputCorrection, ...] = ()
-    starts: tuple[str, ...] = ()
+    initial_states: tuple[str, ...] = ()
     substeps: int = 1
 
     @property
-    def count(self) -> int:
+    def segment_count(self) -> int:
         """Number of segments."""
         return len(self.offsets) - 1
 
     @property
-    def width(self) -> int:
+    def column_count(self) -> int:
         """Number of sensitivity columns."""
-        return len(self.parameters) + len(self.corrections) + len(self.starts)
+        return len(self.parameters) + len(self.corrections) + len(self.initial_states)
 
     @cached_property
-    def _select(self) -> Index:
+    def _output_columns(self) -> Index:
         return np.array([self.model.observables.index(o) for o in self.outputs], dtype=np.int64)
 
     @cached_property
     def _links(self) -> tuple[Index, Index, Index, Index, Index, Index]:
         compiled = self.model.compiled
-        return (*self._linked(compiled.rates_pattern), *self._linked(compiled.outputs_pattern))
+        return (*self._link_tables(compiled.rates_pattern), *self._link_tables(compiled.outputs_pattern))
 
-    def _linked(self, pattern: Index) -> tuple[Index, Index, Index]:
+    def _link_tables(self, pattern: Index) -> tuple[Index, Index, Index]:
         """Structural nonzeros as (row, state), (row, jac column, column), (row, jac column, weight slot, column)."""
         nx, nu = len(self.model.states), len(self.model.inputs)
         column = {nx + nu + self.model.parameters.index(n): c for c, n in enumerate(self.parameters)}
@@ -83,9 +83,9 @@ class Batch:
         ]
         return _table(chain, 2), _table(link_p, 3), _table(link_u, 4)
 
-    def _corrected(self, corrections: Array) -> tuple[Array, Array, Array]:
+    def _correction_values(self, corrections: Array) -> tuple[Array, Array, Array]:
         """gain, offset, delay, each (segments, nu), from correction values (segments, n)."""
-        shape = (self.count, len(self.model.inputs))
+        shape = (self.segment_count, len(self.model.inputs))
         made = {"gain": np.ones(shape), "zero": np.zeros(shape), "delay": np.zeros(shape)}
         for m, c in enumerate(self.corrections):
             made[c.kind][:, self.model.input_names.index(c.input)] = corrections[:, m]
@@ -98,32 +98,32 @@ class Batch:
 
         start (segments, nx), parameters (segments, np) all of the model's, corrections (segments, n): for all segments.
         """
-        offsets, inputs, failed, y = self._piece(first, last)
-        gain, zero, delay = (a[first:last] for a in self._corrected(corrections))
+        offsets, inputs, failed, y = self._segment_rows(first, last)
+        gain, zero, delay = (a[first:last] for a in self._correction_values(corrections))
         compiled = self.model.compiled
         replay(compiled.rates, compiled.outputs, inputs, offsets, 0, last - first, self.dt, self.substeps,
                np.ascontiguousarray(start[first:last]), np.ascontiguousarray(parameters[first:last]),
-               gain, zero, delay, self._select, len(self.model.outputs), y, failed)  # fmt: skip
+               gain, zero, delay, self._output_columns, len(self.model.outputs), y, failed)  # fmt: skip
         return y, failed
 
     def differentiate(
         self, first: int, last: int, start: Array, parameters: Array, corrections: Array
     ) -> tuple[Array, Array, Index]:
         """`simulate` with d(output)/d(column), shape (rows, ny, width)."""
-        offsets, inputs, failed, y = self._piece(first, last)
-        gain, zero, delay = (a[first:last] for a in self._corrected(corrections))
+        offsets, inputs, failed, y = self._segment_rows(first, last)
+        gain, zero, delay = (a[first:last] for a in self._correction_values(corrections))
         column = np.full(len(self.model.states), -1, dtype=np.int64)
-        for m, state in enumerate(self.starts):
+        for m, state in enumerate(self.initial_states):
             column[self.model.states.index(state)] = len(self.parameters) + len(self.corrections) + m
-        s = np.empty((len(y), len(self.outputs), self.width))
+        s = np.empty((len(y), len(self.outputs), self.column_count))
         compiled = self.model.compiled
         replay_tangent(compiled.rates_tangent, compiled.outputs_tangent, inputs, offsets, 0, last - first, self.dt,
                        self.substeps, np.ascontiguousarray(start[first:last]),
                        np.ascontiguousarray(parameters[first:last]), gain, zero, delay, *self._links, column,
-                       self._select, len(self.model.outputs), y, s, failed)  # fmt: skip
+                       self._output_columns, len(self.model.outputs), y, s, failed)  # fmt: skip
         return y, s, failed
 
-    def _piece(self, first: int, last: int) -> tuple[Index, Array, Index, Array]:
+    def _segment_rows(self, first: int, last: int) -> tuple[Index, Array, Index, Array]:
         rows = slice(self.offsets[first], self.offsets[last])
         offsets = np.ascontiguousarray(self.offsets[first : last + 1] - self.offsets[first])
         return (
@@ -137,8 +137,8 @@ class Batch:
         """States whose initial value reaches any of the outputs."""
         nx = len(self.model.states)
         compiled = self.model.compiled
-        reached = {int(i) for i in self._select if i < nx}
-        for i in self._select:
+        reached = {int(i) for i in self._output_columns if i < nx}
+        for i in self._output_columns:
             reached |= {int(k) for row, k in compiled.outputs_pattern if row == i - nx and k < nx}
         while True:
             more = {int(k) for i, k in compiled.rates_pattern if i in reached and k < nx} - reached

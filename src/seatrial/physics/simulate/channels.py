@@ -3,10 +3,10 @@
 import numpy as np
 
 from seatrial.core.equations import Input, Model
-from seatrial.core.values import NOTATION, Array, Channel, InputError, Kind, Record, frozen
+from seatrial.core.values import NOTATION, Array, Channel, InputError, Record, RecordKind, frozen
 from seatrial.core.values.notation import OPPOSITE
 
-AT_REST = ("wind_speed", "wind_direction", "F3", "M5", "delta_f1", "delta_f2", "alpha_w", "alpha_f")
+ZERO_BY_DEFAULT = ("wind_speed", "wind_direction", "F3", "M5", "delta_f1", "delta_f2", "alpha_w", "alpha_f")
 
 
 def inputs_of(model: Model, record: Record) -> Array:
@@ -18,13 +18,13 @@ def inputs_of(model: Model, record: Record) -> Array:
         InputError: an input channel is missing, holds NaN, or points in a direction that has nothing to do with the
             model's.
     """
-    columns = [_input(model, record, item) for item in model.inputs]
+    columns = [_input_values(model, record, item) for item in model.inputs]
     return np.ascontiguousarray(np.stack(columns, axis=1)) if columns else np.empty((len(record), 0))
 
 
-def _input(model: Model, record: Record, item: Input) -> Array:
+def _input_values(model: Model, record: Record, item: Input) -> Array:
     if item.name not in record:
-        if item.name in AT_REST:
+        if item.name in ZERO_BY_DEFAULT:
             return np.zeros(len(record))
         raise InputError(f"record '{record.name}' has no channel '{item.name}', an input of model '{model.name}'")
     channel = record.channel(item.name)
@@ -45,17 +45,23 @@ def _input(model: Model, record: Record, item: Input) -> Array:
 
 
 def record_of(
-    model: Model, name: str, time: Array, states: Array, outputs: Array, inputs: Array, kind: Kind = Kind.SIMULATED
+    model: Model,
+    name: str,
+    time: Array,
+    states: Array,
+    outputs: Array,
+    inputs: Array,
+    kind: RecordKind = RecordKind.SIMULATED,
 ) -> Record:
     """States, measurable outputs and inputs (model's signs) as a record in the notation table's signs."""
     channels = {s: _channel(s, states[:, i]) for i, s in enumerate(model.states)}
     channels |= {s: _channel(s, outputs[:, i]) for i, s in enumerate(model.outputs)}
     for j, item in enumerate(model.inputs):
-        channels[item.name] = _channel(item.name, -inputs[:, j] if item.is_turned else inputs[:, j])
+        channels[item.name] = _channel(item.name, -inputs[:, j] if item.is_reversed else inputs[:, j])
     return Record(name, frozen(time), channels, kind)
 
 
 def _channel(symbol: str, values: Array) -> Channel:
     if symbol in NOTATION:
-        return Channel.of(symbol, values)
+        return Channel.from_notation(symbol, values)
     return Channel(frozen(values), "1", "none", "none")

@@ -6,13 +6,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Array, DivergedError, InputError, Provenance, Record, frozen, nearest
+from seatrial.core.values import Array, DivergedError, InputError, Provenance, Record, frozen, spelling_hint
 from seatrial.numerics.kernels import feedback as kernel
 from seatrial.numerics.kernels.steering import steer
 from seatrial.physics.loops import TransferLoop
-from seatrial.physics.simulate.bounds import demand_bounded
 from seatrial.physics.simulate.channels import record_of
-from seatrial.physics.simulate.controller import controller_of
+from seatrial.physics.simulate.controller import controller_state_space
+from seatrial.physics.simulate.divergence import require_bounded
 
 REFERENCE = "reference"
 
@@ -47,7 +47,7 @@ class ActuatorLimits:
         return replace(self, stall=math.inf)
 
 
-FREE = ActuatorLimits()
+UNLIMITED = ActuatorLimits()
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,11 +59,11 @@ class ClosedLoop:
 
     Attributes:
         gains: (g,), of the loop's terms; dt: step and sample interval [s].
-        actuator, disturbed: inputs of the model; the disturbance adds to its trim, and may act where the actuator does
-            (`disturbed` the same name) or nowhere (empty).
+        actuator, disturbance_input: inputs of the model; the disturbance adds to its trim; may act where the actuator
+            does             (`disturbance_input` the same name) or nowhere (empty).
         output: a state of the model.
         start: (nx,) trim and initial state; inputs: (nu,) trim, in the model's signs; by default zero.
-        effect: what a radian of the actuator is worth in the model's, which belongs to one speed.
+        effectiveness: what a radian of the actuator is worth in the model's, which belongs to one speed.
 
     Raises:
         InputError: names that the model does not have, a step that is not positive, values that are not finite.
@@ -74,21 +74,21 @@ class ClosedLoop:
     gains: Array
     dt: float
     actuator: str
-    disturbed: str
+    disturbance_input: str
     output: str
     start: Array = field(default_factory=lambda: np.empty(0))
     inputs: Array = field(default_factory=lambda: np.empty(0))
-    effect: float = 1.0
+    effectiveness: float = 1.0
 
     def __post_init__(self) -> None:
         model, where = self.model, f"a loop of model '{self.model.name}'"
         for name, known, what in (
             (self.actuator, model.input_names, "input"),
-            (self.disturbed or self.actuator, model.input_names, "input"),
+            (self.disturbance_input or self.actuator, model.input_names, "input"),
             (self.output, model.states, "state"),
         ):
             if name not in known:
-                raise InputError(f"{where} needs '{name}' as {what}{nearest(name, list(known))}")
+                raise InputError(f"{where} needs '{name}' as {what}{spelling_hint(name, list(known))}")
         if model.parameters.missing:
             raise InputError(f"model '{model.name}' has no value for {', '.join(model.parameters.missing)}")
         if not (math.isfinite(self.dt) and self.dt > 0.0):
@@ -102,7 +102,7 @@ class ClosedLoop:
             raise InputError(f"{where} needs {len(self.loop.terms)} finite gains: {', '.join(self.loop.gains.names)}")
 
     def run(
-        self, disturbance: Array, limits: ActuatorLimits = FREE, reference: Array | None = None
+        self, disturbance: Array, limits: ActuatorLimits = UNLIMITED, reference: Array | None = None
     ) -> tuple[Array, Array]:
         """States (n, nx) and the actuator's angle from its trim (n,) at the samples of the disturbance (n,).
 
@@ -119,56 +119,56 @@ class ClosedLoop:
             raise InputError(
                 "disturbance and reference of a closed loop need the same number of samples, two or more, without gaps"
             )
-        memory = self._memory(disturbance, limits, wanted)
+        memory = self._controller_memory(disturbance, limits, wanted)
         states, inputs = np.empty((count, len(self.start))), np.empty((count, len(self.inputs)))
         diverged = steer(
-            self.model.compiled.rates, kernel.controller, self.start.copy(), self.inputs.copy(),
+            self.model.compiled.rates, kernel.linear_controller, self.start.copy(), self.inputs.copy(),
             self.model.parameters.values, memory, self.dt, states, inputs,
         )  # fmt: skip
         last = count if diverged < 0 else diverged + 1
         time = frozen(self.dt * np.arange(last))
-        demand_bounded(self.model, time, states[:last], f"loop '{self.loop.name}'")
+        require_bounded(self.model, time, states[:last], f"loop '{self.loop.name}'")
         if diverged >= 0:
             raise DivergedError(f"loop '{self.loop.name}' before model '{self.model.name}' runs away at {time[-1]:g} s")
         return states, memory[len(memory) - count - 1 : -1]
 
-    def _memory(self, disturbance: Array, limits: ActuatorLimits, reference: Array) -> Array:
-        made, count = controller_of(self.loop, self.gains), len(disturbance)
-        n, place, disturbed = len(made.b), self._place(self.actuator), self._place(self.disturbed)
+    def _controller_memory(self, disturbance: Array, limits: ActuatorLimits, reference: Array) -> Array:
+        made, count = controller_state_space(self.loop, self.gains), len(disturbance)
+        n, place, disturbed = len(made.b), self._input_index(self.actuator), self._input_index(self.disturbance_input)
         values = {
-            kernel.ORDER: n,
+            kernel.CONTROLLER_ORDER: n,
             kernel.COUNT: count,
             kernel.OUTPUT: self.model.states.index(self.output),
             kernel.ACTUATOR: place,
-            kernel.DISTURBED: disturbed,
+            kernel.DISTURBED_INPUT: disturbed,
             kernel.TRIM: self.inputs[place],
-            kernel.EFFECT: self._sign(place) * self.effect,
+            kernel.EFFECT: self._sign(place) * self.effectiveness,
             kernel.LIMIT: limits.limit,
             kernel.SLEW: limits.rate * self.dt,
             kernel.STALL: limits.stall,
             kernel.LOSS: limits.loss,
         }
-        head = np.zeros(kernel.HEAD)
+        head = np.zeros(kernel.HEAD_SIZE)
         head[list(values)] = list(values.values())
         trim = self.inputs[disturbed] if disturbed not in (-1, place) else 0.0
-        met = trim + self._sign(disturbed) * held(np.asarray(disturbance, dtype=np.float64))
-        laws = (made.law(self.dt, is_holding=False), made.law(self.dt, is_holding=True))
+        met = trim + self._sign(disturbed) * hold_equivalent(np.asarray(disturbance, dtype=np.float64))
+        laws = (made.discretised(self.dt, is_holding=False), made.discretised(self.dt, is_holding=True))
         series = (reference, reference[-1:], met, np.zeros(count + 1))
-        return np.concatenate([head, *laws, made.drift, np.zeros(2 * n), *series])
+        return np.concatenate([head, *laws, made.slow_rate, np.zeros(2 * n), *series])
 
-    def _place(self, name: str) -> int:
+    def _input_index(self, name: str) -> int:
         """Of an input; -1 of none."""
         return self.model.input_names.index(name) if name else -1
 
     def _sign(self, place: int) -> float:
-        return -1.0 if place >= 0 and self.model.inputs[place].is_turned else 1.0
+        return -1.0 if place >= 0 and self.model.inputs[place].is_reversed else 1.0
 
     def record(
-        self, name: str, disturbance: Array, limits: ActuatorLimits = FREE, reference: Array | None = None
+        self, name: str, disturbance: Array, limits: ActuatorLimits = UNLIMITED, reference: Array | None = None
     ) -> Record:
         """`run` as a record: all states, inputs at their trim, the actuator, the disturbance, the reference."""
         states, angle = self.run(disturbance, limits, reference)
-        place, disturbed = self._place(self.actuator), self._place(self.disturbed)
+        place, disturbed = self._input_index(self.actuator), self._input_index(self.disturbance_input)
         inputs = np.tile(self.inputs, (len(states), 1))
         inputs[:, place] += self._sign(place) * angle
         if disturbed not in (-1, place):
@@ -191,11 +191,11 @@ def closed_loop(
     actuator: str,
     disturbance_input: str,
     output: str,
-    limits: ActuatorLimits = FREE,
+    limits: ActuatorLimits = UNLIMITED,
     reference: Array | None = None,
     start: Array | None = None,
     inputs: Array | None = None,
-    effect: float = 1.0,
+    effectiveness: float = 1.0,
 ) -> Record:
     """The loop's controller with gains (g,) before a model, met by a disturbance (n,), following a reference (n,).
 
@@ -212,12 +212,12 @@ def closed_loop(
     nothing = np.empty(0)
     prepared = ClosedLoop(
         model, loop, np.asarray(gains, dtype=np.float64), dt, actuator, disturbance_input, output,
-        nothing if start is None else start, nothing if inputs is None else inputs, effect,
+        nothing if start is None else start, nothing if inputs is None else inputs, effectiveness,
     )  # fmt: skip
     return prepared.record(f"{loop.name} closed", disturbance, limits, reference)
 
 
-def held(series: Array) -> Array:
+def hold_equivalent(series: Array) -> Array:
     """Values (n,) that, each held over its step, act on a mass as the smooth series does: mid-values, sharpened.
 
     A hold takes sinc(omega dt / 2) off: w - dt^2 / 24 w'' at mid-step, by cubics, makes up for it.

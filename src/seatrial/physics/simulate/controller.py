@@ -12,30 +12,30 @@ from scipy.linalg import expm
 
 from seatrial.core.values import Array
 from seatrial.physics.loops import Block, TransferLoop
-from seatrial.physics.loops.state_space import canonical
+from seatrial.physics.loops.state_space import controllable_form
 
 
 @dataclass(frozen=True, eq=False)
-class Controller:
+class ControllerStateSpace:
     """x' = A x + b e, order = c x + d e, from the error e = reference - output to the actuator without limits.
 
     Attributes:
         A: (n, n); b, c: (n,).
-        slow: which states belong to terms with a pole nearer the origin than every pole of the plant but its
+        is_slow: which states belong to terms with a pole nearer the origin than every pole of the plant but its
             integrators, (n,): those that wind up.
-        drift: row (n + 1,) over [x, e] that gives the rate of change of the slow terms' share of the order.
+        slow_rate: row (n + 1,) over [x, e] that gives the rate of change of the slow terms' share of the order.
     """
 
     A: Array
     b: Array
     c: Array
     d: float
-    slow: Array
-    drift: Array
+    is_slow: Array
+    slow_rate: Array
 
-    def law(self, dt: float, *, is_holding: bool) -> Array:
+    def discretised(self, dt: float, *, is_holding: bool) -> Array:
         """E, g0, g1 and the row that gives the order a step ahead, flat; slow states stand still if `is_holding`."""
-        moving = np.where(self.slow, 0.0, 1.0) if is_holding else np.ones(len(self.b))
+        moving = np.where(self.is_slow, 0.0, 1.0) if is_holding else np.ones(len(self.b))
         n = len(self.b)
         whole = np.zeros((n + 2, n + 2))
         whole[:n, :n], whole[:n, n] = moving[:, None] * self.A * dt, moving * self.b * dt
@@ -46,58 +46,60 @@ class Controller:
         return np.concatenate([E.ravel(), held - ramp, ramp, *ahead])
 
 
-_THROUGH = Controller(np.zeros((0, 0)), np.zeros(0), np.zeros(0), 1.0, np.zeros(0, dtype=bool), np.zeros(1))
+_UNIT_GAIN = ControllerStateSpace(np.zeros((0, 0)), np.zeros(0), np.zeros(0), 1.0, np.zeros(0, dtype=bool), np.zeros(1))
 
 
-def controller_of(loop: TransferLoop, gains: Array) -> Controller:
+def controller_state_space(loop: TransferLoop, gains: Array) -> ControllerStateSpace:
     """Sensor, terms with those gains (g,), filters and servo in a row."""
-    seen = reduce(_then, loop.sensor, _THROUGH)
+    seen = reduce(_append_block, loop.sensor, _UNIT_GAIN)
     made = replace(seen, c=np.zeros(len(seen.c)), d=0.0)
-    slowest = _slowest(loop.plant)
+    slowest = _slowest_pole(loop.plant)
     for gain, term in zip(gains, loop.terms, strict=True):
-        made = _beside(made, seen, float(gain), term.block, slowest)
+        made = _add_term(made, seen, float(gain), term.block, slowest)
     share = float(np.prod([np.sign(block.gain) for block in (*loop.filters, *loop.servo)]))
     before = len(made.b)
-    made = reduce(_then, (*loop.filters, *loop.servo), made)
+    made = reduce(_append_block, (*loop.filters, *loop.servo), made)
     drift = np.zeros(len(made.b) + 1)
-    drift[:before], drift[-1] = share * made.drift[:before], share * made.drift[-1]
-    return replace(made, drift=drift)
+    drift[:before], drift[-1] = share * made.slow_rate[:before], share * made.slow_rate[-1]
+    return replace(made, slow_rate=drift)
 
 
-def _slowest(plant: Block) -> float:
+def _slowest_pole(plant: Block) -> float:
     """The plant's pole nearest the origin but not at it, rad/s; zero where it has none."""
     sizes = np.abs(plant.poles)
     return float(sizes[sizes > 1e-9].min(initial=np.inf)) if np.any(sizes > 1e-9) else 0.0
 
 
-def _then(first: Controller, block: Block) -> Controller:
+def _append_block(first: ControllerStateSpace, block: Block) -> ControllerStateSpace:
     """A block behind."""
-    A, b, c, d = canonical(block)
+    A, b, c, d = controllable_form(block)
     n, m = len(first.b), len(b)
     whole = np.zeros((n + m, n + m))
     whole[:n, :n], whole[n:, :n], whole[n:, n:] = first.A, np.outer(b, first.c), A
-    return Controller(
+    return ControllerStateSpace(
         whole, np.concatenate([first.b, b * first.d]), np.concatenate([d * first.c, c]), d * first.d,
-        np.concatenate([first.slow, np.zeros(m, dtype=bool)]),
-        np.concatenate([first.drift[:-1], np.zeros(m), first.drift[-1:]]),
+        np.concatenate([first.is_slow, np.zeros(m, dtype=bool)]),
+        np.concatenate([first.slow_rate[:-1], np.zeros(m), first.slow_rate[-1:]]),
     )  # fmt: skip
 
 
-def _beside(made: Controller, seen: Controller, gain: float, block: Block, slowest: float) -> Controller:
-    """One more term on what the sensor shows; `made` has the sensor's states first."""
-    A, b, c, d = canonical(block)
-    n, m, s = len(made.b), len(b), len(seen.b)
+def _add_term(
+    controller: ControllerStateSpace, sensor: ControllerStateSpace, gain: float, block: Block, slowest: float
+) -> ControllerStateSpace:
+    """One more term on what the sensor shows; `controller` has the sensor's states first."""
+    A, b, c, d = controllable_form(block)
+    n, m, s = len(controller.b), len(b), len(sensor.b)
     whole = np.zeros((n + m, n + m))
-    whole[:n, :n], whole[n:, :s], whole[n:, n:] = made.A, np.outer(b, seen.c), A
+    whole[:n, :n], whole[n:, :s], whole[n:, n:] = controller.A, np.outer(b, sensor.c), A
     is_slow = bool(m) and float(np.abs(block.poles).min()) < max(slowest, 1e-9)
-    drift = np.concatenate([made.drift[:-1], np.zeros(m), made.drift[-1:]])
+    drift = np.concatenate([controller.slow_rate[:-1], np.zeros(m), controller.slow_rate[-1:]])
     if is_slow:
         drift[n : n + m] += gain * (c @ A)
-        drift[:s] += gain * (c @ b) * seen.c
-        drift[-1] += gain * (c @ b) * seen.d
+        drift[:s] += gain * (c @ b) * sensor.c
+        drift[-1] += gain * (c @ b) * sensor.d
     direct = np.zeros(n)
-    direct[:s] = gain * d * seen.c
-    return Controller(
-        whole, np.concatenate([made.b, b * seen.d]), np.concatenate([made.c + direct, gain * c]),
-        made.d + gain * d * seen.d, np.concatenate([made.slow, np.full(m, is_slow)]), drift,
+    direct[:s] = gain * d * sensor.c
+    return ControllerStateSpace(
+        whole, np.concatenate([controller.b, b * sensor.d]), np.concatenate([controller.c + direct, gain * c]),
+        controller.d + gain * d * sensor.d, np.concatenate([controller.is_slow, np.full(m, is_slow)]), drift,
     )  # fmt: skip

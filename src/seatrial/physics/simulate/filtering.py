@@ -7,11 +7,11 @@ import numpy as np
 
 from seatrial.core.values import Array, Index
 from seatrial.numerics.kernels.sensitivity import DELAY, GAIN, OFFSET
-from seatrial.physics.simulate.batch import Batch
+from seatrial.physics.simulate.batch import SegmentBatch
 
 
 @dataclass(frozen=True, eq=False)
-class Noisy:
+class FilterPoint:
     """What a filter has to know besides the model, for one point.
 
     Attributes:
@@ -29,7 +29,7 @@ class Noisy:
 
 
 @dataclass(frozen=True, eq=False)
-class Filter(Batch):
+class KalmanFilter(SegmentBatch):
     """Segments to be filtered; columns: parameters, corrections, squares of intensities, squares of deviations.
 
     Attributes:
@@ -39,7 +39,7 @@ class Filter(Batch):
     driven: tuple[str, ...] = ()
 
     @property
-    def noises(self) -> int:
+    def noise_count(self) -> int:
         """Number of intensities and deviations."""
         return len(self.driven) + len(self.outputs)
 
@@ -48,37 +48,39 @@ class Filter(Batch):
         return np.array([self.model.states.index(s) for s in self.driven], dtype=np.int64)
 
     @cached_property
-    def _moved_links(self) -> tuple[Index, ...]:
+    def _shifted_links(self) -> tuple[Index, ...]:
         """Links with columns counted from behind the transition matrix."""
         chain, link_p, link_u, _, g_link_p, g_link_u = self._links
-        return (chain, *(_shifted(link, len(self.model.states)) for link in (link_p, link_u, g_link_p, g_link_u)))
+        return (chain, *(_shift_columns(link, len(self.model.states)) for link in (link_p, link_u, g_link_p, g_link_u)))
 
     @cached_property
-    def _bare_links(self) -> tuple[Index, ...]:
+    def _state_links(self) -> tuple[Index, ...]:
         none = np.zeros((0, 3), np.int64), np.zeros((0, 4), np.int64)
         return (self._links[0], *none, *none)
 
-    def innovations(self, segment: int, measured: Array, at: Noisy) -> tuple[Array, Array, bool]:
+    def innovations(self, segment: int, measured: Array, point: FilterPoint) -> tuple[Array, Array, bool]:
         """Innovations e (measured - predicted) and variances v of one segment, (rows, ny); whether it diverged.
 
         measured: of all segments, NaN where there is none; there e = 0 and v = 1.
         """
-        e, v, _, _, _, failed = self._run(segment, measured, at, self._bare_links, 0, 0)
+        e, v, _, _, _, failed = self._run(segment, measured, point, self._state_links, 0, 0)
         return e, v, failed
 
-    def sensitivities(self, segment: int, measured: Array, at: Noisy) -> tuple[Array, Array, Array, Array, bool]:
+    def sensitivities(
+        self, segment: int, measured: Array, point: FilterPoint
+    ) -> tuple[Array, Array, Array, Array, bool]:
         """`innovations` with de by all columns, (rows, ny, columns), and dv by the noise's, (rows, ny, noises).
 
         The gain counts as independent of parameters and corrections.
         """
-        width = len(self.parameters) + len(self.corrections) + self.noises
-        e, v, de, dv, _, failed = self._run(segment, measured, at, self._moved_links, width, self.noises)
+        width = len(self.parameters) + len(self.corrections) + self.noise_count
+        e, v, de, dv, _, failed = self._run(segment, measured, point, self._shifted_links, width, self.noise_count)
         return e, v, de, dv, failed
 
-    def variances(self, segment: int, at: Noisy) -> Array:
+    def variances(self, segment: int, point: FilterPoint) -> Array:
         """Variance of each state where nothing is measured, (rows, nx): how far a run may stray from its prediction."""
         nothing = np.full((int(self.offsets[-1]), len(self.outputs)), np.nan)
-        return self._run(segment, nothing, at, self._bare_links, 0, 0, recorded=True)[4]
+        return self._run(segment, nothing, point, self._state_links, 0, 0, with_variance=True)[4]
 
     def transitions(self, segment: int, start: Array, parameters: Array, corrections: Array) -> tuple[Array, Array]:
         """Transition matrices from sample to sample, (rows - 1, nx, nx), and outputs by states, (rows, ny, nx).
@@ -86,48 +88,82 @@ class Filter(Batch):
         Along the motion without noise; start, parameters, corrections: as in `simulate`, of all segments.
         """
         a, b = self.offsets[segment : segment + 2]
-        gain, zero, delay = (c[segment] for c in self._corrected(corrections))
-        inputs, rows, nx = corrected(self.inputs[a:b], self.dt, gain, zero, delay)[0], b - a, len(self.model.states)
-        whole = Batch(self.model, inputs, np.array([0, rows]), self.dt, self.model.states, substeps=self.substeps)
+        gain, zero, delay = (c[segment] for c in self._correction_values(corrections))
+        inputs, rows, nx = (
+            corrected_inputs(self.inputs[a:b], self.dt, gain, zero, delay)[0],
+            b - a,
+            len(self.model.states),
+        )
+        whole = SegmentBatch(
+            self.model, inputs, np.array([0, rows]), self.dt, self.model.states, substeps=self.substeps
+        )
         one = parameters[segment : segment + 1]
         states = whole.simulate(0, 1, start[segment : segment + 1], one, np.zeros((1, 0)))[0]
         ahead = np.minimum(np.column_stack([np.arange(rows), np.arange(1, rows + 1)]), rows - 1).ravel()
         steps = replace(
             whole, inputs=np.ascontiguousarray(inputs[ahead]), offsets=2 * np.arange(rows + 1, dtype=np.int64),
-            outputs=(*self.model.states, *self.outputs), starts=self.model.states,
+            outputs=(*self.model.states, *self.outputs), initial_states=self.model.states,
         )  # fmt: skip
         slopes = steps.differentiate(0, rows, states, np.repeat(one, rows, axis=0), np.zeros((rows, 0)))[1]
         return slopes[1:-1:2, :nx], slopes[::2, nx:]
 
     def _run(
-        self, segment: int, measured: Array, at: Noisy, links: tuple[Index, ...], width: int, noises: int,
-        *, recorded: bool = False,
-    ) -> tuple[Array, Array, Array, Array, Array, bool]:  # fmt: skip
+        self,
+        segment: int,
+        measured: Array,
+        point: FilterPoint,
+        links: tuple[Index, ...],
+        width: int,
+        noise_count: int,
+        *,
+        with_variance: bool = False,
+    ) -> tuple[Array, Array, Array, Array, Array, bool]:
         nx, ny = len(self.model.states), len(self.outputs)
-        from seatrial.numerics.kernels.innovations import innovate  # compiled when it is first wanted
+        from seatrial.numerics.kernels.innovations import filter_innovations  # compiled when it is first wanted
 
         chain, link_p, link_u, g_link_p, g_link_u = links
         nx, ny, (a, b) = len(self.model.states), len(self.outputs), self.offsets[segment : segment + 2]
-        gain, zero, delay = (c[segment] for c in self._corrected(at.corrections))
-        inputs, weights = corrected(self.inputs[a:b], self.dt, gain, zero, delay)
+        gain, zero, delay = (c[segment] for c in self._correction_values(point.corrections))
+        inputs, weights = corrected_inputs(self.inputs[a:b], self.dt, gain, zero, delay)
         if not len(link_u) + len(g_link_u):
             weights = np.empty((b - a, 0))
         process = np.zeros(nx)
-        process[self._driven] = at.intensity**2
+        process[self._driven] = point.intensity**2
         e, v = np.empty((b - a, ny)), np.empty((b - a, ny))
-        de, dv = np.empty((b - a, ny, width)), np.empty((b - a, ny, noises))
-        variance = np.empty((b - a if recorded else 0, nx))
+        de, dv = np.empty((b - a, ny, width)), np.empty((b - a, ny, noise_count))
+        variance = np.empty((b - a if with_variance else 0, nx))
         compiled = self.model.compiled
-        failed = innovate(
-            compiled.rates_tangent, compiled.outputs_tangent, inputs, weights, self.dt, self.substeps,
-            at.start[segment], at.start_variance[segment], at.parameters[segment],
-            chain, link_p, link_u, g_link_p, g_link_u, self._select, len(self.model.outputs), self._driven, process,
-            at.deviation**2, np.ascontiguousarray(measured[a:b]), e, v, de, dv, variance,
-        )  # fmt: skip
+        failed = filter_innovations(
+            compiled.rates_tangent,
+            compiled.outputs_tangent,
+            inputs,
+            weights,
+            self.dt,
+            self.substeps,
+            point.start[segment],
+            point.start_variance[segment],
+            point.parameters[segment],
+            chain,
+            link_p,
+            link_u,
+            g_link_p,
+            g_link_u,
+            self._output_columns,
+            len(self.model.outputs),
+            self._driven,
+            process,
+            point.deviation**2,
+            np.ascontiguousarray(measured[a:b]),
+            e,
+            v,
+            de,
+            dv,
+            variance,
+        )
         return e, v, de, dv, variance, failed >= 0
 
 
-def corrected(inputs: Array, dt: float, gain: Array, zero: Array, delay: Array) -> tuple[Array, Array]:
+def corrected_inputs(inputs: Array, dt: float, gain: Array, zero: Array, delay: Array) -> tuple[Array, Array]:
     """Inputs as `kernels.integrate.effective_input` corrects them, (rows, nu), and their derivatives (rows, 3 nu).
 
     The derivatives by zero, gain and delay stand in that order for every input (`kernels.sensitivity`).
@@ -146,7 +182,7 @@ def corrected(inputs: Array, dt: float, gain: Array, zero: Array, delay: Array) 
     return made, weights
 
 
-def _shifted(link: Index, by: int) -> Index:
+def _shift_columns(link: Index, columns: int) -> Index:
     moved = link.copy()
-    moved[:, -1] += by
+    moved[:, -1] += columns
     return moved

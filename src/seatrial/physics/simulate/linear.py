@@ -1,4 +1,4 @@
-"""Affine models by exact propagators: what `Batch` gives, without the error of a Runge-Kutta step.
+"""Affine models by exact propagators: what `SegmentBatch` gives, without the error of a Runge-Kutta step.
 
 Inputs between samples: held where the model says so, else smooth. A cubic spline through the samples is evaluated at
 `substeps` points a sample and runs straight between those, so that a continuous wave force is not held (ZOH) nor
@@ -14,16 +14,16 @@ from scipy.interpolate import CubicSpline
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index
-from seatrial.numerics.kernels.linear import affine, replay, replay_tangent
+from seatrial.numerics.kernels.linear import affine_matrices, replay, replay_tangent
 from seatrial.numerics.kernels.propagate import propagators
 from seatrial.numerics.kernels.sensitivity import DELAY, GAIN
-from seatrial.physics.simulate.batch import INPUT_KINDS, Batch
+from seatrial.physics.simulate.batch import INPUT_KINDS, SegmentBatch
 
 SUBSTEPS = 8
 
 
 @dataclass(frozen=True, eq=False)
-class Matrices:
+class DiscreteMatrices:
     """Discrete matrices of some parameter sets, first axis; derivatives have the parameter as last axis.
 
     The last input is the constant 1. e: (w, nx, nx); g0, g1: (w, nx, nu + 1); c: (w, ny, nx); d: (w, ny, nu + 1).
@@ -34,22 +34,26 @@ class Matrices:
     g1: Array
     c: Array
     d: Array
-    slopes: tuple[Array, Array, Array, Array, Array]
+    derivatives: tuple[Array, Array, Array, Array, Array]
 
 
-def matrices(model: Model, parameters: Array, h: float, select: Index, wanted: Index) -> Matrices:
-    """Exact discrete matrices over a step h [s] for each row of `parameters`, differentiated by those in `wanted`."""
-    made = [_of_one(model, row, h, select, wanted) for row in parameters]
+def discrete_matrices(
+    model: Model, parameters: Array, h: float, select: Index, differentiated: Index
+) -> DiscreteMatrices:
+    """Exact discrete matrices over a step h [s] for each row of `parameters`, and derivatives by `differentiated`."""
+    made = [_matrices_of_one(model, row, h, select, differentiated) for row in parameters]
     e, g0, g1, c, d = (np.array([values[i] for values, _ in made]) for i in range(5))
     de, dg0, dg1, dc, dd = (np.array([slopes[i].transpose(1, 2, 0) for _, slopes in made], order="C") for i in range(5))
-    return Matrices(e, g0, g1, c, d, (de, dg0, dg1, dc, dd))
+    return DiscreteMatrices(e, g0, g1, c, d, (de, dg0, dg1, dc, dd))
 
 
-def _of_one(model: Model, p: Array, h: float, select: Index, wanted: Index) -> tuple[list[Array], list[Array]]:
+def _matrices_of_one(
+    model: Model, p: Array, h: float, select: Index, differentiated: Index
+) -> tuple[list[Array], list[Array]]:
     nx, nu, ny = len(model.states), len(model.inputs), len(model.outputs)
     code = model.compiled
-    plant, dplant = affine(code.rates_tangent, nx, nx, nu, wanted, p)
-    seen, dseen = affine(code.outputs_tangent, ny, nx, nu, wanted, p)
+    plant, dplant = affine_matrices(code.rates_tangent, nx, nx, nu, differentiated, p)
+    seen, dseen = affine_matrices(code.outputs_tangent, ny, nx, nu, differentiated, p)
     a, b = np.ascontiguousarray(plant[:, :nx]), plant[:, nx:]
     da, db = np.ascontiguousarray(dplant[:, :, :nx]), dplant[:, :, nx:]
     (e, held, ramp), slope = propagators(a, da, h)
@@ -58,7 +62,7 @@ def _of_one(model: Model, p: Array, h: float, select: Index, wanted: Index) -> t
     dg1 = smooth * (slope[:, 2] @ b + ramp @ db)
     g0, dg0 = held @ b - g1, slope[:, 1] @ b + held @ db - dg1
     all_seen = np.vstack([np.eye(nx, nx + nu + 1), seen])[select]
-    all_slopes = np.concatenate([np.zeros((len(wanted), nx, nx + nu + 1)), dseen], axis=1)[:, select]
+    all_slopes = np.concatenate([np.zeros((len(differentiated), nx, nx + nu + 1)), dseen], axis=1)[:, select]
     return (
         [e, g0, g1, all_seen[:, :nx], all_seen[:, nx:]],
         [slope[:, 0], dg0, dg1, all_slopes[:, :, :nx], all_slopes[:, :, nx:]],
@@ -66,71 +70,73 @@ def _of_one(model: Model, p: Array, h: float, select: Index, wanted: Index) -> t
 
 
 @dataclass(frozen=True, eq=False)
-class LinearBatch(Batch):
-    """`Batch` for affine models; `substeps` counts the straight pieces of a smooth input in one sample."""
+class LinearBatch(SegmentBatch):
+    """`SegmentBatch` for affine models; `substeps` counts the straight pieces of a smooth input in one sample."""
 
     def simulate(
         self, first: int, last: int, start: Array, parameters: Array, corrections: Array
     ) -> tuple[Array, Index]:
-        """As `Batch.simulate`."""
-        offsets, failed, y, fine, _ = self._prepared(first, last, corrections)
+        """As `SegmentBatch.simulate`."""
+        offsets, failed, y, fine, _ = self._prepare(first, last, corrections)
         m, which = self._matrices(parameters[first:last], np.empty(0, dtype=np.int64))
-        replay(m.e, m.g0, m.g1, m.c, m.d, which, fine, offsets, self._pieces,
+        replay(m.e, m.g0, m.g1, m.c, m.d, which, fine, offsets, self._steps_per_sample,
                np.ascontiguousarray(start[first:last]), y, failed)  # fmt: skip
         return y, failed
 
     def differentiate(
         self, first: int, last: int, start: Array, parameters: Array, corrections: Array
     ) -> tuple[Array, Array, Index]:
-        """As `Batch.differentiate`."""
-        offsets, failed, y, fine, weights = self._prepared(first, last, corrections)
+        """As `SegmentBatch.differentiate`."""
+        offsets, failed, y, fine, weights = self._prepare(first, last, corrections)
         wanted = np.array([self.model.parameters.index(n) for n in self.parameters], dtype=np.int64)
         m, which = self._matrices(parameters[first:last], wanted)
-        s = np.empty((len(y), len(self.outputs), self.width))
+        s = np.empty((len(y), len(self.outputs), self.column_count))
         shifts = [(self.model.input_names.index(c.input), len(wanted) + k) for k, c in enumerate(self.corrections)]
         starts = np.full(len(self.model.states), -1, dtype=np.int64)
-        for k, state in enumerate(self.starts):
+        for k, state in enumerate(self.initial_states):
             starts[self.model.states.index(state)] = len(wanted) + len(self.corrections) + k
-        replay_tangent(m.e, m.g0, m.g1, m.c, m.d, *m.slopes, which, fine, offsets, self._pieces,
+        replay_tangent(m.e, m.g0, m.g1, m.c, m.d, *m.derivatives, which, fine, offsets, self._steps_per_sample,
                        np.ascontiguousarray(start[first:last]), np.array(shifts, dtype=np.int64).reshape(-1, 2),
                        weights, starts, y, s, failed)  # fmt: skip
         return y, s, failed
 
-    def fine(self, segment: int) -> tuple[Array, int]:
+    def fine_inputs(self, segment: int) -> tuple[Array, int]:
         """Inputs of a segment as recorded at the fine step, (rows, nu + 1), the last one 1; and the steps a sample."""
-        return self._plain[segment][0], self._pieces
+        return self._recorded_inputs[segment][0], self._steps_per_sample
 
     @cached_property
-    def _pieces(self) -> int:
+    def _steps_per_sample(self) -> int:
         """Steps in a sample: one where every input is held or none moves."""
         moving = [np.ptp(self.inputs[:, j]) > 0 and not i.is_held for j, i in enumerate(self.model.inputs)]
         return max(self.substeps, SUBSTEPS) if any(moving) else 1
 
-    def _matrices(self, parameters: Array, wanted: Index) -> tuple[Matrices, Index]:
+    def _matrices(self, parameters: Array, differentiated: Index) -> tuple[DiscreteMatrices, Index]:
         distinct, which = parameters[:1], np.zeros(len(parameters), dtype=np.int64)
         if np.any(parameters != distinct):
             distinct, found = np.unique(parameters, axis=0, return_inverse=True)
             which = np.ascontiguousarray(found.reshape(-1), dtype=np.int64)
-        return matrices(self.model, distinct, self.dt / self._pieces, self._select, wanted), which
+        return discrete_matrices(
+            self.model, distinct, self.dt / self._steps_per_sample, self._output_columns, differentiated
+        ), which
 
-    def _prepared(self, first: int, last: int, corrections: Array) -> tuple[Index, Index, Array, Array, Array]:
+    def _prepare(self, first: int, last: int, corrections: Array) -> tuple[Index, Index, Array, Array, Array]:
         """Offsets, failures, room for y, fine inputs with the constant 1, and their slopes by the corrections."""
-        offsets, _, failed, y = self._piece(first, last)
-        fine = [self._fine(s, corrections[s]) for s in range(first, last)]
+        offsets, _, failed, y = self._segment_rows(first, last)
+        fine = [self._corrected_inputs(s, corrections[s]) for s in range(first, last)]
         return offsets, failed, y, np.concatenate([u for u, _ in fine]), np.concatenate([w for _, w in fine])
 
-    def _fine(self, segment: int, corrections: Array) -> tuple[Array, Array]:
+    def _corrected_inputs(self, segment: int, corrections: Array) -> tuple[Array, Array]:
         """Corrected inputs of one segment at the fine step, (rows, nu + 1), and slopes, (rows, corrections)."""
         if not self.corrections:
-            return self._plain[segment]
-        plain = self._plain[segment][0]
+            return self._recorded_inputs[segment]
+        plain = self._recorded_inputs[segment][0]
         u, w = plain.copy(), np.zeros((len(plain), len(self.corrections)))
         known = dict(zip(self.corrections, corrections, strict=True))
         by_input = {c.input: {k.kind: float(v) for k, v in known.items() if k.input == c.input} for c in known}
         for name, own in by_input.items():
             j = self.model.input_names.index(name)
             delay, gain = own.get("delay", 0.0), own.get("gain", 1.0)
-            raw, rise = self._delayed(segment, j, delay)
+            raw, rise = self._delayed_input(segment, j, delay)
             u[:, j] = gain * raw + own.get("zero", 0.0)
             for k, c in enumerate(self.corrections):
                 if c.input == name:
@@ -139,19 +145,19 @@ class LinearBatch(Batch):
         return u, w
 
     @cached_property
-    def _plain(self) -> list[tuple[Array, Array]]:
+    def _recorded_inputs(self) -> list[tuple[Array, Array]]:
         """Inputs as recorded at the fine step, for each segment."""
         made = []
-        for s in range(self.count):
-            columns = [self._delayed(s, j, 0.0)[0] for j in range(len(self.model.inputs))]
-            rows = (int(self.offsets[s + 1] - self.offsets[s]) - 1) * self._pieces + 1
+        for s in range(self.segment_count):
+            columns = [self._delayed_input(s, j, 0.0)[0] for j in range(len(self.model.inputs))]
+            rows = (int(self.offsets[s + 1] - self.offsets[s]) - 1) * self._steps_per_sample + 1
             made.append((np.stack([*columns, np.ones(rows)], axis=1), np.empty((rows, len(self.corrections)))))
         return made
 
-    def _delayed(self, segment: int, j: int, delay: float) -> tuple[Array, Array]:
+    def _delayed_input(self, segment: int, j: int, delay: float) -> tuple[Array, Array]:
         """Input j at the fine step, late by `delay` [s], and its rate of change; clamped to the segment."""
         samples = self.inputs[self.offsets[segment] : self.offsets[segment + 1], j]
-        place = np.arange((len(samples) - 1) * self._pieces + 1) / self._pieces - delay / self.dt
+        place = np.arange((len(samples) - 1) * self._steps_per_sample + 1) / self._steps_per_sample - delay / self.dt
         inside = (place >= 0.0) & (place <= len(samples) - 1.0)
         place = np.clip(place, 0.0, len(samples) - 1.0)
         if self.model.inputs[j].is_held:
@@ -169,6 +175,6 @@ class LinearBatch(Batch):
         ]
 
 
-def batch_for(model: Model) -> type[Batch]:
+def batch_class(model: Model) -> type[SegmentBatch]:
     """The engine that suits the model."""
-    return LinearBatch if model.is_affine else Batch
+    return LinearBatch if model.is_affine else SegmentBatch

@@ -10,8 +10,8 @@ from functools import cached_property
 import numpy as np
 
 from seatrial.core.values import Array, InputError
-from seatrial.numerics.kernels.population import discretise, misfit
-from seatrial.numerics.kernels.population import trajectories as simulated
+from seatrial.numerics.kernels.linear_population import discretise, misfit
+from seatrial.numerics.kernels.linear_population import trajectories as simulated
 from seatrial.physics.models.heave_pitch import COEFFICIENTS, STIFFNESSES
 
 ALL_COEFFICIENTS = ("m", "I5", *COEFFICIENTS, *STIFFNESSES)
@@ -97,8 +97,8 @@ def trajectories(
     Raises:
         InputError: shapes do not fit.
     """
-    phi, gamma, x0 = _ready(A, B, forcing, start)
-    _within(channels, A.shape[1])
+    phi, gamma, x0 = _prepare(A, B, forcing, start)
+    _require_states(channels, A.shape[1])
     y = np.empty((len(A), forcing.samples, len(channels)))
     simulated(phi, gamma, forcing.rows, forcing.substeps, x0, np.array(channels, dtype=np.int64), y)
     return y
@@ -116,9 +116,9 @@ def fitness(
     Raises:
         InputError: shapes do not fit, a sigma is not positive, or nothing was measured.
     """
-    phi, gamma, x0 = _ready(A, B, forcing, start)
+    phi, gamma, x0 = _prepare(A, B, forcing, start)
     nx = phi.shape[1]
-    _within(channels, nx)
+    _require_states(channels, nx)
     if measured.shape != (forcing.samples, len(channels)):
         raise InputError(f"measured has shape {measured.shape}; the forcing wants ({forcing.samples}, {len(channels)})")
     if np.shape(sigma) != (len(channels),) or not np.all(np.asarray(sigma) > 0.0):
@@ -146,23 +146,23 @@ def one_sample_fitness(
     return fitness(A, B, forcing.one_step(sample), state, seen, sigma, channels)
 
 
-def completed(coefficients: Array, known: Mapping[str, float]) -> Array:
+def complete_parameters(coefficients: Array, particulars: Mapping[str, float]) -> Array:
     """All fourteen parameters, (count, 14) in the order of ALL_COEFFICIENTS, from the eight unknown ones (count, 8).
 
-    known: m, I5 and the stiffnesses, as in the particulars of `seatrial.physics.models.qi2025.SHIP`.
+    particulars: m, I5 and the stiffnesses, as in the particulars of `seatrial.physics.models.qi2025.SHIP`.
 
     Raises:
         InputError: one of the known values is missing, or there are not eight columns.
     """
     if coefficients.ndim != 2 or coefficients.shape[1] != len(COEFFICIENTS):
         raise InputError(f"coefficients of shape {coefficients.shape}; give (count, 8) in the order {COEFFICIENTS}")
-    missing = [name for name in ("m", "I5", *STIFFNESSES) if name not in known]
+    missing = [name for name in ("m", "I5", *STIFFNESSES) if name not in particulars]
     if missing:
         raise InputError(f"'{missing[0]}' of the ship is missing; heave and pitch need m, I5, {', '.join(STIFFNESSES)}")
     whole = np.empty((len(coefficients), len(ALL_COEFFICIENTS)))
-    whole[:, :2] = known["m"], known["I5"]
+    whole[:, :2] = particulars["m"], particulars["I5"]
     whole[:, 2:10] = coefficients
-    whole[:, 10:] = [known[name] for name in STIFFNESSES]
+    whole[:, 10:] = [particulars[name] for name in STIFFNESSES]
     return whole
 
 
@@ -192,20 +192,20 @@ def heave_pitch_matrices(parameters: Array) -> tuple[Array, Array]:
 
 
 def _discretised(A: Array, B: Array, dt: float, *, is_ramp: bool) -> tuple[Array, Array]:
-    A, B = _matrices(A, B)
+    A, B = _checked_matrices(A, B)
     count, nx, nu = B.shape
     phi, gamma = np.empty((count, nx, nx)), np.empty((count, nx, 2 * nu if is_ramp else nu))
     discretise(A, B, dt, phi, gamma)
     return phi, gamma
 
 
-def _matrices(A: Array, B: Array) -> tuple[Array, Array]:
+def _checked_matrices(A: Array, B: Array) -> tuple[Array, Array]:
     if A.ndim != 3 or B.ndim != 3 or A.shape != (*B.shape[:2], B.shape[1]):
         raise InputError(f"matrices A {A.shape} and B {B.shape} do not fit; give (count, nx, nx) and (count, nx, nu)")
     return np.array(A, dtype=np.float64, order="C"), np.array(B, dtype=np.float64, order="C")
 
 
-def _ready(A: Array, B: Array, forcing: Forcing, start: Array) -> tuple[Array, Array, Array]:
+def _prepare(A: Array, B: Array, forcing: Forcing, start: Array) -> tuple[Array, Array, Array]:
     phi, gamma = _discretised(A, B, forcing.dt / forcing.substeps, is_ramp=not forcing.is_held)
     count, nx, nu = B.shape
     if forcing.inputs.shape[1:] != (nu,):
@@ -215,6 +215,6 @@ def _ready(A: Array, B: Array, forcing: Forcing, start: Array) -> tuple[Array, A
     return phi, gamma, np.array(np.broadcast_to(start, (count, nx)), dtype=np.float64, order="C")
 
 
-def _within(channels: tuple[int, ...], nx: int) -> None:
+def _require_states(channels: tuple[int, ...], nx: int) -> None:
     if not channels or min(channels) < 0 or max(channels) >= nx:
         raise InputError(f"channels {channels} are no states; there are {nx}, counted from 0")

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import NOTATION, Array, InputError, Provenance, Record, nearest
-from seatrial.physics.simulate.bounds import demand_bounded
+from seatrial.core.values import NOTATION, Array, InputError, Provenance, Record, spelling_hint
 from seatrial.physics.simulate.channels import inputs_of, record_of
-from seatrial.physics.simulate.linear import batch_for
+from seatrial.physics.simulate.divergence import require_bounded
+from seatrial.physics.simulate.linear import batch_class
 
 ZERO_STARTS = ("x0", "y0", "psi")
 
@@ -32,7 +32,7 @@ def replay(model: Model, record: Record, initial: Mapping[str, float] | None = N
     """
     inputs = inputs_of(model, record)
     states, outputs = trajectory(model, inputs, record.dt, initial_state(model, record, initial or {}), substeps)
-    demand_bounded(model, record.time, states, f"record '{record.name}'")
+    require_bounded(model, record.time, states, f"record '{record.name}'")
     made = record_of(model, record.name, record.time, states, outputs, inputs)
     step = f"inputs of '{record.name}' replayed through model '{model.name}'"
     return replace(made, provenance=Provenance(record.provenance.source, record.provenance.sha256, (step,)))
@@ -49,7 +49,7 @@ def trajectory(model: Model, inputs: Array, dt: float, start: Array, substeps: i
     if substeps < 1:
         raise InputError(f"{substeps} sub-steps are less than one")
     nx = len(model.states)
-    batch = batch_for(model)(model, inputs, np.array([0, len(inputs)]), dt, model.observables, substeps=substeps)
+    batch = batch_class(model)(model, inputs, np.array([0, len(inputs)]), dt, model.observables, substeps=substeps)
     y, _ = batch.simulate(0, 1, start[None], model.parameters.values[None], np.empty((1, 0)))
     return np.ascontiguousarray(y[:, :nx]), y[:, nx:]
 
@@ -62,8 +62,8 @@ def initial_state(model: Model, record: Record, initial: Mapping[str, float]) ->
     """
     for name in initial:
         if name not in model.states:
-            raise InputError(f"'{name}' is no state of model '{model.name}'{nearest(name, list(model.states))}")
-    return np.array([float(initial[s]) if s in initial else _measured(model, record, s) for s in model.states])
+            raise InputError(f"'{name}' is no state of model '{model.name}'{spelling_hint(name, list(model.states))}")
+    return np.array([float(initial[s]) if s in initial else _measured_start(model, record, s) for s in model.states])
 
 
 def _first_slope(record: Record, symbol: str) -> float:
@@ -76,7 +76,7 @@ def _first_slope(record: Record, symbol: str) -> float:
     return float(np.polynomial.polynomial.polyfit(time[good], values[good], 3)[1])
 
 
-def _measured(model: Model, record: Record, state: str) -> float:
+def _measured_start(model: Model, record: Record, state: str) -> float:
     if state not in record:
         if state in ZERO_STARTS:
             return 0.0

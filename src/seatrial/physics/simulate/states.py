@@ -23,9 +23,9 @@ def hidden_states(model: Model, records: Sequence[Record]) -> tuple[str, ...]:
     return tuple(s for s in model.states if s not in NOTATION and not all(s in r for r in records))
 
 
-def untold_states(model: Model, record: Record) -> tuple[str, ...]:
+def unobserved_states(model: Model, record: Record) -> tuple[str, ...]:
     """States of the model that the record neither holds nor implies."""
-    found = _found(model, record)
+    found = _available_states(model, record)
     return tuple(s for s in model.states if s not in found)
 
 
@@ -35,7 +35,7 @@ def measured_states(model: Model, record: Record) -> Array:
     Raises:
         InputError: a state is neither measured nor derivable.
     """
-    found = _found(model, record)
+    found = _available_states(model, record)
     missing = [s for s in model.states if s not in found]
     if missing:
         raise InputError(
@@ -46,7 +46,7 @@ def measured_states(model: Model, record: Record) -> Array:
     return np.ascontiguousarray(np.where(np.isfinite(columns), columns, 0.0))
 
 
-def _found(model: Model, record: Record) -> dict[str, Array]:
+def _available_states(model: Model, record: Record) -> dict[str, Array]:
     """What the record holds or implies of the model's states, (n,) each."""
     found: dict[str, Array] = {s: record[s] for s in model.states if s in record}
     if "r" not in found and "psi" in record:

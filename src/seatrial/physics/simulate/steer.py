@@ -11,9 +11,9 @@ from seatrial.core.values import Array, InputError, Provenance, Record, frozen
 from seatrial.numerics.kernels.steering import steer
 from seatrial.physics.manoeuvres.programme import Programme
 from seatrial.physics.manoeuvres.steering import FINISHED, NOT_FINISHED, Steering, rudder_angles
-from seatrial.physics.simulate.approach import RUDDER, approach_speed, held_inputs, time_unit
-from seatrial.physics.simulate.bounds import demand_bounded
+from seatrial.physics.simulate.approach import RUDDER, approach_speed, characteristic_time, held_inputs
 from seatrial.physics.simulate.channels import record_of
+from seatrial.physics.simulate.divergence import require_bounded
 from seatrial.physics.simulate.replay import trajectory
 
 # 35 deg to 30 deg on the other side in 28 s: SOLAS, chapter II-1, regulation 29.3.2
@@ -52,30 +52,30 @@ def manoeuvre(
     Raises:
         InputError: an input is missing or unknown, no steady speed exists, or the simulation diverges.
     """
-    _demand_steerable(model, dt, slew_rate)
+    _require_steerable(model, dt, slew_rate)
     held = held_inputs(model, inputs or {}, RUDDER)
     start = np.zeros(len(model.states))
     if "u" in model.states:
         start[model.states.index("u")] = approach_speed(model, held) if speed is None else speed
-    unit = time_unit(model, start, known=speed)
-    longest = approach + programme.lengths * unit if duration is None else duration
+    unit = characteristic_time(model, start, given_speed=speed)
+    longest = approach + programme.maximum_lengths * unit if duration is None else duration
     rudder = model.input_names.index(RUDDER)
     steering = Steering(
         model.states.index("psi"), model.states.index("r") if "r" in model.states else -1,
-        rudder, -1.0 if model.inputs[rudder].is_turned else 1.0, slew_rate, dt, approach, unit,
+        rudder, -1.0 if model.inputs[rudder].is_reversed else 1.0, slew_rate, dt, approach, unit,
     )  # fmt: skip
-    used, finished = _steered(model, programme, steering, start, held, longest)
+    used, finished = _steer_programme(model, programme, steering, start, held, longest)
     time = frozen(dt * np.arange(len(used)))
     # Record.dt's own quotient, so that a replay takes the same steps to the last bit
     states, outputs = trajectory(model, used, float(time[-1] - time[0]) / (len(time) - 1), start)
-    demand_bounded(model, time, states, f"manoeuvre '{programme.text}'")
+    require_bounded(model, time, states, f"manoeuvre '{programme.text}'")
     made = record_of(model, programme.text, time, states, outputs, used)
     ending = f"finished at {time[-1]:g} s" if finished else f"not finished after {time[-1]:g} s"
     steps = (f"rudder slews at {math.degrees(slew_rate):g} deg/s", ending)
     return replace(made, provenance=Provenance(f"manoeuvre '{programme.text}' of model '{model.name}'", steps=steps))
 
 
-def _demand_steerable(model: Model, dt: float, slew_rate: float) -> None:
+def _require_steerable(model: Model, dt: float, slew_rate: float) -> None:
     if RUDDER not in model.input_names or "psi" not in model.states:
         raise InputError(f"model '{model.name}' cannot be steered: it needs the input '{RUDDER}' and the state 'psi'")
     if model.parameters.missing:
@@ -84,7 +84,7 @@ def _demand_steerable(model: Model, dt: float, slew_rate: float) -> None:
         raise InputError(f"step {dt:g} s and slew rate {slew_rate:g} rad/s must be positive")
 
 
-def _steered(
+def _steer_programme(
     model: Model, programme: Programme, steering: Steering, start: Array, held: Array, longest: float
 ) -> tuple[Array, bool]:
     """Inputs at the samples (n, nu), in the model's signs, and whether the helmsman has finished."""
@@ -105,7 +105,7 @@ def _steered(
         inputs,
     )
     if diverged >= 0:
-        demand_bounded(
+        require_bounded(
             model, frozen(dt * np.arange(diverged + 1)), states[: diverged + 1], f"manoeuvre '{programme.text}'"
         )
     finished = memory[FINISHED] != NOT_FINISHED

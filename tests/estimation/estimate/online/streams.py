@@ -5,13 +5,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.estimation.estimate.online.belief import Belief
-from seatrial.estimation.estimate.online.handover import handed_over
-from seatrial.estimation.estimate.online.recursive import Forgetting, Recursive
+from seatrial.estimation.estimate.online.gaussian_state import GaussianState
+from seatrial.estimation.estimate.online.handover import gaussian_state_from_fit
+from seatrial.estimation.estimate.online.recursive import Forgetting, RecursiveFilter
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.estimation.problem.segments import Segments, cut
+from seatrial.estimation.problem.segments import Segments, cut_segments
 from seatrial.numerics.optimise import levenberg_marquardt
-from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, Voyage, sailed, ship
+from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, SeawayScenario, ship, simulate_seaway_run
 
 Array = np.ndarray
 NOISE = np.array([HEAVE_NOISE, PITCH_NOISE])
@@ -25,38 +25,40 @@ def truth_of(model: Model) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Stream:
+class SeaStream:
     """The whole record without noise; `at` 45 degrees the coefficients are those of 90, assumed."""
 
     ship: Model
     clean: Segments
 
     @classmethod
-    def at(cls, heading: int, duration: float, seed: int) -> "Stream":
+    def from_heading(cls, heading: int, duration: float, seed: int) -> "SeaStream":
         model = ship(90 if heading == 45 else heading)
-        made = sailed(Voyage(heading, duration=duration), np.random.default_rng([heading, seed]), model)
-        return cls(model, cut(model, [made.record], OUTPUTS, None))
+        made = simulate_seaway_run(
+            SeawayScenario(heading, duration=duration), np.random.default_rng([heading, seed]), model
+        )
+        return cls(model, cut_segments(model, [made.record], OUTPUTS, None))
 
     def measured(self, seed: int) -> Array:
         noise = NOISE * np.random.default_rng([seed, 1]).standard_normal(self.clean.measured.shape)
         return self.clean.measured + noise
 
-    def fitted(self, measured: Array, rows: int) -> Belief:
+    def batch_state(self, measured: Array, rows: int) -> GaussianState:
         """What the batch knows from the first rows; the search starts at the truth."""
         data = replace(self.clean, inputs=np.ascontiguousarray(self.clean.inputs[:rows]), measured=measured[:rows],
                        offsets=np.array([0, rows]))  # fmt: skip
         problem = OutputError(self.ship, data, NOISE)
-        found = levenberg_marquardt(problem, problem.start(), problem.measured_starts(), negligible=1e-9)
-        return handed_over(problem, found.solution.point, found.local, found.normal)
+        found = levenberg_marquardt(problem, problem.start(), problem.measured_initial_states(), negligible=1e-9)
+        return gaussian_state_from_fit(problem, found.solution.point, found.local, found.normal)
 
-    def filter(self, belief: Belief, rows: int, forgetting: Forgetting | None = None) -> Recursive:
+    def filter(self, belief: GaussianState, rows: int, forgetting: Forgetting | None = None) -> RecursiveFilter:
         """A filter that goes on after the first rows."""
-        return Recursive(self.ship, NAMES, OUTPUTS, NOISE, DT, belief, recent=self.clean.inputs[:rows],
+        return RecursiveFilter(self.ship, NAMES, OUTPUTS, NOISE, DT, belief, recent_inputs=self.clean.inputs[:rows],
                          forgetting=forgetting)  # fmt: skip
 
-    def followed(self, made: Recursive, measured: Array, rows: int, block: int = 10) -> Recursive:
+    def run_filter(self, recursive: RecursiveFilter, measured: Array, rows: int, block: int = 10) -> RecursiveFilter:
         """The filter after everything behind the first rows."""
         for row in range(rows, len(measured), block):
-            made.update(measured[row : row + block], self.clean.inputs[row : row + block])
-        made.flush()
-        return made
+            recursive.update(measured[row : row + block], self.clean.inputs[row : row + block])
+        recursive.flush()
+        return recursive

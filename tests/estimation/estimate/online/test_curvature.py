@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import sympy as sp
-from tests.estimation.estimate.online.streams import NOISE, Stream
+from tests.estimation.estimate.online.streams import NOISE, SeaStream
 
 from seatrial.core.equations import Sheet
-from seatrial.estimation.estimate.online.curvature import STRAIGHT, curvature
+from seatrial.estimation.estimate.online.curvature import LINEAR_ENOUGH, curvature
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import Segments
 from seatrial.numerics.optimise import levenberg_marquardt
@@ -17,7 +17,7 @@ Array = np.ndarray
 
 
 def bend(problem: OutputError) -> float:
-    found = levenberg_marquardt(problem, problem.start(), problem.measured_starts(), negligible=1e-9)
+    found = levenberg_marquardt(problem, problem.start(), problem.measured_initial_states(), negligible=1e-9)
     return curvature(problem, found.solution.point, found.local, found.normal)
 
 
@@ -43,15 +43,15 @@ def test_a_linear_problem_does_not_bend() -> None:
 def test_an_exponential_bends_as_it_should() -> None:
     """y = exp(a q) t: the second difference over one standard error e is exp(a q) t (cosh(a e) - 1)."""
     problem = growing(0.5)
-    found = levenberg_marquardt(problem, problem.start(), problem.measured_starts(), negligible=1e-12)
-    step = 0.5 / np.sqrt(found.normal.reduced()[1][0, 0])
+    found = levenberg_marquardt(problem, problem.start(), problem.measured_initial_states(), negligible=1e-12)
+    step = 0.5 / np.sqrt(found.normal.without_local()[1][0, 0])
     y = np.exp(0.5 * found.solution.point[0]) * 0.1 * np.arange(50) / 0.05
     expected = (np.cosh(step) - 1.0) * np.linalg.norm(y)
     assert curvature(problem, found.solution.point, found.local, found.normal) == pytest.approx(expected, rel=1e-6)
 
 
 def test_ten_seconds_of_a_beam_sea_are_straight_enough_and_two_are_not() -> None:
-    stream = Stream.at(45, 60.0, 1)
+    stream = SeaStream.from_heading(45, 60.0, 1)
     measured = stream.measured(1)
 
     def of(rows: int) -> float:
@@ -59,6 +59,6 @@ def test_ten_seconds_of_a_beam_sea_are_straight_enough_and_two_are_not() -> None
                        offsets=np.array([0, rows]))  # fmt: skip
         return bend(OutputError(stream.ship, data, NOISE))
 
-    assert of(101) < STRAIGHT
+    assert of(101) < LINEAR_ENOUGH
     assert of(601) < of(101)
-    assert of(21) > STRAIGHT
+    assert of(21) > LINEAR_ENOUGH

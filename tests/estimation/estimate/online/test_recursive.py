@@ -5,19 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import sympy as sp
-from tests.estimation.estimate.online.streams import DT, NAMES, NOISE, OUTPUTS, Stream, truth_of
+from tests.estimation.estimate.online.streams import DT, NAMES, NOISE, OUTPUTS, SeaStream, truth_of
 
 from seatrial.core.equations import Model, Sheet
 from seatrial.core.values import InputError, Prior
-from seatrial.estimation.estimate.online.belief import Belief
-from seatrial.estimation.estimate.online.handover import handed_over, taken_over
-from seatrial.estimation.estimate.online.recursive import Forgetting, Guard, Recursive
+from seatrial.estimation.estimate.online.gaussian_state import GaussianState
+from seatrial.estimation.estimate.online.handover import filter_from_fit, gaussian_state_from_fit
+from seatrial.estimation.estimate.online.recursive import DivergenceGuard, Forgetting, RecursiveFilter
 from seatrial.estimation.problem.output_error import Nuisance, OutputError
 from seatrial.estimation.problem.segments import Segments
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt
 from seatrial.physics.models.roll import roll
-from seatrial.physics.simulate.batch import Batch, InputCorrection
-from seatrial.physics.simulate.linear import LinearBatch, batch_for
+from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
+from seatrial.physics.simulate.linear import LinearBatch, batch_class
 from seatrial_studies.seaway import fin_commands, ship
 
 Array = np.ndarray
@@ -58,7 +58,7 @@ def test_a_linear_problem_ends_where_the_batch_does(
     rows, dt, names, outputs = 120, 0.2, ("b", "c", "e"), ("x0", "seen")
     noise, prior, spread = np.array([0.1, 0.3]), np.array([0.5, 0.2, 0.4]), np.diag([0.3, 0.6]) ** 2
     inputs = np.cumsum(0.3 * rng.standard_normal((3 * rows, 1)), axis=0)
-    batch = batch_for(model)(model, inputs, rows * np.arange(4), dt, outputs, names, (), model.states)
+    batch = batch_class(model)(model, inputs, rows * np.arange(4), dt, outputs, names, (), model.states)
     values, start = np.tile(model.parameters.values, (3, 1)), np.zeros((3, 2))
     y, s, _ = batch.differentiate(0, 3, start, values, np.empty((3, 0)))
     measured = y + noise * rng.standard_normal(y.shape)
@@ -77,8 +77,8 @@ def test_a_linear_problem_ends_where_the_batch_does(
     moved = covariance @ jacobian.T @ residual
 
     at = model.parameters.values[[model.parameters.index(n) for n in names]]
-    belief = Belief(at, np.diag(prior**2), np.zeros(2), np.zeros((2, 3)), spread)
-    made = Recursive(model, names, outputs, noise, dt, belief, guard=Guard(limit=np.inf))
+    belief = GaussianState(at, np.diag(prior**2), np.zeros(2), np.zeros((2, 3)), spread)
+    made = RecursiveFilter(model, names, outputs, noise, dt, belief, guard=DivergenceGuard(huber_limit=np.inf))
     for run in range(3):
         if run:
             made.begin_run(np.zeros(2), spread)
@@ -93,82 +93,86 @@ def test_a_linear_problem_ends_where_the_batch_does(
 @pytest.mark.parametrize("heading", [45, 90, 135, 180])
 def test_ten_minutes_in_a_sea_end_at_the_batch(heading: int) -> None:
     """A tenth of the standard errors that the batch has after the same ten minutes, from a fit of the first one."""
-    stream = Stream.at(heading, 600.0, 1)
+    stream = SeaStream.from_heading(heading, 600.0, 1)
     measured = stream.measured(heading)
-    made = stream.followed(stream.filter(stream.fitted(measured, FIRST), FIRST), measured, FIRST)
-    batch = stream.fitted(measured, len(measured))
+    made = stream.run_filter(stream.filter(stream.batch_state(measured, FIRST), FIRST), measured, FIRST)
+    batch = stream.batch_state(measured, len(measured))
     error = np.sqrt(np.diagonal(batch.covariance))
     assert np.max(np.abs(made.value - batch.value) / error) < 0.1
     np.testing.assert_allclose(made.standard_error / error, 1.0, atol=0.05)
     assert made.is_sound
-    np.testing.assert_allclose(made.innovations.ratio, 1.0, atol=0.35)
+    np.testing.assert_allclose(made.innovations.variance_ratio, 1.0, atol=0.35)
     np.testing.assert_allclose(made.state, batch.state, atol=5e-3)
 
 
 def test_a_filter_takes_over_with_the_noise_of_the_fit() -> None:
     """Coloured channels count for fewer samples in both, so that intervals agree."""
-    stream = Stream.at(90, 120.0, 4)
+    stream = SeaStream.from_heading(90, 120.0, 4)
     measured = stream.measured(4)
 
     def fitted(rows: int) -> tuple[OutputError, Optimum]:
         data = replace(stream.clean, inputs=np.ascontiguousarray(stream.clean.inputs[:rows]), measured=measured[:rows],
                        offsets=np.array([0, rows]))  # fmt: skip
         problem = OutputError(stream.ship, data, NOISE, inflation=np.array([4.0, 1.0]))
-        return problem, levenberg_marquardt(problem, problem.start(), problem.measured_starts(), negligible=1e-9)
+        return problem, levenberg_marquardt(
+            problem, problem.start(), problem.measured_initial_states(), negligible=1e-9
+        )
 
     problem, found = fitted(FIRST)
-    made = stream.followed(taken_over(problem, found.solution.point, found.local, found.normal), measured, FIRST)
+    made = stream.run_filter(filter_from_fit(problem, found.solution.point, found.local, found.normal), measured, FIRST)
     whole = fitted(len(measured))[1]
-    error = np.sqrt(np.diagonal(np.linalg.inv(whole.normal.reduced()[1])))
+    error = np.sqrt(np.diagonal(np.linalg.inv(whole.normal.without_local()[1])))
     np.testing.assert_allclose(made.standard_error / error, 1.0, atol=0.05)
     assert np.max(np.abs(made.value - whole.solution.point) / error) < 0.1
-    assert made.innovations.ratio[0] < 0.5
+    assert made.innovations.variance_ratio[0] < 0.5
 
 
 def test_what_is_estimated_for_each_run_is_not_carried_on() -> None:
-    stream = Stream.at(90, 60.0, 4)
+    stream = SeaStream.from_heading(90, 60.0, 4)
     gain = Nuisance(InputCorrection("F3", "gain"), Prior(1.0, 0.1, "test"), "1")
     problem = OutputError(stream.ship, replace(stream.clean, measured=stream.measured(1)), NOISE, (gain,))
-    shared, local = problem.start(), problem.measured_starts()
+    shared, local = problem.start(), problem.measured_initial_states()
     with pytest.raises(InputError, match="F3 gain"):
-        taken_over(problem, shared, local, problem.normal(shared, local))
+        filter_from_fit(problem, shared, local, problem.normal(shared, local))
 
 
 @pytest.fixture(scope="module")
-def beam() -> tuple[Stream, Array, Belief]:
-    stream = Stream.at(90, 180.0, 2)
+def beam() -> tuple[SeaStream, Array, GaussianState]:
+    stream = SeaStream.from_heading(90, 180.0, 2)
     measured = stream.measured(3)
-    return stream, measured, stream.fitted(measured, FIRST)
+    return stream, measured, stream.batch_state(measured, FIRST)
 
 
-def test_how_samples_are_cut_into_blocks_does_not_matter(beam: tuple[Stream, Array, Belief]) -> None:
+def test_how_samples_are_cut_into_blocks_does_not_matter(beam: tuple[SeaStream, Array, GaussianState]) -> None:
     stream, measured, belief = beam
-    ends = [stream.followed(stream.filter(belief, FIRST), measured, FIRST, block) for block in (1, 13, len(measured))]
+    ends = [stream.run_filter(stream.filter(belief, FIRST), measured, FIRST, block) for block in (1, 13, len(measured))]
     for other in ends[1:]:
         assert np.max(np.abs(other.value - ends[0].value) / ends[0].standard_error) < 1e-3
 
 
-def test_what_is_handed_over_and_back_is_the_same(beam: tuple[Stream, Array, Belief]) -> None:
+def test_what_is_handed_over_and_back_is_the_same(beam: tuple[SeaStream, Array, GaussianState]) -> None:
     stream, _, belief = beam
-    again = stream.filter(belief, FIRST).belief()
+    again = stream.filter(belief, FIRST).gaussian_state()
     np.testing.assert_allclose(again.covariance, belief.covariance, rtol=1e-9)
     np.testing.assert_allclose(again.sensitivity, belief.sensitivity, rtol=1e-6, atol=1e-12)
     np.testing.assert_array_equal(again.value, belief.value)
 
 
-def test_holes_and_spikes_do_little_harm(beam: tuple[Stream, Array, Belief], rng: np.random.Generator) -> None:
+def test_holes_and_spikes_do_little_harm(
+    beam: tuple[SeaStream, Array, GaussianState], rng: np.random.Generator
+) -> None:
     stream, measured, belief = beam
     spoilt = measured.copy()
     spoilt[700:730], spoilt[900, 0] = np.nan, np.nan
-    whole = stream.followed(stream.filter(belief, FIRST), spoilt, FIRST)
+    whole = stream.run_filter(stream.filter(belief, FIRST), spoilt, FIRST)
     hit = rng.choice(np.arange(FIRST, len(measured)), 12, replace=False)
     spoilt[hit, 0] += 2.0 * rng.choice([-1.0, 1.0], 12)
-    made = stream.followed(stream.filter(belief, FIRST), spoilt, FIRST)
-    assert made.innovations.outliers[0] == np.isfinite(spoilt[hit, 0]).sum() > 9
-    assert made.innovations.outliers[1] == 0
+    made = stream.run_filter(stream.filter(belief, FIRST), spoilt, FIRST)
+    assert made.innovations.outlier_count[0] == np.isfinite(spoilt[hit, 0]).sum() > 9
+    assert made.innovations.outlier_count[1] == 0
     assert made.is_sound
     assert np.max(np.abs(made.value - whole.value) / whole.standard_error) < 1.0
-    assert whole.innovations.taken[1] == len(measured) - FIRST - 30
+    assert whole.innovations.sample_count[1] == len(measured) - FIRST - 30
 
 
 def test_a_million_samples_stay_positive_and_consistent() -> None:
@@ -177,8 +181,8 @@ def test_a_million_samples_stay_positive_and_consistent() -> None:
     at, x, last = truth_of(model), np.zeros((1, 4)), np.zeros((1, 4))
     prior = 0.05 * np.abs(at)
     value = at + prior * rng.standard_normal(8)
-    belief = Belief(value, np.diag(prior**2), np.zeros(4), np.zeros((4, 8)), np.zeros((4, 4)))
-    made = Recursive(model, NAMES, OUTPUTS, NOISE, DT, belief, recent=np.zeros((1, 4)))
+    belief = GaussianState(value, np.diag(prior**2), np.zeros(4), np.zeros((4, 8)), np.zeros((4, 4)))
+    made = RecursiveFilter(model, NAMES, OUTPUTS, NOISE, DT, belief, recent_inputs=np.zeros((1, 4)))
     early = np.eye(8)
     for piece in range(10):
         u = np.zeros((block + 1, 4))
@@ -196,8 +200,8 @@ def test_a_million_samples_stay_positive_and_consistent() -> None:
     off = made.value - at
     assert off @ np.linalg.solve(made.covariance, off) < 26.1  # chi-squared, 8 degrees, 0.1 %
     assert made.is_sound
-    assert np.max(made.belief().spread) < 1e-20
-    assert len(made._window.inputs) < 40
+    assert np.max(made.gaussian_state().state_covariance) < 1e-20
+    assert len(made._buffer.inputs) < 40
 
 
 def test_runs_of_a_nonlinear_model_end_at_the_batch(rng: np.random.Generator) -> None:
@@ -210,20 +214,20 @@ def test_runs_of_a_nonlinear_model_end_at_the_batch(rng: np.random.Generator) ->
     inputs = np.zeros((runs * rows, len(model.inputs)))
     offsets = rows * np.arange(runs + 1)
     start = np.column_stack([rng.uniform(0.2, 0.4, runs), np.zeros(runs)])
-    batch = Batch(model, inputs, offsets, dt, ("phi",))
+    batch = SegmentBatch(model, inputs, offsets, dt, ("phi",))
     clean = batch.simulate(0, runs, start, np.tile(model.parameters.values, (runs, 1)), np.empty((runs, 0)))[0]
     measured = clean + noise * rng.standard_normal(clean.shape)
 
-    def fitted(count: int) -> tuple[OutputError, Belief]:
+    def fitted(count: int) -> tuple[OutputError, GaussianState]:
         one = np.arange(count)
         named = tuple(str(i) for i in one)
         data = Segments(inputs[: count * rows], measured[: count * rows], offsets[: count + 1], one, one, named, named,
                         ("phi",), dt)  # fmt: skip
         problem = OutputError(model, data, noise)
-        found = levenberg_marquardt(problem, problem.start(), problem.measured_starts(), negligible=1e-9)
-        return problem, handed_over(problem, found.solution.point, found.local, found.normal)
+        found = levenberg_marquardt(problem, problem.start(), problem.measured_initial_states(), negligible=1e-9)
+        return problem, gaussian_state_from_fit(problem, found.solution.point, found.local, found.normal)
 
-    made = Recursive(model, fitted(4)[0].free, ("phi",), noise, dt, fitted(4)[1], recent=inputs[:1])
+    made = RecursiveFilter(model, fitted(4)[0].free, ("phi",), noise, dt, fitted(4)[1], recent_inputs=inputs[:1])
     for run in range(4, runs):
         own = slice(run * rows, (run + 1) * rows)
         made.begin_run(np.array([measured[own][0, 0], 0.0]), np.diag([0.1, 0.1]) ** 2)
@@ -234,24 +238,24 @@ def test_runs_of_a_nonlinear_model_end_at_the_batch(rng: np.random.Generator) ->
     np.testing.assert_allclose(made.standard_error / error, 1.0, atol=0.05)
 
 
-def test_another_ship_is_noticed(beam: tuple[Stream, Array, Belief]) -> None:
+def test_another_ship_is_noticed(beam: tuple[SeaStream, Array, GaussianState]) -> None:
     """Damping of the opposite sign, and sure of it: the filter says that it is lost."""
     stream, measured, belief = beam
     wrong = replace(belief, value=belief.value * np.array([1, 1, 1, 1, 0.3, 1, 0.3, -1]))
-    made = stream.followed(stream.filter(wrong, FIRST), measured, FIRST)
+    made = stream.run_filter(stream.filter(wrong, FIRST), measured, FIRST)
     assert not made.is_sound
-    assert made.innovations.outliers.sum() > 100
+    assert made.innovations.outlier_count.sum() > 100
 
 
-def test_a_ship_that_blows_up_stops_the_filter(beam: tuple[Stream, Array, Belief]) -> None:
+def test_a_ship_that_blows_up_stops_the_filter(beam: tuple[SeaStream, Array, GaussianState]) -> None:
     stream, measured, belief = beam
     negative = belief.value * np.array([1, 1, 1, 1, -30, 1, -30, 1])
     unstable = replace(belief, value=negative, covariance=1e-12 * belief.covariance)
-    made = stream.followed(stream.filter(unstable, FIRST), measured, FIRST)
+    made = stream.run_filter(stream.filter(unstable, FIRST), measured, FIRST)
     assert not made.is_sound
 
 
-def test_without_excitation_forgetting_ends_at_the_widest(beam: tuple[Stream, Array, Belief]) -> None:
+def test_without_excitation_forgetting_ends_at_the_widest(beam: tuple[SeaStream, Array, GaussianState]) -> None:
     stream, _, belief = beam
     widest = 0.3 * np.abs(truth_of(stream.ship))
     made = stream.filter(belief, FIRST, Forgetting(5.0, tuple(widest)))
@@ -261,7 +265,7 @@ def test_without_excitation_forgetting_ends_at_the_widest(beam: tuple[Stream, Ar
     assert made.is_sound
 
 
-def test_forgetting_follows_a_ship_that_is_loaded(beam: tuple[Stream, Array, Belief]) -> None:
+def test_forgetting_follows_a_ship_that_is_loaded(beam: tuple[SeaStream, Array, GaussianState]) -> None:
     """Ten per cent more mass and inertia show up as added mass, a33 and a55; a filter without forgetting lags."""
     stream = beam[0]
     heavy = stream.ship.with_values({n: 1.1 * stream.ship.parameters[n].value for n in ("m", "I5")})
@@ -273,9 +277,11 @@ def test_forgetting_follows_a_ship_that_is_loaded(beam: tuple[Stream, Array, Bel
     truth = truth_of(stream.ship)
     target = truth.copy()
     target[[0, 2]] += [0.1 * stream.ship.parameters[n].value for n in ("m", "I5")]
-    start = replace(light, state=y[FIRST - 1, [0, 0, 1, 1]] * [1, 0, 1, 0], spread=np.diag([0.1, 0.3, 0.03, 0.1]) ** 2)
-    made = stream.followed(stream.filter(start, FIRST, Forgetting(20.0, tuple(0.5 * np.abs(truth)))), measured, FIRST)
-    stiff = stream.followed(stream.filter(start, FIRST), measured, FIRST)
+    start = replace(
+        light, state=y[FIRST - 1, [0, 0, 1, 1]] * [1, 0, 1, 0], state_covariance=np.diag([0.1, 0.3, 0.03, 0.1]) ** 2
+    )
+    made = stream.run_filter(stream.filter(start, FIRST, Forgetting(20.0, tuple(0.5 * np.abs(truth)))), measured, FIRST)
+    stiff = stream.run_filter(stream.filter(start, FIRST), measured, FIRST)
     moved = np.abs(made.value / target - 1.0)[[0, 2]]
     assert np.all(moved < 0.02)
     assert np.mean(moved) < 0.5 * np.mean(np.abs(stiff.value / target - 1.0)[[0, 2]])
@@ -291,13 +297,15 @@ def test_forgetting_follows_a_ship_that_is_loaded(beam: tuple[Stream, Array, Bel
         (np.zeros((3, 2)), np.full((3, 4), np.nan), "finite"),
     ],
 )
-def test_bad_samples_are_refused(beam: tuple[Stream, Array, Belief], measured: Array, inputs: Array, part: str) -> None:
+def test_bad_samples_are_refused(
+    beam: tuple[SeaStream, Array, GaussianState], measured: Array, inputs: Array, part: str
+) -> None:
     made = beam[0].filter(beam[2], FIRST)
     with pytest.raises(InputError, match=part):
         made.update(measured, inputs)
 
 
-def test_a_bad_beginning_is_refused(beam: tuple[Stream, Array, Belief]) -> None:
+def test_a_bad_beginning_is_refused(beam: tuple[SeaStream, Array, GaussianState]) -> None:
     stream, _, belief = beam
     with pytest.raises(InputError, match="covariance is not positive"):
         stream.filter(replace(belief, covariance=-belief.covariance), FIRST)
@@ -306,4 +314,4 @@ def test_a_bad_beginning_is_refused(beam: tuple[Stream, Array, Belief]) -> None:
     with pytest.raises(InputError, match="widest"):
         stream.filter(belief, FIRST, Forgetting(60.0))
     with pytest.raises(InputError, match="noise must be positive"):
-        Recursive(stream.ship, NAMES, OUTPUTS, np.zeros(2), DT, belief)
+        RecursiveFilter(stream.ship, NAMES, OUTPUTS, np.zeros(2), DT, belief)

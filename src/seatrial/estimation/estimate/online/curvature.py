@@ -9,21 +9,21 @@ import numpy as np
 
 from seatrial.core.values import Array
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.numerics.optimise import Normal
+from seatrial.numerics.optimise import NormalEquations
 
-STRAIGHT = 0.15
+LINEAR_ENOUGH = 0.15
 """Below it a filter ended within 0.15 standard errors of the batch in all of 90 streams of heave and pitch, handed over
 after 10 to 60 s; at 0.8 it was off by up to one, at 1.6 by up to three (waterjet zigzags)."""
 
 
-def curvature(problem: OutputError, shared: Array, local: Array, normal: Normal) -> float:
+def curvature(problem: OutputError, common_parameters: Array, initial_states: Array, normal: NormalEquations) -> float:
     """Largest bend over the principal axes: second difference of the outputs one standard error either way.
 
     In units of what the same step changes to first order, which is one standard deviation of noise; infinite where the
     coefficients cannot all be told or a ship within their errors blows up. Initial states go along with the
     coefficients. Costs two simulations for each unknown.
     """
-    information = normal.reduced()[1]
+    information = normal.without_local()[1]
     scale = np.sqrt(np.maximum(np.diagonal(information), 1e-300))
     scaled = information / np.outer(scale, scale)
     if not np.all(np.isfinite(scaled)):
@@ -36,12 +36,14 @@ def curvature(problem: OutputError, shared: Array, local: Array, normal: Normal)
     weight = np.where(np.isfinite(problem.data.measured), 1.0 / problem.noise, 0.0)
     if problem.inflation is not None:
         weight = weight / np.sqrt(problem.inflation)
-    here = problem.simulated(shared, local)
+    here = problem.simulated_outputs(common_parameters, initial_states)
     largest = 0.0
     for axis in axes:
         step = follow @ axis
         with np.errstate(over="ignore", invalid="ignore"):
-            both = problem.simulated(shared + axis, local + step) + problem.simulated(shared - axis, local - step)
+            both = problem.simulated_outputs(
+                common_parameters + axis, initial_states + step
+            ) + problem.simulated_outputs(common_parameters - axis, initial_states - step)
             bend = float(np.linalg.norm(weight * (0.5 * both - here)))
         if not np.isfinite(bend):
             return np.inf

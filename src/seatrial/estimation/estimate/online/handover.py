@@ -5,14 +5,16 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.values import Array, InputError
-from seatrial.estimation.estimate.online.belief import Belief
-from seatrial.estimation.estimate.online.recursive import Forgetting, Guard, Recursive
+from seatrial.estimation.estimate.online.gaussian_state import GaussianState
+from seatrial.estimation.estimate.online.recursive import DivergenceGuard, Forgetting, RecursiveFilter
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.numerics.optimise import Normal
-from seatrial.physics.simulate.linear import batch_for
+from seatrial.numerics.optimise import NormalEquations
+from seatrial.physics.simulate.linear import batch_class
 
 
-def handed_over(problem: OutputError, shared: Array, local: Array, normal: Normal) -> Belief:
+def gaussian_state_from_fit(
+    problem: OutputError, common_parameters: Array, initial_states: Array, normal: NormalEquations
+) -> GaussianState:
     """What an output-error fit knows at the last sample of its last segment; `normal` is its model at the optimum.
 
     Corrections of inputs and a current count as the fit left them; their uncertainty is in the coefficients'.
@@ -21,15 +23,15 @@ def handed_over(problem: OutputError, shared: Array, local: Array, normal: Norma
         InputError: the records do not tell every coefficient.
     """
     model, data, k = problem.model, problem.data, len(problem.free)
-    information = normal.reduced()[1]
+    information = normal.without_local()[1]
     scale = np.sqrt(np.maximum(np.diagonal(information), 1e-300))
     scaled = information / np.outer(scale, scale)
     if not np.all(np.isfinite(scaled)) or np.linalg.eigvalsh(scaled)[0] < 1e-13:
         raise InputError("the records so far do not tell every coefficient; keep the window until they do")
     covariance = (np.linalg.inv(scaled) / np.outer(scale, scale))[:k, :k]
     first, last = data.offsets[-2:]
-    start, values, corrections = problem.unpacked(shared, local)
-    batch = batch_for(model)(
+    start, values, corrections = problem.unpack(common_parameters, initial_states)
+    batch = batch_class(model)(
         model, np.ascontiguousarray(data.inputs[first:last]), np.array([0, last - first]), data.dt, model.states,
         problem.free, tuple(n.correction for n in problem.nuisances), problem.starts, problem.substeps,
     )  # fmt: skip
@@ -38,19 +40,24 @@ def handed_over(problem: OutputError, shared: Array, local: Array, normal: Norma
     of_start = np.linalg.pinv(normal.local_hessian[-1], hermitian=True)
     moved = -of_start @ normal.cross[-1, :k].T
     spread = by_start @ of_start @ by_start.T
-    return Belief(shared[:k].copy(), 0.5 * (covariance + covariance.T), y[-1], slopes[-1, :, :k] + by_start @ moved,
-                  0.5 * (spread + spread.T))  # fmt: skip
+    return GaussianState(
+        common_parameters[:k].copy(),
+        0.5 * (covariance + covariance.T),
+        y[-1],
+        slopes[-1, :, :k] + by_start @ moved,
+        0.5 * (spread + spread.T),
+    )
 
 
-def taken_over(
+def filter_from_fit(
     problem: OutputError,
-    shared: Array,
-    local: Array,
-    normal: Normal,
+    common_parameters: Array,
+    initial_states: Array,
+    normal: NormalEquations,
     *,
     forgetting: Forgetting | None = None,
-    guard: Guard | None = None,
-) -> Recursive:
+    guard: DivergenceGuard | None = None,
+) -> RecursiveFilter:
     """The filter that goes on behind the last sample of the fit's last record; `normal` is the model at the optimum.
 
     Its noise is the fit's, coloured channels counted as the fit counts them; an innovation is cut where the fit's loss
@@ -60,16 +67,23 @@ def taken_over(
         InputError: the records do not tell every coefficient, or the fit corrects inputs or has a current, which a
             filter does not carry on.
     """
-    if problem.kinds:
+    if problem.unknowns_per_session:
         names = [n for n, _ in problem.session_parameters] + [n.correction.name for n in problem.nuisances]
         raise InputError(f"a filter cannot go on with {', '.join(names)} estimated for each run; keep the window")
     colour = np.ones(len(problem.noise)) if problem.inflation is None else problem.inflation
-    guard = guard or Guard()
+    guard = guard or DivergenceGuard()
     if np.isfinite(problem.huber):
-        guard = replace(guard, limit=problem.huber)
+        guard = replace(guard, huber_limit=problem.huber)
     first, last = problem.data.offsets[-2:]
-    return Recursive(
-        problem.model, problem.free, problem.data.outputs, problem.noise * np.sqrt(colour), problem.data.dt,
-        handed_over(problem, shared, local, normal), recent=problem.data.inputs[first:last], substeps=problem.substeps,
-        forgetting=forgetting, guard=guard,
-    )  # fmt: skip
+    return RecursiveFilter(
+        problem.model,
+        problem.free,
+        problem.data.outputs,
+        problem.noise * np.sqrt(colour),
+        problem.data.dt,
+        gaussian_state_from_fit(problem, common_parameters, initial_states, normal),
+        recent_inputs=problem.data.inputs[first:last],
+        substeps=problem.substeps,
+        forgetting=forgetting,
+        guard=guard,
+    )

@@ -14,11 +14,11 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError
-from seatrial.estimation.estimate.online.belief import Belief
-from seatrial.estimation.estimate.online.stepping import Held, stepping
+from seatrial.estimation.estimate.online.gaussian_state import GaussianState
+from seatrial.estimation.estimate.online.stepping import FilterState, stepper_for
 
-_HISTORY = 12
-_STEPS_OF_FORGETTING = 200
+_HISTORY_SAMPLES = 12
+_FORGETTING_STEPS = 200
 
 
 @dataclass(frozen=True)
@@ -33,12 +33,12 @@ class Forgetting:
         widest: standard deviation of each coefficient where all is forgotten, (k,), in its unit.
     """
 
-    seconds: float = np.inf
-    widest: tuple[float, ...] = ()
+    time_constant: float = np.inf
+    widest_deviation: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
-class Guard:
+class DivergenceGuard:
     """When to distrust.
 
     Attributes:
@@ -47,13 +47,13 @@ class Guard:
         unsound: mean squared innovation, in its own variance, beyond which the filter has lost the ship.
     """
 
-    limit: float = 6.0
-    memory: float = 30.0
-    unsound: float = 9.0
+    huber_limit: float = 6.0
+    averaging_seconds: float = 30.0
+    divergence_ratio: float = 9.0
 
 
 @dataclass(frozen=True, eq=False)
-class Innovations:
+class InnovationStatistics:
     """What the measurements were beyond their predictions, by channel, (ny,).
 
     Attributes:
@@ -62,23 +62,23 @@ class Innovations:
     """
 
     rms: Array
-    ratio: Array
-    taken: Array
-    outliers: Array
+    variance_ratio: Array
+    sample_count: Array
+    outlier_count: Array
 
 
 @dataclass(eq=False)
-class _Window:
+class _SampleBuffer:
     """Samples from a few before the present one to those that still wait for what comes after them."""
 
     inputs: Array
     measured: Array
-    done: int
-    begins: int = 0
+    processed: int
+    is_run_start: int = 0
     failed: bool = False
 
 
-class Recursive:
+class RecursiveFilter:
     """Coefficients and state of a model, sample by sample; no thread, no clock of its own.
 
     A smooth input needs samples ahead (`LOOK_AHEAD`): so many of the latest wait; `flush` takes them in.
@@ -91,12 +91,12 @@ class Recursive:
         outputs: Sequence[str],
         noise: Array,
         dt: float,
-        belief: Belief,
+        initial: GaussianState,
         *,
-        recent: Array | None = None,
+        recent_inputs: Array | None = None,
         substeps: int = 1,
         forgetting: Forgetting | None = None,
-        guard: Guard | None = None,
+        guard: DivergenceGuard | None = None,
     ) -> None:
         """Carry `belief` on.
 
@@ -114,28 +114,30 @@ class Recursive:
         self.names, self.outputs, self.dt = tuple(names), tuple(outputs), dt
         for name in self.names:
             _ = model.parameters[name]
-        if len(belief.value) != len(self.names) or len(belief.state) != len(model.states):
+        if len(initial.value) != len(self.names) or len(initial.state) != len(model.states):
             raise InputError(
-                f"the belief is of {len(belief.value)} coefficients and {len(belief.state)} states; the filter has "
+                f"the belief is of {len(initial.value)} coefficients and {len(initial.state)} states; the filter has "
                 f"{len(self.names)} and model '{model.name}' {len(model.states)}"
             )
         if np.shape(noise) != (len(self.outputs),) or not np.all(np.asarray(noise) > 0.0):
             raise InputError(f"noise must be positive, one value for each of {', '.join(self.outputs)}")
-        self._model, self._guard = model, guard or Guard()
-        self._stepping = stepping(model, self.names, self.outputs, dt, substeps)
+        self._model, self._guard = model, guard or DivergenceGuard()
+        self._stepper = stepper_for(model, self.names, self.outputs, dt, substeps)
         bounds = [model.parameters[n] for n in self.names]
         self._lower, self._upper = np.array([b.lower for b in bounds]), np.array([b.upper for b in bounds])
-        self._held = _held(belief, np.asarray(noise, dtype=np.float64), dt, self._guard, forgetting or Forgetting())
-        self._window = self._opened(recent)
+        self._filter_state = _initial_filter_state(
+            initial, np.asarray(noise, dtype=np.float64), dt, self._guard, forgetting or Forgetting()
+        )
+        self._buffer = self._open_buffer(recent_inputs)
 
-    def _opened(self, recent: Array | None) -> _Window:
+    def _open_buffer(self, recent_inputs: Array | None) -> _SampleBuffer:
         nu, ny = len(self._model.inputs), len(self.outputs)
-        if recent is None:
-            return _Window(np.empty((0, nu)), np.empty((0, ny)), 0, begins=1)
-        inputs = np.ascontiguousarray(recent[-_HISTORY:], dtype=np.float64)
+        if recent_inputs is None:
+            return _SampleBuffer(np.empty((0, nu)), np.empty((0, ny)), 0, is_run_start=1)
+        inputs = np.ascontiguousarray(recent_inputs[-_HISTORY_SAMPLES:], dtype=np.float64)
         if inputs.ndim != 2 or inputs.shape[1] != nu or not len(inputs):
             raise InputError(f"recent inputs must be at least one row of {nu} columns, their shape is {inputs.shape}")
-        return _Window(inputs, np.full((len(inputs), ny), np.nan), len(inputs))
+        return _SampleBuffer(inputs, np.full((len(inputs), ny), np.nan), len(inputs))
 
     def update(self, measured: Array, inputs: Array) -> None:
         """Take in the next n samples: measured (n, ny), NaN where nothing came; inputs (n, nu) at the same instants.
@@ -145,7 +147,7 @@ class Recursive:
         Raises:
             InputError: shapes that do not agree, or an input that is no number.
         """
-        w = self._window
+        w = self._buffer
         if len(measured) != len(inputs) or measured.shape[1:] != w.measured.shape[1:]:
             raise InputError(f"{np.shape(measured)} measurements do not go with inputs of shape {np.shape(inputs)}")
         if inputs.shape[1:] != w.inputs.shape[1:] or not np.all(np.isfinite(inputs)):
@@ -154,76 +156,80 @@ class Recursive:
             )
         w.inputs = np.concatenate([w.inputs, inputs])
         w.measured = np.concatenate([w.measured, measured])
-        self._take(len(w.inputs) - self._stepping.ahead)
+        self._process(len(w.inputs) - self._stepper.look_ahead)
 
     def flush(self) -> None:
         """Take in what still waits for samples ahead: before the end of a run, or to be up to date."""
-        self._take(len(self._window.inputs))
+        self._process(len(self._buffer.inputs))
 
-    def _take(self, until: int) -> None:
-        w, first = self._window, self._window.done
+    def _process(self, until: int) -> None:
+        w, first = self._buffer, self._buffer.processed
         if until <= first or w.failed:
             return
-        failed = self._stepping.run(self._held, w.inputs, w.measured[:until], first, w.begins)
+        failed = self._stepper.run(self._filter_state, w.inputs, w.measured[:until], first, w.is_run_start)
         w.failed = failed >= 0
-        w.begins, w.done = 0, until
-        drop = max(until - _HISTORY, 0)
+        w.is_run_start, w.processed = 0, until
+        drop = max(until - _HISTORY_SAMPLES, 0)
         if drop:
-            w.inputs, w.measured, w.done = w.inputs[drop:], w.measured[drop:], until - drop
+            w.inputs, w.measured, w.processed = w.inputs[drop:], w.measured[drop:], until - drop
 
-    def begin_run(self, state: Array, spread: Array) -> None:
+    def begin_run(self, state: Array, state_covariance: Array) -> None:
         """A new run, or segment, starts with the next sample: there the state is `state` (nx,), covariance `spread`."""
         self.flush()
-        self._held.root[:] = self.belief().at(np.asarray(state, dtype=np.float64), spread).root()
-        self._held.z[len(self.names) :] = state
-        self._window = self._opened(None)
+        self._filter_state.root[:] = (
+            self.gaussian_state().at_run_start(np.asarray(state, dtype=np.float64), state_covariance).joint_root()
+        )
+        self._filter_state.z[len(self.names) :] = state
+        self._buffer = self._open_buffer(None)
 
-    def belief(self) -> Belief:
+    def gaussian_state(self) -> GaussianState:
         """All that is known at the latest sample taken in."""
-        k, z = len(self.names), self._held.z
-        joint = self.covariance_of_all
-        own, other = self._held.root[:k], self._held.root[k:]
+        k, z = len(self.names), self._filter_state.z
+        joint = self.joint_covariance
+        own, other = self._filter_state.root[:k], self._filter_state.root[k:]
         sensitivity = np.asarray(np.linalg.lstsq(own.T, other.T, rcond=1e-12)[0].T, dtype=np.float64)
         left = other - sensitivity @ own
-        return Belief(z[:k].copy(), joint[:k, :k], z[k:].copy(), sensitivity, left @ left.T)
+        return GaussianState(z[:k].copy(), joint[:k, :k], z[k:].copy(), sensitivity, left @ left.T)
 
     @property
     def value(self) -> Array:
         """Coefficients, (k,)."""
-        return self._held.z[: len(self.names)].copy()
+        return self._filter_state.z[: len(self.names)].copy()
 
     @property
     def covariance(self) -> Array:
         """Of the coefficients, (k, k)."""
-        own = self._held.root[: len(self.names)]
+        own = self._filter_state.root[: len(self.names)]
         return own @ own.T
 
     @property
-    def covariance_of_all(self) -> Array:
+    def joint_covariance(self) -> Array:
         """Of [coefficients | state], (k + nx, k + nx)."""
-        return self._held.root @ self._held.root.T
+        return self._filter_state.root @ self._filter_state.root.T
 
     @property
     def standard_error(self) -> Array:
         """Of the coefficients, (k,)."""
-        own = self._held.root[: len(self.names)]
+        own = self._filter_state.root[: len(self.names)]
         return np.sqrt(np.einsum("ij,ij->i", own, own))
 
     @property
     def state(self) -> Array:
         """At the latest sample taken in, (nx,)."""
-        return self._held.z[len(self.names) :].copy()
+        return self._filter_state.z[len(self.names) :].copy()
 
     @property
-    def waiting(self) -> int:
+    def waiting_samples(self) -> int:
         """Samples that wait for those after them."""
-        return len(self._window.inputs) - self._window.done
+        return len(self._buffer.inputs) - self._buffer.processed
 
     @property
-    def innovations(self) -> Innovations:
+    def innovations(self) -> InnovationStatistics:
         """Statistics of the innovations so far."""
-        h = self._held
-        return Innovations(np.sqrt(h.running[:, 1]), h.running[:, 0].copy(), h.tally[0].copy(), h.tally[1].copy())
+        h = self._filter_state
+        return InnovationStatistics(
+            np.sqrt(h.running_means[:, 1]), h.running_means[:, 0].copy(), h.counts[0].copy(), h.counts[1].copy()
+        )
 
     @property
     def is_sound(self) -> bool:
@@ -232,28 +238,38 @@ class Recursive:
         It is not where a number is not finite, the state left all bounds, a coefficient its own, or the innovations of
         a channel are larger than believed (`Guard.unsound`) while its mean covers half the guard's memory.
         """
-        h = self._held
-        if self._window.failed or not (np.all(np.isfinite(h.z)) and np.all(np.isfinite(h.root))):
+        h = self._filter_state
+        if self._buffer.failed or not (np.all(np.isfinite(h.z)) and np.all(np.isfinite(h.root))):
             return False
         value = h.z[: len(self.names)]
         if np.any(value < self._lower) or np.any(value > self._upper):
             return False
-        filled = h.tally[0] >= 0.5 * h.memory
-        return not np.any(filled & (h.running[:, 0] > self._guard.unsound))
+        filled = h.counts[0] >= 0.5 * h.averaging_samples
+        return not np.any(filled & (h.running_means[:, 0] > self._guard.divergence_ratio))
 
 
-def _held(belief: Belief, noise: Array, dt: float, guard: Guard, forgetting: Forgetting) -> Held:
-    k, nx, ny = len(belief.value), len(belief.state), len(noise)
+def _initial_filter_state(
+    initial: GaussianState, noise: Array, dt: float, guard: DivergenceGuard, forgetting: Forgetting
+) -> FilterState:
+    k, nx, ny = len(initial.value), len(initial.state), len(noise)
     kept, every, widest = 1.0, 1, np.zeros((0, k + nx))
-    if np.isfinite(forgetting.seconds):
-        if len(forgetting.widest) != k or not np.all(np.asarray(forgetting.widest) > 0.0):
+    if np.isfinite(forgetting.time_constant):
+        if len(forgetting.widest_deviation) != k or not np.all(np.asarray(forgetting.widest_deviation) > 0.0):
             raise InputError("forgetting needs the widest standard deviation of each coefficient, all positive")
-        every = max(1, round(forgetting.seconds / dt / _STEPS_OF_FORGETTING))
-        kept = float(np.exp(-every * dt / forgetting.seconds))
-        widest = np.diag(1.0 / np.asarray(forgetting.widest, dtype=np.float64))
+        every = max(1, round(forgetting.time_constant / dt / _FORGETTING_STEPS))
+        kept = float(np.exp(-every * dt / forgetting.time_constant))
+        widest = np.diag(1.0 / np.asarray(forgetting.widest_deviation, dtype=np.float64))
         widest = np.ascontiguousarray(np.hstack([widest, np.zeros((k, nx))]))
-    return Held(
-        np.concatenate([belief.value, belief.state]), belief.root(), noise**2, guard.limit,
-        max(guard.memory / dt, 1.0), np.zeros((ny, 2)), np.zeros((2, ny), dtype=np.int64), widest, kept, every,
+    return FilterState(
+        np.concatenate([initial.value, initial.state]),
+        initial.joint_root(),
+        noise**2,
+        guard.huber_limit,
+        max(guard.averaging_seconds / dt, 1.0),
+        np.zeros((ny, 2)),
+        np.zeros((2, ny), dtype=np.int64),
+        widest,
+        kept,
+        every,
         np.zeros(1, dtype=np.int64),
-    )  # fmt: skip
+    )

@@ -7,11 +7,11 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Record
-from seatrial.estimation.estimate.assemble import output_error
-from seatrial.estimation.estimate.estimate import Estimate, colour, residual_spread
-from seatrial.estimation.estimate.fit import unit_of_time
-from seatrial.estimation.estimate.settings import WHITE_INFLATION, WINDOW_SHIP_LENGTHS, Settings
-from seatrial.estimation.estimate.start import start
+from seatrial.estimation.estimate.assemble import output_error_problem
+from seatrial.estimation.estimate.fit import characteristic_time
+from seatrial.estimation.estimate.point_estimate import PointEstimate, residual_correlation, residual_spread
+from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS, WHITE_INFLATION, Settings
+from seatrial.estimation.estimate.start import find_start
 from seatrial.estimation.information.autocorrelation import whiteness_p
 from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.problem.output_error import OutputError
@@ -19,12 +19,12 @@ from seatrial.numerics.optimise import levenberg_marquardt
 
 # a promised decrease of half the sum of squares: some hundredths of a standard error
 _NEGLIGIBLE = 1e-3
-_FIRST, _LATER = 40, 12
-_WHITE, _TIE = 0.01, 1e-3
+_FIRST_EVALUATIONS, _LATER_EVALUATIONS = 40, 12
+_WHITENESS_LEVEL, _TIE_TOLERANCE = 0.01, 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class Known:
+class WindowEstimate:
     """An estimate from everything in the window.
 
     Attributes:
@@ -34,22 +34,22 @@ class Known:
         begins: name and first time of each record.
     """
 
-    made: Estimate
-    left: Array
+    estimate: PointEstimate
+    residuals: Array
     covariance: Array
     inflation: Array
-    begins: tuple[tuple[str, float], ...] = ()
+    record_starts: tuple[tuple[str, float], ...] = ()
 
     @property
     def value(self) -> Array:
         """The free coefficients, (k,)."""
-        return self.made.shared[: len(self.made.problem.free)]
+        return self.estimate.common_parameters[: len(self.estimate.problem.free)]
 
     @property
     def misfit(self) -> float:
         """Rms residual over the spread of what was measured."""
-        spread = np.nanstd(self.made.problem.data.measured, axis=0)
-        return float(np.sqrt(np.nanmean((self.left / np.maximum(spread, 1e-12)) ** 2)))
+        spread = np.nanstd(self.estimate.problem.data.measured, axis=0)
+        return float(np.sqrt(np.nanmean((self.residuals / np.maximum(spread, 1e-12)) ** 2)))
 
     @property
     def is_coloured(self) -> bool:
@@ -57,90 +57,113 @@ class Known:
         return bool(np.any(self.inflation > WHITE_INFLATION))
 
 
-def begun(model: Model, records: Sequence[Record], sessions: Sequence[str], length: float, settings: Settings) -> Known:
+def cold_start(
+    model: Model, records: Sequence[Record], sessions: Sequence[str], length: float, settings: Settings
+) -> WindowEstimate:
     """A search from nowhere as `identify` makes it, and one from the model's own values: the one that leaves less.
 
     Raises:
         InputError: the records cannot be fitted at all.
     """
-    problem = output_error(model, records, sessions, np.inf, settings)
-    unit = unit_of_time(model, records, length, settings.segment_seconds)
-    first = start(problem, records, WINDOW_SHIP_LENGTHS * unit)
-    own = first.problem.start(), first.problem.measured_starts()
-    known = better(*(_searched(first.problem, *at, settings, _FIRST) for at in ((first.shared, first.local), own)))
-    again = _searched(_weighted(known), known.made.shared, known.made.optimum.local, settings, _FIRST)
-    return replace(again, begins=_begins(records))
+    problem = output_error_problem(model, records, sessions, np.inf, settings)
+    unit = characteristic_time(model, records, length, settings.segment_seconds)
+    first = find_start(problem, records, WEAK_FORM_SHIP_LENGTHS * unit)
+    own = first.problem.start(), first.problem.measured_initial_states()
+    known = better_estimate(
+        *(
+            _search(first.problem, *at, settings, _FIRST_EVALUATIONS)
+            for at in ((first.common_parameters, first.initial_states), own)
+        )
+    )
+    again = _search(
+        _reweighted_problem(known),
+        known.estimate.common_parameters,
+        known.estimate.optimum.local,
+        settings,
+        _FIRST_EVALUATIONS,
+    )
+    return replace(again, record_starts=_record_starts(records))
 
 
-def grown(before: Known, model: Model, records: Sequence[Record], sessions: Sequence[str], settings: Settings) -> Known:
+def warm_start(
+    previous: WindowEstimate, model: Model, records: Sequence[Record], sessions: Sequence[str], settings: Settings
+) -> WindowEstimate:
     """The search continued on longer records, weights as the last residuals have them.
 
     Raises:
         InputError: the records cannot be fitted at all.
     """
-    last = _weighted(before)
+    last = _reweighted_problem(previous)
     problem = replace(
-        output_error(model, records, sessions, np.inf, settings), noise=last.noise, inflation=last.inflation
+        output_error_problem(model, records, sessions, np.inf, settings), noise=last.noise, inflation=last.inflation
     )
     shared = problem.start()
-    shared[: len(problem.free)] = before.value
-    local = problem.measured_starts()
-    begins = _begins(records)
-    for row, (now, was) in enumerate(zip(begins, before.begins, strict=False)):
+    shared[: len(problem.free)] = previous.value
+    local = problem.measured_initial_states()
+    begins = _record_starts(records)
+    for row, (now, was) in enumerate(zip(begins, previous.record_starts, strict=False)):
         if now == was:
-            local[row] = before.made.optimum.local[row]
-    return replace(_searched(problem, shared, local, settings, _LATER), begins=begins)
+            local[row] = previous.estimate.optimum.local[row]
+    return replace(_search(problem, shared, local, settings, _LATER_EVALUATIONS), record_starts=begins)
 
 
-def refuse_unsailed(made: Estimate, records: Sequence[Record], sessions: Sequence[str], settings: Settings) -> None:
+def refuse_diverging(
+    estimate: PointEstimate, records: Sequence[Record], sessions: Sequence[str], settings: Settings
+) -> None:
     """Refuse an estimate over segments at which whole runs diverge, as `identify` does.
 
     Raises:
         InputError: they do.
     """
-    problem = output_error(made.problem.model, records, sessions, np.inf, settings)
+    problem = output_error_problem(estimate.problem.model, records, sessions, np.inf, settings)
     with np.errstate(all="ignore"):
-        simulated = problem.simulated(made.shared, problem.measured_starts())
+        simulated = problem.simulated_outputs(estimate.common_parameters, problem.measured_initial_states())
     if not np.all(np.isfinite(simulated)):
         raise InputError(
             "what was seen so far leads to no model that can be sailed: too short or too calm yet; go on, or harder"
         )
 
 
-def better(one: Known, other: Known) -> Known:
+def better_estimate(one: WindowEstimate, other: WindowEstimate) -> WindowEstimate:
     """The one that leaves less, both on the same records; a search that ended nowhere leaves infinitely much."""
     left = [known.misfit if np.isfinite(known.misfit) else np.inf for known in (one, other)]
-    return other if left[1] < (1.0 - _TIE) * left[0] else one
+    return other if left[1] < (1.0 - _TIE_TOLERANCE) * left[0] else one
 
 
-def _begins(records: Sequence[Record]) -> tuple[tuple[str, float], ...]:
+def _record_starts(records: Sequence[Record]) -> tuple[tuple[str, float], ...]:
     return tuple((record.name, float(record.time[0])) for record in records)
 
 
-def _searched(problem: OutputError, shared: Array, local: Array, settings: Settings, evaluations: int) -> Known:
+def _search(
+    problem: OutputError, common_parameters: Array, initial_states: Array, settings: Settings, evaluations: int
+) -> WindowEstimate:
     given = np.array([settings.noise.get(o, np.nan) for o in problem.data.outputs])
     problem = replace(problem, noise=np.where(np.isfinite(given), given, problem.noise))
-    found = levenberg_marquardt(problem, shared, local, negligible=_NEGLIGIBLE, evaluations=evaluations)
-    made = Estimate(problem, found)
+    found = levenberg_marquardt(
+        problem, common_parameters, initial_states, negligible=_NEGLIGIBLE, evaluations=evaluations
+    )
+    made = PointEstimate(problem, found)
     left = made.residuals()
     inflation = _inflation(problem, left)
     count = len(problem.free)
-    hessian = found.normal.reduced()[1]
+    hessian = found.normal.without_local()[1]
     covariance = inverse(hessian)[:count, :count] if np.all(np.isfinite(hessian)) else np.diag(np.full(count, np.inf))
     trust = 1.0 if problem.inflation is not None else float(np.max(inflation))
-    return Known(made, left, covariance * max(trust, 1.0), inflation)
+    return WindowEstimate(made, left, covariance * max(trust, 1.0), inflation)
 
 
 def _inflation(problem: OutputError, residuals: Array) -> Array:
     """Variance inflation of each channel's residuals; one where a short record cannot tell them from white."""
-    rho, inflation = colour(problem, residuals)
+    rho, inflation = residual_correlation(problem, residuals)
     samples = np.isfinite(residuals).sum(axis=0)
     p = np.array([whiteness_p(r, int(n)) for r, n in zip(rho, samples, strict=True)])
-    return np.where(p < _WHITE, inflation, 1.0)
+    return np.where(p < _WHITENESS_LEVEL, inflation, 1.0)
 
 
-def _weighted(known: Known) -> OutputError:
+def _reweighted_problem(estimate: WindowEstimate) -> OutputError:
     """The problem with noise and effective numbers of samples from the residuals it left."""
-    problem = known.made.problem
-    inflation = np.where(known.inflation > WHITE_INFLATION, known.inflation, 1.0) if known.is_coloured else None
-    return replace(problem, noise=residual_spread(problem, known.left), inflation=inflation)
+    problem = estimate.estimate.problem
+    inflation = (
+        np.where(estimate.inflation > WHITE_INFLATION, estimate.inflation, 1.0) if estimate.is_coloured else None
+    )
+    return replace(problem, noise=residual_spread(problem, estimate.residuals), inflation=inflation)

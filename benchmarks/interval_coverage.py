@@ -1,0 +1,137 @@
+"""Do 95 % intervals of predicted measures hold 95 % of what is measured? Truth the fitted model does not know.
+
+`python benchmarks/interval_coverage.py --series 100` fits every series of `disturbed_trials.py` from published
+coefficients with priors of 10 % and predicts a zigzag and both 35 deg turns that were kept out.
+"""
+
+import argparse
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from disturbed_trials import HELD_OUT, TRAINING, ships, simulate_runs
+from measure import Line, machine
+
+from seatrial.core.equations import Model
+from seatrial.core.results import Prediction
+from seatrial.core.values import Prior, Record
+from seatrial.data.trial import Role, TrialRecord
+from seatrial.estimation.estimate.fit import ship_length_seconds
+from seatrial.estimation.estimate.settings import IntervalMethod
+from seatrial.estimation.identify import Settings, estimate_model
+from seatrial.estimation.information.discrepancy import measure_kind
+from seatrial.estimation.predict.predict_runs import predict_runs
+from seatrial.numerics.workers import map_in_threads
+
+LIMITS = (0.92, 0.97)
+NOT_PREDICTED = ("rudder_deg", "approach_speed")
+PRIOR, ZERO = 0.1, float(np.radians(1.0))
+
+
+@dataclass(frozen=True)
+class MeasureInterval:
+    """One measure of one held-out run: measured, simulated and the interval's half width."""
+
+    series: int
+    run: str
+    kind: str
+    measured: float
+    simulated: float
+    half_width: float
+
+    @property
+    def is_inside(self) -> bool:
+        """Whether the interval holds the measured value."""
+        return abs(self.measured - self.simulated) <= self.half_width
+
+
+def model_with_priors(model: Model) -> Model:
+    """The published model with priors of 10 % on the hull, as a trial file would set them."""
+    p = model.parameters
+    return model.with_parameters(
+        p.with_priors({q.name: Prior(q.value, PRIOR * max(abs(q.value), 0.02), q.source) for q in p.free})
+    )
+
+
+def held_out_intervals(
+    model: Model, train: Sequence[Record], held: Sequence[Record], number: int, kind: IntervalMethod
+) -> list[MeasureInterval]:
+    """Fit one series and compare the intervals of its held-out runs with what they show."""
+    length = model.parameters["L"].value
+    settings = Settings(
+        segment_seconds=10.0, corrections=(("delta", "zero", ZERO, "rad"),), workers=1, intervals=kind, seed=number
+    )
+    found = estimate_model(model, train, [r.name for r in train], length, settings)
+    records = [TrialRecord(r, Role.TRAIN, r.name) for r in train] + [
+        TrialRecord(r, Role.VALIDATE, r.name) for r in held
+    ]
+    told = predict_runs(found, records, ship_length_seconds(train, length), length, number).predictions
+    return [entry for p in told if p.role == "validation" for entry in _measure_intervals(p, number)]
+
+
+def _measure_intervals(p: Prediction, number: int) -> list[MeasureInterval]:
+    return [
+        MeasureInterval(number, p.record, measure_kind(name), m.measured, m.simulated, 0.5 * (m.upper - m.lower))
+        for name, m in p.measures.items()
+        if name not in NOT_PREDICTED and None not in (m.measured, m.simulated, m.lower, m.upper)
+    ]  # type: ignore[operator]
+
+
+def series(count: int, seed: int, kind: IntervalMethod) -> list[MeasureInterval]:
+    """All series."""
+    streams = np.random.SeedSequence(seed).spawn(2 + len(TRAINING) + len(HELD_OUT))
+    model, values = ships(count, np.random.default_rng(streams[0]))
+    runs = [
+        simulate_runs(model, values, o, np.random.default_rng(s))
+        for o, s in zip((*TRAINING, *HELD_OUT), streams[1:], strict=False)
+    ]
+    start, split = model_with_priors(model), len(TRAINING)
+
+    def one(i: int) -> list[MeasureInterval]:
+        return held_out_intervals(start, [r[i] for r in runs[:split]], [r[i] for r in runs[split:]], i, kind)
+
+    return [entry for made in map_in_threads(one, range(count)) for entry in made]
+
+
+def lines(intervals: Sequence[MeasureInterval]) -> list[Line]:
+    """Coverage by kind and pooled."""
+    made = []
+    for label, mine in (
+        *(
+            (
+                f"{'turns' if 'turn' in run else 'zigzag'}: {kind}",
+                [t for t in intervals if t.kind == kind and ("turn" in t.run) == ("turn" in run)],
+            )
+            for run, kind in dict.fromkeys(("turn" if "turn" in t.run else "zigzag", t.kind) for t in intervals)
+        ),
+        ("pooled", list(intervals)),
+    ):
+        share = float(np.mean([t.is_inside for t in mine]))
+        half = float(np.median([t.half_width / max(abs(t.measured), 1e-9) for t in mine]))
+        low, high = LIMITS
+        pooled = label == "pooled"
+        target, holds = (f"{low:g} to {high:g}", low <= share <= high) if pooled else ("", None)
+        made.append(Line(f"{label} ({len(mine)}; median half width {half:.1%})", share, "", target, holds))
+    return made
+
+
+def main(arguments: list[str]) -> int:
+    """Print the table; 1 if the target is missed."""
+    parser = argparse.ArgumentParser(description="coverage of the intervals of predicted manoeuvring measures")
+    parser.add_argument("--series", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=11)
+    parser.add_argument("--intervals", type=IntervalMethod, default=IntervalMethod.AUTO)
+    given = parser.parse_args(arguments)
+    print(machine())
+    began = time.perf_counter()
+    table = lines(series(given.series, given.seed, given.intervals))
+    for line in table:
+        print(f"  {line.quantity:<76} {line.value:>8.3f} {line.verdict}")
+    print(f"{given.series} series, {(time.perf_counter() - began) / given.series:.2f} s each")
+    return int(any(line.holds is False for line in table))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

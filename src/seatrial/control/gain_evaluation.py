@@ -1,0 +1,118 @@
+"""Gains in, objectives and broken restrictions out, for all that a task meets; by the thousand, with gradients."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from seatrial.control.task import TuningTask
+from seatrial.core.values import Array
+from seatrial.physics.loops import LoopSignal, Objective, Performance, TransferLoop
+from seatrial.physics.loops.objective import variance
+from seatrial.physics.loops.performance import distinct_variances
+
+OUTPUT = variance("output", "rad^2", LoopSignal.OUTPUT)
+ACTUATOR = variance("actuator", "rad^2", LoopSignal.ACTUATOR)
+ACTUATOR_RATE = variance("actuator rate", "rad^2/s^2", LoopSignal.ACTUATOR, 1)
+
+
+@dataclass(frozen=True, eq=False)
+class GainEvaluation:
+    """Sets of gains, n of them, judged.
+
+    Attributes:
+        objectives: (n, m), means over what disturbs the loop; infinite where unstable.
+        excess: (n, 3): Ms, actuator variance and rate variance over what is allowed, minus 1, worst case; a set is
+            feasible where none is positive. -1 where there is no limit.
+        Ms: (n,), worst case.
+        variances: output, actuator, rate of each disturbance, (n, s, 3).
+    """
+
+    objectives: Array
+    excess: Array
+    Ms: Array
+    variances: Array
+
+    @property
+    def is_feasible(self) -> np.ndarray:
+        """Which are stable and keep every restriction, (n,)."""
+        return np.all(self.excess <= 1e-9, axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class GainEvaluator:
+    """Judges gains of one loop, the task's own or a richer one, by the task's objectives and restrictions."""
+
+    task: TuningTask
+    loop: TransferLoop
+    objectives: tuple[Objective, ...]
+
+    @cached_property
+    def _variance_indices(self) -> list[list[int]]:
+        return distinct_variances((*self.objectives, OUTPUT, ACTUATOR, ACTUATOR_RATE))[1]
+
+    @cached_property
+    def performances(self) -> tuple[Performance, ...]:
+        """One for each thing that disturbs the loop."""
+        rows = distinct_variances((*self.objectives, OUTPUT, ACTUATOR, ACTUATOR_RATE))[0]
+        loops = [self.task.loop_at(met.U, self.loop) for met in self.task.disturbances]
+        return tuple(
+            Performance(lp, met.exposure(lp), rows) for lp, met in zip(loops, self.task.disturbances, strict=True)
+        )
+
+    @cached_property
+    def uncontrolled_variance(self) -> float:
+        """Mean variance of the output without control."""
+        place = self._variance_indices[-3][0]
+        return float(np.mean([p.uncontrolled_variances[place] for p in self.performances]))
+
+    @cached_property
+    def allowed_variances(self) -> Array:
+        """Largest variance of actuator and rate, (2,): exp(-limit^2 / (2 variance)) = share (Rayleigh)."""
+        r = self.task.constraints
+        shares = ((r.limit, r.saturation), (r.rate, r.rate_saturation))
+        return np.array([limit**2 / (2.0 * math.log(1.0 / share)) for limit, share in shares])
+
+    def evaluate(self, gains: Array) -> GainEvaluation:
+        """All of the gains (n, g)."""
+        made = [performance.evaluate(gains) for performance in self.performances]
+        places = self._variance_indices[-3:]
+        variances = np.stack([e.variances[:, [p[0] for p in places]] for e in made], axis=1)
+        values = [
+            np.mean([objective.value(e.variances[:, at]) for e in made], axis=0)
+            for objective, at in zip(self.objectives, self._variance_indices, strict=False)
+        ]
+        peak = np.max([e.Ms for e in made], axis=0)
+        worst = variances[:, :, 1:].max(axis=1)
+        over = np.where(np.isfinite(worst), worst, 1e30) / self.allowed_variances - 1.0
+        excess = np.column_stack([peak / self.task.constraints.Ms - 1.0, over])
+        return GainEvaluation(np.stack(values, axis=1), excess, peak, variances)
+
+    def slopes(self, gains: Array) -> tuple[Array, Array]:
+        """d objectives / d gains (m, g) and d excess / d gains (3, g) at one stable point (g,)."""
+        made = [p.evaluate(gains).variances for p in self.performances]
+        rows = [p.variance_gradients(gains) for p in self.performances]
+        objectives = np.array([
+            np.mean([objective.gradient(v[:, at])[0] @ row[at] for v, row in zip(made, rows, strict=True)], axis=0)
+            for objective, at in zip(self.objectives, self._variance_indices, strict=False)
+        ])  # fmt: skip
+        excess = np.zeros((3, len(gains)))
+        frailest = max(self.performances, key=lambda p: p.evaluate(gains).Ms[0])
+        excess[0] = frailest.Ms_gradient(gains) / self.task.constraints.Ms
+        for i, place in enumerate(at[0] for at in self._variance_indices[-2:]):
+            worst = int(np.argmax([v[0, place] for v in made]))
+            excess[1 + i] = rows[worst][place] / self.allowed_variances[i]
+        return objectives, excess
+
+
+def gain_evaluator(task: TuningTask, loop: TransferLoop | None = None) -> GainEvaluator:
+    """A judge of the task's own loop, or of another on the same plant."""
+    return GainEvaluator(task, task.loop if loop is None else loop, task.objectives)
+
+
+def exceedance_share(limit: float, variance: float) -> float:
+    """Share of amplitudes beyond the limit, exp(-limit^2 / (2 variance)) (Rayleigh; Longuet-Higgins 1952)."""
+    if not math.isfinite(variance):
+        return 1.0
+    return math.exp(-(limit**2) / (2.0 * variance)) if variance > 0.0 else 0.0

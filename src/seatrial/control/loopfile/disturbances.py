@@ -1,0 +1,120 @@
+"""Tables of a loop file into disturbances of the loop: seas under a heading, slow ones, conditions of a schedule."""
+
+import math
+
+from seatrial.control.loopfile.plant import LoopPlant
+from seatrial.control.loopfile.quantities import heading_value, positive_value, symbol_unit
+from seatrial.control.loopfile.schema import LoopFile, ScheduleTable, SeawayTable, SlowDisturbanceTable
+from seatrial.control.task import ScheduleGrid, Seaway, SlowDisturbance
+from seatrial.core.values import InputError
+from seatrial.physics.loops import HullFactor, TransferLoop
+from seatrial.physics.sea.sea_state import sea_state
+from seatrial.physics.sea.spectrum import Spectrum, bretschneider, ittc, ittc_two_parameter, jonswap
+
+
+def loop_disturbances(
+    file: LoopFile, plant: LoopPlant, hull: HullFactor | None
+) -> tuple[Seaway | SlowDisturbance, ...]:
+    """Everything that disturbs the loop, in the order of the file.
+
+    Raises:
+        InputError: nothing does, a sea where waves do not act through their slope, amounts out of sense.
+    """
+    if not file.seas and not file.slow_disturbances:
+        raise InputError(
+            "nothing disturbs the loop: add a block [[seas]], or [[slow_disturbances]] for what acts like the actuator"
+        )
+    if file.seas and plant.disturbed_by != "alpha_w":
+        raise InputError(
+            f"seas: a sea acts through its slope alpha_w on roll, not on '{plant.output}'; describe what disturbs it "
+            "under [[slow_disturbances]]"
+        )
+    seas = (seaway(table, plant.U, hull, f"seas[{i}]") for i, table in enumerate(file.seas, start=1))
+    unrest = (
+        _slow_disturbance(table, plant, f"slow_disturbances[{i}]")
+        for i, table in enumerate(file.slow_disturbances, start=1)
+    )
+    return (*seas, *unrest)
+
+
+def refuse_calm(
+    disturbances: tuple[Seaway | SlowDisturbance, ...], loop: TransferLoop, grid: ScheduleGrid | None
+) -> None:
+    """Refuse seas, and headings of a schedule, that have no slope across the ship.
+
+    Raises:
+        InputError: which one; or a schedule without any sea.
+    """
+    for i, one in enumerate((m for m in disturbances if isinstance(m, Seaway)), start=1):
+        try:
+            one.exposure(loop)
+        except InputError as error:
+            raise InputError(f"seas[{i}]: {error}") from None
+    seas = [m for m in disturbances if isinstance(m, Seaway)]
+    if grid is not None and not seas:
+        raise InputError(
+            "schedule: there is no block [[seas]] to give its spectrum; add one, or leave the schedule out"
+        )
+    if grid is not None and seas[0].spreading is None:
+        for beta in grid.headings:
+            if abs(math.sin(beta)) < 1e-6:
+                raise InputError(
+                    f"schedule.headings: long-crested waves at {math.degrees(beta):.0f} deg have no slope across the "
+                    "ship; leave the heading out, or give the first sea a spreading"
+                )
+
+
+def seaway(table: SeawayTable, U: float, hull: HullFactor | None, where: str) -> Seaway:
+    """One sea; at the plant's speed U [m/s] where it names none.
+
+    Raises:
+        InputError: height, period or gamma out of sense, a heading outside half a turn, a sea state without waves.
+    """
+    speed = U if table.speed is None else positive_value(table.speed, "m/s", f"{where}.speed")
+    beta = heading_value(table.heading, f"{where}.heading")
+    return Seaway(_spectrum(table, where), speed, beta, hull, table.spreading)
+
+
+def schedule_grid(table: ScheduleTable) -> ScheduleGrid:
+    """The conditions of a schedule.
+
+    Raises:
+        InputError: a speed or height that is not positive, a heading outside half a turn.
+    """
+    return ScheduleGrid(
+        tuple(positive_value(a, "m/s", "schedule.speeds") for a in table.speeds.quantities()),
+        tuple(heading_value(a, "schedule.headings") for a in table.headings.quantities()),
+        tuple(positive_value(a, "m", "schedule.heights") for a in table.heights.quantities()),
+    )
+
+
+def _spectrum(table: SeawayTable, where: str) -> Spectrum:
+    if table.state is not None:
+        try:
+            return sea_state(table.state).spectrum()
+        except InputError as error:
+            raise InputError(f"{where}: {error}") from None
+    height = 0.0 if table.height is None else positive_value(table.height, "m", f"{where}.height")
+    period = 0.0 if table.period is None else positive_value(table.period, "s", f"{where}.period")
+    match table.spectrum:
+        case "ittc2":
+            return ittc_two_parameter(height, period)
+        case "bretschneider":
+            return bretschneider(height, period)
+        case "jonswap":
+            try:
+                return jonswap(height, period, table.gamma)
+            except InputError as error:
+                raise InputError(f"{where}.gamma: {error}") from None
+        case _:
+            return ittc(height)
+
+
+def _slow_disturbance(table: SlowDisturbanceTable, plant: LoopPlant, where: str) -> SlowDisturbance:
+    return SlowDisturbance(
+        positive_value(table.rms, symbol_unit(plant.disturbed_by), f"{where}.size"),
+        positive_value(table.bandwidth, "rad/s", f"{where}.bandwidth"),
+        plant.U if table.speed is None else positive_value(table.speed, "m/s", f"{where}.speed"),
+        symbol_unit(plant.disturbed_by),
+        "of the actuator" if plant.disturbed_by == plant.actuator else f"of {plant.disturbed_by}",
+    )

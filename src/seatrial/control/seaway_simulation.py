@@ -1,0 +1,170 @@
+"""A stabiliser at sea, with what its fins cannot do: every controller meets the same seas, so that pairs are compared.
+
+A sea is a sum of harmonics; the effective wave slope of each line is k |sin(beta)| F a, in quadrature with its
+elevation, met at its own signed frequency of encounter.
+"""
+
+import math
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+from scipy.stats import t as student
+
+from seatrial.control.task import Seaway, SimulationSettings, TuningTask
+from seatrial.core.results.tuning import PairedDifference, SeawaySimulation
+from seatrial.core.values import Array, InputError, Record, frozen
+from seatrial.numerics.workers import map_in_threads
+from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.hydro.excitation import Complex
+from seatrial.physics.loops import TransferLoop
+from seatrial.physics.loops.state_space import plant_model
+from seatrial.physics.sea.realise import Spacing, WaveComponents, realise, short_crested
+from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop
+
+LONG_CRESTED_LINES, SHORT_CRESTED_LINES = 800, 1600
+RUN_IN_SECONDS = 100.0
+UNCONTROLLED = "uncontrolled"
+_ENERGY_SHARE = 1e-4
+_CONFIDENCE = 0.95
+
+
+def simulate_in_seaway(task: TuningTask, loop: TransferLoop, name: str, gains: Array, seed: int) -> SeawaySimulation:
+    """A controller in the task's first sea: reductions of the output's rms, of each seed against no control there.
+
+    Args:
+        loop: the structure that the gains (g,) belong to, on the task's plant at the task's speed.
+        seed: of the first sea; controllers with the same seed meet the same seas.
+
+    Raises:
+        InputError: the task has no sea or no trials, or the sea does not move the ship.
+        DivergedError: the loop runs away.
+    """
+    seaway = next((met for met in task.disturbances if isinstance(met, Seaway)), None)
+    if seaway is None or task.simulation is None:
+        raise InputError("to simulate a stabiliser the tuning needs a sea and trials; give both, or leave trials out")
+    trials = task.simulation
+    steered = closed_loop(task, loop, gains, seaway.U, trials.dt)
+    still = replace(steered, gains=np.zeros(len(gains)))
+    r = task.constraints
+    everything = ActuatorLimits(r.limit, r.rate, r.stall)
+    met = wave_slope_series(seaway, trials, seed)
+    first = round(RUN_IN_SECONDS / trials.dt)
+
+    def size(run: ClosedLoop, sea: Array, limits: ActuatorLimits) -> float:
+        states, _ = run.run(sea, limits)
+        return float(np.std(states[first:, run.model.states.index(run.output)]))
+
+    def of_one(sea: Array) -> list[float]:
+        alone = size(still, sea, UNLIMITED)
+        if not alone > 0.0:
+            raise InputError(
+                f"the sea '{seaway.description}' does not move the ship; take another heading or a higher sea"
+            )
+        return [
+            1.0 - size(steered, sea, limits) / alone for limits in (UNLIMITED, everything.without_stall, everything)
+        ]
+
+    reductions = np.array(map_in_threads(of_one, list(met)))
+    shown = _without_run_in(steered.record(f"{name}, first sea", met[0], everything), first)
+    alone = _without_run_in(still.record("without control", met[0], UNLIMITED), first).channel(loop.output)
+    shown = replace(shown, channels={**shown.channels, f"{loop.output}_{UNCONTROLLED}": alone})
+    linear, limited, stalled = (frozen(column) for column in reductions.T)
+    return SeawaySimulation(name, linear, limited, stalled, shown)
+
+
+def compare_pairwise(chosen: SeawaySimulation, other: SeawaySimulation, stage: str) -> PairedDifference:
+    """Reduction of one controller minus that of another, sea by sea: mean and Student's 95 % interval of the mean.
+
+    stage: ``linear``, ``limited`` or ``stalled``.
+
+    Raises:
+        InputError: no such column, other numbers of seas, or fewer than two.
+    """
+    columns = ("linear", "limited", "stalled")
+    if stage not in columns:
+        raise InputError(f"controllers in simulation are compared {', '.join(columns)}, not '{stage}'")
+    one, two = getattr(chosen, stage), getattr(other, stage)
+    if one.shape != two.shape or len(one) < 2:
+        raise InputError(f"'{chosen.name}' and '{other.name}' need the same seas to be compared, two or more")
+    gap = one - two
+    mean, n = float(np.mean(gap)), len(gap)
+    half = float(student.ppf(0.5 + 0.5 * _CONFIDENCE, n - 1) * np.std(gap, ddof=1) / math.sqrt(n))
+    return PairedDifference(other.name, stage, mean, mean - half, mean + half, n)
+
+
+def closed_loop(task: TuningTask, loop: TransferLoop, gains: Array, U: float, dt: float) -> ClosedLoop:
+    """The controller before the task's vessel at U [m/s], or before its plant where only transfer functions are known.
+
+    Raises:
+        InputError: the vessel's model has no input for the sea, or does not suit a loop.
+    """
+    values, vessel = np.asarray(gains, dtype=np.float64), task.trimmed_ship
+    at = task.loop_at(U, loop)
+    if vessel is None:
+        model = plant_model(at)
+        return ClosedLoop(model, at, values, dt, model.input_names[0], model.input_names[1], at.output)
+    if not vessel.disturbance:
+        raise InputError(f"model '{vessel.model.name}' has no input for the sea; name one as the plant's disturbance")
+    effect = at.plant.num[0] / loop.plant.num[0]
+    return ClosedLoop(
+        vessel.model, at, values, dt, vessel.actuator, vessel.disturbance, vessel.output, vessel.state, vessel.inputs,
+        effect,
+    )  # fmt: skip
+
+
+@lru_cache(maxsize=8)
+def wave_slope_series(seaway: Seaway, trials: SimulationSettings, seed: int) -> tuple[Array, ...]:
+    """Effective wave slope [rad] of each seed, a run-in of `RUN_IN_SECONDS` first; each (n,), read-only."""
+    count = round((RUN_IN_SECONDS + trials.duration) / trials.dt) + 1
+    band = frequency_band(seaway)
+
+    def of_one(number: int) -> Array:
+        lines = wave_components(seaway, np.random.default_rng(number), band)
+        return frozen(sum_harmonics(lines.omega_e, effective_wave_slopes(lines, seaway), trials.dt, count))
+
+    return tuple(map_in_threads(of_one, [seed + k for k in range(trials.seeds)]))
+
+
+def wave_components(seaway: Seaway, rng: np.random.Generator, band: tuple[float, float]) -> WaveComponents:
+    """Harmonics of one sea, jittered, so that it does not repeat."""
+    count = LONG_CRESTED_LINES if seaway.spreading is None else SHORT_CRESTED_LINES
+    lines = realise(seaway.spectrum, seaway.U, seaway.beta, rng, count=count, spacing=Spacing.JITTERED, band=band)
+    return lines if seaway.spreading is None else short_crested(lines, rng, seaway.spreading)
+
+
+def effective_wave_slopes(lines: WaveComponents, seaway: Seaway) -> Complex:
+    """Complex amplitudes of the effective wave slope [rad], (n,); the hull's factor at each heading."""
+    k = lines.omega**2 / G
+    factor: Array = np.ones(len(k))
+    if seaway.hull is not None:
+        hull, met = seaway.hull, zip(lines.omega, lines.direction, strict=True)
+        factor = np.array([float(hull.slope_factor(omega, float(beta))) for omega, beta in met])
+    return 1j * k * np.abs(np.sin(lines.direction)) * factor * lines.amplitude
+
+
+def sum_harmonics(omega: Array, amplitude: Complex, dt: float, count: int) -> Array:
+    """Re sum a exp(i omega t) at t = 0, dt, ... (count,): a product of two tables instead of count x n cosines."""
+    width = math.isqrt(count - 1) + 1
+    within = dt * omega[:, None] * np.arange(width)
+    before = dt * width * omega[:, None] * np.arange(-(-count // width)) + np.angle(amplitude)[:, None]
+    size = np.abs(amplitude)[:, None]
+    made = (size * np.cos(before)).T @ np.cos(within) - (size * np.sin(before)).T @ np.sin(within)
+    return made.ravel()[:count]
+
+
+def frequency_band(seaway: Seaway) -> tuple[float, float]:
+    """Frequencies [rad/s] of all waves with a slope to speak of, up to twelve times the modal one."""
+    peak = seaway.spectrum.modal_frequency
+    omega = np.linspace(0.0, 12.0 * peak, 4001)[1:]
+    factor = np.ones(len(omega)) if seaway.hull is None else seaway.hull.slope_factor(omega, 0.5 * math.pi)
+    share = np.cumsum(omega**4 * factor**2 * seaway.spectrum.density(omega))
+    share /= share[-1]
+    ends = np.searchsorted(share, [_ENERGY_SHARE, 1.0 - _ENERGY_SHARE])
+    return float(omega[ends[0]]), float(omega[ends[1]])
+
+
+def _without_run_in(record: Record, first: int) -> Record:
+    """Without its first samples, beginning at zero again."""
+    kept = record.rows(slice(first, None))
+    return replace(kept, time=frozen(kept.time - kept.time[0]))

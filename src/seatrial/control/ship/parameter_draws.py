@@ -1,0 +1,92 @@
+"""Ships that a fit allows: drawn from its covariance, each trimmed anew, and how many a controller keeps stable."""
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from seatrial.control.ship.trimmed_ship import one_sided_plants, plant_and_disturbance, with_parameters
+from seatrial.control.task import TrimmedShip, TuningTask
+from seatrial.core.values import Array, InputError
+from seatrial.estimation.predict.draws import square_root
+from seatrial.numerics.kernels.loop import is_hurwitz
+from seatrial.physics.loops import Block, TransferLoop
+
+SEED, DRAWS = 0, 100
+
+
+@dataclass(frozen=True, eq=False)
+class ParameterDraws:
+    """Ships drawn, `draws` of them; `untrimmed` have no trim, or an actuator without effect.
+
+    Attributes:
+        ships: the others; plants: of each, the mean of both sides and, where they differ, the two sides.
+    """
+
+    draws: int
+    ships: tuple[TrimmedShip, ...]
+    plants: tuple[tuple[Block, ...], ...]
+
+    @property
+    def untrimmed(self) -> int:
+        """How many could not be trimmed; no controller is counted stable on them."""
+        return self.draws - len(self.ships)
+
+    def stable_ships(self, loop: TransferLoop, gains: Array) -> tuple[bool, ...]:
+        """Whether each ship's loop is stable with the gains (g,), on the straight course and beginning either turn."""
+        return tuple(all(_is_stable(loop, plant, gains) for plant in plants) for plants in self.plants)
+
+
+@lru_cache(maxsize=8)
+def draw_parameters(ship: TrimmedShip, draws: int = DRAWS, seed: int = SEED) -> ParameterDraws:
+    """Gaussian draws of the free parameters from the fit's covariance; none where there is no covariance.
+
+    The same seed gives the same ships. Nothing is truncated.
+    """
+    if not ship.covariance.size or not draws:
+        return ParameterDraws(0, (), ())
+    free = ship.model.parameters.free
+    centre: Array = np.array([p.value for p in free])
+    points = centre + np.random.default_rng(seed).standard_normal((draws, len(free))) @ square_root(ship.covariance).T
+    ships, plants = [], []
+    for point in points:
+        try:
+            drawn = with_parameters(ship, dict(zip([p.name for p in free], point.tolist(), strict=True)))
+            plants.append(_plant_blocks(drawn))
+            ships.append(drawn)
+        except InputError:
+            continue
+    return ParameterDraws(draws, tuple(ships), tuple(plants))
+
+
+def stable_draws(
+    task: TuningTask, gains: Array, loop: TransferLoop | None = None, *, draws: int = DRAWS
+) -> tuple[int, int]:
+    """How many of the ships drawn the gains (g,) keep stable, and how many were drawn; (0, 0) without a covariance."""
+    if task.trimmed_ship is None:
+        return 0, 0
+    made = draw_parameters(task.trimmed_ship, draws, SEED)
+    return sum(made.stable_ships(task.loop if loop is None else loop, gains)), made.draws
+
+
+def _plant_blocks(ship: TrimmedShip) -> tuple[Block, ...]:
+    mean, _ = plant_and_disturbance(ship)
+    sides = one_sided_plants(ship)
+    alike = all(side.den == mean.den and side.num == mean.num for side in sides)
+    return (mean,) if alike else (mean, *sides)
+
+
+def _is_stable(loop: TransferLoop, plant: Block, gains: Array) -> bool:
+    """By Routh's scheme on d + sum gain_i n_i with that plant in the place of the loop's own."""
+    nums, dens = _open_loop_polynomials(loop)
+    fixed = np.polymul(dens, plant.den)
+    moved = np.polymul(gains @ nums, plant.num)
+    row = np.polyadd(fixed, moved)
+    return bool(is_hurwitz(np.ascontiguousarray(row, dtype=np.float64), len(row) - 1))
+
+
+@lru_cache(maxsize=8)
+def _open_loop_polynomials(loop: TransferLoop) -> tuple[Array, Array]:
+    """Numerators of the controller's terms (g, n) and their common denominator (n,), plant left out."""
+    d, n = replace(loop, plant=Block("none")).polynomials
+    return n, d

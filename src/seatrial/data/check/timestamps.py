@@ -1,0 +1,192 @@
+"""The time base: repeated, rounded or missing stamps, gaps; rebuilt evenly, never silently."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from seatrial.core.values import Array, Finding, InputError, Record, Severity
+from seatrial.data.check.signal import RowIndices, unwrapped
+
+GAP_STEPS = 2.5
+STEP_LAG = 20
+
+
+def without_empty_ends(record: Record) -> tuple[Record, tuple[Finding, ...]]:
+    """The record without wholly empty rows at its ends.
+
+    Raises:
+        InputError: every row is empty.
+    """
+    empty = np.all([np.isnan(c.values) for c in record.channels.values()], axis=0) & np.ones(len(record), bool)
+    filled = np.flatnonzero(~empty)
+    if filled.size == 0:
+        raise InputError(f"record '{record.name}' holds no values at all; leave it out")
+    first, last = int(filled[0]), int(filled[-1]) + 1
+    count = first + len(record) - last
+    if count == 0:
+        return record, ()
+    cells = count * len(record.channels) + int(np.sum(np.isnan(record.time[np.r_[:first, last : len(record)]])))
+    where = " and ".join(w for w, n in (("begins", first), ("ends", len(record) - last)) if n)
+    finding = Finding(
+        Severity.WARNING,
+        "empty-rows",
+        f"record '{record.name}' {where} with {count} empty rows, which are cut off",
+        f"{cells} empty cells, {last - first} of {len(record)} rows remain",
+        "nothing to do if the run ended there; otherwise look for the lost samples",
+    )
+    kept = record.rows(slice(first, last))
+    return replace(kept, provenance=kept.provenance.with_step(f"{count} empty rows cut off")), (finding,)
+
+
+def rebuild_time_base(record: Record) -> tuple[Record, tuple[Finding, ...]]:
+    """The record on an even time base, and what was found on the way.
+
+    Repeated or rounded stamps are spread evenly, missing stamps counted in, duplicate rows dropped; samples lost in
+    gaps become NaN rows (`repair` closes short ones); truly uneven sampling is interpolated linearly.
+
+    Raises:
+        InputError: fewer than two samples remain, or fewer than two have a stamp.
+    """
+    record, findings = without_empty_ends(record)
+    record, more = _fill_missing_stamps(record)
+    record, again = _without_duplicates(record)
+    findings += more + again
+    if len(record) < 2:
+        raise InputError(f"record '{record.name}' has one sample; at least two are needed")
+    if record.is_uniform:
+        return record, findings
+    grid = _grid(record.time)
+    if grid.jitter <= max(0.6 * grid.step, 1.01 * grid.quantum):
+        rebuilt = _placed_on_grid(record, grid)
+    else:
+        rebuilt = _interpolated_on_grid(record, grid)
+    return rebuilt, findings + _time_base_findings(record, grid)
+
+
+@dataclass(frozen=True)
+class _Grid:
+    index: RowIndices
+    start: float
+    step: float
+    quantum: float
+    jitter: float
+    repeated: int
+    gaps: RowIndices
+
+
+def _grid(time: Array) -> _Grid:
+    steps = np.diff(time)
+    lag = min(STEP_LAG, len(steps))
+    nominal = float(np.median((time[lag:] - time[:-lag]) / lag))
+    repeated = int(np.sum(steps == 0))
+    quantum = float(np.min(steps[steps > 0], initial=np.inf)) if repeated else 0.0
+    gaps = np.flatnonzero((steps > GAP_STEPS * nominal) & (steps > nominal + 1.5 * quantum))
+    skipped = np.zeros(len(time))
+    skipped[gaps + 1] = np.round(steps[gaps] / nominal) - 1
+    index = np.arange(len(time)) + np.cumsum(skipped)
+    step, start = np.polyfit(index, time, 1)
+    jitter = float(np.max(np.abs(time - start - step * index)))
+    return _Grid(index.astype(np.intp), float(start), float(step), quantum, jitter, repeated, gaps)
+
+
+def _placed_on_grid(record: Record, grid: _Grid) -> Record:
+    """Every sample kept as it is, at its place on the even base."""
+    index = grid.index
+    channels = {}
+    for symbol, channel in record.channels.items():
+        values = np.full(index[-1] + 1, np.nan)
+        values[index] = channel.values
+        channels[symbol] = channel.with_values(values)
+    return _with_time_base(record, grid.start + grid.step * np.arange(index[-1] + 1), channels)
+
+
+def _interpolated_on_grid(record: Record, grid: _Grid) -> Record:
+    time, rows = np.unique(record.time, return_index=True)
+    count = int(np.floor((time[-1] - time[0]) / grid.step * (1 + 1e-12))) + 1
+    even = time[0] + grid.step * np.arange(count)
+    right = np.clip(np.searchsorted(time, even), 1, len(time) - 1)
+    inside_gap = (time[right] - time[right - 1] > GAP_STEPS * grid.step) & ~np.isin(even, time)
+    channels = {}
+    for symbol, channel in record.channels.items():
+        values = unwrapped(channel.values) if channel.unit == "rad" else channel.values
+        values = np.interp(even, time, values[rows])
+        values[inside_gap] = np.nan
+        channels[symbol] = channel.with_values(values)
+    return _with_time_base(record, even, channels)
+
+
+def _with_time_base(record: Record, time: Array, channels: dict) -> Record:
+    provenance = record.provenance.with_step("time base rebuilt")
+    return replace(record, time=time, channels=channels, provenance=provenance)
+
+
+def _fill_missing_stamps(record: Record) -> tuple[Record, tuple[Finding, ...]]:
+    """Missing stamps counted in between their neighbours."""
+    missing = np.isnan(record.time)
+    if not missing.any():
+        return record, ()
+    rows = np.arange(len(record))
+    known = np.flatnonzero(~missing)
+    if known.size < 2:
+        raise InputError(f"record '{record.name}' has fewer than two time stamps; leave it out")
+    step = (record.time[known[-1]] - record.time[known[0]]) / (known[-1] - known[0])
+    time = np.interp(rows, known, record.time[known])
+    time[: known[0]] = record.time[known[0]] + step * (rows[: known[0]] - known[0])
+    time[known[-1] + 1 :] = record.time[known[-1]] + step * (rows[known[-1] + 1 :] - known[-1])
+    finding = Finding(
+        Severity.WARNING,
+        "time-base",
+        f"record '{record.name}': {missing.sum()} samples have no time stamp; they are counted in by their row",
+        f"first at row {int(np.flatnonzero(missing)[0]) + 1} of {len(record)}",
+        "check that no rows were lost there",
+    )
+    return replace(record, time=time), (finding,)
+
+
+def _without_duplicates(record: Record) -> tuple[Record, tuple[Finding, ...]]:
+    """Rows dropped that repeat the stamp and every value of the row before."""
+    same = [(np.diff(c.values) == 0) | np.isnan(c.values[1:]) for c in record.channels.values()]
+    repeat = np.concatenate([[False], (np.diff(record.time) == 0) & np.all(same, axis=0) & bool(same)])
+    if not repeat.any():
+        return record, ()
+    keep = ~repeat
+    channels = {s: c.with_values(c.values[keep]) for s, c in record.channels.items()}
+    finding = Finding(
+        Severity.WARNING,
+        "repeated-rows",
+        f"record '{record.name}': {repeat.sum()} rows repeat the row before, stamp and values; they are dropped",
+        f"first at t = {record.time[repeat][0]:g} s",
+        "see whether the logger wrote twice",
+    )
+    provenance = record.provenance.with_step(f"{repeat.sum()} repeated rows dropped")
+    return replace(record, time=record.time[keep], channels=channels, provenance=provenance), (finding,)
+
+
+def _time_base_findings(record: Record, grid: _Grid) -> tuple[Finding, ...]:
+    steps = np.diff(record.time)
+    found = []
+    regular = np.delete(steps, grid.gaps)
+    if regular.size and np.ptp(regular) > 1e-3 * grid.step:
+        kind = f"{grid.repeated} repeated or rounded time stamps" if grid.repeated else "uneven time stamps"
+        found.append(
+            Finding(
+                Severity.WARNING if grid.repeated or np.ptp(regular) > 0.5 * grid.step else Severity.INFO,
+                "time-base",
+                f"record '{record.name}' has {kind}; the time base is rebuilt with even steps of {grid.step:.6g} s",
+                f"steps {regular.min():.4g} to {regular.max():.4g} s, stamps off by up to {grid.jitter:.3g} s",
+                "give more decimals of time if the logger has them",
+            )
+        )
+    if grid.gaps.size:
+        longest = int(grid.gaps[np.argmax(steps[grid.gaps])])
+        found.append(
+            Finding(
+                Severity.WARNING,
+                "time-gap",
+                f"record '{record.name}' has {grid.gaps.size} gaps in time",
+                f"{steps[grid.gaps].sum() - grid.gaps.size * grid.step:.4g} s lost, the longest from "
+                f"t = {record.time[longest]:.6g} to {record.time[longest + 1]:.6g} s",
+                "short gaps are interpolated; split the run at long ones",
+            )
+        )
+    return tuple(found)

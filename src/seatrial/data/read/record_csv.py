@@ -1,0 +1,88 @@
+"""The package's own record file: CSV with units in the header, exact both ways."""
+
+import hashlib
+import json
+from pathlib import Path
+
+import numpy as np
+
+from seatrial.core.values import Array, Channel, InputError, Provenance, Record, RecordKind, frozen, quantity
+from seatrial.core.values.files import write_atomically
+from seatrial.data.read.layout import ColumnSpec, Layout
+from seatrial.data.read.text import RECORD_MARK, decoded_text, read_text
+
+
+def write_record_csv(record: Record, path: Path) -> None:
+    """Write `record_text` to a file, whole or not at all.
+
+    Raises:
+        InputError: the place cannot be written.
+    """
+    write_atomically(path, record_csv(record).encode())
+
+
+def record_csv(record: Record) -> str:
+    """The record as CSV: a comment line with the metadata, ``time [s],u [m/s],...``, then one line a sample.
+
+    Numbers in shortest exact form, NaN as an empty cell.
+    """
+    header = ["time [s]", *(f"{symbol} [{channel.unit}]" for symbol, channel in record.channels.items())]
+    columns = [record.time, *(channel.values for channel in record.channels.values())]
+    rows = (",".join(map(_cell_text, row)) for row in np.stack(columns, axis=1).tolist())
+    return "\n".join([f"{RECORD_MARK} {json.dumps(record.metadata)}", ",".join(header), *rows]) + "\n"
+
+
+def read_record_csv(path: Path) -> Record:
+    """The record of a file written by `write_record`; without its comment line the notation's conventions hold.
+
+    Raises:
+        InputError: the file is missing, is not such a table, or holds a cell that is not a number.
+    """
+    if not path.is_file():
+        raise InputError(f"{path} does not exist; check the path")
+    text = decoded_text(path, "utf-8")
+    lines = text.splitlines()
+    metadata = _parse_metadata(lines[0], path.name) if lines[0].startswith(RECORD_MARK) else {}
+    header = [_split_heading(cell, path.name) for cell in lines[1 if metadata else 0].split(",")]
+    if header[0] != ("time", "s"):
+        raise InputError(f"{path.name} is not a record table: its first column must be 'time [s]'")
+    layout = Layout("text", ColumnSpec("time", 1, "s"), (), header_lines=1, separator=",")
+    sheet = read_text(path, layout)
+    columns = [sheet.numbers(ColumnSpec("time", number + 1, "s")) for number in range(len(header))]
+    described = metadata.get("channels", {})
+    channels = {
+        symbol: _channel(symbol, unit, values, described.get(symbol, {}))
+        for (symbol, unit), values in zip(header[1:], columns[1:], strict=True)
+    }
+    provenance = Provenance(path.name, hashlib.sha256(path.read_bytes()).hexdigest())
+    if metadata:
+        provenance = Provenance.from_metadata(metadata["provenance"])
+    return Record(
+        metadata.get("name", path.stem), columns[0], channels, RecordKind(metadata.get("kind", "measured")), provenance
+    )
+
+
+def _cell_text(value: float) -> str:
+    return "" if value != value else repr(value)
+
+
+def _parse_metadata(line: str, file: str) -> dict:
+    try:
+        return json.loads(line.removeprefix(RECORD_MARK))
+    except json.JSONDecodeError:
+        raise InputError(f"{file}: its first line is damaged; delete it to read the numbers alone") from None
+
+
+def _split_heading(cell: str, file: str) -> tuple[str, str]:
+    symbol, bracket, unit = cell.strip().partition(" [")
+    if not bracket or not unit.endswith("]"):
+        raise InputError(f"{file} is not a record table: column '{cell.strip()}' should read 'symbol [unit]'")
+    return symbol, unit[:-1]
+
+
+def _channel(symbol: str, unit: str, values: Array, metadata: dict) -> Channel:
+    if metadata:
+        return Channel(frozen(values), **{**metadata, "unit": unit})
+    q = quantity(symbol)
+    column = ColumnSpec(symbol, symbol, unit)
+    return Channel(frozen(values * column.si_factor(q.unit)), q.unit, q.frame, q.positive)

@@ -1,0 +1,142 @@
+"""The model a trial chooses: equations by name, then values, freedom, bounds and priors, in that order."""
+
+from collections.abc import Mapping
+
+from seatrial.core.equations import Model
+from seatrial.core.values import InputError, Parameters, Prior, Ship, si_unit, spelling_hint
+from seatrial.data.trial.literature import LiteraturePrior, literature_priors
+from seatrial.data.trial.schema import Amount, ModelTable, PriorTable, ShipTable
+from seatrial.physics.models import model_named
+from seatrial.physics.models.published import parameter_set
+from seatrial.physics.models.start_values import with_start_values
+
+# particulars that people state although not every model asks for them
+COMMON_PARTICULARS = (
+    "L", "B", "d", "m", "I_z", "x_G", "C_b", "volume", "D_P", "x_P", "A_R", "H_R", "x_R", "A_T", "A_L", "rho",
+)  # fmt: skip
+
+
+def ship_of(table: ShipTable) -> Ship:
+    """Name, source, scale and particulars in SI units.
+
+    Raises:
+        InputError: the length is missing or not positive.
+    """
+    if not table.particulars.get("L", 0.0) > 0.0:
+        raise InputError("key 'ship.L' is missing or not positive; give the length between perpendiculars in m")
+    return Ship(table.name, table.particulars, table.source, table.scale)
+
+
+def build_trial_model(table: ModelTable, ship: Ship, own_model: Model | None = None) -> Model:
+    """The model of `[model]` for this ship, ready to be estimated.
+
+    Later ones win: the model's own values, those of `priors_from`, the parameter set, the ship's particulars, `start`,
+    `fixed`.
+
+    Raises:
+        InputError: unknown model, parameter set, source of priors, parameter or particular; a value outside its bounds
+            or missing.
+    """
+    model = own_model or model_named(table.name)
+    literature = literature_priors(table.priors_from, ship, model.name)
+    for name, known in literature.items():
+        model = model.with_values({name: known.mean}, source=known.source)
+    if table.parameter_set is not None:
+        published = parameter_set(table.parameter_set)
+        model = model.with_values(published.values, source=published.source)
+    _refuse_unknown_particulars(ship, model)
+    parameters = model.parameters
+    parameters = _with_amounts(parameters, table.start, "model.start", "start value of the trial file")
+    parameters = _with_amounts(parameters, table.fixed, "model.fixed", "fixed in the trial file")
+    own_ship = _without_particulars(ship, (*table.start, *table.fixed))
+    model = with_start_values(model.with_parameters(_with_free_and_fixed(parameters, table)), own_ship).with_ship(
+        own_ship
+    )
+    return model.with_parameters(_with_priors(_with_bounds(model.parameters, table), table, literature))
+
+
+def _without_particulars(ship: Ship, names: tuple[str, ...]) -> Ship:
+    kept = {name: value for name, value in ship.particulars.items() if name not in names}
+    return Ship(ship.name, kept, ship.source, ship.scale)
+
+
+def _refuse_unknown_particulars(ship: Ship, model: Model) -> None:
+    known = [*model.parameters.names, *COMMON_PARTICULARS]
+    for symbol in ship.particulars:
+        if symbol not in known:
+            keys = ["name", "source", "scale", *sorted(set(known))]
+            raise InputError(f"unknown key 'ship.{symbol}'{spelling_hint(symbol, keys)}")
+
+
+def _refuse_unknown(where: str, names: tuple[str, ...], parameters: Parameters) -> None:
+    for name in names:
+        if name not in parameters:
+            raise InputError(f"{where}: unknown parameter '{name}'{spelling_hint(name, list(parameters.names))}")
+
+
+def _with_amounts(parameters: Parameters, amounts: Mapping[str, Amount], where: str, source: str) -> Parameters:
+    _refuse_unknown(where, tuple(amounts), parameters)
+    for name, amount in amounts.items():
+        if amount.unit is not None and si_unit(amount.unit)[1] != parameters[name].unit:
+            raise InputError(
+                f"{where}.{name}: '{amount.unit}' is no unit of this parameter, which is in {parameters[name].unit}"
+            )
+    return parameters.with_values({name: amount.in_si for name, amount in amounts.items()}, source)
+
+
+def _with_free_and_fixed(parameters: Parameters, table: ModelTable) -> Parameters:
+    if table.free is not None:
+        _refuse_unknown("model.free", table.free, parameters)
+        for name in table.free:
+            if name in table.fixed:
+                raise InputError(f"model: parameter '{name}' is named under both 'free' and 'fixed'; keep one")
+        parameters = parameters.only_free(table.free)
+    return parameters.fixed(*table.fixed)
+
+
+def _with_bounds(parameters: Parameters, table: ModelTable) -> Parameters:
+    _refuse_unknown("model.bounds", tuple(table.bounds), parameters)
+    for name, (lower, upper) in table.bounds.items():
+        if not lower < upper:
+            raise InputError(
+                f"model.bounds.{name}: lower bound {lower:g} is not below upper bound {upper:g}; swap them"
+            )
+        parameters = parameters.bounded(name, lower, upper)
+    for p in parameters.free:
+        if not p.lower <= p.value <= p.upper:
+            raise InputError(
+                f"parameter '{p.name}' starts at {p.value:g}, outside its bounds {p.lower:g} to {p.upper:g}; "
+                "change model.start or model.bounds"
+            )
+    return parameters
+
+
+def _with_priors(parameters: Parameters, table: ModelTable, literature: Mapping[str, LiteraturePrior]) -> Parameters:
+    """Stated priors; for the other free parameters `prior_sd_percent` of the literature's value, or of their start."""
+    _refuse_unknown("model.priors", tuple(table.priors), parameters)
+    priors = {name: _prior(parameters, name, prior) for name, prior in table.priors.items()}
+    if table.prior_sd_percent is None and table.priors_from:
+        raise InputError(
+            "model.priors_from says nothing about how far its values may be wrong; "
+            "add prior_sd_percent, for example 25 for regressions of linear coefficients"
+        )
+    if table.prior_sd_percent is not None:
+        share = table.prior_sd_percent / 100.0
+        for p in parameters.free:
+            known = literature.get(p.name, LiteraturePrior(p.value, p.source))
+            spread = share * max(abs(known.mean), p.scale) or share
+            priors.setdefault(p.name, Prior(known.mean, spread, known.source))
+    return _with_prior_sources(parameters.with_priors(priors), literature)
+
+
+def _with_prior_sources(parameters: Parameters, literature: Mapping[str, LiteraturePrior]) -> Parameters:
+    """Free parameters that start elsewhere than at their prior from literature name both sources."""
+    for p in parameters.free:
+        if p.prior is not None and p.name in literature and p.prior.source not in p.source:
+            parameters = parameters.with_values({p.name: p.value}, f"{p.source}; prior: {p.prior.source}")
+    return parameters
+
+
+def _prior(parameters: Parameters, name: str, prior: PriorTable) -> Prior:
+    mean = parameters[name].value if prior.mean is None else prior.mean
+    return Prior(mean, prior.sd, prior.source or "trial file")

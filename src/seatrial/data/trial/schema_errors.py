@@ -1,0 +1,70 @@
+"""From a pydantic error to one sentence: the key's path, what is wrong with it, the nearest known key."""
+
+from collections.abc import Iterator, Sequence
+from types import NoneType
+from typing import Any, get_args
+
+from pydantic import BaseModel, ValidationError
+
+from seatrial.core.values import InputError, spelling_hint
+
+
+def _table_classes(annotation: object) -> Iterator[type[BaseModel]]:
+    """Every table class inside an annotation."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for inner in get_args(annotation):
+        if inner is not NoneType:
+            yield from _table_classes(inner)
+
+
+def _fields_by_key(table: type[BaseModel]) -> dict[str, Any]:
+    return {field.alias or name: field for name, field in table.model_fields.items()}
+
+
+def known_keys(table: type[BaseModel], location: Sequence[str | int]) -> list[str]:
+    """The keys of the table that contains the last key of `location`."""
+    for step in location[:-1]:
+        field = _fields_by_key(table).get(str(step))
+        if field is not None:
+            table = next(_table_classes(field.annotation), table)
+    return sorted(_fields_by_key(table))
+
+
+def key_path(location: Sequence[str | int]) -> str:
+    """``records[1].channels.u.unit``; blocks are counted from 1."""
+    path = ""
+    for step in location:
+        path += f"[{step + 1}]" if isinstance(step, int) else f".{step}" if path else step
+    return path
+
+
+def schema_error(error: ValidationError, table: type[BaseModel], file: str) -> InputError:
+    """The first thing wrong, as one sentence; an unknown key before a missing one, which may be its right spelling."""
+    first = min(error.errors(), key=lambda one: one["type"] != "extra_forbidden")
+    location = first["loc"]
+    where = f"{file}: "
+    match first["type"]:
+        case "extra_forbidden":
+            hint = spelling_hint(str(location[-1]), known_keys(table, location))
+            return InputError(f"{where}unknown key '{key_path(location)}'{hint}")
+        case "missing":
+            return InputError(f"{where}key '{key_path(location)}' is missing; add it")
+        case "value_error":
+            return InputError(f"{where}{key_path(location)}: {first.get('ctx', {}).get('error', first['msg'])}")
+        case "tuple_type" if isinstance(first["input"], dict):
+            return InputError(
+                f"{where}{key_path(location)} is one table where a list of them belongs; write it as "
+                f"[[{key_path(location)}]]"
+            )
+        case "tuple_type":
+            return InputError(f"{where}{key_path(location)} = {first['input']!r} is no list; put it into brackets")
+        case "too_short":
+            return InputError(f"{where}{key_path(location)} is an empty list; give at least one entry")
+        case "model_type":
+            return InputError(
+                f"{where}{key_path(location)} = {first['input']!r} is neither a table nor a number; write one"
+            )
+        case _:
+            message = first["msg"][0].lower() + first["msg"][1:]
+            return InputError(f"{where}{key_path(location)} = {first['input']!r}: {message}")

@@ -1,0 +1,48 @@
+"""Coordinate exchange: one order at a time is tried elsewhere, and stays where it tells most.
+
+Meyer & Nachtsheim 1995, The coordinate-exchange algorithm for constructing exact optimal experimental designs,
+Technometrics 37(1).
+"""
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from seatrial.core.values import Array
+from seatrial.numerics.workers import map_in_threads
+
+# as shares of the range; what lies beyond an end means that end
+MOVES = np.array([-1.0, -0.5, -0.2, 0.2, 0.5, 1.0])
+NO_GAIN = 1e-3
+
+
+def coordinate_exchange(
+    cost: Callable[[Array], float], point: Array, value: float, generator: np.random.Generator, evaluations: int
+) -> Iterator[tuple[Array, float, int]]:
+    """The best point of the unit box, its cost and the evaluations spent, after each coordinate.
+
+    Coordinates come in random order, all of them before any comes again; it ends when a whole round lowers the cost by
+    less than `NO_GAIN`, or when the evaluations are spent.
+    """
+    spent, before = 0, np.inf
+    while before - value > NO_GAIN:
+        before = value
+        for place in generator.permutation(len(point)):
+            candidates = _exchange_candidates(point, int(place))
+            costs = map_in_threads(cost, candidates)
+            spent += len(costs)
+            least = int(np.argmin(costs))
+            if costs[least] < value:
+                point, value = candidates[least], costs[least]
+            yield point, value, spent
+            if spent >= evaluations:
+                return
+
+
+def _exchange_candidates(point: Array, coordinate: int) -> list[Array]:
+    made = []
+    for to in np.unique(np.clip(point[coordinate] + MOVES, 0.0, 1.0)):
+        if to != point[coordinate]:
+            made.append(point.copy())
+            made[-1][coordinate] = to
+    return made

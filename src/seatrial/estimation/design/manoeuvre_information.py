@@ -1,0 +1,146 @@
+"""What a manoeuvre tells: Cramer-Rao bounds of the coefficients for many ships at once, and where the ships go."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatrial.core.results import ManoeuvrePrecision
+from seatrial.core.values import Array, Index, Record
+from seatrial.estimation.design.orders import sample_count
+from seatrial.estimation.design.ships import PriorShips
+from seatrial.estimation.design.task import DesignTask
+from seatrial.physics.simulate.batch import SegmentBatch
+from seatrial.physics.simulate.linear import batch_class
+from seatrial.physics.simulate.replay import replay
+
+_TRACK_CHANNELS = ("u", "v", "x0", "y0")
+_REGULARISATION = 1e-13
+
+
+@dataclass(frozen=True, eq=False)
+class ManoeuvreInformation:
+    """Relative standard errors (ships, k), NaN rows where a simulation diverges; largest drift [rad] and distance [m].
+
+    drift, distance: shape (ships,); zero for models without sway or position.
+    """
+
+    relative_errors: Array
+    drift: Array
+    distance: Array
+
+
+@dataclass(frozen=True, eq=False)
+class ManoeuvreEvaluator:
+    """Ships under test at a step `dt` [s]; information is that of the sensors' own rate."""
+
+    task: DesignTask
+    ships: PriorShips
+    dt: float
+
+    @cached_property
+    def outputs(self) -> tuple[str, ...]:
+        """The sensors first, then what drift and distance need besides."""
+        model = self.task.model
+        return (*self.task.sensors, *(n for n in _TRACK_CHANNELS if n in model.states and n not in self.task.sensors))
+
+    @cached_property
+    def _offsets(self) -> Index:
+        return np.arange(self.ships.count + 1, dtype=np.int64) * sample_count(self.task, self.dt)
+
+    @cached_property
+    def _initial_states(self) -> Array:
+        return np.tile(self.task.initial_state, (self.ships.count, 1))
+
+    @cached_property
+    def _magnitudes(self) -> Array:
+        """|coefficient| of each ship, its characteristic scale where it is nearly zero, (ships, k)."""
+        parameters = self.task.model.parameters
+        places = [parameters.index(n) for n in parameters.free_names]
+        values = np.abs(self.ships.parameters[:, places])
+        scale = np.array([p.characteristic_scale for p in parameters.free])
+        return np.where(values > 1e-3 * scale, values, scale)
+
+    @cached_property
+    def _batch_without_inputs(self) -> SegmentBatch:
+        model = self.task.model
+        nothing = np.zeros((int(self._offsets[-1]), len(model.inputs)))
+        batch = batch_class(model)(
+            model, nothing, self._offsets, self.dt, self.outputs, model.parameters.free_names, (), ()
+        )
+        return replace(batch, initial_states=batch.influential_states())
+
+    def evaluate(self, model_inputs: Array) -> ManoeuvreInformation:
+        """What inputs (rows, nu) tell, the same for all ships, or (ships, rows, nu), one each; the model's signs."""
+        count, width = self.ships.count, len(self.task.model.inputs)
+        each = np.broadcast_to(model_inputs, (count, *model_inputs.shape[-2:])).reshape(-1, width)
+        batch = replace(self._batch_without_inputs, inputs=np.array(each))
+        y, slopes, failed = batch.differentiate(
+            0, count, self._initial_states, self.ships.parameters, np.zeros((count, 0))
+        )
+        y = y.reshape(count, -1, len(self.outputs))
+        lost = (failed >= 0) | ~np.isfinite(y).all(axis=(1, 2))
+        relative = self._relative_errors(slopes.reshape(count, -1, *slopes.shape[1:]), lost)
+        return ManoeuvreInformation(relative, *self._drift_and_distance(np.where(lost[:, None, None], 0.0, y)))
+
+    def _relative_errors(self, slopes: Array, lost: NDArray[np.bool_]) -> Array:
+        seen, k = len(self.task.sensors), len(self.task.model.parameters.free)
+        noise = np.array(list(self.task.sensors.values()))
+        scaled = (slopes[:, :, :seen] / noise[:, None]).reshape(len(slopes), -1, slopes.shape[3])
+        scaled = np.where(lost[:, None, None], 0.0, scaled)
+        information = np.matmul(scaled.transpose(0, 2, 1), scaled) * (self.task.rate * self.dt)
+        information[:, range(k), range(k)] += self.ships.precision
+        errors = np.array([_standard_errors(one, k) for one in information])
+        return np.where(lost[:, None], np.nan, errors / self._magnitudes)
+
+    def _drift_and_distance(self, y: Array) -> tuple[Array, Array]:
+        at = {name: y[:, :, self.outputs.index(name)] for name in _TRACK_CHANNELS if name in self.outputs}
+        none = np.zeros(len(y))
+        drift = np.abs(np.arctan2(at["v"], at["u"])).max(axis=1) if {"u", "v"} <= set(at) else none
+        room = np.hypot(at["x0"], at["y0"]).max(axis=1) if {"x0", "y0"} <= set(at) else none
+        return drift, room
+
+
+def limit_excess(task: DesignTask, information: ManoeuvreInformation, margin: float = 0.0) -> Array:
+    """By how much drift and distance of each ship leave the limits less a margin, in parts of these, (ships,)."""
+    allowed = 1.0 - margin
+    over = [
+        information.drift / (allowed * task.limits.drift) - 1.0,
+        information.distance / (allowed * task.limits.sea_room) - 1.0,
+    ]
+    return np.maximum(over, 0.0).sum(axis=0)
+
+
+def leaves_limits(task: DesignTask, information: ManoeuvreInformation) -> bool:
+    """Whether a ship that the limits bind leaves them; the first ship is the one assumed."""
+    over = limit_excess(task, information)
+    return bool(over.max() > 0.0 if task.limits.for_every_ship else over[0] > 0.0)
+
+
+def assess_manoeuvre(
+    name: str, evaluator: ManoeuvreEvaluator, model_inputs: Array, executed: Record
+) -> ManoeuvrePrecision:
+    """A manoeuvre's worth for all ships of the bench, the model itself first."""
+    told = evaluator.evaluate(model_inputs)
+    own = float(told.drift[0]), float(told.distance[0])
+    return ManoeuvrePrecision(
+        name, told.relative_errors[0], told.relative_errors[1:], *own, told.drift[1:], told.distance[1:], executed
+    )
+
+
+def simulate_plan(task: DesignTask, planned: Record, name: str) -> Record:
+    """The model driven by a planned record from the task's start."""
+    start = dict(zip(task.model.states, task.initial_state.tolist(), strict=True))
+    return replay(task.model, planned, start).renamed(name)
+
+
+def _standard_errors(information: Array, k: int) -> Array:
+    """Standard errors of the first k unknowns; huge for those that nothing tells."""
+    scale = np.sqrt(information.diagonal())
+    known = scale > 0.0
+    unit = information[np.ix_(known, known)] / np.outer(scale[known], scale[known])
+    variance = np.full(len(scale), np.inf)
+    inverse = np.linalg.inv(unit + _REGULARISATION * np.eye(len(unit)))
+    variance[known] = np.abs(inverse.diagonal()) / scale[known] ** 2
+    return np.sqrt(np.minimum(variance[:k], 1e30))

@@ -1,0 +1,190 @@
+"""Which criterion the records call for: the decision table from an estimate over segments onwards."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from seatrial.core.values import Array, ProgressReporter
+from seatrial.estimation.estimate.correlated_disturbances import select_disturbance_model
+from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
+from seatrial.estimation.estimate.point_estimate import PointEstimate, residual_correlation, residual_spread
+from seatrial.estimation.estimate.process_noise import (
+    ProcessNoise,
+    fit_prediction_error,
+    has_noise,
+    implied_intensities,
+    implied_process_noise,
+)
+from seatrial.estimation.estimate.settings import WHITE_INFLATION, FitCriterion, Settings
+from seatrial.estimation.problem.output_error import OutputError
+
+PREDICTION_ERROR, WHOLE_RUNS = "prediction error", "output error over whole runs"
+_CORRELATED = "coloured residuals mean model error or process noise"
+_SEGMENTED = "segments keep it from accumulating"
+_COARSE_SAMPLES = "samples too far apart for prediction error, which takes inputs as straight between them"
+_FREE_DECAY = (
+    "a free decay, which its initial state explains: whole runs tell what one decay has in common with the next"
+)
+_WHITE = "residuals are white within segments and over whole runs: no process noise to guard against"
+_MAX_RESIDUAL_GROWTH = 1.05
+_MAX_PHASE_STEP = 0.3
+_MAX_RESIDUAL_SHARE = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class CriterionChoice:
+    """A criterion's optimum, what it leaves, and why it is used.
+
+    Attributes:
+        residuals: simulated minus measured, under prediction error one step ahead, (rows, ny), SI.
+        inflation: variance inflation of each channel's residuals, (ny,); rho: their autocorrelations.
+        process: intensities of process noise that suit the estimate; noise: the prediction-error optimum, if used.
+        beside: what suits an output-error estimate over a few whole runs, where it makes one-step residuals white.
+    """
+
+    estimate: PointEstimate
+    residuals: Array
+    inflation: Array
+    rho: list[Array]
+    criterion: str
+    reasons: tuple[str, ...]
+    process_intensities: dict[str, float] = field(default_factory=dict)
+    process_noise: ProcessNoise | None = None
+    implied_noise: ProcessNoise | None = None
+
+    @property
+    def is_white(self) -> bool:
+        """Whether nothing but noise is left."""
+        return bool(np.max(self.inflation) <= WHITE_INFLATION)
+
+    def with_reasons(self, *reasons: str) -> "CriterionChoice":
+        """The same with more reasons."""
+        return replace(self, reasons=(*self.reasons, *reasons))
+
+
+def choose_criterion(
+    shooting: PointEstimate,
+    seconds: float,
+    settings: Settings,
+    fit_whole_runs: Callable[[], PointEstimate | None],
+    report_progress: ProgressReporter | None,
+    *,
+    is_unforced: bool = False,
+) -> CriterionChoice:
+    """The criterion to use; `shooting` is the estimate over segments of `seconds`, `whole_runs` makes the other one.
+
+    is_undriven: nothing moves the ship but her initial state.
+    """
+    shot = _output_error_choice(shooting, _output_error_name(seconds))
+    match settings.criterion:
+        case FitCriterion.OUTPUT_ERROR | FitCriterion.MULTIPLE_SHOOTING:
+            return _required_choice(shot, settings, "the criterion was asked for")
+        case FitCriterion.PREDICTION_ERROR:
+            noise = fit_prediction_error(shooting, settings.noise, thorough=True, report_progress=report_progress)
+            return _prediction_error_choice(noise, "it was asked for", noise.test.summary)
+        case FitCriterion.AUTO if is_unforced and _is_explained(shot):
+            return _required_choice(shot, settings, _FREE_DECAY)
+        case FitCriterion.AUTO:
+            pass
+    if settings.segment_seconds is not None:
+        return _required_choice(shot, settings, "the length of segments was asked for")
+    whole = _whole_runs_choice(shot, fit_whole_runs()) if shot.is_white else None
+    if whole is not None and whole.is_white:
+        return whole.with_reasons(_WHITE)
+    if shot.is_white and whole is None:
+        shot = shot.with_reasons("whole runs do not fit within the noise of the segments")
+    if settings.robust or not has_noise(shooting):
+        return shot.with_reasons(_CORRELATED, _SEGMENTED)
+    if is_coarsely_sampled(shooting.problem):
+        return shot.with_reasons(_CORRELATED, _COARSE_SAMPLES)
+    noise = fit_prediction_error(shooting, settings.noise, report_progress=report_progress)
+    if noise.test.is_needed and not noise.test.is_white:
+        noise = select_disturbance_model(noise, report_progress=report_progress)
+    if noise.test.favours_prediction_error:
+        added = (f"added to the model: {noise.disturbance_model}",) if noise.disturbance_model else ()
+        return _prediction_error_choice(noise, *shot.reasons, noise.test.summary, *added)
+    if whole is not None and not noise.test.is_needed:
+        return whole.with_reasons(noise.test.summary)
+    return replace(shot.with_reasons(noise.test.summary, _SEGMENTED), process_intensities=noise.process_intensities)
+
+
+def is_coarsely_sampled(problem: OutputError) -> bool:
+    """Whether a continuous input of a linear model turns by more than .3 rad from sample to sample.
+
+    Its power lies below that frequency but for 5 %; straight lines between samples then flatten it by (w dt)^2 / 12.
+    """
+    model, data = problem.model, problem.data
+    if not model.is_affine:
+        return False
+    for j, channel in enumerate(model.inputs):
+        values = data.inputs[:, j]
+        if not channel.is_held and np.ptp(values) > 0.0:
+            power = np.abs(np.fft.rfft(values - np.mean(values))) ** 2
+            place = int(np.searchsorted(np.cumsum(power), 0.95 * np.sum(power)))
+            if 2.0 * np.pi * place / len(values) > _MAX_PHASE_STEP:
+                return True
+    return False
+
+
+def _required_choice(shooting: CriterionChoice, settings: Settings, reason: str) -> CriterionChoice:
+    """The user's own choice; what it leaves coloured is measured as process noise, for the floor of predictions."""
+    if shooting.is_white or not has_noise(shooting.estimate):
+        return shooting.with_reasons(reason)
+    if (
+        shooting.criterion == WHOLE_RUNS
+        and len(shooting.estimate.problem.data.runs) < RUNS_FOR_JACKKNIFE
+        and not settings.robust
+    ):
+        noise = implied_process_noise(shooting.estimate, settings.noise)
+        beside = noise if noise.test.is_white else None
+        return replace(
+            shooting.with_reasons(reason, _CORRELATED),
+            process_intensities=noise.process_intensities,
+            implied_noise=beside,
+        )
+    told = (_CORRELATED,) if shooting.criterion == WHOLE_RUNS else (_CORRELATED, _SEGMENTED)
+    return replace(
+        shooting.with_reasons(reason, *told), process_intensities=implied_intensities(shooting.estimate, settings.noise)
+    )
+
+
+def _is_explained(shooting: CriterionChoice) -> bool:
+    """Whether a tenth of each channel's spread or less is left."""
+    measured = np.nanstd(shooting.estimate.problem.data.measured, axis=0)
+    return bool(np.all(np.nanstd(shooting.residuals, axis=0) <= _MAX_RESIDUAL_SHARE * measured))
+
+
+def _whole_runs_choice(shooting: CriterionChoice, whole_runs: PointEstimate | None) -> CriterionChoice | None:
+    """The estimate over whole runs, if its residuals are no larger (5 %) than within segments."""
+    if whole_runs is None:
+        return None
+    left = _output_error_choice(whole_runs, WHOLE_RUNS)
+    within, over = (residual_spread(f.estimate.problem, f.residuals) for f in (shooting, left))
+    return (
+        replace(left, reasons=(*shooting.reasons, *left.reasons))
+        if np.all(over <= _MAX_RESIDUAL_GROWTH * within)
+        else None
+    )
+
+
+def _output_error_name(seconds: float) -> str:
+    return WHOLE_RUNS if np.isinf(seconds) else f"output error, multiple shooting with segments of {seconds:.3g} s"
+
+
+def _output_error_choice(estimate: PointEstimate, criterion: str) -> CriterionChoice:
+    residuals = estimate.residuals()
+    rho, inflation = residual_correlation(estimate.problem, residuals)
+    where = "over whole runs" if criterion == WHOLE_RUNS else "within segments"
+    said = f"the residuals' correlation {where} inflates variances by {np.max(inflation):.3g}"
+    if np.max(inflation) > WHITE_INFLATION:
+        said += ", and correlated samples count as their effective number, so that priors keep their weight"
+    return CriterionChoice(estimate, residuals, inflation, rho, criterion, (said,))
+
+
+def _prediction_error_choice(noise: ProcessNoise, *reasons: str) -> CriterionChoice:
+    made, innovations = noise.as_point_estimate(), noise.problem.innovations(noise.optimum.solution.point)
+    rho, inflation = residual_correlation(made.problem, innovations.normalised)
+    return CriterionChoice(
+        made, -innovations.e, inflation, rho, PREDICTION_ERROR, reasons, noise.process_intensities, noise
+    )

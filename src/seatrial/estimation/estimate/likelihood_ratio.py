@@ -1,0 +1,121 @@
+"""Is process noise needed to explain the records, and does white noise in the states suffice?"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from math import comb
+
+import numpy as np
+from scipy import optimize, stats
+
+from seatrial.core.values import Array
+from seatrial.estimation.estimate.settings import WHITE_INFLATION
+from seatrial.estimation.information.autocorrelation import autocorrelation, variance_inflation, whiteness_p
+from seatrial.estimation.problem.prediction_error import PredictionError
+from seatrial.estimation.problem.segments import Segments
+
+CONFIDENCE_LEVEL = 0.999
+_LAGS = 400
+
+
+@dataclass(frozen=True, eq=False)
+class ProcessNoiseTest:
+    """Whether process noise is needed to explain the records, and whether white noise in the states suffices.
+
+    Attributes:
+        ratio: 2 (log-likelihood with process noise - without), both at their own optimum; infinite where the model
+            without it diverges.
+        limit: what chance alone exceeds once in a thousand cases.
+        inflation_without, inflation: variance inflation of each channel's normalised innovations without and with
+            process noise, (ny,); NaN where no fit without it was made.
+        whiteness_p: smallest p-value over the channels that the innovations are white (Ljung & Box 1978), times ny.
+        text: the verdict in words.
+    """
+
+    likelihood_ratio: float
+    critical_value: float
+    inflation_without: Array
+    inflation: Array
+    whiteness_p: float
+
+    @property
+    def is_needed(self) -> bool:
+        """The records are explained better than chance allows."""
+        return self.likelihood_ratio > self.critical_value
+
+    @property
+    def is_white(self) -> bool:
+        """Innovations are white: nothing is left to explain."""
+        return bool(np.max(self.inflation) <= WHITE_INFLATION)
+
+    @property
+    def favours_prediction_error(self) -> bool:
+        """Prediction error is the criterion to use."""
+        return self.is_needed and self.is_white
+
+    @property
+    def summary(self) -> str:
+        """The verdict in words."""
+        before, after = float(np.max(self.inflation_without)), float(np.max(self.inflation))
+        if not self.is_needed:
+            return (
+                f"no process noise: it raises twice the log-likelihood by {self.likelihood_ratio:.3g} only, "
+                f"chance alone by {self.critical_value:.3g}"
+            )
+        seen = f"residuals of whole runs inflate variances by {before:.3g}, and " if np.isfinite(before) else ""
+        why = f"without process noise {seen}twice the log-likelihood is {self.likelihood_ratio:.3g} lower"
+        if np.isinf(self.likelihood_ratio):
+            why = "without process noise the model diverges over whole runs"
+        if self.is_white:
+            return f"process noise: {why}; with it innovations are white (inflation {after:.3g})"
+        return f"{why}; with it innovations stay coloured (inflation {after:.3g}): model error or coloured disturbances"
+
+
+def likelihood_ratio_test(
+    problem: PredictionError, point: Array, cost_with: float, cost_without: float, innovations_without: Array | None
+) -> ProcessNoiseTest:
+    """The gate at a point, from minus the log-likelihoods with and `without` process noise.
+
+    before: normalised innovations (rows, ny) without process noise, where that was fitted.
+    """
+    data, ny = problem.runs.data, len(problem.runs.data.outputs)
+    rho, inflation = innovation_correlation(problem, point)
+    samples = np.isfinite(data.measured).sum(axis=0)
+    return ProcessNoiseTest(
+        likelihood_ratio=max(2.0 * (cost_without - cost_with), 0.0),
+        critical_value=boundary_quantile(len(problem.process), CONFIDENCE_LEVEL),
+        inflation_without=np.full(ny, np.nan)
+        if innovations_without is None
+        else _inflation(_autocorrelations(data, innovations_without)),
+        inflation=inflation,
+        whiteness_p=min(1.0, ny * min(whiteness_p(r, int(n)) for r, n in zip(rho, samples, strict=True))),
+    )
+
+
+def innovation_correlation(problem: PredictionError, point: Array) -> tuple[list[Array], Array]:
+    """Autocorrelation and variance inflation of each channel's normalised innovations."""
+    rho = _autocorrelations(problem.runs.data, problem.innovations(point).normalised)
+    return rho, _inflation(rho)
+
+
+def _autocorrelations(data: Segments, normalised: Array) -> list[Array]:
+    lags = min(int(np.max(np.diff(data.offsets))) // 2, _LAGS)
+    pieces = [normalised[a:b] for a, b in pairwise(data.offsets)]
+    return [autocorrelation([p[:, i] for p in pieces], lags) for i in range(normalised.shape[1])]
+
+
+def _inflation(rho: list[Array]) -> Array:
+    return np.array([variance_inflation(r) for r in rho])
+
+
+def boundary_quantile(count: int, level: float) -> float:
+    """Quantile of a likelihood ratio whose `count` unknowns lie on their lower bounds if there is no effect.
+
+    A mixture of chi squared with 0..count degrees of freedom and binomial weights (Self & Liang 1987, case 9, for
+    unknowns of uncorrelated estimates).
+    """
+    weights = np.array([comb(count, j) for j in range(count + 1)]) / 2.0**count
+
+    def excess(value: float) -> float:
+        return float(sum(w * stats.chi2.sf(value, j) for j, w in enumerate(weights) if j)) - (1.0 - level)
+
+    return float(np.asarray(optimize.brentq(excess, 0.0, 200.0))) if count else 0.0

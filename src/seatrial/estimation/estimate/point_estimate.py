@@ -1,0 +1,144 @@
+"""Output error with the noise re-estimated: the estimator behind `fit`."""
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from seatrial.core.values import Array, ProgressReporter
+from seatrial.estimation.estimate.settings import WHITE_INFLATION
+from seatrial.estimation.information.autocorrelation import autocorrelation, variance_inflation
+from seatrial.estimation.problem.output_error import OutputError
+from seatrial.numerics.optimise import Optimum, levenberg_marquardt
+
+_NEGLIGIBLE = 1e-8
+_FEW_EVALUATIONS = 12
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class PointEstimate:
+    """An optimum of an output-error problem whose noise levels agree with its residuals."""
+
+    problem: OutputError
+    optimum: Optimum
+
+    @property
+    def common_parameters(self) -> Array:
+        """Shared unknowns at the optimum."""
+        return self.optimum.solution.point
+
+    def residuals(self) -> Array:
+        """Simulated minus measured, SI, shape (rows, ny); NaN where nothing was measured."""
+        return self.problem.simulated_outputs(self.common_parameters, self.optimum.local) - self.problem.data.measured
+
+
+def residual_spread(problem: OutputError, residuals: Array) -> Array:
+    """Noise of each channel from its residuals, with the unknowns' degrees of freedom, shape (ny,).
+
+    With a robust loss the spread is that of the bulk (median absolute deviation), otherwise the rms. It never falls
+    below `rounding_level`.
+    """
+    count = np.isfinite(residuals).sum(axis=0)
+    unknowns = problem.size + problem.data.count * len(problem.starts)
+    freedom = max(1.0 - unknowns / max(count.sum(), 1), 0.1)
+    if np.isfinite(problem.huber):
+        spread = 1.4826 * np.nanmedian(np.abs(residuals), axis=0)
+    else:
+        spread = np.sqrt(np.nanmean(residuals**2, axis=0))
+    return np.maximum(spread / np.sqrt(freedom), rounding_level(problem))
+
+
+def rounding_level(problem: OutputError) -> Array:
+    """Noise below which a channel counts as free of noise, 1e-9 of its largest value, shape (ny,), SI."""
+    return _ROUNDING * np.maximum(np.nanmax(np.abs(problem.data.measured), axis=0), 1e-6)
+
+
+def fit_output_error(
+    problem: OutputError,
+    common_parameters: Array,
+    initial_states: Array,
+    known_noise: dict[str, float],
+    *,
+    rounds: int = 8,
+    evaluations: int = 60,
+    report_progress: ProgressReporter | None = None,
+) -> PointEstimate:
+    """Alternate short searches with estimates of the noise and its colour until both settle, then search to the end.
+
+    Coloured channels count as their effective number of samples throughout (`OutputError.inflation`).
+    """
+    known = np.array([known_noise.get(o, np.nan) for o in problem.data.outputs])
+    problem = replace(problem, noise=np.where(np.isfinite(known), known, problem.noise))
+    made = _search(problem, common_parameters, initial_states, min(_FEW_EVALUATIONS, evaluations), report_progress)
+    for _ in range(rounds):
+        noise = np.where(np.isfinite(known), known, residual_spread(made.problem, made.residuals()))
+        again = replace(
+            problem,
+            noise=noise,
+            inflation=_effective_inflation(residual_correlation(made.problem, made.residuals())[1]),
+        )
+        settled = _is_settled(made.problem, again)
+        made = _search(
+            again,
+            made.common_parameters,
+            made.optimum.local,
+            evaluations if settled else _FEW_EVALUATIONS,
+            report_progress,
+        )
+        if settled:
+            break
+    return made
+
+
+def _effective_inflation(inflation: Array) -> Array | None:
+    """Inflation of the channels that are not white; None where all are."""
+    coloured = inflation > WHITE_INFLATION
+    return np.where(coloured, inflation, 1.0) if np.any(coloured) else None
+
+
+def _is_settled(before: OutputError, after: OutputError) -> bool:
+    """Noise within 2 % and effective numbers of samples within 10 %."""
+    ratio = np.log(after.noise / before.noise)
+    ones = np.ones(len(before.noise))
+    colours = [ones if p.inflation is None else p.inflation for p in (before, after)]
+    return bool(np.max(np.abs(ratio)) < 0.02 and np.max(np.abs(np.log(colours[1] / colours[0]))) < 0.1)
+
+
+def _search(
+    problem: OutputError,
+    common_parameters: Array,
+    initial_states: Array,
+    evaluations: int,
+    report_progress: ProgressReporter | None,
+) -> PointEstimate:
+    def tell(count: int, cost: float) -> None:
+        if report_progress:
+            report_progress(f"{problem.data.count} segments, evaluation {count}: {cost:.6g}")
+
+    found = levenberg_marquardt(
+        problem,
+        common_parameters,
+        initial_states,
+        negligible=_NEGLIGIBLE,
+        evaluations=evaluations,
+        report_progress=tell,
+    )
+    return PointEstimate(problem, found)
+
+
+def split_segments(problem: OutputError, column: Array) -> list[Array]:
+    """A column of rows split into its segments."""
+    return [column[a:b] for a, b in pairwise(problem.data.offsets)]
+
+
+def residual_correlation(problem: OutputError, residuals: Array) -> tuple[list[Array], Array]:
+    """Autocorrelation of each channel's residuals within segments, and its variance inflation, shape (ny,).
+
+    Residuals of the size of rounding count as white (inflation 1): their colour says nothing about the ship.
+    """
+    longest = int(np.max(np.diff(problem.data.offsets)))
+    lags = min(longest // 2, 400)
+    rho = [autocorrelation(split_segments(problem, residuals[:, i]), lags) for i in range(residuals.shape[1])]
+    silent = problem.noise <= rounding_level(problem)
+    return rho, np.where(silent, 1.0, [variance_inflation(r) for r in rho])

@@ -1,0 +1,64 @@
+"""What an output-error estimate over whole runs is worth where white noise in the states disturbs them.
+
+Output error weighs a run as if its residuals were white. What process noise adds to them is carried through the
+linearised motion, so that they are correlated for as long as the ship remembers; the covariance of the estimate is then
+H^-1 (sum J' W S W J) H^-1 with the covariance S of such residuals (Huber 1967; White 1982; Maine & Iliff 1985,
+section 5.3). Without process noise it is the information matrix.
+"""
+
+from itertools import pairwise
+
+import numpy as np
+
+from seatrial.core.values import Array
+from seatrial.estimation.estimate.point_estimate import PointEstimate
+from seatrial.estimation.estimate.process_noise import ProcessNoise
+from seatrial.estimation.information.covariance import Interval, inverse
+
+MEANING = (
+    "covariance of the output-error estimate under the process noise that makes one-step residuals white, "
+    "carried through the motion"
+)
+
+
+def process_noise_interval(estimate: PointEstimate, process_noise: ProcessNoise) -> Interval:
+    """Interval of the shared unknowns of an estimate over whole runs; noise: what suits it (`process_noise.suited`)."""
+    problem, hessian = estimate.problem, estimate.optimum.normal.without_local()[1]
+    score = problem.prior_precision(estimate.common_parameters)
+    slopes = problem.slopes(estimate.common_parameters, estimate.optimum.local)
+    trust = 1.0 / problem.noise**2 if problem.inflation is None else 1.0 / (problem.noise**2 * problem.inflation)
+    known = np.isfinite(problem.data.measured)
+    deviation = np.array(list(process_noise.measurement_noise.values()))
+    intensity = np.array([process_noise.process_intensities.get(s, 0.0) for s in problem.model.states])
+    for run, (a, b) in enumerate(pairwise(problem.data.offsets)):
+        columns = problem.columns_of(int(problem.data.session[run]))
+        own = _eliminate_initial_state(slopes[a:b], len(columns), np.where(known[a:b], trust, 0.0))
+        moved, seen = process_noise.problem.transitions(run, estimate.common_parameters, estimate.optimum.local)
+        carried = own.transpose(0, 2, 1)
+        white = np.einsum("tky,y,tly->kl", carried, deviation**2, carried)
+        score[np.ix_(columns, columns)] += white + _driven_variance(
+            carried @ seen, moved, intensity**2 * problem.data.dt
+        )
+    bread = inverse(hessian)
+    return Interval(bread @ score @ bread, np.inf, MEANING)
+
+
+def _eliminate_initial_state(slopes: Array, count: int, weights: Array) -> Array:
+    """Weighted slopes W J, (rows, ny, count), of the first columns with the others (initial state) eliminated."""
+    weighted = slopes * weights[:, :, None]
+    normal = np.einsum("tyk,tyl->kl", weighted, slopes)
+    solved = np.linalg.lstsq(normal[count:, count:], normal[count:, :count], rcond=1e-12)[0]
+    return weighted[:, :, :count] - weighted[:, :, count:] @ solved
+
+
+def _driven_variance(score: Array, transitions: Array, variance: Array) -> Array:
+    """Variance (k, k) of sum_t score_t x_t, x driven by white noise, half of it before and half after each step.
+
+    score (rows, k, nx), moved (rows - 1, nx, nx) transition matrices, variance (nx,) of the noise in one step.
+    """
+    total, ahead = np.zeros((score.shape[1], score.shape[1])), np.zeros(score.shape[1:])
+    for t in range(len(score) - 1, 0, -1):
+        after = ahead + score[t]
+        ahead = after @ transitions[t - 1]
+        total += 0.5 * ((after * variance) @ after.T + (ahead * variance) @ ahead.T)
+    return total

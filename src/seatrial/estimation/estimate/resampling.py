@@ -1,0 +1,69 @@
+"""The same estimate from other runs: one left out each, or as many drawn with replacement.
+
+Noise levels and effective numbers of samples stay those of the joint fit, so that only the runs differ.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from seatrial.core.values import Array, Index
+from seatrial.estimation.estimate.point_estimate import PointEstimate
+from seatrial.estimation.information.covariance import jackknife_steps
+from seatrial.numerics.optimise import levenberg_marquardt
+from seatrial.numerics.workers import map_in_threads
+
+ReportCount = Callable[[int, int], None]
+
+_NEGLIGIBLE = 1e-4
+
+
+def one_step_jackknife(estimate: PointEstimate) -> Array:
+    """Shared unknowns with each run left out by one Gauss-Newton step from stored normal equations, (runs, k)."""
+    problem = estimate.problem
+    blocks = problem.segment_normals(estimate.common_parameters, estimate.optimum.local)
+    parts = [
+        problem.assemble(
+            blocks, estimate.common_parameters, problem.data.run_segments(r), with_prior=False
+        ).without_local()
+        for r in range(len(problem.data.runs))
+    ]
+    hessian = estimate.optimum.normal.without_local()[1]
+    return estimate.common_parameters + jackknife_steps(
+        hessian, np.array([g for g, _ in parts]), np.array([h for _, h in parts])
+    )
+
+
+def full_jackknife(
+    estimate: PointEstimate, workers: int | None = None, report_progress: ReportCount | None = None
+) -> Array:
+    """Shared unknowns with each run left out, fitted again in full, (runs, k)."""
+    runs = range(len(estimate.problem.data.runs))
+    chosen = [np.concatenate([estimate.problem.data.run_segments(r) for r in runs if r != out]) for out in runs]
+    return np.array(
+        map_in_threads(lambda one: _refit(estimate, one), chosen, workers=workers, report_progress=report_progress)
+    )
+
+
+def bootstrap_fits(
+    estimate: PointEstimate,
+    count: int,
+    rng: np.random.Generator,
+    workers: int | None = None,
+    report_progress: ReportCount | None = None,
+) -> Array:
+    """Shared unknowns of `count` fits to runs drawn with replacement, (count, k) (Efron 1979)."""
+    runs = len(estimate.problem.data.runs)
+    draws = rng.integers(0, runs, (count, runs))
+    chosen = [np.concatenate([estimate.problem.data.run_segments(r) for r in draw]) for draw in draws]
+    return np.array(
+        map_in_threads(lambda one: _refit(estimate, one), chosen, workers=workers, report_progress=report_progress)
+    )
+
+
+def _refit(estimate: PointEstimate, segments: Index) -> Array:
+    """Shared unknowns fitted to some segments, begun at the joint optimum."""
+    problem = replace(estimate.problem, data=estimate.problem.data.selected(segments), workers=1)
+    local = estimate.optimum.local[segments]
+    return levenberg_marquardt(problem, estimate.common_parameters, local, negligible=_NEGLIGIBLE).solution.point

@@ -1,0 +1,148 @@
+"""Other estimators on the records of a fit: coefficients beside its own, and the runs sailed with them.
+
+Every estimator gets the training runs as they are: no offsets, no priors, no bounds. Its model then sails every run
+open loop from the recorded inputs and from the initial state that the fit gave that run: coefficients alone differ.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.results import Baseline, Coefficient, Fit, OpenLoopScores, Prediction
+from seatrial.core.results.baseline import NO_COMPARISON
+from seatrial.core.values import Finding, InputError, ProgressReporter, Record, Severity
+from seatrial.estimation.predict.open_loop import rms_errors
+from seatrial.estimation.regress.estimators import RegressionEstimator
+from seatrial.estimation.regress.features import RegressionMotion, features
+from seatrial.estimation.regress.standard_estimators import standard_estimators
+from seatrial.physics.simulate.replay import replay
+
+_CORRELATED_CHANNELS = ("u", "v", "r")
+
+
+def with_baselines(
+    fit: Fit, train: Sequence[Record], seconds: float, report_progress: ProgressReporter | None = None
+) -> Fit:
+    """The fit with the regressions on its training runs, or with a finding that says why there can be none."""
+    try:
+        return replace(fit, baselines=compare_estimators(fit, train, standard_estimators(seconds), report_progress))
+    except InputError as error:
+        said = Finding(Severity.INFO, NO_COMPARISON, f"no other estimators to compare: {error}", "")
+        return replace(fit, findings=(*fit.findings, said))
+
+
+def compare_estimators(
+    fit: Fit,
+    train: Sequence[Record],
+    estimators: Sequence[RegressionEstimator],
+    report_progress: ProgressReporter | None = None,
+) -> tuple[Baseline, ...]:
+    """The fit, then each estimator on the training runs; one that fails says why and stops none of the others.
+
+    A fit with offsets stands there again without them: the others have none, so that this is like for like.
+
+    Raises:
+        InputError: the model is not linear in its free coefficients, or the runs do not show every state of it.
+    """
+    for record in train:
+        features(fit.model, RegressionMotion.from_record(fit.model, record))
+    tell = report_progress or (lambda _: None)
+    made = _fit_as_baselines(fit)
+    for estimator in estimators:
+        tell(f"comparing: {estimator.name}")
+        made.append(_baseline(fit, train, estimator))
+    return tuple(made)
+
+
+def simulation_errors(model: Model, predictions: Sequence[Prediction]) -> OpenLoopScores:
+    """The runs of a fit's predictions simulated with another model of the same equations."""
+    runs, diverged = [], []
+    for p in predictions:
+        try:
+            runs.append((p.measured, replay(model, p.simulated)))
+        except InputError:
+            diverged.append(p.record)
+    return OpenLoopScores(diverged=tuple(diverged)) if diverged else pooled_errors(runs)
+
+
+def pooled_errors(runs: Sequence[tuple[Record, Record]]) -> OpenLoopScores:
+    """What pairs of measured and simulated runs say together."""
+    errors = [rms_errors(measured, simulated) for measured, simulated in runs]
+    likeness = [correlation(measured, simulated) for measured, simulated in runs]
+    return OpenLoopScores(
+        {key: float(np.sqrt(np.mean([e[key] ** 2 for e in errors if key in e]))) for key in _common_keys(errors)},
+        {key: float(np.mean([c[key] for c in likeness if key in c])) for key in _common_keys(likeness)},
+    )
+
+
+def correlation(measured: Record, simulated: Record) -> dict[str, float]:
+    """Pearson's coefficient of u, v and r, as far as measured and not constant (Song et al. 2025 call it CC)."""
+    made = {}
+    for symbol in _CORRELATED_CHANNELS:
+        if symbol in measured and symbol in simulated:
+            a, b = measured[symbol], simulated[symbol]
+            known = np.isfinite(a) & np.isfinite(b)
+            if known.any() and np.ptp(a[known]) > 0.0 and np.ptp(b[known]) > 0.0:
+                made[symbol] = float(np.corrcoef(a[known], b[known])[0, 1])
+    return made
+
+
+def _common_keys(tables: Sequence[dict[str, float]]) -> list[str]:
+    return list(dict.fromkeys(key for table in tables for key in table))
+
+
+def _fit_as_baselines(fit: Fit) -> list[Baseline]:
+    """The fit as it stands, and with offsets at zero where it has any."""
+    train, held = _predictions_of_role(fit, "training"), _predictions_of_role(fit, "validation")
+    as_it_stands = [pooled_errors([(p.measured, p.simulated) for p in runs]) for runs in (train, held)]
+    pairs = {f"this fit: {fit.method.criterion}": as_it_stands}
+    if fit.offsets:
+        pairs["this fit, its offsets set to zero"] = [simulation_errors(fit.model, runs) for runs in (train, held)]
+    values = {c.name: c.estimate for c in _free_coefficients(fit)}
+    return [
+        _with_differences(fit, Baseline(name, values, training=fitted, validation=kept, is_fit=True))
+        for name, (fitted, kept) in pairs.items()
+    ]
+
+
+def _baseline(fit: Fit, train: Sequence[Record], estimator: RegressionEstimator) -> Baseline:
+    try:
+        found = estimator.estimate(fit.model, train)
+    except InputError as error:
+        return Baseline(estimator.name, note=str(error))
+    except np.linalg.LinAlgError:
+        return Baseline(estimator.name, note="its equations are singular in these records")
+    if not np.all(np.isfinite(found.values)):
+        return Baseline(estimator.name, note="its coefficients are no finite numbers", findings=found.findings)
+    ship = found.in_model(fit.model)
+    values = dict(zip(fit.model.parameters.free_names, found.values.tolist(), strict=True))
+    rival = Baseline(
+        estimator.name,
+        values,
+        training=simulation_errors(ship, _predictions_of_role(fit, "training")),
+        validation=simulation_errors(ship, _predictions_of_role(fit, "validation")),
+        bias=found.bias,
+        findings=found.findings,
+    )
+    return _with_differences(fit, rival)
+
+
+def _with_differences(fit: Fit, baseline: Baseline) -> Baseline:
+    """With its distances from the fit and, where it is known, from the truth."""
+    gap = {
+        c.name: (baseline.values[c.name] - c.estimate) / c.standard_error
+        for c in _free_coefficients(fit)
+        if c.standard_error
+    }
+    error = {c.name: baseline.values[c.name] / c.truth - 1.0 for c in _free_coefficients(fit) if c.truth}
+    return replace(baseline, normalised_difference=gap, error=error)
+
+
+def _free_coefficients(fit: Fit) -> list[Coefficient]:
+    return [c for c in fit.coefficients if not c.fixed]
+
+
+def _predictions_of_role(fit: Fit, role: str) -> list[Prediction]:
+    return [p for p in fit.predictions if p.role == role]

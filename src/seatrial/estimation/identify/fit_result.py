@@ -1,0 +1,179 @@
+"""An estimate read in the field's terms: coefficients, offsets, noise, residuals, method, and what to warn of."""
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+
+import numpy as np
+
+from seatrial.core.results import Coefficient, Method, Noise, Offset, Profile, Residuals
+from seatrial.core.values import NOTATION, Array, DivergedError, Finding, InputError, Parameter, Parameters, Severity
+from seatrial.estimation.estimate.fit import Estimation
+from seatrial.estimation.estimate.point_estimate import split_segments
+from seatrial.estimation.information.autocorrelation import whiteness_p
+from seatrial.estimation.information.covariance import Interval
+
+NO_PROFILE = Finding(
+    Severity.INFO,
+    "no-profile",
+    "no profile likelihood: the coefficients come from prediction error, which has no outputs to fit again",
+    "",
+    "intervals are those of the innovations' information; ask for another criterion under [estimate] to have profiles",
+)
+
+
+def coefficients(
+    estimation: Estimation, truth: Mapping[str, float], profiles: Sequence[Profile] = ()
+) -> tuple[Coefficient, ...]:
+    """Every parameter with its interval (a profile's where there is one), prior and, if known, true value."""
+    problem, limits = estimation.estimate.problem, {q.parameter: (q.lower, q.upper) for q in profiles}
+    return coefficient_table(
+        problem.model.parameters,
+        problem.free,
+        estimation.estimate.common_parameters,
+        estimation.interval,
+        truth,
+        limits,
+    )
+
+
+def coefficient_table(
+    parameters: Parameters,
+    free: Sequence[str],
+    point: Array,
+    interval: Interval,
+    truth: Mapping[str, float],
+    limits: Mapping[str, tuple[float | None, float | None]] = MappingProxyType({}),
+) -> tuple[Coefficient, ...]:
+    """All parameters as coefficients; those named `free` stand first in `point` and `interval`, in that order."""
+    place = {name: i for i, name in enumerate(free)}
+    half, error = interval.half_width, interval.standard_error
+
+    def one(p: Parameter) -> Coefficient:
+        prior = p.prior if p.free else None
+        common = {
+            "name": p.name, "unit": p.unit, "truth": truth.get(p.name), "source": p.source, "meaning": p.meaning,
+            "latex": p.latex, "prior_mean": prior.mean if prior else None,
+            "prior_standard_deviation": prior.standard_deviation if prior else None,
+        }  # fmt: skip
+        if p.name not in place:
+            return Coefficient(estimate=p.value, standard_error=None, lower=None, upper=None, fixed=True, **common)
+        i = place[p.name]
+        value = float(point[i])
+        lower, upper = limits.get(p.name, (value - float(half[i]), value + float(half[i])))
+        return Coefficient(
+            estimate=value, standard_error=float(error[i]), lower=lower, upper=upper, fixed=False, **common
+        )
+
+    return tuple(one(p) for p in parameters)
+
+
+def offsets(estimation: Estimation) -> tuple[Offset, ...]:
+    """What each session has of its own."""
+    problem, error = estimation.estimate.problem, estimation.interval.standard_error
+    names = [(name, problem.model.parameters[name].unit) for name, _ in problem.session_parameters]
+    names += [(n.correction.name, n.unit) for n in problem.nuisances]
+    made = []
+    for k, session in enumerate(problem.data.sessions):
+        for j, (name, unit) in enumerate(names):
+            i = len(problem.free) + k * problem.unknowns_per_session + j
+            made.append(Offset(name, session, unit, float(estimation.estimate.common_parameters[i]), float(error[i])))
+    return tuple(made)
+
+
+def noise(estimation: Estimation) -> tuple[Noise, ...]:
+    """Noise of each compared channel and the colour of its residuals."""
+    problem = estimation.estimate.problem
+    samples = np.isfinite(problem.data.measured).sum(axis=0)
+    return tuple(
+        Noise(
+            channel,
+            NOTATION[channel].unit if channel in NOTATION else "1",
+            float(problem.noise[i]),
+            float(0.5 * (estimation.inflation[i] - 1.0) * problem.data.dt),
+            whiteness_p(estimation.rho[i], int(samples[i])),
+        )
+        for i, channel in enumerate(problem.data.outputs)
+    )
+
+
+def residuals(estimation: Estimation) -> tuple[Residuals, ...]:
+    """Residuals of each compared channel, segments one after another."""
+    problem, values = estimation.estimate.problem, estimation.residuals
+    return tuple(
+        Residuals(
+            channel, 1.0 / problem.data.dt, np.concatenate(split_segments(problem, values[:, i])), estimation.rho[i]
+        )
+        for i, channel in enumerate(problem.data.outputs)
+    )
+
+
+def method(estimation: Estimation) -> Method:
+    """What was used and why."""
+    problem = estimation.estimate.problem
+    settings: dict[str, float | str] = {
+        "samples per second": 1.0 / problem.data.dt,
+        "segments": problem.data.count,
+        "free coefficients": len(problem.free),
+        "Huber limit (standard deviations)": problem.huber if np.isfinite(problem.huber) else "none",
+    }
+    return Method(
+        estimation.criterion,
+        estimation.start_method,
+        estimation.interval.meaning,
+        tuple(dict.fromkeys(estimation.reasons)),
+        settings,
+    )
+
+
+def bounds_hit(estimation: Estimation) -> list[Finding]:
+    """A warning for every coefficient that ends on a bound."""
+    problem, shared = estimation.estimate.problem, estimation.estimate.common_parameters
+    hit = np.flatnonzero((shared <= problem.lower) | (shared >= problem.upper))
+    return [
+        Finding(Severity.WARNING, "bound-hit", f"coefficient {problem.free[i]} ends on its bound", f"{shared[i]:g}",
+                "widen the bound under [model.bounds], or give a prior instead")
+        for i in hit
+    ]  # fmt: skip
+
+
+def unidentified(estimation: Estimation) -> list[Finding]:
+    """A warning with the coefficients whose standard error exceeds their value, though no prior holds them.
+
+    Raises:
+        InputError: that is true of all free coefficients.
+    """
+    problem = estimation.estimate.problem
+    estimates, errors = estimation.estimate.common_parameters, estimation.interval.standard_error
+    own = [i for i, name in enumerate(problem.free) if problem.model.parameters[name].prior is None]
+    names = [problem.free[i] for i in own if errors[i] > abs(estimates[i])]
+    if names and len(names) == len(problem.free):
+        noise = ", ".join(f"{c} {s:.2g}" for c, s in zip(problem.data.outputs, problem.noise, strict=True))
+        raise InputError(
+            f"the records tell none of the free coefficients {', '.join(names)}: every standard error exceeds the "
+            f"value (what the model leaves unexplained, SI: {noise}); take better sensors, longer or harder "
+            "manoeuvres, or give priors under [model.priors]"
+        )
+    if not names:
+        return []
+    return [Finding(Severity.WARNING, "not-identifiable", f"the records do not tell {', '.join(names)}: the standard "
+                    "error exceeds the value", "", "do not use them alone; seatrial design finds a manoeuvre that "
+                    "tells them, or give a prior")]  # fmt: skip
+
+
+def divergence_message(estimation: Estimation, error: DivergedError) -> str:
+    """What to say where the fitted model cannot sail the records' own runs."""
+    problem, values = estimation.estimate.problem, estimation.estimate.common_parameters
+    named = ", ".join(f"{name} {values[i]:.2g}" for i, name in enumerate(problem.free))
+    return (
+        f"the records lead to no model that can be sailed ({str(error).partition(';')[0]}): too noisy, too short or "
+        f"too calm to tell {named}; fix or give priors for some of these, or take other records"
+    )
+
+
+def unconverged(estimation: Estimation) -> list[Finding]:
+    """A warning where the search did not converge."""
+    status = estimation.estimate.optimum.solution.status
+    if status.is_success:
+        return []
+    return [Finding(Severity.WARNING, "not-converged", "the search did not converge", status.value,
+                    "do not use the coefficients before this is understood")]  # fmt: skip

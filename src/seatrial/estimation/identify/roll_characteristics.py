@@ -1,0 +1,146 @@
+"""The identified roll model in the field's terms, with what was assumed of her inertia."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy import stats
+
+from seatrial.core.equations import Model
+from seatrial.core.results.roll import IntervalEstimate, RollCharacteristics
+from seatrial.core.values import Array, Record, Ship
+from seatrial.estimation.information.covariance import Interval
+from seatrial.physics.hydro.free_roll import equivalent_damping, metacentric_height, observed_swings, swing_period
+
+DAMPING_NAMES, RESTORING_NAMES = ("b_1", "b_2", "b_3"), ("c_1", "c_3", "c_5")
+GYRADIUS_WITH_ADDED_INERTIA, DRY_GYRADIUS = "k_xx_prime", "k_xx"
+
+# share of the moment of inertia that the water adds in roll, and the radius of gyration with it over the breadth
+ADDED_INERTIA_SHARE, GYRADIUS_OVER_BREADTH = (0.05, 0.18, 0.30), (0.35, 0.40, 0.45)
+_POINTS, _MIN_SWING_SHARE = 40, 0.05
+
+
+def roll_characteristics(
+    model: Model, interval: Interval, free: Sequence[str], records: Sequence[Record], ship: Ship
+) -> RollCharacteristics | None:
+    """Of a model with these coefficients whose records hold the roll angle; None for any other.
+
+    interval: of the `free` parameters first. Where a swing of some amplitude would not come back, amplitudes end.
+    """
+    if not {*DAMPING_NAMES, *RESTORING_NAMES, "phi_0"} <= set(model.parameters.names) or not all(
+        "phi" in r for r in records
+    ):
+        return None
+    b, c = (np.array([model.parameters[n].value for n in names]) for names in (DAMPING_NAMES, RESTORING_NAMES))
+    rest = model.parameters["phi_0"].value
+    spread = _HalfWidths(interval, tuple(free))
+    root = float(np.sqrt(c[0]))
+    ratio = 0.5 * b[0] / root
+    gyradius, assumed = assumed_gyradius(ship)
+    reach = max(float(np.nanmax(np.abs(r["phi"] - rest))) for r in records)
+    amplitude = reach * np.arange(1, _POINTS + 1) / _POINTS
+    periods, by_c = swing_period(c, amplitude)
+    amplitude = amplitude[: int(np.argmin(np.isfinite(periods))) if np.any(np.isnan(periods)) else None]
+    periods, by_c = periods[: len(amplitude)], by_c[: len(amplitude)]
+    damping, by_all = equivalent_damping(b, c, amplitude)
+    wide, wider = (
+        spread.half_width(by_c, RESTORING_NAMES),
+        spread.half_width(by_all, (*DAMPING_NAMES, *RESTORING_NAMES)),
+    )
+    return RollCharacteristics(
+        natural_period=_symmetric_interval(
+            2.0 * np.pi / root, spread.half_width(np.array([[-np.pi / root**3]]), ("c_1",))[0]
+        ),
+        damping_ratio=_symmetric_interval(
+            ratio, spread.half_width(np.array([[0.5 / root, -0.5 * ratio / c[0]]]), ("b_1", "c_1"))[0]
+        ),
+        gyradius=gyradius,
+        gyradius_source=assumed,
+        metacentric_height=_metacentric_height_interval(
+            float(c[0]), float(spread.half_width(np.ones((1, 1)), ("c_1",))[0]), gyradius
+        ),
+        amplitude=_floats(amplitude),
+        damping=_floats(damping),
+        damping_lower=_floats(damping - wider),
+        damping_upper=_floats(damping + wider),
+        period=_floats(periods),
+        period_lower=_floats(periods - wide),
+        period_upper=_floats(periods + wide),
+        swings=() if _is_excited(model, records) else _swings(records, rest, reach),
+    )
+
+
+def assumed_gyradius(ship: Ship) -> tuple[IntervalEstimate | None, str]:
+    """Radius of gyration in roll with added inertia [m]: the ship's `k_xx_prime`, else by `k_xx`, else by breadth."""
+    known = ship.particulars
+    if GYRADIUS_WITH_ADDED_INERTIA in known:
+        k = known[GYRADIUS_WITH_ADDED_INERTIA]
+        return IntervalEstimate(k, k, k), f"{GYRADIUS_WITH_ADDED_INERTIA} of the ship, {k:.4g} m, taken as exact"
+    if DRY_GYRADIUS in known:
+        low, middle, high = (known[DRY_GYRADIUS] * float(np.sqrt(1.0 + share)) for share in ADDED_INERTIA_SHARE)
+        said = (
+            f"{DRY_GYRADIUS} of the ship, {known[DRY_GYRADIUS]:.4g} m, and an added inertia of "
+            f"{_range_text(ADDED_INERTIA_SHARE, 100.0)} % of it"
+        )
+        return IntervalEstimate(
+            middle, low, high
+        ), f"{said}, chosen; {GYRADIUS_WITH_ADDED_INERTIA} under [ship] would replace this"
+    if "B" in known:
+        low, middle, high = (share * known["B"] for share in GYRADIUS_OVER_BREADTH)
+        said = f"a radius of gyration with added inertia of {_range_text(GYRADIUS_OVER_BREADTH, 1.0)} of the breadth"
+        return IntervalEstimate(
+            middle, low, high
+        ), f"{said}, chosen; {GYRADIUS_WITH_ADDED_INERTIA} or {DRY_GYRADIUS} under [ship] would replace this"
+    return None, f"not known; give {GYRADIUS_WITH_ADDED_INERTIA}, {DRY_GYRADIUS} or B under [ship]"
+
+
+class _HalfWidths:
+    """Half widths of 95 % intervals of functions of the coefficients, by their derivatives."""
+
+    def __init__(self, interval: Interval, free: tuple[str, ...]) -> None:
+        self._free, self._covariance = free, interval.covariance
+        self._quantile = float(stats.t.ppf(0.975, interval.degrees_of_freedom))
+
+    def half_width(self, slopes: Array, names: Sequence[str]) -> Array:
+        """slopes (n, len(names)); a fixed coefficient counts as exact."""
+        kept = [i for i, name in enumerate(names) if name in self._free]
+        places = [self._free.index(names[i]) for i in kept]
+        own = self._covariance[np.ix_(places, places)]
+        variance = np.einsum("ni,ij,nj->n", slopes[:, kept], own, slopes[:, kept])
+        return self._quantile * np.sqrt(np.maximum(variance, 0.0))
+
+
+def _symmetric_interval(value: float, half: float) -> IntervalEstimate:
+    return IntervalEstimate(float(value), float(value - half), float(value + half))
+
+
+def _metacentric_height_interval(c_1: float, half: float, gyradius: IntervalEstimate | None) -> IntervalEstimate | None:
+    if gyradius is None:
+        return None
+    return IntervalEstimate(
+        metacentric_height(c_1, gyradius.value),
+        metacentric_height(c_1 - half, gyradius.lower),
+        metacentric_height(c_1 + half, gyradius.upper),
+    )
+
+
+def _is_excited(model: Model, records: Sequence[Record]) -> bool:
+    return any(n in r and np.ptp(r[n]) > 0.0 for n in model.input_names for r in records)
+
+
+def _swings(records: Sequence[Record], rest: float, reach: float) -> tuple[tuple[float, float, float], ...]:
+    """Of all decays, without those of less than a twentieth of the largest, which the sensor's noise blurs."""
+    found = []
+    for record in records:
+        phi = record["phi"] - rest
+        found += [s for s in zip(*map(_floats, observed_swings(phi, record.dt)), strict=True)
+                  if s[0] > _MIN_SWING_SHARE * reach]  # fmt: skip
+    return tuple(found)
+
+
+def _range_text(values: tuple[float, float, float], factor: float) -> str:
+    low, middle, high = (f"{factor * value:.3g}" for value in values)
+    return f"{middle} ({low} to {high})"
+
+
+def _floats(values: Array) -> tuple[float, ...]:
+    return tuple(float(v) for v in values)

@@ -1,0 +1,210 @@
+"""All runs of a trial predicted: training runs to see the fit, the others to see what it is worth, with intervals."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.results import IntervalBasis, Prediction
+from seatrial.core.values import Array, InputError, ProgressReporter, Record
+from seatrial.data.trial import Role, TrialRecord
+from seatrial.estimation.estimate.fit import Estimation
+from seatrial.estimation.estimate.point_estimate import PointEstimate
+from seatrial.estimation.information.discrepancy import NO_DISCREPANCY, Discrepancy, HoldoutError, discrepancy
+from seatrial.estimation.information.extrapolation import extrapolation, extrapolation_index, motion_envelope
+from seatrial.estimation.predict.cross_validation import session_nuisances
+from seatrial.estimation.predict.draws import PredictionUncertainty
+from seatrial.estimation.predict.open_loop import (
+    compare_measures,
+    mean_nuisances,
+    nuisance_table,
+    predict_run,
+    rms_errors,
+    simulate_open_loop,
+)
+from seatrial.estimation.predict.prediction_intervals import (
+    DRAWS,
+    holdout_error,
+    holdout_model,
+    prediction_spread,
+    with_intervals,
+)
+from seatrial.estimation.predict.process_noise_floor import process_noise_floor
+from seatrial.numerics.workers import map_in_threads
+
+
+@dataclass(frozen=True, eq=False)
+class TiedModel:
+    """A model that the runs cannot tell from the best one: its estimate, and the model there."""
+
+    estimate: PointEstimate
+    model: Model
+
+
+@dataclass(frozen=True, eq=False)
+class IntervalCalibration:
+    """What intervals of predictions are made of: what is foreseen, and what runs left out missed beyond it."""
+
+    uncertainty: PredictionUncertainty
+    discrepancy: Discrepancy
+
+
+def prediction_uncertainty(estimation: Estimation) -> PredictionUncertainty:
+    """Covariance of the coefficients, and of offsets between sessions (their priors' where there is one session).
+
+    Process noise counts where the coefficients come from prediction error: elsewhere model error is in its intensities.
+    """
+    problem = estimation.estimate.problem
+    count, kinds = len(problem.free), problem.unknowns_per_session
+    offsets = np.atleast_2d(nuisance_table(problem, estimation.estimate.common_parameters))
+    if len(offsets) > 1:
+        between = np.atleast_2d(np.cov(offsets, rowvar=False))
+    else:
+        between = np.diag(1.0 / problem.priors[1][count:])
+    intensity = estimation.noise_model.process if estimation.has_process_noise else {}
+    return PredictionUncertainty(
+        estimation.interval.covariance[:count, :count],
+        between if kinds else np.zeros((0, 0)),
+        np.array([intensity.get(s, 0.0) for s in problem.model.states]),
+        estimation.interval.degrees_of_freedom,
+    )
+
+
+def calibrate_intervals(
+    estimation: Estimation,
+    train: Sequence[TrialRecord],
+    simulated: Sequence[Record],
+    seconds: float,
+    length: float,
+    seed: int,
+) -> IntervalCalibration:
+    """What intervals of a fit's predictions rest on: every training run is predicted by the estimate without it.
+
+    simulated: the training runs as the fit has them; seconds: of a run's beginning, for its initial state.
+    """
+    scatter, left_out = prediction_uncertainty(estimation), estimation.uncertainty.leave_one_out
+    if left_out is None:
+        return IntervalCalibration(scatter, NO_DISCREPANCY)
+    problem = replace(estimation.estimate.problem, workers=1)
+    streams = np.random.SeedSequence(seed).spawn(len(train))
+
+    def one(i: int) -> HoldoutError | None:
+        by = holdout_model(problem, left_out[i], train[i].session)
+        miss = holdout_error(problem, by, train[i].record, seconds, length, scatter, np.random.default_rng(streams[i]))
+        others = [*simulated[:i], *simulated[i + 1 :]]
+        return None if miss is None else replace(miss, index=extrapolation_index(simulated[i], others))
+
+    misses = map_in_threads(one, range(len(train)), workers=estimation.estimate.problem.workers)
+    return IntervalCalibration(scatter, discrepancy([m for m in misses if m is not None]))
+
+
+@dataclass(frozen=True, eq=False)
+class RunPredictions:
+    """All runs predicted, and what intervals of further predictions are made of."""
+
+    predictions: tuple[Prediction, ...]
+    interval_basis: IntervalBasis
+
+
+def predict_runs(
+    estimation: Estimation,
+    records: Sequence[TrialRecord],
+    seconds: float,
+    length: float,
+    seed: int = 0,
+    report_progress: ProgressReporter | None = None,
+    tied: Sequence[TiedModel] = (),
+) -> RunPredictions:
+    """Every run open loop: training runs with their own session's offsets, the others with the training mean.
+
+    Runs that were not fitted get intervals, for which `tied` models are asked as well; all are compared with the ground
+    the training runs cover. seconds: of a run's beginning, from which its initial state is taken.
+
+    Raises:
+        InputError: a simulation diverges.
+    """
+    tell = report_progress or (lambda _: None)
+    problem, mean = (
+        estimation.estimate.problem,
+        mean_nuisances(estimation.estimate.problem, estimation.estimate.common_parameters),
+    )
+    runs = []
+    for item in records:
+        tell(f"predicting {item.record.name}")
+        own = session_nuisances(estimation, item.session) if item.role is Role.TRAIN else mean
+        runs.append(simulate_open_loop(problem, estimation.model, item.record, own, seconds))
+    train = [item for item in records if item.role is Role.TRAIN]
+    fitted = [run.record for run, item in zip(runs, records, strict=True) if item.role is Role.TRAIN]
+    covered = motion_envelope(fitted)
+    tell("runs left out, predicted")
+    known = calibrate_intervals(estimation, train, fitted, seconds, length, seed)
+    streams = np.random.SeedSequence((seed, 1)).spawn(len(records))
+    made = []
+    for item, run, stream in zip(records, runs, streams, strict=True):
+        role = "training" if item.role is Role.TRAIN else "validation"
+        one = predict_run(estimation.model, item.record, role, run, seconds, length)
+        one = replace(one, extrapolation=extrapolation(run.record, covered))
+        if item.role is not Role.TRAIN:
+            rng = np.random.default_rng(stream)
+            seen = prediction_spread(
+                problem, estimation.model, item.record, run, mean, length, known.uncertainty, rng, DRAWS
+            )
+            alone = _process_noise_floor(estimation, item.record, run.initial_state, mean)
+            one = replace(one, tied_spread=tied_model_spread(tied, one, seconds, length), noise_floor=alone)
+            one = with_intervals(one, seen, known.discrepancy, known.uncertainty.degrees_of_freedom)
+        made.append(one)
+    return RunPredictions(tuple(made), _interval_basis(estimation, known, covered, tied))
+
+
+def _process_noise_floor(estimation: Estimation, record: Record, start: Array, nuisances: Array) -> dict[str, float]:
+    """What process noise alone would leave of the errors, as far as its intensities are known."""
+    if not any(estimation.noise_model.process.values()):
+        return {}
+    return process_noise_floor(
+        estimation.estimate.problem, estimation.model, record, start, nuisances, estimation.noise_model.process
+    )
+
+
+def _interval_basis(
+    estimation: Estimation, calibration: IntervalCalibration, covered: dict[str, float], tied: Sequence[TiedModel]
+) -> IntervalBasis:
+    problem, scatter = estimation.estimate.problem, calibration.uncertainty
+    names = [name for name, _ in problem.session_parameters] + [n.correction.name for n in problem.nuisances]
+    base = estimation.model.parameters
+    changed = [{p.name: p.value for p in t.model.parameters if p.value != base[p.name].value} for t in tied]
+    return IntervalBasis(
+        scatter.coefficients,
+        scatter.degrees_of_freedom,
+        calibration.discrepancy.factor,
+        calibration.discrepancy.sd_by_kind,
+        dict(zip(names, np.sqrt(np.diag(scatter.offsets)).tolist(), strict=True)),
+        {s: float(q) for s, q in zip(estimation.model.states, scatter.process, strict=True) if q > 0},
+        covered,
+        tuple(changed),
+    )
+
+
+def tied_model_spread(
+    tied: Sequence[TiedModel], prediction: Prediction, seconds: float, length: float
+) -> dict[str, float]:
+    """Root-mean-square distance of tied models from a prediction: by measure, and of heading and position over the run.
+
+    A model that diverges on this run says nothing about it.
+    """
+    away: dict[str, list[float]] = {}
+    for one in tied:
+        problem = one.estimate.problem
+        own = mean_nuisances(problem, one.estimate.common_parameters)
+        try:
+            run = simulate_open_loop(problem, one.model, prediction.measured, own, seconds).record
+        except InputError:
+            continue
+        told = compare_measures(prediction.measured, run, length) if prediction.measures else {}
+        for name, m in told.items():
+            simulated = prediction.measures[name].simulated if name in prediction.measures else None
+            if m.simulated is not None and simulated is not None:
+                away.setdefault(name, []).append(m.simulated - simulated)
+        for name, value in rms_errors(prediction.simulated, run).items():
+            away.setdefault(name, []).append(value)
+    return {name: float(np.sqrt(np.mean(np.square(values)))) for name, values in away.items()}

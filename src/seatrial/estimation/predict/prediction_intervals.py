@@ -1,0 +1,186 @@
+"""Intervals of predictions: what is foreseen by draws, and what runs left out missed beyond it."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import stats
+
+from seatrial.core.equations import Model
+from seatrial.core.results import Measure, Prediction
+from seatrial.core.values import Array, InputError, Record
+from seatrial.data.check.signal import sample_noise
+from seatrial.estimation.information.discrepancy import Discrepancy, HoldoutError
+from seatrial.estimation.predict.draws import PredictionUncertainty, draw_runs
+from seatrial.estimation.predict.open_loop import (
+    OpenLoopRun,
+    compare_measures,
+    is_steered,
+    nuisance_table,
+    observables_record,
+    simulate_open_loop,
+)
+from seatrial.estimation.problem.output_error import OutputError
+from seatrial.physics.manoeuvres import measures
+
+_TRACK_CHANNELS = ("psi", "x0", "y0")
+_MEASURE_CHANNELS = ("psi", "x0", "y0", "u", "v", "r")
+DRAWS, HOLDOUT_DRAWS = 100, 32
+
+
+@dataclass(frozen=True, eq=False)
+class PredictionSpread:
+    """How far runs drawn from what is left open scatter about a prediction.
+
+    Attributes:
+        channels: psi, x0, y0 -> standard deviation at every sample, shape (n,), SI.
+        measures: measure -> standard deviation in its unit.
+    """
+
+    channels: dict[str, Array]
+    measures: dict[str, float]
+
+
+def prediction_spread(
+    template: OutputError,
+    model: Model,
+    record: Record,
+    simulation: OpenLoopRun,
+    nuisances: Array,
+    length: float,
+    uncertainty: PredictionUncertainty,
+    rng: np.random.Generator,
+    count: int,
+) -> PredictionSpread:
+    """Scatter of `count` drawn runs about the simulated one; measures include the noise with which they are read.
+
+    Nothing is foreseen where half of the draws or more diverge: what is left of them would look too certain.
+    """
+    runs = _finite_draws(
+        draw_runs(template, model, record, simulation.initial_state, nuisances, uncertainty, rng, count)
+    )
+    spreads = _measure_spread(model, record, simulation, runs, length, rng) if is_steered(record, model) else {}
+    return PredictionSpread(_track_spread(model, simulation, runs), spreads)
+
+
+def _finite_draws(runs: Array) -> Array:
+    """The draws that do not diverge; none where they are fewer than half."""
+    kept = runs[np.all(np.isfinite(runs), axis=(1, 2))]
+    return kept if 2 * len(kept) > len(runs) else kept[:0]
+
+
+def _track_spread(model: Model, simulation: OpenLoopRun, runs: Array) -> dict[str, Array]:
+    place = {o: i for i, o in enumerate(model.observables)}
+    return {
+        c: np.sqrt(np.mean((runs[:, :, place[c]] - simulation.record[c]) ** 2, axis=0))
+        for c in _TRACK_CHANNELS
+        if c in place and len(runs)
+    }
+
+
+def _measure_spread(
+    model: Model, record: Record, simulation: OpenLoopRun, runs: Array, length: float, rng: np.random.Generator
+) -> dict[str, float]:
+    place = {o: i for i, o in enumerate(model.observables)}
+    noise = {c: sample_noise(record[c]) for c in _MEASURE_CHANNELS if c in record and c in place}
+    centre = measures(simulation.record, length, reference=record)
+    found: dict[str, list[float]] = {name: [] for name in centre}
+    for y in runs:
+        read = y.copy()
+        for channel, spread in noise.items():
+            read[:, place[channel]] += spread * rng.standard_normal(len(y))
+        for name, value in measures(observables_record(model, record, read), length, reference=record).items():
+            if name in found:
+                found[name].append(value - centre[name])
+    enough = max(4, len(runs) // 2)
+    return {n: float(np.sqrt(np.mean(np.square(d)))) for n, d in found.items() if len(d) >= enough}
+
+
+@dataclass(frozen=True, eq=False)
+class HoldoutModel:
+    """A model fitted without a session, and what a run of that session is given: the mean of the other sessions."""
+
+    model: Model
+    nuisances: Array
+
+
+def holdout_model(template: OutputError, point: Array, session: str) -> HoldoutModel:
+    """The model at the shared unknowns `point`, which were estimated without the session's run."""
+    others = [s != session for s in template.data.sessions]
+    own = nuisance_table(template, point)[others if any(others) else slice(None)].mean(axis=0)
+    return HoldoutModel(template.model.with_values(dict(zip(template.free, point, strict=False))), own)
+
+
+def holdout_error(
+    template: OutputError,
+    holdout: HoldoutModel,
+    record: Record,
+    seconds: float,
+    length: float,
+    uncertainty: PredictionUncertainty,
+    rng: np.random.Generator,
+) -> HoldoutError | None:
+    """How a run is missed by a model that was fitted without it; None where the simulation diverges."""
+    try:
+        made = simulate_open_loop(template, holdout.model, record, holdout.nuisances, seconds)
+    except InputError:
+        return None
+    found = prediction_spread(
+        template, holdout.model, record, made, holdout.nuisances, length, uncertainty, rng, HOLDOUT_DRAWS
+    )
+    if not found.channels:
+        return None
+    pairs = compare_measures(record, made.record, length) if is_steered(record, holdout.model) else {}
+    of_measures = {
+        n: (m.simulated - m.measured, found.measures[n])
+        for n, m in pairs.items()
+        if n in found.measures and m.measured is not None and m.simulated is not None
+    }
+    return replace(_channel_errors(record, made, found.channels), measures=of_measures)
+
+
+def track_holdout_error(
+    template: OutputError,
+    holdout: HoldoutModel,
+    piece: Record,
+    seconds: float,
+    uncertainty: PredictionUncertainty,
+    rng: np.random.Generator,
+) -> HoldoutError | None:
+    """`missed` for a piece of a run, heading and track only."""
+    try:
+        made = simulate_open_loop(template, holdout.model, piece, holdout.nuisances, seconds)
+    except InputError:
+        return None
+    runs = _finite_draws(
+        draw_runs(
+            template, holdout.model, piece, made.initial_state, holdout.nuisances, uncertainty, rng, HOLDOUT_DRAWS
+        )
+    )
+    return _channel_errors(piece, made, _track_spread(holdout.model, made, runs)) if len(runs) else None
+
+
+def _channel_errors(record: Record, simulation: OpenLoopRun, channels: dict[str, Array]) -> HoldoutError:
+    errors = {c: simulation.record[c] - record[c] for c in channels if c in record}
+    return HoldoutError(record.name, record.dt, errors, {c: channels[c] for c in errors})
+
+
+def with_intervals(
+    prediction: Prediction, spread: PredictionSpread, discrepancy: Discrepancy, degrees_of_freedom: float
+) -> Prediction:
+    """The prediction with 95 % intervals of its measures and bands of heading and position.
+
+    beyond: model discrepancy; the spread over tied models is the prediction's own.
+    """
+    t = float(stats.t.ppf(0.975, degrees_of_freedom))
+    index = prediction.extrapolation.index if prediction.extrapolation else 1.0
+
+    def bounded(name: str, m: Measure) -> Measure:
+        if m.simulated is None or name not in spread.measures:
+            return m
+        half = t * float(
+            np.hypot(discrepancy.measure_sd(name, spread.measures[name], index), prediction.tied_spread.get(name, 0.0))
+        )
+        return replace(m, lower=m.simulated - half, upper=m.simulated + half)
+
+    bands = {c: t * discrepancy.channel_sd(c, s, prediction.measured.dt, index) for c, s in spread.channels.items()}
+    return replace(prediction, measures={n: bounded(n, m) for n, m in prediction.measures.items()}, half_width=bands)

@@ -1,0 +1,227 @@
+"""How the coefficients of a linear system are found: least squares, shrinkage, selection, instruments.
+
+Every method works on columns and target in units of their own root mean square and gives the coefficients back in
+theirs, so that a penalty means the same for all. Cross-validation is over contiguous blocks: neighbouring samples of a
+time series are no independent data.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from seatrial.core.values import Array, Finding, InputError, Severity
+from seatrial.estimation.regress.features import demand_positive
+from seatrial.estimation.regress.split import folds
+from seatrial.estimation.regress.system import RegressionSystem
+
+FOLDS = 10
+PENALTIES = np.logspace(-6.0, 6.0, 49)
+
+
+@dataclass(frozen=True, eq=False)
+class RegressionSolution:
+    """Coefficients (k,) of a system, the constant the method allowed itself besides, and what to say of it."""
+
+    coefficients: Array
+    bias: float = 0.0
+    findings: tuple[Finding, ...] = ()
+    settings: dict[str, float] = field(default_factory=dict)
+
+
+class LinearSolver(Protocol):
+    """From a system to its coefficients."""
+
+    def solve(self, system: RegressionSystem) -> RegressionSolution:
+        """The coefficients in the system's order."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class ScaledSystem:
+    """Root mean squares of columns (k,) and of the target, and the system, `matrix` and `target`, in these units."""
+
+    column_scales: Array
+    target_scale: float
+    matrix: Array
+    target: Array
+
+    def unscaled(self, coefficients: Array) -> Array:
+        """Coefficients in the system's own units."""
+        return self.target_scale * coefficients / self.column_scales
+
+
+def scale_system(system: RegressionSystem) -> ScaledSystem:
+    """The system in units of the root mean squares of its columns and target."""
+    columns = np.sqrt(np.mean(system.matrix**2, axis=0))
+    columns = np.where(columns > 0.0, columns, 1.0)
+    target = float(np.sqrt(np.mean(system.target**2))) or 1.0
+    return ScaledSystem(columns, target, system.matrix / columns, system.target / target)
+
+
+@dataclass(frozen=True)
+class OrdinaryLeastSquares:
+    """Ordinary least squares (Gauss 1809)."""
+
+    def solve(self, system: RegressionSystem) -> RegressionSolution:
+        """By orthogonal decomposition."""
+        scaled = scale_system(system)
+        return RegressionSolution(scaled.unscaled(_least_squares(scaled.matrix, scaled.target)))
+
+
+@dataclass(frozen=True)
+class Ridge:
+    """Least squares with a penalty on the coefficients' squares (Hoerl & Kennard 1970).
+
+    penalty: lambda of |residual|^2 + lambda |coefficients|^2; None takes the best over contiguous folds.
+    """
+
+    penalty: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.penalty is not None and not 0.0 <= self.penalty < np.inf:
+            raise InputError(f"a ridge penalty of {self.penalty:g} is none; give 0 or more, or None")
+
+    def solve(self, system: RegressionSystem) -> RegressionSolution:
+        """By the normal equations."""
+        scaled = scale_system(system)
+        penalty = _best_penalty(scaled, _ridge_path) if self.penalty is None else self.penalty
+        found = _ridge_path(scaled.matrix, scaled.target, np.array([penalty]))[0]
+        return RegressionSolution(scaled.unscaled(found), settings={"penalty": penalty})
+
+
+@dataclass(frozen=True)
+class TruncatedSvd:
+    """Least squares in the directions whose singular value exceeds `share` of the largest (Hansen 1987)."""
+
+    share: float = 0.03
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.share < 1.0:
+            raise InputError(f"a share of {self.share:g} of the largest singular value is none; give one from 0 to 1")
+
+    def solve(self, system: RegressionSystem) -> RegressionSolution:
+        """By the singular values of the scaled matrix."""
+        scaled = scale_system(system)
+        left, values, right = np.linalg.svd(scaled.matrix, full_matrices=False)
+        kept = values > self.share * values[0]
+        inverse = np.where(kept, 1.0 / np.where(kept, values, 1.0), 0.0)
+        found = right.T @ (inverse * (left.T @ scaled.target))
+        return RegressionSolution(scaled.unscaled(found), settings={"directions": float(kept.sum())})
+
+
+@dataclass(frozen=True)
+class LeastSquaresSvm:
+    """Least-squares support vector machine with linear kernel (Suykens & Vandewalle 1999).
+
+    That is ridge regression with penalty 1/gamma and a constant that is not penalised. gamma: None takes the best over
+    contiguous folds.
+    """
+
+    gamma: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.gamma is not None:
+            demand_positive("gamma of the least-squares support vectors", self.gamma)
+
+    def solve(self, system: RegressionSystem) -> RegressionSolution:
+        """By the normal equations about the means."""
+        scaled = scale_system(system)
+        penalty = _best_penalty(scaled, _centred_ridge_path) if self.gamma is None else 1.0 / self.gamma
+        found = _centred_ridge_path(scaled.matrix, scaled.target, np.array([penalty]))[0]
+        bias = float(np.mean(scaled.target - scaled.matrix @ found))
+        return RegressionSolution(scaled.unscaled(found), scaled.target_scale * bias, settings={"gamma": 1.0 / penalty})
+
+
+@dataclass(frozen=True)
+class Lasso:
+    """Least squares with a penalty on the coefficients' magnitudes (Tibshirani 1996; Song et al. 2025, eq. (11)).
+
+    Attributes:
+        penalties: lambda of eq. (11), of which the best over contiguous folds is taken (eq. (12): 1e-6 to 1e6).
+        refit: whether the chosen coefficients are then found by least squares, without the penalty's pull to zero.
+    """
+
+    penalties: tuple[float, ...] = tuple(PENALTIES)
+    refit: bool = False
+
+    def __post_init__(self) -> None:
+        if not self.penalties or not all(0.0 <= p < np.inf for p in self.penalties):
+            raise InputError(f"Lasso penalties {self.penalties} are none to choose from; give numbers from 0")
+
+    def solve(self, system: RegressionSystem) -> RegressionSolution:
+        """Coefficients that the best penalty leaves; 0 for those it drops."""
+        scaled, penalties = scale_system(system), np.sort(self.penalties)
+        missed = _holdout_errors(scaled, lambda matrix, target: _lasso_path(matrix, target, penalties))
+        best = int(np.argmin(missed))
+        found = _lasso_path(scaled.matrix, scaled.target, penalties[best : best + 1])[0]
+        kept = found != 0.0
+        if self.refit and kept.any():
+            found[kept] = _least_squares(scaled.matrix[:, kept], scaled.target)
+        settings = {"penalty": float(penalties[best]), "coefficients kept": float(kept.sum())}
+        return RegressionSolution(scaled.unscaled(found), findings=_dropped_findings(system, kept), settings=settings)
+
+
+def solve_with_instruments(system: RegressionSystem, instruments: RegressionSystem) -> RegressionSolution:
+    """(Z' Phi)^-1 Z' y with the features Z of a motion free of the measurement's noise (Soderstrom & Stoica 1983).
+
+    Noise in the features pulls least squares towards zero; instruments that share the motion but not its noise do not.
+    """
+    scaled = scale_system(system)
+    z = instruments.matrix / scaled.column_scales
+    return RegressionSolution(scaled.unscaled(_solve(z.T @ scaled.matrix, z.T @ scaled.target)))
+
+
+def _dropped_findings(system: RegressionSystem, is_kept: Array) -> tuple[Finding, ...]:
+    names = [n for n, k in zip(system.names, is_kept, strict=True) if not k]
+    if not names:
+        return ()
+    return (
+        Finding(Severity.INFO, "lasso-dropped", f"Lasso drops {', '.join(names)} from the {system.title} equation", "",
+                "dropped is not small: Lasso drops what the other coefficients can stand for"),
+    )  # fmt: skip
+
+
+def _lasso_path(matrix: Array, target: Array, penalties: Array) -> Array:
+    """Coefficients for each penalty, ascending, shape (penalties, k): exact, along the path (Efron et al. 2004)."""
+    from sklearn.linear_model import lars_path_gram
+
+    count = len(target)
+    # the path's alpha is that of |residual|^2 / 2n + alpha |coefficients|_1: lambda / 2n
+    alphas, _, path = lars_path_gram(matrix.T @ target, matrix.T @ matrix, n_samples=count, method="lasso")[:3]
+    wanted = penalties / (2.0 * count)
+    return np.stack([np.interp(wanted, alphas[::-1], one[::-1]) for one in path], axis=1)
+
+
+def _solve(matrix: Array, target: Array) -> Array:
+    return np.asarray(np.linalg.solve(matrix, target), dtype=np.float64)
+
+
+def _least_squares(matrix: Array, target: Array) -> Array:
+    return np.asarray(np.linalg.lstsq(matrix, target)[0], dtype=np.float64)
+
+
+def _ridge_path(matrix: Array, target: Array, penalties: Array) -> Array:
+    """Coefficients for each penalty, shape (penalties, k)."""
+    gram, moment = matrix.T @ matrix, matrix.T @ target
+    return np.array([_solve(gram + penalty * np.eye(len(gram)), moment) for penalty in penalties])
+
+
+def _centred_ridge_path(matrix: Array, target: Array, penalties: Array) -> Array:
+    return _ridge_path(matrix - matrix.mean(axis=0), target - target.mean(), penalties)
+
+
+def _best_penalty(scaled: ScaledSystem, path: Callable[[Array, Array, Array], Array]) -> float:
+    """The penalty that predicts contiguous blocks left out best."""
+    missed = _holdout_errors(scaled, lambda matrix, target: path(matrix, target, PENALTIES))
+    return float(PENALTIES[int(np.argmin(missed))])
+
+
+def _holdout_errors(scaled: ScaledSystem, path: Callable[[Array, Array], Array]) -> Array:
+    """Sum of squares over contiguous blocks left out, for each of the coefficients (n, k) that `path` gives."""
+    missed = []
+    for fold in folds(len(scaled.target), min(FOLDS, len(scaled.target))):
+        found = path(np.delete(scaled.matrix, fold, axis=0), np.delete(scaled.target, fold))
+        missed.append(np.sum((scaled.target[fold] - found @ scaled.matrix[fold].T) ** 2, axis=1))
+    return np.sum(missed, axis=0)

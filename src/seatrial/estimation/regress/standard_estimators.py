@@ -1,0 +1,29 @@
+"""The regressions that a comparison shows, by name."""
+
+from seatrial.estimation.regress.estimators import InstrumentalVariables, LinearRegression, RegressionEstimator
+from seatrial.estimation.regress.operators import Central, Centred, Differenced, Euler, Smoothed, Weak
+from seatrial.estimation.regress.pipeline import Pipeline
+from seatrial.estimation.regress.solvers import Lasso, LeastSquaresSvm, OrdinaryLeastSquares, Ridge, TruncatedSvd
+from seatrial.estimation.regress.support_vectors import SupportVectors
+
+
+def standard_estimators(half_width: float) -> tuple[RegressionEstimator, ...]:
+    """The estimators of a comparison; windows of that half width [s]."""
+    least_squares = OrdinaryLeastSquares()
+    return (
+        LinearRegression("Euler differences, least squares", Euler(), least_squares),
+        LinearRegression("Euler, differenced", Differenced(Euler()), least_squares),
+        LinearRegression("Euler, differenced and centred", Centred(Differenced(Euler())), least_squares),
+        LinearRegression("central differences, least squares", Central(), least_squares),
+        LinearRegression("central differences, ridge", Central(), Ridge()),
+        LinearRegression("central differences, truncated SVD", Central(), TruncatedSvd()),
+        LinearRegression("central differences, Lasso", Central(), Lasso()),
+        LinearRegression("central differences, least-squares SVM", Central(), LeastSquaresSvm()),
+        LinearRegression("central differences, support vectors", Central(), SupportVectors()),
+        LinearRegression("smoothed derivative, least squares", Smoothed(0.5 * half_width), least_squares),
+        LinearRegression("weak form, least squares", Weak(half_width), least_squares),
+        LinearRegression("weak form, ridge", Weak(half_width), Ridge()),
+        Pipeline(name="published pipeline (Song et al. 2025)", operator=Euler()),
+        Pipeline(),
+        InstrumentalVariables("weak form, instrumental variables", Weak(half_width)),
+    )

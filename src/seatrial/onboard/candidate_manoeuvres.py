@@ -1,0 +1,178 @@
+"""Manoeuvres that could come next, and the information each would add about the ship as she is estimated by now."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.results import Actuator
+from seatrial.core.values import Array, InputError, Record
+from seatrial.data.trial import Trial
+from seatrial.data.trial.follow_table import require_stream
+from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator
+from seatrial.estimation.design.search import search_step
+from seatrial.estimation.design.ships import PriorShips
+from seatrial.estimation.design.standard_manoeuvres import standard_manoeuvres
+from seatrial.estimation.design.task import DesignTask
+from seatrial.estimation.estimate.fit import characteristic_time, is_pure_roll
+from seatrial.numerics.optimise import NormalEquations
+from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
+from seatrial.physics.simulate.divergence import state_limits
+from seatrial.physics.simulate.linear import batch_class
+from seatrial.physics.simulate.steer import RUDDER, SOLAS_SLEW_RATE
+
+# where the trial has no [design]: trial and hold in the ship's unit of time, and what actuators can do
+_DURATION, _HOLD = 20.0, 1.0
+_LINEAR_DURATION = 40.0
+_RUDDER_LIMIT, _FIN_LIMIT, _FIN_RATE = math.radians(35.0), math.radians(10.0), math.radians(20.0)
+_FIN_INPUTS = ("delta_f1", "delta_f2", "alpha_f")
+# releases, as multiples of the largest angle seen; none is larger than the last number
+_RELEASE_FACTORS, _MAX_RELEASE_ANGLE = (1.5, 2.0, 3.0), math.radians(35.0)
+
+
+@dataclass(frozen=True, eq=False)
+class CandidateManoeuvre:
+    """A manoeuvre: its name, in words, where it begins, (nx,), and its inputs at steps of dt [s], (rows, nu)."""
+
+    name: str
+    description: str
+    initial_state: Array
+    inputs: Array
+    dt: float
+    is_random: bool = False
+
+
+def candidate_manoeuvres(
+    trial: Trial, model: Model, records: Sequence[Record], noise: dict[str, float]
+) -> list[CandidateManoeuvre]:
+    """Standard manoeuvres for the ship `model`, as fast and with the same held inputs as in the records so far.
+
+    noise: channel -> standard deviation, SI.
+
+    Raises:
+        InputError: nothing can be moved, or the ship cannot be simulated.
+    """
+    if is_pure_roll(model) and not model.is_affine:
+        return _roll_releases(model, records)
+    task = _design_task(trial, model, records, noise)
+    bench = ManoeuvreEvaluator(
+        task, PriorShips(model.parameters.values[None], np.zeros(len(model.parameters.free))), search_step(task)
+    )
+    made = []
+    for one in standard_manoeuvres(bench):
+        inputs = one.inputs_for(bench)
+        own = inputs[0] if inputs.ndim == 3 else inputs
+        made.append(
+            CandidateManoeuvre(one.name, _describe(one.name, task), task.initial_state, own, bench.dt, one.is_random)
+        )
+    return made
+
+
+def fisher_information(model: Model, candidate: CandidateManoeuvre, noise: dict[str, float], rate: float) -> Array:
+    """Fisher information of the free coefficients, (k, k), initial states unknown; zero where she leaves all bounds.
+
+    noise: channel -> standard deviation, SI, white; rate: Hz at which these are recorded.
+    """
+    names, outputs = model.parameters.free_names, (*noise, *(n for n in model.states if n not in noise))
+    offsets = np.array([0, len(candidate.inputs)], dtype=np.int64)
+    inputs = np.ascontiguousarray(candidate.inputs)
+    batch = batch_class(model)(model, inputs, offsets, candidate.dt, outputs, names)
+    batch = replace(batch, initial_states=batch.influential_states())
+    y, slopes, failed = batch.differentiate(
+        0, 1, candidate.initial_state[None], model.parameters.values[None], np.zeros((1, 0))
+    )  # fmt: skip
+    k = len(names)
+    states = y[:, [outputs.index(n) for n in model.states]]
+    if failed[0] >= 0 or not np.all(np.abs(states) <= state_limits(model)) or not np.all(np.isfinite(slopes)):
+        return np.zeros((k, k))
+    scaled = (slopes[:, : len(noise)] / np.array(list(noise.values()))[:, None]).reshape(-1, slopes.shape[2])
+    hessian = (scaled.T @ scaled) * (rate * candidate.dt)
+    none = np.zeros(len(hessian) - k)
+    return NormalEquations(
+        0.0, np.zeros(k), hessian[:k, :k], none[None], hessian[None, k:, k:], hessian[None, :k, k:]
+    ).without_local()[1]
+
+
+def _roll_releases(model: Model, records: Sequence[Record]) -> list[CandidateManoeuvre]:
+    """Left alone from larger angles, for as long as the longest record."""
+    angle = model.states[0]
+    seen = [r for r in records if angle in r]
+    if not seen:
+        raise InputError(f"no record holds '{angle}'")
+    longest, largest = max(seen, key=lambda r: r.duration), max(float(np.nanmax(np.abs(r[angle]))) for r in seen)
+    rows = round(longest.duration / longest.dt) + 1
+    made = []
+    for factor in _RELEASE_FACTORS:
+        if largest * factor <= _MAX_RELEASE_ANGLE:
+            start = np.zeros(len(model.states))
+            start[0] = largest * factor
+            words = f"a release from {math.degrees(start[0]):.2g} deg, left alone for {longest.duration:.0f} s,"
+            made.append(CandidateManoeuvre(f"release:{math.degrees(start[0]):.3g}", words, start,
+                              np.zeros((rows, len(model.inputs))), longest.dt))  # fmt: skip
+    return made
+
+
+def _design_task(trial: Trial, model: Model, records: Sequence[Record], noise: dict[str, float]) -> DesignTask:
+    brief, rate = trial.design_request, trial.estimate.rate or require_stream(trial).rate
+    common = {"question": "", "ship": trial.ship, "model": model, "sensors": noise, "rate": rate, "draws": 0}
+    if brief is not None:
+        return DesignTask(
+            **common,
+            duration=brief.duration,
+            actuators=brief.actuators,
+            limits=brief.limits,
+            held=brief.held,
+            speed=brief.speed,
+        )
+    unit = characteristic_time(model, records, trial.ship.length)
+    duration = _rounded((_LINEAR_DURATION if model.is_affine else _DURATION) * unit)
+    hold = max(_HOLD * unit, 4.0 / rate)
+    actuators = tuple(a for name in model.input_names if (a := _default_actuator(trial, model, name, hold)) is not None)
+    moved = {a.name for a in actuators}
+    held = {n: _median(records, n) for n in model.input_names if n not in moved and _is_constant_input(n, records)}
+    speed = _median(records, "u") if "u" in model.states and any("u" in r for r in records) else None
+    return DesignTask(**common, duration=duration, actuators=actuators, held=held, speed=speed)
+
+
+def _default_actuator(trial: Trial, model: Model, name: str, hold: float) -> Actuator | None:
+    """What can be moved without asking: a rudder, and fins that lift."""
+    if name == RUDDER:
+        fast = math.sqrt(trial.ship.scale)
+        return Actuator(name, -_RUDDER_LIMIT, _RUDDER_LIMIT, SOLAS_SLEW_RATE * fast, hold)
+    lift = name.replace("delta_f", "lift_")
+    if name in _FIN_INPUTS and lift in model.parameters.names and model.parameters[lift].value:
+        return Actuator(name, -_FIN_LIMIT, _FIN_LIMIT, _FIN_RATE, hold)
+    return None
+
+
+def _is_constant_input(name: str, records: Sequence[Record]) -> bool:
+    """Whether an input is held at what it was: propellers and jets; waves and wind are at rest."""
+    return name not in ZERO_BY_DEFAULT and any(name in r for r in records)
+
+
+def _median(records: Sequence[Record], name: str) -> float:
+    return float(np.median(np.concatenate([r[name] for r in records if name in r])))
+
+
+def _rounded(seconds: float) -> float:
+    """Two significant digits."""
+    step = 10.0 ** (math.floor(math.log10(seconds)) - 1)
+    return step * round(seconds / step)
+
+
+def _describe(name: str, task: DesignTask) -> str:
+    """A standard manoeuvre's name as people say it."""
+    kind, *fields = name.split(":")
+    moved, length = " and ".join(a.name for a in task.actuators), f"of {task.duration:g} s"
+    if kind == "zigzag":
+        return f"a zigzag {fields[0]} {length}"
+    if kind == "consecutive-zigzags":
+        return f"zigzags 10/10 to 30/30 one after another, {length} together,"
+    if kind == "turning-circle":
+        return f"a turning circle with {fields[0]} deg of rudder {length}"
+    if kind == "prbs":
+        hold, share = float(fields[1].removesuffix(" s")), fields[0]
+        return f"a random binary sequence of {moved} (held {hold:.2g} s, {share} of its range) {length}"
+    return f"a sweep of {moved} {length}" if kind == "sine sweep" else f"steps of {moved} from end to end {length}"

@@ -1,0 +1,32 @@
+"""One snapshot as one line of plain text, for log files and for terminals that can draw nothing."""
+
+from seatrial.core.results.online import SampleCounts, Snapshot
+from seatrial.core.text.screen_numbers import MINUS
+from seatrial.onboard.snapshot_text import change_sentence as change_words
+from seatrial.onboard.snapshot_text import clean, counted, estimate_rows, fault_counts, listed, time_text
+
+_ASCII = str.maketrans({MINUS: "-", "–": "-", "²": "^2", "³": "^3", "×": "x", "…": "...", "·": "?"})
+_SUPERSCRIPTS = dict(zip("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789", strict=True))
+
+
+def log_line(snapshot: Snapshot, counts: SampleCounts) -> str:
+    """Moment, phase, coefficients with half of their 95 % intervals, what is not told, trouble so far."""
+    seen = f"{counted(snapshot.samples, 'sample')} {counted(snapshot.runs, 'run')}"
+    parts = [f"{time_text(snapshot.time)} {snapshot.phase.value} {seen}"]
+    parts += [
+        ", ".join(f"{row.name} {row.value} +- {row.half_width} {row.unit}".rstrip() for row in estimate_rows(snapshot))
+    ]
+    parts += [f"not told: {listed([clean(name) for name in snapshot.unidentified])}"] if snapshot.unidentified else []
+    wrong = [f"{count} {words}" for words, count in fault_counts(counts) if count]
+    parts += [", ".join(wrong)] if wrong else []
+    parts += [change_words(snapshot.change)]
+    return ascii_text(" | ".join(part for part in parts if part))
+
+
+def ascii_text(text: str) -> str:
+    """The text without typographic signs: - for a minus, 10^5 for a power of ten."""
+    shown = []
+    for before, letter in zip(" " + text, text, strict=False):
+        is_first = letter in _SUPERSCRIPTS and before not in _SUPERSCRIPTS
+        shown.append(("^" if is_first else "") + _SUPERSCRIPTS.get(letter, letter))
+    return "".join(shown).translate(_ASCII)

@@ -1,0 +1,85 @@
+"""Which NMEA sentence tells which channel, and what a layout asks for."""
+
+from collections.abc import Sequence
+
+from seatrial.core.values import InputError, quantity, spelling_hint
+from seatrial.data.read.layout import ColumnSpec
+
+# place -> SI unit; north and east, latitude and longitude are told apart by the second word
+_FIELD_UNITS = {
+    "HDT": "rad",
+    "THS": "rad",
+    "HDM": "rad",
+    "VHW heading": "rad",
+    "ROT": "rad/s",
+    "RSA": "rad",
+    "RSA port": "rad",
+    "VBW": "m/s",
+    "VBW transverse": "m/s",
+    "VBW ground": "m/s",
+    "VBW ground transverse": "m/s",
+    "VHW": "m/s",
+    "VTG north": "m/s",
+    "VTG east": "m/s",
+    "RMC north": "m/s",
+    "RMC east": "m/s",
+    **{f"{kind} {part}": "m" for kind in ("GGA", "RMC", "GNS", "GLL") for part in ("lat", "lon")},
+    **{f"RPM {shaft}": "rps" for shaft in ("S0", "S1", "S2", "S3", "S4", "E0", "E1", "E2", "E3", "E4")},
+}
+_TRANSDUCER_PREFIX = "XDR "
+
+# (channel, frame) -> places, the best first
+_DEFAULT_FIELDS: dict[tuple[str, str], tuple[str, ...]] = {
+    ("psi", "earth"): ("HDT", "THS", "VHW heading"),
+    ("r", "body"): ("ROT",),
+    ("delta", "body"): ("RSA", "XDR RUDDER"),
+    ("u", "body"): ("VBW", "VHW"),
+    ("v", "body"): ("VBW transverse",),
+    ("u", "earth"): ("VTG north", "RMC north"),
+    ("v", "earth"): ("VTG east", "RMC east"),
+    ("x0", "earth"): ("GGA lat", "RMC lat", "GNS lat", "GLL lat"),
+    ("y0", "earth"): ("GGA lon", "RMC lon", "GNS lon", "GLL lon"),
+    ("phi", "body"): ("XDR ROLL", "XDR HEEL"),
+    ("theta", "body"): ("XDR PTCH", "XDR PITCH"),
+    ("z", "body"): ("XDR HEAV", "XDR HEAVE"),
+    ("n", "none"): ("RPM S0", "RPM S1", "RPM S2"),
+}
+
+
+def columns_by_field(columns: Sequence[ColumnSpec]) -> dict[str, list[tuple[int, int]]]:
+    """Place -> (index of the column, rank, 0 the best) for each column that it can fill.
+
+    A column called after its channel (or numbered) takes the usual places, the best that comes; one called after a
+    place (``VBW ground``, ``XDR ROLL1``) takes that alone.
+
+    Raises:
+        InputError: no sentence tells the channel, or the place is not known or measures something else.
+    """
+    found: dict[str, list[tuple[int, int]]] = {}
+    for index, column in enumerate(columns):
+        for rank, place in enumerate(_column_fields(column)):
+            found.setdefault(place, []).append((index, rank))
+    return found
+
+
+def _column_fields(column: ColumnSpec) -> tuple[str, ...]:
+    source = column.source
+    if isinstance(source, int) or source == column.symbol:
+        usual = _DEFAULT_FIELDS.get((column.symbol, column.declared_frame))
+        if usual is None:
+            raise InputError(
+                f"no NMEA 0183 sentence tells channel '{column.symbol}' in frame '{column.declared_frame}'; name a "
+                f"transducer, such as 'XDR NAME', or leave the channel out"
+            )
+        return usual
+    if source.startswith(_TRANSDUCER_PREFIX):
+        return (_TRANSDUCER_PREFIX + source.removeprefix(_TRANSDUCER_PREFIX).strip().upper(),)
+    if source not in _FIELD_UNITS:
+        raise InputError(
+            f"channel '{column.symbol}': no NMEA place '{source}'{spelling_hint(source, sorted(_FIELD_UNITS))}"
+        )
+    if _FIELD_UNITS[source] != quantity(column.symbol).unit:
+        raise InputError(
+            f"channel '{column.symbol}' cannot come from NMEA '{source}', which is in {_FIELD_UNITS[source]}"
+        )
+    return (source,)

@@ -1,0 +1,215 @@
+"""One NMEA 0183 sentence: its checksum, its fields, and what of them a ship model can use.
+
+Fields and signs as collected by E. S. Raymond, "NMEA Revealed" (gpsd project), from published manuals; the standard
+itself (IEC 61162-1) is sold. Negative is to port for ROT, RSA and transverse VBW, astern for longitudinal VBW, and
+counter-clockwise for RPM. RSA is proportional to the rudder angle and need not equal it: a gain may be needed.
+"""
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import reduce
+from operator import xor
+
+_ADDRESS = re.compile(r"P[A-Z0-9]{2,}|[A-Z0-9]{5}")
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)")
+_TIME = re.compile(r"(\d\d)(\d\d)(\d\d(?:\.\d*)?)")
+_ANGLE = re.compile(r"(\d{1,3})(\d\d(?:\.\d*)?)")
+_KNOT = 1852.0 / 3600.0
+
+
+class SentenceFault(StrEnum):
+    """Why a line is no sentence."""
+
+    GARBLED = "garbled"
+    CHECKSUM = "checksum"
+
+
+@dataclass(frozen=True)
+class Sentence:
+    """kind: the three letters after the talker, or the whole address of a proprietary one; fields: from the first."""
+
+    kind: str
+    fields: tuple[str, ...]
+
+    def text(self, index: int) -> str:
+        """Field `number`, counted from 1; empty where the sentence is shorter."""
+        return self.fields[index - 1].strip() if index <= len(self.fields) else ""
+
+    def number(self, index: int) -> float:
+        """Field `number` as a number; NaN where it is empty.
+
+        Raises:
+            ValueError: it is something else.
+        """
+        text = self.text(index)
+        if not text:
+            return math.nan
+        if not _NUMBER.fullmatch(text):
+            raise ValueError(f"{self.kind}: field {index} is no number")
+        return float(text)
+
+
+def parse_sentence(line: bytes) -> Sentence | SentenceFault:
+    """The sentence in a line, what stands before its last ``$`` (or ``!``) left out; a checksum is demanded."""
+    start = max(line.rfind(b"$"), line.rfind(b"!"))
+    body, star, given = line[start + 1 :].strip().partition(b"*")
+    if start < 0 or not star or not body.isascii():
+        return SentenceFault.GARBLED
+    if not re.fullmatch(rb"[0-9A-Fa-f]{2}", given) or int(given, 16) != checksum(body):
+        return SentenceFault.CHECKSUM
+    address, *fields = body.decode("ascii").split(",")
+    if not _ADDRESS.fullmatch(address):
+        return SentenceFault.GARBLED
+    return Sentence(address if address.startswith("P") else address[2:], tuple(fields))
+
+
+def checksum(body: bytes) -> int:
+    """Exclusive or of the bytes between ``$`` and ``*``."""
+    return reduce(xor, body, 0)
+
+
+def utc_time(sentence: Sentence) -> float:
+    """UTC of the sentence in s since midnight; NaN where it has none.
+
+    Raises:
+        ValueError: the field is no time.
+    """
+    field = _TIME_FIELDS.get(sentence.kind)
+    text = sentence.text(field) if field else ""
+    if not text:
+        return math.nan
+    found = _TIME.fullmatch(text)
+    if not found:
+        raise ValueError(f"{sentence.kind}: '{text}' is no time")
+    hours, minutes, seconds = int(found[1]), int(found[2]), float(found[3])
+    if hours > 23 or minutes > 59 or seconds >= 61.0:
+        raise ValueError(f"{sentence.kind}: '{text}' is no time")
+    return 3600.0 * hours + 60.0 * minutes + seconds
+
+
+def readings(sentence: Sentence) -> dict[str, float]:
+    """Place -> value in SI (angles rad, latitude and longitude rad, north and east positive); NaN where there is none.
+
+    Raises:
+        ValueError: a field is not what it should be.
+    """
+    reader = _READERS.get(sentence.kind)
+    return reader(sentence) if reader else {}
+
+
+def _heading(s: Sentence) -> dict[str, float]:
+    valid = s.kind != "THS" or s.text(2) != "V"
+    return {s.kind: math.radians(s.number(1)) if valid else math.nan}
+
+
+def _rate_of_turn(s: Sentence) -> dict[str, float]:
+    return {"ROT": _if_valid(math.radians(s.number(1)) / 60.0, s.text(2))}
+
+
+def _rudder(s: Sentence) -> dict[str, float]:
+    starboard, port = math.radians(s.number(1)), math.radians(s.number(3))
+    return {"RSA": _if_valid(starboard, s.text(2)), "RSA port": _if_valid(port, s.text(4))}
+
+
+def _ground_course(s: Sentence) -> dict[str, float]:
+    """VTG: course and speed over ground, in knots or else in km/h."""
+    speed = s.number(5) * _KNOT if s.text(5) else s.number(7) / 3.6
+    return {} if s.text(9) == "N" else _over_ground("VTG", speed, s.number(1))
+
+
+def _recommended_minimum(s: Sentence) -> dict[str, float]:
+    """RMC: position, speed and course over ground."""
+    if s.text(2) != "A":
+        return {}
+    return _position(s, 3) | _over_ground("RMC", s.number(7) * _KNOT, s.number(8))
+
+
+def _over_ground(kind: str, speed: float, course: float) -> dict[str, float]:
+    angle = math.radians(course)
+    return {f"{kind} north": speed * math.cos(angle), f"{kind} east": speed * math.sin(angle)}
+
+
+def _gps_fix(s: Sentence) -> dict[str, float]:
+    return {} if s.text(6) in ("", "0") else _position(s, 2)
+
+
+def _geographic_position(s: Sentence) -> dict[str, float]:
+    return {} if s.text(6) == "V" else _position(s, 1)
+
+
+def _gnss_fix(s: Sentence) -> dict[str, float]:
+    return {} if not s.text(6).strip("N") else _position(s, 2)
+
+
+def _position(s: Sentence, first: int) -> dict[str, float]:
+    latitude = _angle(s.text(first), s.text(first + 1), "NS", 90.0)
+    longitude = _angle(s.text(first + 2), s.text(first + 3), "EW", 180.0)
+    return {f"{s.kind} lat": latitude, f"{s.kind} lon": longitude}
+
+
+def _angle(text: str, side: str, sides: str, limit: float) -> float:
+    """Degrees and minutes (dddmm.mm) with their hemisphere, in rad."""
+    if not text:
+        return math.nan
+    found = _ANGLE.fullmatch(text)
+    degrees = int(found[1]) + float(found[2]) / 60.0 if found else math.inf
+    if degrees > limit or side not in tuple(sides):
+        raise ValueError(f"'{text},{side}' is no latitude or longitude")
+    return math.radians(degrees if side == sides[0] else -degrees)
+
+
+def _through_water(s: Sentence) -> dict[str, float]:
+    speed = s.number(5) * _KNOT if s.text(5) else s.number(7) / 3.6
+    return {"VHW": speed, "VHW heading": math.radians(s.number(1))}
+
+
+def _dual_speed(s: Sentence) -> dict[str, float]:
+    water, ground = s.text(3), s.text(6)
+    return {
+        "VBW": _if_valid(s.number(1) * _KNOT, water),
+        "VBW transverse": _if_valid(s.number(2) * _KNOT, water),
+        "VBW ground": _if_valid(s.number(4) * _KNOT, ground),
+        "VBW ground transverse": _if_valid(s.number(5) * _KNOT, ground),
+    }
+
+
+def _revolutions(s: Sentence) -> dict[str, float]:
+    return {f"RPM {s.text(1)}{s.text(2)}": _if_valid(s.number(3) / 60.0, s.text(5))}
+
+
+def _transducers(s: Sentence) -> dict[str, float]:
+    """XDR: groups of type, value, unit, name; angles in degrees, displacements in metres, others left out."""
+    found = {}
+    for first in range(1, len(s.fields) - 2, 4):
+        kind, unit, name = s.text(first), s.text(first + 2), s.text(first + 3).upper()
+        if kind == "A" and unit in ("D", ""):
+            found[f"XDR {name}"] = math.radians(s.number(first + 1))
+        elif kind == "D" and unit in ("M", ""):
+            found[f"XDR {name}"] = s.number(first + 1)
+    return found
+
+
+def _if_valid(value: float, status: str) -> float:
+    return value if status == "A" else math.nan
+
+
+_TIME_FIELDS = {"RMC": 1, "GGA": 1, "GNS": 1, "ZDA": 1, "GLL": 5}
+_READERS: dict[str, Callable[[Sentence], dict[str, float]]] = {
+    "HDT": _heading,
+    "THS": _heading,
+    "HDM": _heading,
+    "ROT": _rate_of_turn,
+    "RSA": _rudder,
+    "VTG": _ground_course,
+    "RMC": _recommended_minimum,
+    "GGA": _gps_fix,
+    "GNS": _gnss_fix,
+    "GLL": _geographic_position,
+    "VHW": _through_water,
+    "VBW": _dual_speed,
+    "RPM": _revolutions,
+    "XDR": _transducers,
+}

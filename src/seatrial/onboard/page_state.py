@@ -1,0 +1,82 @@
+"""What the page asks for: the newest snapshot as text, and the points its plots do not have yet."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from seatrial.core.results.online import SampleCounts, Snapshot
+from seatrial.core.text.screen_numbers import significant
+from seatrial.core.values import NOTATION, Array, Severity, display_unit
+from seatrial.onboard import snapshot_text
+from seatrial.onboard.history import HistoryPoint
+
+_SEVERITIES = list(Severity)[::-1]
+JSON_DIGITS = 8
+
+
+def snapshot_json(snapshot: Snapshot, counts: SampleCounts) -> dict[str, Any]:
+    """The words of the newest snapshot: facts, rows of tables, findings; all of it text."""
+    worst_first = sorted(snapshot.findings, key=lambda f: _SEVERITIES.index(f.severity))
+    return {
+        "phase": snapshot.phase.value,
+        "meaning": snapshot_text.phase_meaning(snapshot.phase),
+        "time": snapshot_text.time_text(snapshot.time),
+        "samples": snapshot.samples,
+        "runs": snapshot.runs,
+        "rows": [vars(row) for row in snapshot_text.estimate_rows(snapshot)],
+        "noise": [_noise_json(name, rms) for name, rms in snapshot.noise.items()],
+        "unidentified": [snapshot_text.clean(name) for name in snapshot.unidentified],
+        "advice": snapshot_text.clean(snapshot.advice),
+        "change": snapshot_text.change_sentence(snapshot.change),
+        "accepted": counts.accepted,
+        "faults": snapshot_text.fault_counts(counts),
+        "last": snapshot_text.clean(counts.last_problem),
+        "findings": [
+            {
+                "severity": f.severity.value,
+                "text": snapshot_text.clean(f.text, 1000),
+                "advice": snapshot_text.clean(f.advice, 1000),
+            }
+            for f in worst_first
+        ],
+    }
+
+
+def plot_points(points: list[HistoryPoint], snapshot: Snapshot) -> list[list[Any]]:
+    """For each point: sequence, elapsed [s], values, half intervals, noise, in the units people read; null is unknown.
+
+    Values and half intervals as `snapshot.names`, noise as `snapshot.noise`.
+    """
+    factors = np.array([display_unit(unit)[0] for unit in snapshot.units])
+    channels = [(name, display_unit(snapshot_text.channel_unit(name))[0]) for name in snapshot.noise]
+    return [
+        [
+            point.sequence,
+            _json_number(point.elapsed),
+            _json_numbers(factors * point.value),
+            _json_numbers(snapshot_text.NORMAL_95 * factors * point.standard_error),
+            [_json_number(factor * point.noise.get(name, math.nan)) for name, factor in channels],
+        ]
+        for point in points
+    ]
+
+
+def _noise_json(channel: str, rms: float) -> dict[str, str]:
+    factor, unit = display_unit(snapshot_text.channel_unit(channel))
+    meaning = NOTATION[channel].meaning if channel in NOTATION else ""
+    return {
+        "name": snapshot_text.clean(channel),
+        "meaning": meaning,
+        "rms": significant(factor * rms, 3),
+        "unit": "" if unit == "1" else unit,
+    }
+
+
+def _json_numbers(values: Array) -> list[float | None]:
+    return [_json_number(float(value)) for value in values]
+
+
+def _json_number(value: float) -> float | None:
+    """As JSON has it: no infinities, no more digits than a plot shows."""
+    return float(f"{value:.{JSON_DIGITS}g}") if math.isfinite(value) else None

@@ -1,0 +1,56 @@
+"""Samples as a record as it was read, conventions as declared: what a file of the same lines would have given."""
+
+from array import array
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from seatrial.core.values import Record
+from seatrial.data.read import Layout
+from seatrial.data.read.assemble import record_from_values
+from seatrial.data.trial import Role, Trial
+from seatrial.data.trial.follow_table import require_stream
+from seatrial.data.trial.trial import TrialRun
+from seatrial.onboard.sample import Sample
+
+_MIN_SAMPLES = 2
+
+
+class RunBuffer:
+    """Every sample that was accepted, run by run: eight bytes a number."""
+
+    def __init__(self, layout: Layout) -> None:
+        self._layout = layout
+        self._runs: list[tuple[str, array[float]]] = []
+
+    def start_run(self, name: str) -> None:
+        """A run begins."""
+        self._runs.append((name, array("d")))
+
+    def add(self, sample: Sample) -> None:
+        """One more sample of the run that was begun last."""
+        rows = self._runs[-1][1]
+        rows.append(sample.time)
+        rows.frombytes(sample.values.tobytes())
+
+    def records(self) -> tuple[Record, ...]:
+        """Runs of two samples and more, in order."""
+        width = 1 + len(self._layout.columns)
+        tables = [(name, np.frombuffer(rows, dtype=np.float64).reshape(-1, width)) for name, rows in self._runs]
+        return tuple(
+            record_from_values(name, self._layout, table[:, 0], table[:, 1:])
+            for name, table in tables
+            if len(table) >= _MIN_SAMPLES
+        )
+
+
+def with_training_records(trial: Trial, records: tuple[Record, ...]) -> Trial:
+    """The trial with those records to train on, behind its training runs and before all others."""
+    stream = require_stream(trial)
+    came = tuple(
+        TrialRun(Path(record.name), stream.layout, Role.TRAIN, record.name, waves=stream.waves, raw_record=record)
+        for record in records
+    )
+    others = tuple(run for run in trial.runs if run.role is not Role.TRAIN)
+    return replace(trial, runs=(*trial.runs_with_role(Role.TRAIN), *came, *others))

@@ -1,0 +1,169 @@
+"""What of a stream is used: samples in order of time, each once; breaks of the clock begin a new run."""
+
+import math
+from dataclasses import dataclass, replace
+from statistics import median
+
+import numpy as np
+
+from seatrial.core.results.online import SampleCounts
+from seatrial.onboard.sample import Sample
+
+_FIRST_STEPS = 20
+_SAME_TIME = 1e-3
+
+
+@dataclass(frozen=True)
+class RunStart:
+    """A new run begins with the sample that follows; time [s] is its own."""
+
+    time: float
+    reason: str
+
+
+StreamEvent = Sample | RunStart
+
+
+class SampleOrder:
+    """Puts a stream in order; its memory does not grow.
+
+    A sample not later than the newest by up to `late_s` is late, one at its very time repeated; both are dropped. One
+    further back, or more than `longest_gap_s` ahead, is kept in doubt until the next: if that goes on from it, the
+    clock has jumped and a new run begins with it; if that goes on from before, the stamp was wrong and the sample is
+    dropped, as late or, if ahead, as garbled. Steps for which nothing came are counted from `dt`, or from the median
+    of the first twenty steps. Values that are not finite become NaN.
+
+    Args:
+        dt: s, nominal step; None: from the stream.
+        longest_gap_s: s; late_s: s by which a stamp may be behind and still belong to the same clock.
+    """
+
+    def __init__(self, dt: float | None, longest_gap_s: float, *, late_s: float = 5.0) -> None:
+        self._dt = dt
+        self._longest_gap, self._late_s = longest_gap_s, late_s
+        self._newest_time = -math.inf
+        self._suspect: Sample | None = None
+        self._steps: list[float] = []
+        self._accepted = self._not_finite = self._missing = 0
+        self._fault_counts = SampleCounts()
+
+    @property
+    def dt(self) -> float | None:
+        """Nominal step [s]; None until twenty steps have been seen."""
+        return self._dt
+
+    @property
+    def counts(self) -> SampleCounts:
+        """What happened to the samples; one in doubt is not yet counted."""
+        return replace(self._fault_counts, accepted=self._accepted, not_finite=self._not_finite, missing=self._missing)
+
+    def admit(self, sample: Sample) -> list[StreamEvent]:
+        """What comes of a sample: nothing, the sample, or a new run that begins with it or with the one in doubt."""
+        time, doubt = sample.time, self._suspect
+        if not math.isfinite(time):
+            return self._count_garbled("a sample without a time")
+        step = time - self._newest_time
+        if step == math.inf:
+            return self._start_run(sample, "the stream begins")
+        if doubt is not None and abs(time - doubt.time) < abs(step):
+            return self._resolve_suspect(doubt, sample)
+        if abs(step) <= _SAME_TIME * (self._dt or 0.0):
+            self._fault_counts = replace(
+                self._fault_counts, repeated=self._fault_counts.repeated + 1, last_problem=f"t = {time:g} s twice"
+            )
+            return []
+        if 0.0 < step <= self._longest_gap:
+            self._drop_suspect()
+            return self._continue_run(sample, step)
+        if -self._late_s <= step < 0.0:
+            return self._count_late(f"t = {time:g} s came after {self._newest_time:g} s")
+        self._drop_suspect()
+        self._suspect = sample
+        return []
+
+    def finish(self) -> list[StreamEvent]:
+        """At the end of the stream: a sample still in doubt is dropped and counted."""
+        self._drop_suspect()
+        return []
+
+    def _resolve_suspect(self, suspect: Sample, sample: Sample) -> list[StreamEvent]:
+        step = sample.time - suspect.time
+        if abs(step) <= _SAME_TIME * (self._dt or 0.0):
+            self._fault_counts = replace(
+                self._fault_counts,
+                repeated=self._fault_counts.repeated + 1,
+                last_problem=f"t = {sample.time:g} s twice",
+            )
+            return []
+        if -self._late_s <= step < 0.0:
+            return self._count_late(f"t = {sample.time:g} s came after {suspect.time:g} s")
+        if not 0.0 < step <= self._longest_gap:
+            self._drop_suspect()
+            self._suspect = sample
+            return []
+        reason = f"the clock jumped from {self._newest_time:g} s to {suspect.time:g} s"
+        self._fault_counts = replace(self._fault_counts, jumps=self._fault_counts.jumps + 1, last_problem=reason)
+        self._suspect = None
+        return [*self._start_run(suspect, reason), *self._continue_run(sample, step)]
+
+    def _start_run(self, sample: Sample, reason: str) -> list[StreamEvent]:
+        return [RunStart(sample.time, reason), *self._accept(sample)]
+
+    def _continue_run(self, sample: Sample, step: float) -> list[StreamEvent]:
+        if self._dt is not None:
+            self._missing += _missing_steps(step, self._dt)
+        else:
+            self._steps.append(step)
+            if len(self._steps) == _FIRST_STEPS:
+                self._dt = median(self._steps)
+                self._missing += sum(_missing_steps(one, self._dt) for one in self._steps)
+                self._steps.clear()
+        return self._accept(sample)
+
+    def _accept(self, sample: Sample) -> list[StreamEvent]:
+        self._newest_time = sample.time
+        self._accepted += 1
+        if np.isfinite(sample.values).all():
+            return [sample]
+        self._not_finite += 1
+        if not np.isinf(sample.values).any():
+            return [sample]
+        return [Sample(sample.time, np.where(np.isfinite(sample.values), sample.values, np.nan))]
+
+    def _drop_suspect(self) -> None:
+        if self._suspect is None:
+            return
+        time, self._suspect = self._suspect.time, None
+        if time < self._newest_time:
+            self._count_late(f"t = {time:g} s came after {self._newest_time:g} s")
+        else:
+            self._count_garbled(f"nothing went on from t = {time:g} s, far ahead of {self._newest_time:g} s")
+
+    def _count_late(self, message: str) -> list[StreamEvent]:
+        self._fault_counts = replace(self._fault_counts, late=self._fault_counts.late + 1, last_problem=message)
+        return []
+
+    def _count_garbled(self, message: str) -> list[StreamEvent]:
+        self._fault_counts = replace(self._fault_counts, garbled=self._fault_counts.garbled + 1, last_problem=message)
+        return []
+
+
+def combined_counts(source: SampleCounts, ordering: SampleCounts) -> SampleCounts:
+    """The counts of a source and of the gate behind it as one."""
+    return SampleCounts(
+        accepted=source.accepted + ordering.accepted,
+        late=source.late + ordering.late,
+        repeated=source.repeated + ordering.repeated,
+        not_finite=source.not_finite + ordering.not_finite,
+        missing=source.missing + ordering.missing,
+        jumps=source.jumps + ordering.jumps,
+        garbled=source.garbled + ordering.garbled,
+        checksum=source.checksum + ordering.checksum,
+        dropped=source.dropped + ordering.dropped,
+        truncated=source.truncated + ordering.truncated,
+        last_problem="; ".join(text for text in (source.last_problem, ordering.last_problem) if text),
+    )
+
+
+def _missing_steps(step: float, dt: float) -> int:
+    return max(round(step / dt) - 1, 0)

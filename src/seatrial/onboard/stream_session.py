@@ -1,0 +1,126 @@
+"""One stream on its way to an estimate: admitted, noted in the journal, kept where a fit is to be made of it."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
+
+from seatrial.core.results.online import SampleCounts, Snapshot
+from seatrial.core.values import InputError
+from seatrial.data.trial.trial import Stream
+from seatrial.onboard.journal import Journal, RunEntry
+from seatrial.onboard.run_buffer import RunBuffer
+from seatrial.onboard.sample import Sample
+from seatrial.onboard.sample_order import RunStart, SampleOrder, StreamEvent, combined_counts
+
+_MAX_MESSAGES = 20
+_RESTART_REASON = "followed again"
+
+
+class StreamEstimator(Protocol):
+    """What makes estimates of samples; it has no thread and no clock of its own."""
+
+    def begin_run(self) -> None:
+        """A run begins with the next sample."""
+        ...
+
+    def update(self, sample: Sample) -> Snapshot:
+        """What is known with this sample."""
+        ...
+
+
+class StreamSession:
+    """Samples in, the newest snapshot out.
+
+    Attributes:
+        snapshot: the newest; None before the first sample. last_journalled: the last sample of the journal, if any.
+        messages: trouble of the estimator and of the journal, in words, each once.
+    """
+
+    def __init__(
+        self, stream: Stream, estimator: StreamEstimator, journal: Journal | None, buffer: RunBuffer | None
+    ) -> None:
+        self.snapshot: Snapshot | None = None
+        self.last_journalled: Sample | None = None
+        self.messages: list[str] = []
+        self._name, self._estimator, self._journal, self._buffer = stream.name, estimator, journal, buffer
+        self._stream, self._order, self._earlier_counts = stream, _sample_order(stream), SampleCounts()
+        self._run_count = 0
+        self._estimator_error = ""
+
+    def journal_events(self, journal: Journal) -> Iterator[StreamEvent]:
+        """What the journal holds, as it came; nothing of it is noted again.
+
+        Raises:
+            InputError: the journal is damaged.
+        """
+        for entry in journal.entries():
+            if isinstance(entry, Sample):
+                self.last_journalled = entry
+                yield from self._order.admit(entry)
+            elif entry.reason == _RESTART_REASON:
+                self._reset_order()
+        if journal.torn_bytes:
+            self._add_message(
+                f"the last {journal.torn_bytes} bytes of '{journal.path.name}' were torn by a break and are cut off"
+            )
+
+    def admit(self, samples: Iterable[Sample]) -> list[StreamEvent]:
+        """What comes of these samples, in the journal before anything is made of it."""
+        events = [event for sample in samples for event in self._order.admit(sample)]
+        if self._journal is not None:
+            for event in events:
+                self._journal.append(RunEntry(event.reason) if isinstance(event, RunStart) else event)
+            self._journal.write_pending()
+        return events
+
+    def process(self, event: StreamEvent) -> None:
+        """Make of it what can be made; what the estimator refuses is said, and the next may be better."""
+        try:
+            if isinstance(event, RunStart):
+                self._start_run()
+                return
+            if self._buffer is not None:
+                self._buffer.add(event)
+            self.snapshot = self._estimator.update(event)
+        except (InputError, np.linalg.LinAlgError, ArithmeticError) as error:
+            self._estimator_error = f"t = {event.time:g} s: {error}"
+            self._add_message(str(error))
+
+    def restart(self) -> None:
+        """What comes begins a run, whatever its time: its positions may be counted from another place than before."""
+        self._reset_order()
+        if self._journal is not None:
+            self._journal.append(RunEntry(_RESTART_REASON))
+
+    def finish(self) -> None:
+        """Nothing more comes."""
+        self._order.finish()
+
+    def counts(self, source: SampleCounts) -> SampleCounts:
+        """Of the source and the gate together, with the estimator's trouble in words."""
+        made = combined_counts(source, combined_counts(self._earlier_counts, self._order.counts))
+        return replace(
+            made, last_problem="; ".join(text for text in (made.last_problem, self._estimator_error) if text)
+        )
+
+    def _reset_order(self) -> None:
+        self._earlier_counts, self._order = (
+            combined_counts(self._earlier_counts, self._order.counts),
+            _sample_order(self._stream),
+        )
+
+    def _start_run(self) -> None:
+        self._run_count += 1
+        if self._buffer is not None:
+            self._buffer.start_run(self._name if self._run_count == 1 else f"{self._name}_{self._run_count}")
+        self._estimator.begin_run()
+
+    def _add_message(self, text: str) -> None:
+        if text not in self.messages and len(self.messages) < _MAX_MESSAGES:
+            self.messages.append(text)
+
+
+def _sample_order(stream: Stream) -> SampleOrder:
+    return SampleOrder(1.0 / stream.rate, stream.longest_gap)

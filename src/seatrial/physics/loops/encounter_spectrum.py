@@ -1,0 +1,226 @@
+"""What a sea does to a ship without control: energy of the output over the frequencies at which waves are met.
+
+Integrals run over the wave frequency with responses taken at |omega_e(omega)|: the Jacobian d omega / d omega_e, which
+is singular in following seas, never appears. Without a hull that averages them, waves beyond twelve times the peak's
+frequency are left out; their slopes would add up without end.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from seatrial.core.values import Array, InputError
+from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.hydro.excitation import encounter_frequency
+from seatrial.physics.loops import quadrature
+from seatrial.physics.loops.block import Block
+from seatrial.physics.sea.encounter import speed_factor
+from seatrial.physics.sea.spectrum import Spectrum
+
+_DIRECTIONS = 513
+_MIN_NODES, _REDUCED_NODES, _MAX_NODES = 48, 512, 12288
+_ACCURACY, _ACCURACY_OF_REDUCED = 1e-10, 1e-9
+_ACCURACY_OF_DIRECTIONS, _ACCURACY_OF_ONE = 1e-6, 1e-8
+_NEGLIGIBLE_EXPONENT = 36.0
+_DAMPING_DIVISOR = 2.0
+# rad/s: a wave that keeps up with the ship
+_LOWEST_FREQUENCY = 1e-9
+
+
+@dataclass(frozen=True)
+class HullFactor:
+    """How a hull averages the slope of waves shorter than itself; by a box of length L, breadth B, draught T [m].
+
+    F = exp(-k T / 2) sinc(k B sin(beta) / 2) sinc(k L cos(beta) / 2), sinc(x) = sin(x) / x: the mean over half the
+    draught, the breadth and the length, Froude-Krylov, of a box (Lloyd 1989, Seakeeping, effective wave slope).
+    """
+
+    L: float
+    B: float
+    T: float
+
+    def slope_factor(self, omega: Array, beta: float) -> Array:
+        """F [-] at wave frequencies omega [rad/s] and heading beta [rad, 0 following]."""
+        k = omega**2 / G
+        across, along = k * self.B * math.sin(beta) / (2.0 * math.pi), k * self.L * math.cos(beta) / (2.0 * math.pi)
+        return np.exp(-k * self.T / 2.0) * np.sinc(across) * np.sinc(along)
+
+
+@dataclass(frozen=True, eq=False)
+class EncounterSpectrum:
+    """A disturbance that a loop meets, node by node of a quadrature.
+
+    Attributes:
+        omega_e: |frequency of encounter| [rad/s]; energy: share of the disturbance's variance at each node [unit^2],
+            both (n,); single ones may be negative where many nodes were gathered on few.
+        description: the sea in words.
+    """
+
+    omega_e: Array
+    energy: Array
+    description: str = ""
+
+    @property
+    def variance(self) -> float:
+        """Of the disturbance."""
+        return float(np.sum(self.energy))
+
+    def response_variance(self, block: Block) -> float:
+        """Of what the block makes of the disturbance."""
+        return float(np.sum(np.abs(block.frequency_response(self.omega_e)) ** 2 * self.energy))
+
+
+def wave_slope_spectrum(
+    spectrum: Spectrum,
+    U: float,
+    beta: float,
+    response: Block,
+    hull: HullFactor | None = None,
+    *,
+    spreading: float | None = None,
+) -> EncounterSpectrum:
+    """Effective wave slope [rad] that a ship meets; its spectrum is (omega^2 / g)^2 sin^2(beta) F^2 S(omega).
+
+    Args:
+        U: m/s; beta: rad, 0 following, pi / 2 beam, pi head.
+        response: from the slope to the motion; nodes suffice for variances of its angle and rate with half of its
+            damping. A loop much nearer to instability, or slower, is resolved by its own `disturbance_response`.
+        spreading: exponent s of a short-crested sea, cos^2s over +- 90 deg; None: long-crested.
+
+    Raises:
+        InputError: speed, heading or spreading out of sense, or a sea without any slope across the ship.
+    """
+    said = f"{spectrum.name}, {math.degrees(beta):.0f} deg"
+    if spreading is None:
+        made = EncounterSpectrum(
+            *_reduced_nodes(
+                *_long_crested_nodes(spectrum, U, beta, response, hull, _ACCURACY), response, _ACCURACY_OF_REDUCED
+            ),
+            said,
+        )
+    else:
+        met = _ShortCrestedNodes(spectrum, U, beta, response, hull, spreading)
+        made = EncounterSpectrum(
+            *_reduced_nodes(*met.converged_nodes(), response, _ACCURACY_OF_DIRECTIONS), f"{said}, short-crested"
+        )
+    if not made.variance > 1e-12 * spectrum.moment(0):
+        raise InputError(
+            f"the sea has no wave slope across the ship at a heading of {math.degrees(beta):.0f} deg; "
+            "take another heading, or a short-crested sea"
+        )
+    return made
+
+
+def disturbance_spectrum(
+    density: Callable[[Array], Array], lower: float, upper: float, response: Block, description: str
+) -> EncounterSpectrum:
+    """Exposure to a disturbance of one-sided `density` [unit^2 s/rad] over the frequency of encounter itself."""
+    return EncounterSpectrum(*_converged_nodes(density, lambda w: w, (lower, upper), response, _ACCURACY), description)
+
+
+class _ShortCrestedNodes:
+    """A short-crested sea: trapezoids over its directions, doubled until variances of angle and rate stand still."""
+
+    def __init__(
+        self, spectrum: Spectrum, U: float, beta: float, response: Block, hull: HullFactor | None, exponent: float
+    ) -> None:
+        if not exponent > 0.0:
+            raise InputError(f"the spreading exponent s of a short-crested sea must be positive, not {exponent:g}")
+        speed_factor(U, beta)
+        self._nodes_by_direction: dict[int, tuple[Array, Array]] = {}
+        self._one_direction = lambda away: _long_crested_nodes(
+            spectrum, U, math.acos(math.cos(beta + away)), response, hull, _ACCURACY_OF_ONE
+        )
+        self._response, self._exponent = response, exponent
+        # cos^2s is below 1e-13 beyond
+        self._half_spread = math.acos(10.0 ** (-6.5 / exponent))
+
+    def converged_nodes(self) -> tuple[Array, Array]:
+        """|frequencies of encounter| and energies."""
+        before, stride = np.full(2, np.inf), 8
+        while True:
+            omega_e, energy = self._nodes_at_stride(stride)
+            now = _variances(omega_e, energy, self._response)
+            if np.all(np.abs(now - before) <= _ACCURACY_OF_DIRECTIONS * now) or stride == 1:
+                return omega_e, energy
+            before, stride = now, stride // 2
+
+    def _nodes_at_stride(self, stride: int) -> tuple[Array, Array]:
+        """From every `stride`-th of the finest directions."""
+        places = range(0, _DIRECTIONS, stride)
+        away = np.linspace(-self._half_spread, self._half_spread, _DIRECTIONS)[::stride]
+        shares = quadrature.weights(len(places)) * np.cos(away) ** (2.0 * self._exponent)
+        shares /= shares.sum()
+        for place, angle in zip(places, away, strict=True):
+            if place not in self._nodes_by_direction:
+                self._nodes_by_direction[place] = self._one_direction(float(angle))
+        parts = [self._nodes_by_direction[place] for place in places]
+        energy = [share * energy for share, (_, energy) in zip(shares, parts, strict=True)]
+        return np.concatenate([omega_e for omega_e, _ in parts]), np.concatenate(energy)
+
+
+def _long_crested_nodes(
+    spectrum: Spectrum, U: float, beta: float, response: Block, hull: HullFactor | None, accuracy: float
+) -> tuple[Array, Array]:
+    speed_factor(U, beta)
+    across = math.sin(beta) ** 2 if abs(math.sin(beta)) > 1e-9 else 0.0
+
+    def density(omega: Array) -> Array:
+        factor = 1.0 if hull is None else hull.slope_factor(omega, beta) ** 2
+        return across * (omega**2 / G) ** 2 * factor * spectrum.density(omega)
+
+    def encounter(omega: Array) -> Array:
+        return np.abs(encounter_frequency(omega, U, beta))
+
+    lower = (spectrum.B / _NEGLIGIBLE_EXPONENT) ** 0.25
+    upper = 12.0 * spectrum.modal_frequency
+    if hull is not None:
+        upper = min(upper, math.sqrt(0.5 * _NEGLIGIBLE_EXPONENT * G / hull.T))
+    peak = spectrum.modal_frequency
+    # a raised peak is sharp and has a kink
+    inner = () if spectrum.gamma == 1.0 else (0.65 * peak, peak, 1.45 * peak)
+    return _converged_nodes(density, encounter, (lower, *inner, max(upper, 2.0 * peak)), response, accuracy)
+
+
+def _converged_nodes(
+    density: Callable[[Array], Array],
+    encounter: Callable[[Array], Array],
+    edges: tuple[float, ...],
+    response: Block,
+    accuracy: float,
+) -> tuple[Array, Array]:
+    """Trapezoids over log(omega), refined until the sharpened response's variances of angle and rate stand still."""
+    sharp, before, count = _with_less_damping(response), np.full(2, np.inf), _MIN_NODES
+    while True:
+        omega, width = quadrature.nodes(edges, count)
+        omega_e, energy = np.maximum(encounter(omega), _LOWEST_FREQUENCY), density(omega) * width
+        now = _variances(omega_e, energy, sharp)
+        if np.all(np.abs(now - before) <= accuracy * now) or count > _MAX_NODES:
+            return omega_e, energy
+        before, count = now, 3 * count // 2
+
+
+def _reduced_nodes(omega_e: Array, energy: Array, response: Block, accuracy: float) -> tuple[Array, Array]:
+    """On fewer nodes, as long as the sharpened response does not notice."""
+    sharp, count = _with_less_damping(response), _REDUCED_NODES
+    true = _variances(omega_e, energy, sharp)
+    while count < len(omega_e):
+        made = quadrature.gather_nodes(omega_e, energy, count)
+        if np.all(np.abs(_variances(*made, sharp) - true) <= accuracy * true):
+            return made
+        count *= 2
+    return omega_e, energy
+
+
+def _with_less_damping(response: Block) -> Block:
+    """With half of its damping, as feedback may leave it."""
+    poles = response.poles
+    return replace(response, den=tuple(response.den[0] * np.poly(poles.real / _DAMPING_DIVISOR + 1j * poles.imag).real))
+
+
+def _variances(omega_e: Array, energy: Array, response: Block) -> Array:
+    """Of the response's angle and rate."""
+    size = np.abs(response.frequency_response(omega_e)) ** 2 * energy
+    return np.array([size.sum(), (omega_e**2 * size).sum()])

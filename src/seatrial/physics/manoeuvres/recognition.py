@@ -1,0 +1,251 @@
+"""What manoeuvre a record shows: when the rudder was put over, how far, and what the heading did."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from seatrial.core.values import Array, InputError, Record
+
+# the rudder is "over" beyond a quarter of the record's largest angle; a stretch is a hold if half of it lies within
+# 15 % of its level and it lasts a tenth of the median hold
+OVER_SHARE, HOLD_TOLERANCE, HOLD_SHARE, SHORTEST_HOLD = 0.25, 0.15, 0.5, 0.1
+MINIMUM_RUDDER = float(np.radians(0.5))
+TURN_HEADING_CHANGE = float(np.radians(135.0))
+# course keeping before the first execute: off the common level by a quarter, and the heading less than 8 deg away after
+ANGLE_TOLERANCE, COURSE_TOLERANCE = 0.25, float(np.radians(8.0))
+
+
+class ManoeuvreKind(StrEnum):
+    """What a record shows."""
+
+    ZIGZAG = "zigzag"
+    TURNING_CIRCLE = "turning-circle"
+    PULL_OUT = "pull-out"
+    SPIRAL = "spiral"
+    OTHER = "other"
+
+
+@dataclass(frozen=True)
+class Hold:
+    """The rudder held over: rows first..last (last excluded), its angle [rad, positive to starboard]."""
+
+    first: int
+    last: int
+    angle: float
+
+
+@dataclass(frozen=True, eq=False)
+class ObservedManoeuvre:
+    """A record's heading and rudder, unwrapped and positive to starboard, shape (n,), and the rudder's holds."""
+
+    record: Record
+    psi: Array
+    delta: Array
+
+    @classmethod
+    def from_record(cls, record: Record) -> "ObservedManoeuvre":
+        """Heading and rudder of a record, missing samples bridged by straight lines.
+
+        Raises:
+            InputError: channel psi or delta is missing or holds fewer than two values.
+        """
+        return cls(record, _heading(record), _without_gaps(record, to_starboard(record, "delta")))
+
+    def transferred_to(self, record: Record) -> "ObservedManoeuvre":
+        """Another record of the same rudder history, e.g. this run simulated: its own heading, this one's executes.
+
+        Raises:
+            InputError: its channel psi is missing or holds fewer than two values, or its times are not this one's.
+        """
+        time = self.record.time
+        if len(record) != len(time) or not np.allclose(record.time, time, rtol=0.0, atol=1e-3 * self.record.dt):
+            raise InputError(
+                f"record '{record.name}' is not sampled at the times of '{self.record.name}', at whose executes it is "
+                "to be measured; resample it"
+            )
+        return _TransferredManoeuvre(record, _heading(record), self.delta, self)
+
+    @cached_property
+    def holds(self) -> tuple[Hold, ...]:
+        """Flat stretches of rudder to one side, long against the others, in order."""
+        largest = float(np.max(np.abs(self.delta)))
+        if largest < MINIMUM_RUDDER:
+            return ()
+        level = np.where(np.abs(self.delta) > OVER_SHARE * largest, np.sign(self.delta), 0.0)
+        edges = np.flatnonzero(np.diff(level)) + 1
+        bounds = [0, *edges.tolist(), len(level)]
+        pieces = [(a, b) for a, b in pairwise(bounds) if level[a] != 0.0]
+        held = [h for a, b in pieces if (h := _find_hold(self.delta, a, b)) is not None]
+        if not held:
+            return ()
+        shortest = SHORTEST_HOLD * float(np.median([h.last - h.first for h in held]))
+        return self._without_course_keeping([h for h in held if h.last - h.first >= max(shortest, 2.0)])
+
+    def _without_course_keeping(self, holds: list[Hold]) -> tuple[Hold, ...]:
+        level = _median_angle(holds)
+        while len(holds) > 1 and abs(abs(holds[0].angle) - level) > ANGLE_TOLERANCE * level:
+            if abs(self.psi[holds[1].first] - self.psi[holds[0].first]) > COURSE_TOLERANCE:
+                break
+            holds = holds[1:]
+        return tuple(holds)
+
+    @cached_property
+    def executes(self) -> tuple[float, ...]:
+        """Times [s] at which the rudder began to move to each hold: its slew between 25 and 75 % drawn back to 0 %."""
+        return tuple(self._execute_time(k) for k in range(len(self.holds)))
+
+    def _execute_time(self, k: int) -> float:
+        hold = self.holds[k]
+        before = self.holds[k - 1] if k else None
+        if before is not None and self._is_direct_reversal(before, hold):
+            first, base = before.last - 1, before.angle
+        else:
+            first = self._last_row_before_slew(hold)
+            base = float(self.delta[first])
+        if base == hold.angle:
+            return float(self.record.time[first])
+        share = (self.delta[first : hold.last] - base) / (hold.angle - base)
+        quarter, three = (self._crossing_time(share, first, hold.first, level) for level in (0.25, 0.75))
+        return max(quarter - 0.5 * (three - quarter), float(self.record.time[before.first if before else first]))
+
+    def _is_direct_reversal(self, before: Hold, hold: Hold) -> bool:
+        """Whether the rudder went from one hold to the next without a stop amidships."""
+        between = self.delta[before.last : hold.first]
+        return len(between) < 2 or float(np.mean(np.abs(between) < 0.1 * abs(hold.angle))) < 0.3
+
+    def _last_row_before_slew(self, hold: Hold) -> int:
+        """The last row before a hold at which the rudder had not yet begun to slew to it."""
+        rates = np.diff(self.delta[: hold.first + 1]) * np.sign(hold.angle)
+        if not len(rates) or rates.max() <= 0.0:
+            return 0
+        slewing = rates > 0.2 * rates.max()
+        end = int(np.flatnonzero(slewing)[-1])
+        before = np.flatnonzero(~slewing[:end])
+        return int(before[-1]) + 1 if len(before) else 0
+
+    def _crossing_time(self, share: Array, first: int, hold_start: int, level: float) -> float:
+        """Time at which `share` last rises through `level` on its way to the hold."""
+        reached = hold_start - first + int(np.argmax(share[hold_start - first :] >= level))
+        below = np.flatnonzero(share[: reached + 1] < level)
+        row = int(below[-1]) if len(below) else 0
+        a, b = float(share[row]), float(share[min(row + 1, len(share) - 1)])
+        part = (level - a) / (b - a) if b > a else 0.0
+        time = self.record.time[first : first + len(share)]
+        return float(time[row] + min(max(part, 0.0), 1.0) * (time[min(row + 1, len(time) - 1)] - time[row]))
+
+    @property
+    def longest_hold(self) -> tuple[Hold, float]:
+        """The longest hold and the time [s] of its execute."""
+        k = int(np.argmax([h.last - h.first for h in self.holds]))
+        return self.holds[k], self.executes[k]
+
+    def psi_at(self, time: float) -> float:
+        """Heading [rad], linear between samples."""
+        return float(np.interp(time, self.record.time, self.psi))
+
+    @cached_property
+    def kind(self) -> ManoeuvreKind:
+        """Which manoeuvre this is, from the signs of the holds and the heading at each execute."""
+        holds, times = self.holds, self.executes
+        if _is_spiral(self.delta):
+            return ManoeuvreKind.SPIRAL
+        if not holds:
+            return ManoeuvreKind.OTHER
+        sides = [np.sign(h.angle) for h in holds]
+        if len(set(sides)) == 1:
+            return self._kind_of_turn()
+        if all(a != b for a, b in pairwise(sides)):
+            course = self.psi_at(times[0])
+            checked = [s * (self.psi_at(t) - course) < 0.0 for s, t in zip(sides[1:], times[1:], strict=True)]
+            return ManoeuvreKind.ZIGZAG if np.mean(checked) >= 0.8 else ManoeuvreKind.OTHER
+        return ManoeuvreKind.OTHER
+
+    def _kind_of_turn(self) -> ManoeuvreKind:
+        hold, execute = self.longest_hold
+        if abs(self.psi[min(hold.last, len(self.psi) - 1)] - self.psi_at(execute)) < TURN_HEADING_CHANGE:
+            return ManoeuvreKind.OTHER
+        amidships = np.abs(self.delta[hold.last :]) < 0.1 * abs(hold.angle)
+        long = np.count_nonzero(amidships) > 0.25 * (hold.last - hold.first)
+        return ManoeuvreKind.PULL_OUT if long else ManoeuvreKind.TURNING_CIRCLE
+
+
+@dataclass(frozen=True, eq=False)
+class _TransferredManoeuvre(ObservedManoeuvre):
+    """A record whose manoeuvre was made out on another one, row by row."""
+
+    reference: ObservedManoeuvre
+
+    @cached_property
+    def holds(self) -> tuple[Hold, ...]:
+        return self.reference.holds
+
+    @cached_property
+    def executes(self) -> tuple[float, ...]:
+        return self.reference.executes
+
+    @cached_property
+    def kind(self) -> ManoeuvreKind:
+        return self.reference.kind
+
+
+def recognise_manoeuvre(record: Record) -> ManoeuvreKind:
+    """Which manoeuvre a record shows, from its channels ``delta`` and ``psi`` alone.
+
+    Raises:
+        InputError: one of the two is missing or empty.
+    """
+    return ObservedManoeuvre.from_record(record).kind
+
+
+def to_starboard(record: Record, symbol: str) -> Array:
+    """Values of a channel whose positive direction is starboard or port, turned to positive starboard."""
+    channel = record.channel(symbol)
+    if np.count_nonzero(np.isfinite(channel.values)) < 2:
+        raise InputError(f"record '{record.name}': channel '{symbol}' holds fewer than two values")
+    return -channel.values if channel.positive == "port" else channel.values
+
+
+def _heading(record: Record) -> Array:
+    """Heading [rad], positive to starboard, unwrapped and bridged, shape (n,)."""
+    psi = to_starboard(record, "psi")
+    known = np.isfinite(psi)
+    return np.interp(record.time, record.time[known], np.unwrap(psi[known]))
+
+
+def _without_gaps(record: Record, values: Array) -> Array:
+    known = np.isfinite(values)
+    return values if known.all() else np.interp(record.time, record.time[known], values[known])
+
+
+def _find_hold(delta: Array, first: int, last: int) -> Hold | None:
+    """The flat part of rows first..last, or None where the rudder wanders."""
+    size = np.abs(delta[first:last])
+    angle = float(np.median(delta[first:last][size >= (1.0 - HOLD_TOLERANCE) * np.max(size)]))
+    flat = np.abs(delta[first:last] - angle) <= HOLD_TOLERANCE * abs(angle)
+    if np.mean(flat) < HOLD_SHARE:
+        return None
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], flat.astype(np.int8), [0]])))
+    begins, ends = edges[::2], edges[1::2]
+    longest = int(np.argmax(ends - begins))
+    return Hold(first + int(begins[longest]), first + int(ends[longest]), angle)
+
+
+def _median_angle(holds: list[Hold]) -> float:
+    """Median of the holds' angles without sign, each weighted by its length."""
+    order = sorted(holds, key=lambda h: abs(h.angle))
+    share = np.cumsum([h.last - h.first for h in order])
+    return abs(order[int(np.searchsorted(share, 0.5 * share[-1]))].angle)
+
+
+def _is_spiral(delta: Array) -> bool:
+    """Whether the rudder stood at six or more angles, large ones on both sides, and changed sides at most twice."""
+    levels, counts = np.unique(np.round(np.degrees(delta)), return_counts=True)
+    stood = levels[counts >= 0.02 * len(delta)]
+    largest = float(np.max(np.abs(stood), initial=0.0))
+    if len(stood) < 6 or stood.max() < 0.5 * largest or stood.min() > -0.5 * largest:
+        return False
+    sides = np.sign(delta[np.abs(delta) > np.radians(0.5 * largest)])
+    return bool(np.count_nonzero(np.diff(sides)) <= 2)

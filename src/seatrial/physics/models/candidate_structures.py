@@ -1,0 +1,37 @@
+"""Families of models worth comparing on the same records: which parameters a structure frees beyond the trial's own.
+
+They are the house's and the same for every ship; a trial file may declare another under `[family]`.
+"""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+FREED_PARAMETERS: Mapping[str, Mapping[str, tuple[str, ...]]] = MappingProxyType(
+    {
+        "mmg": {
+            "side forces of the screw": ("Y_T", "N_T"),
+            "asymmetric hull": ("Y_0", "N_0"),
+            "rudder and its inflow": ("a_H", "gamma_R_plus", "gamma_R_minus", "l_R_prime"),
+            "added masses": ("m_x_prime", "m_y_prime", "J_z_prime"),
+        },
+        "abkowitz": {
+            "cubic rudder": ("Y_ddd", "N_ddd"),
+            "rudder and drift": ("Y_vvd", "Y_vdd", "N_vvd", "N_vdd"),
+            "change with speed": ("Y_vu", "Y_ru", "N_vu", "N_ru"),
+        },
+        "waterjet": {"inertia": ("m_x", "m_y", "J_z")},
+    }
+)
+OMITTED_PARAMETERS: Mapping[str, Mapping[str, tuple[str, ...]]] = MappingProxyType(
+    {
+        "roll": {
+            f"{damping} damping, {restoring} restoring": (*without, *neither)
+            for damping, without in (("linear", ("b_2", "b_3")), ("quadratic", ("b_3",)), ("cubic", ()))
+            for restoring, neither in (("linear", ("c_3", "c_5")), ("cubic", ("c_5",)), ("fifth-order", ()))
+        }
+    }
+)
+"""Families that count the other way: which parameters a structure leaves out, at zero."""
+
+PRIOR_FACTORS = (0.5, 3.0)
+SEGMENT_FACTORS = (0.7, 1.5)

@@ -1,0 +1,120 @@
+"""Wave forces from a record of the elevation at the ship's origin: the excitation as a filter of what is met."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatrial.core.values import Array, Channel, InputError, Record, frozen
+from seatrial.physics.hydro.excitation import Excitation
+from seatrial.physics.sea.encounter import wave_frequency
+
+# frequencies that hold this share of the elevation's energy pass the filter, from either end
+_NEGLIGIBLE = 1e-4
+# periods of the slowest of them that are lost at each end, and that the record must have besides
+_LOST_PERIODS, _NEEDED_PERIODS = 1.0, 6.0
+# bins of the transform that drift and the window's own leakage fill
+_DRIFT_BINS = 4
+# periods of the slowest waves by which the record is continued, and from which; ridge of the predictor
+_EXTRAPOLATED_PERIODS, _PREDICTOR_PERIODS, _RIDGE = 2.0, 1.5, 1e-7
+
+
+def with_wave_forces(record: Record, excitation: Excitation, U: float, beta: float) -> Record:
+    """The record with F3 [N, up] and M5 [N m, bow down] computed from its channel zeta [m, up].
+
+    U in m/s, beta in rad (0 following, pi head). The ends, where the filter knows only half of what it needs, are cut
+    off. A record that has F3 and M5 already keeps them. Speed and mean frequency of encounter come along as channels.
+
+    Raises:
+        InputError: no elevation, gaps in it, a following sea (one frequency of encounter has three waves there), or a
+            record too short for its longest waves.
+    """
+    if {"F3", "M5"} <= set(record.channels):
+        return _with_encounter_channels(record, U)
+    if "zeta" not in record:
+        raise InputError(f"record '{record.name}' has neither wave forces F3 and M5 nor an elevation zeta; add either")
+    zeta = record["zeta"]
+    if not np.all(np.isfinite(zeta)):
+        row = int(np.argmin(np.isfinite(zeta)))
+        raise InputError(
+            f"record '{record.name}': the elevation zeta has no value at sample {row} (t = {record.time[row]:g} s); "
+            "fill the gap or cut the record there"
+        )
+    if np.ptp(zeta) == 0.0:
+        raise InputError(f"record '{record.name}': the elevation zeta never moves; check the wave sensor")
+    level = zeta - np.mean(zeta)
+    band = _band(level, record.dt)
+    lost = _LOST_PERIODS * 2.0 * np.pi / band[0]
+    if record.duration < _NEEDED_PERIODS * lost:
+        raise InputError(
+            f"record '{record.name}' of {record.duration:.3g} s is too short for its longest waves, met every "
+            f"{2.0 * np.pi / band[0]:.3g} s; record at least {_NEEDED_PERIODS * lost:.0f} s"
+        )
+    forces = _filtered_forces(level, record.dt, band, excitation, U, beta)
+    made = {name: Channel.from_notation(name, frozen(forces[:, j])) for j, name in enumerate(("F3", "M5"))}
+    whole = Record(
+        record.name, record.time, {**record.channels, **made}, record.kind,
+        record.provenance.with_step("wave forces from the elevation"),
+    )  # fmt: skip
+    return _with_encounter_channels(whole.between(float(record.time[0]) + lost, float(record.time[-1]) - lost), U)
+
+
+def _with_encounter_channels(record: Record, U: float) -> Record:
+    """Speed u and mean frequency of encounter omega_e of the motions as constant channels, where they are absent.
+
+    omega_e is that of the zero crossings of heave, as the record's differences have them.
+    """
+    added = {"u": U}
+    if "z" in record:
+        z = record["z"] - np.nanmean(record["z"])
+        rising = np.flatnonzero((z[:-1] < 0.0) & (z[1:] >= 0.0))
+        if len(rising) > 2:
+            added["omega_e"] = 2.0 * np.pi * (len(rising) - 1) / (record.dt * float(rising[-1] - rising[0]))
+    made = {n: Channel.from_notation(n, frozen(np.full(len(record), v))) for n, v in added.items() if n not in record}
+    return Record(record.name, record.time, {**record.channels, **made}, record.kind, record.provenance)
+
+
+def _band(level: Array, dt: float) -> tuple[float, float]:
+    """Frequencies of encounter [rad/s] that hold nearly all of the energy."""
+    window = np.hanning(len(level))
+    power = np.abs(np.fft.rfft((level - np.average(level, weights=window)) * window)) ** 2
+    power[:_DRIFT_BINS] = 0.0
+    share = np.cumsum(power) / np.sum(power)
+    step = 2.0 * np.pi / (len(level) * dt)
+    first = int(np.searchsorted(share, _NEGLIGIBLE))
+    last = int(np.searchsorted(share, 1.0 - _NEGLIGIBLE))
+    return first * step, min(last + 1, len(power) - 1) * step
+
+
+def _filtered_forces(
+    level: Array, dt: float, band: tuple[float, float], excitation: Excitation, U: float, beta: float
+) -> Array:
+    """F3 and M5 along the record, (n, 2); both ends continued as the waves would have gone on, and faded out."""
+    n, more = len(level), round(_EXTRAPOLATED_PERIODS * 2.0 * np.pi / band[0] / dt)
+    fade = np.cos(np.linspace(0.0, 0.5 * np.pi, more)) ** 2
+    after = linear_prediction(level, more, band, dt) * fade
+    before = (linear_prediction(level[::-1], more, band, dt) * fade)[::-1]
+    padded = np.concatenate([before, level, after])
+    omega_e = 2.0 * np.pi * np.fft.rfftfreq(len(padded), dt)
+    inside = (omega_e >= 0.8 * band[0]) & (omega_e <= 1.2 * band[1])
+    transfer: NDArray[np.complex128] = np.zeros((len(omega_e), 2), dtype=np.complex128)
+    F3, M5 = excitation.forces(wave_frequency(omega_e[inside], U, beta), U, beta)
+    transfer[inside, 0], transfer[inside, 1] = F3, M5
+    made = np.fft.irfft(np.fft.rfft(padded)[:, None] * transfer, len(padded), axis=0)
+    return made[more : more + n]
+
+
+def linear_prediction(level: Array, count: int, band: tuple[float, float], dt: float) -> Array:
+    """`count` samples beyond the end by linear prediction (Kay 1988, section 7.3), fitted where the waves are coarse.
+
+    The predictor works on every k-th sample, so that its steps are a fifth of the shortest period.
+    """
+    k = max(1, int(2.0 * np.pi / band[1] / dt / 5.0))
+    order = min(round(_PREDICTOR_PERIODS * 2.0 * np.pi / band[0] / (k * dt)), len(level) // (4 * k))
+    windows = np.lib.stride_tricks.sliding_window_view(level, order * k + 1)[:, ::k]
+    past, present = windows[:, :-1], windows[:, -1]
+    gram = past.T @ past
+    gram += _RIDGE * np.trace(gram) / order * np.eye(order)
+    predictor = np.linalg.solve(gram, past.T @ present)
+    made = np.concatenate([level[-order * k :], np.zeros(count)])
+    for i in range(order * k, len(made)):
+        made[i] = predictor @ made[i - order * k : i : k]
+    return made[order * k :]

@@ -1,0 +1,286 @@
+"""What this record can and cannot tell: the values of a fit in words for a naval architect; nothing is computed."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from seatrial.core.figures import log_rows
+from seatrial.core.figures.plot import channel_si_unit
+from seatrial.core.figures.profiles import profiles
+from seatrial.core.results import (
+    CandidateModel,
+    Consequence,
+    Direction,
+    Fit,
+    Identifiability,
+    NoiseModel,
+    Stability,
+    Symmetry,
+)
+from seatrial.core.text import words
+from seatrial.core.text.numbers import DASH, fixed, rounded, significant
+from seatrial.core.values import display_unit
+from seatrial.reporting.tables import assumption
+
+WELL_DETERMINED, POORLY_DETERMINED = 0.1, 1.0
+MIN_VARIANCE_INFLATION = 10.0
+WHITENESS_P = 0.01
+MAX_SHIFTS, MAX_TEXTS, MAX_ROWS, MAX_DIRECTIONS, MAX_BARS = 5, 5, 10, 16, 20
+
+
+@dataclass(frozen=True)
+class SymmetryRow:
+    """A change no record can show, and what is assumed of the parameters in it; `has_no_assumption`: nothing is."""
+
+    text: str
+    assumptions: tuple[str, ...]
+    more_assumptions: tuple[str, ...]
+    has_no_assumption: bool
+
+
+@dataclass(frozen=True)
+class AccuracyClass:
+    """How many combinations are told well, vaguely or not; `key` names the colour."""
+
+    key: str
+    title: str
+    text: str
+
+
+@dataclass(frozen=True)
+class ConsequenceRow:
+    """What a wrong assumed value would do."""
+
+    parameter: str
+    change: str
+    shifts: str
+    misfit: str
+
+
+@dataclass(frozen=True)
+class NoiseRow:
+    """Noise of a state or channel in the unit people read."""
+
+    name: str
+    meaning: str
+    value: str
+    unit: str
+
+
+@dataclass(frozen=True)
+class NoiseText:
+    """Criterion, whiteness and intensities."""
+
+    method: str
+    text: str
+    whiteness: str
+    process: tuple[NoiseRow, ...]
+    quiet_states: str
+    measurement: tuple[NoiseRow, ...]
+
+
+@dataclass(frozen=True)
+class CandidateModelRow:
+    """One model of the family; `standing`: tied, worse or failed, and whether it is used."""
+
+    name: str
+    free: int
+    heading: str
+    position: str
+    roll: str
+    standing: str
+    note: str
+    is_chosen: bool
+
+
+@dataclass(frozen=True)
+class IdentifiabilityChapter:
+    """Everything the section shows; empty parts are left out of the page."""
+
+    is_examined: bool
+    structural: tuple[SymmetryRow, ...]
+    determined_sentence: str
+    accuracy_classes: tuple[AccuracyClass, ...]
+    directions: Markup
+    weakest: tuple[str, ...]
+    weaker: tuple[str, ...]
+    more_directions: str
+    condition: str
+    collinear: tuple[tuple[str, str, str, str], ...]
+    collinear_more: tuple[tuple[str, str, str, str], ...]
+    has_sensitivities: bool
+    sensitivities: Markup
+    sensitivities_more: str
+    consequences: tuple[ConsequenceRow, ...]
+    consequence_texts: tuple[str, ...]
+    stability: str
+    noise: NoiseText | None
+    profiles: Markup
+    unbounded: str
+    models: tuple[CandidateModelRow, ...]
+    has_notes: bool
+    is_roll: bool
+
+
+def identifiability_chapter(fit: Fit) -> IdentifiabilityChapter | None:
+    """The section, or None where the fit holds nothing of it."""
+    known = fit.identifiability
+    if known is None and fit.noise_model is None and not fit.candidate_models:
+        return None
+    has = known or Identifiability((), (), math.nan, math.nan)
+    names = [c.name for c in fit.coefficients]
+    strongest = sorted(has.sensitivities, key=lambda s: -s.effect)
+    pairs = _collinear_rows(has)
+    texts = tuple(words.sentence(d.text, names) for d in has.directions if d.standard_deviation >= WELL_DETERMINED)
+    return IdentifiabilityChapter(
+        is_examined=known is not None,
+        structural=tuple(_symmetry_row(s, fit, names) for s in has.structural),
+        determined_sentence=determined_sentence(fit),
+        accuracy_classes=_accuracy_classes(has.directions),
+        directions=Markup(log_rows.directions(has.directions[:MAX_DIRECTIONS])),
+        weakest=texts[:MAX_TEXTS],
+        weaker=texts[MAX_TEXTS:],
+        more_directions=_more_directions(has.directions[MAX_DIRECTIONS:]),
+        condition=rounded(has.condition) if math.isfinite(has.condition) else "",
+        collinear=tuple(pairs[:MAX_ROWS]),
+        collinear_more=tuple(pairs[MAX_ROWS:]),
+        has_sensitivities=bool(strongest),
+        sensitivities=Markup(log_rows.sensitivities(strongest[:MAX_BARS])),
+        sensitivities_more=_more_sensitivities(len(strongest) - MAX_BARS),
+        consequences=tuple(_consequence_row(c) for c in has.consequences),
+        consequence_texts=tuple(words.sentence(c.text, names) for c in has.consequences if c.text),
+        stability=_stability_sentence(has.stability, names) if has.stability else "",
+        noise=_noise_text(fit.noise_model, names) if fit.noise_model else None,
+        profiles=Markup(profiles(has.profiles, {c.name: c.unit for c in fit.coefficients})),
+        unbounded=_unbounded_sentence(has),
+        models=tuple(_model_row(m) for m in fit.candidate_models),
+        has_notes=any(m.note for m in fit.candidate_models),
+        is_roll=any(m.roll_deg is not None for m in fit.candidate_models),
+    )
+
+
+def determined_sentence(fit: Fit) -> str:
+    """How many coefficients the records determine, one sentence; empty where that is not known."""
+    known = fit.identifiability
+    free = [c for c in fit.coefficients if not c.fixed]
+    if known is None or not math.isfinite(known.effective_parameters):
+        return ""
+    number = round(known.effective_parameters)
+    if number >= len(free):
+        return f"The records determine all {len(free)} free coefficients."
+    rest = "comes from the priors" if any(c.prior_mean is not None for c in free) else "is left open"
+    return f"The records determine about {number} of {len(free)} free coefficients; the rest {rest}."
+
+
+def _symmetry_row(s: Symmetry, fit: Fit, names: Sequence[str]) -> SymmetryRow:
+    inside = sorted((c for c in fit.coefficients if c.name in s.parameters), key=lambda c: not c.fixed)
+    assumed = tuple(text for text in (assumption(c) for c in inside) if text)
+    return SymmetryRow(
+        words.sentence(s.text, names),
+        assumed[:MAX_TEXTS],
+        assumed[MAX_TEXTS:],
+        has_no_assumption=bool(inside) and not assumed,
+    )
+
+
+def _accuracy_classes(items: Sequence[Direction]) -> tuple[AccuracyClass, ...]:
+    if not items:
+        return ()
+    spreads = [d.standard_deviation for d in items]
+    well = sum(s < WELL_DETERMINED for s in spreads)
+    vague = sum(WELL_DETERMINED <= s < POORLY_DETERMINED for s in spreads)
+    rest = len(items) - well - vague
+    return (
+        AccuracyClass("well", "Told well", f"{words.counted(well, 'combination')}, to better than 10 %"),
+        AccuracyClass("vague", "Told vaguely", f"{words.counted(vague, 'combination')}, to between 10 % and 100 %"),
+        AccuracyClass("not", "Not told", f"{words.counted(rest, 'combination')}, to no better than 100 %"
+             + (": there a prior or an assumption speaks, not the record" if rest else "")),
+    )  # fmt: skip
+
+
+def _more_directions(rest: Sequence[Direction]) -> str:
+    if not rest:
+        return ""
+    worst = 100.0 * max(d.standard_deviation for d in rest)
+    number = words.counted(len(rest), "further combination").capitalize()
+    return f"{number} not drawn, {significant(worst, 2)} % or better."
+
+
+def _collinear_rows(identifiability: Identifiability) -> list[tuple[str, str, str, str]]:
+    items = sorted(identifiability.collinearity, key=lambda c: -c.variance_inflation)
+    return [
+        (c.parameter, significant(c.variance_inflation, 2) if math.isfinite(c.variance_inflation) else "∞", c.partner,
+         fixed(c.correlation, 2))
+        for c in items
+        if c.variance_inflation > MIN_VARIANCE_INFLATION
+    ]  # fmt: skip
+
+
+def _more_sensitivities(rest: int) -> str:
+    return (
+        f" {words.counted(rest, 'further coefficient').capitalize()} with smaller effects not drawn."
+        if rest > 0
+        else ""
+    )
+
+
+def _consequence_row(c: Consequence) -> ConsequenceRow:
+    largest = list(c.estimate_changes.items())[:MAX_SHIFTS]
+    moves = ", ".join(f"{name} {words.signed_percent(move)}" for name, move in largest)
+    return ConsequenceRow(c.parameter, words.signed_percent(c.change), moves or DASH, significant(c.misfit, 2))
+
+
+def _stability_sentence(s: Stability, names: Sequence[str]) -> str:
+    value = f"C = {significant(s.index, 2)} [{significant(s.lower, 2)}, {significant(s.upper, 2)}]"
+    return f"{words.sentence(s.text, names)} {value}.".strip()
+
+
+def _noise_text(d: NoiseModel, names: Sequence[str]) -> NoiseText:
+    p = "p < 0.001" if d.whiteness_p < 0.001 else f"p = {significant(d.whiteness_p, 2)}"
+    if not math.isfinite(d.whiteness_p):
+        whiteness = ""
+    elif d.whiteness_p >= WHITENESS_P:
+        whiteness = f"What is left looks like noise: it is white in every channel (smallest {p})."
+    else:
+        whiteness = (
+            f"What is left is not white (smallest {p}): model error or disturbances remain that this criterion does "
+            "not describe."
+        )
+    active = {state: q for state, q in d.process.items() if q > 0}
+    quiet = [state for state in d.process if state not in active]
+    return NoiseText(
+        d.method,
+        words.sentence(d.text, names) if d.text else "",
+        whiteness,
+        tuple(_noise_row(state, q, "/√s") for state, q in active.items()),
+        words.enumeration(quiet),
+        tuple(_noise_row(channel, s, "") for channel, s in d.measurement.items()),
+    )
+
+
+def _noise_row(name: str, value: float, ending: str) -> NoiseRow:
+    si = channel_si_unit(name)
+    unit = words.unit_text(si)
+    return NoiseRow(
+        name,
+        words.channel_meaning(name),
+        significant(value * display_unit(si)[0], 2),
+        f"{unit or '1'}{ending}" if ending else unit,
+    )
+
+
+def _unbounded_sentence(identifiability: Identifiability) -> str:
+    loose = [p.parameter for p in identifiability.profiles if p.lower is None or p.upper is None]
+    if not loose:
+        return ""
+    return f"Not bounded within the values tried: {words.enumeration(loose)}."
+
+
+def _model_row(m: CandidateModel) -> CandidateModelRow:
+    failed = m.heading_deg is None and m.position_m is None and m.roll_deg is None
+    standing = "failed" if failed else "tied" if m.is_tied else "worse"
+    standing = f"used, {standing}" if m.is_chosen else standing
+    return CandidateModelRow(m.name, m.free_count, significant(m.heading_deg, 3), significant(m.position_m, 3),
+                     significant(m.roll_deg, 3), standing, m.note, m.is_chosen)  # fmt: skip

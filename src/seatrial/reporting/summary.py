@@ -1,0 +1,244 @@
+"""The answer in words: what was asked, what was fitted, how well held-out runs are predicted, what to mind."""
+
+from seatrial.core.results import Coefficient, Fit, Prediction, Symmetry
+from seatrial.core.text.numbers import duration, estimate_text, exact, fixed, significant
+from seatrial.core.text.words import (
+    counted,
+    enumeration,
+    extrapolation_text,
+    extrapolation_zone,
+    interval,
+    is_inside,
+    measure_decimals,
+    measure_label,
+    sentence,
+)
+from seatrial.core.values import Severity
+from seatrial.estimation.estimate.settings import WHITE_INFLATION
+from seatrial.reporting.identifiability_chapter import determined_sentence
+
+PRIOR_DISAGREEMENT = 3.0
+MAX_SYMMETRY_TEXT = 200
+_ANGLES = (("theta", "pitch"), ("phi", "roll"))
+
+
+def facts(fit: Fit) -> list[tuple[str, str]]:
+    """Ship, model and records as pairs of name and text."""
+    ship, trained, held = fit.ship, _with_role(fit, "training"), fit.validation()
+    ratio = f"1:{exact(ship.scale)}"
+    scale = f", model scale {ratio}" if ship.scale != 1.0 and ratio not in ship.name else ""
+    length = f", L = {exact(ship.length)} m" if "L" in ship.particulars else ""
+    free = sum(not c.fixed for c in fit.coefficients)
+    seconds = sum(p.measured.duration for p in trained)
+    return [
+        ("Ship", f"{ship.name}{length}{scale}"),
+        ("Model", f"{fit.model.name}, {counted(free, 'free coefficient')} of {len(fit.coefficients)}"),
+        ("Fitted to", f"{counted(len(trained), 'run')}, {duration(seconds)} of records"),
+        ("Held out", enumeration([p.record for p in held]) if held else "no run"),
+        ("Method", fit.method.criterion),
+    ]
+
+
+def sentences(fit: Fit) -> list[str]:
+    """The answer, most important first."""
+    told = [
+        *_held_out(fit),
+        _coverage(fit),
+        *_extrapolation(fit),
+        _roll_properties(fit),
+        _identifiability(fit),
+        _significance(fit),
+        _truth_coverage(fit),
+        _prior_disagreement(fit),
+        _criterion(fit),
+        _residuals(fit),
+        _convergence(fit),
+        _warnings(fit),
+    ]
+    return [sentence for sentence in told if sentence]
+
+
+def _with_role(fit: Fit, role: str) -> list[Prediction]:
+    return [p for p in fit.predictions if p.role == role]
+
+
+def _held_out(fit: Fit) -> list[str]:
+    held = fit.validation()
+    if not held:
+        return ["No run was held out: what follows shows how the model fits, not how it predicts."]
+    return [_prediction_sentence(p, fit) for p in held[:4]] + (
+        [f"{counted(len(held) - 4, 'further held-out run')} in the table."] if len(held) > 4 else []
+    )
+
+
+def _prediction_sentence(p: Prediction, fit: Fit) -> str:
+    parts = []
+    if "psi_deg" in p.rms:
+        parts.append(f"{significant(p.rms['psi_deg'], 2)}° in heading")
+    if "position_m" in p.rms:
+        length = fit.ship.particulars.get("L", 0.0)
+        share = f" ({significant(p.rms['position_m'] / length, 2)} L)" if length > 0 else ""
+        parts.append(f"{significant(p.rms['position_m'], 2)} m in position{share}")
+    if "z" in p.rms:
+        parts.append(f"{significant(p.rms['z'], 2)} m in heave")
+    parts += [f"{significant(p.rms[f'{name}_deg'], 2)}° in {said}" for name, said in _ANGLES if f"{name}_deg" in p.rms]
+    if not parts and "r" in p.rms:
+        parts.append(f"{significant(p.rms['r'] * 57.29578, 2)} deg/s in yaw rate")
+    said = f"{p.record}, not fitted, is predicted open loop over {duration(p.measured.duration)}"
+    errors = f" with errors of {enumeration(parts)} (rms)" if parts else ""
+    return f"{said}{errors}{_noise_floor(p) if parts else ''}.{_first_measures(p)}"
+
+
+def _noise_floor(p: Prediction) -> str:
+    known = {"psi_deg": "°", "position_m": " m"}
+    told = [f"{significant(p.noise_floor[name], 2)}{unit}" for name, unit in known.items() if name in p.noise_floor]
+    return f"; process noise alone would leave {enumeration(told)}" if told else ""
+
+
+def _first_measures(p: Prediction) -> str:
+    known = {"overshoot_1_deg": ("first overshoot", "°"), "advance_L": ("advance", " L"),
+             "tactical_diameter_L": ("tactical diameter", " L")}  # fmt: skip
+    told = []
+    for name, (label, unit) in known.items():
+        m = p.measures.get(name)
+        if m is not None and m.measured is not None and m.simulated is not None:
+            digits = measure_decimals(measure_label(name)[1], m)
+            bounds = interval(m.lower, m.upper, digits)
+            simulated = f"{fixed(m.simulated, digits)}{unit}{' ' + bounds if bounds else ''}"
+            told.append(f"{label} {simulated}, measured {fixed(m.measured, digits)}{unit}")
+    return f" Simulated {'; '.join(told)}." if told else ""
+
+
+def _coverage(fit: Fit) -> str:
+    """How many measured values lie inside their predicted intervals; those without a width are no prediction."""
+    judged = [is_inside(m) for p in fit.validation() for m in p.measures.values() if m.lower != m.upper]
+    known = [inside for inside in judged if inside is not None]
+    if not known:
+        return ""
+    return f"{sum(known)} of {len(known)} measured manoeuvring values lie inside their predicted 95 % intervals."
+
+
+def _extrapolation(fit: Fit) -> list[str]:
+    """One sentence for each held-out run that goes well beyond the training runs, the first four."""
+    far = [p for p in fit.validation() if p.extrapolation and extrapolation_zone(p.extrapolation.index) == "beyond"]
+    return [
+        f"{p.record} is extrapolation, index {extrapolation_text(p.extrapolation)}" for p in far[:4] if p.extrapolation
+    ]
+
+
+def _identifiability(fit: Fit) -> str:
+    """How much the records determine and what no such record can tell."""
+    known = fit.identifiability
+    if known is None:
+        return ""
+    said = [determined_sentence(fit)]
+    if known.structural:
+        more = len(known.structural) - 1
+        further = f" ({counted(more, 'further change')} of this kind in the next section)" if more else ""
+        said.append(f"Whatever the manoeuvre, {_symmetry(known.structural[0])}{further}.")
+    return " ".join(s for s in said if s)
+
+
+def _roll_properties(fit: Fit) -> str:
+    """Period, damping and metacentric height."""
+    known = fit.roll
+    if known is None:
+        return ""
+    period, ratio = (estimate_text(e.value, 0.5 * (e.upper - e.lower), e.lower, e.upper)
+                     for e in (known.natural_period, known.damping_ratio.scaled(100.0)))  # fmt: skip
+    said = (
+        f"The natural period at small angles is {period.value} s ({period.lower} to {period.upper} s), the linear "
+        f"damping {ratio.value} % of critical ({ratio.lower} to {ratio.upper} %)"
+    )
+    height = known.metacentric_height
+    if height is None:
+        return f"{said}."
+    gm = estimate_text(height.value, 0.5 * (height.upper - height.lower), height.lower, height.upper)
+    return (
+        f"{said}; GM would be {gm.value} m ({gm.lower} to {gm.upper} m) with {known.gyradius_source.partition(',')[0]}."
+    )
+
+
+def _symmetry(s: Symmetry) -> str:
+    """A change no record shows: its text, or where that is long what it is about."""
+    if len(s.text) <= MAX_SYMMETRY_TEXT:
+        return s.text.rstrip(".")
+    return f"{enumeration(s.parameters)} can change together without showing in any such record"
+
+
+def _criterion(fit: Fit) -> str:
+    known = fit.noise_model
+    if known is None:
+        return ""
+    active = [state for state, q in known.process.items() if q > 0]
+    noise = f"process noise in {enumeration(active)}" if active else "no process noise"
+    text = f" {sentence(known.text, [c.name for c in fit.coefficients])}" if known.text else ""
+    return f"The criterion is {known.method}, with {noise}.{text}"
+
+
+def _free_coefficients(fit: Fit) -> list[Coefficient]:
+    return [c for c in fit.coefficients if not c.fixed]
+
+
+def _significance(fit: Fit) -> str:
+    free = _free_coefficients(fit)
+    vague = [c.name for c in free if c.lower is not None and c.upper is not None and c.lower < 0 < c.upper]
+    if not vague:
+        return f"All {len(free)} free coefficients differ from zero at the 95 % level."
+    return (
+        f"{len(vague)} of {len(free)} free coefficients cannot be told from zero at the 95 % level "
+        f"({enumeration(vague)})."
+    )
+
+
+def _truth_coverage(fit: Fit) -> str:
+    known = [c for c in _free_coefficients(fit) if c.truth is not None and c.lower is not None and c.upper is not None]
+    if not known:
+        return ""
+    inside = [c for c in known if c.lower <= c.truth <= c.upper]  # type: ignore[operator]
+    return f"{len(inside)} of {len(known)} 95 % intervals contain the known value of the coefficient."
+
+
+def _prior_disagreement(fit: Fit) -> str:
+    off = [
+        c.name
+        for c in _free_coefficients(fit)
+        if c.prior_mean is not None
+        and c.prior_standard_deviation
+        and abs(c.estimate - c.prior_mean) > PRIOR_DISAGREEMENT * c.prior_standard_deviation
+    ]
+    if not off:
+        return ""
+    return (
+        f"{counted(len(off), 'coefficient').capitalize()} ended more than {PRIOR_DISAGREEMENT:g} prior "
+        "standard deviations from "
+        f"the prior ({enumeration(off)}): records and prior disagree there."
+    )
+
+
+def _residuals(fit: Fit) -> str:
+    if not fit.noise:
+        return ""
+    coloured = [
+        n.channel
+        for n, r in zip(fit.noise, fit.residuals, strict=True)
+        if 1.0 + 2.0 * n.correlation_time * r.rate > WHITE_INFLATION
+    ]
+    if not coloured:
+        return "The residuals are white in all channels: the model leaves nothing but noise."
+    return (
+        f"The residuals are coloured in {len(coloured)} of {len(fit.noise)} channels "
+        f"({enumeration(coloured)}): model error "
+        "or disturbances remain. The intervals allow for their correlation."
+    )
+
+
+def _convergence(fit: Fit) -> str:
+    return "" if fit.solution.status.is_success else f"The search did not converge: {fit.solution.status.value}."
+
+
+def _warnings(fit: Fit) -> str:
+    codes = list(dict.fromkeys(f.code for f in fit.findings if f.severity is not Severity.INFO))
+    return (
+        f"The checks warn of: {enumeration(codes)} (see Findings)." if codes else "The checks found nothing to warn of."
+    )

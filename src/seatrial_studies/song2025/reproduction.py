@@ -1,0 +1,290 @@
+"""The published steps on our own series: cleaning, Lasso, support vectors; where their errors come from; ours."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, Finding, InputError, Record
+from seatrial.data.example_series.series import JET_VELOCITY, SENSOR_NOISE, SLEW_RATE, with_sensor_noise
+from seatrial.estimation.estimate.fit import estimate_model
+from seatrial.estimation.estimate.settings import Settings
+from seatrial.estimation.regress.estimators import LinearRegression, RegressionEstimate, RegressionEstimator
+from seatrial.estimation.regress.features import RegressionMotion
+from seatrial.estimation.regress.operators import Central, Centred, Differenced, Euler, Weak
+from seatrial.estimation.regress.pipeline import Cleaning, Pipeline
+from seatrial.estimation.regress.solvers import Lasso, OrdinaryLeastSquares
+from seatrial.estimation.regress.split import blocks, shuffled_split
+from seatrial.estimation.regress.standard_estimators import standard_estimators
+from seatrial.estimation.regress.support_vectors import SupportVectors
+from seatrial.estimation.regress.system import build_systems
+from seatrial.physics.manoeuvres.programme import programme
+from seatrial.physics.models.waterjet import COEFFICIENTS
+from seatrial.physics.simulate.steer import manoeuvre
+from seatrial_studies.song2025.candidates import thirteen_coefficient_model
+from seatrial_studies.song2025.craft_models import TRUTH, reference_record
+from seatrial_studies.song2025.published import PublishedManoeuvre
+
+WINDOW_S, NOISE_SERIES = 20.0, 6
+TUBE_WIDTHS, SVR_PENALTIES = (0.1, 0.01, 0.001), (1.0, 10.0)
+VELOCITY_NOISE = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
+QUASI_DIFFERENCES = (0.0, 0.5, 0.9, 0.99, 1.0)
+YAW_LENGTH = 9.8  # m: noise in r is that in u and v over one ship length
+
+
+@dataclass(frozen=True, eq=False)
+class EstimatorResult:
+    """What one way of doing it finds; errors relative to the truth, shape (11,); NaN and a note where it fails."""
+
+    name: str
+    values: Array
+    errors: Array
+    bias: dict[str, float]
+    findings: tuple[Finding, ...] = ()
+    note: str = ""
+
+    @property
+    def median_error(self) -> float:
+        """Of the relative errors' magnitudes."""
+        return float(np.median(np.abs(self.errors)))
+
+    @property
+    def largest_error(self) -> float:
+        """Of the relative errors' magnitudes."""
+        return float(np.max(np.abs(self.errors)))
+
+
+@dataclass(frozen=True, eq=False)
+class LassoSelection:
+    """Coefficients that Lasso keeps of the thirteen, its penalties by equation, and what setting it is."""
+
+    setting: str
+    kept: tuple[str, ...]
+    dropped: tuple[str, ...]
+    penalties: dict[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class SplitLeakage:
+    """Error of the yaw rate copied from the nearest training sample, over its standard deviation."""
+
+    shuffled_error: float
+    block_error: float
+
+
+@dataclass(frozen=True, eq=False)
+class ErrorSweep:
+    """Median error of several regressions, each (levels,), against one setting."""
+
+    levels: tuple[float, ...]
+    medians: dict[str, Array]
+
+
+@dataclass(frozen=True, eq=False)
+class SupportVectorReproduction:
+    """Everything computed with regressions and fits.
+
+    Attributes:
+        series, measured: the consecutive zigzags noise-free and with the sensors' noise.
+        cleaning: what its steps say, noise-free and measured.
+        swallowed: support vectors on the numbers as they come.
+        clean, noisy: every regression on either series.
+        tubes: the improved pipeline by penalty and tube.
+        differences: quasi-differences of eq. (17), noise-free; noise: white noise of the velocities.
+        exact, ours: output error without noise (same discretisation as the model's) and with the sensors' noise.
+        ratio: rms of ours' errors over their standard errors.
+        over_bound: the nearer regressions' rms errors over several series of noise, over ours' standard errors: medians
+            of the coefficients.
+    """
+
+    series: Record
+    measured: Record
+    cleaning: tuple[tuple[str, ...], tuple[str, ...]]
+    selections: tuple[LassoSelection, ...]
+    unscaled: EstimatorResult
+    noise_free_results: tuple[EstimatorResult, ...]
+    noisy_results: tuple[EstimatorResult, ...]
+    tube_results: tuple[EstimatorResult, ...]
+    quasi_difference_sweep: ErrorSweep
+    noise_sweep: ErrorSweep
+    split_leakage: SplitLeakage
+    output_error_noise_free: EstimatorResult
+    output_error_noisy: EstimatorResult
+    output_error_ratio: float
+    errors_over_bound: dict[str, float]
+
+    @property
+    def published(self) -> tuple[EstimatorResult, EstimatorResult, EstimatorResult, EstimatorResult]:
+        """Original and improved pipeline, noise-free, then with sensor noise."""
+        original, improved, noisy_original, noisy_improved = (
+            row
+            for rows in (self.noise_free_results, self.noisy_results)
+            for row in rows
+            if row.name.startswith("published")
+        )
+        return original, improved, noisy_original, noisy_improved
+
+
+def reproduce_regressions(
+    *, quick: bool, seed: int, report_progress: Callable[[str], None] | None
+) -> SupportVectorReproduction:
+    """All of it; `quick` leaves out the slow settings of the support vectors and most noise levels."""
+    tell = report_progress or (lambda _: None)
+    tell("the series")
+    clean = reference_record(PublishedManoeuvre.CONSECUTIVE)
+    measured = with_sensor_noise(clean, np.random.default_rng(seed), seed)
+    tell("regressions")
+    improved = Pipeline()
+    unscaled = Pipeline(name="unscaled", operator=Euler(), solver=SupportVectors(is_standardised=False))
+    of_clean = tuple(estimator_result(e, clean) for e in standard_estimators(WINDOW_S))
+    of_noisy = tuple(estimator_result(e, measured) for e in standard_estimators(WINDOW_S))
+    tell("where the errors come from")
+    tubes = tuple(
+        estimator_result(replace(improved, name=f"C = {c:g}, tube {t:g}", solver=SupportVectors(c, t)), clean)
+        for c in SVR_PENALTIES[: 1 if quick else None]
+        for t in TUBE_WIDTHS[: 2 if quick else None]
+    )
+    differences = _sweep(QUASI_DIFFERENCES, lambda rho: (clean, _least_squares(Differenced(Euler(), rho))))
+    tell("noise")
+    levels = VELOCITY_NOISE[1::2] if quick else VELOCITY_NOISE
+    noise = _noise_sweep(clean, levels, seed)
+    tell("output error")
+    exact, ours, errors = _output_error(measured)
+    ratio = float(np.sqrt(np.mean((ours.errors / errors) ** 2)))
+    return SupportVectorReproduction(
+        clean,
+        measured,
+        (_cleaning_steps(clean), _cleaning_steps(measured)),
+        _lasso_selections(clean, measured),
+        estimator_result(unscaled, clean),
+        of_clean,
+        of_noisy,
+        tubes,
+        differences,
+        noise,
+        _split_leakage(clean, seed),
+        exact,
+        ours,
+        ratio,
+        _errors_over_bound(clean, errors, seed),
+    )
+
+
+def true_coefficients() -> Array:
+    """The eleven coefficients."""
+    return np.array([p.value for p in TRUTH.craft().parameters.free])
+
+
+def craft_without_coefficients() -> Model:
+    """The craft whose coefficients are not known."""
+    return TRUTH.craft().with_values(dict.fromkeys(COEFFICIENTS, 0.0))
+
+
+def estimator_result(estimator: RegressionEstimator, record: Record) -> EstimatorResult:
+    """One estimator on one record."""
+    try:
+        found = estimator.estimate(craft_without_coefficients(), [record])
+    except InputError as error:
+        none = np.full(len(COEFFICIENTS), np.nan)
+        return EstimatorResult(estimator.name, none, none, {}, (), str(error))
+    return _relative_result(estimator.name, found)
+
+
+def _relative_result(name: str, regressed: RegressionEstimate) -> EstimatorResult:
+    return EstimatorResult(
+        name, regressed.values, regressed.values / true_coefficients() - 1.0, regressed.bias, regressed.findings
+    )
+
+
+def _least_squares(operator: Euler | Central | Weak | Differenced | Centred) -> LinearRegression:
+    return LinearRegression("least squares", operator, OrdinaryLeastSquares())
+
+
+def _sweep(levels: Sequence[float], case: Callable[[float], tuple[Record, LinearRegression]]) -> ErrorSweep:
+    rows = [estimator_result(estimator, record) for record, estimator in map(case, levels)]
+    return ErrorSweep(tuple(levels), {"least squares": np.array([r.median_error for r in rows])})
+
+
+def _noise_sweep(clean: Record, levels: Sequence[float], seed: int) -> ErrorSweep:
+    operators = {
+        "Euler": Euler(), "Euler, differenced": Differenced(Euler()), "central": Central(), "weak form": Weak(WINDOW_S)
+    }  # fmt: skip
+    medians: dict[str, list[float]] = {name: [] for name in operators}
+    for level in levels:
+        record = _with_noise(clean, level, np.random.default_rng(seed))
+        for name, operator in operators.items():
+            medians[name].append(estimator_result(_least_squares(operator), record).median_error)
+    return ErrorSweep(tuple(levels), {name: np.array(values) for name, values in medians.items()})
+
+
+def _with_noise(record: Record, level: float, generator: np.random.Generator) -> Record:
+    channels = dict(record.channels)
+    for symbol, deviation in (("u", level), ("v", level), ("r", level / YAW_LENGTH)):
+        channel = record.channel(symbol)
+        channels[symbol] = channel.with_values(channel.values + deviation * generator.standard_normal(len(record)))
+    return replace(record, channels=channels)
+
+
+def _lasso_selections(clean: Record, measured: Record) -> tuple[LassoSelection, ...]:
+    cases = (
+        ("noise-free, Euler (as published)", clean, Euler()),
+        ("noise-free, central differences", clean, Central()),
+        ("sensor noise, Euler (as published)", measured, Euler()),
+        ("sensor noise, weak form", measured, Weak(WINDOW_S)),
+    )
+    return tuple(_lasso_selection(*case) for case in cases)
+
+
+def _lasso_selection(setting: str, record: Record, operator: Euler | Central | Weak) -> LassoSelection:
+    craft = thirteen_coefficient_model()
+    train = blocks(Cleaning().clean(craft, record), 0.8)[0] if not isinstance(operator, Weak) else record
+    kept, dropped, penalties = list[str](), list[str](), {}
+    for system in build_systems(craft, [RegressionMotion.from_record(craft, train)], operator):
+        solved = Lasso().solve(system)
+        penalties[system.title] = solved.settings["penalty"]
+        for name, value in zip(system.names, solved.coefficients, strict=True):
+            (kept if value != 0.0 else dropped).append(name)
+    return LassoSelection(setting, tuple(kept), tuple(dropped), penalties)
+
+
+def _cleaning_steps(record: Record) -> tuple[str, ...]:
+    return tuple(s for s in Cleaning().clean(TRUTH.craft(), record).provenance.steps if "left out" in s)
+
+
+def _split_leakage(record: Record, seed: int) -> SplitLeakage:
+    """The last of eq. (9)'s training samples before, or the nearest of those drawn."""
+    train, test = blocks(record, 0.8)
+    drawn, left = shuffled_split(len(record), 0.8, np.random.default_rng(seed))
+    nearest = drawn[np.abs(drawn[:, None] - left[None, ::20]).argmin(axis=0)]
+    size = float(np.std(record["r"]))
+    copied = float(np.sqrt(np.mean((record["r"][left[::20]] - record["r"][nearest]) ** 2)))
+    held = float(np.sqrt(np.mean((test["r"] - train["r"][-1]) ** 2)))
+    return SplitLeakage(copied / size, held / size)
+
+
+def _errors_over_bound(clean: Record, errors: Array, seed: int) -> dict[str, float]:
+    near = [e for e in standard_estimators(WINDOW_S) if e.name.startswith(("weak", "smoothed"))]
+    streams = np.random.SeedSequence(seed).spawn(NOISE_SERIES)
+    records = [with_sensor_noise(clean, np.random.default_rng(stream), seed) for stream in streams]
+    rms = {e.name: np.sqrt(np.mean([estimator_result(e, r).errors ** 2 for r in records], axis=0)) for e in near}
+    return {name: float(np.median(values / errors)) for name, values in rms.items()}
+
+
+def _output_error(measured: Record) -> tuple[EstimatorResult, EstimatorResult, Array]:
+    """Output error without noise and with it, and its relative standard errors (11,)."""
+    length = TRUTH.craft().parameters["L"].value
+    own = manoeuvre(
+        TRUTH.craft(), programme(PublishedManoeuvre.CONSECUTIVE), inputs={"v_j": JET_VELOCITY}, slew_rate=SLEW_RATE
+    )
+    exact = estimate_model(craft_without_coefficients(), [own], [own.name], length, Settings())
+    known = Settings(noise=dict(SENSOR_NOISE))
+    found = estimate_model(craft_without_coefficients(), [measured], [measured.name], length, known)
+    count = len(COEFFICIENTS)
+    errors = found.interval.standard_error[:count] / np.abs(true_coefficients())
+    rows = [RegressionEstimate(f.estimate.common_parameters[:count]) for f in (exact, found)]
+    return (
+        _relative_result("output error, noise-free", rows[0]),
+        _relative_result("output error, sensor noise", rows[1]),
+        errors,
+    )

@@ -1,0 +1,71 @@
+"""Objectives, restrictions and their gradients, over one sea and several."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.control.fin_tasks import PAPER_OBJECTIVES, PUBLISHED, VARIANCES, fin_task
+
+from seatrial.control.gain_evaluation import gain_evaluator
+from seatrial.control.task import Effectiveness
+from seatrial.core.results.tuning import ControllerConstraints
+from seatrial.physics.loops.fin import Preamplifier
+
+
+def _differences(of, gains, step=1e-5):
+    return np.array([(of(gains + step * d) - of(gains - step * d)) / (2.0 * step) for d in np.eye(len(gains))]).T
+
+
+@pytest.mark.parametrize("preamplifier", Preamplifier)
+@pytest.mark.parametrize("objectives", [VARIANCES, PAPER_OBJECTIVES])
+def test_gradients_are_those_of_the_numbers(preamplifier, objectives):
+    one = gain_evaluator(fin_task(preamplifier, objectives))
+    gains = np.array([5.0, 3.0, 20.0])
+    slopes, excess = one.slopes(gains)
+    np.testing.assert_allclose(slopes, _differences(lambda k: one.evaluate(k[None]).objectives[0], gains), rtol=2e-6)
+    np.testing.assert_allclose(
+        excess, _differences(lambda k: one.evaluate(k[None]).excess[0], gains), rtol=2e-6, atol=1e-9
+    )
+
+
+def test_objectives_are_means_and_restrictions_the_worst_of_several_seas():
+    beam, quarter = fin_task(), fin_task(beta=math.radians(135.0))
+    both = replace(beam, disturbances=(*beam.disturbances, *quarter.disturbances))
+    single = [gain_evaluator(task).evaluate(PUBLISHED[None]) for task in (beam, quarter)]
+    made = gain_evaluator(both).evaluate(PUBLISHED[None])
+    np.testing.assert_allclose(made.objectives, np.mean([m.objectives for m in single], axis=0))
+    np.testing.assert_allclose(made.excess, np.max([m.excess for m in single], axis=0))
+
+
+def test_gradient_over_several_seas_and_speeds():
+    beam, quarter = fin_task(), fin_task(beta=math.radians(135.0))
+    faster = tuple(replace(met, U=11.0) for met in quarter.disturbances)
+    both = replace(beam, disturbances=(*beam.disturbances, *faster), effectiveness=Effectiveness.SPEED_SQUARED)
+    one, gains = gain_evaluator(both), np.array([8.0, 3.0, 30.0])
+    np.testing.assert_allclose(
+        one.slopes(gains)[0], _differences(lambda k: one.evaluate(k[None]).objectives[0], gains), rtol=2e-6
+    )
+
+
+def test_an_unstable_loop_is_never_good():
+    one = gain_evaluator(fin_task(Preamplifier.PRINTED, restriction=ControllerConstraints()))
+    made = one.evaluate(np.array([[100.0, 0.0, 0.0], [0.0, 0.0, 0.0]]))
+    assert np.all(np.isinf(made.objectives[0]))
+    assert not made.is_feasible[0]
+    assert made.is_feasible[1]
+
+
+def test_saturation_is_the_share_of_rayleigh():
+    task = fin_task()
+    share = 0.05
+    tight = gain_evaluator(replace(task, constraints=replace(task.constraints, saturation=share)))
+    variance = float(tight.evaluate(PUBLISHED[None]).variances[0, 0, 1])
+    said = math.exp(-(task.constraints.limit**2) / (2.0 * variance))
+    assert (tight.evaluate(PUBLISHED[None]).excess[0, 1] > 0.0) == (said > share)
+
+
+def test_effectiveness_goes_with_the_square_of_the_speed():
+    task = replace(fin_task(), effectiveness=Effectiveness.SPEED_SQUARED)
+    assert task.loop_at(2.0 * task.U).plant.gain == pytest.approx(4.0 * task.loop.plant.gain)
+    assert task.loop_at(2.0 * task.U).disturbance.gain == task.loop.disturbance.gain

@@ -1,0 +1,104 @@
+"""Disturbances with a memory, biases and lags are found where they are, and not where white noise suffices."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Record
+from seatrial.estimation.estimate.correlated_disturbances import select_disturbance_model
+from seatrial.estimation.estimate.point_estimate import fit_output_error
+from seatrial.estimation.estimate.process_noise import ProcessNoise, fit_prediction_error
+from seatrial.estimation.problem.output_error import OutputError
+from seatrial.estimation.problem.segments import cut_segments
+from seatrial.physics.models.nomoto import nomoto
+
+Array = NDArray[np.float64]
+K, T, SPEED = 0.15, 8.0, 2.0
+NOISE = {"r": 1e-3, "psi": 3e-3, "x0": 0.1, "y0": 0.1}
+DT, FINE, ROWS = 0.5, 10, 1500
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    return nomoto().with_values({"K": K, "T": T, "U": SPEED})
+
+
+def record_of(rng: np.random.Generator, *, gust: float, memory: float, bias: float) -> Record:
+    """Steps ten times finer than the samples, exact in r; `gust` in rad/s^2, `bias` a random walk in m over root s."""
+    h, rows = DT / FINE, ROWS * FINE
+    sampled = 0.3 * np.clip(8.0 * np.sin(2 * np.pi * DT * np.arange(ROWS + 1) / 52.0), -1.0, 1.0)
+    delta = np.interp(h * (np.arange(rows) + 0.5), DT * np.arange(ROWS + 1), sampled)
+    kicks, keep = rng.standard_normal(rows), np.exp(-h / memory)
+    decay = np.exp(-h / T)
+    r = psi = x = y = force = 0.0
+    kept = np.empty((ROWS, 4))
+    for k in range(rows):
+        if k % FINE == 0:
+            kept[k // FINE] = r, psi, x, y
+        force = keep * force + np.sqrt(1.0 - keep**2) * gust * kicks[k]
+        before, r = r, decay * r + (1.0 - decay) * (K * delta[k] + T * force)
+        middle = psi + 0.25 * h * (before + r)
+        x, y = x + h * SPEED * np.cos(middle), y + h * SPEED * np.sin(middle)
+        psi += 0.5 * h * (before + r)
+    wander = np.cumsum(bias * np.sqrt(DT) * rng.standard_normal((ROWS, 2)), axis=0)
+    kept[:, 2:] += wander
+    kept += rng.standard_normal(kept.shape) * list(NOISE.values())
+    channels = dict(zip(NOISE, kept.T, strict=True))
+    return Record.from_arrays("run", np.linspace(0.0, DT * (ROWS - 1), ROWS), {"delta": sampled[:-1], **channels})
+
+
+def found_in(model: Model, seed: int, *, gust: float = 2e-3, memory: float = 0.02, bias: float = 0.0) -> ProcessNoise:
+    record = record_of(np.random.default_rng(seed), gust=gust, memory=memory, bias=bias)
+    problem = OutputError(model, cut_segments(model, [record], tuple(NOISE), 20.0), 10 * np.array(list(NOISE.values())),
+                          workers=1)  # fmt: skip
+    return fit_prediction_error(
+        fit_output_error(problem, problem.start(), problem.measured_initial_states(), {}), thorough=True
+    )
+
+
+def test_a_gust_with_a_memory(model: Model) -> None:
+    white = found_in(model, 1, memory=6.0)
+    best = select_disturbance_model(white)
+    assert not white.test.is_white
+    assert best.disturbance_model == "gusts with a memory on r"
+    assert best.test.is_white
+    assert best.added_parameters["gust_memory"] == pytest.approx(6.0, rel=0.3)
+    assert best.process_intensities["r"] == pytest.approx(2e-3 * np.sqrt(2 * 6.0), rel=0.3)
+    assert set(best.measurement_noise) == set(NOISE)
+    assert best.common_parameters.shape == white.common_parameters.shape == (2,)
+    assert np.all(np.abs(best.common_parameters - [K, T]) / best.interval.standard_error < 3.0)
+    made = best.as_point_estimate()
+    assert made.problem.model.equations is white.problem.runs.model.equations
+    assert made.residuals().shape == made.problem.data.measured.shape
+
+
+def test_wandering_positions(model: Model) -> None:
+    white = found_in(model, 2, bias=0.1)
+    best = select_disturbance_model(white)
+    assert best.disturbance_model == "wandering biases of x0, y0"
+    assert best.test.is_white
+    assert set(best.process_intensities) == {"r"}
+
+
+def test_white_noise_needs_no_more(model: Model) -> None:
+    white = found_in(model, 3)
+    assert white.test.is_white
+    assert select_disturbance_model(white) is white
+
+
+def test_what_was_not_searched_stays(model: Model) -> None:
+    white = found_in(model, 3)
+    shut = replace(white, newton_decrement=float("nan"))
+    assert select_disturbance_model(shut) is shut
+
+
+def test_intervals_have_room_for_what_was_added(model: Model) -> None:
+    """Unknowns more: the information of the coefficients is that of all, with the others eliminated."""
+    best = select_disturbance_model(found_in(model, 1, memory=6.0))
+    hessian = best.optimum.normal.hessian
+    inside = best.optimum.solution.point > best.problem.lower
+    whole = np.linalg.inv(hessian[np.ix_(inside, inside)])
+    np.testing.assert_allclose(best.interval.standard_error, np.sqrt(np.diag(whole))[:2], rtol=1e-4)

@@ -1,0 +1,95 @@
+"""The estimator behind a fit: noise re-estimated, rounding told from noise."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Record
+from seatrial.estimation.estimate.point_estimate import (
+    PointEstimate,
+    fit_output_error,
+    residual_correlation,
+    residual_spread,
+    rounding_level,
+)
+from seatrial.estimation.problem.output_error import OutputError
+from seatrial.estimation.problem.segments import cut_segments
+from seatrial.physics.manoeuvres.programme import programme
+from seatrial.physics.models.nomoto import nomoto
+from seatrial.physics.simulate.steer import manoeuvre
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    return nomoto().with_values({"K": 0.15, "T": 8.0})
+
+
+@pytest.fixture(scope="module")
+def clean(model: Model) -> Record:
+    return manoeuvre(model, programme("zigzag:20/20"), dt=0.2, speed=1.0, duration=300.0).without("x0", "y0")
+
+
+def problem_of(model: Model, record: Record) -> OutputError:
+    return OutputError(model, cut_segments(model, [record], ("r", "psi"), None), np.array([1e-2, 1e-1]), workers=1)
+
+
+def noisy(record: Record, rng: np.random.Generator) -> Record:
+    for symbol, size in (("r", 2e-3), ("psi", 4e-3)):
+        channel = record.channel(symbol)
+        record = record.with_channel(
+            symbol, channel.with_values(channel.values + size * rng.standard_normal(len(record)))
+        )
+    return record
+
+
+def made_from(model: Model, record: Record, known: dict[str, float] | None = None, **changes: float) -> PointEstimate:
+    problem = replace(problem_of(model.with_values({"K": 0.1, "T": 10.0}), record), **changes)
+    return fit_output_error(problem, problem.start(), problem.measured_initial_states(), known or {})
+
+
+def test_noise_levels_come_back(model: Model, clean: Record, rng: np.random.Generator) -> None:
+    made = made_from(model, noisy(clean, rng))
+    np.testing.assert_allclose(made.problem.noise, [2e-3, 4e-3], rtol=0.06)
+    np.testing.assert_allclose(made.common_parameters, [0.15, 8.0], rtol=0.01)
+
+
+def test_known_noise_is_kept(model: Model, clean: Record, rng: np.random.Generator) -> None:
+    made = made_from(model, noisy(clean, rng), {"psi": 0.02})
+    assert made.problem.noise[1] == 0.02
+    assert made.problem.noise[0] == pytest.approx(2e-3, rel=0.06)
+
+
+def test_a_robust_loss_shrugs_off_jumps(model: Model, clean: Record, rng: np.random.Generator) -> None:
+    record = noisy(clean, rng)
+    values = record["psi"].copy()
+    values[::25] += 1.0
+    spoilt = record.with_channel("psi", record.channel("psi").with_values(values))
+    plain, robust = made_from(model, spoilt), made_from(model, spoilt, huber=3.0)
+    assert robust.problem.noise[1] < 0.1 * plain.problem.noise[1]
+    np.testing.assert_allclose(robust.common_parameters, [0.15, 8.0], rtol=0.01)
+
+
+def test_rounding_is_no_noise_and_has_no_colour(model: Model, clean: Record) -> None:
+    made = made_from(model, clean)
+    np.testing.assert_allclose(made.common_parameters, [0.15, 8.0], rtol=1e-10)
+    np.testing.assert_array_equal(made.problem.noise, rounding_level(made.problem))
+    np.testing.assert_array_equal(residual_correlation(made.problem, made.residuals())[1], 1.0)
+    assert made.optimum.solution.evaluations < 20
+
+
+def test_unknowns_count_against_the_samples(model: Model, clean: Record, rng: np.random.Generator) -> None:
+    problem = problem_of(model, clean)
+    residuals = 1e-3 * rng.standard_normal((len(clean), 2))
+    unknowns, count = problem.size + len(problem.starts), residuals.size
+    expected = np.sqrt(np.mean(residuals**2, axis=0) / (1 - unknowns / count))
+    np.testing.assert_allclose(residual_spread(problem, residuals), expected)
+
+
+def test_coloured_residuals_are_seen(model: Model, clean: Record, rng: np.random.Generator) -> None:
+    shaky = clean.channel("psi").with_values(clean["psi"] + np.convolve(
+        1e-2 * rng.standard_normal(len(clean) + 19), np.ones(20) / 20, "valid"))  # fmt: skip
+    made = made_from(model, clean.with_channel("psi", shaky))
+    inflation = residual_correlation(made.problem, made.residuals())[1]
+    assert inflation[1] > 5.0

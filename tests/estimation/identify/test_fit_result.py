@@ -1,0 +1,58 @@
+"""What is said of coefficients the records do not tell: a warning for some, a refusal where it is all of them."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from seatrial.core.values import DivergedError, InputError, Parameters, Prior
+from seatrial.estimation.identify.fit_result import divergence_message, unidentified
+from seatrial.physics.models.waterjet import COEFFICIENTS, waterjet
+
+VALUES = waterjet().parameters
+
+
+def found(share: dict[str, float], held: str = "") -> Any:
+    """An estimate whose relative standard errors are `share`, .1 elsewhere; `held` has a prior."""
+    items = [SimpleNamespace(prior=Prior(0.0, 1.0) if p.name == held else None, name=p.name) for p in VALUES]
+    parameters = {item.name: item for item in items}
+    shared = np.array([VALUES[n].value for n in COEFFICIENTS])
+    errors = np.abs(shared) * np.array([share.get(n, 0.1) for n in COEFFICIENTS])
+    problem = SimpleNamespace(
+        free=COEFFICIENTS,
+        model=SimpleNamespace(parameters=parameters),
+        data=SimpleNamespace(outputs=("u", "r")),
+        noise=np.array([1.0, 0.09]),
+    )
+    return SimpleNamespace(
+        estimate=SimpleNamespace(problem=problem, common_parameters=shared),
+        interval=SimpleNamespace(standard_error=errors),
+    )
+
+
+def test_a_good_record_says_nothing() -> None:
+    """A tenth of each coefficient."""
+    assert isinstance(VALUES, Parameters)
+    assert unidentified(found({})) == []
+
+
+def test_those_not_told_are_named() -> None:
+    """Not the one a prior holds."""
+    (finding,) = unidentified(found({"X_rr": 1.5, "Y_vr": 2.0, "X_vv": 3.0}, held="X_vv"))
+    assert finding.code == "not-identifiable"
+    assert "do not tell X_rr, Y_vr:" in finding.text
+
+
+def test_nothing_told_is_refused_with_names_and_noise() -> None:
+    """All eleven."""
+    with pytest.raises(InputError, match=r"tell none of the free coefficients X_uu, .*N_rr: .*u 1, r 0\.09"):
+        unidentified(found(dict.fromkeys(COEFFICIENTS, 5.0)))
+
+
+def test_a_model_that_cannot_be_sailed_names_its_coefficients() -> None:
+    """The reason without the advice that belongs to a simulation."""
+    said = divergence_message(found({}), DivergedError("the simulation of run 'a' diverges; take a smaller step"))
+    assert "simulation of run 'a' diverges)" in said
+    assert "smaller step" not in said
+    assert all(name in said for name in COEFFICIENTS)

@@ -1,0 +1,205 @@
+"""Models compared on runs left out: ties, the choice, what a family may not be."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from seatrial.core.equations import Model
+from seatrial.core.values import InputError, Prior, Record
+from seatrial.data.trial import Family
+from seatrial.estimation.estimate import Estimation, Settings, estimate_model
+from seatrial.estimation.estimate.settings import FitCriterion
+from seatrial.estimation.identify.model_selection import (
+    FittedVariant,
+    ModelVariant,
+    _better_candidate_warning,
+    apply_variant,
+    fit_variants,
+    holdout_scores,
+    rank_candidates,
+    selected_estimation,
+    tied_models,
+    variants,
+    with_model_spread,
+)
+from seatrial.estimation.predict.predict_runs import TiedModel
+from seatrial.physics.models.abkowitz import abkowitz
+from seatrial.physics.models.nomoto import nomoto
+from seatrial.physics.simulate import replay
+
+RUNS = 6
+SETTINGS = Settings(segment_seconds=20.0, workers=1)
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    """First order with priors, its current fixed at zero."""
+    free = nomoto().with_values({"K": 0.15, "T": 8.0, "U": 2.0})
+    return free.with_parameters(free.parameters.with_priors({"K": Prior(0.14, 0.05), "T": Prior(8.5, 3.0)}))
+
+
+@pytest.fixture(scope="module")
+def records(model: Model) -> list[Record]:
+    made = []
+    for i in range(RUNS):
+        rng, time = np.random.default_rng(i), 0.5 * np.arange(161)
+        delta = 0.3 * np.sign(np.sin(0.12 * time + i))
+        truth = replay(model, Record.from_arrays(f"run {i}", time, {"delta": delta}), {"r": 0.0})
+        channels = {s: truth[s] + 2e-3 * rng.standard_normal(161) for s in ("r", "psi")}
+        channels |= {s: truth[s] + 0.05 * rng.standard_normal(161) for s in ("x0", "y0")}
+        made.append(Record.from_arrays(f"run {i}", time, {"delta": delta, "u": np.full(161, 2.0), **channels}))
+    return made
+
+
+@pytest.fixture(scope="module")
+def found(model: Model, records: list[Record]) -> Estimation:
+    return estimate_model(model, records, [r.name for r in records], 8.0, SETTINGS)
+
+
+def fitted(found: Estimation, name: str, heading: list[float] | None) -> FittedVariant:
+    """A member with these heading errors and positions alike."""
+    scores = np.empty((0, 2)) if heading is None else np.stack([heading, heading], axis=1)
+    made = None if heading is None else found.estimate
+    return FittedVariant(ModelVariant(name), found.model, made, scores, "" if heading else "it diverges")
+
+
+def test_members_are_tied_where_runs_cannot_tell_them_apart(found: Estimation) -> None:
+    rows = rank_candidates(
+        [
+            fitted(found, "own", [1.0, 2.0, 3.0, 4.0]),
+            fitted(found, "alike", [1.1, 1.8, 3.2, 3.8]),
+            fitted(found, "worse in every run", [1.5, 2.5, 3.5, 4.5]),
+            fitted(found, "failed", None),
+        ],
+        choose=False,
+    )
+    assert [r.is_tied for r in rows] == [True, True, False, False]
+    assert [r.is_chosen for r in rows] == [True, False, False, False]
+    assert rows[0].heading_deg == pytest.approx(2.5)
+    assert rows[3].heading_deg is None and rows[3].note == "it diverges"
+
+
+def test_the_best_is_chosen_where_it_is_asked_for(found: Estimation) -> None:
+    members = [fitted(found, "own", [2.0, 3.0, 4.0]), fitted(found, "better", [1.0, 2.0, 3.0])]
+    rows = rank_candidates(members, choose=True)
+    assert [r.is_chosen for r in rows] == [False, True]
+    assert tied_models(members, rows) == ()
+
+
+def test_structures_free_parameters_and_factors_widen_priors(model: Model) -> None:
+    wide = apply_variant(model, ModelVariant("wide", prior_factor=3.0)).parameters
+    assert wide["K"].prior == Prior(0.14, pytest.approx(0.15))  # type: ignore[arg-type]
+    more = apply_variant(model, ModelVariant("more", ("current_north",))).parameters
+    assert more["current_north"].free and more["current_north"].prior is not None
+    assert more["K"].prior == model.parameters["K"].prior
+
+
+def test_the_family_of_the_house_knows_its_models(model: Model) -> None:
+    names = [v.name for v in variants(abkowitz(), None, is_segmented=True)]
+    assert names[0] == "as in the trial" and "cubic rudder" in names
+    assert not any(n.startswith("priors") for n in names), "this model has no priors"
+    assert [v.name for v in variants(model, None, is_segmented=False)] == [
+        "as in the trial",
+        "priors x 0.5",
+        "priors x 3",
+    ]
+
+
+def test_a_declared_family_is_fitted_and_scored(found: Estimation, model: Model, records: list[Record]) -> None:
+    declared = Family({"stream": ("current_north", "current_east")}, (2.0,), ())
+    names = [r.name for r in records]
+    made = [fit_variants(found, model, records, names, 20.0, replace(SETTINGS, workers=w), declared) for w in (1, 2)]
+    rows = rank_candidates(made[0], choose=False)
+    assert [r.name for r in rows] == ["as in the trial", "stream", "priors x 2"]
+    assert [r.free_count for r in rows] == [2, 4, 2]
+    assert rows == rank_candidates(made[1], choose=False)
+    assert all(r.heading_deg is not None and r.heading_deg < 2.0 for r in rows)
+    assert rows[2].is_tied and not rows[2].is_chosen
+
+
+def test_a_family_of_one_is_refused(found: Estimation, model: Model, records: list[Record]) -> None:
+    with pytest.raises(InputError, match=r"model 'nomoto' has no family to choose from; declare \[family\]"):
+        fit_variants(found, model, records, [r.name for r in records], 20.0, SETTINGS, Family())
+
+
+def test_a_family_whose_members_all_fail_is_refused(found: Estimation, model: Model, records: list[Record]) -> None:
+    """Windows longer than any run: nobody can be judged."""
+    with pytest.raises(InputError, match=r"no member of the family can be fitted; the first fails because no run"):
+        fit_variants(found, model, records, [r.name for r in records], 500.0, SETTINGS, Family({}, (2.0,)))
+
+
+def test_the_scatter_of_tied_models_is_added(found: Estimation) -> None:
+    away = found.model.with_values({"K": found.model.parameters["K"].value + 0.02})
+    widened = with_model_spread(found, [TiedModel(found.estimate, away)])
+    i = found.estimate.problem.free.index("K")
+    added = widened.interval.covariance[i, i] - found.interval.covariance[i, i]
+    assert added == pytest.approx(0.02**2)
+    assert widened.interval.meaning.endswith("with the spread of 1 tied model")
+    assert with_model_spread(found, []) is found
+
+
+def test_the_trials_own_model_stays_where_it_cannot_be_judged(found: Estimation, records: list[Record]) -> None:
+    members = [fitted(found, "own", None), fitted(found, "other", [1.0, 2.0, 3.0])]
+    rows = rank_candidates(members, choose=False)
+    assert [(r.is_chosen, r.is_tied, r.note) for r in rows] == [(True, False, "it diverges"), (False, True, "")]
+    names = [r.name for r in records]
+    assert selected_estimation(found, members, rows, records, names, 8.0, SETTINGS) is found
+    assert [t.estimate for t in tied_models(members, rows)] == [found.estimate]
+
+
+def test_a_structure_may_be_called_like_another_member(found: Estimation) -> None:
+    members = [fitted(found, "as in the trial", [2.0, 3.0, 4.0]), fitted(found, "as in the trial", [1.0, 2.0, 3.0])]
+    for choose in (False, True):
+        rows = rank_candidates(members, choose=choose)
+        assert [r.is_chosen for r in rows] == [not choose, choose]
+        assert [r.is_tied for r in rows] == [False, True]
+
+
+@pytest.mark.parametrize("seconds", [20.0, None])
+def test_a_chosen_segment_length_is_that_which_was_compared(
+    model: Model, records: list[Record], seconds: float | None
+) -> None:
+    """Also where the trial leaves the length to the house."""
+    names = [r.name for r in records]
+    settings = Settings(segment_seconds=seconds, criterion=FitCriterion.MULTIPLE_SHOOTING, workers=1)
+    own = estimate_model(model, records, names, 8.0, settings)
+    members = fit_variants(own, model, records, names, 20.0, settings, Family({}, (), (0.5,)))
+    rows = [replace(row, is_chosen=row.name == "segments x 0.5") for row in rank_candidates(members, choose=False)]
+    used = selected_estimation(own, members, rows, records, names, 8.0, settings)
+    assert members[1].estimate is not None
+    assert used.estimate.problem.data.count == members[1].estimate.problem.data.count > own.estimate.problem.data.count
+
+
+def with_gap(record: Record, rows: slice) -> Record:
+    """Heading not measured in these rows."""
+    channel = record.channel("psi")
+    values = channel.values.copy()
+    values[rows] = np.nan
+    return record.with_channel("psi", channel.with_values(values))
+
+
+def test_windows_without_heading_judge_nobody(model: Model, records: list[Record]) -> None:
+    """A gap over a whole window of 20 s leaves the run's other windows; a run without any is named."""
+    names = [r.name for r in records]
+    gappy = [with_gap(records[0], slice(50, 100)), *records[1:]]
+    found = estimate_model(model, gappy, names, 8.0, SETTINGS)
+    scores = holdout_scores(found.estimate, model, gappy, 20.0)
+    assert np.all(np.isfinite(scores))
+    assert np.all(scores < 2.0)
+    with pytest.raises(InputError, match="'run 0' has no window in which both position and heading"):
+        holdout_scores(found.estimate, model, [with_gap(records[0], slice(None)), *records[1:]], 20.0)
+
+
+def test_a_model_that_is_worse_than_another_is_said(found: Estimation) -> None:
+    rows = rank_candidates(
+        [fitted(found, "own", [2.0, 3.1, 4.0]), fitted(found, "better", [1.0, 2.0, 3.0])], choose=False
+    )
+    (said,) = _better_candidate_warning(rows)
+    assert said.code == "better-model" and "'better'" in said.message and "2 deg against 3.03 deg" in said.evidence
+    assert (
+        _better_candidate_warning(
+            rank_candidates([fitted(found, "own", [1.0, 2.0]), fitted(found, "other", [1.1, 1.9])], choose=False)
+        )
+        == ()
+    )

@@ -1,0 +1,79 @@
+"""Roll models compared by runs they were not fitted to."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from seatrial.core.equations import Model
+from seatrial.core.values import InputError, Record
+from seatrial.data.trial import Family
+from seatrial.estimation.estimate import Settings, estimate_model
+from seatrial.estimation.identify.model_selection import SelectedModel
+from seatrial.estimation.identify.roll_model_selection import roll_structures, select_roll_model
+from seatrial.physics.models.nomoto import nomoto
+from seatrial.physics.models.roll import roll
+from seatrial.physics.simulate.replay import trajectory
+
+TRUE = {"b_1": 0.03, "b_2": 0.25, "c_1": 6.0, "c_3": 5.0, "phi_0": 0.002}
+DT, ROWS, NOISE = 0.05, 900, np.radians(0.02)
+
+
+def decay(name: str, start: float, seed: int) -> Record:
+    """Quadratic damping, cubic restoring, from `start` [rad]."""
+    states, _ = trajectory(roll().with_values(TRUE), np.zeros((ROWS, 2)), DT, np.array([start, 0.0]))
+    noise = NOISE * np.random.default_rng(seed).standard_normal(ROWS)
+    return Record.from_arrays(name, DT * np.arange(0.0, ROWS), {"phi": states[:, 0] + noise})
+
+
+LARGE, SMALL = decay("large", 0.3, 1), decay("small", 0.2, 2)
+
+
+def choice(train: list[Record], kept_out: list[Record], model: Model | None = None) -> SelectedModel:
+    """Of the house's family."""
+    own, names, settings = model or roll(), [r.name for r in train], Settings(workers=1)
+    found = estimate_model(own, train, names, 5.0, settings)
+    return select_roll_model(found, own, train, names, kept_out, 5.0, 5.0, settings, None)
+
+
+def test_the_structure_that_made_the_decays_is_chosen() -> None:
+    """Richer ones predict no better by a tenth, poorer ones worse; the run kept out judged, and it is said."""
+    made = choice([LARGE], [SMALL])
+    (used,) = [row for row in made.candidates if row.is_chosen]
+    assert used.name == "quadratic damping, cubic restoring"
+    assert used.roll_deg == pytest.approx(0.02, rel=0.3)
+    assert made.estimation.model.parameters.free_names == ("b_1", "b_2", "c_1", "c_3", "phi_0")
+    errors = {row.name: row.roll_deg or np.inf for row in made.candidates}
+    assert errors["linear damping, linear restoring"] > 5.0 * errors[used.name]
+    assert [f.code for f in made.findings] == ["judged-by-validation"]
+
+
+def test_two_training_runs_judge_one_another() -> None:
+    """Runs kept out stay untouched."""
+    poor = decay("kept out", 0.25, 3)
+    poor = poor.with_channel("phi", poor.channel("phi").with_values(0.5 * poor["phi"]))
+    made = choice([LARGE, SMALL], [poor])
+    assert made.findings == ()
+    (used,) = [row for row in made.candidates if row.is_chosen]
+    assert used.name == "quadratic damping, cubic restoring"
+
+
+def test_what_cannot_be_judged_is_refused() -> None:
+    """No run to judge by; runs that no decay explains."""
+    with pytest.raises(InputError, match="chosen by runs it was not fitted to; add a run"):
+        choice([LARGE], [])
+    rng = np.random.default_rng(5)
+    waves = replace(SMALL, channels={"phi": SMALL.channel("phi").with_values(0.1 * rng.standard_normal(ROWS))})
+    with pytest.raises(InputError, match="no model predicts the runs left out"):
+        choice([LARGE], [waves])
+
+
+def test_a_family_is_the_houses_or_the_trials_own() -> None:
+    """Nine of the house; a declared one frees further coefficients; one member is no family."""
+    assert len(roll_structures(roll(), None)) == 9
+    quadratic = roll().with_parameters(roll().parameters.fixed("b_3", "c_3", "c_5"))
+    assert list(roll_structures(quadratic, None)) == ["as in the trial", "linear damping, linear restoring"]
+    own = roll_structures(quadratic, Family({"cubic": ("b_3",)}))
+    assert own["cubic"].parameters.free_names == ("b_1", "b_2", "b_3", "c_1", "phi_0")
+    with pytest.raises(InputError, match="no family to choose from"):
+        roll_structures(nomoto(), None)

@@ -1,0 +1,100 @@
+"""Intervals of a prediction against what the ship then does, many times over: rudder zeros nobody modelled."""
+
+import numpy as np
+import pytest
+
+from seatrial.core.equations import Model
+from seatrial.core.values import InputError, Record
+from seatrial.data.trial import Role, TrialRecord
+from seatrial.estimation.estimate import Estimation, Settings, estimate_model
+from seatrial.estimation.predict.cross_validation import HoldoutProtocol
+from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
+from seatrial.estimation.predict.window_bands import band_coverage, holdout_windows
+from seatrial.physics.manoeuvres.programme import programme
+from seatrial.physics.models.nomoto import nomoto
+from seatrial.physics.simulate import replay
+from seatrial.physics.simulate.steer import manoeuvre
+
+K, T, RUNS, REPEATS, ZERO = 0.15, 8.0, 7, 14, 0.01
+ANGLES = (10, 12, 14, 16, 18, 20, 15)
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    return nomoto().with_values({"K": K, "T": T})
+
+
+def sailed(model: Model, name: str, angle: int, rng: np.random.Generator) -> Record:
+    """A zigzag whose rudder has a zero of its own, which the record does not show."""
+    plan = manoeuvre(model, programme(f"zigzag:{angle}/{angle}"), dt=0.5, speed=2.0, approach=5.0, duration=100.0)
+    delta, zero = plan["delta"], ZERO * rng.standard_normal()
+    truth = replay(model, Record.from_arrays(name, plan.time, {"delta": delta + zero}), {"r": 0.0})
+    noise = {"psi": 2e-3, "r": 1e-3}
+    read = {s: truth[s] + sd * rng.standard_normal(len(delta)) for s, sd in noise.items()}
+    return Record.from_arrays(name, plan.time, {"delta": delta, "u": np.full(len(delta), 2.0), **read})
+
+
+def fitted(model: Model, number: int) -> tuple[Estimation, list[TrialRecord]]:
+    rng = np.random.default_rng(number)
+    runs = [sailed(model, f"run {i}", ANGLES[i], rng) for i in range(RUNS)]
+    records = [TrialRecord(r, Role.VALIDATE if i == RUNS - 1 else Role.TRAIN, r.name) for i, r in enumerate(runs)]
+    train = runs[:-1]
+    settings = Settings(segment_seconds=20.0, workers=1)
+    return estimate_model(model, train, [r.name for r in train], 8.0, settings), records
+
+
+def told(model: Model, number: int) -> RunPredictions:
+    found, records = fitted(model, number)
+    return predict_runs(found, records, 4.0, 8.0, number)
+
+
+def test_bands_and_intervals_hold_what_happens(model: Model) -> None:
+    """Fourteen runs: gross errors show, no more; the coverage benchmark counts a hundred series."""
+    inside, measures = [], []
+    for number in range(REPEATS):
+        p = told(model, number).predictions[-1]
+        error = p.simulated["psi"] - p.measured["psi"]
+        inside.append(np.mean(np.abs(error) <= p.half_width["psi"]))
+        measures += [m.lower <= m.measured <= m.upper for m in p.measures.values()
+                     if None not in (m.measured, m.lower, m.upper) and m.upper != m.lower]  # fmt: skip
+    assert 0.84 <= np.mean(inside) <= 1.0
+    assert len(measures) >= 3 * REPEATS
+    assert 0.85 <= np.mean(measures) <= 1.0
+    assert np.mean(inside) < 0.999, "a band that never fails is too wide"
+
+
+def test_the_same_seed_gives_the_same_intervals(model: Model) -> None:
+    one, other = (told(model, 3).predictions[-1] for _ in range(2))
+    assert one.measures == other.measures
+    np.testing.assert_array_equal(one.half_width["psi"], other.half_width["psi"])
+
+
+def test_the_margin_says_what_intervals_are_made_of(model: Model) -> None:
+    margin = told(model, 1).interval_basis
+    assert margin.covariance.shape == (2, 2) and margin.degrees_of_freedom == RUNS - 2
+    assert margin.factor >= 1.0 and "overshoot_deg" in margin.measure_deviation
+    assert set(margin.training_envelope) >= {"rudder", "yaw_rate"}
+
+
+def test_training_runs_have_no_interval(model: Model) -> None:
+    made = told(model, 2)
+    assert all(not p.half_width and all(m.lower is None for m in p.measures.values()) for p in made.predictions[:-1])
+    assert all(p.extrapolation is not None for p in made.predictions)
+
+
+def test_windows_of_runs_left_out_lie_in_their_bands(model: Model) -> None:
+    found, records = fitted(model, 5)
+    bare = [TrialRecord(r.record, r.role, r.session) for r in records]
+    missed = holdout_windows(found, bare[:-1], bare[-1:], HoldoutProtocol(window_s=25.0), 1)
+    within, beyond = band_coverage(missed)
+    assert [c.run for c in within] == [r.record.name for r in bare[:-1]]
+    assert 0.8 <= np.mean([c.shares["psi"] for c in within]) <= 1.0
+    assert beyond[0].windows == 4
+
+
+def test_bands_cannot_be_judged_with_few_runs(model: Model) -> None:
+    rng = np.random.default_rng(0)
+    runs = [sailed(model, f"run {i}", ANGLES[i], rng) for i in range(2)]
+    found = estimate_model(model, runs, ["a", "b"], 8.0, Settings(segment_seconds=20.0, workers=1))
+    with pytest.raises(InputError, match="too few training runs"):
+        holdout_windows(found, [TrialRecord(r, Role.TRAIN, r.name) for r in runs], [], HoldoutProtocol(window_s=25.0))

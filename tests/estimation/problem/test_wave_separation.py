@@ -1,0 +1,58 @@
+"""Waves onward and back: a made-up flume is taken apart again, and its probes are found."""
+
+import numpy as np
+import pytest
+
+from seatrial.core.values import InputError
+from seatrial.estimation.problem.harmonic import harmonics
+from seatrial.estimation.problem.wave_separation import Probes, calibrate_wave_probes, separate_waves
+from seatrial.physics.hydro.dispersion import group_velocity, wavenumber
+
+PLACES, GAINS, DEPTH, DT = np.array([0.0, 1.95, 2.2, 2.5]), np.array([1.0, 0.95, 1.03, 0.98]), 1.0, 0.02
+OMEGAS = (4.95, 5.43, 5.86, 7.0)
+BACK = 0.6 * np.exp(1.1j)
+
+
+def elevations(omega: float, size: int = 3000) -> np.ndarray:
+    """A ramped wave onward and its reflection back, read by probes with gains: (n, p)."""
+    time = DT * np.arange(size)
+    envelope = np.clip((time - 15.0) / 6.0, 0.0, 1.0) * np.clip((48.0 - time) / 6.0, 0.0, 1.0)
+    spectrum = np.fft.fft(0.012 * envelope * np.exp(1j * omega * time), 4096)
+    frequencies = 2.0 * np.pi * np.fft.fftfreq(4096, DT)
+    kept = (frequencies > 0.5 * omega) & (frequencies < 1.6 * omega)
+    k = wavenumber(frequencies[kept], DEPTH)
+    made = []
+    for x, g in zip(PLACES, GAINS, strict=True):
+        part = np.zeros(4096, dtype=complex)
+        part[kept] = spectrum[kept] * (np.exp(-1j * k * x) + BACK * np.exp(1j * k * (x - 8.0)))
+        made.append(np.fft.ifft(part).real[:size] / g)
+    return np.stack(made, axis=1)
+
+
+def test_both_waves_are_recovered_beyond_the_probes() -> None:
+    omega, place = OMEGAS[1], 4.0
+    waves = separate_waves(elevations(omega), DT, omega, Probes(PLACES, GAINS, DEPTH), place)
+    time, k = DT * np.arange(3000), float(wavenumber(omega, DEPTH))
+    rows = slice(1500, 1500 + round(5 * 2.0 * np.pi / omega / DT))
+    onward, back = (harmonics(time[rows], w[rows], omega).first for w in (waves.incident, waves.reflected))
+    assert onward == pytest.approx(0.012 * np.exp(-1j * k * place), rel=0.02)
+    assert back == pytest.approx(0.012 * BACK * np.exp(1j * k * (place - 8.0)), rel=0.03)
+
+
+def test_the_front_arrives_with_the_group_velocity() -> None:
+    omega = OMEGAS[1]
+    waves = separate_waves(elevations(omega), DT, omega, Probes(PLACES, GAINS, DEPTH), 4.0)
+    envelope = np.abs(waves.incident)
+    half = DT * float(np.argmax(envelope > 0.5 * envelope.max()))
+    assert half == pytest.approx(18.0 + 4.0 / float(group_velocity(omega, DEPTH)), abs=1.0)
+
+
+def test_places_and_gains_are_found_from_several_periods() -> None:
+    found = calibrate_wave_probes([(elevations(w), DT, w) for w in OMEGAS], DEPTH, (1.9, 2.25, 2.45))
+    assert found.positions == pytest.approx(PLACES, abs=0.003) and found.gains == pytest.approx(GAINS, abs=0.01)
+    assert found.misfit < 0.02
+
+
+def test_two_probes_are_not_enough() -> None:
+    with pytest.raises(InputError, match="three probes"):
+        calibrate_wave_probes([(elevations(5.0), DT, 5.0)], DEPTH, (1.9,))

@@ -1,0 +1,60 @@
+"""Wave forces from an elevation: against those of the lines themselves; records that cannot give them."""
+
+import numpy as np
+import pytest
+
+from seatrial.core.values import InputError, Record
+from seatrial.physics.sea.force_spectrum import force_density
+from seatrial.physics.sea.spectrum import ittc
+from seatrial.physics.sea.wave_forces import with_wave_forces
+from seatrial_studies.seaway import SPEED, SeawayScenario, box_hull, simulate_seaway_run
+
+
+def bare(record: Record) -> Record:
+    kept = {name: c for name, c in record.channels.items() if name not in ("F3", "M5")}
+    return Record(record.name, record.time, kept, record.kind)
+
+
+@pytest.mark.parametrize("heading", [90, 135, 180])
+def test_forces_from_the_elevation_equal_those_of_the_lines(heading: int) -> None:
+    made = simulate_seaway_run(SeawayScenario(heading, duration=400.0), np.random.default_rng(1)).record
+    felt = with_wave_forces(bare(made), box_hull(), SPEED, np.radians(heading))
+    known = made.between(float(felt.time[0]), float(felt.time[-1]))
+    for name in ("F3", "M5"):
+        assert np.std(felt[name] - known[name]) < 0.01 * np.std(known[name])
+
+
+def test_a_record_with_forces_keeps_them() -> None:
+    made = simulate_seaway_run(SeawayScenario(135), np.random.default_rng(1)).record
+    kept = with_wave_forces(made, box_hull(), SPEED, 2.0)
+    assert np.array_equal(kept["F3"], made["F3"])
+    assert kept["u"][0] == SPEED
+
+
+@pytest.mark.parametrize(("change", "said"), [("short", "too short"), ("gap", "no value at sample 7"),
+                                              ("still", "never moves"), ("none", "neither wave forces")])  # fmt: skip
+def test_records_that_tell_no_force_are_refused(change: str, said: str) -> None:
+    record = bare(simulate_seaway_run(SeawayScenario(135), np.random.default_rng(1)).record)
+    zeta = record["zeta"].copy()
+    if change == "gap":
+        zeta[7] = np.nan
+    if change == "still":
+        zeta[:] = 0.3
+    channels = {**record.channels, "zeta": record.channel("zeta").with_values(zeta)}
+    if change == "none":
+        channels.pop("zeta")
+    made = Record("run", record.time, channels, record.kind)
+    with pytest.raises(InputError, match=said):
+        with_wave_forces(made.rows(slice(0, 300)) if change == "short" else made, box_hull(), SPEED, np.radians(135))
+
+
+@pytest.mark.parametrize("heading", [45, 90, 180])
+def test_the_density_of_the_force_holds_its_variance(heading: int) -> None:
+    beta, edges = np.radians(heading), np.linspace(0.0, 12.0, 600)
+    density = force_density(ittc(2.27), box_hull(), SPEED, beta, edges)
+    omega = np.linspace(*ittc(2.27).band(5e-4, 0.9995), 20_000)
+    F3, M5 = box_hull().forces(omega, SPEED, beta)
+    for j, force in enumerate((F3, M5)):
+        whole = np.trapezoid(np.abs(force) ** 2 * ittc(2.27).density(omega), omega)
+        assert np.sum(density[:, j, j].real * np.diff(edges)) == pytest.approx(whole, rel=2e-3)
+    np.testing.assert_allclose(density[:, 0, 1], density[:, 1, 0].conj())

@@ -1,0 +1,86 @@
+"""The chapter on other estimators: who comes nearest, who fails, what trajectories prove."""
+
+import re
+from dataclasses import replace
+
+import pytest
+from tests.reporting.complete_fit import baselines as fabricated
+from tests.reporting.fabricated import fabricated_fit
+
+from seatrial.core.figures.scatter import scatter
+from seatrial.core.results import Fit
+from seatrial.core.results.baseline import NO_COMPARISON
+from seatrial.core.values import Finding, Severity
+from seatrial.reporting.baselines import baseline_chapter, baseline_sentences
+from seatrial.reporting.page import html
+
+
+@pytest.fixture(scope="module")
+def fit() -> Fit:
+    """A fit of a craft that is known, beside four others."""
+    plain = fabricated_fit()
+    return replace(plain, baselines=fabricated(plain))
+
+
+def unknown(fit: Fit) -> Fit:
+    """The same where nobody knows the truth."""
+    return replace(fit, baselines=tuple(replace(r, error={}) for r in fit.baselines))
+
+
+def test_sentences_name_the_nearest_the_failed_and_what_proves_nothing(fit: Fit) -> None:
+    first, second = baseline_sentences(fit)
+    assert "4 regressions on the same training runs" in first
+    assert "One of them fails: “pipeline”." in first
+    assert "One gives coefficients with which a simulated run diverges: “Euler”." in first
+    assert "Nearest to the known values comes “weak form”: 5.0 % off in the median" in first
+    assert "held-out runs" in second and "“ridge” are 60 % off in the median" in second and "0.980 or better" in second
+
+
+def test_where_the_truth_is_not_known_the_fit_is_the_measure(fit: Fit) -> None:
+    first, second = baseline_sentences(unknown(fit))
+    assert "Nearest to the fit comes “weak form”" in first and "from the fit in the median" in second
+    chapter = baseline_chapter(unknown(fit))
+    assert chapter is not None and chapter.truth == () and "difference from the fit" in chapter.figure
+
+
+def test_the_fit_without_offsets_is_the_measure_of_headings(fit: Fit) -> None:
+    worse = replace(fit.baselines[0], name="this fit, its offsets set to zero",
+                    validation=replace(fit.baselines[0].validation, rms={"psi_deg": 99.0}))  # fmt: skip
+    both = replace(fit, baselines=(fit.baselines[0], worse, *fit.baselines[1:]))
+    assert "fit’s, its offsets set to zero: 2 of the 2 that sail the held-out runs" in baseline_sentences(both)[1]
+    chapter = baseline_chapter(both)
+    assert chapter is not None and [r.name for r in chapter.rows][:2] == [fit.baselines[0].name, "weak form"]
+
+
+def test_gaps_are_marked_in_words(fit: Fit) -> None:
+    chapter = baseline_chapter(fit)
+    assert chapter is not None
+    words = {row.name: {cell.gap_class for cell in row.cells} for row in chapter.rows}
+    assert words[fit.baselines[0].name] == {""}
+    assert words["weak form"] == {"near"} and words["ridge"] == {"off"} and words["Euler"] == {"far"}
+
+
+def test_the_page_shows_everything_once(fit: Fit) -> None:
+    page = html(fit)
+    assert len(re.findall('id="baselines"', page)) == 1
+    text = page[page.index('id="baselines"') :]
+    for words in ("Held-out runs", "Training runs", "CC of v", "pipeline failed: run a is too short",
+                  "ridge: Lasso drops N_r", "the simulation of zigzag_25_25 diverges"):  # fmt: skip
+        assert words in text
+    assert "NaN" not in text and ">nan<" not in text
+
+
+def test_a_refusal_is_one_sentence_and_silence_stays_silent(fit: Fit) -> None:
+    plain = replace(fit, baselines=())
+    assert baseline_chapter(plain) is None and 'id="baselines"' not in html(plain)
+    why = Finding(Severity.INFO, NO_COMPARISON, "no other estimators to compare: model 'nomoto' is not linear in K")
+    page = html(replace(plain, findings=(why,)))
+    section = page[page.index('id="baselines"') :].partition("</section>")[0]
+    assert "No other estimators to compare" in section and "<table" not in section
+
+
+def test_dots_keep_their_place_whatever_their_size() -> None:
+    svg = scatter({"one": {"a": (0.0, True), "b": (1e9, False)}, "two": {"a": (3.0, True)}}, "error, per cent")
+    places = [float(x) for x in re.findall(r'<circle cx="([\d.]+)"', svg)]
+    assert len(places) == 3 and all(0.0 < x < 864.0 for x in places)
+    assert scatter({}, "") == ""

@@ -1,0 +1,207 @@
+"""The page says what the records can and cannot tell: all that a fit holds of it, and nothing where it holds none."""
+
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.reporting.complete_fit import complete_fit, tanker
+from tests.reporting.fabricated import fabricated_fit
+
+from seatrial.core.figures import bands, log_rows
+from seatrial.core.figures.plot import Panel
+from seatrial.core.results import Direction, Extrapolation, Fit, Identifiability, Measure, NoiseModel, Symmetry
+from seatrial.core.text import words
+from seatrial.data.folder.result_folder import load_fit, save_fit
+from seatrial.reporting import summary, write_report
+from seatrial.reporting.identifiability_chapter import determined_sentence, identifiability_chapter
+from seatrial.reporting.page import html
+
+TITLE = "What this record can and cannot tell"
+HOSTILE = "<script>alert(1)</script>"
+
+
+@pytest.fixture(scope="module")
+def full(fit: Fit) -> Fit:
+    return fit
+
+
+@pytest.fixture(scope="module")
+def page_of_full(full: Fit) -> str:
+    return html(full)
+
+
+def headings(text: str) -> list[str]:
+    return re.findall(r"<h3[^>]*>([^<]*)", text)
+
+
+def test_it_stands_right_after_the_answer_and_in_the_contents(page_of_full: str) -> None:
+    titles = re.findall(r'<h2 id="(\w+)">', page_of_full)
+    assert titles[:2] == ["answer", "identifiability"]
+    assert '<a href="#identifiability">' in page_of_full and page_of_full.count(TITLE) == 2
+
+
+def test_everything_the_fit_says_is_on_the_page(full: Fit, page_of_full: str) -> None:
+    known, disturbance = full.identifiability, full.noise_model
+    assert known is not None and known.stability is not None and disturbance is not None
+    texts = [*(s.text for s in known.structural), *(c.text for c in known.consequences), known.stability.text]
+    texts += [d.text for d in known.directions if d.standard_deviation >= 0.1]
+    texts += [m.name for m in full.candidate_models] + [m.note for m in full.candidate_models]
+    for said in texts:
+        assert said[1:] in page_of_full
+    assert f"<b>{disturbance.method}</b>" in page_of_full
+    assert "deg/s/√s" in page_of_full and "m/s/√s" in page_of_full
+    for label in ("profile likelihoods", "how well combinations", "what each coefficient does"):
+        assert page_of_full.count(f'aria-label="{label}') == 1
+
+
+def test_without_any_of_it_there_is_no_heading_and_no_section() -> None:
+    bare = html(fabricated_fit())
+    assert TITLE not in bare and 'href="#identifiability"' not in bare
+    assert "floor" not in bare and "95 % band of the simulated" not in bare and "extrapolation" not in bare.lower()
+
+
+def test_parts_that_are_empty_have_no_heading() -> None:
+    fit = fabricated_fit()
+    only_noise = html(replace(fit, noise_model=NoiseModel("output error", math.nan, {}, {})))
+    assert TITLE in only_noise and "Noise, and the criterion chosen for it" in headings(only_noise)
+    assert not {"Models compared", "Is the ship course stable?", "What each coefficient does to these runs"} & set(
+        headings(only_noise)
+    )
+    assert "Correlations between the estimates" in headings(only_noise)
+    least = html(replace(fit, identifiability=Identifiability((), (), math.nan, math.nan)))
+    assert "The equations hide nothing" in least
+    assert not {"What these runs tell well, vaguely and not at all", "If an assumed value is wrong"} & set(
+        headings(least)
+    )
+    assert not re.search(r"\bnan\b", least)
+
+
+def test_the_same_page_comes_from_the_result_folder(full: Fit, page_of_full: str, tmp_path: Path) -> None:
+    assert html(load_fit(save_fit(full, tmp_path))) == page_of_full
+
+
+def test_texts_are_escaped(full: Fit, tmp_path: Path) -> None:
+    known, disturbance = full.identifiability, full.noise_model
+    assert known is not None and known.stability is not None and disturbance is not None
+    hostile = replace(
+        full,
+        identifiability=replace(
+            known,
+            structural=tuple(replace(s, text=HOSTILE) for s in known.structural),
+            directions=tuple(replace(d, text=HOSTILE, combination={HOSTILE: 1.0}) for d in known.directions),
+            collinearity=tuple(replace(c, parameter=HOSTILE, partner=HOSTILE) for c in known.collinearity),
+            sensitivities=tuple(replace(s, parameter=HOSTILE) for s in known.sensitivities),
+            consequences=tuple(replace(c, text=HOSTILE, parameter=HOSTILE) for c in known.consequences),
+            stability=replace(known.stability, text=HOSTILE),
+            profiles=tuple(replace(p, parameter=HOSTILE) for p in known.profiles),
+        ),
+        noise_model=replace(disturbance, text=HOSTILE, method=HOSTILE, process={HOSTILE: 1.0}),
+        candidate_models=tuple(replace(m, name=HOSTILE, note=HOSTILE) for m in full.candidate_models),
+        predictions=tuple(replace(p, extrapolation=Extrapolation(3.0, {HOSTILE: 3.0})) for p in full.predictions),
+    )
+    text = write_report(hostile, tmp_path / "hostile.html").read_text()
+    assert HOSTILE not in text and text.count("<script>") == 1
+
+
+def test_intervals_of_measures_say_whether_they_hold(full: Fit) -> None:
+    p = next(p for p in full.predictions if p.role == "validation")
+    m = p.measures["overshoot_1_deg"]
+    missed = replace(p, measures=p.measures | {"overshoot_1_deg": replace(m, measured=9.9)})
+    assert html(full).count("✗ outside") == 0
+    assert html(replace(full, predictions=(missed,))).count("✗ outside") == 1
+
+
+def test_a_value_outside_is_seen_to_be_outside() -> None:
+    """14.08 against [14.09, 14.38]: with one decimal it would read 14.1 in [14.1, 14.4]."""
+    assert words.measure_decimals("deg", Measure(14.08, 14.23, 14.09, 14.38)) == 2
+    assert words.measure_decimals("deg", Measure(12.9, 11.5, 9.9, 13.2)) == 1
+    assert words.measure_decimals("deg", Measure(35.0, 35.0, 35.0, 35.0)) == 1
+    assert words.measure_decimals("L", Measure(3.1, 3.05)) == 2
+
+
+def test_the_answer_gives_intervals_floor_criterion_and_what_cannot_be_told(full: Fit) -> None:
+    said = " ".join(summary.sentences(full))
+    assert "first overshoot 8.42° [8.08, 8.71], measured 8.31°" in said
+    assert "4 of 4 measured manoeuvring values lie inside" in said
+    assert "process noise alone would leave 1.4° and 0.19 m" in said
+    assert "The records determine about 6 of 11 free coefficients; the rest comes from the priors." in said
+    assert "Whatever the manoeuvre, all coefficients, thrust and inertias can be scaled together" in said
+    assert "The criterion is prediction error, with process noise in u, v and r." in said
+    assert "zigzag_25_25 is extrapolation, index 1.9" in said
+
+
+def test_a_long_change_is_shortened_in_the_answer(full: Fit) -> None:
+    known = full.identifiability
+    assert known is not None
+    names = tuple("abcdefgh")
+    long = Symmetry(names, f"{', '.join(names)} can " + "very " * 60 + "well be scaled", {})
+    said = " ".join(summary.sentences(replace(full, identifiability=replace(known, structural=(long,)))))
+    assert "Whatever the manoeuvre, a, b, c, d, e and 3 more can change together without showing" in said
+
+
+@pytest.mark.parametrize(("index", "where"), [(0.7, "inside"), (1.04, "inside"), (1.15, "edge"), (1.9, "beyond"),
+                                              (math.inf, "beyond"), (math.nan, "")])  # fmt: skip
+def test_an_extrapolation_is_inside_at_the_edge_or_beyond(index: float, where: str) -> None:
+    assert words.extrapolation_zone(index) == where
+
+
+def test_an_extrapolation_in_words() -> None:
+    ratios = {"yaw_rate": 1.9, "drift": 1.3, "rudder": 0.9}
+    assert words.extrapolation_text(Extrapolation(1.9, ratios)) == (
+        "1.9: the run turns 1.9 times as fast as any training run, with 1.3 times the drift angle. "
+        "Read its intervals as lower limits."
+    )
+    assert words.extrapolation_text(Extrapolation(math.inf, {"drift": math.inf})).startswith(
+        "∞: the run drifts at ∞ times"
+    )
+    assert "stays inside" in words.extrapolation_text(Extrapolation(0.8, {"speed": 0.8}))
+
+
+def test_sentences_keep_the_names_they_begin_with() -> None:
+    assert words.sentence("m_x is fixed") == "m_x is fixed."
+    assert words.sentence("m is fixed", ["m"]) == "m is fixed."
+    assert words.sentence("all are known.") == "All are known."
+    assert words.sentence("") == ""
+
+
+def test_the_number_of_determined_coefficients_is_said_of_the_free_ones(full: Fit) -> None:
+    known = full.identifiability
+    assert known is not None
+    whole = replace(full, identifiability=replace(known, effective_parameters=10.9))
+    assert determined_sentence(whole) == "The records determine all 11 free coefficients."
+    without = tuple(replace(c, prior_mean=None) for c in full.coefficients)
+    assert determined_sentence(replace(full, coefficients=without)).endswith("the rest is left open.")
+
+
+def test_a_tanker_with_many_coefficients_folds_what_is_long() -> None:
+    fit = complete_fit(tanker())
+    text = html(fit)
+    assert "The records determine about 23 of 43 free coefficients; the rest comes from the priors." in text
+    assert "27 further combinations not drawn" in text and "23 further coefficients with smaller effects" in text
+    assert len(text.encode()) < 1_500_000
+
+
+def test_directions_are_sorted_into_zones(full: Fit) -> None:
+    shown = identifiability_chapter(full)
+    known = full.identifiability
+    assert shown is not None and known is not None
+    counts = [int(re.findall(r"\d+", zone.text)[0]) for zone in shown.accuracy_classes]
+    assert sum(counts) == len(known.directions) and counts == [4, 3, 4]
+
+
+def test_the_parts_of_a_direction_are_its_largest() -> None:
+    direction = Direction({"Y_v": 0.74, "N_v": -0.56, "a": 0.3, "b": 0.25, "c": 0.01}, 0.4, "")
+    assert log_rows.combination_text(direction) == ".74 Y_v − .56 N_v + .30 a …"
+    assert log_rows.combination_text(Direction({"Y_v": -1.0}, 0.4, "")) == "− Y_v"
+
+
+def test_an_envelope_has_the_half_width_to_the_side_of_the_track() -> None:
+    """North at 3 m to the sides (east), whatever the half width along the track."""
+    panel = Panel(0.0, 0.0, 100.0, 100.0, (-50.0, 50.0), (0.0, 100.0))
+    east, north = np.zeros(50), np.linspace(10.0, 90.0, 50)
+    drawn = bands.along_track(panel, east, north, (np.full(50, 3.0), np.full(50, 20.0)))
+    x = [float(v) for v in re.findall(r"[ML](\S+) ", drawn)]
+    assert min(x) == pytest.approx(47.0) and max(x) == pytest.approx(53.0)
