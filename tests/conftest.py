@@ -1,12 +1,16 @@
-"""What every test may use: real records where they can be had, a seeded generator, the machine's browser."""
+"""What every test may use: real records, a seeded generator, the command line, the machine's browser."""
 
 import os
 import shutil
+import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import settings
+
+from seatrial import cli
 
 REPOSITORY = Path(__file__).parents[1]
 
@@ -41,6 +45,19 @@ def browser_path() -> str:
         if found:
             return found
     pytest.skip("no Chromium on this machine; install the package 'chromium' to run browser tests")
+
+
+@pytest.fixture
+def run_command(monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
+    """The command line in this process: takes the arguments after `seatrial`, returns the exit code."""
+
+    def run(*arguments: str | Path) -> int:
+        monkeypatch.setattr(sys, "argv", ["seatrial", *map(str, arguments)])
+        with pytest.raises(SystemExit) as ending:
+            cli.main()
+        return int(ending.value.code or 0)
+
+    return run
 
 
 @pytest.fixture

@@ -3,25 +3,18 @@
 import json
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from seatrial import cli
 from seatrial.core.values import Ship
 from seatrial.data.folder.model_file import ModelFile, write_model
 from seatrial.physics.models import model_named
 
 COMMANDS = ("check", "identify", "design", "simulate", "report", "demo", "reproduce")
 HEAVY = ("numpy", "numba", "sympy", "pandas", "pydantic", "matplotlib", "scipy")
-
-
-def run(monkeypatch: pytest.MonkeyPatch, *arguments: str | Path) -> int:
-    monkeypatch.setattr(sys, "argv", ["seatrial", *map(str, arguments)])
-    with pytest.raises(SystemExit) as ending:
-        cli.main()
-    return int(ending.value.code or 0)
 
 
 @pytest.fixture
@@ -32,8 +25,8 @@ def model_file(tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_help_shows_an_example(command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
-    assert run(monkeypatch, command, "--help") == 0
+def test_help_shows_an_example(command: str, run_command: Callable[..., int], capsys: pytest.CaptureFixture) -> None:
+    assert run_command(command, "--help") == 0
     said = capsys.readouterr().out
     assert f"Example: seatrial {command}" in said
     assert "--json" in said
@@ -53,63 +46,63 @@ def test_help_imports_nothing_heavy() -> None:
 
 
 def test_bad_input_is_one_line_and_exit_code_2(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+    tmp_path: Path, run_command: Callable[..., int], capsys: pytest.CaptureFixture
 ) -> None:
-    assert run(monkeypatch, "check", tmp_path / "absent.toml") == 2
+    assert run_command("check", tmp_path / "absent.toml") == 2
     said = capsys.readouterr().err
     assert said.startswith("seatrial: trial file")
     assert said.count("\n") == 1
 
 
 def test_a_folder_that_cannot_be_written_is_refused_before_the_work(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+    tmp_path: Path, run_command: Callable[..., int], capsys: pytest.CaptureFixture
 ) -> None:
     (tmp_path / "file").write_text("")
-    assert run(monkeypatch, "identify", tmp_path / "absent.toml", "--out", tmp_path / "file" / "folder") == 2
+    assert run_command("identify", tmp_path / "absent.toml", "--out", tmp_path / "file" / "folder") == 2
     assert "cannot be written" in capsys.readouterr().err
 
 
 def test_json_that_cannot_be_written_is_refused_before_the_work(
-    model_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+    model_file: Path, tmp_path: Path, run_command: Callable[..., int], capsys: pytest.CaptureFixture
 ) -> None:
     out = tmp_path / "out.csv"
     arguments = ("simulate", model_file, "--manoeuvre", "zigzag:20/20", "--out", out, "--json", tmp_path)
-    assert run(monkeypatch, *arguments) == 2
+    assert run_command(*arguments) == 2
     assert "is a folder; name a file" in capsys.readouterr().err
     assert not out.exists()
 
 
-def test_an_unknown_study_is_refused(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
-    assert run(monkeypatch, "reproduce", "nobody1900") == 2
+def test_an_unknown_study_is_refused(run_command: Callable[..., int], capsys: pytest.CaptureFixture) -> None:
+    assert run_command("reproduce", "nobody1900") == 2
     assert "unknown study 'nobody1900'" in capsys.readouterr().err
 
 
 def test_an_interrupt_ends_with_a_sentence(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+    tmp_path: Path, run_command: Callable[..., int], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("seatrial.api.load_trial", interrupted)
-    assert run(monkeypatch, "check", tmp_path / "any.toml") == 130
+    assert run_command("check", tmp_path / "any.toml") == 130
     assert "seatrial: interrupted" in capsys.readouterr().err
 
 
 def test_a_model_file_is_steered(
-    model_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+    model_file: Path, tmp_path: Path, run_command: Callable[..., int], capsys: pytest.CaptureFixture
 ) -> None:
     arguments = ("--manoeuvre", "zigzag:20/20", "--out", tmp_path / "z.csv", "--json", tmp_path / "z.json")
-    assert run(monkeypatch, "simulate", model_file, *arguments) == 0
+    assert run_command("simulate", model_file, *arguments) == 0
     assert "overshoot_1_deg" in capsys.readouterr().out
     assert json.loads((tmp_path / "z.json").read_text())["measures"]["overshoot_1_deg"] > 0.0
 
 
 def test_a_simulated_record_replays_to_itself(
-    model_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    model_file: Path, tmp_path: Path, run_command: Callable[..., int]
 ) -> None:
     one, two = tmp_path / "one.csv", tmp_path / "two.csv"
-    assert run(monkeypatch, "simulate", model_file, "--manoeuvre", "turning-circle:20", "--out", one) == 0
-    assert run(monkeypatch, "simulate", model_file, "--inputs", one, "--out", two) == 0
+    assert run_command("simulate", model_file, "--manoeuvre", "turning-circle:20", "--out", one) == 0
+    assert run_command("simulate", model_file, "--inputs", one, "--out", two) == 0
     assert one.read_text().splitlines()[-1] == two.read_text().splitlines()[-1]
 
 
@@ -126,24 +119,24 @@ def test_a_simulated_record_replays_to_itself(
 def test_simulate_refuses_in_one_sentence(
     model_file: Path,
     tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    run_command: Callable[..., int],
     capsys: pytest.CaptureFixture,
     arguments: tuple[str, ...],
     says: str,
 ) -> None:
-    assert run(monkeypatch, "simulate", model_file, *arguments, "--out", tmp_path / "out.csv") == 2
+    assert run_command("simulate", model_file, *arguments, "--out", tmp_path / "out.csv") == 2
     assert says in capsys.readouterr().err
 
 
 def test_a_model_file_whose_covariance_is_none_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+    tmp_path: Path, run_command: Callable[..., int], capsys: pytest.CaptureFixture
 ) -> None:
     model = model_named("waterjet")
     broken = np.eye(len(model.parameters.free))
     broken[0, 1] = broken[1, 0] = 2.0
     write_model(ModelFile(model, broken, ship=Ship("craft", {"L": 9.8})), tmp_path / "model.toml")
     out = tmp_path / "z.csv"
-    assert run(monkeypatch, "simulate", tmp_path / "model.toml", "--manoeuvre", "zigzag:20/20", "--out", out) == 2
+    assert run_command("simulate", tmp_path / "model.toml", "--manoeuvre", "zigzag:20/20", "--out", out) == 2
     said = capsys.readouterr().err
     assert "covariance is not positive definite (smallest eigenvalue -1 " in said
     assert said.count("\n") == 1
@@ -151,12 +144,12 @@ def test_a_model_file_whose_covariance_is_none_is_refused(
 
 
 def test_a_voyage_in_waves_is_replayed_beside_its_record(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, repository: Path
+    tmp_path: Path, run_command: Callable[..., int], capsys: pytest.CaptureFixture, repository: Path
 ) -> None:
     trial = repository / "examples" / "heave_pitch.toml"
-    assert run(monkeypatch, "identify", trial, "--out", tmp_path / "fit") == 0
+    assert run_command("identify", trial, "--out", tmp_path / "fit") == 0
     model = tmp_path / "fit" / "model.toml"
     replayed = ("--trial", trial, "--inputs", "voyage_held_out", "--out", tmp_path / "run.csv")
-    assert run(monkeypatch, "simulate", model, *replayed, "--json", tmp_path / "run.json") == 0
+    assert run_command("simulate", model, *replayed, "--json", tmp_path / "run.json") == 0
     assert "against voyage_held_out: rms theta_deg" in capsys.readouterr().out
     assert json.loads((tmp_path / "run.json").read_text())["rms"]["z"] < 0.015

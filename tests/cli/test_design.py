@@ -2,7 +2,7 @@
 
 import csv
 import json
-import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from tests.reporting.fabricated_design import fabricated_design
 
-from seatrial import api, cli
+from seatrial import api
 from seatrial.core.results import TimedOrder
 from seatrial.core.values import InputError, RecordKind, Ship
 from seatrial.data.folder.design_json import DesignDocument
@@ -42,13 +42,6 @@ v_j = 1.866
 """
 
 
-def run(monkeypatch: pytest.MonkeyPatch, *arguments: str | Path) -> int:
-    monkeypatch.setattr(sys, "argv", ["seatrial", *map(str, arguments)])
-    with pytest.raises(SystemExit) as ending:
-        cli.main()
-    return int(ending.value.code or 0)
-
-
 @pytest.fixture
 def trial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A trial file; the search is replaced by a design nobody searched."""
@@ -59,10 +52,10 @@ def trial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_it_writes_four_files_and_prints_what_they_say(
-    trial: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+    trial: Path, tmp_path: Path, run_command: Callable[..., int], capsys: pytest.CaptureFixture
 ) -> None:
     out = tmp_path / "new" / "plan"
-    assert run(monkeypatch, "design", trial, "--out", out, "--json", tmp_path / "d.json") == 0
+    assert run_command("design", trial, "--out", out, "--json", tmp_path / "d.json") == 0
     assert sorted(p.name for p in out.iterdir()) == [
         "design.json",
         "model.toml",
@@ -78,11 +71,11 @@ def test_it_writes_four_files_and_prints_what_they_say(
     assert json.loads((tmp_path / "d.json").read_text()) == json.loads((out / "design.json").read_text())
 
 
-def test_the_plan_replays(trial: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_plan_replays(trial: Path, tmp_path: Path, run_command: Callable[..., int]) -> None:
     model, run_file = tmp_path / "model.toml", tmp_path / "run.csv"
     write_model(ModelFile(model_named("waterjet"), ship=Ship("craft", {"L": 9.8})), model)
-    assert run(monkeypatch, "design", trial, "--out", tmp_path / "plan") == 0
-    assert run(monkeypatch, "simulate", model, "--inputs", tmp_path / "plan" / "plan.csv", "--out", run_file) == 0
+    assert run_command("design", trial, "--out", tmp_path / "plan") == 0
+    assert run_command("simulate", model, "--inputs", tmp_path / "plan" / "plan.csv", "--out", run_file) == 0
     plan, sailed = read_record_csv(tmp_path / "plan" / "plan.csv"), read_record_csv(run_file)
     assert plan.kind is RecordKind.PLANNED
     assert np.array_equal(sailed["delta"], plan["delta"])
@@ -116,13 +109,17 @@ def test_json_is_as_documented_and_holds_no_infinity(tmp_path: Path) -> None:
 
 
 def test_a_search_that_refuses_leaves_nothing_behind(
-    trial: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+    trial: Path,
+    tmp_path: Path,
+    run_command: Callable[..., int],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture,
 ) -> None:
     def refused(*_: object, **__: object) -> None:
         raise InputError("design.drift: even a straight run leaves it; allow more")
 
     monkeypatch.setattr("seatrial.api.design", refused)
-    assert run(monkeypatch, "design", trial, "--out", tmp_path / "plan") == 2
+    assert run_command("design", trial, "--out", tmp_path / "plan") == 2
     assert capsys.readouterr().err.endswith("seatrial: design.drift: even a straight run leaves it; allow more\n")
     assert not (tmp_path / "plan").exists()
 
@@ -135,20 +132,20 @@ def test_a_search_that_refuses_leaves_nothing_behind(
     ],
 )
 def test_files_that_are_not_there_are_said(
-    trial: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture,
+    trial: Path, tmp_path: Path, run_command: Callable[..., int], capsys: pytest.CaptureFixture,
     arguments: tuple[str, ...], says: str,
 ) -> None:  # fmt: skip
-    assert run(monkeypatch, "design", trial, "--out", tmp_path / "plan", *arguments) == 2
+    assert run_command("design", trial, "--out", tmp_path / "plan", *arguments) == 2
     assert says in capsys.readouterr().err
     assert not (tmp_path / "plan").exists()
 
 
 @pytest.mark.parametrize("command", ["check", "identify"])
 def test_a_trial_without_records_is_only_designed(
-    command: str, trial: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+    command: str, trial: Path, tmp_path: Path, run_command: Callable[..., int], capsys: pytest.CaptureFixture
 ) -> None:
     out = ("--out", tmp_path / "fit") if command == "identify" else ()
-    assert run(monkeypatch, command, trial, *out) == 2
+    assert run_command(command, trial, *out) == 2
     said = capsys.readouterr().err.strip()
     assert said.endswith("there are no [[records]] to read; add them, or plan a trial with 'seatrial design'")
     assert said.count("\n") == 0
@@ -177,13 +174,13 @@ hold = 20
 
 
 def test_the_search_itself_beats_the_standard_and_repeats_to_the_bit(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+    tmp_path: Path, run_command: Callable[..., int], capsys: pytest.CaptureFixture
 ) -> None:
     path = tmp_path / "yawing.toml"
     path.write_text(YAWING)
     tables = []
     for name in ("one", "two"):
-        assert run(monkeypatch, "design", path, "--out", tmp_path / name, "--seed", "3") == 0
+        assert run_command("design", path, "--out", tmp_path / name, "--seed", "3") == 0
         table = json.loads((tmp_path / name / "design.json").read_text())
         tables.append({key: value for key, value in table.items() if key != "elapsed_s"})
     assert tables[0] == tables[1]

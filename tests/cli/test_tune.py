@@ -1,7 +1,7 @@
 """`seatrial tune`: a folder whole or not at all, tables people read, bad input in one sentence."""
 
 import json
-import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,13 +24,6 @@ from seatrial.physics.loops import margins
 from seatrial.physics.models import model_named
 
 
-def run(monkeypatch: pytest.MonkeyPatch, *arguments: str | Path) -> int:
-    monkeypatch.setattr(sys, "argv", ["seatrial", *map(str, arguments)])
-    with pytest.raises(SystemExit) as ending:
-        cli.main()
-    return int(ending.value.code or 0)
-
-
 @pytest.fixture
 def loop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A loop file; the search is replaced by a tuning nobody searched."""
@@ -39,10 +32,10 @@ def loop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_it_writes_five_files_and_prints_what_they_say(
-    loop: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+    loop: Path, tmp_path: Path, run_command: Callable[..., int], capsys: pytest.CaptureFixture
 ) -> None:
     out = tmp_path / "new" / "fins"
-    assert run(monkeypatch, "tune", loop, "--out", out, "--json", tmp_path / "t.json") == 0
+    assert run_command("tune", loop, "--out", out, "--json", tmp_path / "t.json") == 0
     names = ["gains.toml", "loop.mat", "report.html", "schedule.csv", "tuning.json"]
     assert sorted(p.name for p in out.iterdir()) == names
     tuning = fabricated_fin()
@@ -60,10 +53,10 @@ def test_it_writes_five_files_and_prints_what_they_say(
 
 
 def test_without_a_folder_it_only_prints(
-    loop: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+    loop: Path, tmp_path: Path, run_command: Callable[..., int], capsys: pytest.CaptureFixture
 ) -> None:
     before = sorted(tmp_path.iterdir())
-    assert run(monkeypatch, "tune", loop) == 0
+    assert run_command("tune", loop) == 0
     assert "chosen: KP 19.4" in capsys.readouterr().out
     assert sorted(tmp_path.iterdir()) == before
 
@@ -102,23 +95,29 @@ def test_margins_that_nothing_limits_are_said_so(capsys: pytest.CaptureFixture) 
 
 
 def test_a_search_that_refuses_leaves_nothing_behind(
-    loop: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+    loop: Path,
+    tmp_path: Path,
+    run_command: Callable[..., int],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture,
 ) -> None:
     def refused(*_: object, **__: object) -> Tuning:
         raise InputError("no gains keep the limits: Ms by 12 %; raise that limit")
 
     monkeypatch.setattr("seatrial.api.tune", refused)
-    assert run(monkeypatch, "tune", loop, "--out", tmp_path / "fins") == 2
+    assert run_command("tune", loop, "--out", tmp_path / "fins") == 2
     assert capsys.readouterr().err.endswith("seatrial: no gains keep the limits: Ms by 12 %; raise that limit\n")
     assert not (tmp_path / "fins").exists()
 
 
-def test_an_interruption_leaves_nothing_behind(loop: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interruption_leaves_nothing_behind(
+    loop: Path, tmp_path: Path, run_command: Callable[..., int], monkeypatch: pytest.MonkeyPatch
+) -> None:
     def interrupted(*_: object, **__: object) -> Tuning:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("seatrial.api.tune", interrupted)
-    assert run(monkeypatch, "tune", loop, "--out", tmp_path / "fins") == cli.INTERRUPT_EXIT_CODE
+    assert run_command("tune", loop, "--out", tmp_path / "fins") == cli.INTERRUPT_EXIT_CODE
     assert not (tmp_path / "fins").exists()
 
 
@@ -135,11 +134,11 @@ def test_an_interruption_leaves_nothing_behind(loop: Path, tmp_path: Path, monke
     ],
 )
 def test_bad_input_is_one_line_and_code_two(
-    loop: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture,
-    arguments: tuple[str, ...], says: str,
+    loop: Path, tmp_path: Path, run_command: Callable[..., int], monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture, arguments: tuple[str, ...], says: str,
 ) -> None:  # fmt: skip
     monkeypatch.chdir(loop.parent)
-    code = run(monkeypatch, "tune", *arguments, "--out", tmp_path / "fins")
+    code = run_command("tune", *arguments, "--out", tmp_path / "fins")
     said = capsys.readouterr().err
     assert (code, says in " ".join(said.split()), said.strip().count("\n")) == (2, True, 0)
     assert not (tmp_path / "fins").exists()

@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from tests.reporting.fabricated import fabricated_fit
 
-from seatrial import api, cli
+from seatrial import api
 from seatrial.core.results import CandidateModel, Study, Verdict
 from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.folder.fit_json import strict_json
@@ -61,18 +61,18 @@ def test_the_page_and_the_json_are_written(quick: Study, tmp_path: Path) -> None
 
 
 def test_the_command_writes_report_and_json_and_prints_what_fails(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+    tmp_path: Path,
+    run_command: Callable[..., int],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture,
 ) -> None:
     repetition = made(factor=1.2)
     bare = Study("bare", "Nobody 2022", (verdicts.turning_claim(repetition),), verdicts.checks(repetition))
     installed = SimpleNamespace(name="bare", load=lambda: lambda **_: bare)
     monkeypatch.setattr("seatrial.api.entry_points", lambda group: [installed])  # noqa: ARG005
-    arguments = ["seatrial", "reproduce", "bare", "--out", str(tmp_path / "out"), "--json", str(tmp_path / "bare.json")]
-    monkeypatch.setattr("sys.argv", arguments)
-    with pytest.raises(SystemExit) as ending:
-        cli.main()
+    code = run_command("reproduce", "bare", "--out", tmp_path / "out", "--json", tmp_path / "bare.json")
     said = capsys.readouterr().out
-    assert not ending.value.code and "FAILS      35 deg turn to port, advance [L]: 3.701 (limit 3.01 to 3.28)" in said
+    assert code == 0 and "FAILS      35 deg turn to port, advance [L]: 3.701 (limit 3.01 to 3.28)" in said
     written = [tmp_path / "bare.json", tmp_path / "out" / "study.json"]
     assert len({path.read_text() for path in written}) == 1 and (tmp_path / "out" / "report.html").exists()
 

@@ -1,15 +1,12 @@
 """Records and trials that cannot be identified: one sentence on standard error, exit code 2, no result folder."""
 
 import re
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 from tests.estimation.identify.conftest import WriteTrial
-
-from seatrial import cli
 
 Spoil = Callable[[Path], None]
 
@@ -82,16 +79,13 @@ CASES: dict[str, tuple[str, Spoil, str]] = {
 
 @pytest.mark.parametrize("name", CASES)
 def test_one_sentence_and_exit_code_2(
-    name: str, trial_of: WriteTrial, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+    name: str, trial_of: WriteTrial, run_command: Callable[..., int], capsys: pytest.CaptureFixture
 ) -> None:
     model, spoil, says = CASES[name]
     path = trial_of({"a": 0.0, "b": 0.0}, model=model)
     spoil(path.parent)
     out = path.parent / "result"
-    monkeypatch.setattr(sys, "argv", ["seatrial", "identify", str(path), "--out", str(out)])
-    with pytest.raises(SystemExit) as ending:
-        cli.main()
-    assert ending.value.code == 2
+    assert run_command("identify", path, "--out", out) == 2
     last = capsys.readouterr().err.splitlines()[-1]
     assert last.startswith("seatrial: ")
     assert re.search(says, last), last

@@ -1,30 +1,21 @@
 """`seatrial identify` and `simulate` as a user sees them: what they say of their uncertainty, and what they refuse."""
 
 import json
-import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 from tests.estimation.identify.conftest import WriteTrial
 
-from seatrial import cli
-
 RUNS = {"a": 0.0, "b": 0.01, "c": -0.01, "d": 0.02, "e": -0.02, "v_f": 0.01}
 
 
-def run(monkeypatch: pytest.MonkeyPatch, *arguments: str | Path) -> int:
-    monkeypatch.setattr(sys, "argv", ["seatrial", *map(str, arguments)])
-    with pytest.raises(SystemExit) as ending:
-        cli.main()
-    return int(ending.value.code or 0)
-
-
 @pytest.fixture
-def told(trial_of: WriteTrial, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def told(trial_of: WriteTrial, tmp_path: Path, run_command: Callable[..., int]) -> Path:
     """A result folder with `fit.json` beside it: five zigzags train, one is kept out."""
     trial, out = trial_of(RUNS), tmp_path / "out"
-    assert run(monkeypatch, "identify", trial, "--out", out, "--json", tmp_path / "fit.json") == 0
+    assert run_command("identify", trial, "--out", out, "--json", tmp_path / "fit.json") == 0
     return out
 
 
@@ -41,9 +32,9 @@ def test_identify_tells_what_the_records_tell(told: Path) -> None:
     assert all(m["lower"] <= m["simulated"] <= m["upper"] for m in bounded)
 
 
-def test_a_steered_manoeuvre_has_intervals_and_an_index(told: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_steered_manoeuvre_has_intervals_and_an_index(told: Path, run_command: Callable[..., int]) -> None:
     arguments = ("--manoeuvre", "zigzag:20/20", "--out", told / "z.csv", "--json", told / "z.json", "--speed", "2")
-    assert run(monkeypatch, "simulate", told / "model.toml", *arguments) == 0
+    assert run_command("simulate", told / "model.toml", *arguments) == 0
     table = json.loads((told / "z.json").read_text())
     low, high = table["intervals"]["overshoot_1_deg"]
     assert low < table["measures"]["overshoot_1_deg"] < high
@@ -52,11 +43,11 @@ def test_a_steered_manoeuvre_has_intervals_and_an_index(told: Path, monkeypatch:
 
 @pytest.mark.parametrize("kind", ["jackknife", "bootstrap", "profile"])
 def test_every_kind_of_interval_can_be_had(
-    trial_of: WriteTrial, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str
+    trial_of: WriteTrial, tmp_path: Path, run_command: Callable[..., int], kind: str
 ) -> None:
     trial = trial_of(RUNS, more='[estimate]\ncriterion = "multiple-shooting"')
     arguments = ("--intervals", kind, "--out", tmp_path / "out", "--json", tmp_path / "fit.json")
-    assert run(monkeypatch, "identify", trial, *arguments) == 0
+    assert run_command("identify", trial, *arguments) == 0
     fit = json.loads((tmp_path / "fit.json").read_text())
     errors = {c["name"]: c for c in fit["coefficients"] if not c["fixed"]}
     assert all(c["lower"] < c["estimate"] < c["upper"] for c in errors.values())
@@ -66,11 +57,11 @@ def test_every_kind_of_interval_can_be_had(
 
 
 def test_a_profile_that_cannot_be_had_is_said(
-    trial_of: WriteTrial, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    trial_of: WriteTrial, tmp_path: Path, run_command: Callable[..., int]
 ) -> None:
     trial = trial_of({"a": 0.0}, more='[estimate]\ncriterion = "prediction-error"')
     arguments = ("--intervals", "profile", "--out", tmp_path / "out", "--json", tmp_path / "fit.json")
-    assert run(monkeypatch, "identify", trial, *arguments) == 0
+    assert run_command("identify", trial, *arguments) == 0
     fit = json.loads((tmp_path / "fit.json").read_text())
     assert [f["code"] for f in fit["findings"] if f["code"] == "no-profile"] == ["no-profile"]
 
@@ -86,31 +77,31 @@ def test_a_profile_that_cannot_be_had_is_said(
 def test_what_cannot_be_had_is_refused_in_one_sentence(
     trial_of: WriteTrial,
     tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    run_command: Callable[..., int],
     capsys: pytest.CaptureFixture,
     arguments: tuple[str, ...],
     says: str,
 ) -> None:
     out = tmp_path / "out"
-    assert run(monkeypatch, "identify", trial_of({"a": 0.0}), "--out", out, *arguments) == 2
+    assert run_command("identify", trial_of({"a": 0.0}), "--out", out, *arguments) == 2
     said = [line for line in capsys.readouterr().err.splitlines() if line.startswith("seatrial:")]
     assert len(said) == 1 and says in said[0]
     assert not out.exists() or not list(out.iterdir())
 
 
 def test_the_same_seed_gives_the_same_file(
-    trial_of: WriteTrial, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    trial_of: WriteTrial, tmp_path: Path, run_command: Callable[..., int]
 ) -> None:
     trial, measures = trial_of(RUNS), []
     for seed in (1, 1, 2):
         file = tmp_path / f"{seed}.json"
-        assert run(monkeypatch, "identify", trial, "--out", tmp_path / "out", "--json", file, "--seed", seed) == 0
+        assert run_command("identify", trial, "--out", tmp_path / "out", "--json", file, "--seed", seed) == 0
         measures.append(json.loads(file.read_text())["validation"][0]["measures"])
     assert measures[0] == measures[1] != measures[2]
 
 
 def test_an_interrupt_during_refits_leaves_nothing_half_written(
-    trial_of: WriteTrial, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    trial_of: WriteTrial, tmp_path: Path, run_command: Callable[..., int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def interrupted(*_: object, **__: object) -> np.ndarray:
         raise KeyboardInterrupt
@@ -118,5 +109,5 @@ def test_an_interrupt_during_refits_leaves_nothing_half_written(
     monkeypatch.setattr("seatrial.estimation.estimate.intervals.full_jackknife", interrupted)
     out = tmp_path / "out"
     trial = trial_of(RUNS, more='[estimate]\ncriterion = "multiple-shooting"')
-    assert run(monkeypatch, "identify", trial, "--out", out, "--intervals", "jackknife") == 130
+    assert run_command("identify", trial, "--out", out, "--intervals", "jackknife") == 130
     assert not out.exists() or not list(out.iterdir())

@@ -2,14 +2,14 @@
 
 import importlib
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from seatrial import api, cli
+from seatrial import api
 from seatrial.core.results import Verdict
 from seatrial.core.values import InputError
 from seatrial.data.folder.fit_json import strict_json
@@ -140,16 +140,17 @@ def test_the_command_writes_a_page(made: SectionAnalysis, tmp_path: Path, monkey
 
 @pytest.mark.parametrize("folder", [None, "nowhere"])
 def test_without_the_records_it_says_one_sentence(
-    folder: str | None, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+    folder: str | None,
+    run_command: Callable[..., int],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture,
 ) -> None:
     monkeypatch.delenv("SEATRIAL_DATA", raising=False)
     if folder:
         monkeypatch.setenv("SEATRIAL_DATA", folder)
-    monkeypatch.setattr("sys.argv", ["seatrial", "reproduce", "section2d"])
-    with pytest.raises(SystemExit) as ending:
-        cli.main()
+    code = run_command("reproduce", "section2d")
     said = capsys.readouterr().err
-    assert ending.value.code == 2 and "set it to their folder" in said and len(said.strip().splitlines()) == 1
+    assert code == 2 and "set it to their folder" in said and len(said.strip().splitlines()) == 1
 
 
 def test_a_broken_list_of_periods_is_named(tmp_path: Path) -> None:
