@@ -12,7 +12,7 @@ from pathlib import Path
 from seatrial.core.values import InputError
 from seatrial.data.trial import load_records, load_trial
 from seatrial.estimation.estimate.fit import estimate_model
-from seatrial.estimation.identify.identify import settings_from_trial
+from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.predict.cross_validation import (
     CrossValidation,
     Fold,
@@ -67,31 +67,32 @@ def main() -> int:
         rate = trial.estimate.rate
         records = [i.record if rate is None else i.record.resampled(rate) for i in items]
         labels = [label_of(r.name) for r in records]
-        settings = settings_from_trial(trial, records)
         protocol = HoldoutProtocol(initial_s=trial.estimate.initial_s or 5.0)
-        sessions = [i.session for i in items]
-        folds = fit_folds(trial.model, records, sessions, labels, trial.ship.length, settings,
+        sessions = tuple(i.session for i in items)
+        runs = Runs(tuple(records), sessions, trial.ship.length, trial.noise, trial.forces)
+        folds = fit_folds(trial.model, runs, labels, trial.estimate,
                              report_progress=lambda text: print(text, flush=True))  # fmt: skip
-        made = cross_validate(folds, records, sessions, labels, protocol)
-        raw = cross_validate(folds, records, sessions, labels, ANCHOR)
+        made = cross_validate(folds, runs, labels, protocol)
+        raw = cross_validate(folds, runs, labels, ANCHOR)
         published = parameter_set("esso-osaka").applied_to(model_named("mmg"))
         show(f"fitted, {len(records)} runs, all windows, initial state from the first {protocol.initial_s:g} s",
              made, with_targets=True)  # fmt: skip
         print(f"  a fit takes {min(made.elapsed_s):.1f} to {max(made.elapsed_s):.1f} s")
         problem = folds[0].estimation.estimate.problem
-        plain = replace(settings, noise=dict(zip(problem.data.outputs, problem.noise.tolist(), strict=True)))
-        everything = estimate_model(trial.model, records, sessions, trial.ship.length, settings)
+        plain = replace(runs, noise=dict(zip(problem.data.outputs, problem.noise.tolist(), strict=True)))
+        channels = trial.estimate.channels
+        everything = estimate_model(trial.model, runs, trial.estimate)
         within = Fold(tuple(range(len(records))), everything)
         show("fitted on all runs, nothing held out: what the model class and the wind leave",
-             cross_validate((within,), records, sessions, labels, protocol))  # fmt: skip
+             cross_validate((within,), runs, labels, protocol))  # fmt: skip
         show(
             "published coefficients, the same windows",
-            cross_validate_unfitted(published, records, labels, protocol, plain),
+            cross_validate_unfitted(published, plain, labels, protocol, channels),
         )
         show("fitted, first two windows of a run, started from the first sample", raw)
         show(
             "published coefficients, the same windows",
-            cross_validate_unfitted(published, records, labels, ANCHOR, plain),
+            cross_validate_unfitted(published, plain, labels, ANCHOR, channels),
         )
     except InputError as error:
         print(error, file=sys.stderr)

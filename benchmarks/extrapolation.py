@@ -16,7 +16,7 @@ from measure import machine
 
 from seatrial.data.trial import Role, Trial, TrialRecord, load_records, load_trial
 from seatrial.estimation.estimate import estimate_model
-from seatrial.estimation.identify.identify import settings_from_trial
+from seatrial.estimation.identify.identification import training_runs
 from seatrial.estimation.information.discrepancy import GROWTH_POWER, HoldoutError
 from seatrial.estimation.predict.cross_validation import HoldoutProtocol
 from seatrial.estimation.predict.window_bands import HoldoutWindows, band_coverage, holdout_windows
@@ -36,8 +36,7 @@ def shares(trial: Trial, train: Sequence[TrialRecord], limit: int) -> dict[float
     """Power -> shares of headings and of positions inside the band, one pair for each run beyond the limit."""
     known = [r for r in train if angle(r) <= limit]
     beyond = [r for r in train if angle(r) > limit]
-    records, sessions = [r.record for r in known], [r.session for r in known]
-    found = estimate_model(trial.model, records, sessions, trial.ship.length, settings_from_trial(trial, records))
+    found = estimate_model(trial.model, training_runs(trial, known), trial.estimate)
     missed = holdout_windows(found, known, beyond, HoldoutProtocol(window_s=WINDOW_S))
     return {
         power: [

@@ -25,9 +25,9 @@ from measure import Line, at_most, machine
 
 from seatrial.core.equations import Model
 from seatrial.core.values import ForcePoints, Prior, Record
-from seatrial.data.trial import Role, load_records, load_trial
-from seatrial.estimation.identify import Settings, estimate_model
-from seatrial.estimation.identify.identify import settings_from_trial
+from seatrial.data.trial import EstimateSettings, Role, load_records, load_trial
+from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
+from seatrial.estimation.identify.identification import training_runs
 from seatrial.estimation.problem.static_forces import StaticForces
 from seatrial.physics.manoeuvres.measures import measures
 from seatrial.physics.manoeuvres.programme import programme
@@ -151,10 +151,11 @@ def diameter_spread(
     runs: list[Record], means: Mapping[str, float], truth: Model, points: tuple[ForcePoints, ...]
 ) -> DiameterSpread:
     """Fit with each prior width and predict the turn."""
-    names, settings = [r.name for r in runs], Settings(channels=tuple(NOISE), forces=points, workers=1)
+    data = replace(Runs.one_session_each(runs, truth.parameters["L"].value), forces=points)
+    settings, options = EstimateSettings(channels=tuple(NOISE)), EstimatorOptions(workers=1)
     made = {}
     for percent in SPREADS:
-        found = estimate_model(with_priors(truth, means, percent), runs, names, truth.parameters["L"].value, settings)
+        found = estimate_model(with_priors(truth, means, percent), data, settings, options)
         made[percent] = diameter(found.model)
     return DiameterSpread(made, diameter(truth))
 
@@ -179,7 +180,8 @@ def compare_on_records(seed: int = SEED) -> tuple[DiameterSpread, DiameterSpread
     """Without and with simulated captive points, from the recorded zigzags; errors are against the published turn."""
     trial = load_trial(RECORDED)
     found = [r for r in load_records(trial)[0] if r.role is Role.TRAIN]
-    runs, sessions = [r.record.resampled(trial.estimate.rate or RATE) for r in found], [r.session for r in found]
+    train = [replace(r, record=r.record.resampled(trial.estimate.rate or RATE)) for r in found]
+    runs = [r.record for r in train]
     published, length = trial.model.with_parameters(trial.model.parameters.without_priors()), trial.ship.length
     speed, n = (float(np.median(np.concatenate([r[s][:10] for r in runs]))) for s in ("u", "n"))
     points = simulate_captive_points(published, np.random.default_rng(seed), speed, revolutions=n)
@@ -191,10 +193,10 @@ def compare_on_records(seed: int = SEED) -> tuple[DiameterSpread, DiameterSpread
         return measures(made, length)["tactical_diameter_L"]
 
     def spread_with(forces: tuple[ForcePoints, ...]) -> DiameterSpread:
-        settings = replace(settings_from_trial(trial, runs), forces=forces)
+        data = replace(training_runs(trial, train), forces=forces)
         models = {p: with_priors(published, means, p) for p in SPREADS}
         return DiameterSpread(
-            {p: turn(estimate_model(m, runs, sessions, length, settings).model) for p, m in models.items()},
+            {p: turn(estimate_model(m, data, trial.estimate).model) for p, m in models.items()},
             turn(published),
         )
 

@@ -32,10 +32,12 @@ from seatrial.data.example_series.series import (
     true_model,
     with_sensor_noise,
 )
+from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.estimate.point_estimate import fit_output_error
 from seatrial.estimation.estimate.process_noise import fit_prediction_error
-from seatrial.estimation.estimate.settings import SEGMENT_SHIP_LENGTHS, WEAK_FORM_SHIP_LENGTHS, Settings
+from seatrial.estimation.estimate.runs import Runs
+from seatrial.estimation.estimate.settings import SEGMENT_SHIP_LENGTHS, WEAK_FORM_SHIP_LENGTHS
 from seatrial.estimation.estimate.start import find_start
 from seatrial.estimation.information.covariance import from_information
 from seatrial.numerics.kernels.steering import steer
@@ -142,19 +144,20 @@ def outcome(item: Item) -> GustOutcome:
     """Make one run; fit it by output error over the whole run, and by prediction error from nothing."""
     model, rng = true_model(), np.random.default_rng(item.stream)
     record = with_sensor_noise(simulate_run(item.kind, item.executes, rng), rng, SEED)
-    names, settings = model.parameters.free_names, Settings(workers=1)
+    names = model.parameters.free_names
+    runs = Runs.one_session_each([record], model.parameters["L"].value)
     values = np.array([model.parameters[n].value for n in names])
     blank = model.with_values(dict.fromkeys(names, 0.0))
     unit = model.parameters["L"].value / float(np.median(record["u"]))
     begin = find_start(
-        output_error_problem(blank, [record], [record.name], SEGMENT_SHIP_LENGTHS * unit, settings), [record],
+        output_error_problem(blank, runs, SEGMENT_SHIP_LENGTHS * unit, EstimateSettings(), workers=1), [record],
         WEAK_FORM_SHIP_LENGTHS * unit,
     )  # fmt: skip
     segments = fit_output_error(begin.problem, begin.common_parameters, begin.initial_states, {})
     cpu, wall = time.process_time(), time.perf_counter()
     found = fit_prediction_error(segments)
     cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
-    problem = output_error_problem(model, [record], [record.name], np.inf, settings)
+    problem = output_error_problem(model, runs, np.inf, EstimateSettings(), workers=1)
     whole = fit_output_error(problem, problem.start(), problem.measured_initial_states(), {})
     # the information matrix of white residuals: what a user of output error is told
     told = from_information(

@@ -17,10 +17,10 @@ from measure import Line, machine
 from seatrial.core.equations import Model
 from seatrial.core.results import Prediction
 from seatrial.core.values import Prior, Record
-from seatrial.data.trial import Role, TrialRecord
-from seatrial.estimation.estimate.fit import ship_length_seconds
+from seatrial.data.trial import EstimateSettings, Role, TrialRecord
 from seatrial.estimation.estimate.settings import IntervalMethod
-from seatrial.estimation.identify import Settings, estimate_model
+from seatrial.estimation.estimate.time_scale import ship_length_seconds
+from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.information.discrepancy import measure_kind
 from seatrial.estimation.predict.predict_runs import predict_runs
 from seatrial.numerics.workers import map_in_threads
@@ -60,10 +60,9 @@ def held_out_intervals(
 ) -> list[MeasureInterval]:
     """Fit one series and compare the intervals of its held-out runs with what they show."""
     length = model.parameters["L"].value
-    settings = Settings(
-        segment_seconds=10.0, corrections=(("delta", "zero", ZERO, "rad"),), workers=1, intervals=kind, seed=number
-    )
-    found = estimate_model(model, train, [r.name for r in train], length, settings)
+    settings = EstimateSettings(segment_s=10.0, offsets={"delta": ZERO})
+    options = EstimatorOptions(kind, seed=number, workers=1)
+    found = estimate_model(model, Runs.one_session_each(train, length), settings, options)
     records = [TrialRecord(r, Role.TRAIN, r.name) for r in train] + [
         TrialRecord(r, Role.VALIDATE, r.name) for r in held
     ]

@@ -18,7 +18,8 @@ from seatrial.data.trial.approach import approach_condition
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.intervals import estimate_uncertainty
 from seatrial.estimation.estimate.settings import IntervalMethod
-from seatrial.estimation.identify.identify import identify, settings_from_trial
+from seatrial.estimation.identify.identification import training_runs
+from seatrial.estimation.identify.identify import identify
 from seatrial.estimation.predict.cross_validation import HoldoutProtocol
 from seatrial.estimation.predict.window_bands import band_coverage, holdout_windows
 from seatrial_studies.alexandersson2022.prediction_coverage import (
@@ -68,9 +69,7 @@ def lines() -> Iterator[Line]:
     rate = trial.estimate.rate
     used = [replace(r, record=r.record.resampled(rate) if rate else r.record) for r in load_records(trial)[0]]
     train, held = ([r for r in used if r.role is role] for role in (Role.TRAIN, Role.VALIDATE))
-    records = [r.record for r in train]
-    settings = settings_from_trial(trial, records)
-    found = estimate_model(trial.model, records, [r.session for r in train], trial.ship.length, settings)
+    found = estimate_model(trial.model, training_runs(trial, train), trial.estimate)
     full = estimate_uncertainty(found.estimate, found.inflation, IntervalMethod.JACKKNIFE)
     free = found.estimate.problem.free
     for i, name in enumerate(free):

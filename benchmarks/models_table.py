@@ -19,9 +19,9 @@ from measure import machine
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Prior, Record
-from seatrial.data.trial import Role, Trial, TrialRecord, load_records, load_trial
-from seatrial.estimation.identify import Settings, estimate_model
-from seatrial.estimation.identify.identify import settings_from_trial
+from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRecord, load_records, load_trial
+from seatrial.estimation.identify import Runs, estimate_model
+from seatrial.estimation.identify.identification import training_runs
 from seatrial.estimation.predict.cross_validation import (
     HoldoutProtocol,
     cross_validate,
@@ -97,15 +97,13 @@ def kvlcc2() -> list[Row]:
     trial, records = _loaded("kvlcc2_hsva")
     train = [r for r in records if r.role is Role.TRAIN]
     held = next(r for r in records if r.role is Role.VALIDATE)
-    runs, speed = [r.record for r in train], _speed([r.record for r in train])
+    speed = _speed([r.record for r in train])
     rows = []
     for name, made in MODELS.items():
         model = made(trial, speed)
         try:
             began = time.perf_counter()
-            found = estimate_model(
-                model, runs, [r.session for r in train], trial.ship.length, _settings(trial, runs, model)
-            )
+            found = estimate_model(model, training_runs(trial, train), _settings(trial, model))
             seconds, problem, own = (
                 time.perf_counter() - began,
                 found.estimate.problem,
@@ -130,17 +128,16 @@ def esso_osaka() -> list[Row]:
     """Turning and zigzag runs in four folds."""
     trial, records = _loaded("esso_osaka")
     chosen = [r for r in records if not r.record.name.startswith("berthing")]
-    runs, speed = [r.record for r in chosen], _speed([r.record for r in chosen])
-    sessions = [r.session for r in chosen]
+    speed = _speed([r.record for r in chosen])
+    records_and_sessions = tuple(r.record for r in chosen), tuple(r.session for r in chosen)
+    runs = Runs(*records_and_sessions, trial.ship.length, trial.noise, trial.forces)
     labels = ["turning" if r.record.name.startswith("turn") else "zigzag" for r in chosen]
     rows = []
     for name, made in MODELS.items():
         model = made(trial, speed)
         try:
-            folds = fit_folds(
-                model, runs, sessions, labels, trial.ship.length, _settings(trial, runs, model), workers=2
-            )
-            judged = cross_validate(folds, runs, sessions, labels, HoldoutProtocol(window_s=WINDOW["esso_osaka"]))
+            folds = fit_folds(model, runs, labels, _settings(trial, model), workers=2)
+            judged = cross_validate(folds, runs, labels, HoldoutProtocol(window_s=WINDOW["esso_osaka"]))
         except InputError as error:
             print(f"  {name}: {error}")
             continue
@@ -165,12 +162,16 @@ def _speed(records: Sequence[Record]) -> float:
     return float(np.median([np.nanmedian(np.abs(r["u"])) for r in records]))
 
 
-def _settings(trial: Trial, records: Sequence[Record], model: Model) -> Settings:
+def _settings(trial: Trial, model: Model) -> EstimateSettings:
     """The trial's settings without inputs and outputs that the model lacks."""
-    settings = settings_from_trial(trial, records)
-    known = tuple(c for c in settings.corrections if c[0] in model.input_names)
-    outputs = tuple(c for c in settings.channels if c in model.observables)
-    return replace(settings, corrections=known, channels=outputs)
+    settings, inputs = trial.estimate, model.input_names
+    return replace(
+        settings,
+        offsets={name: sd for name, sd in settings.offsets.items() if name in inputs},
+        gains={name: sd for name, sd in settings.gains.items() if name in inputs},
+        delays={name: sd for name, sd in settings.delays.items() if name in inputs},
+        channels=tuple(c for c in settings.channels if c in model.observables),
+    )
 
 
 def main(names: list[str]) -> int:

@@ -17,7 +17,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Record
 from seatrial.data.example_series.series import SENSOR_NOISE, true_model, with_sensor_noise
 from seatrial.data.example_series.series import simulate_run as steered
-from seatrial.estimation.identify import Settings, estimate_model
+from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.information.covariance import from_information
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import cut_segments
@@ -78,14 +78,13 @@ def series(runs: int = RUNS, seed: int = SEED, executes: int = EXECUTES) -> Seri
     values = np.array([model.parameters[n].value for n in names])
     clean = steered(model, f"consecutive-zigzags:{executes}")
     blank = model.with_values(dict.fromkeys(names, 0.0))
-    length, settings = model.parameters["L"].value, Settings(workers=1)
-    estimate_model(blank, [clean], [clean.name], length, replace(settings, evaluations=2))
+    length, options = model.parameters["L"].value, EstimatorOptions(workers=1)
+    estimate_model(blank, Runs.one_session_each([clean], length), options=replace(options, evaluations=2))
     began = time.perf_counter()
     errors, halves, converged, white = [], [], 0, 0
     for stream in np.random.SeedSequence(seed).spawn(runs):
-        found = estimate_model(
-            blank, [with_sensor_noise(clean, np.random.default_rng(stream), seed)], [clean.name], length, settings
-        )
+        noisy = with_sensor_noise(clean, np.random.default_rng(stream), seed)
+        found = estimate_model(blank, Runs.one_session_each([noisy], length), options=options)
         errors.append(found.estimate.common_parameters[: len(names)] - values)
         halves.append(found.interval.half_width[: len(names)])
         converged += found.estimate.optimum.solution.status.is_success

@@ -17,8 +17,7 @@ from measure import Line, at_least, at_most, fastest
 
 from seatrial.core.values import Record
 from seatrial.data.trial import Trial, load_records, load_trial
-from seatrial.estimation.estimate import Estimation, estimate_model
-from seatrial.estimation.identify.identify import settings_from_trial
+from seatrial.estimation.estimate import Estimation, Runs, estimate_model
 from seatrial.estimation.predict.open_loop import simulate_open_loop
 
 TRIAL = HERE.parent / "examples" / "kvlcc2_rolldecay.toml"
@@ -33,7 +32,8 @@ def r_squared(measured: np.ndarray, simulated: np.ndarray) -> float:
 
 def fit_decay(trial: Trial, record: Record) -> Estimation:
     """Ours, from an automatic start."""
-    return estimate_model(trial.model, [record], ["decay"], trial.ship.length, settings_from_trial(trial, [record]))
+    runs = Runs((record,), ("decay",), trial.ship.length, trial.noise, trial.forces)
+    return estimate_model(trial.model, runs, trial.estimate)
 
 
 def fitted_r_squared(estimation: Estimation, record: Record) -> float:

@@ -19,7 +19,7 @@ from stronger_regressions import SmoothedRegression, WeightedRegression
 from seatrial.core.values import InputError, Record
 from seatrial.data.example_series.series import JET_VELOCITY, SLEW_RATE, true_model, with_sensor_noise
 from seatrial.data.example_series.series import simulate_run as steered
-from seatrial.estimation.identify import Settings, estimate_model
+from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.regress.estimators import InstrumentalVariables, LinearRegression, RegressionEstimator
 from seatrial.estimation.regress.operators import Central, Smoothed, Weak
 from seatrial.estimation.regress.pipeline import Pipeline
@@ -154,7 +154,8 @@ def without_noise(executes: int) -> tuple[float, float]:
         approach=10.0,
     )
     blank = model.with_values(dict.fromkeys(names, 0.0))
-    found = estimate_model(blank, [record], [record.name], model.parameters["L"].value, Settings(workers=1))
+    runs = Runs.one_session_each([record], model.parameters["L"].value)
+    found = estimate_model(blank, runs, options=EstimatorOptions(workers=1))
     shared = found.estimate.common_parameters[: len(names)]
     return _largest(central.estimate(model, [_clean(executes)]).values, values), _largest(shared, values)
 

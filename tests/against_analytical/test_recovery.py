@@ -9,6 +9,7 @@ import pytest
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
 from seatrial.estimation.estimate.fit import Estimation
+from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.identify import estimate_model
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.abkowitz import STANDARD, abkowitz
@@ -99,7 +100,7 @@ CASES = {"waterjet": _waterjet, "nomoto": _nomoto, "nomoto2": _nomoto2, "abkowit
 
 
 def _recovered(case: Case) -> Estimation:
-    return estimate_model(case.start, case.records, [r.name for r in case.records], case.length)
+    return estimate_model(case.start, Runs.one_session_each(case.records, case.length))
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -16,7 +16,7 @@ from seatrial.estimation.design.search import search_step
 from seatrial.estimation.design.ships import PriorShips
 from seatrial.estimation.design.standard_manoeuvres import standard_manoeuvres
 from seatrial.estimation.design.task import DesignTask
-from seatrial.estimation.estimate.fit import characteristic_time, is_pure_roll
+from seatrial.estimation.estimate.time_scale import characteristic_time, is_pure_roll
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
 from seatrial.physics.simulate.divergence import state_limits

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,9 +10,9 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Prediction
 from seatrial.core.values import ProgressReporter
 from seatrial.data.trial import Trial, TrialRecord
-from seatrial.estimation.estimate.fit import ship_length_seconds
-from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS
-from seatrial.estimation.identify.identify import settings_from_trial
+from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS, EstimatorOptions
+from seatrial.estimation.estimate.time_scale import ship_length_seconds
+from seatrial.estimation.identify.identification import training_runs
 from seatrial.estimation.predict.cross_validation import HoldoutProtocol, cross_validate, fit_folds, session_nuisances
 from seatrial.estimation.predict.open_loop import predict_run, simulate_open_loop
 from seatrial_studies.alexandersson2022.published import Turn
@@ -49,13 +49,13 @@ def leave_one_out(
     Raises:
         InputError: fewer than two training runs, or what the estimate and the predictions raise.
     """
-    records, sessions = [r.record for r in train], [r.session for r in train]
-    labels, length = ["zigzag"] * len(train), trial.ship.length
-    settings = replace(settings_from_trial(trial, records), workers=1)
+    runs, labels = training_runs(trial, train), ["zigzag"] * len(train)
+    records, sessions, length = runs.records, runs.sessions, runs.length
     folds = fit_folds(
-        trial.model, records, sessions, labels, length, settings, folds=len(train), report_progress=report_progress
+        trial.model, runs, labels, trial.estimate, EstimatorOptions(workers=1), folds=len(train),
+        report_progress=report_progress,
     )  # fmt: skip
-    scored = cross_validate(folds, records, sessions, labels, HoldoutProtocol(window_s=WINDOW_S))
+    scored = cross_validate(folds, runs, labels, HoldoutProtocol(window_s=WINDOW_S))
     seconds = trial.estimate.initial_s or INITIAL_STATE_SHIP_LENGTHS * ship_length_seconds(records, length)
     made = []
     for fold in folds:

@@ -17,7 +17,7 @@ from seatrial.data.trial import Role, Trial, TrialRecord, load_records
 from seatrial.data.trial.approach import approach_condition
 from seatrial.estimation.estimate.settings import IntervalMethod
 from seatrial.estimation.identify import estimate_model, identify
-from seatrial.estimation.identify.identify import settings_from_trial
+from seatrial.estimation.identify.identification import training_runs
 from seatrial.physics.manoeuvres import measures
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
@@ -68,8 +68,7 @@ def reproduce_benchmark(
     approach = approach_condition(records, trial.model)
     tell("the fit once more, warm")
     began = time.perf_counter()
-    sessions, settings = [r.session for r in train], settings_from_trial(trial, records)
-    found = estimate_model(trial.model, records, sessions, trial.ship.length, settings)
+    found = estimate_model(trial.model, training_runs(trial, train), trial.estimate)
     warm = time.perf_counter() - began
     wide = None if quick else identify(trial, seed, report_progress, intervals=IntervalMethod.JACKKNIFE)
     tell("the headers' labels")

@@ -8,8 +8,8 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Finding, InputError, Record
 from seatrial.data.example_series.series import JET_VELOCITY, SENSOR_NOISE, SLEW_RATE, with_sensor_noise
+from seatrial.estimation.estimate import Runs
 from seatrial.estimation.estimate.fit import estimate_model
-from seatrial.estimation.estimate.settings import Settings
 from seatrial.estimation.regress.estimators import LinearRegression, RegressionEstimate, RegressionEstimator
 from seatrial.estimation.regress.features import RegressionMotion
 from seatrial.estimation.regress.operators import Central, Centred, Differenced, Euler, Weak
@@ -277,9 +277,9 @@ def _output_error(measured: Record) -> tuple[EstimatorResult, EstimatorResult, A
     own = manoeuvre(
         TRUTH.craft(), programme(PublishedManoeuvre.CONSECUTIVE), inputs={"v_j": JET_VELOCITY}, slew_rate=SLEW_RATE
     )
-    exact = estimate_model(craft_without_coefficients(), [own], [own.name], length, Settings())
-    known = Settings(noise=dict(SENSOR_NOISE))
-    found = estimate_model(craft_without_coefficients(), [measured], [measured.name], length, known)
+    exact = estimate_model(craft_without_coefficients(), Runs.one_session_each([own], length))
+    noisy = replace(Runs.one_session_each([measured], length), noise=dict(SENSOR_NOISE))
+    found = estimate_model(craft_without_coefficients(), noisy)
     count = len(COEFFICIENTS)
     errors = found.interval.standard_error[:count] / np.abs(true_coefficients())
     rows = [RegressionEstimate(f.estimate.common_parameters[:count]) for f in (exact, found)]

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from seatrial.core.values import InputError
-from seatrial.data.trial import Family, load_trial
+from seatrial.data.trial import ModelFamily, load_trial
 
 
 def declared(trial_file: Path, table: str) -> Path:
@@ -15,7 +15,9 @@ def declared(trial_file: Path, table: str) -> Path:
 
 def test_a_family_is_kept(trial_file: Path) -> None:
     table = 'structures = { inertia = ["m_x", "m_y"] }\nprior_factors = [0.5, 3]\nsegment_factors = [1.5]'
-    assert load_trial(declared(trial_file, table)).family == Family({"inertia": ("m_x", "m_y")}, (0.5, 3.0), (1.5,))
+    assert load_trial(declared(trial_file, table)).family == ModelFamily(
+        {"inertia": ("m_x", "m_y")}, (0.5, 3.0), (1.5,)
+    )
 
 
 def test_without_a_table_the_family_of_the_house_counts(trial_file: Path) -> None:

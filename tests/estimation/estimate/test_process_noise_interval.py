@@ -6,11 +6,11 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
-from seatrial.estimation.estimate import Settings, estimate_model
+from seatrial.data.trial import EstimateSettings, FitCriterion
+from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.process_noise import ProcessNoise, implied_process_noise
 from seatrial.estimation.estimate.process_noise_interval import MEANING, process_noise_interval
-from seatrial.estimation.estimate.settings import FitCriterion
 from seatrial.physics.models.roll import roll
 
 DT, ROWS, FINE = 0.05, 1200, 4
@@ -48,7 +48,10 @@ def quiet(noise: ProcessNoise) -> ProcessNoise:
 def fitted(record: Record) -> PointEstimate:
     """By output error."""
     return estimate_model(
-        linear(), [record], ["decay"], 5.0, Settings(criterion=FitCriterion.OUTPUT_ERROR, workers=1)
+        linear(),
+        Runs.one_session_each([record], 5.0),
+        EstimateSettings(criterion=FitCriterion.OUTPUT_ERROR),
+        EstimatorOptions(workers=1),
     ).estimate
 
 
@@ -78,7 +81,7 @@ def test_errors_scatter_as_they_are_said_to() -> None:
 
 def test_a_decay_alone_gets_it_and_says_so() -> None:
     """Output error by the decision table, with its reason, and intervals that know of the disturbance."""
-    found = estimate_model(linear(), [disturbed_decay(8e-4, np.random.default_rng(1))], ["decay"], 5.0)
+    found = estimate_model(linear(), Runs.one_session_each([disturbed_decay(8e-4, np.random.default_rng(1))], 5.0))
     assert found.criterion == "output error over whole runs"
     assert any("free decay" in reason for reason in found.reasons)
     assert found.interval.meaning == MEANING

@@ -7,6 +7,7 @@ import pytest
 from tests.estimation.identify.conftest import TRUTH, square, steered
 
 from seatrial.core.values import InputError, Record
+from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.start import weak_form_start
 from seatrial.estimation.identify import estimate_model
 from seatrial.physics.manoeuvres.programme import programme
@@ -44,7 +45,7 @@ def test_coefficients_without_any_velocity_measured(record: Record) -> None:
     """From positions and heading alone, starting at zero."""
     bare = record.without("u", "v", "r")
     start = waterjet().with_values(dict.fromkeys(COEFFICIENTS, 0.0))
-    found = estimate_model(start, [bare], ["a"], 9.8).model.parameters
+    found = estimate_model(start, Runs.one_session_each([bare], 9.8)).model.parameters
     truth = waterjet().parameters
     assert max(abs(found[n].value / truth[n].value - 1) for n in COEFFICIENTS) < 1e-6
 
@@ -73,7 +74,7 @@ def test_a_hidden_state_leaves_the_start_to_the_model() -> None:
     record = manoeuvre(model, programme("zigzag:20/20"), dt=0.2, speed=1.0).without("r_rest")
     start = nomoto2().with_values({"U": 1.0})
     np.testing.assert_array_equal(weak_form_start(start, [record], 10.0), [p.value for p in start.parameters.free])
-    found = estimate_model(start, [record], ["a"], 7.0)
+    found = estimate_model(start, Runs.one_session_each([record], 7.0))
     assert "r_rest" in found.start_method
     values = [found.model.parameters[n].value for n in ("K", "T_1", "T_2", "T_3")]
     np.testing.assert_allclose(values, [0.15, 15.0, 3.0, 5.0], rtol=1e-6)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import DivergedError, InputError, Parameters, Prior
-from seatrial.estimation.identify.fit_result import divergence_message, unidentified
+from seatrial.estimation.identify.fit_result import divergence_message, refuse_unidentified, unidentified
 from seatrial.physics.models.waterjet import COEFFICIENTS, waterjet
 
 VALUES = waterjet().parameters
@@ -41,13 +41,13 @@ def test_those_not_told_are_named() -> None:
     """Not the one a prior holds."""
     (finding,) = unidentified(found({"X_rr": 1.5, "Y_vr": 2.0, "X_vv": 3.0}, held="X_vv"))
     assert finding.code == "not-identifiable"
-    assert "do not tell X_rr, Y_vr:" in finding.text
+    assert "do not determine X_rr, Y_vr:" in finding.text
 
 
 def test_nothing_told_is_refused_with_names_and_noise() -> None:
     """All eleven."""
-    with pytest.raises(InputError, match=r"tell none of the free coefficients X_uu, .*N_rr: .*u 1, r 0\.09"):
-        unidentified(found(dict.fromkeys(COEFFICIENTS, 5.0)))
+    with pytest.raises(InputError, match=r"determine none of the free coefficients X_uu, .*N_rr: .*u 1, r 0\.09"):
+        refuse_unidentified(found(dict.fromkeys(COEFFICIENTS, 5.0)))
 
 
 def test_a_model_that_cannot_be_sailed_names_its_coefficients() -> None:

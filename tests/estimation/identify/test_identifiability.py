@@ -8,10 +8,10 @@ import pytest
 from seatrial.core.results import Identifiability
 from seatrial.core.values import ForceContent, ForcePoints, Prior, Record
 from seatrial.data.example_series.series import SENSOR_NOISE, simulate_run, true_model, with_sensor_noise
+from seatrial.data.trial import EstimateSettings, FitCriterion
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.estimate.settings import FitCriterion
-from seatrial.estimation.identify import Settings, estimate_model
+from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.identify.identifiability import consequences, identifiability, sensitivities
 from seatrial.estimation.identify.profile import CHI_SQUARED_LIMIT, profiles
 from seatrial.estimation.information.covariance import inverse
@@ -34,6 +34,8 @@ ABKOWITZ = {
     "X_udot": -0.00145, "Y_vdot": -0.01465, "N_rdot": -0.0007, "U_n": 1.18,
 }  # fmt: skip
 
+ONE_WORKER = EstimatorOptions(workers=1)
+
 
 @pytest.fixture(scope="module")
 def record() -> Record:
@@ -45,8 +47,8 @@ def record() -> Record:
 
 @pytest.fixture(scope="module")
 def found(record: Record) -> Estimation:
-    settings = Settings(criterion=FitCriterion.OUTPUT_ERROR, workers=1)
-    return estimate_model(true_model(), [record], [record.name], 9.8, settings)
+    settings = EstimateSettings(criterion=FitCriterion.OUTPUT_ERROR)
+    return estimate_model(true_model(), Runs.one_session_each([record], 9.8), settings, ONE_WORKER)
 
 
 @pytest.fixture(scope="module")
@@ -88,8 +90,8 @@ def test_a_wrong_added_mass_moves_the_estimates_as_foretold(found: Estimation, r
     foretold = next(c for c in consequences(found) if c.parameter == "m_y")
     model = true_model()
     wrong = model.with_values({"m_y": 1.02 * model.parameters["m_y"].value})
-    settings = Settings(criterion=FitCriterion.OUTPUT_ERROR, workers=1)
-    again = estimate_model(wrong, [record], [record.name], 9.8, settings)
+    settings = EstimateSettings(criterion=FitCriterion.OUTPUT_ERROR)
+    again = estimate_model(wrong, Runs.one_session_each([record], 9.8), settings, ONE_WORKER)
     for name in ("Y_v", "X_vv", "Y_rr"):
         i = found.estimate.problem.free.index(name)
         moved = (
@@ -161,8 +163,8 @@ def test_what_defines_the_coefficients_is_not_assumed() -> None:
     model = abkowitz().with_values(ABKOWITZ).with_ship(kvlcc2_l7().ship)
     record = manoeuvre(model, programme("zigzag:20/20"), speed=1.18, slew_rate=np.radians(15.8))
     record = with_sensor_noise(record.resampled(2.0), np.random.default_rng(5), 5)
-    settings = Settings(criterion=FitCriterion.OUTPUT_ERROR, workers=1)
-    told = consequences(estimate_model(model, [record], [record.name], 7.0, settings))
+    settings = EstimateSettings(criterion=FitCriterion.OUTPUT_ERROR)
+    told = consequences(estimate_model(model, Runs.one_session_each([record], 7.0), settings, ONE_WORKER))
     assert {c.parameter for c in told} <= {"I_z", "x_G", "X_udot", "Y_vdot", "N_rdot"}
     assert "Y_vdot" in {c.parameter for c in told}
 
@@ -226,9 +228,9 @@ def test_a_profile_ends_at_a_bound(found: Estimation) -> None:
 
 def test_prediction_error_has_no_profile_of_output_error(record: Record) -> None:
     """Its cost is another one; a comparison would give an interval of rounding's width."""
-    settings = Settings(criterion=FitCriterion.PREDICTION_ERROR, workers=1)
+    settings = EstimateSettings(criterion=FitCriterion.PREDICTION_ERROR)
     short = record.between(0.0, 400.0)
-    filtered = estimate_model(true_model(), [short], [short.name], 9.8, settings)
+    filtered = estimate_model(true_model(), Runs.one_session_each([short], 9.8), settings, ONE_WORKER)
     assert filtered.has_process_noise
     assert profiles(filtered.estimate, filtered.interval.standard_error, ["N_rr"]) == ()
 

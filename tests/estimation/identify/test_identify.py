@@ -7,10 +7,10 @@ import pytest
 from tests.estimation.identify.conftest import NOISE, TRUTH, WriteTrial
 
 from seatrial.core.values import Record
-from seatrial.data.trial import load_trial
-from seatrial.estimation.estimate.settings import FitCriterion
+from seatrial.data.trial import FitCriterion, load_trial
+from seatrial.estimation.estimate.fit import with_segment_seconds
+from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.identify import identify
-from seatrial.estimation.identify.identify import settings_from_trial
 
 ZEROS = {"a": 0.02, "b": -0.03, "c": 0.0, "v_1": 0.05}
 OFFSETS = "[estimate]\noffsets = { delta = { sd = 3, unit = 'deg' } }"
@@ -85,20 +85,22 @@ gains = ["delta"]
 current = 0.2
 """
     trial = load_trial(trial_of({"a": 0.0}, more=more))
-    record = Record.from_arrays("a", np.arange(5.0), {"u": np.full(5, 2.0)})
-    settings = settings_from_trial(trial, [record])
+    settings = trial.estimate
     assert settings.criterion is FitCriterion.OUTPUT_ERROR
     assert settings.robust is True
     assert settings.channels == ("psi",)
-    assert settings.noise == pytest.approx({"psi": math.radians(1.0)})
-    assert settings.corrections == (("delta", "zero", 0.01, "rad"), ("delta", "gain", 0.1, "1"))
+    assert trial.noise == pytest.approx({"psi": math.radians(1.0)})
+    assert (settings.offsets, settings.gains, settings.delays) == ({"delta": 0.01}, {"delta": None}, {})
     assert settings.current == 0.2
 
 
 def test_segment_lengths_are_counted_in_ship_lengths(trial_of: WriteTrial) -> None:
     trial = load_trial(trial_of({"a": 0.0}, more="[estimate]\nsegment_lengths = 3.0"))
     record = Record.from_arrays("a", np.arange(5.0), {"u": np.full(5, 2.0)})
-    assert settings_from_trial(trial, [record]).segment_seconds == pytest.approx(3.0 * 8.0 / 2.0)
+    runs = Runs.one_session_each([record], trial.ship.length)
+    settings = with_segment_seconds(trial.estimate, trial.model, runs)
+    assert (settings.segment_s, settings.segment_lengths) == (pytest.approx(3.0 * 8.0 / 2.0), None)
+    assert with_segment_seconds(settings, trial.model, runs) is settings
 
 
 def test_a_stated_segment_is_used_and_named(trial_of: WriteTrial) -> None:

@@ -7,9 +7,8 @@ import pytest
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Prior, Record
-from seatrial.data.trial import Family
-from seatrial.estimation.estimate import Estimation, Settings, estimate_model
-from seatrial.estimation.estimate.settings import FitCriterion
+from seatrial.data.trial import EstimateSettings, FitCriterion, ModelFamily
+from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.identify.model_selection import (
     FittedVariant,
     ModelVariant,
@@ -29,7 +28,8 @@ from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate import replay
 
 RUNS = 6
-SETTINGS = Settings(segment_seconds=20.0, workers=1)
+SETTINGS, OPTIONS = EstimateSettings(segment_s=20.0), EstimatorOptions(workers=1)
+LENGTH = 8.0
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +54,7 @@ def records(model: Model) -> list[Record]:
 
 @pytest.fixture(scope="module")
 def found(model: Model, records: list[Record]) -> Estimation:
-    return estimate_model(model, records, [r.name for r in records], 8.0, SETTINGS)
+    return estimate_model(model, Runs.one_session_each(records, LENGTH), SETTINGS, OPTIONS)
 
 
 def fitted(found: Estimation, name: str, heading: list[float] | None) -> FittedVariant:
@@ -107,9 +107,9 @@ def test_the_family_of_the_house_knows_its_models(model: Model) -> None:
 
 
 def test_a_declared_family_is_fitted_and_scored(found: Estimation, model: Model, records: list[Record]) -> None:
-    declared = Family({"stream": ("current_north", "current_east")}, (2.0,), ())
-    names = [r.name for r in records]
-    made = [fit_variants(found, model, records, names, 20.0, replace(SETTINGS, workers=w), declared) for w in (1, 2)]
+    declared = ModelFamily({"stream": ("current_north", "current_east")}, (2.0,), ())
+    runs, options = Runs.one_session_each(records, LENGTH), [replace(OPTIONS, workers=w) for w in (1, 2)]
+    made = [fit_variants(found, model, runs, 20.0, SETTINGS, one, declared) for one in options]
     rows = rank_candidates(made[0], choose=False)
     assert [r.name for r in rows] == ["as in the trial", "stream", "priors x 2"]
     assert [r.free_count for r in rows] == [2, 4, 2]
@@ -120,13 +120,15 @@ def test_a_declared_family_is_fitted_and_scored(found: Estimation, model: Model,
 
 def test_a_family_of_one_is_refused(found: Estimation, model: Model, records: list[Record]) -> None:
     with pytest.raises(InputError, match=r"model 'nomoto' has no family to choose from; declare \[family\]"):
-        fit_variants(found, model, records, [r.name for r in records], 20.0, SETTINGS, Family())
+        fit_variants(found, model, Runs.one_session_each(records, LENGTH), 20.0, SETTINGS, OPTIONS, ModelFamily())
 
 
 def test_a_family_whose_members_all_fail_is_refused(found: Estimation, model: Model, records: list[Record]) -> None:
     """Windows longer than any run: nobody can be judged."""
     with pytest.raises(InputError, match=r"no member of the family can be fitted; the first fails because no run"):
-        fit_variants(found, model, records, [r.name for r in records], 500.0, SETTINGS, Family({}, (2.0,)))
+        fit_variants(
+            found, model, Runs.one_session_each(records, LENGTH), 500.0, SETTINGS, OPTIONS, ModelFamily({}, (2.0,))
+        )
 
 
 def test_the_scatter_of_tied_models_is_added(found: Estimation) -> None:
@@ -143,8 +145,8 @@ def test_the_trials_own_model_stays_where_it_cannot_be_judged(found: Estimation,
     members = [fitted(found, "own", None), fitted(found, "other", [1.0, 2.0, 3.0])]
     rows = rank_candidates(members, choose=False)
     assert [(r.is_chosen, r.is_tied, r.note) for r in rows] == [(True, False, "it diverges"), (False, True, "")]
-    names = [r.name for r in records]
-    assert selected_estimation(found, members, rows, records, names, 8.0, SETTINGS) is found
+    runs = Runs.one_session_each(records, LENGTH)
+    assert selected_estimation(found, members, rows, runs, SETTINGS, OPTIONS) is found
     assert [t.estimate for t in tied_models(members, rows)] == [found.estimate]
 
 
@@ -161,12 +163,12 @@ def test_a_chosen_segment_length_is_that_which_was_compared(
     model: Model, records: list[Record], seconds: float | None
 ) -> None:
     """Also where the trial leaves the length to the house."""
-    names = [r.name for r in records]
-    settings = Settings(segment_seconds=seconds, criterion=FitCriterion.MULTIPLE_SHOOTING, workers=1)
-    own = estimate_model(model, records, names, 8.0, settings)
-    members = fit_variants(own, model, records, names, 20.0, settings, Family({}, (), (0.5,)))
+    runs = Runs.one_session_each(records, LENGTH)
+    settings = EstimateSettings(segment_s=seconds, criterion=FitCriterion.MULTIPLE_SHOOTING)
+    own = estimate_model(model, runs, settings, OPTIONS)
+    members = fit_variants(own, model, runs, 20.0, settings, OPTIONS, ModelFamily({}, (), (0.5,)))
     rows = [replace(row, is_chosen=row.name == "segments x 0.5") for row in rank_candidates(members, choose=False)]
-    used = selected_estimation(own, members, rows, records, names, 8.0, settings)
+    used = selected_estimation(own, members, rows, runs, settings, OPTIONS)
     assert members[1].estimate is not None
     assert used.estimate.problem.data.count == members[1].estimate.problem.data.count > own.estimate.problem.data.count
 
@@ -181,9 +183,8 @@ def with_gap(record: Record, rows: slice) -> Record:
 
 def test_windows_without_heading_judge_nobody(model: Model, records: list[Record]) -> None:
     """A gap over a whole window of 20 s leaves the run's other windows; a run without any is named."""
-    names = [r.name for r in records]
     gappy = [with_gap(records[0], slice(50, 100)), *records[1:]]
-    found = estimate_model(model, gappy, names, 8.0, SETTINGS)
+    found = estimate_model(model, Runs.one_session_each(gappy, LENGTH), SETTINGS, OPTIONS)
     scores = holdout_scores(found.estimate, model, gappy, 20.0)
     assert np.all(np.isfinite(scores))
     assert np.all(scores < 2.0)

@@ -10,10 +10,10 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Fit
 from seatrial.core.values import InputError, Record
 from seatrial.data.trial import load_trial
-from seatrial.estimation.estimate import Settings, estimate_model
+from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.identify import identify
-from seatrial.estimation.identify.unknown_waves import (
-    is_roll_in_unknown_waves,
+from seatrial.estimation.identify.situation import is_unforced_roll
+from seatrial.estimation.identify.strategies.unknown_waves import (
     maximum_likelihood,
     roll_interval,
     spectral_problem,
@@ -36,11 +36,11 @@ def test_a_recorded_wave_slope_gives_all_coefficients_back() -> None:
     true = {**SHIP, "b_2": 0.3, "c_3": -0.2}
     record = simulate_roll_record(bretschneider(2.0, 9.0), 3, true, duration=400.0, dt=0.1)
     names = ("b_1", "b_2", "c_1", "c_3", "phi_0")
-    found = estimate_model(freed(*names), [record], ["sea"], 100.0, Settings(workers=1))
+    found = estimate_model(freed(*names), Runs.one_session_each([record], 100.0), options=EstimatorOptions(workers=1))
     off = (found.estimate.common_parameters[:5] - [true[n] for n in names]) / found.interval.standard_error[:5]
     assert np.abs(off).max() < 3.5
     assert np.all(found.interval.standard_error[[0, 2]] < 0.02 * found.estimate.common_parameters[[0, 2]])
-    assert not is_roll_in_unknown_waves(found, [record])
+    assert not is_unforced_roll(found.model, [record])
 
 
 def test_the_share_of_the_slope_that_she_feels_can_be_told_too() -> None:
@@ -49,7 +49,11 @@ def test_the_share_of_the_slope_that_she_feels_can_be_told_too() -> None:
     steep = record.channel("alpha_w").with_values(1.25 * record["alpha_w"])
     model = freed("b_1", "c_1", "phi_0")
     model = model.with_parameters(model.parameters.freed("r_w"))
-    found = estimate_model(model, [record.with_channel("alpha_w", steep)], ["sea"], 100.0, Settings(workers=1))
+    found = estimate_model(
+        model,
+        Runs.one_session_each([record.with_channel("alpha_w", steep)], 100.0),
+        options=EstimatorOptions(workers=1),
+    )
     assert found.model.parameters["r_w"].value == pytest.approx(0.8, rel=2e-3)
 
 

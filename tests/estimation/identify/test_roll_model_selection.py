@@ -7,8 +7,8 @@ import pytest
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record
-from seatrial.data.trial import Family
-from seatrial.estimation.estimate import Settings, estimate_model
+from seatrial.data.trial import EstimateSettings, ModelFamily
+from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.identify.model_selection import SelectedModel
 from seatrial.estimation.identify.roll_model_selection import roll_structures, select_roll_model
 from seatrial.physics.models.nomoto import nomoto
@@ -31,9 +31,9 @@ LARGE, SMALL = decay("large", 0.3, 1), decay("small", 0.2, 2)
 
 def choice(train: list[Record], kept_out: list[Record], model: Model | None = None) -> SelectedModel:
     """Of the house's family."""
-    own, names, settings = model or roll(), [r.name for r in train], Settings(workers=1)
-    found = estimate_model(own, train, names, 5.0, settings)
-    return select_roll_model(found, own, train, names, kept_out, 5.0, 5.0, settings, None)
+    own, runs, options = model or roll(), Runs.one_session_each(train, 5.0), EstimatorOptions(workers=1)
+    found = estimate_model(own, runs, options=options)
+    return select_roll_model(found, own, runs, kept_out, 5.0, EstimateSettings(), options, None)
 
 
 def test_the_structure_that_made_the_decays_is_chosen() -> None:
@@ -73,7 +73,7 @@ def test_a_family_is_the_houses_or_the_trials_own() -> None:
     assert len(roll_structures(roll(), None)) == 9
     quadratic = roll().with_parameters(roll().parameters.fixed("b_3", "c_3", "c_5"))
     assert list(roll_structures(quadratic, None)) == ["as in the trial", "linear damping, linear restoring"]
-    own = roll_structures(quadratic, Family({"cubic": ("b_3",)}))
+    own = roll_structures(quadratic, ModelFamily({"cubic": ("b_3",)}))
     assert own["cubic"].parameters.free_names == ("b_1", "b_2", "b_3", "c_1", "phi_0")
     with pytest.raises(InputError, match="no family to choose from"):
         roll_structures(nomoto(), None)

@@ -7,7 +7,8 @@ import pytest
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record
-from seatrial.estimation.estimate.settings import Settings
+from seatrial.data.trial import EstimateSettings
+from seatrial.estimation.estimate import EstimatorOptions, Runs
 from seatrial.estimation.predict.cross_validation import (
     CrossValidation,
     Fold,
@@ -28,7 +29,7 @@ from seatrial.physics.simulate.steer import manoeuvre
 RUNS = ("zigzag:20/20", "zigzag:10/10", "turning-circle:20", "turning-circle:15:port")
 LABELS = ("zigzag", "zigzag", "turning", "turning")
 SESSIONS = ("monday", "tuesday", "monday", "wednesday")
-SETTINGS = Settings(segment_seconds=60.0, workers=1, corrections=(("delta", "zero", 0.05, "rad"),))
+SETTINGS, OPTIONS = EstimateSettings(segment_s=60.0, offsets={"delta": 0.05}), EstimatorOptions(workers=1)
 PROTOCOL = HoldoutProtocol(window_s=40.0)
 
 
@@ -45,9 +46,13 @@ def records(truth: Model) -> list[Record]:
     ]
 
 
+def runs_of(records: list[Record]) -> Runs:
+    return Runs(tuple(records), SESSIONS, 7.0)
+
+
 @pytest.fixture(scope="module")
 def folds(truth: Model, records: list[Record]) -> tuple[Fold, ...]:
-    return fit_folds(truth.with_values({"K": 0.1, "T": 10.0}), records, SESSIONS, LABELS, 7.0, SETTINGS, folds=2)
+    return fit_folds(truth.with_values({"K": 0.1, "T": 10.0}), runs_of(records), LABELS, SETTINGS, OPTIONS, folds=2)
 
 
 def test_every_fold_holds_out_its_share_of_every_label() -> None:
@@ -71,7 +76,7 @@ def test_windows_follow_one_another_and_the_remainder_is_dropped(records: list[R
 def test_a_model_of_the_right_form_predicts_runs_it_has_not_seen(
     folds: tuple[Fold, ...], records: list[Record]
 ) -> None:
-    made = cross_validate(folds, records, SESSIONS, LABELS, PROTOCOL)
+    made = cross_validate(folds, runs_of(records), LABELS, PROTOCOL)
     assert {w.run for w in made.windows} == {r.name for r in records}
     for label in made.labels:
         assert made.pooled(label).heading_deg < 1e-3
@@ -103,10 +108,12 @@ def test_a_session_not_trained_on_takes_the_training_mean(folds: tuple[Fold, ...
 
 
 def test_the_first_sample_as_it_is_and_models_as_they_are(truth: Model, records: list[Record]) -> None:
-    raw = cross_validate_unfitted(truth, records, LABELS, replace(PROTOCOL, initial_s=0.0))
+    raw = cross_validate_unfitted(truth, runs_of(records), LABELS, replace(PROTOCOL, initial_s=0.0))
     assert raw.pooled("turning").position_m < 1e-9
     assert (
-        cross_validate_unfitted(truth.with_values({"K": 0.1}), records, LABELS, PROTOCOL).pooled("turning").heading_deg
+        cross_validate_unfitted(truth.with_values({"K": 0.1}), runs_of(records), LABELS, PROTOCOL)
+        .pooled("turning")
+        .heading_deg
         > 5.0
     )
 
@@ -124,6 +131,6 @@ def test_errors_are_pooled_by_label_and_scatter_between_folds() -> None:
 
 def test_what_cannot_be_judged_is_refused(truth: Model, records: list[Record]) -> None:
     with pytest.raises(InputError, match="no run is as long as a window of 500 s"):
-        cross_validate_unfitted(truth, records, LABELS, HoldoutProtocol(window_s=500.0))
+        cross_validate_unfitted(truth, runs_of(records), LABELS, HoldoutProtocol(window_s=500.0))
     with pytest.raises(InputError, match="has no 'x0'; windows are judged by position and heading"):
-        cross_validate_unfitted(truth, [r.without("x0") for r in records], LABELS, PROTOCOL)
+        cross_validate_unfitted(truth, runs_of([r.without("x0") for r in records]), LABELS, PROTOCOL)

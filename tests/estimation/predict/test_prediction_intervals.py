@@ -5,8 +5,8 @@ import pytest
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record
-from seatrial.data.trial import Role, TrialRecord
-from seatrial.estimation.estimate import Estimation, Settings, estimate_model
+from seatrial.data.trial import EstimateSettings, Role, TrialRecord
+from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.predict.cross_validation import HoldoutProtocol
 from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
 from seatrial.estimation.predict.window_bands import band_coverage, holdout_windows
@@ -17,6 +17,7 @@ from seatrial.physics.simulate.steer import manoeuvre
 
 K, T, RUNS, REPEATS, ZERO = 0.15, 8.0, 7, 14, 0.01
 ANGLES = (10, 12, 14, 16, 18, 20, 15)
+SETTINGS = EstimateSettings(segment_s=20.0)
 
 
 @pytest.fixture(scope="module")
@@ -39,8 +40,7 @@ def fitted(model: Model, number: int) -> tuple[Estimation, list[TrialRecord]]:
     runs = [sailed(model, f"run {i}", ANGLES[i], rng) for i in range(RUNS)]
     records = [TrialRecord(r, Role.VALIDATE if i == RUNS - 1 else Role.TRAIN, r.name) for i, r in enumerate(runs)]
     train = runs[:-1]
-    settings = Settings(segment_seconds=20.0, workers=1)
-    return estimate_model(model, train, [r.name for r in train], 8.0, settings), records
+    return estimate_model(model, Runs.one_session_each(train, 8.0), SETTINGS, EstimatorOptions(workers=1)), records
 
 
 def told(model: Model, number: int) -> RunPredictions:
@@ -95,6 +95,6 @@ def test_windows_of_runs_left_out_lie_in_their_bands(model: Model) -> None:
 def test_bands_cannot_be_judged_with_few_runs(model: Model) -> None:
     rng = np.random.default_rng(0)
     runs = [sailed(model, f"run {i}", ANGLES[i], rng) for i in range(2)]
-    found = estimate_model(model, runs, ["a", "b"], 8.0, Settings(segment_seconds=20.0, workers=1))
+    found = estimate_model(model, Runs.one_session_each(runs, 8.0), SETTINGS, EstimatorOptions(workers=1))
     with pytest.raises(InputError, match="too few training runs"):
         holdout_windows(found, [TrialRecord(r, Role.TRAIN, r.name) for r in runs], [], HoldoutProtocol(window_s=25.0))

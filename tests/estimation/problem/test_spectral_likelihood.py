@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.trial.trial import WaveEncounter
-from seatrial.estimation.identify.spectral import spectral_problem
+from seatrial.estimation.identify.strategies.wave_spectrum import spectral_problem
 from seatrial.estimation.problem.line_least_squares import line_least_squares
 from seatrial.estimation.problem.spectral_likelihood import SpectralLikelihood
 from seatrial.numerics.optimise import levenberg_marquardt

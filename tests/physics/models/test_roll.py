@@ -5,6 +5,7 @@ import pytest
 
 from seatrial.core.values import InputError, Record
 from seatrial.estimation.estimate.fit import dominant_period, is_pure_roll
+from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.identify import estimate_model
 from seatrial.physics.models.heave_pitch import heave_pitch
 from seatrial.physics.models.nomoto import nomoto
@@ -54,9 +55,9 @@ def test_forced_rolling_is_that_of_the_transfer_function() -> None:
 
 def test_coefficients_come_back_without_a_guess() -> None:
     """From the angle alone, exact without noise; within four standard errors of .05 deg of it."""
-    exact = estimate_model(roll(), [decayed()], ["decay"], 5.0)
+    exact = estimate_model(roll(), Runs.one_session_each([decayed()], 5.0))
     np.testing.assert_allclose(exact.estimate.common_parameters[:7], list(TRUE.values()), rtol=1e-6)
-    noisy = estimate_model(roll(), [decayed(np.radians(0.05))], ["decay"], 5.0)
+    noisy = estimate_model(roll(), Runs.one_session_each([decayed(np.radians(0.05))], 5.0))
     wrong = np.abs(noisy.estimate.common_parameters[:7] - list(TRUE.values())) / noisy.interval.standard_error[:7]
     assert wrong.max() < 4.0
 

@@ -7,7 +7,7 @@ from seatrial.control.loopfile.quantities import positive_value, si_value, symbo
 from seatrial.control.loopfile.schema import ObjectiveTable
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import NOTATION, InputError
-from seatrial.data.trial.schema import Amount
+from seatrial.data.trial.amounts import Amount
 from seatrial.physics.loops import LoopSignal, Objective
 from seatrial.physics.loops.objective import motion_interruptions, motion_sickness, squared_deviation, variance
 

@@ -3,7 +3,7 @@
 import math
 
 from seatrial.core.values import NOTATION, InputError, si_unit
-from seatrial.data.trial.schema import Amount
+from seatrial.data.trial.amounts import Amount
 
 _HALF_TURN = math.pi
 _RATES = {"rad": "rad/s", "m": "m/s", "m/s": "m/s^2"}

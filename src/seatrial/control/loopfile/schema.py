@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from seatrial.data.trial.schema import Amount, SiAmount, StrictTable, Unit
+from seatrial.data.trial.amounts import Amount, SiAmount, StrictTable, Unit
 
 Coefficients = Annotated[tuple[float, ...], Field(min_length=1)]
 Share = Annotated[float, Field(gt=0, lt=1)]

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from seatrial.core.equations import Model
 from seatrial.core.results import Actuator, TrialLimits
 from seatrial.core.values import NOTATION, InputError, si_unit, spelling_hint
-from seatrial.data.trial.schema import Amount, DesignTable, InputTable
+from seatrial.data.trial.amounts import Amount
+from seatrial.data.trial.schema import DesignTable, InputTable
 from seatrial.data.trial.trial import DesignRequest
 
 _HALF_TURN = math.pi

@@ -15,9 +15,9 @@ from seatrial.data.trial.forces import read_force_points
 from seatrial.data.trial.literature import prior_range_findings
 from seatrial.data.trial.model_table import build_trial_model, ship_of
 from seatrial.data.trial.runs import expand_variables, require_training_run, runs_of
-from seatrial.data.trial.schema import EstimateTable, FamilyTable, TrialFile
+from seatrial.data.trial.schema import TrialFile
 from seatrial.data.trial.schema_errors import schema_error
-from seatrial.data.trial.trial import Estimate, Family, Trial
+from seatrial.data.trial.trial import Trial
 
 
 def parse_trial(path: Path) -> TrialFile:
@@ -95,23 +95,19 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         ship=ship,
         runs=runs,
         model=model,
-        estimate=_estimate(file.estimate),
-        noise={channel: spread.in_si for channel, spread in file.noise.items() if spread.in_si is not None},
+        estimate=file.estimate,
+        noise={channel: deviation for channel, deviation in file.noise.items() if deviation is not None},
         truth={name: value for name, value in file.truth.items() if name in model.parameters},
         accept=file.accept,
         reference_point=file.model.reference_point,
         question=file.question,
         path=path,
         forces=forces,
-        family=None if file.family is None else _family(file.family),
+        family=file.family,
         design_request=brief,
         stream=stream,
         findings=(*ranges, *(finding for points in forces for finding in force_findings(points, unit))),
     )
-
-
-def _family(table: FamilyTable) -> Family:
-    return Family(table.structures, table.prior_factors, table.segment_factors)
 
 
 def _reference_force(model: Model, ship: Ship) -> float | None:
@@ -124,19 +120,3 @@ def _refuse_unknown_names(where: str, names: list[str], valid_names: set[str]) -
     for name in names:
         if name not in valid_names:
             raise InputError(f"{where}: unknown name '{name}'{spelling_hint(name, sorted(valid_names))}")
-
-
-def _estimate(table: EstimateTable) -> Estimate:
-    return Estimate(
-        criterion=table.criterion,
-        channels=table.channels,
-        segment_s=table.segment_s,
-        segment_lengths=table.segment_lengths,
-        rate=table.rate,
-        robust=table.robust,
-        offsets={channel: spread.in_si for channel, spread in table.offsets.items()},
-        gains={channel: spread.in_si for channel, spread in table.gains.items()},
-        delays={channel: spread.in_si for channel, spread in table.delays.items()},
-        current=table.current,
-        initial_s=table.initial_s,
-    )

@@ -4,8 +4,9 @@ from collections.abc import Mapping
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Parameters, Prior, Ship, si_unit, spelling_hint
+from seatrial.data.trial.amounts import Amount
 from seatrial.data.trial.literature import LiteraturePrior, literature_priors
-from seatrial.data.trial.schema import Amount, ModelTable, PriorTable, ShipTable
+from seatrial.data.trial.schema import ModelTable, PriorTable, ShipTable
 from seatrial.physics.models import model_named
 from seatrial.physics.models.published import parameter_set
 from seatrial.physics.models.start_values import with_start_values

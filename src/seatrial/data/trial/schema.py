@@ -5,42 +5,13 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
-from seatrial.core.values import si_unit
 from seatrial.data.read.layout import Format, Separator
-
-
-class StrictTable(BaseModel):
-    """A table of the trial file: no unknown keys, immutable."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
-
-
-def _valid_unit(unit: object) -> object:
-    if isinstance(unit, str):
-        si_unit(unit)
-    return unit
-
-
-def _as_amount(value: object) -> object:
-    """A bare number is an amount in SI units."""
-    return {"value": value} if isinstance(value, int | float) and not isinstance(value, bool) else value
-
-
-def _as_standard_deviation(value: object) -> object:
-    return {"sd": value} if isinstance(value, int | float) and not isinstance(value, bool) else value
+from seatrial.data.trial.amounts import Deviation, SiAmount, StrictTable, Unit
+from seatrial.data.trial.settings import EstimateSettings, ModelFamily
 
 
 def _as_tuple(value: object) -> object:
     return (value,) if isinstance(value, str) else value
-
-
-def _as_nuisances(value: object) -> object:
-    """Channel names alone: the estimator's own prior. Numbers: standard deviations in SI units."""
-    if isinstance(value, list):
-        return {name: {} for name in value}
-    return (
-        {name: _as_standard_deviation(spread) for name, spread in value.items()} if isinstance(value, dict) else value
-    )
 
 
 def _valid_pattern(session: object) -> object:
@@ -52,37 +23,9 @@ def _valid_pattern(session: object) -> object:
     return session
 
 
-Unit = Annotated[str, BeforeValidator(_valid_unit)]
 Strings = Annotated[tuple[str, ...], BeforeValidator(_as_tuple)]
 
 
-class Amount(StrictTable):
-    """A number with its unit; without one it is SI."""
-
-    value: float
-    unit: Unit | None = None
-
-    @property
-    def in_si(self) -> float:
-        """The value in SI units."""
-        return self.value * (si_unit(self.unit)[0] if self.unit else 1.0)
-
-
-class StandardDeviation(StrictTable):
-    """A standard deviation with its unit; without one it is SI."""
-
-    sd: Annotated[float, Field(gt=0)] | None = None
-    unit: Unit | None = None
-
-    @property
-    def in_si(self) -> float | None:
-        """The standard deviation in SI units, None where it is not stated."""
-        return None if self.sd is None else self.sd * (si_unit(self.unit)[0] if self.unit else 1.0)
-
-
-SiAmount = Annotated[Amount, BeforeValidator(_as_amount)]
-SiStandardDeviation = Annotated[StandardDeviation, BeforeValidator(_as_standard_deviation)]
-Nuisances = Annotated[dict[str, StandardDeviation], BeforeValidator(_as_nuisances)]
 Bound = Annotated[float, Field(allow_inf_nan=True)]
 
 
@@ -304,11 +247,11 @@ class ModelTable(StrictTable):
     name: str
     parameter_set: str | None = None
     reference_point: float = 0.0
-    fixed: dict[str, SiAmount] = {}
-    start: dict[str, SiAmount] = {}
+    fixed: dict[str, SiAmount] = Field(default_factory=dict)
+    start: dict[str, SiAmount] = Field(default_factory=dict)
     free: tuple[str, ...] | None = None
-    bounds: dict[str, tuple[Bound, Bound]] = {}
-    priors: dict[str, PriorTable] = {}
+    bounds: dict[str, tuple[Bound, Bound]] = Field(default_factory=dict)
+    priors: dict[str, PriorTable] = Field(default_factory=dict)
     prior_sd_percent: Annotated[float, Field(gt=0)] | None = None
     priors_from: Strings = ()
 
@@ -328,36 +271,6 @@ class ExcitationTable(StrictTable):
         if (self.file is None) != (self.source == "box"):
             raise ValueError("a box needs no file" if self.file else f"source = '{self.source}' needs a file")
         return self
-
-
-class EstimateTable(StrictTable):
-    """`[estimate]`: settings of the estimator; what is not given follows the decision table."""
-
-    criterion: Literal["auto", "output-error", "multiple-shooting", "prediction-error"] = "auto"
-    channels: tuple[str, ...] = ()
-    segment_s: Annotated[float, Field(gt=0)] | None = None
-    segment_lengths: Annotated[float, Field(gt=0)] | None = None
-    rate: Annotated[float, Field(gt=0)] | None = None
-    robust: bool = False
-    offsets: Nuisances = {}
-    gains: Nuisances = {}
-    delays: Nuisances = {}
-    current: Annotated[float, Field(ge=0)] = 0.0
-    initial_s: Annotated[float, Field(gt=0)] | None = None
-
-    @model_validator(mode="after")
-    def _one_segment_length(self) -> Self:
-        if self.segment_s is not None and self.segment_lengths is not None:
-            raise ValueError("segment_s and segment_lengths are both given; keep one")
-        return self
-
-
-class FamilyTable(StrictTable):
-    """`[family]`: models to compare by runs left out; a structure frees further parameters."""
-
-    structures: dict[str, tuple[str, ...]] = {}
-    prior_factors: tuple[Annotated[float, Field(gt=0)], ...] = ()
-    segment_factors: tuple[Annotated[float, Field(gt=0)], ...] = ()
 
 
 class InputTable(StrictTable):
@@ -384,7 +297,7 @@ class DesignTable(StrictTable):
     duration: SiAmount
     rate: Annotated[float, Field(gt=0)]
     inputs: Annotated[dict[str, InputTable], Field(min_length=1)]
-    held: dict[str, SiAmount] = {}
+    held: dict[str, SiAmount] = Field(default_factory=dict)
     speed: SiAmount | None = None
     criterion: Literal["worst", "mean"] = "worst"
     draws: Annotated[int, Field(ge=0, le=1000)] = 24
@@ -405,10 +318,10 @@ class TrialFile(StrictTable):
     model: ModelTable
     forces: tuple[ForcesTable, ...] = ()
     excitation: ExcitationTable | None = None
-    family: FamilyTable | None = None
-    noise: dict[str, SiStandardDeviation] = {}
-    truth: dict[str, float] = {}
-    estimate: EstimateTable = EstimateTable()
+    family: ModelFamily | None = None
+    noise: dict[str, Deviation] = Field(default_factory=dict)
+    truth: dict[str, float] = Field(default_factory=dict)
+    estimate: EstimateSettings = EstimateSettings()
     design: DesignTable | None = None
     follow: FollowTable | None = None
 

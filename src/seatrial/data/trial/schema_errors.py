@@ -1,33 +1,42 @@
 """From a pydantic error to one sentence: the key's path, what is wrong with it, the nearest known key."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import is_dataclass
+from itertools import chain
 from types import NoneType
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
 from seatrial.core.values import InputError, spelling_hint
+from seatrial.data.trial.amounts import InSi
+
+_UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
 
 
-def _table_classes(annotation: object) -> Iterator[type[BaseModel]]:
-    """Every table class inside an annotation."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+def _table_classes(annotation: object) -> Iterator[type]:
+    """Yield every table class inside an annotation."""
+    if isinstance(annotation, InSi):
+        yield annotation.table
+    if isinstance(annotation, type) and (issubclass(annotation, BaseModel) or is_dataclass(annotation)):
         yield annotation
     for inner in get_args(annotation):
         if inner is not NoneType:
             yield from _table_classes(inner)
 
 
-def _fields_by_key(table: type[BaseModel]) -> dict[str, Any]:
-    return {field.alias or name: field for name, field in table.model_fields.items()}
+def _fields_by_key(table: type) -> dict[str, Any]:
+    fields = getattr(table, "__pydantic_fields__", {})
+    return {field.alias or name: field for name, field in fields.items()}
 
 
-def known_keys(table: type[BaseModel], location: Sequence[str | int]) -> list[str]:
-    """The keys of the table that contains the last key of `location`."""
+def known_keys(table: type, location: Sequence[str | int]) -> list[str]:
+    """Return the keys of the table that contains the last key of `location`."""
     for step in location[:-1]:
         field = _fields_by_key(table).get(str(step))
         if field is not None:
-            table = next(_table_classes(field.annotation), table)
+            amounts = (part.table for part in field.metadata if isinstance(part, InSi))
+            table = next(chain(_table_classes(field.annotation), amounts), table)
     return sorted(_fields_by_key(table))
 
 
@@ -41,11 +50,11 @@ def key_path(location: Sequence[str | int]) -> str:
 
 def schema_error(error: ValidationError, table: type[BaseModel], file: str) -> InputError:
     """The first thing wrong, as one sentence; an unknown key before a missing one, which may be its right spelling."""
-    first = min(error.errors(), key=lambda one: one["type"] != "extra_forbidden")
+    first = min(error.errors(), key=lambda one: one["type"] not in _UNKNOWN_KEY)
     location = first["loc"]
     where = f"{file}: "
     match first["type"]:
-        case "extra_forbidden":
+        case kind if kind in _UNKNOWN_KEY:
             hint = spelling_hint(str(location[-1]), known_keys(table, location))
             return InputError(f"{where}unknown key '{key_path(location)}'{hint}")
         case "missing":
@@ -61,7 +70,7 @@ def schema_error(error: ValidationError, table: type[BaseModel], file: str) -> I
             return InputError(f"{where}{key_path(location)} = {first['input']!r} is no list; put it into brackets")
         case "too_short":
             return InputError(f"{where}{key_path(location)} is an empty list; give at least one entry")
-        case "model_type":
+        case "model_type" | "dataclass_type":
             return InputError(
                 f"{where}{key_path(location)} = {first['input']!r} is neither a table nor a number; write one"
             )

@@ -9,6 +9,7 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Actuator, TrialLimits
 from seatrial.core.values import Finding, ForcePoints, Record, Ship
 from seatrial.data.read import Layout
+from seatrial.data.trial.settings import EstimateSettings, ModelFamily
 from seatrial.physics.hydro.excitation import Excitation
 from seatrial.physics.sea.spectrum import Spectrum
 
@@ -77,46 +78,6 @@ class TrialRun:
     def name(self) -> str:
         """The file's name without its ending."""
         return run_name(self.path)
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """Settings of the estimator; None, empty or ``auto`` leaves the choice to the decision table.
-
-    Attributes:
-        criterion: ``auto``, ``output-error``, ``multiple-shooting`` or ``prediction-error``.
-        channels: observables that are fitted; empty: all that the records measure.
-        segment_s: length of a segment in s.
-        segment_lengths: the same in ship lengths travelled at the run's mean speed.
-        rate: Hz at which residuals are taken.
-        robust: whether a robust loss is used.
-        offsets: channel -> prior standard deviation (SI, None where not stated) of its zero per session.
-        gains: channel -> prior standard deviation (None where not stated) of its gain per session.
-        delays: input -> prior standard deviation [s] (None where not stated) of its delay per session.
-        current: prior standard deviation of a uniform current for each run, m/s; 0: none.
-        initial_s: s of a validation run from which its initial state is taken.
-    """
-
-    criterion: str = "auto"
-    channels: tuple[str, ...] = ()
-    segment_s: float | None = None
-    segment_lengths: float | None = None
-    rate: float | None = None
-    robust: bool = False
-    offsets: Mapping[str, float | None] = field(default_factory=dict)
-    gains: Mapping[str, float | None] = field(default_factory=dict)
-    delays: Mapping[str, float | None] = field(default_factory=dict)
-    current: float = 0.0
-    initial_s: float | None = None
-
-
-@dataclass(frozen=True)
-class Family:
-    """Models to compare: structure -> parameters it frees beyond the trial's; factors on priors and segment length."""
-
-    structures: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    prior_factors: tuple[float, ...] = ()
-    segment_factors: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -204,7 +165,7 @@ class Trial:
     ship: Ship
     runs: tuple[TrialRun, ...]
     model: Model
-    estimate: Estimate = Estimate()
+    estimate: EstimateSettings = field(default_factory=EstimateSettings)
     noise: Mapping[str, float] = field(default_factory=dict)
     truth: Mapping[str, float] = field(default_factory=dict)
     accept: tuple[str, ...] = ()
@@ -212,7 +173,7 @@ class Trial:
     question: str = ""
     path: Path | None = None
     forces: tuple[ForcePoints, ...] = ()
-    family: Family | None = None
+    family: ModelFamily | None = None
     design_request: DesignRequest | None = None
     stream: Stream | None = None
     findings: tuple[Finding, ...] = ()

@@ -1,46 +1,74 @@
-"""Records and settings put together as an output-error problem."""
+"""Runs and settings put together as an output-error problem."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Prior, Record
-from seatrial.estimation.estimate.settings import Settings
+from seatrial.core.values import NOTATION, Prior
+from seatrial.data.trial import EstimateSettings
+from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.problem.output_error import Nuisance, OutputError
 from seatrial.estimation.problem.segments import compared_outputs, cut_segments
 from seatrial.estimation.problem.static_forces import StaticForces
 from seatrial.physics.simulate.batch import InputCorrection
 
+_ZERO_DEVIATIONS = {"rad": float(np.radians(2.0)), "m/s": 0.1, "rps": 0.1}
+"""Prior standard deviation of a sensor's zero, SI, by unit: 2 deg, 0.1 m/s, 0.1 rps; chosen."""
 
-def _nuisances(settings: Settings) -> tuple[Nuisance, ...]:
-    return tuple(
-        Nuisance(InputCorrection(i, kind), Prior(1.0 if kind == "gain" else 0.0, spread, "house default"), unit)
-        for i, kind, spread, unit in settings.corrections
-    )
+_OTHER_ZERO_DEVIATION = 0.1
+"""The same for channels of any other unit, SI; chosen."""
+
+_GAIN_DEVIATION = 0.1
+"""Prior standard deviation of a sensor's gain about 1; chosen."""
+
+_DELAY_DEVIATION = 0.2
+"""Prior standard deviation of an input's delay [s]; chosen."""
+
+_NOISE_SHARE, _LEAST_NOISE = 0.1, 1e-9
+"""Noise of a channel before any search: this share of its spread, at least this much, SI; chosen."""
+
+_SOURCE = "house default"
 
 
-def _current_priors(settings: Settings) -> tuple[tuple[str, Prior], ...]:
+def _nuisances(settings: EstimateSettings) -> Iterator[Nuisance]:
+    for name, deviation in settings.offsets.items():
+        unit = NOTATION[name].unit
+        spread = deviation or _ZERO_DEVIATIONS.get(unit, _OTHER_ZERO_DEVIATION)
+        yield Nuisance(InputCorrection(name, "zero"), Prior(0.0, spread, _SOURCE), unit)
+    for name, deviation in settings.gains.items():
+        yield Nuisance(InputCorrection(name, "gain"), Prior(1.0, deviation or _GAIN_DEVIATION, _SOURCE), "1")
+    for name, deviation in settings.delays.items():
+        yield Nuisance(InputCorrection(name, "delay"), Prior(0.0, deviation or _DELAY_DEVIATION, _SOURCE), "s")
+
+
+def _current_priors(settings: EstimateSettings) -> tuple[tuple[str, Prior], ...]:
     if settings.current <= 0:
         return ()
-    prior = Prior(0.0, settings.current, "house default")
+    prior = Prior(0.0, settings.current, _SOURCE)
     return (("current_north", prior), ("current_east", prior))
 
 
 def output_error_problem(
-    model: Model, records: Sequence[Record], sessions: Sequence[str], seconds: float, settings: Settings
+    model: Model, runs: Runs, segment_s: float, settings: EstimateSettings, workers: int | None = None
 ) -> OutputError:
-    """The records in segments of `seconds` (infinite: whole runs); each channel's noise a tenth of its spread.
+    """Return the runs in segments of `segment_s` [s] (infinite: whole runs) as an output-error problem.
 
-    Beside them stand the settings' force points and other data.
+    The noise of each channel is a tenth of its spread. Force points and carried information stand with the runs.
 
     Raises:
         InputError: outputs that cannot be compared, time steps that differ, a record of fewer than three samples, or
             force points that the model cannot be compared with.
     """
-    outputs = compared_outputs(model, records, settings.channels)
-    data = cut_segments(model, records, outputs, None if np.isinf(seconds) else seconds, sessions)
+    outputs = compared_outputs(model, runs.records, settings.channels)
+    data = cut_segments(model, runs.records, outputs, None if np.isinf(segment_s) else segment_s, runs.sessions)
     spread = np.nanstd(data.measured, axis=0)
-    others = (*(StaticForces(model, points) for points in settings.forces), *settings.extra_terms)
-    return OutputError(model, data, np.maximum(0.1 * spread, 1e-9), _nuisances(settings), _current_priors(settings),
-                       substeps=settings.substeps, workers=settings.workers, extra_terms=others)  # fmt: skip
+    return OutputError(
+        model,
+        data,
+        np.maximum(_NOISE_SHARE * spread, _LEAST_NOISE),
+        tuple(_nuisances(settings)),
+        _current_priors(settings),
+        workers=workers,
+        extra_terms=(*(StaticForces(model, points) for points in runs.forces), *runs.carried),
+    )

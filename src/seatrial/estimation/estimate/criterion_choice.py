@@ -1,11 +1,12 @@
 """Which criterion the records call for: the decision table from an estimate over segments onwards."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from seatrial.core.values import Array, ProgressReporter
+from seatrial.data.trial import EstimateSettings, FitCriterion
 from seatrial.estimation.estimate.correlated_disturbances import select_disturbance_model
 from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
 from seatrial.estimation.estimate.point_estimate import PointEstimate, residual_correlation, residual_spread
@@ -16,7 +17,7 @@ from seatrial.estimation.estimate.process_noise import (
     implied_intensities,
     implied_process_noise,
 )
-from seatrial.estimation.estimate.settings import WHITE_INFLATION, FitCriterion, Settings
+from seatrial.estimation.estimate.settings import WHITE_INFLATION
 from seatrial.estimation.problem.output_error import OutputError
 
 PREDICTION_ERROR, WHOLE_RUNS = "prediction error", "output error over whole runs"
@@ -66,7 +67,8 @@ class CriterionChoice:
 def choose_criterion(
     shooting: PointEstimate,
     seconds: float,
-    settings: Settings,
+    settings: EstimateSettings,
+    noise: Mapping[str, float],
     fit_whole_runs: Callable[[], PointEstimate | None],
     report_progress: ProgressReporter | None,
     *,
@@ -79,16 +81,16 @@ def choose_criterion(
     shot = _output_error_choice(shooting, _output_error_name(seconds))
     match settings.criterion:
         case FitCriterion.OUTPUT_ERROR | FitCriterion.MULTIPLE_SHOOTING:
-            return _required_choice(shot, settings, "the criterion was asked for")
+            return _required_choice(shot, settings, noise, "the criterion was asked for")
         case FitCriterion.PREDICTION_ERROR:
-            noise = fit_prediction_error(shooting, settings.noise, thorough=True, report_progress=report_progress)
-            return _prediction_error_choice(noise, "it was asked for", noise.test.summary)
+            process_noise = fit_prediction_error(shooting, noise, thorough=True, report_progress=report_progress)
+            return _prediction_error_choice(process_noise, "it was asked for", process_noise.test.summary)
         case FitCriterion.AUTO if is_unforced and _is_explained(shot):
-            return _required_choice(shot, settings, _FREE_DECAY)
+            return _required_choice(shot, settings, noise, _FREE_DECAY)
         case FitCriterion.AUTO:
             pass
-    if settings.segment_seconds is not None:
-        return _required_choice(shot, settings, "the length of segments was asked for")
+    if settings.segment_s is not None:
+        return _required_choice(shot, settings, noise, "the length of segments was asked for")
     whole = _whole_runs_choice(shot, fit_whole_runs()) if shot.is_white else None
     if whole is not None and whole.is_white:
         return whole.with_reasons(_WHITE)
@@ -98,15 +100,17 @@ def choose_criterion(
         return shot.with_reasons(_CORRELATED, _SEGMENTED)
     if is_coarsely_sampled(shooting.problem):
         return shot.with_reasons(_CORRELATED, _COARSE_SAMPLES)
-    noise = fit_prediction_error(shooting, settings.noise, report_progress=report_progress)
-    if noise.test.is_needed and not noise.test.is_white:
-        noise = select_disturbance_model(noise, report_progress=report_progress)
-    if noise.test.favours_prediction_error:
-        added = (f"added to the model: {noise.disturbance_model}",) if noise.disturbance_model else ()
-        return _prediction_error_choice(noise, *shot.reasons, noise.test.summary, *added)
-    if whole is not None and not noise.test.is_needed:
-        return whole.with_reasons(noise.test.summary)
-    return replace(shot.with_reasons(noise.test.summary, _SEGMENTED), process_intensities=noise.process_intensities)
+    process_noise = fit_prediction_error(shooting, noise, report_progress=report_progress)
+    if process_noise.test.is_needed and not process_noise.test.is_white:
+        process_noise = select_disturbance_model(process_noise, report_progress=report_progress)
+    if process_noise.test.favours_prediction_error:
+        added = (f"added to the model: {process_noise.disturbance_model}",) if process_noise.disturbance_model else ()
+        return _prediction_error_choice(process_noise, *shot.reasons, process_noise.test.summary, *added)
+    if whole is not None and not process_noise.test.is_needed:
+        return whole.with_reasons(process_noise.test.summary)
+    return replace(
+        shot.with_reasons(process_noise.test.summary, _SEGMENTED), process_intensities=process_noise.process_intensities
+    )
 
 
 def is_coarsely_sampled(problem: OutputError) -> bool:
@@ -127,7 +131,9 @@ def is_coarsely_sampled(problem: OutputError) -> bool:
     return False
 
 
-def _required_choice(shooting: CriterionChoice, settings: Settings, reason: str) -> CriterionChoice:
+def _required_choice(
+    shooting: CriterionChoice, settings: EstimateSettings, noise: Mapping[str, float], reason: str
+) -> CriterionChoice:
     """The user's own choice; what it leaves coloured is measured as process noise, for the floor of predictions."""
     if shooting.is_white or not has_noise(shooting.estimate):
         return shooting.with_reasons(reason)
@@ -136,16 +142,16 @@ def _required_choice(shooting: CriterionChoice, settings: Settings, reason: str)
         and len(shooting.estimate.problem.data.runs) < RUNS_FOR_JACKKNIFE
         and not settings.robust
     ):
-        noise = implied_process_noise(shooting.estimate, settings.noise)
-        beside = noise if noise.test.is_white else None
+        implied = implied_process_noise(shooting.estimate, noise)
+        compatible = implied if implied.test.is_white else None
         return replace(
             shooting.with_reasons(reason, _CORRELATED),
-            process_intensities=noise.process_intensities,
-            implied_noise=beside,
+            process_intensities=implied.process_intensities,
+            implied_noise=compatible,
         )
     told = (_CORRELATED,) if shooting.criterion == WHOLE_RUNS else (_CORRELATED, _SEGMENTED)
     return replace(
-        shooting.with_reasons(reason, *told), process_intensities=implied_intensities(shooting.estimate, settings.noise)
+        shooting.with_reasons(reason, *told), process_intensities=implied_intensities(shooting.estimate, noise)
     )
 
 

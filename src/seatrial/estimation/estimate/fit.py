@@ -9,6 +9,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results import NoiseModel
 from seatrial.core.values import Array, InputError, ProgressReporter, Record
+from seatrial.data.trial import EstimateSettings, FitCriterion
 from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.estimate.criterion_choice import PREDICTION_ERROR, CriterionChoice, choose_criterion
 from seatrial.estimation.estimate.intervals import (
@@ -19,22 +20,21 @@ from seatrial.estimation.estimate.intervals import (
 )
 from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error
 from seatrial.estimation.estimate.process_noise_interval import process_noise_interval
+from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import (
     HUBER_LIMIT,
     SEGMENT_SHIP_LENGTHS,
     WEAK_FORM_SHIP_LENGTHS,
-    FitCriterion,
+    EstimatorOptions,
     IntervalMethod,
-    Settings,
 )
 from seatrial.estimation.estimate.start import find_start
+from seatrial.estimation.estimate.time_scale import characteristic_time, is_pure_roll
 from seatrial.estimation.information.autocorrelation import whiteness_p
 from seatrial.estimation.information.covariance import Interval, inverse
-from seatrial.physics.hydro.dispersion import G
 
-# of the period seen: windows of the start then have a half width of some .6 periods
-PERIOD_SHARE = 0.4
 _MIN_RUDDER_RANGE = float(np.radians(0.5))
+"""Range of rudder angle [rad] that counts as a manoeuvre: 0.5 deg, chosen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,64 +88,8 @@ class Estimation:
         return self.noise_model.method == PREDICTION_ERROR
 
 
-def ship_length_seconds(records: Sequence[Record], length: float, segment_seconds: float | None = None) -> float:
-    """L/U: the time in which the ship travels her length at the records' median speed.
-
-    Records without any speed take it from the segment length that was asked for, if it is finite.
-
-    Raises:
-        InputError: the records show no speed.
-    """
-    speeds = []
-    for record in records:
-        if "u" in record:
-            speeds.append(np.nanmedian(np.abs(record["u"])))
-        elif {"x0", "y0"} <= set(record.channels):
-            speeds.append(np.median(np.hypot(np.diff(record["x0"]), np.diff(record["y0"]))) / record.dt)
-    if not speeds and segment_seconds is not None and np.isfinite(segment_seconds):
-        return segment_seconds / SEGMENT_SHIP_LENGTHS
-    if not speeds or np.median(speeds) <= 0:
-        raise InputError("the records show no forward speed; give u or positions, or set estimate.segment_s")
-    return length / float(np.median(speeds))
-
-
-def characteristic_time(
-    model: Model, records: Sequence[Record], length: float, segment_seconds: float | None = None
-) -> float:
-    """s in which the ship changes her motion: L/U where she is steered, sqrt(L/g) for a linear model in waves.
-
-    Where she only swings about a rest (a model without heading that is not linear) it is a share of the period seen.
-
-    Raises:
-        InputError: a ship is steered and the records show no speed.
-    """
-    if model.is_affine:
-        return float(np.sqrt(length / G))
-    if is_pure_roll(model):
-        return PERIOD_SHARE * float(np.median([dominant_period(r[model.states[0]], r.dt) for r in records]))
-    return ship_length_seconds(records, length, segment_seconds)
-
-
-def is_pure_roll(model: Model) -> bool:
-    """Whether the ship swings about a rest, with no heading and no speed of her own."""
-    return not {"psi", "u"} & {*model.states, *model.input_names}
-
-
-def dominant_period(values: Array, dt: float) -> float:
-    """Period [s] at which the motion (n,) about its mean has most power.
-
-    Raises:
-        InputError: it does not move, or never swings.
-    """
-    power = np.abs(np.fft.rfft(values - values.mean(), 4 * len(values)))
-    peak = int(np.argmax(power))
-    if not power[peak] > 0.0 or peak < 4:
-        raise InputError("the motion never swings about its mean; give a longer record, from the release on")
-    return 4 * len(values) * dt / peak
-
-
-def _moving_inputs(model: Model, records: Sequence[Record]) -> list[str]:
-    """The inputs that move in any of the records."""
+def moving_inputs(model: Model, records: Sequence[Record]) -> list[str]:
+    """Return the inputs that move in any of the records."""
     return [n for n in model.input_names if any(n in r and np.ptp(r[n]) > 0.0 for r in records)]
 
 
@@ -155,7 +99,7 @@ def refuse_without_excitation(model: Model, records: Sequence[Record]) -> None:
     Raises:
         InputError: which records, and what manoeuvre is needed.
     """
-    if model.is_affine and not _moving_inputs(model, records):
+    if model.is_affine and not moving_inputs(model, records):
         raise InputError(
             f"no excitation: none of {', '.join(model.input_names)} moves in {', '.join(r.name for r in records)}; "
             "give wave forces or fin angles, or the wave elevation with [excitation]"
@@ -168,75 +112,90 @@ def refuse_without_excitation(model: Model, records: Sequence[Record]) -> None:
         )
 
 
+def with_segment_seconds(settings: EstimateSettings, model: Model, runs: Runs) -> EstimateSettings:
+    """Return the settings with a segment length in ship lengths expressed in seconds.
+
+    Raises:
+        InputError: the length is in ship lengths and the runs show no speed.
+    """
+    if settings.segment_lengths is None:
+        return settings
+    seconds = settings.segment_lengths * characteristic_time(model, runs.records, runs.length)
+    return replace(settings, segment_s=seconds, segment_lengths=None)
+
+
 def estimate_model(
     model: Model,
-    records: Sequence[Record],
-    sessions: Sequence[str],
-    length: float,
-    settings: Settings | None = None,
+    runs: Runs,
+    settings: EstimateSettings | None = None,
+    options: EstimatorOptions | None = None,
     report_progress: ProgressReporter | None = None,
 ) -> Estimation:
-    """Estimate the free parameters of `model` from training records.
+    """Estimate the free parameters of `model` from training runs.
 
     Start by the weak form, then multiple shooting with re-estimated noise; then, by the decision table, output error
-    over whole runs or prediction error with process noise, unless a criterion or a segment length was asked for.
-    length: ship length in m, which sets the segment length. Sessions name the group of each record's nuisances.
+    over whole runs or prediction error with process noise, unless a criterion or a segment length is set.
 
     Raises:
         InputError: no excitation, no free parameter, outputs that cannot be compared, or a search that cannot begin.
     """
-    settings = settings or Settings()
     began = time.perf_counter()
+    options, settings = options or EstimatorOptions(), with_segment_seconds(settings or EstimateSettings(), model, runs)
     if not model.parameters.free:
         raise InputError(f"model '{model.name}' has no free parameter; free some under [model]")
-    refuse_without_excitation(model, records)
-    refuse_few_runs(settings.intervals, len(records))
-    unit = characteristic_time(model, records, length, settings.segment_seconds)
-    tell = report_progress or (lambda _: None)
-    tell("weak-form start")
-    seconds = settings.segment_seconds or SEGMENT_SHIP_LENGTHS * unit
-    chosen = settings.criterion is FitCriterion.AUTO and settings.segment_seconds is None
-    if settings.criterion is FitCriterion.OUTPUT_ERROR or ((model.is_affine or is_pure_roll(model)) and chosen):
-        seconds = np.inf  # a ship in waves, or rolling out, is stable: nothing to cut short
-    begin = find_start(
-        output_error_problem(model, records, sessions, seconds, settings), records, WEAK_FORM_SHIP_LENGTHS * unit
-    )
-    problem = replace(begin.problem, huber=HUBER_LIMIT) if settings.robust else begin.problem
+    refuse_without_excitation(model, runs.records)
+    refuse_few_runs(options.intervals, len(runs))
+    report = report_progress or (lambda _: None)
+    report("weak-form start")
+    unit = characteristic_time(model, runs.records, runs.length, settings.segment_s)
+    seconds = _segment_seconds(model, settings, unit)
+    problem = output_error_problem(model, runs, seconds, settings, options.workers)
+    start = find_start(problem, runs.records, WEAK_FORM_SHIP_LENGTHS * unit)
     shooting = fit_output_error(
-        problem,
-        begin.common_parameters,
-        begin.initial_states,
-        settings.noise,
-        evaluations=settings.evaluations,
+        replace(start.problem, huber=HUBER_LIMIT) if settings.robust else start.problem,
+        start.common_parameters,
+        start.initial_states,
+        runs.noise,
+        evaluations=options.evaluations,
         report_progress=report_progress,
     )
 
     def whole_runs() -> PointEstimate | None:
         if np.isinf(seconds):
             return shooting
-        return _fit_whole_runs(shooting, model, records, sessions, settings, report_progress)
+        return _fit_whole_runs(shooting, model, runs, settings, options, report_progress)
 
-    is_undriven = is_pure_roll(model) and not _moving_inputs(model, records)
-    found = choose_criterion(shooting, seconds, settings, whole_runs, report_progress, is_unforced=is_undriven)
-    criterion = f"{found.criterion}, Huber loss" if settings.robust else found.criterion
-    known = _uncertainty(found, settings, tell)
+    is_unforced = is_pure_roll(model) and not moving_inputs(model, runs.records)
+    choice = choose_criterion(
+        shooting, seconds, settings, runs.noise, whole_runs, report_progress, is_unforced=is_unforced
+    )
+    criterion = f"{choice.criterion}, Huber loss" if settings.robust else choice.criterion
     return Estimation(
-        found.estimate, shooting, known, found.residuals, found.inflation, found.rho, _noise_model(found), begin.origin,
-        criterion, found.reasons, time.perf_counter() - began,
+        choice.estimate, shooting, _uncertainty(choice, options, report), choice.residuals, choice.inflation,
+        choice.rho, _noise_model(choice), start.origin, criterion, choice.reasons, time.perf_counter() - began,
     )  # fmt: skip
 
 
-def _uncertainty(choice: CriterionChoice, settings: Settings, report_progress: ProgressReporter) -> Uncertainty:
-    def counted(done: int, total: int) -> None:
-        report_progress(f"{settings.intervals}: fit {done} of {total}")
+def _segment_seconds(model: Model, settings: EstimateSettings, unit: float) -> float:
+    """Length of segments [s], infinite for whole runs; unit: the ship's characteristic time [s]."""
+    is_automatic = settings.criterion is FitCriterion.AUTO and settings.segment_s is None
+    is_stable = model.is_affine or is_pure_roll(model)  # in waves or rolling out: nothing to cut short
+    if settings.criterion is FitCriterion.OUTPUT_ERROR or (is_stable and is_automatic):
+        return np.inf
+    return settings.segment_s or SEGMENT_SHIP_LENGTHS * unit
 
-    if choice.implied_noise is not None and settings.intervals in (IntervalMethod.AUTO, IntervalMethod.PROFILE):
+
+def _uncertainty(choice: CriterionChoice, options: EstimatorOptions, report_progress: ProgressReporter) -> Uncertainty:
+    def counted(done: int, total: int) -> None:
+        report_progress(f"{options.intervals}: fit {done} of {total}")
+
+    if choice.implied_noise is not None and options.intervals in (IntervalMethod.AUTO, IntervalMethod.PROFILE):
         interval = process_noise_interval(choice.estimate, choice.implied_noise)
         return Uncertainty(interval, information=inverse(interval.covariance))
     if choice.process_noise is None:
-        rng = np.random.default_rng(settings.seed)
-        return estimate_uncertainty(choice.estimate, choice.inflation, settings.intervals, rng, counted)
-    return innovations_uncertainty(choice.process_noise, settings.intervals)
+        rng = np.random.default_rng(options.seed)
+        return estimate_uncertainty(choice.estimate, choice.inflation, options.intervals, rng, counted)
+    return innovations_uncertainty(choice.process_noise, options.intervals)
 
 
 def _noise_model(choice: CriterionChoice) -> NoiseModel:
@@ -256,14 +215,14 @@ def _noise_model(choice: CriterionChoice) -> NoiseModel:
 def _fit_whole_runs(
     shooting: PointEstimate,
     model: Model,
-    records: Sequence[Record],
-    sessions: Sequence[str],
-    settings: Settings,
+    runs: Runs,
+    settings: EstimateSettings,
+    options: EstimatorOptions,
     report_progress: ProgressReporter | None,
 ) -> PointEstimate | None:
     """Whole runs from the segments' optimum; None where they diverge there."""
     problem = replace(
-        output_error_problem(model, records, sessions, np.inf, settings),
+        output_error_problem(model, runs, np.inf, settings, options.workers),
         noise=shooting.problem.noise,
         huber=shooting.problem.huber,
     )
@@ -275,7 +234,7 @@ def _fit_whole_runs(
         problem,
         shooting.common_parameters,
         local,
-        settings.noise,
-        evaluations=settings.evaluations,
+        runs.noise,
+        evaluations=options.evaluations,
         report_progress=report_progress,
     )

@@ -1,5 +1,6 @@
 """Output error with the noise re-estimated: the estimator behind `fit`."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -58,7 +59,7 @@ def fit_output_error(
     problem: OutputError,
     common_parameters: Array,
     initial_states: Array,
-    known_noise: dict[str, float],
+    known_noise: Mapping[str, float],
     *,
     rounds: int = 8,
     evaluations: int = 60,

@@ -1,6 +1,6 @@
-"""From a trial to a fit: estimate, compare models, predict, and say what the records tell."""
+"""From a trial to a fit: estimate, compare models, predict, and state what the records determine."""
 
-from seatrial.estimation.estimate import Estimation, IntervalMethod, Settings, estimate_model
+from seatrial.estimation.estimate import Estimation, EstimatorOptions, IntervalMethod, Runs, estimate_model
 from seatrial.estimation.identify.identify import identify
 
-__all__ = ["Estimation", "IntervalMethod", "Settings", "estimate_model", "identify"]
+__all__ = ["Estimation", "EstimatorOptions", "IntervalMethod", "Runs", "estimate_model", "identify"]

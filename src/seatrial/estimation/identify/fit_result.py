@@ -136,28 +136,37 @@ def bounds_hit(estimation: Estimation) -> list[Finding]:
     ]  # fmt: skip
 
 
-def unidentified(estimation: Estimation) -> list[Finding]:
-    """A warning with the coefficients whose standard error exceeds their value, though no prior holds them.
+def refuse_unidentified(estimation: Estimation) -> None:
+    """Refuse an estimate in which no free coefficient is known better than to its own size.
 
     Raises:
-        InputError: that is true of all free coefficients.
+        InputError: every standard error exceeds the value.
     """
-    problem = estimation.estimate.problem
-    estimates, errors = estimation.estimate.common_parameters, estimation.interval.standard_error
-    own = [i for i, name in enumerate(problem.free) if problem.model.parameters[name].prior is None]
-    names = [problem.free[i] for i in own if errors[i] > abs(estimates[i])]
+    problem, names = estimation.estimate.problem, _unidentified_names(estimation)
     if names and len(names) == len(problem.free):
         noise = ", ".join(f"{c} {s:.2g}" for c, s in zip(problem.data.outputs, problem.noise, strict=True))
         raise InputError(
-            f"the records tell none of the free coefficients {', '.join(names)}: every standard error exceeds the "
+            f"the records determine none of the free coefficients {', '.join(names)}: every standard error exceeds the "
             f"value (what the model leaves unexplained, SI: {noise}); take better sensors, longer or harder "
             "manoeuvres, or give priors under [model.priors]"
         )
+
+
+def unidentified(estimation: Estimation) -> list[Finding]:
+    """Return a warning with the coefficients whose standard error exceeds their value, though no prior holds them."""
+    names = _unidentified_names(estimation)
     if not names:
         return []
-    return [Finding(Severity.WARNING, "not-identifiable", f"the records do not tell {', '.join(names)}: the standard "
-                    "error exceeds the value", "", "do not use them alone; seatrial design finds a manoeuvre that "
-                    "tells them, or give a prior")]  # fmt: skip
+    return [Finding(Severity.WARNING, "not-identifiable", f"the records do not determine {', '.join(names)}: the "
+                    "standard error exceeds the value", "", "do not use them alone; seatrial design finds a manoeuvre "
+                    "that identifies them, or give a prior")]  # fmt: skip
+
+
+def _unidentified_names(estimation: Estimation) -> list[str]:
+    problem = estimation.estimate.problem
+    estimates, errors = estimation.estimate.common_parameters, estimation.interval.standard_error
+    without_prior = [i for i, name in enumerate(problem.free) if problem.model.parameters[name].prior is None]
+    return [problem.free[i] for i in without_prior if errors[i] > abs(estimates[i])]
 
 
 def divergence_message(estimation: Estimation, error: DivergedError) -> str:

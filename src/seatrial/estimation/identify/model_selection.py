@@ -14,13 +14,14 @@ from scipy import stats
 from seatrial.core.equations import Model
 from seatrial.core.results import CandidateModel
 from seatrial.core.values import Array, Finding, InputError, Prior, ProgressReporter, Record, Severity
-from seatrial.data.trial import Family
+from seatrial.data.trial import EstimateSettings, ModelFamily
 from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
 from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error
 from seatrial.estimation.estimate.resampling import one_step_jackknife
-from seatrial.estimation.estimate.settings import Settings
+from seatrial.estimation.estimate.runs import Runs
+from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.estimation.predict.cross_validation import HoldoutProtocol, split_windows, window_errors
 from seatrial.estimation.predict.predict_runs import TiedModel
 from seatrial.estimation.predict.prediction_intervals import holdout_model
@@ -73,12 +74,11 @@ class SelectedModel:
 def select_model(
     estimation: Estimation,
     model: Model,
-    records: Sequence[Record],
-    sessions: Sequence[str],
-    length: float,
+    runs: Runs,
     window_s: float,
-    settings: Settings,
-    family: Family | None,
+    settings: EstimateSettings,
+    options: EstimatorOptions,
+    family: ModelFamily | None,
     *,
     choose: bool,
     report_progress: ProgressReporter | None = None,
@@ -89,14 +89,14 @@ def select_model(
         InputError: a member is to be chosen and the family cannot be compared.
     """
     try:
-        fitted = fit_variants(estimation, model, records, sessions, window_s, settings, family, report_progress)
+        fitted = fit_variants(estimation, model, runs, window_s, settings, options, family, report_progress)
     except InputError as error:
         if choose:
             raise
         what = "intervals are without the spread of tied models: the family of models cannot be compared"
         return SelectedModel(estimation, (), (), (Finding(Severity.INFO, "no-family", what, str(error)),))
     rows = rank_candidates(fitted, choose=choose)
-    used = selected_estimation(estimation, fitted, rows, records, sessions, length, settings, report_progress)
+    used = selected_estimation(estimation, fitted, rows, runs, settings, options, report_progress)
     return SelectedModel(used, rows, tied_models(fitted, rows), _better_candidate_warning(rows))
 
 
@@ -112,7 +112,7 @@ def _better_candidate_warning(candidates: Sequence[CandidateModel]) -> tuple[Fin
     return (Finding(Severity.WARNING, "better-model", what, evidence, "--choose takes the best member"),)
 
 
-def variants(model: Model, family: Family | None, is_segmented: bool) -> tuple[ModelVariant, ...]:
+def variants(model: Model, family: ModelFamily | None, is_segmented: bool) -> tuple[ModelVariant, ...]:
     """The model as the trial has it, then each structure, each width of priors, each segment length by itself.
 
     family: what the trial declares; without it the family of the house for this model.
@@ -146,11 +146,11 @@ def apply_variant(model: Model, variant: ModelVariant) -> Model:
 def fit_variants(
     estimation: Estimation,
     model: Model,
-    records: Sequence[Record],
-    sessions: Sequence[str],
+    runs: Runs,
     window_s: float,
-    settings: Settings,
-    family: Family | None = None,
+    settings: EstimateSettings,
+    options: EstimatorOptions,
+    family: ModelFamily | None = None,
     report_progress: ProgressReporter | None = None,
 ) -> tuple[FittedVariant, ...]:
     """Every member fitted and scored, the trial's own first.
@@ -159,10 +159,10 @@ def fit_variants(
         InputError: too few runs, but one member, or none that can be fitted.
     """
     base = estimation.shooting
-    if len(records) < RUNS_FOR_JACKKNIFE:
+    if len(runs) < RUNS_FOR_JACKKNIFE:
         raise InputError(
             f"models are compared on whole runs left out, which needs at least {RUNS_FOR_JACKKNIFE} training runs; the "
-            f"trial has {len(records)}, add runs"
+            f"trial has {len(runs)}, add runs"
         )
     seconds = _segment_seconds(base)
     is_segmented = base.problem.data.count > len(base.problem.data.runs)
@@ -171,25 +171,24 @@ def fit_variants(
         raise InputError(
             f"model '{model.name}' has no family to choose from; declare [family] with structures or prior_factors"
         )
-    quiet = replace(settings, workers=1)
 
     def one(variant: ModelVariant) -> FittedVariant:
         if report_progress:
             report_progress(f"family: {variant.name}")
-        own = apply_variant(model, variant)
-        length = seconds * variant.segment_factor if is_segmented else np.inf
+        varied = apply_variant(model, variant)
+        segment_s = seconds * variant.segment_factor if is_segmented else np.inf
         try:
-            problem = output_error_problem(own, records, sessions, length, quiet)
+            problem = output_error_problem(varied, runs, segment_s, settings, workers=1)
             old = base.problem
             problem = replace(problem, noise=old.noise, inflation=old.inflation, huber=old.huber)
             shared = _warm_start(base, problem.free, problem.start())
             local = base.optimum.local if variant.segment_factor == 1.0 else problem.measured_initial_states()
-            made = fit_output_error(problem, shared, local, settings.noise, evaluations=settings.evaluations)
-            return FittedVariant(variant, own, made, holdout_scores(made, own, records, window_s))
+            estimate = fit_output_error(problem, shared, local, runs.noise, evaluations=options.evaluations)
+            return FittedVariant(variant, varied, estimate, holdout_scores(estimate, varied, runs.records, window_s))
         except InputError as error:
-            return FittedVariant(variant, own, None, np.empty((0, 2)), str(error))
+            return FittedVariant(variant, varied, None, np.empty((0, 2)), str(error))
 
-    fitted = tuple(map_in_threads(one, members, workers=settings.workers))
+    fitted = tuple(map_in_threads(one, members, workers=options.workers))
     if all(f.estimate is None for f in fitted):
         raise InputError(f"no member of the family can be fitted; the first fails because {fitted[0].note}")
     return fitted
@@ -256,10 +255,9 @@ def selected_estimation(
     estimation: Estimation,
     fitted: Sequence[FittedVariant],
     candidates: Sequence[CandidateModel],
-    records: Sequence[Record],
-    sessions: Sequence[str],
-    length: float,
-    settings: Settings,
+    runs: Runs,
+    settings: EstimateSettings,
+    options: EstimatorOptions,
     report_progress: ProgressReporter | None = None,
 ) -> Estimation:
     """The fit of the member that is used: fitted again by the decision table unless it is the trial's own.
@@ -270,11 +268,10 @@ def selected_estimation(
     used = next(f for f, row in zip(fitted, candidates, strict=True) if row.is_chosen)
     if used is fitted[0]:
         return estimation
-    own = settings
     if used.variant.segment_factor != 1.0:
-        seconds = settings.segment_seconds or _segment_seconds(estimation.shooting)
-        own = replace(settings, segment_seconds=seconds * used.variant.segment_factor)
-    return estimate_model(used.model, records, sessions, length, own, report_progress)
+        seconds = settings.segment_s or _segment_seconds(estimation.shooting)
+        settings = replace(settings, segment_s=seconds * used.variant.segment_factor)
+    return estimate_model(used.model, runs, settings, options, report_progress)
 
 
 def tied_models(fitted: Sequence[FittedVariant], candidates: Sequence[CandidateModel]) -> tuple[TiedModel, ...]:

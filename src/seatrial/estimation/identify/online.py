@@ -15,10 +15,10 @@ import numpy as np
 from seatrial.core.results.online import CoefficientChange, EstimatorPhase, Sample, Snapshot
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.read.assemble import record_from_values
-from seatrial.data.trial import Role, Trial, TrialRun
+from seatrial.data.trial import FitCriterion, Role, Trial, TrialRun
 from seatrial.data.trial.follow_table import require_stream
 from seatrial.data.trial.records import load_run
-from seatrial.estimation.estimate.fit import estimate_model, is_pure_roll
+from seatrial.estimation.estimate.fit import estimate_model, with_segment_seconds
 from seatrial.estimation.estimate.online.change_detection import ChangeDetector
 from seatrial.estimation.estimate.online.marginal_prior import MarginalPrior, marginalise
 from seatrial.estimation.estimate.online.sample_rows import SampleRows
@@ -29,8 +29,8 @@ from seatrial.estimation.estimate.online.window import (
     refuse_diverging,
     warm_start,
 )
-from seatrial.estimation.estimate.settings import FitCriterion, Settings
-from seatrial.estimation.identify.identify import settings_from_trial
+from seatrial.estimation.estimate.runs import Runs
+from seatrial.estimation.estimate.time_scale import is_pure_roll
 from seatrial.estimation.identify.recursive_phase import CHANGE_TEST_INTERVAL, RecursivePhase
 from seatrial.estimation.information.covariance import inverse
 
@@ -211,10 +211,7 @@ class OnlineEstimator:
 
     def _suits_whole_runs(self) -> bool:
         wishes, model = self._trial.estimate, self._trial.model
-        is_free = (
-            FitCriterion(wishes.criterion) in (FitCriterion.AUTO, FitCriterion.OUTPUT_ERROR)
-            and wishes.segment_s is None
-        )
+        is_free = wishes.criterion in (FitCriterion.AUTO, FitCriterion.OUTPUT_ERROR) and wishes.segment_s is None
         return is_free and (model.is_affine or is_pure_roll(model))
 
     def _numbered_runs(self) -> list[tuple[int, SampleRows]]:
@@ -249,20 +246,21 @@ class OnlineEstimator:
             *(self._canonical_record(self._raw_record(r, i)) for i, r in open_run if len(r) > 2),
         ]
 
-    def _settings(self, records: Sequence[Record]) -> Settings:
-        made = settings_from_trial(self._trial, records)
-        return made if self._marginal_prior is None else replace(made, extra_terms=(self._marginal_prior,), forces=())
+    def _runs(self, records: Sequence[Record]) -> Runs:
+        trial, prior = self._trial, self._marginal_prior
+        runs = replace(Runs.one_session_each(records, trial.ship.length), noise=trial.noise)
+        return replace(runs, forces=trial.forces) if prior is None else replace(runs, carried=(prior,))
 
     def _search(self, records: list[Record]) -> WindowEstimate:
-        model, length, settings = self._trial.model, self._trial.ship.length, self._settings(records)
-        sessions = [record.name for record in records]
+        model, runs = self._trial.model, self._runs(records)
+        settings = with_segment_seconds(self._trial.estimate, model, runs)
         if not self._is_warm:
             if (
                 self._marginal_prior is not None and self._estimate is not None
             ):  # what is carried is known about that point
                 model = model.with_parameters(model.parameters.with_free_values(self._estimate.value))
-            found = estimate_model(model, records, sessions, length, settings)
-            refuse_diverging(found.estimate, records, sessions, settings)
+            found = estimate_model(model, runs, settings)
+            refuse_diverging(found.estimate, runs, settings)
             covariance = found.interval.covariance
             if self._marginal_prior is not None:
                 known = np.diag(found.estimate.problem.priors[1])
@@ -270,7 +268,7 @@ class OnlineEstimator:
                 covariance = inverse(told / self._inflation + known)
             count = len(found.estimate.problem.free)
             return WindowEstimate(found.estimate, found.residuals, covariance[:count, :count], found.inflation)
-        warm = None if self._estimate is None else warm_start(self._estimate, model, records, sessions, settings)
+        warm = None if self._estimate is None else warm_start(self._estimate, model, runs, settings)
         if warm is not None and self._estimate is not None:
             is_unsure = (
                 self._window_seconds < _FIRST_SECONDS
@@ -280,7 +278,7 @@ class OnlineEstimator:
             if self._marginal_prior is not None or not is_unsure or self._window_seconds < self._next_cold_start:
                 return warm
         self._next_cold_start = self._window_seconds + max(_COLD_INTERVAL, _COLD_CHECK_SHARE * self._window_seconds)
-        cold = cold_start(model, records, sessions, length, settings)
+        cold = cold_start(model, runs, settings)
         return cold if warm is None else better_estimate(warm, cold)
 
     def _marginalise_window(self, estimate: WindowEstimate) -> None:

@@ -12,9 +12,10 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results import CandidateModel
 from seatrial.core.values import Array, Finding, InputError, ProgressReporter, Record, Severity
-from seatrial.data.trial import Family
+from seatrial.data.trial import EstimateSettings, ModelFamily
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
-from seatrial.estimation.estimate.settings import IntervalMethod, Settings
+from seatrial.estimation.estimate.runs import Runs
+from seatrial.estimation.estimate.settings import EstimatorOptions, IntervalMethod
 from seatrial.estimation.identify.model_selection import SelectedModel
 from seatrial.estimation.predict.open_loop import mean_nuisances, rms_errors, simulate_open_loop
 from seatrial.numerics.workers import map_in_threads
@@ -27,7 +28,7 @@ _MAX_RESIDUAL_SHARE = 0.5
 _ERROR_KEY = "phi_deg"
 
 
-def roll_structures(model: Model, family: Family | None) -> dict[str, Model]:
+def roll_structures(model: Model, family: ModelFamily | None) -> dict[str, Model]:
     """Name -> model, the trial's own first; the house's leave coefficients out, a declared family's free further ones.
 
     Raises:
@@ -55,13 +56,12 @@ def roll_structures(model: Model, family: Family | None) -> dict[str, Model]:
 def select_roll_model(
     estimation: Estimation,
     model: Model,
-    train: Sequence[Record],
-    sessions: Sequence[str],
+    train: Runs,
     validation_runs: Sequence[Record],
-    length: float,
     seconds: float,
-    settings: Settings,
-    family: Family | None,
+    settings: EstimateSettings,
+    options: EstimatorOptions,
+    family: ModelFamily | None,
     report_progress: ProgressReporter | None = None,
 ) -> SelectedModel:
     """The structure that predicts runs best of those it was not fitted to, or a simpler one that does as well (10 %).
@@ -74,16 +74,15 @@ def select_roll_model(
     if len(train) < 2 and not validation_runs:
         raise InputError("a model is chosen by runs it was not fitted to; add a run, or name one under 'validate'")
     members = roll_structures(model, family)
-    quiet = replace(settings, workers=1, intervals=IntervalMethod.AUTO)
+    quiet = replace(options, workers=1, intervals=IntervalMethod.AUTO)
     folds = [[j for j in range(len(train)) if j != i] for i in range(len(train))] if len(train) > 1 else [[0]]
 
     def error(one: Model, fold: int) -> float:
         kept = folds[fold]
-        runs, places = [train[j] for j in kept], [sessions[j] for j in kept]
         is_known = one is model and len(kept) == len(train)
-        own = estimation if is_known else estimate_model(one, runs, places, length, quiet)
-        judged = [train[fold]] if len(train) > 1 else validation_runs
-        return float(np.mean([_roll_error(own, record, seconds) for record in judged]))
+        fitted = estimation if is_known else estimate_model(one, train.selected(kept), settings, quiet)
+        judged = [train.records[fold]] if len(train) > 1 else validation_runs
+        return float(np.mean([_roll_error(fitted, record, seconds) for record in judged]))
 
     def scored(item: tuple[str, Model]) -> tuple[float, str]:
         if report_progress:
@@ -93,9 +92,9 @@ def select_roll_model(
         except InputError as failed:
             return np.inf, str(failed)
 
-    scores = map_in_threads(scored, list(members.items()), workers=settings.workers)
+    scores = map_in_threads(scored, list(members.items()), workers=options.workers)
     errors = np.array([score for score, _ in scores])
-    judged = train if len(train) > 1 else validation_runs
+    judged = train.records if len(train) > 1 else validation_runs
     _refuse_unpredicted(errors, judged, [note for _, note in scores])
     free = [len(m.parameters.free) for m in members.values()]
     tied = errors <= (1.0 + TIE_TOLERANCE) * errors.min()
@@ -107,7 +106,7 @@ def select_roll_model(
     used = (
         estimation
         if best == 0
-        else estimate_model(list(members.values())[best], train, sessions, length, settings, report_progress)
+        else estimate_model(list(members.values())[best], train, settings, options, report_progress)
     )
     return SelectedModel(used, rows, (), () if len(train) > 1 else (_chosen_by_validation_finding(validation_runs),))
 

@@ -12,8 +12,10 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, ProgressReporter, Record
-from seatrial.estimation.estimate.fit import Estimation, estimate_model
-from seatrial.estimation.estimate.settings import Settings
+from seatrial.data.trial import EstimateSettings
+from seatrial.estimation.estimate.fit import Estimation, estimate_model, with_segment_seconds
+from seatrial.estimation.estimate.runs import Runs
+from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.estimation.predict.open_loop import mean_nuisances
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import compared_outputs, cut_segments
@@ -236,11 +238,10 @@ class Fold:
 
 def fit_folds(
     model: Model,
-    records: Sequence[Record],
-    sessions: Sequence[str],
+    runs: Runs,
     labels: Sequence[str],
-    length: float,
-    settings: Settings | None = None,
+    settings: EstimateSettings | None = None,
+    options: EstimatorOptions | None = None,
     *,
     folds: int = 4,
     workers: int = 1,
@@ -249,13 +250,13 @@ def fit_folds(
     """Fit the training runs of each fold.
 
     Args:
-        sessions, labels: group of nuisances and kind of manoeuvre of each record.
-        length: ship length in m.
+        labels: kind of manoeuvre of each run.
         workers: folds fitted at a time.
 
     Raises:
         InputError: folds that cannot be filled, or what `identified` raises.
     """
+    settings = with_segment_seconds(settings or EstimateSettings(), model, runs)
     dealt = assign_folds(labels, folds)
 
     def one(fold: int) -> Fold:
@@ -264,7 +265,7 @@ def fit_folds(
             report_progress(
                 f"fold {fold + 1} of {folds}: {len(train)} runs train, {len(dealt) - len(train)} are held out"
             )
-        found = estimate_model(model, [records[i] for i in train], [sessions[i] for i in train], length, settings)
+        found = estimate_model(model, runs.selected(train), settings, options)
         return Fold(tuple(i for i, f in enumerate(dealt) if f == fold), found)
 
     return tuple(map_in_threads(one, range(folds), workers=workers))
@@ -272,12 +273,11 @@ def fit_folds(
 
 def cross_validate(
     folds: Sequence[Fold],
-    records: Sequence[Record],
-    sessions: Sequence[str],
+    runs: Runs,
     labels: Sequence[str],
     protocol: HoldoutProtocol | None = None,
 ) -> CrossValidation:
-    """Predict windows of each fold's held-out runs with its fit; records, sessions and labels as in `fitted_folds`.
+    """Predict windows of each fold's held-out runs with its fit; runs and labels as in `fit_folds`.
 
     Nothing is taken from a held-out run but the first seconds of each window, for its initial state. Nuisances come
     from training runs of the same session where there are any, else they are the training mean.
@@ -287,8 +287,8 @@ def cross_validate(
     """
     protocol, made = protocol or HoldoutProtocol(), []
     for number, fold in enumerate(folds):
-        owns = [session_nuisances(fold.estimation, sessions[i]) for i in fold.held_out]
-        held, kinds = [records[i] for i in fold.held_out], [labels[i] for i in fold.held_out]
+        owns = [session_nuisances(fold.estimation, runs.sessions[i]) for i in fold.held_out]
+        held, kinds = [runs.records[i] for i in fold.held_out], [labels[i] for i in fold.held_out]
         made += window_errors(
             fold.estimation.estimate.problem, fold.estimation.model, held, owns, kinds, protocol, number
         )
@@ -297,22 +297,24 @@ def cross_validate(
 
 def cross_validate_unfitted(
     model: Model,
-    records: Sequence[Record],
+    runs: Runs,
     labels: Sequence[str],
     protocol: HoldoutProtocol | None = None,
-    settings: Settings | None = None,
+    channels: tuple[str, ...] = (),
 ) -> CrossValidation:
     """The same windows by a model as it is, without nuisances: what published coefficients predict. One fold.
 
-    Of the settings count channels, noise (weights for initial states; otherwise their spread), substeps and workers.
+    channels: observables that are compared; empty: all that the runs measure. The noise of the runs, or else the
+    spread of a channel, weighs initial states.
 
     Raises:
         InputError: as `window_errors`.
     """
-    settings = settings or Settings()
-    data = cut_segments(model, records, compared_outputs(model, records, settings.channels), None)
+    data = cut_segments(model, runs.records, compared_outputs(model, runs.records, channels), None)
     spread = np.maximum(np.nanstd(data.measured, axis=0), 1e-9)
-    noise = np.array([settings.noise.get(o, size) for o, size in zip(data.outputs, spread, strict=True)])
-    template = OutputError(model, data, noise, substeps=settings.substeps, workers=settings.workers)
-    owns = [np.empty(0)] * len(records)
-    return CrossValidation(tuple(window_errors(template, model, records, owns, labels, protocol or HoldoutProtocol())))
+    noise = np.array([runs.noise.get(o, size) for o, size in zip(data.outputs, spread, strict=True)])
+    template = OutputError(model, data, noise)
+    owns = [np.empty(0)] * len(runs)
+    return CrossValidation(
+        tuple(window_errors(template, model, runs.records, owns, labels, protocol or HoldoutProtocol()))
+    )

@@ -7,11 +7,13 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Record
+from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate.assemble import output_error_problem
-from seatrial.estimation.estimate.fit import characteristic_time
 from seatrial.estimation.estimate.point_estimate import PointEstimate, residual_correlation, residual_spread
-from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS, WHITE_INFLATION, Settings
+from seatrial.estimation.estimate.runs import Runs
+from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS, WHITE_INFLATION
 from seatrial.estimation.estimate.start import find_start
+from seatrial.estimation.estimate.time_scale import characteristic_time
 from seatrial.estimation.information.autocorrelation import whiteness_p
 from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.problem.output_error import OutputError
@@ -57,21 +59,19 @@ class WindowEstimate:
         return bool(np.any(self.inflation > WHITE_INFLATION))
 
 
-def cold_start(
-    model: Model, records: Sequence[Record], sessions: Sequence[str], length: float, settings: Settings
-) -> WindowEstimate:
+def cold_start(model: Model, runs: Runs, settings: EstimateSettings) -> WindowEstimate:
     """A search from nowhere as `identify` makes it, and one from the model's own values: the one that leaves less.
 
     Raises:
         InputError: the records cannot be fitted at all.
     """
-    problem = output_error_problem(model, records, sessions, np.inf, settings)
-    unit = characteristic_time(model, records, length, settings.segment_seconds)
-    first = find_start(problem, records, WEAK_FORM_SHIP_LENGTHS * unit)
+    problem = output_error_problem(model, runs, np.inf, settings)
+    unit = characteristic_time(model, runs.records, runs.length, settings.segment_s)
+    first = find_start(problem, runs.records, WEAK_FORM_SHIP_LENGTHS * unit)
     own = first.problem.start(), first.problem.measured_initial_states()
     known = better_estimate(
         *(
-            _search(first.problem, *at, settings, _FIRST_EVALUATIONS)
+            _search(first.problem, *at, runs, _FIRST_EVALUATIONS)
             for at in ((first.common_parameters, first.initial_states), own)
         )
     )
@@ -79,43 +79,37 @@ def cold_start(
         _reweighted_problem(known),
         known.estimate.common_parameters,
         known.estimate.optimum.local,
-        settings,
+        runs,
         _FIRST_EVALUATIONS,
     )
-    return replace(again, record_starts=_record_starts(records))
+    return replace(again, record_starts=_record_starts(runs.records))
 
 
-def warm_start(
-    previous: WindowEstimate, model: Model, records: Sequence[Record], sessions: Sequence[str], settings: Settings
-) -> WindowEstimate:
+def warm_start(previous: WindowEstimate, model: Model, runs: Runs, settings: EstimateSettings) -> WindowEstimate:
     """The search continued on longer records, weights as the last residuals have them.
 
     Raises:
         InputError: the records cannot be fitted at all.
     """
     last = _reweighted_problem(previous)
-    problem = replace(
-        output_error_problem(model, records, sessions, np.inf, settings), noise=last.noise, inflation=last.inflation
-    )
+    problem = replace(output_error_problem(model, runs, np.inf, settings), noise=last.noise, inflation=last.inflation)
     shared = problem.start()
     shared[: len(problem.free)] = previous.value
     local = problem.measured_initial_states()
-    begins = _record_starts(records)
+    begins = _record_starts(runs.records)
     for row, (now, was) in enumerate(zip(begins, previous.record_starts, strict=False)):
         if now == was:
             local[row] = previous.estimate.optimum.local[row]
-    return replace(_search(problem, shared, local, settings, _LATER_EVALUATIONS), record_starts=begins)
+    return replace(_search(problem, shared, local, runs, _LATER_EVALUATIONS), record_starts=begins)
 
 
-def refuse_diverging(
-    estimate: PointEstimate, records: Sequence[Record], sessions: Sequence[str], settings: Settings
-) -> None:
+def refuse_diverging(estimate: PointEstimate, runs: Runs, settings: EstimateSettings) -> None:
     """Refuse an estimate over segments at which whole runs diverge, as `identify` does.
 
     Raises:
         InputError: they do.
     """
-    problem = output_error_problem(estimate.problem.model, records, sessions, np.inf, settings)
+    problem = output_error_problem(estimate.problem.model, runs, np.inf, settings)
     with np.errstate(all="ignore"):
         simulated = problem.simulated_outputs(estimate.common_parameters, problem.measured_initial_states())
     if not np.all(np.isfinite(simulated)):
@@ -135,9 +129,9 @@ def _record_starts(records: Sequence[Record]) -> tuple[tuple[str, float], ...]:
 
 
 def _search(
-    problem: OutputError, common_parameters: Array, initial_states: Array, settings: Settings, evaluations: int
+    problem: OutputError, common_parameters: Array, initial_states: Array, runs: Runs, evaluations: int
 ) -> WindowEstimate:
-    given = np.array([settings.noise.get(o, np.nan) for o in problem.data.outputs])
+    given = np.array([runs.noise.get(o, np.nan) for o in problem.data.outputs])
     problem = replace(problem, noise=np.where(np.isfinite(given), given, problem.noise))
     found = levenberg_marquardt(
         problem, common_parameters, initial_states, negligible=_NEGLIGIBLE, evaluations=evaluations

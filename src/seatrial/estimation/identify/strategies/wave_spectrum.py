@@ -8,12 +8,12 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.results import Fit, Method
-from seatrial.core.values import Array, Finding, InputError, Record
+from seatrial.core.values import Array, InputError, Record
 from seatrial.core.values.versions import versions
-from seatrial.data.trial import Trial, TrialRecord
 from seatrial.data.trial.trial import WaveEncounter
 from seatrial.estimation.estimate.singular import weakest_direction
 from seatrial.estimation.identify.fit_result import coefficient_table
+from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.seakeeping import seakeeping
 from seatrial.estimation.information.covariance import from_information
 from seatrial.estimation.information.frequency_range import frequency_range, frequency_range_finding
@@ -33,18 +33,20 @@ _MAX_COHERENCE = 0.99
 _NO_INITIAL_STATES = np.zeros((0, 0))
 
 
-def fit_spectrum(
-    trial: Trial, records: Sequence[TrialRecord], findings: tuple[Finding, ...], seed: int, started: float
-) -> Fit:
-    """The fit of one run by the likelihood of its spectrum; sensor noise must be stated under [noise].
+def identify_by_wave_spectrum(task: Identification) -> Fit:
+    """Return the fit of one run by the likelihood of its spectrum; sensor noise must be stated under [noise].
 
     Raises:
         InputError: more than one training run, no stated noise, waves that do not explain the motions, or coefficients
-            that the spectrum cannot tell.
+            that the spectrum does not determine.
     """
-    if len(records) != 1:
-        raise InputError(f"a sea known by its spectrum is fitted one run at a time; the trial trains on {len(records)}")
-    record, waves = records[0].record, records[0].waves
+    trial = task.trial
+    if len(task.train) != 1:
+        raise InputError(
+            f"a sea known by its spectrum is fitted one run at a time; the trial trains on {len(task.train)}"
+        )
+    (run,) = task.train
+    record, waves = run.record, run.waves
     assert waves is not None
     problem = spectral_problem(trial.model, record, waves, dict(trial.noise))
     _refuse_coherent_forces(problem, record)
@@ -73,12 +75,12 @@ def fit_spectrum(
         noise=(),
         residuals=(),
         predictions=(),
-        findings=(*findings, frequency_range_finding(frequency_range([record], problem.outputs))),
+        findings=(*task.findings, frequency_range_finding(frequency_range([record], problem.outputs))),
         records=(record,),
-        seed=seed,
-        elapsed_s=time.perf_counter() - started,
+        seed=task.options.seed,
+        elapsed_s=time.perf_counter() - task.began,
         versions=versions(),
-        seakeeping=seakeeping(model, records, trial.ship.length),
+        seakeeping=seakeeping(model, task.train, trial.ship.length),
     )
 
 

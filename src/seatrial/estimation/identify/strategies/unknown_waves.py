@@ -10,17 +10,16 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Fit, Method, RollCharacteristics
 from seatrial.core.values import Array, Finding, InputError, Record, Severity
 from seatrial.core.values.versions import versions
-from seatrial.data.trial import Trial
-from seatrial.estimation.estimate.fit import Estimation, is_pure_roll
 from seatrial.estimation.identify.fit_result import coefficient_table
+from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.roll_characteristics import roll_characteristics
+from seatrial.estimation.identify.situation import WAVE_SLOPE
 from seatrial.estimation.information.covariance import Interval, inverse
 from seatrial.estimation.problem.spectral_likelihood import hann_transform
 from seatrial.estimation.problem.unknown_waves import DAMPING, RESTORING, UnknownWaves
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt
 
-WAVE_SLOPE, FREE_COEFFICIENTS = "alpha_w", ("b_1", "c_1")
-_MAX_RESIDUAL_SHARE = 0.5
+FREE_COEFFICIENTS = ("b_1", "c_1")
 _BAND_EDGES = (0.45, 3.0)
 # share of the waves' largest density that must be left at the natural frequency, and relative standard errors
 _MIN_WAVE_SHARE, _MAX_DAMPING_ERROR, _MAX_RESTORING_ERROR = 0.05, 0.4, 0.15
@@ -29,38 +28,14 @@ _SMOOTHING_BINS, _MIN_CYCLES = 9, 40
 _NO_INITIAL_STATES = np.zeros((0, 0))
 
 
-def is_roll_in_unknown_waves(estimation: Estimation, records: Sequence[Record]) -> bool:
-    """Whether the ship swings, no input was recorded, and no initial state explains half of what she does."""
-    return _is_unforced_roll(estimation, records) and not _is_explained(estimation)
-
-
-def is_free_decay(estimation: Estimation, records: Sequence[Record]) -> bool:
-    """Whether the ship swings, no input was recorded, and her initial state explains it."""
-    return _is_unforced_roll(estimation, records) and _is_explained(estimation)
-
-
-def _is_unforced_roll(estimation: Estimation, records: Sequence[Record]) -> bool:
-    model = estimation.model
-    if not is_pure_roll(model) or WAVE_SLOPE not in model.input_names or not all("phi" in r for r in records):
-        return False
-    return not any(n in r and np.ptp(r[n]) > 0.0 for n in model.input_names for r in records)
-
-
-def _is_explained(estimation: Estimation) -> bool:
-    measured = estimation.shooting.problem.data.measured
-    left, moved = np.nanstd(estimation.shooting.residuals(), axis=0), np.nanstd(measured, axis=0)
-    return bool(np.all(left <= _MAX_RESIDUAL_SHARE * moved))
-
-
-def fit_in_unknown_waves(
-    trial: Trial, records: Sequence[Record], findings: tuple[Finding, ...], seed: int, started: float
-) -> Fit:
-    """The fit of one run by the likelihood of its roll's spectrum.
+def identify_in_unknown_waves(task: Identification) -> Fit:
+    """Return the fit of one run by the likelihood of its roll's spectrum.
 
     Raises:
-        InputError: more than one training run, gaps, too short a record, or waves that cannot be told from the ship.
+        InputError: more than one training run, gaps, too short a record, or waves that cannot be distinguished from
+            the ship.
     """
-    record = _single_record(records)
+    trial, record = task.trial, _single_record(task.runs.records)
     problem = spectral_problem(record)
     optimum = maximum_likelihood(problem)
     interval = roll_interval(problem, optimum)
@@ -88,10 +63,10 @@ def fit_in_unknown_waves(
         noise=(),
         residuals=(),
         predictions=(),
-        findings=(*findings, _linear_equivalent_finding(record), *_unused_prior_findings(trial.model)),
+        findings=(*task.findings, _linear_equivalent_finding(record), *_unused_prior_findings(trial.model)),
         records=(record,),
-        seed=seed,
-        elapsed_s=time.perf_counter() - started,
+        seed=task.options.seed,
+        elapsed_s=time.perf_counter() - task.began,
         versions=versions(),
         roll=None if known is None else _with_spectrum(known, problem, optimum.solution.point),
     )

@@ -1,0 +1,79 @@
+"""Settings of the estimator and of the comparison of models: tables of a trial file, values in Python."""
+
+from collections.abc import Mapping
+from enum import StrEnum
+from typing import Annotated, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+from pydantic.dataclasses import dataclass
+
+from seatrial.data.trial.amounts import STRICT_FIELDS, Deviation
+
+
+class FitCriterion(StrEnum):
+    """What is minimised; `auto` is the decision table's choice."""
+
+    AUTO = "auto"
+    OUTPUT_ERROR = "output-error"
+    MULTIPLE_SHOOTING = "multiple-shooting"
+    PREDICTION_ERROR = "prediction-error"
+
+
+def _as_deviations(value: object) -> object:
+    """Names alone have the estimator's own priors."""
+    return dict.fromkeys(value) if isinstance(value, list | tuple) else value
+
+
+Positive = Annotated[float, Field(gt=0)]
+Deviations = Annotated[Mapping[str, Deviation], BeforeValidator(_as_deviations)]
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
+class EstimateSettings:
+    """`[estimate]`: settings of the estimator; what is not given follows the decision table.
+
+    Attributes:
+        criterion: what is minimised.
+        channels: observables that are fitted; empty: all that the records measure.
+        segment_s: length of a multiple-shooting segment [s].
+        segment_lengths: the same in ship lengths travelled at the median speed of the runs.
+        rate: Hz at which records are resampled; None keeps their own.
+        robust: whether the loss is Huber's.
+        offsets: channel -> prior standard deviation (SI, None: the estimator's own) of its zero, one for each session.
+        gains: channel -> prior standard deviation (None: the estimator's own) of its gain, one for each session.
+        delays: input -> prior standard deviation [s] (None: the estimator's own) of its delay, one for each session.
+        current: prior standard deviation of a uniform current in each run [m/s]; 0: none is estimated.
+        initial_s: s of a validation run from which its initial state is estimated; None: L/U.
+    """
+
+    criterion: FitCriterion = FitCriterion.AUTO
+    channels: tuple[str, ...] = ()
+    segment_s: Positive | None = None
+    segment_lengths: Positive | None = None
+    rate: Positive | None = None
+    robust: bool = False
+    offsets: Deviations = Field(default_factory=dict)
+    gains: Deviations = Field(default_factory=dict)
+    delays: Deviations = Field(default_factory=dict)
+    current: Annotated[float, Field(ge=0)] = 0.0
+    initial_s: Positive | None = None
+
+    @model_validator(mode="after")
+    def _one_segment_length(self) -> Self:
+        if self.segment_s is not None and self.segment_lengths is not None:
+            raise ValueError("segment_s and segment_lengths are both given; keep one")
+        return self
+
+
+@dataclass(frozen=True, config=STRICT_FIELDS)
+class ModelFamily:
+    """`[family]`: models to compare on runs left out of the fit.
+
+    Attributes:
+        structures: name -> parameters that the structure frees beyond the trial's own.
+        prior_factors: factors on the widths of all priors; segment_factors: on the length of segments.
+    """
+
+    structures: Mapping[str, tuple[str, ...]] = Field(default_factory=dict)
+    prior_factors: tuple[Positive, ...] = ()
+    segment_factors: tuple[Positive, ...] = ()

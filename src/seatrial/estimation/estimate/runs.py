@@ -1,0 +1,41 @@
+"""The runs that one estimate is made from, and what else is measured of the ship."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from seatrial.core.values import ForcePoints, Record
+from seatrial.estimation.problem.data_term import DataTerm
+
+
+@dataclass(frozen=True, eq=False)
+class Runs:
+    """Runs of one ship, all at one sampling rate, and what else is measured of it.
+
+    Attributes:
+        records: one for each run, in the notation table's frames, signs and units.
+        sessions: of each record, the name of the group with which it shares offsets.
+        length: of the ship [m].
+        noise: channel -> known standard deviation, SI; that of other channels is estimated.
+        forces: tables of static force points that are fitted with the runs.
+        carried: information from records that are no longer kept.
+    """
+
+    records: tuple[Record, ...]
+    sessions: tuple[str, ...]
+    length: float
+    noise: Mapping[str, float] = field(default_factory=dict)
+    forces: tuple[ForcePoints, ...] = ()
+    carried: tuple[DataTerm, ...] = ()
+
+    @classmethod
+    def one_session_each(cls, records: Sequence[Record], length: float) -> "Runs":
+        """Return the runs as sessions of their own, named as the records; length: of the ship [m]."""
+        return cls(tuple(records), tuple(record.name for record in records), length)
+
+    def selected(self, indices: Sequence[int]) -> "Runs":
+        """Return the runs at these positions; everything else stays."""
+        records, sessions = (tuple(column[i] for i in indices) for column in (self.records, self.sessions))
+        return replace(self, records=records, sessions=sessions)
+
+    def __len__(self) -> int:
+        return len(self.records)

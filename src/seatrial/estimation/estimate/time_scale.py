@@ -1,0 +1,69 @@
+"""The time in which a ship changes its motion, by which segments, windows and search intervals are measured."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, InputError, Record
+from seatrial.estimation.estimate.settings import SEGMENT_SHIP_LENGTHS
+from seatrial.physics.hydro.dispersion import G
+
+PERIOD_SHARE = 0.4
+"""Time scale of a rolling ship as a share of its period; windows of the start are then 0.6 periods wide each side."""
+
+
+def ship_length_seconds(records: Sequence[Record], length: float, segment_seconds: float | None = None) -> float:
+    """L/U: the time in which the ship travels her length at the records' median speed.
+
+    Records without any speed take it from the segment length that was asked for, if it is finite.
+
+    Raises:
+        InputError: the records show no speed.
+    """
+    speeds = []
+    for record in records:
+        if "u" in record:
+            speeds.append(np.nanmedian(np.abs(record["u"])))
+        elif {"x0", "y0"} <= set(record.channels):
+            speeds.append(np.median(np.hypot(np.diff(record["x0"]), np.diff(record["y0"]))) / record.dt)
+    if not speeds and segment_seconds is not None and np.isfinite(segment_seconds):
+        return segment_seconds / SEGMENT_SHIP_LENGTHS
+    if not speeds or np.median(speeds) <= 0:
+        raise InputError("the records show no forward speed; give u or positions, or set estimate.segment_s")
+    return length / float(np.median(speeds))
+
+
+def characteristic_time(
+    model: Model, records: Sequence[Record], length: float, segment_seconds: float | None = None
+) -> float:
+    """s in which the ship changes her motion: L/U where she is steered, sqrt(L/g) for a linear model in waves.
+
+    Where she only swings about a rest (a model without heading that is not linear) it is a share of the period seen.
+
+    Raises:
+        InputError: a ship is steered and the records show no speed.
+    """
+    if model.is_affine:
+        return float(np.sqrt(length / G))
+    if is_pure_roll(model):
+        return PERIOD_SHARE * float(np.median([dominant_period(r[model.states[0]], r.dt) for r in records]))
+    return ship_length_seconds(records, length, segment_seconds)
+
+
+def is_pure_roll(model: Model) -> bool:
+    """Whether the ship swings about a rest, with no heading and no speed of her own."""
+    return not {"psi", "u"} & {*model.states, *model.input_names}
+
+
+def dominant_period(values: Array, dt: float) -> float:
+    """Period [s] at which the motion (n,) about its mean has most power.
+
+    Raises:
+        InputError: it does not move, or never swings.
+    """
+    power = np.abs(np.fft.rfft(values - values.mean(), 4 * len(values)))
+    peak = int(np.argmax(power))
+    if not power[peak] > 0.0 or peak < 4:
+        raise InputError("the motion never swings about its mean; give a longer record, from the release on")
+    return 4 * len(values) * dt / peak

@@ -1,0 +1,90 @@
+"""A fit from an estimate: predictions of all runs, identifiability, findings, and what a report shows."""
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+
+from seatrial.core.results import Fit, Identifiability
+from seatrial.core.values import DivergedError, Finding, InputError
+from seatrial.core.values.versions import versions
+from seatrial.data.trial.approach import approach_condition
+from seatrial.estimation.estimate import Estimation, IntervalMethod
+from seatrial.estimation.identify import fit_result
+from seatrial.estimation.identify.identifiability import identifiability
+from seatrial.estimation.identify.identification import Identification
+from seatrial.estimation.identify.model_selection import SelectedModel, with_model_spread
+from seatrial.estimation.identify.profile import profiles
+from seatrial.estimation.identify.roll_characteristics import roll_characteristics
+from seatrial.estimation.identify.seakeeping import seakeeping
+from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
+
+
+def assembled_fit(task: Identification, selected: SelectedModel, findings: Sequence[Finding] = ()) -> Fit:
+    """Return the fit of the model that is used.
+
+    Args:
+        findings: on the estimate, from the strategy.
+
+    Raises:
+        InputError: a run cannot be simulated with the estimated coefficients.
+    """
+    trial, runs = task.trial, task.runs
+    predicted = _predictions(task, selected)
+    estimation = with_model_spread(selected.estimation, selected.tied)
+    known = _identifiability(task, estimation)
+    free = estimation.estimate.problem.free
+    return Fit(
+        question=trial.question
+        or f"Which {trial.model.name} model explains these records, and how well does it predict?",
+        ship=trial.ship,
+        model=estimation.model,
+        coefficients=fit_result.coefficients(estimation, trial.truth, known.profiles),
+        covariance=estimation.interval.covariance[: len(free), : len(free)],
+        solution=estimation.estimate.optimum.solution,
+        method=fit_result.method(estimation),
+        offsets=fit_result.offsets(estimation),
+        noise=fit_result.noise(estimation),
+        residuals=fit_result.residuals(estimation),
+        predictions=predicted.predictions,
+        findings=(
+            *task.findings, *selected.findings, *findings, *fit_result.unidentified(task.estimation),
+            *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation), *_profile_findings(task, known),
+        ),
+        records=tuple(r.record for r in task.records),
+        seed=task.options.seed,
+        elapsed_s=time.perf_counter() - task.began,
+        versions=versions(),
+        identifiability=known,
+        noise_model=estimation.noise_model,
+        candidate_models=selected.candidates,
+        interval_basis=predicted.interval_basis,
+        seakeeping=seakeeping(estimation.model, task.train, runs.length),
+        roll=roll_characteristics(estimation.model, estimation.interval, free, runs.records, trial.ship),
+    )  # fmt: skip
+
+
+def _predictions(task: Identification, selected: SelectedModel) -> RunPredictions:
+    """Return all runs predicted with the model that is used, intervals without the spread of tied models."""
+    estimation = selected.estimation
+    try:
+        return predict_runs(
+            estimation, task.records, task.initial_seconds, task.runs.length, task.options.seed, task.report_progress,
+            selected.tied,
+        )  # fmt: skip
+    except DivergedError as error:
+        raise InputError(fit_result.divergence_message(estimation, error)) from None
+
+
+def _identifiability(task: Identification, estimation: Estimation) -> Identifiability:
+    """Return what the records determine, with profile likelihoods where these are required."""
+    approach = approach_condition(task.runs.records, estimation.model)
+    known = identifiability(estimation, task.symmetries, approach, task.runs.length)
+    if task.options.intervals is not IntervalMethod.PROFILE:
+        return known
+    estimate, free = estimation.estimate, estimation.estimate.problem.free
+    return replace(known, profiles=profiles(estimate, estimation.interval.standard_error, free, task.report_progress))
+
+
+def _profile_findings(task: Identification, known: Identifiability) -> tuple[Finding, ...]:
+    is_missing = task.options.intervals is IntervalMethod.PROFILE and not known.profiles
+    return (fit_result.NO_PROFILE,) if is_missing else ()

@@ -1,0 +1,73 @@
+"""What the records of a trial are: by it `identify` picks its strategy."""
+
+from collections.abc import Callable, Sequence
+from enum import StrEnum
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Record
+from seatrial.data.trial import TrialRecord
+from seatrial.estimation.estimate.fit import moving_inputs
+from seatrial.estimation.estimate.point_estimate import PointEstimate
+from seatrial.estimation.estimate.time_scale import is_pure_roll
+from seatrial.estimation.estimate.unmeasured_waves import WAVE_FORCES
+
+WAVE_SLOPE = "alpha_w"
+"""The input by which waves drive roll."""
+
+_MAX_RESIDUAL_SHARE = 0.5
+"""A motion is explained where no channel's residuals exceed this share of its standard deviation; chosen."""
+
+
+class Situation(StrEnum):
+    """What moves the ship in the records, and how that is known."""
+
+    STEERED = "steered"
+    STATIC_FORCES = "steered, with static force points"
+    RECORDED_WAVES = "in waves, forces or elevation recorded"
+    WAVE_SPECTRUM = "in waves of which only the spectrum is known"
+    UNKNOWN_WAVES = "rolling in waves of which nothing is known"
+    FREE_DECAY = "rolling out from a release"
+    DRIVEN_ROLL = "rolling by recorded inputs"
+
+
+def situation_of(
+    model: Model,
+    runs: Sequence[TrialRecord],
+    *,
+    has_force_points: bool,
+    is_criterion_free: bool,
+    is_explained: Callable[[], bool],
+) -> Situation:
+    """Return the situation of training runs.
+
+    Args:
+        has_force_points: whether static force points are fitted with the runs.
+        is_criterion_free: whether the criterion is left to the decision table.
+        is_explained: whether the initial states explain the motion; called for roll without any input only.
+    """
+    if any(run.waves is not None and run.waves.spectrum is not None for run in runs):
+        return Situation.WAVE_SPECTRUM
+    if model.is_affine or set(WAVE_FORCES) & set(model.input_names):
+        return Situation.RECORDED_WAVES
+    if not is_pure_roll(model):
+        return Situation.STATIC_FORCES if has_force_points else Situation.STEERED
+    if not is_unforced_roll(model, [run.record for run in runs]):
+        return Situation.DRIVEN_ROLL
+    if is_explained():
+        return Situation.FREE_DECAY
+    return Situation.UNKNOWN_WAVES if is_criterion_free else Situation.DRIVEN_ROLL
+
+
+def is_unforced_roll(model: Model, records: Sequence[Record]) -> bool:
+    """Return whether all records hold the roll of a model that waves can drive, and no input of it moves."""
+    if not is_pure_roll(model) or WAVE_SLOPE not in model.input_names or not all("phi" in r for r in records):
+        return False
+    return not moving_inputs(model, records)
+
+
+def is_explained(estimate: PointEstimate) -> bool:
+    """Return whether at most half of each channel's standard deviation is left by an estimate."""
+    spread = np.nanstd(estimate.problem.data.measured, axis=0)
+    return bool(np.all(np.nanstd(estimate.residuals(), axis=0) <= _MAX_RESIDUAL_SHARE * spread))

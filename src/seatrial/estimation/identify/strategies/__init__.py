@@ -1,0 +1,1 @@
+"""One strategy of `identify` for each situation: from an identification to a fit."""
