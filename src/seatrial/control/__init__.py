@@ -1,1 +1,1 @@
-"""Controllers tuned on a model: front, choice, schedule, nonlinear check, autopilots, bounds."""
+"""Controllers tuned on a model: objectives, front, choice, schedule, simulation in a seaway, bounds."""

@@ -1,1 +1,1 @@
-"""On board: samples as they come, an estimate as it grows, a table and a page that show it."""
+"""Identification on board: streams of samples, growing estimates, the live table and page."""

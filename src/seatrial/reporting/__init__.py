@@ -1,4 +1,4 @@
-"""Fits and studies as self-contained HTML pages."""
+"""Fits, designs, tunings and studies as self-contained HTML pages; computes nothing."""
 
 from seatrial.reporting.page import write_report
 

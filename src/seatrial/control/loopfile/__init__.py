@@ -1,1 +1,1 @@
-"""The loop file: what is controlled, by what, against what; TOML to a `TuningTask`."""
+"""The loop file: what is controlled, by what, in which disturbances; TOML to a `TuningTask`."""

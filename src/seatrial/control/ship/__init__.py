@@ -1,1 +1,1 @@
-"""The ship behind a loop: an identified model, its trim, its plant, and the ships that its fit allows."""
+"""The ship behind a loop: an identified model, its trim, its plant, and draws of its parameters."""

@@ -1,4 +1,4 @@
-"""Solutions, fits and studies read in the field's terms."""
+"""Results in the terms of the field: fits, designs, tunings, studies."""
 
 from seatrial.core.results.baseline import Baseline, OpenLoopScores
 from seatrial.core.results.design import Actuator, Confirmation, Design, ManoeuvrePrecision, TimedOrder, TrialLimits

@@ -1,4 +1,4 @@
-"""The nouns everybody knows: records, channels, parameters, ships, findings, units, notation."""
+"""Records, channels, parameters, ships, findings, units and notation, as immutable values."""
 
 from seatrial.core.values.arrays import Array, Index, frozen
 from seatrial.core.values.errors import DivergedError, InputError, spelling_hint

@@ -1,4 +1,4 @@
-"""Findings on records: judges declared conventions against the data, repairs, converts; refuses to guess."""
+"""Findings on records: declared conventions compared with the data, repairs; refuses to guess."""
 
 from seatrial.data.check.conventions import canonical_record
 from seatrial.data.check.examine import examine, prepared_record

@@ -1,1 +1,1 @@
-"""Files of a result folder: model, result, arrays."""
+"""Result folders: model file, result, arrays and tables, written and read."""

@@ -1,4 +1,4 @@
-"""Files to records: parses, converts units, judges nothing. One format, one file."""
+"""Files to records, one format a file: parses and converts units, judges nothing."""
 
 import hashlib
 from pathlib import Path

@@ -1,1 +1,1 @@
-"""Optimal manoeuvres: the input sequence that tells the coefficients best within limits."""
+"""Optimal manoeuvres: the orders that identify the coefficients best within limits."""

@@ -1,0 +1,1 @@
+"""What records can and cannot identify: covariance, symmetries, collinearity, extrapolation."""

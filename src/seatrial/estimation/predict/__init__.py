@@ -1,1 +1,1 @@
-"""Runs predicted open loop, with what their intervals are made of."""
+"""Runs predicted open loop, with intervals and what these consist of."""

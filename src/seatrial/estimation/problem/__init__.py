@@ -1,0 +1,1 @@
+"""Criteria as residuals and Jacobians: output error, prediction error, spectra, static forces."""

@@ -1,0 +1,1 @@
+"""Regression on features of the equations: cleaning, derivatives, solvers, the weak form."""

@@ -1,4 +1,4 @@
-"""Numba on float64 arrays: integrators with typed function pointers. Knows no ship."""
+"""Compiled arithmetic on float64 arrays: integrators, filters, propagators."""
 
 import hashlib
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Optimisers that know no ship."""
+"""Optimisers: least squares, evolution strategies, swarms; start points and stopping rules."""
 
 from seatrial.numerics.optimise.ask_tell import Box, Optimiser, SearchError, fitness_function, search
 from seatrial.numerics.optimise.cloud_particle_swarm import CloudParticleSwarm, CloudSettings

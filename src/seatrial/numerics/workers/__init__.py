@@ -1,4 +1,4 @@
-"""One ordered map over threads or processes."""
+"""Ordered maps over threads or processes, independent of their number."""
 
 from seatrial.numerics.workers.pool import map_in_processes, map_in_threads, worker_count
 

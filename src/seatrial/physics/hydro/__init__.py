@@ -1,0 +1,1 @@
+"""Hydrodynamics: dispersion, excitation, strip theory, roll damping, data of panel codes."""

@@ -1,4 +1,4 @@
-"""Linear feedback loops: blocks, a loop linear in its gains, what a sea does to it, its margins."""
+"""Linear feedback loops: blocks, margins, performance in a sea; linear in their gains."""
 
 from seatrial.physics.loops.block import Block, in_series
 from seatrial.physics.loops.encounter_spectrum import EncounterSpectrum, HullFactor, wave_slope_spectrum

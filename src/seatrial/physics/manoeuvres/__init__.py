@@ -1,4 +1,4 @@
-"""Programmes with their helmsmen, the measures of a manoeuvre, and the criteria they are held against.
+"""Standard manoeuvres, their measures, and the IMO criteria.
 
 `programme` is in a file apart, `seatrial.physics.manoeuvres.programme`, because importing it compiles its helmsmen.
 """

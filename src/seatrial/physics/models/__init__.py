@@ -1,4 +1,4 @@
-"""The models of the house in one explicit registry; importing this room imports no model.
+"""The built-in ship models in one registry, loaded when they are named.
 
 A model of one's own is installed through the entry point group `seatrial.models`, or given as a Python file that
 defines `model() -> Model`, on the command line only.

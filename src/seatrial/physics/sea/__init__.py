@@ -1,1 +1,1 @@
-"""Sea state to spectrum to realisation; encounter frequencies; what a ship in it feels. Knows no model."""
+"""Sea states, spectra, realisations, encounter frequencies and the forces of waves on a ship."""

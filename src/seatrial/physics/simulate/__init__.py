@@ -1,4 +1,4 @@
-"""The only way from a model and a record to arrays and back: replayed inputs, or a programme steered.
+"""From a model and a record to a record: inputs replayed, manoeuvres steered, loops closed.
 
 `manoeuvre` is in `seatrial.physics.simulate.steer`, apart because its helmsmen are compiled when they are imported.
 """

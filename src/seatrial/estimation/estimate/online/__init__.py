@@ -1,1 +1,1 @@
-"""Estimates while the record is still being made: the batch criterion over a growing window, then a filter."""
+"""Estimates from a growing record: the batch criterion over a window, then a filter."""
