@@ -1,0 +1,93 @@
+"""The files to copy work as they stand, and CONTRIBUTING.md leads to each."""
+
+import importlib.util
+import json
+import re
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from tests.estimation.regress.linear import zigzags
+
+from seatrial.core.results import Verdict
+from seatrial.core.values import InputError
+from seatrial.data import read
+from seatrial.data.example_series.series import true_model
+from seatrial.data.read import ColumnSpec, Layout, read_record
+from seatrial.physics.models import model_from_file
+from seatrial.reporting.study import write_study
+
+FOLDER = Path(__file__).parents[2] / "examples" / "contributions"
+
+
+def loaded(name: str) -> ModuleType:
+    """Return a file of the examples as a module."""
+    spec = importlib.util.spec_from_file_location(name, FOLDER / f"{name}.py")
+    assert spec and spec.loader
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_each_file_has_a_page_and_contributing_leads_to_both(repository: Path) -> None:
+    lines = (repository / "CONTRIBUTING.md").read_text(encoding="utf-8").splitlines()
+    for path in FOLDER.glob("*.py"):
+        (line,) = (line for line in lines if path.name in line)
+        (page,) = re.findall(r"\((docs/contributing/\w+\.md)\)", line)
+        assert path.name in (repository / page).read_text(encoding="utf-8")
+    assert len(lines) <= 50, "one screen"
+
+
+def test_the_model_turns_to_the_side_of_its_rudder_and_loses_speed() -> None:
+    model = model_from_file(FOLDER / "yaw_model.py")
+    rates = np.empty(3)
+    jacobian = np.zeros((3, 3 + 1 + len(model.parameters)))
+    turning = np.array([0.02, 0.0, 1.2])
+    model.compiled.rates_tangent(0.0, turning, np.array([0.3]), model.parameters.values, rates, jacobian)
+    yaw_acceleration, yaw_rate, surge_acceleration = rates
+    assert yaw_acceleration > 0.0 and yaw_rate == 0.02 and surge_acceleration < 0.0
+    assert jacobian[0, 3 + 1 + model.parameters.index("K")] == pytest.approx(0.3 / 10.0)
+
+
+@pytest.fixture
+def layout(monkeypatch: pytest.MonkeyPatch) -> Layout:
+    """The layout of a JSON lines file, the reader installed for the time of a test."""
+    monkeypatch.setitem(read.READERS, "jsonl", loaded("json_lines_reader").read_json_lines)  # type: ignore[misc]
+    return Layout("jsonl", ColumnSpec("time", "t", "s"), (ColumnSpec("u", "speed", "kn"),))  # type: ignore[arg-type]
+
+
+def test_the_reader_gives_what_the_file_holds(layout: Layout, tmp_path: Path) -> None:
+    path = tmp_path / "log.jsonl"
+    rows = [{"t": 0.0, "speed": 3600.0}, {"t": 0.5, "speed": None}, {"t": 1.0, "speed": 1800.0}]
+    path.write_text("\n".join(map(json.dumps, rows)), encoding="utf-8")
+    record = read_record(path, layout)
+    np.testing.assert_allclose(record["u"], [1852.0, np.nan, 926.0])
+    np.testing.assert_array_equal(record.time, [0.0, 0.5, 1.0])
+
+
+@pytest.mark.parametrize(
+    ("line", "sentence"),
+    [("{", "line 2 is no JSON"), ("[1, 2]", "line 2 is no JSON object"), ('{"t": 1}', "line 2 has no 'speed'")],
+)
+def test_the_reader_refuses_in_one_sentence(line: str, sentence: str, layout: Layout, tmp_path: Path) -> None:
+    path = tmp_path / "log.jsonl"
+    path.write_text('{"t": 0, "speed": 1}\n' + line, encoding="utf-8")
+    with pytest.raises(InputError, match=sentence):
+        read_record(path, layout)
+
+
+def test_the_estimator_gives_the_true_coefficients_back_despite_an_outlier() -> None:
+    model, record = true_model(), zigzags()
+    estimator = loaded("least_deviations_estimator").LeastDeviations(half_width=20.0)
+    truth = np.array([model.parameters[name].value for name in model.parameters.free_names])
+    clean = estimator.estimate(model, [record]).values
+    np.testing.assert_allclose(clean, truth, rtol=0.02, atol=1e-3)
+
+
+def test_the_study_confirms_its_claim_and_has_a_page(tmp_path: Path) -> None:
+    lines: list[str] = []
+    study = loaded("turning_study").study(quick=True, seed=3, report_progress=lines.append)
+    assert [claim.verdict for claim in study.claims] == [Verdict.CONFIRMED]
+    assert all(check.holds for check in study.checks) and study.seed == 3 and len(lines) == 1
+    assert study.claims[0].claim in write_study(study, tmp_path / "study.html").read_text(encoding="utf-8")
