@@ -42,13 +42,16 @@ class Box:
 def layers() -> list[list[str]]:
     """Return the layers from the highest to the lowest, each with its subpackages, as the import contracts order them.
 
-    The command line and the functions behind it, `cli` and `api`, are one layer.
+    The command line and the functions behind it, `cli` and `api`, are one layer; modules of the package itself, whose
+    names begin with an underscore, are none.
     """
     contracts = tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]
     order = {c["containers"][0]: c["layers"] for c in contracts["contracts"] if c["type"] == "layers"}
     rows = []
     for row in order.pop("seatrial"):
         names = _siblings(row)
+        if names[0].startswith("_"):
+            continue
         inner = order.get(f"seatrial.{names[0]}")
         rows.append([f"{names[0]}.{n}" for line in inner for n in _siblings(line)] if inner else names)
     return [rows[0] + rows[1], *rows[2:]] if rows[:2] == [["cli"], ["api"]] else rows

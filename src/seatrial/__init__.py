@@ -1,3 +1,46 @@
-"""seatrial: sea-trial records into ship motion models you can defend."""
+"""Ship motion models from sea-trial records, and controllers tuned on them.
+
+    import seatrial as st
+
+    trial = st.load_trial("examples/waterjet.toml")
+    fit = st.identify(trial)
+
+Functions (each also a command)
+    load_trial    read and validate a trial file
+    check         what is odd about the records: findings
+    identify      estimate the model's coefficients, with intervals
+    simulate      run a manoeuvre, or the inputs of a record, through a model
+    predict       predict a measured run and compare it with the measurement
+    design        design the manoeuvre that identifies the coefficients best
+    tune          tune a feedback loop on a model
+    follow        identify while the record is being made
+    reproduce     repeat a published study
+    demo          identify a craft with known coefficients
+    list_models   the built-in and the installed models
+
+Files
+    read_record, write_record    records
+    Layout, ColumnSpec           how a record file of another program is laid out
+    load_fit, save, report       result folders and their pages
+    load_model, load_loop        model files, loop files
+
+Values
+    Record, Channel              one run; one of its channels
+    Ship, Parameters, Prior      particulars; named values; Gaussian knowledge of one
+    Model                        equations with parameters
+    Sheet                        on which a model is written
+    Trial, Problem, Solution     what is to be estimated; as an optimiser sees it; what it returns
+    Fit, Design, Tuning, Study   results
+    Finding, InputError          what a check reports; bad input, in one sentence
+
+Subpackages
+    models, manoeuvres, sea, control, optimisers, estimators, testing
+
+Names are imported when they are used first; ``__init__.pyi`` lists where each comes from.
+"""
+
+from seatrial._lazy import export_lazily
 
 __version__ = "0.1.0"
+
+export_lazily(__name__)

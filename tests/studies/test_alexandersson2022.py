@@ -69,7 +69,7 @@ def test_the_command_writes_report_and_json_and_prints_what_fails(
     repetition = made(factor=1.2)
     bare = Study("bare", "Nobody 2022", (verdicts.turning_claim(repetition),), verdicts.checks(repetition))
     installed = SimpleNamespace(name="bare", load=lambda: lambda **_: bare)
-    monkeypatch.setattr("seatrial.api.entry_points", lambda group: [installed])  # noqa: ARG005
+    monkeypatch.setattr("seatrial._plugins.entry_points", lambda group: [installed])  # noqa: ARG005
     code = run_command("reproduce", "bare", "--out", tmp_path / "out", "--json", tmp_path / "bare.json")
     said = capsys.readouterr().out
     assert code == 0 and "FAILS      35 deg turn to port, advance [L]: 3.701 (limit 3.01 to 3.28)" in said

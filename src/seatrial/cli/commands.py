@@ -386,6 +386,25 @@ def demo(
 
 
 @app.command()
+def models(
+    json: Json = None,
+    seed: Seed = 0,  # noqa: ARG001
+) -> None:
+    """List the built-in and the installed models: name, states, inputs, source.
+
+    Example: seatrial models
+    """
+    from dataclasses import asdict
+
+    from seatrial import api
+    from seatrial.cli.model_table import print_models
+
+    summaries = api.list_models()
+    print_models(summaries)
+    write_json(json, lambda: {"models": [asdict(summary) for summary in summaries]})
+
+
+@app.command()
 def reproduce(
     study: Annotated[str, typer.Argument(metavar="STUDY", help="E.g. alexandersson2022.")],
     quick: Annotated[bool, typer.Option("--quick", help="Fewer cases, under half a minute.")] = False,

@@ -32,7 +32,7 @@ def assert_same(a: Record, b: Record) -> None:
 
 
 def test_pandas_round_trip(record: Record) -> None:
-    back = Record.from_pandas(record.to_pandas())
+    back = Record.from_dataframe(record.to_dataframe())
     assert_same(record, back)
     assert (back.kind, back.provenance) == (record.kind, record.provenance)
 
@@ -53,13 +53,13 @@ def test_xarray_round_trip(record: Record) -> None:
 @given(arrays.arrays(np.float64, st.tuples(st.just(3), st.integers(1, 20)), elements=finite))
 def test_pandas_round_trip_of_any_numbers(values: np.ndarray) -> None:
     made = Record.from_arrays("any", np.arange(values.shape[1]) * 0.5, dict(zip(("u", "v", "r"), values, strict=True)))
-    assert_same(made, Record.from_pandas(made.to_pandas()))
+    assert_same(made, Record.from_dataframe(made.to_dataframe()))
 
 
 def test_a_bare_frame_takes_the_tables_conventions(record: Record) -> None:
-    frame = record.to_pandas()
+    frame = record.to_dataframe()
     frame.attrs = {}
-    made = Record.from_pandas(frame, name="bare")
+    made = Record.from_dataframe(frame, name="bare")
     assert made.name == "bare"
     assert made.channel("delta").positive == "starboard"
 

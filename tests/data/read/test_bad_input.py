@@ -130,5 +130,5 @@ def test_format_by_suffix() -> None:
         "parquet",
         "netcdf",
     ]
-    with pytest.raises(InputError, match=r"cannot be told from '\.doc'"):
+    with pytest.raises(InputError, match=r"suffix '\.doc' stands for no format"):
         format_of(Path("a.doc"))

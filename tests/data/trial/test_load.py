@@ -109,7 +109,7 @@ REFUSALS = [
     ("unit of another kind", '"kn"', '"deg"', "'deg' is no unit of surge velocity"),
     ("unknown channel", "u = { column", "uu = { column", "unknown name 'uu'"),
     ("unknown direction", '"port"', '"left"', "positive = 'left'"),
-    ("unknown format", "header_lines", 'format = "txt"\nheader_lines', "format = 'txt'"),
+    ("unknown format", "header_lines", 'format = "txt"\nheader_lines', "unknown format 'txt'; did you mean 'text'"),
     ("no match", '"*.csv"', '"*.dat"', "matches no file"),
     ("no such file", '"*.csv"', '"z.csv"', "there is no file"),
     ("unset variable", '"*.csv"', '"${SEATRIAL_NOWHERE}/*.csv"', "SEATRIAL_NOWHERE .* is not set"),

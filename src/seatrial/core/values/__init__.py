@@ -1,13 +1,14 @@
 """Records, channels, parameters, ships, findings, units and notation, as immutable values."""
 
 from seatrial.core.values.arrays import Array, Index, frozen
+from seatrial.core.values.channel import Channel, Provenance
 from seatrial.core.values.errors import DivergedError, InputError, spelling_hint
 from seatrial.core.values.finding import Finding, Severity
 from seatrial.core.values.force_points import ForceContent, ForcePoints
 from seatrial.core.values.notation import NOTATION, Quantity, quantity
 from seatrial.core.values.parameters import Parameter, Parameters, Prior
 from seatrial.core.values.progress import ProgressReporter
-from seatrial.core.values.record import Channel, Provenance, Record, RecordKind
+from seatrial.core.values.record import Record, RecordKind
 from seatrial.core.values.ship import Ship
 from seatrial.core.values.units import display_unit, si_unit
 

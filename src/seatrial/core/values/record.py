@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from seatrial.core.values.arrays import Array, frozen
+from seatrial.core.values.channel import Channel, Provenance
+from seatrial.core.values.dataframe import ColumnDeclarations, channel_columns, column_numbers
 from seatrial.core.values.errors import InputError, spelling_hint
-from seatrial.core.values.notation import quantity
 
 if TYPE_CHECKING:
     import pandas
@@ -26,66 +27,11 @@ class RecordKind(StrEnum):
 
 
 @dataclass(frozen=True, eq=False)
-class Channel:
-    """Values of one quantity in SI units.
-
-    Attributes:
-        values: shape (n,), read-only.
-        unit: SI unit.
-        frame: ``body``, ``earth`` or ``none``.
-        positive: positive direction, e.g. ``starboard`` or ``port``.
-        reference_point: metres forward of midship to which the channel refers.
-        label: the name in the file it came from.
-    """
-
-    values: Array
-    unit: str
-    frame: str
-    positive: str
-    reference_point: float = 0.0
-    label: str = ""
-
-    @classmethod
-    def from_notation(cls, symbol: str, values: Array) -> Self:
-        """A channel in the notation table's own unit, frame and sign."""
-        q = quantity(symbol)
-        return cls(frozen(values), q.unit, q.frame, q.positive)
-
-    @property
-    def metadata(self) -> dict[str, str | float]:
-        """Everything but the values: ``Channel(values, **channel.metadata)`` is the channel again."""
-        keys = ("unit", "frame", "positive", "reference_point", "label")
-        return {key: getattr(self, key) for key in keys}
-
-    def with_values(self, values: Array) -> Self:
-        """The same channel with other values."""
-        return replace(self, values=frozen(values))
-
-
-@dataclass(frozen=True)
-class Provenance:
-    """Where a record came from and what has been done to it."""
-
-    source: str = ""
-    sha256: str = ""
-    steps: tuple[str, ...] = ()
-
-    @classmethod
-    def from_metadata(cls, metadata: Mapping[str, Any]) -> Self:
-        """The inverse of `dataclasses.asdict`, by way of JSON."""
-        return cls(metadata["source"], metadata["sha256"], tuple(metadata["steps"]))
-
-    def with_step(self, step: str) -> Self:
-        """The same with one more step."""
-        return replace(self, steps=(*self.steps, step))
-
-
-@dataclass(frozen=True, eq=False)
 class Record:
     """One run: times in s, shape (n,), never running backwards; channels of the same length.
 
     `record["u"]` gives the values. The stamps of a record as it was read may be uneven, repeated or empty (NaN), which
-    `check.timebase` mends; `dt` demands that they increase evenly.
+    checking repairs; `dt` demands that they increase evenly.
 
     Raises:
         InputError: no sample, lengths differ, or time runs backwards.
@@ -218,13 +164,16 @@ class Record:
             return self.rows(slice(None, None, round(ratio)))
         count = int(np.floor(self.duration * rate * (1 + 1e-12))) + 1
         time = self.time[0] + np.arange(count) / rate
-        made = {s: c.with_values(np.interp(time, self.time, c.values)) for s, c in self.channels.items()}
+        channels = {s: c.with_values(np.interp(time, self.time, c.values)) for s, c in self.channels.items()}
         return replace(
-            self, time=frozen(time), channels=made, provenance=self.provenance.with_step(f"resampled to {rate:g} Hz")
+            self,
+            time=frozen(time),
+            channels=channels,
+            provenance=self.provenance.with_step(f"resampled to {rate:g} Hz"),
         )
 
-    def to_pandas(self) -> "pandas.DataFrame":
-        """Time as index, a column for each channel; `metadata` in `attrs`."""
+    def to_dataframe(self) -> "pandas.DataFrame":
+        """Return a data frame: time [s] as index, a column in SI units for each channel, `metadata` in ``attrs``."""
         import pandas as pd
 
         frame = pd.DataFrame({s: c.values for s, c in self.channels.items()}, index=pd.Index(self.time, name="time"))
@@ -232,16 +181,49 @@ class Record:
         return frame
 
     @classmethod
-    def from_pandas(cls, frame: "pandas.DataFrame", name: str = "record") -> Self:
-        """The inverse of `to_pandas`; without metadata the notation table's conventions are taken."""
-        about = frame.attrs
-        known = about.get("channels", {})
+    def from_dataframe(
+        cls,
+        frame: "pandas.DataFrame",
+        name: str = "",
+        *,
+        time: str | None = None,
+        columns: Mapping[str, str] | None = None,
+        units: Mapping[str, str] | None = None,
+        frames: Mapping[str, str] | None = None,
+        positive: Mapping[str, str] | None = None,
+        reference_points: Mapping[str, float] | None = None,
+    ) -> Self:
+        """Make a record of a data frame; a frame of `to_dataframe` is restored, its metadata included.
+
+        Args:
+            frame: one row a sample.
+            name: of the record; without it the frame's own, or ``record``.
+            time: the column of time stamps; None: the index. Numbers in s, dates, or durations.
+            columns: channel symbol -> column; None: every column whose name is a symbol of the notation table.
+            units: channel symbol (or ``time``) -> unit of the numbers; SI where absent.
+            frames: channel symbol -> ``body``, ``earth`` or ``none``.
+            positive: channel symbol -> positive direction, e.g. ``port``.
+            reference_points: channel symbol -> metres forward of midship.
+
+        Raises:
+            InputError: a column is missing or holds text, or a symbol, unit, frame or direction is unknown.
+        """
+        declared = ColumnDeclarations(units or {}, frames or {}, positive or {}, reference_points or {})
+        chosen = channel_columns(frame, time, columns)
+        declared.require_symbols(list(chosen))
+        metadata = frame.attrs.get("channels", {})
         channels = {
-            str(s): _channel_from_metadata(str(s), frame[s].to_numpy(float), known.get(s)) for s in frame.columns
+            symbol: declared.channel(symbol, column_numbers(frame, column), column, metadata.get(symbol))
+            for symbol, column in chosen.items()
         }
-        provenance = Provenance.from_metadata(about["provenance"]) if "provenance" in about else Provenance()
-        kind = RecordKind(about.get("kind", RecordKind.MEASURED))
-        return cls(about.get("name", name), frame.index.to_numpy(float), channels, kind, provenance)
+        provenance = frame.attrs.get("provenance")
+        return cls(
+            name or frame.attrs.get("name", "record"),
+            declared.seconds(frame.index if time is None else frame[time]),
+            channels,
+            RecordKind(frame.attrs.get("kind", RecordKind.MEASURED)),
+            Provenance() if provenance is None else Provenance.from_metadata(provenance),
+        )
 
     def to_xarray(self) -> "xarray.Dataset":
         """A dataset over `time`, channel metadata as attributes (needs the extra `formats`)."""

@@ -6,7 +6,6 @@ from typing import Literal
 from seatrial.core.values import InputError, quantity, si_unit
 from seatrial.core.values.notation import positive_direction
 
-Format = Literal["text", "mat", "parquet", "netcdf"]
 Separator = Literal["auto", ",", ";", "tab", "whitespace"]
 
 _FRAME_NAMES = ("body", "earth", "none")
@@ -87,7 +86,7 @@ class Layout:
         scale: length ratio by which the record is Froude-scaled; 1 leaves it as it is.
     """
 
-    format: Format
+    format: str
     time: ColumnSpec
     columns: tuple[ColumnSpec, ...]
     header_lines: int = 0

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from seatrial.core.values import InputError, quantity, si_unit, spelling_hint
-from seatrial.data.read import ColumnSpec, Format, Layout, format_of
+from seatrial.data.read import ColumnSpec, Layout, format_of
 from seatrial.data.trial.excitation import wave_encounter
 from seatrial.data.trial.schema import ChannelColumn, ColumnsTable, RecordsTable
 from seatrial.data.trial.trial import Role, TrialRun, Trimming, run_name
@@ -132,7 +132,7 @@ def session_of(path: Path, rule: str) -> str:
     return match.group(1) if match.re.groups else match.group(0)
 
 
-def layout_of(block: ColumnsTable, file_format: Format, where: str, scale: float = 1.0) -> Layout:
+def layout_of(block: ColumnsTable, file_format: str, where: str, scale: float = 1.0) -> Layout:
     """How to parse one file or stream of the block, in the terms of `seatrial.data.read`.
 
     Raises:

@@ -3,9 +3,10 @@
 import re
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
-from seatrial.data.read.layout import Format, Separator
+from seatrial.data.read.layout import Separator
+from seatrial.data.read.registry import require_format
 from seatrial.data.trial.amounts import Deviation, SiAmount, StrictTable, Unit
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
 
@@ -24,8 +25,7 @@ def _valid_pattern(session: object) -> object:
 
 
 Strings = Annotated[tuple[str, ...], BeforeValidator(_as_tuple)]
-
-
+Format = Annotated[str, AfterValidator(require_format)]
 Bound = Annotated[float, Field(allow_inf_nan=True)]
 
 

@@ -16,7 +16,7 @@ from seatrial.core.values import Finding, InputError, ProgressReporter, Record, 
 from seatrial.estimation.predict.open_loop import rms_errors
 from seatrial.estimation.regress.estimators import RegressionEstimator
 from seatrial.estimation.regress.features import RegressionMotion, features
-from seatrial.estimation.regress.standard_estimators import standard_estimators
+from seatrial.estimation.regress.named import available_estimators
 from seatrial.physics.simulate.replay import replay
 
 _CORRELATED_CHANNELS = ("u", "v", "r")
@@ -27,7 +27,7 @@ def with_baselines(
 ) -> Fit:
     """The fit with the regressions on its training runs, or with a finding that says why there can be none."""
     try:
-        return replace(fit, baselines=compare_estimators(fit, train, standard_estimators(seconds), report_progress))
+        return replace(fit, baselines=compare_estimators(fit, train, available_estimators(seconds), report_progress))
     except InputError as error:
         said = Finding(Severity.INFO, NO_COMPARISON, f"no other estimators to compare: {error}", "")
         return replace(fit, findings=(*fit.findings, said))

@@ -4,7 +4,7 @@ import os
 import subprocess
 import sys
 
-from seatrial.physics.models import MODELS
+from seatrial.physics.models.registry import MODELS
 
 _COMPILE_COMMAND = "import sys; from seatrial.physics.models import model_named; model_named(sys.argv[1]).compiled"
 _TIMEOUT_S = 20.0

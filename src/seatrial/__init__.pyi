@@ -1,0 +1,78 @@
+from seatrial import control, testing
+from seatrial.api import (
+    check,
+    demo,
+    design,
+    follow,
+    identify,
+    list_models,
+    load_fit,
+    load_loop,
+    load_model,
+    load_trial,
+    predict,
+    read_record,
+    report,
+    reproduce,
+    simulate,
+    tune,
+    write_record,
+)
+from seatrial.core.equations import Model, Sheet
+from seatrial.core.results import Design, Fit, Study
+from seatrial.core.results.tuning import Tuning
+from seatrial.core.values import Channel, Finding, InputError, Parameters, Prior, Record, Ship
+from seatrial.data.read import ColumnSpec, Layout
+from seatrial.data.trial import Trial
+from seatrial.estimation import regress as estimators
+from seatrial.numerics import optimise as optimisers
+from seatrial.numerics.optimise import LeastSquaresProblem as Problem
+from seatrial.numerics.optimise import Solution
+from seatrial.physics import manoeuvres, models, sea
+
+__all__ = [
+    "Channel",
+    "ColumnSpec",
+    "Design",
+    "Finding",
+    "Fit",
+    "InputError",
+    "Layout",
+    "Model",
+    "Parameters",
+    "Prior",
+    "Problem",
+    "Record",
+    "Sheet",
+    "Ship",
+    "Solution",
+    "Study",
+    "Trial",
+    "Tuning",
+    "check",
+    "control",
+    "demo",
+    "design",
+    "estimators",
+    "follow",
+    "identify",
+    "list_models",
+    "load_fit",
+    "load_loop",
+    "load_model",
+    "load_trial",
+    "manoeuvres",
+    "models",
+    "optimisers",
+    "predict",
+    "read_record",
+    "report",
+    "reproduce",
+    "sea",
+    "simulate",
+    "testing",
+    "tune",
+    "write_record",
+]
+
+__version__: str

@@ -1,0 +1,127 @@
+"""From a model to a record: simulate a manoeuvre, or replay the inputs of a record."""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
+
+from seatrial.core.values import InputError
+
+if TYPE_CHECKING:
+    from seatrial.core.equations import Model
+    from seatrial.core.values import Record
+    from seatrial.data.folder.model_file import ModelFile
+
+Steering = Callable[["Model"], "Record"]
+
+
+def steering(
+    model: "ModelFile | Model",
+    manoeuvre: str,
+    *,
+    speed: float | None = None,
+    inputs: Mapping[str, float] | None = None,
+    duration: float | None = None,
+    rudder_rate: float | None = None,
+    seed: int = 0,
+) -> Steering:
+    """Return a function that steers the manoeuvre with any model of these equations, under the file's conditions.
+
+    Args:
+        model: a model, or a model file with its ship and approach condition.
+        manoeuvre: e.g. ``zigzag:20/20`` (see `seatrial.manoeuvres`).
+        speed: approach speed, m/s; without it the speed at which surge balances.
+        inputs: constant inputs besides the rudder, SI; without them those of the trials.
+        duration: s at most.
+        rudder_rate: rad/s; without it SOLAS's at the ship's scale.
+        seed: of a random binary sequence.
+
+    Raises:
+        InputError: unknown manoeuvre, or a rudder that cannot move.
+    """
+    from seatrial.physics.manoeuvres.programme import programme
+    from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE
+    from seatrial.physics.simulate.steer import manoeuvre as steered
+
+    if rudder_rate is not None and not 0.0 < rudder_rate < math.inf:
+        raise InputError(
+            f"the rudder rate {math.degrees(rudder_rate):g} deg/s is not positive; leave it out for SOLAS's"
+        )
+    file = as_model_file(model)
+    scale = file.ship.scale if file.ship else 1.0
+    constant = {name: value for name, value in file.approach.items() if name in file.model.input_names}
+    approach_speed = file.approach.get("u") if "u" not in file.model.states else None
+    orders = programme(_with_seed(manoeuvre, seed))
+
+    def steer(ship: "Model") -> "Record":
+        return steered(
+            ship,
+            orders,
+            duration=duration,
+            speed=approach_speed if speed is None else speed,
+            inputs={**constant, **(inputs or {})},
+            slew_rate=rudder_rate or SOLAS_SLEW_RATE * math.sqrt(scale),
+        )
+
+    return steer
+
+
+def simulate(
+    model: "ModelFile | Model",
+    manoeuvre: "str | Record",
+    *,
+    speed: float | None = None,
+    inputs: Mapping[str, float] | None = None,
+    duration: float | None = None,
+    rudder_rate: float | None = None,
+    seed: int = 0,
+) -> "Record":
+    """Simulate a manoeuvre, or the inputs of a record, with a model and return the record of it.
+
+    Args:
+        model: a model, or a model file with its ship and approach condition.
+        manoeuvre: e.g. ``zigzag:20/20``, ``turning-circle:35``, or a record whose inputs drive the model: a measured
+            one from its first sample, a planned one from a straight run.
+        speed: approach speed, m/s; without it the speed at which surge balances.
+        inputs, duration, rudder_rate, seed: of a manoeuvre, as in `steering`.
+
+    Raises:
+        InputError: unknown manoeuvre, a rudder that cannot move, an input or speed that nothing states, or a simulation
+            that diverges.
+    """
+    file = as_model_file(model)
+    if not isinstance(manoeuvre, str):
+        return replay(file, manoeuvre, speed)
+    steer = steering(file, manoeuvre, speed=speed, inputs=inputs, duration=duration, rudder_rate=rudder_rate, seed=seed)
+    return steer(file.model)
+
+
+def replay(model: "ModelFile", record: "Record", speed: float | None = None) -> "Record":
+    """Simulate the inputs of a record from its first sample; those of a planned one from a straight run.
+
+    Args:
+        speed: approach speed of a planned record, m/s; without it the speed at which surge balances.
+
+    Raises:
+        InputError: an input channel is missing, or the simulation diverges.
+    """
+    from seatrial.core.values import RecordKind
+    from seatrial.physics.simulate import replay
+    from seatrial.physics.simulate.approach import straight_run
+
+    start = straight_run(model.model, record, speed) if record.kind is RecordKind.PLANNED else None
+    return replay(model.model, record, start)
+
+
+def as_model_file(model: "ModelFile | Model") -> "ModelFile":
+    """Return the model file as it is, or one that holds the bare model."""
+    from seatrial.data.folder.model_file import ModelFile
+
+    return model if isinstance(model, ModelFile) else ModelFile(model)
+
+
+def _with_seed(manoeuvre: str, seed: int) -> str:
+    """Return the programme's text; a random binary sequence without a seed of its own gets this one."""
+    kind, *fields = manoeuvre.strip().split(":")
+    if kind != "prbs" or len(fields) > 2:
+        return manoeuvre
+    return ":".join(["prbs", *fields, *["20", ""][len(fields) :], str(seed)])

@@ -1,0 +1,166 @@
+"""From a trial to a fit: load, check, identify, follow, design."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from seatrial.core.equations import Model
+    from seatrial.core.results import Design, Fit
+    from seatrial.core.results.online import SampleCounts, Snapshot
+    from seatrial.core.values import Finding, ProgressReporter, Record
+    from seatrial.data.folder.model_file import ModelFile
+    from seatrial.data.trial import Trial
+    from seatrial.onboard.follow import FollowResult
+    from seatrial.onboard.sample import SampleSource
+
+
+def load_trial(path: str | Path, own_model: "Model | None" = None) -> "Trial":
+    """Load the trial that a TOML file describes; record files are located, not yet read.
+
+    Args:
+        path: the trial file.
+        own_model: takes the place of the built-in model that the file names.
+
+    Raises:
+        InputError: one sentence naming file, key and what to do.
+    """
+    from seatrial.data.trial import load_trial
+
+    return load_trial(path, own_model)
+
+
+def check(trial: "Trial") -> "tuple[Finding, ...]":
+    """Check the trial's records and return the findings: frames, signs, units, gaps, jumps, lags.
+
+    Raises:
+        InputError: a record cannot be read at all.
+    """
+    from seatrial.data.trial import load_records
+
+    return load_records(trial)[1]
+
+
+def identify(
+    trial: "Trial",
+    seed: int = 0,
+    report_progress: "ProgressReporter | None" = None,
+    *,
+    intervals: str = "auto",
+    choose: bool = False,
+    compare: bool = False,
+) -> "Fit":
+    """Estimate the trial's model from its training runs and predict its validation runs, with intervals.
+
+    Args:
+        seed: of everything drawn at random; the same seed gives the same bits.
+        report_progress: called with one line of text at each step.
+        intervals: ``auto``, ``jackknife`` (every run left out and refitted, and the spread of tied models),
+            ``bootstrap`` or ``profile``.
+        choose: compare the family of models and take the one that predicts left-out runs best.
+        compare: compare the fit with other estimators (regressions) on the same records.
+
+    Raises:
+        InputError: the records do not pass the checks, show no excitation, or cannot distinguish the parameters.
+    """
+    from seatrial.physics.models.precompile import Precompilation
+
+    compiling = Precompilation(trial.model.name)
+    from seatrial.core.values import InputError, spelling_hint
+    from seatrial.estimation.identify import IntervalMethod, identify
+
+    if intervals not in (methods := [method.value for method in IntervalMethod]):
+        raise InputError(f"unknown kind of intervals '{intervals}'{spelling_hint(intervals, methods)}")
+    compiling.wait()
+    method = IntervalMethod(intervals)
+    return identify(trial, seed=seed, report_progress=report_progress, intervals=method, choose=choose, compare=compare)
+
+
+def follow(
+    trial: "Trial",
+    *,
+    source: "SampleSource | None" = None,
+    once: bool = False,
+    journal: str | Path | None = None,
+    show: "Callable[[Snapshot, SampleCounts], None] | None" = None,
+    stop: Callable[[], bool] | None = None,
+    seed: int = 0,
+    report_progress: "ProgressReporter | None" = None,
+) -> "FollowResult":
+    """Estimate while the record is being made, from the samples that the trial's table ``[follow]`` names.
+
+    Args:
+        source: takes the place of the source that the trial file names.
+        once: end with the input; the result then holds the fit that `identify` makes of the accepted samples.
+        journal: file in which admitted samples are kept; an existing one is read first and continued.
+        show: called with the present estimate and the sample counts, twice a second at most.
+        stop: called several times a second; following ends when it returns True.
+        seed: of the fit of `once`.
+        report_progress: called with one line of text at each step.
+
+    Raises:
+        InputError: the trial has no ``[follow]``, lacks channels, its source cannot be opened, or the journal belongs
+            to another trial.
+    """
+    from seatrial.physics.models.precompile import Precompilation
+
+    compiling = Precompilation(trial.model.name)
+    from seatrial.onboard.follow import follow
+
+    compiling.wait()
+    return follow(
+        trial,
+        source=source,
+        once=once,
+        journal=None if journal is None else Path(journal),
+        show=show,
+        stop=stop,
+        seed=seed,
+        report_progress=report_progress,
+    )
+
+
+def design(
+    trial: "Trial",
+    seed: int = 0,
+    report_progress: "ProgressReporter | None" = None,
+    prior_model: "ModelFile | None" = None,
+) -> "Design":
+    """Design the manoeuvre that identifies the trial's coefficients best within its limits.
+
+    Args:
+        seed: of the search, of the ships drawn from the prior, and of the noise that confirms the design.
+        report_progress: called with one line of text at each step.
+        prior_model: a model file of `identify`; its values and their covariance take the place of the trial's.
+
+    Raises:
+        InputError: the trial has no ``[design]``, its sensors or inputs do not fit the model, the model file holds
+            another model, or no manoeuvre stays within the limits.
+    """
+    from seatrial.physics.models.precompile import Precompilation
+
+    compiling = Precompilation(trial.model.name)
+    from seatrial.estimation.design.design import design
+    from seatrial.estimation.design.from_trial import design_task
+
+    task = design_task(trial, prior_model)
+    compiling.wait()
+    return design(task, seed=seed, report_progress=report_progress or (lambda _: None))
+
+
+def prepared_run(trial: "Trial | str | Path", name: str) -> "Record":
+    """Return one run of a trial as `identify` uses it: canonical, trimmed, resampled.
+
+    Raises:
+        InputError: the trial has no run of that name (the nearest is named), or it cannot be read.
+    """
+    from seatrial.core.values import InputError, spelling_hint
+    from seatrial.data.trial import Trial, load_trial
+    from seatrial.data.trial.records import load_run
+
+    trial = trial if isinstance(trial, Trial) else load_trial(trial)
+    runs = {run.name: run for run in trial.runs}
+    if name not in runs:
+        raise InputError(f"the trial has no run '{name}'{spelling_hint(name, list(runs))}")
+    record = load_run(runs[name], trial.reference_point)[0]
+    return record if trial.estimate.rate is None else record.resampled(trial.estimate.rate)

@@ -1,0 +1,44 @@
+"""From a loop file to a tuned controller: load_loop, tune."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from seatrial.control.task import TuningTask
+    from seatrial.core.equations import Model
+    from seatrial.core.results.tuning import Tuning
+    from seatrial.core.values import ProgressReporter
+
+
+def load_loop(path: str | Path, own_model: "Model | None" = None, model_file: str | Path | None = None) -> "TuningTask":
+    """Load the tuning task that a loop file describes (see docs/loop-file.md).
+
+    Args:
+        path: the loop file.
+        own_model: equations of a model file that are not built in.
+        model_file: takes the place of the model file that the loop file names.
+
+    Raises:
+        InputError: one sentence naming file, key and what to do.
+    """
+    from seatrial.control.loopfile.load import tuning_task
+
+    return tuning_task(Path(path), own_model, None if model_file is None else Path(model_file))
+
+
+def tune(task: "TuningTask | str | Path", seed: int = 0, report_progress: "ProgressReporter | None" = None) -> "Tuning":
+    """Tune a feedback loop: the front, the chosen gains with the reasons, and their nonlinear simulation.
+
+    Args:
+        task: as `load_loop` returns it, or the path of a loop file.
+        seed: of the search, of the simulated seas, and of the ships drawn from the fit.
+        report_progress: called with one line of text at each step.
+
+    Raises:
+        InputError: as `load_loop`; no gains keep the limits (which limit, by how much).
+    """
+    from seatrial.control.task import TuningTask
+    from seatrial.control.tune import tune
+
+    task = task if isinstance(task, TuningTask) else load_loop(task)
+    return tune(task, seed=seed, report_progress=report_progress or (lambda _: None))

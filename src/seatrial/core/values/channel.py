@@ -1,0 +1,63 @@
+"""One channel of a record, and where a record comes from."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Self
+
+from seatrial.core.values.arrays import Array, frozen
+from seatrial.core.values.notation import quantity
+
+
+@dataclass(frozen=True, eq=False)
+class Channel:
+    """Values of one quantity in SI units.
+
+    Attributes:
+        values: shape (n,), read-only.
+        unit: SI unit.
+        frame: ``body``, ``earth`` or ``none``.
+        positive: positive direction, e.g. ``starboard`` or ``port``.
+        reference_point: metres forward of midship to which the channel refers.
+        label: the name in the file it came from.
+    """
+
+    values: Array
+    unit: str
+    frame: str
+    positive: str
+    reference_point: float = 0.0
+    label: str = ""
+
+    @classmethod
+    def from_notation(cls, symbol: str, values: Array) -> Self:
+        """A channel in the notation table's own unit, frame and sign."""
+        q = quantity(symbol)
+        return cls(frozen(values), q.unit, q.frame, q.positive)
+
+    @property
+    def metadata(self) -> dict[str, str | float]:
+        """Everything but the values: ``Channel(values, **channel.metadata)`` is the channel again."""
+        keys = ("unit", "frame", "positive", "reference_point", "label")
+        return {key: getattr(self, key) for key in keys}
+
+    def with_values(self, values: Array) -> Self:
+        """The same channel with other values."""
+        return replace(self, values=frozen(values))
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where a record came from and what has been done to it."""
+
+    source: str = ""
+    sha256: str = ""
+    steps: tuple[str, ...] = ()
+
+    @classmethod
+    def from_metadata(cls, metadata: Mapping[str, Any]) -> Self:
+        """The inverse of `dataclasses.asdict`, by way of JSON."""
+        return cls(metadata["source"], metadata["sha256"], tuple(metadata["steps"]))
+
+    def with_step(self, step: str) -> Self:
+        """The same with one more step."""
+        return replace(self, steps=(*self.steps, step))
