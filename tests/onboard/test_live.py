@@ -78,7 +78,7 @@ def test_a_heading_wraps_so_that_the_address_can_be_read() -> None:
 
 def test_silence_is_said() -> None:
     snapshots = list(heave_pitch(10.0))
-    assert "no news for 7.0 s" in drawn(snapshots=snapshots, silence=7.0)
+    assert "no news for 7.00 s" in drawn(snapshots=snapshots, silence=7.0)
     assert "no news" not in drawn(snapshots=snapshots, silence=1.0)
 
 
@@ -195,5 +195,10 @@ def test_a_line_has_values_with_half_intervals_and_no_typography() -> None:
     snapshot = list(mmg(20.0))[-1]
     text = log_line(snapshot, faulty_counts())
     assert text.isascii() and "\n" not in text
-    assert "X_vv -0.0" in text and " +- " in text and "not told: " in text and "3 late, 1 repeated, 12 missing" in text
+    assert (
+        "X_vv -0.0" in text
+        and " +- " in text
+        and "not identified: " in text
+        and "3 late, 1 repeated, 12 missing" in text
+    )
     assert "10^-3" in log_line(list(mmg(300.0))[-1], SampleCounts())

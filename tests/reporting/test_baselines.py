@@ -7,7 +7,6 @@ import pytest
 from tests.reporting.complete_fit import baselines as fabricated
 from tests.reporting.fabricated import fabricated_fit
 
-from seatrial.core.figures.scatter import scatter
 from seatrial.core.results import Fit
 from seatrial.core.results.baseline import NO_COMPARISON
 from seatrial.core.values import Finding, Severity
@@ -77,10 +76,3 @@ def test_a_refusal_is_one_sentence_and_silence_stays_silent(fit: Fit) -> None:
     page = html(replace(plain, findings=(why,)))
     section = page[page.index('id="baselines"') :].partition("</section>")[0]
     assert "No other estimators to compare" in section and "<table" not in section
-
-
-def test_dots_keep_their_place_whatever_their_size() -> None:
-    svg = scatter({"one": {"a": (0.0, True), "b": (1e9, False)}, "two": {"a": (3.0, True)}}, "error, per cent")
-    places = [float(x) for x in re.findall(r'<circle cx="([\d.]+)"', svg)]
-    assert len(places) == 3 and all(0.0 < x < 864.0 for x in places)
-    assert scatter({}, "") == ""

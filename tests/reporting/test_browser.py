@@ -57,7 +57,7 @@ def test_folds_open_and_show_their_figures(browser: "Browser", page: Path) -> No
     assert closed.count() == before - 1
     window.locator("#unfold").click()
     assert window.locator("details:not([open])").count() == 0
-    assert window.locator("figure svg:visible").count() == window.locator("figure svg").count()
+    assert window.locator("figure > svg:visible").count() == window.locator("figure > svg").count()
     window.locator("#unfold").click()
     assert window.locator("details[open]").count() == 0
     assert said == []

@@ -5,15 +5,11 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 from tests.reporting.complete_fit import complete_fit, tanker
 from tests.reporting.fabricated import fabricated_fit
 
-from seatrial.core.figures import bands, log_rows
-from seatrial.core.figures.plot import Panel
-from seatrial.core.results import Direction, Extrapolation, Fit, Identifiability, Measure, NoiseModel, Symmetry
-from seatrial.core.text import words
+from seatrial.core.results import Extrapolation, Fit, Identifiability, NoiseModel, Symmetry
 from seatrial.data.folder.result_folder import load_fit, save_fit
 from seatrial.reporting import summary, write_report
 from seatrial.reporting.identifiability_chapter import determined_sentence, identifiability_chapter
@@ -114,14 +110,6 @@ def test_intervals_of_measures_say_whether_they_hold(full: Fit) -> None:
     assert html(replace(full, predictions=(missed,))).count("✗ outside") == 1
 
 
-def test_a_value_outside_is_seen_to_be_outside() -> None:
-    """14.08 against [14.09, 14.38]: with one decimal it would read 14.1 in [14.1, 14.4]."""
-    assert words.measure_decimals("deg", Measure(14.08, 14.23, 14.09, 14.38)) == 2
-    assert words.measure_decimals("deg", Measure(12.9, 11.5, 9.9, 13.2)) == 1
-    assert words.measure_decimals("deg", Measure(35.0, 35.0, 35.0, 35.0)) == 1
-    assert words.measure_decimals("L", Measure(3.1, 3.05)) == 2
-
-
 def test_the_answer_gives_intervals_floor_criterion_and_what_cannot_be_told(full: Fit) -> None:
     said = " ".join(summary.sentences(full))
     assert "first overshoot 8.42° [8.08, 8.71], measured 8.31°" in said
@@ -140,31 +128,6 @@ def test_a_long_change_is_shortened_in_the_answer(full: Fit) -> None:
     long = Symmetry(names, f"{', '.join(names)} can " + "very " * 60 + "well be scaled", {})
     said = " ".join(summary.sentences(replace(full, identifiability=replace(known, structural=(long,)))))
     assert "Whatever the manoeuvre, a, b, c, d, e and 3 more can change together without showing" in said
-
-
-@pytest.mark.parametrize(("index", "where"), [(0.7, "inside"), (1.04, "inside"), (1.15, "edge"), (1.9, "beyond"),
-                                              (math.inf, "beyond"), (math.nan, "")])  # fmt: skip
-def test_an_extrapolation_is_inside_at_the_edge_or_beyond(index: float, where: str) -> None:
-    assert words.extrapolation_zone(index) == where
-
-
-def test_an_extrapolation_in_words() -> None:
-    ratios = {"yaw_rate": 1.9, "drift": 1.3, "rudder": 0.9}
-    assert words.extrapolation_text(Extrapolation(1.9, ratios)) == (
-        "1.9: the run turns 1.9 times as fast as any training run, with 1.3 times the drift angle. "
-        "Read its intervals as lower limits."
-    )
-    assert words.extrapolation_text(Extrapolation(math.inf, {"drift": math.inf})).startswith(
-        "∞: the run drifts at ∞ times"
-    )
-    assert "stays inside" in words.extrapolation_text(Extrapolation(0.8, {"speed": 0.8}))
-
-
-def test_sentences_keep_the_names_they_begin_with() -> None:
-    assert words.sentence("m_x is fixed") == "m_x is fixed."
-    assert words.sentence("m is fixed", ["m"]) == "m is fixed."
-    assert words.sentence("all are known.") == "All are known."
-    assert words.sentence("") == ""
 
 
 def test_the_number_of_determined_coefficients_is_said_of_the_free_ones(full: Fit) -> None:
@@ -190,18 +153,3 @@ def test_directions_are_sorted_into_zones(full: Fit) -> None:
     assert shown is not None and known is not None
     counts = [int(re.findall(r"\d+", zone.text)[0]) for zone in shown.accuracy_classes]
     assert sum(counts) == len(known.directions) and counts == [4, 3, 4]
-
-
-def test_the_parts_of_a_direction_are_its_largest() -> None:
-    direction = Direction({"Y_v": 0.74, "N_v": -0.56, "a": 0.3, "b": 0.25, "c": 0.01}, 0.4, "")
-    assert log_rows.combination_text(direction) == ".74 Y_v − .56 N_v + .30 a …"
-    assert log_rows.combination_text(Direction({"Y_v": -1.0}, 0.4, "")) == "− Y_v"
-
-
-def test_an_envelope_has_the_half_width_to_the_side_of_the_track() -> None:
-    """North at 3 m to the sides (east), whatever the half width along the track."""
-    panel = Panel(0.0, 0.0, 100.0, 100.0, (-50.0, 50.0), (0.0, 100.0))
-    east, north = np.zeros(50), np.linspace(10.0, 90.0, 50)
-    drawn = bands.along_track(panel, east, north, (np.full(50, 3.0), np.full(50, 20.0)))
-    x = [float(v) for v in re.findall(r"[ML](\S+) ", drawn)]
-    assert min(x) == pytest.approx(47.0) and max(x) == pytest.approx(53.0)

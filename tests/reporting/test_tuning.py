@@ -10,15 +10,8 @@ import pytest
 from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_bare, fabricated_fin
 from tests.reporting.test_page import HOSTILE, parsed
 
-from seatrial.core.figures.fronts import degree_unit, fronts
-from seatrial.core.figures.loop_diagram import diagram
-from seatrial.core.figures.manoeuvre_response import LIMIT, manoeuvre
-from seatrial.core.figures.margins import nyquist, sensitivities
-from seatrial.core.figures.scales import scale_of
-from seatrial.core.figures.schedule_maps import schedule_maps
-from seatrial.core.figures.seaway_simulations import time_histories
-from seatrial.core.results.tuning import Component, PairedDifference, Tuning
-from seatrial.core.values import Finding, Severity, frozen
+from seatrial.core.results.tuning import PairedDifference, Tuning
+from seatrial.core.values import Finding, Severity
 from seatrial.reporting.tuning import TITLES, html
 from seatrial.reporting.tuning_rows import gain_texts, schedule_table, transfer_latex
 from seatrial.reporting.tuning_text import comparison_sentence, demand_sentence, sentences
@@ -127,7 +120,6 @@ def test_a_schedule_that_is_unstable_elsewhere_says_so(fin: Tuning) -> None:
     lost = replace(fin.schedule[0], baseline_costs={"given": math.inf, "chosen everywhere": 0.3})
     told = replace(fin, schedule=(lost, *fin.schedule[1:]))
     assert "‘given’ is unstable in 1" in sentences(told)[-1]
-    assert "unst." in schedule_maps(told.schedule)
     assert "unstable" in schedule_table(told.schedule).rows[0]
 
 
@@ -140,83 +132,11 @@ def test_what_rounding_left_of_a_zero_is_zero() -> None:
     ]
 
 
-def test_histories_show_the_motion_without_control_where_it_is_known(fin: Tuning) -> None:
-    drawn = time_histories(fin)
-    assert ">without<" in drawn and drawn.count("<path") > time_histories(
-        replace(fin, seaway_simulations=fin.seaway_simulations[:1])
-    ).count("<path")
-    alone = replace(
-        fin,
-        seaway_simulations=tuple(
-            replace(s, record=s.record.without("phi_uncontrolled")) for s in fin.seaway_simulations
-        ),
-    )
-    assert ">with control<" in time_histories(alone) and ">without<" not in time_histories(alone)
-
-
-def test_maps_show_every_condition_of_every_set(fin: Tuning) -> None:
-    svg = schedule_maps(fin.schedule)
-    costs = [f"{cost:.2f}".lstrip("0") for s in fin.schedule for cost in (s.cost, *s.baseline_costs.values())]
-    assert all(f">{cost}<" in svg for cost in costs)
-    assert svg.count("<rect") == 3 * len(fin.schedule) + 5
-    assert schedule_maps(fin.schedule[:1] + fin.schedule[4:5]).count("<rect") == 3 * 4 + 5
-
-
-def test_two_objectives_have_one_panel_and_one_has_none(fin: Tuning) -> None:
-    pair = fabricated_autopilot()
-    assert fronts(pair).count("heading variance [deg²]") == 1
-    single = replace(fin.front, objectives=fin.front.objectives[:, :1])
-    assert (
-        fronts(replace(fin, objectives=fin.objectives[:1], units=fin.units[:1], front=single, extended_fronts=())) == ""
-    )
-
-
 def test_a_rival_off_the_front_s_scale_or_unstable_is_no_trouble(fin: Tuning) -> None:
     lost = replace(fin.baselines[0], objectives=np.full(3, np.inf), Ms=math.inf, gain_margin=math.nan,
                    phase_margin=math.nan, delay_margin=math.nan, reduction=-math.inf)  # fmt: skip
     text = html(replace(fin, baselines=(lost,)))
     assert not re.search(r"\b(nan|inf)\b", text)
-
-
-@pytest.mark.parametrize(
-    ("unit", "factor", "shown"),
-    [
-        ("rad^2", math.degrees(1.0) ** 2, "deg²"),
-        ("rad^2/s^2", math.degrees(1.0) ** 2, "deg²/s²"),
-        ("rad/s", math.degrees(1.0), "deg/s"),
-        ("1/min", 1.0, "1/min"),
-        ("1", 1.0, ""),
-        ("", 1.0, ""),
-    ],
-)
-def test_objectives_are_in_degrees(unit: str, factor: float, shown: str) -> None:
-    assert degree_unit(unit) == (pytest.approx(factor), shown)
-
-
-def test_an_axis_is_logarithmic_where_values_are_far_apart() -> None:
-    wide = scale_of([np.array([0.01, 30.0, np.inf])])
-    assert wide.is_logarithmic
-    assert [words for _, words in wide.ticks(4)] == ["0.01", "0.1", "1", "10"]
-    assert np.isnan(wide.coordinates(np.array([-1.0, np.nan]))).all()
-    assert not scale_of([np.array([-0.01, 30.0])]).is_logarithmic
-
-
-def test_the_peak_allowed_is_drawn_where_there_is_one(fin: Tuning) -> None:
-    free = replace(fin, constraints=replace(fin.constraints, Ms=math.inf))
-    for draw in (sensitivities, nyquist):
-        assert "Ms = 2" in draw(fin)
-        assert "Ms" not in draw(free)
-        assert draw(fabricated_bare()) == ""
-
-
-@pytest.mark.parametrize("roles", [("plant",), ("term", "plant"), ("sensor",) * 4 + ("term",) * 5 + ("filter",) * 2])
-def test_any_loop_is_drawn_with_every_block(roles: tuple[str, ...]) -> None:
-    blocks = [Component(role, f"b{k}", (1.0,), (1.0, 1.0)) for k, role in enumerate(roles)]
-    svg = diagram(blocks, "phi", "alpha_f")
-    assert svg.count("<rect") == len(blocks)
-    width = float(re.findall(r'viewBox="0 0 (\d+) ', svg)[0])
-    assert max(float(x) for x in re.findall(r'<rect x="([\d.]+)"', svg)) < width <= 1000
-    assert diagram((), "phi", "alpha_f") == ""
 
 
 @pytest.mark.parametrize(
@@ -247,20 +167,3 @@ def test_text_from_files_is_escaped(make: Callable[[], Tuning]) -> None:
         manoeuvres=tuple(replace(m, name=HOSTILE) for m in tuning.manoeuvres),
     )  # fmt: skip
     assert parsed(html(hostile)).scripts == parsed(html(tuning)).scripts
-
-
-def test_limits_of_an_actuator_lie_about_its_steady_value() -> None:
-    """A jet that runs at two metres a second may do so much more or less than that."""
-    tuning = fabricated_autopilot()
-    asked = tuning.manoeuvres[0]
-    moved = asked.record.channel("delta")
-    limit = 1.2 * float(np.max(np.abs(moved.values - moved.values[0])))
-    near = replace(tuning, constraints=replace(tuning.constraints, limit=limit))
-    aside = replace(moved, values=frozen(moved.values + 2.0))
-    record = replace(asked.record, channels={**asked.record.channels, "delta": aside})
-    here, there = (
-        [float(y) for y in re.findall(r'd="M[\d.]+[ ,]([\d.]+)[^"]*"[^>]*' + re.escape(LIMIT.dash), drawn)]
-        for drawn in (manoeuvre(asked, near), manoeuvre(replace(asked, record=record), near))
-    )
-    assert len(here) == 2
-    assert here == pytest.approx(there, abs=0.2)

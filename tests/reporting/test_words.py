@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.results import Fit
-from seatrial.core.text.words import correlation_text, counted, enumeration, measure_label, ordinal
 from seatrial.reporting import summary
 from seatrial.reporting.citations import Citations
+from seatrial.reporting.correlations import correlation_text
 
 
 def test_publications_are_numbered_once_and_the_longest_wording_is_listed() -> None:
@@ -51,22 +51,3 @@ def test_the_answer_counts_known_values_and_names_disagreeing_priors(fit: Fit) -
 def test_without_a_held_out_run_the_answer_says_so(fit: Fit) -> None:
     training = tuple(p for p in fit.predictions if p.role == "training")
     assert summary.sentences(replace(fit, predictions=training))[0].startswith("No run was held out")
-
-
-def test_small_words() -> None:
-    assert [ordinal(n) for n in (1, 2, 3, 4, 11, 12, 21, 112)] == [
-        "1st",
-        "2nd",
-        "3rd",
-        "4th",
-        "11th",
-        "12th",
-        "21st",
-        "112th",
-    ]
-    assert measure_label("overshoot_2_deg") == ("2nd overshoot", "deg") and measure_label("new_thing_L") == (
-        "new thing",
-        "L",
-    )
-    assert counted(0, "run") == "no runs" and counted(1, "run") == "1 run"
-    assert enumeration(list("abc")) == "a, b and c" and enumeration(list("abcdefgh")) == "a, b, c, d, e and 3 more"

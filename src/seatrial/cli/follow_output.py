@@ -71,15 +71,16 @@ def stream_heading(trial: "Trial") -> str:
 
 def print_outcome(outcome: "FollowResult") -> None:
     """What happened to the samples, then what is to be said besides; trouble on standard error."""
-    from seatrial.onboard.snapshot_text import clean, fault_counts
+    from seatrial.core.text.words import printable
+    from seatrial.onboard.snapshot_text import fault_counts
 
     counts = outcome.counts
     wrong = [f"{count} {words}" for words, count in fault_counts(counts) if count]
     print(f"{counts.accepted} samples accepted" + (f"; {', '.join(wrong)}" if wrong else "; nothing amiss"))
     if counts.last_problem:
-        print(f"the latest: {clean(counts.last_problem)}")
+        print(f"the latest: {printable(counts.last_problem)}")
     if outcome.snapshot is not None and outcome.snapshot.phase.value == "waiting" and outcome.snapshot.advice:
-        print(f"no estimate yet: {clean(outcome.snapshot.advice)}")
+        print(f"no estimate yet: {printable(outcome.snapshot.advice)}")
     for finding in () if outcome.snapshot is None else outcome.snapshot.findings:
         print(f"{SEVERITY_MARK[finding.severity.value]} [{finding.code}] {finding.text}")
     for note in outcome.messages:

@@ -10,6 +10,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.results.online import EstimatorPhase, Snapshot
+from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.trial import Trial
 from seatrial.data.trial.follow_table import require_stream
@@ -28,6 +29,7 @@ _LEAST_CREDIBLE_ERROR = 1e-5
 # s between two looks
 _ADVICE_INTERVAL_S = 60.0
 _MAX_NAMED = 3
+_MAX_ITEMS = _MAX_NAMED + 1
 
 
 @runtime_checkable
@@ -160,24 +162,27 @@ def _advice_text(
     shown = sorted(told, key=lambda i: best.relative_errors[i] / before[i])[:_MAX_NAMED]
     parts = [f"{snapshot.names[i]} from {_percent(before[i])} to {_percent(best.relative_errors[i])}" for i in shown]
     more = len(told) - len(shown)
-    said = f"{best.candidate.description} would bring {_listed(parts)}" + (f" and tell {more} more" if more else "")
+    said = f"{best.candidate.description} would bring {enumeration(parts, _MAX_ITEMS)}" + (
+        f" and tell {more} more" if more else ""
+    )
     others = [snapshot.names[i] for i in at if i not in told and snapshot.names[i] not in never]
     if others:
-        said += f"; {_listed(others)} then {_stay_verb(others)} for another manoeuvre"
-    return said + (f"; {_listed(never)} {_stay_verb(never)} untold by any of them" if never else "")
+        said += f"; {enumeration(others, _MAX_ITEMS)} then {_stay_verb(others)} for another manoeuvre"
+    return said + (f"; {enumeration(never, _MAX_ITEMS)} {_stay_verb(never)} untold by any of them" if never else "")
 
 
 def _qualitative_advice(snapshot: Snapshot, model: Model, records: Sequence[Record], reason: str) -> str:
     """What to do where no manoeuvre can be weighed: move what never moved, else harder, else look at the model."""
     still = [n for n in model.input_names if not any(n in r and np.ptp(r[n]) > 0.0 for r in records)]
-    named = _listed(list(snapshot.unidentified))
+    named = enumeration(list(snapshot.unidentified), _MAX_ITEMS)
     if is_pure_roll(model) and not model.is_affine:
         return f"{named}: release her from a larger angle, or roll her in waves from abeam ({reason})"
     if RUDDER in still:
         return f"{named}: the rudder has not moved so far; steer a zigzag 20/20 and a turning circle ({reason})"
     moving = [n for n in still if n not in ZERO_BY_DEFAULT]
     if moving:
-        return f"{named}: {_listed(moving)} never moved so far; let {'it' if len(moving) == 1 else 'them'} ({reason})"
+        which = "it" if len(moving) == 1 else "them"
+        return f"{named}: {enumeration(moving, _MAX_ITEMS)} never moved so far; let {which} ({reason})"
     if model.is_affine:
         return f"{named}: sail in higher waves or at another heading, or move the fins ({reason})"
     return f"{named}: steer harder, with larger angles and longer; else fix them or give priors ({reason})"
@@ -191,9 +196,3 @@ def _percent(share: float) -> str:
 
 def _stay_verb(names: Sequence[str]) -> str:
     return "stays" if len(names) == 1 else "stay"
-
-
-def _listed(items: Sequence[str]) -> str:
-    if len(items) > _MAX_NAMED + 1:
-        return f"{', '.join(items[:_MAX_NAMED])} and {len(items) - _MAX_NAMED} more"
-    return " and ".join([", ".join(items[:-1]), items[-1]]) if len(items) > 1 else "".join(items)

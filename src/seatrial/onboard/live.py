@@ -7,9 +7,9 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Protocol, Self, TextIO
 
 from seatrial.core.results.online import SampleCounts, Snapshot
+from seatrial.core.text.words import printable
 from seatrial.onboard.history import History, RecentHistory
 from seatrial.onboard.log_lines import ascii_text, log_line
-from seatrial.onboard.snapshot_text import clean
 from seatrial.onboard.table import TableContent, render_table
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ class _Lines:
         self._is_written = True
         self._has_failed = False
         if heading:
-            self._write(ascii_text(clean(heading)))
+            self._write(ascii_text(printable(heading)))
 
     def show(self, snapshot: Snapshot, counts: SampleCounts) -> None:
         if self._is_written and not _is_update(self._last, snapshot, counts):

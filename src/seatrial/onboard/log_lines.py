@@ -1,22 +1,26 @@
 """One snapshot as one line of plain text, for log files and for terminals that can draw nothing."""
 
 from seatrial.core.results.online import SampleCounts, Snapshot
-from seatrial.core.text.screen_numbers import MINUS
+from seatrial.core.text.numbers import MINUS, THIN_SPACE
+from seatrial.core.text.words import counted, enumeration, printable
 from seatrial.onboard.snapshot_text import change_sentence as change_words
-from seatrial.onboard.snapshot_text import clean, counted, estimate_rows, fault_counts, listed, time_text
+from seatrial.onboard.snapshot_text import estimate_rows, fault_counts, time_text
 
-_ASCII = str.maketrans({MINUS: "-", "–": "-", "²": "^2", "³": "^3", "×": "x", "…": "...", "·": "?"})
+_ASCII = str.maketrans({MINUS: "-", THIN_SPACE: "", "–": "-", "²": "^2", "³": "^3", "×": "x", "…": "...", "·": "?"})
+# coefficients named in a line at most
+MAX_NAMES = 8
 _SUPERSCRIPTS = dict(zip("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789", strict=True))
 
 
 def log_line(snapshot: Snapshot, counts: SampleCounts) -> str:
-    """Moment, phase, coefficients with half of their 95 % intervals, what is not told, trouble so far."""
+    """Moment, phase, coefficients with half of their 95 % intervals, what is not identified, faults so far."""
     seen = f"{counted(snapshot.samples, 'sample')} {counted(snapshot.runs, 'run')}"
     parts = [f"{time_text(snapshot.time)} {snapshot.phase.value} {seen}"]
     parts += [
         ", ".join(f"{row.name} {row.value} +- {row.half_width} {row.unit}".rstrip() for row in estimate_rows(snapshot))
     ]
-    parts += [f"not told: {listed([clean(name) for name in snapshot.unidentified])}"] if snapshot.unidentified else []
+    names = [printable(name) for name in snapshot.unidentified]
+    parts += [f"not identified: {enumeration(names, MAX_NAMES)}"] if names else []
     wrong = [f"{count} {words}" for words, count in fault_counts(counts) if count]
     parts += [", ".join(wrong)] if wrong else []
     parts += [change_words(snapshot.change)]

@@ -6,8 +6,10 @@ from typing import Any
 import numpy as np
 
 from seatrial.core.results.online import SampleCounts, Snapshot
-from seatrial.core.text.screen_numbers import significant
+from seatrial.core.text.numbers import significant
+from seatrial.core.text.words import printable
 from seatrial.core.values import NOTATION, Array, Severity, display_unit
+from seatrial.core.values.channel_text import channel_unit, unit_text
 from seatrial.onboard import snapshot_text
 from seatrial.onboard.history import HistoryPoint
 
@@ -26,17 +28,17 @@ def snapshot_json(snapshot: Snapshot, counts: SampleCounts) -> dict[str, Any]:
         "runs": snapshot.runs,
         "rows": [vars(row) for row in snapshot_text.estimate_rows(snapshot)],
         "noise": [_noise_json(name, rms) for name, rms in snapshot.noise.items()],
-        "unidentified": [snapshot_text.clean(name) for name in snapshot.unidentified],
-        "advice": snapshot_text.clean(snapshot.advice),
+        "unidentified": [printable(name) for name in snapshot.unidentified],
+        "advice": printable(snapshot.advice),
         "change": snapshot_text.change_sentence(snapshot.change),
         "accepted": counts.accepted,
         "faults": snapshot_text.fault_counts(counts),
-        "last": snapshot_text.clean(counts.last_problem),
+        "last": printable(counts.last_problem),
         "findings": [
             {
                 "severity": f.severity.value,
-                "text": snapshot_text.clean(f.text, 1000),
-                "advice": snapshot_text.clean(f.advice, 1000),
+                "text": printable(f.text, 1000),
+                "advice": printable(f.advice, 1000),
             }
             for f in worst_first
         ],
@@ -49,7 +51,7 @@ def plot_points(points: list[HistoryPoint], snapshot: Snapshot) -> list[list[Any
     Values and half intervals as `snapshot.names`, noise as `snapshot.noise`.
     """
     factors = np.array([display_unit(unit)[0] for unit in snapshot.units])
-    channels = [(name, display_unit(snapshot_text.channel_unit(name))[0]) for name in snapshot.noise]
+    channels = [(name, display_unit(channel_unit(name))[0]) for name in snapshot.noise]
     return [
         [
             point.sequence,
@@ -63,13 +65,13 @@ def plot_points(points: list[HistoryPoint], snapshot: Snapshot) -> list[list[Any
 
 
 def _noise_json(channel: str, rms: float) -> dict[str, str]:
-    factor, unit = display_unit(snapshot_text.channel_unit(channel))
+    factor = display_unit(channel_unit(channel))[0]
     meaning = NOTATION[channel].meaning if channel in NOTATION else ""
     return {
-        "name": snapshot_text.clean(channel),
+        "name": printable(channel),
         "meaning": meaning,
         "rms": significant(factor * rms, 3),
-        "unit": "" if unit == "1" else unit,
+        "unit": unit_text(channel_unit(channel)),
     }
 
 

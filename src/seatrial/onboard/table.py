@@ -4,18 +4,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from seatrial.core.results.online import EstimatorPhase, SampleCounts, Snapshot
+from seatrial.core.text.numbers import duration
+from seatrial.core.text.words import counted, enumeration, printable
 from seatrial.core.values import Severity
 from seatrial.onboard.history import RecentHistory
 from seatrial.onboard.snapshot_text import (
     NORMAL_95,
     EstimateRow,
     change_sentence,
-    clean,
-    counted,
-    duration,
     estimate_rows,
     fault_counts,
-    listed,
     phase_meaning,
     residual_rms,
     time_text,
@@ -27,6 +25,8 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 MAX_FINDINGS = 3
+# coefficients named in a line at most
+MAX_NAMES = 8
 MIN_TREND_WIDTH = 76
 SILENCE_S = 5.0
 MIN_ROWS, RESERVED_LINES = 3, 4
@@ -73,7 +73,7 @@ def _head(content: TableContent) -> "RenderableType":
         head.append(f"no news for {duration(content.silence)}", "yellow")
     else:
         head.append(phase_meaning(snapshot.phase), "dim")
-    return Group(*([Text(clean(content.heading), "bold")] if content.heading else []), head, Text())
+    return Group(*([Text(printable(content.heading), "bold")] if content.heading else []), head, Text())
 
 
 def _coefficient_table(rows: list[EstimateRow], recent: RecentHistory, width: int) -> "Table":
@@ -130,12 +130,12 @@ def _foot_lines(snapshot: Snapshot, counts: SampleCounts) -> list[tuple[str, str
     more = len(worst_first) - MAX_FINDINGS
     return [
         ("residuals", ", ".join(f"{name} {rms} {unit}".rstrip() for name, rms, unit in residual_rms(snapshot)), ""),
-        ("not told", listed([clean(name) for name in snapshot.unidentified]), "yellow"),
-        ("would help" if snapshot.unidentified else "why not yet", clean(snapshot.advice), ""),
+        ("not identified", enumeration([printable(name) for name in snapshot.unidentified], MAX_NAMES), "yellow"),
+        ("would help" if snapshot.unidentified else "why not yet", printable(snapshot.advice), ""),
         ("change", change_sentence(snapshot.change), "bold red"),
         ("samples", wrong, "yellow"),
-        ("last", clean(counts.last_problem), "dim"),
-        *((f.severity.value, clean(f.text), "red" if f.severity is Severity.ERROR else "")
+        ("last", printable(counts.last_problem), "dim"),
+        *((f.severity.value, printable(f.text), "red" if f.severity is Severity.ERROR else "")
           for f in worst_first[:MAX_FINDINGS]),
         ("", f"and {more} more findings" if more > 0 else "", "dim"),
     ]  # fmt: skip

@@ -7,12 +7,14 @@ from statistics import median
 
 from markupsafe import Markup
 
-from seatrial.core.figures.scatter import scatter
+from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Baseline, Coefficient, Fit, OpenLoopScores, Table
 from seatrial.core.results.baseline import NO_COMPARISON
 from seatrial.core.text.numbers import exact, fixed, significant
-from seatrial.core.text.words import counted, enumeration, sentence, unit_text
+from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import display_unit
+from seatrial.core.values.channel_text import unit_text
+from seatrial.reporting.figures.relative_errors import CoefficientError, estimator_chart
 from seatrial.reporting.text_tables import TextTable, text_table
 
 NEAR, OFF = 2.0, 10.0
@@ -68,7 +70,7 @@ def baseline_chapter(fit: Fit) -> BaselineChapter | None:
         tuple((c.name, unit_text(c.unit)) for c in known),
         tuple(exact(_display_value(c.truth, c), 4) for c in known) if first.error else (),
         tuple(_baseline_row(r, first, known) for r in fit.baselines if r.values and (r is first or not r.is_fit)),
-        Markup(scatter(_dot_data(fit.baselines), _axis_label(first))),
+        Markup(svg(estimator_chart(_coefficient_errors(fit.baselines), _axis_label(first)))),
         tuple(text_table(t) for t in (_table("Held-out runs", held), _table("Training runs", fitted)) if t.header[1:]),
         tuple(note for r in fit.baselines for note in _notes(r)),
     )
@@ -212,17 +214,17 @@ def _axis_label(reference: Baseline) -> str:
     )
 
 
-def _dot_data(items: Sequence[Baseline]) -> dict[str, dict[str, tuple[float, bool]]]:
-    """Estimator -> coefficient -> size in per cent, and whether it is within two standard errors of the fit."""
-    first, made = items[0], {}
+def _coefficient_errors(items: Sequence[Baseline]) -> dict[str, dict[str, CoefficientError]]:
+    """Estimator -> coefficient -> error."""
+    first, errors = items[0], {}
     for r in items if first.error else items[1:]:
-        if r.is_fit and r is not first:
-            continue
-        away = r.relative_deviation(first)
-        near = {n: abs(r.normalised_difference.get(n, math.inf)) <= NEAR for n in away}
-        if away:
-            made[r.name] = {n: (100.0 * abs(a), near[n]) for n, a in away.items()}
-    return made
+        deviations = r.relative_deviation(first)
+        if deviations and (r is first or not r.is_fit):
+            errors[r.name] = {
+                name: CoefficientError(100.0 * abs(d), abs(r.normalised_difference.get(name, math.inf)) <= NEAR)
+                for name, d in deviations.items()
+            }
+    return errors
 
 
 def _table(title: str, items: Sequence[tuple[str, OpenLoopScores]]) -> Table:

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from seatrial.core.equations.latex import latex_symbol
-from seatrial.core.figures import channels, designed_manoeuvre
-from seatrial.core.figures.relative_errors import Dots, dots
+from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Actuator, Design, ManoeuvrePrecision
 from seatrial.core.results.design_ranking import (
     best_baseline,
@@ -18,12 +17,15 @@ from seatrial.core.results.design_ranking import (
     sampled_criterion_errors,
     worst_sampled_error,
 )
-from seatrial.core.text import words
 from seatrial.core.text.numbers import DASH, exact, fixed, significant
 from seatrial.core.values import NOTATION
+from seatrial.core.values.channel_text import channel_meaning
 from seatrial.data.folder.orders import channel_display_unit, order_cells
 from seatrial.reporting import design_text
 from seatrial.reporting.design_text import LARGEST_SHOWN_ERROR
+from seatrial.reporting.figures.designed_manoeuvre import order_chart, track_chart
+from seatrial.reporting.figures.record_charts import channel_overview
+from seatrial.reporting.figures.relative_errors import FILLED, OPEN, TICK, ErrorSeries, error_chart
 from seatrial.reporting.mathml import inline
 from seatrial.reporting.page import environment
 from seatrial.reporting.tables import finding_groups
@@ -73,7 +75,7 @@ class DesignCoefficientRow:
 def html(design: Design) -> str:
     """The page as text; sections without content are left out."""
     rivals = ranked_baselines(design)
-    track = designed_manoeuvre.track(design) if has_track(design) else ""
+    track = svg(track_chart(design)) if has_track(design) else ""
     shown = {
         "track": bool(track),
         "ships": bool(len(design.designed.sampled_relative_error)),
@@ -90,8 +92,8 @@ def html(design: Design) -> str:
         "heads": order_headings(design.actuators),
         "meanings": order_meanings(design.actuators),
         "order_columns": order_columns(design),
-        "over_time": Markup(designed_manoeuvre.over_time(design)),
-        "channels": [Markup(figure) for figure in channels.overview([design.designed.executed])],
+        "over_time": Markup(svg(order_chart(design))),
+        "channels": [Markup(svg(chart)) for chart in channel_overview([design.designed.executed])],
         "has_track": has_track(design),
         "baselines": [w.name for w in rivals[:MAX_BASELINES]],
         "coefficients": _coefficient_rows(design, rivals[:MAX_BASELINES]),
@@ -137,7 +139,7 @@ def _latex(name: str) -> str:
 
 def _meaning(name: str) -> str:
     if name not in NOTATION or NOTATION[name].positive == "none":
-        return words.channel_meaning(name)
+        return channel_meaning(name)
     return f"{NOTATION[name].meaning}, positive {_POSITIVE_TEXTS.get(NOTATION[name].positive, NOTATION[name].positive)}"
 
 
@@ -194,19 +196,19 @@ def _coefficient_rows(design: Design, baselines: tuple[ManoeuvrePrecision, ...])
 def _errors_figure(design: Design) -> str:
     """Dots for each coefficient: the design and the best standard manoeuvre."""
     rival = best_baseline(design)
-    series = [Dots(rival.name, [[100.0 * float(x)] for x in rival.relative_error], "open")] if rival else []
-    series.append(Dots("designed", [[100.0 * float(x)] for x in design.designed.relative_error], "filled"))
-    return dots(design.coefficients, series, "relative standard error, per cent of the coefficient")
+    series = [ErrorSeries(rival.name, [[100.0 * float(x)] for x in rival.relative_error], OPEN)] if rival else []
+    series.append(ErrorSeries("designed", [[100.0 * float(x)] for x in design.designed.relative_error], FILLED))
+    return svg(error_chart(design.coefficients, series, "relative standard error, per cent of the coefficient"))
 
 
 def _drawn_ships_figure(design: Design, baselines: tuple[ManoeuvrePrecision, ...]) -> str:
     """A row for each manoeuvre, a dot for each ship drawn from the prior."""
     worths = (design.designed, *baselines)
-    drawn = Dots(
+    drawn = ErrorSeries(
         "ships drawn from the prior",
         [[100.0 * x for x in sampled_criterion_errors(w, design.criterion)] for w in worths],
-        "open",
+        OPEN,
     )
-    assumed = Dots("the ship as assumed", [[100.0 * criterion_error(w, design.criterion)] for w in worths], "tick")
+    assumed = ErrorSeries("the ship as assumed", [[100.0 * criterion_error(w, design.criterion)] for w in worths], TICK)
     kind = "worst" if design.criterion == "worst" else "mean"
-    return dots([w.name for w in worths], [drawn, assumed], f"{kind} relative standard error, per cent")
+    return svg(error_chart([w.name for w in worths], [drawn, assumed], f"{kind} relative standard error, per cent"))

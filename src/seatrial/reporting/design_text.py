@@ -15,8 +15,9 @@ from seatrial.core.results.design_ranking import (
     sampled_criterion_errors,
 )
 from seatrial.core.text.numbers import duration, exact, fixed, significant
-from seatrial.core.text.words import counted, enumeration, unit_text
+from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import NOTATION, display_unit
+from seatrial.core.values.channel_text import unit_text
 from seatrial.data.folder.orders import channel_display_unit
 
 LARGEST_SHOWN_ERROR = 100.0

@@ -6,9 +6,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from seatrial.core.figures import log_rows
-from seatrial.core.figures.plot import channel_si_unit
-from seatrial.core.figures.profiles import profiles
+from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import (
     CandidateModel,
     Consequence,
@@ -19,9 +17,12 @@ from seatrial.core.results import (
     Stability,
     Symmetry,
 )
-from seatrial.core.text import words
-from seatrial.core.text.numbers import DASH, fixed, rounded, significant
+from seatrial.core.text.numbers import DASH, fixed, p_value, rounded, signed_percent, significant
+from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import display_unit
+from seatrial.core.values.channel_text import channel_meaning, channel_unit, unit_text
+from seatrial.reporting.figures.directions import direction_chart, sensitivity_chart
+from seatrial.reporting.figures.profile_likelihoods import profile_chart
 from seatrial.reporting.tables import assumption
 
 WELL_DETERMINED, POORLY_DETERMINED = 0.1, 1.0
@@ -133,13 +134,13 @@ def identifiability_chapter(fit: Fit) -> IdentifiabilityChapter | None:
     names = [c.name for c in fit.coefficients]
     strongest = sorted(has.sensitivities, key=lambda s: -s.effect)
     pairs = _collinear_rows(has)
-    texts = tuple(words.sentence(d.text, names) for d in has.directions if d.standard_deviation >= WELL_DETERMINED)
+    texts = tuple(sentence(d.text, names) for d in has.directions if d.standard_deviation >= WELL_DETERMINED)
     return IdentifiabilityChapter(
         is_examined=known is not None,
         structural=tuple(_symmetry_row(s, fit, names) for s in has.structural),
         determined_sentence=determined_sentence(fit),
         accuracy_classes=_accuracy_classes(has.directions),
-        directions=Markup(log_rows.directions(has.directions[:MAX_DIRECTIONS])),
+        directions=Markup(svg(direction_chart(has.directions[:MAX_DIRECTIONS]))),
         weakest=texts[:MAX_TEXTS],
         weaker=texts[MAX_TEXTS:],
         more_directions=_more_directions(has.directions[MAX_DIRECTIONS:]),
@@ -147,13 +148,13 @@ def identifiability_chapter(fit: Fit) -> IdentifiabilityChapter | None:
         collinear=tuple(pairs[:MAX_ROWS]),
         collinear_more=tuple(pairs[MAX_ROWS:]),
         has_sensitivities=bool(strongest),
-        sensitivities=Markup(log_rows.sensitivities(strongest[:MAX_BARS])),
+        sensitivities=Markup(svg(sensitivity_chart(strongest[:MAX_BARS]))),
         sensitivities_more=_more_sensitivities(len(strongest) - MAX_BARS),
         consequences=tuple(_consequence_row(c) for c in has.consequences),
-        consequence_texts=tuple(words.sentence(c.text, names) for c in has.consequences if c.text),
+        consequence_texts=tuple(sentence(c.text, names) for c in has.consequences if c.text),
         stability=_stability_sentence(has.stability, names) if has.stability else "",
         noise=_noise_text(fit.noise_model, names) if fit.noise_model else None,
-        profiles=Markup(profiles(has.profiles, {c.name: c.unit for c in fit.coefficients})),
+        profiles=Markup(svg(profile_chart(has.profiles, {c.name: c.unit for c in fit.coefficients}))),
         unbounded=_unbounded_sentence(has),
         models=tuple(_model_row(m) for m in fit.candidate_models),
         has_notes=any(m.note for m in fit.candidate_models),
@@ -178,7 +179,7 @@ def _symmetry_row(s: Symmetry, fit: Fit, names: Sequence[str]) -> SymmetryRow:
     inside = sorted((c for c in fit.coefficients if c.name in s.parameters), key=lambda c: not c.fixed)
     assumed = tuple(text for text in (assumption(c) for c in inside) if text)
     return SymmetryRow(
-        words.sentence(s.text, names),
+        sentence(s.text, names),
         assumed[:MAX_TEXTS],
         assumed[MAX_TEXTS:],
         has_no_assumption=bool(inside) and not assumed,
@@ -193,9 +194,9 @@ def _accuracy_classes(items: Sequence[Direction]) -> tuple[AccuracyClass, ...]:
     vague = sum(WELL_DETERMINED <= s < POORLY_DETERMINED for s in spreads)
     rest = len(items) - well - vague
     return (
-        AccuracyClass("well", "Told well", f"{words.counted(well, 'combination')}, to better than 10 %"),
-        AccuracyClass("vague", "Told vaguely", f"{words.counted(vague, 'combination')}, to between 10 % and 100 %"),
-        AccuracyClass("not", "Not told", f"{words.counted(rest, 'combination')}, to no better than 100 %"
+        AccuracyClass("well", "Told well", f"{counted(well, 'combination')}, to better than 10 %"),
+        AccuracyClass("vague", "Told vaguely", f"{counted(vague, 'combination')}, to between 10 % and 100 %"),
+        AccuracyClass("not", "Not told", f"{counted(rest, 'combination')}, to no better than 100 %"
              + (": there a prior or an assumption speaks, not the record" if rest else "")),
     )  # fmt: skip
 
@@ -204,7 +205,7 @@ def _more_directions(rest: Sequence[Direction]) -> str:
     if not rest:
         return ""
     worst = 100.0 * max(d.standard_deviation for d in rest)
-    number = words.counted(len(rest), "further combination").capitalize()
+    number = counted(len(rest), "further combination").capitalize()
     return f"{number} not drawn, {significant(worst, 2)} % or better."
 
 
@@ -219,26 +220,22 @@ def _collinear_rows(identifiability: Identifiability) -> list[tuple[str, str, st
 
 
 def _more_sensitivities(rest: int) -> str:
-    return (
-        f" {words.counted(rest, 'further coefficient').capitalize()} with smaller effects not drawn."
-        if rest > 0
-        else ""
-    )
+    return f" {counted(rest, 'further coefficient').capitalize()} with smaller effects not drawn." if rest > 0 else ""
 
 
 def _consequence_row(c: Consequence) -> ConsequenceRow:
     largest = list(c.estimate_changes.items())[:MAX_SHIFTS]
-    moves = ", ".join(f"{name} {words.signed_percent(move)}" for name, move in largest)
-    return ConsequenceRow(c.parameter, words.signed_percent(c.change), moves or DASH, significant(c.misfit, 2))
+    moves = ", ".join(f"{name} {signed_percent(move)}" for name, move in largest)
+    return ConsequenceRow(c.parameter, signed_percent(c.change), moves or DASH, significant(c.misfit, 2))
 
 
 def _stability_sentence(s: Stability, names: Sequence[str]) -> str:
     value = f"C = {significant(s.index, 2)} [{significant(s.lower, 2)}, {significant(s.upper, 2)}]"
-    return f"{words.sentence(s.text, names)} {value}.".strip()
+    return f"{sentence(s.text, names)} {value}.".strip()
 
 
 def _noise_text(d: NoiseModel, names: Sequence[str]) -> NoiseText:
-    p = "p < 0.001" if d.whiteness_p < 0.001 else f"p = {significant(d.whiteness_p, 2)}"
+    p = p_value(d.whiteness_p)
     if not math.isfinite(d.whiteness_p):
         whiteness = ""
     elif d.whiteness_p >= WHITENESS_P:
@@ -252,20 +249,20 @@ def _noise_text(d: NoiseModel, names: Sequence[str]) -> NoiseText:
     quiet = [state for state in d.process if state not in active]
     return NoiseText(
         d.method,
-        words.sentence(d.text, names) if d.text else "",
+        sentence(d.text, names) if d.text else "",
         whiteness,
         tuple(_noise_row(state, q, "/√s") for state, q in active.items()),
-        words.enumeration(quiet),
+        enumeration(quiet),
         tuple(_noise_row(channel, s, "") for channel, s in d.measurement.items()),
     )
 
 
 def _noise_row(name: str, value: float, ending: str) -> NoiseRow:
-    si = channel_si_unit(name)
-    unit = words.unit_text(si)
+    si = channel_unit(name)
+    unit = unit_text(si)
     return NoiseRow(
         name,
-        words.channel_meaning(name),
+        channel_meaning(name),
         significant(value * display_unit(si)[0], 2),
         f"{unit or '1'}{ending}" if ending else unit,
     )
@@ -275,7 +272,7 @@ def _unbounded_sentence(identifiability: Identifiability) -> str:
     loose = [p.parameter for p in identifiability.profiles if p.lower is None or p.upper is None]
     if not loose:
         return ""
-    return f"Not bounded within the values tried: {words.enumeration(loose)}."
+    return f"Not bounded within the values tried: {enumeration(loose)}."
 
 
 def _model_row(m: CandidateModel) -> CandidateModelRow:

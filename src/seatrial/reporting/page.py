@@ -6,10 +6,13 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from seatrial.core.figures import channels, correlation, forest, tracks, whiteness
-from seatrial.core.figures.plot import common_prefix
+from seatrial.core.figures.heat_map import heat_map
+from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Fit
-from seatrial.core.text import numbers, words
+from seatrial.core.results.fit_charts import coefficients_chart
+from seatrial.core.text.numbers import duration, significant
+from seatrial.core.text.words import common_prefix
+from seatrial.core.values.arrays import correlation_matrix
 from seatrial.core.values.files import write_atomically
 from seatrial.reporting import (
     baselines,
@@ -21,6 +24,9 @@ from seatrial.reporting import (
     tables,
 )
 from seatrial.reporting.citations import Citations
+from seatrial.reporting.correlations import correlation_text
+from seatrial.reporting.figures.record_charts import channel_overview, track_overview
+from seatrial.reporting.figures.residual_charts import residual_chart
 from seatrial.reporting.mathml import inline, pieces
 
 if TYPE_CHECKING:
@@ -91,21 +97,21 @@ def html(fit: Fit) -> str:
         "facts": summary.facts(fit),
         "scores": runs.score_table(fit.predictions, length),
         "records": tables.records(fit),
-        "without": words.prefix_note(common_prefix([r.name for r in fit.records])),
-        "tracks": Markup(tracks.tracks(fit.records, length)),
-        "channels": [Markup(figure) for figure in channels.overview(fit.records)],
+        "without": _prefix_note(fit),
+        "tracks": Markup(svg(track_overview(fit.records, length))),
+        "channels": [Markup(svg(chart)) for chart in channel_overview(fit.records)],
         "findings": tables.finding_groups(fit.findings),
         "equations": tables.equations(fit.model, citations),
         "coefficients": tables.coefficients(fit.coefficients),
         "has_truth": any(c.truth is not None for c in fit.coefficients if not c.fixed),
         "has_meaning": any(c.meaning for c in fit.coefficients if not c.fixed),
         "has_prior": any(c.prior_mean is not None for c in fit.coefficients if not c.fixed),
-        "forest": Markup(forest.forest(fit.coefficients)),
-        "correlation": Markup(correlation.heat_map(fit.model.parameters.free_names, fit.covariance)),
-        "correlated": words.correlation_text(fit.model.parameters.free_names, fit.covariance),
+        "forest": Markup(svg(coefficients_chart(fit.coefficients))),
+        "correlation": Markup(_correlation_figure(fit)),
+        "correlated": correlation_text(fit.model.parameters.free_names, fit.covariance),
         "runs": runs.run_sections(fit.predictions, length, fit.model.input_names),
         "noise": tables.noise(fit.noise),
-        "whiteness": Markup(whiteness.whiteness(fit.residuals)),
+        "whiteness": Markup(svg(residual_chart(fit.residuals))),
         "offsets": tables.offsets(fit.offsets),
         "standards": runs.standards(fit.predictions, length, fit.ship.scale),
         "fixed": tables.fixed_parameters(fit.coefficients, citations),
@@ -115,6 +121,20 @@ def html(fit: Fit) -> str:
         "citations": citations,
     }
     return environment().get_template("report.html").render(context)
+
+
+def _prefix_note(fit: Fit) -> str:
+    prefix = common_prefix([r.name for r in fit.records])
+    return f" Names without their common beginning, {prefix}" if prefix else ""
+
+
+def _correlation_figure(fit: Fit) -> str:
+    """The lower triangle of the correlations; empty for fewer than two free coefficients."""
+    names = fit.model.parameters.free_names
+    if len(names) < 2 or fit.covariance.shape != (len(names), len(names)):
+        return ""
+    below = correlation_matrix(fit.covariance)[1:, :-1]
+    return svg(heat_map("correlations of the free coefficients", names[1:], names[:-1], below, is_lower=True))
 
 
 @cache
@@ -129,8 +149,8 @@ def environment() -> "Environment":
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    made.filters["duration"] = numbers.duration
-    made.filters["significant"] = numbers.significant
+    made.filters["duration"] = duration
+    made.filters["significant"] = significant
     made.filters["math"] = lambda latex: Markup(inline(latex))
     made.filters["breakable"] = lambda latex: Markup("".join(pieces(latex)))
     return made

@@ -5,11 +5,12 @@ import math
 import numpy as np
 from markupsafe import Markup
 
-from seatrial.core.figures.curves import curves
-from seatrial.core.figures.roll_damping import roll_damping
+from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Curve, Figure, RollCharacteristics
 from seatrial.core.results.roll import IntervalEstimate
 from seatrial.core.text.numbers import DASH, estimate_text, fixed, significant
+from seatrial.reporting.figures.roll_damping import roll_damping_chart
+from seatrial.reporting.figures.study_figures import study_chart
 from seatrial.reporting.text_tables import TextTable
 
 _AMPLITUDES, _DEGREES = 5, 180.0 / math.pi
@@ -72,7 +73,7 @@ def figures(roll: RollCharacteristics) -> list[tuple[Markup, Figure]]:
         said += " Dots: each recorded swing by itself, its damping 2 ln(aᵢ / aᵢ₊₂) / T, without any model."
     if roll.spectrum:
         return [_spectrum_figure(roll)]
-    drawn = roll_damping(roll)
+    drawn = svg(roll_damping_chart(roll))
     return [(Markup(drawn), Figure("Damping and period", "", "", (), said))] if drawn else []
 
 
@@ -82,4 +83,4 @@ def _spectrum_figure(roll: RollCharacteristics) -> tuple[Markup, Figure]:
     lines = (Curve("recorded, smoothed", omega, _DEGREES**2 * seen), Curve("expected", omega, _DEGREES**2 * expected))
     note = "The sea's own spectrum, of one peak, is estimated with natural period and damping."
     made = Figure("Spectrum of roll", "frequency, rad/s", "deg\u00b2 s/rad", lines, note)
-    return Markup(curves(made)), made
+    return Markup(svg(study_chart(made))), made

@@ -5,13 +5,15 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from seatrial.core.figures.bands import has_band
-from seatrial.core.figures.channels import comparison
+from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Extrapolation, Measure, Prediction
-from seatrial.core.text import words
-from seatrial.core.text.numbers import DASH, column_texts, fixed, significant
+from seatrial.core.results.fit_charts import has_band, prediction_chart
+from seatrial.core.text.numbers import DASH, column_texts, fixed, interval, ratio_text, significant
+from seatrial.core.text.words import enumeration
 from seatrial.core.values import InputError, Record
 from seatrial.physics.manoeuvres import ImoCriterion, imo_criteria
+from seatrial.reporting.extrapolation import extrapolation_text, extrapolation_zone
+from seatrial.reporting.measures import is_inside, measure_decimals, measure_label
 
 _ERROR_LABELS = {"psi_deg": ("heading", "deg"), "position_m": ("position", "m"), "u": ("u", "m/s"), "v": ("v", "m/s"),
            "r": ("r", "deg/s"), "z": ("heave", "m"), "theta_deg": ("pitch", "deg"),
@@ -111,8 +113,8 @@ def score_table(predictions: Sequence[Prediction], length: float) -> ScoreTable:
             for t, f, s, (_, unit) in zip(texts, floors, spreads, header, strict=True)
         )
         e = _extrapolation(p)
-        rows.append(RunScore(p.record, p.role == "validation", cells, words.ratio_text(e.index) if e else "",
-                          words.extrapolation_zone(e.index) if e else ""))  # fmt: skip
+        rows.append(RunScore(p.record, p.role == "validation", cells, ratio_text(e.index) if e else "",
+                          extrapolation_zone(e.index) if e else ""))  # fmt: skip
     return ScoreTable(
         tuple(header), tuple(rows), any(c.floor for row in rows for c in row.cells),
         any(c.spread for row in rows for c in row.cells), any(row.extrapolation for row in rows),
@@ -122,7 +124,7 @@ def score_table(predictions: Sequence[Prediction], length: float) -> ScoreTable:
 def _extrapolation(p: Prediction) -> Extrapolation | None:
     """How far a run held out leaves the training runs; None where that is not known, and for training runs."""
     e = p.extrapolation
-    return e if e and p.role == "validation" and words.extrapolation_zone(e.index) else None
+    return e if e and p.role == "validation" and extrapolation_zone(e.index) else None
 
 
 def _two_digits(value: float | None) -> str:
@@ -149,7 +151,7 @@ def _run_section(p: Prediction, length: float, inputs: Sequence[str], key: str) 
     rows = {name: _measure_row(name, m, p.tied_spread.get(name)) for name, m in p.measures.items()}
     late = {name for name in rows if name.startswith("overshoot_") and int(name.split("_")[1]) > MAX_OVERSHOOTS}
     return RunSection(
-        p.record, key, p.role == "validation", _summary(p), Markup(comparison(p, length, inputs)),
+        p.record, key, p.role == "validation", _summary(p), Markup(svg(prediction_chart(p, length, inputs))),
         _measure_table([row for name, row in rows.items() if name not in late]),
         _measure_table([row for name, row in rows.items() if name in late]),
         bool(rows) and all(m.simulated is None for m in p.measures.values()),
@@ -170,15 +172,13 @@ def _notes(p: Prediction) -> list[str]:
     said = []
     e = _extrapolation(p)
     if e:
-        said.append(f"Extrapolation index {words.extrapolation_text(e)}")
+        said.append(f"Extrapolation index {extrapolation_text(e)}")
     if _error_texts(p.noise_floor):
-        said.append(
-            f"Process noise alone would leave {words.enumeration(_error_texts(p.noise_floor))} with a perfect model."
-        )
+        said.append(f"Process noise alone would leave {enumeration(_error_texts(p.noise_floor))} with a perfect model.")
     if _error_texts(p.tied_spread):
         said.append(
             f"Models that the records cannot tell apart differ by "
-            f"{words.enumeration(_error_texts(p.tied_spread))} (std. dev.)."
+            f"{enumeration(_error_texts(p.tied_spread))} (std. dev.)."
         )
     return said
 
@@ -188,13 +188,13 @@ def _measure_table(rows: Sequence[MeasureRow]) -> MeasureTable:
 
 
 def _measure_row(name: str, m: Measure, spread: float | None) -> MeasureRow:
-    label, unit = words.measure_label(name)
-    digits = words.measure_decimals(unit, m)
+    label, unit = measure_label(name)
+    digits = measure_decimals(unit, m)
     both = m.measured is not None and m.simulated is not None
     difference = _signed(m.simulated - m.measured, digits) if both else DASH  # type: ignore[operator]
     return MeasureRow(
         label, unit, fixed(m.measured, digits), fixed(m.simulated, digits), difference,
-        words.interval(m.lower, m.upper, digits), words.is_inside(m), _two_digits(spread),
+        interval(m.lower, m.upper, digits), is_inside(m), _two_digits(spread),
     )  # fmt: skip
 
 
@@ -210,7 +210,7 @@ def standards(predictions: Sequence[Prediction], length: float, scale: float) ->
         measured = _applicable_criteria(p.measured, length, scale, p.measured)
         simulated = {c.name: c for c in _applicable_criteria(p.simulated, length, scale, p.measured)}
         for c in measured:
-            label, unit = words.measure_label(c.name)
+            label, unit = measure_label(c.name)
             other = simulated.get(c.name)
             digits = 1 if unit == "deg" else 2
             rows.append({

@@ -3,8 +3,9 @@
 import numpy as np
 from markupsafe import Markup
 
-from seatrial.core.figures.curves import curves
+from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Curve, Figure, Seakeeping, Table
+from seatrial.reporting.figures.study_figures import study_chart
 from seatrial.reporting.text_tables import TextTable, text_table
 
 
@@ -33,7 +34,7 @@ def figures(seakeeping: Seakeeping) -> list[tuple[Markup, Figure]]:
 
     def render(title: str, label: str, note: str, lines: dict[str, tuple[float, ...]]) -> tuple[Markup, Figure]:
         made = Figure(title, across, label, tuple(Curve(n, omega, np.array(y)) for n, y in lines.items()), note)
-        return Markup(curves(made)), made
+        return Markup(svg(study_chart(made))), made
 
     pitch, sea = np.array(seakeeping.pitch_density), np.array(seakeeping.sea_density)
     share = float(np.max(sea) / max(np.max(pitch), 1e-300))

@@ -5,14 +5,13 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from seatrial.core.figures.bars import bars
-from seatrial.core.figures.curves import curves
-from seatrial.core.figures.matrix import matrix
-from seatrial.core.results import Bars, Check, Figure, Matrix, Study, Verdict
+from seatrial.core.figures.svg_text import svg
+from seatrial.core.results import Check, Study, Verdict
 from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import counted
 from seatrial.core.values.files import write_atomically
 from seatrial.reporting import runs, tables
+from seatrial.reporting.figures.study_figures import study_chart
 from seatrial.reporting.page import environment
 from seatrial.reporting.text_tables import text_table
 
@@ -56,7 +55,7 @@ def html(study: Study) -> str:
         "claims": study.claims,
         "checks": [_check_row(c) for c in study.checks],
         "tables": [text_table(t) for t in study.tables],
-        "figures": [(Markup(_render_figure(f)), f) for f in study.figures],
+        "figures": [(Markup(svg(study_chart(f))), f) for f in study.figures],
         "runs": runs.run_sections(study.predictions, 0.0, INPUT_CHANNELS),
         "findings": tables.finding_groups(study.findings),
     }
@@ -69,16 +68,6 @@ def html(study: Study) -> str:
         "scores": runs.score_table(study.predictions, 0.0),
     }
     return environment().get_template("study.html").render(context)
-
-
-def _render_figure(figure: Figure | Bars | Matrix) -> str:
-    match figure:
-        case Bars():
-            return bars(figure)
-        case Matrix():
-            return matrix(figure)
-        case Figure():
-            return curves(figure)
 
 
 def outcome(study: Study) -> list[str]:

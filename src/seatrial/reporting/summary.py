@@ -1,21 +1,13 @@
 """The answer in words: what was asked, what was fitted, how well held-out runs are predicted, what to mind."""
 
 from seatrial.core.results import Coefficient, Fit, Prediction, Symmetry
-from seatrial.core.text.numbers import duration, estimate_text, exact, fixed, significant
-from seatrial.core.text.words import (
-    counted,
-    enumeration,
-    extrapolation_text,
-    extrapolation_zone,
-    interval,
-    is_inside,
-    measure_decimals,
-    measure_label,
-    sentence,
-)
+from seatrial.core.text.numbers import duration, estimate_text, exact, fixed, interval, significant
+from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import Severity
 from seatrial.estimation.estimate.settings import WHITE_INFLATION
+from seatrial.reporting.extrapolation import extrapolation_text, extrapolation_zone
 from seatrial.reporting.identifiability_chapter import determined_sentence
+from seatrial.reporting.measures import is_inside, measure_decimals, measure_label
 
 PRIOR_DISAGREEMENT = 3.0
 MAX_SYMMETRY_TEXT = 200

@@ -9,10 +9,10 @@ from seatrial.core.equations import Model
 from seatrial.core.equations.latex import LatexEquation, latex_symbol
 from seatrial.core.equations.latex import latex_equations as latex_equations
 from seatrial.core.results import Coefficient, Fit, Method, Noise, Offset
-from seatrial.core.text import words
 from seatrial.core.text.numbers import DASH, EstimateText, estimate_text, exact, significant
 from seatrial.core.text.numbers import fixed as decimals
 from seatrial.core.values import Finding, Severity, display_unit
+from seatrial.core.values.channel_text import channel_meaning, unit_text
 from seatrial.reporting.citations import Citations
 from seatrial.reporting.mathml import inline, pieces
 
@@ -86,7 +86,7 @@ def _coefficient_row(c: Coefficient) -> FitCoefficientRow:
         coefficient_symbol(c),
         c.name,
         c.meaning,
-        words.unit_text(c.unit),
+        unit_text(c.unit),
         estimate_text(value or 0.0, error, lower, upper),
         _prior_text(c),
         exact(_display_value(c.truth, c.unit)),
@@ -104,7 +104,7 @@ def _prior_text(c: Coefficient) -> str:
 
 def assumption(c: Coefficient) -> str:
     """What is assumed of a coefficient: its fixed value or its prior, with the source; empty where nothing is."""
-    unit = words.unit_text(c.unit)
+    unit = unit_text(c.unit)
     if c.fixed:
         value = f"{c.name} = {exact(_display_value(c.estimate, c.unit))} {unit}".rstrip()
         return f"{value} (fixed{': ' + c.source if c.source else ''})"
@@ -165,8 +165,8 @@ def noise(items: Sequence[Noise]) -> list[dict[str, str]]:
     return [
         {
             "channel": n.channel,
-            "meaning": words.channel_meaning(n.channel),
-            "unit": words.unit_text(n.unit),
+            "meaning": channel_meaning(n.channel),
+            "unit": unit_text(n.unit),
             "deviation": significant(_display_value(n.standard_deviation, n.unit), 3),
             "time": significant(n.correlation_time, 2),
             "p": "< 0.001" if n.whiteness_p < 0.001 else decimals(n.whiteness_p, 3),
@@ -182,7 +182,7 @@ def offsets(items: Sequence[Offset]) -> dict[str, object]:
     cells = {(o.group, o.name): _offset_text(o) for o in items}
     groups = list(dict.fromkeys(o.group for o in items))
     return {
-        "header": [(name, words.unit_text(unit)) for name, unit in names],
+        "header": [(name, unit_text(unit)) for name, unit in names],
         "rows": [(g, [cells.get((g, name), ("", "")) for name, _ in names]) for g in groups],
     }
 
@@ -208,7 +208,7 @@ def fixed_parameters(items: Sequence[Coefficient], citations: Citations) -> list
                     coefficient_symbol(c),
                     c.name,
                     exact(_display_value(c.estimate, c.unit)),
-                    words.unit_text(c.unit),
+                    unit_text(c.unit),
                     c.meaning,
                 )
                 for c in group
@@ -227,7 +227,7 @@ def priors(items: Sequence[Coefficient], model: Model, citations: Citations) -> 
         known = model.parameters[c.name].prior if c.name in model.parameters else None
         left = None if c.standard_error is None else 100.0 * c.standard_error / c.prior_standard_deviation
         made.append({
-            "symbol": coefficient_symbol(c), "name": c.name, "unit": words.unit_text(c.unit), "prior": _prior_text(c),
+            "symbol": coefficient_symbol(c), "name": c.name, "unit": unit_text(c.unit), "prior": _prior_text(c),
             "estimate": _coefficient_row(c).estimate, "spread_percent": significant(left, 2),
             "source": citations.mark((known.source if known else "") or c.source),
         })  # fmt: skip

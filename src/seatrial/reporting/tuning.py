@@ -3,12 +3,17 @@
 import numpy as np
 from markupsafe import Markup
 
-from seatrial.core.figures import fronts, loop_diagram, manoeuvre_response, margins, schedule_maps, seaway_simulations
-from seatrial.core.figures.bars import bars
-from seatrial.core.results import Bars
+from seatrial.core.figures.bars import bars_chart
+from seatrial.core.figures.svg_text import svg
+from seatrial.core.results.front_chart import degree_unit, front_chart
+from seatrial.core.results.loop_charts import nyquist_chart, sensitivity_chart, styled_controllers
 from seatrial.core.results.tuning import Tuning
-from seatrial.core.text.words import channel_meaning
+from seatrial.core.values.channel_text import channel_meaning
 from seatrial.reporting import tuning_rows, tuning_text
+from seatrial.reporting.figures.controlled_runs import manoeuvre_chart, seaway_chart
+from seatrial.reporting.figures.loop_diagram import loop_diagram, signal_order
+from seatrial.reporting.figures.paired_differences import difference_chart
+from seatrial.reporting.figures.schedule_maps import schedule_chart
 from seatrial.reporting.page import environment
 from seatrial.reporting.tables import finding_groups
 
@@ -30,11 +35,11 @@ MAX_UNFOLDED_CONDITIONS = 40
 
 def html(tuning: Tuning) -> str:
     """The page as text; sections without content are left out."""
-    drawn, controllers = fronts.fronts(tuning), tuning_rows.controller_rows(tuning)
+    drawn, controllers = svg(front_chart(tuning)), tuning_rows.controller_rows(tuning)
     shown = {
         "findings": bool(tuning.findings),
         "front": bool(drawn),
-        "margins": len(margins.styled_controllers(tuning)) > 0,
+        "margins": len(styled_controllers(tuning)) > 0,
         "simulation": bool(tuning.seaway_simulations),
         "manoeuvres": bool(tuning.manoeuvres),
         "schedule": bool(tuning.schedule),
@@ -53,30 +58,27 @@ def html(tuning: Tuning) -> str:
         "actuator": channel_meaning(tuning.actuator),
         "gain_names": [(name, tuning_rows.gain_symbol(name)) for name in tuning_rows.gain_names(tuning)],
         "objectives": [
-            (name, fronts.degree_unit(unit)[1]) for name, unit in zip(tuning.objectives, tuning.units, strict=True)
+            (name, degree_unit(unit)[1]) for name, unit in zip(tuning.objectives, tuning.units, strict=True)
         ],
         "rms_heads": tuning_rows.rms_headings(tuning),
         "has_reduction": tuning_text.has_reduction(tuning),
         "controllers": controllers,
         "front": Markup(drawn),
-        "sensitivities": Markup(margins.sensitivities(tuning)),
-        "nyquist": Markup(margins.nyquist(tuning)),
+        "sensitivities": Markup(svg(sensitivity_chart(tuning))),
+        "nyquist": Markup(svg(nyquist_chart(tuning))),
         "reductions": Markup(_reductions_figure(tuning)),
-        "differences": Markup(seaway_simulations.differences(tuning.paired_differences)),
-        "histories": Markup(seaway_simulations.time_histories(tuning)),
-        "seeds": seaway_simulations.seed_count(tuning.seaway_simulations),
+        "differences": Markup(svg(difference_chart(tuning.paired_differences))),
+        "histories": Markup(svg(seaway_chart(tuning))),
+        "seeds": len(tuning.seaway_simulations[0].linear) if tuning.seaway_simulations else 0,
         "manoeuvres": [
-            (m, Markup(manoeuvre_response.manoeuvre(m, tuning)), tuning_text.demand_sentence(m))
-            for m in tuning.manoeuvres
+            (m, Markup(svg(manoeuvre_chart(m, tuning))), tuning_text.demand_sentence(m)) for m in tuning.manoeuvres
         ],
-        "maps": Markup(schedule_maps.schedule_maps(tuning.schedule)),
+        "maps": Markup(svg(schedule_chart(tuning.schedule))),
         "schedule": tuning_rows.schedule_table(tuning.schedule),
         "is_folded": len(tuning.schedule) > MAX_UNFOLDED_CONDITIONS,
         "bounds": [tuning_rows.bound_row(b) for b in tuning.bounds],
-        "diagram": Markup(loop_diagram.diagram(tuning.components, tuning.output, tuning.actuator)),
-        "components": [
-            tuning_rows.component_row(c, tuning.chosen.gains) for c in loop_diagram.signal_order(tuning.components)
-        ],
+        "diagram": Markup(svg(loop_diagram(tuning.components, tuning.output, tuning.actuator))),
+        "components": [tuning_rows.component_row(c, tuning.chosen.gains) for c in signal_order(tuning.components)],
     }
     return environment().get_template("tuning.html").render(context)
 
@@ -91,6 +93,5 @@ def _reductions_figure(tuning: Tuning) -> str:
         "with stall, too": [s.stalled for s in tuning.seaway_simulations],
     }
     series = {name: tuple(100.0 * float(np.mean(row)) for row in rows) for name, rows in stages.items()}
-    return bars(
-        Bars("Reductions", tuple(s.name for s in tuning.seaway_simulations), series, "reduction of rms [%]", "")
-    )
+    names = [s.name for s in tuning.seaway_simulations]
+    return svg(bars_chart("reductions", names, series, "reduction of rms [%]"))

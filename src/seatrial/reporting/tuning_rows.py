@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from seatrial.core.equations.latex import latex_symbol
-from seatrial.core.figures import fronts
+from seatrial.core.results.front_chart import degree_unit
 from seatrial.core.results.tuning import Component, Controller, OperatingPoint, PerformanceBound, Tuning
 from seatrial.core.text.numbers import DASH, exact, fixed, significant
-from seatrial.core.text.words import channel_meaning
+from seatrial.core.values.channel_text import channel_meaning
 from seatrial.data.folder.orders import channel_display_unit
 from seatrial.reporting import tuning_text
 from seatrial.reporting.mathml import inline
@@ -117,7 +117,7 @@ def transfer_latex(num: tuple[float, ...], den: tuple[float, ...]) -> str:
 
 
 def _controller_row(c: Controller, gains: tuple[str, ...], tuning: Tuning) -> ControllerRow:
-    factors = [fronts.degree_unit(unit)[0] for unit in tuning.units]
+    factors = [degree_unit(unit)[0] for unit in tuning.units]
     of_output, of_actuator = channel_display_unit(tuning.output)[0], channel_display_unit(tuning.actuator)[0]
     rms = [c.rms.get(key, math.nan) * factor for key, factor in
            (("output", of_output), ("actuator", of_actuator), ("actuator_rate", of_actuator))]  # fmt: skip

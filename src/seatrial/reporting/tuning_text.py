@@ -6,7 +6,8 @@ import numpy as np
 
 from seatrial.core.results.tuning import Controller, ManoeuvreResponse, PairedDifference, Tuning
 from seatrial.core.text.numbers import duration, exact, fixed, significant
-from seatrial.core.text.words import channel_meaning, counted, enumeration
+from seatrial.core.text.words import counted, enumeration
+from seatrial.core.values.channel_text import channel_meaning
 from seatrial.data.folder.orders import channel_display_unit
 
 _SIMULATION_LABELS = {"limited": "with angle and rate limits", "stalled": "with stall, too", "linear": "without limits"}

@@ -1,26 +1,43 @@
-"""Figures keep what matters when they are thinned, and turn the right way."""
+"""Tracks keep their shape, lie on their side where they are long, and hulls point where they head."""
 
 import numpy as np
+import pytest
 
-from seatrial.core.figures.correlation import correlation_matrix
-from seatrial.core.figures.plot import decimated, display_values
-from seatrial.core.figures.tracks import hull_outline
+from seatrial.core.figures.marks import Area, Stroke
+from seatrial.core.figures.panel import Box
+from seatrial.core.figures.tracks import Track, extents, hull_outline, is_slender, strip_height, track_panel
 
-
-def test_decimation_keeps_extremes_order_and_gaps(rng: np.random.Generator) -> None:
-    x = np.arange(10_000.0)
-    y = rng.standard_normal(10_000)
-    y[5_000:6_000] = np.nan
-    a, b = decimated(x, y, 400)
-    assert len(a) <= 400 and np.all(np.diff(a) >= 0)
-    assert np.nanmax(b) == np.nanmax(y) and np.nanmin(b) == np.nanmin(y)
-    assert np.isnan(b[(a > 5_050) & (a < 5_950)]).all()
+STROKE = Stroke("#000000", 1.0)
+SHARE = np.linspace(0.0, 1.0, 50)
+NORTHERLY = Track(300.0 * SHARE, 20.0 * SHARE, None, STROKE)
+SQUARE = Track(90.0 * SHARE, 80.0 * SHARE, SHARE, STROKE)
 
 
-def test_a_wrapped_heading_is_drawn_without_jumps() -> None:
-    heading = np.linspace(0.0, 4.0 * np.pi, 200)
-    wrapped = np.angle(np.exp(1j * heading))
-    assert np.ptp(np.diff(display_values("psi", wrapped, "rad"))) < 1e-9
+@pytest.mark.parametrize("track", [NORTHERLY, SQUARE])
+def test_a_track_keeps_its_shape_and_stays_inside(track: Track) -> None:
+    panel = track_panel([track], 10.0, Box(0.0, 0.0, 400.0, 90.0))
+    across, along = (panel.x.ends[1] - panel.x.ends[0]) / 400.0, (panel.y.ends[1] - panel.y.ends[0]) / 90.0
+    assert across == pytest.approx(along)
+    assert panel.x.ends[0] < 0.0 and panel.x.ends[1] > (300.0 if track is NORTHERLY else 80.0)
+
+
+def test_a_northerly_track_lies_on_its_side() -> None:
+    lying, standing = (track_panel([t], 0.0, Box(0.0, 0.0, 100.0, 100.0)) for t in (NORTHERLY, SQUARE))
+    assert lying.is_y_down and lying.x.name.startswith("x₀, north")
+    assert not standing.is_y_down and standing.x.name.startswith("y₀, east")
+
+
+def test_hulls_stand_along_a_track_whose_heading_is_known() -> None:
+    def hulls(track: Track, length: float) -> int:
+        return sum(isinstance(m, Area) for m in track_panel([track], length, Box(0.0, 0.0, 100.0, 100.0)).marks)
+
+    assert hulls(SQUARE, 5.0) == 7 and hulls(SQUARE, 0.0) == 0 == hulls(NORTHERLY, 5.0)
+
+
+def test_slender_tracks_become_strips() -> None:
+    assert extents([NORTHERLY, SQUARE]) == (300.0, 80.0)
+    assert is_slender([NORTHERLY]) and not is_slender([SQUARE])
+    assert strip_height([NORTHERLY], 620.0, 10.0) == pytest.approx(60.0)
 
 
 def test_a_ship_heading_east_points_east() -> None:
@@ -28,5 +45,5 @@ def test_a_ship_heading_east_points_east() -> None:
     assert np.isclose(outline[:, 1].max(), 5.0) and np.abs(outline[:, 0]).max() < 1.0
 
 
-def test_correlation_of_a_covariance() -> None:
-    assert np.allclose(correlation_matrix(np.array([[4.0, -1.0], [-1.0, 1.0]])), [[1.0, -0.5], [-0.5, 1.0]])
+def test_a_track_without_positions_is_known_as_such() -> None:
+    assert SQUARE.is_finite and not Track(np.full(2, np.nan), np.zeros(2), None, STROKE).is_finite

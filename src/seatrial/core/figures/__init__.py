@@ -1,1 +1,5 @@
-"""Figures as inline SVG, one file for each family over one small plotter."""
+"""Charts: arrays in, SVG or Matplotlib out.
+
+A figure is a `Chart`: panels with axes, marks in data coordinates and a legend, all of them immutable values. `svg`
+writes it for a page, `matplotlib_figure` draws it for a notebook; axes, ticks and legends exist once.
+"""

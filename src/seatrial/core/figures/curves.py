@@ -1,42 +1,41 @@
-"""A study's own curves over one pair of axes; line styles tell them apart without colour."""
+"""Named curves over one pair of axes; line styles distinguish them without colour."""
 
-from seatrial.core.figures.plot import (
-    ACCENT,
-    INK,
-    SECOND,
-    WIDTH,
-    Panel,
-    Stroke,
-    axes,
-    decimated,
-    drawing,
-    segment,
-    span,
-    text,
-    thinned,
-)  # fmt: skip
-from seatrial.core.results.study import Figure
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from seatrial.core.figures.chart import Chart, LegendEntry
+from seatrial.core.figures.marks import ACCENT, INK, SECOND, Array, Line, Stroke
+from seatrial.core.figures.panel import WIDTH, Axis, Box, Panel
+from seatrial.core.figures.sampling import decimated, thinned
+from seatrial.core.figures.ticks import span
 
 STROKES = (
     Stroke(INK, 1.3), Stroke(ACCENT, 1.5, "6 3"), Stroke(SECOND, 1.5, "7 2 1.5 2"), Stroke("#6c7a89", 1.7, "1.5 2.5"),
     Stroke("#2e7d5b", 1.4, "9 2 1.5 2 1.5 2"), Stroke("#8e6c1f", 1.4, "3 1.5"), Stroke("#5b4a7a", 1.4, "1 4"),
 )  # fmt: skip
-HEIGHT = 300.0
+# height of the panel [px], and of a map over that
+HEIGHT, MAP_RATIO = 300.0, 1.4
+LEFT = 64.0
 
 
-def curves(figure: Figure) -> str:
-    """One figure of a study with its legend at the side."""
-    x, y = span([c.x for c in figure.curves]), span([c.y for c in figure.curves])
-    width = WIDTH - 280
-    panel = Panel(64, 12, width, HEIGHT, x, y)
-    if figure.is_map:
-        scale = max((x[1] - x[0]) / width, (y[1] - y[0]) / (1.4 * HEIGHT))
-        panel = Panel(64, 12, (x[1] - x[0]) / scale, (y[1] - y[0]) / scale, x, y)
-    parts = [axes(panel, x_ticks=7, y_ticks=6, x_label=figure.x_label, y_label=figure.y_label)]
-    for k, one in enumerate(figure.curves):
-        stroke = STROKES[k % len(STROKES)]
-        parts.append(panel.curve(*(thinned if figure.is_map else decimated)(one.x, one.y), stroke))
-        at = 22 + 18 * k
-        parts.append(segment(WIDTH - 200, at, WIDTH - 166, at, stroke))
-        parts.append(text(WIDTH - 158, at + 4, one.name))
-    return drawing(parts, max(panel.height + 54, 30 + 18 * len(figure.curves)), figure.title)
+@dataclass(frozen=True, eq=False)
+class NamedCurve:
+    """A curve of arrays of equal length with its name in the legend."""
+
+    name: str
+    x: Array
+    y: Array
+
+
+def curves_chart(title: str, curves: Sequence[NamedCurve], x_name: str, y_name: str, *, is_map: bool = False) -> Chart:
+    """Return curves with their legend; the axes of a map have equal scales."""
+    x, y = span([c.x for c in curves]), span([c.y for c in curves])
+    box = Box(LEFT, 8.0, WIDTH - LEFT - 8.0, HEIGHT)
+    if is_map:
+        scale = max((x[1] - x[0]) / box.width, (y[1] - y[0]) / (MAP_RATIO * HEIGHT))
+        box = Box(LEFT, 8.0, (x[1] - x[0]) / scale, (y[1] - y[0]) / scale)
+    sampled = thinned if is_map else decimated
+    styled = [(c, STROKES[k % len(STROKES)]) for k, c in enumerate(curves)]
+    lines = tuple(Line(*sampled(c.x, c.y), stroke) for c, stroke in styled)
+    panel = Panel(box, Axis(x, x_name, tick_count=7), Axis(y, y_name, tick_count=6), lines)
+    return Chart(title, (panel,), tuple(LegendEntry(c.name, stroke) for c, stroke in styled))

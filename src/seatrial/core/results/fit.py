@@ -1,14 +1,18 @@
 """A fit: a solution read in the field's terms, with everything a report shows. Plain values only."""
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from seatrial.core.equations import Model
 from seatrial.core.results.baseline import Baseline
 from seatrial.core.results.identifiability import Identifiability
 from seatrial.core.results.roll import RollCharacteristics
 from seatrial.core.results.seakeeping import Seakeeping
-from seatrial.core.values import Array, Finding, Record, Ship
+from seatrial.core.values import Array, Finding, InputError, Record, Ship, spelling_hint
 from seatrial.numerics.optimise import Solution
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -250,3 +254,28 @@ class Fit:
     def validation(self) -> tuple[Prediction, ...]:
         """The predictions of runs that were not fitted."""
         return tuple(p for p in self.predictions if p.role == "validation")
+
+    def plot(self, record: str | None = None) -> "Figure":
+        """Draw the free coefficients with their 95 % intervals, or one run, as a Matplotlib figure.
+
+        Args:
+            record: name of a training or validation run, to be drawn measured and simulated.
+
+        Raises:
+            InputError: the fit has no such run, or no free coefficient.
+        """
+        from seatrial.core.figures.matplotlib_axes import matplotlib_figure
+        from seatrial.core.results.fit_charts import coefficients_chart, prediction_chart
+
+        if record is None:
+            chart = coefficients_chart(self.coefficients)
+            if chart is None:
+                raise InputError(
+                    f"the fit of '{self.model.name}' has no free coefficient to plot; name one of its runs"
+                )
+            return matplotlib_figure(chart)
+        by_name = {p.record: p for p in self.predictions}
+        if record not in by_name:
+            raise InputError(f"the fit has no run '{record}'{spelling_hint(record, list(by_name))}")
+        length = self.ship.particulars.get("L", 0.0)
+        return matplotlib_figure(prediction_chart(by_name[record], length, self.model.input_names))

@@ -1,12 +1,16 @@
 """A tuned controller: what was asked, the front, the choice and its reasons, what simulation says. Plain values, SI."""
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from seatrial.core.values import Array, Finding, Record
+from seatrial.core.values import Array, Finding, InputError, Record
 from seatrial.numerics.optimise import Solution
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Complex = NDArray[np.complex128]
 
@@ -220,3 +224,18 @@ class Tuning:
     seed: int
     elapsed_s: float
     versions: dict[str, str] = field(default_factory=dict)
+
+    def plot(self) -> "Figure":
+        """Draw the front with the controllers compared, or |S| and |T| where there is one objective, by Matplotlib.
+
+        Raises:
+            InputError: neither a front nor a loop is known.
+        """
+        from seatrial.core.figures.matplotlib_axes import matplotlib_figure
+        from seatrial.core.results.front_chart import front_chart
+        from seatrial.core.results.loop_charts import sensitivity_chart
+
+        chart = front_chart(self) or sensitivity_chart(self)
+        if chart is None:
+            raise InputError(f"the tuning '{self.name}' has neither a front nor a stable loop to plot")
+        return matplotlib_figure(chart)

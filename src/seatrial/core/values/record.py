@@ -16,6 +16,7 @@ from seatrial.core.values.errors import InputError, spelling_hint
 if TYPE_CHECKING:
     import pandas
     import xarray
+    from matplotlib.figure import Figure
 
 
 class RecordKind(StrEnum):
@@ -171,6 +172,17 @@ class Record:
             channels=channels,
             provenance=self.provenance.with_step(f"resampled to {rate:g} Hz"),
         )
+
+    def plot(self, length: float = 0.0) -> "Figure":
+        """Draw the track and every channel over time as a Matplotlib figure.
+
+        Args:
+            length: of the ship [m], for hulls along the track; 0: none.
+        """
+        from seatrial.core.figures.matplotlib_axes import matplotlib_figure
+        from seatrial.core.values.record_chart import record_chart
+
+        return matplotlib_figure(record_chart(self, length))
 
     def to_dataframe(self) -> "pandas.DataFrame":
         """Return a data frame: time [s] as index, a column in SI units for each channel, `metadata` in ``attrs``."""

@@ -165,7 +165,7 @@ function facts(snapshot) {
 }
 function row(estimate) {
   const name = node("th", {}, estimate.name);
-  if (!estimate.is_identified) name.append(node("span", { class: "mark" }, "not told"));
+  if (!estimate.is_identified) name.append(node("span", { class: "mark" }, "not identified"));
   const interval = estimate.half_width === "–" ? "–" : `[${estimate.lower}, ${estimate.upper}]`;
   return nested("tr", { class: estimate.is_identified ? "" : "unidentified" }, [name, node("td", { class: "num" }, estimate.value),
     node("td", { class: "num" }, interval), node("td", { class: "unit" }, estimate.unit), node("td", { class: "num" }, estimate.error_percent)]);
@@ -203,7 +203,7 @@ function renderPlots(snapshot) {
   byId("values").replaceChildren(...snapshot.rows.map((row, k) => {
     const scale = 10 ** row.power, both = row.half_width === "–" ? row.value : `${row.value} ± ${row.half_width}`;
     const now = `${row.power ? `(${both})` : both} ${row.unit}`.trim();
-    return course(row.is_identified ? row.name : `${row.name}, not told`, now, xs, values.map(v => v[k] / scale),
+    return course(row.is_identified ? row.name : `${row.name}, not identified`, now, xs, values.map(v => v[k] / scale),
       halves.map(h => h[k] / scale), row.is_identified);
   }));
   byId("noise").replaceChildren(...snapshot.noise.map((channel, k) => course(

@@ -1,0 +1,107 @@
+"""How near loops are to instability: |S| and |T| over frequency, and the open loop near -1."""
+
+import math
+
+import numpy as np
+
+from seatrial.core.figures.chart import Chart, LegendEntry
+from seatrial.core.figures.curves import STROKES
+from seatrial.core.figures.marks import (
+    ACCENT,
+    GREY,
+    INK,
+    SECOND,
+    Anchor,
+    Area,
+    Array,
+    Line,
+    Mark,
+    Marker,
+    Points,
+    Rule,
+    Shape,
+    Stroke,
+    Text,
+)
+from seatrial.core.figures.panel import Axis, Box, Panel, tiles
+from seatrial.core.results.tuning import Controller, Tuning
+
+# loops drawn at most
+MAX_LOOPS = 6
+CHOSEN, LIMIT = Stroke(ACCENT, 2.2), Stroke(SECOND, 1.1, "5 3")
+# dashes distinguish the baselines without colour
+BASELINE_STROKES = (Stroke(INK, 1.1, "6 2.5"), *STROKES[2:])
+# range of the open loop about -1: real and imaginary part; height of its panel [px]
+REAL, IMAGINARY, NYQUIST_HEIGHT = (-2.4, 1.4), (-1.9, 1.9), 380.0
+# top of the axis in Ms allowed: the highest, and the least
+CUT, LEAST_TOP = 2.5, 1.15
+
+
+def styled_controllers(tuning: Tuning) -> list[tuple[Controller, Stroke]]:
+    """Return the chosen controller and the first baselines, as far as their loop is known, with their lines."""
+    strokes = [CHOSEN, *(BASELINE_STROKES[k % len(BASELINE_STROKES)] for k in range(len(tuning.baselines)))]
+    controllers = zip((tuning.chosen, *tuning.baselines), strokes, strict=True)
+    return [(c, stroke) for c, stroke in controllers if len(c.omega) > 1][:MAX_LOOPS]
+
+
+def sensitivity_chart(tuning: Tuning) -> Chart | None:
+    """Return |S| with the largest Ms allowed and |T| side by side over frequency; None where no loop is known."""
+    styled = styled_controllers(tuning)
+    if not styled:
+        return None
+    allowed = tuning.constraints.Ms
+    frequencies = np.concatenate([c.omega for c, _ in styled])
+    x = Axis((float(frequencies.min()), float(frequencies.max())), "ω [rad/s]", is_logarithmic=True)
+    sensitivities = [1.0 / np.abs(1.0 + c.open_loop) for c, _ in styled]
+    complementary = [np.abs(c.open_loop / (1.0 + c.open_loop)) for c, _ in styled]
+    limit = [Rule(allowed, LIMIT), Text(x.ends[0], allowed, f"Ms = {allowed:.3g} allowed", size=10.0, colour=SECOND,
+                                        dx=5.0, dy=-4.0)]  # fmt: skip
+    panels = []
+    for box, title, sizes, extra in zip(
+        tiles(2, 2, 220.0, left=58.0, right=12.0),
+        ("sensitivity |S|", "complementary sensitivity |T|"),
+        (sensitivities, complementary),
+        (limit if math.isfinite(allowed) else [], []),
+        strict=True,
+    ):
+        lines = [Line(c.omega, size, stroke) for (c, stroke), size in zip(styled, sizes, strict=True)]
+        panels.append(Panel(box, x, Axis((0.0, _axis_top(sizes, allowed))), (*reversed(lines), *extra), title))
+    return Chart("sensitivities over frequency", tuple(panels), _legend(styled))
+
+
+def nyquist_chart(tuning: Tuning) -> Chart | None:
+    """Return the open loop near -1 for positive frequencies, with the circle that the largest Ms keeps free."""
+    styled = styled_controllers(tuning)
+    if not styled:
+        return None
+    width = NYQUIST_HEIGHT * (REAL[1] - REAL[0]) / (IMAGINARY[1] - IMAGINARY[0])
+    marks: list[Mark] = [_circle(0.0, 1.0, Stroke(GREY, 0.9))]
+    radius = 1.0 / tuning.constraints.Ms
+    if 0.0 < radius < math.inf:
+        marks += [
+            _circle(-1.0, radius, LIMIT, "#f9efec"),
+            Text(-1.0, radius, f"Ms = {tuning.constraints.Ms:.3g}", Anchor.MIDDLE, 10.0, SECOND, dy=-5.0),
+        ]
+    marks += [Line(c.open_loop.real, c.open_loop.imag, stroke) for c, stroke in reversed(styled)]
+    marks += [Points(np.array([-1.0]), np.zeros(1), Marker(Shape.PLUS, 4.0, INK, edge_width=1.6)),
+              Text(-1.0, 0.0, "−1", size=10.0, dx=6.0, dy=-5.0)]  # fmt: skip
+    panel = Panel(Box(58.0, 4.0, width, NYQUIST_HEIGHT), Axis(REAL, "Re L", tick_count=7),
+                  Axis(IMAGINARY, "Im L", tick_count=7), tuple(marks))  # fmt: skip
+    return Chart("open loop near -1", (panel,), _legend(styled), width=width + 98.0)
+
+
+def _legend(styled: list[tuple[Controller, Stroke]]) -> tuple[LegendEntry, ...]:
+    return tuple(LegendEntry(c.name, stroke) for c, stroke in styled)
+
+
+def _axis_top(sizes: list[Array], allowed: float) -> float:
+    """Top of the axis: everything of loops that keep near the limit; what is far beyond is cut off."""
+    highest = max((float(np.max(s[np.isfinite(s)], initial=0.0)) for s in sizes), default=1.0)
+    if not math.isfinite(allowed):
+        return max(1.2, 1.08 * highest)  # 8 % more than the highest
+    return max(LEAST_TOP * allowed, min(1.08 * highest, CUT * allowed))
+
+
+def _circle(centre: float, radius: float, stroke: Stroke, fill: str = "none") -> Area:
+    angle = np.linspace(0.0, 2.0 * math.pi, 121)
+    return Area(centre + radius * np.cos(angle), radius * np.sin(angle), fill, stroke)

@@ -1,0 +1,101 @@
+"""How well each direction is determined, and what each coefficient does, over logarithmic axes."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from seatrial.core.figures.chart import Chart
+from seatrial.core.figures.marks import (
+    ACCENT,
+    GREY,
+    INK,
+    SECOND,
+    Anchor,
+    Line,
+    Mark,
+    Marker,
+    Points,
+    Rectangle,
+    Rule,
+    Shape,
+    Stroke,
+    Text,
+)
+from seatrial.core.figures.rows import SMALL, decades_axis, no_information, row_panel
+from seatrial.core.results import Direction, Sensitivity
+from seatrial.core.text.numbers import MINUS, fixed
+
+# standard deviation [%] from which on a direction is poorly determined, and from which on it is not
+POORLY_DETERMINED, UNDETERMINED = 10.0, 100.0
+# parts of a direction that are named at most, and the least of them as a share of the largest
+MAX_PARTS, LARGE = 3, 0.3
+_ZONE_NAMES = ("well determined", "poorly determined", "not determined")
+_ZONE_FILLS = ("#eaf1f6", "#fbf4e4", "#f8e9e6")
+_ZONE_COLOURS = (ACCENT, "#8a5a00", SECOND)
+# filled, open, square: distinguished without colour
+_ZONE_MARKERS = (
+    Marker(Shape.CIRCLE, 3.8, _ZONE_COLOURS[0], _ZONE_COLOURS[0], 1.6),
+    Marker(Shape.CIRCLE, 3.8, _ZONE_COLOURS[1], "#ffffff", 1.6),
+    Marker(Shape.SQUARE, 3.6, _ZONE_COLOURS[2], _ZONE_COLOURS[2], 0.0),
+)
+_LIMIT, _STEM = Stroke(INK, 0.9, "3 2"), Stroke(GREY, 0.7)
+
+
+def direction_chart(directions: Sequence[Direction]) -> Chart | None:
+    """Return a dot for each direction at its standard deviation in per cent, in the order given; None for none.
+
+    A direction without any information (infinite) has a note at the right edge.
+    """
+    if not directions:
+        return None
+    spreads = [100.0 * d.standard_deviation for d in directions]
+    axis = decades_axis([s for s in spreads if math.isfinite(s) and s > 0.0], (1.0, 1000.0),
+                        "standard deviation along the combination, per cent of the coefficients", " %")  # fmt: skip
+    marks: list[Mark] = []
+    bounds = (axis.ends[0], POORLY_DETERMINED, UNDETERMINED, axis.ends[1])
+    for k, (name, fill) in enumerate(zip(_ZONE_NAMES, _ZONE_FILLS, strict=True)):
+        marks.append(Rectangle(bounds[k], -0.5, bounds[k + 1], len(directions) - 0.5, fill))
+        marks.append(
+            Text(math.sqrt(bounds[k] * bounds[k + 1]), -0.5, name, Anchor.MIDDLE, SMALL, _ZONE_COLOURS[k], dy=-7.0)
+        )
+    marks += [Rule(limit, _LIMIT, is_vertical=True) for limit in (POORLY_DETERMINED, UNDETERMINED)]
+    for row, spread in enumerate(spreads):
+        zone = int(spread >= POORLY_DETERMINED) + int(spread >= UNDETERMINED)
+        if math.isfinite(spread):
+            x, y = np.array([axis.ends[0], max(spread, axis.ends[0])]), np.full(2, float(row))
+            marks += [Line(x, y, _STEM), Points(x[1:], y[1:], _ZONE_MARKERS[zone])]
+        else:
+            marks.append(no_information(axis, row, _ZONE_COLOURS[zone]))
+    panel = row_panel([combination_text(d) for d in directions], axis, marks)
+    return Chart("how well combinations of coefficients are determined", (panel,))
+
+
+def sensitivity_chart(sensitivities: Sequence[Sensitivity]) -> Chart | None:
+    """Return a bar for each coefficient: effect of 10 % of it in units of noise; None for none."""
+    known = [s for s in sensitivities if math.isfinite(s.effect) and s.effect > 0]
+    if not known:
+        return None
+    axis = decades_axis(
+        [s.effect for s in known],
+        (0.1, 10.0),
+        "change of the compared outputs for 10 % of the coefficient, in units of their noise",
+    )
+    bars = [Rectangle(axis.ends[0], row - 0.28, s.effect, row + 0.28, ACCENT if s.effect >= 1.0 else "#a9bccb")
+            for row, s in enumerate(known)]  # fmt: skip
+    note = Text(1.0, -0.5, "as large as the noise", Anchor.MIDDLE, SMALL, dy=-7.0)
+    panel = row_panel([s.parameter for s in known], axis, [*bars, Rule(1.0, _LIMIT, is_vertical=True), note])
+    return Chart("what each coefficient does to the records", (panel,))
+
+
+def combination_text(direction: Direction) -> str:
+    """Return the largest parts of a direction: ``0.74 Y_v − 0.56 N_v …``."""
+    largest = max((abs(part) for part in direction.combination.values()), default=0.0)
+    large = [(name, part) for name, part in direction.combination.items() if abs(part) >= LARGE * largest]
+    parts = [f"{MINUS if part < 0 else '+'} {_factor(part)}{name}" for name, part in large[:MAX_PARTS]]
+    return " ".join(parts).removeprefix("+ ") + (" …" if len(large) > MAX_PARTS else "")
+
+
+def _factor(part: float) -> str:
+    factor = fixed(abs(part), 2)
+    return "" if factor == "1.00" else f"{factor} "

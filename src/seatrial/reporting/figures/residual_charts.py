@@ -1,0 +1,80 @@
+"""Residuals of every channel: over the samples, their autocorrelation with a 95 % band, and against the normal."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from seatrial.core.figures.chart import Chart
+from seatrial.core.figures.marks import ACCENT, INK, SECOND, Array, Line, Mark, Rectangle, Rule, Stroke
+from seatrial.core.figures.panel import Axis, Box, Panel
+from seatrial.core.figures.sampling import decimated
+from seatrial.core.figures.ticks import span
+from seatrial.core.results import Residuals
+from seatrial.core.values import display_unit
+from seatrial.core.values.channel_text import channel_label, channel_unit
+
+# bars of the histogram, its reach in standard deviations, and the density of the normal at zero
+BINS, WIDEST, NORMAL_PEAK = 41, 4.5, 0.42
+HEIGHT, GAP = 76.0, 26.0
+# lags up to which the autocorrelation is drawn as stems
+MAX_STEMS = 60
+# quantile of the standard normal distribution for 95 %, two-sided
+NORMAL_95 = 1.96
+
+
+def residual_chart(residuals: Sequence[Residuals]) -> Chart | None:
+    """Return three panels for each channel; None where there are no residuals."""
+    usable = [r for r in residuals if np.isfinite(r.values).sum() > 2]
+    panels: list[Panel] = []
+    for k, r in enumerate(usable):
+        top = 26.0 + k * (HEIGHT + GAP)
+        row = [
+            _series(r, Box(66.0, top, 320.0, HEIGHT)),
+            _autocorrelation(r, Box(446.0, top, 210.0, HEIGHT)),
+            _histogram(r.values[np.isfinite(r.values)], Box(700.0, top, 150.0, HEIGHT)),
+        ]
+        titles = ("residual", "autocorrelation, 95 % band", "against the normal") if k == 0 else ("", "", "")
+        is_last = k == len(usable) - 1
+        panels += [replace(p, title=title, x=p.x if is_last else replace(p.x, name=""))
+                   for p, title in zip(row, titles, strict=True)]  # fmt: skip
+    return Chart("residuals, their autocorrelation and histogram", tuple(panels)) if panels else None
+
+
+def _series(r: Residuals, box: Box) -> Panel:
+    unit = channel_unit(r.channel)
+    values = r.values * display_unit(unit)[0]
+    samples = np.arange(len(values), dtype=float)
+    x = Axis((0.0, float(max(1, len(values) - 1))), "sample", tick_count=4)
+    y = Axis(span([values]), channel_label(r.channel, unit), tick_count=3)
+    return Panel(box, x, y, (Line(*decimated(samples, values, 500), Stroke(INK, 0.6)),))
+
+
+def _autocorrelation(r: Residuals, box: Box) -> Panel:
+    """Band +-1.96 / sqrt(n) of white residuals (Box, Jenkins & Reinsel 2008, section 2.1.6)."""
+    edge = NORMAL_95 / np.sqrt(np.isfinite(r.values).sum())
+    rho, lags = r.autocorrelation, np.arange(len(r.autocorrelation)) / r.rate
+    low = min(-0.25, float(np.nanmin(rho)) - 0.05) if len(rho) else -0.25
+    x = Axis((-0.02 * lags[-1], lags[-1] * 1.02 or 1.0), "lag [s]", tick_count=4)
+    marks: list[Mark] = [Rectangle(x.ends[0], -edge, x.ends[1], edge, "#d9e4ec"), Rule(0.0, Stroke("#999999", 0.6))]
+    if len(lags) <= MAX_STEMS:
+        stems = [np.array([lag, lag, np.nan]) for lag in lags], [np.array([0.0, value, np.nan]) for value in rho]
+        marks.append(Line(np.concatenate(stems[0]), np.concatenate(stems[1]), Stroke(ACCENT, 1.6)))
+    else:
+        marks.append(Line(*decimated(lags, rho), Stroke(ACCENT, 1.0)))
+    return Panel(box, x, Axis((low, 1.05), tick_count=3), tuple(marks))
+
+
+def _histogram(values: Array, box: Box) -> Panel:
+    spread = float(np.std(values)) or 1.0
+    scaled = np.clip((values - np.mean(values)) / spread, -WIDEST, WIDEST)
+    density, edges = np.histogram(scaled, bins=np.linspace(-WIDEST, WIDEST, BINS), density=True)
+    marks: list[Mark] = [
+        Rectangle(left, 0.0, right, height, "#c9d3da")
+        for height, left, right in zip(density, edges[:-1], edges[1:], strict=True)
+        if height > 0
+    ]
+    z = np.linspace(-WIDEST, WIDEST, 91)
+    marks.append(Line(z, np.exp(-0.5 * z**2) / np.sqrt(2 * np.pi), Stroke(SECOND, 1.2, "4 2.5")))
+    y = Axis((0.0, max(NORMAL_PEAK, 1.05 * float(density.max()))), tick_count=1, has_labels=False)
+    return Panel(box, Axis((-WIDEST, WIDEST), "residual / std. deviation", tick_count=4), y, tuple(marks))

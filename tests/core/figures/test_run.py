@@ -1,0 +1,34 @@
+"""The channels of a run stand beside its track, or below it where it is a strip."""
+
+import numpy as np
+
+from seatrial.core.figures.bands import BAND
+from seatrial.core.figures.marks import Area, Stroke
+from seatrial.core.figures.panel import Box
+from seatrial.core.figures.run import ChannelPanel, TimeCurve, channel_panel, run_chart
+from seatrial.core.figures.tracks import Track
+
+TIME = np.linspace(0.0, 100.0, 300)
+STROKE = Stroke("#000000", 1.0)
+CHANNEL = ChannelPanel("u [m/s]", (TimeCurve(TIME, np.sin(TIME), STROKE),))
+
+
+def test_a_strip_lies_above_the_channels_and_a_square_track_beside_them() -> None:
+    strip, square = (
+        run_chart("r", [CHANNEL] * 4, [Track(TIME, width * TIME, None, STROKE)], 5.0) for width in (0.1, 1.0)
+    )
+    assert strip.panels[1].box.top > strip.panels[0].box.bottom
+    assert square.panels[1].box.left > square.panels[0].box.right
+    assert all(p.box.right <= 864.0 for p in (*strip.panels, *square.panels))
+
+
+def test_only_the_last_of_each_column_names_the_time() -> None:
+    chart = run_chart("r", [CHANNEL] * 5, [], 0.0)
+    assert [panel.x.name for panel in chart.panels] == ["", "", "t [s]", "t [s]", "t [s]"]
+
+
+def test_a_band_is_drawn_below_its_curve_and_widens_the_axis() -> None:
+    plain = channel_panel(CHANNEL, Box(0.0, 0.0, 100.0, 100.0))
+    wide = channel_panel(ChannelPanel("u", CHANNEL.curves, np.full(300, -2.0), np.full(300, 2.0)), plain.box)
+    assert isinstance(wide.marks[0], Area) and wide.marks[0].fill == BAND
+    assert wide.y.ends[1] > 2.0 > plain.y.ends[1]

@@ -1,0 +1,24 @@
+"""Extrapolation in words: inside the training runs, at their edge, beyond."""
+
+import math
+
+import pytest
+
+from seatrial.core.results import Extrapolation
+from seatrial.reporting.extrapolation import extrapolation_text, extrapolation_zone
+
+
+@pytest.mark.parametrize(("index", "where"), [(0.7, "inside"), (1.04, "inside"), (1.15, "edge"), (1.9, "beyond"),
+                                              (math.inf, "beyond"), (math.nan, "")])  # fmt: skip
+def test_an_extrapolation_is_inside_at_the_edge_or_beyond(index: float, where: str) -> None:
+    assert extrapolation_zone(index) == where
+
+
+def test_an_extrapolation_in_words() -> None:
+    ratios = {"yaw_rate": 1.9, "drift": 1.3, "rudder": 0.9}
+    assert extrapolation_text(Extrapolation(1.9, ratios)) == (
+        "1.9: the run turns 1.9 times as fast as any training run, with 1.3 times the drift angle. "
+        "Read its intervals as lower limits."
+    )
+    assert extrapolation_text(Extrapolation(math.inf, {"drift": math.inf})).startswith("∞: the run drifts at ∞ times")
+    assert "stays inside" in extrapolation_text(Extrapolation(0.8, {"speed": 0.8}))
