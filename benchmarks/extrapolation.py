@@ -16,7 +16,7 @@ from measure import machine
 
 from seatrial.data.trial import Role, Trial, TrialRecord, load_records, load_trial
 from seatrial.estimation.estimate import estimate_model
-from seatrial.estimation.identify.identification import training_runs
+from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.information.discrepancy import GROWTH_POWER, HoldoutError
 from seatrial.estimation.predict.cross_validation import HoldoutProtocol
 from seatrial.estimation.predict.window_bands import HoldoutWindows, band_coverage, holdout_windows

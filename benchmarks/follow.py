@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from seatrial.core.results.online import EstimatorPhase, Sample, Snapshot
 from seatrial.core.values import NOTATION, Channel, Record
 from seatrial.data.example_series import series
-from seatrial.data.read import ColumnSpec, Layout, read_record
+from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial import Role, Trial, load_trial
 from seatrial.data.trial.trial import Stream, StreamSource
 from seatrial.estimation.identify.identify import identify
@@ -251,8 +251,9 @@ def tanker() -> Iterator[Line]:
         return
     trial = load_trial(EXAMPLES / "kvlcc2_hsva.toml")
     runs = tuple(run for run in trial.runs if run.role is Role.TRAIN)
-    raws = [read_record(run.path, run.layout) for run in runs]
-    stream = Stream(StreamSource.STDIN, runs[0].layout, 1.0 / raws[0].dt)
+    raws = [run.raw_record() for run in runs]
+    assert runs[0].file is not None
+    stream = Stream(StreamSource.STDIN, runs[0].file.layout, 1.0 / raws[0].dt)
     estimator, began = OnlineEstimator(replace(trial, runs=(), stream=stream)), time.process_time()
     for raw in raws:
         estimator.begin_run()

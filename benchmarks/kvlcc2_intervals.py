@@ -17,8 +17,8 @@ from seatrial.data.trial import Role, TrialRecord, load_records, load_trial
 from seatrial.data.trial.approach import approach_condition
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.intervals import estimate_uncertainty
+from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.estimate.settings import IntervalMethod
-from seatrial.estimation.identify.identification import training_runs
 from seatrial.estimation.identify.identify import identify
 from seatrial.estimation.predict.cross_validation import HoldoutProtocol
 from seatrial.estimation.predict.window_bands import band_coverage, holdout_windows

@@ -20,8 +20,8 @@ from measure import machine
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Prior, Record
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRecord, load_records, load_trial
+from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.identify import Runs, estimate_model
-from seatrial.estimation.identify.identification import training_runs
 from seatrial.estimation.predict.cross_validation import (
     HoldoutProtocol,
     cross_validate,

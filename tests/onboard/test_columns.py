@@ -66,12 +66,13 @@ def test_real_records_followed_are_the_records(repository: Path, data_folder: Pa
     trial = load_trial(repository / "examples" / "kvlcc2_hsva.toml")
     assert trial.runs and data_folder.is_dir()
     for run in trial.runs:
-        reader, lines = ColumnReader(run.layout), TailLines(run.path, once=True)
+        assert run.file is not None
+        reader, lines = ColumnReader(run.file.layout), TailLines(run.file.path, once=True)
         found: list[Sample] = []
         while not lines.is_over:
             found += reader.samples(lines.read(0.0))
-        record = read_record(run.path, run.layout)
-        expected = np.column_stack([record.time, *(record[c.symbol] for c in run.layout.columns)])
+        record = run.raw_record()
+        expected = np.column_stack([record.time, *(record[c.symbol] for c in run.file.layout.columns)])
         np.testing.assert_array_equal(table(found), expected)
 
 

@@ -25,7 +25,7 @@ from tests.onboard.streams import (
 
 from seatrial.core.results.online import SampleCounts, Snapshot
 from seatrial.core.values import InputError
-from seatrial.data.trial import Role, Trial, load_trial
+from seatrial.data.trial import RecordFile, Role, Trial, load_trial
 from seatrial.data.trial.follow_table import require_stream
 from seatrial.data.trial.trial import TrialRun
 from seatrial.estimation.identify import identify
@@ -56,7 +56,7 @@ def in_a_hurry(monkeypatch: pytest.MonkeyPatch) -> None:
 def identified(trial: Trial, file: Path) -> dict:
     """What identify says where the file stands under [[records]] in place of [follow]."""
     stream = require_stream(trial)
-    run = TrialRun(file, stream.layout, Role.TRAIN, file.stem, waves=stream.waves)
+    run = TrialRun(RecordFile(file, stream.layout), waves=stream.waves)
     others = tuple(r for r in trial.runs if r.role is not Role.TRAIN)
     return fit_json_without_time(
         identify(replace(trial, stream=None, runs=(*trial.runs_with_role(Role.TRAIN), run, *others)))

@@ -162,5 +162,5 @@ def prepared_run(trial: "Trial | str | Path", name: str) -> "Record":
     runs = {run.name: run for run in trial.runs}
     if name not in runs:
         raise InputError(f"the trial has no run '{name}'{spelling_hint(name, list(runs))}")
-    record = load_run(runs[name], trial.reference_point)[0]
+    record = load_run(runs[name], trial.reference_point).record
     return record if trial.estimate.rate is None else record.resampled(trial.estimate.rate)

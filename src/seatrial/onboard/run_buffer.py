@@ -2,7 +2,6 @@
 
 from array import array
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
@@ -47,10 +46,7 @@ class RunBuffer:
 
 def with_training_records(trial: Trial, records: tuple[Record, ...]) -> Trial:
     """The trial with those records to train on, behind its training runs and before all others."""
-    stream = require_stream(trial)
-    came = tuple(
-        TrialRun(Path(record.name), stream.layout, Role.TRAIN, record.name, waves=stream.waves, raw_record=record)
-        for record in records
-    )
+    waves = require_stream(trial).waves
+    came = tuple(TrialRun(record, waves=waves) for record in records)
     others = tuple(run for run in trial.runs if run.role is not Role.TRAIN)
     return replace(trial, runs=(*trial.runs_with_role(Role.TRAIN), *came, *others))

@@ -12,12 +12,12 @@ from seatrial.core.results import Fit
 from seatrial.core.values import Finding, ProgressReporter, Record, Severity
 from seatrial.data.check import examine
 from seatrial.data.check.signal import sample_noise
-from seatrial.data.read import ColumnSpec, Layout, read_record
+from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial import Role, Trial, TrialRecord, load_records
 from seatrial.data.trial.approach import approach_condition
+from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.estimate.settings import IntervalMethod
 from seatrial.estimation.identify import estimate_model, identify
-from seatrial.estimation.identify.identification import training_runs
 from seatrial.physics.manoeuvres import measures
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
@@ -114,10 +114,11 @@ def label_errors(trial: Trial) -> dict[str, tuple[Finding, ...]]:
     return {
         run.name: tuple(
             finding
-            for finding in examine(read_record(run.path, layout_as_labelled(run.layout)).renamed(run.name))
+            for finding in examine(replace(run.file, layout=layout_as_labelled(run.file.layout)).read())
             if finding.severity is Severity.ERROR
         )
         for run in trial.runs
+        if run.file is not None
     }
 
 

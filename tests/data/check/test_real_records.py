@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Finding, Record, Severity
-from seatrial.data.check import examine, prepared_record
+from seatrial.data.check import canonical_record, examine, examined_record
 from seatrial.data.read import ColumnSpec, Layout, read_record
 
 HSVA_FILES, ESSO_FILES = 13, 23
@@ -84,7 +84,7 @@ def test_hsva_rightly_declared_has_no_error_and_no_warning(data_folder: Path) ->
 def test_hsva_at_another_reference_point_is_seen_in_closure(data_folder: Path) -> None:
     """v declared at the centre of gravity .2436 m ahead while it belongs to the positions' point."""
     for record in hsva_records(data_folder, naive=False)[2:]:
-        clean, _ = prepared_record(record)
+        clean = canonical_record(examined_record(record).record)
         v = clean.channel("v").with_values(clean["v"] + 0.2436 * clean["r"])
         closure = [f for f in examine(clean.with_channel("v", v)) if f.code == "closure"]
         if np.ptp(clean["psi"]) > 0.3:
@@ -111,7 +111,8 @@ def test_esso_osaka_empty_rows_are_reported_and_cut(data_folder: Path) -> None:
     record = read_record(file, every)
     assert len(record) == 2028
     assert sum(int(np.isnan(c.values).sum()) for c in record.channels.values()) + np.isnan(record.time).sum() == 4251
-    clean, findings = prepared_record(record)
+    examined = examined_record(record)
+    clean, findings = examined.record, examined.findings
     rows = next(f for f in findings if f.code == "empty-rows")
     assert "327 empty rows" in rows.message and "4251 empty cells" in rows.evidence
     assert len(clean) == 1701 and clean.is_uniform
@@ -150,4 +151,4 @@ def test_roll_decay_at_rest_raises_no_error(data_folder: Path) -> None:
         )
         record = read_record(file, Layout("text", ColumnSpec("time", "time", "s"), columns))
         assert errors(examine(record)) == []
-        assert prepared_record(record)[0].is_uniform
+        assert examined_record(record).record.is_uniform

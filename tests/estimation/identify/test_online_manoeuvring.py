@@ -9,7 +9,7 @@ import pytest
 from seatrial.core.results import Fit
 from seatrial.core.results.online import EstimatorPhase, Sample, Snapshot
 from seatrial.core.values import NOTATION, Record
-from seatrial.data.read import ColumnSpec, Layout, read_record
+from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial import Role, Trial, load_trial
 from seatrial.data.trial.roll_decay_start import trim_to_decay_start
 from seatrial.data.trial.trial import Stream, StreamSource
@@ -26,8 +26,9 @@ def _stream(name: str) -> tuple[Trial, Record]:
     """An example's trial without its runs, following the columns of its training run; and that run."""
     trial = load_trial(EXAMPLES / f"{name}.toml")
     (run,) = [r for r in trial.runs if r.role is Role.TRAIN]
-    raw = read_record(run.path, run.layout).renamed(run.name)
-    return replace(trial, runs=(), stream=Stream(StreamSource.STDIN, run.layout, 1.0 / raw.dt, name=run.name)), raw
+    assert run.file is not None
+    raw = run.raw_record()
+    return replace(trial, runs=(), stream=Stream(StreamSource.STDIN, run.file.layout, 1.0 / raw.dt, name=run.name)), raw
 
 
 def _feed(estimator: OnlineEstimator, record: Record, stream: Stream, rows: slice = slice(None)) -> Snapshot:

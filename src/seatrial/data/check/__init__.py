@@ -1,17 +1,18 @@
 """Findings on records: declared conventions compared with the data, repairs; refuses to guess."""
 
 from seatrial.data.check.conventions import canonical_record
-from seatrial.data.check.examine import examine, prepared_record
+from seatrial.data.check.examine import ExaminedRecord, examine, examined_record
 from seatrial.data.check.repair import complete_segments, repair
 from seatrial.data.check.rudder import is_excited
 from seatrial.data.check.timestamps import rebuild_time_base
 
 __all__ = [
+    "ExaminedRecord",
     "canonical_record",
     "complete_segments",
     "examine",
+    "examined_record",
     "is_excited",
-    "prepared_record",
     "rebuild_time_base",
     "repair",
 ]

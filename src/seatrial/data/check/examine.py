@@ -1,8 +1,10 @@
-"""All checks on one record."""
+"""One record repaired and checked, in one pass."""
+
+from dataclasses import dataclass
 
 from seatrial.core.values import Finding, Record, Severity
 from seatrial.data.check.channels import channel_findings, lag_findings
-from seatrial.data.check.conventions import canonical_record, with_standard_signs
+from seatrial.data.check.conventions import with_standard_signs
 from seatrial.data.check.kinematic_consistency import kinematic_consistency_findings
 from seatrial.data.check.repair import repair
 from seatrial.data.check.rudder import rudder_findings
@@ -22,39 +24,41 @@ _CHECKS_WITH_STANDARD_SIGNS = (
 )
 
 
-def examine(record: Record) -> tuple[Finding, ...]:
-    """Everything the checks find on a record as it was read, gravest first.
+@dataclass(frozen=True, eq=False)
+class ExaminedRecord:
+    """A record repaired once, and all that was found on the way.
+
+    Attributes:
+        record: evenly sampled and complete, conventions as declared.
+        findings: of the checks and of the repairs, gravest first.
+    """
+
+    record: Record
+    findings: tuple[Finding, ...]
+
+
+def examined_record(record: Record) -> ExaminedRecord:
+    """Repair a record as it was read and check it.
 
     The declared conventions are judged, never changed: ERROR where the data contradict them clearly, WARNING where
-    they may. Includes the findings of `timebase` and `repair`.
+    they may.
 
     Raises:
-        InputError: a channel holds no value, or a positive direction is unknown.
+        InputError: a channel holds no value, too few samples remain, or a positive direction is unknown.
     """
-    clean, mended = repaired_record(record)
-    declared = with_standard_signs(clean)
-    found = [*channel_findings(record), *mended]
+    even, time_findings = rebuild_time_base(record)
+    complete, repair_findings = repair(even)
+    declared = with_standard_signs(complete)
+    findings = [*channel_findings(record), *time_findings, *repair_findings]
     for check in _CHECKS_WITH_STANDARD_SIGNS:
-        found += check(declared)
-    return tuple(sorted(found, key=lambda finding: _SEVERITY_ORDER[finding.severity]))
+        findings += check(declared)
+    return ExaminedRecord(complete, tuple(sorted(findings, key=lambda finding: _SEVERITY_ORDER[finding.severity])))
 
 
-def repaired_record(record: Record) -> tuple[Record, tuple[Finding, ...]]:
-    """`timebase`, then `repair`: evenly sampled and complete, conventions as declared.
-
-    Raises:
-        InputError: see `timebase` and `repair`.
-    """
-    even, stamped = rebuild_time_base(record)
-    clean, mended = repair(even)
-    return clean, stamped + mended
-
-
-def prepared_record(record: Record, reference_point: float = 0.0) -> tuple[Record, tuple[Finding, ...]]:
-    """`timebase`, `repair` and `canonical` in a row: what a model can be compared with.
+def examine(record: Record) -> tuple[Finding, ...]:
+    """Return what `examined_record` finds.
 
     Raises:
-        InputError: see `timebase`, `repair` and `canonical`.
+        InputError: as `examined_record`.
     """
-    clean, findings = repaired_record(record)
-    return canonical_record(clean, reference_point), findings
+    return examined_record(record).findings

@@ -1,29 +1,50 @@
-"""From a trial's runs to checked records in the house's own frames, signs and units."""
+"""From the runs of a trial to checked records in standard frames, signs and units."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatrial.core.values import Finding, InputError, Record, Severity
-from seatrial.data.check import examine, prepared_record
-from seatrial.data.read import read_record
+from seatrial.data.check import canonical_record, examined_record
 from seatrial.data.trial.approach import first_execution
 from seatrial.data.trial.roll_decay_start import trim_to_decay_start
 from seatrial.data.trial.trial import Role, Trial, TrialRun, Trimming, WaveEncounter
 from seatrial.physics.sea.wave_forces import with_wave_forces
 
-# speed at the end of an acceleration run as a part of the speed at the first execution
 _ACCELERATED_FRACTION = 0.9
+"""Speed at the end of an acceleration run over the speed at the first rudder execution; chosen."""
 
 
 @dataclass(frozen=True, eq=False)
 class TrialRecord:
-    """One record ready for use: canonical, trimmed, resampled."""
+    """One record ready for use: canonical, trimmed, resampled; with the findings of its checks."""
 
     record: Record
     role: Role
     session: str
     waves: WaveEncounter | None = None
+    findings: tuple[Finding, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class CheckedRecords:
+    """Records that passed the checks, at the rate of the estimate, and what was found on the trial and on them."""
+
+    records: tuple[TrialRecord, ...]
+    findings: tuple[Finding, ...]
+
+
+def checked_records(trial: Trial) -> CheckedRecords:
+    """Load every run that is not left out and refuse errors that the trial does not accept.
+
+    Raises:
+        InputError: as `load_records` and `refuse_errors`.
+    """
+    records, findings = load_records(trial)
+    findings, rate = refuse_errors(findings, trial.accept), trial.estimate.rate
+    if rate is not None:
+        records = tuple(replace(r, record=r.record.resampled(rate)) for r in records)
+    return CheckedRecords(records, findings)
 
 
 def load_records(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ...]]:
@@ -35,22 +56,23 @@ def load_records(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, 
     if not trial.runs:
         where = f"{trial.path}: " if trial.path else ""
         raise InputError(f"{where}there are no [[records]] to read; add them, or plan a trial with 'seatrial design'")
-    made, findings = [], list(trial.findings)
-    for run in trial.runs:
-        if run.role is not Role.LEAVE_OUT:
-            record, said = load_run(run, trial.reference_point)
-            made.append(TrialRecord(record, run.role, run.session, run.waves))
-            findings += said
-    return tuple(made), tuple(findings)
+    records = tuple(load_run(run, trial.reference_point) for run in trial.runs if run.role is not Role.LEAVE_OUT)
+    return records, (*trial.findings, *(finding for record in records for finding in record.findings))
 
 
-def load_run(run: TrialRun, reference_point: float) -> tuple[Record, list[Finding]]:
-    """One run read, examined as it is, repaired, made canonical, given its wave forces, trimmed and resampled."""
-    raw = read_record(run.path, run.layout).renamed(run.name) if run.raw_record is None else run.raw_record
-    record, _ = prepared_record(raw, reference_point)
+def load_run(run: TrialRun, reference_point: float) -> TrialRecord:
+    """Return one run repaired and checked, in standard conventions, with its wave forces, trimmed and resampled.
+
+    reference_point: m forward of midship to which velocities and positions are referred.
+
+    Raises:
+        InputError: the file cannot be parsed, or trimming leaves nothing.
+    """
+    examined = examined_record(run.raw_record())
+    record = canonical_record(examined.record, reference_point)
     if run.waves is not None and run.waves.spectrum is None:
         record = with_wave_forces(record, run.waves.excitation, run.waves.U, run.waves.beta)
-    return apply_trimming(record, run.trimming), list(examine(raw))
+    return TrialRecord(apply_trimming(record, run.trimming), run.role, run.session, run.waves, examined.findings)
 
 
 def apply_trimming(record: Record, trimming: Trimming) -> Record:

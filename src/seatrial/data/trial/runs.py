@@ -10,7 +10,7 @@ from seatrial.core.values import InputError, quantity, si_unit, spelling_hint
 from seatrial.data.read import ColumnSpec, Layout, format_of
 from seatrial.data.trial.excitation import wave_encounter
 from seatrial.data.trial.schema import ChannelColumn, ColumnsTable, RecordsTable
-from seatrial.data.trial.trial import Role, TrialRun, Trimming, run_name
+from seatrial.data.trial.trial import RecordFile, Role, TrialRun, Trimming, run_name
 from seatrial.physics.hydro.excitation import Excitation
 
 _DATE = re.compile(r"\d{4}-\d{2}-\d{2}|\d{1,2}-[A-Z][a-z]{2}-\d{4}|(?<!\d)(?:19|20)\d{6}(?!\d)")
@@ -78,7 +78,7 @@ def _block_runs(
     met = wave_encounter(block.waves, excitation, length, where)
     layouts = [layout_of(block, block.format or format_of(path), where, block.scale) for path in paths]
     return [
-        TrialRun(path, layout, role, session_of(path, block.session), trimming, block.source, met)
+        TrialRun(RecordFile(path, layout), role, session_of(path, block.session), trimming, block.source, met)
         for path, layout, role in zip(paths, layouts, roles, strict=True)
     ]
 

@@ -1,17 +1,21 @@
-"""A trial: what a trial file says, validated. Values only."""
+"""A trial: ship, runs, model and settings, from a trial file or made in Python."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from seatrial.core.equations import Model
 from seatrial.core.results import Actuator, TrialLimits
 from seatrial.core.values import Finding, ForcePoints, Record, Ship
-from seatrial.data.read import Layout
+from seatrial.data.read import Layout, read_record
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
 from seatrial.physics.hydro.excitation import Excitation
 from seatrial.physics.sea.spectrum import Spectrum
+
+if TYPE_CHECKING:
+    from seatrial.estimation.estimate.trial_problem import TrialProblem
 
 
 class Role(StrEnum):
@@ -59,25 +63,67 @@ class WaveEncounter:
 
 
 @dataclass(frozen=True)
-class TrialRun:
-    """One record file of the trial: where it lies, how to parse it, what it is for, what it shares offsets with.
-
-    raw: the record as it was read where it has been read already; the file is then left alone.
-    """
+class RecordFile:
+    """A file with the record of a run, and how to parse it."""
 
     path: Path
     layout: Layout
-    role: Role
-    session: str
-    trimming: Trimming = Trimming()
-    source: str = ""
-    waves: WaveEncounter | None = None
-    raw_record: Record | None = field(default=None, compare=False, repr=False)
 
     @property
     def name(self) -> str:
         """The file's name without its ending."""
         return run_name(self.path)
+
+    def read(self) -> Record:
+        """Read the record, named as the file.
+
+        Raises:
+            InputError: the file cannot be read as its layout says.
+        """
+        return read_record(self.path, self.layout).renamed(self.name)
+
+
+@dataclass(frozen=True)
+class TrialRun:
+    """One run of a trial.
+
+    Attributes:
+        data: the record as it was read, in the frames and signs that its channels declare, or the file to read.
+        role: what the run is for.
+        session: name of the group of runs that share offsets; empty: the run's own name.
+        trimming: which part is used.
+        source: where the data come from, for people.
+        waves: how the ship met the waves; None: no waves, or the record holds their forces.
+    """
+
+    data: RecordFile | Record
+    role: Role = Role.TRAIN
+    session: str = ""
+    trimming: Trimming = Trimming()
+    source: str = ""
+    waves: WaveEncounter | None = None
+
+    def __post_init__(self) -> None:
+        if not self.session:
+            object.__setattr__(self, "session", self.name)
+
+    @property
+    def name(self) -> str:
+        """Name of the record."""
+        return self.data.name
+
+    @property
+    def file(self) -> RecordFile | None:
+        """The file of the record; None where the record is given."""
+        return self.data if isinstance(self.data, RecordFile) else None
+
+    def raw_record(self) -> Record:
+        """Return the record as it was read.
+
+        Raises:
+            InputError: its file cannot be read.
+        """
+        return self.data.read() if isinstance(self.data, RecordFile) else self.data
 
 
 @dataclass(frozen=True)
@@ -148,6 +194,11 @@ class Stream:
 class Trial:
     """Ship, runs and their roles, model, assumptions.
 
+    Made by `load_trial` from a trial file, or in Python:
+
+        runs = (TrialRun(zigzag), TrialRun(turning_circle, Role.VALIDATE))
+        trial = Trial(ship, runs, model.with_ship(ship), estimate=EstimateSettings(robust=True))
+
     Attributes:
         model: with the ship's particulars, the parameter set, fixed and start values, freedom, bounds and priors set.
         noise: channel -> known standard deviation, SI; empty: estimated.
@@ -181,3 +232,13 @@ class Trial:
     def runs_with_role(self, role: Role) -> tuple[TrialRun, ...]:
         """The runs of one role, in order of their files."""
         return tuple(run for run in self.runs if run.role is role)
+
+    def problem(self) -> "TrialProblem":
+        """Return what `identify` minimises first, for any optimiser: residuals, Jacobian, bounds, fitness.
+
+        Raises:
+            InputError: the records do not pass the checks, show no excitation, or cannot be compared with the model.
+        """
+        from seatrial.estimation.estimate.trial_problem import trial_problem
+
+        return trial_problem(self)

@@ -148,7 +148,7 @@ def estimate_model(
     report = report_progress or (lambda _: None)
     report("weak-form start")
     unit = characteristic_time(model, runs.records, runs.length, settings.segment_s)
-    seconds = _segment_seconds(model, settings, unit)
+    seconds = segment_seconds(model, settings, unit)
     problem = output_error_problem(model, runs, seconds, settings, options.workers)
     start = find_start(problem, runs.records, WEAK_FORM_SHIP_LENGTHS * unit)
     shooting = fit_output_error(
@@ -176,8 +176,8 @@ def estimate_model(
     )  # fmt: skip
 
 
-def _segment_seconds(model: Model, settings: EstimateSettings, unit: float) -> float:
-    """Length of segments [s], infinite for whole runs; unit: the ship's characteristic time [s]."""
+def segment_seconds(model: Model, settings: EstimateSettings, unit: float) -> float:
+    """Return the length of segments [s], infinite for whole runs; unit: the ship's characteristic time [s]."""
     is_automatic = settings.criterion is FitCriterion.AUTO and settings.segment_s is None
     is_stable = model.is_affine or is_pure_roll(model)  # in waves or rolling out: nothing to cut short
     if settings.criterion is FitCriterion.OUTPUT_ERROR or (is_stable and is_automatic):

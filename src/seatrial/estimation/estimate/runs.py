@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from seatrial.core.values import ForcePoints, Record
+from seatrial.data.trial import Role, Trial, TrialRecord
 from seatrial.estimation.problem.data_term import DataTerm
 
 
@@ -39,3 +40,10 @@ class Runs:
 
     def __len__(self) -> int:
         return len(self.records)
+
+
+def training_runs(trial: Trial, records: Sequence[TrialRecord]) -> Runs:
+    """Return the training runs among the records, with the trial's known noise and force points."""
+    train = [r for r in records if r.role is Role.TRAIN]
+    sessions = tuple(r.session for r in train)
+    return Runs(tuple(r.record for r in train), sessions, trial.ship.length, trial.noise, trial.forces)

@@ -1,6 +1,5 @@
 """One identification: the trial's records, the choices of the user, and the estimate that strategies share."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -9,6 +8,7 @@ from seatrial.core.values import Finding, ProgressReporter, Record
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRecord
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.estimate.fit import with_segment_seconds
+from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS
 from seatrial.estimation.estimate.time_scale import characteristic_time
 from seatrial.estimation.information.symmetries import refuse_unidentifiable, structural_symmetries
@@ -91,10 +91,3 @@ class Identification:
     def _force_names(self) -> tuple[str, ...]:
         model = self.trial.model
         return tuple(name for points in self.trial.forces for name in StaticForces(model, points).force_names)
-
-
-def training_runs(trial: Trial, records: Sequence[TrialRecord]) -> Runs:
-    """Return the training runs among the records, with the trial's known noise and force points."""
-    train = [r for r in records if r.role is Role.TRAIN]
-    sessions = tuple(r.session for r in train)
-    return Runs(tuple(r.record for r in train), sessions, trial.ship.length, trial.noise, trial.forces)

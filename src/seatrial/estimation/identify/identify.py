@@ -2,12 +2,11 @@
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from types import MappingProxyType
 
 from seatrial.core.results import Fit
 from seatrial.core.values import InputError, ProgressReporter
-from seatrial.data.trial import FitCriterion, Trial, TrialRecord, load_records, refuse_errors
+from seatrial.data.trial import FitCriterion, Trial, checked_records
 from seatrial.estimation.estimate import EstimatorOptions, IntervalMethod
 from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS
 from seatrial.estimation.identify.baselines import with_baselines
@@ -53,16 +52,9 @@ def identify(
             too few for the intervals that are required.
     """
     began = time.perf_counter()
-    records, findings = load_records(trial)
-    task = Identification(
-        trial,
-        _resampled(records, trial.estimate.rate),
-        refuse_errors(findings, trial.accept),
-        EstimatorOptions(intervals, seed),
-        choose,
-        began,
-        report_progress,
-    )
+    checked = checked_records(trial)
+    options = EstimatorOptions(intervals, seed)
+    task = Identification(trial, checked.records, checked.findings, options, choose, began, report_progress)
     situation = identification_situation(task)
     fit = STRATEGIES[situation](task)
     if not compare or situation is Situation.UNKNOWN_WAVES:  # no input, so that there is nothing to regress on
@@ -86,8 +78,3 @@ def identification_situation(task: Identification) -> Situation:
         is_criterion_free=task.settings.criterion is FitCriterion.AUTO,
         is_explained=lambda: is_explained(task.estimation.shooting),
     )
-
-
-def _resampled(records: tuple[TrialRecord, ...], rate: float | None) -> tuple[TrialRecord, ...]:
-    """Return the records at a rate [Hz]; None: as they are."""
-    return records if rate is None else tuple(replace(r, record=r.record.resampled(rate)) for r in records)

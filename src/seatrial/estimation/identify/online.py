@@ -8,7 +8,6 @@ the batch fit. Beyond it a recursive filter carries the same information on (`On
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
@@ -70,7 +69,7 @@ class OnlineEstimator:
     def __init__(self, trial: Trial) -> None:
         self._trial, self._stream = trial, require_stream(trial)
         self._trial_records = tuple(
-            load_run(run, trial.reference_point)[0] for run in trial.runs if run.role is Role.TRAIN
+            load_run(run, trial.reference_point).record for run in trial.runs if run.role is Role.TRAIN
         )
         self._window = _WindowData([], [])
         self._run_count = self._sample_count = 0
@@ -223,11 +222,10 @@ class OnlineEstimator:
         return record_from_values(name, self._stream.layout, rows.time, rows.values)
 
     def _training_run(self, raw: Record) -> TrialRun:
-        stream = self._stream
-        return TrialRun(Path(raw.name), stream.layout, Role.TRAIN, raw.name, waves=stream.waves, raw_record=raw)
+        return TrialRun(raw, waves=self._stream.waves)
 
     def _canonical_record(self, raw: Record) -> Record:
-        record = load_run(self._training_run(raw), self._trial.reference_point)[0]
+        record = load_run(self._training_run(raw), self._trial.reference_point).record
         rate = self._trial.estimate.rate
         return record if rate is None else record.resampled(rate)
 

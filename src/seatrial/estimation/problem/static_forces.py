@@ -126,8 +126,12 @@ class StaticForces:
 
     def normal(self, values: Array, free: Sequence[int]) -> Contribution:
         """The Gauss-Newton model by the parameters at the positions `free`."""
+        residuals, rows = self.scaled_rows(values, free)
+        return Contribution(0.5 * float(np.sum(residuals**2)), rows.T @ residuals.ravel(), rows.T @ rows)
+
+    def scaled_rows(self, values: Array, free: Sequence[int]) -> tuple[Array, Array]:
+        """Return weighted residuals (n, 3) and their derivatives (3 n, k) by the parameters at the positions `free`."""
         forces, jacobian = self._linearised(values)
         scaled = self._scaled(forces)
         rows = np.where(np.isfinite(self._measured)[:, :, None], jacobian[:, :, list(free)], 0.0)
-        rows = (rows * self._scale[:, None]).reshape(scaled.size, -1)
-        return Contribution(0.5 * float(np.sum(scaled**2)), rows.T @ scaled.ravel(), rows.T @ rows)
+        return scaled, (rows * self._scale[:, None]).reshape(scaled.size, -1)
