@@ -119,6 +119,11 @@ class ChangeDetector:
             self._since, self._reference = time, now
         return self.latest
 
+    @property
+    def reported(self) -> CoefficientChange | None:
+        """The last significant change, else the result of the last test."""
+        return self.detected or self.latest
+
     def reset(self) -> None:
         """Data are counted anew, some of them the same: the next call begins a stretch. What was spent is spent."""
         self._reference = self._before_restart = None

@@ -5,21 +5,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.estimation.identify.online.streams import feed, sea_stream
 
 from seatrial.core.results import Fit
-from seatrial.core.results.online import EstimatorPhase, Sample, Snapshot
-from seatrial.core.values import NOTATION, Record
-from seatrial.data.read import ColumnSpec, Layout
+from seatrial.core.results.online import EstimatorPhase, Snapshot
+from seatrial.core.values import Record
 from seatrial.data.trial import Role, Trial, load_trial
 from seatrial.data.trial.roll_decay_start import trim_to_decay_start
 from seatrial.data.trial.trial import Stream, StreamSource
 from seatrial.estimation.identify.identify import identify
 from seatrial.estimation.identify.online import OnlineEstimator
-from seatrial.physics.models.qi2025 import SHIP
-from seatrial_studies.output_error_fit import with_physics_start
-from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, SeawayScenario, simulate_seaway_run
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
+EXAMPLES = Path(__file__).parents[4] / "examples"
 
 
 def _stream(name: str) -> tuple[Trial, Record]:
@@ -31,29 +28,20 @@ def _stream(name: str) -> tuple[Trial, Record]:
     return replace(trial, runs=(), stream=Stream(StreamSource.STDIN, run.file.layout, 1.0 / raw.dt, name=run.name)), raw
 
 
-def _feed(estimator: OnlineEstimator, record: Record, stream: Stream, rows: slice = slice(None)) -> Snapshot:
-    values = np.stack([record[c.symbol] for c in stream.layout.columns], axis=1)[rows]
-    shown = None
-    for time, row in zip(record.time[rows].tolist(), values, strict=True):
-        shown = estimator.update(Sample(time, row))
-    assert shown is not None
-    return shown
-
-
-def _off(shown: Snapshot, fit: Fit) -> np.ndarray:
+def _off(snapshot: Snapshot, fit: Fit) -> np.ndarray:
     batch = {c.name: c for c in fit.coefficients}
-    pairs = zip(shown.names, shown.value, strict=True)
+    pairs = zip(snapshot.names, snapshot.value, strict=True)
     return np.array([(v - batch[n].estimate) / batch[n].standard_error for n, v in pairs])
 
 
 @pytest.fixture(scope="module")
 def zigzags():
-    """The waterjet craft's first zigzags, 10/10 and some 15/15, fed; what was shown last, and at the end."""
+    """The waterjet craft's first zigzags, 10/10 and some 15/15; the last snapshot, and one from a search at the end."""
     trial, raw = _stream("waterjet")
     estimator = OnlineEstimator(trial)
     assert trial.stream is not None
-    shown = _feed(estimator, raw, trial.stream, slice(0, 900))
-    return trial, estimator, shown, estimator.relinearise()
+    snapshot = feed(estimator, raw, trial, slice(0, 900))
+    return trial, estimator, snapshot, estimator.relinearise()
 
 
 def test_zigzags_end_at_the_batch_estimate(zigzags):
@@ -82,7 +70,7 @@ def test_a_straight_run_first_is_not_fatal():
     estimator = OnlineEstimator(trial)
     straight = raw.rows(slice(0, 120))
     straight = straight.with_channel("delta", straight.channel("delta").with_values(np.zeros(120)))
-    early = _feed(estimator, straight, trial.stream)
+    early = feed(estimator, straight, trial)
     assert early.phase is EstimatorPhase.WAITING
     assert "never moves" in early.advice
 
@@ -91,11 +79,11 @@ def test_a_roll_decay_ends_at_the_batch_estimate():
     trial, raw = _stream("fin_decay")
     assert trial.stream is not None
     estimator = OnlineEstimator(trial)
-    shown = _feed(estimator, trim_to_decay_start(raw), trial.stream)
+    snapshot = feed(estimator, trim_to_decay_start(raw), trial)
     ended = estimator.relinearise()
     fit = identify(replace(trial, runs=estimator.raw_runs()))
     assert np.max(np.abs(_off(ended, fit))) < 0.01
-    assert np.max(np.abs(_off(shown, fit))) < 1.5
+    assert np.max(np.abs(_off(snapshot, fit))) < 1.5
     truth = np.array([trial.truth[n] for n in ended.names])
     assert np.all(np.abs(ended.value - truth) < 4.0 * ended.standard_error)
 
@@ -103,18 +91,8 @@ def test_a_roll_decay_ends_at_the_batch_estimate():
 @pytest.fixture(scope="module")
 def outages():
     """Two minutes in waves with a fin; the motion sensor loses a second three times, the whole logger once."""
-    voyage = SeawayScenario(135, duration=120.0)
-    made = simulate_seaway_run(voyage, np.random.default_rng(3))
-    record = made.with_sensor_noise(np.random.default_rng(4), voyage)
-    channels = ("F3", "M5", "delta_f1", "z", "theta")
-    columns = tuple(ColumnSpec(c, k + 2, NOTATION[c].unit) for k, c in enumerate(channels))
-    model = with_physics_start(made.truth)
-    trial = Trial(
-        ship=SHIP, runs=(), model=model, noise={"z": HEAVE_NOISE, "theta": PITCH_NOISE},
-        stream=Stream(StreamSource.STDIN, Layout("text", ColumnSpec("time", 1, "s"), columns), 10.0),
-    )  # fmt: skip
-    truth = np.array([made.truth.parameters[n].value for n in model.parameters.free_names])
-    return trial, record, truth
+    stream = sea_stream(135, 120.0, seed=3)
+    return stream.trial, stream.record, stream.truth
 
 
 def _with_outages(record: Record, symbols: tuple[str, ...], starts: tuple[int, ...]) -> Record:
@@ -129,18 +107,18 @@ def _with_outages(record: Record, symbols: tuple[str, ...], starts: tuple[int, .
 def test_one_second_without_motions_costs_accuracy_that_is_told(outages):
     """Holes of a second are interpolated straight, as in a batch fit: some per cent, and coloured residuals."""
     trial, record, truth = outages
-    best = _feed(OnlineEstimator(trial), record, trial.follow)
-    shown = _feed(OnlineEstimator(trial), _with_outages(record, ("z", "theta"), (200, 555, 900)), trial.follow)
-    assert shown.phase is EstimatorPhase.WINDOW
-    assert np.mean(np.abs(shown.value / truth - 1.0)) < 0.04
-    assert np.all(shown.standard_error > 1.5 * best.standard_error)
+    best = feed(OnlineEstimator(trial), record, trial)
+    snapshot = feed(OnlineEstimator(trial), _with_outages(record, ("z", "theta"), (200, 555, 900)), trial)
+    assert snapshot.phase is EstimatorPhase.WINDOW
+    assert np.mean(np.abs(snapshot.value / truth - 1.0)) < 0.04
+    assert np.all(snapshot.standard_error > 1.5 * best.standard_error)
 
 
 def test_a_logger_that_stops_for_a_second_goes_on_in_a_new_run(outages):
     trial, record, truth = outages
     estimator = OnlineEstimator(trial)
-    _feed(estimator, record, trial.follow, slice(0, 600))
+    feed(estimator, record, trial, slice(0, 600))
     estimator.begin_run()
-    shown = _feed(estimator, record, trial.follow, slice(610, None))
-    assert shown.runs == 2
-    assert np.mean(np.abs(shown.value / truth - 1.0)) < 0.01
+    snapshot = feed(estimator, record, trial, slice(610, None))
+    assert snapshot.runs == 2
+    assert np.mean(np.abs(snapshot.value / truth - 1.0)) < 0.01

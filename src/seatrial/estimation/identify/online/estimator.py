@@ -1,0 +1,172 @@
+"""One estimator fed sample by sample: the criterion of `identify` over a growing window, then over carried information.
+
+While the window lasts (`Stream.batch_window`) every re-linearisation goes over all samples, so that the numbers are
+those of the batch fit. Beyond it a recursive filter goes on with the same information (`RecursivePhase`). Where a
+filter cannot take over (nuisances, waves from an elevation, segments, a new run) the window's normal equations are kept
+instead of its samples (`Carried`), and further stretches are added one by one.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from seatrial.core.results.online import CoefficientChange, Sample, Snapshot
+from seatrial.core.values import Array, InputError, Record
+from seatrial.data.trial import Trial, TrialRun
+from seatrial.data.trial.follow_table import require_stream
+from seatrial.estimation.estimate.online.change_detection import ChangeDetector
+from seatrial.estimation.estimate.online.window import WindowEstimate
+from seatrial.estimation.identify.online.phases import Carried, KeptPhase, WarmUp, Window
+from seatrial.estimation.identify.online.recursive_phase import CHANGE_TEST_INTERVAL, RecursivePhase
+from seatrial.estimation.identify.online.schedule import CONTINUED_INTERVALS, REPEATED_INTERVALS, SearchSchedule
+from seatrial.estimation.identify.online.search import ContinuedSearch, RepeatedSearch, WindowSearch, suits_whole_runs
+from seatrial.estimation.identify.online.snapshots import (
+    StreamProgress,
+    at_progress,
+    first_snapshot,
+    recursive_snapshot,
+    window_snapshot,
+)
+from seatrial.estimation.identify.online.stream_window import MIN_RUN_SAMPLES, StreamWindow
+from seatrial.estimation.identify.online.transitions import carried_phase, filter_phase, is_window_full
+
+# samples before the first search: fewer leave more unknowns than a fit of a dozen coefficients and its start can bear
+_MIN_SAMPLES = 30
+_NO_MODEL_YET = "the samples so far lead to no model that can be simulated"
+
+
+class OnlineEstimator:
+    """Feed with `update`; the same samples give the same bits. No threads, no files.
+
+    A trial's own training runs come first and stay in the window.
+
+    Raises:
+        InputError: the trial has no [follow], or its own records do not pass.
+    """
+
+    def __init__(self, trial: Trial) -> None:
+        self._trial, self._stream = trial, require_stream(trial)
+        is_continued = suits_whole_runs(trial)
+        self._schedule = SearchSchedule(CONTINUED_INTERVALS if is_continued else REPEATED_INTERVALS)
+        self._search: WindowSearch = ContinuedSearch(trial, self._schedule) if is_continued else RepeatedSearch(trial)
+        self._window = StreamWindow(trial)
+        self._change_detector = ChangeDetector(trial.model.parameters.free_names, CHANGE_TEST_INTERVAL)
+        self._phase: KeptPhase | RecursivePhase = WarmUp()
+        self._progress = StreamProgress()
+        self._snapshot = first_snapshot(trial.model)
+
+    def begin_run(self) -> None:
+        """Begin a new run with the next sample: after a gap, or a jump of the clock.
+
+        Raises:
+            InputError: the run that ends cannot be used; the new one has begun nevertheless.
+        """
+        is_kept = not isinstance(self._phase, RecursivePhase) and self._window.open_samples > 0
+        if is_kept and self._schedule.is_due_at_run_end(self._window.seconds):
+            self.relinearise()
+        if isinstance(self._phase, RecursivePhase):
+            self._leave_filter(self._phase)
+        self._progress = self._progress.with_run()
+        self._window.begin_run(self._progress.runs)
+
+    def update(self, sample: Sample) -> Snapshot:
+        """Take in one sample, later than the last, and return the estimate by now."""
+        if not self._window.has_run:
+            self.begin_run()
+        self._progress = self._progress.with_sample(sample.time)
+        if isinstance(self._phase, RecursivePhase):
+            self._filter(self._phase, sample)
+        else:
+            self._window.add(sample)
+            if self._window.seconds >= self._schedule.next_search and self._window.open_samples >= MIN_RUN_SAMPLES:
+                self.relinearise()
+        self._snapshot = at_progress(self._snapshot, self._progress)
+        return self._snapshot
+
+    def relinearise(self) -> Snapshot:
+        """Search now over everything in the window; a filter takes in the samples that wait for later ones."""
+        if isinstance(self._phase, RecursivePhase):
+            self._phase.finish()
+            self._snapshot = recursive_snapshot(self._snapshot, self._trial.model, self._phase)
+        else:
+            self._search_window(self._phase)
+        return self._snapshot
+
+    def raw_runs(self) -> tuple[TrialRun, ...]:
+        """Return the stream's runs that are still kept, as training runs of a trial whose files have been read."""
+        return self._window.training_runs()
+
+    @property
+    def covariance(self) -> Array:
+        """Covariance of the free coefficients, (k, k); infinite diagonal where nothing is known."""
+        if isinstance(self._phase, WarmUp):
+            return np.diag(np.full(len(self._snapshot.names), np.inf))
+        return self._phase.covariance if isinstance(self._phase, RecursivePhase) else self._phase.estimate.covariance
+
+    def records(self) -> tuple[Record, ...]:
+        """Return the records in the window, in canonical frames and signs.
+
+        Raises:
+            InputError: the present run is too short to be read as a record.
+        """
+        return tuple(self._window.records())
+
+    def _search_window(self, phase: KeptPhase) -> None:
+        """Search over the window, and leave it where it is full."""
+        seconds = self._window.seconds
+        self._schedule.note_search(seconds, is_carried=isinstance(phase, Carried))
+        if self._window.samples >= _MIN_SAMPLES:
+            try:
+                with np.errstate(all="ignore"):  # a trial step may overflow; the search then takes another
+                    estimate = self._search.estimate(phase, self._window.records())
+                self._phase = phase = phase.with_estimate(estimate)
+                change = self._test_for_change(estimate)
+                self._snapshot = window_snapshot(self._snapshot, self._trial.model, phase, estimate, change)
+            except (InputError, np.linalg.LinAlgError) as error:
+                if isinstance(phase, WarmUp):
+                    reason = str(error) if isinstance(error, InputError) else _NO_MODEL_YET
+                    self._snapshot = replace(self._snapshot, advice=reason)
+        if not isinstance(phase, WarmUp) and is_window_full(phase, seconds, self._stream, self._schedule.intervals):
+            self._leave_window(phase)
+
+    def _leave_window(self, phase: Window | Carried) -> None:
+        """Go on with a filter where one can take over, else with the window's information."""
+        following = None
+        if self._search.is_efficient:
+            reference_point = self._trial.reference_point
+            following = filter_phase(phase.estimate, self._stream, reference_point, self._change_detector)
+        if following is None:
+            is_efficient = self._search.is_efficient
+            following = carried_phase(phase, self._window.seconds, self._stream, is_efficient=is_efficient)
+            self._schedule.note_search(0.0, is_carried=True)
+        elif isinstance(phase, Carried) and self._stream.forgetting_time is not None:
+            self._change_detector.reset()
+        self._phase = following
+        self._window.clear()
+
+    def _filter(self, phase: RecursivePhase, sample: Sample) -> None:
+        """Take a sample into the filter; one that has diverged is left."""
+        if not phase.add(sample.time, sample.values, self._progress.elapsed):
+            return
+        if phase.is_sound:
+            self._snapshot = recursive_snapshot(self._snapshot, self._trial.model, phase)
+        else:
+            self._leave_filter(phase)
+
+    def _leave_filter(self, phase: RecursivePhase) -> None:
+        """Go on with a window: with the filter's information, or from nowhere where it has diverged."""
+        self._phase = phase.to_window()
+        self._schedule.restart()
+        if isinstance(self._phase, WarmUp):
+            self._change_detector.restart()
+
+    def _test_for_change(self, estimate: WindowEstimate) -> CoefficientChange | None:
+        """Whether the latest stretch contradicts the ones before, where successive estimates are nested.
+
+        They are not while old samples are forgotten, where every search chooses its criterion anew, and where the
+        forces of the same waves change as more of their elevation is known.
+        """
+        is_nested = self._search.is_efficient and self._stream.waves is None and self._stream.forgetting_time is None
+        if is_nested and np.all(np.isfinite(estimate.covariance)):
+            self._change_detector.update(self._progress.elapsed, estimate.value, estimate.covariance)
+        return self._change_detector.reported

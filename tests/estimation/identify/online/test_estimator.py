@@ -1,0 +1,187 @@
+"""Fed sample by sample: the numbers of the batch fit on the same samples, and what is carried on beyond the window."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.estimation.identify.online.streams import feed, samples, sea_stream
+
+from seatrial.core.results.online import EstimatorPhase
+from seatrial.core.values import InputError
+from seatrial.data.trial import load_trial
+from seatrial.data.trial.follow_table import require_stream
+from seatrial.estimation.identify.identify import identify
+from seatrial.estimation.identify.online import OnlineEstimator
+from seatrial.onboard.sources import open_source
+from seatrial_studies.seaway import SeawayScenario, ship, simulate_seaway_run
+
+EXAMPLES = Path(__file__).parents[4] / "examples"
+
+
+@pytest.mark.parametrize("heading", [90, 135, 180])
+def test_the_numbers_are_those_of_the_batch_fit_on_the_same_samples(heading):
+    stream = sea_stream(heading, 120.0)
+    trial, record = stream.trial, stream.record
+    estimator = OnlineEstimator(trial)
+    feed(estimator, record, trial)
+    snapshot = estimator.relinearise()
+    fit = identify(replace(trial, runs=estimator.raw_runs()))
+    batch = {c.name: c for c in fit.coefficients}
+    off = [
+        (v - batch[n].estimate) / batch[n].standard_error for n, v in zip(snapshot.names, snapshot.value, strict=True)
+    ]
+    assert np.max(np.abs(off)) < 0.01
+    np.testing.assert_allclose(snapshot.standard_error, [batch[n].standard_error for n in snapshot.names], rtol=0.01)
+
+
+def test_one_per_cent_is_reached_within_the_first_minute():
+    stream = sea_stream(135, 60.0)
+    trial, record, truth = stream.trial, stream.record, stream.truth
+    snapshot = feed(OnlineEstimator(trial), record, trial)
+    assert snapshot.phase is EstimatorPhase.WINDOW
+    assert np.mean(np.abs(snapshot.value / truth - 1.0)) < 0.01
+
+
+def test_beyond_the_window_a_filter_carries_its_information_on():
+    stream = sea_stream(135, 300.0)
+    trial, record = stream.trial, stream.record
+    whole = OnlineEstimator(trial)
+    feed(whole, record, trial)
+    best = whole.relinearise()
+    short = OnlineEstimator(replace(trial, stream=replace(trial.stream, batch_window=120.0)))
+    feed(short, record, trial)
+    snapshot = short.relinearise()
+    assert snapshot.phase is EstimatorPhase.RECURSIVE
+    np.testing.assert_allclose(snapshot.standard_error, best.standard_error, rtol=0.02)
+    assert np.all(np.abs(snapshot.value - best.value) < 0.1 * best.standard_error)
+
+
+def test_a_gap_beyond_the_window_goes_on_with_what_the_filter_knew():
+    stream = sea_stream(135, 400.0)
+    trial, record, truth = stream.trial, stream.record, stream.truth
+    estimator = OnlineEstimator(replace(trial, stream=replace(trial.stream, batch_window=120.0)))
+    feed(estimator, record, trial, slice(0, 2000))
+    known = estimator.relinearise()
+    estimator.begin_run()
+    feed(estimator, record, trial, slice(2200, None))
+    snapshot = estimator.relinearise()
+    assert snapshot.runs == 2
+    assert np.all(snapshot.standard_error < known.standard_error)
+    assert np.all(np.abs(snapshot.value - truth) < 5.0 * snapshot.standard_error)
+
+
+@pytest.mark.parametrize("forgetting", [None, 60.0])
+def test_a_ship_that_becomes_another_is_told_and_followed(forgetting):
+    stream = sea_stream(90, 240.0)
+    trial, record, truth = stream.trial, stream.record, stream.truth
+    voyage = SeawayScenario(90, duration=240.0)
+    heavy = ship(90).with_values({"a33": 1.5 * ship(90).parameters["a33"].value})
+    loaded = simulate_seaway_run(voyage, np.random.default_rng(5), heavy).with_sensor_noise(
+        np.random.default_rng(6), voyage
+    )
+    estimator = OnlineEstimator(
+        replace(trial, stream=replace(trial.stream, batch_window=60.0, forgetting_time=forgetting))
+    )
+    feed(estimator, record, trial)
+    before = estimator.relinearise().change
+    assert before is None or not before.is_significant
+    estimator.begin_run()
+    feed(estimator, loaded, trial)
+    snapshot = estimator.relinearise()
+    assert snapshot.change is not None
+    assert snapshot.change.is_significant
+    place = list(trial.model.parameters.free_names).index("a33")
+    assert abs(snapshot.value[place] / (1.5 * truth[place]) - 1.0) < 0.01
+
+
+def test_the_same_samples_give_the_same_bits():
+    stream = sea_stream(90, 30.0)
+    trial, record = stream.trial, stream.record
+    first, again = (feed(OnlineEstimator(trial), record, trial) for _ in range(2))
+    assert np.array_equal(first.value, again.value)
+    assert np.array_equal(first.standard_error, again.standard_error)
+
+
+def test_a_gap_begins_another_run_and_both_tell():
+    stream = sea_stream(135, 80.0)
+    trial, record = stream.trial, stream.record
+    estimator = OnlineEstimator(trial)
+    feed(estimator, record, trial, slice(0, 400))
+    alone = estimator.relinearise().standard_error
+    estimator.begin_run()
+    feed(estimator, record, trial, slice(450, None))
+    both = estimator.relinearise()
+    assert both.runs == 2
+    assert np.all(both.standard_error < alone)
+
+
+def test_nothing_is_claimed_before_there_is_something_to_claim():
+    stream = sea_stream(135, 20.0)
+    trial, record = stream.trial, stream.record
+    snapshot = feed(OnlineEstimator(trial), record, trial, slice(0, 20))
+    assert snapshot.phase is EstimatorPhase.WAITING
+    assert np.all(np.isinf(snapshot.standard_error))
+
+
+def test_a_trial_that_follows_nothing_is_refused():
+    trial = sea_stream(135, 20.0).trial
+    with pytest.raises(InputError, match=r"there is no \[follow\]"):
+        OnlineEstimator(replace(trial, stream=None))
+
+
+def test_a_ship_that_stays_the_same_is_not_told_to_change():
+    # waves known by their elevation: their forces change a little as more of it is known
+    trial = load_trial(EXAMPLES / "heave_pitch_follow.toml")
+    source = open_source(require_stream(trial), once=True)
+    estimator, snapshot = OnlineEstimator(trial), None
+    while not source.is_over:
+        for sample in source.poll(0.1):
+            snapshot = estimator.update(sample)
+    source.close()
+    assert snapshot is not None
+    last = estimator.relinearise()
+    assert last.change is None or not last.change.is_significant
+
+
+def test_each_run_counts_once_after_a_filter_has_been_left():
+    stream = sea_stream(135, 160.0)
+    trial = replace(stream.trial, stream=replace(stream.trial.stream, batch_window=60.0))
+    estimator = OnlineEstimator(trial)
+    feed(estimator, stream.record, trial, slice(0, 1000))  # beyond the window: a filter
+    for rows in (slice(1050, 1250), slice(1300, 1500)):
+        estimator.begin_run()
+        feed(estimator, stream.record, trial, rows)
+    assert [(r.name, len(r)) for r in estimator.records()] == [("stream_2", 200), ("stream_3", 200)]
+
+
+def test_a_run_that_ends_as_the_window_is_full_is_not_joined_to_the_next():
+    stream = sea_stream(135, 80.0)
+    trial = replace(stream.trial, stream=replace(stream.trial.stream, batch_window=30.0))
+    estimator = OnlineEstimator(trial)
+    feed(estimator, stream.record, trial, slice(0, 290))
+    for sample in samples(stream.record, trial, slice(290, 420)):
+        # no search between: the window is found full only as the run ends
+        estimator._schedule.next_search = np.inf
+        estimator.update(sample)
+    estimator.begin_run()
+    feed(estimator, stream.record, trial, slice(500, 520))
+    assert [(r.name, len(r)) for r in estimator.records()] == [("stream_2", 20)]
+
+
+def test_a_run_too_short_for_its_waves_is_dropped_and_the_next_one_begins():
+    trial = load_trial(EXAMPLES / "heave_pitch_follow.toml")
+    source, estimator = open_source(require_stream(trial), once=True), OnlineEstimator(trial)
+    rows = source.poll(1.0)
+    while not source.is_over:
+        rows += source.poll(1.0)
+    source.close()
+    for sample in rows[:200]:
+        estimator.update(sample)
+    with pytest.raises(InputError, match="too short for its longest waves"):
+        estimator.begin_run()
+    for sample in rows[300:1000]:
+        snapshot = estimator.update(sample)
+    assert snapshot.runs == 2
+    (record,) = estimator.records()
+    assert record.time[0] >= rows[300].time

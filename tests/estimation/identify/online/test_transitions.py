@@ -1,0 +1,119 @@
+"""From phase to phase, one transition at a time."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.estimation.identify.online.streams import samples, sea_stream, window_of
+
+from seatrial.data.trial.trial import WaveEncounter
+from seatrial.estimation.estimate.online.change_detection import ChangeDetector
+from seatrial.estimation.identify.online.phases import Carried, WarmUp, Window
+from seatrial.estimation.identify.online.recursive_phase import BLOCK_SAMPLES, RecursivePhase
+from seatrial.estimation.identify.online.schedule import CONTINUED_INTERVALS, REPEATED_INTERVALS, SearchSchedule
+from seatrial.estimation.identify.online.search import ContinuedSearch
+from seatrial.estimation.identify.online.transitions import carried_phase, filter_phase, is_window_full
+from seatrial_studies.seaway import box_hull
+
+
+@pytest.fixture(scope="module")
+def stream():
+    return sea_stream(135, 60.0)
+
+
+@pytest.fixture(scope="module")
+def window_phase(stream):
+    """The first estimate, from 50 s: warm-up becomes window."""
+    search = ContinuedSearch(stream.trial, SearchSchedule(CONTINUED_INTERVALS))
+    return WarmUp().with_estimate(search.estimate(WarmUp(), window_of(stream, slice(0, 500)).records()))
+
+
+def _filter(stream, window_phase, **changes):
+    names = stream.trial.model.parameters.free_names
+    detector = ChangeDetector(names, 60.0)
+    return filter_phase(window_phase.estimate, replace(stream.trial.stream, **changes), 0.0, detector)
+
+
+def test_warm_up_becomes_a_window_with_the_first_estimate(stream, window_phase):
+    assert isinstance(window_phase, Window)
+    assert np.mean(np.abs(window_phase.estimate.value / stream.truth - 1.0)) < 0.02
+
+
+def test_a_window_is_full_after_its_time_and_never_before_an_estimate(stream, window_phase):
+    hour = replace(stream.trial.stream, batch_window=3600.0)
+    assert not is_window_full(WarmUp(), 1e6, hour, CONTINUED_INTERVALS)
+    assert not is_window_full(window_phase, 3599.0, hour, CONTINUED_INTERVALS)
+    assert is_window_full(window_phase, 3600.0, hour, CONTINUED_INTERVALS)
+    assert is_window_full(window_phase, 100.0, replace(hour, forgetting_time=100.0), CONTINUED_INTERVALS)
+
+
+@pytest.mark.parametrize(("intervals", "stretch"), [(CONTINUED_INTERVALS, 60.0), (REPEATED_INTERVALS, 900.0)])
+def test_carried_information_is_renewed_after_a_stretch(stream, window_phase, intervals, stretch):
+    hour = replace(stream.trial.stream, batch_window=3600.0)
+    assert not is_window_full(window_phase.carried(), stretch - 1.0, hour, intervals)
+    assert is_window_full(window_phase.carried(), stretch, hour, intervals)
+
+
+def test_a_window_becomes_a_filter_with_the_same_estimate(stream, window_phase):
+    recursive = _filter(stream, window_phase)
+    assert isinstance(recursive, RecursivePhase)
+    np.testing.assert_allclose(recursive.value, window_phase.estimate.value)
+    np.testing.assert_allclose(recursive.covariance, window_phase.estimate.covariance, rtol=1e-6)
+
+
+def test_waves_from_an_elevation_need_a_window(stream, window_phase):
+    assert _filter(stream, window_phase, waves=WaveEncounter(box_hull(), 0.0, np.pi)) is None
+
+
+def test_a_window_becomes_carried_information_of_the_same_weight(stream, window_phase):
+    carried = carried_phase(window_phase, 50.0, stream.trial.stream, is_efficient=False)
+    assert isinstance(carried, Carried)
+    np.testing.assert_allclose(carried.prior.point, window_phase.estimate.value)
+    weight, errors = carried.prior.information, np.sqrt(np.diag(window_phase.estimate.covariance))
+    deviation = np.sqrt(np.diag(np.linalg.inv(weight)))
+    np.testing.assert_allclose(deviation, errors / np.sqrt(carried.inflation), rtol=0.05)
+
+
+def test_forgetting_discounts_what_is_carried(stream, window_phase):
+    full = carried_phase(window_phase, 50.0, stream.trial.stream, is_efficient=False)
+    half = replace(stream.trial.stream, forgetting_time=50.0 / np.log(2.0))
+    halved = carried_phase(window_phase, 50.0, half, is_efficient=False)
+    np.testing.assert_allclose(halved.prior.information, 0.5 * full.prior.information)
+
+
+def test_correlated_residuals_discount_what_an_efficient_search_carries(stream, window_phase):
+    coloured = Window(replace(window_phase.estimate, inflation=np.array([1.0, 4.0])))
+    plain = carried_phase(coloured, 50.0, stream.trial.stream, is_efficient=False)
+    discounted = carried_phase(coloured, 50.0, stream.trial.stream, is_efficient=True)
+    np.testing.assert_allclose(discounted.prior.information, 0.25 * plain.prior.information)
+
+
+def test_a_filter_that_is_left_hands_its_information_to_a_window(stream, window_phase):
+    recursive = _filter(stream, window_phase)
+    elapsed = 50.0
+    moved = [recursive.add(s.time, s.values, elapsed) for s in samples(stream.record, stream.trial, slice(500, 595))]
+    assert sum(moved) == 95 // BLOCK_SAMPLES
+    carried = recursive.to_window()
+    assert isinstance(carried, Carried)
+    np.testing.assert_allclose(carried.prior.point, recursive.value)
+    covariance = carried.inflated_covariance(carried.prior.information, np.zeros(len(stream.truth)))
+    np.testing.assert_allclose(covariance, recursive.covariance, rtol=1e-4)
+    assert np.all(np.diag(recursive.covariance) < np.diag(window_phase.estimate.covariance))
+
+
+def test_a_filter_that_has_diverged_leads_back_to_warm_up(stream, window_phase):
+    recursive = _filter(stream, window_phase)
+    scale = np.array([1.0, 1.0, 1.0, 1e3, 1e3])
+    for sample in samples(stream.record, stream.trial, slice(500, 600)):
+        recursive.add(sample.time, sample.values * scale, 50.0)
+    for sample in samples(stream.record, stream.trial, slice(0, 200)):
+        recursive.add(60.0 + sample.time, sample.values * scale, 60.0)
+    assert not recursive.is_sound
+    assert recursive.to_window() == WarmUp()
+
+
+def test_inflation_widens_what_data_give_and_leaves_priors(window_phase):
+    carried = replace(window_phase.carried(), inflation=4.0)
+    weight = np.array([3.0, 0.0])
+    hessian = np.diag([4.0 + 3.0, 8.0])
+    np.testing.assert_allclose(carried.inflated_covariance(hessian, weight), np.diag([1 / 4.0, 1 / 2.0]))
