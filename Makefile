@@ -54,7 +54,7 @@ bench: $(READY)
 	@$(BIN)/python benchmarks/run.py
 
 docs: $(READY)
-	@$(BIN)/mkdocs build --strict
+	@$(BIN)/python -m sphinx -W --keep-going -q docs site
 	@echo 'the documentation lies in site/index.html'
 
 clean:

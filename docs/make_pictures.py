@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-import seatrial.api as sea
+import seatrial as st
 from seatrial.core.figures.tracks import hull_outline
 from seatrial.core.results import Prediction
 from seatrial.core.values import Record
@@ -66,7 +66,7 @@ def _track(axes: Axes, record: Record, length: float, look: dict) -> None:
 
 def main() -> None:
     """Identify, predict, draw."""
-    fit = sea.identify(sea.load_trial(REPOSITORY / "examples" / "kvlcc2_hsva.toml"))
+    fit = st.identify(st.load_trial(REPOSITORY / "examples" / "kvlcc2_hsva.toml"))
     held_out = fit.validation()[0]
     rms, duration = held_out.rms, held_out.measured.duration
     title = (

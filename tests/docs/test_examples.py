@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import seatrial.api as sea
+import seatrial as st
+from seatrial.api import prepared_run
 from seatrial.data.folder.result_folder import save_fit
 from seatrial.data.trial import load_trial
 from seatrial.estimation.identify import identify
@@ -57,8 +58,8 @@ def test_the_examples_in_waves_give_their_coefficients_back(name: str) -> None:
 def test_a_voyage_in_waves_is_replayed(tmp_path: Path) -> None:
     trial = REPOSITORY / "examples" / "heave_pitch.toml"
     folder = save_fit(identify(load_trial(trial)), tmp_path)
-    record = sea.prepared_run(trial, "voyage_held_out")
-    simulated = sea.replay(sea.load_model(folder / "model.toml"), record)
+    record = prepared_run(trial, "voyage_held_out")
+    simulated = st.simulate(st.load_model(folder / "model.toml"), record)
     settled = slice(300, None)
     for channel, noise in (("z", 0.01), ("theta", np.radians(0.02))):
         assert np.std((simulated[channel] - record[channel])[settled]) < 1.3 * noise
