@@ -103,7 +103,7 @@ def _autopilots() -> list[Line]:
         if trial == "kvlcc2_hsva" and "SEATRIAL_DATA" not in os.environ:
             continue
         with tempfile.TemporaryDirectory() as folder:
-            api.save_fit(api.identify(api.load_trial(EXAMPLES / f"{trial}.toml")), folder)
+            api.save(api.identify(api.load_trial(EXAMPLES / f"{trial}.toml")), folder)
             made = api.tune(api.load_loop(EXAMPLES / f"{loop}.toml", model_file=Path(folder) / "model.toml"))
         lines += _autopilot(trial, made)
     return lines

@@ -67,7 +67,7 @@ def _track(axes: Axes, record: Record, length: float, look: dict) -> None:
 def main() -> None:
     """Identify, predict, draw."""
     fit = st.identify(st.load_trial(REPOSITORY / "examples" / "kvlcc2_hsva.toml"))
-    held_out = fit.validation()[0]
+    held_out = fit.validation[0]
     rms, duration = held_out.rms, held_out.measured.duration
     title = (
         f"KVLCC2, 35/5 zigzag, not fitted: {duration:.0f} s from rudder and propeller alone, "

@@ -14,9 +14,6 @@ from pathlib import Path
 import pytest
 from tests.onboard.streams import EXAMPLES, LINES
 
-from seatrial.data.folder.fit_json import FitDocument
-from seatrial.data.folder.online_json import OnlineDocument
-
 COMMAND = (sys.executable, "-c", "from seatrial.cli import main; main()", "follow")
 
 
@@ -55,7 +52,6 @@ def test_once_writes_what_identify_writes(tmp_path: Path, run_command: Callable[
         == 0
     )
     followed, identified = (json.loads((tmp_path / f"{n}.json").read_text()) for n in ("followed", "identified"))
-    FitDocument.model_validate(followed)
     for document in (followed, identified):
         del document["elapsed_s"]
     assert followed == identified
@@ -132,9 +128,9 @@ def test_ctrl_c_ends_it_with_what_is_known_and_the_journal_goes_on(tmp_path: Pat
         last_resort.cancel()
     assert child.returncode == 0, wrong
     assert "1200 samples accepted; nothing amiss" in said
-    document = OnlineDocument.model_validate(json.loads(told.read_text()))
-    assert (document.counts.accepted, document.phase, len(document.coefficients)) == (1200, "window", 8)
-    assert 0 < document.samples <= 1200
+    last = json.loads(told.read_text())
+    assert (last["counts"]["accepted"], last["phase"], len(last["coefficients"])) == (1200, "window", 8)
+    assert 0 < last["samples"] <= 1200
     assert json.loads((out / "online.json").read_text()) == json.loads(told.read_text())
     assert journal.stat().st_size < 1250 * 45
 

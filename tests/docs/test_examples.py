@@ -8,7 +8,7 @@ import pytest
 
 import seatrial as st
 from seatrial.api import prepared_run
-from seatrial.data.folder.result_folder import save_fit
+from seatrial.data.folder.result_folder import save_result
 from seatrial.data.trial import load_trial
 from seatrial.estimation.identify import identify
 from seatrial.physics.models import model_from_file
@@ -57,7 +57,7 @@ def test_the_examples_in_waves_give_their_coefficients_back(name: str) -> None:
 
 def test_a_voyage_in_waves_is_replayed(tmp_path: Path) -> None:
     trial = REPOSITORY / "examples" / "heave_pitch.toml"
-    folder = save_fit(identify(load_trial(trial)), tmp_path)
+    folder = save_result(identify(load_trial(trial)), tmp_path)
     record = prepared_run(trial, "voyage_held_out")
     simulated = st.simulate(st.load_model(folder / "model.toml"), record)
     settled = slice(300, None)

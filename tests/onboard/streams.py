@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.core.results import Fit
 from seatrial.core.results.online import EstimatorPhase, SampleCounts, Snapshot
-from seatrial.data.folder.fit_json import fit_json
+from seatrial.data.folder.document import document
 from seatrial.data.trial import Trial, load_trial
 from seatrial.data.trial.follow_table import require_stream
 from seatrial.onboard.follow import FollowResult
@@ -73,7 +73,7 @@ def sample_range(first: int, last: int, start: float = 0.0) -> list[Sample]:
 def fit_json_without_time(fit: Fit | None) -> dict:
     """The fit as JSON, but for the time it took."""
     assert fit is not None
-    return {key: value for key, value in fit_json(fit).items() if key != "elapsed_s"}
+    return {key: value for key, value in document(fit).items() if key != "elapsed_s"}
 
 
 def accepted_count(outcome: FollowResult) -> int:

@@ -90,7 +90,7 @@ def fabricated_fit(*, names: tuple[str, ...] = ("zigzag_10_10", "zigzag_20_20", 
             Offset("delta zero", n, "rad", math.radians(0.2 * k - 0.3), math.radians(0.05))
             for k, n in enumerate(names[:3])
         ),
-        noise=tuple(
+        channel_noise=tuple(
             Noise(c, {"u": "m/s", "v": "m/s", "r": "rad/s"}.get(c, "rad" if c == "psi" else "m"), s, 0.2, p)
             for (c, s), p in zip(NOISE.items(), (0.41, 0.62, 0.003, 0.08, 0.3, 0.00002), strict=True)
         ),

@@ -46,8 +46,7 @@ def fabricated_fin() -> Tuning:
         seas=("ITTC 3.3 m, long-crested, 90 deg, 9.26 m/s", "ITTC 3.3 m, short-crested, 135 deg, 9.26 m/s"),
         output="phi",
         actuator="alpha_f",
-        objectives=("roll variance", "fin variance", "fin rate variance"),
-        units=("rad^2", "rad^2", "rad^2/s^2"),
+        objectives={"roll variance": "rad^2", "fin variance": "rad^2", "fin rate variance": "rad^2/s^2"},
         constraints=LIMITS,
         chosen=chosen,
         reasons=(
@@ -100,7 +99,7 @@ def fabricated_autopilot() -> Tuning:
     return replace(
         fin, question="", name="heading autopilot", plant="Nomoto model of a tanker, 7 m/s", output="psi",
         actuator="delta", seas=("unrest of 2 deg of the actuator, 0.05 rad/s",),
-        objectives=("heading variance", "rudder variance"), units=("rad^2", "rad^2"),
+        objectives={"heading variance": "rad^2", "rudder variance": "rad^2"},
         constraints=replace(LIMITS, Ms=1.7, limit=math.radians(35.0), rate=math.radians(2.3), stall=math.inf),
         chosen=chosen, baselines=(given,), front=front, extended_fronts=(),
         components=components(loop), seaway_simulations=(), paired_differences=(), schedule=(), bounds=(),

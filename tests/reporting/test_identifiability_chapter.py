@@ -10,7 +10,7 @@ from tests.reporting.complete_fit import complete_fit, tanker
 from tests.reporting.fabricated import fabricated_fit
 
 from seatrial.core.results import Extrapolation, Fit, Identifiability, NoiseModel, Symmetry
-from seatrial.data.folder.result_folder import load_fit, save_fit
+from seatrial.data.folder.result_folder import load_fit, save_result
 from seatrial.reporting import summary, write_report
 from seatrial.reporting.identifiability_chapter import determined_sentence, identifiability_chapter
 from seatrial.reporting.page import html
@@ -76,7 +76,7 @@ def test_parts_that_are_empty_have_no_heading() -> None:
 
 
 def test_the_same_page_comes_from_the_result_folder(full: Fit, page_of_full: str, tmp_path: Path) -> None:
-    assert html(load_fit(save_fit(full, tmp_path))) == page_of_full
+    assert html(load_fit(save_result(full, tmp_path))) == page_of_full
 
 
 def test_texts_are_escaped(full: Fit, tmp_path: Path) -> None:

@@ -76,7 +76,7 @@ def test_text_from_files_is_escaped_everywhere(tmp_path: Path) -> None:
 
 def test_a_fit_with_next_to_nothing_renders(fit: Fit, tmp_path: Path) -> None:
     bare = replace(
-        fit, predictions=(), offsets=(), noise=(), residuals=(), findings=(), ship=Ship("nameless"),
+        fit, predictions=(), offsets=(), channel_noise=(), residuals=(), findings=(), ship=Ship("nameless"),
         covariance=np.zeros((0, 0)), records=tuple(r.without("x0", "y0", "psi") for r in fit.records),
     )  # fmt: skip
     text = write_report(bare, tmp_path / "bare.html").read_text()

@@ -1,9 +1,9 @@
 """The page of a study: claims, verdicts, checks; empty sections are left out; JSON keys as promised."""
 
-from dataclasses import replace
 from pathlib import Path
 
 from seatrial.core.results import Claim, Study, Verdict
+from seatrial.data.folder.document import document
 from seatrial.reporting.study import outcome, write_study
 
 
@@ -27,7 +27,7 @@ def test_empty_sections_are_left_out(tmp_path: Path) -> None:
 
 
 def test_table_for_json(study: Study) -> None:
-    table = replace(study).as_table()
+    table = document(study)
     assert table["claims"][0] == {
         "claim": "The model predicts a turn within 5 %", "verdict": "confirmed", "evidence": "advance −1.6 %",
     }  # fmt: skip

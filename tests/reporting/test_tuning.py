@@ -159,7 +159,8 @@ def test_text_from_files_is_escaped(make: Callable[[], Tuning]) -> None:
     hostile = replace(
         tuning, question=HOSTILE, name=HOSTILE, plant=HOSTILE, seas=(HOSTILE,), reasons=(HOSTILE,),
         baselines=tuple(replace(c, name=HOSTILE, violated=(HOSTILE,)) for c in tuning.baselines),
-        objectives=(HOSTILE, *tuning.objectives[1:]), front=replace(tuning.front, name=HOSTILE),
+        objectives=dict(zip((HOSTILE, *list(tuning.objectives)[1:]), tuning.units, strict=True)),
+        front=replace(tuning.front, name=HOSTILE),
         components=tuple(replace(c, name=HOSTILE, source=HOSTILE) for c in tuning.components),
         seaway_simulations=tuple(replace(s, name=HOSTILE) for s in tuning.seaway_simulations),
         schedule=tuple(replace(s, baseline_costs={HOSTILE: 0.3}) for s in tuning.schedule),

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.results import Bars, Matrix, Study, Verdict
-from seatrial.data.folder.fit_json import strict_json
+from seatrial.data.folder.document import document, strict_json
 from seatrial_studies.song2025 import study
 from seatrial_studies.song2025.candidates import thirteen_coefficient_model
 from seatrial_studies.song2025.published import DROPPED_COEFFICIENTS, STATEMENTS
@@ -49,9 +49,9 @@ def test_every_table_and_figure_of_the_paper_has_its_place() -> None:
 
 def test_it_can_be_written_as_json() -> None:
     """Numbers only where there are numbers."""
-    table = json.loads(strict_json(made().as_table()))
-    assert {"study", "tables", "claims", "checks"} <= set(table)
-    assert table["study"] == "song2025"
+    table = json.loads(strict_json(document(made())))
+    assert {"name", "tables", "claims", "checks"} <= set(table)
+    assert table["name"] == "song2025"
 
 
 def test_the_two_further_candidates_act_as_eq_2_has_them() -> None:

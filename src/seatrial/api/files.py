@@ -5,10 +5,11 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from seatrial.core.equations import Model
-    from seatrial.core.results import Design, Fit, Study
-    from seatrial.core.results.tuning import Tuning
+    from seatrial.core.results import Fit
+    from seatrial.core.results.online import Snapshot
     from seatrial.core.values import Record
     from seatrial.data.folder.model_file import ModelFile
+    from seatrial.data.folder.result_folder import Result
     from seatrial.data.read import Layout
     from seatrial.onboard.follow import FollowResult
 
@@ -55,117 +56,66 @@ def load_model(path: str | Path, own_model: "Model | None" = None) -> "ModelFile
     return read_model_file(path, own_model)
 
 
-def load_fit(folder: str | Path, own_model: "Model | None" = None) -> "Fit":
-    """Load the fit of a result folder.
+def load(folder: str | Path, own_model: "Model | None" = None) -> "Result":
+    """Load the fit, design, tuning or study that a folder holds; nothing is computed.
 
     Args:
-        folder: as `identify` writes it.
+        folder: as `save` or a command writes it.
         own_model: equations that are not built in.
 
     Raises:
-        InputError: it is none, or its files do not belong together.
+        InputError: no result folder, one of an earlier version, or files that do not belong together.
+    """
+    from seatrial.data.folder.result_folder import load_result
+
+    return load_result(folder, own_model)
+
+
+def load_fit(folder: str | Path, own_model: "Model | None" = None) -> "Fit":
+    """Load the fit of a result folder; arguments and errors as in `load`.
+
+    Raises:
+        InputError: the folder holds another result.
     """
     from seatrial.data.folder.result_folder import load_fit
 
     return load_fit(folder, own_model)
 
 
-def report(fit: "Fit", path: str | Path) -> Path:
-    """Render the fit as one self-contained HTML file; nothing is computed.
+def report(result: "Result | str | Path", path: str | Path) -> Path:
+    """Render a result, or that of a folder, as one self-contained HTML file; nothing is computed. Returns its path.
 
     Raises:
-        InputError: the file cannot be written.
+        InputError: no result folder, or the file cannot be written.
     """
-    from seatrial.reporting import write_report
+    from seatrial.core.values.files import write_atomically
+    from seatrial.reporting.pages import report_page
 
-    write_report(fit, Path(path))
+    value = load(result) if isinstance(result, str | Path) else result
+    write_atomically(Path(path), report_page(value).encode())
     return Path(path)
 
 
-def save_fit(fit: "Fit", folder: str | Path) -> Path:
-    """Write the result folder (see docs/result-folder.md) with its report; returns the report's path.
+def save(result: "Result | Snapshot | FollowResult", folder: str | Path) -> Path:
+    """Write the folder of a result (see docs/result-folder.md) with its report, all files or none.
+
+    Args:
+        result: a fit, design, tuning or study, or what `follow` returns: the fit after `once`, else the last estimate.
+        folder: other files in it are left alone.
+
+    Returns:
+        Path of ``report.html``, or of ``online.json`` where following ended without a fit.
 
     Raises:
         InputError: the folder cannot be written.
     """
-    from seatrial.data.folder.result_folder import save_fit
-
-    return report(fit, save_fit(fit, folder) / "report.html")
-
-
-def save_outcome(outcome: "FollowResult", folder: str | Path) -> Path:
-    """Write what following came to: a result folder with its report after `once`, else ``online.json``; its path.
-
-    Raises:
-        InputError: the folder cannot be written.
-    """
+    from seatrial.core.results.online import Snapshot
     from seatrial.core.values.files import write_files_atomically
-    from seatrial.data.folder.fit_json import strict_json
-    from seatrial.data.folder.online_json import online_json
+    from seatrial.data.folder.result_folder import folder_files
+    from seatrial.onboard.follow import FollowResult
+    from seatrial.reporting.pages import report_page
 
-    if outcome.fit is not None:
-        return save_fit(outcome.fit, folder)
-    text = strict_json(online_json(outcome.snapshot, outcome.counts))
-    return write_files_atomically(Path(folder), {"online.json": text.encode()}) / "online.json"
-
-
-def save_design(design: "Design", folder: str | Path) -> Path:
-    """Write report, orders, plan, model and ``design.json`` of a design to `folder`; returns the report's path.
-
-    Raises:
-        InputError: the folder cannot be written.
-    """
-    from seatrial.core.values.files import write_files_atomically
-    from seatrial.data.folder.design_json import design_json
-    from seatrial.data.folder.fit_json import strict_json
-    from seatrial.data.folder.model_file import ModelFile, model_text
-    from seatrial.data.folder.orders import orders_csv
-    from seatrial.data.read.record_csv import record_csv
-    from seatrial.reporting.design import html
-
-    texts = {
-        "orders.csv": orders_csv(design),
-        "plan.csv": record_csv(design.plan),
-        "design.json": strict_json(design_json(design)),
-        "model.toml": model_text(ModelFile(design.model)),
-        "report.html": html(design),
-    }
-    return write_files_atomically(Path(folder), {name: text.encode() for name, text in texts.items()}) / "report.html"
-
-
-def save_tuning(tuning: "Tuning", folder: str | Path) -> Path:
-    """Write report, gains, loop, schedule and ``tuning.json`` of a tuning to `folder`; returns the report's path.
-
-    Raises:
-        InputError: the folder cannot be written.
-    """
-    from seatrial.core.values.files import write_files_atomically
-    from seatrial.data.folder.fit_json import strict_json
-    from seatrial.data.folder.tuning_files import gains_toml, loop_mat, schedule_csv
-    from seatrial.data.folder.tuning_json import tuning_json
-    from seatrial.reporting.tuning import html
-
-    contents = {
-        "gains.toml": gains_toml(tuning).encode(),
-        "loop.mat": loop_mat(tuning),
-        "tuning.json": strict_json(tuning_json(tuning)).encode(),
-        "report.html": html(tuning).encode(),
-    }
-    if tuning.schedule:
-        contents["schedule.csv"] = schedule_csv(tuning).encode()
-    return write_files_atomically(Path(folder), contents) / "report.html"
-
-
-def save_study(study: "Study", folder: str | Path) -> Path:
-    """Write ``study.json`` and ``report.html`` of a study to `folder`; returns the report's path.
-
-    Raises:
-        InputError: the folder cannot be written.
-    """
-    from seatrial.core.values.files import writable_folder, write_atomically
-    from seatrial.data.folder.fit_json import strict_json
-    from seatrial.reporting.study import write_study
-
-    place = writable_folder(Path(folder))
-    write_atomically(place / "study.json", strict_json(study.as_table()).encode())
-    return write_study(study, place / "report.html")
+    value = result.result if isinstance(result, FollowResult) else result
+    page = {} if isinstance(value, Snapshot) else {"report.html": report_page(value).encode()}
+    files = folder_files(value) | page
+    return write_files_atomically(Path(folder), files) / list(files)[-1]

@@ -47,7 +47,7 @@ def demo(folder: str | Path, seed: int = 0, report_progress: "ProgressReporter |
     Raises:
         InputError: the folder cannot be written.
     """
-    from seatrial.api.files import save_fit
+    from seatrial.api.files import save
     from seatrial.api.trials import identify, load_trial
     from seatrial.core.values.files import writable_folder
     from seatrial.data.example_series.files import write_demo
@@ -57,7 +57,7 @@ def demo(folder: str | Path, seed: int = 0, report_progress: "ProgressReporter |
     report_progress("simulating the trials")
     fit = identify(load_trial(write_demo(folder / "trials", seed)), seed=seed, report_progress=report_progress)
     report_progress("writing result and report")
-    save_fit(fit, folder)
+    save(fit, folder)
     return fit
 
 

@@ -10,7 +10,6 @@ import typer
 from seatrial.cli.follow_output import (
     journal_path,
     live_display,
-    outcome_json,
     print_outcome,
     stop_on_signal,
     stream_heading,
@@ -28,8 +27,6 @@ from seatrial.cli.tuning_output import print_tuning
 
 if TYPE_CHECKING:
     from seatrial.core.equations import Model
-    from seatrial.core.results import Design, Fit
-    from seatrial.core.results.tuning import Tuning
 
 app = typer.Typer(
     name="seatrial",
@@ -95,11 +92,11 @@ def check(
     Example: seatrial check examples/esso_osaka.toml
     """
     from seatrial import api
-    from seatrial.data.folder.fit_json import findings_json
+    from seatrial.data.folder.document import findings_document
 
     findings = api.check(api.load_trial(trial, _own_model(model)))
     print_findings(findings, len(findings) if show_all else FINDINGS_PER_CODE)
-    write_json(json, lambda: findings_json(findings))
+    write_json(json, lambda: findings_document(findings))
 
 
 @app.command()
@@ -137,9 +134,9 @@ def identify(
             compare=compare,
         )
         tell("report")
-        page = api.save_fit(fit, out)
+        page = api.save(fit, out)
     print_fit(fit)
-    write_json(json, lambda: _fit_json(fit))
+    write_json(json, lambda: _document(fit))
     print(f"report: {page}")
 
 
@@ -189,9 +186,9 @@ def follow(
     print_outcome(outcome)
     if outcome.fit is not None:
         print_fit(outcome.fit)
-    write_json(json, lambda: outcome_json(outcome))
+    write_json(json, lambda: _document(outcome.result))
     if out is not None:
-        print(f"result: {api.save_outcome(outcome, out)}")
+        print(f"result: {api.save(outcome, out)}")
 
 
 @app.command()
@@ -221,9 +218,9 @@ def design(
     with progress_reporter() as tell:
         found = api.design(asked, seed=seed, report_progress=tell, prior_model=known)
         tell("report")
-        page = api.save_design(found, out)
+        page = api.save(found, out)
     print_design(found)
-    write_json(json, lambda: _design_json(found))
+    write_json(json, lambda: _document(found))
     print(f"orders: {out / 'orders.csv'}")
     print(f"report: {page}")
 
@@ -256,9 +253,9 @@ def tune(
         found = api.tune(api.load_loop(loop, _own_model(model), model_path), seed=seed, report_progress=tell)
         if out is not None:
             tell("report")
-            api.save_tuning(found, out)
+            api.save(found, out)
     print_tuning(found)
-    write_json(json, lambda: _tuning_json(found))
+    write_json(json, lambda: _document(found))
     if out is not None:
         print(f"gains: {out / 'gains.toml'}")
         print(f"report: {out / 'report.html'}")
@@ -358,9 +355,9 @@ def report(
     """
     from seatrial import api
 
-    fit = api.load_fit(folder, _own_model(model))
-    page = api.report(fit, folder / "report.html")
-    write_json(json, lambda: _fit_json(fit))
+    result = api.load(folder, _own_model(model))
+    page = api.report(result, folder / "report.html")
+    write_json(json, lambda: _document(result))
     print(f"report: {page}")
 
 
@@ -381,7 +378,7 @@ def demo(
     with progress_reporter() as tell:
         fit = api.demo(out, seed=seed, report_progress=tell)
     print_fit(fit)
-    write_json(json, lambda: _fit_json(fit))
+    write_json(json, lambda: _document(fit))
     print(f"report: {out / 'report.html'}")
 
 
@@ -423,9 +420,9 @@ def reproduce(
         writable_folder(out)
     with progress_reporter() as tell:
         made = api.reproduce(study, quick=quick, seed=seed, report_progress=tell)
-        page = None if out is None else api.save_study(made, out)
+        page = None if out is None else api.save(made, out)
     print_study(made)
-    write_json(json, made.as_table)
+    write_json(json, lambda: _document(made))
     if page is not None:
         print(f"report: {page}")
 
@@ -450,19 +447,7 @@ def _name_and_value(text: str) -> tuple[str, float]:
         raise InputError(f"--set {text}: write NAME=VALUE with a number in SI units, e.g. --set n=10.2") from None
 
 
-def _fit_json(fit: "Fit") -> dict[str, Any]:
-    from seatrial.data.folder.fit_json import fit_json
+def _document(result: object) -> dict[str, Any]:
+    from seatrial.data.folder.document import document
 
-    return fit_json(fit)
-
-
-def _design_json(result: "Design") -> dict[str, Any]:
-    from seatrial.data.folder.design_json import design_json
-
-    return design_json(result)
-
-
-def _tuning_json(tuning: "Tuning") -> dict[str, Any]:
-    from seatrial.data.folder.tuning_json import tuning_json
-
-    return tuning_json(tuning)
+    return document(result)

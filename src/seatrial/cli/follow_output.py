@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from types import FrameType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from seatrial.cli.output import SEVERITY_MARK
 
@@ -85,16 +85,6 @@ def print_outcome(outcome: "FollowResult") -> None:
         print(f"{SEVERITY_MARK[finding.severity.value]} [{finding.code}] {finding.text}")
     for note in outcome.messages:
         print(f"seatrial: {note}", file=sys.stderr)
-
-
-def outcome_json(outcome: "FollowResult") -> dict[str, Any]:
-    """As `identify` writes it where the stream was followed to its end, else the last estimate."""
-    from seatrial.data.folder.fit_json import fit_json
-    from seatrial.data.folder.online_json import online_json
-
-    if outcome.fit is not None:
-        return fit_json(outcome.fit)
-    return online_json(outcome.snapshot, outcome.counts)
 
 
 def journal_path(path: Path | None, trial: "Trial", out: Path | None, *, once: bool) -> Path | None:

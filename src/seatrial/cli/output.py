@@ -48,7 +48,7 @@ def print_fit(fit: "Fit") -> None:
             truth = f" {c.truth:12.5g}" if c.truth is not None else ""
             unit = c.unit if c.unit != "1" else ""
             print(f"{c.name:14s} {c.estimate:12.5g} {error:>11s} {lower:>12s} {upper:>12s}{truth} {unit}".rstrip())
-    for p in fit.validation():
+    for p in fit.validation:
         _print_prediction(p)
     _print_model_selection(fit)
     _print_baselines(fit)
@@ -117,7 +117,7 @@ def _prediction_errors(baseline: "Baseline", fit: "Fit") -> str:
         return f"failed: {baseline.note}"
     if baseline.diverged:
         return f"diverges in {len(baseline.diverged)} of {len(fit.predictions)} runs, {baseline.diverged[0]} first"
-    runs = baseline.validation if fit.validation() else baseline.training
+    runs = baseline.validation if fit.validation else baseline.training
     cells = [f"{runs.rms[key]:.3g}" if key in runs.rms else "-" for key in ("psi_deg", "position_m")]
     return f"{cells[0]:>12s} {cells[1]:>11s}  {', '.join(f'{cc:.3f}' for cc in runs.correlation.values())}"
 
@@ -180,13 +180,13 @@ def print_design(design: "Design") -> None:
 def _print_manoeuvre(manoeuvre: "ManoeuvrePrecision", design: "Design") -> None:
     import math
 
-    from seatrial.core.results.design_ranking import count_diverged, has_track, is_within_limits, worst_sampled_error
+    from seatrial.core.results.design_ranking import has_track, is_within_limits
 
-    drawn = worst_sampled_error(manoeuvre)
+    drawn = manoeuvre.worst_sampled_error
     cells = [f"{100.0 * value:8.3g}" for value in (manoeuvre.worst, manoeuvre.mean)]
     cells.append(f"{'' if math.isnan(drawn) else f'{100.0 * drawn:.3g}':>9s}")
     cells += [f"{math.degrees(manoeuvre.drift):10.3g}", f"{manoeuvre.distance:8.4g}"] if has_track(design) else []
-    lost = count_diverged(manoeuvre)
+    lost = manoeuvre.diverged
     notes = [f"{lost} ship{'s' * (lost != 1)} lost"] if lost else []
     notes += [] if is_within_limits(manoeuvre, design.limits) else ["leaves the limits"]
     print(f"{manoeuvre.name:24s} {' '.join(cells)}  {', '.join(notes)}".rstrip())
@@ -226,6 +226,6 @@ def write_json(path: Path | None, table: Callable[[], Mapping[str, Any]]) -> Non
     """
     if path is not None:
         from seatrial.core.values.files import write_atomically
-        from seatrial.data.folder.fit_json import strict_json
+        from seatrial.data.folder.document import strict_json
 
         write_atomically(path, strict_json(table()).encode())

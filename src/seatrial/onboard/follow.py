@@ -4,7 +4,7 @@ import math
 from collections import deque
 from collections.abc import Callable
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from time import monotonic
@@ -12,7 +12,7 @@ from time import monotonic
 import numpy as np
 
 from seatrial.core.results import Fit
-from seatrial.core.results.online import SampleCounts, Snapshot
+from seatrial.core.results.online import NO_SAMPLE, SampleCounts, Snapshot
 from seatrial.core.values import ProgressReporter
 from seatrial.data.trial import Trial
 from seatrial.data.trial.follow_table import require_stream
@@ -51,6 +51,11 @@ class FollowResult:
     counts: SampleCounts
     fit: Fit | None = None
     messages: tuple[str, ...] = ()
+
+    @property
+    def result(self) -> Fit | Snapshot:
+        """Return the fit where there is one, else the last estimate with the counts of all samples."""
+        return self.fit if self.fit is not None else replace(self.snapshot or NO_SAMPLE, counts=self.counts)
 
 
 def follow(

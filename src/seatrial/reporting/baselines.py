@@ -124,7 +124,7 @@ def _difference(baseline: Baseline, reference: Baseline) -> str:
 
 def _trajectory_sentences(fit: Fit, solved: Sequence[Baseline]) -> str:
     """How well coefficients that are wrong can sail."""
-    first, role = fit.baselines[0], "validation" if fit.validation() else "training"
+    first, role = fit.baselines[0], "validation" if fit.validation else "training"
     alone = [r for r in fit.baselines if r.is_fit][-1]
     counts = [_count_better(alone, solved, one) for one in dict.fromkeys((role, "training"))]
     told = []

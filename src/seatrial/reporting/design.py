@@ -15,7 +15,6 @@ from seatrial.core.results.design_ranking import (
     is_within_limits,
     ranked_baselines,
     sampled_criterion_errors,
-    worst_sampled_error,
 )
 from seatrial.core.text.numbers import DASH, exact, fixed, significant
 from seatrial.core.values import NOTATION
@@ -168,7 +167,7 @@ def _manoeuvre_row(manoeuvre: ManoeuvrePrecision, design: Design) -> ManoeuvreRo
         manoeuvre.name,
         percent_text(manoeuvre.worst),
         percent_text(manoeuvre.mean),
-        percent_text(worst_sampled_error(manoeuvre)),
+        percent_text(manoeuvre.worst_sampled_error),
         fixed(math.degrees(manoeuvre.drift), 1) if math.isfinite(manoeuvre.drift) else DASH,
         significant(manoeuvre.distance, 3),
         manoeuvre is design.designed,

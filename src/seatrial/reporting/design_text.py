@@ -7,7 +7,6 @@ import numpy as np
 from seatrial.core.results import Actuator, Design, ManoeuvrePrecision
 from seatrial.core.results.design_ranking import (
     best_baseline,
-    count_diverged,
     count_outside_limits,
     criterion_error,
     has_track,
@@ -77,7 +76,7 @@ def _prior_draws(design: Design) -> str:
     if others:
         which = "any standard manoeuvre within the limits" if _has_limits(design) else "any standard manoeuvre"
         told += f", smaller than with {which} on {wins} of {len(own)}"
-    lost = count_diverged(design.designed)
+    lost = design.designed.diverged
     return told + (f"; {counted(lost, 'ship')} cannot be simulated." if lost else ".")
 
 

@@ -110,7 +110,7 @@ def html(fit: Fit) -> str:
         "correlation": Markup(_correlation_figure(fit)),
         "correlated": correlation_text(fit.model.parameters.free_names, fit.covariance),
         "runs": runs.run_sections(fit.predictions, length, fit.model.input_names),
-        "noise": tables.noise(fit.noise),
+        "noise": tables.noise(fit.channel_noise),
         "whiteness": Markup(svg(residual_chart(fit.residuals))),
         "offsets": tables.offsets(fit.offsets),
         "standards": runs.standards(fit.predictions, length, fit.ship.scale),

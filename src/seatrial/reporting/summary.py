@@ -16,7 +16,7 @@ _ANGLES = (("theta", "pitch"), ("phi", "roll"))
 
 def facts(fit: Fit) -> list[tuple[str, str]]:
     """Ship, model and records as pairs of name and text."""
-    ship, trained, held = fit.ship, _with_role(fit, "training"), fit.validation()
+    ship, trained, held = fit.ship, _with_role(fit, "training"), fit.validation
     ratio = f"1:{exact(ship.scale)}"
     scale = f", model scale {ratio}" if ship.scale != 1.0 and ratio not in ship.name else ""
     length = f", L = {exact(ship.length)} m" if "L" in ship.particulars else ""
@@ -55,7 +55,7 @@ def _with_role(fit: Fit, role: str) -> list[Prediction]:
 
 
 def _held_out(fit: Fit) -> list[str]:
-    held = fit.validation()
+    held = fit.validation
     if not held:
         return ["No run was held out: what follows shows how the model fits, not how it predicts."]
     return [_prediction_sentence(p, fit) for p in held[:4]] + (
@@ -103,7 +103,7 @@ def _first_measures(p: Prediction) -> str:
 
 def _coverage(fit: Fit) -> str:
     """How many measured values lie inside their predicted intervals; those without a width are no prediction."""
-    judged = [is_inside(m) for p in fit.validation() for m in p.measures.values() if m.lower != m.upper]
+    judged = [is_inside(m) for p in fit.validation for m in p.measures.values() if m.lower != m.upper]
     known = [inside for inside in judged if inside is not None]
     if not known:
         return ""
@@ -112,7 +112,7 @@ def _coverage(fit: Fit) -> str:
 
 def _extrapolation(fit: Fit) -> list[str]:
     """One sentence for each held-out run that goes well beyond the training runs, the first four."""
-    far = [p for p in fit.validation() if p.extrapolation and extrapolation_zone(p.extrapolation.index) == "beyond"]
+    far = [p for p in fit.validation if p.extrapolation and extrapolation_zone(p.extrapolation.index) == "beyond"]
     return [
         f"{p.record} is extrapolation, index {extrapolation_text(p.extrapolation)}" for p in far[:4] if p.extrapolation
     ]
@@ -209,17 +209,17 @@ def _prior_disagreement(fit: Fit) -> str:
 
 
 def _residuals(fit: Fit) -> str:
-    if not fit.noise:
+    if not fit.channel_noise:
         return ""
     coloured = [
         n.channel
-        for n, r in zip(fit.noise, fit.residuals, strict=True)
+        for n, r in zip(fit.channel_noise, fit.residuals, strict=True)
         if 1.0 + 2.0 * n.correlation_time * r.rate > WHITE_INFLATION
     ]
     if not coloured:
         return "The residuals are white in all channels: the model leaves nothing but noise."
     return (
-        f"The residuals are coloured in {len(coloured)} of {len(fit.noise)} channels "
+        f"The residuals are coloured in {len(coloured)} of {len(fit.channel_noise)} channels "
         f"({enumeration(coloured)}): model error "
         "or disturbances remain. The intervals allow for their correlation."
     )

@@ -143,7 +143,7 @@ def _equation_unit(unit: str, *, is_rate: bool) -> str:
 
 def records(fit: Fit) -> list[dict[str, str]]:
     """Every record: role, duration, samples, rate, channels, where it comes from."""
-    held = {p.record for p in fit.validation()}
+    held = {p.record for p in fit.validation}
     return [
         {
             "name": r.name,

@@ -57,9 +57,7 @@ def html(tuning: Tuning) -> str:
         "output": channel_meaning(tuning.output),
         "actuator": channel_meaning(tuning.actuator),
         "gain_names": [(name, tuning_rows.gain_symbol(name)) for name in tuning_rows.gain_names(tuning)],
-        "objectives": [
-            (name, degree_unit(unit)[1]) for name, unit in zip(tuning.objectives, tuning.units, strict=True)
-        ],
+        "objectives": [(name, degree_unit(unit)[1]) for name, unit in tuning.objectives.items()],
         "rms_heads": tuning_rows.rms_headings(tuning),
         "has_reduction": tuning_text.has_reduction(tuning),
         "controllers": controllers,

@@ -80,7 +80,7 @@ def reproduce_benchmark(
         turns={side: turn_measures(track, side, trial.ship.length) for side, track in tracks.items()},
         tracks=tracks,
         label_findings=labels,
-        noise_levels=median_noise([r.record for r in raw], [n.channel for n in fit.noise]),
+        noise_levels=median_noise([r.record for r in raw], [n.channel for n in fit.channel_noise]),
         left_out_runs=() if quick else _leave_one_out(trial, train, approach, report_progress),
         coverage=assess_coverage(fit, wide, found, train, held, approach, seed),
     )

@@ -36,7 +36,7 @@ def tables(reproduction: BenchmarkReproduction) -> tuple[Table, ...]:
 
 def validation_prediction(reproduction: BenchmarkReproduction) -> Prediction:
     """The prediction of the validation run."""
-    return reproduction.fit.validation()[0]
+    return reproduction.fit.validation[0]
 
 
 def comparison_table(reproduction: BenchmarkReproduction) -> Table:
@@ -115,7 +115,7 @@ def offset_table(reproduction: BenchmarkReproduction) -> Table:
 def noise_table(reproduction: BenchmarkReproduction) -> Table:
     """Noise from sample to sample beside what the model leaves."""
     rows = []
-    for item in reproduction.fit.noise:
+    for item in reproduction.fit.channel_noise:
         if item.channel in reproduction.noise_levels:
             factor, unit = display_unit(NOTATION[item.channel].unit)
             sample = reproduction.noise_levels[item.channel]

@@ -74,7 +74,7 @@ def filtering_claim(reproduction: BenchmarkReproduction) -> Claim:
     """Refuted where unfiltered records with next to no noise predict the 35/5 zigzag as well; else not to be told."""
     ratios = [
         n.standard_deviation / reproduction.noise_levels[n.channel]
-        for n in reproduction.fit.noise
+        for n in reproduction.fit.channel_noise
         if reproduction.noise_levels.get(n.channel)
     ]
     quiet = bool(ratios) and min(ratios) > QUIET_RATIO

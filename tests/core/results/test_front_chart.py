@@ -25,7 +25,7 @@ def test_a_panel_for_each_pair_of_objectives() -> None:
 def test_one_objective_has_no_front() -> None:
     fin = fabricated_fin()
     single = replace(fin.front, objectives=fin.front.objectives[:, :1])
-    assert front_chart(replace(fin, objectives=fin.objectives[:1], front=single, extended_fronts=())) is None
+    assert front_chart(replace(fin, objectives={"roll variance": "rad^2"}, front=single, extended_fronts=())) is None
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,6 @@
 
 import csv
 import io
-import json
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -15,9 +14,7 @@ from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_b
 
 from seatrial.core.results.tuning import Component, Tuning
 from seatrial.core.values import InputError
-from seatrial.data.folder.fit_json import strict_json
 from seatrial.data.folder.tuning_files import gains_toml, loop_mat, read_gains, schedule_csv
-from seatrial.data.folder.tuning_json import TuningDocument, tuning_json
 from seatrial.physics.loops import TransferLoop, margins
 from seatrial.physics.loops.fin import fin_loop
 
@@ -148,21 +145,3 @@ def test_the_schedule_is_a_table(fin: Tuning) -> None:
     assert float(rows[0]["cost given"]) == pytest.approx(fin.schedule[0].baseline_costs["given"], rel=1e-7)
     assert {row["feasible"] for row in rows} == {"yes", "no"}
     assert schedule_csv(fabricated_bare()) == ""
-
-
-def test_json_is_strict_and_as_documented(tuning: Tuning) -> None:
-    table = json.loads(strict_json(tuning_json(tuning)))
-    assert TuningDocument.model_validate(table).name == tuning.name
-    assert table["chosen"]["gains"] == tuning.chosen.gains
-    assert len(table["front"]["gains"]) == len(tuning.front.gains)
-    assert len(table["chosen"]["open_loop"]) == len(tuning.chosen.omega)
-
-
-def test_infinite_is_null() -> None:
-    assert tuning_json(fabricated_bare())["chosen"]["Ms"] is None
-    assert tuning_json(fabricated_autopilot())["constraints"]["stall"] is None
-
-
-def test_the_documented_schema_is_the_code_s(repository: Path) -> None:
-    known = json.loads((repository / "docs" / "tuning.schema.json").read_text(encoding="utf-8"))
-    assert known == TuningDocument.model_json_schema()

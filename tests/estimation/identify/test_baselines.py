@@ -78,7 +78,7 @@ def test_the_fit_stands_first_with_its_own_numbers(fit: Fit) -> None:
     assert first.is_fit and first.name == f"this fit: {fit.method.criterion}"
     assert first.values == {c.name: c.estimate for c in fit.coefficients if not c.fixed}
     assert set(first.normalised_difference.values()) == {0.0}
-    rms = [p.rms["psi_deg"] for p in fit.validation()]
+    rms = [p.rms["psi_deg"] for p in fit.validation]
     assert first.validation.rms["psi_deg"] == pytest.approx(np.sqrt(np.mean(np.square(rms))))
     assert [r.name for r in fit.baselines[1:]] == [e.name for e in standard_estimators(10.0)]
 

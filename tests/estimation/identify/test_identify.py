@@ -19,18 +19,18 @@ OFFSETS = "[estimate]\noffsets = { delta = { sd = 3, unit = 'deg' } }"
 def test_training_runs_are_fitted_and_validation_runs_predicted(trial_of: WriteTrial) -> None:
     fit = identify(load_trial(trial_of({"a": 0.0, "b": 0.0, "v_1": 0.0, "x_1": 0.5})))
     assert {p.record: p.role for p in fit.predictions} == {"a": "training", "b": "training", "v_1": "validation"}
-    assert [p.record for p in fit.validation()] == ["v_1"]
+    assert [p.record for p in fit.validation] == ["v_1"]
     for c in fit.coefficients:
         if not c.fixed:
             assert c.truth == TRUTH[c.name]
             assert c.estimate == pytest.approx(c.truth, rel=0.01)
             assert c.standard_error is not None
             assert abs(c.estimate - TRUTH[c.name]) < 4 * c.standard_error
-    levels = {n.channel: n.standard_deviation for n in fit.noise}
+    levels = {n.channel: n.standard_deviation for n in fit.channel_noise}
     assert levels == pytest.approx(NOISE, rel=0.1)
-    assert all(n.whiteness_p > 1e-3 for n in fit.noise)
+    assert all(n.whiteness_p > 1e-3 for n in fit.channel_noise)
     assert fit.solution.status.is_success
-    assert fit.validation()[0].rms["psi_deg"] < 2 * math.degrees(NOISE["psi"])
+    assert fit.validation[0].rms["psi_deg"] < 2 * math.degrees(NOISE["psi"])
 
 
 def test_rudder_zeros_come_back_and_strangers_get_the_mean(trial_of: WriteTrial) -> None:
@@ -43,7 +43,7 @@ def test_rudder_zeros_come_back_and_strangers_get_the_mean(trial_of: WriteTrial)
         assert zero.standard_error is not None
         assert zero.standard_error < 0.005
         assert zero.estimate == pytest.approx(ZEROS[run], abs=0.002 + 4 * zero.standard_error)
-    (unseen,) = fit.validation()
+    (unseen,) = fit.validation
     drift = np.polyfit(unseen.measured.time, unseen.measured["psi"] - unseen.simulated["psi"], 1)[0]
     mean = np.mean([z.estimate for z in zeros.values()])
     assert drift == pytest.approx(TRUTH["K"] * (ZEROS["v_1"] - mean), rel=0.1)
@@ -66,9 +66,9 @@ def test_nothing_of_a_validation_run_is_fitted(trial_of: WriteTrial) -> None:
         lines[i] = ",".join([time, u, str(float(r) + 0.001), str(float(psi) + 0.01), delta])
     (path.parent / "v_1.csv").write_text("\n".join(lines) + "\n")
     two = identify(load_trial(path))
-    np.testing.assert_array_equal(one.validation()[0].simulated["psi"], two.validation()[0].simulated["psi"])
-    assert one.validation()[0].rms != two.validation()[0].rms
-    assert one.validation()[0].initial_seconds == pytest.approx(4.0, rel=0.01)
+    np.testing.assert_array_equal(one.validation[0].simulated["psi"], two.validation[0].simulated["psi"])
+    assert one.validation[0].rms != two.validation[0].rms
+    assert one.validation[0].initial_seconds == pytest.approx(4.0, rel=0.01)
 
 
 def test_the_trials_wishes_become_settings(trial_of: WriteTrial) -> None:

@@ -41,7 +41,7 @@ def test_recorded_forces_give_the_coefficients_back(tmp_path: Path, heading: int
     assert np.abs(errors(fit)).max() < 4.0
     assert np.mean(np.abs(shares(fit))) < 0.005
     assert fit.method.criterion == "output error over whole runs"
-    (held_out,) = fit.validation()
+    (held_out,) = fit.validation
     assert held_out.rms["z"] < 0.012
     assert held_out.rms["theta_deg"] < 0.024
 

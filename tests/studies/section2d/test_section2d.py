@@ -12,7 +12,7 @@ import pytest
 from seatrial import api
 from seatrial.core.results import Verdict
 from seatrial.core.values import InputError
-from seatrial.data.folder.fit_json import strict_json
+from seatrial.data.folder.document import document, strict_json
 from seatrial_studies.section2d import tank, verdicts
 from seatrial_studies.section2d.analysis import SectionAnalysis, analyse_records
 from seatrial_studies.section2d.modes import jackknife_error, split_periods
@@ -133,9 +133,9 @@ def test_the_command_writes_a_page(made: SectionAnalysis, tmp_path: Path, monkey
     monkeypatch.setattr(module, "data_folder", lambda: tmp_path)
     monkeypatch.setattr(module, "analyse_records", lambda *_, **__: made)
     done = study(quick=True, seed=0, report_progress=None)
-    page = api.save_study(done, tmp_path / "out")
-    table = json.loads(strict_json(done.as_table()))
-    assert table["study"] == "section2d" and len(table["checks"]) == 8 and "Haskind" in page.read_text()
+    page = api.save(done, tmp_path / "out")
+    table = json.loads(strict_json(document(done)))
+    assert table["name"] == "section2d" and len(table["checks"]) == 8 and "Haskind" in page.read_text()
 
 
 @pytest.mark.parametrize("folder", [None, "nowhere"])

@@ -1,21 +1,9 @@
-"""Results in the terms of the field: fits, designs, tunings, studies."""
+"""Results: fits, designs, tunings, studies and estimates on a stream, described field by field."""
 
 from seatrial.core.results.baseline import Baseline, OpenLoopScores
-from seatrial.core.results.design import Actuator, Confirmation, Design, ManoeuvrePrecision, TimedOrder, TrialLimits
-from seatrial.core.results.fit import (
-    CandidateModel,
-    Coefficient,
-    Extrapolation,
-    Fit,
-    IntervalBasis,
-    Measure,
-    Method,
-    Noise,
-    NoiseModel,
-    Offset,
-    Prediction,
-    Residuals,
-)
+from seatrial.core.results.coefficients import CandidateModel, Coefficient, Method, Offset
+from seatrial.core.results.design import Actuator, Confirmation, Design, TimedOrder, TrialLimits
+from seatrial.core.results.fit import Fit
 from seatrial.core.results.identifiability import (
     Collinearity,
     Consequence,
@@ -26,9 +14,14 @@ from seatrial.core.results.identifiability import (
     Stability,
     Symmetry,
 )
+from seatrial.core.results.manoeuvre_precision import ManoeuvrePrecision
+from seatrial.core.results.noise import Noise, NoiseModel, Residuals
+from seatrial.core.results.prediction import Extrapolation, IntervalBasis, Measure, Prediction
 from seatrial.core.results.roll import IntervalEstimate, RollCharacteristics
 from seatrial.core.results.seakeeping import PointMotion, Seakeeping
-from seatrial.core.results.study import Bars, Check, Claim, Curve, Figure, Matrix, Study, Table, Verdict
+from seatrial.core.results.study import Check, Claim, Study, Verdict
+from seatrial.core.results.study_figures import Bars, Curve, Figure, Matrix, Table
+from seatrial.core.results.summary import Summary
 from seatrial.numerics.optimise import Solution, Status
 
 __all__ = [
@@ -70,6 +63,7 @@ __all__ = [
     "Stability",
     "Status",
     "Study",
+    "Summary",
     "Symmetry",
     "Table",
     "TimedOrder",

@@ -48,7 +48,7 @@ def front_chart(tuning: Tuning) -> Chart | None:
     controllers = [(c, m) for c, m in _marked_controllers(tuning) if len(c.objectives) == len(factors)]
     styled += [(np.atleast_2d(c.objectives * factors), marker) for c, marker in controllers]
     axes = [scaled_axis([p[:, k] for p, _ in styled], _label(name, unit))
-            for k, (name, unit) in enumerate(zip(tuning.objectives, tuning.units, strict=True))]  # fmt: skip
+            for k, (name, unit) in enumerate(tuning.objectives.items())]  # fmt: skip
     columns = min(COLUMNS, len(pairs))
     right = 8.0 if columns > 1 else WIDTH - 584.0  # one panel alone is 520 px wide
     boxes = tiles(len(pairs), columns, 200.0 if columns > 1 else 300.0, left=64.0, right=right, gap=52.0, top=6.0)

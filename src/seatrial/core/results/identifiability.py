@@ -1,121 +1,109 @@
-"""What the records can tell of a model and what they cannot, in numbers and in words. Plain values only."""
+"""What the records identify of a model and what they do not, in numbers and in sentences."""
 
 from dataclasses import dataclass
+from typing import Annotated
+
+from pydantic import Field
+
+from seatrial.core.results.fields import Number
 
 
 @dataclass(frozen=True)
 class Symmetry:
-    """A change of parameters that no record of the compared outputs can show, whatever the manoeuvre.
+    """A change of parameters that no record of the compared outputs can show, whatever the manoeuvre."""
 
-    Attributes:
-        parameters: those involved, free and fixed.
-        text: in words, with what to fix.
-        change: parameter -> relative change for a unit step (absolute where the value is zero).
-    """
-
-    parameters: tuple[str, ...]
-    text: str
-    change: dict[str, float]
+    parameters: Annotated[tuple[str, ...], Field(description="those involved, free and fixed")]
+    text: Annotated[str, Field(description="in a sentence, with what to fix")]
+    change: Annotated[
+        dict[str, Number],
+        Field(description="parameter -> relative change for a unit step; absolute where the value is zero"),
+    ]
 
 
 @dataclass(frozen=True)
 class Direction:
-    """One eigen-direction of the Fisher information, weakest first.
+    """One combination of free coefficients with an independent error (eigen-direction of the Fisher information)."""
 
-    Attributes:
-        combination: parameter -> component of a unit vector in relative changes, largest first.
-        standard_deviation: of the relative change along it (1: 100 %).
-        text: in words.
-    """
-
-    combination: dict[str, float]
-    standard_deviation: float
+    combination: Annotated[
+        dict[str, Number], Field(description="parameter -> part of a unit vector of relative changes, largest first")
+    ]
+    standard_deviation: Annotated[
+        Number, Field(description="of the relative change along it, 1: 100 %; null: no information at all")
+    ]
     text: str
 
 
 @dataclass(frozen=True)
 class Collinearity:
-    """How far one coefficient can be taken for others: variance inflation factor, and the most correlated partner."""
+    """How far one coefficient can be replaced by others, and by which most."""
 
     parameter: str
-    variance_inflation: float
-    partner: str
-    correlation: float
+    variance_inflation: Annotated[Number, Field(description="factor; null: without limit")]
+    partner: Annotated[str, Field(description="the most correlated other coefficient")]
+    correlation: Annotated[Number, Field(description="with the partner, -1 to 1")]
 
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """What a coefficient does: rms change of the compared outputs for a change of 10 %, in units of their noise.
-
-    Attributes:
-        effect: over all outputs together.
-        outputs: output -> its own.
-    """
+    """Change of the compared outputs (rms, in units of their noise) for 10 % of a coefficient."""
 
     parameter: str
-    effect: float
-    outputs: dict[str, float]
+    effect: Annotated[Number, Field(description="over all outputs together")]
+    outputs: Annotated[dict[str, Number], Field(description="output -> its own change")]
 
 
 @dataclass(frozen=True)
 class Consequence:
-    """What a wrong fixed value would do.
+    """What a wrong assumed value would do to the estimates."""
 
-    Attributes:
-        parameter: the fixed one; change: relative.
-        moves: free coefficient -> relative change of its estimate, largest first.
-        misfit: increase of the sum of squares (chi squared) by which the records would show it.
-        text: in words.
-    """
-
-    parameter: str
-    change: float
-    estimate_changes: dict[str, float]
-    misfit: float
+    parameter: Annotated[str, Field(description="the fixed one")]
+    change: Annotated[Number, Field(description="relative")]
+    estimate_changes: Annotated[
+        dict[str, Number], Field(description="free coefficient -> relative change of its estimate, largest first")
+    ]
+    misfit: Annotated[Number, Field(description="increase of chi squared by which the records would show it")]
     text: str
 
 
 @dataclass(frozen=True)
 class Stability:
-    """Course stability on a straight course: index C (positive: stable) with its 95 % interval."""
+    """Course stability on a straight course; the interval is at 95 %."""
 
-    index: float
-    lower: float
-    upper: float
+    index: Annotated[Number, Field(description="stability index C, positive: stable")]
+    lower: Number
+    upper: Number
     text: str
 
 
 @dataclass(frozen=True)
 class Profile:
-    """Profile likelihood of one coefficient: the others are fitted again at each value.
-
-    Attributes:
-        values: SI; costs: twice the loss above its minimum, chi squared with one degree of freedom.
-        lower, upper: where the cost passes 3.84 (95 %), None where it does not within the values.
-    """
+    """Profile likelihood of one coefficient: the others are fitted again at each value."""
 
     parameter: str
-    values: tuple[float, ...]
-    costs: tuple[float, ...]
-    lower: float | None
-    upper: float | None
+    values: Annotated[tuple[Number, ...], Field(description="SI")]
+    costs: Annotated[
+        tuple[Number, ...],
+        Field(description="twice the loss above its minimum: chi squared, one degree of freedom"),
+    ]
+    lower: Annotated[Number | None, Field(description="where the cost passes 3.84 (95 %); null: not within the values")]
+    upper: Annotated[Number | None, Field(description="as `lower`")]
 
 
 @dataclass(frozen=True)
 class Identifiability:
-    """Everything together.
+    """What the records identify, together."""
 
-    Attributes:
-        effective_parameters: number of parameters the data determine, trace of information over information with prior.
-        condition: of the information matrix scaled to unit diagonal.
-    """
-
-    structural: tuple[Symmetry, ...]
-    directions: tuple[Direction, ...]
-    effective_parameters: float
-    condition: float
+    structural: Annotated[tuple[Symmetry, ...], Field(description="changes that no record can show")]
+    directions: Annotated[tuple[Direction, ...], Field(description="weakest first")]
+    effective_parameters: Annotated[
+        Number,
+        Field(description="number of coefficients that the data determine (trace of information over it with prior)"),
+    ]
+    condition: Annotated[
+        Number, Field(description="condition number of the information scaled to unit diagonal; null: singular")
+    ]
     collinearity: tuple[Collinearity, ...] = ()
     sensitivities: tuple[Sensitivity, ...] = ()
     consequences: tuple[Consequence, ...] = ()
-    stability: Stability | None = None
+    stability: Annotated[Stability | None, Field(description="null: not known")] = None
     profiles: tuple[Profile, ...] = ()

@@ -1,9 +1,14 @@
-"""An estimate while the record is still being made: what is known by now. Plain values, SI."""
+"""An estimate while the record is still growing: what is estimated by now. Plain values, SI."""
 
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Annotated
 
-from seatrial.core.values import Array, Finding
+import numpy as np
+from pydantic import Field, computed_field
+
+from seatrial.core.results.fields import ListedArray, Number, ReportedFinding
+from seatrial.core.values import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,8 +25,8 @@ class Sample:
 class EstimatorPhase(StrEnum):
     """How the numbers of a snapshot come about.
 
-    WAITING: too little has been seen; values are the start, standard errors infinite.
-    WINDOW: the criterion of `identify` over everything seen, re-linearised as the record grows.
+    WAITING: too few samples; values are the start, standard errors infinite.
+    WINDOW: the criterion of `identify` over all samples, re-linearised as the record grows.
     RECURSIVE: a filter that carries the same information on, sample by sample.
     """
 
@@ -32,70 +37,83 @@ class EstimatorPhase(StrEnum):
 
 @dataclass(frozen=True)
 class CoefficientChange:
-    """Whether the latest stretch tells other coefficients than what came before (Hausman 1978, Econometrica 46).
+    """Whether the latest stretch gives other coefficients than what came before (Hausman 1978, Econometrica 46)."""
 
-    Attributes:
-        since: s of samples seen when the latest stretch began; statistic: chi-squared of `freedom` degrees.
-        p: probability of as much by chance; is_told: p is small enough to say so, corrected for repeated looking.
-        most: the coefficient that has moved most, in its standard errors.
-    """
-
-    since: float
-    statistic: float
+    since: Annotated[Number, Field(description="s on the stream's clock at the start of the latest stretch")]
+    statistic: Annotated[Number, Field(description="chi squared of `degrees_of_freedom`")]
     degrees_of_freedom: int
-    p: float
-    is_significant: bool
-    most_changed: str
+    p: Annotated[Number, Field(description="probability of as much by chance")]
+    is_significant: Annotated[bool, Field(description="p is small enough, corrected for repeated testing")]
+    most_changed: Annotated[str, Field(description="coefficient that changed most, in its standard errors")]
 
 
 @dataclass(frozen=True)
 class SampleCounts:
-    """What happened to the samples of a stream.
+    """What happened to the samples of a stream."""
 
-    Attributes:
-        accepted: used; late: older than one already used; repeated: same time stamp again; not_finite: a needed channel
-            was no number (the rest of the sample is used); missing: time steps for which nothing came; jumps: breaks of
-            the clock, each beginning a new run; garbled: lines or sentences that could not be read; checksum: NMEA
-            sentences with a wrong checksum; dropped: beyond the rate or size allowed (a flood); truncated: times the
-            file became shorter while it was read.
-        last: the latest trouble in words.
-    """
+    accepted: Annotated[int, Field(description="used")] = 0
+    late: Annotated[int, Field(description="older than one already used")] = 0
+    repeated: Annotated[int, Field(description="same time stamp again")] = 0
+    not_finite: Annotated[
+        int, Field(description="a required channel was no number; the rest of the sample is used")
+    ] = 0
+    missing: Annotated[int, Field(description="time steps without a sample")] = 0
+    jumps: Annotated[int, Field(description="breaks of the clock, each starting a new run")] = 0
+    garbled: Annotated[int, Field(description="lines or sentences that could not be read")] = 0
+    checksum: Annotated[int, Field(description="NMEA sentences with a wrong checksum")] = 0
+    dropped: Annotated[int, Field(description="beyond the rate or size allowed (a flood)")] = 0
+    truncated: Annotated[int, Field(description="times the file became shorter while it was read")] = 0
+    last_problem: Annotated[str, Field(description="the latest problem, in a sentence")] = ""
 
-    accepted: int = 0
-    late: int = 0
-    repeated: int = 0
-    not_finite: int = 0
-    missing: int = 0
-    jumps: int = 0
-    garbled: int = 0
-    checksum: int = 0
-    dropped: int = 0
-    truncated: int = 0
-    last_problem: str = ""
+
+@dataclass(frozen=True)
+class OnlineCoefficient:
+    """One free coefficient, SI."""
+
+    name: str
+    unit: str
+    estimate: Number
+    standard_error: Annotated[Number, Field(description="null: nothing known (infinite)")]
+    is_identified: Annotated[bool, Field(description="false where the samples so far do not identify it")]
 
 
 @dataclass(frozen=True, eq=False)
 class Snapshot:
-    """What is known at one moment.
+    """What is estimated at one moment.
 
-    Attributes:
-        time: s on the stream's clock; samples: seen so far, all runs; runs: begun so far.
-        names, units: of the free coefficients, k; value, standard_error: (k,), infinite where nothing is known.
-        noise: channel -> residual rms, SI.
-        untold: coefficients that the data so far do not tell (standard error beyond the value, or a tied direction);
-        advice: which manoeuvre would help, in a sentence; empty if nothing is untold.
+    `names`, `units`, `value`, `standard_error` and `unidentified` are written as `coefficients`: units and values in
+    the order of the names, shape (k,); `unidentified` names those that the samples so far do not identify (standard
+    error beyond the value, or a tied direction).
     """
 
-    time: float
-    samples: int
-    runs: int
+    time: Annotated[Number, Field(description="s on the stream's clock; null: no sample came")]
+    samples: Annotated[int, Field(description="all samples so far, of all runs")]
+    runs: Annotated[int, Field(description="runs begun so far")]
     phase: EstimatorPhase
-    names: tuple[str, ...]
-    units: tuple[str, ...]
-    value: Array
-    standard_error: Array
-    noise: dict[str, float] = field(default_factory=dict)
-    unidentified: tuple[str, ...] = ()
-    advice: str = ""
-    change: CoefficientChange | None = None
-    findings: tuple[Finding, ...] = ()
+    names: Annotated[tuple[str, ...], Field(exclude=True)]
+    units: Annotated[tuple[str, ...], Field(exclude=True)]
+    value: Annotated[ListedArray, Field(exclude=True)]
+    standard_error: Annotated[ListedArray, Field(exclude=True)]
+    noise: Annotated[dict[str, Number], Field(description="channel -> rms of its residuals, SI")] = field(
+        default_factory=dict
+    )
+    unidentified: Annotated[tuple[str, ...], Field(exclude=True)] = ()
+    advice: Annotated[
+        str, Field(description="which manoeuvre would help, in a sentence; empty if every coefficient is identified")
+    ] = ""
+    change: Annotated[CoefficientChange | None, Field(description="null: not tested")] = None
+    findings: tuple[ReportedFinding, ...] = ()
+    counts: SampleCounts = SampleCounts()
+
+    @computed_field
+    @property
+    def coefficients(self) -> tuple[OnlineCoefficient, ...]:
+        """Return the free coefficients."""
+        return tuple(
+            OnlineCoefficient(name, unit, float(value), float(error), name not in self.unidentified)
+            for name, unit, value, error in zip(self.names, self.units, self.value, self.standard_error, strict=True)
+        )
+
+
+NO_SAMPLE = Snapshot(float("nan"), 0, 0, EstimatorPhase.WAITING, (), (), np.empty(0), np.empty(0))
+"""What is estimated where no sample came."""

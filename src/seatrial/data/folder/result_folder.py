@@ -1,84 +1,177 @@
-"""The result folder: `result.json`, `model.toml`, `arrays.npz`; the report is rendered from it without computing.
+"""Folders of results: what each kind holds, written as one and read back without computing.
 
-Its schema is documented in docs/result-folder.md.
+The schema is documented in docs/result-folder.md.
 """
 
 import hashlib
 import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, Generic, TypeVar
 
 from seatrial.core.equations import Model
-from seatrial.core.results import Fit
+from seatrial.core.results import Design, Fit, Study
+from seatrial.core.results.online import Snapshot
+from seatrial.core.results.tuning import Tuning
 from seatrial.core.values import Array, InputError
 from seatrial.core.values.files import write_files_atomically
-from seatrial.data.folder.archive import distinct_records, npz_arrays, npz_bytes, record_arrays
-from seatrial.data.folder.fit_json import fit_json, strict_json
-from seatrial.data.folder.fit_table import band_arrays, detail_table, fit_from_tables
+from seatrial.data.folder.archive import npz_arrays, npz_bytes
+from seatrial.data.folder.document import document, read_document, stored_document, strict_json
 from seatrial.data.folder.model_file import ModelFile, model_provenance, model_text, parse_model
+from seatrial.data.folder.orders import orders_csv
+from seatrial.data.folder.tuning_files import gains_toml, loop_mat, schedule_csv
+from seatrial.data.read.record_csv import record_csv
 from seatrial.data.trial.approach import approach_condition
 
-FORMAT = 1
+FORMAT = 2
+"""Of the documents below; 1 described a fit twice and kept nothing of a design, a tuning or a study to render."""
+MODEL, ARRAYS = "model.toml", "arrays.npz"
+T = TypeVar("T")
+Result = Fit | Design | Tuning | Study
 
 
-def save_fit(fit: Fit, folder: str | Path) -> Path:
-    """Write the folder's three files, whole or not at all; other files in it are left alone.
+@dataclass(frozen=True)
+class FolderKind(Generic[T]):
+    """What a folder holds for one type of result.
+
+    Attributes:
+        result: the type.
+        document: name of the JSON file.
+        command: writes such a folder.
+        model: result -> the model file of the folder.
+        from_model: model file -> those fields of the result that it holds.
+        products: result -> name and content of the files that other programs read.
+        repeated: values of `--json` that stand elsewhere in the folder.
+    """
+
+    result: type[T]
+    document: str
+    command: str
+    model: Callable[[T], ModelFile] | None = None
+    from_model: Callable[[ModelFile], dict[str, Any]] = lambda _: {}
+    products: Callable[[T], Mapping[str, bytes]] = lambda _: {}
+    repeated: frozenset[str] = frozenset()
+
+
+def _model_of_fit(fit: Fit) -> ModelFile:
+    held_out = {p.record for p in fit.validation}
+    roles = [(r, "validation" if r.name in held_out else "training") for r in fit.records]
+    provenance = model_provenance(roles, fit.method.criterion, fit.seed, fit.versions)
+    approach = approach_condition([r for r, role in roles if role == "training"], fit.model)
+    return ModelFile(fit.model, fit.covariance, provenance, fit.ship, approach, fit.interval_basis)
+
+
+def _fields_of_fit(file: ModelFile) -> dict[str, Any]:
+    return {
+        "model": file.model, "ship": file.ship, "covariance": file.covariance, "interval_basis": file.interval_basis,
+    }  # fmt: skip
+
+
+def _design_products(design: Design) -> dict[str, bytes]:
+    return {"orders.csv": orders_csv(design).encode(), "plan.csv": record_csv(design.plan).encode()}
+
+
+def _tuning_products(tuning: Tuning) -> dict[str, bytes]:
+    schedule = {"schedule.csv": schedule_csv(tuning).encode()} if tuning.schedule else {}
+    return {"gains.toml": gains_toml(tuning).encode(), "loop.mat": loop_mat(tuning), **schedule}
+
+
+KINDS: tuple[FolderKind[Any], ...] = (
+    FolderKind(
+        Fit, "result.json", "seatrial identify TRIAL --out DIR", _model_of_fit, _fields_of_fit,
+        repeated=frozenset({"validation", "intervals"}),
+    ),
+    FolderKind(
+        Design, "design.json", "seatrial design TRIAL --out DIR",
+        lambda design: ModelFile(design.model), lambda file: {"model": file.model}, _design_products,
+        frozenset({"equation_hash", "values", "evaluations", "status"}),
+    ),
+    FolderKind(
+        Tuning, "tuning.json", "seatrial tune LOOP --out DIR", products=_tuning_products,
+        repeated=frozenset({"evaluations", "status"}),
+    ),
+    FolderKind(Study, "study.json", "seatrial reproduce STUDY --out DIR"),
+)  # fmt: skip
+
+
+def folder_files(result: Result | Snapshot) -> dict[str, bytes]:
+    """Return name and content of every data file of a result's folder, the document last; a report is none of them."""
+    if isinstance(result, Snapshot):
+        return {"online.json": strict_json(document(result)).encode()}
+    kind = next(kind for kind in KINDS if isinstance(result, kind.result))
+    table, arrays = stored_document(result, kind.repeated)
+    companions = {ARRAYS: npz_bytes(arrays)} if arrays else {}
+    if kind.model is not None:
+        companions[MODEL] = model_text(kind.model(result)).encode()
+    digests = {name: hashlib.sha256(content).hexdigest() for name, content in companions.items()}
+    text = strict_json({"format": FORMAT, "files": digests, **table})
+    return {**kind.products(result), **companions, kind.document: text.encode()}
+
+
+def save_result(result: Result | Snapshot, folder: str | Path) -> Path:
+    """Write the data files of a result, all or none; other files in the folder are left alone. Returns the folder.
 
     Raises:
         InputError: the folder cannot be written.
     """
-    return write_files_atomically(Path(folder), _file_contents(fit))
+    return write_files_atomically(Path(folder), folder_files(result))
 
 
-def load_fit(folder: str | Path, own_model: Model | None = None) -> Fit:
-    """The fit a folder holds.
+def load_result(folder: str | Path, own_model: Model | None = None) -> Result:
+    """Return the result that a folder holds; nothing is computed.
 
     Args:
         own_model: equations that are not built in.
 
     Raises:
-        InputError: no result folder, files that do not belong together, or other equations.
+        InputError: no result folder, one of an earlier version, files that do not belong together, or other equations.
     """
     folder = Path(folder)
-    try:
-        text = (folder / "result.json").read_text(encoding="utf-8")
-        files = {name: (folder / name).read_bytes() for name in ("model.toml", "arrays.npz")}
-    except OSError as error:
+    kind = next((kind for kind in KINDS if (folder / kind.document).is_file()), None)
+    if kind is None:
         raise InputError(
-            f"'{folder}' is no result folder ({error.filename}: {error.strerror}); run 'seatrial identify'"
-        ) from None
+            f"'{folder}' is no result folder (no {', '.join(kind.document for kind in KINDS)}); "
+            "give the DIR of 'seatrial identify TRIAL --out DIR'"
+        )
+    command = f"'{kind.command.replace('DIR', str(folder))}'"
     try:
-        table = json.loads(text)
+        table = json.loads((folder / kind.document).read_text(encoding="utf-8"))
         if table["format"] != FORMAT:
-            raise InputError(f"'{folder}' has format {table['format']}, this version reads {FORMAT}; identify again")
-        for name, content in files.items():
-            if hashlib.sha256(content).hexdigest() != table["files"][name]:
-                raise InputError(f"'{folder / name}' has changed since the result was written; identify again")
-        model = parse_model(files["model.toml"].decode(), str(folder / "model.toml"), own_model)
-        return fit_from_tables(table, model, npz_arrays(files["arrays.npz"]))
-    except (KeyError, TypeError, json.JSONDecodeError) as error:
-        raise InputError(f"'{folder / 'result.json'}' is damaged ({error}); run 'seatrial identify' again") from None
+            raise InputError(f"'{folder}' is of format {table['format']}, this version reads {FORMAT}; run {command}")
+        arrays, fields = _companions(kind, folder, table["files"], own_model, command)
+        return read_document(kind.result, table | fields, arrays)
+    except OSError as error:
+        raise InputError(f"'{error.filename}' cannot be read ({error.strerror}); run {command} again") from None
+    except (KeyError, TypeError, ValueError, IndexError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"'{folder / kind.document}' is damaged ({error}); run {command} again") from None
 
 
-def _file_contents(fit: Fit) -> dict[str, bytes]:
-    """File name -> content; result.json last, with the digests of the others."""
-    records = distinct_records([*fit.records, *(r for p in fit.predictions for r in (p.measured, p.simulated))])
-    place = {id(record): i for i, record in enumerate(records)}
-    arrays: dict[str, Array] = {}
-    for i, record in enumerate(records):
-        arrays |= record_arrays(record, f"record{i}")
-    for residuals in fit.residuals:
-        arrays[f"residuals/{residuals.channel}"] = residuals.values
-        arrays[f"autocorrelation/{residuals.channel}"] = residuals.autocorrelation
-    arrays |= band_arrays(fit)
-    arrays["solution"] = fit.solution.point
-    roles = [(r, "validation" if r.name in {p.record for p in fit.validation()} else "training") for r in fit.records]
-    provenance = model_provenance(roles, fit.method.criterion, fit.seed, fit.versions)
-    approach = approach_condition([r for r, role in roles if role == "training"], fit.model)
-    model = model_text(
-        ModelFile(fit.model, fit.covariance, provenance, fit.ship, approach, fit.interval_basis)
-    ).encode()
-    contents = {"model.toml": model, "arrays.npz": npz_bytes(arrays)}
-    digests = {name: hashlib.sha256(content).hexdigest() for name, content in contents.items()}
-    detail = detail_table(fit, records, place)
-    table = {"format": FORMAT, "files": digests, **fit_json(fit), "detail": detail}
-    return contents | {"result.json": strict_json(table).encode()}
+def load_fit(folder: str | Path, own_model: Model | None = None) -> Fit:
+    """Return the fit that a folder holds; arguments and errors as in `load_result`.
+
+    Raises:
+        InputError: it holds another result.
+    """
+    result = load_result(folder, own_model)
+    if not isinstance(result, Fit):
+        raise InputError(
+            f"'{folder}' holds a {type(result).__name__.lower()}, no fit; give a folder of 'seatrial identify'"
+        )
+    return result
+
+
+def _companions(
+    kind: FolderKind[Any], folder: Path, digests: Mapping[str, str], own_model: Model | None, command: str
+) -> tuple[dict[str, Array], dict[str, Any]]:
+    """Return the arrays of a folder, and the fields of its result that stand in the model file."""
+    contents = {name: (folder / name).read_bytes() for name in digests}
+    for name, digest in digests.items():
+        if hashlib.sha256(contents[name]).hexdigest() != digest:
+            raise InputError(f"'{folder / name}' has changed since the result was written; run {command} again")
+    arrays = npz_arrays(contents[ARRAYS]) if ARRAYS in contents else {}
+    if MODEL not in contents:
+        return arrays, {}
+    return arrays, kind.from_model(parse_model(contents[MODEL].decode(), str(folder / MODEL), own_model))

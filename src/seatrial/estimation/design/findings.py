@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from seatrial.core.results import Confirmation, ManoeuvrePrecision
-from seatrial.core.results.design_ranking import count_diverged, count_outside_limits, is_within_limits
+from seatrial.core.results.design_ranking import count_outside_limits, is_within_limits
 from seatrial.core.values import Finding, InputError, Severity
 from seatrial.estimation.design.task import DesignTask
 
@@ -97,7 +97,7 @@ def _limit_violations(task: DesignTask, designed: ManoeuvrePrecision) -> list[Fi
 
 def _confirmation_findings(designed: ManoeuvrePrecision, confirmation: Confirmation | None) -> list[Finding]:
     found = []
-    if lost := count_diverged(designed):
+    if lost := designed.diverged:
         found.append(
             _warning(
                 "lost",

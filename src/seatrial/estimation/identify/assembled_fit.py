@@ -43,7 +43,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         solution=estimation.estimate.optimum.solution,
         method=fit_result.method(estimation),
         offsets=fit_result.offsets(estimation),
-        noise=fit_result.noise(estimation),
+        channel_noise=fit_result.noise(estimation),
         residuals=fit_result.residuals(estimation),
         predictions=predicted.predictions,
         findings=(

@@ -60,7 +60,7 @@ def identify_in_unknown_waves(task: Identification) -> Fit:
             {"frequencies": len(problem.omega)},
         ),
         offsets=(),
-        noise=(),
+        channel_noise=(),
         residuals=(),
         predictions=(),
         findings=(*task.findings, _linear_equivalent_finding(record), *_unused_prior_findings(trial.model)),

@@ -72,7 +72,7 @@ def identify_by_wave_spectrum(task: Identification) -> Fit:
             {"frequencies": len(problem.omega)},
         ),
         offsets=(),
-        noise=(),
+        channel_noise=(),
         residuals=(),
         predictions=(),
         findings=(*task.findings, frequency_range_finding(frequency_range([record], problem.outputs))),

@@ -1,0 +1,195 @@
+"""Results as strict JSON and back, by the types of their fields: one way for every result.
+
+A number that JSON does not know (infinity, NaN) is null; in a folder, `non_finite` lists which null is which, by JSON
+Pointer (RFC 6901), so that a result reloads exactly. Long arrays and records are left out of a document, or stored.
+"""
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Any, TypeVar
+
+import numpy as np
+from pydantic import TypeAdapter, ValidationError
+from pydantic.json_schema import GenerateJsonSchema, JsonSchemaWarningKind
+
+from seatrial.core.results.fields import ABSENT, STORED_KEY, NamedValues, ReportedFinding, StoredValue
+from seatrial.core.values import Array, Finding, Record
+from seatrial.data.folder.archive import record_arrays, record_from_arrays
+
+T = TypeVar("T")
+Table = dict[str, Any]
+NON_FINITE, STORED_RECORDS = "non_finite", "stored_records"
+
+
+def document(result: object) -> Table:
+    """Return what `--json` writes: every described field and derived value, without long arrays and records."""
+    table = _adapter(type(result)).dump_python(result)
+    return _Writer(table, None).table()
+
+
+def stored_document(result: object, repeated: frozenset[str] = frozenset()) -> tuple[Table, dict[str, Array]]:
+    """Return what a folder keeps of a result, and the arrays it names.
+
+    Args:
+        result: any value of described fields.
+        repeated: derived values that stand elsewhere in the folder and are left out.
+    """
+    arrays: dict[str, Array] = {}
+    writer = _Writer(_adapter(type(result)).dump_python(result, exclude=set(repeated)), arrays)
+    table = writer.table()
+    kept = {
+        STORED_RECORDS: {name: record.metadata for record, name in writer.records.values()},
+        NON_FINITE: writer.non_finite,
+    }
+    return table | {key: value for key, value in kept.items() if value}, arrays
+
+
+def read_document(kind: type[T], table: Table, arrays: Mapping[str, Array]) -> T:
+    """Return the result of a stored document, the inverse of `stored_document`.
+
+    Raises:
+        ValueError: the table is damaged; the text names the entry.
+        KeyError: an entry or array is missing.
+    """
+    for pointer, text in table.get(NON_FINITE, {}).items():
+        _set_number(table, pointer, float(text))
+    try:
+        return _adapter(kind).validate_python(table, context=_Stored(arrays, table.get(STORED_RECORDS, {})))
+    except ValidationError as error:
+        first = error.errors()[0]
+        raise ValueError(f"{'.'.join(str(part) for part in first['loc'])}: {first['msg']}") from None
+
+
+def document_schema(kind: type) -> Table:
+    """Return the JSON Schema of a result's document.
+
+    Required are the keys that stand both in the document of `--json` and in that of a folder.
+    """
+    schema = _adapter(kind).json_schema(mode="serialization", schema_generator=_SchemaWriter)
+    for table in (schema, *schema.get("$defs", {}).values()):
+        properties = table.get("properties", {})
+        optional = {name for name, entry in properties.items() if entry.get("readOnly") or _is_stored(entry)}
+        if "required" in table:
+            table["required"] = [name for name in table["required"] if name not in optional]
+    return schema
+
+
+def findings_document(findings: tuple[Finding, ...]) -> Table:
+    """Return what `check --json` writes."""
+    return {"findings": TypeAdapter(tuple[ReportedFinding, ...]).dump_python(findings)}
+
+
+def strict_json(table: Mapping[str, Any]) -> str:
+    """Return JSON text.
+
+    Raises:
+        ValueError: an infinite number or NaN is left in the table, which is an error of the program.
+    """
+    return json.dumps(table, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+class _SchemaWriter(GenerateJsonSchema):
+    """Without titles that repeat a key, and without a remark on defaults that are left out."""
+
+    ignored_warning_kinds: set[JsonSchemaWarningKind] = {"skipped-choice", "non-serializable-default"}  # noqa: RUF012
+
+    def field_title_should_be_set(self, schema: object) -> bool:  # noqa: ARG002
+        return False
+
+
+@cache
+def _adapter(kind: type[T]) -> TypeAdapter[T]:
+    return TypeAdapter(kind)
+
+
+def _is_stored(entry: object) -> bool:
+    """Whether a schema says that a value, or all that a container holds, stands in arrays.npz."""
+    if not isinstance(entry, dict):
+        return False
+    return STORED_KEY in entry or _is_stored(entry.get("items")) or _is_stored(entry.get("additionalProperties"))
+
+
+@dataclass(frozen=True)
+class _Stored:
+    """The arrays of a folder and what their records mean."""
+
+    arrays: Mapping[str, Array]
+    records: Mapping[str, Table]
+    _read: dict[str, Record] = field(default_factory=dict)
+
+    def array(self, name: str) -> Array:
+        return self.arrays[name]
+
+    def record(self, name: str) -> Record:
+        """Return the record; the same object wherever the document names it."""
+        if name not in self._read:
+            self._read[name] = record_from_arrays(self.records[name], self.arrays, name)
+        return self._read[name]
+
+
+@dataclass
+class _Writer:
+    """Turns the values of a dumped result into JSON; `arrays` takes what is stored, None leaves it out."""
+
+    root: Table
+    arrays: dict[str, Array] | None
+    records: dict[int, tuple[Record, str]] = field(default_factory=dict)
+    non_finite: dict[str, str] = field(default_factory=dict)
+
+    def table(self) -> Table:
+        return self._value(self.root, "")
+
+    def _value(self, value: Any, pointer: str) -> Any:
+        if isinstance(value, Mapping):
+            table = {str(key): self._value(inner, f"{pointer}/{_escaped(str(key))}") for key, inner in value.items()}
+            kept = {key: inner for key, inner in table.items() if inner is not ABSENT}
+            return kept if kept or not table else ABSENT
+        if isinstance(value, list | tuple):
+            items = [self._value(inner, f"{pointer}/{index}") for index, inner in enumerate(value)]
+            present = [item for item in items if item is not ABSENT]
+            return present if present or not items else ABSENT
+        if isinstance(value, NamedValues):
+            return self._value(self._named(value), pointer)
+        if isinstance(value, StoredValue):
+            return self._record_name(value.record)
+        if isinstance(value, np.ndarray):
+            return self._array_name(value, pointer.removeprefix("/"))
+        if isinstance(value, float) and not math.isfinite(value):
+            self.non_finite[pointer] = str(float(value))
+            return None
+        return value.item() if isinstance(value, np.generic) else value
+
+    def _named(self, named: NamedValues) -> object:
+        names = tuple(self.root[named.key])
+        rows = [dict(zip(names, row, strict=True)) for row in np.atleast_2d(named.values).tolist()]
+        return rows[0] if named.values.ndim == 1 else rows
+
+    def _array_name(self, values: Array, name: str) -> object:
+        if self.arrays is None:
+            return ABSENT
+        self.arrays[name] = values
+        return name
+
+    def _record_name(self, record: Record) -> object:
+        if self.arrays is None:
+            return ABSENT
+        if id(record) not in self.records:
+            name = f"record{len(self.records)}"
+            self.records[id(record)] = (record, name)
+            self.arrays |= record_arrays(record, name)
+        return self.records[id(record)][1]
+
+
+def _escaped(key: str) -> str:
+    return key.replace("~", "~0").replace("/", "~1")
+
+
+def _set_number(table: Any, pointer: str, number: float) -> None:
+    """Put a number where a JSON Pointer leads."""
+    *path, last = [key.replace("~1", "/").replace("~0", "~") for key in pointer.split("/")[1:]]
+    for key in path:
+        table = table[int(key) if isinstance(table, list) else key]
+    table[int(last) if isinstance(table, list) else last] = number
