@@ -9,6 +9,7 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 from seatrial.cli.output import SEVERITY_MARK
+from seatrial.numerics.platform import stop_signals
 
 if TYPE_CHECKING:
     from seatrial.core.results.online import SampleCounts, Snapshot
@@ -26,7 +27,7 @@ def stop_on_signal() -> Iterator[Callable[[], bool]]:
             raise KeyboardInterrupt
         asked.append(number)
 
-    before = {number: signal.signal(number, note) for number in (signal.SIGINT, signal.SIGTERM)}
+    before = {number: signal.signal(number, note) for number in stop_signals()}
     try:
         yield lambda: bool(asked)
     finally:

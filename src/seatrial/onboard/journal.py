@@ -20,6 +20,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError
 from seatrial.data.read import Layout
+from seatrial.numerics.platform import flush_to_disk, lock_exclusively
 from seatrial.onboard.sample import Sample
 
 _HEADER_PREFIX = b"seatrial journal 1 "
@@ -72,7 +73,10 @@ class Journal:
         except OSError as error:
             raise InputError(f"journal '{path}' cannot be written ({error.strerror}); choose another place") from None
         try:
-            _lock(self._file, path)
+            if not lock_exclusively(self._file):
+                raise InputError(
+                    f"journal '{path}' is being written by another process; end that process, or name another journal"
+                )
             self._entries_start = _check_header(self._file, header, path)
         except InputError:
             self._file.close()
@@ -120,7 +124,7 @@ class Journal:
             self._try_write(lambda: _write_all(self._file, data))
         if self._clock() - self._flushed_at >= _FLUSH_S:
             self._flushed_at = self._clock()
-            self._try_write(lambda: os.fsync(self._file.fileno()))
+            self._try_write(lambda: flush_to_disk(self._file.fileno()))
 
     def flush(self) -> None:
         """All of it to the disk, now."""
@@ -183,17 +187,3 @@ def _check_header(file: RawIOBase, header: bytes, path: Path) -> int:
             f"journal '{path}' belongs to another model or other columns; name another one, or move it elsewhere"
         )
     return len(header)
-
-
-def _lock(file: RawIOBase, path: Path) -> None:
-    """One writer at a time, where the system can tell."""
-    try:
-        import fcntl
-    except ImportError:
-        return
-    try:
-        fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        raise InputError(
-            f"journal '{path}' is being written by another process; end that one, or name another"
-        ) from None

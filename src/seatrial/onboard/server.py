@@ -4,7 +4,6 @@ import base64
 import errno
 import hashlib
 import json
-import os
 import socketserver
 import sys
 from collections.abc import Callable
@@ -16,6 +15,7 @@ from typing import Any
 from urllib.parse import parse_qs
 
 from seatrial.core.values import InputError
+from seatrial.numerics.platform import reuses_addresses_safely
 
 LOOPBACK = "127.0.0.1"
 REQUEST_TIMEOUT_S = 5.0
@@ -42,8 +42,7 @@ class Server(ThreadingHTTPServer):
     """Answers with the page and with what `state(since)` gives."""
 
     daemon_threads = True
-    # on Windows this option would let two programs share a port
-    allow_reuse_address = os.name != "nt"
+    allow_reuse_address = reuses_addresses_safely()
 
     def __init__(self, port: int, state: StateProvider) -> None:
         self.state = state

@@ -1,11 +1,11 @@
 """Lines of standard input, or of any pipe."""
 
 import os
-import select
 import time
 
 from seatrial.core.results.online import SampleCounts
 from seatrial.core.values import InputError
+from seatrial.numerics.platform import has_input
 from seatrial.onboard.lines import LineBatch, LineSplitter
 
 _CHUNK = 1 << 16
@@ -34,7 +34,7 @@ class PipeLines:
         deadline = time.monotonic() + seconds
         lines: list[bytes] = []
         left = seconds
-        while not (lines or self._is_over) and select.select([self._descriptor], [], [], max(left, 0.0))[0]:
+        while not (lines or self._is_over) and has_input(self._descriptor, left):
             lines = self._read_lines()
             left = deadline - time.monotonic()
             if left <= 0.0:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from seatrial.core.values.errors import InputError
+from seatrial.numerics.platform import replace_file
 
 
 def write_atomically(path: Path, content: bytes) -> None:
@@ -22,7 +23,7 @@ def write_atomically(path: Path, content: bytes) -> None:
         with os.fdopen(handle, "wb") as file:
             file.write(content)
         Path(temporary).chmod(0o644)
-        Path(temporary).replace(path)
+        replace_file(Path(temporary), path)
     except OSError as error:
         if temporary:
             Path(temporary).unlink(missing_ok=True)
@@ -42,7 +43,7 @@ def write_files_atomically(folder: Path, contents: Mapping[str, bytes]) -> Path:
         for name, content in contents.items():
             (staging / name).write_bytes(content)
         for name in contents:
-            (staging / name).replace(folder / name)
+            replace_file(staging / name, folder / name)
     except OSError as error:
         raise InputError(f"folder '{folder}' cannot be written ({error.strerror}); choose another place") from None
     finally:

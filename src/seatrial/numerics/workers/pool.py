@@ -3,10 +3,11 @@
 Results come in the order of the items whatever the number of workers, so the same seed gives the same bits.
 """
 
-import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, ThreadPoolExecutor, wait
 from typing import TypeVar
+
+from seatrial.numerics.platform import usable_cores
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -22,7 +23,7 @@ def worker_count(workers: int | None = None) -> int:
         ValueError: fewer than one worker.
     """
     if workers is None:
-        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+        return usable_cores()
     if workers < 1:
         raise ValueError(f"{workers} workers cannot do anything; give at least one, or None for all cores")
     return workers

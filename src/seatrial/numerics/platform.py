@@ -1,0 +1,110 @@
+"""What differs between operating systems: processors, file locks, renaming, writing through to disk, signals, waiting.
+
+Nothing else in the package asks which system it runs on. Where a system lacks something the function says what happens
+instead.
+"""
+
+import os
+import select
+import signal
+import time
+from io import RawIOBase
+from pathlib import Path
+
+_SYSTEM = os.name
+_RETRIES_REPLACING = _SYSTEM == "nt"
+# Windows refuses to replace a file that a virus scanner or an indexer has open for a moment; s between attempts, and
+# how many: half a second in all, as long as such programs hold a small file
+_REPLACE_PAUSE_S, _REPLACE_ATTEMPTS = 0.05, 10
+# offset of the byte that stands for a whole file where only ranges can be locked: beyond every file that is locked, and
+# within the 31 bits that msvcrt takes
+_LOCKED_BYTE = 2**31 - 2
+
+
+def usable_cores() -> int:
+    """Return the number of processor cores this process may use; all of them where the system has no affinities."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def lock_exclusively(file: RawIOBase) -> bool:
+    """Lock an open file for this process and return whether that succeeded; the lock ends when the file is closed.
+
+    True as well, and without a lock, where the system has none.
+    """
+    try:
+        import fcntl
+    except ImportError:
+        return _lock_first_byte(file)
+    try:
+        fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True
+
+
+def _lock_first_byte(file: RawIOBase) -> bool:
+    """As Windows locks: a range of bytes; one far beyond any end, so that others can still read the file."""
+    try:
+        import msvcrt
+    except ImportError:
+        return True
+    position = file.tell()
+    file.seek(_LOCKED_BYTE)
+    try:
+        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)  # pyright: ignore[reportAttributeAccessIssue]
+    except OSError:
+        return False
+    finally:
+        file.seek(position)
+    return True
+
+
+def replace_file(source: Path, target: Path) -> None:
+    """Rename a file to `target`, which is replaced in one step if it exists; tried for half a second where it is open.
+
+    Raises:
+        OSError: the system refuses.
+    """
+    for _ in range(_REPLACE_ATTEMPTS - 1):
+        try:
+            source.replace(target)
+        except PermissionError:
+            if not _RETRIES_REPLACING:
+                raise
+            time.sleep(_REPLACE_PAUSE_S)
+        else:
+            return
+    source.replace(target)
+
+
+def flush_to_disk(descriptor: int) -> None:
+    """Wait until what was written to an open file is on the disk.
+
+    Raises:
+        OSError: the disk is full or has failed.
+    """
+    os.fsync(descriptor)
+
+
+def stop_signals() -> tuple[signal.Signals, ...]:
+    """Return the signals by which a user or the system ends a process politely."""
+    names = ("SIGINT", "SIGTERM", "SIGBREAK")
+    return tuple(signal.Signals[name] for name in names if name in signal.Signals.__members__)
+
+
+def has_input(descriptor: int, seconds: float) -> bool:
+    """Return whether an open file has something to read (or has ended), waiting up to `seconds` s for it.
+
+    True at once where the system cannot wait for this kind of file (pipes on Windows): the read then waits.
+    """
+    try:
+        return bool(select.select([descriptor], [], [], max(seconds, 0.0))[0])
+    except OSError:
+        return True
+
+
+def reuses_addresses_safely() -> bool:
+    """Return whether a port just given up may be bound again; on Windows that would let two programs share it."""
+    return _SYSTEM != "nt"
