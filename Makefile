@@ -1,11 +1,15 @@
 # One word each: make demo | test | lint | bench | docs. The first one sets up .venv by itself.
+# Works with GNU make on Linux and macOS, and on Windows from Git Bash with `choco install make`; there, without make,
+# run the lines of a target by hand with .venv\Scripts in place of .venv/bin.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint bench docs clean
+.PHONY: help setup demo test lint style types imports bench docs clean
 MAKEFLAGS += --no-print-directory
 
 VENV := .venv
-BIN := $(VENV)/bin
+BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 READY := $(VENV)/.ready
+# The versions to install: constraints.txt (what the check ran with), constraints-lowest.txt, or empty for the latest.
+CONSTRAINTS ?= constraints.txt
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --retries 10 --timeout 60
 PYTHON ?= $(shell for p in python3.11 python3.12 python3.13 python3 python; do \
 	if $$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then echo $$p; break; fi; done)
@@ -20,19 +24,19 @@ endif
 help:
 	@echo 'make demo   run the main job on a simulated trial series; the report lies in demo/'
 	@echo 'make test   the whole test suite'
-	@echo 'make lint   style, types and the order of the rooms'
+	@echo 'make lint   style, types and the order of the layers (make style, make types, make imports)'
 	@echo 'make bench  times and ratios on this machine'
 	@echo 'make docs   build the documentation into site/'
 
 setup: $(READY)
 
-$(READY): pyproject.toml constraints.txt
+$(READY): pyproject.toml $(CONSTRAINTS)
 	@test -n "$(PYTHON)" || { echo 'seatrial needs Python 3.11 or newer; name it with make PYTHON=/path/to/python3'; exit 1; }
 	@echo 'setting up $(VENV) ...'
-	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV) || \
+	@$(BIN)/python -c '' 2>/dev/null || $(PYTHON) -m venv $(VENV) || \
 		{ rm -rf $(VENV); echo 'this Python cannot make virtual environments; on Debian: apt-get install python3-venv'; exit 1; }
 	@for attempt in 1 2 3; do \
-		$(PIP) -c constraints.txt -e '.[formats,bounds,dev]' && break; \
+		$(PIP) $(addprefix -c ,$(CONSTRAINTS)) -e '.[formats,bounds,dev]' && break; \
 		if [ $$attempt = 3 ]; then echo 'packages could not be installed; check the network and run make again'; exit 1; fi; \
 		echo "attempt $$attempt failed, trying again"; sleep 5; \
 	done
@@ -44,10 +48,16 @@ demo: $(READY)
 test: $(READY)
 	@$(BIN)/python -m pytest -n 2
 
-lint: $(READY)
+lint: style types imports
+
+style: $(READY)
 	@$(BIN)/ruff check --quiet .
 	@$(BIN)/ruff format --check --quiet .
+
+types: $(READY)
 	@$(BIN)/basedpyright --pythonpath $(BIN)/python
+
+imports: $(READY)
 	@$(BIN)/lint-imports --no-cache
 
 bench: $(READY)
