@@ -29,7 +29,9 @@ Values
     Ship, Parameters, Prior      particulars; named values; Gaussian knowledge of one
     Model                        equations with parameters
     Sheet                        on which a model is written
-    Trial, Problem, Solution     what is to be estimated; as an optimiser sees it; what it returns
+    Trial, TrialRun, Role        what is to be estimated; one of its records and what that is for
+    EstimateSettings             how it is to be estimated
+    Problem, Solution            a trial as an optimiser sees it; what an optimiser returns
     Fit, Design, Tuning, Study   results
     Finding, InputError          what a check reports; bad input, in one sentence
 

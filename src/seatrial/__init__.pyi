@@ -24,10 +24,10 @@ from seatrial.core.results import Design, Fit, Study
 from seatrial.core.results.tuning import Tuning
 from seatrial.core.values import Channel, Finding, InputError, Parameters, Prior, Record, Ship
 from seatrial.data.read import ColumnSpec, Layout
-from seatrial.data.trial import Trial
+from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
 from seatrial.estimation import regress as estimators
+from seatrial.estimation.estimate.trial_problem import TrialProblem as Problem
 from seatrial.numerics import optimise as optimisers
-from seatrial.numerics.optimise import LeastSquaresProblem as Problem
 from seatrial.numerics.optimise import Solution
 from seatrial.physics import manoeuvres, models, sea
 
@@ -35,6 +35,7 @@ __all__ = [
     "Channel",
     "ColumnSpec",
     "Design",
+    "EstimateSettings",
     "Finding",
     "Fit",
     "InputError",
@@ -44,11 +45,13 @@ __all__ = [
     "Prior",
     "Problem",
     "Record",
+    "Role",
     "Sheet",
     "Ship",
     "Solution",
     "Study",
     "Trial",
+    "TrialRun",
     "Tuning",
     "check",
     "control",

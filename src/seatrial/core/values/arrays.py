@@ -1,4 +1,4 @@
-"""The array types of the house, and how numbers are frozen."""
+"""Array types, and arrays that cannot be written to."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -8,7 +8,7 @@ Index = NDArray[np.int64]
 
 
 def frozen(values: ArrayLike) -> Array:
-    """A float64 copy that cannot be written to."""
+    """Return a float64 copy that cannot be written to."""
     array = np.array(values, dtype=np.float64)
     array.setflags(write=False)
     return array

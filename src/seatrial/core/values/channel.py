@@ -30,7 +30,7 @@ class Channel:
 
     @classmethod
     def from_notation(cls, symbol: str, values: Array) -> Self:
-        """A channel in the notation table's own unit, frame and sign."""
+        """Return a channel in the notation table's own unit, frame and sign."""
         q = quantity(symbol)
         return cls(frozen(values), q.unit, q.frame, q.positive)
 
@@ -41,13 +41,13 @@ class Channel:
         return {key: getattr(self, key) for key in keys}
 
     def with_values(self, values: Array) -> Self:
-        """The same channel with other values."""
+        """Return the channel with other values."""
         return replace(self, values=frozen(values))
 
 
 @dataclass(frozen=True)
 class Provenance:
-    """Where a record came from and what has been done to it."""
+    """States the file a record comes from, its digest, and every step since."""
 
     source: str = ""
     sha256: str = ""
@@ -55,9 +55,9 @@ class Provenance:
 
     @classmethod
     def from_metadata(cls, metadata: Mapping[str, Any]) -> Self:
-        """The inverse of `dataclasses.asdict`, by way of JSON."""
+        """Restore what `dataclasses.asdict` gives, also after JSON."""
         return cls(metadata["source"], metadata["sha256"], tuple(metadata["steps"]))
 
     def with_step(self, step: str) -> Self:
-        """The same with one more step."""
+        """Return the provenance with one more step."""
         return replace(self, steps=(*self.steps, step))

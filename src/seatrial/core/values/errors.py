@@ -1,16 +1,16 @@
-"""The one exception a user meets: bad input, said in one sentence."""
+"""Errors that a user can meet: bad input, in one sentence."""
 
 
 class InputError(ValueError):
-    """What is wrong, where, and what to do; the command line prints it and exits with code 2."""
+    """States what is wrong, where, and what to do; the command line prints it and exits with code 2."""
 
 
 class DivergedError(InputError):
-    """A simulation that leaves all bounds."""
+    """States where and when a simulation left all bounds."""
 
 
 def spelling_hint(name: str, valid_names: list[str]) -> str:
-    """A hint naming the known word most like `name`, or an empty string."""
+    """Return the end of a sentence that names the valid name most like `name`, or all of them where none is alike."""
     import difflib
 
     close = difflib.get_close_matches(name, valid_names, n=1, cutoff=0.5)

@@ -1,4 +1,4 @@
-"""A finding: something a check or an estimate has to tell the user, with evidence and advice."""
+"""A finding: one statement of a check or an estimate, with its evidence and what to do."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -14,12 +14,12 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True)
 class Finding:
-    """One statement about a record, a model or a fit.
+    """States one thing about a record, a model or a fit.
 
     Attributes:
         severity: how much it matters.
         code: short stable identifier, e.g. ``velocity-frame``.
-        what: what was found, one sentence naming the record and channel.
+        message: one sentence naming the record and channel.
         evidence: the numbers it rests on.
         advice: what the user can do.
     """
@@ -32,5 +32,5 @@ class Finding:
 
     @property
     def text(self) -> str:
-        """What and evidence in one line."""
+        """Message and evidence in one line."""
         return f"{self.message} ({self.evidence})" if self.evidence else self.message

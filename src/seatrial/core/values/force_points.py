@@ -20,7 +20,7 @@ class ForceContent(StrEnum):
         HULL: the bare hull, without propeller, rudder and any inertia.
         HYDRODYNAMIC: hull, propeller and rudder as the model sums them, without any inertia.
         PRESSURE: everything the water does (CFD): with the centripetal terms of the added masses.
-        BALANCE: what a balance feels that carries the ship: with those of the mass as well.
+        BALANCE: what a balance measures on which the model is mounted: with those of the mass as well.
     """
 
     HULL = "hull"
@@ -31,14 +31,14 @@ class ForceContent(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class ForcePoints:
-    """A table of forces, SI, in the house's axes: x forward, y starboard, moments positive to starboard.
+    """A table of forces, SI; axes x forward, y starboard, moments positive to starboard.
 
     Attributes:
         motion: u, v, r and inputs by symbol, each (n,); signs as in the notation table; at the model's origin.
         forces: X, Y [N], N [N m about the model's origin] or some of them, each (n,); NaN where not measured.
         sd: standard deviation of each force, SI.
         weight: factor on the squares of all residuals of the table.
-        columns: symbol -> how the file calls it, for messages.
+        columns: symbol -> name of its column in the file, for messages.
     """
 
     name: str
@@ -68,13 +68,13 @@ class ForcePoints:
             if not np.isfinite(self.sd.get(symbol, np.nan)) or self.sd[symbol] <= 0:
                 raise InputError(f"{where}: '{symbol}' has no positive standard deviation; give sd or sd_percent")
         if not self.forces or not any(np.isfinite(values).any() for values in self.forces.values()):
-            raise InputError(f"{where} hold no force at all; name columns for X, Y or N")
+            raise InputError(f"{where} hold no force; name columns for X, Y or N")
         if len({len(values) for values in (*self.motion.values(), *self.forces.values())}) != 1:
             raise InputError(f"{where}: columns differ in length; give every one a value in each row")
         for symbol, values in self.motion.items():
             if not np.all(np.isfinite(values)):
                 row = int(np.flatnonzero(~np.isfinite(values))[0]) + 1
-                raise InputError(f"{where}: '{symbol}' is no number in point {row}; fill it in, or drop the row")
+                raise InputError(f"{where}: '{symbol}' is not a number in point {row}; fill it in, or drop the row")
 
     def __len__(self) -> int:
         return len(self.motion["u"])
@@ -85,5 +85,5 @@ class ForcePoints:
         return int(sum(np.isfinite(values).sum() for values in self.forces.values()))
 
     def label(self, symbol: str) -> str:
-        """How messages name a quantity."""
+        """Return how messages name a quantity."""
         return f"column '{self.columns[symbol]}' ({symbol})" if symbol in self.columns else f"'{symbol}'"

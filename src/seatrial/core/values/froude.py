@@ -1,4 +1,4 @@
-"""Froude similarity: a record made at one scale, expressed at another."""
+"""Froude similarity: a record of one scale, expressed at another."""
 
 from dataclasses import replace
 
@@ -28,7 +28,7 @@ _EXPONENTS: dict[str, float] = {
 
 
 def froude_factor(unit: str, ratio: float) -> float:
-    """Factor from model to ship for a quantity of SI `unit` at length ratio `ratio` = L_ship / L_model.
+    """Return the factor from model to ship for a quantity of SI `unit` at length ratio `ratio` = L_ship / L_model.
 
     Raises:
         InputError: the ratio is not positive, or the unit has no known exponent.
@@ -41,13 +41,13 @@ def froude_factor(unit: str, ratio: float) -> float:
 
 
 def froude_scaled(record: Record, ratio: float) -> Record:
-    """The record at `ratio` times its scale (ratio > 1: model to ship; the inverse is `1 / ratio`).
+    """Return the record at `ratio` times its scale (ratio > 1: model to ship; the inverse is `1 / ratio`).
 
     Lengths and reference points x ratio, time and velocities x ratio^1/2, rates x ratio^-1/2, forces x ratio^3,
     moments x ratio^4; equal water density at both scales.
 
     Raises:
-        InputError: see `factor`.
+        InputError: as `froude_factor`.
     """
     if ratio == 1.0:
         return record

@@ -11,7 +11,7 @@ from seatrial.core.values.errors import InputError, spelling_hint
 
 @dataclass(frozen=True)
 class Quantity:
-    """What a symbol means: SI unit, frame (body, earth or none), positive direction, LaTeX, standard name."""
+    """Defines what a symbol means: SI unit, frame (body, earth or none), positive direction, LaTeX, standard name."""
 
     symbol: str
     meaning: str
@@ -99,7 +99,7 @@ NOTATION: dict[str, Quantity] = {quantity.symbol: quantity for quantity in _TABL
 
 
 def quantity(symbol: str) -> Quantity:
-    """The entry of `symbol`.
+    """Return the entry of a symbol.
 
     Raises:
         InputError: the symbol is not in the table; the nearest one is named.
@@ -110,7 +110,7 @@ def quantity(symbol: str) -> Quantity:
 
 
 def positive_direction(symbol: str, frame: str) -> str:
-    """The positive direction of a channel in that frame: the table's, but north and east for earth-fixed velocities.
+    """Return the positive direction of a channel in a frame: north or east for earth-fixed velocities.
 
     Raises:
         InputError: as `quantity`.

@@ -1,4 +1,4 @@
-"""Parameters: ordered named values with unit, bounds, prior, free or fixed, and where each comes from."""
+"""Parameters: ordered named values with unit, bounds, prior, free or fixed, and source."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
@@ -14,7 +14,7 @@ from seatrial.core.values.errors import InputError, spelling_hint
 
 @dataclass(frozen=True)
 class Prior:
-    """Gaussian prior knowledge of one parameter, with its source."""
+    """Gaussian knowledge of one parameter before the fit, in its unit, with its source."""
 
     mean: float
     standard_deviation: float
@@ -23,7 +23,7 @@ class Prior:
 
 @dataclass(frozen=True)
 class Parameter:
-    """One named value.
+    """One named value of a model.
 
     Attributes:
         name: the field's symbol in ASCII, e.g. ``Y_vvr``.
@@ -112,7 +112,7 @@ class Parameters:
         return tuple(p.name for p in self.items if math.isnan(p.value))
 
     def index(self, name: str) -> int:
-        """Position of a name."""
+        """Return the position of a name."""
         if name not in self._index_by_name:
             raise InputError(f"unknown parameter '{name}'{spelling_hint(name, list(self.names))}")
         return self._index_by_name[name]
@@ -123,35 +123,35 @@ class Parameters:
         return replace(self, items=tuple(replace(p, **changes.get(p.name, {})) for p in self.items))  # type: ignore[arg-type]
 
     def with_values(self, values: Mapping[str, float], source: str | None = None) -> Self:
-        """New values, and their source if given."""
+        """Return the parameters with new values, and their source if given."""
         extra = {} if source is None else {"source": source}
         return self._with_changes({name: {"value": float(value), **extra} for name, value in values.items()})
 
     def with_free_values(self, point: Array) -> Self:
-        """Values of the free parameters, in order."""
+        """Return the parameters with new values of the free ones, in order, shape (k,)."""
         return self.with_values(dict(zip(self.free_names, point, strict=True)))
 
     def fixed(self, *names: str) -> Self:
-        """The named parameters fixed at their values."""
+        """Return the parameters with the named ones fixed at their values."""
         return self._with_changes({name: {"free": False} for name in names})
 
     def freed(self, *names: str) -> Self:
-        """The named parameters free."""
+        """Return the parameters with the named ones free."""
         return self._with_changes({name: {"free": True} for name in names})
 
     def only_free(self, names: Iterable[str]) -> Self:
-        """Exactly the named parameters free."""
+        """Return the parameters with exactly the named ones free."""
         wanted = set(names)
         return self._with_changes({n: {"free": n in wanted} for n in (*self.names, *wanted)})
 
     def bounded(self, name: str, lower: float, upper: float) -> Self:
-        """Bounds of one parameter."""
+        """Return the parameters with new bounds of one of them, in its unit."""
         return self._with_changes({name: {"lower": lower, "upper": upper}})
 
     def with_priors(self, priors: Mapping[str, Prior]) -> Self:
-        """Gaussian priors by name."""
+        """Return the parameters with Gaussian priors, by name."""
         return self._with_changes({name: {"prior": prior} for name, prior in priors.items()})
 
     def without_priors(self) -> Self:
-        """No priors at all."""
+        """Return the parameters without any prior."""
         return self._with_changes({name: {"prior": None} for name in self.names})

@@ -1,4 +1,4 @@
-"""How a long computation tells where it is."""
+"""The callback by which a long computation reports its progress."""
 
 from collections.abc import Callable
 

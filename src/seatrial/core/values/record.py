@@ -19,8 +19,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+# dimensionless, ours: how far steps of an even time base may differ, in mean steps; how far a ratio of rates may be from
+# a whole number; rounding of a duration times a rate
+_EVEN_STEPS, _WHOLE_RATIO, _ROUNDING = 1e-3, 1e-3, 1e-12
+_SAME_TIME = 1e-9  # s, relative beyond 1 s; ours: time stamps that near are one
+
+
 class RecordKind(StrEnum):
-    """Where a record comes from; a planned one has inputs only."""
+    """States where a record comes from; a planned one has inputs only."""
 
     MEASURED = "measured"
     SIMULATED = "simulated"
@@ -60,7 +66,7 @@ class Record:
     def from_arrays(
         cls, name: str, time: Array, values: Mapping[str, Array], kind: RecordKind = RecordKind.MEASURED
     ) -> Self:
-        """A record of channels in the notation table's own units, frames and signs."""
+        """Return a record of channels in the notation table's own units, frames and signs."""
         return cls(name, time, {symbol: Channel.from_notation(symbol, array) for symbol, array in values.items()}, kind)
 
     @property
@@ -83,7 +89,7 @@ class Record:
         return self.channel(symbol).values
 
     def channel(self, symbol: str) -> Channel:
-        """The channel of that name.
+        """Return the channel of a symbol.
 
         Raises:
             InputError: the record has no such channel.
@@ -103,7 +109,7 @@ class Record:
     def is_uniform(self) -> bool:
         """Whether time increases in steps that agree within a thousandth."""
         steps = np.diff(self.time)
-        return len(steps) > 0 and bool(np.ptp(steps) <= 1e-3 * np.mean(steps)) and self.duration > 0.0
+        return len(steps) > 0 and bool(np.ptp(steps) <= _EVEN_STEPS * np.mean(steps)) and self.duration > 0.0
 
     @property
     def dt(self) -> float:
@@ -115,40 +121,42 @@ class Record:
         if len(self.time) < 2:
             raise InputError(f"record '{self.name}' has one sample; at least two are needed")
         if not self.is_uniform:
-            raise InputError(f"record '{self.name}' has an uneven time base; rebuild it first (check.timebase)")
+            raise InputError(
+                f"record '{self.name}' has an uneven time base; rebuild it first, as checking a trial does"
+            )
         return self.duration / (len(self.time) - 1)
 
     def matrix(self, symbols: tuple[str, ...]) -> Array:
-        """Columns of the named channels, shape (n, len(symbols)), C order."""
+        """Return the columns of the named channels, shape (n, len(symbols)), C order."""
         return (
             np.ascontiguousarray(np.stack([self[s] for s in symbols], axis=1)) if symbols else np.empty((len(self), 0))
         )
 
     def with_channel(self, symbol: str, channel: Channel, step: str = "") -> Self:
-        """The same record with one channel added or replaced."""
+        """Return the record with one channel added or replaced, and the step in its provenance."""
         provenance = self.provenance.with_step(step) if step else self.provenance
         return replace(self, channels={**self.channels, symbol: channel}, provenance=provenance)
 
     def without(self, *symbols: str) -> Self:
-        """The same record without the named channels."""
+        """Return the record without the named channels."""
         return replace(self, channels={s: c for s, c in self.channels.items() if s not in symbols})
 
     def renamed(self, name: str) -> Self:
-        """The same record under another name."""
+        """Return the record under another name."""
         return replace(self, name=name)
 
     def rows(self, index: slice) -> Self:
-        """The samples of a slice."""
+        """Return the samples of a slice."""
         cut = {s: replace(c, values=c.values[index]) for s, c in self.channels.items()}
         return replace(self, time=self.time[index], channels=cut)
 
     def between(self, start: float, stop: float) -> Self:
-        """Samples with start <= t <= stop (half a step of tolerance).
+        """Return the samples with start <= t <= stop, in s.
 
         Raises:
-            InputError: nothing lies between.
+            InputError: no sample lies between.
         """
-        margin = 1e-9 * max(1.0, abs(stop))
+        margin = _SAME_TIME * max(1.0, abs(stop))
         first = int(np.searchsorted(self.time, start - margin))
         last = int(np.searchsorted(self.time, stop + margin, side="right"))
         if first >= last:
@@ -156,14 +164,14 @@ class Record:
         return self.rows(slice(first, last))
 
     def resampled(self, rate: float) -> Self:
-        """Every k-th sample where `rate` [Hz] divides the record's own; otherwise linear interpolation.
+        """Return every k-th sample where `rate` [Hz] divides the record's own; otherwise linear interpolation.
 
         No filter is applied: estimators compare point samples with point samples.
         """
         ratio = 1.0 / (self.dt * rate)
-        if ratio >= 1 and abs(ratio - round(ratio)) < 1e-3:
+        if ratio >= 1 and abs(ratio - round(ratio)) < _WHOLE_RATIO:
             return self.rows(slice(None, None, round(ratio)))
-        count = int(np.floor(self.duration * rate * (1 + 1e-12))) + 1
+        count = int(np.floor(self.duration * rate * (1 + _ROUNDING))) + 1
         time = self.time[0] + np.arange(count) / rate
         channels = {s: c.with_values(np.interp(time, self.time, c.values)) for s, c in self.channels.items()}
         return replace(
@@ -238,7 +246,7 @@ class Record:
         )
 
     def to_xarray(self) -> "xarray.Dataset":
-        """A dataset over `time`, channel metadata as attributes (needs the extra `formats`)."""
+        """Return a dataset over `time`, channel metadata as attributes (needs the extra `formats`)."""
         import xarray as xr
 
         variables = {s: ("time", np.array(c.values), c.metadata) for s, c in self.channels.items()}
@@ -246,7 +254,7 @@ class Record:
 
     @classmethod
     def from_xarray(cls, dataset: "xarray.Dataset") -> Self:
-        """The inverse of `to_xarray`, but for kind and provenance, which a dataset does not keep."""
+        """Restore a record from `to_xarray`, except kind and provenance, which a dataset does not keep."""
         channels = {
             str(s): _channel_from_metadata(str(s), a.to_numpy().astype(float), dict(a.attrs))
             for s, a in dataset.items()
@@ -255,13 +263,13 @@ class Record:
 
 
 def _check_time_order(name: str, time: Array) -> None:
-    known = np.flatnonzero(np.isfinite(time))
-    back = np.flatnonzero(np.diff(time[known]) < 0)
+    stamped = np.flatnonzero(np.isfinite(time))
+    back = np.flatnonzero(np.diff(time[stamped]) < 0)
     if back.size:
-        row = known[back[0] + 1]
+        row = stamped[back[0] + 1]
         raise InputError(
             f"record '{name}': time runs backwards at sample {row + 1} "
-            f"({time[known[back[0]]]:g} s to {time[row]:g} s); sort or split the file"
+            f"({time[stamped[back[0]]]:g} s to {time[row]:g} s); sort or split the file"
         )
 
 

@@ -1,4 +1,4 @@
-"""A ship: its name and particulars, by the symbols of the models that use them."""
+"""A ship: its name and particulars, by the symbols that models use."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,7 +10,7 @@ class Ship:
     """Particulars in SI units, keyed by symbol (``L``, ``B``, ``d``, ``m``, ``x_G``, ``D_P``, ``A_R``, …).
 
     Attributes:
-        name: what people call her.
+        name: for reports.
         particulars: symbol -> value; a model takes those it knows by name.
         source: where the particulars come from.
         scale: model scale 1:scale; 1 for full scale.

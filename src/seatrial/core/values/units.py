@@ -1,4 +1,4 @@
-"""Units at the boundary: factors to SI. Inside the house everything is SI and radians."""
+"""Units at the boundary: factors to SI. Inside the package everything is SI and radians."""
 
 import math
 
@@ -44,7 +44,7 @@ _UNITS: dict[str, tuple[float, str]] = {
 
 
 def si_unit(unit: str) -> tuple[float, str]:
-    """Factor and SI unit of `unit`.
+    """Return factor and SI unit of a unit.
 
     Raises:
         InputError: the unit is unknown; the nearest known one is named.
@@ -55,5 +55,5 @@ def si_unit(unit: str) -> tuple[float, str]:
 
 
 def display_unit(unit: str) -> tuple[float, str]:
-    """Factor from SI and the unit people read: degrees for angles, otherwise SI."""
+    """Return the factor from SI and the unit for reading: degrees for angles, otherwise SI."""
     return {"rad": (180.0 / math.pi, "deg"), "rad/s": (180.0 / math.pi, "deg/s")}.get(unit, (1.0, unit))

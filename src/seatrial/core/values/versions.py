@@ -1,4 +1,4 @@
-"""Versions of everything a result rests on."""
+"""Versions of Python and of the packages that a result depends on."""
 
 import platform
 from importlib.metadata import PackageNotFoundError, version
@@ -7,11 +7,11 @@ _PACKAGES = ("seatrial", "numpy", "scipy", "numba", "sympy", "pandas")
 
 
 def versions() -> dict[str, str]:
-    """Package -> version, Python included."""
-    found = {"python": platform.python_version()}
+    """Return package -> version, Python included."""
+    table = {"python": platform.python_version()}
     for name in _PACKAGES:
         try:
-            found[name] = version(name)
+            table[name] = version(name)
         except PackageNotFoundError:
-            found[name] = "unknown"
-    return found
+            table[name] = "unknown"
+    return table
