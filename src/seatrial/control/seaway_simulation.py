@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from seatrial.control.task import Seaway, SimulationSettings, TuningTask
 from seatrial.core.results.tuning import PairedDifference, SeawaySimulation
@@ -89,7 +89,7 @@ def compare_pairwise(chosen: SeawaySimulation, other: SeawaySimulation, stage: s
         raise InputError(f"'{chosen.name}' and '{other.name}' need the same seas to be compared, two or more")
     gap = one - two
     mean, n = float(np.mean(gap)), len(gap)
-    half = float(student.ppf(0.5 + 0.5 * _CONFIDENCE, n - 1) * np.std(gap, ddof=1) / math.sqrt(n))
+    half = float(stdtrit(n - 1, 0.5 + 0.5 * _CONFIDENCE) * np.std(gap, ddof=1) / math.sqrt(n))
     return PairedDifference(other.name, stage, mean, mean - half, mean + half, n)
 
 

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.optimize import brentq
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError
@@ -73,6 +72,8 @@ def _balancing_input(model: Model, held: Array, name: str, speed: float) -> floa
     least = next((i for i, value in enumerate(tried) if surge(value) > 0.0), 0)
     if least == 0:
         raise InputError(f"model '{model.name}' has no '{name}' that drives her at {speed:.4g} m/s; take another speed")
+    from scipy.optimize import brentq
+
     return float(brentq(surge, tried[least - 1], tried[least], xtol=1e-12))
 
 

@@ -1,6 +1,7 @@
 """Does the rudder move, and does the ship turn the way its sign says?"""
 
 import math
+from itertools import accumulate
 
 import numpy as np
 
@@ -100,10 +101,9 @@ def steady_turning_response(record: Record) -> tuple[float, float] | None:
 
 def _first_order_lag(values: Array, samples: float) -> Array:
     """First-order lag of the given number of samples, started at rest at the first value."""
-    from scipy.signal import lfilter
-
     a = 1.0 / (samples + 1.0)
-    return np.asarray(lfilter([a], [1.0, a - 1.0], values, zi=[values[0] * (1.0 - a)])[0])
+    late = accumulate(values.tolist(), lambda before, value: a * value - (a - 1.0) * before, initial=float(values[0]))
+    return np.array(list(late)[1:])
 
 
 def _yaw_rate_signal(record: Record) -> Array | None:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import stats
+from scipy.special import gammaincinv
 
 from seatrial.core.equations import Model
 from seatrial.core.equations.augment import (
@@ -63,7 +63,7 @@ def select_disturbance_model(
         verdict = replace(verdict, inflation_without=process_noise.test.inflation_without)
         made = ProcessNoise(exact, optimum, slope, verdict, process_noise.output_error, one.description)
         criterion = 2.0 * (optimum.normal.cost + one.unknown_count)
-        if gained > stats.chi2.ppf(CONFIDENCE_LEVEL, one.unknown_count) and criterion < score:
+        if gained > 2.0 * gammaincinv(0.5 * one.unknown_count, CONFIDENCE_LEVEL) and criterion < score:
             best, score = made, criterion
     return best
 

@@ -5,7 +5,7 @@ from itertools import pairwise
 from math import comb
 
 import numpy as np
-from scipy import optimize, stats
+from scipy.special import chdtrc
 
 from seatrial.core.values import Array
 from seatrial.estimation.estimate.settings import WHITE_INFLATION
@@ -113,9 +113,11 @@ def boundary_quantile(count: int, level: float) -> float:
     A mixture of chi squared with 0..count degrees of freedom and binomial weights (Self & Liang 1987, case 9, for
     unknowns of uncorrelated estimates).
     """
+    from scipy.optimize import brentq
+
     weights = np.array([comb(count, j) for j in range(count + 1)]) / 2.0**count
 
     def excess(value: float) -> float:
-        return float(sum(w * stats.chi2.sf(value, j) for j, w in enumerate(weights) if j)) - (1.0 - level)
+        return float(sum(w * chdtrc(j, value) for j, w in enumerate(weights) if j)) - (1.0 - level)
 
-    return float(np.asarray(optimize.brentq(excess, 0.0, 200.0))) if count else 0.0
+    return float(np.asarray(brentq(excess, 0.0, 200.0))) if count else 0.0

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import stats
+from scipy.special import stdtrit
 
 from seatrial.core.equations import Model
 from seatrial.core.results import CandidateModel
@@ -240,7 +240,7 @@ def rank_candidates(fitted: Sequence[FittedVariant], *, choose: bool) -> tuple[C
 def _is_tied(excess: Array) -> bool:
     """Whether scores of runs are worse by no more than their scatter explains."""
     error = np.std(excess, ddof=1) / np.sqrt(len(excess)) if len(excess) > 1 else np.inf
-    return bool(excess.mean() <= stats.t.ppf(0.95, max(len(excess) - 1, 1)) * error)
+    return bool(excess.mean() <= stdtrit(max(len(excess) - 1, 1), 0.95) * error)
 
 
 def _candidate(f: FittedVariant, *, tied: bool, used: bool) -> CandidateModel:

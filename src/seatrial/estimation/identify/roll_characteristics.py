@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy import stats
+from scipy.special import stdtrit
 
 from seatrial.core.equations import Model
 from seatrial.core.results.roll import IntervalEstimate, RollCharacteristics
@@ -98,7 +98,7 @@ class _HalfWidths:
 
     def __init__(self, interval: Interval, free: tuple[str, ...]) -> None:
         self._free, self._covariance = free, interval.covariance
-        self._quantile = float(stats.t.ppf(0.975, interval.degrees_of_freedom))
+        self._quantile = float(stdtrit(interval.degrees_of_freedom, 0.975))
 
     def half_width(self, slopes: Array, names: Sequence[str]) -> Array:
         """slopes (n, len(names)); a fixed coefficient counts as exact."""

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy import stats
+from scipy.special import chdtrc
 
 from seatrial.core.values import Array
 
@@ -40,4 +40,4 @@ def whiteness_p(rho: Array, samples: int, lags: int = 20) -> float:
         return 1.0
     k = np.arange(1, count + 1)
     statistic = samples * (samples + 2) * float(np.sum(rho[1 : count + 1] ** 2 / (samples - k)))
-    return float(stats.chi2.sf(statistic, count))
+    return float(chdtrc(count, statistic))

@@ -6,7 +6,7 @@ White-noise errors are valid only for white residuals; the other two stay valid 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from scipy.special import stdtrit
 
 from seatrial.core.values import Array
 
@@ -27,7 +27,7 @@ class Interval:
     @property
     def half_width(self) -> Array:
         """Half widths of the 95 % intervals."""
-        return float(stats.t.ppf(0.975, self.degrees_of_freedom)) * self.standard_error
+        return float(stdtrit(self.degrees_of_freedom, 0.975)) * self.standard_error
 
 
 def inverse(hessian: Array) -> Array:

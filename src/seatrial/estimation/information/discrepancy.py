@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.optimize import isotonic_regression
 
 from seatrial.core.values import Array
 
@@ -118,6 +117,8 @@ def _elapsed_excess_sd(holdout_errors: Sequence[HoldoutError], channel: str) -> 
         expected[row, : len(miss.predicted_sd[channel])] = miss.predicted_sd[channel]
     count = np.maximum(np.isfinite(error).sum(axis=0), 1e-9)
     grown = np.array([[discrepancy_growth(miss.index)] for miss in holdout_errors])
+    from scipy.optimize import isotonic_regression
+
     return np.sqrt(np.maximum(isotonic_regression(excess_sd(error, expected, grown) ** 2, weights=count).x, 0.0))
 
 

@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from scipy.signal import welch
 
 from seatrial.core.values import NOTATION, Array, Finding, Record, Severity
 
@@ -33,6 +32,8 @@ def _measured_samples(record: Record, channel: str) -> tuple[Array, float]:
 
 
 def _power_spectrum(values: Array, dt: float) -> tuple[Array, Array]:
+    from scipy.signal import welch
+
     length = max(16, 2 * len(values) // (_WELCH_SEGMENTS + 1))
     frequency, power = welch(values - np.mean(values), 1.0 / dt, nperseg=min(length, len(values)))
     return 2.0 * np.pi * frequency, power * len(values) * dt

@@ -8,7 +8,7 @@ factor, det(A) (L/U)^2 with d(v, r)/dt = A (v, r), which has C's sign for every 
 from collections.abc import Callable
 
 import numpy as np
-from scipy import stats
+from scipy.special import stdtrit
 
 from seatrial.core.equations import Model
 from seatrial.core.results import Stability
@@ -65,7 +65,7 @@ def stability(
 
     centre = index_of(model)
     slope = _gradient(model, index_of)
-    half = float(stats.t.ppf(0.975, degrees_of_freedom)) * float(np.sqrt(max(slope @ covariance @ slope, 0.0)))
+    half = float(stdtrit(degrees_of_freedom, 0.975)) * float(np.sqrt(max(slope @ covariance @ slope, 0.0)))
     slowest = float(np.max(np.linalg.eigvals(straight_course_rates(model, speed, inputs)).real)) * unit
     starboard, port = (_index(rates, unit) for rates in one_sided_rates(model, speed, inputs))
     text = _stability_text(centre, half, slowest) + _asymmetry_text(starboard, port)

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
-from scipy import stats
+from scipy.special import stdtrit
 
 from seatrial.core.equations import Model
 from seatrial.core.results import IntervalBasis
@@ -51,7 +51,7 @@ def measure_intervals(
         m for one in interval_basis.tied if (m := _measures_or_none(model.with_values(one), steer, length)) is not None
     ]
     beyond = Discrepancy(interval_basis.measure_deviation, interval_basis.factor, 1.0, {})
-    t = float(stats.t.ppf(0.975, interval_basis.degrees_of_freedom))
+    t = float(stdtrit(interval_basis.degrees_of_freedom, 0.975))
     made = {}
     for name, value in centre.items():
         away = [d for pair in pairs if (d := _half_difference(pair, name, value)) is not None]

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import stats
+from scipy.special import stdtrit
 
 from seatrial.core.equations import Model
 from seatrial.core.results import Measure, Prediction
@@ -171,7 +171,7 @@ def with_intervals(
 
     beyond: model discrepancy; the spread over tied models is the prediction's own.
     """
-    t = float(stats.t.ppf(0.975, degrees_of_freedom))
+    t = float(stdtrit(degrees_of_freedom, 0.975))
     index = prediction.extrapolation.index if prediction.extrapolation else 1.0
 
     def bounded(name: str, m: Measure) -> Measure:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import stats
+from scipy.special import stdtrit
 
 from seatrial.core.values import Array, InputError
 from seatrial.data.trial import TrialRecord
@@ -75,7 +75,7 @@ def band_coverage(holdout: HoldoutWindows) -> tuple[tuple[BandCoverage, ...], tu
 
     The discrepancy of a training run is that of the other training runs.
     """
-    t, trained = float(stats.t.ppf(0.975, holdout.degrees_of_freedom)), holdout.training
+    t, trained = float(stdtrit(holdout.degrees_of_freedom, 0.975)), holdout.training
     everything = [m for mine in trained for m in mine]
     within = tuple(
         _run_coverage(own, [m for other in trained if other is not own for m in other], t) for own in trained

@@ -9,12 +9,12 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
-from scipy.signal import savgol_filter
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError
 from seatrial.estimation.regress.features import Features, RegressionMotion, demand_positive, features
 from seatrial.estimation.regress.weak import window_bounds, window_function
+from seatrial.numerics.local_polynomials import smoothed_locally
 
 _ROUNDING = 1e-12
 
@@ -77,8 +77,8 @@ class Smoothed:
         for stretch in motion.gapless_slices():
             part = motion.rows(stretch)
             if len(part.time) > width:
-                states = savgol_filter(part.states, width, 3, axis=0)
-                slope = savgol_filter(part.states, width, 3, deriv=1, delta=motion.dt, axis=0)
+                states = smoothed_locally(part.states, width, 3)
+                slope = smoothed_locally(part.states, width, 3, 1, motion.dt)
                 at = features(model, replace(part, states=np.ascontiguousarray(states)))
                 inside = slice(width // 2, -(width // 2))
                 pieces.append((part.time[inside], (slope - at.known_rates)[inside], at.slope[inside]))

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from scipy.linalg.lapack import dposv
 
 from seatrial.numerics.optimise.solution import Array, Solution, Status
 
@@ -132,6 +131,8 @@ def _solve_bounded(hessian: Array, gradient: Array, low: Array, high: Array) -> 
 
 def _solve(matrix: Array, right: Array) -> Array:
     """Symmetric solve in the unknowns' own scales; least squares where the matrix is singular to rounding."""
+    from scipy.linalg.lapack import dposv
+
     if not len(right):
         return right
     scale = 1.0 / np.sqrt(np.maximum(np.abs(matrix.diagonal()), 1e-300))

@@ -5,7 +5,6 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import spherical_jn
 
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.dispersion import G
@@ -113,6 +112,8 @@ def box_wave(omega: Array, U: float, beta: Array, L: float, B: float, T: float) 
     kappa = np.exp(-np.abs(k * np.cos(beta)) * T)
     radiated = k * B * alpha * np.sinc(k * B * alpha**2 / (2 * np.pi)) ** 2 * np.exp(-2 * k * T * alpha**2)
     f = np.hypot(1.0 - k * T, radiated)
+    from scipy.special import spherical_jn
+
     elevation = kappa * f * spherical_jn(0, s)
     slope = np.sign(np.cos(beta)) * kappa * f * 6 / L * spherical_jn(1, s)
     return elevation, slope

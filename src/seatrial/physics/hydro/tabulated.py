@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.excitation import Complex, checked_waves
@@ -84,6 +83,8 @@ def interpolated(x: Array, values: Complex | Array, points: Array) -> Complex:
     """PCHIP along the first axis, real and imaginary parts each; a single row holds at its own point only."""
     if x.size == 1:
         return np.repeat(np.asarray(values, dtype=np.complex128), points.size, axis=0)
+    from scipy.interpolate import PchipInterpolator
+
     return PchipInterpolator(x, np.real(values))(points) + 1j * PchipInterpolator(x, np.imag(values))(points)
 
 

@@ -5,7 +5,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
 
 from seatrial.core.values import Array
 from seatrial.physics.hydro.excitation import Complex
@@ -58,6 +57,8 @@ def sensitivity_magnitude(loop: TransferLoop, omega: Array) -> Array:
 
 def sensitivity_peak(loop: TransferLoop) -> tuple[float, float]:
     """Ms and where it is [rad/s], to rounding, by a search about the largest sample; the loop must be stable."""
+    from scipy.optimize import minimize_scalar
+
     u = _log_frequencies(loop)
     place = int(np.argmax(sensitivity_magnitude(loop, np.exp(u))))
     ends = u[max(place - 1, 0)], u[min(place + 1, _SAMPLES - 1)]
@@ -93,6 +94,8 @@ def _log_frequencies(loop: TransferLoop) -> Array:
 
 def _crossing_frequencies(loop: TransferLoop, function: Callable[[Complex], Array]) -> Array:
     """Frequencies [rad/s] at which a function of L changes its sign."""
+    from scipy.optimize import brentq
+
     u = _log_frequencies(loop)
     rises = np.flatnonzero(np.diff(np.sign(function(loop.open_loop(np.exp(u))))))
 

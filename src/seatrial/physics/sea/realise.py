@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
-from scipy.special import betaincinv
 
 from seatrial.core.values import Array, Channel, Index, InputError, Provenance, Record, RecordKind, frozen
 from seatrial.physics.hydro.excitation import Complex, Excitation
@@ -141,6 +140,8 @@ def short_crested(components: WaveComponents, rng: np.random.Generator, exponent
 
 def spread_angle(share: Array, exponent: float) -> Array:
     """chi [rad] from the main direction below which that share of cos^2s lies; sin^2 chi has a beta distribution."""
+    from scipy.special import betaincinv
+
     sine = np.sqrt(betaincinv(0.5, exponent + 0.5, np.abs(2.0 * share - 1.0)))
     return np.sign(share - 0.5) * np.arcsin(sine)
 

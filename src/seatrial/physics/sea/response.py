@@ -8,7 +8,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import ndtr
 
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.dispersion import G
@@ -151,6 +150,8 @@ def motion_sickness(motion: MotionStatistics) -> float:
         return 0.0
     mean_absolute = 0.798 * motion.acceleration
     mu = -0.819 + 2.32 * math.log10(math.sqrt(motion.m4 / motion.m2)) ** 2
+    from scipy.special import ndtr
+
     return float(ndtr((math.log10(mean_absolute / G) - mu) / 0.4))
 
 
@@ -172,6 +173,8 @@ def motion_sickness_after(motion: MotionStatistics, minutes: float) -> float:
     f = math.log10(math.sqrt(motion.m4 / motion.m2) / (2.0 * math.pi))
     z_a = 2.128 * math.log10(motion.acceleration / G) - 9.277 * f - 5.809 * f**2 - 1.851
     z_t = 1.134 * z_a + 1.989 * math.log10(minutes) - 2.904
+    from scipy.special import ndtr
+
     return float(ndtr(z_a) * ndtr(z_t))
 
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import gamma as gamma_function
 
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.dispersion import G
@@ -71,7 +70,7 @@ class Spectrum:
         """
         if n >= 4:
             raise InputError(f"moment {n:g} of the {self.name} spectrum is infinite; take a band of frequencies")
-        plain = self.A / 4.0 * self.B ** (n / 4.0 - 1.0) * float(gamma_function(1.0 - n / 4.0))
+        plain = self.A / 4.0 * self.B ** (n / 4.0 - 1.0) * _gamma(1.0 - n / 4.0)
         return plain + float(self._peak_excess(np.array(np.inf), n))
 
     def share_below(self, omega: ArrayLike) -> Array:
@@ -154,7 +153,7 @@ def ittc_two_parameter(height: float, mean_period: float) -> Spectrum:
         InputError: the significant height [m] or the mean period T1 = 2 pi m0 / m1 [s] is not positive.
     """
     h, T1 = _positive("significant height", height, "m"), _positive("mean period", mean_period, "s")
-    B = (2.0 * math.pi / (float(gamma_function(0.75)) * T1)) ** 4
+    B = (2.0 * math.pi / (_gamma(0.75) * T1)) ** 4
     return Spectrum("ITTC two-parameter", B * h**2 / 4.0, B)
 
 
@@ -185,3 +184,9 @@ def _positive(quantity: str, value: float, unit: str) -> float:
     if not (math.isfinite(value) and value > 0.0):
         raise InputError(f"the {quantity} of a sea must be positive, not {value:g} {unit}")
     return value
+
+
+def _gamma(x: float) -> float:
+    from scipy.special import gamma
+
+    return float(gamma(x))

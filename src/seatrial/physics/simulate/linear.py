@@ -8,9 +8,9 @@ flattened (FOH at the record's rate).
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index
@@ -18,6 +18,9 @@ from seatrial.numerics.kernels.linear import affine_matrices, replay, replay_tan
 from seatrial.numerics.kernels.propagate import propagators
 from seatrial.numerics.kernels.sensitivity import DELAY, GAIN
 from seatrial.physics.simulate.batch import INPUT_KINDS, SegmentBatch
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 SUBSTEPS = 8
 
@@ -168,7 +171,9 @@ class LinearBatch(SegmentBatch):
         return spline(place), np.where(inside, spline(place, 1) / self.dt, 0.0)
 
     @cached_property
-    def _splines(self) -> list[list[CubicSpline]]:
+    def _splines(self) -> "list[list[CubicSpline]]":
+        from scipy.interpolate import CubicSpline
+
         edges = pairwise(self.offsets)
         return [
             [CubicSpline(np.arange(b - a), self.inputs[a:b, j]) for j in range(self.inputs.shape[1])] for a, b in edges

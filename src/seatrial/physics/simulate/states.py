@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.signal import savgol_filter
 
 from seatrial.core.equations import Model
 from seatrial.core.values import NOTATION, Array, InputError, Record
+from seatrial.numerics.local_polynomials import smoothed_locally
 
 _SMOOTHING_SAMPLES = 15
 
@@ -15,7 +15,7 @@ def _slope(record: Record, symbol: str) -> Array:
     """Derivative by local cubic polynomials (Savitzky & Golay 1964) over 15 samples."""
     values = record[symbol]
     width = min(_SMOOTHING_SAMPLES, len(values) - 1 + len(values) % 2)
-    return savgol_filter(values, width, min(3, width - 1), deriv=1, delta=record.dt)
+    return smoothed_locally(values, width, min(3, width - 1), 1, record.dt)
 
 
 def hidden_states(model: Model, records: Sequence[Record]) -> tuple[str, ...]:
