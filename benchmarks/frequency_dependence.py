@@ -28,7 +28,8 @@ from seatrial.physics.hydro.cummins import RetardationFunctions, retardation_fun
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.hydro.mesh import solve_hull, wigley
 from seatrial.physics.hydro.strip_theory import coefficients_at_speed
-from seatrial.physics.models.heave_pitch import COEFFICIENTS, heave_pitch, physical_start_values
+from seatrial.physics.models.heave_pitch import heave_pitch
+from seatrial.physics.models.heave_pitch_coefficients import COEFFICIENTS, physical_start_values
 from seatrial.physics.sea.encounter import encounter_frequency
 from seatrial.physics.sea.realise import WaveComponents, harmonic_sum, realise
 from seatrial.physics.sea.spectrum import Spectrum, bretschneider, ittc, jonswap

@@ -63,15 +63,14 @@ def identify(
     Raises:
         InputError: the records do not pass the checks, show no excitation, or cannot distinguish the parameters.
     """
-    from seatrial.physics.models.precompile import Precompilation
-
-    compiling = Precompilation(trial.model.name)
     from seatrial.core.values import InputError, spelling_hint
-    from seatrial.estimation.identify import IntervalMethod, identify
+    from seatrial.physics.models.precompile import precompile
+
+    with precompile(trial.model.name):
+        from seatrial.estimation.identify import IntervalMethod, identify
 
     if intervals not in (methods := [method.value for method in IntervalMethod]):
         raise InputError(f"unknown kind of intervals '{intervals}'{spelling_hint(intervals, methods)}")
-    compiling.wait()
     method = IntervalMethod(intervals)
     return identify(trial, seed=seed, report_progress=report_progress, intervals=method, choose=choose, compare=compare)
 
@@ -102,12 +101,10 @@ def follow(
         InputError: the trial has no ``[follow]``, lacks channels, its source cannot be opened, or the journal belongs
             to another trial.
     """
-    from seatrial.physics.models.precompile import Precompilation
+    from seatrial.physics.models.precompile import precompile
 
-    compiling = Precompilation(trial.model.name)
-    from seatrial.onboard.follow import follow
-
-    compiling.wait()
+    with precompile(trial.model.name):
+        from seatrial.onboard.follow import follow
     return follow(
         trial,
         source=source,
@@ -137,14 +134,13 @@ def design(
         InputError: the trial has no ``[design]``, its sensors or inputs do not fit the model, the model file holds
             another model, or no manoeuvre stays within the limits.
     """
-    from seatrial.physics.models.precompile import Precompilation
+    from seatrial.physics.models.precompile import precompile
 
-    compiling = Precompilation(trial.model.name)
-    from seatrial.estimation.design.design import design
-    from seatrial.estimation.design.from_trial import design_task
+    with precompile(trial.model.name):
+        from seatrial.estimation.design.design import design
+        from seatrial.estimation.design.from_trial import design_task
 
-    task = design_task(trial, prior_model)
-    compiling.wait()
+        task = design_task(trial, prior_model)
     return design(task, seed=seed, report_progress=report_progress or (lambda _: None))
 
 

@@ -7,6 +7,7 @@ instead.
 import os
 import select
 import signal
+import stat
 import time
 from io import RawIOBase
 from pathlib import Path
@@ -86,6 +87,30 @@ def flush_to_disk(descriptor: int) -> None:
         OSError: the disk is full or has failed.
     """
     os.fsync(descriptor)
+
+
+def open_regular(path: Path) -> int:
+    """Open a file for reading and return its descriptor: not through a symbolic link, and without waiting for a pipe.
+
+    Where the system has no such flags a link is followed.
+
+    Raises:
+        OSError: there is no such file, it is a symbolic link (errno ELOOP), or it may not be read.
+    """
+    flags = ("O_NOFOLLOW", "O_NONBLOCK", "O_BINARY")
+    return os.open(path, sum((getattr(os, flag, 0) for flag in flags), os.O_RDONLY))
+
+
+def distrust(facts: os.stat_result) -> str:
+    """Return why a file or folder is not this user's own: another owner than the user and root, or others may write it.
+
+    Empty where it is, or where the system has no such owners and modes.
+    """
+    if not hasattr(os, "getuid"):
+        return ""
+    if facts.st_uid not in {0, os.getuid()}:
+        return "it belongs to another user"
+    return "other users may write it" if facts.st_mode & (stat.S_IWGRP | stat.S_IWOTH) else ""
 
 
 def stop_signals() -> tuple[signal.Signals, ...]:

@@ -142,12 +142,15 @@ def environment() -> "Environment":
     """The templates with everything escaped by default, and the filters they use."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
+    from seatrial.reporting.compiled_templates import CompiledTemplates
+
     made = Environment(
         loader=PackageLoader("seatrial.reporting"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
+        bytecode_cache=CompiledTemplates(),
     )
     made.filters["duration"] = duration
     made.filters["significant"] = significant

@@ -10,7 +10,8 @@ from seatrial.estimation.problem.linear_output_error import LinearOutputError
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import Segments, cut_segments
 from seatrial.numerics.optimise import levenberg_marquardt
-from seatrial.physics.models.heave_pitch import COEFFICIENTS, heave_pitch, heave_pitch_zoh, physical_start_values
+from seatrial.physics.models.heave_pitch import heave_pitch, heave_pitch_zoh
+from seatrial.physics.models.heave_pitch_coefficients import COEFFICIENTS, physical_start_values
 from seatrial.physics.simulate.linear import LinearBatch
 from seatrial_studies.seaway import SeawayScenario, simulate_seaway_run
 

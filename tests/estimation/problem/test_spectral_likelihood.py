@@ -11,7 +11,7 @@ from seatrial.estimation.identify.strategies.wave_spectrum import spectral_probl
 from seatrial.estimation.problem.line_least_squares import line_least_squares
 from seatrial.estimation.problem.spectral_likelihood import SpectralLikelihood
 from seatrial.numerics.optimise import levenberg_marquardt
-from seatrial.physics.models.heave_pitch import COEFFICIENTS, physical_start_values
+from seatrial.physics.models.heave_pitch_coefficients import COEFFICIENTS, physical_start_values
 from seatrial.physics.sea.encounter import encounter_frequency
 from seatrial.physics.sea.realise import Spacing
 from seatrial.physics.sea.spectrum import ittc

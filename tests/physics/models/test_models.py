@@ -174,11 +174,11 @@ def test_a_current_carries_ship_and_apparent_wind(rng: np.random.Generator) -> N
 PROGRAM = """
 import hashlib
 from seatrial.core.equations.generate import source_text
-from seatrial.core.equations.latex import equations
+from seatrial.core.equations.latex import latex_equations
 from seatrial.physics.models import MODELS
 for name in MODELS:
     model = MODELS[name]()
-    text = source_text(model.equations) + repr(equations(model))
+    text = source_text(model.equations) + repr(latex_equations(model))
     print(name, model.equation_hash, hashlib.sha256(text.encode()).hexdigest())
 """
 

@@ -1,7 +1,5 @@
 """Models written once as named bindings; code, Jacobians and LaTeX are generated from them."""
 
-from seatrial.core.equations.bindings import Binding, Input, ModelEquations
-from seatrial.core.equations.model import Model
-from seatrial.core.equations.sheet import Sheet
+from seatrial._lazy import export_lazily
 
-__all__ = ["Binding", "Input", "Model", "ModelEquations", "Sheet"]
+export_lazily(__name__)

@@ -1,18 +1,21 @@
-"""A model with more states: gusts with a memory, biased or lagging sensors. Equations like any others.
+"""A model with more states: gusts with a memory, biased_name or lagging sensors. ModelEquations like any others.
 
 A gust is a force of first order (Gauss-Markov; Gelb 1974, section 3.5) given as the acceleration it causes; a bias is
 a random walk on a channel; a lagging channel follows its state with one time constant. What drives them is white noise
 on the new states.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
-import sympy as sp
-
-from seatrial.core.equations.bindings import Binding
+from seatrial.core.equations.bindings import Binding, ModelEquations
+from seatrial.core.equations.manifest import stored_equations
 from seatrial.core.equations.model import Model
 from seatrial.core.values import InputError, Parameter, Parameters
+
+if TYPE_CHECKING:
+    import sympy as sp
 
 GUST_MEMORY, SENSOR_LAG = "gust_memory", "sensor_lag"
 _SOURCE = "augmented model"
@@ -39,52 +42,83 @@ def biased_name(channel: str) -> str:
 
 
 def with_gusts(model: Model, states: Sequence[str], memory: float) -> Model:
-    """Accelerations gust_s on `states`, all with one free time constant [s]: d(gust_s)/dt = -gust_s / memory."""
-    own = {s: _symbol(gust_name(s)) for s in states}
-    rates = [replace(b, expression=b.expression + own.get(b.name, 0)) for b in model.equations.rates]
-    rates += [Binding(str(g), -g / _symbol(GUST_MEMORY), _SOURCE, "1") for g in own.values()]
-    return _augmented(model, "gusts", rates, (_time_constant(GUST_MEMORY, memory, "memory of gusts"),))
+    """Return the model with accelerations gust_s on `states`, d(gust_s)/dt = -gust_s / memory, with one free memory.
+
+    memory: time constant [s], start value.
+
+    Raises:
+        InputError: the model has one of the new names already.
+    """
+
+    def write() -> ModelEquations:
+        gusts = {s: _symbol(gust_name(s)) for s in states}
+        rates = [b.bound_to(b.expression + gusts[b.name]) if b.name in gusts else b for b in model.equations.rates]
+        rates += [Binding.of(str(g), -g / _symbol(GUST_MEMORY), _SOURCE) for g in gusts.values()]
+        return _extended(model, "gusts", rates, new=(GUST_MEMORY,))
+
+    return _augmented(model, ("gusts", *states), write, _time_constant(GUST_MEMORY, memory, "memory of gusts"))
 
 
 def with_biases(model: Model, channels: Sequence[str]) -> Model:
-    """Outputs `biased(c)` = c + bias_c for states c, the biases being random walks."""
-    rates = [*model.equations.rates, *(Binding(bias_name(c), sp.Float(0.0), _SOURCE) for c in channels)]
-    outputs = [Binding(biased_name(c), _symbol(c) + _symbol(bias_name(c)), _SOURCE) for c in channels]
-    return _augmented(model, "biases", rates, (), outputs)
+    """Return the model with outputs `biased_name(c)` = c + bias_c for states c, the biases being random walks.
+
+    Raises:
+        InputError: the model has one of the new names already.
+    """
+
+    def write() -> ModelEquations:
+        import sympy as sp
+
+        rates = [*model.equations.rates, *(Binding.of(bias_name(c), sp.Float(0.0), _SOURCE) for c in channels)]
+        outputs = [Binding.of(biased_name(c), _symbol(c) + _symbol(bias_name(c)), _SOURCE) for c in channels]
+        return _extended(model, "biases", rates, outputs)
+
+    return _augmented(model, ("biases", *channels), write)
 
 
 def with_lags(model: Model, channels: Sequence[str], lag: float) -> Model:
-    """States `lagged(c)` that follow the states c with one free time constant [s]."""
-    rates = [*model.equations.rates]
-    rates += [
-        Binding(lagged_name(c), (_symbol(c) - _symbol(lagged_name(c))) / _symbol(SENSOR_LAG), _SOURCE) for c in channels
-    ]
-    return _augmented(model, "lags", rates, (_time_constant(SENSOR_LAG, lag, "lag of sensors"),))
+    """Return the model with states `lagged_name(c)` that follow the states c, all with one free time constant.
+
+    lag: time constant [s], start value.
+
+    Raises:
+        InputError: the model has one of the new names already.
+    """
+
+    def write() -> ModelEquations:
+        late = [(lagged_name(c), (_symbol(c) - _symbol(lagged_name(c))) / _symbol(SENSOR_LAG)) for c in channels]
+        followers = [Binding.of(name, rate, _SOURCE) for name, rate in late]
+        return _extended(model, "lags", [*model.equations.rates, *followers], new=(SENSOR_LAG,))
+
+    return _augmented(model, ("lags", *channels), write, _time_constant(SENSOR_LAG, lag, "lag of sensors"))
 
 
-def _symbol(name: str) -> sp.Symbol:
+def _symbol(name: str) -> "sp.Symbol":
+    import sympy as sp
+
     return sp.Symbol(name, real=True)
 
 
 def _time_constant(name: str, value: float, meaning: str) -> Parameter:
+    """Free between 0.05 and 200 times its start value: from the sampling time to longer than any run, chosen."""
     return Parameter(name, value, "s", 0.05 * value, 200.0 * value, value, None, True, _SOURCE, meaning, "")
 
 
-def _augmented(
-    model: Model,
-    label: str,
-    rates: Sequence[Binding],
-    new_parameters: tuple[Parameter, ...],
-    outputs: Sequence[Binding] = (),
-) -> Model:
+def _extended(
+    model: Model, what: str, rates: Sequence[Binding], outputs: Sequence[Binding] = (), new: tuple[str, ...] = ()
+) -> ModelEquations:
+    """The equations with these rates, more outputs and new parameters."""
     old, names = model.equations, [b.name for b in (*rates, *outputs)]
-    taken = {*old.parameters, *old.input_names, *(b.name for b in old.bindings)}
-    clash = sorted(taken & {*names, *(p.name for p in new_parameters)})
+    present = {*old.parameters, *old.input_names, *(b.name for b in old.bindings)}
+    clash = sorted(present & {*names, *new})
     if clash or len(set(names)) < len(names):
-        raise InputError(f"model '{model.name}' has a '{(clash or sorted(names))[0]}' already and cannot take {label}")
-    parameters = Parameters((*model.parameters, *new_parameters))
-    equations = replace(
-        old, name=f"{old.name} with {label}", rates=tuple(rates), bindings=(*old.bindings, *outputs),
-        outputs=(*old.outputs, *(b.name for b in outputs)), parameters=parameters.names,
+        raise InputError(f"model '{model.name}' has a '{(clash or sorted(names))[0]}' already and cannot take {what}")
+    return replace(
+        old, name=f"{old.name} with {what}", rates=tuple(rates), bindings=(*old.bindings, *outputs),
+        outputs=(*old.outputs, *(b.name for b in outputs)), parameters=(*old.parameters, *new),
     )  # fmt: skip
-    return Model(equations, parameters)
+
+
+def _augmented(model: Model, key: tuple[str, ...], write: Callable[[], ModelEquations], *more: Parameter) -> Model:
+    equations = stored_equations((model.equation_hash, *key), write)
+    return Model(equations, Parameters((*model.parameters, *more)))

@@ -1,23 +1,51 @@
-"""What is written down of a model: inputs, named bindings, rates. Everything numeric is generated from it."""
+"""What is written down of a model: inputs, named bindings, rates. Everything numeric is generated from it.
+
+Expressions are kept in SymPy's own notation, so that a process whose code is in the compile cache never imports SymPy.
+"""
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING, Self
 
-import sympy as sp
-
-from seatrial.core.equations.differentiate import partials
 from seatrial.core.values import NOTATION, quantity
+
+if TYPE_CHECKING:
+    import sympy as sp
 
 
 @dataclass(frozen=True)
 class Binding:
-    """A named expression with its source; a rate is a binding named after its state."""
+    """A named expression with its source; a rate is a binding named after its state.
+
+    Attributes:
+        text: the expression as `sympy.srepr` writes it.
+        source: where the expression is published.
+        unit: of its value.
+    """
 
     name: str
-    expression: sp.Expr
+    text: str
     source: str = ""
     unit: str = "1"
+
+    @classmethod
+    def of(cls, name: str, expression: "sp.Expr", source: str = "", unit: str = "1") -> Self:
+        """Return the binding of a name to a SymPy expression."""
+        import sympy as sp
+
+        return cls(name, sp.srepr(expression), source, unit)
+
+    def bound_to(self, expression: "sp.Expr") -> Self:
+        """Return the same name, source and unit with another expression."""
+        return replace(self, text=type(self).of(self.name, expression).text)
+
+    @cached_property
+    def expression(self) -> "sp.Expr":
+        """The SymPy expression."""
+        from seatrial.core.equations.differentiate import parsed
+
+        return parsed(self.text)
 
 
 @dataclass(frozen=True)
@@ -80,20 +108,15 @@ class ModelEquations:
     @cached_property
     def is_affine(self) -> bool:
         """Whether rates and outputs are affine in states and inputs, so that exact propagators serve."""
-        moving = {*self.states, *self.input_names}
-        for binding in (*self.bindings, *self.rates):
-            slopes = {name: slope for name, slope in partials(binding.expression).items() if name in moving}
-            if any({str(s) for s in slope.free_symbols} & moving for slope in slopes.values()):
-                return False
-            if slopes and binding.name not in self.states:
-                moving.add(binding.name)
-        return True
+        from seatrial.core.equations.differentiate import is_affine
+
+        return is_affine(self)
 
     @cached_property
     def digest(self) -> str:
         """SHA-256 over names and expressions."""
         inputs = [f"{i.name} held" if i.is_held else i.name for i in self.inputs]
         lines = [self.name, *inputs, *self.outputs, *self.parameters]
-        lines += [f"{b.name} = {sp.srepr(b.expression)}" for b in self.bindings]
-        lines += [f"d{b.name} = {sp.srepr(b.expression)}" for b in self.rates]
+        lines += [f"{b.name} = {b.text}" for b in self.bindings]
+        lines += [f"d{b.name} = {b.text}" for b in self.rates]
         return hashlib.sha256("\n".join(lines).encode()).hexdigest()

@@ -1,30 +1,25 @@
-"""Machine code of a set of equations: one generated module, compiled once a machine.
+"""Machine code of a set of equations: generated modules in the compile cache, their functions compiled at first use.
 
-The module holds four functions with the project's fixed signatures: `rates`, `rates_tangent`, `outputs` and
-`outputs_tangent`; `bindings`, for the breakdown of forces, and `tangent_of` some of them are modules of their own,
-compiled when they are asked for.
-They lie in the cache folder under the hash of their text.
+The main module holds four functions with the project's fixed signatures: `rates`, `rates_tangent`, `outputs` and
+`outputs_tangent`; `bindings`, for the breakdown of forces, and `tangent_function` of some of them are in modules of
+their own.
 """
 
 import hashlib
-import importlib.util
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 
 from seatrial.core.equations.bindings import ModelEquations
-from seatrial.core.equations.generate import bindings_text, source_text, tangent_text
+from seatrial.core.equations.stored import entry_key
 from seatrial.core.values import Index
-from seatrial.core.values.files import write_atomically
-from seatrial.numerics.kernels.cache import cache_folder
+from seatrial.numerics.kernels.cache import entry_path, read_entry, write_entry
 
-# of everything that decides how the text comes about: a changed generator finds no old index
-_GENERATOR = hashlib.sha256(b"".join(p.read_bytes() for p in sorted(Path(__file__).parent.glob("*.py")))).hexdigest()
+_MAIN = ("main",)  # kind of the module with the four functions
 
 
 @dataclass(frozen=True)
@@ -43,60 +38,67 @@ class CompiledEquations:
     rates_pattern: Index
     outputs_pattern: Index
 
+    def load(self) -> None:
+        """Load or compile the four functions now."""
+        from seatrial.numerics.kernels.kernel import load_kernels
+
+        load_kernels(sys.modules[self.rates.__module__])
+
     @cached_property
     def bindings(self) -> Callable[..., None]:
         """Every binding in order: the breakdown of forces."""
-        return _load_or_generate(self.equations, "bindings", bindings_text).bindings
+
+        def text() -> str:
+            from seatrial.core.equations.generate import bindings_text
+
+            return bindings_text(self.equations)
+
+        return _load_or_generate(self.equations, ("bindings",), text).bindings
 
     def tangent_function(self, names: tuple[str, ...]) -> Callable[..., None]:
-        """The named bindings, in that order, with their exact Jacobians by [x | u | p]."""
-        return _load_or_generate(
-            self.equations, "_".join(("tangent", *names)), lambda e: tangent_text(e, names)
-        ).tangent
+        """Return the function of the named bindings, in that order, with their exact Jacobians by [x | u | p]."""
 
+        def text() -> str:
+            from seatrial.core.equations.generate import tangent_text
 
-def _write_module(text: str) -> Path:
-    path = cache_folder() / "generated" / f"model_{hashlib.sha256(text.encode()).hexdigest()[:24]}.py"
-    if not path.exists():
-        write_atomically(path, text.encode())
-    return path
+            return tangent_text(self.equations, names)
 
-
-@lru_cache(maxsize=64)
-def _load(path: Path) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[path.stem] = module
-    spec.loader.exec_module(module)
-    return module
+        return _load_or_generate(self.equations, ("tangent", *names), text).tangent
 
 
 def is_cached(equations: ModelEquations) -> bool:
-    """Whether the generated module lies in the cache folder, and so its machine code."""
-    return _index_path(equations, "index").exists()
+    """Return whether the generated module lies in the compile cache, and so its machine code."""
+    return entry_path(_entry_name(equations, _MAIN)).exists()
 
 
-def _index_path(equations: ModelEquations, kind: str) -> Path:
-    return cache_folder() / "generated" / f"{kind}_{_GENERATOR[:12]}_{equations.digest[:24]}.txt"
+def _entry_name(equations: ModelEquations, kind: tuple[str, ...]) -> str:
+    return f"model_{entry_key((equations.digest, *kind))}.py"
 
 
-def _load_or_generate(equations: ModelEquations, kind: str, text: Callable[[ModelEquations], str]) -> ModuleType:
-    """The generated module; the index from equation hash to module spares generating the text again."""
-    index = _index_path(equations, kind)
-    if index.exists():
-        path = index.parent / index.read_text(encoding="utf-8").strip()
-        if path.exists():
-            return _load(path)
-    path = _write_module(text(equations))
-    write_atomically(index, path.name.encode())
-    return _load(path)
+def _load_or_generate(equations: ModelEquations, kind: tuple[str, ...], text: Callable[[], str]) -> ModuleType:
+    """The generated module of that kind; its text is generated where the cache has none."""
+    name = _entry_name(equations, kind)
+    content = read_entry(name)
+    if content is None:
+        content = text().encode()
+        write_entry(name, content)
+    module = ModuleType(name.removesuffix(".py"))
+    vars(module)["SOURCE_DIGEST"] = hashlib.sha256(content).digest()  # decides its machine code, see `kernel`
+    sys.modules[module.__name__] = module
+    exec(compile(content, str(entry_path(name)), "exec"), vars(module))
+    return module
 
 
 @lru_cache(maxsize=64)
 def compile_equations(equations: ModelEquations) -> CompiledEquations:
-    """Generate, load and compile the functions of a set of equations."""
-    module = _load_or_generate(equations, "index", source_text)
+    """Return the functions of a set of equations, generated where the cache does not hold them."""
+
+    def text() -> str:
+        from seatrial.core.equations.generate import source_text
+
+        return source_text(equations)
+
+    module = _load_or_generate(equations, _MAIN, text)
 
     def table(pairs: list[tuple[int, int]]) -> Index:
         return np.array(pairs, dtype=np.int64).reshape(-1, 2)

@@ -14,7 +14,7 @@ from seatrial.core.equations.printer import CodeLines, mangled
 
 _HEADER = '''"""Generated from the equations of model {name!r}; do not edit."""
 import math
-from numba import njit
+from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import FUNCTION_SIGNATURE, LEAN, TANGENT_SIGNATURE
 from seatrial.numerics.kernels.trigonometry import sincos
 
@@ -22,7 +22,7 @@ from seatrial.numerics.kernels.trigonometry import sincos
 
 
 def _signature(name: str, kind: str, arguments: str) -> list[str]:
-    return [f"@njit({kind}, **LEAN)", f"def {name}(t_, x, u, p, {arguments}):"]
+    return [f"@kernel({kind}, **LEAN)", f"def {name}(t_, x, u, p, {arguments}):"]
 
 
 def _unpack(equations: ModelEquations, expressions: Sequence[Binding]) -> list[str]:
@@ -102,7 +102,7 @@ def _tangent_lines(
         local[b.name] = _local_partials(lines, b)
     pattern = []
     for row, b in enumerate(wanted):
-        output = Binding(f"out{row}", sp.Symbol(b.name, real=True) if b.name in local else b.expression)
+        output = Binding.of(f"out{row}", sp.Symbol(b.name, real=True) if b.name in local else b.expression)
         lines.assign(f"out[{row}]", output.expression)
         slopes = _adjoint_row(lines, row, _local_partials(lines, output), needed, local)
         for column, z in enumerate(base):

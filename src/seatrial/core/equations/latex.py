@@ -1,11 +1,11 @@
 """A model's equations as LaTeX, one line for each binding and rate, with its source: what a report prints."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-
-import sympy as sp
 
 from seatrial.core.equations.bindings import Binding
 from seatrial.core.equations.model import Model
+from seatrial.core.equations.stored import stored
 from seatrial.core.values.notation import NOTATION
 
 _GREEK = {
@@ -42,18 +42,26 @@ def latex_symbol(name: str) -> str:
 def latex_symbols(model: Model) -> dict[str, str]:
     """Name -> LaTeX for every symbol of the model: the parameter's own, the notation table's, else from the name."""
     names = [*model.states, *model.input_names, *(b.name for b in model.bindings)]
-    made = {n: NOTATION[n].latex if n in NOTATION else latex_symbol(n) for n in names}
-    return made | {p.name: p.latex or latex_symbol(p.name) for p in model.parameters}
+    notated = {n: NOTATION[n].latex if n in NOTATION else latex_symbol(n) for n in names}
+    return notated | {p.name: p.latex or latex_symbol(p.name) for p in model.parameters}
 
 
 def latex_equations(model: Model) -> list[LatexEquation]:
-    """All bindings in order, then all rates."""
+    """Return all bindings in order, then all rates."""
     known = latex_symbols(model)
+    rates = model.equations.rates
+    key = (model.equation_hash, sorted(known.items()))
+    printed = stored("latex", key, lambda: _printed((*model.bindings, *rates), known))
+    names = [*(known[b.name] for b in model.bindings), *(f"\\dot{{{known[b.name]}}}" for b in rates)]
+    return [
+        LatexEquation(b.name, f"{name} = {right}", b.source, b.unit, i >= len(model.bindings))
+        for i, (b, name, right) in enumerate(zip((*model.bindings, *rates), names, printed, strict=True))
+    ]
+
+
+def _printed(bindings: Sequence[Binding], known: Mapping[str, str]) -> list[str]:
+    """The right-hand sides."""
+    import sympy as sp
+
     names = {sp.Symbol(name, real=True): text for name, text in known.items()}
-
-    def line(binding: Binding, left_side: str, *, is_rate: bool) -> LatexEquation:
-        right = sp.latex(binding.expression, symbol_names=names, fold_short_frac=False)
-        return LatexEquation(binding.name, f"{left_side} = {right}", binding.source, binding.unit, is_rate)
-
-    lines = [line(b, known[b.name], is_rate=False) for b in model.bindings]
-    return lines + [line(b, f"\\dot{{{known[b.name]}}}", is_rate=True) for b in model.equations.rates]
+    return [sp.latex(b.expression, symbol_names=names, fold_short_frac=False) for b in bindings]

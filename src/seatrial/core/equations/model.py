@@ -9,7 +9,6 @@ import numpy as np
 from seatrial.core.equations.bindings import Binding, Input, ModelEquations
 from seatrial.core.equations.compiled import CompiledEquations, compile_equations
 from seatrial.core.values import Array, InputError, Parameters, Ship
-from seatrial.numerics.kernels.evaluate import evaluate
 
 
 @dataclass(frozen=True)
@@ -98,6 +97,8 @@ class Model:
 
     def forces(self, states: Array, inputs: Array) -> dict[str, Array]:
         """Every binding along a record: states (n, nx), inputs (n, nu) -> name -> (n,)."""
+        from seatrial.numerics.kernels.evaluate import evaluate
+
         out = np.empty((len(states), max(1, len(self.bindings))))
         x, u = np.ascontiguousarray(states), np.ascontiguousarray(inputs)
         evaluate(self.compiled.bindings, x, u, self.parameters.values, 0.0, out)

@@ -4,11 +4,15 @@ Structural identifiability: Pohjanpalo 1978, Math. Biosciences 41, 21-33; Walter
 Parametric Models, chapter 2. The changes come from `generators`; here they are put in order and in words.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from pathlib import Path
 
 import numpy as np
+from llvmlite.binding import get_host_cpu_name
 
 from seatrial.core.equations import Model
+from seatrial.core.equations.stored import stored
 from seatrial.core.results import Symmetry
 from seatrial.core.values import InputError
 from seatrial.data.trial.model_table import COMMON_PARTICULARS
@@ -18,6 +22,9 @@ from seatrial.estimation.information.invariance import invariance_conditions
 from seatrial.estimation.information.symmetry_text import NoInfluence, no_influence_text, symmetry_text
 
 _LEAST_INFLUENCE = 1e-7
+_PACKAGE = Path(__file__).parents[2]
+# folders of the texts that decide what is stated
+_SOURCES = tuple(_PACKAGE / folder for folder in ("estimation/information", "data/trial", "core/values"))
 
 
 def structural_symmetries(model: Model, outputs: Sequence[str], forces: Sequence[str] = ()) -> tuple[Symmetry, ...]:
@@ -32,6 +39,10 @@ def structural_symmetries(model: Model, outputs: Sequence[str], forces: Sequence
     Raises:
         InputError: an output the model does not have, or a parameter without a value.
     """
+    return _stored("structural", model, outputs, forces, lambda: _structural(model, outputs, forces))
+
+
+def _structural(model: Model, outputs: Sequence[str], forces: Sequence[str]) -> tuple[Symmetry, ...]:
     where = search_symmetries(model, outputs, forces)
     free = [i for i, p in enumerate(model.parameters) if p.free]
     assumed = [i for i, p in enumerate(model.parameters) if not p.free and p.value and p.name not in COMMON_PARTICULARS]
@@ -45,12 +56,28 @@ def refuse_unidentifiable(model: Model, outputs: Sequence[str], forces: Sequence
     Raises:
         InputError: which, and what to do.
     """
-    loose = [i for i, p in enumerate(model.parameters) if p.free and p.prior is None]
-    where = search_symmetries(model, outputs, forces)
-    (found,) = where.independent_generators([loose])
-    if found:
-        told = "; and ".join(s.text for s in _describe_symmetries(where, found))
+    symmetries = _stored("unidentifiable", model, outputs, forces, lambda: _without_prior(model, outputs, forces))
+    if symmetries:
+        told = "; and ".join(s.text for s in symmetries)
         raise InputError(f"no record can tell the free parameters apart: {told} (under [model.fixed], [model.priors])")
+
+
+def _without_prior(model: Model, outputs: Sequence[str], forces: Sequence[str]) -> tuple[Symmetry, ...]:
+    """Those of the free parameters without a prior."""
+    members = [i for i, p in enumerate(model.parameters) if p.free and p.prior is None]
+    search = search_symmetries(model, outputs, forces)
+    (changes,) = search.independent_generators([members])
+    return _describe_symmetries(search, changes)
+
+
+def _stored(
+    kind: str, model: Model, outputs: Sequence[str], forces: Sequence[str], find: Callable[[], Sequence[Symmetry]]
+) -> tuple[Symmetry, ...]:
+    """From the compile cache, where the same question was answered before on a processor of this kind."""
+    values = [(p.name, p.value, p.free, p.lower, p.upper, p.scale, p.prior, p.unit) for p in model.parameters]
+    key = (model.equation_hash, values, tuple(outputs), tuple(forces), np.__version__, get_host_cpu_name())
+    symmetries = stored(kind, key, lambda: [asdict(s) for s in find()], _SOURCES)
+    return tuple(Symmetry(tuple(s["parameters"]), s["text"], s["change"]) for s in symmetries)
 
 
 def _describe_symmetries(symmetry_search: SymmetrySearch, changes: Sequence[Generator]) -> tuple[Symmetry, ...]:

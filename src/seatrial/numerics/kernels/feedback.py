@@ -13,6 +13,7 @@ for the actuator's angles (count + 1).
 
 from numba import njit
 
+from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
 
 (
@@ -82,7 +83,7 @@ def _row_times_states(memory, start, states, n):
     return total
 
 
-@njit(COMMAND_SIGNATURE, **OPTIONS)
+@kernel(COMMAND_SIGNATURE, **OPTIONS)
 def linear_controller(_, x, memory, u):
     """Order, angle, effect; slow states are held while a limit bites and they would drive further into it."""
     n, count, k = int(memory[CONTROLLER_ORDER]), int(memory[COUNT]), int(memory[STEP])

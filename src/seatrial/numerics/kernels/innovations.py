@@ -14,6 +14,7 @@ import numpy as np
 from numba import njit
 
 from seatrial.numerics.kernels.integrate import DIVERGED
+from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.sensitivity import propagate_tangent
 from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, TANGENT, VECTOR
 
@@ -51,7 +52,7 @@ def propagate_covariance(transition, covariance, process, noisy_states, dt, work
                     covariance[m, j, i] = total
 
 
-@njit(
+@kernel(
     I8(
         *(TANGENT, TANGENT, MATRIX, MATRIX, F8, I8, VECTOR, VECTOR, VECTOR),
         *(TABLE, TABLE, TABLE, TABLE, TABLE, INDEX, INDEX, VECTOR, VECTOR, MATRIX),

@@ -8,6 +8,7 @@ import math
 import numpy as np
 from numba import njit, void
 
+from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import F8, FUNCTION, I8, INDEX, LEAN, MATRIX, OPTIONS, VECTOR
 
 DIVERGED = 1e9
@@ -54,7 +55,7 @@ def rk4_step(f, t, x, u0, um, u1, p, h, k1, k2, k3, k4, y):
     return size
 
 
-@njit(
+@kernel(
     void(
         *(FUNCTION, FUNCTION, MATRIX, INDEX, I8, I8, F8, I8, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX),
         *(INDEX, MATRIX, INDEX),

@@ -9,10 +9,11 @@ import numpy as np
 from numba import njit, void
 
 from seatrial.numerics.kernels.integrate import DIVERGED
+from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import CUBE, I8, INDEX, LEAN, MATRIX, OPTIONS, QUARTIC, TABLE, TANGENT, VECTOR
 
 
-@njit(void(TANGENT, I8, I8, INDEX, VECTOR, MATRIX, CUBE, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX), **LEAN)
+@kernel(void(TANGENT, I8, I8, INDEX, VECTOR, MATRIX, CUBE, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX), **LEAN)
 def _affine_matrices(f, nx, nu, parameter_index, p, value, slope, x, u, out, jac, slope_at_origin):
     rows = value.shape[0]
     for i in range(nx):
@@ -99,7 +100,7 @@ def _observe(c, d, x, u, out):
         out[i] = total
 
 
-@njit(void(CUBE, CUBE, CUBE, CUBE, CUBE, INDEX, MATRIX, INDEX, I8, MATRIX, MATRIX, INDEX, VECTOR, VECTOR), **LEAN)
+@kernel(void(CUBE, CUBE, CUBE, CUBE, CUBE, INDEX, MATRIX, INDEX, I8, MATRIX, MATRIX, INDEX, VECTOR, VECTOR), **LEAN)
 def _replay(e, g0, g1, c, d, matrix_index, inputs, offsets, substeps, x0, y_out, failed, x, y):
     for s in range(offsets.size - 1):
         first, last, w = offsets[s], offsets[s + 1], matrix_index[s]
@@ -133,7 +134,7 @@ def replay(e, g0, g1, c, d, matrix_index, inputs, offsets, substeps, x0, y_out, 
     _replay(e, g0, g1, c, d, matrix_index, inputs, offsets, substeps, x0, y_out, failed, np.empty(nx), np.empty(nx))
 
 
-@njit(
+@kernel(
     void(
         *(CUBE, CUBE, CUBE, CUBE, CUBE, QUARTIC, QUARTIC, QUARTIC, QUARTIC, QUARTIC, INDEX, MATRIX, INDEX, I8),
         *(MATRIX, TABLE, MATRIX, INDEX, MATRIX, CUBE, INDEX, VECTOR, VECTOR, MATRIX, MATRIX),

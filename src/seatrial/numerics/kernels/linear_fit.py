@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit
 
 from seatrial.numerics.kernels.integrate import DIVERGED
+from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.linear import _affine_matrices
 from seatrial.numerics.kernels.simd import LANES, add_scaled, aligned_scratch, broadcast
 from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TANGENT, VECTOR
@@ -269,7 +270,7 @@ def _simulate_with_slopes(
     return True
 
 
-@njit(
+@kernel(
     I8(
         *(TANGENT, I8, INDEX, INDEX, INDEX, VECTOR, F8, MATRIX, I8, VECTOR, INDEX, INDEX, MATRIX, VECTOR, VECTOR),
         *(MATRIX, MATRIX, CUBE, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, VECTOR, VECTOR),

@@ -12,6 +12,7 @@ import math
 
 from numba import njit, void
 
+from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.simd import (
     LANES,
     add_squared_difference,
@@ -120,7 +121,7 @@ def _discretise_blocks(a, b, h, phi, gamma, w, nx, nu):
                         gamma[first + lane, i, j] = whole
 
 
-@njit(void(CUBE, CUBE, F8, CUBE, CUBE, VECTOR), **LEAN)
+@kernel(void(CUBE, CUBE, F8, CUBE, CUBE, VECTOR), **LEAN)
 def _discretise(a, b, h, phi, gamma, w):
     if a.shape[1] == 4 and b.shape[2] == 2:  # heave and pitch: constants let loops be taken apart, twice as fast
         _discretise_blocks(a, b, h, phi, gamma, w, 4, 2)
@@ -164,7 +165,7 @@ def _step(w, v, k, nx, nv, here):
     return there
 
 
-@njit(void(CUBE, CUBE, MATRIX, I8, MATRIX, INDEX, CUBE, VECTOR), **LEAN)
+@kernel(void(CUBE, CUBE, MATRIX, I8, MATRIX, INDEX, CUBE, VECTOR), **LEAN)
 def _trajectories(phi, gamma, v, substeps, x0, select, y, w):
     nx, nv = gamma.shape[1], gamma.shape[2]
     for first in range(0, phi.shape[0], LANES):
@@ -205,7 +206,7 @@ def _misfit_blocks(phi, gamma, v, substeps, x0, measured, weight, cost, w, nx, n
             cost[first + lane] = found if found < math.inf else math.inf
 
 
-@njit(void(CUBE, CUBE, MATRIX, I8, MATRIX, MATRIX, VECTOR, VECTOR, VECTOR), **LEAN)
+@kernel(void(CUBE, CUBE, MATRIX, I8, MATRIX, MATRIX, VECTOR, VECTOR, VECTOR), **LEAN)
 def _misfit(phi, gamma, v, substeps, x0, measured, weight, cost, w):
     if gamma.shape[1] == 4 and gamma.shape[2] == 2:  # as in `_discretise`
         _misfit_blocks(phi, gamma, v, substeps, x0, measured, weight, cost, w, 4, 2)

@@ -4,15 +4,16 @@ L(j omega_f) = sum_i k_i (re[i, f] + j im[i, f]). Loops over frequencies stand i
 """
 
 import numpy as np
-from numba import njit, void
+from numba import void
 
+from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import F8, I8, MATRIX, OPTIONS, VECTOR
 
 # sums over frequencies may be taken in any order: four or eight at once
 _ANY_ORDER_SUMS = {**OPTIONS, "fastmath": {"contract", "reassoc", "nsz", "arcp"}}
 
 
-@njit(I8(VECTOR, I8), **OPTIONS)
+@kernel(I8(VECTOR, I8), **OPTIONS)
 def is_hurwitz(row, n):
     """1 where the polynomial row[:n + 1], highest power first, has all roots left of the axis (Routh 1877).
 
@@ -31,7 +32,7 @@ def is_hurwitz(row, n):
     return 1
 
 
-@njit(void(VECTOR, MATRIX, MATRIX, VECTOR, VECTOR), **_ANY_ORDER_SUMS)
+@kernel(void(VECTOR, MATRIX, MATRIX, VECTOR, VECTOR), **_ANY_ORDER_SUMS)
 def _return_difference(k, re, im, x, y):
     """1 + L at each frequency: x + j y."""
     for f in range(x.size):
@@ -43,7 +44,7 @@ def _return_difference(k, re, im, x, y):
             y[f] += k[i] * im[i, f]
 
 
-@njit(F8(VECTOR, VECTOR), **_ANY_ORDER_SUMS)
+@kernel(F8(VECTOR, VECTOR), **_ANY_ORDER_SUMS)
 def _least_return_difference(x, y):
     """Least |1 + L| along the curve x + j y: a complex parabola through the nearest sample and its neighbours."""
     count = x.size
@@ -71,7 +72,7 @@ def _least_return_difference(x, y):
     return np.sqrt(min(zx * zx + zy * zy, least))
 
 
-@njit(void(MATRIX, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX), **_ANY_ORDER_SUMS)
+@kernel(void(MATRIX, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX), **_ANY_ORDER_SUMS)
 def evaluate_loops(k, d, n, re, im, s_weights, t_weights, band_re, band_im, Ms, out):
     """Sensitivity peak and variances of loops; infinite where a loop is unstable.
 
@@ -113,7 +114,7 @@ def evaluate_loops(k, d, n, re, im, s_weights, t_weights, band_re, band_im, Ms, 
             out[m, s_weights.shape[0] + j] = total
 
 
-@njit(void(VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX), **_ANY_ORDER_SUMS)
+@kernel(void(VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX), **_ANY_ORDER_SUMS)
 def variance_gradients(k, re, im, s_weights, t_weights, out):
     """d variance / d gain of one loop, (rs + rt, g).
 

@@ -11,6 +11,7 @@ import math
 import numpy as np
 from numba import njit, void
 
+from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import CUBE, F8, LEAN, MATRIX, OPTIONS, QUARTIC
 
 _SERIES_NORM = 0.25
@@ -71,7 +72,7 @@ def _double_derivatives(value, slope, one, two, three):
             slope[0, i, j] = three[i, j]
 
 
-@njit(void(MATRIX, CUBE, F8, CUBE, QUARTIC, CUBE, CUBE), **LEAN)
+@kernel(void(MATRIX, CUBE, F8, CUBE, QUARTIC, CUBE, CUBE), **LEAN)
 def _propagators(a, da, h, value, slope, power, dpower):
     n, count = a.shape[0], da.shape[0]
     halvings = _count_halvings(a, h)

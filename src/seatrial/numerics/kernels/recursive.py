@@ -8,6 +8,7 @@ the caller; the memory needed does not grow with the samples.
 from numba import njit
 
 from seatrial.numerics.kernels.integrate import DIVERGED
+from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.sensitivity import rk4_tangent_step
 from seatrial.numerics.kernels.square_root import forget, update_sample
 from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, TANGENT, VECTOR
@@ -44,7 +45,7 @@ def _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, sampl
         samples_since[0] = 0
 
 
-@njit(
+@kernel(
     I8(
         *(CUBE, CUBE, CUBE, CUBE, MATRIX, MATRIX, VECTOR),
         *(*_GAUSSIAN_STATE, *_SAMPLES, MATRIX, *_NOISE, *_FORGETTING, *_SCRATCH, VECTOR, VECTOR),
@@ -155,7 +156,7 @@ def filter_linear(
     return -1
 
 
-@njit(
+@kernel(
     I8(
         *(TANGENT, TANGENT, F8, I8, VECTOR, INDEX, TABLE, TABLE, TABLE, INDEX),
         *(*_GAUSSIAN_STATE, *_SAMPLES, *_NOISE, *_FORGETTING, *_SCRATCH),

@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit, void
 
 from seatrial.numerics.kernels.integrate import DIVERGED, effective_input
+from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, TANGENT, VECTOR
 
 OFFSET, GAIN, DELAY = 0, 1, 2
@@ -81,7 +82,7 @@ def rk4_tangent_step(f, chain, link_p, link_u, t, x, s, u0, um, u1, w0, wm, w1, 
     return size
 
 
-@njit(
+@kernel(
     void(
         *(TANGENT, TANGENT, MATRIX, INDEX, I8, I8, F8, I8, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX),
         *(TABLE, TABLE, TABLE, TABLE, TABLE, TABLE, INDEX, INDEX, MATRIX, CUBE, INDEX),
@@ -174,7 +175,7 @@ def replay_tangent(
                     np.zeros((nx, width)), np.zeros((rows, width)), np.empty(rows), np.empty((rows, ncol)))  # fmt: skip
 
 
-@njit(void(TANGENT, MATRIX, MATRIX, MATRIX, F8, MATRIX, CUBE), **OPTIONS)
+@kernel(void(TANGENT, MATRIX, MATRIX, MATRIX, F8, MATRIX, CUBE), **OPTIONS)
 def evaluate_tangent(f, states, inputs, p, dt, out, jac):
     """f and its Jacobian at every row of states and inputs; p has a row for each as well."""
     for row in range(states.shape[0]):

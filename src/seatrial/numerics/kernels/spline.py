@@ -1,12 +1,13 @@
 """Slopes of the cubic spline through evenly spaced samples: its pieces as one step needs them."""
 
 import numpy as np
-from numba import njit, void
+from numba import void
 
+from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import LEAN, MATRIX, VECTOR
 
 
-@njit(void(MATRIX, MATRIX, VECTOR), **LEAN)
+@kernel(void(MATRIX, MATRIX, VECTOR), **LEAN)
 def _slopes(u, slope, work):
     n = u.shape[0]
     for j in range(u.shape[1]):

@@ -1,13 +1,13 @@
 """Integration with a command in the loop: a helmsman, a slew limit; what it orders is held over its step."""
 
 import numpy as np
-from numba import njit
 
 from seatrial.numerics.kernels.integrate import DIVERGED, rk4_step
+from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import COMMAND, F8, FUNCTION, I8, MATRIX, OPTIONS, VECTOR
 
 
-@njit(I8(FUNCTION, COMMAND, VECTOR, VECTOR, VECTOR, VECTOR, F8, MATRIX, MATRIX), **OPTIONS)
+@kernel(I8(FUNCTION, COMMAND, VECTOR, VECTOR, VECTOR, VECTOR, F8, MATRIX, MATRIX), **OPTIONS)
 def steer(f, command, x0, u_start, p, memory, dt, x_out, u_out):
     """Integrate with a command in the loop; returns the step at which it diverged, or -1.
 

@@ -2,8 +2,9 @@
 
 import math
 
-from numba import njit, types
+from numba import types
 
+from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import F8, OPTIONS
 
 _TWO_OVER_PI = 2.0 / math.pi
@@ -16,7 +17,7 @@ _S = tuple((-1.0) ** k / math.factorial(2 * k + 1) for k in range(1, 9))
 _C = tuple((-1.0) ** k / math.factorial(2 * k) for k in range(1, 10))
 
 
-@njit(types.UniTuple(F8, 2)(F8), **OPTIONS)
+@kernel(types.UniTuple(F8, 2)(F8), **OPTIONS)
 def sincos(angle: float) -> tuple[float, float]:
     """(sin, cos) within 1e-16 for |angle| < 1e5 rad; Taylor polynomials on |r| <= pi/4, by Estrin's scheme."""
     k = math.floor(angle * _TWO_OVER_PI + 0.5)

@@ -22,7 +22,7 @@ FUNCTION = types.FunctionType(FUNCTION_SIGNATURE)
 TANGENT = types.FunctionType(TANGENT_SIGNATURE)
 COMMAND = types.FunctionType(COMMAND_SIGNATURE)
 
-OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
+OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
 
 # kernels that allocate nothing take their scratch from the caller: without Numba's reference counting around every
 # call through a pointer a step costs half (measured)

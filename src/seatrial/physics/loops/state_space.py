@@ -2,14 +2,19 @@
 
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import sympy as sp
 
-from seatrial.core.equations import Model, Sheet
+from seatrial.core.equations import Model
+from seatrial.core.equations.manifest import stored_model
 from seatrial.core.values import Array, InputError
 from seatrial.physics.loops.block import Block
 from seatrial.physics.loops.loop import TransferLoop
+
+if TYPE_CHECKING:
+    import sympy as sp
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +128,10 @@ def loop_model(loop: TransferLoop) -> Model:
 
     The input is the disturbance, measurable outputs are the loop's output and actuator; all angles in rad.
     """
+    import sympy as sp
+
+    from seatrial.core.equations import Sheet
+
     made = state_space(loop)
     sheet = Sheet(f"{_identifier(loop.name)}_loop", "assembled from the loop's blocks", "a closed loop, linear")
     x = sheet.states(" ".join(made.names))
@@ -132,7 +141,7 @@ def loop_model(loop: TransferLoop) -> Model:
         for p in loop.gains
     ]
 
-    def along(rows: Array) -> sp.Expr:
+    def along(rows: Array) -> "sp.Expr":
         """Rows (1 + g, n) as an expression."""
         whole = sp.Integer(0)
         for factor, row in zip((sp.Integer(1), *gains), rows, strict=True):
@@ -160,15 +169,26 @@ def plant_model(loop: TransferLoop) -> Model:
     n = len(den) - 1
     if max(len(pushed), len(met)) > n:
         raise InputError(f"the plant of loop '{loop.name}' answers at once; give the lag that every real one has")
+    has_own_input = loop.disturbance_input not in ("", loop.actuator)
+    inputs = (loop.actuator, loop.disturbance_input if has_own_input else "disturbance")
+    meanings = ("denominator", loop.plant.name, loop.disturbance.name)
+    key = ("linear plant", n, loop.output, *inputs, *meanings)
+    model = stored_model(key, lambda: _observable_model(n, loop.output, inputs, meanings), (Path(__file__).parent,))
+    full = [np.concatenate([np.zeros(n - len(values)), values]) for values in (den[1:], pushed, met)]
+    rows = zip("abd", full, strict=True)
+    return model.with_values({f"{letter}_{i}": float(v) for letter, row in rows for i, v in enumerate(row)})
+
+
+def _observable_model(n: int, output: str, inputs: tuple[str, str], meanings: tuple[str, str, str]) -> Model:
+    """The model of order n with all coefficients zero; meanings: of the coefficients a, b and d."""
+    from seatrial.core.equations import Sheet
+
     sheet = Sheet(f"linear_plant_{n}", "assembled from the loop's blocks", "a plant known by its transfer functions")
-    x = sheet.states(" ".join([loop.output, *(f"x_{i}" for i in range(1, n))]))
-    own = loop.disturbance_input not in ("", loop.actuator)
-    u, w = sheet.input(loop.actuator), sheet.input(loop.disturbance_input if own else "disturbance")
-    sides = (("a", den[1:], "denominator"), ("b", pushed, loop.plant.name), ("d", met, loop.disturbance.name))
+    x = sheet.states(" ".join([output, *(f"x_{i}" for i in range(1, n))]))
+    u, w = (sheet.input(name) for name in inputs)
     rows = []
-    for letter, values, meaning in sides:
-        full = np.concatenate([np.zeros(n - len(values)), values])
-        rows.append([sheet.parameter(f"{letter}_{i}", float(v), "", meaning) for i, v in enumerate(full)])
+    for letter, meaning in zip("abd", meanings, strict=True):
+        rows.append([sheet.parameter(f"{letter}_{i}", 0.0, "", meaning) for i in range(n)])
     for i, (state, a, b, d) in enumerate(zip(x, *rows, strict=True)):
         sheet.rate(state, (x[i + 1] if i + 1 < n else 0) - a * x[0] + b * u + d * w, "observable form")
     return sheet.model()

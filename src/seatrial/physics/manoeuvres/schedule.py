@@ -4,8 +4,8 @@ Direct (Dieudonne) spiral: ISO 13643-3:2017; pseudo-random binary sequence: Sode
 """
 
 import numpy as np
-from numba import njit
 
+from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
 from seatrial.physics.manoeuvres.steering import (
     DT,
@@ -20,7 +20,7 @@ from seatrial.physics.manoeuvres.steering import (
 REGISTER_BITS = 9
 
 
-@njit(COMMAND_SIGNATURE, **OPTIONS)
+@kernel(COMMAND_SIGNATURE, **OPTIONS)
 def helmsman(t, x, memory, u):
     """Table: holding time [s], then the rudder orders [rad, positive to starboard]."""
     order = 0.0

@@ -3,8 +3,7 @@
 ISO 13643-3:2017 (turning circle, pull-out); IMO MSC/Circ.1053 (2002): at least 540 deg of heading.
 """
 
-from numba import njit
-
+from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
 from seatrial.physics.manoeuvres.steering import (
     APPROACH,
@@ -18,7 +17,7 @@ from seatrial.physics.manoeuvres.steering import (
 )
 
 
-@njit(COMMAND_SIGNATURE, **OPTIONS)
+@kernel(COMMAND_SIGNATURE, **OPTIONS)
 def helmsman(t, x, memory, u):
     """Table: rudder order, heading change that ends the turn [rad, both positive to starboard].
 

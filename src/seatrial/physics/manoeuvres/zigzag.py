@@ -4,8 +4,8 @@ ISO 13643-3:2017, zig-zag test; IMO MSC/Circ.1053 (2002), explanatory notes to M
 """
 
 import numpy as np
-from numba import njit
 
+from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
 from seatrial.physics.manoeuvres.steering import (
     STAGE,
@@ -17,7 +17,7 @@ from seatrial.physics.manoeuvres.steering import (
 )
 
 
-@njit(COMMAND_SIGNATURE, **OPTIONS)
+@kernel(COMMAND_SIGNATURE, **OPTIONS)
 def helmsman(t, x, memory, u):
     """Table: order and switching heading [rad, positive to starboard] of every execute."""
     order = 0.0

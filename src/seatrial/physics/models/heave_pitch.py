@@ -8,13 +8,10 @@ from functools import cache
 import sympy as sp
 
 from seatrial.core.equations import Model, Sheet
+from seatrial.physics.models.heave_pitch_coefficients import COEFFICIENTS, DAMPINGS, MASSES, STIFFNESSES
 
 QI = "Qi et al. 2025, eq. (1)"
 MENG = "Meng et al. 2014, eq. (1)"
-MASSES = {"a33": "kg", "a35": "kg m", "a55": "kg m^2", "a53": "kg m"}
-DAMPINGS = {"b33": "kg/s", "b35": "kg m/s", "b55": "kg m^2/s", "b53": "kg m/s"}
-STIFFNESSES = {"c33": "N/m", "c35": "N/rad", "c53": "N m/m", "c55": "N m/rad"}
-COEFFICIENTS = (*MASSES, *DAMPINGS)
 STRIP = "Salvesen, Tuck & Faltinsen 1970, speed terms without a transom"
 _ZERO_SPEED_COEFFICIENTS = (
     ("a33", "kg", "added mass, heave"),
@@ -26,7 +23,6 @@ _ZERO_SPEED_COEFFICIENTS = (
 )
 _COEFFICIENT_KINDS = {"a": "added mass", "b": "damping", "c": "restoring"}
 _COUPLINGS = {"33": "heave", "35": "heave from pitch", "53": "pitch from heave", "55": "pitch"}
-START_DAMPING_RATIO = 0.3
 
 
 def _coefficients(sheet: Sheet) -> dict[str, sp.Symbol]:
@@ -126,16 +122,3 @@ def heave_pitch_strip() -> Model:
     c["b55"] = sheet.bind("b55", at_rest["b55_0"] + u * lever * b33, STRIP, "kg m^2/s")
     _plant(sheet, states, c)
     return sheet.model()
-
-
-def physical_start_values(values: dict[str, float]) -> dict[str, float]:
-    """The eight coefficients where nothing is known of them, from m, I5, c33 and c55.
-
-    Added mass as large as the mass, no coupling, damping ratio .3 in both motions.
-    """
-    m, inertia = values["m"], values["I5"]
-    start = dict.fromkeys(COEFFICIENTS, 0.0)
-    start["a33"], start["a55"] = m, inertia
-    start["b33"] = 2.0 * START_DAMPING_RATIO * (values["c33"] * 2.0 * m) ** 0.5
-    start["b55"] = 2.0 * START_DAMPING_RATIO * (values["c55"] * 2.0 * inertia) ** 0.5
-    return start

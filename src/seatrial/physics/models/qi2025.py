@@ -5,7 +5,7 @@ must be the speed: it is 9.269, 9.266, 9.267 m/s at the three headings, the 18 k
 """
 
 from seatrial.core.values import InputError, Ship
-from seatrial.physics.models.heave_pitch import COEFFICIENTS
+from seatrial.physics.models.heave_pitch_coefficients import COEFFICIENTS
 from seatrial.physics.models.parameter_set import ParameterSet
 
 SOURCE = "Qi et al. 2025, improved wild horse optimizer, tables 1-4"

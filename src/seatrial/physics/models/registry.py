@@ -3,6 +3,7 @@
 import runpy
 import traceback
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -90,6 +91,13 @@ def _require_model(model: object, where: str) -> "Model":
     return model
 
 
+@cache
+def _built_in(name: str) -> "Model":
+    from seatrial.core.equations.manifest import stored_model
+
+    return stored_model((name,), MODELS[name], (Path(__file__).parent,))
+
+
 def model_named(name: str) -> "Model":
     """A built-in model, or one installed under the entry point group `seatrial.models`.
 
@@ -97,7 +105,7 @@ def model_named(name: str) -> "Model":
         InputError: there is no such model; the nearest name is given.
     """
     if name in MODELS:
-        return MODELS[name]()
+        return _built_in(name)
     plugins = installed(ENTRY_POINT_GROUP)
     if name not in plugins:
         raise InputError(f"unknown model '{name}'{spelling_hint(name, sorted((*MODELS, *plugins)))}")

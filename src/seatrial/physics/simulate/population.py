@@ -12,7 +12,7 @@ import numpy as np
 from seatrial.core.values import Array, InputError
 from seatrial.numerics.kernels.linear_population import discretise, misfit
 from seatrial.numerics.kernels.linear_population import trajectories as simulated
-from seatrial.physics.models.heave_pitch import COEFFICIENTS, STIFFNESSES
+from seatrial.physics.models.heave_pitch_coefficients import COEFFICIENTS, STIFFNESSES
 
 ALL_COEFFICIENTS = ("m", "I5", *COEFFICIENTS, *STIFFNESSES)
 HEAVE_AND_PITCH = (0, 2)

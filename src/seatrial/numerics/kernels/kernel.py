@@ -1,0 +1,150 @@
+"""Compiled functions with one fixed signature, whose machine code is loaded from the compile cache at their first use.
+
+Numba's own decorator loads the code when the module is imported, after building tables that only a compilation needs
+(0.3 s), and its cache files are unpickled unverified. Here nothing is loaded before it is called or handed to another
+kernel, a loaded function needs no tables, and its bytes are those that were written (see `cache`).
+"""
+
+# Numba annotates what may be overridden too narrowly, and not its settings:
+# pyright: reportIncompatibleMethodOverride=false, reportAttributeAccessIssue=false
+
+import hashlib
+import pickle
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import FunctionType, ModuleType
+from typing import Any, cast
+
+import numba
+from numba.core import config, types
+from numba.core.caching import _Cache
+from numba.core.compiler import CompileResult
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.registry import CPUDispatcher
+from numba.core.runtime.nrt import rtsys
+from numba.core.serialize import dumps
+from numba.core.typing.templates import Signature
+
+from seatrial.numerics.kernels.cache import cache_folder, discard_entry, read_entry, source_digest, write_entry
+
+_PACKAGE = Path(__file__).parents[2]
+
+
+def _source_digest(function: FunctionType) -> bytes:
+    """Of the texts that decide the machine code of a function: its own and those of the kernels it may call.
+
+    Machine code holds that of the functions it calls, so any change in this folder, or in the function's own folder
+    where that belongs to the package, compiles it again. A generated module holds its digest as `SOURCE_DIGEST`.
+    """
+    given = function.__globals__.get("SOURCE_DIGEST")
+    if given is None:
+        file = Path(function.__code__.co_filename)
+        given = source_digest(file.parent if file.is_relative_to(_PACKAGE) else file)
+    return source_digest(Path(__file__).parent) + given
+
+
+class _Machine(_Cache):
+    """Machine code of one function in the compile cache, in place of Numba's index and data files."""
+
+    def __init__(self, function: FunctionType, options: Mapping[str, Any]) -> None:
+        self._function, self._options = function, options
+        self._enabled = function.__closure__ is None  # what a closure holds is not in the name of the entry
+
+    @property
+    def cache_path(self) -> str:
+        return str(cache_folder())
+
+    def _name(self, signature: Signature, codegen: Any) -> str:
+        """Of the entry: everything that decides the machine code is in it."""
+        f = self._function
+        options = {k: sorted(v) if isinstance(v, set) else v for k, v in sorted(self._options.items())}
+        facts = (f.__module__, f.__qualname__, f.__code__.co_firstlineno, signature, options, codegen.magic_tuple(),
+                 numba.__version__, sys.version)  # fmt: skip
+        digest = hashlib.sha256(repr(facts).encode() + _source_digest(f)).hexdigest()
+        return f"{f.__module__.rpartition('.')[2]}.{f.__qualname__}-{digest[:32]}.bin".replace("<", "").replace(">", "")
+
+    def load_overload(self, sig: Signature, target_context: Any) -> CompileResult | None:
+        """Return the compiled function, or None where it has to be compiled."""
+        if not self._enabled:
+            return None
+        name = self._name(sig, target_context.codegen())
+        content = read_entry(name)
+        if content is None:
+            return None
+        rtsys.initialize(target_context)  # the code may call Numba's runtime, whose symbols have to be there
+        try:
+            return CompileResult._rebuild(target_context, *pickle.loads(content))
+        except Exception as error:  # whatever a library may raise on bytes of another version of itself
+            discard_entry(name, f"{type(error).__name__}: {error}")
+            return None
+
+    def save_overload(self, sig: Signature, data: CompileResult) -> None:
+        """Keep the compiled function."""
+        if self._enabled and not data.library.has_dynamic_globals:
+            write_entry(self._name(sig, data.codegen), dumps(data._reduce()))
+
+    def enable(self) -> None:
+        """Read and write entries."""
+        self._enabled = True
+
+    def disable(self) -> None:
+        """Neither read nor write entries."""
+        self._enabled = False
+
+    def flush(self) -> None:
+        """Do nothing: an entry is replaced when it is written again."""
+
+
+class Kernel(CPUDispatcher):
+    """A Numba function that has one signature and gets its machine code when that is first needed."""
+
+    fixed: Signature
+
+    def compile(self, sig: Signature | tuple[types.Type, ...]) -> Any:
+        """Load or compile the one signature; every request of Numba for code comes through here.
+
+        Raises:
+            TypeError: the arguments are of other types.
+        """
+        if isinstance(sig, tuple):
+            for given, wanted in zip(sig, self.fixed.args, strict=True):
+                if self.typingctx.can_convert(given, wanted) is None:
+                    raise TypeError(f"{self.__name__}: an argument is {given}, where it takes {wanted}")
+        with global_compiler_lock:
+            if not self.overloads:
+                super().compile(self.fixed)
+                self.disable_compile()
+        return self.overloads[self.fixed.args].entry_point
+
+    def load(self) -> None:
+        """Load or compile the machine code now."""
+        self.compile(self.fixed)
+
+    def get_function_type(self) -> types.FunctionType | None:
+        """Return its type as an argument of other kernels, which Numba knows of compiled functions only."""
+        self.load()
+        return super().get_function_type()
+
+
+def kernel(signature: Signature, **options: Any) -> Callable[[Callable[..., Any]], Kernel]:
+    """Return a decorator that compiles a function for one signature, kept between processes.
+
+    options: those of `numba.njit`, without `cache`.
+    """
+
+    def decorate(function: Callable[..., Any]) -> Kernel:
+        if config.DISABLE_JIT:
+            return cast(Kernel, function)
+        made = Kernel(function, {}, {**options, "nopython": True, "boundscheck": None})
+        made.fixed, made._cache = signature, _Machine(cast(FunctionType, function), options)
+        return made
+
+    return decorate
+
+
+def load_kernels(module: ModuleType) -> None:
+    """Load or compile the kernels of a module now."""
+    for value in vars(module).values():
+        if isinstance(value, Kernel):
+            value.load()
