@@ -46,7 +46,7 @@ def test_the_fit_without_offsets_is_the_measure_of_headings(fit: Fit) -> None:
     worse = replace(fit.baselines[0], name="this fit, its offsets set to zero",
                     validation=replace(fit.baselines[0].validation, rms={"psi_deg": 99.0}))  # fmt: skip
     both = replace(fit, baselines=(fit.baselines[0], worse, *fit.baselines[1:]))
-    assert "fit’s, its offsets set to zero: 2 of the 2 that sail the held-out runs" in baseline_sentences(both)[1]
+    assert "fit’s, its offsets set to zero: 2 of the 2 that simulate the held-out runs" in baseline_sentences(both)[1]
     chapter = baseline_chapter(both)
     assert chapter is not None and [r.name for r in chapter.rows][:2] == [fit.baselines[0].name, "weak form"]
 

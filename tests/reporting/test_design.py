@@ -56,7 +56,7 @@ def test_the_answer_compares_with_the_best_that_keeps_the_limits(design: Design)
     ratio = design.baselines[1].worst / design.designed.worst
     assert "prbs:35:10" in first and f"{ratio:.1f} times as much" in first
     assert drawn.endswith("smaller than with any standard manoeuvre within the limits on 5 of 5.")
-    assert confirmed == "39 of 40 simulated trials could be fitted; their errors are 0.91 to 1.11 of those foretold."
+    assert confirmed == "39 of 40 simulated trials could be fitted; their errors are 0.91 to 1.11 of those predicted."
     assert limits.startswith("The ship as assumed reaches at most a drift angle of 18.0° (20.0° allowed) and ")
 
 
@@ -66,7 +66,7 @@ def test_a_design_that_is_no_better_says_so(design: Design) -> None:
 
 
 def test_a_design_that_leaves_the_limits_says_so(design: Design) -> None:
-    assert "leaves the limits: she reaches" in sentences(replace(design, limits=TrialLimits(math.radians(10.0))))[-1]
+    assert "leaves the limits: it reaches" in sentences(replace(design, limits=TrialLimits(math.radians(10.0))))[-1]
 
 
 def test_a_ship_that_is_lost_is_said(design: Design) -> None:

@@ -15,7 +15,7 @@ from seatrial.reporting import summary, write_report
 from seatrial.reporting.identifiability_chapter import determined_sentence, identifiability_chapter
 from seatrial.reporting.page import html
 
-TITLE = "What this record can and cannot tell"
+TITLE = "Identifiability: what the records determine"
 HOSTILE = "<script>alert(1)</script>"
 
 
@@ -68,10 +68,11 @@ def test_parts_that_are_empty_have_no_heading() -> None:
     )
     assert "Correlations between the estimates" in headings(only_noise)
     least = html(replace(fit, identifiability=Identifiability((), (), math.nan, math.nan)))
-    assert "The equations hide nothing" in least
-    assert not {"What these runs tell well, vaguely and not at all", "If an assumed value is wrong"} & set(
-        headings(least)
-    )
+    assert "Structurally identifiable" in least
+    assert not {
+        "Combinations that these runs determine well, poorly and not at all",
+        "If an assumed value is wrong",
+    } & set(headings(least))
     assert not re.search(r"\bnan\b", least)
 
 
@@ -116,7 +117,7 @@ def test_the_answer_gives_intervals_floor_criterion_and_what_cannot_be_told(full
     assert "4 of 4 measured manoeuvring values lie inside" in said
     assert "process noise alone would leave 1.4° and 0.19 m" in said
     assert "The records determine about 6 of 11 free coefficients; the rest comes from the priors." in said
-    assert "Whatever the manoeuvre, all coefficients, thrust and inertias can be scaled together" in said
+    assert "Not identifiable from any manoeuvre: all coefficients, thrust and inertias can be scaled together" in said
     assert "The criterion is prediction error, with process noise in u, v and r." in said
     assert "zigzag_25_25 is extrapolation, index 1.9" in said
 
@@ -127,7 +128,7 @@ def test_a_long_change_is_shortened_in_the_answer(full: Fit) -> None:
     names = tuple("abcdefgh")
     long = Symmetry(names, f"{', '.join(names)} can " + "very " * 60 + "well be scaled", {})
     said = " ".join(summary.sentences(replace(full, identifiability=replace(known, structural=(long,)))))
-    assert "Whatever the manoeuvre, a, b, c, d, e and 3 more can change together without showing" in said
+    assert "changing a, b, c, d, e and 3 more together leaves every motion unchanged; d is held" in said
 
 
 def test_the_number_of_determined_coefficients_is_said_of_the_free_ones(full: Fit) -> None:
@@ -136,7 +137,7 @@ def test_the_number_of_determined_coefficients_is_said_of_the_free_ones(full: Fi
     whole = replace(full, identifiability=replace(known, effective_parameters=10.9))
     assert determined_sentence(whole) == "The records determine all 11 free coefficients."
     without = tuple(replace(c, prior_mean=None) for c in full.coefficients)
-    assert determined_sentence(replace(full, coefficients=without)).endswith("the rest is left open.")
+    assert determined_sentence(replace(full, coefficients=without)).endswith("the rest is not determined.")
 
 
 def test_a_tanker_with_many_coefficients_folds_what_is_long() -> None:

@@ -1,4 +1,4 @@
-"""The chapter on other estimators: coefficients beside the fit's, the runs they sail, and what they prove."""
+"""The chapter on other estimators: their coefficients compared with the fit's, and how they predict the runs."""
 
 import math
 from collections.abc import Sequence
@@ -17,7 +17,9 @@ from seatrial.core.values.channel_text import unit_text
 from seatrial.reporting.figures.relative_errors import CoefficientError, estimator_chart
 from seatrial.reporting.text_tables import TextTable, text_table
 
+# distance from the fit in its standard errors up to which a coefficient is near, and up to which it is off
 NEAR, OFF = 2.0, 10.0
+# correlation of simulated and measured channels from which on a trajectory counts as good
 HIGH_CORRELATION = 0.9
 _COLUMNS = {
     "psi_deg": ("heading, deg", 1.0), "position_m": ("position, m", 1.0), "u": ("u, m/s", 1.0), "v": ("v, m/s", 1.0),
@@ -58,18 +60,18 @@ class BaselineChapter:
 
 
 def baseline_chapter(fit: Fit) -> BaselineChapter | None:
-    """The chapter; None where no comparison was asked for."""
+    """Return the chapter; None where no comparison was requested."""
     if not fit.baselines:
         why = [f.text for f in fit.findings if f.code == NO_COMPARISON]
         return BaselineChapter((sentence(why[0]),)) if why else None
-    known = [c for c in fit.coefficients if not c.fixed]
+    free = [c for c in fit.coefficients if not c.fixed]
     first = fit.baselines[0]
     held, fitted = _named_runs(fit.baselines, "validation"), _named_runs(fit.baselines, "training")
     return BaselineChapter(
         baseline_sentences(fit),
-        tuple((c.name, unit_text(c.unit)) for c in known),
-        tuple(exact(_display_value(c.truth, c), 4) for c in known) if first.error else (),
-        tuple(_baseline_row(r, first, known) for r in fit.baselines if r.values and (r is first or not r.is_fit)),
+        tuple((c.name, unit_text(c.unit)) for c in free),
+        tuple(exact(_display_value(c.truth, c), 4) for c in free) if first.error else (),
+        tuple(_baseline_row(r, first, free) for r in fit.baselines if r.values and (r is first or not r.is_fit)),
         Markup(svg(estimator_chart(_coefficient_errors(fit.baselines), _axis_label(first)))),
         tuple(text_table(t) for t in (_table("Held-out runs", held), _table("Training runs", fitted)) if t.header[1:]),
         tuple(note for r in fit.baselines for note in _notes(r)),
@@ -77,26 +79,26 @@ def baseline_chapter(fit: Fit) -> BaselineChapter | None:
 
 
 def baseline_sentences(fit: Fit) -> tuple[str, ...]:
-    """Which regression comes nearest, which fail, and what trajectories tell of it."""
-    first, others = fit.baselines[0], [r for r in fit.baselines if not r.is_fit]
-    solved = [r for r in others if r.values]
-    failed = [f"“{r.name}”" for r in others if not r.values]
+    """Return which regression comes nearest, which fail, and how well they predict trajectories."""
+    first, regressions = fit.baselines[0], [r for r in fit.baselines if not r.is_fit]
+    solved = [r for r in regressions if r.values]
+    failed = [f"“{r.name}”" for r in regressions if not r.values]
     lost = [f"“{r.name}”" for r in solved if r.diverged]
-    told = [f"{counted(len(others), 'regression').capitalize()} on the same training runs, as recorded."]
+    text = [f"{counted(len(regressions), 'regression').capitalize()} on the same training runs, as recorded."]
     if failed:
-        told.append(f"{_count_word(failed)} of them {'fails' if len(failed) == 1 else 'fail'}: {enumeration(failed)}.")
+        text.append(f"{_count_word(failed)} of them {'fails' if len(failed) == 1 else 'fail'}: {enumeration(failed)}.")
     if lost:
         verb = "gives" if len(lost) == 1 else "give"
-        told.append(
+        text.append(
             f"{_count_word(lost)} {verb} coefficients with which a simulated run diverges: {enumeration(lost)}."
         )
     if solved:
-        told.append(_nearest_sentence(first, solved))
+        text.append(_nearest_sentence(first, solved))
     held = sum(c.prior_mean is not None for c in fit.coefficients if not c.fixed)
     if held:
-        told.append(f"The fit has priors for {counted(held, 'coefficient')} and the regressions have none, so that "
+        text.append(f"The fit has priors for {counted(held, 'coefficient')} and the regressions have none, so that "
                     "differences show what the priors do as well.")  # fmt: skip
-    return tuple(t for t in (" ".join(told), _trajectory_sentences(fit, solved)) if t)
+    return tuple(t for t in (" ".join(text), _trajectory_sentences(fit, solved)) if t)
 
 
 def _count_word(items: Sequence[str]) -> str:
@@ -107,11 +109,13 @@ def _nearest_sentence(reference: Baseline, solved: Sequence[Baseline]) -> str:
     best = min(solved, key=lambda r: _median_deviation(r, reference))
     if not reference.error:
         return f"Nearest to the fit comes “{best.name}”: {_difference(best, reference)}."
-    own = (
+    own_errors = (
         f"{_percent(_median_deviation(reference, reference))} % and "
         f"{_percent(_worst_deviation(reference, reference))} %"
     )
-    return f"Nearest to the known values comes “{best.name}”: {_difference(best, reference)}; the fit is {own} off."
+    return (
+        f"Nearest to the known values comes “{best.name}”: {_difference(best, reference)}; the fit is {own_errors} off."
+    )
 
 
 def _difference(baseline: Baseline, reference: Baseline) -> str:
@@ -123,35 +127,35 @@ def _difference(baseline: Baseline, reference: Baseline) -> str:
 
 
 def _trajectory_sentences(fit: Fit, solved: Sequence[Baseline]) -> str:
-    """How well coefficients that are wrong can sail."""
+    """How well wrong coefficients can predict trajectories."""
     first, role = fit.baselines[0], "validation" if fit.validation else "training"
     alone = [r for r in fit.baselines if r.is_fit][-1]
     counts = [_count_better(alone, solved, one) for one in dict.fromkeys((role, "training"))]
-    told = []
+    text = []
     without = "" if alone is first else ", its offsets set to zero"
     if all(counts):
-        told.append(f"Heading nearer the measured one than the fit’s{without}: {' and '.join(counts)}.")
+        text.append(f"Heading nearer the measured one than the fit’s{without}: {' and '.join(counts)}.")
     alike = [r for r in solved if min(_simulated_runs(r, role).correlation.values(), default=0.0) > HIGH_CORRELATION]
     if alike:
         worst = max(alike, key=lambda r: _median_deviation(r, first))
         least = fixed(min(_simulated_runs(worst, role).correlation.values()), 3)
-        told.append(
+        text.append(
             f"Good trajectories prove nothing about coefficients: those of “{worst.name}” are "
             f"{_difference(worst, first)}, and yet its u, v and r correlate with the measured ones by {least} or "
             "better (CC)."
         )
-    return " ".join(told)
+    return " ".join(text)
 
 
 def _count_better(fit: Baseline, solved: Sequence[Baseline], role: str) -> str:
-    """How many sail runs of a role with a smaller error of heading than the fit; empty where nothing is known."""
-    own = _simulated_runs(fit, role).rms.get("psi_deg")
+    """How many predict runs of a role with a smaller error of heading than the fit; empty where nothing is known."""
+    heading_of_fit = _simulated_runs(fit, role).rms.get("psi_deg")
     headings = [_simulated_runs(r, role).rms["psi_deg"] for r in solved if "psi_deg" in _simulated_runs(r, role).rms]
-    if own is None or not headings:
+    if heading_of_fit is None or not headings:
         return ""
     runs = "held-out" if role == "validation" else "training"
-    number = sum(h < own for h in headings) or "none"
-    return f"{number} of the {len(headings)} that sail the {runs} runs"
+    number = sum(h < heading_of_fit for h in headings) or "none"
+    return f"{number} of the {len(headings)} that simulate the {runs} runs"
 
 
 def _simulated_runs(baseline: Baseline, role: str) -> OpenLoopScores:
@@ -239,12 +243,12 @@ def _table(title: str, items: Sequence[tuple[str, OpenLoopScores]]) -> Table:
 
 
 def _notes(baseline: Baseline) -> list[str]:
-    """What failed, diverged or was dropped, and constants that were allowed besides."""
-    made = [f"{baseline.name} failed: {baseline.note}"] if baseline.note else []
+    """What failed, diverged or was dropped, and constants that were fitted in addition."""
+    notes = [f"{baseline.name} failed: {baseline.note}"] if baseline.note else []
     if baseline.diverged:
-        made.append(f"{baseline.name}: the simulation of {enumeration(baseline.diverged)} diverges")
-    made += [f"{baseline.name}: {f.text}" for f in baseline.findings]
+        notes.append(f"{baseline.name}: the simulation of {enumeration(baseline.diverged)} diverges")
+    notes += [f"{baseline.name}: {f.text}" for f in baseline.findings]
     constants = [f"{significant(b, 2)} in {equations}" for equations, b in baseline.bias.items() if b]
     if constants:
-        made.append(f"{baseline.name}: constants besides the model's terms, {enumeration(constants)}")
-    return made
+        notes.append(f"{baseline.name}: constants in addition to the model's terms, {enumeration(constants)}")
+    return notes

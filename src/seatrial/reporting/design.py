@@ -1,4 +1,4 @@
-"""The page of a designed manoeuvre: what it is worth beside standard ones, how to steer it, where the ship goes."""
+"""The page of a designed manoeuvre: its precision compared with standard ones, its orders, its track."""
 
 import math
 from dataclasses import dataclass
@@ -30,15 +30,16 @@ from seatrial.reporting.page import environment
 from seatrial.reporting.tables import finding_groups
 
 TITLES = {
-    "answer": "Question and answer",
-    "orders": "What to steer",
-    "coefficients": "What it tells of each coefficient",
-    "track": "Where the ship goes",
-    "ships": "If the ship is not as assumed",
+    "answer": "Summary",
+    "orders": "Orders",
+    "coefficients": "Precision of each coefficient",
+    "track": "Track",
+    "ships": "Ships that differ from the assumed one",
     "confirmation": "Simulated trials",
     "findings": "Findings",
-    "method": "How it was made",
+    "method": "Method and provenance",
 }
+# columns of orders side by side, rows from which there is a second one, baselines in the table
 MAX_COLUMNS, MIN_COLUMN_ROWS, MAX_BASELINES = 4, 12, 3
 _POSITIVE_TEXTS = {"starboard": "to starboard", "port": "to port"}
 
@@ -59,7 +60,7 @@ class ManoeuvreRow:
 
 @dataclass(frozen=True)
 class DesignCoefficientRow:
-    """One coefficient: relative standard errors in per cent under the design and the rivals; fits beside the bound."""
+    """One coefficient: relative standard errors [%] of design and baselines; error of simulated fits and its bound."""
 
     symbol: Markup
     name: str
@@ -72,10 +73,10 @@ class DesignCoefficientRow:
 
 
 def html(design: Design) -> str:
-    """The page as text; sections without content are left out."""
-    rivals = ranked_baselines(design)
+    """Return the page as text; sections without content are left out."""
+    baselines = ranked_baselines(design)
     track = svg(track_chart(design)) if has_track(design) else ""
-    shown = {
+    has_content = {
         "track": bool(track),
         "ships": bool(len(design.designed.sampled_relative_error)),
         "confirmation": design.confirmation is not None,
@@ -83,30 +84,30 @@ def html(design: Design) -> str:
     }
     context: dict[str, object] = {
         "design": design,
-        "titles": {key: title for key, title in TITLES.items() if shown.get(key, True)},
+        "titles": {key: title for key, title in TITLES.items() if has_content.get(key, True)},
         "answer": design_text.sentences(design),
         "facts": design_text.facts(design),
         "settings": design_text.settings(design),
-        "manoeuvres": [_manoeuvre_row(w, design) for w in (design.designed, *rivals)],
+        "manoeuvres": [_manoeuvre_row(w, design) for w in (design.designed, *baselines)],
         "heads": order_headings(design.actuators),
         "meanings": order_meanings(design.actuators),
         "order_columns": order_columns(design),
         "over_time": Markup(svg(order_chart(design))),
         "channels": [Markup(svg(chart)) for chart in channel_overview([design.designed.executed])],
         "has_track": has_track(design),
-        "baselines": [w.name for w in rivals[:MAX_BASELINES]],
-        "coefficients": _coefficient_rows(design, rivals[:MAX_BASELINES]),
+        "baselines": [w.name for w in baselines[:MAX_BASELINES]],
+        "coefficients": _coefficient_rows(design, baselines[:MAX_BASELINES]),
         "speed": _speed_option(design),
         "errors": Markup(_errors_figure(design)),
         "track": Markup(track),
-        "ships": Markup(_drawn_ships_figure(design, rivals)),
+        "ships": Markup(_drawn_ships_figure(design, baselines)),
         "findings": finding_groups(design.findings),
     }
     return environment().get_template("design.html").render(context)
 
 
 def percent_text(share: float) -> str:
-    """Per cent with two digits, as far as they mean anything."""
+    """Return per cent with two digits; beyond the largest shown error only that it is larger."""
     if math.isnan(share):
         return DASH
     return (
@@ -117,18 +118,18 @@ def percent_text(share: float) -> str:
 
 
 def minutes_seconds(seconds: float) -> str:
-    """``2:05``, ``0:07.5``."""
+    """Return minutes and seconds: ``2:05``, ``0:07.5``."""
     minutes, rest = divmod(round(seconds, 2), 60.0)
     return f"{int(minutes)}:{exact(rest, 4).rjust(2, '0') if rest >= 10 else '0' + exact(rest, 4)}"
 
 
 def order_headings(actuators: tuple[Actuator, ...]) -> list[tuple[Markup, str]]:
-    """Symbol and unit of each column of the helmsman's table after the time."""
+    """Return symbol and unit of each column of the helmsman's table after the time."""
     return [(Markup(inline(_latex(a.name))), channel_display_unit(a.name)[1]) for a in actuators]
 
 
 def order_meanings(actuators: tuple[Actuator, ...]) -> list[tuple[Markup, str]]:
-    """Symbol and meaning of each input, with its positive direction."""
+    """Return symbol and meaning of each input, with its positive direction."""
     return [(Markup(inline(_latex(a.name))), _meaning(a.name)) for a in actuators]
 
 
@@ -143,7 +144,7 @@ def _meaning(name: str) -> str:
 
 
 def order_columns(design: Design) -> list[list[list[str]]]:
-    """The helmsman's table cut into columns that stand side by side: minutes and seconds, then the orders."""
+    """Return the helmsman's table cut into columns that stand side by side: minutes and seconds, then the orders."""
     rows = [
         [
             minutes_seconds(order.time),
@@ -176,7 +177,7 @@ def _manoeuvre_row(manoeuvre: ManoeuvrePrecision, design: Design) -> ManoeuvreRo
 
 
 def _coefficient_rows(design: Design, baselines: tuple[ManoeuvrePrecision, ...]) -> list[DesignCoefficientRow]:
-    known = design.confirmation
+    confirmation = design.confirmation
     return [
         DesignCoefficientRow(
             Markup(inline(design.model.parameters[name].latex or latex_symbol(name))),
@@ -184,9 +185,9 @@ def _coefficient_rows(design: Design, baselines: tuple[ManoeuvrePrecision, ...])
             significant(design.model.parameters[name].value, 4),
             percent_text(float(design.relative_spread[i])),
             percent_text(float(design.designed.relative_error[i])),
-            tuple(percent_text(float(rival.relative_error[i])) for rival in baselines),
-            percent_text(float(known.error[i])) if known else "",
-            percent_text(float(known.bound[i])) if known else "",
+            tuple(percent_text(float(w.relative_error[i])) for w in baselines),
+            percent_text(float(confirmation.error[i])) if confirmation else "",
+            percent_text(float(confirmation.bound[i])) if confirmation else "",
         )
         for i, name in enumerate(design.coefficients)
     ]
@@ -194,20 +195,24 @@ def _coefficient_rows(design: Design, baselines: tuple[ManoeuvrePrecision, ...])
 
 def _errors_figure(design: Design) -> str:
     """Dots for each coefficient: the design and the best standard manoeuvre."""
-    rival = best_baseline(design)
-    series = [ErrorSeries(rival.name, [[100.0 * float(x)] for x in rival.relative_error], OPEN)] if rival else []
+    best = best_baseline(design)
+    series = [ErrorSeries(best.name, [[100.0 * float(x)] for x in best.relative_error], OPEN)] if best else []
     series.append(ErrorSeries("designed", [[100.0 * float(x)] for x in design.designed.relative_error], FILLED))
     return svg(error_chart(design.coefficients, series, "relative standard error, per cent of the coefficient"))
 
 
 def _drawn_ships_figure(design: Design, baselines: tuple[ManoeuvrePrecision, ...]) -> str:
-    """A row for each manoeuvre, a dot for each ship drawn from the prior."""
-    worths = (design.designed, *baselines)
-    drawn = ErrorSeries(
-        "ships drawn from the prior",
-        [[100.0 * x for x in sampled_criterion_errors(w, design.criterion)] for w in worths],
+    """A row for each manoeuvre, a dot for each ship prior_draws from the prior."""
+    manoeuvres = (design.designed, *baselines)
+    prior_draws = ErrorSeries(
+        "ships prior_draws from the prior",
+        [[100.0 * x for x in sampled_criterion_errors(w, design.criterion)] for w in manoeuvres],
         OPEN,
     )
-    assumed = ErrorSeries("the ship as assumed", [[100.0 * criterion_error(w, design.criterion)] for w in worths], TICK)
+    assumed = ErrorSeries(
+        "the ship as assumed", [[100.0 * criterion_error(w, design.criterion)] for w in manoeuvres], TICK
+    )
     kind = "worst" if design.criterion == "worst" else "mean"
-    return svg(error_chart([w.name for w in worths], [drawn, assumed], f"{kind} relative standard error, per cent"))
+    return svg(
+        error_chart([w.name for w in manoeuvres], [prior_draws, assumed], f"{kind} relative standard error, per cent")
+    )

@@ -1,4 +1,4 @@
-"""A designed manoeuvre in sentences: how much better it is, on how many ships, and what was asked for."""
+"""A designed manoeuvre in sentences: how much more precise it is, on how many ships, and within which limits."""
 
 import math
 
@@ -19,14 +19,15 @@ from seatrial.core.values import NOTATION, display_unit
 from seatrial.core.values.channel_text import unit_text
 from seatrial.data.folder.orders import channel_display_unit
 
+# relative standard error from which on only its order is shown
 LARGEST_SHOWN_ERROR = 100.0
 _CRITERION_NAMES = {"worst": "worst relative standard error", "mean": "mean relative standard error"}
 
 
 def sentences(design: Design) -> list[str]:
-    """The answer: the design beside the best standard manoeuvre, other ships, simulated trials, limits."""
-    told = [_comparison(design), _prior_draws(design), _confirmation(design), _limits(design)]
-    return [sentence for sentence in told if sentence]
+    """Return the summary: comparison with the best standard manoeuvre, ships drawn, simulated trials, limits."""
+    parts = [_comparison(design), _prior_draws(design), _confirmation(design), _limits(design)]
+    return [sentence for sentence in parts if sentence]
 
 
 def _percent(share: float) -> str:
@@ -45,10 +46,10 @@ def _weakest_coefficient(manoeuvre: ManoeuvrePrecision, design: Design) -> str:
 
 def _comparison(design: Design) -> str:
     best, criterion = best_baseline(design), design.criterion
-    found = criterion_error(design.designed, criterion)
-    begin = f"The {_CRITERION_NAMES[criterion]} is {_percent(found)}{_weakest_coefficient(design.designed, design)}"
+    error = criterion_error(design.designed, criterion)
+    start = f"The {_CRITERION_NAMES[criterion]} is {_percent(error)}{_weakest_coefficient(design.designed, design)}"
     if best is None:
-        return f"{begin}; there is no standard manoeuvre to compare it with."
+        return f"{start}; there is no standard manoeuvre to compare it with."
     theirs = criterion_error(best, criterion)
     against = (
         f"{_percent(theirs)}{_weakest_coefficient(best, design)} with the best standard manoeuvre of "
@@ -56,28 +57,30 @@ def _comparison(design: Design) -> str:
     )
     if not is_within_limits(best, design.limits):
         against += ", which leaves the limits"
-    if found >= theirs:
-        return f"{begin}, no better than the {against}."
-    ratio = f" ({significant(theirs / found, 2)} times as much)" if theirs < LARGEST_SHOWN_ERROR else ""
-    return f"{begin} against {against}{ratio}."
+    if error >= theirs:
+        return f"{start}, no better than the {against}."
+    ratio = f" ({significant(theirs / error, 2)} times as much)" if theirs < LARGEST_SHOWN_ERROR else ""
+    return f"{start} against {against}{ratio}."
 
 
 def _prior_draws(design: Design) -> str:
-    """On how many of the drawn ships it beats every standard manoeuvre."""
-    own = sampled_criterion_errors(design.designed, design.criterion)
-    if not own:
+    """On how many of the drawn ships it is more precise than every standard manoeuvre."""
+    errors = sampled_criterion_errors(design.designed, design.criterion)
+    if not errors:
         return ""
     within = [rival for rival in design.baselines if is_within_limits(rival, design.limits)]
-    others = [sampled_criterion_errors(rival, design.criterion) for rival in within or design.baselines]
-    wins = sum(all(not ours >= theirs[k] for theirs in others) for k, ours in enumerate(own) if not math.isnan(ours))
-    known = [x for x in own if not math.isnan(x)]
-    reach = f"from {_percent(min(known))} to {_percent(max(known))}" if known else "not known"
-    told = f"On {counted(len(own), 'ship')} drawn from the prior it is {reach}"
-    if others:
+    compared = [sampled_criterion_errors(rival, design.criterion) for rival in within or design.baselines]
+    wins = sum(
+        all(not ours >= theirs[k] for theirs in compared) for k, ours in enumerate(errors) if not math.isnan(ours)
+    )
+    finite = [x for x in errors if not math.isnan(x)]
+    reach = f"from {_percent(min(finite))} to {_percent(max(finite))}" if finite else "not known"
+    text = f"On {counted(len(errors), 'ship')} drawn from the prior it is {reach}"
+    if compared:
         which = "any standard manoeuvre within the limits" if _has_limits(design) else "any standard manoeuvre"
-        told += f", smaller than with {which} on {wins} of {len(own)}"
+        text += f", smaller than with {which} on {wins} of {len(errors)}"
     lost = design.designed.diverged
-    return told + (f"; {counted(lost, 'ship')} cannot be simulated." if lost else ".")
+    return text + (f"; {counted(lost, 'ship')} cannot be simulated." if lost else ".")
 
 
 def _has_limits(design: Design) -> bool:
@@ -85,33 +88,35 @@ def _has_limits(design: Design) -> bool:
 
 
 def _confirmation(design: Design) -> str:
-    known = design.confirmation
-    if known is None:
+    confirmation = design.confirmation
+    if confirmation is None:
         return ""
-    told = f"{known.converged_runs} of {counted(known.runs, 'simulated trial')} could be fitted"
-    ratios = known.error / known.bound
+    text = f"{confirmation.converged_runs} of {counted(confirmation.runs, 'simulated trial')} could be fitted"
+    ratios = confirmation.error / confirmation.bound
     ratios = ratios[np.isfinite(ratios)]
     if not ratios.size:
-        return f"{told}."
+        return f"{text}."
     reach = " to ".join(fixed(float(end), 2) for end in (ratios.min(), ratios.max()))
-    return f"{told}; their errors are {reach} of those foretold."
+    return f"{text}; their errors are {reach} of those predicted."
 
 
 def _limits(design: Design) -> str:
-    limits, worth = design.limits, design.designed
-    told: list[str] = []
+    limits, manoeuvre = design.limits, design.designed
+    reached: list[str] = []
     if not has_track(design):
         return ""
     if math.isfinite(limits.drift):
-        told.append(f"a drift angle of {_degrees(worth.drift)} ({_degrees(limits.drift)} allowed)")
+        reached.append(f"a drift angle of {_degrees(manoeuvre.drift)} ({_degrees(limits.drift)} allowed)")
     if math.isfinite(limits.sea_room):
-        told.append(f"{significant(worth.distance)} m from the start ({significant(limits.sea_room)} m allowed)")
-    if not told:
+        reached.append(f"{significant(manoeuvre.distance)} m from the start ({significant(limits.sea_room)} m allowed)")
+    if not reached:
         return ""
-    verb = "reaches" if is_within_limits(worth, limits) else "leaves the limits: she reaches"
-    straying = count_outside_limits(worth, limits)
-    others = f"; {straying} of {len(worth.sampled_relative_error)} drawn ships leave the limits" if straying else ""
-    return f"The ship as assumed {verb} at most {enumeration(told)}{others}."
+    verb = "reaches" if is_within_limits(manoeuvre, limits) else "leaves the limits: it reaches"
+    straying = count_outside_limits(manoeuvre, limits)
+    straying_text = (
+        f"; {straying} of {len(manoeuvre.sampled_relative_error)} drawn ships leave the limits" if straying else ""
+    )
+    return f"The ship as assumed {verb} at most {enumeration(reached)}{straying_text}."
 
 
 def _degrees(angle: float) -> str:
@@ -119,8 +124,8 @@ def _degrees(angle: float) -> str:
 
 
 def facts(design: Design) -> list[tuple[str, str]]:
-    """What was asked for."""
-    made = [
+    """Return ship, model, duration, actuators and limits as pairs of name and text."""
+    pairs = [
         ("Ship", design.ship),
         ("Model", design.model.name),
         ("Duration", duration(design.duration)),
@@ -128,19 +133,19 @@ def facts(design: Design) -> list[tuple[str, str]]:
     ]
     allowed = [f"drift angle {_degrees(design.limits.drift)}"] if math.isfinite(design.limits.drift) else []
     allowed += [f"{exact(design.limits.sea_room)} m from the start"] if math.isfinite(design.limits.sea_room) else []
-    return [*made, ("Limits", ", ".join(allowed) or "none")]
+    return [*pairs, ("Limits", ", ".join(allowed) or "none")]
 
 
 def actuator_text(a: Actuator) -> str:
-    """``delta −35 to 35 deg, 10 deg/s, orders 6 s apart at least``."""
-    factor, shown = channel_display_unit(a.name)
-    rate = f"{exact(a.rate * factor)} {shown}/s" if math.isfinite(a.rate) else "may jump"
-    reach = f"{exact(a.lower * factor)} to {exact(a.upper * factor)} {'' if shown == '1' else shown}".rstrip()
+    """Return an actuator with its limits: ``delta −35 to 35 deg, 10 deg/s, orders 6 s apart at least``."""
+    factor, unit = channel_display_unit(a.name)
+    rate = f"{exact(a.rate * factor)} {unit}/s" if math.isfinite(a.rate) else "may jump"
+    reach = f"{exact(a.lower * factor)} to {exact(a.upper * factor)} {'' if unit == '1' else unit}".rstrip()
     return f"{a.name} {reach}, {rate}, orders {exact(a.hold)} s apart at least"
 
 
 def settings(design: Design) -> list[tuple[str, str]]:
-    """How it was made."""
+    """Return criterion, sensors and provenance as pairs of name and text."""
     sensors = [f"{name} {_noise_text(name, sd)}" for name, sd in design.sensors.items()]
     return [
         ("Criterion", _CRITERION_NAMES[design.criterion]),

@@ -1,4 +1,4 @@
-"""What this record can and cannot tell: the values of a fit in words for a naval architect; nothing is computed."""
+"""The chapter on identifiability: what the records determine and what they do not; nothing is computed."""
 
 import math
 from collections.abc import Sequence
@@ -25,15 +25,19 @@ from seatrial.reporting.figures.directions import direction_chart, sensitivity_c
 from seatrial.reporting.figures.profile_likelihoods import profile_chart
 from seatrial.reporting.tables import assumption
 
+# relative standard deviation up to which a combination is well determined, and up to which poorly
 WELL_DETERMINED, POORLY_DETERMINED = 0.1, 1.0
+# variance inflation from which on coefficients are collinear (Marquardt 1970)
 MIN_VARIANCE_INFLATION = 10.0
+# significance level of the whiteness test
 WHITENESS_P = 0.01
+# entries of each kind that are shown unfolded
 MAX_SHIFTS, MAX_TEXTS, MAX_ROWS, MAX_DIRECTIONS, MAX_BARS = 5, 5, 10, 16, 20
 
 
 @dataclass(frozen=True)
 class SymmetryRow:
-    """A change no record can show, and what is assumed of the parameters in it; `has_no_assumption`: nothing is."""
+    """A change that no record shows, and what is assumed of its parameters; `has_no_assumption`: nothing is."""
 
     text: str
     assumptions: tuple[str, ...]
@@ -43,7 +47,7 @@ class SymmetryRow:
 
 @dataclass(frozen=True)
 class AccuracyClass:
-    """How many combinations are told well, vaguely or not; `key` names the colour."""
+    """How many combinations are well, poorly or not determined; `key` names the colour."""
 
     key: str
     title: str
@@ -98,7 +102,7 @@ class CandidateModelRow:
 
 @dataclass(frozen=True)
 class IdentifiabilityChapter:
-    """Everything the section shows; empty parts are left out of the page."""
+    """Everything the chapter shows; empty parts are left out of the page."""
 
     is_examined: bool
     structural: tuple[SymmetryRow, ...]
@@ -126,36 +130,36 @@ class IdentifiabilityChapter:
 
 
 def identifiability_chapter(fit: Fit) -> IdentifiabilityChapter | None:
-    """The section, or None where the fit holds nothing of it."""
-    known = fit.identifiability
-    if known is None and fit.noise_model is None and not fit.candidate_models:
+    """Return the chapter; None where the fit contains nothing of it."""
+    identifiability = fit.identifiability
+    if identifiability is None and fit.noise_model is None and not fit.candidate_models:
         return None
-    has = known or Identifiability((), (), math.nan, math.nan)
+    content = identifiability or Identifiability((), (), math.nan, math.nan)
     names = [c.name for c in fit.coefficients]
-    strongest = sorted(has.sensitivities, key=lambda s: -s.effect)
-    pairs = _collinear_rows(has)
-    texts = tuple(sentence(d.text, names) for d in has.directions if d.standard_deviation >= WELL_DETERMINED)
+    strongest = sorted(content.sensitivities, key=lambda s: -s.effect)
+    pairs = _collinear_rows(content)
+    texts = tuple(sentence(d.text, names) for d in content.directions if d.standard_deviation >= WELL_DETERMINED)
     return IdentifiabilityChapter(
-        is_examined=known is not None,
-        structural=tuple(_symmetry_row(s, fit, names) for s in has.structural),
+        is_examined=identifiability is not None,
+        structural=tuple(_symmetry_row(s, fit, names) for s in content.structural),
         determined_sentence=determined_sentence(fit),
-        accuracy_classes=_accuracy_classes(has.directions),
-        directions=Markup(svg(direction_chart(has.directions[:MAX_DIRECTIONS]))),
+        accuracy_classes=_accuracy_classes(content.directions),
+        directions=Markup(svg(direction_chart(content.directions[:MAX_DIRECTIONS]))),
         weakest=texts[:MAX_TEXTS],
         weaker=texts[MAX_TEXTS:],
-        more_directions=_more_directions(has.directions[MAX_DIRECTIONS:]),
-        condition=rounded(has.condition) if math.isfinite(has.condition) else "",
+        more_directions=_more_directions(content.directions[MAX_DIRECTIONS:]),
+        condition=rounded(content.condition) if math.isfinite(content.condition) else "",
         collinear=tuple(pairs[:MAX_ROWS]),
         collinear_more=tuple(pairs[MAX_ROWS:]),
         has_sensitivities=bool(strongest),
         sensitivities=Markup(svg(sensitivity_chart(strongest[:MAX_BARS]))),
         sensitivities_more=_more_sensitivities(len(strongest) - MAX_BARS),
-        consequences=tuple(_consequence_row(c) for c in has.consequences),
-        consequence_texts=tuple(sentence(c.text, names) for c in has.consequences if c.text),
-        stability=_stability_sentence(has.stability, names) if has.stability else "",
+        consequences=tuple(_consequence_row(c) for c in content.consequences),
+        consequence_texts=tuple(sentence(c.text, names) for c in content.consequences if c.text),
+        stability=_stability_sentence(content.stability, names) if content.stability else "",
         noise=_noise_text(fit.noise_model, names) if fit.noise_model else None,
-        profiles=Markup(svg(profile_chart(has.profiles, {c.name: c.unit for c in fit.coefficients}))),
-        unbounded=_unbounded_sentence(has),
+        profiles=Markup(svg(profile_chart(content.profiles, {c.name: c.unit for c in fit.coefficients}))),
+        unbounded=_unbounded_sentence(content),
         models=tuple(_model_row(m) for m in fit.candidate_models),
         has_notes=any(m.note for m in fit.candidate_models),
         is_roll=any(m.roll_deg is not None for m in fit.candidate_models),
@@ -163,15 +167,15 @@ def identifiability_chapter(fit: Fit) -> IdentifiabilityChapter | None:
 
 
 def determined_sentence(fit: Fit) -> str:
-    """How many coefficients the records determine, one sentence; empty where that is not known."""
-    known = fit.identifiability
+    """Return how many coefficients the records determine; empty where that is not known."""
+    identifiability = fit.identifiability
     free = [c for c in fit.coefficients if not c.fixed]
-    if known is None or not math.isfinite(known.effective_parameters):
+    if identifiability is None or not math.isfinite(identifiability.effective_parameters):
         return ""
-    number = round(known.effective_parameters)
+    number = round(identifiability.effective_parameters)
     if number >= len(free):
         return f"The records determine all {len(free)} free coefficients."
-    rest = "comes from the priors" if any(c.prior_mean is not None for c in free) else "is left open"
+    rest = "comes from the priors" if any(c.prior_mean is not None for c in free) else "is not determined"
     return f"The records determine about {number} of {len(free)} free coefficients; the rest {rest}."
 
 
@@ -194,10 +198,10 @@ def _accuracy_classes(items: Sequence[Direction]) -> tuple[AccuracyClass, ...]:
     vague = sum(WELL_DETERMINED <= s < POORLY_DETERMINED for s in spreads)
     rest = len(items) - well - vague
     return (
-        AccuracyClass("well", "Told well", f"{counted(well, 'combination')}, to better than 10 %"),
-        AccuracyClass("vague", "Told vaguely", f"{counted(vague, 'combination')}, to between 10 % and 100 %"),
-        AccuracyClass("not", "Not told", f"{counted(rest, 'combination')}, to no better than 100 %"
-             + (": there a prior or an assumption speaks, not the record" if rest else "")),
+        AccuracyClass("well", "Well determined", f"{counted(well, 'combination')}, to better than 10 %"),
+        AccuracyClass("vague", "Poorly determined", f"{counted(vague, 'combination')}, to between 10 % and 100 %"),
+        AccuracyClass("not", "Not determined", f"{counted(rest, 'combination')}, to no better than 100 %"
+             + (": their values come from priors or assumptions" if rest else "")),
     )  # fmt: skip
 
 
@@ -239,11 +243,11 @@ def _noise_text(d: NoiseModel, names: Sequence[str]) -> NoiseText:
     if not math.isfinite(d.whiteness_p):
         whiteness = ""
     elif d.whiteness_p >= WHITENESS_P:
-        whiteness = f"What is left looks like noise: it is white in every channel (smallest {p})."
+        whiteness = f"The residuals are white in every channel (smallest {p})."
     else:
         whiteness = (
-            f"What is left is not white (smallest {p}): model error or disturbances remain that this criterion does "
-            "not describe."
+            f"The residuals are not white (smallest {p}): they contain model error or disturbances that this "
+            "criterion does not describe."
         )
     active = {state: q for state, q in d.process.items() if q > 0}
     quiet = [state for state in d.process if state not in active]

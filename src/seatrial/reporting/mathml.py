@@ -67,27 +67,27 @@ class _Reader:
         self.position = 0
 
     def row(self, is_end: Callable[[str], bool]) -> Pieces:
-        made: Pieces = [""]
+        pieces_so_far: Pieces = [""]
         spaced = False
         while self.position < len(self.tokens) and not is_end(self.tokens[self.position]):
             token = self.tokens[self.position]
             if token.isspace():
                 self.position += 1
-                spaced = made[-1] != "" and not made[-1].endswith("</mo>")
+                spaced = pieces_so_far[-1] != "" and not pieces_so_far[-1].endswith("</mo>")
                 continue
             if token in ("+", "-"):
                 self.position += 1
                 sign = "+" if token == "+" else "−"
-                if made[-1] and not made[-1].endswith("=</mo>"):
-                    made = [*made, f'<mo form="infix">{sign}</mo>']
+                if pieces_so_far[-1] and not pieces_so_far[-1].endswith("=</mo>"):
+                    pieces_so_far = [*pieces_so_far, f'<mo form="infix">{sign}</mo>']
                 else:
-                    made = _appended(made, [f"<mo>{sign}</mo>"])
+                    pieces_so_far = _appended(pieces_so_far, [f"<mo>{sign}</mo>"])
             else:
                 part = self.scripted()
                 space = '<mspace width="0.17em"></mspace>' if spaced and not part[0].startswith("<mo") else ""
-                made = _appended(made, [space + part[0], *part[1:]])
+                pieces_so_far = _appended(pieces_so_far, [space + part[0], *part[1:]])
             spaced = False
-        return made
+        return pieces_so_far
 
     def scripted(self) -> Pieces:
         """An atom with what hangs on it: primes, exponents, indices."""
@@ -177,8 +177,8 @@ class _Reader:
         inner = self.row(lambda t: t == r"\right")
         self.expect(r"\right")
         closing = self.fence()
-        whole = _appended(_appended([opening], inner), [closing])
-        return whole if "|" not in opening else [_mrow(whole)]
+        enclosed = _appended(_appended([opening], inner), [closing])
+        return enclosed if "|" not in opening else [_mrow(enclosed)]
 
     def fence(self) -> str:
         token = self.tokens[self.position]

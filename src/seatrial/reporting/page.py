@@ -1,4 +1,4 @@
-"""One self-contained HTML page from a fit: style and figures in one file, nothing fetched, nothing fitted."""
+"""The page of a fit: one self-contained HTML file with style and figures; nothing is fetched or fitted."""
 
 from functools import cache
 from pathlib import Path
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 TITLES = {
-    "answer": "Question and answer",
-    "identifiability": "What this record can and cannot tell",
+    "answer": "Summary",
+    "identifiability": "Identifiability: what the records determine",
     "records": "Records",
     "findings": "Findings",
     "coefficients": "Coefficients",
@@ -53,7 +53,7 @@ TITLES = {
 
 
 def write_report(fit: Fit, path: Path) -> Path:
-    """Write the fit's page, whole or not at all; returns the path.
+    """Write the fit's page atomically and return its path.
 
     Raises:
         InputError: the file cannot be written.
@@ -63,36 +63,36 @@ def write_report(fit: Fit, path: Path) -> Path:
 
 
 def html(fit: Fit) -> str:
-    """The page as text."""
+    """Return the page as text."""
     citations = Citations()
     length = fit.ship.length if "L" in fit.ship.particulars else 0.0
-    told, known, compared = (
+    identifiability, seakeeping, comparison = (
         identifiability_chapter.identifiability_chapter(fit),
         fit.seakeeping,
         baselines.baseline_chapter(fit),
     )
     is_steered = "psi" in fit.model.states or "delta" in fit.model.input_names
-    shown = {
-        "identifiability": bool(told),
+    has_content = {
+        "identifiability": bool(identifiability),
         "rolling": fit.roll is not None,
-        "waves": known is not None,
+        "waves": seakeeping is not None,
         "standards": is_steered,
         "training": bool(fit.predictions),
         "residuals": bool(fit.residuals),
-        "baselines": compared is not None,
+        "baselines": comparison is not None,
     }
     context: dict[str, object] = {
         "fit": fit,
-        "titles": {key: title for key, title in TITLES.items() if shown.get(key, True)},
+        "titles": {key: title for key, title in TITLES.items() if has_content.get(key, True)},
         "is_steered": is_steered,
         "waves": None
-        if known is None
-        else {"tables": seakeeping_chapter.tables(known), "figures": seakeeping_chapter.figures(known)},
+        if seakeeping is None
+        else {"tables": seakeeping_chapter.tables(seakeeping), "figures": seakeeping_chapter.figures(seakeeping)},
         "rolling": None
         if fit.roll is None
         else {"tables": roll_chapter.tables(fit.roll, fit.ship.scale), "figures": roll_chapter.figures(fit.roll)},
-        "identifiability": told,
-        "baselines": compared,
+        "identifiability": identifiability,
+        "baselines": comparison,
         "answer": summary.sentences(fit),
         "facts": summary.facts(fit),
         "scores": runs.score_table(fit.predictions, length),
@@ -139,12 +139,12 @@ def _correlation_figure(fit: Fit) -> str:
 
 @cache
 def environment() -> "Environment":
-    """The templates with everything escaped by default, and the filters they use."""
+    """Return the templates with everything escaped by default, and the filters they use."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     from seatrial.reporting.compiled_templates import CompiledTemplates
 
-    made = Environment(
+    templates = Environment(
         loader=PackageLoader("seatrial.reporting"),
         autoescape=True,
         undefined=StrictUndefined,
@@ -152,8 +152,8 @@ def environment() -> "Environment":
         lstrip_blocks=True,
         bytecode_cache=CompiledTemplates(),
     )
-    made.filters["duration"] = duration
-    made.filters["significant"] = significant
-    made.filters["math"] = lambda latex: Markup(inline(latex))
-    made.filters["breakable"] = lambda latex: Markup("".join(pieces(latex)))
-    return made
+    templates.filters["duration"] = duration
+    templates.filters["significant"] = significant
+    templates.filters["math"] = lambda latex: Markup(inline(latex))
+    templates.filters["breakable"] = lambda latex: Markup("".join(pieces(latex)))
+    return templates

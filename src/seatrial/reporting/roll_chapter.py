@@ -13,11 +13,12 @@ from seatrial.reporting.figures.roll_damping import roll_damping_chart
 from seatrial.reporting.figures.study_figures import study_chart
 from seatrial.reporting.text_tables import TextTable
 
-_AMPLITUDES, _DEGREES = 5, 180.0 / math.pi
+# amplitudes in the table; degrees of a radian
+_AMPLITUDES, _DEGREES = 5, math.degrees(1.0)
 
 
 def tables(roll: RollCharacteristics, scale: float) -> list[TextTable]:
-    """Derived quantities, at full scale too where the model is not (Froude's law), and swings of some amplitudes."""
+    """Return derived quantities, at full scale too by Froude's law, and swings of some amplitudes."""
     rows = [
         ("natural period at small angles, s", roll.natural_period, math.sqrt(scale)),
         ("linear damping, share of critical, %", roll.damping_ratio.scaled(100.0), 1.0),
@@ -26,21 +27,21 @@ def tables(roll: RollCharacteristics, scale: float) -> list[TextTable]:
     ]
     has_scale = scale != 1.0
     header = ("Quantity", "estimate", "95 % from", "to", *(("at full scale",) if has_scale else ()))
-    made = tuple(
+    quantities = tuple(
         _quantity_row(name, value, factor, has_scale=has_scale) for name, value, factor in rows if value is not None
     )
     note = f"Radius of gyration: {roll.gyradius_source}. The range of GM has the whole range of that radius in it."
-    first = TextTable("What the coefficients mean", header, _numeric_columns(header), made, note)
+    first = TextTable("What the coefficients mean", header, _numeric_columns(header), quantities, note)
     return [first, _amplitude_table(roll)] if roll.amplitude else [first]
 
 
 def _quantity_row(name: str, value: IntervalEstimate, factor: float, *, has_scale: bool) -> tuple[str, ...]:
     """Digits by the width of the interval; a value taken as exact has no interval to show."""
     error = 0.5 * (value.upper - value.lower)
-    own, full = estimate_text(value.value, error, value.lower, value.upper), value.scaled(factor)
-    bounds = (own.lower, own.upper) if error > 0.0 else (DASH, DASH)
-    shown = (name, own.value, *bounds)
-    return (*shown, estimate_text(full.value, factor * error, full.lower, full.upper).value) if has_scale else shown
+    text, full = estimate_text(value.value, error, value.lower, value.upper), value.scaled(factor)
+    bounds = (text.lower, text.upper) if error > 0.0 else (DASH, DASH)
+    cells = (name, text.value, *bounds)
+    return (*cells, estimate_text(full.value, factor * error, full.lower, full.upper).value) if has_scale else cells
 
 
 def _numeric_columns(header: tuple[str, ...]) -> tuple[bool, ...]:
@@ -67,20 +68,23 @@ def _amplitude_table(roll: RollCharacteristics) -> TextTable:
 
 
 def figures(roll: RollCharacteristics) -> list[tuple[Markup, Figure]]:
-    """Damping and period over amplitude."""
-    said = "Equivalent linear damping and period over the amplitude of a swing, the model with its 95 % band."
+    """Return damping and period over amplitude, or the spectrum of roll."""
+    note = "Equivalent linear damping and period over the amplitude of a swing, the model with its 95 % band."
     if roll.swings:
-        said += " Dots: each recorded swing by itself, its damping 2 ln(aᵢ / aᵢ₊₂) / T, without any model."
+        note += " Dots: each recorded swing on its own, with damping 2 ln(aᵢ / aᵢ₊₂) / T, independent of the model."
     if roll.spectrum:
         return [_spectrum_figure(roll)]
-    drawn = svg(roll_damping_chart(roll))
-    return [(Markup(drawn), Figure("Damping and period", "", "", (), said))] if drawn else []
+    picture = svg(roll_damping_chart(roll))
+    return [(Markup(picture), Figure("Damping and period", "", "", (), note))] if picture else []
 
 
 def _spectrum_figure(roll: RollCharacteristics) -> tuple[Markup, Figure]:
     """Recorded and expected density of roll."""
-    omega, seen, expected = (np.array(column) for column in zip(*roll.spectrum, strict=True))
-    lines = (Curve("recorded, smoothed", omega, _DEGREES**2 * seen), Curve("expected", omega, _DEGREES**2 * expected))
+    omega, recorded, expected = (np.array(column) for column in zip(*roll.spectrum, strict=True))
+    lines = (
+        Curve("recorded, smoothed", omega, _DEGREES**2 * recorded),
+        Curve("expected", omega, _DEGREES**2 * expected),
+    )
     note = "The sea's own spectrum, of one peak, is estimated with natural period and damping."
-    made = Figure("Spectrum of roll", "frequency, rad/s", "deg\u00b2 s/rad", lines, note)
-    return Markup(svg(study_chart(made))), made
+    figure = Figure("Spectrum of roll", "frequency, rad/s", "deg\u00b2 s/rad", lines, note)
+    return Markup(svg(study_chart(figure))), figure

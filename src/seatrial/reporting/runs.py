@@ -1,5 +1,6 @@
-"""Runs on the page: their errors in one table, and each with its picture and its measures; IMO's standards."""
+"""Runs on the page: a table of their errors, a figure and the measures of each, the IMO criteria."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -18,7 +19,9 @@ from seatrial.reporting.measures import is_inside, measure_decimals, measure_lab
 _ERROR_LABELS = {"psi_deg": ("heading", "deg"), "position_m": ("position", "m"), "u": ("u", "m/s"), "v": ("v", "m/s"),
            "r": ("r", "deg/s"), "z": ("heave", "m"), "theta_deg": ("pitch", "deg"),
            "phi_deg": ("roll", "deg")}  # fmt: skip
-_DEGREES = 57.29577951308232
+# degrees of a radian
+_DEGREES = math.degrees(1.0)
+# overshoots in the table; later ones are folded
 MAX_OVERSHOOTS = 6
 
 
@@ -78,7 +81,7 @@ class ScoreTable:
 
 @dataclass(frozen=True)
 class RunSection:
-    """One run: its picture and measures; `is_other_manoeuvre`: nothing simulated can be read.
+    """One run: its figure and measures; `is_other_manoeuvre`: no measure can be read from the simulated run.
 
     `notes` say what process noise alone would leave, how far the run leaves the training, how tied models differ.
     """
@@ -96,7 +99,7 @@ class RunSection:
 
 
 def score_table(predictions: Sequence[Prediction], length: float) -> ScoreTable:
-    """Errors of every run, those held out first."""
+    """Return the errors of every run, those held out first."""
     names = [name for name in _ERROR_LABELS if any(name in p.rms for p in predictions)]
     header = [_ERROR_LABELS[name] for name in names]
     if "position_m" in names and length > 0:
@@ -132,18 +135,18 @@ def _two_digits(value: float | None) -> str:
 
 
 def _error_values(errors: Mapping[str, float], names: Sequence[str], length: float) -> list[float | None]:
-    made: list[float | None] = []
+    converted: list[float | None] = []
     for name in names:
         value = errors.get(name)
         factor = _DEGREES if name == "r" else 1.0
-        made.append(None if value is None else value * factor)
+        converted.append(None if value is None else value * factor)
         if name == "position_m" and length > 0:
-            made.append(None if value is None else value / length)
-    return made
+            converted.append(None if value is None else value / length)
+    return converted
 
 
 def run_sections(predictions: Sequence[Prediction], length: float, inputs: Sequence[str]) -> list[RunSection]:
-    """All runs in order; `inputs` are the channels the model is driven by."""
+    """Return all runs in order; `inputs` are the channels the model is driven by."""
     return [_run_section(p, length, inputs, f"run{k}") for k, p in enumerate(predictions)]
 
 
@@ -169,18 +172,20 @@ def _error_texts(errors: Mapping[str, float]) -> list[str]:
 
 
 def _notes(p: Prediction) -> list[str]:
-    said = []
+    notes = []
     e = _extrapolation(p)
     if e:
-        said.append(f"Extrapolation index {extrapolation_text(e)}")
+        notes.append(f"Extrapolation index {extrapolation_text(e)}")
     if _error_texts(p.noise_floor):
-        said.append(f"Process noise alone would leave {enumeration(_error_texts(p.noise_floor))} with a perfect model.")
+        notes.append(
+            f"Process noise alone would leave {enumeration(_error_texts(p.noise_floor))} with a perfect model."
+        )
     if _error_texts(p.tied_spread):
-        said.append(
-            f"Models that the records cannot tell apart differ by "
+        notes.append(
+            f"Models that the records do not distinguish differ by "
             f"{enumeration(_error_texts(p.tied_spread))} (std. dev.)."
         )
-    return said
+    return notes
 
 
 def _measure_table(rows: Sequence[MeasureRow]) -> MeasureTable:
@@ -204,7 +209,7 @@ def _signed(value: float, digits: int) -> str:
 
 
 def standards(predictions: Sequence[Prediction], length: float, scale: float) -> dict[str, object]:
-    """Rows of the standards the records can be held against, and the notes about them."""
+    """Return rows of the criteria that apply to the records, and the notes on them."""
     rows, notes = [], []
     for p in predictions:
         measured = _applicable_criteria(p.measured, length, scale, p.measured)
@@ -224,7 +229,7 @@ def standards(predictions: Sequence[Prediction], length: float, scale: float) ->
 
 
 def _applicable_criteria(record: Record, length: float, scale: float, like: Record) -> tuple[ImoCriterion, ...]:
-    """The record's criteria, its manoeuvre as in `like`; none where that cannot be judged."""
+    """The record's criteria, its manoeuvre as in `like`; none where they do not apply."""
     try:
         return imo_criteria(record, length, scale, reference=like) if length > 0 else ()
     except InputError:

@@ -1,4 +1,4 @@
-"""The chapter on waves: operators, spectra and statistics of the ship in her sea, as tables and figures."""
+"""The chapter on waves: operators, spectra and statistics of the ship in its sea, as tables and figures."""
 
 import numpy as np
 from markupsafe import Markup
@@ -10,8 +10,8 @@ from seatrial.reporting.text_tables import TextTable, text_table
 
 
 def tables(seakeeping: Seakeeping) -> list[TextTable]:
-    """Motions of the ship, and vertical motions along her."""
-    whole = Table(
+    """Return motions of the ship, and vertical motions along it."""
+    motions = Table(
         "Motions in this sea",
         ("Motion", "significant amplitude", "mean zero-crossing period, s"),
         (("heave, m", seakeeping.heave_significant, seakeeping.zero_crossing_periods[0]),
@@ -24,17 +24,17 @@ def tables(seakeeping: Seakeeping) -> list[TextTable]:
     )
     header = ("Place", "forward, m", "significant, m", "acceleration rms, m/s\u00b2", "sick in two hours, %")
     note = "Vertical motion; sickness by O'Hanlon & McCauley 1974."
-    return [text_table(whole), text_table(Table("Vertical motion along the ship", header, rows, note))]
+    return [text_table(motions), text_table(Table("Vertical motion along the ship", header, rows, note))]
 
 
 def figures(seakeeping: Seakeeping) -> list[tuple[Markup, Figure]]:
-    """Response amplitude operators, their phases, and spectra."""
+    """Return response amplitude operators, their phases, and spectra."""
     omega = np.array(seakeeping.omega)
     across = "wave frequency, rad/s"
 
     def render(title: str, label: str, note: str, lines: dict[str, tuple[float, ...]]) -> tuple[Markup, Figure]:
-        made = Figure(title, across, label, tuple(Curve(n, omega, np.array(y)) for n, y in lines.items()), note)
-        return Markup(svg(study_chart(made))), made
+        figure = Figure(title, across, label, tuple(Curve(n, omega, np.array(y)) for n, y in lines.items()), note)
+        return Markup(svg(study_chart(figure))), figure
 
     pitch, sea = np.array(seakeeping.pitch_density), np.array(seakeeping.sea_density)
     share = float(np.max(sea) / max(np.max(pitch), 1e-300))

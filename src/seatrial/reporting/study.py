@@ -40,7 +40,7 @@ class CheckRow:
 
 
 def write_study(study: Study, path: Path) -> Path:
-    """Write the study's page, whole or not at all; returns the path.
+    """Write the study's page atomically and return its path.
 
     Raises:
         InputError: the file cannot be written.
@@ -50,7 +50,7 @@ def write_study(study: Study, path: Path) -> Path:
 
 
 def html(study: Study) -> str:
-    """The page as text; sections without content are left out."""
+    """Return the page as text; sections without content are left out."""
     content: dict[str, object] = {
         "claims": study.claims,
         "checks": [_check_row(c) for c in study.checks],
@@ -71,20 +71,20 @@ def html(study: Study) -> str:
 
 
 def outcome(study: Study) -> list[str]:
-    """How many claims came out how, and which checks fail."""
+    """Return how many claims have which verdict, and which checks fail."""
     counts = [(verdict, sum(c.verdict is verdict for c in study.claims)) for verdict in Verdict]
-    said = []
+    sentences = []
     if study.claims:
-        told = ", ".join(f"{number} {verdict}" for verdict, number in counts if number)
-        said.append(f"{counted(len(study.claims), 'claim').capitalize()} judged: {told}.")
+        verdicts = ", ".join(f"{number} {verdict}" for verdict, number in counts if number)
+        sentences.append(f"{counted(len(study.claims), 'claim').capitalize()} judged: {verdicts}.")
     if study.checks:
         failed = [c.name for c in study.checks if not c.holds]
         holding = len(study.checks) - len(failed)
         tail = (
             f"; it fails: {failed[0]}" if len(failed) == 1 else f"; these fail: {', '.join(failed)}" if failed else ""
         )
-        said.append(f"{holding} of {counted(len(study.checks), 'check')} hold{tail}.")
-    return said
+        sentences.append(f"{holding} of {counted(len(study.checks), 'check')} hold{tail}.")
+    return sentences
 
 
 def _check_row(c: Check) -> CheckRow:

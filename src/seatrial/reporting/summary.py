@@ -1,4 +1,6 @@
-"""The answer in words: what was asked, what was fitted, how well held-out runs are predicted, what to mind."""
+"""The summary in sentences: what was fitted, how well held-out runs are predicted, what limits the result."""
+
+import math
 
 from seatrial.core.results import Coefficient, Fit, Prediction, Symmetry
 from seatrial.core.text.numbers import duration, estimate_text, exact, fixed, interval, significant
@@ -9,13 +11,15 @@ from seatrial.reporting.extrapolation import extrapolation_text, extrapolation_z
 from seatrial.reporting.identifiability_chapter import determined_sentence
 from seatrial.reporting.measures import is_inside, measure_decimals, measure_label
 
+# distance of an estimate from its prior's mean, in the prior's standard deviations, from which on they disagree
 PRIOR_DISAGREEMENT = 3.0
+# letters of the text of a symmetry; of a longer one only the parameters are named
 MAX_SYMMETRY_TEXT = 200
 _ANGLES = (("theta", "pitch"), ("phi", "roll"))
 
 
 def facts(fit: Fit) -> list[tuple[str, str]]:
-    """Ship, model and records as pairs of name and text."""
+    """Return ship, model and records as pairs of name and text."""
     ship, trained, held = fit.ship, _with_role(fit, "training"), fit.validation
     ratio = f"1:{exact(ship.scale)}"
     scale = f", model scale {ratio}" if ship.scale != 1.0 and ratio not in ship.name else ""
@@ -32,8 +36,8 @@ def facts(fit: Fit) -> list[tuple[str, str]]:
 
 
 def sentences(fit: Fit) -> list[str]:
-    """The answer, most important first."""
-    told = [
+    """Return the summary, most important first."""
+    parts = [
         *_held_out(fit),
         _coverage(fit),
         *_extrapolation(fit),
@@ -47,7 +51,7 @@ def sentences(fit: Fit) -> list[str]:
         _convergence(fit),
         _warnings(fit),
     ]
-    return [sentence for sentence in told if sentence]
+    return [sentence for sentence in parts if sentence]
 
 
 def _with_role(fit: Fit, role: str) -> list[Prediction]:
@@ -57,7 +61,7 @@ def _with_role(fit: Fit, role: str) -> list[Prediction]:
 def _held_out(fit: Fit) -> list[str]:
     held = fit.validation
     if not held:
-        return ["No run was held out: what follows shows how the model fits, not how it predicts."]
+        return ["No run was held out: the figures show how the model fits, not how it predicts."]
     return [_prediction_sentence(p, fit) for p in held[:4]] + (
         [f"{counted(len(held) - 4, 'further held-out run')} in the table."] if len(held) > 4 else []
     )
@@ -73,41 +77,41 @@ def _prediction_sentence(p: Prediction, fit: Fit) -> str:
         parts.append(f"{significant(p.rms['position_m'], 2)} m in position{share}")
     if "z" in p.rms:
         parts.append(f"{significant(p.rms['z'], 2)} m in heave")
-    parts += [f"{significant(p.rms[f'{name}_deg'], 2)}° in {said}" for name, said in _ANGLES if f"{name}_deg" in p.rms]
+    parts += [f"{significant(p.rms[f'{name}_deg'], 2)}° in {text}" for name, text in _ANGLES if f"{name}_deg" in p.rms]
     if not parts and "r" in p.rms:
-        parts.append(f"{significant(p.rms['r'] * 57.29578, 2)} deg/s in yaw rate")
-    said = f"{p.record}, not fitted, is predicted open loop over {duration(p.measured.duration)}"
+        parts.append(f"{significant(p.rms['r'] * math.degrees(1.0), 2)} deg/s in yaw rate")
+    text = f"{p.record}, not fitted, is predicted open loop over {duration(p.measured.duration)}"
     errors = f" with errors of {enumeration(parts)} (rms)" if parts else ""
-    return f"{said}{errors}{_noise_floor(p) if parts else ''}.{_first_measures(p)}"
+    return f"{text}{errors}{_noise_floor(p) if parts else ''}.{_first_measures(p)}"
 
 
 def _noise_floor(p: Prediction) -> str:
-    known = {"psi_deg": "°", "position_m": " m"}
-    told = [f"{significant(p.noise_floor[name], 2)}{unit}" for name, unit in known.items() if name in p.noise_floor]
-    return f"; process noise alone would leave {enumeration(told)}" if told else ""
+    units = {"psi_deg": "°", "position_m": " m"}
+    floors = [f"{significant(p.noise_floor[name], 2)}{unit}" for name, unit in units.items() if name in p.noise_floor]
+    return f"; process noise alone would leave {enumeration(floors)}" if floors else ""
 
 
 def _first_measures(p: Prediction) -> str:
-    known = {"overshoot_1_deg": ("first overshoot", "°"), "advance_L": ("advance", " L"),
+    measures = {"overshoot_1_deg": ("first overshoot", "°"), "advance_L": ("advance", " L"),
              "tactical_diameter_L": ("tactical diameter", " L")}  # fmt: skip
-    told = []
-    for name, (label, unit) in known.items():
+    texts = []
+    for name, (label, unit) in measures.items():
         m = p.measures.get(name)
         if m is not None and m.measured is not None and m.simulated is not None:
             digits = measure_decimals(measure_label(name)[1], m)
             bounds = interval(m.lower, m.upper, digits)
             simulated = f"{fixed(m.simulated, digits)}{unit}{' ' + bounds if bounds else ''}"
-            told.append(f"{label} {simulated}, measured {fixed(m.measured, digits)}{unit}")
-    return f" Simulated {'; '.join(told)}." if told else ""
+            texts.append(f"{label} {simulated}, measured {fixed(m.measured, digits)}{unit}")
+    return f" Simulated {'; '.join(texts)}." if texts else ""
 
 
 def _coverage(fit: Fit) -> str:
     """How many measured values lie inside their predicted intervals; those without a width are no prediction."""
     judged = [is_inside(m) for p in fit.validation for m in p.measures.values() if m.lower != m.upper]
-    known = [inside for inside in judged if inside is not None]
-    if not known:
+    verdicts = [inside for inside in judged if inside is not None]
+    if not verdicts:
         return ""
-    return f"{sum(known)} of {len(known)} measured manoeuvring values lie inside their predicted 95 % intervals."
+    return f"{sum(verdicts)} of {len(verdicts)} measured manoeuvring values lie inside their predicted 95 % intervals."
 
 
 def _extrapolation(fit: Fit) -> list[str]:
@@ -119,53 +123,56 @@ def _extrapolation(fit: Fit) -> list[str]:
 
 
 def _identifiability(fit: Fit) -> str:
-    """How much the records determine and what no such record can tell."""
-    known = fit.identifiability
-    if known is None:
+    """How much the records determine, and what no manoeuvre identifies."""
+    identifiability = fit.identifiability
+    if identifiability is None:
         return ""
-    said = [determined_sentence(fit)]
-    if known.structural:
-        more = len(known.structural) - 1
+    sentences = [determined_sentence(fit)]
+    if identifiability.structural:
+        more = len(identifiability.structural) - 1
         further = f" ({counted(more, 'further change')} of this kind in the next section)" if more else ""
-        said.append(f"Whatever the manoeuvre, {_symmetry(known.structural[0])}{further}.")
-    return " ".join(s for s in said if s)
+        sentences.append(f"{_symmetry(identifiability.structural[0], fit)}{further}.")
+    return " ".join(s for s in sentences if s)
 
 
 def _roll_properties(fit: Fit) -> str:
     """Period, damping and metacentric height."""
-    known = fit.roll
-    if known is None:
+    roll = fit.roll
+    if roll is None:
         return ""
     period, ratio = (estimate_text(e.value, 0.5 * (e.upper - e.lower), e.lower, e.upper)
-                     for e in (known.natural_period, known.damping_ratio.scaled(100.0)))  # fmt: skip
-    said = (
+                     for e in (roll.natural_period, roll.damping_ratio.scaled(100.0)))  # fmt: skip
+    text = (
         f"The natural period at small angles is {period.value} s ({period.lower} to {period.upper} s), the linear "
         f"damping {ratio.value} % of critical ({ratio.lower} to {ratio.upper} %)"
     )
-    height = known.metacentric_height
+    height = roll.metacentric_height
     if height is None:
-        return f"{said}."
+        return f"{text}."
     gm = estimate_text(height.value, 0.5 * (height.upper - height.lower), height.lower, height.upper)
     return (
-        f"{said}; GM would be {gm.value} m ({gm.lower} to {gm.upper} m) with {known.gyradius_source.partition(',')[0]}."
+        f"{text}; GM would be {gm.value} m ({gm.lower} to {gm.upper} m) with {roll.gyradius_source.partition(',')[0]}."
     )
 
 
-def _symmetry(s: Symmetry) -> str:
-    """A change no record shows: its text, or where that is long what it is about."""
+def _symmetry(s: Symmetry, fit: Fit) -> str:
+    """A change that no manoeuvre identifies: its text, or where that is long its parameters, and which are held."""
     if len(s.text) <= MAX_SYMMETRY_TEXT:
-        return s.text.rstrip(".")
-    return f"{enumeration(s.parameters)} can change together without showing in any such record"
+        return f"Not identifiable from any manoeuvre: {s.text.rstrip('.')}"
+    fixed_names = [c.name for c in fit.coefficients if c.fixed and c.name in s.parameters]
+    held = f"; {enumeration(fixed_names)} {'is' if len(fixed_names) == 1 else 'are'} held at the stated values"
+    change = f"changing {enumeration(s.parameters)} together leaves every motion unchanged"
+    return f"Not identifiable from any manoeuvre: {change}{held if fixed_names else ''}"
 
 
 def _criterion(fit: Fit) -> str:
-    known = fit.noise_model
-    if known is None:
+    noise_model = fit.noise_model
+    if noise_model is None:
         return ""
-    active = [state for state, q in known.process.items() if q > 0]
+    active = [state for state, q in noise_model.process.items() if q > 0]
     noise = f"process noise in {enumeration(active)}" if active else "no process noise"
-    text = f" {sentence(known.text, [c.name for c in fit.coefficients])}" if known.text else ""
-    return f"The criterion is {known.method}, with {noise}.{text}"
+    text = f" {sentence(noise_model.text, [c.name for c in fit.coefficients])}" if noise_model.text else ""
+    return f"The criterion is {noise_model.method}, with {noise}.{text}"
 
 
 def _free_coefficients(fit: Fit) -> list[Coefficient]:
@@ -178,17 +185,19 @@ def _significance(fit: Fit) -> str:
     if not vague:
         return f"All {len(free)} free coefficients differ from zero at the 95 % level."
     return (
-        f"{len(vague)} of {len(free)} free coefficients cannot be told from zero at the 95 % level "
+        f"{len(vague)} of {len(free)} free coefficients do not differ significantly from zero at the 95 % level "
         f"({enumeration(vague)})."
     )
 
 
 def _truth_coverage(fit: Fit) -> str:
-    known = [c for c in _free_coefficients(fit) if c.truth is not None and c.lower is not None and c.upper is not None]
-    if not known:
+    comparable = [
+        c for c in _free_coefficients(fit) if c.truth is not None and c.lower is not None and c.upper is not None
+    ]
+    if not comparable:
         return ""
-    inside = [c for c in known if c.lower <= c.truth <= c.upper]  # type: ignore[operator]
-    return f"{len(inside)} of {len(known)} 95 % intervals contain the known value of the coefficient."
+    inside = [c for c in comparable if c.lower <= c.truth <= c.upper]  # type: ignore[operator]
+    return f"{len(inside)} of {len(comparable)} 95 % intervals contain the comparable value of the coefficient."
 
 
 def _prior_disagreement(fit: Fit) -> str:
@@ -217,7 +226,7 @@ def _residuals(fit: Fit) -> str:
         if 1.0 + 2.0 * n.correlation_time * r.rate > WHITE_INFLATION
     ]
     if not coloured:
-        return "The residuals are white in all channels: the model leaves nothing but noise."
+        return "The residuals are white in all channels."
     return (
         f"The residuals are coloured in {len(coloured)} of {len(fit.channel_noise)} channels "
         f"({enumeration(coloured)}): model error "

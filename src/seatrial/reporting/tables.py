@@ -1,4 +1,4 @@
-"""Rows of the page's tables: values of a fit as text in the units people read."""
+"""Rows of the page's tables: values of a fit as text in display units."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -220,18 +220,18 @@ def fixed_parameters(items: Sequence[Coefficient], citations: Citations) -> list
 
 def priors(items: Sequence[Coefficient], model: Model, citations: Citations) -> list[dict[str, object]]:
     """Free coefficients with a prior: prior, estimate, its source and how much of its spread is left."""
-    made = []
+    rows = []
     for c in items:
         if c.fixed or c.prior_mean is None or not c.prior_standard_deviation:
             continue
-        known = model.parameters[c.name].prior if c.name in model.parameters else None
+        prior = model.parameters[c.name].prior if c.name in model.parameters else None
         left = None if c.standard_error is None else 100.0 * c.standard_error / c.prior_standard_deviation
-        made.append({
+        rows.append({
             "symbol": coefficient_symbol(c), "name": c.name, "unit": unit_text(c.unit), "prior": _prior_text(c),
             "estimate": _coefficient_row(c).estimate, "spread_percent": significant(left, 2),
-            "source": citations.mark((known.source if known else "") or c.source),
+            "source": citations.mark((prior.source if prior else "") or c.source),
         })  # fmt: skip
-    return made
+    return rows
 
 
 def settings(method: Method) -> list[tuple[str, str]]:

@@ -8,7 +8,7 @@ from seatrial.core.text.numbers import DASH, significant
 
 @dataclass(frozen=True)
 class TextTable:
-    """A table as text; `numeric` says which columns stand to the right."""
+    """A table as text; `numeric`: which columns are right-aligned."""
 
     title: str
     header: tuple[str, ...]
@@ -18,7 +18,7 @@ class TextTable:
 
 
 def text_table(table: Table) -> TextTable:
-    """The table with its numbers as people read them."""
+    """Return the table with its numbers as text."""
     numeric = tuple(
         all(not isinstance(row[k], str) for row in table.rows if k < len(row)) for k in range(len(table.header))
     )

@@ -1,4 +1,4 @@
-"""The page of a tuned controller: recommendation, front, margins, simulation, schedule, the loop itself."""
+"""The page of a tuned controller: recommendation, front, margins, simulation, schedule, block diagram."""
 
 import numpy as np
 from markupsafe import Markup
@@ -24,21 +24,22 @@ TITLES = {
     "front": "Front",
     "margins": "Margins",
     "simulation": "Simulation with limits and stall",
-    "manoeuvres": "Demands followed",
+    "manoeuvres": "Response to demands",
     "schedule": "Schedule",
-    "bounds": "What no linear controller does better",
+    "bounds": "Lower bounds of any linear controller",
     "loop": "The loop",
-    "method": "How it was made",
+    "method": "Method and provenance",
 }
+# rows of a schedule from which on it is folded
 MAX_UNFOLDED_CONDITIONS = 40
 
 
 def html(tuning: Tuning) -> str:
-    """The page as text; sections without content are left out."""
-    drawn, controllers = svg(front_chart(tuning)), tuning_rows.controller_rows(tuning)
-    shown = {
+    """Return the page as text; sections without content are left out."""
+    front, controllers = svg(front_chart(tuning)), tuning_rows.controller_rows(tuning)
+    has_content = {
         "findings": bool(tuning.findings),
-        "front": bool(drawn),
+        "front": bool(front),
         "margins": len(styled_controllers(tuning)) > 0,
         "simulation": bool(tuning.seaway_simulations),
         "manoeuvres": bool(tuning.manoeuvres),
@@ -48,7 +49,7 @@ def html(tuning: Tuning) -> str:
     }
     context: dict[str, object] = {
         "tuning": tuning,
-        "titles": {key: title for key, title in TITLES.items() if shown.get(key, True)},
+        "titles": {key: title for key, title in TITLES.items() if has_content.get(key, True)},
         "answer": tuning_text.sentences(tuning),
         "facts": tuning_text.facts(tuning),
         "settings": tuning_text.settings(tuning),
@@ -61,7 +62,7 @@ def html(tuning: Tuning) -> str:
         "rms_heads": tuning_rows.rms_headings(tuning),
         "has_reduction": tuning_text.has_reduction(tuning),
         "controllers": controllers,
-        "front": Markup(drawn),
+        "front": Markup(front),
         "sensitivities": Markup(svg(sensitivity_chart(tuning))),
         "nyquist": Markup(svg(nyquist_chart(tuning))),
         "reductions": Markup(_reductions_figure(tuning)),

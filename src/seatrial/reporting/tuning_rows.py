@@ -16,6 +16,7 @@ from seatrial.reporting import tuning_text
 from seatrial.reporting.mathml import inline
 from seatrial.reporting.text_tables import TextTable
 
+# share of the largest gain of a name below which a gain is rounding
 ZERO_TOLERANCE = 1e-9
 
 
@@ -34,20 +35,20 @@ class ControllerRow:
 
 
 def gain_symbol(name: str) -> Markup:
-    """``KP`` and ``K_P`` as K with its index."""
+    """Return ``KP`` and ``K_P`` as K with its index."""
     spaced = f"K_{name[1:]}" if len(name) > 1 and name[0] == "K" and name[1:].isupper() else name
     return Markup(inline(latex_symbol(spaced)))
 
 
 def gain_names(tuning: Tuning) -> list[str]:
-    """Names of all gains, in order, each once."""
+    """Return the names of all gains, in order, each once."""
     return list(dict.fromkeys(name for c in (tuning.chosen, *tuning.baselines) for name in c.gains))
 
 
 def gain_texts(rows: Sequence[Mapping[str, float]], names: Sequence[str]) -> list[tuple[str, ...]]:
-    """Gains of several controllers as text; what rounding left of a zero, beside the largest of its name, is zero."""
-    known = {name: [abs(row[name]) for row in rows if name in row] for name in names}
-    least = {name: ZERO_TOLERANCE * max(values, default=0.0) for name, values in known.items()}
+    """Return gains of several controllers as text; 0 where rounding left a tiny share of the largest of that name."""
+    sizes = {name: [abs(row[name]) for row in rows if name in row] for name in names}
+    least = {name: ZERO_TOLERANCE * max(values, default=0.0) for name, values in sizes.items()}
     return [
         tuple(DASH if name not in row else exact(row[name] if abs(row[name]) > least[name] else 0.0, 4)
               for name in names)
@@ -71,47 +72,47 @@ def controller_rows(tuning: Tuning) -> list[ControllerRow]:
     """The chosen controller, then its rivals."""
     controllers = (tuning.chosen, *tuning.baselines)
     gains = gain_texts([c.gains for c in controllers], gain_names(tuning))
-    return [_controller_row(c, told, tuning) for c, told in zip(controllers, gains, strict=True)]
+    return [_controller_row(c, texts, tuning) for c, texts in zip(controllers, gains, strict=True)]
 
 
 def schedule_table(operating_points: tuple[OperatingPoint, ...]) -> TextTable:
-    """The schedule's gains as a table, a line for each condition."""
+    """Return the schedule's gains as a table, a line for each condition."""
     first = operating_points[0] if operating_points else None
-    gains, others = (list(first.gains), list(first.baseline_costs)) if first else ([], [])
-    header = ("speed m/s", "heading deg", "height m", *gains, "cost", *others, "Ms", "saturation %", "")
-    shown = gain_texts([s.gains for s in operating_points], gains)
+    gains, baselines = (list(first.gains), list(first.baseline_costs)) if first else ([], [])
+    header = ("speed m/s", "heading deg", "height m", *gains, "cost", *baselines, "Ms", "saturation %", "")
+    gain_cells = gain_texts([s.gains for s in operating_points], gains)
     rows = [
         (
             exact(s.U, 4),
             exact(math.degrees(s.beta), 4),
             exact(s.height, 3),
-            *told,
+            *texts,
             fixed(s.cost, 3),
-            *(_cost_text(s.baseline_costs.get(name, math.nan)) for name in others),
+            *(_cost_text(s.baseline_costs.get(name, math.nan)) for name in baselines),
             fixed(s.Ms, 2),
             fixed(100.0 * s.saturation, 1),
-            "" if s.is_feasible else "not kept",
+            "" if s.is_feasible else "infeasible",
         )
-        for s, told in zip(operating_points, shown, strict=True)
+        for s, texts in zip(operating_points, gain_cells, strict=True)
     ]
     return TextTable("Gains of the schedule", header, tuple([True] * (len(header) - 1) + [False]), tuple(rows), "")
 
 
 def bound_row(b: PerformanceBound) -> tuple[str, str, str, str, str]:
-    """Name, variance ratio, rms ratio, what is held equal, note."""
+    """Return name, variance ratio, rms ratio, what is held equal, note."""
     rms = fixed(math.sqrt(b.ratio), 2) if b.ratio >= 0.0 else DASH
     return b.name, fixed(b.ratio, 2), rms, b.conditions, b.note
 
 
 def component_row(c: Component, gains: dict[str, float]) -> tuple[str | Markup, ...]:
-    """Role, name, transfer function, gain and its value, source."""
+    """Return role, name, transfer function, gain and its value, source."""
     value = exact(gains[c.gain], 5) if c.gain in gains else ""
     letter = gain_symbol(c.gain) if c.gain else ""
     return c.role, c.name, Markup(inline(transfer_latex(c.num, c.den))), letter, value, c.source
 
 
 def transfer_latex(num: tuple[float, ...], den: tuple[float, ...]) -> str:
-    """num(s) / den(s) as LaTeX; the denominator 1 is left out."""
+    """Return num(s) / den(s) as LaTeX; the denominator 1 is left out."""
     above, below = _polynomial_latex(num), _polynomial_latex(den)
     return above if below == "1" else f"\\frac{{{above}}}{{{below}}}"
 

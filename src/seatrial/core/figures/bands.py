@@ -16,9 +16,9 @@ def band(x: Array, lower: Array, upper: Array) -> Area:
     """Return the area between two curves over x."""
     x_kept, low = thinned(x, lower, POINTS)
     high = thinned(x, upper, POINTS)[1]
-    known = np.isfinite(low) & np.isfinite(high)
+    finite = np.isfinite(low) & np.isfinite(high)
     return Area(
-        np.concatenate([x_kept[known], x_kept[known][::-1]]), np.concatenate([low[known], high[known][::-1]]), BAND
+        np.concatenate([x_kept[finite], x_kept[finite][::-1]]), np.concatenate([low[finite], high[finite][::-1]]), BAND
     )
 
 
@@ -47,6 +47,6 @@ def track_envelope(x: Array, y: Array, half_x: Array, half_y: Array) -> Area | N
     normal = np.column_stack([-step[:, 1], step[:, 0]]) / np.where(lengths > 0, lengths, 1.0)[:, None]
     half = np.hypot(normal[:, 0] * half_x[kept], normal[:, 1] * half_y[kept])
     sides = [middle + sign * normal * half[:, None] for sign in (-1.0, 1.0)]
-    known = np.isfinite(sides[0]).all(axis=1) & np.isfinite(sides[1]).all(axis=1)
-    outline = np.vstack([sides[0][known], sides[1][known][::-1]])
+    finite = np.isfinite(sides[0]).all(axis=1) & np.isfinite(sides[1]).all(axis=1)
+    outline = np.vstack([sides[0][finite], sides[1][finite][::-1]])
     return Area(outline[:, 0], outline[:, 1], BAND)

@@ -56,12 +56,12 @@ def svg(chart: Chart | None) -> str:
 def _legend_entry(position: LegendPosition) -> str:
     sample, x, y = position.entry.sample, position.left, position.top + 6.0
     if isinstance(sample, Stroke):
-        drawn = _segment(x, y, x + position.entry.sample_width - 6.0, y, sample)
+        shape = _segment(x, y, x + position.entry.sample_width - 6.0, y, sample)
     elif isinstance(sample, Marker):
-        drawn = _markers(np.array([x + 6.0]), np.array([y]), sample)
+        shape = _markers(np.array([x + 6.0]), np.array([y]), sample)
     else:
-        drawn = _rectangle(x, y - 5.5, 11.0, 11.0, sample)
-    return drawn + _text(x + position.entry.sample_width, y + 4.0, position.entry.words)
+        shape = _rectangle(x, y - 5.5, 11.0, 11.0, sample)
+    return shape + _text(x + position.entry.sample_width, y + 4.0, position.entry.words)
 
 
 def _panel(panel: Panel) -> str:

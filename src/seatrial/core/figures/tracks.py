@@ -71,9 +71,9 @@ def track_panel(tracks: Sequence[Track], length: float, box: Box, *, room: Seque
     """
     north, east = extents(tracks)
     is_rotated = is_slender(tracks) and north > east
-    shown = [*tracks, *room]
+    everything = [*tracks, *room]
     across, along = (
-        _widened(span([(t.north if is_north else t.east) for t in shown], 0.0), length)
+        _widened(span([(t.north if is_north else t.east) for t in everything], 0.0), length)
         for is_north in (is_rotated, not is_rotated)
     )
     scale = max((across[1] - across[0]) / box.width, (along[1] - along[0]) / box.height)
@@ -83,7 +83,9 @@ def track_panel(tracks: Sequence[Track], length: float, box: Box, *, room: Seque
     if not has_names:
         x, y = replace(x, name=""), replace(y, name="")
     marks = [
-        mark for track in shown for mark in _marks(track, length if track in tracks else 0.0, is_rotated=is_rotated)
+        mark
+        for track in everything
+        for mark in _marks(track, length if track in tracks else 0.0, is_rotated=is_rotated)
     ]
     return Panel(box, x, y, tuple(marks), title, is_y_down=is_rotated)
 

@@ -30,9 +30,9 @@ def degree_unit(unit: str) -> tuple[float, str]:
     factor = 1.0
     for power in _RADIANS.findall(unit):
         factor *= (180.0 / np.pi) ** int(power or 1)
-    shown = _RADIANS.sub(lambda m: f"deg^{m[1]}" if m[1] else "deg", unit)
-    shown = re.sub(r"\^(\d+)", lambda m: raised(int(m[1])), shown)
-    return factor, "" if shown == "1" else shown
+    degrees = _RADIANS.sub(lambda m: f"deg^{m[1]}" if m[1] else "deg", unit)
+    degrees = re.sub(r"\^(\d+)", lambda m: raised(int(m[1])), degrees)
+    return factor, "" if degrees == "1" else degrees
 
 
 def front_chart(tuning: Tuning) -> Chart | None:
@@ -81,5 +81,5 @@ def _thinned(count: int) -> np.ndarray:
 
 
 def _label(name: str, unit: str) -> str:
-    shown = degree_unit(unit)[1]
-    return f"{name} [{shown}]" if shown else name
+    unit_shown = degree_unit(unit)[1]
+    return f"{name} [{unit_shown}]" if unit_shown else name

@@ -22,8 +22,8 @@ READING_ORDER = (
 
 def unit_text(si: str) -> str:
     """Return the unit people read for an SI unit, with raised powers; empty for numbers."""
-    shown = display_unit(si)[1]
-    return "" if shown == "1" else shown.replace("^2", "²").replace("^3", "³")
+    unit = display_unit(si)[1]
+    return "" if unit == "1" else unit.replace("^2", "²").replace("^3", "³")
 
 
 def channel_unit(channel: str) -> str:
@@ -43,8 +43,8 @@ def channel_letter(channel: str) -> str:
 
 def channel_label(channel: str, si: str) -> str:
     """Return the letter of a channel with the unit people read: ``ψ [deg]``."""
-    shown = display_unit(si)[1]
-    return channel_letter(channel) if shown == "1" else f"{channel_letter(channel)} [{shown}]".strip()
+    unit = display_unit(si)[1]
+    return channel_letter(channel) if unit == "1" else f"{channel_letter(channel)} [{unit}]".strip()
 
 
 def display_values(channel: str, values: Array, si: str) -> Array:

@@ -84,8 +84,8 @@ def track_chart(design: Design) -> Chart | None:
         words = f"sea room {room:.4g} m" + ("" if is_near else ", beyond the picture")
         corner = panel.y.ends[0] if panel.is_y_down else panel.y.ends[1]
         note = (Text(panel.x.ends[1], corner, words, Anchor.END, 10.0, SECOND, dx=-4.0, dy=12.0),)
-    drawn = Panel(panel.box, panel.x, panel.y, (*panel.marks, *note), is_y_down=panel.is_y_down)
-    return Chart("track of the designed manoeuvre", (drawn,), width=LEFT + width + RIGHT)
+    annotated = Panel(panel.box, panel.x, panel.y, (*panel.marks, *note), is_y_down=panel.is_y_down)
+    return Chart("track of the designed manoeuvre", (annotated,), width=LEFT + width + RIGHT)
 
 
 def _circle(radius: float) -> Track:

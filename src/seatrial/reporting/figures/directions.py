@@ -73,18 +73,18 @@ def direction_chart(directions: Sequence[Direction]) -> Chart | None:
 
 def sensitivity_chart(sensitivities: Sequence[Sensitivity]) -> Chart | None:
     """Return a bar for each coefficient: effect of 10 % of it in units of noise; None for none."""
-    known = [s for s in sensitivities if math.isfinite(s.effect) and s.effect > 0]
-    if not known:
+    finite = [s for s in sensitivities if math.isfinite(s.effect) and s.effect > 0]
+    if not finite:
         return None
     axis = decades_axis(
-        [s.effect for s in known],
+        [s.effect for s in finite],
         (0.1, 10.0),
         "change of the compared outputs for 10 % of the coefficient, in units of their noise",
     )
     bars = [Rectangle(axis.ends[0], row - 0.28, s.effect, row + 0.28, ACCENT if s.effect >= 1.0 else "#a9bccb")
-            for row, s in enumerate(known)]  # fmt: skip
+            for row, s in enumerate(finite)]  # fmt: skip
     note = Text(1.0, -0.5, "as large as the noise", Anchor.MIDDLE, SMALL, dy=-7.0)
-    panel = row_panel([s.parameter for s in known], axis, [*bars, Rule(1.0, _LIMIT, is_vertical=True), note])
+    panel = row_panel([s.parameter for s in finite], axis, [*bars, Rule(1.0, _LIMIT, is_vertical=True), note])
     return Chart("what each coefficient does to the records", (panel,))
 
 

@@ -31,7 +31,7 @@ def profile_chart(profiles: Sequence[Profile], units: Mapping[str, str]) -> Char
 
 
 def _panel(profile: Profile, unit: str, box: Box) -> Panel:
-    factor, shown = display_unit(unit)[0], unit_text(unit)
+    factor, unit_shown = display_unit(unit)[0], unit_text(unit)
     values, costs = np.array(profile.values) * factor, np.array(profile.costs)
     order = np.argsort(values)
     highest = float(np.clip(1.05 * np.nanmax(costs), 1.3 * BOUND, HIGHEST))  # the bound is always visible
@@ -43,5 +43,5 @@ def _panel(profile: Profile, unit: str, box: Box) -> Panel:
         *(Line(np.full(2, end * factor), np.array([0.0, BOUND]), Stroke(SECOND, 0.8))
           for end in (profile.lower, profile.upper) if end is not None),
     ]  # fmt: skip
-    name = f"{profile.parameter} [{shown}]" if shown else profile.parameter
+    name = f"{profile.parameter} [{unit_shown}]" if unit_shown else profile.parameter
     return Panel(box, x, Axis((0.0, highest), "χ² lost", tick_count=3), tuple(marks), name)

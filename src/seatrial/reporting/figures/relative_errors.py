@@ -40,10 +40,10 @@ class CoefficientError:
 
 def error_chart(names: Sequence[str], series: Sequence[ErrorSeries], axis_name: str) -> Chart | None:
     """Return a row for each name with the dots of every series; None without any."""
-    known = [v for one in series for row in one.rows for v in row if 0.0 < v < NO_INFORMATION]
-    if not names or not known:
+    finite = [v for one in series for row in one.rows for v in row if 0.0 < v < NO_INFORMATION]
+    if not names or not finite:
         return None
-    axis = decades_axis(known, ERROR_RANGE, axis_name, " %")
+    axis = decades_axis(finite, ERROR_RANGE, axis_name, " %")
     marks: list[Mark] = []
     for one in series:
         for row, values in enumerate(one.rows):
