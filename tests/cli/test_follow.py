@@ -81,7 +81,7 @@ def test_what_was_amiss_is_counted_and_said(tmp_path: Path, run_command: Callabl
         ([], ["--source", "nmea-udp"], "has other columns"),
         ([], ["--page", "99999"], "port 99999 of the page is none"),
         ([], ["--journal", "."], "journal '.' cannot be written"),
-        ([], ["--journal", str(EXAMPLES / "waterjet.toml")], "is no journal of 'seatrial follow'"),
+        ([], ["--journal", str(EXAMPLES / "waterjet.toml")], "is not a journal of 'seatrial follow'"),
     ],
 )
 def test_what_cannot_be_is_one_line_and_exit_code_2(

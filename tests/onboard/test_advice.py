@@ -59,11 +59,11 @@ def craft():
 
 def test_a_standard_manoeuvre_is_named_with_numbers(craft):
     trial, snapshot, covariance, records = craft
-    said = advice(snapshot, trial, covariance, records)
-    assert "would bring" in said
-    assert "from 300 % to" in said
-    assert any(word in said for word in ("a zigzag", "zigzags", "a turning circle", "a random binary sequence"))
-    assert len(said) < 300
+    text = advice(snapshot, trial, covariance, records)
+    assert "would reduce the standard error of" in text
+    assert "from 300 % to" in text
+    assert any(word in text for word in ("a zigzag", "zigzags", "a turning circle", "a random binary sequence"))
+    assert len(text) < 300
 
 
 def test_the_best_leaves_fewest_untold_and_none_is_worse_than_before(craft):
@@ -109,9 +109,9 @@ def test_fins_are_moved_in_calm_water():
     value = np.array([p.value for p in model.parameters.free])
     error = 2.0 * np.abs(value)
     snapshot = _snapshot(model, error, {"z": 0.01, "theta": 3.5e-4}, model.parameters.free_names)
-    said = advice(snapshot, trial, np.diag(error**2), (_record(z=0.0, theta=0.0),))
-    assert "delta_f1" in said
-    assert "would bring" in said
+    text = advice(snapshot, trial, np.diag(error**2), (_record(z=0.0, theta=0.0),))
+    assert "delta_f1" in text
+    assert "would reduce the standard error of" in text
 
 
 def test_without_fins_that_lift_waves_are_asked_for():
@@ -137,9 +137,9 @@ def rolled():
 
 def test_a_roll_is_released_from_a_larger_angle(rolled):
     trial, snapshot, covariance, records = rolled
-    said = advice(snapshot, trial, covariance, records)
-    assert "a release from" in said
-    assert "c_3 from 400 % to" in said
+    text = advice(snapshot, trial, covariance, records)
+    assert "a free decay from" in text
+    assert "c_3 from 400 % to" in text
 
 
 def test_larger_angles_tell_more(rolled):
@@ -180,7 +180,7 @@ def test_it_looks_once_a_minute_at_most_and_says_nothing_where_all_is_told(craft
     now[0] = 61.0
     adviser.with_advice(snapshot)
     assert known.asked == 2
-    told = replace(snapshot, untold=())
+    told = replace(snapshot, unidentified=())
     assert adviser.with_advice(told) is told
     waiting = replace(snapshot, phase=EstimatorPhase.WAITING)
     assert adviser.with_advice(waiting) is waiting

@@ -150,7 +150,7 @@ def test_a_column_that_is_not_there_is_said_and_stays_nan() -> None:
 
 def test_names_without_any_header_are_said() -> None:
     found, reader = samples("0,1,2\n1,1,2", NAMED, begins=False)
-    assert not found and reader.counts.garbled == 2 and "no header line has come" in reader.counts.last_problem
+    assert not found and reader.counts.garbled == 2 and "no header line has arrived" in reader.counts.last_problem
 
 
 @pytest.mark.parametrize(

@@ -129,7 +129,7 @@ def test_what_is_not_its_own_is_refused_and_left_as_it_is(tmp_path: Path) -> Non
         Journal(path, "a", 3)
     other = tmp_path / "log.csv"
     other.write_text("time,u\n0,1\n" * 100)
-    with pytest.raises(InputError, match="is no journal"):
+    with pytest.raises(InputError, match="is not a journal"):
         Journal(other, "a", 2)
     with pytest.raises(InputError, match="cannot be written"):
         Journal(tmp_path, "a", 2)

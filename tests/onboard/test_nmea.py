@@ -205,8 +205,8 @@ def test_without_any_stamp_it_is_said() -> None:
 @pytest.mark.parametrize(
     ("columns", "text"),
     [
-        ((ColumnSpec("F3", "F3", "N"),), "no NMEA 0183 sentence tells channel 'F3'"),
-        ((ColumnSpec("psi", "HTD", "deg"),), "no NMEA place 'HTD'; did you mean 'HDT'"),
+        ((ColumnSpec("F3", "F3", "N"),), "no NMEA 0183 sentence contains channel 'F3'"),
+        ((ColumnSpec("psi", "HTD", "deg"),), "no NMEA field 'HTD'; did you mean 'HDT'"),
         ((ColumnSpec("psi", "ROT", "deg"),), "is in rad/s"),
     ],
 )

@@ -211,7 +211,7 @@ def test_many_ask_while_the_estimate_goes_on(page: Page) -> None:
 
 
 def test_control_characters_and_infinities_do_not_reach_the_page(page: Page) -> None:
-    snapshot = replace(list(heave_pitch(10.0))[-1], time=np.inf, noise={"z": np.nan}, untold=("a33",))
+    snapshot = replace(list(heave_pitch(10.0))[-1], time=np.inf, noise={"z": np.nan}, unidentified=("a33",))
     page.show(snapshot, replace(faulty_counts(), last_problem="\x1b[2J\x00 sentence"))
     told = state(page)["snapshot"]
     assert told["last"] == "·[2J· sentence" and told["time"] == "–" and told["noise"][0]["rms"] == "–"

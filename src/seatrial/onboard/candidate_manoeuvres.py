@@ -1,4 +1,4 @@
-"""Manoeuvres that could come next, and the information each would add about the ship as she is estimated by now."""
+"""Manoeuvres that could come next, and the information each would add at the present estimate."""
 
 import math
 from collections.abc import Sequence
@@ -23,18 +23,25 @@ from seatrial.physics.simulate.divergence import state_limits
 from seatrial.physics.simulate.linear import batch_class
 from seatrial.physics.simulate.steer import RUDDER, SOLAS_SLEW_RATE
 
-# where the trial has no [design]: trial and hold in the ship's unit of time, and what actuators can do
-_DURATION, _HOLD = 20.0, 1.0
-_LINEAR_DURATION = 40.0
+# where the trial has no [design]: duration and hold in characteristic times of the ship (length over speed, or a
+# period); 20 cover a zigzag or two, 40 the resonances of a linear model
+_DURATION, _HOLD, _LINEAR_DURATION = 20.0, 1.0, 40.0
+# rad: the rudder angle of turning trials (IMO MSC.137(76)); a fin angle below stall; rad/s: a usual fin drive
 _RUDDER_LIMIT, _FIN_LIMIT, _FIN_RATE = math.radians(35.0), math.radians(10.0), math.radians(20.0)
 _FIN_INPUTS = ("delta_f1", "delta_f2", "alpha_f")
-# releases, as multiples of the largest angle seen; none is larger than the last number
+# roll releases as multiples of the largest angle recorded; rad, none is larger: a deck edge immerses at about that
 _RELEASE_FACTORS, _MAX_RELEASE_ANGLE = (1.5, 2.0, 3.0), math.radians(35.0)
 
 
 @dataclass(frozen=True, eq=False)
 class CandidateManoeuvre:
-    """A manoeuvre: its name, in words, where it begins, (nx,), and its inputs at steps of dt [s], (rows, nu)."""
+    """A manoeuvre that could come next.
+
+    Attributes:
+        name, description: as `standard_manoeuvres` names it, and in words.
+        initial_state: SI, (nx,); inputs: SI, (rows, nu), at steps of dt [s].
+        is_random: whether it is a random sequence, which cannot be steered by hand.
+    """
 
     name: str
     description: str
@@ -47,31 +54,34 @@ class CandidateManoeuvre:
 def candidate_manoeuvres(
     trial: Trial, model: Model, records: Sequence[Record], noise: dict[str, float]
 ) -> list[CandidateManoeuvre]:
-    """Standard manoeuvres for the ship `model`, as fast and with the same held inputs as in the records so far.
+    """Return standard manoeuvres for `model`, at the speed and with the constant inputs of the records so far.
 
     noise: channel -> standard deviation, SI.
 
     Raises:
-        InputError: nothing can be moved, or the ship cannot be simulated.
+        InputError: no input can be moved, or the ship cannot be simulated.
     """
     if is_pure_roll(model) and not model.is_affine:
         return _roll_releases(model, records)
     task = _design_task(trial, model, records, noise)
-    bench = ManoeuvreEvaluator(
+    evaluator = ManoeuvreEvaluator(
         task, PriorShips(model.parameters.values[None], np.zeros(len(model.parameters.free))), search_step(task)
     )
-    made = []
-    for one in standard_manoeuvres(bench):
-        inputs = one.inputs_for(bench)
-        own = inputs[0] if inputs.ndim == 3 else inputs
-        made.append(
-            CandidateManoeuvre(one.name, _describe(one.name, task), task.initial_state, own, bench.dt, one.is_random)
+    candidates = []
+    for item in standard_manoeuvres(evaluator):
+        inputs = item.inputs_for(evaluator)
+        inputs = inputs[0] if inputs.ndim == 3 else inputs
+        description = _describe(item.name, task)
+        candidates.append(
+            CandidateManoeuvre(item.name, description, task.initial_state, inputs, evaluator.dt, item.is_random)
         )
-    return made
+    return candidates
 
 
 def fisher_information(model: Model, candidate: CandidateManoeuvre, noise: dict[str, float], rate: float) -> Array:
-    """Fisher information of the free coefficients, (k, k), initial states unknown; zero where she leaves all bounds.
+    """Return the Fisher information of the free coefficients, (k, k); zero where the simulation diverges.
+
+    Initial states count as unknown.
 
     noise: channel -> standard deviation, SI, white; rate: Hz at which these are recorded.
     """
@@ -96,22 +106,24 @@ def fisher_information(model: Model, candidate: CandidateManoeuvre, noise: dict[
 
 
 def _roll_releases(model: Model, records: Sequence[Record]) -> list[CandidateManoeuvre]:
-    """Left alone from larger angles, for as long as the longest record."""
+    """Free decays from larger angles, as long as the longest record."""
     angle = model.states[0]
-    seen = [r for r in records if angle in r]
-    if not seen:
+    rolling = [r for r in records if angle in r]
+    if not rolling:
         raise InputError(f"no record holds '{angle}'")
-    longest, largest = max(seen, key=lambda r: r.duration), max(float(np.nanmax(np.abs(r[angle]))) for r in seen)
+    longest = max(rolling, key=lambda r: r.duration)
+    largest = max(float(np.nanmax(np.abs(r[angle]))) for r in rolling)
     rows = round(longest.duration / longest.dt) + 1
-    made = []
+    candidates = []
     for factor in _RELEASE_FACTORS:
         if largest * factor <= _MAX_RELEASE_ANGLE:
             start = np.zeros(len(model.states))
             start[0] = largest * factor
-            words = f"a release from {math.degrees(start[0]):.2g} deg, left alone for {longest.duration:.0f} s,"
-            made.append(CandidateManoeuvre(f"release:{math.degrees(start[0]):.3g}", words, start,
-                              np.zeros((rows, len(model.inputs))), longest.dt))  # fmt: skip
-    return made
+            degrees = math.degrees(start[0])
+            description = f"a free decay from {degrees:.2g} deg of {longest.duration:.0f} s"
+            inputs = np.zeros((rows, len(model.inputs)))
+            candidates.append(CandidateManoeuvre(f"release:{degrees:.3g}", description, start, inputs, longest.dt))
+    return candidates
 
 
 def _design_task(trial: Trial, model: Model, records: Sequence[Record], noise: dict[str, float]) -> DesignTask:
@@ -137,7 +149,7 @@ def _design_task(trial: Trial, model: Model, records: Sequence[Record], noise: d
 
 
 def _default_actuator(trial: Trial, model: Model, name: str, hold: float) -> Actuator | None:
-    """What can be moved without asking: a rudder, and fins that lift."""
+    """The limits of a rudder, or of a fin that has lift; None for any other input."""
     if name == RUDDER:
         fast = math.sqrt(trial.ship.scale)
         return Actuator(name, -_RUDDER_LIMIT, _RUDDER_LIMIT, SOLAS_SLEW_RATE * fast, hold)
@@ -148,7 +160,7 @@ def _default_actuator(trial: Trial, model: Model, name: str, hold: float) -> Act
 
 
 def _is_constant_input(name: str, records: Sequence[Record]) -> bool:
-    """Whether an input is held at what it was: propellers and jets; waves and wind are at rest."""
+    """Whether an input keeps its recorded value (propellers, jets); waves and wind are zero."""
     return name not in ZERO_BY_DEFAULT and any(name in r for r in records)
 
 
@@ -163,13 +175,13 @@ def _rounded(seconds: float) -> float:
 
 
 def _describe(name: str, task: DesignTask) -> str:
-    """A standard manoeuvre's name as people say it."""
+    """A standard manoeuvre in words."""
     kind, *fields = name.split(":")
     moved, length = " and ".join(a.name for a in task.actuators), f"of {task.duration:g} s"
     if kind == "zigzag":
         return f"a zigzag {fields[0]} {length}"
     if kind == "consecutive-zigzags":
-        return f"zigzags 10/10 to 30/30 one after another, {length} together,"
+        return f"consecutive zigzags 10/10 to 30/30, {length} in all,"
     if kind == "turning-circle":
         return f"a turning circle with {fields[0]} deg of rudder {length}"
     if kind == "prbs":

@@ -1,4 +1,4 @@
-"""Lines of columns to samples, by the layout that reads the same file at rest."""
+"""Lines of columns as samples, by the layout that reads the same file once it is complete."""
 
 import codecs
 from collections.abc import Callable
@@ -13,21 +13,23 @@ from seatrial.data.read.text import RECORD_MARK, detect_separator
 from seatrial.onboard.lines import LineBatch
 from seatrial.onboard.sample import Sample
 
+# lines in a row with more cells than before after which their number is taken as the right one
 _WIDTH_CONFIRMATIONS = 3
+# byte order mark of UTF-8
 _BOM = b"\xef\xbb\xbf"
 
 
 class ColumnReader:
-    """Lines to samples: values in SI, frames, signs and reference points as the layout declares them.
+    """Turns lines into samples: SI, in the frames, signs and reference points that the layout declares.
 
-    An empty cell, or one that is no finite number, is NaN; a row that is too short ends in such cells. A line is
-    garbled (counted, no sample) where its time is no number or it has more cells than the lines before it; three such
-    in a row and they set the width. Blank lines count nothing. Header lines are skipped as `read_text` does at the
-    first beginning; after a truncation only where they are there; and wherever all wanted names stand in a line.
-    A column that the header does not name stays NaN, and `column_warning` says so.
+    A cell that is empty or not a finite number is NaN; so are the cells that a short row lacks. A line is garbled
+    (counted, no sample) where its time is not a number or where it has more cells than the lines before it; after three
+    such lines in a row their width is the right one. Blank lines are ignored. Header lines are skipped as `read_text`
+    does at the start of the stream, after a truncation only where they are present, and wherever a line has all the
+    names required. A column that the header does not name stays NaN, and `column_warning` says so.
 
     Raises:
-        InputError: the layout is of no text file, wants no channel, or has a scale, encoding or unit that cannot be
+        InputError: the layout is not of a text file, has no channel, or has a scale, encoding or unit that cannot be
             used.
     """
 
@@ -35,7 +37,7 @@ class ColumnReader:
         if layout.format != "text":
             raise InputError(f"format '{layout.format}' cannot be followed; follow a text file")
         if not layout.columns:
-            raise InputError("there are no channels to follow; name their columns")
+            raise InputError("no channels to follow; name their columns in [follow.channels]")
         if layout.scale != 1.0:
             raise InputError(f"a stream cannot be Froude-scaled by {layout.scale:g}; follow it at its own scale")
         _refuse_encoding(layout.encoding)
@@ -54,20 +56,20 @@ class ColumnReader:
         self._column_indices: tuple[int | None, ...] = tuple(
             c.source - 1 if isinstance(c.source, int) else None for c in self._columns
         )
-        self._last_trouble = ""
+        self._last_error = ""
         self.column_warning = ""
 
     @property
     def counts(self) -> SampleCounts:
         """garbled: lines that could not be read."""
-        return SampleCounts(garbled=self._garbled, last_problem=self.column_warning or self._last_trouble)
+        return SampleCounts(garbled=self._garbled, last_problem=self.column_warning or self._last_error)
 
     def samples(self, batch: LineBatch) -> list[Sample]:
-        """The samples of these lines, in order."""
+        """Return the samples of these lines, in order."""
         if batch.starts_file:
             self._start_file()
         rows: list[list[float]] = []
-        take = rows.append
+        append_row = rows.append
         comma = self._layout.decimal == ","
         for line in batch.lines:
             self._line += 1
@@ -76,17 +78,17 @@ class ColumnReader:
                 cells = self._split_cells(line, self._delimiter) if comma else line.split(self._delimiter)
                 if len(cells) == self._width:
                     try:
-                        take([*map(float, getter(cells))])
+                        append_row([*map(float, getter(cells))])
                         continue
                     except ValueError:
                         pass
             row = self._parse_line(line)
             if row is not None:
-                take(row)
+                append_row(row)
         return self._to_samples(rows)
 
     def flush(self) -> list[Sample]:
-        """Nothing is kept back."""
+        """Return an empty list: no line waits for another."""
         return []
 
     def _to_samples(self, rows: list[list[float]]) -> list[Sample]:
@@ -98,14 +100,14 @@ class ColumnReader:
         readable = np.isfinite(block[:, 0])
         if not readable.all():
             self._garbled += int(np.sum(~readable))
-            self._last_trouble = f"line {self._line} or shortly before: the time is no number"
+            self._last_error = f"line {self._line} or shortly before: the time is not a number"
             block = block[readable]
         block.setflags(write=False)
         values: Array = block[:, 1:]
         return [Sample(time, row) for time, row in zip(block[:, 0].tolist(), values, strict=True)]
 
     def _start_file(self) -> None:
-        """A file begins: its header is skipped, strictly the first time."""
+        """Skip the header of a file that begins: its lines the first time, later only lines that are no numbers."""
         self._lines_to_skip, self._lines_skippable = (
             (0, self._header_count) if self._has_started else (self._header_count, 0)
         )
@@ -113,7 +115,7 @@ class ColumnReader:
         self._cell_getter = None
 
     def _parse_line(self, line: bytes) -> list[float] | None:
-        """The row of a line that is not plain; None for a header, a blank line or one that cannot be read."""
+        """The row of a line the fast path cannot read; None for a header, a blank line or a garbled one."""
         line = line.removeprefix(_BOM)
         if line.startswith(RECORD_MARK.encode()):
             return None
@@ -136,7 +138,7 @@ class ColumnReader:
             self._lines_skippable -= 1
             return None
         self._garbled += 1
-        self._last_trouble = f"line {self._line} could not be read: {_escaped(line)}"
+        self._last_error = f"line {self._line} could not be read: {_escaped(line)}"
         return None
 
     def _parse_numbers(self, line: bytes) -> list[float] | None:
@@ -145,11 +147,11 @@ class ColumnReader:
         cells = self._split_cells(line, self._delimiter)
         if len(cells) > self._width and not self._confirm_width(len(cells)):
             return None
-        row = [_parse_number(cells, place) for place in self._column_indices]
+        row = [_parse_number(cells, index) for index in self._column_indices]
         return row if np.isfinite(row[0]) else None
 
     def _confirm_width(self, count: int) -> bool:
-        """Whether so many lines of this greater width have come that it is the right one."""
+        """Whether enough lines of this greater width have arrived for it to be the right one."""
         self._wider_count = self._wider_count + 1 if count == self._wider_width else 1
         self._wider_width = count
         if self._wider_count < _WIDTH_CONFIRMATIONS:
@@ -158,40 +160,43 @@ class ColumnReader:
         return True
 
     def _detect_format(self, line: bytes) -> list[float] | None:
-        """The row of the first line that can be read, which sets separator, width and places."""
-        text = line.decode("latin-1")
-        found = detect_separator(text, self._layout)
-        mark = None if found == r"\s+" else found.encode()
-        places, complaint = self._locate_columns(mark)
-        cells = self._split_cells(line, mark)
-        row = [_parse_number(cells, place) for place in places]
+        """The row of the first line that can be read, which sets separator, width and column positions."""
+        delimiter = self._find_delimiter(line)
+        indices, warning = self._locate_columns(delimiter)
+        cells = self._split_cells(line, delimiter)
+        row = [_parse_number(cells, index) for index in indices]
         if not np.isfinite(row[0]):
-            if complaint and np.isfinite(_parse_number(cells, 0)):
-                self.column_warning = complaint
+            if warning and np.isfinite(_parse_number(cells, 0)):
+                self.column_warning = warning
             return None
-        self._delimiter, self._column_indices, self.column_warning = mark, places, complaint
+        self._delimiter, self._column_indices, self.column_warning = delimiter, indices, warning
         self._width, self._is_format_known = len(cells), True
         return row
 
     def _locate_columns(self, delimiter: bytes | None) -> tuple[tuple[int | None, ...], str]:
-        """Where the wanted columns stand, and the complaint about the first that stands nowhere."""
+        """Positions of the columns required, and a warning about the first that is missing."""
         names = [] if self._header_line is None else self._header_names(self._header_line, delimiter)
-        places: list[int | None] = []
-        complaint = ""
+        indices: list[int | None] = []
+        warning = ""
         for column in self._columns:
             if isinstance(column.source, int):
-                places.append(column.source - 1)
+                indices.append(column.source - 1)
             elif column.source in names:
-                places.append(names.index(column.source))
+                indices.append(names.index(column.source))
             else:
-                places.append(None)
-                complaint = complaint or _missing_column_text(column, [name for name in names if name])
-        return tuple(places), complaint
+                indices.append(None)
+                warning = warning or _missing_column_text(column, [name for name in names if name])
+        return tuple(indices), warning
 
     def _set_fast_path(self) -> None:
-        """The quick way for lines like this one, if all wanted cells stand in it."""
-        places = [place for place in self._column_indices if place is not None and place < self._width]
-        self._cell_getter = itemgetter(*places) if len(places) == len(self._column_indices) else None
+        """Prepare the fast path for lines like this one, if it has all cells required."""
+        indices = [index for index in self._column_indices if index is not None and index < self._width]
+        self._cell_getter = itemgetter(*indices) if len(indices) == len(self._column_indices) else None
+
+    def _find_delimiter(self, line: bytes) -> bytes | None:
+        """The separator of a line; None: white space."""
+        separator = detect_separator(line.decode("latin-1"), self._layout)
+        return None if separator == r"\s+" else separator.encode()
 
     def _split_cells(self, line: bytes, delimiter: bytes | None) -> list[bytes]:
         if self._layout.decimal == "," and delimiter != b",":
@@ -206,8 +211,7 @@ class ColumnReader:
     def _is_header(self, line: bytes) -> bool:
         if not self._layout.has_named_columns:
             return False
-        found = detect_separator(line.decode("latin-1"), self._layout)
-        names = self._header_names(line, None if found == r"\s+" else found.encode())
+        names = self._header_names(line, self._find_delimiter(line))
         return all(column.source in names for column in self._columns if isinstance(column.source, str))
 
 
@@ -222,12 +226,12 @@ def _parse_number(cells: list[bytes], index: int | None) -> float:
 
 
 def _missing_column_text(column: ColumnSpec, names: list[str]) -> str:
-    hint = spelling_hint(str(column.source), names) if names else "; no header line has come, give numbers"
+    hint = spelling_hint(str(column.source), names) if names else "; no header line has arrived, give column numbers"
     return f"no column '{column.source}' for channel '{column.symbol}'{hint}"
 
 
 def _escaped(line: bytes) -> str:
-    """The beginning of a line nobody trusts, in plain ASCII."""
+    """The first bytes of a line, which may hold anything, in plain ASCII."""
     return repr(line[:40])[1:]
 
 

@@ -1,4 +1,4 @@
-"""The loop on board: poll, admit, note, estimate, show. No threads, and nothing that is sent can end it."""
+"""The loop on board: poll, order, journal, estimate, show. No threads, and no input can end it."""
 
 import math
 from collections import deque
@@ -27,10 +27,14 @@ from seatrial.onboard.sample import Sample, SampleSource
 from seatrial.onboard.sources import open_source
 from seatrial.onboard.stream_session import StreamEstimator, StreamSession
 
-_POLL_WAIT_S, _PROCESSING_S, _DISPLAY_INTERVAL_S, _MAX_EMPTY_POLLS = 0.2, 0.1, 0.5, 3
-# samples that may wait for the estimator
+# s: longest wait for samples, longest computation between two polls, shortest time between two displays; short enough
+# that a user sees no delay, long enough that they cost nothing
+_POLL_WAIT_S, _PROCESSING_S, _DISPLAY_INTERVAL_S = 0.2, 0.1, 0.5
+# polls without a sample after which a file is taken to hold no more for now
+_MAX_EMPTY_POLLS = 3
+# samples that may wait for the estimator: a quarter of an hour at 10 Hz, some megabytes
 _MAX_QUEUE = 10_000
-# sources that give everything once more when they are opened again
+# sources that can be read again from their start
 _REOPENABLE = (StreamSource.FILE, StreamSource.NMEA_FILE)
 
 Show = Callable[[Snapshot, SampleCounts], None]
@@ -39,12 +43,13 @@ Stop = Callable[[], bool]
 
 @dataclass(frozen=True, eq=False)
 class FollowResult:
-    """How following ended.
+    """The state when following ended.
 
     Attributes:
-        snapshot: the last one; None where no sample came. counts: of all samples, those of the journal included.
-        fit: what `identify` says of the samples accepted, where they were followed to their end with `once`.
-        messages: what else is to be said: a torn journal, trouble of the estimator.
+        snapshot: the last one; None where no sample arrived.
+        counts: of all samples, those of the journal included.
+        fit: of the samples accepted, as `identify` makes it; None unless they were followed to their end with `once`.
+        messages: errors of the journal and of the estimator, in words.
     """
 
     snapshot: Snapshot | None
@@ -70,75 +75,78 @@ def follow(
     seed: int = 0,
     report_progress: ProgressReporter | None = None,
 ) -> FollowResult:
-    """Estimate the trial's model from the samples of its stream, until they end, `stop` says so, or Ctrl-C.
+    """Estimate the trial's model from the samples of its stream, until they end, `stop` returns True, or Ctrl-C.
 
     Args:
-        source: takes the place of the one that [follow] names, and is left open.
-        once: end at the end of the input; the fit of what was accepted then is that of `identify`.
-        journal: where admitted samples are kept; what is there already is taken in first.
-        show: called with the newest snapshot twice a second at most, and at the end.
-        estimator: takes the place of the house's.
-        seed: of that fit.
+        source: replaces the one that [follow] names, and is left open.
+        once: end at the end of the input, with the fit of the samples accepted that `identify` makes.
+        journal: file that keeps accepted samples; those in it already are processed first.
+        show: called with the newest snapshot at most twice a second, and at the end.
+        estimator: replaces `OnlineEstimator`.
+        seed: of the fit at the end.
 
     Raises:
-        InputError: no [follow], channels that are lacking, a source that cannot be opened, a journal of another trial;
-            with `once` also whatever `identify` refuses.
+        InputError: no [follow], missing channels, a source that cannot be opened, a journal of another trial; with
+            `once` also what `identify` refuses.
     """
     stream = require_stream(trial)
     check_required_channels(trial)
-    kept = RunBuffer(stream.layout) if once else None
-    with ExitStack() as held:
-        is_known = journal is not None and journal.exists()
-        log = None if journal is None else _open_journal(held, journal, trial)
-        if log is not None and is_known and report_progress is not None:
-            report_progress(f"taking in {log.path.name}")
-        # open before the journal is taken in, so that what comes meanwhile waits in the socket
-        feed = source or _open_stream(held, stream, once=once)
-        known = estimator or OnlineEstimator(trial)
-        voyage, adviser = StreamSession(stream, known, log, kept), ManoeuvreAdviser(trial, known)
-        watch = _Display(voyage, _show_with_advice(show, adviser), stop or _never_stop)
-        again = (
-            partial(_open_stream, held, stream, once=once) if source is None and stream.source in _REOPENABLE else None
-        )
+    buffer = RunBuffer(stream.layout) if once else None
+    with ExitStack() as stack:
+        has_earlier_samples = journal is not None and journal.exists()
+        log = None if journal is None else _open_journal(stack, journal, trial)
+        if log is not None and has_earlier_samples and report_progress is not None:
+            report_progress(f"reading {log.path.name}")
+        # opened before the journal is read, so that samples that arrive meanwhile wait in the socket
+        current = source or _open_stream(stack, stream, once=once)
+        estimator = estimator or OnlineEstimator(trial)
+        session, adviser = StreamSession(stream, estimator, log, buffer), ManoeuvreAdviser(trial, estimator)
+        display = _Display(session, _show_with_advice(show, adviser), stop or _never_stop)
+        reopen = None
+        if source is None and stream.source in _REOPENABLE:
+            reopen = partial(_open_stream, stack, stream, once=once)
         is_ended = False
         try:
-            early = [] if log is None else _replay_journal(voyage, log, feed, watch, source_waits=again is not None)
+            early = (
+                [] if log is None else _replay_journal(session, log, current, display, source_waits=reopen is not None)
+            )
             if early is not None:
-                feed, first = _resume_source(voyage, feed, early, again)
-                is_ended = _process_stream(voyage, feed, first, watch)
+                current, first = _resume_source(session, current, early, reopen)
+                is_ended = _process_stream(session, current, first, display)
         except KeyboardInterrupt:
             pass
         finally:
-            voyage.finish()
-        counts = voyage.counts(feed.counts)
-    latest = voyage.snapshot
+            session.finish()
+        counts = session.counts(current.counts)
+    latest = session.snapshot
     if latest is not None:
-        latest = adviser.with_final_advice(known.relinearise() if isinstance(known, OnlineEstimator) else latest)
+        latest = estimator.relinearise() if isinstance(estimator, OnlineEstimator) else latest
+        latest = adviser.with_final_advice(latest)
     if latest is not None and show is not None:
         show(latest, counts)
     fit = None
-    if kept is not None and is_ended:
-        fit = identify(with_training_records(trial, kept.records()), seed=seed, report_progress=report_progress)
-    trouble = (log.write_error,) if log is not None and log.write_error else ()
-    return FollowResult(latest, counts, fit, (*voyage.messages, *trouble))
+    if buffer is not None and is_ended:
+        fit = identify(with_training_records(trial, buffer.records()), seed=seed, report_progress=report_progress)
+    errors = (log.write_error,) if log is not None and log.write_error else ()
+    return FollowResult(latest, counts, fit, (*session.messages, *errors))
 
 
 def _show_with_advice(show: Show | None, adviser: ManoeuvreAdviser) -> Show:
-    """Shows what would help, too."""
+    """Return a display that adds the adviser's sentence."""
     if show is None:
         return _show_nothing
     return lambda snapshot, counts: show(adviser.with_advice(snapshot), counts)
 
 
 class _Display:
-    """Shows what is known and asks whether to go on, twice a second at most."""
+    """Shows the newest snapshot and polls `stop`, at most twice a second."""
 
     def __init__(self, session: StreamSession, show: Show, stop: Stop) -> None:
         self._session, self._show, self._stop = session, show, stop
         self._shown_at = -math.inf
 
     def should_continue(self, source: SampleSource) -> bool:
-        """False where the end was asked for."""
+        """Return False once `stop` has returned True."""
         if monotonic() - self._shown_at < _DISPLAY_INTERVAL_S:
             return True
         self._shown_at = monotonic()
@@ -148,14 +156,17 @@ class _Display:
 
 
 def _replay_journal(
-    session: StreamSession, journal: Journal, source: SampleSource, watch: _Display, *, source_waits: bool
+    session: StreamSession, journal: Journal, source: SampleSource, display: _Display, *, source_waits: bool
 ) -> list[Sample] | None:
-    """What came while the journal was taken in, unless the source waits for its reader; None: the end was asked for."""
+    """Process the journal and return the samples that arrived meanwhile; None where the user stopped it.
+
+    source_waits: whether the source keeps its samples until they are read.
+    """
     early: list[Sample] = []
     polled = monotonic()
     for event in session.journal_events(journal):
         session.process(event)
-        if not watch.should_continue(source):
+        if not display.should_continue(source):
             return None
         if not source_waits and monotonic() - polled > _PROCESSING_S and len(early) < _MAX_QUEUE and not source.is_over:
             early += source.poll(0.0)
@@ -163,39 +174,41 @@ def _replay_journal(
     return early
 
 
-def _process_stream(session: StreamSession, source: SampleSource, first_samples: list[Sample], watch: _Display) -> bool:
-    """The loop itself; whether the source ended, rather than somebody's patience.
+def _process_stream(
+    session: StreamSession, source: SampleSource, first_samples: list[Sample], display: _Display
+) -> bool:
+    """Process samples until the source ends (True) or the user stops it (False).
 
-    Between two samples that take long the source is asked again, so that nothing is lost while a search goes on.
+    The source is polled between two samples that take long, so that none is lost during a search.
     """
     queue = deque(session.admit(first_samples))
-    while watch.should_continue(source):
+    while display.should_continue(source):
         if source.is_over and not queue:
             return True
         if len(queue) < _MAX_QUEUE and not source.is_over:
             queue.extend(session.admit(source.poll(0.0 if queue else _POLL_WAIT_S)))
-        turn = monotonic() + _PROCESSING_S
+        deadline = monotonic() + _PROCESSING_S
         while queue:
             session.process(queue.popleft())
-            if monotonic() > turn:
+            if monotonic() > deadline:
                 break
     return False
 
 
 def _open_stream(stack: ExitStack, stream: Stream, *, once: bool) -> SampleSource:
-    feed = open_source(stream, once=once)
-    stack.callback(feed.close)
-    return feed
+    source = open_source(stream, once=once)
+    stack.callback(source.close)
+    return source
 
 
 def _resume_source(
     session: StreamSession, source: SampleSource, early_samples: list[Sample], reopen: Callable[[], SampleSource] | None
 ) -> tuple[SampleSource, list[Sample]]:
-    """The source behind a journal, and what of it has come that is new, first of all `early_samples`.
+    """Return the source from which to go on after a journal, and its samples that are new.
 
-    reopen: opens a source that gives everything once more. That is read up to the journal's last sample, which is
-        skipped with all before it; where it is not found, the file is another one and begins from its start, with a
-        run of its own. So does what comes from any other source, as the length of the break is not known.
+    A source that can be reopened (`reopen`) is read up to the journal's last sample; where that is not found, the file
+    is another one and is read from its start, as a new run. Samples of any other source (`early_samples` first) begin a
+    new run too, as the length of the break is unknown.
     """
     if session.last_journalled is None:
         return source, early_samples
@@ -207,7 +220,7 @@ def _resume_source(
 
 
 def _samples_after(source: SampleSource, last: Sample) -> list[Sample] | None:
-    """What of a poll comes behind that sample; None if the source does not hold it."""
+    """Return the samples behind that one; None if the source does not hold it."""
     empty = 0
     while not source.is_over and empty < _MAX_EMPTY_POLLS:
         samples = source.poll(_POLL_WAIT_S)
@@ -226,7 +239,7 @@ def _open_journal(stack: ExitStack, path: Path, trial: Trial) -> Journal:
 
 
 def _show_nothing(snapshot: Snapshot, counts: SampleCounts) -> None:
-    """Nobody looks."""
+    """Stands for a display where there is none."""
 
 
 def _never_stop() -> bool:

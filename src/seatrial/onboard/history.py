@@ -1,4 +1,4 @@
-"""What an estimate has been since the stream began, thinned so that a week of it fits in memory. No file."""
+"""The estimates since the stream began, thinned so that a week of them fits in memory."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -11,10 +11,10 @@ from seatrial.core.values import Array
 
 @dataclass(frozen=True, eq=False)
 class HistoryPoint:
-    """One snapshot of the past.
+    """One earlier snapshot.
 
     Attributes:
-        sequence: its number, from 0; elapsed: s followed until then, breaks of the clock left out.
+        sequence: its number, from 0; elapsed: s of samples until then, breaks of the clock left out.
         value, standard_error: (k,), SI; noise: channel -> residual rms, SI.
     """
 
@@ -27,9 +27,9 @@ class HistoryPoint:
 
 
 class History:
-    """At most `limit` points: every `stride`-th snapshot, the first among them, and the newest.
+    """At most `limit` points: every `stride`-th snapshot from the first on, and the newest.
 
-    The stride doubles when the room is used up, so that the points stay even over the whole time.
+    The stride doubles when there are more, so that the points stay evenly spaced over the whole time.
     """
 
     def __init__(self, limit: int = 2000) -> None:
@@ -43,7 +43,7 @@ class History:
         self._last: Snapshot | None = None
 
     def add(self, snapshot: Snapshot) -> HistoryPoint:
-        """Remember it; other coefficients than before begin a new history, of the next generation."""
+        """Append a snapshot; one of other coefficients begins a new history, of the next generation."""
         if self._last is not None and snapshot.names != self.names:
             self._restart()
         self.names = snapshot.names
@@ -61,12 +61,12 @@ class History:
         return point
 
     def since(self, sequence: int) -> list[HistoryPoint]:
-        """Points after that number, oldest first; all of them for -1."""
+        """Return the points after that number, oldest first; all of them for -1."""
         return [p for p in self._points if p.sequence > sequence]
 
     @property
     def newest(self) -> HistoryPoint | None:
-        """The last one, if there is any."""
+        """The last point; None before the first."""
         return self._points[-1] if self._points else None
 
     def __len__(self) -> int:
@@ -78,7 +78,7 @@ class History:
 
 
 class RecentHistory:
-    """The last minutes: points that lie in the last `seconds` followed, at most `most` of them."""
+    """The last minutes: points of the last `seconds` s, at most `limit` of them."""
 
     def __init__(self, seconds: float = 180.0, limit: int = 180) -> None:
         self.seconds = seconds
@@ -86,7 +86,7 @@ class RecentHistory:
         self._points: deque[HistoryPoint] = deque()
 
     def add(self, point: HistoryPoint) -> None:
-        """Remember it, in place of the newest where that one came a moment after its predecessor."""
+        """Append a point; it replaces the newest where that one is closer to its predecessor than the spacing."""
         points = self._points
         if points and points[-1].names != point.names:
             points.clear()

@@ -1,4 +1,4 @@
-"""What was admitted, on disk: appended, a checksum for each entry, so that a torn end is told from what was written.
+"""The samples accepted, on disk: appended, with a checksum for each entry, so that a torn end is recognised.
 
 A line of text (`seatrial journal 1 IDENTITY COLUMNS`), then entries, little-endian: `S`, time and values (f64 each),
 CRC-32; `R`, length (u16), why a run begins (UTF-8), CRC-32.
@@ -27,16 +27,17 @@ _HEADER_PREFIX = b"seatrial journal 1 "
 _CRC = struct.Struct("<I")
 _SAMPLE_TAG, _RUN_TAG = b"S", b"R"
 _SAMPLE_HEAD = struct.Struct("<cd")
-# with the wait for samples, on disk within a second
+# s between two flushes: with the wait for samples, an entry is on disk within a second
 _FLUSH_S = 0.7
-# what a break can tear off: what a second may hold, far less than a voyage
+# bytes that a break can tear off: more than a second of samples, far less than a run
 _MAX_TORN = 1 << 18
+# bytes read at once
 _CHUNK = 1 << 20
 
 
 @dataclass(frozen=True)
 class RunEntry:
-    """A run begins, and why."""
+    """The start of a run; reason: in words."""
 
     reason: str
 
@@ -45,22 +46,24 @@ JournalEntry = RunEntry | Sample
 
 
 def journal_identity(model: Model, layout: Layout) -> str:
-    """SHA-256 of what a journal belongs to: the equations, and the columns with their units, frames and signs."""
+    """Return the SHA-256 of what a journal belongs to: equations, and columns with their units, frames and signs."""
     return hashlib.sha256(f"{model.equation_hash} {layout.time} {layout.columns}".encode()).hexdigest()
 
 
 class Journal:
-    """An open journal: first `entries` of what is there; then what is noted is written by `write_pending`.
+    """An open journal: read `entries` first, then `append` and `write_pending`.
 
     Attributes:
-        path: the file; torn_bytes: left half-written by a break, cut off; write_error: why nothing more is written.
+        path: the file.
+        torn_bytes: bytes half-written before a break, which were cut off.
+        write_error: why nothing more is written; empty while all is well.
     """
 
     def __init__(self, path: Path, identity: str, columns: int, clock: Callable[[], float] = monotonic) -> None:
-        """Make or open a journal of `columns` values a sample.
+        """Create or open a journal of `columns` values a sample.
 
         Raises:
-            InputError: it cannot be written, is none, belongs to another trial, or is open elsewhere.
+            InputError: it cannot be written, is not a journal, belongs to another trial, or is open elsewhere.
         """
         self.path, self.torn_bytes, self.write_error = path, 0, ""
         self._columns, self._sample_size = columns, _SAMPLE_HEAD.size + 8 * columns
@@ -83,42 +86,42 @@ class Journal:
             raise
 
     def entries(self) -> Iterator[JournalEntry]:
-        """What the journal holds, in order; a torn end is cut off, so that writing goes on behind the last whole entry.
+        """Yield the entries in order; a torn end is then cut off, so that writing goes on behind the last whole entry.
 
         Raises:
-            InputError: damage that no break explains.
+            InputError: damage that a break cannot explain.
         """
-        place = self._entries_start
-        self._file.seek(place)
-        left = b""
+        position = self._entries_start
+        self._file.seek(position)
+        rest = b""
         while piece := self._file.read(_CHUNK):
-            left += piece
+            rest += piece
             used = 0
-            while (found := self._read_entry(left, used)) is not None:
-                entry, size = found
+            while (sized_entry := self._read_entry(rest, used)) is not None:
+                entry, size = sized_entry
                 used += size
                 yield entry
-            place, left = place + used, left[used:]
-            if len(left) > _MAX_TORN:
+            position, rest = position + used, rest[used:]
+            if len(rest) > _MAX_TORN:
                 raise InputError(
-                    f"journal '{self.path}' is damaged at byte {place}, long before its end; move it elsewhere"
+                    f"journal '{self.path}' is damaged at byte {position}, long before its end; move it elsewhere"
                 )
-        self.torn_bytes = len(left)
-        self._file.truncate(place)
-        self._file.seek(place)
+        self.torn_bytes = len(rest)
+        self._file.truncate(position)
+        self._file.seek(position)
 
     def append(self, entry: JournalEntry) -> None:
-        """Note what happened next."""
+        """Append an entry, to be written by `write_pending`."""
         match entry:
             case Sample(time=time, values=values):
-                made = _SAMPLE_HEAD.pack(_SAMPLE_TAG, time) + values.astype("<f8").tobytes()
+                data = _SAMPLE_HEAD.pack(_SAMPLE_TAG, time) + values.astype("<f8").tobytes()
             case RunEntry(reason=reason):
                 text = reason.encode()[: 2**16 - 1]
-                made = _RUN_TAG + struct.pack("<H", len(text)) + text
-        self._pending.append(made + _CRC.pack(zlib.crc32(made)))
+                data = _RUN_TAG + struct.pack("<H", len(text)) + text
+        self._pending.append(data + _CRC.pack(zlib.crc32(data)))
 
     def write_pending(self) -> None:
-        """Hand what was noted to the system, which survives this process; to the disk where a second has passed."""
+        """Hand entries to the operating system, where they survive this process; every 0.7 s also to the disk."""
         data, self._pending = b"".join(self._pending), []
         if data:
             self._try_write(lambda: _write_all(self._file, data))
@@ -127,18 +130,18 @@ class Journal:
             self._try_write(lambda: flush_to_disk(self._file.fileno()))
 
     def flush(self) -> None:
-        """All of it to the disk, now."""
+        """Write all entries through to the disk now."""
         self._flushed_at = -_FLUSH_S
         self.write_pending()
 
     def close(self) -> None:
-        """Bring everything to disk and give the file back."""
+        """Write all entries through to the disk and close the file."""
         if not self._file.closed:
             self.flush()
             self._try_write(self._file.close)
 
     def _read_entry(self, data: bytes, offset: int) -> tuple[JournalEntry, int] | None:
-        """The whole entry at that place and its size; None if there is none."""
+        """The complete entry at that offset and its size in bytes; None if there is none."""
         tag = data[offset : offset + 1]
         if tag == _SAMPLE_TAG:
             size = self._sample_size
@@ -156,33 +159,33 @@ class Journal:
         return Sample(_SAMPLE_HEAD.unpack_from(data, offset)[1], values), size + _CRC.size
 
     def _try_write(self, action: Callable[[], object]) -> None:
-        """A full disk ends the journal, not the voyage."""
+        """Do it; an error (a full disk) ends the journal, not the estimation."""
         if self.write_error:
             return
         try:
             action()
         except OSError as error:
             self.write_error = (
-                f"journal '{self.path}' is no longer written ({error.strerror}); make room and start again"
+                f"journal '{self.path}' is no longer written ({error.strerror}); free disk space and start again"
             )
 
 
 def _write_all(file: RawIOBase, data: bytes) -> None:
-    """All of it, or an error: half an entry must be the last."""
+    """Write all of it or raise an error: half an entry must be the last."""
     if file.write(data) != len(data):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
 def _check_header(file: RawIOBase, header: bytes, path: Path) -> int:
-    """Write or check the header; where entries begin."""
-    found = file.read(len(header))
-    if header.startswith(found):
+    """Write or check the header, and return the offset at which entries begin."""
+    present = file.read(len(header))
+    if header.startswith(present):
         file.seek(0)
-        file.truncate(0) if len(found) < len(header) else None
+        file.truncate(0) if len(present) < len(header) else None
         file.write(header)
-    elif not found.startswith(_HEADER_PREFIX):
-        raise InputError(f"'{path}' is no journal of 'seatrial follow'; name another file")
-    elif found != header:
+    elif not present.startswith(_HEADER_PREFIX):
+        raise InputError(f"'{path}' is not a journal of 'seatrial follow'; name another file")
+    elif present != header:
         raise InputError(
             f"journal '{path}' belongs to another model or other columns; name another one, or move it elsewhere"
         )

@@ -1,10 +1,11 @@
-"""Bytes to lines, whoever sends them: halves wait for their end, lines beyond a length are dropped and counted."""
+"""Bytes as lines, from any sender: half a line waits for its end, too long a line is dropped and counted."""
 
 from dataclasses import dataclass
 from typing import Protocol
 
 from seatrial.core.results.online import SampleCounts
 
+# ten times the longest NMEA sentence or row of a logger with some dozens of channels
 MAX_LINE_BYTES = 4096
 
 
@@ -17,24 +18,24 @@ class LineBatch:
 
 
 class LineSource(Protocol):
-    """Where lines come from. Never waits longer than asked, never raises for what somebody sends."""
+    """Where lines come from; never waits longer than the time given, never raises for what is sent."""
 
     def read(self, seconds: float) -> LineBatch:
-        """Lines that have come, waiting at most so long for the first; those of one file only."""
+        """Return the lines that have arrived, of one file only, waiting up to `seconds` s for the first."""
         ...
 
     @property
     def is_over(self) -> bool:
-        """Whether nothing more will come."""
+        """Whether the input has ended."""
         ...
 
     @property
     def counts(self) -> SampleCounts:
-        """What did not become a line: dropped, garbled (a half line whose end was lost), truncated."""
+        """What did not become a line: dropped, garbled (half a line whose end was lost), truncated."""
         ...
 
     def close(self) -> None:
-        """Give back the file or the socket."""
+        """Close the file or the socket."""
         ...
 
 
@@ -51,13 +52,13 @@ class LineSplitter:
         self._is_skipping = False
 
     def split(self, chunk: bytes) -> list[bytes]:
-        """The lines that end in this piece."""
-        *whole, self._partial = (self._partial + chunk).split(b"\n")
-        if self._is_skipping and whole:
-            del whole[0]
+        """Return the lines that end in this piece."""
+        *lines, self._partial = (self._partial + chunk).split(b"\n")
+        if self._is_skipping and lines:
+            del lines[0]
             self._is_skipping = False
-        kept = [line for line in whole if len(line) <= self._longest]
-        self.dropped += len(whole) - len(kept)
+        kept = [line for line in lines if len(line) <= self._longest]
+        self.dropped += len(lines) - len(kept)
         if self._is_skipping:
             self._partial = b""
         elif len(self._partial) > self._longest:
@@ -67,7 +68,7 @@ class LineSplitter:
         return kept
 
     def flush(self) -> list[bytes]:
-        """The half line, taken as a whole one because nothing more will come; empty if there is none."""
+        """Return the rest as a line, at the end of the input; empty if there is none."""
         half, self._partial = self._partial, b""
         self._is_skipping = False
         return [half] if half else []

@@ -1,4 +1,4 @@
-"""A live table on a terminal, plain lines everywhere else; nothing an odd terminal does stops the estimate."""
+"""A live table on a terminal, plain lines everywhere else; an error of the terminal does not stop the estimate."""
 
 import math
 import sys
@@ -15,7 +15,9 @@ from seatrial.onboard.table import TableContent, render_table
 if TYPE_CHECKING:
     from rich.console import Console
 
+# s between drawings, as fast as figures can be read
 REDRAW_INTERVAL_S = 0.5
+# s between lines, at least and at most, and as a share of the time followed: a log of an hour has some hundred lines
 MIN_LINE_INTERVAL_S, MAX_LINE_INTERVAL_S, INTERVAL_GROWTH = 1.0, 60.0, 0.05
 
 
@@ -29,8 +31,8 @@ class LiveDisplay:
 
     with Live(heading="trial.toml") as live: live.show(snapshot, counts)
 
-    stream: standard output unless told otherwise; heading: what is followed, and where its page is.
-    No threads: it draws when it is given something, at most twice a second; the last one is always shown.
+    stream: standard output by default; heading: what is followed, and the address of its page.
+    No threads: it draws when it is given a snapshot, at most twice a second; the last one is always shown.
     """
 
     def __init__(self, stream: TextIO | None = None, *, heading: str = "") -> None:
@@ -49,13 +51,13 @@ class LiveDisplay:
         self._screen = None
 
     def show(self, snapshot: Snapshot, counts: SampleCounts) -> None:
-        """Show this one, unless the one before was shown a moment ago."""
+        """Show the snapshot, unless another was shown less than half a second ago."""
         if self._screen is not None:
             self._screen.show(snapshot, counts)
 
 
 class _Table:
-    """The table, drawn in place."""
+    """A table, redrawn in place."""
 
     def __init__(self, console: "Console", heading: str) -> None:
         from rich.live import Live as RichLive
@@ -85,12 +87,12 @@ class _Table:
         if self._last is None or self._has_failed:
             return
         silence = 0.0 if height is None else time.monotonic() - self._updated_at
-        made = render_table(self._console, TableContent(self._heading, *self._last, self._recent, silence), height)
-        self._has_failed = not _try_write(lambda: self._live.update(made, refresh=height is not None))
+        table = render_table(self._console, TableContent(self._heading, *self._last, self._recent, silence), height)
+        self._has_failed = not _try_write(lambda: self._live.update(table, refresh=height is not None))
 
 
 class _Lines:
-    """A line now and then: at once, then at waits that grow from a second to a minute."""
+    """Lines: the first at once, later ones at intervals that grow from a second to a minute."""
 
     def __init__(self, stream: TextIO, heading: str) -> None:
         self._stream = stream
@@ -127,7 +129,7 @@ class _Lines:
 
 
 def _open_console(stream: TextIO) -> "Console | None":
-    """A console on that stream; None where it is no terminal, a dumb one, or cannot show what a table needs."""
+    """A console on that stream; None where it is not a terminal, or one that cannot draw a table."""
     try:
         if not stream.isatty():
             return None
@@ -150,7 +152,7 @@ def _print_encoded(text: str, stream: TextIO) -> None:
 
 
 def _try_write(write: Callable[[], object]) -> bool:
-    """Whether that could be written: a terminal may be closed, too small, or of an encoding of its own."""
+    """Write, and return whether that succeeded: a terminal may be closed, too small, or of an unusual encoding."""
     try:
         write()
     except (OSError, ValueError, LookupError):

@@ -1,4 +1,4 @@
-"""One snapshot as one line of plain text, for log files and for terminals that can draw nothing."""
+"""One snapshot as one line of plain text, for log files and for terminals that cannot draw."""
 
 from seatrial.core.results.online import SampleCounts, Snapshot
 from seatrial.core.text.numbers import MINUS, THIN_SPACE
@@ -28,9 +28,9 @@ def log_line(snapshot: Snapshot, counts: SampleCounts) -> str:
 
 
 def ascii_text(text: str) -> str:
-    """The text without typographic signs: - for a minus, 10^5 for a power of ten."""
-    shown = []
+    """Return the text without typographic signs: - for a minus, 10^5 for a power of ten."""
+    letters = []
     for before, letter in zip(" " + text, text, strict=False):
         is_first = letter in _SUPERSCRIPTS and before not in _SUPERSCRIPTS
-        shown.append(("^" if is_first else "") + _SUPERSCRIPTS.get(letter, letter))
-    return "".join(shown).translate(_ASCII)
+        letters.append(("^" if is_first else "") + _SUPERSCRIPTS.get(letter, letter))
+    return "".join(letters).translate(_ASCII)

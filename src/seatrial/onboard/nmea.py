@@ -17,43 +17,41 @@ from seatrial.onboard.sample import Sample
 
 ARRIVAL = "arrival"
 _STAMP_NAMES = ("stamp", "time")
-_DAY_S = 86400.0
-_RELAY_DELAY_S = 10.0
-_SAME_EPOCH = 0.25
+# s a day; s by which a relayed sentence may be late; share of a step within which stamps are one, as receivers round
+_DAY_S, _RELAY_DELAY_S, _SAME_EPOCH = 86400.0, 10.0, 0.25
 # WGS 84 (NIMA 2000, TR8350.2): semi-major axis [m], first eccentricity squared
 _A, _E2 = 6378137.0, 6.69437999014e-3
 
 
 @dataclass(eq=False)
 class _SentenceGroup:
-    """The sample that is being put together; time is NaN until it is known."""
+    """A sample under construction; time [s] is NaN until it is known."""
 
     time: float
     values: Array = field(default_factory=lambda: np.empty(0))
 
 
 class NmeaReader:
-    """Sentences to samples of the wanted channels, SI; what a group of sentences does not tell is NaN.
+    """Turns sentences into samples of the layout's channels, SI; a channel that a group of sentences lacks is NaN.
 
-    The layout says which channels are wanted and, by its column names, from which field
-    (`nmea_fields.columns_by_field`); its
-    units, separators and header mean nothing here. With time column ``stamp``, a time stamp later than the last (RMC,
-    GGA, GNS, GLL, ZDA) begins a group, to which all belongs until the next; of several readings of one channel the
-    first counts, being nearest the stamp. Stamps a quarter of a step apart are one; sentences up to 10 s behind come
+    The layout gives the channels and, by its column names, the field of each (`nmea_fields.columns_by_field`); its
+    units, separators and header have no meaning here. With time column ``stamp``, a time stamp later than the last
+    (RMC, GGA, GNS, GLL, ZDA) begins a group, which lasts until the next; of several readings of one channel the first
+    counts, being nearest the stamp. Stamps a quarter of a step apart are one; sentences up to 10 s behind come
     from a relay and are late. Time is UTC in s since the midnight before the first stamp. With ``arrival``, a reading
-    of a channel that the group has already begins the next, and time is the clock at which its lines were handed over;
-    groups handed over at once are spread at the nominal rate.
+    of a channel that the group has already begins the next, and time is the clock at which its lines arrived; groups
+    that arrive together are spread at the nominal rate.
 
     x0 north and y0 east lie on the plane that touches the ellipsoid at the first fix (error of y0: distance north
     times tan(latitude) over 6400 km, relative), heading and rudder are positive to starboard, roll, pitch and heave
-    as the transducer sends them: their sign belongs into the layout.
+    as the transducer sends them: their sign belongs in the layout.
 
     Attributes:
-        used, unused: sentences that told something wanted, and all other good ones.
-        origin: latitude and longitude [rad] of the plane; given: as before a restart.
+        used, unused: numbers of sentences with a reading that was used, and of all other valid ones.
+        origin: latitude and longitude [rad] of the plane; may be given, to go on after a restart.
 
     Raises:
-        InputError: a channel that no sentence tells, or a place that does not exist.
+        InputError: a channel that no sentence contains, or a field that does not exist.
     """
 
     def __init__(
@@ -66,7 +64,7 @@ class NmeaReader:
     ) -> None:
         self._column_ranks = columns_by_field(layout.columns)
         self._latitude_fields = {
-            place.replace(" lon", " lat") for place in self._column_ranks if place[-4:] in (" lat", " lon")
+            name.replace(" lon", " lat") for name in self._column_ranks if name[-4:] in (" lat", " lon")
         }
         self._by_arrival = _is_by_arrival(layout)
         self._dt, self._clock = 1.0 / rate, clock
@@ -77,18 +75,18 @@ class NmeaReader:
         self.origin = origin
         self.used = self.unused = 0
         self._garbled = self._checksum = self._late = 0
-        self._last_trouble = ""
+        self._last_error = ""
 
     @property
     def counts(self) -> SampleCounts:
         """garbled, checksum, late (relayed behind their time)."""
-        last = self._last_trouble
+        last = self._last_error
         if not (self._by_arrival or self._group or self._completed) and self.unused > 100:
-            last = "no sentence with a time (RMC, GGA, GLL, ZDA) has come; set follow.time column = 'arrival'"
+            last = "no sentence with a time (RMC, GGA, GLL, ZDA) has arrived; set column = 'arrival' in follow.time"
         return SampleCounts(garbled=self._garbled, checksum=self._checksum, late=self._late, last_problem=last)
 
     def samples(self, batch: LineBatch) -> list[Sample]:
-        """The samples that these lines complete, in order."""
+        """Return the samples that these lines complete, in order."""
         for line in batch.lines:
             if line.strip():
                 self._read_line(line)
@@ -98,7 +96,7 @@ class NmeaReader:
         return [Sample(group.time, group.values) for group in done]
 
     def flush(self) -> list[Sample]:
-        """The last group, which nothing will complete."""
+        """Return the last group as a sample, at the end of the input."""
         group, self._group = self._group, None
         return [] if group is None else [Sample(group.time, group.values)]
 
@@ -108,44 +106,44 @@ class NmeaReader:
             self._count_fault(sentence, line)
             return
         try:
-            told, at = readings(sentence), math.nan if self._by_arrival else utc_time(sentence)
+            field_values, stamp = readings(sentence), math.nan if self._by_arrival else utc_time(sentence)
         except ValueError:
             self._count_fault(SentenceFault.GARBLED, line)
             return
-        self._set_origin(told)
+        self._set_origin(field_values)
         is_used = False
-        if math.isfinite(at):
-            if not self._accept_stamp(at):
+        if math.isfinite(stamp):
+            if not self._accept_stamp(stamp):
                 self._late += 1
-                self._last_trouble = f"a {sentence.kind} sentence is behind the clock of the others"
+                self._last_error = f"a {sentence.kind} sentence is behind the clock of the others"
                 return
             is_used = True
-        for place, value in told.items():
-            if math.isfinite(value) and place in self._column_ranks:
-                is_used |= self._use_reading(place, value)
+        for name, value in field_values.items():
+            if math.isfinite(value) and name in self._column_ranks:
+                is_used |= self._use_reading(name, value)
         self.used += is_used
         self.unused += not is_used
 
     def _count_fault(self, fault: SentenceFault, line: bytes) -> None:
-        shown = repr(line[:40])[1:]
+        excerpt = repr(line[:40])[1:]
         if fault is SentenceFault.CHECKSUM:
             self._checksum += 1
-            self._last_trouble = f"wrong checksum: {shown}"
+            self._last_error = f"wrong checksum: {excerpt}"
         else:
             self._garbled += 1
-            self._last_trouble = f"no sentence: {shown}"
+            self._last_error = f"not a sentence: {excerpt}"
 
     def _accept_stamp(self, time_of_day: float) -> bool:
-        """Begin a group if the stamp is a new one; whether what comes with it belongs to the group."""
+        """Begin a group if the stamp is a new one, and return whether its sentence belongs to the present group."""
         if self._group is None:
             self._start_group(time_of_day)
             return True
         now = self._group.time
-        at = time_of_day + _DAY_S * round((now - time_of_day) / _DAY_S)
-        if -_RELAY_DELAY_S < at - now < -_SAME_EPOCH * self._dt:
+        stamp = time_of_day + _DAY_S * round((now - time_of_day) / _DAY_S)
+        if -_RELAY_DELAY_S < stamp - now < -_SAME_EPOCH * self._dt:
             return False
-        if abs(at - now) > _SAME_EPOCH * self._dt:
-            self._start_group(at)
+        if abs(stamp - now) > _SAME_EPOCH * self._dt:
+            self._start_group(stamp)
         return True
 
     def _start_group(self, timestamp: float) -> None:
@@ -170,23 +168,23 @@ class NmeaReader:
         return is_used
 
     def _to_local_plane(self, field_name: str, value: float) -> float:
-        """Latitude and longitude to metres north and east of the origin; anything else as it is."""
+        """Latitude and longitude as metres north and east of the origin; any other value unchanged."""
         part = field_name.partition(" ")[2]
         if self.origin is None or part not in ("lat", "lon"):
             return value
         return north_distance(value, self.origin) if part == "lat" else east_distance(value, self.origin)
 
     def _set_origin(self, field_values: dict[str, float]) -> None:
-        """The first position that is wanted touches the plane."""
+        """Put the origin of the plane at the first position of a field that is used."""
         if self.origin is not None:
             return
-        for place, latitude in field_values.items():
-            longitude = field_values.get(place.replace(" lat", " lon"), math.nan)
-            if place.endswith(" lat") and place in self._latitude_fields and math.isfinite(latitude + longitude):
+        for name, latitude in field_values.items():
+            longitude = field_values.get(name.replace(" lat", " lon"), math.nan)
+            if name.endswith(" lat") and name in self._latitude_fields and math.isfinite(latitude + longitude):
                 self.origin = (latitude, longitude)
 
     def _set_arrival_times(self) -> None:
-        """Times of the groups begun in these lines: spread up to now, never further apart than the nominal step."""
+        """Set the times of the groups begun in these lines: spread up to now, at most a nominal step apart."""
         begun = [group for group in (*self._completed, self._group) if group is not None and math.isnan(group.time)]
         now, before = self._clock(), self._arrived_at
         for number, group in enumerate(begun, start=1):
@@ -198,12 +196,12 @@ class NmeaReader:
 
 
 def north_distance(latitude: float, origin: tuple[float, float]) -> float:
-    """m north of the origin (latitude, longitude) [rad] along its meridian: Snyder 1987, USGS PP 1395, eq. 4-18."""
+    """Return the m north of the origin (latitude, longitude) [rad]: Snyder 1987, USGS PP 1395, eq. 4-18."""
     return _A * (1.0 - _E2) / (1.0 - _E2 * math.sin(origin[0]) ** 2) ** 1.5 * (latitude - origin[0])
 
 
 def east_distance(longitude: float, origin: tuple[float, float]) -> float:
-    """m east of the origin (latitude, longitude) [rad] along its parallel: ibid., eq. 4-20, 4-21."""
+    """Return the m east of the origin (latitude, longitude) [rad]: ibid., eq. 4-20, 4-21."""
     radius = _A / math.sqrt(1.0 - _E2 * math.sin(origin[0]) ** 2)
     return radius * math.cos(origin[0]) * math.remainder(longitude - origin[1], 2.0 * math.pi)
 

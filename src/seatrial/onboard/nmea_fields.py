@@ -1,11 +1,11 @@
-"""Which NMEA sentence tells which channel, and what a layout asks for."""
+"""Which field of which NMEA sentence gives which channel."""
 
 from collections.abc import Sequence
 
 from seatrial.core.values import InputError, quantity, spelling_hint
 from seatrial.data.read.layout import ColumnSpec
 
-# place -> SI unit; north and east, latitude and longitude are told apart by the second word
+# field -> SI unit; a second word distinguishes the quantities of one sentence
 _FIELD_UNITS = {
     "HDT": "rad",
     "THS": "rad",
@@ -28,7 +28,7 @@ _FIELD_UNITS = {
 }
 _TRANSDUCER_PREFIX = "XDR "
 
-# (channel, frame) -> places, the best first
+# (channel, frame) -> fields, the best first
 _DEFAULT_FIELDS: dict[tuple[str, str], tuple[str, ...]] = {
     ("psi", "earth"): ("HDT", "THS", "VHW heading"),
     ("r", "body"): ("ROT",),
@@ -47,19 +47,19 @@ _DEFAULT_FIELDS: dict[tuple[str, str], tuple[str, ...]] = {
 
 
 def columns_by_field(columns: Sequence[ColumnSpec]) -> dict[str, list[tuple[int, int]]]:
-    """Place -> (index of the column, rank, 0 the best) for each column that it can fill.
+    """Return field -> (index of the column, rank, 0 the best) for each column that it can fill.
 
-    A column called after its channel (or numbered) takes the usual places, the best that comes; one called after a
-    place (``VBW ground``, ``XDR ROLL1``) takes that alone.
+    A column named after its channel (or numbered) takes the usual fields, the best that arrives; one named after a
+    field (``VBW ground``, ``XDR ROLL1``) takes that alone.
 
     Raises:
-        InputError: no sentence tells the channel, or the place is not known or measures something else.
+        InputError: no sentence contains the channel, or the field is unknown or measures something else.
     """
-    found: dict[str, list[tuple[int, int]]] = {}
+    ranks: dict[str, list[tuple[int, int]]] = {}
     for index, column in enumerate(columns):
-        for rank, place in enumerate(_column_fields(column)):
-            found.setdefault(place, []).append((index, rank))
-    return found
+        for rank, field in enumerate(_column_fields(column)):
+            ranks.setdefault(field, []).append((index, rank))
+    return ranks
 
 
 def _column_fields(column: ColumnSpec) -> tuple[str, ...]:
@@ -68,7 +68,7 @@ def _column_fields(column: ColumnSpec) -> tuple[str, ...]:
         usual = _DEFAULT_FIELDS.get((column.symbol, column.declared_frame))
         if usual is None:
             raise InputError(
-                f"no NMEA 0183 sentence tells channel '{column.symbol}' in frame '{column.declared_frame}'; name a "
+                f"no NMEA 0183 sentence contains channel '{column.symbol}' in frame '{column.declared_frame}'; name a "
                 f"transducer, such as 'XDR NAME', or leave the channel out"
             )
         return usual
@@ -76,7 +76,7 @@ def _column_fields(column: ColumnSpec) -> tuple[str, ...]:
         return (_TRANSDUCER_PREFIX + source.removeprefix(_TRANSDUCER_PREFIX).strip().upper(),)
     if source not in _FIELD_UNITS:
         raise InputError(
-            f"channel '{column.symbol}': no NMEA place '{source}'{spelling_hint(source, sorted(_FIELD_UNITS))}"
+            f"channel '{column.symbol}': no NMEA field '{source}'{spelling_hint(source, sorted(_FIELD_UNITS))}"
         )
     if _FIELD_UNITS[source] != quantity(column.symbol).unit:
         raise InputError(
