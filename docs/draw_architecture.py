@@ -2,7 +2,7 @@
 
 Writes docs/pictures/architecture.svg and the table of subpackages in docs/architecture.md. The rows are those of the
 import contract "Layers" in pyproject.toml. An arrow is an import anywhere in a subpackage, inside functions and for
-type checkers included; drawn are those that no chain of other arrows implies.
+type checkers included, but not the contract's named exceptions; drawn are those that no chain of others implies.
 """
 
 import ast
@@ -45,16 +45,28 @@ def layers() -> list[list[str]]:
     The command line and the functions behind it, `cli` and `api`, are one layer; modules of the package itself, whose
     names begin with an underscore, are none.
     """
-    contracts = tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]
-    order = {c["containers"][0]: c["layers"] for c in contracts["contracts"] if c["type"] == "layers"}
+    order = {c["containers"][0]: c["layers"] for c in _contracts() if c["type"] == "layers"}
     rows = []
     for row in order.pop("seatrial"):
-        names = _siblings(row)
+        names = [name for name in _siblings(row) if not name.startswith("_")]
+        if not names:
+            continue
         if names[0].startswith("_"):
             continue
         inner = order.get(f"seatrial.{names[0]}")
         rows.append([f"{names[0]}.{n}" for line in inner for n in _siblings(line)] if inner else names)
     return [rows[0] + rows[1], *rows[2:]] if rows[:2] == [["cli"], ["api"]] else rows
+
+
+def exceptions() -> set[tuple[str, str]]:
+    """Return importing and imported module of each upward import that the contracts allow by name."""
+    lines = [line for contract in _contracts() for line in contract.get("ignore_imports", [])]
+    return {(importer.strip(), target.strip()) for importer, _, target in (line.partition("->") for line in lines)}
+
+
+def _contracts() -> list[dict]:
+    text = (REPOSITORY / "pyproject.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)["tool"]["importlinter"]["contracts"]
 
 
 def _siblings(row: str) -> list[str]:
@@ -65,12 +77,14 @@ def arrows(subpackages: list[str]) -> Arrows:
     """Return which subpackages each subpackage imports, from the source text alone."""
     drawn: Arrows = {name: set() for name in subpackages}
     for path in sorted((SOURCE / "seatrial").rglob("*.py")):
-        importer = subpackage_of(".".join(path.relative_to(SOURCE).with_suffix("").parts), subpackages)
+        module = ".".join(path.relative_to(SOURCE).with_suffix("").parts)
+        importer = subpackage_of(module, subpackages)
         if importer is None:
             continue
-        for module in imported_modules(path):
-            target = subpackage_of(module, subpackages)
-            if target not in (None, importer):
+        allowed = tuple(target for name, target in exceptions() if name == module)
+        for imported in imported_modules(path):
+            target = subpackage_of(imported, subpackages)
+            if target not in (None, importer) and not imported.startswith(allowed):
                 drawn[importer].add(target)
     return drawn
 
@@ -191,7 +205,8 @@ def page(rows: list[list[str]], graph: Arrows) -> str:
     total, shown = sum(map(len, graph.values())), sum(map(len, reduced(graph).values()))
     caption = (
         f"{len(rows)} layers, {len(graph)} subpackages, {total} imports between them; drawn are the {shown} that no "
-        "chain of others implies."
+        f"chain of others implies.\n{len(exceptions())} imports upwards, each inside one method, are named in "
+        "pyproject.toml."
     )
     picture_line = "![The layers of seatrial, drawn from its imports](pictures/architecture.svg)"
     return f"{before}{BEGIN}\n\n{picture_line}\n\n{caption}\n\n{table(rows, graph)}\n\n{END}{after}"
