@@ -18,6 +18,10 @@ class Model:
     equations: ModelEquations
     parameters: Parameters
 
+    def __repr__(self) -> str:
+        inputs = ", ".join(self.input_names) or "none"
+        return f"<Model '{self.name}': states {', '.join(self.states)}; inputs {inputs}; {self.parameters!r}>"
+
     @property
     def name(self) -> str:
         """What the registry and model files call it."""

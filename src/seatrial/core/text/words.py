@@ -6,6 +6,8 @@ from collections.abc import Sequence
 
 # characters of a text from elsewhere that are shown at most
 MAX_TEXT_LENGTH = 300
+NAMES_SHOWN = 12
+"""Names of a list that a one-line description gives before it counts the rest, so that it stays a line or two."""
 
 
 def ordinal(number: int) -> str:

@@ -8,6 +8,7 @@ from typing import Self
 
 import numpy as np
 
+from seatrial.core.text.words import NAMES_SHOWN, enumeration
 from seatrial.core.values.arrays import Array
 from seatrial.core.values.errors import InputError, spelling_hint
 
@@ -75,6 +76,11 @@ class Parameters:
 
     def __len__(self) -> int:
         return len(self.items)
+
+    def __repr__(self) -> str:
+        free = [f"{p.name} = {p.value:.5g}" for p in self.items if p.free]
+        fixed = [p.name for p in self.items if not p.free]
+        return f"<Parameters: {_names_text('free', free)}; {_names_text('fixed', fixed)}>"
 
     def __contains__(self, name: str) -> bool:
         return name in self._index_by_name
@@ -155,3 +161,7 @@ class Parameters:
     def without_priors(self) -> Self:
         """Return the parameters without any prior."""
         return self._with_changes({name: {"prior": None} for name in self.names})
+
+
+def _names_text(kind: str, names: list[str]) -> str:
+    return f"{len(names)} {kind}" + (f" ({enumeration(names, NAMES_SHOWN)})" if names else "")

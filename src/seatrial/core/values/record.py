@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from seatrial.core.text.words import NAMES_SHOWN, enumeration
 from seatrial.core.values.arrays import Array, frozen
 from seatrial.core.values.channel import Channel, Provenance
 from seatrial.core.values.dataframe import ColumnDeclarations, channel_columns, column_numbers
@@ -81,6 +82,10 @@ class Record:
 
     def __len__(self) -> int:
         return len(self.time)
+
+    def __repr__(self) -> str:
+        channels = enumeration([f"{symbol} [{channel.unit}]" for symbol, channel in self.channels.items()], NAMES_SHOWN)
+        return f"<Record '{self.name}', {self.kind}: {len(self)} samples over {self.duration:g} s of {channels}>"
 
     def __contains__(self, symbol: str) -> bool:
         return symbol in self.channels

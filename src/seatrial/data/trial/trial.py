@@ -229,6 +229,11 @@ class Trial:
     stream: Stream | None = None
     findings: tuple[Finding, ...] = ()
 
+    def __repr__(self) -> str:
+        roles = ", ".join(f"{len(self.runs_with_role(role))} {role}" for role in Role if self.runs_with_role(role))
+        file = f" of '{self.path.name}'" if self.path else ""
+        return f"<Trial{file}: {self.ship.name}, model {self.model.name}; runs: {roles or 'none'}>"
+
     def runs_with_role(self, role: Role) -> tuple[TrialRun, ...]:
         """The runs of one role, in order of their files."""
         return tuple(run for run in self.runs if run.role is role)
