@@ -21,7 +21,7 @@ def fit() -> Fit:
 def test_a_coefficient_is_found_by_its_name(fit: Fit) -> None:
     assert fit["Y_v"].estimate == fit.params["Y_v"]
     assert fit["L"].fixed and "L" not in fit.params
-    with pytest.raises(InputError, match="no coefficient 'Y_w'; did you mean"):
+    with pytest.raises(InputError, match=r"no coefficient 'Y_w'; did you mean"):
         fit["Y_w"]
 
 
@@ -54,7 +54,7 @@ def test_intervals_at_another_level_follow_student_s_t(fit: Fit, degrees: float)
 
 @pytest.mark.parametrize("level", [0.0, 1.0, 95.0])
 def test_a_level_that_is_no_probability_is_refused(fit: Fit, level: float) -> None:
-    with pytest.raises(InputError, match="not between 0 and 1; give a probability such as 0.95"):
+    with pytest.raises(InputError, match=r"not between 0 and 1; give a probability such as 0\.95"):
         fit.conf_int(level)
 
 

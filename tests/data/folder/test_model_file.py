@@ -15,12 +15,13 @@ from seatrial.core.results import IntervalBasis
 from seatrial.core.values import InputError, Prior, Ship
 from seatrial.data.folder.model_file import (
     ModelFile,
-    ModelProvenance,
     model_text,
     parse_model,
     read_model,
+    read_model_file,
     write_model,
 )
+from seatrial.data.folder.model_tables import ModelProvenance, RecordSource
 from seatrial.physics.models import model_named
 
 numbers = st.floats(allow_nan=False, allow_infinity=False)
@@ -35,7 +36,7 @@ def whole_file() -> ModelFile:
     return ModelFile(
         model.with_parameters(parameters),
         root @ root.T,
-        ModelProvenance((("run", "training", "ab12"),), "output error", 7, {"seatrial": "0"}),
+        ModelProvenance((RecordSource("run", "training", "ab12"),), "output error", 7, {"seatrial": "0"}),
         Ship("craft", {"L": 9.8}, "paper", 2.0),
         {"u": 0.8, "v_j": 1.866},
     )
@@ -156,3 +157,18 @@ def test_a_margin_that_cannot_be_is_refused(wrong: Callable[[IntervalBasis, int]
     count = len(file.model.parameters.free)
     with pytest.raises(InputError, match=rf"model file 'model\.toml'.*{says}"):
         parse_model(model_text(replace(file, interval_basis=wrong(margin(count), count))), "model.toml")
+
+
+@pytest.mark.parametrize(
+    "path", sorted((Path(__file__).parent / "earlier_model_files").iterdir()), ids=lambda p: p.stem
+)
+def test_model_files_of_version_0_1_are_read_with_all_they_hold(path: Path) -> None:
+    file = read_model_file(path)
+    count = len(file.model.parameters.free)
+    assert np.array_equal(file.covariance, 0.01 * np.eye(count))
+    assert (file.ship, file.approach) == (Ship("craft", {"L": 9.8}, "paper", 2.0), {"u": 0.8})
+    basis = file.interval_basis
+    assert basis is not None
+    assert (basis.degrees_of_freedom, basis.factor) == (5.0, 2.5)
+    assert (basis.measure_deviation, basis.training_envelope) == ({"overshoot_deg": 1.2}, {"rudder": 0.5})
+    assert (basis.offsets, basis.process) == ({"delta zero": 0.005}, {"r": 1e-4})

@@ -209,7 +209,7 @@ def test_the_model_file_knows_the_approach(fit: Fit, tmp_path: Path) -> None:
 
     file = read_model_file(save_result(fit, tmp_path) / "model.toml")
     assert file.approach == pytest.approx({"u": 0.8, "v_j": 1.8})
-    assert file.provenance.records[1][:2] == ("second", "validation")
+    assert (file.provenance.records[1].name, file.provenance.records[1].role) == ("second", "validation")
 
 
 def test_other_files_are_left_alone_and_nothing_temporary_stays(fit: Fit, tmp_path: Path) -> None:

@@ -18,7 +18,8 @@ from seatrial.core.values import Array, InputError
 from seatrial.core.values.files import write_files_atomically
 from seatrial.data.folder.archive import npz_arrays, npz_bytes
 from seatrial.data.folder.document import document, read_document, stored_document, strict_json
-from seatrial.data.folder.model_file import ModelFile, model_provenance, model_text, parse_model
+from seatrial.data.folder.model_file import ModelFile, model_text, parse_model
+from seatrial.data.folder.model_tables import ModelProvenance, RecordSource
 from seatrial.data.folder.orders import orders_csv
 from seatrial.data.folder.tuning_files import gains_toml, loop_mat, schedule_csv
 from seatrial.data.read.record_csv import record_csv
@@ -57,7 +58,8 @@ class FolderKind(Generic[T]):
 def _model_of_fit(fit: Fit) -> ModelFile:
     held_out = {p.record for p in fit.validation}
     roles = [(r, "validation" if r.name in held_out else "training") for r in fit.records]
-    provenance = model_provenance(roles, fit.method.criterion, fit.seed, fit.versions)
+    sources = tuple(RecordSource(record.name, role, record.provenance.sha256) for record, role in roles)
+    provenance = ModelProvenance(sources, fit.method.criterion, fit.seed, dict(fit.versions))
     approach = approach_condition([r for r, role in roles if role == "training"], fit.model)
     return ModelFile(fit.model, fit.covariance, provenance, fit.ship, approach, fit.interval_basis)
 
