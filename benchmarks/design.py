@@ -9,15 +9,17 @@ import argparse
 import math
 import sys
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 from measure import Line, at_least, at_most, machine
 from numpy.typing import NDArray
 
-from seatrial.core.results import Actuator, Design, TrialLimits
+from seatrial.core.results import Design
 from seatrial.core.values import InputError, Ship
 from seatrial.data.example_series.series import JET_VELOCITY, SAMPLE_RATE, SENSOR_NOISE, SLEW_RATE, true_model
+from seatrial.data.trial.design_request import DesignRequest, InputRange
 from seatrial.estimation.design.design import CONFIRMATION_RUNS, design
 from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator, leaves_limits
 from seatrial.estimation.design.search import GENERATIONS, search_step
@@ -30,35 +32,31 @@ Array = NDArray[np.float64]
 DURATION, HOLD, RANGE = 600.0, 15.0, math.radians(35.0)
 TEST_SHIPS, TEST_SEED, SEED = 50, 20261, 0
 FACTOR, SECONDS = 3.0, 60.0
-NOZZLE = Actuator("delta", -RANGE, RANGE, SLEW_RATE, HOLD)
-THRUST = Actuator("v_j", 1.4, 2.4, 0.2, 30.0)
-TIGHT = TrialLimits(drift=math.radians(30.0))
+NOZZLE = {"delta": InputRange(lower=-RANGE, upper=RANGE, unit="rad", rate=SLEW_RATE, hold=HOLD)}
+THRUST = {"v_j": InputRange(lower=1.4, upper=2.4, unit="m/s", rate=0.2, hold=30.0)}
+TIGHT = math.radians(30.0)
 COMPRESSED = ("consecutive-zigzags:1", "consecutive-zigzags:2")
 _CHUNK = 17
 
 
-def task(actuators: tuple[Actuator, ...] = (NOZZLE,), limits: TrialLimits | None = None) -> DesignTask:
+def task(inputs: Mapping[str, InputRange], drift: float | None = None) -> DesignTask:
     """The craft, her sensors and what may be moved; thrust is held where it is not moved."""
     craft = true_model()
-    held = {} if THRUST in actuators else {"v_j": JET_VELOCITY}
+    held = {} if "v_j" in inputs else {"v_j": JET_VELOCITY}
     return DesignTask(
         question="",
         ship=Ship("waterjet craft", {"L": craft.parameters["L"].value}),
         model=craft,
         sensors=SENSOR_NOISE,
-        rate=SAMPLE_RATE,
-        duration=DURATION,
-        actuators=actuators,
-        limits=limits or TrialLimits(),
-        held=held,
+        request=DesignRequest(duration=DURATION, rate=SAMPLE_RATE, inputs=inputs, held=held, drift=drift),
     )
 
 
 CASES = {
-    "nozzle": task(),
-    "nozzle, drift to 30 deg": task(limits=TIGHT),
-    "nozzle and thrust": task((NOZZLE, THRUST)),
-    "nozzle and thrust, drift to 30 deg": task((NOZZLE, THRUST), TIGHT),
+    "nozzle": task(NOZZLE),
+    "nozzle, drift to 30 deg": task(NOZZLE, TIGHT),
+    "nozzle and thrust": task(NOZZLE | THRUST),
+    "nozzle and thrust, drift to 30 deg": task(NOZZLE | THRUST, TIGHT),
 }
 
 
@@ -129,7 +127,7 @@ def worst_standard_errors(test: ManoeuvreEvaluator, manoeuvre: StandardManoeuvre
     found = []
     for first in range(0, test.ships.count, _CHUNK):
         few = PriorShips(test.ships.parameters[first : first + _CHUNK], test.ships.precision)
-        fine = ManoeuvreEvaluator(test.task, few, 1.0 / test.task.rate)
+        fine = ManoeuvreEvaluator(test.task, few, 1.0 / test.task.request.rate)
         try:
             found.append(fine.evaluate(manoeuvre.inputs_for(fine)).relative_errors.max(axis=1))
         except InputError:

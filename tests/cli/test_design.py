@@ -194,6 +194,6 @@ def test_the_search_itself_beats_the_standard_and_repeats_to_the_bit(
 def test_the_examples_ask_for_what_can_be_told(name: str, repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("SEATRIAL_DATA", raising=False)
     task = design_task(api.load_trial(repository / "examples" / f"{name}_design.toml"))
-    assert task.draws > 0
+    assert task.request.draws > 0
     assert np.isfinite(task.initial_state).all()
     refuse_unidentifiable(task.model, tuple(task.sensors), ())

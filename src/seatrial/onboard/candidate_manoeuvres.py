@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.results import Actuator
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.trial import Trial
+from seatrial.data.trial.design_request import DesignRequest, InputRange
 from seatrial.data.trial.follow_table import require_stream
 from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator
 from seatrial.estimation.design.search import search_step
@@ -127,35 +127,41 @@ def _roll_releases(model: Model, records: Sequence[Record]) -> list[CandidateMan
 
 
 def _design_task(trial: Trial, model: Model, records: Sequence[Record], noise: dict[str, float]) -> DesignTask:
-    brief, rate = trial.design_request, trial.estimate.rate or require_stream(trial).rate
-    common = {"question": "", "ship": trial.ship, "model": model, "sensors": noise, "rate": rate, "draws": 0}
-    if brief is not None:
-        return DesignTask(
-            **common,
-            duration=brief.duration,
-            actuators=brief.actuators,
-            limits=brief.limits,
-            held=brief.held,
-            speed=brief.speed,
-        )
+    rate = trial.estimate.rate or require_stream(trial).rate
+    stated = trial.design_request
+    if stated is not None:
+        request = replace(stated, rate=rate, draws=0)
+    else:
+        request = _default_request(trial, model, records, rate)
+    return DesignTask("", trial.ship, model, noise, request)
+
+
+def _default_request(trial: Trial, model: Model, records: Sequence[Record], rate: float) -> DesignRequest:
+    """What the actuators can do and what the records hold constant, for a trial without [design].
+
+    Raises:
+        InputError: nothing can be moved.
+    """
     unit = characteristic_time(model, records, trial.ship.length)
     duration = _rounded((_LINEAR_DURATION if model.is_affine else _DURATION) * unit)
     hold = max(_HOLD * unit, 4.0 / rate)
-    actuators = tuple(a for name in model.input_names if (a := _default_actuator(trial, model, name, hold)) is not None)
-    moved = {a.name for a in actuators}
-    held = {n: _median(records, n) for n in model.input_names if n not in moved and _is_constant_input(n, records)}
+    ranges = {name: _default_range(trial, model, name, hold) for name in model.input_names}
+    inputs = {name: one for name, one in ranges.items() if one is not None}
+    if not inputs:
+        raise InputError(f"model '{model.name}' has no rudder and no fin that could be moved")
+    held = {n: _median(records, n) for n in model.input_names if n not in inputs and _is_constant_input(n, records)}
     speed = _median(records, "u") if "u" in model.states and any("u" in r for r in records) else None
-    return DesignTask(**common, duration=duration, actuators=actuators, held=held, speed=speed)
+    return DesignRequest(duration=duration, rate=rate, inputs=inputs, held=held, speed=speed, draws=0)
 
 
-def _default_actuator(trial: Trial, model: Model, name: str, hold: float) -> Actuator | None:
-    """The limits of a rudder, or of a fin that has lift; None for any other input."""
+def _default_range(trial: Trial, model: Model, name: str, hold: float) -> InputRange | None:
+    """Return the limits of a rudder, or of a fin that has lift; None for any other input; hold: s."""
     if name == RUDDER:
-        fast = math.sqrt(trial.ship.scale)
-        return Actuator(name, -_RUDDER_LIMIT, _RUDDER_LIMIT, SOLAS_SLEW_RATE * fast, hold)
+        rate = SOLAS_SLEW_RATE * math.sqrt(trial.ship.scale)
+        return InputRange(lower=-_RUDDER_LIMIT, upper=_RUDDER_LIMIT, unit="rad", rate=rate, hold=hold)
     lift = name.replace("delta_f", "lift_")
     if name in _FIN_INPUTS and lift in model.parameters.names and model.parameters[lift].value:
-        return Actuator(name, -_FIN_LIMIT, _FIN_LIMIT, _FIN_RATE, hold)
+        return InputRange(lower=-_FIN_LIMIT, upper=_FIN_LIMIT, unit="rad", rate=_FIN_RATE, hold=hold)
     return None
 
 
@@ -177,7 +183,7 @@ def _rounded(seconds: float) -> float:
 def _describe(name: str, task: DesignTask) -> str:
     """A standard manoeuvre in words."""
     kind, *fields = name.split(":")
-    moved, length = " and ".join(a.name for a in task.actuators), f"of {task.duration:g} s"
+    moved, length = " and ".join(a.name for a in task.request.actuators), f"of {task.request.duration:g} s"
     if kind == "zigzag":
         return f"a zigzag {fields[0]} {length}"
     if kind == "consecutive-zigzags":

@@ -259,7 +259,7 @@ KIND = 'kind = "yu2014"'
         ([(SEA, 'heading = { value = 180, unit = "deg" }')], "seas[1]: the sea has no wave slope across the ship"),
         ([(SEA, "heading = 90")], "seas[1].heading = 90 is no heading to the waves"),
         ([(SEA, 'heading = { value = 9, unit = "m" }')], "seas[1].heading: 'm' is no unit of what is measured in rad"),
-        ([("height = 3.3", "height = 0")], "seas[1].height = 0 is not positive"),
+        ([("height = 3.3", "height = 0")], "seas[1].height: 0 is not positive"),
         ([("height = 3.3", "")], "seas[1]: spectrum 'ittc' needs a height"),
         ([("height = 3.3", "height = 3.3\nperiod = 8")], "seas[1]: spectrum 'ittc' has no period"),
         ([('spectrum = "ittc"\nheight = 3.3', 'spectrum = "sea-state"\nstate = 0')], "sea state 0"),

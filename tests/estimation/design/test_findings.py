@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatrial.core.results import Actuator, Confirmation, ManoeuvrePrecision, TrialLimits
+from seatrial.core.results import Confirmation, ManoeuvrePrecision
 from seatrial.core.values import InputError, Record, Ship
+from seatrial.data.trial.design_request import DesignRequest, InputRange
 from seatrial.estimation.design.findings import findings, refuse_violated_limits
 from seatrial.estimation.design.task import DesignTask
 from seatrial.physics.models.waterjet import COEFFICIENTS, waterjet
@@ -19,11 +20,14 @@ TASK = DesignTask(
     Ship("craft", {"L": 9.8}),
     waterjet(),
     {"u": 0.02, "v": 0.02, "r": 0.002},
-    10.0,
-    600.0,
-    (Actuator("delta", -0.6, 0.6, 0.07, 15.0),),
-    TrialLimits(math.radians(30.0), 400.0),
-    {"v_j": 1.866},
+    DesignRequest(
+        duration=600.0,
+        rate=10.0,
+        inputs={"delta": InputRange(lower=-0.6, upper=0.6, unit="rad", rate=0.07, hold=15.0)},
+        held={"v_j": 1.866},
+        drift=math.radians(30.0),
+        sea_room=400.0,
+    ),
 )
 TEN = np.full(10, 1.0)
 GOOD = ManoeuvrePrecision(
@@ -88,7 +92,7 @@ def test_limits_that_are_left_are_refused_with_what_is_reached() -> None:
         refuse_violated_limits(TASK, far)
     with pytest.raises(InputError, match="the ship reaches 500 m from the start, 400 m are allowed"):
         refuse_violated_limits(TASK, replace(GOOD, distance=500.0))
-    every = replace(TASK, limits=replace(TASK.limits, for_every_ship=True))
+    every = replace(TASK, request=replace(TASK.request, every_ship=True))
     stray = replace(GOOD, sampled_drift=TEN)
     refuse_violated_limits(TASK, stray)
     with pytest.raises(InputError, match=r"some ship of the prior reaches a drift angle of 57\.3 deg"):

@@ -5,28 +5,35 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatrial.core.results import Actuator
 from seatrial.core.values import InputError, Ship
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.data.trial import Trial
-from seatrial.data.trial.trial import DesignRequest
+from seatrial.data.trial.design_request import DesignRequest, InputRange
 from seatrial.estimation.design.from_trial import design_task
 from seatrial.physics.models import model_named
 
-NOZZLE = Actuator("delta", -0.6, 0.6, 0.07, 5.0)
-BRIEF = DesignRequest(300.0, 5.0, (NOZZLE,), {"v_j": 1.866}, draws=3, prior_fraction=0.2)
+NOZZLE = InputRange(lower=-0.6, upper=0.6, unit="rad", rate=0.07, hold=5.0)
+REQUEST = DesignRequest(
+    duration=300.0, rate=5.0, inputs={"delta": NOZZLE}, held={"v_j": 1.866}, draws=3, prior_percent=20.0
+)
 
 
 def trial(**changes: object) -> Trial:
     noise = {"u": 0.02, "psi": 0.003}
-    made = Trial(Ship("craft", {"L": 9.8}), (), model_named("waterjet"), noise=noise, design_request=BRIEF)
+    made = Trial(Ship("craft", {"L": 9.8}), (), model_named("waterjet"), noise=noise, design_request=REQUEST)
     return replace(made, **changes)
 
 
 def test_the_brief_becomes_a_task() -> None:
     task = design_task(trial(question="how?"))
-    assert (task.question, task.duration, task.rate, task.draws, task.relative_spread) == ("how?", 300.0, 5.0, 3, 0.2)
-    assert task.actuators == (NOZZLE,)
+    assert (
+        task.question,
+        task.request.duration,
+        task.request.rate,
+        task.request.draws,
+        task.request.relative_spread,
+    ) == ("how?", 300.0, 5.0, 3, 0.2)
+    assert task.request.actuators == (NOZZLE.actuator("delta"),)
     assert task.sensors == {"u": 0.02, "psi": 0.003}
     assert task.covariance is None
     assert task.initial_state[0] == pytest.approx(0.8, rel=0.01)
@@ -47,7 +54,7 @@ def test_a_model_file_takes_the_place_of_the_trial_s_values() -> None:
         ({"design_request": None}, r"there is no table \[design\]"),
         ({"noise": {}}, r"give \[noise\]"),
         ({"noise": {"thrust": 1.0}}, r"\[noise\] thrust is nothing that model 'waterjet' shows"),
-        ({"design_request": replace(BRIEF, held={})}, "needs the input 'v_j'"),
+        ({"design_request": replace(REQUEST, held={})}, "needs the input 'v_j'"),
         ({"model": model_named("waterjet").with_values({"X_rr": 0.0})}, "coefficient 'X_rr' is zero"),
     ],
 )

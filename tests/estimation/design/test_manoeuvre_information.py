@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.estimation.design.conftest import with_limits
 
 from seatrial.core.results import TrialLimits
 from seatrial.core.values import Array
@@ -23,7 +24,7 @@ from seatrial.estimation.problem.segments import cut_segments
 
 
 def hard(task: DesignTask, seed: int = 1) -> list[Array]:
-    (actuator,), (count,) = task.actuators, order_counts(task)
+    (actuator,), (count,) = task.request.actuators, order_counts(task)
     return [np.random.default_rng(seed).choice([actuator.lower, actuator.upper], size=count)]
 
 
@@ -36,7 +37,7 @@ def errors(task: DesignTask, dt: float) -> Array:
 
 
 def test_it_is_the_bound_of_output_error_with_the_initial_state_unknown(craft: DesignTask) -> None:
-    dt = 1.0 / craft.rate
+    dt = 1.0 / craft.request.rate
     record = simulate_plan(craft, planned_record(craft, input_series(craft, hard(craft), dt), dt), "hard")
     noise = np.array(list(craft.sensors.values()))
     problem = OutputError(
@@ -53,13 +54,15 @@ def test_sensors_twice_as_good_or_four_times_as_fast_halve_the_errors(craft: Des
     reference = errors(craft, 1.0)
     better = replace(craft, sensors={name: 0.5 * s for name, s in craft.sensors.items()})
     assert errors(better, 1.0) == pytest.approx(0.5 * reference, rel=1e-9)
-    assert errors(replace(craft, rate=4.0 * craft.rate), 1.0) == pytest.approx(0.5 * reference, rel=1e-9)
+    assert errors(replace(craft, request=replace(craft.request, rate=4.0 * craft.request.rate)), 1.0) == pytest.approx(
+        0.5 * reference, rel=1e-9
+    )
 
 
 def test_what_goes_on_longer_or_measures_more_never_tells_less(craft: DesignTask) -> None:
     dt = 1.0
     whole = alone(craft, dt).evaluate(input_series(craft, hard(craft), dt)).relative_errors[0]
-    shorter = replace(craft, duration=150.0)
+    shorter = replace(craft, request=replace(craft.request, duration=150.0))
     less = alone(shorter, dt).evaluate(input_series(craft, hard(craft), dt)[:151]).relative_errors[0]
     assert np.all(whole < less)
     fewer = {n: s for n, s in craft.sensors.items() if n != "v"}
@@ -112,7 +115,7 @@ def test_limits_bind_the_ship_assumed_and_the_others_on_request(craft: DesignTas
     farthest = int(np.argmax(told.drift))
     assert farthest != 0
     between = TrialLimits(drift=0.5 * float(told.drift[0] + told.drift[farthest]))
-    bound, strict = replace(craft, limits=between), replace(craft, limits=replace(between, for_every_ship=True))
+    bound, strict = with_limits(craft, between), with_limits(craft, replace(between, for_every_ship=True))
     assert not leaves_limits(bound, told)
     assert leaves_limits(strict, told)
     assert limit_excess(bound, told)[farthest] == pytest.approx(told.drift[farthest] / between.drift - 1.0)
@@ -123,9 +126,9 @@ def test_ships_are_the_model_first_then_within_the_spread_and_the_same_for_a_see
     free = [craft.model.parameters.index(n) for n in craft.model.parameters.free_names]
     share = fleet.parameters[:, free] / craft.model.parameters.values[free] - 1.0
     assert np.array_equal(fleet.parameters[0], craft.model.parameters.values)
-    assert np.abs(share).max() <= craft.relative_spread
+    assert np.abs(share).max() <= craft.request.relative_spread
     assert share[1:].mean(axis=0) == pytest.approx(0.0, abs=0.005)
-    assert share[1:].std(axis=0) == pytest.approx(craft.relative_spread / 3**0.5, rel=0.02)
+    assert share[1:].std(axis=0) == pytest.approx(craft.request.relative_spread / 3**0.5, rel=0.02)
     assert np.array_equal(draw_ships(craft, 5, 200).parameters, fleet.parameters)
     fixed = [i for i in range(len(craft.model.parameters)) if i not in free]
     assert np.array_equal(np.ptp(fleet.parameters[:, fixed], axis=0), np.zeros(len(fixed)))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.estimation.design.conftest import JET, NOZZLE
+from tests.estimation.design.conftest import BOTH, NOZZLE, with_inputs
 
 from seatrial.core.values import RecordKind
 from seatrial.estimation.design.manoeuvre_information import simulate_plan
@@ -51,11 +51,11 @@ def test_a_point_beyond_an_end_means_that_end(craft: DesignTask) -> None:
 
 def test_the_table_steers_what_was_scored(craft: DesignTask) -> None:
     """From its lines alone, at their times, the same inputs to the bit; equal orders make one line."""
-    both = replace(craft, actuators=(NOZZLE, JET), held={})
+    both = with_inputs(craft, BOTH, {})
     orders = [np.repeat([0.3, -0.3, 0.3, 0.0], 3), np.array([1.4, 2.4, 2.4, 2.4, 1.4, 1.4])]
     lines = order_table(both, orders)
     assert [line.time for line in lines] == [0.0, 30.0, 45.0, 90.0, 120.0, 135.0]
-    for j, actuator in enumerate(both.actuators):
+    for j, actuator in enumerate(both.request.actuators):
         told = [[line for line in lines if line.time <= k * actuator.hold][-1] for k in range(order_counts(both)[j])]
         assert [line.values[actuator.name] for line in told] == orders[j].tolist()
 
@@ -84,12 +84,14 @@ def _turn_of_a_positive_record_angle(task: DesignTask) -> float:
     from seatrial.physics.manoeuvres.programme import programme
     from seatrial.physics.simulate.steer import manoeuvre
 
-    circle = manoeuvre(task.model, programme("turning-circle:10"), dt=0.2, duration=60.0, inputs=dict(task.held))
+    circle = manoeuvre(
+        task.model, programme("turning-circle:10"), dt=0.2, duration=60.0, inputs=dict(task.request.held)
+    )
     return float(np.sign(circle.channel("psi").values[-1] * circle.channel("delta").values[-1]))
 
 
 @pytest.mark.parametrize("hold", [1.0 / 3.0, 2.0 / 7.0, 0.7, 1.2])
 def test_no_order_is_left_out_of_the_table_whatever_the_hold(craft: DesignTask, hold: float) -> None:
-    task = replace(craft, actuators=(replace(craft.actuators[0], hold=hold),))
+    task = replace(craft, request=craft.request.with_hold(hold))
     wanted = np.linspace(-0.5, 0.5, order_counts(task)[0])
     assert [line.values["delta"] for line in order_table(task, [wanted])] == wanted.tolist()

@@ -13,7 +13,8 @@ from seatrial.estimation.design.task import DesignTask
 
 
 def shortened(path: Path, duration: float) -> DesignTask:
-    return replace(design_task(load_trial(path)), duration=duration, draws=2, question="")
+    task = design_task(load_trial(path))
+    return replace(task, request=replace(task.request, duration=duration, draws=2), question="")
 
 
 @pytest.mark.parametrize(
@@ -30,6 +31,8 @@ def test_the_example_is_designed_and_beats_its_standard_manoeuvres(
     assert np.isfinite(made.designed.sampled_relative_error).all()
     assert standard in against
     worth = {"worst": lambda w: w.worst, "mean": lambda w: w.mean}[made.criterion]
-    within = [w for w in made.baselines if w.drift <= task.limits.drift and w.distance <= task.limits.sea_room]
+    within = [
+        w for w in made.baselines if w.drift <= task.request.limits.drift and w.distance <= task.request.limits.sea_room
+    ]
     assert worth(made.designed) < min(worth(w) for w in within)
-    assert {a.name for a in task.actuators} == set(made.orders[0].values)
+    assert {a.name for a in task.request.actuators} == set(made.orders[0].values)

@@ -5,16 +5,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.estimation.design.conftest import JET, NOZZLE
+from tests.estimation.design.conftest import BOTH, with_inputs, with_limits
 
 from seatrial.core.results import Design, TrialLimits
+from seatrial.data.trial.design_request import DesignCriterion
 from seatrial.estimation.design.design import design
 from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator, ManoeuvreInformation, leaves_limits
 from seatrial.estimation.design.orders import input_series, orders_at
 from seatrial.estimation.design.search import DesignObjective, criterion_errors, search_orders, search_step
 from seatrial.estimation.design.ships import draw_ships
 from seatrial.estimation.design.standard_manoeuvres import standard_manoeuvres
-from seatrial.estimation.design.task import DesignCriterion, DesignTask
+from seatrial.estimation.design.task import DesignTask
 from seatrial.physics.simulate.channels import inputs_of
 
 GENERATIONS = 12
@@ -28,13 +29,13 @@ def quiet(_: str) -> None: ...
 
 
 def test_standard_manoeuvres_keep_range_rate_and_where_they_can_the_limits(craft: DesignTask) -> None:
-    task = replace(craft, actuators=(NOZZLE, JET), held={}, limits=TrialLimits(drift=math.radians(10.0)))
+    task = with_limits(with_inputs(craft, BOTH, {}), TrialLimits(drift=math.radians(10.0)))
     at = bench(task)
     found = standard_manoeuvres(at)
     assert {"zigzag:10/10", "zigzag:20/20", "consecutive-zigzags:1", "turning-circle:35"} <= {r.name for r in found}
     for one in found:
         made = np.atleast_3d(one.inputs_for(at)).reshape(-1, *one.inputs_for(at).shape[-2:])
-        for actuator in task.actuators:
+        for actuator in task.request.actuators:
             j = task.model.input_names.index(actuator.name)
             sign = -1.0 if task.model.inputs[j].is_reversed else 1.0
             course = sign * made[:, :, j]
@@ -58,7 +59,7 @@ def test_leaving_the_limits_costs_more_than_any_worth(craft: DesignTask) -> None
     at = bench(craft)
     point = np.tile([1.0, 1.0, 0.0, 0.0], 3)
     drift = at.evaluate(input_series(craft, orders_at(craft, point), at.dt)).drift[0]
-    tight = replace(at, task=replace(craft, limits=TrialLimits(drift=0.5 * float(drift))))
+    tight = replace(at, task=with_limits(craft, TrialLimits(drift=0.5 * float(drift))))
     reference = np.ones(at.ships.count)
     assert DesignObjective(tight, reference).cost(point) > DesignObjective(at, reference).cost(point) + 10.0
 
@@ -81,7 +82,7 @@ def test_one_worker_finds_the_same_bits(craft: DesignTask, monkeypatch: pytest.M
     yardstick = DesignObjective.from_standards(at, standard_manoeuvres(at))
     many = search_orders(yardstick, 7, quiet, GENERATIONS)
     monkeypatch.setattr(
-        "seatrial.estimation.design.search.mapped", lambda function, items: [function(i) for i in items]
+        "seatrial.estimation.design.search.map_in_threads", lambda function, items: [function(i) for i in items]
     )
     assert np.array_equal(search_orders(yardstick, 7, quiet, GENERATIONS).solution.point, many.solution.point)
 
@@ -105,7 +106,7 @@ def test_ctrl_c_gives_the_best_so_far_and_says_so(craft: DesignTask) -> None:
 
 @pytest.fixture(scope="module")
 def limited(craft: DesignTask) -> Design:
-    task = replace(craft, limits=TrialLimits(drift=math.radians(12.0), sea_room=150.0))
+    task = with_limits(craft, TrialLimits(drift=math.radians(12.0), sea_room=150.0))
     return design(task, 1, quiet, confirmation_runs=8, generations=60)
 
 
@@ -120,7 +121,7 @@ def test_a_design_keeps_its_limits_and_beats_the_standard_manoeuvres_that_do(lim
 
 
 def test_its_plan_gives_its_worth_and_its_track(craft: DesignTask, limited: Design) -> None:
-    at = ManoeuvreEvaluator(replace(craft, limits=limited.limits), draw_ships(craft, 0, 0), 1.0 / limited.rate)
+    at = ManoeuvreEvaluator(with_limits(craft, limited.limits), draw_ships(craft, 0, 0), 1.0 / limited.rate)
     told = at.evaluate(inputs_of(limited.model, limited.plan))
     assert np.array_equal(told.relative_errors[0], limited.designed.relative_error)
     track = limited.designed.executed
@@ -144,5 +145,5 @@ def test_the_criterion_decides_what_is_made_small(
     craft: DesignTask, criterion: DesignCriterion, expected: float
 ) -> None:
     told = ManoeuvreInformation(np.array([[0.1, 0.1, 0.4, 0.1], [0.3, 0.3, 0.3, 0.3]]), np.zeros(2), np.zeros(2))
-    at = criterion_errors(replace(craft, criterion=criterion), told)
+    at = criterion_errors(replace(craft, request=replace(craft.request, criterion=criterion)), told)
     assert at == pytest.approx([expected, 0.3])

@@ -8,8 +8,6 @@ from seatrial.control.loopfile.schema import LoopFile, ScheduleTable, SeawayTabl
 from seatrial.control.task import ScheduleGrid, Seaway, SlowDisturbance
 from seatrial.core.values import InputError
 from seatrial.physics.loops import HullFactor, TransferLoop
-from seatrial.physics.sea.sea_state import sea_state
-from seatrial.physics.sea.spectrum import Spectrum, bretschneider, ittc, ittc_two_parameter, jonswap
 
 
 def loop_disturbances(
@@ -72,7 +70,7 @@ def seaway(table: SeawayTable, U: float, hull: HullFactor | None, where: str) ->
     """
     speed = U if table.speed is None else positive_value(table.speed, "m/s", f"{where}.speed")
     beta = heading_value(table.heading, f"{where}.heading")
-    return Seaway(_spectrum(table, where), speed, beta, hull, table.spreading)
+    return Seaway(table.to_spectrum(where), speed, beta, hull, table.spreading)
 
 
 def schedule_grid(table: ScheduleTable) -> ScheduleGrid:
@@ -86,28 +84,6 @@ def schedule_grid(table: ScheduleTable) -> ScheduleGrid:
         tuple(heading_value(a, "schedule.headings") for a in table.headings.quantities()),
         tuple(positive_value(a, "m", "schedule.heights") for a in table.heights.quantities()),
     )
-
-
-def _spectrum(table: SeawayTable, where: str) -> Spectrum:
-    if table.state is not None:
-        try:
-            return sea_state(table.state).spectrum()
-        except InputError as error:
-            raise InputError(f"{where}: {error}") from None
-    height = 0.0 if table.height is None else positive_value(table.height, "m", f"{where}.height")
-    period = 0.0 if table.period is None else positive_value(table.period, "s", f"{where}.period")
-    match table.spectrum:
-        case "ittc2":
-            return ittc_two_parameter(height, period)
-        case "bretschneider":
-            return bretschneider(height, period)
-        case "jonswap":
-            try:
-                return jonswap(height, period, table.gamma)
-            except InputError as error:
-                raise InputError(f"{where}.gamma: {error}") from None
-        case _:
-            return ittc(height)
 
 
 def _slow_disturbance(table: SlowDisturbanceTable, plant: LoopPlant, where: str) -> SlowDisturbance:

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from seatrial.data.trial.amounts import Amount, SiAmount, StrictTable, Unit
+from seatrial.data.trial.sea_table import SeaTable
 
 Coefficients = Annotated[tuple[float, ...], Field(min_length=1)]
 Share = Annotated[float, Field(gt=0, lt=1)]
@@ -197,27 +198,12 @@ class ActuatorTable(StrictTable):
     servo: tuple[BlockTable, ...] = ()
 
 
-class SeawayTable(StrictTable):
-    """One `[[seas]]` block: a spectrum, met under a heading (0 following, 180 degrees head) at a speed."""
+class SeawayTable(SeaTable):
+    """One `[[seas]]` block: a sea, met under a heading (0 following, 180 degrees head) at a speed."""
 
-    spectrum: Literal["ittc", "ittc2", "bretschneider", "jonswap", "sea-state"] = "ittc"
-    height: SiAmount | None = None
-    period: SiAmount | None = None
-    gamma: float = 3.3
-    state: Annotated[int, Field(ge=0, le=9)] | None = None
     heading: SiAmount
     speed: SiAmount | None = None
     spreading: Positive | None = None
-
-    @model_validator(mode="after")
-    def _keys_of_the_spectrum(self) -> Self:
-        needed = {"ittc": {"height"}, "sea-state": {"state"}}.get(self.spectrum, {"height", "period"})
-        given = {key for key in ("height", "period", "state") if getattr(self, key) is not None}
-        for key in sorted(needed - given):
-            raise ValueError(f"spectrum '{self.spectrum}' needs a {key}")
-        for key in sorted(given - needed):
-            raise ValueError(f"spectrum '{self.spectrum}' has no {key}")
-        return self
 
 
 class SlowDisturbanceTable(StrictTable):

@@ -76,10 +76,12 @@ class InSi:
 
     Attributes:
         unit: SI unit of the quantity, which a stated unit must measure; empty: any.
+        is_positive: whether zero and below are refused.
         table: the table in which the amount may be written.
     """
 
     unit: str = ""
+    is_positive: bool = False
     table: type[Amount] | type[StandardDeviation] = Amount
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
@@ -89,11 +91,15 @@ class InSi:
     def _in_si(self, amount: Amount | StandardDeviation) -> float | None:
         if self.unit and amount.unit and si_unit(amount.unit)[1] != self.unit:
             raise InputError(f"'{amount.unit}' is no unit of what is measured in {self.unit}; write one that is")
+        if self.is_positive and isinstance(amount, Amount) and not amount.value > 0.0:
+            raise InputError(f"{amount.value:g} is not positive; give a positive one")
         return amount.in_si
 
 
-Length = Annotated[float, InSi("m")]
-Duration = Annotated[float, InSi("s")]
 Speed = Annotated[float, InSi("m/s")]
 Angle = Annotated[float, InSi("rad")]
+PositiveLength = Annotated[float, InSi("m", is_positive=True)]
+PositiveDuration = Annotated[float, InSi("s", is_positive=True)]
+PositiveSpeed = Annotated[float, InSi("m/s", is_positive=True)]
+PositiveAngle = Annotated[float, InSi("rad", is_positive=True)]
 Deviation = Annotated[float | None, InSi(table=StandardDeviation)]

@@ -5,12 +5,11 @@ from pathlib import Path
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Ship
-from seatrial.data.trial.schema import ExcitationTable, SpectrumTable, WavesTable
+from seatrial.data.trial.schema import ExcitationTable, WavesTable
 from seatrial.data.trial.trial import WaveEncounter
 from seatrial.physics.hydro.dispersion import G
 from seatrial.physics.hydro.excitation import BoxHull, Excitation
 from seatrial.physics.sea.encounter import speed_factor
-from seatrial.physics.sea.spectrum import Spectrum, bretschneider, ittc, ittc_two_parameter, jonswap
 
 _MAX_FROUDE = 1.0
 _BOX_DIMENSIONS = ("L", "B", "d", "c33", "c35", "c53", "c55")
@@ -57,30 +56,17 @@ def wave_encounter(
     """
     if table is None:
         return None
-    froude = table.speed.in_si / math.sqrt(G * length)
+    froude = table.speed / math.sqrt(G * length)
     if froude > _MAX_FROUDE:
         raise InputError(
-            f"{where}.waves: {table.speed.in_si:.3g} m/s is a Froude number of {froude:.2g} at L = {length:g} m, where "
+            f"{where}.waves: {table.speed:.3g} m/s is a Froude number of {froude:.2g} at L = {length:g} m, where "
             "no strip theory holds; is the speed in knots?"
         )
     if excitation is None:
         raise InputError(f"{where}.waves: nothing turns the elevation into forces; add [excitation] source = 'box'")
     try:
-        speed_factor(table.speed.in_si, table.heading.in_si)
+        speed_factor(table.speed, table.heading)
     except InputError as error:
         raise InputError(f"{where}.waves: {error}") from None
-    spectrum = None if table.sea is None else _spectrum(table.sea)
-    return WaveEncounter(excitation, table.speed.in_si, table.heading.in_si, spectrum)
-
-
-def _spectrum(table: SpectrumTable) -> Spectrum:
-    height, period = table.height.in_si, 0.0 if table.period is None else table.period.in_si
-    match table.spectrum:
-        case "ittc":
-            return ittc(height)
-        case "ittc2":
-            return ittc_two_parameter(height, period)
-        case "bretschneider":
-            return bretschneider(height, period)
-        case "jonswap":
-            return jonswap(height, period, table.gamma)
+    spectrum = None if table.sea is None else table.sea.to_spectrum(f"{where}.waves.sea")
+    return WaveEncounter(excitation, table.speed, table.heading, spectrum)

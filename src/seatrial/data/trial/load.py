@@ -8,7 +8,7 @@ from pydantic import ValidationError
 from seatrial.core.equations import Model
 from seatrial.core.values import NOTATION, InputError, Ship, spelling_hint
 from seatrial.data.check.captive_forces import force_findings
-from seatrial.data.trial.design_table import design_request
+from seatrial.data.trial.design_request import refuse_unsuitable
 from seatrial.data.trial.excitation import excitation_of
 from seatrial.data.trial.follow_table import stream_of
 from seatrial.data.trial.forces import read_force_points
@@ -84,7 +84,8 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         if runs and file.follow is None:
             require_training_run(runs)
         stream = None if file.follow is None else stream_of(file.follow, base, home, excitation, ship.length)
-        brief = None if file.design is None else design_request(file.design, model, ship.length)
+        if file.design is not None:
+            refuse_unsuitable(file.design, model, ship.length)
         forces = tuple(
             read_force_points(block, base, model, file.model.reference_point, f"forces[{i}]")
             for i, block in enumerate(file.forces, start=1)
@@ -104,7 +105,7 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         path=path,
         forces=forces,
         family=file.family,
-        design_request=brief,
+        design_request=file.design,
         stream=stream,
         findings=(*ranges, *(finding for points in forces for finding in force_findings(points, unit))),
     )

@@ -7,7 +7,9 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 
 from seatrial.data.read.layout import Separator
 from seatrial.data.read.registry import require_format
-from seatrial.data.trial.amounts import Deviation, SiAmount, StrictTable, Unit
+from seatrial.data.trial.amounts import Angle, Deviation, SiAmount, Speed, StrictTable, Unit
+from seatrial.data.trial.design_request import DesignRequest
+from seatrial.data.trial.sea_table import SeaTable
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
 
 
@@ -63,30 +65,15 @@ class ChannelColumn(StrictTable):
     reference_point: float = 0.0
 
 
-class SpectrumTable(StrictTable):
-    """The spectrum of a sea whose elevation nobody recorded; `period`: mean T_1 for ittc2, else of the peak."""
-
-    spectrum: Literal["ittc", "ittc2", "bretschneider", "jonswap"]
-    height: SiAmount
-    period: SiAmount | None = None
-    gamma: float = 3.3
-
-    @model_validator(mode="after")
-    def _period_where_needed(self) -> Self:
-        if (self.period is None) != (self.spectrum == "ittc"):
-            raise ValueError(f"spectrum '{self.spectrum}' {'has no' if self.period else 'needs a'} period")
-        return self
-
-
 class WavesTable(StrictTable):
     """`[records.waves]`: heading to the waves (0 following, 180 degrees head; rad without a unit) and ship speed.
 
     `sea`: where neither the elevation nor the wave forces were recorded.
     """
 
-    heading: SiAmount
-    speed: SiAmount
-    sea: SpectrumTable | None = None
+    heading: Angle
+    speed: Speed
+    sea: SeaTable | None = None
 
 
 class ColumnsTable(StrictTable):
@@ -273,40 +260,6 @@ class ExcitationTable(StrictTable):
         return self
 
 
-class InputTable(StrictTable):
-    """`[design.inputs.NAME]`: what may be done with an input, in `unit`; `rate` in it per second, `hold` in s."""
-
-    lower: float
-    upper: float
-    unit: Unit
-    rate: Annotated[float, Field(gt=0)] | None = None
-    hold: Annotated[float, Field(gt=0)]
-
-    @model_validator(mode="after")
-    def _in_order(self) -> Self:
-        if not self.lower < self.upper:
-            raise ValueError(
-                f"lower = {self.lower:g} is not below upper = {self.upper:g}; give a range, the smaller first"
-            )
-        return self
-
-
-class DesignTable(StrictTable):
-    """`[design]`: the manoeuvre that is sought: how long, with which inputs, within which limits."""
-
-    duration: SiAmount
-    rate: Annotated[float, Field(gt=0)]
-    inputs: Annotated[dict[str, InputTable], Field(min_length=1)]
-    held: dict[str, SiAmount] = Field(default_factory=dict)
-    speed: SiAmount | None = None
-    criterion: Literal["worst", "mean"] = "worst"
-    draws: Annotated[int, Field(ge=0, le=1000)] = 24
-    prior_percent: Annotated[float, Field(gt=0, lt=100)] = 30.0
-    drift: SiAmount | None = None
-    sea_room: SiAmount | None = None
-    every_ship: bool = False
-
-
 class TrialFile(StrictTable):
     """The whole file; records may be missing where a manoeuvre is only to be designed, or a stream to be followed."""
 
@@ -322,7 +275,7 @@ class TrialFile(StrictTable):
     noise: dict[str, Deviation] = Field(default_factory=dict)
     truth: dict[str, float] = Field(default_factory=dict)
     estimate: EstimateSettings = EstimateSettings()
-    design: DesignTable | None = None
+    design: DesignRequest | None = None
     follow: FollowTable | None = None
 
 

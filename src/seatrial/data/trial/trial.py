@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from seatrial.core.equations import Model
-from seatrial.core.results import Actuator, TrialLimits
 from seatrial.core.values import Finding, ForcePoints, Record, Ship
 from seatrial.data.read import Layout, read_record
+from seatrial.data.trial.design_request import DesignRequest
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
 from seatrial.physics.hydro.excitation import Excitation
 from seatrial.physics.sea.spectrum import Spectrum
@@ -124,30 +124,6 @@ class TrialRun:
             InputError: its file cannot be read.
         """
         return self.data.read() if isinstance(self.data, RecordFile) else self.data
-
-
-@dataclass(frozen=True)
-class DesignRequest:
-    """What a manoeuvre that is to be designed must keep to, SI.
-
-    Attributes:
-        duration: s; rate: Hz at which the sensors are recorded.
-        actuators: inputs that may be moved; held: the other inputs, constant, in the record's signs.
-        limits: what the trial may not leave.
-        speed: approach speed u [m/s]; None: where surge balances.
-        criterion: ``worst`` or ``mean`` relative standard error.
-        draws: ships drawn from the prior; prior: by what share coefficients without a prior may differ.
-    """
-
-    duration: float
-    rate: float
-    actuators: tuple[Actuator, ...]
-    held: Mapping[str, float] = field(default_factory=dict)
-    limits: TrialLimits = field(default_factory=TrialLimits)
-    speed: float | None = None
-    criterion: str = "worst"
-    draws: int = 24
-    prior_fraction: float = 0.3
 
 
 class StreamSource(StrEnum):

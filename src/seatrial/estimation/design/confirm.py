@@ -32,7 +32,7 @@ def confirm_design(
     report_progress: Callable[[str], None],
 ) -> Confirmation:
     """One noisy record and one fit for every ship; `model_inputs` are the plan's inputs at the sensors' rate."""
-    foretold = ManoeuvreEvaluator(task, ships, 1.0 / task.rate).evaluate(model_inputs).relative_errors
+    foretold = ManoeuvreEvaluator(task, ships, 1.0 / task.request.rate).evaluate(model_inputs).relative_errors
     streams = np.random.SeedSequence(seed).spawn(ships.count)
 
     def fitted(number: int) -> Solution | None:

@@ -76,11 +76,11 @@ def design(
         model=task.model,
         coefficients=task.model.parameters.free_names,
         sensors=dict(task.sensors),
-        rate=task.rate,
-        duration=task.duration,
-        actuators=task.actuators,
-        limits=task.limits,
-        criterion=task.criterion.value,
+        rate=task.request.rate,
+        duration=task.request.duration,
+        actuators=task.request.actuators,
+        limits=task.request.limits,
+        criterion=task.request.criterion.value,
         relative_spread=relative_spread(task),
         designed=designed,
         baselines=others,
@@ -100,8 +100,8 @@ def _refuse_impossible_limits(evaluator: ManoeuvreEvaluator, standards: list[Sta
     task = evaluator.task
     told = evaluator.evaluate(np.tile(task.neutral_inputs, (sample_count(task, evaluator.dt), 1)))
     for what, reached, limit, factor, unit in (
-        ("drift angle", attrgetter("drift"), task.limits.drift, math.degrees(1.0), "deg"),
-        ("distance", attrgetter("distance"), task.limits.sea_room, 1.0, "m"),
+        ("drift angle", attrgetter("drift"), task.request.limits.drift, math.degrees(1.0), "deg"),
+        ("distance", attrgetter("distance"), task.request.limits.sea_room, 1.0, "m"),
     ):
         value = reached(told)[0]
         if value > limit and all(reached(evaluator.evaluate(r.inputs_for(evaluator)))[0] > limit for r in standards):

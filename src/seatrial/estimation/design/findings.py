@@ -19,18 +19,19 @@ def refuse_violated_limits(task: DesignTask, designed: ManoeuvrePrecision) -> No
     Raises:
         InputError: which limit, what the best orders reach, what is allowed.
     """
-    if is_within_limits(designed, task.limits):
+    if is_within_limits(designed, task.request.limits):
         return
-    every = task.limits.for_every_ship
+    every = task.request.limits.for_every_ship
     drift = float(np.max([designed.drift, *(designed.sampled_drift if every else ())]))
     room = float(np.max([designed.distance, *(designed.sampled_distance if every else ())]))
-    if drift > task.limits.drift:
-        said = f"a drift angle of {math.degrees(drift):.3g} deg, {math.degrees(task.limits.drift):.3g} deg are allowed"
+    limits = task.request.limits
+    if drift > limits.drift:
+        excess = f"a drift angle of {math.degrees(drift):.3g} deg, {math.degrees(limits.drift):.3g} deg are allowed"
     else:
-        said = f"{room:.3g} m from the start, {task.limits.sea_room:.3g} m are allowed"
+        excess = f"{room:.3g} m from the start, {limits.sea_room:.3g} m are allowed"
     whom = "some ship of the prior reaches" if every else "the ship reaches"
     raise InputError(
-        f"[design] cannot be kept: under the best of all orders tried {whom} {said}; widen that limit, shorten the "
+        f"[design] cannot be kept: under the best of all orders tried {whom} {excess}; widen that limit, shorten the "
         "trial, or narrow the inputs' ranges"
     )
 
@@ -43,7 +44,7 @@ def findings(
     if is_interrupted:
         found.append(_warning("interrupted", "the work was interrupted; this is the best so far",
                               "let it finish for a better manoeuvre"))  # fmt: skip
-        if not is_within_limits(designed, task.limits):
+        if not is_within_limits(designed, task.request.limits):
             found.append(_warning("leaves-limits", "these orders leave the limits", "let the search finish"))
     return (
         *found,
@@ -82,7 +83,7 @@ def _unidentifiable(task: DesignTask, designed: ManoeuvrePrecision) -> list[Find
 def _limit_violations(task: DesignTask, designed: ManoeuvrePrecision) -> list[Finding]:
     found, count = [], len(designed.sampled_relative_error)
     farthest = max([designed.drift, *designed.sampled_drift.tolist()])
-    if straying := count_outside_limits(designed, task.limits):
+    if straying := count_outside_limits(designed, task.request.limits):
         severity = Severity.WARNING if straying > _MANY_LEAVING * count else Severity.INFO
         found.append(Finding(severity, "straying", f"{straying} of {count} ships drawn from the prior leave the limits "
                              f"under these orders, with up to {math.degrees(farthest):.0f} deg of drift and "

@@ -4,7 +4,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import InputError
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.data.trial import Trial
-from seatrial.estimation.design.task import DesignCriterion, DesignTask
+from seatrial.estimation.design.task import DesignTask
 
 
 def design_task(trial: Trial, model_file: ModelFile | None = None) -> DesignTask:
@@ -18,8 +18,8 @@ def design_task(trial: Trial, model_file: ModelFile | None = None) -> DesignTask
             `DesignTask` refuses; the sentence begins with the trial file.
     """
     where = f"{trial.path}: " if trial.path else ""
-    brief = trial.design_request
-    if brief is None:
+    request = trial.design_request
+    if request is None:
         raise InputError(f"{where}there is no table [design]; add it with duration, rate and [design.inputs]")
     try:
         model = trial.model if model_file is None else _demand_same_equations(model_file.model, trial.model)
@@ -29,15 +29,7 @@ def design_task(trial: Trial, model_file: ModelFile | None = None) -> DesignTask
             ship=trial.ship,
             model=model,
             sensors=trial.noise,
-            rate=brief.rate,
-            duration=brief.duration,
-            actuators=brief.actuators,
-            limits=brief.limits,
-            held=brief.held,
-            speed=brief.speed,
-            criterion=DesignCriterion(brief.criterion),
-            draws=brief.draws,
-            relative_spread=brief.prior_fraction,
+            request=request,
             covariance=model_file.covariance if model_file is not None and model_file.covariance.size else None,
         )
         _ = task.initial_state

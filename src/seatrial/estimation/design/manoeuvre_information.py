@@ -89,7 +89,7 @@ class ManoeuvreEvaluator:
         noise = np.array(list(self.task.sensors.values()))
         scaled = (slopes[:, :, :seen] / noise[:, None]).reshape(len(slopes), -1, slopes.shape[3])
         scaled = np.where(lost[:, None, None], 0.0, scaled)
-        information = np.matmul(scaled.transpose(0, 2, 1), scaled) * (self.task.rate * self.dt)
+        information = np.matmul(scaled.transpose(0, 2, 1), scaled) * (self.task.request.rate * self.dt)
         information[:, range(k), range(k)] += self.ships.precision
         errors = np.array([_standard_errors(one, k) for one in information])
         return np.where(lost[:, None], np.nan, errors / self._magnitudes)
@@ -106,8 +106,8 @@ def limit_excess(task: DesignTask, information: ManoeuvreInformation, margin: fl
     """By how much drift and distance of each ship leave the limits less a margin, in parts of these, (ships,)."""
     allowed = 1.0 - margin
     over = [
-        information.drift / (allowed * task.limits.drift) - 1.0,
-        information.distance / (allowed * task.limits.sea_room) - 1.0,
+        information.drift / (allowed * task.request.limits.drift) - 1.0,
+        information.distance / (allowed * task.request.limits.sea_room) - 1.0,
     ]
     return np.maximum(over, 0.0).sum(axis=0)
 
@@ -115,7 +115,7 @@ def limit_excess(task: DesignTask, information: ManoeuvreInformation, margin: fl
 def leaves_limits(task: DesignTask, information: ManoeuvreInformation) -> bool:
     """Whether a ship that the limits bind leaves them; the first ship is the one assumed."""
     over = limit_excess(task, information)
-    return bool(over.max() > 0.0 if task.limits.for_every_ship else over[0] > 0.0)
+    return bool(over.max() > 0.0 if task.request.limits.for_every_ship else over[0] > 0.0)
 
 
 def assess_manoeuvre(

@@ -14,12 +14,12 @@ _TIME_TOLERANCE = 1e-6
 
 def order_counts(task: DesignTask) -> tuple[int, ...]:
     """How many orders each actuator gets in the trial."""
-    return tuple(int(np.ceil(task.duration / a.hold - _ORDER_TOLERANCE)) for a in task.actuators)
+    return tuple(int(np.ceil(task.request.duration / a.hold - _ORDER_TOLERANCE)) for a in task.request.actuators)
 
 
 def sample_count(task: DesignTask, dt: float) -> int:
     """Samples of the trial at a step `dt` [s]."""
-    return round(task.duration / dt) + 1
+    return round(task.request.duration / dt) + 1
 
 
 def actuator_response(actuator: Actuator, orders: Array, neutral: float, dt: float, count: int) -> Array:
@@ -41,14 +41,14 @@ def orders_at(task: DesignTask, point: Array) -> list[Array]:
     What lies beyond an end means that end.
     """
     pieces = np.split(np.clip(point, 0.0, 1.0), np.cumsum(order_counts(task))[:-1])
-    return [a.lower + (a.upper - a.lower) * piece for a, piece in zip(task.actuators, pieces, strict=True)]
+    return [a.lower + (a.upper - a.lower) * piece for a, piece in zip(task.request.actuators, pieces, strict=True)]
 
 
 def input_series(task: DesignTask, orders: list[Array], dt: float) -> Array:
     """All inputs in the model's signs at a step `dt` [s], shape (rows, nu)."""
     count, neutral = sample_count(task, dt), task.neutral_positions
     made = np.tile(task.neutral_inputs, (count, 1))
-    for actuator, wanted in zip(task.actuators, orders, strict=True):
+    for actuator, wanted in zip(task.request.actuators, orders, strict=True):
         j = task.model.input_names.index(actuator.name)
         sign = -1.0 if task.model.inputs[j].is_reversed else 1.0
         made[:, j] = sign * actuator_response(actuator, wanted, neutral[actuator.name], dt, count)
@@ -57,14 +57,13 @@ def input_series(task: DesignTask, orders: list[Array], dt: float) -> Array:
 
 def order_table(task: DesignTask, orders: list[Array]) -> tuple[TimedOrder, ...]:
     """The helmsman's table: a line whenever an order changes, all actuators in it."""
-    times = sorted(
-        {round(k * a.hold, 9) for a, n in zip(task.actuators, order_counts(task), strict=True) for k in range(n)}
-    )
+    actuators = task.request.actuators
+    times = sorted({round(k * a.hold, 9) for a, n in zip(actuators, order_counts(task), strict=True) for k in range(n)})
     lines: list[TimedOrder] = []
     for time in times:
         values = {
             a.name: float(wanted[min(int(time / a.hold + _TIME_TOLERANCE), len(wanted) - 1)])
-            for a, wanted in zip(task.actuators, orders, strict=True)
+            for a, wanted in zip(task.request.actuators, orders, strict=True)
         }
         if not lines or any(abs(values[n] - lines[-1].values[n]) > _ORDER_TOLERANCE for n in values):
             lines.append(TimedOrder(time, values))

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.core.values import Array
+from seatrial.data.trial.design_request import DesignCriterion
 from seatrial.estimation.design.coordinate_exchange import coordinate_exchange
 from seatrial.estimation.design.manoeuvre_information import (
     ManoeuvreEvaluator,
@@ -15,7 +16,7 @@ from seatrial.estimation.design.manoeuvre_information import (
 )
 from seatrial.estimation.design.orders import input_series, order_counts, orders_at
 from seatrial.estimation.design.standard_manoeuvres import StandardManoeuvre
-from seatrial.estimation.design.task import DesignCriterion, DesignTask
+from seatrial.estimation.design.task import DesignTask
 from seatrial.numerics.optimise import AdaptationSettings, Box, CovarianceAdaptation, Solution, Status
 from seatrial.numerics.workers import map_in_threads
 
@@ -69,7 +70,7 @@ class SearchResult:
 
 def criterion_errors(task: DesignTask, information: ManoeuvreInformation) -> Array:
     """What the criterion looks at, for each ship; NaN for a lost one."""
-    if task.criterion is DesignCriterion.WORST:
+    if task.request.criterion is DesignCriterion.WORST:
         return information.relative_errors.max(axis=1)
     return np.sqrt(np.mean(information.relative_errors**2, axis=1))
 
@@ -129,7 +130,7 @@ def _cost_text(value: float) -> str:
 def _limit_cost(task: DesignTask, information: ManoeuvreInformation) -> float:
     """What it costs that ships which the limits bind leave them."""
     over = limit_excess(task, information, LIMIT_MARGIN)
-    return LIMIT_PENALTY * float(over.max() if task.limits.for_every_ship else over[0])
+    return LIMIT_PENALTY * float(over.max() if task.request.limits.for_every_ship else over[0])
 
 
 def _random_sequences(task: DesignTask, generator: np.random.Generator) -> list[Array]:
@@ -147,18 +148,18 @@ def _random_sequences(task: DesignTask, generator: np.random.Generator) -> list[
 
 def search_step(task: DesignTask) -> float:
     """The step of the search [s]: a whole number of samples, an eighth of the shortest hold at most."""
-    samples = max(1, int(task.shortest_hold * task.rate / 8.0 + 1e-9))
+    samples = max(1, int(task.shortest_hold * task.request.rate / 8.0 + 1e-9))
     while samples > 1 and not _divides_duration(task, samples):
         samples -= 1
-    return samples / task.rate
+    return samples / task.request.rate
 
 
 def _divides_duration(task: DesignTask, samples: int) -> bool:
     """Whether trial is a whole number of such steps."""
-    total = round(task.duration * task.rate)
+    total = round(task.request.duration * task.request.rate)
     return total % samples == 0
 
 
 def at_sensor_rate(evaluator: ManoeuvreEvaluator) -> ManoeuvreEvaluator:
     """The same ships at the sensors' rate."""
-    return replace(evaluator, dt=1.0 / evaluator.task.rate)
+    return replace(evaluator, dt=1.0 / evaluator.task.request.rate)

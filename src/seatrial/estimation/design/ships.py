@@ -32,7 +32,7 @@ def draw_ships(task: DesignTask, seed: int, draws: int | None = None) -> PriorSh
     """
     parameters = task.model.parameters
     free = parameters.free
-    count = task.draws if draws is None else draws
+    count = task.request.draws if draws is None else draws
     unit = _latin_hypercube(count, len(free), np.random.default_rng(seed))
     drawn = np.tile(parameters.values, (count + 1, 1))
     if count:
@@ -49,7 +49,10 @@ def relative_spread(task: DesignTask) -> Array:
         deviations = np.sqrt(np.diag(task.covariance))
         return np.array([d / p.characteristic_scale for d, p in zip(deviations, free, strict=True)])
     return np.array(
-        [task.relative_spread if p.prior is None else p.prior.standard_deviation / p.characteristic_scale for p in free]
+        [
+            task.request.relative_spread if p.prior is None else p.prior.standard_deviation / p.characteristic_scale
+            for p in free
+        ]
     )
 
 
@@ -66,7 +69,7 @@ def _prior_values(task: DesignTask, unit: Array) -> Array:
     if task.covariance is not None:
         roots, vectors = np.linalg.eigh(task.covariance)
         return values + normal @ (vectors * np.sqrt(np.maximum(roots, 0.0))).T
-    even = (2.0 * unit - 1.0) * task.relative_spread
+    even = (2.0 * unit - 1.0) * task.request.relative_spread
     scale = np.array([p.characteristic_scale for p in free])
     own = [p.prior is not None for p in free]
     deviation = np.array([0.0 if p.prior is None else p.prior.standard_deviation for p in free])

@@ -49,9 +49,9 @@ def standard_manoeuvres(evaluator: ManoeuvreEvaluator) -> list[StandardManoeuvre
 def binary_sequence_inputs(hold: float, amplitude: float, seed: int, evaluator: ManoeuvreEvaluator) -> Array:
     """Every actuator between its ends, or `amplitude` of the way to them, by maximum length sequences of their own."""
     task, orders = evaluator.task, list[Array]()
-    switched = replace(task, actuators=tuple(replace(a, hold=hold) for a in task.actuators))
-    for j, actuator in enumerate(task.actuators):
-        count = int(np.ceil(task.duration / hold - _ROUNDING))
+    switched = replace(task, request=task.request.with_hold(hold))
+    for j, actuator in enumerate(task.request.actuators):
+        count = int(np.ceil(task.request.duration / hold - _ROUNDING))
         signs = np.sign(np.resize(binary_sequence(1.0, seed + 10 * j), count))
         orders.append(_mid_range(actuator) + signs * amplitude * 0.5 * (actuator.upper - actuator.lower))
     return input_series(switched, orders, evaluator.dt)
@@ -60,7 +60,7 @@ def binary_sequence_inputs(hold: float, amplitude: float, seed: int, evaluator: 
 def _largest_within_limits(evaluator: ManoeuvreEvaluator, switching: float, seed: int) -> StandardManoeuvre:
     """The largest amplitude whose drift and distance keep within the limits; else the smallest tried."""
     task = evaluator.task
-    hold = max(switching * task.shortest_hold, 2.0 / task.rate)
+    hold = max(switching * task.shortest_hold, 2.0 / task.request.rate)
     standard = StandardManoeuvre("", _step_inputs)
     for share in AMPLITUDES:
         standard = StandardManoeuvre(
@@ -79,12 +79,12 @@ def _mid_range(actuator: Actuator) -> float:
 
 
 def _is_steered(task: DesignTask) -> bool:
-    return "psi" in task.model.states and any(a.name == RUDDER for a in task.actuators)
+    return "psi" in task.model.states and any(a.name == RUDDER for a in task.request.actuators)
 
 
 def _programmes(task: DesignTask) -> list[str]:
     """Zigzags that the rudder's range allows, compressed ones as long as fits, the hardest turning circle."""
-    (rudder,) = [a for a in task.actuators if a.name == RUDDER]
+    (rudder,) = [a for a in task.request.actuators if a.name == RUDDER]
     most = float(np.degrees(min(rudder.upper, -rudder.lower)))
     angles = [a for a in _ZIGZAG_ANGLES if a <= most + _ROUNDING]
     texts = [f"zigzag:{a:g}/{a:g}" for a in angles]
@@ -112,16 +112,16 @@ def _simulate_steered(evaluator: ManoeuvreEvaluator, parameters: Array, text: st
     ship = model.with_parameters(
         model.parameters.with_values(dict(zip(model.parameters.names, parameters, strict=True)))
     )
-    (rudder,) = [a for a in task.actuators if a.name == RUDDER]
-    step = 1.0 / task.rate
-    others = {a.name: task.neutral_positions[a.name] for a in task.actuators if a.name != RUDDER}
+    (rudder,) = [a for a in task.request.actuators if a.name == RUDDER]
+    step = 1.0 / task.request.rate
+    others = {a.name: task.neutral_positions[a.name] for a in task.request.actuators if a.name != RUDDER}
     record = manoeuvre(
         ship,
         programme(text),
         dt=step,
-        duration=task.duration,
-        speed=float(task.initial_state[model.states.index("u")]) if "u" in model.states else task.speed,
-        inputs={**task.held, **others},
+        duration=task.request.duration,
+        speed=float(task.initial_state[model.states.index("u")]) if "u" in model.states else task.request.speed,
+        inputs={**task.request.held, **others},
         slew_rate=rudder.rate if np.isfinite(rudder.rate) else SOLAS_SLEW_RATE,
     )
     held = inputs_of(model, record)[:: round(evaluator.dt / step)]
@@ -132,21 +132,23 @@ def _simulate_steered(evaluator: ManoeuvreEvaluator, parameters: Array, text: st
 def _sweep_inputs(evaluator: ManoeuvreEvaluator) -> Array:
     """All actuators swing between their ends, from one swing in the trial to one in four holds, evenly faster."""
     task, time = evaluator.task, evaluator.dt * np.arange(sample_count(evaluator.task, evaluator.dt))
-    first, last = 1.0 / task.duration, 0.25 / task.shortest_hold
-    return _drive_all(evaluator, np.sin(2.0 * np.pi * (first * time + 0.5 * (last - first) * time**2 / task.duration)))
+    first, last = 1.0 / task.request.duration, 0.25 / task.shortest_hold
+    return _drive_all(
+        evaluator, np.sin(2.0 * np.pi * (first * time + 0.5 * (last - first) * time**2 / task.request.duration))
+    )
 
 
 def _step_inputs(evaluator: ManoeuvreEvaluator) -> Array:
     """From end to end eight times."""
     time = evaluator.dt * np.arange(sample_count(evaluator.task, evaluator.dt))
-    return _drive_all(evaluator, np.where((8.0 * time / evaluator.task.duration).astype(int) % 2, 1.0, -1.0))
+    return _drive_all(evaluator, np.where((8.0 * time / evaluator.task.request.duration).astype(int) % 2, 1.0, -1.0))
 
 
 def _drive_all(evaluator: ManoeuvreEvaluator, course: Array) -> Array:
     """Every actuator along a course between -1 and 1, at its own rate."""
     task, dt = evaluator.task, evaluator.dt
     made = np.tile(task.neutral_inputs, (len(course), 1))
-    for a in task.actuators:
+    for a in task.request.actuators:
         j = task.model.input_names.index(a.name)
         free = replace(a, hold=dt)
         wanted = actuator_response(

@@ -56,17 +56,17 @@ def planned(tmp_path: Path) -> Path:
 
 
 def test_what_it_says_is_kept_in_si(planned: Path) -> None:
-    brief = load_trial(planned).design_request
-    assert brief is not None
+    request = load_trial(planned).design_request
+    assert request is not None
     deg = math.pi / 180.0
-    (delta,) = brief.actuators
+    (delta,) = request.actuators
     assert (delta.name, delta.hold) == ("delta", 4.0)
     assert (delta.lower, delta.upper, delta.rate) == pytest.approx((-35 * deg, 30 * deg, 10 * deg))
-    assert brief.limits.drift == pytest.approx(20 * deg)
-    assert (brief.limits.sea_room, brief.duration, brief.rate) == (500.0, 600.0, 5.0)
-    assert (brief.criterion, brief.draws, brief.prior_fraction) == ("mean", 7, 0.25)
-    assert brief.speed == pytest.approx(2 * 1852 / 3600)
-    assert brief.held == {"v_j": 1.866}
+    assert request.limits.drift == pytest.approx(20 * deg)
+    assert (request.limits.sea_room, request.duration, request.rate) == (500.0, 600.0, 5.0)
+    assert (request.criterion, request.draws, request.relative_spread) == ("mean", 7, 0.25)
+    assert request.speed == pytest.approx(2 * 1852 / 3600)
+    assert request.held == {"v_j": 1.866}
 
 
 def test_what_it_does_not_say_is_free(planned: Path) -> None:
@@ -75,11 +75,11 @@ def test_what_it_does_not_say_is_free(planned: Path) -> None:
         'speed = { value = 2, unit = "kn" }\n', ""
     )
     planned.write_text(text)
-    brief = load_trial(planned).design_request
-    assert brief is not None
-    assert brief.limits == TrialLimits()
-    assert brief.actuators[0] == Actuator("delta", math.radians(-35), math.radians(30), math.inf, 4.0)
-    assert brief.speed is None
+    request = load_trial(planned).design_request
+    assert request is not None
+    assert request.limits == TrialLimits()
+    assert request.actuators[0] == Actuator("delta", math.radians(-35), math.radians(30), math.inf, 4.0)
+    assert request.speed is None
 
 
 def test_records_are_missed_where_they_are_needed(planned: Path) -> None:
@@ -108,9 +108,9 @@ WRONG = [
     ("rate", "rate = 10\n", "rate = 0\n", r"design.inputs.delta.rate = 0: input should be greater than 0"),
     ("hold", "hold = 4", "hold = 4000", r"design.inputs.delta.hold = 4000 s is longer than the trial"),
     ("drift in degrees", '{ value = 20, unit = "deg" }', "20", r"design.drift: 1145.92 degrees are no limit"),
-    ("drift", '{ value = 20, unit = "deg" }', "-0.1", r"design.drift = -0.1 is not positive"),
+    ("drift", '{ value = 20, unit = "deg" }', "-0.1", r"design.drift: -0.1 is not positive"),
     ("kind of amount", "sea_room = 500", 'sea_room = { value = 5, unit = "s" }', r"design.sea_room: 's' is no unit"),
-    ("sea room", "sea_room = 500", "sea_room = 0", r"design.sea_room = 0 is not positive"),
+    ("sea room", "sea_room = 500", "sea_room = 0", r"design.sea_room: 0 is not positive"),
     ("sea room of a bathtub", "sea_room = 500", "sea_room = 9", "9 m are less than the ship's length of 9.8 m"),
     ("duration", '{ value = 10, unit = "min" }', "1", "are fewer than 20 samples"),
     ("criterion", '"mean"', '"best"', r"design.criterion = 'best'"),
