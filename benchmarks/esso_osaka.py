@@ -13,17 +13,17 @@ from seatrial.core.values import InputError
 from seatrial.data.trial import load_records, load_trial
 from seatrial.estimation.estimate.fit import estimate_model
 from seatrial.estimation.estimate.runs import Runs
-from seatrial.estimation.predict.cross_validation import (
+from seatrial.estimation.predict.holdout_windows import HoldoutProtocol
+from seatrial.physics.models import model_named
+from seatrial.physics.models.published import parameter_set
+from seatrial_studies.cross_validation import (
     CrossValidation,
     Fold,
-    HoldoutProtocol,
     PooledError,
     cross_validate,
     cross_validate_unfitted,
     fit_folds,
 )
-from seatrial.physics.models import model_named
-from seatrial.physics.models.published import parameter_set
 
 TRIAL = Path(__file__).parent.parent / "examples" / "esso_osaka.toml"
 LIMITS = {"turn": (0.40, 4.2), "zigzag": (0.75, 5.2), "berthing": (0.38, 4.5)}

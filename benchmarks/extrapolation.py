@@ -18,8 +18,8 @@ from seatrial.data.trial import Role, Trial, TrialRecord, load_records, load_tri
 from seatrial.estimation.estimate import estimate_model
 from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.information.discrepancy import GROWTH_POWER, HoldoutError
-from seatrial.estimation.predict.cross_validation import HoldoutProtocol
-from seatrial.estimation.predict.window_bands import HoldoutWindows, band_coverage, holdout_windows
+from seatrial.estimation.predict.holdout_windows import HoldoutProtocol
+from seatrial_studies.alexandersson2022.window_bands import HoldoutWindows, band_coverage, holdout_windows
 
 TRIAL = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"
 LIMITS, POWERS, WINDOW_S = (10, 15, 20, 25), (0.0, 1.0, 2.0, 3.0), 30.0

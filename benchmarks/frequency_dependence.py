@@ -15,6 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from measure import Line, at_least, machine
+from seatrial.physics.hydro.cummins import RetardationFunctions, retardation_functions, simulate_cummins
+from seatrial.physics.hydro.mesh import solve_hull, wigley
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Channel, InputError, Record, RecordKind, frozen
@@ -24,13 +26,11 @@ from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.numerics.optimise import Status, levenberg_marquardt
 from seatrial.physics.hydro.capytaine_data import HullData, HullExcitation
-from seatrial.physics.hydro.cummins import RetardationFunctions, retardation_functions, simulate_cummins
-from seatrial.physics.hydro.excitation import Complex
-from seatrial.physics.hydro.mesh import solve_hull, wigley
+from seatrial.physics.hydro.excitation import Complex, encounter_frequency
 from seatrial.physics.hydro.strip_theory import coefficients_at_speed
 from seatrial.physics.models.heave_pitch import heave_pitch
-from seatrial.physics.models.heave_pitch_coefficients import COEFFICIENTS, physical_start_values
-from seatrial.physics.sea.encounter import encounter_frequency
+from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.heave_pitch_coefficients import physical_start_values
 from seatrial.physics.sea.realise import WaveComponents, harmonic_sum, realise
 from seatrial.physics.sea.spectrum import Spectrum, bretschneider, ittc, jonswap
 

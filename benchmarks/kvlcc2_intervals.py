@@ -20,8 +20,7 @@ from seatrial.estimation.estimate.intervals import estimate_uncertainty
 from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.estimate.settings import IntervalMethod
 from seatrial.estimation.identify.identify import identify
-from seatrial.estimation.predict.cross_validation import HoldoutProtocol
-from seatrial.estimation.predict.window_bands import band_coverage, holdout_windows
+from seatrial.estimation.predict.holdout_windows import HoldoutProtocol
 from seatrial_studies.alexandersson2022.prediction_coverage import (
     HALF_WIDTH_LIMIT,
     HELD_OUT_SHARE,
@@ -30,6 +29,7 @@ from seatrial_studies.alexandersson2022.prediction_coverage import (
     simulated_turn_intervals,
 )
 from seatrial_studies.alexandersson2022.published import SIDES
+from seatrial_studies.alexandersson2022.window_bands import band_coverage, holdout_windows
 
 TRIAL = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"
 SECONDS = 60.0

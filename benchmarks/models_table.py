@@ -22,16 +22,11 @@ from seatrial.core.values import InputError, Prior, Record
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRecord, load_records, load_trial
 from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.identify import Runs, estimate_model
-from seatrial.estimation.predict.cross_validation import (
-    HoldoutProtocol,
-    cross_validate,
-    fit_folds,
-    session_nuisances,
-    window_errors,
-)
+from seatrial.estimation.predict.holdout_windows import HoldoutProtocol, session_nuisances, window_errors
 from seatrial.estimation.predict.open_loop import rms_errors, simulate_open_loop
 from seatrial.physics.models.abkowitz import STANDARD, abkowitz
 from seatrial.physics.models.nomoto import nomoto2
+from seatrial_studies.cross_validation import cross_validate, fit_folds
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 HELD_OUT_SECONDS, WINDOW = 6.0, {"kvlcc2_hsva": 30.0, "esso_osaka": 50.0}

@@ -15,7 +15,7 @@ from scipy.linalg import expm
 from scipy.signal import lsim
 
 from seatrial.numerics.kernels.linear_population import misfit
-from seatrial.physics.models.heave_pitch import COEFFICIENTS
+from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models.qi2025 import SHIP, theoretical_coefficients
 from seatrial.physics.simulate.population import (
     Forcing,

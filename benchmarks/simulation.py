@@ -9,7 +9,8 @@ import numpy as np
 from measure import Line, at_least, at_most, fastest
 
 from seatrial.core.equations import Model
-from seatrial.physics.models.waterjet import COEFFICIENTS, waterjet
+from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate.batch import SegmentBatch
 
 STEPS = 20_000

@@ -8,10 +8,9 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array
-from seatrial.estimation.problem.linear_output_error import LinearOutputError
-from seatrial.estimation.problem.segments import Segments
+from seatrial.estimation.problem import LinearOutputError, Segments
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt
-from seatrial.physics.models.heave_pitch_coefficients import physical_start_values
+from seatrial.physics.models import physical_start_values
 from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE
 from seatrial_studies.swarm_search import STEP, SearchData
 

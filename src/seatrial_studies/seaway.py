@@ -11,14 +11,12 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Channel, Provenance, Record, RecordKind, frozen
-from seatrial.data.example_series.series import write_csv
-from seatrial.physics.hydro.excitation import BoxHull
-from seatrial.physics.models.heave_pitch import heave_pitch
-from seatrial.physics.models.qi2025 import SHIP, SIGNIFICANT_HEIGHT, SPEED, theoretical_coefficients
-from seatrial.physics.sea.realise import DEFAULT_COMPONENTS, Spacing, WaveComponents, harmonic_sum, realise
-from seatrial.physics.sea.spectrum import ittc
-from seatrial.physics.simulate.harmonics import harmonic_motion, linear_system
-from seatrial.physics.simulate.linear import LinearBatch
+from seatrial.data.example_series import write_csv
+from seatrial.physics.hydro import BoxHull
+from seatrial.physics.models import heave_pitch
+from seatrial.physics.sea import DEFAULT_COMPONENTS, Spacing, WaveComponents, harmonic_sum, ittc, realise
+from seatrial.physics.simulate import LinearBatch, harmonic_motion, linear_system
+from seatrial_studies.published_ship import SHIP, SIGNIFICANT_HEIGHT, SPEED, theoretical_coefficients
 
 # assumed, printed nowhere: lift slope rho/2 U^2 A C_L_alpha with 6 m^2 and 3/rad, 25 m aft, +-10 degrees for 1 s each
 FIN = {"lift_1": 0.5 * 1025.0 * SPEED**2 * 6.0 * 3.0, "x_f1": -25.0}

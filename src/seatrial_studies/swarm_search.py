@@ -10,20 +10,20 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array
-from seatrial.numerics.optimise import Box, search
-from seatrial.numerics.optimise.population import Population
-from seatrial.physics.models.heave_pitch import COEFFICIENTS, STIFFNESSES, heave_pitch_zoh
-from seatrial.physics.models.qi2025 import SHIP, SIGNIFICANT_HEIGHT, SPEED, theoretical_coefficients
-from seatrial.physics.sea.realise import realise
-from seatrial.physics.sea.spectrum import ittc
-from seatrial.physics.simulate.linear import LinearBatch
-from seatrial.physics.simulate.population import (
+from seatrial.numerics.optimise import Box, Population, search
+from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models import HEAVE_PITCH_STIFFNESSES as STIFFNESSES
+from seatrial.physics.models import heave_pitch_zoh
+from seatrial.physics.sea import ittc, realise
+from seatrial.physics.simulate import (
     Forcing,
+    LinearBatch,
     complete_parameters,
     fitness,
     heave_pitch_matrices,
     one_sample_fitness,
 )
+from seatrial_studies.published_ship import SHIP, SIGNIFICANT_HEIGHT, SPEED, theoretical_coefficients
 from seatrial_studies.seaway import FIN, box_hull, fin_commands
 
 STEP = 0.5

@@ -13,8 +13,8 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array
 from seatrial.physics.hydro.dispersion import G
 from seatrial.physics.hydro.excitation import encounter_frequency
-from seatrial.physics.models.qi2025 import SPEED
 from seatrial.physics.simulate.harmonics import Complex, frequency_response, linear_system
+from seatrial_studies.published_ship import SPEED
 from seatrial_studies.seaway import box_hull, ship
 
 everywhere = pytest.mark.parametrize("heading", [0, 30, 60, 90, 120, 150, 180])

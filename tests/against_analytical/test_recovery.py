@@ -16,7 +16,8 @@ from seatrial.physics.models.abkowitz import STANDARD, abkowitz
 from seatrial.physics.models.mmg import HULL
 from seatrial.physics.models.nomoto import nomoto, nomoto2
 from seatrial.physics.models.published import kvlcc2, kvlcc2_l7
-from seatrial.physics.models.waterjet import COEFFICIENTS, waterjet
+from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate.steer import manoeuvre
 
 MODEL_SCALE_SLEW = math.radians(15.8)

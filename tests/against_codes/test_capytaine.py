@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from benchmarks.hull_panels import capytaine_dataset, solve_hull, wigley
 
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.capytaine_data import HullData, HullExcitation, hull_data, read_capytaine
 from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.hydro.mesh import capytaine_dataset, solve_hull, wigley
 
 cpt = pytest.importorskip("capytaine", reason="the panel code Capytaine is not installed (extra hydro)")
 

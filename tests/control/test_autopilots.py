@@ -18,8 +18,8 @@ from seatrial.data.folder.model_file import ModelFile
 from seatrial.data.trial import load_trial
 from seatrial.data.trial.trial import Role
 from seatrial.estimation.identify import identify
-from seatrial.physics.loops import LoopSignal, margins
-from seatrial.physics.loops.autopilot import heading_loop, steering_gear
+from seatrial.physics.loops import Block, LoopSignal, margins
+from seatrial.physics.loops.autopilot import heading_loop
 from seatrial.physics.loops.objective import variance
 
 DEGREE = math.pi / 180.0
@@ -33,7 +33,7 @@ QUICK = Effort(population=80, generations=20, refined=12, fill_rounds=2, neighbo
 def autopilot_of(ship: TrimmedShip, L: float, gear: float, limit: float, rate: float) -> TuningTask:
     """A 20 degree course change through a reference model of two ship lengths; limits of the rudder in degrees."""
     plant, disturbance = plant_and_disturbance(ship)
-    loop = heading_loop(plant, disturbance, (steering_gear(gear),))
+    loop = heading_loop(plant, disturbance, (Block("steering gear", (1.0,), (gear, 1.0)),))
     U = float(ship.state[0])
     demand = Demand(20.0 * DEGREE, 0.02, 2.0 * L / U, 40.0 * L / U)
     limits = ControllerConstraints(Ms=1.7, limit=limit * DEGREE, rate=rate * DEGREE)

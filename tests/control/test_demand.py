@@ -22,7 +22,7 @@ from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import Array, InputError
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.physics.loops import Block, LoopSignal, TransferLoop
-from seatrial.physics.loops.autopilot import heading_loop, pitch_loop, speed_loop, steering_gear
+from seatrial.physics.loops.autopilot import heading_loop, pitch_loop, speed_loop
 from seatrial.physics.loops.objective import variance
 from seatrial.physics.loops.python_control import controller_transfer_function, transfer_function
 from seatrial.physics.models import model_named
@@ -30,7 +30,7 @@ from seatrial.physics.models.published import kvlcc2
 from seatrial.physics.simulate.closed_loop import REFERENCE, ActuatorLimits
 
 DEGREE = math.pi / 180.0
-GEAR = (steering_gear(0.5),)
+GEAR = (Block("steering gear", (1.0,), (0.5, 1.0)),)
 
 
 def task_of(
@@ -202,7 +202,7 @@ def test_speed_and_pitch_follow_a_demand() -> None:
     craft = ModelFile(model_named("waterjet"), approach={"v_j": 1.866})
     ship = trim_ship(craft, output="u", actuator="v_j")
     plant, disturbance = plant_and_disturbance(ship)
-    loop = speed_loop(plant, disturbance, (steering_gear(1.0),), actuator="v_j")
+    loop = speed_loop(plant, disturbance, (Block("steering gear", (1.0,), (1.0, 1.0)),), actuator="v_j")
     task = task_of(loop, ship, Demand(0.2, 0.02, 20.0, 400.0), ControllerConstraints(limit=1.0, rate=0.2))
     change, _ = simulate_manoeuvres(task, loop, "chosen", loop.gain_values, 0)
     assert change.name == "speed change"

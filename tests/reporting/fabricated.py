@@ -8,7 +8,8 @@ import numpy as np
 from seatrial.core.results import Coefficient, Fit, Measure, Method, Noise, Offset, Prediction, Residuals
 from seatrial.core.values import Array, Finding, Prior, Record, Severity, Ship
 from seatrial.numerics.optimise import Solution, Status
-from seatrial.physics.models.waterjet import COEFFICIENTS, waterjet
+from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.waterjet import waterjet
 
 NOISE = {"u": 0.02, "v": 0.02, "r": math.radians(0.1), "psi": math.radians(0.2), "x0": 0.5, "y0": 0.5}
 STEP = 0.2

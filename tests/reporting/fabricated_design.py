@@ -8,7 +8,8 @@ import numpy as np
 from seatrial.core.results import Actuator, Confirmation, Design, ManoeuvrePrecision, TimedOrder, TrialLimits
 from seatrial.core.values import Finding, Record, RecordKind, Severity
 from seatrial.numerics.optimise import Solution, Status
-from seatrial.physics.models.waterjet import COEFFICIENTS, waterjet
+from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate import replay
 
 HOLD, DURATION, RATE, JET = 6.0, 120.0, 5.0, 1.866

@@ -15,7 +15,6 @@ from seatrial import api
 from seatrial.core.results import CandidateModel, Study, Verdict
 from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.folder.document import document, strict_json
-from seatrial.estimation.predict.window_bands import BandCoverage
 from seatrial_studies.alexandersson2022 import published, verdicts
 from seatrial_studies.alexandersson2022.leave_one_out import LeftOutRun, jackknife_error
 from seatrial_studies.alexandersson2022.prediction_coverage import PredictionCoverage, TurnInterval
@@ -23,6 +22,7 @@ from seatrial_studies.alexandersson2022.prediction_coverage import tables as mar
 from seatrial_studies.alexandersson2022.published import MEASURED_TURNS, PREDICTED_TURNS, SIDES, percent_deviation
 from seatrial_studies.alexandersson2022.reproduction import BenchmarkReproduction, median_noise
 from seatrial_studies.alexandersson2022.tables import left_out_table, left_out_turn_table
+from seatrial_studies.alexandersson2022.window_bands import BandCoverage
 
 
 @pytest.fixture(scope="module")

@@ -10,12 +10,15 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Prediction
 from seatrial.core.values import ProgressReporter
 from seatrial.data.trial import Trial, TrialRecord
-from seatrial.estimation.estimate.runs import training_runs
-from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS, EstimatorOptions
-from seatrial.estimation.estimate.time_scale import ship_length_seconds
-from seatrial.estimation.predict.cross_validation import HoldoutProtocol, cross_validate, fit_folds, session_nuisances
-from seatrial.estimation.predict.open_loop import predict_run, simulate_open_loop
+from seatrial.estimation.estimate import (
+    INITIAL_STATE_SHIP_LENGTHS,
+    EstimatorOptions,
+    ship_length_seconds,
+    training_runs,
+)
+from seatrial.estimation.predict import HoldoutProtocol, predict_run, session_nuisances, simulate_open_loop
 from seatrial_studies.alexandersson2022.published import Turn
+from seatrial_studies.cross_validation import cross_validate, fit_folds
 
 WINDOW_S = 30.0
 

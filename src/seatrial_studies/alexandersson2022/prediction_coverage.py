@@ -10,13 +10,12 @@ from seatrial.core.results import CandidateModel, Check, Fit, Table
 from seatrial.core.values import InputError
 from seatrial.data.trial import TrialRecord
 from seatrial.estimation.estimate import Estimation
-from seatrial.estimation.identify.model_selection import HOLDOUT_WINDOW_SHIP_LENGTHS
-from seatrial.estimation.predict.cross_validation import HoldoutProtocol
-from seatrial.estimation.predict.measure_intervals import measure_intervals
-from seatrial.estimation.predict.window_bands import BandCoverage, band_coverage, holdout_windows
-from seatrial.physics.manoeuvres.programme import programme
-from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
+from seatrial.estimation.identify import HOLDOUT_WINDOW_SHIP_LENGTHS
+from seatrial.estimation.predict import HoldoutProtocol, measure_intervals
+from seatrial.physics.manoeuvres import programme
+from seatrial.physics.simulate import SOLAS_SLEW_RATE, manoeuvre
 from seatrial_studies.alexandersson2022.published import MEASURED_TURNS, SIDES
+from seatrial_studies.alexandersson2022.window_bands import BandCoverage, band_coverage, holdout_windows
 
 WINDOW_S = 30.0
 HALF_WIDTH_LIMIT, SHARE_LIMITS, HELD_OUT_SHARE = 10.0, (0.88, 0.99), 0.80

@@ -10,17 +10,13 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results import Fit
 from seatrial.core.values import Finding, ProgressReporter, Record, Severity
-from seatrial.data.check import examine
-from seatrial.data.check.signal import sample_noise
+from seatrial.data.check import examine, sample_noise
 from seatrial.data.read import ColumnSpec, Layout
-from seatrial.data.trial import Role, Trial, TrialRecord, load_records
-from seatrial.data.trial.approach import approach_condition
-from seatrial.estimation.estimate.runs import training_runs
-from seatrial.estimation.estimate.settings import IntervalMethod
+from seatrial.data.trial import Role, Trial, TrialRecord, approach_condition, load_records
+from seatrial.estimation.estimate import IntervalMethod, training_runs
 from seatrial.estimation.identify import estimate_model, identify
-from seatrial.physics.manoeuvres import measures
-from seatrial.physics.manoeuvres.programme import programme
-from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
+from seatrial.physics.manoeuvres import measures, programme
+from seatrial.physics.simulate import SOLAS_SLEW_RATE, manoeuvre
 from seatrial_studies.alexandersson2022.leave_one_out import LeftOutRun, leave_one_out
 from seatrial_studies.alexandersson2022.prediction_coverage import PredictionCoverage, assess_coverage
 from seatrial_studies.alexandersson2022.published import SIDES, Turn

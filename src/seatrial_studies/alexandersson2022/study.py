@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 
 from seatrial.core.results import Study
-from seatrial.core.values.versions import versions
+from seatrial.core.values import versions
 from seatrial_studies.alexandersson2022.published import SOURCE
 from seatrial_studies.alexandersson2022.reproduction import reproduce_benchmark
 from seatrial_studies.alexandersson2022.tables import figures, tables, validation_prediction

@@ -8,8 +8,7 @@ from functools import partial
 import numpy as np
 
 from seatrial.core.values import Array, ProgressReporter
-from seatrial.numerics.optimise import Box, CloudParticleSwarm, CloudSettings, ParticleSwarm, SwarmSettings
-from seatrial.numerics.optimise.population import Population
+from seatrial.numerics.optimise import Box, CloudParticleSwarm, CloudSettings, ParticleSwarm, Population, SwarmSettings
 from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE
 from seatrial_studies.swarm_search import (
     RepeatedSearches,

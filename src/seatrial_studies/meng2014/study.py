@@ -5,9 +5,8 @@ import time
 import numpy as np
 
 from seatrial.core.results import Study
-from seatrial.core.values import ProgressReporter
-from seatrial.core.values.versions import versions
-from seatrial.physics.models.heave_pitch import STIFFNESSES
+from seatrial.core.values import ProgressReporter, versions
+from seatrial.physics.models import HEAVE_PITCH_STIFFNESSES as STIFFNESSES
 from seatrial_studies.meng2014.reproduction import HEADINGS, SEA_STATE_3, SOURCE, reproduce_searches
 from seatrial_studies.meng2014.tables import figures, tables
 from seatrial_studies.meng2014.verdicts import CloudSwarmEvidence, UndetectedChange, checks, claims

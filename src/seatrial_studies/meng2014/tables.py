@@ -3,8 +3,8 @@
 import numpy as np
 
 from seatrial.core.results import Curve, Figure, Table
-from seatrial.physics.models.heave_pitch import COEFFICIENTS
-from seatrial.physics.simulate.population import trajectories
+from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.simulate import trajectories
 from seatrial_studies.meng2014.assumptions import assumption_table
 from seatrial_studies.meng2014.reproduction import HEADINGS, BoxPlacement, SwarmAlgorithm
 from seatrial_studies.meng2014.verdicts import CloudSwarmEvidence

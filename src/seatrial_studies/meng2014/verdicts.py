@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from seatrial.core.results import Check, Claim, Verdict
 from seatrial.core.values import Array
-from seatrial.physics.models.heave_pitch import COEFFICIENTS
+from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial_studies.meng2014.reproduction import HEADINGS, BoxPlacement, CloudSwarmReproduction, SwarmAlgorithm
 from seatrial_studies.output_error_fit import OutputErrorResults
 from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE

@@ -6,13 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array
-from seatrial.physics.models.heave_pitch import COEFFICIENTS
-from seatrial.physics.models.qi2025 import HEADINGS, SIGNIFICANT_HEIGHT, SPEED
-from seatrial.physics.sea.encounter import encounter_frequency
-from seatrial.physics.sea.response import motion_statistics
-from seatrial.physics.sea.spectrum import G, ittc
-from seatrial.physics.simulate.harmonics import frequency_response, linear_system
-from seatrial.physics.simulate.population import trajectories
+from seatrial.physics.hydro import G, encounter_frequency
+from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.sea import ittc, motion_statistics
+from seatrial.physics.simulate import frequency_response, linear_system, trajectories
+from seatrial_studies.published_ship import HEADINGS, SIGNIFICANT_HEIGHT, SPEED
 from seatrial_studies.qi2025.published import SearchAlgorithm, recomputed_error, true_values
 from seatrial_studies.seaway import box_hull
 from seatrial_studies.swarm_search import SearchData, candidate_matrices, held_force_ship, simulate_search_data

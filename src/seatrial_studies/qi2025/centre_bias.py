@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.numerics.optimise import Box, FitnessMemory, search
-from seatrial.physics.models.qi2025 import HEADINGS
+from seatrial_studies.published_ship import HEADINGS
 from seatrial_studies.qi2025.published import SearchAlgorithm
 from seatrial_studies.qi2025.reproduction import ITERATIONS, NARROW_HALF_WIDTH, optimisers
 from seatrial_studies.swarm_search import PitchUnit, SearchData, one_sample_objective

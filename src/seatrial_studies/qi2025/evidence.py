@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array
-from seatrial.physics.models.qi2025 import HEADINGS
 from seatrial_studies.output_error_fit import OutputErrorResults
+from seatrial_studies.published_ship import HEADINGS
 from seatrial_studies.qi2025.audit import WildHorseAudit
 from seatrial_studies.qi2025.centre_bias import CentreBias
 from seatrial_studies.qi2025.hold_bias import HoldBias

@@ -3,8 +3,8 @@
 import numpy as np
 
 from seatrial.core.results import Curve, Figure
-from seatrial.physics.models.heave_pitch import COEFFICIENTS
-from seatrial.physics.simulate.population import trajectories
+from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.simulate import trajectories
 from seatrial_studies.qi2025.published import SearchAlgorithm
 from seatrial_studies.qi2025.reproduction import FIGURE_HEADING, SearchSetting, WildHorseReproduction
 from seatrial_studies.swarm_search import STEP, candidate_matrices

@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.core.values import Array
-from seatrial.estimation.problem.output_error import OutputError
-from seatrial.estimation.problem.segments import cut_segments
+from seatrial.estimation.problem import OutputError, cut_segments
 from seatrial.numerics.optimise import levenberg_marquardt
-from seatrial.physics.models.heave_pitch import COEFFICIENTS, heave_pitch_zoh
-from seatrial.physics.models.qi2025 import HEADINGS
+from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models import heave_pitch_zoh
 from seatrial_studies.output_error_fit import MOTION_NOISE, with_physics_start
+from seatrial_studies.published_ship import HEADINGS
 from seatrial_studies.seaway import SeawayScenario, ship, simulate_seaway_run
 
 CONTINUOUS_WAVES = SeawayScenario(135, dt=0.1, motion_stride=5, has_fin=False, noise=(0.0, 0.0))

@@ -3,8 +3,8 @@
 import numpy as np
 
 from seatrial.core.results import Claim, Verdict
-from seatrial.physics.models.heave_pitch import COEFFICIENTS
-from seatrial.physics.models.qi2025 import HEADINGS
+from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
+from seatrial_studies.published_ship import HEADINGS
 from seatrial_studies.qi2025.evidence import WildHorseEvidence, percent_text
 from seatrial_studies.qi2025.published import PRINTED_SECONDS, SearchAlgorithm
 from seatrial_studies.qi2025.reproduction import FIGURE_HEADING, ITERATIONS, SearchSetting

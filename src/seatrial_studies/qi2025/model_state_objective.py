@@ -3,8 +3,8 @@
 import numpy as np
 
 from seatrial.core.values import Array
-from seatrial.numerics.optimise.population import Population
-from seatrial.physics.simulate.population import discretised_hold, one_sample_fitness
+from seatrial.numerics.optimise import Population
+from seatrial.physics.simulate import discretised_hold, one_sample_fitness
 from seatrial_studies.swarm_search import STEP, Fitness, PitchUnit, SearchData, candidate_matrices
 
 

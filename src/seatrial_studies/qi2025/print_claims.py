@@ -3,7 +3,7 @@
 import numpy as np
 
 from seatrial.core.results import Claim, Verdict
-from seatrial.physics.models.qi2025 import HEADINGS, SIGNIFICANT_HEIGHT, SPEED
+from seatrial_studies.published_ship import HEADINGS, SIGNIFICANT_HEIGHT, SPEED
 from seatrial_studies.qi2025.evidence import WildHorseEvidence, percent_text
 from seatrial_studies.qi2025.published import (
     FIGURE_5_TOP,

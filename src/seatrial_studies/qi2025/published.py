@@ -5,8 +5,8 @@ from enum import StrEnum
 import numpy as np
 
 from seatrial.core.values import Array
-from seatrial.physics.models.heave_pitch import COEFFICIENTS
-from seatrial.physics.models.qi2025 import HEADINGS, theoretical_coefficients
+from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
+from seatrial_studies.published_ship import HEADINGS, theoretical_coefficients
 
 SOURCE = (
     "Qi Zhigang, Zhang Hao, Li Bing, Lu Zhe: Ship parameter identification method based on improved wild horse "

@@ -15,12 +15,12 @@ from seatrial.numerics.optimise import (
     ImprovedHerdSettings,
     ImprovedWildHorse,
     ParticleSwarm,
+    Population,
     StrideVariant,
     SwarmSettings,
     WildHorse,
 )
-from seatrial.numerics.optimise.population import Population
-from seatrial.physics.models.qi2025 import HEADINGS
+from seatrial_studies.published_ship import HEADINGS
 from seatrial_studies.qi2025.model_state_objective import model_state_objective
 from seatrial_studies.qi2025.published import SearchAlgorithm
 from seatrial_studies.swarm_search import (

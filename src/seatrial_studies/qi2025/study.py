@@ -3,10 +3,9 @@
 import time
 
 from seatrial.core.results import Study
-from seatrial.core.values import ProgressReporter
-from seatrial.core.values.versions import versions
-from seatrial.physics.models.qi2025 import HEADINGS
+from seatrial.core.values import ProgressReporter, versions
 from seatrial_studies.output_error_fit import output_error_results
+from seatrial_studies.published_ship import HEADINGS
 from seatrial_studies.qi2025.audit import audit
 from seatrial_studies.qi2025.centre_bias import centre_bias
 from seatrial_studies.qi2025.evidence import WildHorseEvidence

@@ -3,9 +3,9 @@
 import numpy as np
 
 from seatrial.core.results import Table
-from seatrial.physics.models.heave_pitch import COEFFICIENTS
-from seatrial.physics.models.qi2025 import HEADINGS
+from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial_studies.output_error_fit import OutputErrorResults
+from seatrial_studies.published_ship import HEADINGS
 from seatrial_studies.qi2025.assumptions import assumption_table
 from seatrial_studies.qi2025.centre_bias import RUNS, CentreBias
 from seatrial_studies.qi2025.evidence import WildHorseEvidence, count_below_printed

@@ -8,10 +8,13 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.core.values import Finding, ProgressReporter
-from seatrial.data.check.conventions import with_standard_signs
-from seatrial.data.check.instruments import InstrumentComparison, compare_instruments, dead_channel_findings
-from seatrial.estimation.problem.wave_separation import Probes, SeparatedWaves
+from seatrial.data.check import with_standard_signs
 from seatrial_studies.section2d.guide import Guide, fit_guide_damping
+from seatrial_studies.section2d.instrument_comparison import (
+    InstrumentComparison,
+    compare_instruments,
+    dead_channel_findings,
+)
 from seatrial_studies.section2d.modes import HEAVE, ROLL, Mode, ModeFit, fit_mode, observation, split_periods
 from seatrial_studies.section2d.responses import (
     SectionResponse,
@@ -24,6 +27,7 @@ from seatrial_studies.section2d.runs import STEADY_TIMING, FlumeRun, Timing, rea
 from seatrial_studies.section2d.separability import untied_mass_error
 from seatrial_studies.section2d.springs import SwayStiffness, sway_stiffness
 from seatrial_studies.section2d.tank import CAMERA
+from seatrial_studies.section2d.wave_separation import Probes, SeparatedWaves
 
 ALTERNATIVE_TIMINGS = (Timing(0.5, 0.5), Timing(0.5, 1.5), Timing(1.5, 1.5), Timing(2.5, 2.5), Timing(2.5, 3.5))
 POLYNOMIAL_ORDERS = (0, 1, 2)

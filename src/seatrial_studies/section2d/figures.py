@@ -6,11 +6,11 @@ import numpy as np
 
 from seatrial.core.results import Curve, Figure
 from seatrial.core.values import Array
-from seatrial.estimation.problem.oscillator import MeasuredResponse
-from seatrial.physics.hydro.dispersion import wavenumber
+from seatrial.physics.hydro import wavenumber
 from seatrial_studies.section2d import tank
 from seatrial_studies.section2d.analysis import SectionAnalysis
 from seatrial_studies.section2d.modes import ModeFit, theory_of_model
+from seatrial_studies.section2d.oscillator import MeasuredResponse
 from seatrial_studies.section2d.runs import STEADY_TIMING
 from seatrial_studies.section2d.tables import motion_name
 

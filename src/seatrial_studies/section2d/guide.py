@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array
-from seatrial.estimation.problem.harmonic import harmonics
+from seatrial_studies.section2d.harmonics import harmonics
 from seatrial_studies.section2d.modes import jackknife_error
 from seatrial_studies.section2d.responses import steady_samples
 from seatrial_studies.section2d.runs import FlumeRun

@@ -5,15 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seatrial.estimation.problem.oscillator import (
+from seatrial_studies.section2d import tank
+from seatrial_studies.section2d.multipoles import SectionMotion, section_hydrodynamics
+from seatrial_studies.section2d.oscillator import (
     MeasuredResponse,
     Oscillator,
     OscillatorFit,
     SectionTheory,
     fit_oscillator,
 )
-from seatrial.physics.hydro.multipoles import SectionMotion, section_hydrodynamics
-from seatrial_studies.section2d import tank
 from seatrial_studies.section2d.responses import SectionResponse, relative_difference
 
 REPEATABILITY, CROSS_AXIS = 0.005, 0.02

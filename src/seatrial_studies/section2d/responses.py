@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array
-from seatrial.data.check.conventions import with_standard_signs
-from seatrial.estimation.problem.harmonic import harmonics, whole_periods
-from seatrial.estimation.problem.wave_separation import Probes, SeparatedWaves, calibrate_wave_probes, separate_waves
+from seatrial.data.check import with_standard_signs
+from seatrial_studies.section2d.harmonics import harmonics, whole_periods
 from seatrial_studies.section2d.runs import STEADY_TIMING, FlumeRun, Timing
 from seatrial_studies.section2d.tank import DEPTH, FIRST_PROBE_TO_MODEL, PROBE_PLACES, PROBES
+from seatrial_studies.section2d.wave_separation import Probes, SeparatedWaves, calibrate_wave_probes, separate_waves
 
 HARMONIC_ORDERS = (1, 2, 3)
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.read import read_record
-from seatrial.estimation.problem.harmonic import best_fit_frequency
-from seatrial.physics.hydro.dispersion import group_velocity, wavenumber
+from seatrial.physics.hydro import group_velocity, wavenumber
+from seatrial_studies.section2d.harmonics import best_fit_frequency
 from seatrial_studies.section2d.tank import DEPTH, LAYOUT, ROUND_TRIP, TO_MODEL
 
 FOLDER = "section2d_waves"

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatrial.core.values import Array
-from seatrial.estimation.problem.oscillator import MeasuredResponse
+from seatrial_studies.section2d.oscillator import MeasuredResponse
 
 ORDER = 2
 

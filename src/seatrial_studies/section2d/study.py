@@ -3,8 +3,7 @@
 import time
 
 from seatrial.core.results import Study
-from seatrial.core.values import ProgressReporter
-from seatrial.core.values.versions import versions
+from seatrial.core.values import ProgressReporter, versions
 from seatrial_studies.section2d.analysis import analyse_records
 from seatrial_studies.section2d.figures import figures
 from seatrial_studies.section2d.instruments import instrument_findings

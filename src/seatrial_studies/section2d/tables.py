@@ -3,11 +3,11 @@
 import numpy as np
 
 from seatrial.core.results import Table
-from seatrial.physics.hydro.multipoles import haskind_damping
 from seatrial_studies.section2d import tank
 from seatrial_studies.section2d.analysis import SectionAnalysis
 from seatrial_studies.section2d.instruments import clock_table, guide_table, probe_table, spring_table, wave_table
 from seatrial_studies.section2d.modes import HEAVE, ModeFit, observation, theory_of_model
+from seatrial_studies.section2d.multipoles import haskind_damping
 from seatrial_studies.section2d.runs import STEADY_TIMING
 
 TableRow = tuple[str | float | None, ...]

@@ -3,7 +3,7 @@
 import math
 
 from seatrial.data.read import ColumnSpec, Layout
-from seatrial.physics.hydro.lewis import LewisForm
+from seatrial_studies.section2d.lewis import LewisForm
 
 SOURCE = (
     "Regular beam waves on a 2-D ship section, NTNU (open data, CC0): sway-heave-roll (3PPH), sway-heave (4PPH) and "

@@ -3,7 +3,7 @@
 import numpy as np
 
 from seatrial.core.results import Check, Claim, Verdict
-from seatrial.physics.hydro.dispersion import wavenumber
+from seatrial.physics.hydro import wavenumber
 from seatrial_studies.section2d import tank
 from seatrial_studies.section2d.analysis import SectionAnalysis
 from seatrial_studies.section2d.instruments import camera_gain
@@ -86,8 +86,8 @@ def separability_claim(analysis: SectionAnalysis) -> Claim:
         Verdict.REFUTED if linear > SEPARABLE_LIMIT else Verdict.CONFIRMED,
         f"at one period nothing separates them; over all periods the standard error of heave's added mass is "
         f"{plain:.1f} kg if all are constant, {linear:.0f} kg if linear in frequency, "
-        f"{analysis.untied_errors[2][0]:.0f} kg if "
-        f"quadratic. With Haskind's relation and the shape it is {analysis.heave.standard_errors['added']:.1f} kg",
+        f"{analysis.untied_errors[2][0]:.0f} kg if quadratic. With Haskind's relation and the shape it is "
+        f"{analysis.heave.standard_errors['extra_added_mass']:.1f} kg",
     )
 
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from seatrial.physics.models.waterjet import waterjet
+from seatrial.physics.models import waterjet
 from seatrial_studies.song2025.craft_models import (
     CORRECTED,
     TRUTH,

@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.core.values import Array, Record
-from seatrial.estimation.regress.features import RegressionMotion, features
-from seatrial.physics.models.waterjet import RHO
+from seatrial.estimation.regress import RegressionMotion, features
 from seatrial_studies.song2025.craft_models import TRUTH
 from seatrial_studies.song2025.published import (
     APPROACH_SPEED,
@@ -182,4 +181,4 @@ def balancing_thrust() -> Thrust:
     p = TRUTH.craft().parameters
     half = 0.5 * p["alpha"].value * APPROACH_SPEED
     per_density = 0.5 * LENGTH * DRAUGHT * -printed_coefficients(Table2Column.CFD)["X_uu"] * APPROACH_SPEED**2
-    return Thrust(half + math.sqrt(half**2 + per_density / p["A_j"].value), RHO * per_density)
+    return Thrust(half + math.sqrt(half**2 + per_density / p["A_j"].value), p["rho"].value * per_density)

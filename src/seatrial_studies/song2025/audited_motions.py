@@ -8,7 +8,7 @@ import sympy as sp
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Record
-from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate import inputs_of
 from seatrial_studies.song2025.craft_models import (
     CORRECTED,
     TRUTH,

@@ -6,11 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array, Record
-from seatrial.estimation.regress.features import RegressionMotion
-from seatrial.estimation.regress.operators import DerivativeOperator, Euler
-from seatrial.estimation.regress.pipeline import DIFFERENCED_AND_CENTRED
-from seatrial.estimation.regress.system import build_systems
-from seatrial.physics.models.waterjet import waterjet
+from seatrial.estimation.regress import (
+    DIFFERENCED_AND_CENTRED,
+    DerivativeOperator,
+    Euler,
+    RegressionMotion,
+    build_systems,
+)
+from seatrial.physics.models import waterjet
 from seatrial_studies.song2025.craft_models import reference_record
 from seatrial_studies.song2025.published import (
     BEAM,

@@ -5,7 +5,7 @@ from functools import cache
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Parameter, Parameters
-from seatrial.physics.models.waterjet import waterjet
+from seatrial.physics.models import waterjet
 from seatrial_studies.song2025.craft_models import symbol, with_expressions
 from seatrial_studies.song2025.published import DROPPED_COEFFICIENTS, SOURCE
 

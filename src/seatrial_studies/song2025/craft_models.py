@@ -9,10 +9,9 @@ import sympy as sp
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Record
-from seatrial.data.example_series.series import simulate_run
-from seatrial.physics.models.waterjet import waterjet
-from seatrial.physics.simulate.channels import inputs_of, record_of
-from seatrial.physics.simulate.replay import initial_state, trajectory
+from seatrial.data.example_series import simulate_run
+from seatrial.physics.models import waterjet
+from seatrial.physics.simulate import initial_state, inputs_of, record_of, trajectory
 from seatrial_studies.song2025.published import (
     MISPRINTED_SIGNS,
     SOURCE,

@@ -7,11 +7,9 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results import Direction
 from seatrial.core.values import Array, Record
-from seatrial.data.example_series.series import SENSOR_NOISE
-from seatrial.estimation.information.directions import directions
-from seatrial.physics.simulate.batch import SegmentBatch
-from seatrial.physics.simulate.channels import inputs_of
-from seatrial.physics.simulate.replay import initial_state
+from seatrial.data.example_series import SENSOR_NOISE
+from seatrial.estimation.information import directions
+from seatrial.physics.simulate import SegmentBatch, initial_state, inputs_of
 from seatrial_studies.song2025.craft_models import TRUTH, replay_inputs
 from seatrial_studies.song2025.generalisation import prediction_accuracy
 from seatrial_studies.song2025.published import Accuracy

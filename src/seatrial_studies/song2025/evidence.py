@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from seatrial.estimation.information.sensitivity import IndirectSensitivity, UniqueSensitivity
 from seatrial_studies.song2025.audit import SupportVectorAudit
+from seatrial_studies.song2025.coefficient_sensitivity import IndirectSensitivity, UniqueSensitivity
 from seatrial_studies.song2025.discrimination import Discrimination
 from seatrial_studies.song2025.generalisation import RunComparison
 from seatrial_studies.song2025.published import PublishedManoeuvre, Table2Column

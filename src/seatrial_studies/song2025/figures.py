@@ -3,7 +3,7 @@
 import numpy as np
 
 from seatrial.core.results import Bars, Curve, Figure, Matrix, Prediction
-from seatrial.physics.models.waterjet import COEFFICIENTS
+from seatrial.physics.models import WATERJET_COEFFICIENTS as COEFFICIENTS
 from seatrial_studies.song2025.craft_models import TRUTH
 from seatrial_studies.song2025.evidence import SupportVectorEvidence
 from seatrial_studies.song2025.generalisation import CHANNELS, RunComparison, hull_and_jet_forces

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array, Record
-from seatrial.data.example_series.series import JET_VELOCITY
-from seatrial.physics.simulate.forces import forces
-from seatrial.physics.simulate.replay import trajectory
+from seatrial.data.example_series import JET_VELOCITY
+from seatrial.physics.simulate import forces, trajectory
 from seatrial_studies.song2025.craft_models import (
     CoefficientSet,
     ManoeuvreRun,

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
-from seatrial.physics.models.waterjet import COEFFICIENTS
+from seatrial.physics.models import WATERJET_COEFFICIENTS as COEFFICIENTS
 
 SOURCE = (
     "Song Lifei, Wang Yuqing, Peng Wei, Li Peiyong, Liu Yushan, Zhang Yongfeng: Hydrodynamic coefficients "

@@ -7,21 +7,31 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Finding, InputError, Record
-from seatrial.data.example_series.series import JET_VELOCITY, SENSOR_NOISE, SLEW_RATE, with_sensor_noise
-from seatrial.estimation.estimate import Runs
-from seatrial.estimation.estimate.fit import estimate_model
-from seatrial.estimation.regress.estimators import LinearRegression, RegressionEstimate, RegressionEstimator
-from seatrial.estimation.regress.features import RegressionMotion
-from seatrial.estimation.regress.operators import Central, Centred, Differenced, Euler, Weak
-from seatrial.estimation.regress.pipeline import Cleaning, Pipeline
-from seatrial.estimation.regress.solvers import Lasso, OrdinaryLeastSquares
-from seatrial.estimation.regress.split import blocks, shuffled_split
-from seatrial.estimation.regress.standard_estimators import standard_estimators
-from seatrial.estimation.regress.support_vectors import SupportVectors
-from seatrial.estimation.regress.system import build_systems
-from seatrial.physics.manoeuvres.programme import programme
-from seatrial.physics.models.waterjet import COEFFICIENTS
-from seatrial.physics.simulate.steer import manoeuvre
+from seatrial.data.example_series import JET_VELOCITY, SENSOR_NOISE, SLEW_RATE, with_sensor_noise
+from seatrial.estimation.estimate import Runs, estimate_model
+from seatrial.estimation.regress import (
+    Central,
+    Centred,
+    Cleaning,
+    Differenced,
+    Euler,
+    Lasso,
+    LinearRegression,
+    OrdinaryLeastSquares,
+    Pipeline,
+    RegressionEstimate,
+    RegressionEstimator,
+    RegressionMotion,
+    SupportVectors,
+    Weak,
+    blocks,
+    build_systems,
+    shuffled_split,
+    standard_estimators,
+)
+from seatrial.physics.manoeuvres import programme
+from seatrial.physics.models import WATERJET_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.simulate import manoeuvre
 from seatrial_studies.song2025.candidates import thirteen_coefficient_model
 from seatrial_studies.song2025.craft_models import TRUTH, reference_record
 from seatrial_studies.song2025.published import PublishedManoeuvre

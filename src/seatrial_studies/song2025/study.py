@@ -3,11 +3,10 @@
 import time
 
 from seatrial.core.results import Study
-from seatrial.core.values import ProgressReporter
-from seatrial.core.values.versions import versions
-from seatrial.estimation.information.sensitivity import indirect_sensitivity, unique_sensitivity
+from seatrial.core.values import ProgressReporter, versions
 from seatrial_studies.song2025.assumed_parameters import assumed_parameter_sets
 from seatrial_studies.song2025.audit import audit
+from seatrial_studies.song2025.coefficient_sensitivity import indirect_sensitivity, unique_sensitivity
 from seatrial_studies.song2025.craft_models import CORRECTED, TRUTH, reference_record
 from seatrial_studies.song2025.discrimination import discrimination
 from seatrial_studies.song2025.evidence import SupportVectorEvidence

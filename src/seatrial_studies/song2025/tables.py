@@ -6,7 +6,7 @@ import numpy as np
 
 from seatrial.core.results import Table
 from seatrial.core.values import Array
-from seatrial.physics.models.waterjet import COEFFICIENTS
+from seatrial.physics.models import WATERJET_COEFFICIENTS as COEFFICIENTS
 from seatrial_studies.song2025.evidence import SupportVectorEvidence, percent_text
 from seatrial_studies.song2025.generalisation import CHANNELS
 from seatrial_studies.song2025.misprints import misprint_table

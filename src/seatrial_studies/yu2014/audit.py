@@ -6,20 +6,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array
-from seatrial.numerics.optimise import Box
-from seatrial.numerics.optimise.random_weight_genetic import decode, encode, selection_probabilities
-from seatrial.physics.loops.fin import BOUNDS, GYRO, PUBLISHED_GAINS, SERVO, Preamplifier
+from seatrial.numerics.optimise import Box, decode, encode, selection_probabilities
+from seatrial.physics.loops import Preamplifier
 from seatrial_studies.yu2014.published import (
     ASPECT,
     CHORD,
     CHORD_OF_LEVER,
     DENSITY,
     FIN_LIMIT,
+    LOWER,
+    PUBLISHED_LOOP,
+    PUBLISHED_VALUES,
     SATURATION,
     SPAN,
     STEP,
     TABLE_1,
     THICKNESS,
+    UPPER,
 )  # fmt: skip
 from seatrial_studies.yu2014.published_loop import DESIGN_SEA, RollResponse, effective_slope, performance, roll_response
 
@@ -83,9 +86,9 @@ def audit(seed: int) -> FinGainAudit:
         sum(row.traditional.rate > row.genetic.rate for row in TABLE_1),
         contradictory_rows(),
         shortest_code_bits(),
-        runge_kutta_growth(STEP, complex(GYRO.poles[0])),
+        runge_kutta_growth(STEP, complex(PUBLISHED_LOOP.sensor[0].poles[0])),
         {reading: roll_response(performance(reading)) for reading in Preamplifier},
-        SERVO.gain,
+        PUBLISHED_LOOP.servo[0].gain,
     )
 
 
@@ -131,8 +134,7 @@ def shortest_code_bits() -> int:
 
 
 def _represents_gains(bits: int) -> bool:
-    values = np.array(list(PUBLISHED_GAINS.values()))
-    box = Box(*(np.array([BOUNDS[name][side] for name in PUBLISHED_GAINS]) for side in (0, 1)))
+    values, box = PUBLISHED_VALUES, Box(LOWER, UPPER)
     nearest: Array = decode(encode(values, box, bits), box)
     return bool(np.all(np.round(nearest, PRINTED_DIGITS) == values))
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.numerics.optimise import Normaliser
-from seatrial.physics.loops.fin import Preamplifier
+from seatrial.physics.loops import Preamplifier
 from seatrial_studies.yu2014.audit import FinGainAudit
 from seatrial_studies.yu2014.histories import RollHistories
 from seatrial_studies.yu2014.improved_gains import FiveGainDesign, ThreeGainOptimum

@@ -3,7 +3,7 @@
 import numpy as np
 
 from seatrial.core.results import Bars, Curve, Figure
-from seatrial.physics.loops.fin import Preamplifier
+from seatrial.physics.loops import Preamplifier
 from seatrial_studies.yu2014.evidence import FinGainEvidence
 from seatrial_studies.yu2014.published import GAIN_NAMES, TABLE_1
 from seatrial_studies.yu2014.published_loop import PREAMPLIFIER_LABELS, FinObjective

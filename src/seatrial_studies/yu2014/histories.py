@@ -6,12 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array
-from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.hydro.excitation import Complex
-from seatrial.physics.loops import TransferLoop
-from seatrial.physics.loops.fin import Preamplifier
-from seatrial.physics.sea.realise import Spacing, WaveComponents, harmonic_sum, realise, short_crested
-from seatrial.physics.sea.spectrum import ittc
+from seatrial.physics.hydro import Complex, G
+from seatrial.physics.loops import Preamplifier, TransferLoop
+from seatrial.physics.sea import Spacing, WaveComponents, harmonic_sum, ittc, realise, short_crested
 from seatrial_studies.yu2014.published import DESIGN_ROW, HEIGHT, PUBLISHED_VALUES, RECORD_SECONDS
 from seatrial_studies.yu2014.published_loop import (
     DESIGN_SEA,

@@ -9,10 +9,8 @@ import numpy as np
 
 from seatrial.core.values import Array
 from seatrial.numerics.optimise import Box, DifferentialEvolution, EvolutionSettings, search
-from seatrial.physics.loops import Performance
-from seatrial.physics.loops.fin import Preamplifier
-from seatrial.physics.loops.structures import five_gain_loop
-from seatrial.physics.sea.spectrum import bretschneider, ittc, jonswap
+from seatrial.physics.loops import Performance, Preamplifier, five_gain_loop
+from seatrial.physics.sea import bretschneider, ittc, jonswap
 from seatrial_studies.yu2014.published import HEIGHT, PUBLISHED_VALUES, Table1Row
 from seatrial_studies.yu2014.published_loop import (
     DESIGN_SEA,

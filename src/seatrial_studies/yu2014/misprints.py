@@ -1,7 +1,7 @@
 """The misprints of the paper, each with what the print does and what stands in its place."""
 
 from seatrial.core.results import Table
-from seatrial.physics.loops.fin import Preamplifier
+from seatrial.physics.loops import Preamplifier
 from seatrial_studies.yu2014.audit import FinGainAudit
 from seatrial_studies.yu2014.published import CHORD, CHORD_OF_LEVER, INERTIA, TARGET_DEG2
 from seatrial_studies.yu2014.published_loop import PREAMPLIFIER_LABELS

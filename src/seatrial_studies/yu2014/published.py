@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array
-from seatrial.physics.loops.fin import BOUNDS, PUBLISHED_GAINS
+from seatrial.physics.loops import fin_loop
 
 SOURCE = (
     "Yu Lijun, Liu Shaoying, Wang Hui, Xiong Chaodong: Energy optimization for the fin stabilizer system based on a "
@@ -64,9 +64,10 @@ TABLE_1 = (
 )
 DESIGN_ROW, DESIGN_ROW_AT_22_KN = TABLE_1[1], TABLE_1[4]
 
-GAIN_NAMES = tuple(PUBLISHED_GAINS)
-PUBLISHED_VALUES = np.array(list(PUBLISHED_GAINS.values()))
-LOWER, UPPER = (np.array([BOUNDS[name][side] for name in GAIN_NAMES]) for side in (0, 1))
+PUBLISHED_LOOP = fin_loop()
+GAIN_NAMES = PUBLISHED_LOOP.gains.names
+PUBLISHED_VALUES = PUBLISHED_LOOP.gain_values
+LOWER, UPPER = (np.array(ends) for ends in zip(*((p.lower, p.upper) for p in PUBLISHED_LOOP.gains), strict=True))
 HEIGHT = 3.3  # m, significant
 FIN_LIMIT, SATURATION = 22.0, 0.2  # deg, probability
 TARGET_DEG2 = 150.31  # as printed

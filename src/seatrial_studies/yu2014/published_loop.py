@@ -12,16 +12,20 @@ from seatrial.core.values import Array
 from seatrial.physics.loops import (
     EncounterSpectrum,
     HullFactor,
+    K_alpha_at,
     LoopSignal,
+    Objective,
     Performance,
+    Preamplifier,
     TransferLoop,
+    distinct_variances,
+    fin_loop,
+    squared_deviation,
+    variance,
     wave_slope_spectrum,
 )
-from seatrial.physics.loops.fin import ROLL, K_alpha_at, Preamplifier, fin_loop
-from seatrial.physics.loops.objective import Objective, squared_deviation, variance
-from seatrial.physics.loops.performance import distinct_variances
-from seatrial.physics.sea.spectrum import Spectrum, ittc
-from seatrial_studies.yu2014.published import DESIGN_ROW, HEIGHT, PUBLISHED_VALUES, TARGET
+from seatrial.physics.sea import Spectrum, ittc
+from seatrial_studies.yu2014.published import DESIGN_ROW, HEIGHT, PUBLISHED_LOOP, PUBLISHED_VALUES, TARGET
 
 HULL_FACTOR = HullFactor(100.0, 10.5, 3.4)
 KNOT = 1852.0 / 3600.0
@@ -80,7 +84,12 @@ def effective_slope(sea: SeaCondition) -> EncounterSpectrum:
     """The effective wave slope."""
     spectrum = sea.spectrum or ittc(HEIGHT)
     return wave_slope_spectrum(
-        spectrum, sea.speed * KNOT, math.radians(sea.heading), ROLL, HULL_FACTOR, spreading=sea.spreading
+        spectrum,
+        sea.speed * KNOT,
+        math.radians(sea.heading),
+        PUBLISHED_LOOP.disturbance,
+        HULL_FACTOR,
+        spreading=sea.spreading,
     )
 
 

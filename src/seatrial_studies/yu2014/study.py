@@ -5,9 +5,8 @@ import time
 import numpy as np
 
 from seatrial.core.results import Study
-from seatrial.core.values import ProgressReporter
-from seatrial.core.values.versions import versions
-from seatrial.physics.loops.fin import Preamplifier
+from seatrial.core.values import ProgressReporter, versions
+from seatrial.physics.loops import Preamplifier
 from seatrial_studies.yu2014.audit import audit
 from seatrial_studies.yu2014.evidence import FinGainEvidence, responses_at_table_1
 from seatrial_studies.yu2014.figures import figures

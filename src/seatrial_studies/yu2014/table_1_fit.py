@@ -12,8 +12,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from seatrial.core.values import Array
-from seatrial.physics.loops import Performance
-from seatrial.physics.loops.fin import Preamplifier
+from seatrial.physics.loops import Performance, Preamplifier
 from seatrial_studies.yu2014.published import LOWER, PUBLISHED_VALUES, TABLE_1, UPPER, ControllerResult
 from seatrial_studies.yu2014.published_loop import (
     RollResponse,

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 
 from seatrial.core.results import Table
-from seatrial.physics.loops.fin import Preamplifier
-from seatrial.physics.loops.structures import FREQUENCIES_AND_DAMPINGS
+from seatrial.physics.loops import FREQUENCIES_AND_DAMPINGS, Preamplifier
 from seatrial_studies.yu2014.evidence import FinGainEvidence
 from seatrial_studies.yu2014.improved_gains import FiveGainComparison
 from seatrial_studies.yu2014.misprints import misprint_table

@@ -3,7 +3,7 @@
 import numpy as np
 
 from seatrial.core.results import Check, Claim, Verdict
-from seatrial.physics.loops.fin import Preamplifier
+from seatrial.physics.loops import Preamplifier
 from seatrial_studies.yu2014.evidence import FinGainEvidence
 from seatrial_studies.yu2014.improved_gains import MS_LIMIT
 from seatrial_studies.yu2014.published import DESIGN_ROW, DESIGN_ROW_AT_22_KN, GAIN_NAMES, STATEMENTS, TABLE_1

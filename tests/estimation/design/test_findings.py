@@ -11,7 +11,8 @@ from seatrial.core.values import InputError, Record, Ship
 from seatrial.data.trial.design_request import DesignRequest, InputRange
 from seatrial.estimation.design.findings import findings, refuse_violated_limits
 from seatrial.estimation.design.task import DesignTask
-from seatrial.physics.models.waterjet import COEFFICIENTS, waterjet
+from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.waterjet import waterjet
 
 COUNT = len(COEFFICIENTS)
 NOTHING = Record.from_arrays("run", np.arange(3.0), {"u": np.ones(3)})

@@ -12,7 +12,8 @@ from seatrial.estimation.estimate.start import weak_form_start
 from seatrial.estimation.identify import estimate_model
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto, nomoto2
-from seatrial.physics.models.waterjet import COEFFICIENTS, waterjet
+from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate.states import measured_states
 from seatrial.physics.simulate.steer import manoeuvre
 

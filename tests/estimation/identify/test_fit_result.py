@@ -8,7 +8,8 @@ import pytest
 
 from seatrial.core.values import DivergedError, InputError, Parameters, Prior
 from seatrial.estimation.identify.fit_result import divergence_message, refuse_unidentified, unidentified
-from seatrial.physics.models.waterjet import COEFFICIENTS, waterjet
+from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.waterjet import waterjet
 
 VALUES = waterjet().parameters
 

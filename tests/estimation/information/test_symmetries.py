@@ -17,7 +17,8 @@ from seatrial.physics.models.abkowitz import abkowitz
 from seatrial.physics.models.mmg import mmg
 from seatrial.physics.models.nomoto import nomoto, nomoto2
 from seatrial.physics.models.published import esso_osaka, kvlcc2
-from seatrial.physics.models.waterjet import COEFFICIENTS, waterjet
+from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate.replay import trajectory
 
 MOTION = ("u", "v", "r", "psi", "x0", "y0")

@@ -7,13 +7,13 @@ from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record
 from seatrial.data.trial import EstimateSettings, Role, TrialRecord
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
-from seatrial.estimation.predict.cross_validation import HoldoutProtocol
+from seatrial.estimation.predict.holdout_windows import HoldoutProtocol
 from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
-from seatrial.estimation.predict.window_bands import band_coverage, holdout_windows
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate import replay
 from seatrial.physics.simulate.steer import manoeuvre
+from seatrial_studies.alexandersson2022.window_bands import band_coverage, holdout_windows
 
 K, T, RUNS, REPEATS, ZERO = 0.15, 8.0, 7, 14, 0.01
 ANGLES = (10, 12, 14, 16, 18, 20, 15)

@@ -9,7 +9,7 @@ from hypothesis.extra.numpy import arrays
 from seatrial.core.values import InputError
 from seatrial.physics.hydro.dispersion import G
 from seatrial.physics.hydro.excitation import encounter_frequency
-from seatrial.physics.hydro.strip_theory import coefficients_at_rest, coefficients_at_speed, excitation_at_speed
+from seatrial.physics.hydro.strip_theory import coefficients_at_speed, excitation_at_speed
 
 N = 5
 OMEGA_E = np.array([-1.1, 0.3, 0.8, 1.7, 2.6])
@@ -37,13 +37,6 @@ def test_the_terms_are_antisymmetric(A: np.ndarray, B: np.ndarray, U: float) -> 
     np.testing.assert_allclose(speedy[:, 0, 1] - speedy[:, 1, 0], 2 * U * A[:, 0, 0], rtol=1e-9, atol=1e-9)
 
 
-@given(matrices, matrices, speeds)
-def test_there_and_back(A: np.ndarray, B: np.ndarray, U: float) -> None:
-    back = coefficients_at_rest(*coefficients_at_speed(A, B, OMEGA_E, U), OMEGA_E, U)
-    for one, other in zip((A, B), back, strict=True):
-        np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-9)
-
-
 def test_published_coefficients_become_symmetric_at_rest() -> None:
     """The damping implies the ship's 18 kn at each heading, and at that speed the couplings come out symmetric."""
     A, B = np.moveaxis(PUBLISHED_A, 2, 0), np.moveaxis(PUBLISHED_B, 2, 0)
@@ -52,7 +45,8 @@ def test_published_coefficients_become_symmetric_at_rest() -> None:
     U = float(np.mean(implied))
     omega_e = np.sqrt(2 * U * B33 / (A[:, 1, 0] - A[:, 0, 1]))
     np.testing.assert_allclose(omega_e, [1.57, 1.80, 1.86], atol=0.01)
-    A0, B0 = coefficients_at_rest(A, B, omega_e, U)
+    moving = coefficients_at_speed(A, B, omega_e, U)
+    A0, B0 = 2 * A - moving[0], 2 * B - moving[1]  # the terms depend on A33 and B33 alone, which stay
     np.testing.assert_allclose(A0[:, 0, 1], A0[:, 1, 0], rtol=1e-12)
     rounding = 5e3 + 5e2 + 2 * U * 50
     np.testing.assert_allclose(B0[:, 0, 1], B0[:, 1, 0], rtol=0.0, atol=rounding)

@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 
 from seatrial.core.values import InputError
 from seatrial.physics.loops import Block, margins
-from seatrial.physics.loops.autopilot import DAMPING_RATIO, heading_loop, pitch_loop, speed_loop, steering_gear
+from seatrial.physics.loops.autopilot import DAMPING_RATIO, heading_loop, pitch_loop, speed_loop
 from seatrial.physics.loops.margins import sensitivity_magnitude
 
-GEAR = (steering_gear(0.5),)
+GEAR = (Block("steering gear", (1.0,), (0.5, 1.0)),)
 UNSTABLE = Block("tanker", (0.0285, 0.00497), (1.0, 0.384, -0.0045, 0.0))
 PITCH = Block("pitch", (0.06,), (1.0, 0.25, 1.4))
 
@@ -79,8 +79,6 @@ def test_what_cannot_be_is_refused() -> None:
         heading_loop(UNSTABLE, UNSTABLE, GEAR, parts=("KQ",))
     with pytest.raises(InputError, match="must be positive"):
         heading_loop(UNSTABLE, UNSTABLE, GEAR, derivative_filter=0.0)
-    with pytest.raises(InputError, match="must be positive"):
-        steering_gear(0.0)
     with pytest.raises(InputError, match="no restoring"):
         pitch_loop(nomoto(0.1, 5.0), lag, GEAR)
     with pytest.raises(InputError, match="no pole off the origin"):

@@ -14,7 +14,6 @@ from seatrial.physics.sea.realise import (
     above_nyquist,
     realise,
     refuse_short_record,
-    repetition_period,
     short_crested,
     spread_angle,
     wave_record,
@@ -29,18 +28,6 @@ HULL = BoxHull(60.0, 7.14, 2.27, 3.15e6, 6.83e6, 6.83e6, 6.54e8)
 def test_the_energy_of_the_band_is_in_the_lines(spacing: Spacing) -> None:
     lines = realise(SEA, 9.26, 2.0, np.random.default_rng(1), count=400, spacing=spacing)
     assert np.sum(np.abs(lines.amplitude) ** 2) / 2 == pytest.approx(0.989 * SEA.moment(0), rel=1e-3)
-
-
-def test_the_published_sea_repeats_after_84_s_abeam() -> None:
-    lines = realise(SEA, 9.26, math.pi / 2, np.random.default_rng(0))
-    period = repetition_period(lines)
-    assert period == pytest.approx(84.0, abs=0.3)
-    time = np.arange(0.0, 20.0, 0.1)
-
-    def envelope(start: float) -> np.ndarray:
-        return np.abs(np.exp(1j * np.outer(time + start, lines.omega_e)) @ lines.amplitude)
-
-    np.testing.assert_allclose(envelope(0.0), envelope(period), atol=1e-9)
 
 
 def test_the_same_seed_gives_the_same_sea() -> None:
@@ -119,13 +106,6 @@ def test_all_lines_above_nyquist_are_told() -> None:
     assert np.abs(np.delete(lines.omega_e, beyond)).max() <= 2 * math.pi
     with pytest.raises(InputError, match=f"{beyond.size} lines lie above"):
         wave_record(lines, np.arange(0.0, 100.0, 0.5))
-
-
-def test_headway_and_other_spacings_do_not_repeat() -> None:
-    rng = np.random.default_rng(0)
-    assert math.isinf(repetition_period(realise(SEA, 9.26, math.radians(135), rng)))
-    assert math.isinf(repetition_period(realise(SEA, 9.26, math.pi / 2, rng, spacing=Spacing.EQUAL_ENERGY)))
-    assert math.isinf(repetition_period(realise(SEA, 9.26, math.pi / 2, rng, spacing=Spacing.JITTERED)))
 
 
 def test_the_elevation_is_the_sum_of_its_cosines() -> None:

@@ -6,7 +6,8 @@ from scipy.integrate import solve_ivp
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array
-from seatrial.physics.models.heave_pitch import COEFFICIENTS, heave_pitch, heave_pitch_zoh
+from seatrial.physics.models.heave_pitch import heave_pitch, heave_pitch_zoh
+from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models.qi2025 import HEADINGS, theoretical_coefficients
 from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
 from seatrial.physics.simulate.linear import LinearBatch

@@ -9,7 +9,7 @@ from scipy.linalg import expm
 from scipy.signal import lsim
 
 from seatrial.core.values import Array, InputError
-from seatrial.physics.models.heave_pitch import COEFFICIENTS
+from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models.qi2025 import SHIP, theoretical_coefficients
 from seatrial.physics.simulate.population import (
     Forcing,

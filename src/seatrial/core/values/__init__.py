@@ -11,6 +11,7 @@ from seatrial.core.values.progress import ProgressReporter
 from seatrial.core.values.record import Record, RecordKind
 from seatrial.core.values.ship import Ship
 from seatrial.core.values.units import display_unit, si_unit
+from seatrial.core.values.versions import versions
 
 __all__ = [
     "NOTATION",
@@ -37,4 +38,5 @@ __all__ = [
     "quantity",
     "si_unit",
     "spelling_hint",
+    "versions",
 ]

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-# dimensionless, ours: how far steps of an even time base may differ, in mean steps; how far a ratio of rates may be from
-# a whole number; rounding of a duration times a rate
+# dimensionless, ours: how far steps of an even time base may differ, in mean steps; how far a ratio of rates may be
+# from a whole number; rounding of a duration times a rate
 _EVEN_STEPS, _WHOLE_RATIO, _ROUNDING = 1e-3, 1e-3, 1e-12
 _SAME_TIME = 1e-9  # s, relative beyond 1 s; ours: time stamps that near are one
 

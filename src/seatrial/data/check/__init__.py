@@ -1,9 +1,10 @@
 """Findings on records: declared conventions compared with the data, repairs; refuses to guess."""
 
-from seatrial.data.check.conventions import canonical_record
+from seatrial.data.check.conventions import canonical_record, with_standard_signs
 from seatrial.data.check.examine import ExaminedRecord, examine, examined_record
 from seatrial.data.check.repair import complete_segments, repair
 from seatrial.data.check.rudder import is_excited
+from seatrial.data.check.signal import sample_noise
 from seatrial.data.check.timestamps import rebuild_time_base
 
 __all__ = [
@@ -15,4 +16,6 @@ __all__ = [
     "is_excited",
     "rebuild_time_base",
     "repair",
+    "sample_noise",
+    "with_standard_signs",
 ]

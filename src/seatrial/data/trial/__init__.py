@@ -1,5 +1,6 @@
 """Trials: ship, runs and their roles, model and settings, from a trial file or made in Python."""
 
+from seatrial.data.trial.approach import approach_condition
 from seatrial.data.trial.load import load_trial
 from seatrial.data.trial.records import CheckedRecords, TrialRecord, checked_records, load_records, refuse_errors
 from seatrial.data.trial.settings import EstimateSettings, FitCriterion, ModelFamily
@@ -16,6 +17,7 @@ __all__ = [
     "TrialRecord",
     "TrialRun",
     "Trimming",
+    "approach_condition",
     "checked_records",
     "load_records",
     "load_trial",

@@ -2,5 +2,14 @@
 
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, IntervalMethod, Runs, estimate_model
 from seatrial.estimation.identify.identify import identify
+from seatrial.estimation.identify.model_selection import HOLDOUT_WINDOW_SHIP_LENGTHS
 
-__all__ = ["Estimation", "EstimatorOptions", "IntervalMethod", "Runs", "estimate_model", "identify"]
+__all__ = [
+    "HOLDOUT_WINDOW_SHIP_LENGTHS",
+    "Estimation",
+    "EstimatorOptions",
+    "IntervalMethod",
+    "Runs",
+    "estimate_model",
+    "identify",
+]

@@ -22,7 +22,7 @@ from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_outpu
 from seatrial.estimation.estimate.resampling import one_step_jackknife
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
-from seatrial.estimation.predict.cross_validation import HoldoutProtocol, split_windows, window_errors
+from seatrial.estimation.predict.holdout_windows import HoldoutProtocol, split_windows, window_errors
 from seatrial.estimation.predict.predict_runs import TiedModel
 from seatrial.estimation.predict.prediction_intervals import holdout_model
 from seatrial.numerics.workers import map_in_threads

@@ -9,7 +9,7 @@ from seatrial.core.equations import Model
 from seatrial.core.results.seakeeping import PointMotion, Seakeeping
 from seatrial.core.values import Array, Record
 from seatrial.data.trial import TrialRecord
-from seatrial.physics.sea.encounter import encounter_frequency
+from seatrial.physics.hydro.excitation import encounter_frequency
 from seatrial.physics.sea.response import (
     MotionStatistics,
     motion_sickness,

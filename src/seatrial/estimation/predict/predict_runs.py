@@ -13,8 +13,8 @@ from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.information.discrepancy import NO_DISCREPANCY, Discrepancy, HoldoutError, discrepancy
 from seatrial.estimation.information.extrapolation import extrapolation, extrapolation_index, motion_envelope
-from seatrial.estimation.predict.cross_validation import session_nuisances
 from seatrial.estimation.predict.draws import PredictionUncertainty
+from seatrial.estimation.predict.holdout_windows import session_nuisances
 from seatrial.estimation.predict.open_loop import (
     compare_measures,
     mean_nuisances,

@@ -15,7 +15,6 @@ from seatrial.estimation.problem.spectral_likelihood import apply_leakage, fine_
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.physics.simulate.harmonics import Complex
 
-UNKNOWNS = ("level", "w_p", "gamma", "D", "noise", "b_1", "c_1")
 DAMPING, RESTORING = 5, 6
 _SIGMA = (0.07, 0.09)
 _WINDOW_CORRELATION = 35.0 / 18.0

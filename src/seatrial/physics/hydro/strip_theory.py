@@ -26,12 +26,6 @@ def coefficients_at_speed(A: Array, B: Array, omega_e: Array, U: float) -> tuple
     return A + more_A, B + more_B
 
 
-def coefficients_at_rest(A: Array, B: Array, omega_e: Array, U: float) -> tuple[Array, Array]:
-    """The inverse of `coefficients_at_speed`; raises as it does."""
-    more_A, more_B = _speed_terms(A, B, omega_e, U)
-    return A - more_A, B - more_B
-
-
 def excitation_at_speed(
     froude_krylov: Complex, diffraction: Complex, omega: Array, omega_e: Array, U: float
 ) -> Complex:

@@ -25,13 +25,6 @@ Gains = dict[str, float]
 GainRange = tuple[float, float, float]
 
 
-def steering_gear(time_constant: float) -> Block:
-    """A lag of first order from the order to the rudder, s (Van Amerongen 1982, thesis, Delft, section 2.3)."""
-    if not time_constant > 0.0:
-        raise InputError(f"the steering gear's time constant must be positive, not {time_constant:g} s")
-    return Block("steering gear", (1.0,), (time_constant, 1.0))
-
-
 def heading_loop(
     plant: Block,
     disturbance: Block,

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,9 +11,6 @@ from seatrial.core.equations.manifest import stored_model
 from seatrial.core.values import Array, InputError
 from seatrial.physics.loops.block import Block
 from seatrial.physics.loops.loop import TransferLoop
-
-if TYPE_CHECKING:
-    import sympy as sp
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,38 +117,6 @@ def _observable_form(plant: Block, disturbance: Block | None) -> tuple[Array, Ar
 
 def _identifier(name: str) -> str:
     return "".join(character if character.isalnum() else "_" for character in name)
-
-
-def loop_model(loop: TransferLoop) -> Model:
-    """The closed loop as a model of the house: its gains are parameters, free where the loop's are.
-
-    The input is the disturbance, measurable outputs are the loop's output and actuator; all angles in rad.
-    """
-    import sympy as sp
-
-    from seatrial.core.equations import Sheet
-
-    made = state_space(loop)
-    sheet = Sheet(f"{_identifier(loop.name)}_loop", "assembled from the loop's blocks", "a closed loop, linear")
-    x = sheet.states(" ".join(made.names))
-    w = sheet.input(loop.disturbance_input)
-    gains = [
-        sheet.parameter(p.name, p.value, p.unit, p.meaning, p.source, free=p.free, lower=p.lower, upper=p.upper)
-        for p in loop.gains
-    ]
-
-    def along(rows: Array) -> "sp.Expr":
-        """Rows (1 + g, n) as an expression."""
-        whole = sp.Integer(0)
-        for factor, row in zip((sp.Integer(1), *gains), rows, strict=True):
-            whole += factor * sp.Add(*(float(v) * s for v, s in zip(row, x, strict=True) if v))
-        return whole
-
-    for i, state in enumerate(x):
-        sheet.rate(state, along(made.A[:, i]) + float(made.b[i]) * w, "blocks in series")
-    sheet.output(loop.output, along(np.vstack([made.c, np.zeros((len(gains), len(x)))])), "plant", "rad")
-    sheet.output(loop.actuator, along(made.a), "servo", "rad")
-    return sheet.model()
 
 
 def plant_model(loop: TransferLoop) -> Model:

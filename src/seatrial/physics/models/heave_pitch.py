@@ -8,7 +8,12 @@ from functools import cache
 import sympy as sp
 
 from seatrial.core.equations import Model, Sheet
-from seatrial.physics.models.heave_pitch_coefficients import COEFFICIENTS, DAMPINGS, MASSES, STIFFNESSES
+from seatrial.physics.models.heave_pitch_coefficients import (
+    DAMPINGS,
+    HEAVE_PITCH_COEFFICIENTS,
+    HEAVE_PITCH_STIFFNESSES,
+    MASSES,
+)
 
 QI = "Qi et al. 2025, eq. (1)"
 MENG = "Meng et al. 2014, eq. (1)"
@@ -27,8 +32,8 @@ _COUPLINGS = {"33": "heave", "35": "heave from pitch", "53": "pitch from heave",
 
 def _coefficients(sheet: Sheet) -> dict[str, sp.Symbol]:
     named = {}
-    for name, unit in (MASSES | DAMPINGS | STIFFNESSES).items():
-        free = name in COEFFICIENTS
+    for name, unit in (MASSES | DAMPINGS | HEAVE_PITCH_STIFFNESSES).items():
+        free = name in HEAVE_PITCH_COEFFICIENTS
         meaning = f"{_COEFFICIENT_KINDS[name[0]]}, {_COUPLINGS[name[1:]]}"
         latex = f"{name[0]}_{{{name[1:]}}}"
         named[name] = sheet.parameter(name, unit=unit, meaning=meaning, source=QI, free=free, latex=latex)
@@ -109,7 +114,7 @@ def heave_pitch_strip() -> Model:
         at_rest[name] = sheet.parameter(name, unit=unit, meaning=meaning, source=STRIP, free=True, latex=latex)
     c = {
         name: sheet.parameter(name, unit=unit, meaning=f"restoring, {_COUPLINGS[name[1:]]}", source=QI)
-        for name, unit in STIFFNESSES.items()
+        for name, unit in HEAVE_PITCH_STIFFNESSES.items()
     }
     a33, b33, a35, b35 = (at_rest[n] for n in ("a33", "b33", "a35_0", "b35_0"))
     c |= {"a33": a33, "b33": b33}

@@ -2,8 +2,8 @@
 
 MASSES = {"a33": "kg", "a35": "kg m", "a55": "kg m^2", "a53": "kg m"}
 DAMPINGS = {"b33": "kg/s", "b35": "kg m/s", "b55": "kg m^2/s", "b53": "kg m/s"}
-STIFFNESSES = {"c33": "N/m", "c35": "N/rad", "c53": "N m/m", "c55": "N m/rad"}
-COEFFICIENTS = (*MASSES, *DAMPINGS)
+HEAVE_PITCH_STIFFNESSES = {"c33": "N/m", "c35": "N/rad", "c53": "N m/m", "c55": "N m/rad"}
+HEAVE_PITCH_COEFFICIENTS = (*MASSES, *DAMPINGS)
 
 START_DAMPING_RATIO = 0.3  # of critical, in both motions: chosen, of the order of a hull's at resonance
 
@@ -14,7 +14,7 @@ def physical_start_values(values: dict[str, float]) -> dict[str, float]:
     Added mass as large as the mass, no coupling, damping ratio .3 in both motions.
     """
     m, inertia = values["m"], values["I5"]
-    start = dict.fromkeys(COEFFICIENTS, 0.0)
+    start = dict.fromkeys(HEAVE_PITCH_COEFFICIENTS, 0.0)
     start["a33"], start["a55"] = m, inertia
     start["b33"] = 2.0 * START_DAMPING_RATIO * (values["c33"] * 2.0 * m) ** 0.5
     start["b55"] = 2.0 * START_DAMPING_RATIO * (values["c55"] * 2.0 * inertia) ** 0.5

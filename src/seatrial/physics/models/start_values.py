@@ -2,7 +2,8 @@
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Ship
-from seatrial.physics.models.heave_pitch_coefficients import COEFFICIENTS, physical_start_values
+from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.heave_pitch_coefficients import physical_start_values
 
 _REQUIRED_PARTICULARS = ("m", "I5", "c33", "c55")
 

@@ -22,7 +22,7 @@ TABLE_2 = {
     "Y_v": -0.27670, "Y_r": 0.08811, "Y_vv": -1.00740, "Y_vr": -0.16437, "Y_rr": -0.07020,
     "N_v": -0.17080, "N_r": -0.05240, "N_rr": -0.04350,
 }  # fmt: skip
-COEFFICIENTS = tuple(TABLE_2)
+WATERJET_COEFFICIENTS = tuple(TABLE_2)
 
 
 @cache

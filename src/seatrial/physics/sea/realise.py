@@ -7,8 +7,8 @@ from enum import Enum
 import numpy as np
 
 from seatrial.core.values import Array, Channel, Index, InputError, Provenance, Record, RecordKind, frozen
-from seatrial.physics.hydro.excitation import Complex, Excitation
-from seatrial.physics.sea.encounter import encounter_frequency, speed_factor
+from seatrial.physics.hydro.excitation import Complex, Excitation, encounter_frequency
+from seatrial.physics.sea.encounter import speed_factor
 from seatrial.physics.sea.spectrum import Spectrum
 
 DEFAULT_COMPONENTS = 30
@@ -185,18 +185,6 @@ def refuse_short_record(components: WaveComponents, duration: float) -> None:
             f"{components.omega[longest]:.3g} rad/s "
             f"{needed} to pass; record longer, or raise the lower end of the band"
         )
-
-
-def repetition_period(components: WaveComponents) -> float:
-    """s after which the envelope of the elevation repeats, 2 pi / d omega_e; infinite where lines lie unevenly.
-
-    Finite for `Spacing.EQUAL_INTERVAL` at rest and in beam seas; elsewhere headway shifts the lines unevenly.
-    """
-    met = np.sort(components.omega_e)
-    gaps = np.diff(met)
-    if gaps.size == 0 or np.ptp(gaps) > 1e-9 * np.abs(met).max():
-        return math.inf
-    return float(2.0 * np.pi / gaps.mean())
 
 
 def wave_record(components: WaveComponents, time: Array, excitation: Excitation | None = None) -> Record:

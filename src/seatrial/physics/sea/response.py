@@ -12,8 +12,10 @@ import numpy as np
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.dispersion import G
 from seatrial.physics.hydro.excitation import Complex
-from seatrial.physics.sea.realise import WaveComponents
 from seatrial.physics.sea.spectrum import Spectrum
+
+# least share of the sea's energy between the ends of a response, -; below it the response says nothing (our choice)
+_LEAST_ENERGY = 1e-3
 
 
 @dataclass(frozen=True)
@@ -73,26 +75,6 @@ def response_spectrum(spectrum: Spectrum, omega: Array, operator: Complex) -> Ar
     return np.abs(operator) ** 2 * spectrum.density(omega)
 
 
-def response_over_encounter(density: Array, omega: Array, omega_e: Array, edges: Array) -> Array:
-    """Mean density over |omega_e| between `edges` (n + 1,) of a response whose `density` over omega is given, (n,).
-
-    Each interval of omega gives its energy evenly to what lies between the frequencies at which its ends are met, so
-    that a following sea has no singularity and no energy is lost.
-
-    Raises:
-        InputError: omega or the edges do not rise.
-    """
-    if len(edges) < 2 or np.any(np.diff(edges) <= 0.0) or len(omega) < 2 or np.any(np.diff(omega) <= 0.0):
-        raise InputError("a response spectrum needs two or more frequencies, and edges, that rise")
-    energy = 0.5 * (density[1:] + density[:-1]) * np.diff(omega)
-    met = np.sort(np.abs(np.stack([omega_e[1:], omega_e[:-1]])), axis=0)
-    # waves that keep up with the ship between two of omega: met from nothing on
-    met[0] = np.where(omega_e[1:] * omega_e[:-1] < 0.0, 0.0, met[0])
-    width = np.maximum(met[1] - met[0], 1e-12)
-    within = np.clip((np.asarray(edges)[:, None] - met[0]) / width, 0.0, 1.0) @ energy
-    return np.diff(within) / np.diff(edges)
-
-
 def motion_statistics(spectrum: Spectrum, omega: Array, omega_e: Array, operator: Complex) -> MotionStatistics:
     """Statistics of the motion `operator`, all arrays (n,), rad/s; trapezoids over rising omega.
 
@@ -103,41 +85,20 @@ def motion_statistics(spectrum: Spectrum, omega: Array, omega_e: Array, operator
         raise InputError("the wave frequencies of a response must be two or more, and rise")
     _require_finite(omega, operator)
     share = float(spectrum.energy_between(omega[0], omega[-1])) / spectrum.moment(0)
-    if share < 1e-3:
+    resolved = float(np.trapezoid(spectrum.density(omega), omega)) / spectrum.moment(0)
+    if min(share, resolved) < _LEAST_ENERGY:
         raise InputError(
             f"the sea has no energy between {omega[0]:.3g} and {omega[-1]:.3g} rad/s; it peaks at "
             f"{spectrum.modal_frequency:.3g} rad/s"
         )
     density = response_spectrum(spectrum, omega, operator)
-    if np.trapezoid(spectrum.density(omega), omega) < 1e-3 * spectrum.moment(0):
-        raise InputError(
-            f"the sea has no energy between {omega[0]:.3g} and {omega[-1]:.3g} rad/s; it peaks at "
-            f"{spectrum.modal_frequency:.3g} rad/s"
-        )
     m0, m2, m4 = (float(np.trapezoid(omega_e**n * density, omega)) for n in (0, 2, 4))
-    return MotionStatistics(m0, m2, m4)
-
-
-def statistics_of_components(components: WaveComponents, operator: Complex) -> MotionStatistics:
-    """The same of one realisation, long- or short-crested: sums of |H a|^2 / 2 over its lines, `operator` (n,).
-
-    Raises:
-        InputError: an operator is not finite.
-    """
-    _require_finite(components.omega, operator)
-    energy = 0.5 * np.abs(operator * components.amplitude) ** 2
-    m0, m2, m4 = (float(np.sum(components.omega_e**n * energy)) for n in (0, 2, 4))
     return MotionStatistics(m0, m2, m4)
 
 
 def vertical_motion(heave: Complex, pitch: Complex, x: float) -> Complex:
     """Upward motion at x [m, forward of midship] from heave [up] and pitch [rad, bow down]: z - x theta."""
     return heave - x * pitch
-
-
-def vertical_acceleration(heave: Complex, pitch: Complex, omega_e: Array, x: float) -> Complex:
-    """Upward acceleration at x, -omega_e^2 (z - x theta) [m/s^2 per m]; `MotionStatistics.m4` is its variance."""
-    return -(omega_e**2) * vertical_motion(heave, pitch, x)
 
 
 def motion_sickness(motion: MotionStatistics) -> float:
@@ -153,29 +114,6 @@ def motion_sickness(motion: MotionStatistics) -> float:
     from scipy.special import ndtr
 
     return float(ndtr((math.log10(mean_absolute / G) - mu) / 0.4))
-
-
-def motion_sickness_after(motion: MotionStatistics, minutes: float) -> float:
-    """Share of people sick within that time in a vertical motion, 0 to 1 (McCauley et al. 1976, HFR report 1733-2).
-
-    Phi(z_a) Phi(z_t'), z_a = 2.128 log10(a) - 9.277 log10(f) - 5.809 log10(f)^2 - 1.851,
-    z_t' = 1.134 z_a + 1.989 log10(t) - 2.904: a the rms acceleration in g, f in Hz, t in minutes. Measured on young men
-    in sines of up to two hours; a sea enters by its rms and mean frequency sqrt(m4 / m2) / (2 pi). The report was not
-    at hand; the constants follow from those of a public program that cites it.
-
-    Raises:
-        InputError: the time is not positive.
-    """
-    if not minutes > 0.0:
-        raise InputError(f"sickness needs a positive time of exposure, not {minutes:g} min")
-    if motion.m4 <= 0.0:
-        return 0.0
-    f = math.log10(math.sqrt(motion.m4 / motion.m2) / (2.0 * math.pi))
-    z_a = 2.128 * math.log10(motion.acceleration / G) - 9.277 * f - 5.809 * f**2 - 1.851
-    z_t = 1.134 * z_a + 1.989 * math.log10(minutes) - 2.904
-    from scipy.special import ndtr
-
-    return float(ndtr(z_a) * ndtr(z_t))
 
 
 def _require_finite(omega: Array, operator: Complex) -> None:

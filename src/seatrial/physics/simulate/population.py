@@ -12,7 +12,8 @@ import numpy as np
 from seatrial.core.values import Array, InputError
 from seatrial.numerics.kernels.linear_population import discretise, misfit
 from seatrial.numerics.kernels.linear_population import trajectories as simulated
-from seatrial.physics.models.heave_pitch_coefficients import COEFFICIENTS, STIFFNESSES
+from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_STIFFNESSES as STIFFNESSES
 
 ALL_COEFFICIENTS = ("m", "I5", *COEFFICIENTS, *STIFFNESSES)
 HEAVE_AND_PITCH = (0, 2)

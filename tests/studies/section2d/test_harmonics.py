@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError
-from seatrial.estimation.problem.harmonic import best_fit_frequency, harmonics, whole_periods
+from seatrial_studies.section2d.harmonics import best_fit_frequency, harmonics, whole_periods
 
 OMEGA, DT = 5.2, 0.02
 TIME = 30.0 + DT * np.arange(round(6 * 2.0 * np.pi / OMEGA / DT))

@@ -9,15 +9,9 @@ from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record
 from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate import EstimatorOptions, Runs
-from seatrial.estimation.predict.cross_validation import (
-    CrossValidation,
-    Fold,
+from seatrial.estimation.predict.holdout_windows import (
     HoldoutProtocol,
     WindowError,
-    assign_folds,
-    cross_validate,
-    cross_validate_unfitted,
-    fit_folds,
     session_nuisances,
     split_windows,
     window_errors,
@@ -25,6 +19,14 @@ from seatrial.estimation.predict.cross_validation import (
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate.steer import manoeuvre
+from seatrial_studies.cross_validation import (
+    CrossValidation,
+    Fold,
+    assign_folds,
+    cross_validate,
+    cross_validate_unfitted,
+    fit_folds,
+)
 
 RUNS = ("zigzag:20/20", "zigzag:10/10", "turning-circle:20", "turning-circle:15:port")
 LABELS = ("zigzag", "zigzag", "turning", "turning")

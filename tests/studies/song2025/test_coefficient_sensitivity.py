@@ -8,14 +8,15 @@ import pytest
 from seatrial.core.equations import Model, Sheet
 from seatrial.core.values import InputError, Record
 from seatrial.estimation.information.collinearity import collinearity
-from seatrial.estimation.information.sensitivity import indirect_sensitivity, orthogonal_parts, unique_sensitivity
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.heave_pitch import heave_pitch
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.qi2025 import theoretical_coefficients
-from seatrial.physics.models.waterjet import COEFFICIENTS, waterjet
+from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate import replay
 from seatrial.physics.simulate.steer import manoeuvre
+from seatrial_studies.song2025.coefficient_sensitivity import indirect_sensitivity, orthogonal_parts, unique_sensitivity
 
 K, T, DELTA = 0.1, 10.0, 0.2
 REST = {"r": 0.0}

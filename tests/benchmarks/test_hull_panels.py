@@ -4,9 +4,9 @@ import sys
 
 import numpy as np
 import pytest
+from benchmarks.hull_panels import HullPanels, capytaine_dataset, hull_from_sections, wigley
 
 from seatrial.core.values import InputError
-from seatrial.physics.hydro.mesh import HullPanels, capytaine_dataset, hull_from_sections, wigley
 
 
 def _volume(hull: HullPanels) -> float:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.estimation.information.discrepancy import HoldoutError
-from seatrial.estimation.predict.window_bands import HoldoutWindows, band_coverage
+from seatrial_studies.alexandersson2022.window_bands import HoldoutWindows, band_coverage
 
 T = 1.96
 ROWS = 100

@@ -8,12 +8,15 @@ from scipy.special import stdtrit
 
 from seatrial.core.values import Array, InputError
 from seatrial.data.trial import TrialRecord
-from seatrial.estimation.estimate.fit import Estimation
-from seatrial.estimation.information.discrepancy import HoldoutError, discrepancy
-from seatrial.estimation.information.extrapolation import extrapolation_index
-from seatrial.estimation.predict.cross_validation import HoldoutProtocol, split_windows
-from seatrial.estimation.predict.predict_runs import prediction_uncertainty
-from seatrial.estimation.predict.prediction_intervals import holdout_model, track_holdout_error
+from seatrial.estimation.estimate import Estimation
+from seatrial.estimation.information import HoldoutError, discrepancy, extrapolation_index
+from seatrial.estimation.predict import (
+    HoldoutProtocol,
+    holdout_model,
+    prediction_uncertainty,
+    split_windows,
+    track_holdout_error,
+)
 
 
 @dataclass(frozen=True)

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from benchmarks.cummins import RetardationFunctions, retardation_functions, simulate_cummins
 
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.capytaine_data import HullData
-from seatrial.physics.hydro.cummins import RetardationFunctions, retardation_functions, simulate_cummins
 from seatrial.physics.hydro.strip_theory import coefficients_at_speed
 from seatrial.physics.hydro.tabulated import WaveTable
 

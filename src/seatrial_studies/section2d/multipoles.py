@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatrial.core.values import Array, InputError
-from seatrial.physics.hydro.dispersion import G, group_velocity
-from seatrial.physics.hydro.lewis import LewisForm
+from seatrial.physics.hydro import G, group_velocity
+from seatrial_studies.section2d.lewis import LewisForm
 
 Complex = NDArray[np.complex128]
 RHO = 1000.0

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatrial.core.values import Array, InputError
-from seatrial.physics.hydro.dispersion import wavenumber
+from seatrial.physics.hydro import wavenumber
 
 Complex = NDArray[np.complex128]
 FREQUENCY_BAND = (0.6, 1.4)

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from seatrial.core.values import InputError
-from seatrial.physics.hydro.lewis import LewisForm
-from seatrial.physics.hydro.multipoles import RHO, SectionMotion, haskind_damping, section_hydrodynamics
+from seatrial_studies.section2d.lewis import LewisForm
+from seatrial_studies.section2d.multipoles import RHO, SectionMotion, haskind_damping, section_hydrodynamics
 
 G = 9.81
 CIRCLE = LewisForm.from_dimensions(2.0, 1.0, np.pi / 4.0)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError
-from seatrial.estimation.problem.harmonic import harmonics
-from seatrial.estimation.problem.wave_separation import Probes, calibrate_wave_probes, separate_waves
 from seatrial.physics.hydro.dispersion import group_velocity, wavenumber
+from seatrial_studies.section2d.harmonics import harmonics
+from seatrial_studies.section2d.wave_separation import Probes, calibrate_wave_probes, separate_waves
 
 PLACES, GAINS, DEPTH, DT = np.array([0.0, 1.95, 2.2, 2.5]), np.array([1.0, 0.95, 1.03, 0.98]), 1.0, 0.02
 OMEGAS = (4.95, 5.43, 5.86, 7.0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError
-from seatrial.estimation.problem.oscillator import MeasuredResponse, Oscillator, SectionTheory, fit_oscillator
+from seatrial_studies.section2d.oscillator import MeasuredResponse, Oscillator, SectionTheory, fit_oscillator
 
 TRUE = Oscillator(46.8, 2300.0, gain=1.15, delay=-0.02, distance=0.03, extra_added_mass=-2.0, quadratic_damping=200.0)
 FREE = ("gain", "delay", "distance", "extra_added_mass", "quadratic_damping")

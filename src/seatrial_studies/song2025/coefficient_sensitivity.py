@@ -11,9 +11,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Record, spelling_hint
-from seatrial.physics.simulate import inputs_of, replay
-from seatrial.physics.simulate.linear import batch_class
-from seatrial.physics.simulate.replay import ZERO_STARTS, initial_state
+from seatrial.physics.simulate import ZERO_STARTS, batch_class, initial_state, inputs_of, replay
 
 RELATIVE_CHANGE = 0.1
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record
-from seatrial.data.check.instruments import compare_instruments, dead_channel_findings
+from seatrial_studies.section2d.instrument_comparison import compare_instruments, dead_channel_findings
 
 TIME, OMEGA = 0.02 * np.arange(1200), 5.4
 

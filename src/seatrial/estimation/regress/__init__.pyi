@@ -1,0 +1,46 @@
+"""Names of this package, imported when first used."""
+
+from seatrial.estimation.regress.estimators import (
+    InstrumentalVariables as InstrumentalVariables,
+    LinearRegression as LinearRegression,
+    RegressionEstimate as RegressionEstimate,
+    RegressionEstimator as RegressionEstimator,
+)
+from seatrial.estimation.regress.features import (
+    RegressionMotion as RegressionMotion,
+    features as features,
+)
+from seatrial.estimation.regress.operators import (
+    Central as Central,
+    Centred as Centred,
+    DerivativeOperator as DerivativeOperator,
+    Differenced as Differenced,
+    Euler as Euler,
+    Smoothed as Smoothed,
+    Weak as Weak,
+)
+from seatrial.estimation.regress.pipeline import (
+    Cleaning as Cleaning,
+    DIFFERENCED_AND_CENTRED as DIFFERENCED_AND_CENTRED,
+    Pipeline as Pipeline,
+)
+from seatrial.estimation.regress.solvers import (
+    Lasso as Lasso,
+    LeastSquaresSvm as LeastSquaresSvm,
+    LinearSolver as LinearSolver,
+    OrdinaryLeastSquares as OrdinaryLeastSquares,
+    Ridge as Ridge,
+    TruncatedSvd as TruncatedSvd,
+)
+from seatrial.estimation.regress.split import (
+    blocks as blocks,
+    folds as folds,
+    record_folds as record_folds,
+    shuffled_split as shuffled_split,
+)
+from seatrial.estimation.regress.standard_estimators import standard_estimators as standard_estimators
+from seatrial.estimation.regress.support_vectors import SupportVectors as SupportVectors
+from seatrial.estimation.regress.system import (
+    RegressionSystem as RegressionSystem,
+    build_systems as build_systems,
+)

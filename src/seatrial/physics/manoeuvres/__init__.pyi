@@ -1,0 +1,13 @@
+"""Names of this package, imported when first used."""
+
+from seatrial.physics.manoeuvres.imo import (
+    ImoCriterion as ImoCriterion,
+    imo_criteria as imo_criteria,
+)
+from seatrial.physics.manoeuvres.measures import measures as measures
+from seatrial.physics.manoeuvres.programme import programme as programme
+from seatrial.physics.manoeuvres.recognition import (
+    ManoeuvreKind as ManoeuvreKind,
+    ObservedManoeuvre as ObservedManoeuvre,
+    recognise_manoeuvre as recognise_manoeuvre,
+)

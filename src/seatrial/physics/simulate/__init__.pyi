@@ -1,0 +1,38 @@
+"""Names of this package, imported when first used."""
+
+from seatrial.physics.simulate.batch import SegmentBatch as SegmentBatch
+from seatrial.physics.simulate.channels import (
+    inputs_of as inputs_of,
+    record_of as record_of,
+)
+from seatrial.physics.simulate.forces import forces as forces
+from seatrial.physics.simulate.harmonics import (
+    LinearSystem as LinearSystem,
+    frequency_response as frequency_response,
+    harmonic_motion as harmonic_motion,
+    linear_system as linear_system,
+)
+from seatrial.physics.simulate.linear import (
+    LinearBatch as LinearBatch,
+    batch_class as batch_class,
+)
+from seatrial.physics.simulate.population import (
+    Forcing as Forcing,
+    complete_parameters as complete_parameters,
+    discretised_hold as discretised_hold,
+    discretised_ramp as discretised_ramp,
+    fitness as fitness,
+    heave_pitch_matrices as heave_pitch_matrices,
+    one_sample_fitness as one_sample_fitness,
+    trajectories as trajectories,
+)
+from seatrial.physics.simulate.replay import (
+    ZERO_STARTS as ZERO_STARTS,
+    initial_state as initial_state,
+    replay as replay,
+    trajectory as trajectory,
+)
+from seatrial.physics.simulate.steer import (
+    SOLAS_SLEW_RATE as SOLAS_SLEW_RATE,
+    manoeuvre as manoeuvre,
+)
