@@ -52,7 +52,7 @@ def test_a_held_position_that_catches_up_is_interpolated() -> None:
 
 def test_a_jump_that_stays_is_reported_not_hidden() -> None:
     mended, findings = repair(spoilt("x0", slice(1000, None), 4.0))
-    assert [f.code for f in findings] == ["jump"] and "cannot be mended" in findings[0].message
+    assert [f.code for f in findings] == ["jump"] and "cannot be repaired" in findings[0].message
     assert mended["x0"][1500] == pytest.approx(zigzag(noise=1.0)["x0"][1500] + 4.0)
 
 

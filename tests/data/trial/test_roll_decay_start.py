@@ -35,7 +35,7 @@ def test_what_lies_before_the_release_goes() -> None:
             Record.from_arrays("decay", TIME, {"phi": 0.002 * np.exp(0.07 * TIME) * np.cos(2.5 * TIME)}),
             "the roll grows, to 7.1 deg at 59",
         ),
-        (decay(start=8.6), "the decay starts at 494.2 deg, beyond a ship on her side; check the unit"),
+        (decay(start=8.6), "the decay starts at 494.2 deg, beyond 90 deg of heel; check the unit"),
         (Record.from_arrays("decay", TIME[:3], {"phi": np.zeros(3)}), "3 rows are no decay"),
         (decay().without("phi"), "needs the roll angle 'phi'"),
         (Record.from_arrays("decay", TIME, {"phi": np.where(TIME > 59.8, 0.1, 0.0)}), "nothing is left of the decay"),

@@ -7,9 +7,10 @@ import numpy as np
 
 from seatrial.core.values import Array, Finding, ForceContent, ForcePoints, Severity
 
-# sign of the slope of a force in sway velocity, yaw rate and rudder angle of a ship going ahead with her rudder aft:
+# sign of the slope of a force in sway velocity, yaw rate and rudder angle of a ship going ahead with its rudder aft:
 # the force opposes the motion, the rudder turns the ship to its own side (Lewis 1989, Principles of Naval
-# Architecture III, chapter IX, section 4); N_v is negative for nearly every hull and only helps to tell the columns
+# Architecture III, chapter IX, section 4); N_v is negative for nearly every hull and only helps to
+# distinguish the columns
 SLOPE_SIGNS = {("Y", "v"): -1, ("N", "r"): -1, ("Y", "delta"): -1, ("N", "delta"): 1}
 _AUXILIARY_SLOPE_SIGNS = {("N", "v"): -1}
 _SIGNIFICANT_T = 4.0
@@ -108,7 +109,7 @@ def _least_squares_slopes(table: Array, values: Array) -> list[_Slope]:
 
 
 def _reversed_column(slopes: dict[tuple[str, str], _Slope]) -> str:
-    """The one column whose turning mends most signs, motions before forces where both do."""
+    """The one column whose reversal corrects most signs, motions before forces where both do."""
     laws = {**SLOPE_SIGNS, **_AUXILIARY_SLOPE_SIGNS}
 
     def broken(turned: str) -> int:

@@ -46,9 +46,9 @@ def _constant_finding(record: Record, symbol: str, value: float) -> Finding:
     evidence = f"{value:.6g} {record.channel(symbol).unit} throughout"
     if symbol in OUTPUT_CHANNELS:
         what = f"record '{record.name}': channel '{symbol}' is dead, it never changes"
-        return Finding(Severity.WARNING, "dead-channel", what, evidence, "leave the channel out or mend the sensor")
+        return Finding(Severity.WARNING, "dead-channel", what, evidence, "leave the channel out or repair the sensor")
     what = f"record '{record.name}': channel '{symbol}' is constant"
-    return Finding(Severity.INFO, "constant", what, evidence, "its effect cannot be told from a constant force")
+    return Finding(Severity.INFO, "constant", what, evidence, "its effect is that of a constant force")
 
 
 def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]:

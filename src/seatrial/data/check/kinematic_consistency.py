@@ -49,7 +49,7 @@ def kinematic_consistency_findings(record: Record) -> tuple[Finding, ...]:
             "closure",
             f"record '{record.name}': integrated velocity leaves the position"
             + (f"; {best.text} would explain it" if named else ""),
-            f"{rms:.3g} m rms over {motion.path_length:.4g} m sailed"
+            f"{rms:.3g} m rms over {motion.path_length:.4g} m travelled"
             + (f", {best.residual_rms:.3g} m with it, {second.residual_rms:.3g} m with {second.text}" if named else ""),
             best.advice if named else "check frame, reference point, lag and bias of u, v against the positions",
         ),
@@ -93,7 +93,7 @@ def _cause_text(name: str, coefficients: tuple[float, ...]) -> tuple[str, str]:
         case "point":
             return (
                 f"velocities referred to a point {coefficients[0]:+.3g} m ahead of the positions' point",
-                "mend reference_point of u, v or of x0, y0",
+                "correct reference_point of u, v or of x0, y0",
             )
         case "lag":
             return f"a lag of {coefficients[0]:.2g} s of the velocities", "shift u, v by the lag, or estimate it"

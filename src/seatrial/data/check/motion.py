@@ -97,7 +97,7 @@ class RecordedMotion:
 
     @property
     def path_length(self) -> float:
-        """Distance sailed by the smoothed track [m]."""
+        """Length of the smoothed track [m]."""
         return float(cumulative_integral(np.hypot(*self.position_derivative), self.dt)[-1])
 
 

@@ -65,9 +65,9 @@ def _interpolate_spikes(record: Record) -> tuple[Record, tuple[Finding, ...]]:
         smooth = unwrapped(channel.values) if channel.unit == "rad" else channel.values
         rows = known[spike_rows(smooth[known])]
         if rows.size:
-            mended = interpolate_rows(channel, rows)
+            repaired = interpolate_rows(channel, rows)
             off = np.max(np.abs(smooth[rows] - interpolate_rows(channel.with_values(smooth), rows).values[rows]))
-            record = record.with_channel(symbol, mended, f"{rows.size} wild samples of {symbol} interpolated")
+            record = record.with_channel(symbol, repaired, f"{rows.size} wild samples of {symbol} interpolated")
             findings.append(
                 Finding(
                     Severity.WARNING,
@@ -98,15 +98,15 @@ def _repair_position_jumps(record: Record) -> tuple[Record, tuple[Finding, ...]]
         "jump",
         f"record '{record.name}': the position jumps {_times_text(jumps.rows.size)}"
         + (f"; {held.size} samples it stood still before are interpolated" if held.size else "")
-        + (f"; of the jumps {remaining} cannot be mended and stay" if remaining else ""),
+        + (f"; of the jumps {remaining} cannot be repaired and stay" if remaining else ""),
         f"up to {jumps.sizes[largest]:.3g} m, at t = {record.time[known[jumps.rows[largest]]]:.6g} s",
         "weight positions robustly; split the run at a jump that stays" if remaining else "weight positions robustly",
     )
     if held.size == 0:
         return record, (finding,)
     step = f"{held.size} held positions interpolated"
-    mended = {s: interpolate_rows(record.channel(s), held) for s in ("x0", "y0")}
-    return replace(record, channels={**record.channels, **mended}, provenance=record.provenance.with_step(step)), (
+    repaired = {s: interpolate_rows(record.channel(s), held) for s in ("x0", "y0")}
+    return replace(record, channels={**record.channels, **repaired}, provenance=record.provenance.with_step(step)), (
         finding,
     )
 

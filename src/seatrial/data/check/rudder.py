@@ -55,7 +55,7 @@ def _t_ratio(estimate: tuple[float, float] | None) -> float:
 
 
 def yaw_acceleration_response(record: Record) -> tuple[float, float] | None:
-    """Yaw acceleration per rudder angle [1/s^2] and its standard error, or None where the heading tells nothing.
+    """Yaw acceleration per rudder angle [1/s^2] and its standard error, None where the heading shows none.
 
     First-order response dr/dt = a r + b delta + c (Nomoto 1957, eq. 1) by least squares on smoothed signals, errors by
     block jackknife; where the propeller also turns astern only the samples with it ahead count.

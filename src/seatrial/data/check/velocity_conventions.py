@@ -119,7 +119,7 @@ def _speed_unit_findings(record: Record, motion: RecordedMotion, best: VelocityC
     evidence = f"derivative of position is {k:.3g} times the velocity"
     if abs(math.log(k / factor)) < 0.1:
         what = f"record '{record.name}': u, v are {unit}"
-        return [Finding(Severity.ERROR, "speed-unit", what, evidence, "mend the unit of u and v")]
+        return [Finding(Severity.ERROR, "speed-unit", what, evidence, "correct the unit of u and v")]
     return [
         Finding(
             Severity.WARNING,

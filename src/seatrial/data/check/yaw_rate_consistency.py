@@ -93,7 +93,7 @@ def _yaw_rate_verdict(record: Record, factor: float, match: float, misfit: float
 
 
 def _angle_unit_finding(record: Record, large: str, small: str, psi_dot: Array, evidence: str) -> Finding:
-    """`large` is 57 times too large or `small` 57 times too small; the course over ground tells which."""
+    """`large` is 57 times too large or `small` 57 times too small; the course over ground decides which."""
     course = _course_rate_ratio(record, psi_dot)
     if course is None:
         what = f"either '{large}' is in degrees although declared in radians, or '{small}' the other way round"
@@ -104,7 +104,7 @@ def _angle_unit_finding(record: Record, large: str, small: str, psi_dot: Array, 
         what = f"'{guilty}' is {units}"
         evidence += f"; the course turns {course:.3g} times as fast as the heading"
     return Finding(
-        Severity.ERROR, "angle-unit", f"record '{record.name}': {what}", evidence, "mend the unit in the trial file"
+        Severity.ERROR, "angle-unit", f"record '{record.name}': {what}", evidence, "correct the unit in the trial file"
     )
 
 

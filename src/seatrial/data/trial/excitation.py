@@ -1,4 +1,4 @@
-"""`[excitation]` and `[records.waves]` of a trial file: what the waves do to the ship, and how she meets them."""
+"""`[excitation]` and `[records.waves]` of a trial file: wave forces, and how the ship meets the waves."""
 
 import math
 from pathlib import Path

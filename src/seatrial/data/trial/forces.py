@@ -1,4 +1,4 @@
-"""A `[[forces]]` block to force points in the house's axes, SI, at the model's origin."""
+"""A `[[forces]]` block to force points in standard axes, SI, at the model's origin."""
 
 from pathlib import Path
 
@@ -37,7 +37,7 @@ def read_force_points(
     for key, place in (("origin", origin), ("motion_origin", motion_origin)):
         if abs(place) > length / 2:
             raise InputError(
-                f"{where}.{key} = {place:g} m lies outside the ship, {length / 2:g} m from midship to her ends; "
+                f"{where}.{key} = {place:g} m lies outside the ship, {length / 2:g} m from midship to the ends; "
                 "give it in m forward of midship"
             )
     motion = _motion(table, sheet, length, where)
@@ -142,7 +142,7 @@ def _motion_values(symbol: str, column: MotionColumn, sheet: RawTable, scale: fl
 def _unit_factor(unit: str, wanted: str, where: str) -> float:
     size, found = si_unit(unit)
     if found != wanted:
-        raise InputError(f"{where}.unit: '{unit}' does not fit, the quantity is in {wanted}; mend it")
+        raise InputError(f"{where}.unit: '{unit}' does not fit, the quantity is in {wanted}; correct it")
     return size
 
 
@@ -155,7 +155,7 @@ def _sign(positive: str, standard: str, opposite: str, where: str) -> float:
 def _forces(
     table: ForcesTable, sheet: RawTable, model: Model, speed: Array, where: str
 ) -> tuple[dict[str, Array], dict[str, float]]:
-    """Forces in the house's axes about the file's origin, SI, and their standard deviations."""
+    """Return the forces in standard axes about the file's origin, SI, and their standard deviations."""
     forces, sd = {}, {}
     for symbol, column in table.measured.items():
         place = f"{where}.measured.{symbol}"

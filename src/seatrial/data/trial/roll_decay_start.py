@@ -14,7 +14,7 @@ def trim_to_decay_start(record: Record) -> Record:
     """The record from its largest roll angle (about the angle it ends at) on.
 
     Raises:
-        InputError: no roll angle, a start that is not above the noise or beyond a ship on her side, a motion that does
+        InputError: no roll angle, a start that is not above the noise or beyond 90 deg of heel, a motion that does
             not decay, too little of it.
     """
     if "phi" not in record:
@@ -31,7 +31,7 @@ def trim_to_decay_start(record: Record) -> Record:
         )
     if largest > _MAX_ROLL_ANGLE:
         raise InputError(
-            f"record '{record.name}': the decay starts at {np.degrees(largest):.4g} deg, beyond a ship on her side; "
+            f"record '{record.name}': the decay starts at {np.degrees(largest):.4g} deg, beyond 90 deg of heel; "
             "check the unit of channel 'phi'"
         )
     if _swing_count(swing[:first], _EARLY_SWING_FRACTION * largest) > _MAX_EARLY_SWINGS:

@@ -204,12 +204,12 @@ class ForcesTable(StrictTable):
 
     @model_validator(mode="after")
     def _motion_is_complete(self) -> Self:
-        told = set(self.motion)
-        if len(told & {"u", "U"}) != 1:
+        given = set(self.motion)
+        if len(given & {"u", "U"}) != 1:
             raise ValueError("motion needs the surge velocity u or the speed U, one of them")
-        if {"beta", "v"} <= told:
+        if {"beta", "v"} <= given:
             raise ValueError("motion has both v and the drift angle beta; keep one")
-        if "v" in told and ("U" in told) != (self.motion["v"].unit == "1"):
+        if "v" in given and ("U" in given) != (self.motion["v"].unit == "1"):
             raise ValueError("motion.v goes with u in m/s, or with U as v/U of unit 1")
         return self
 

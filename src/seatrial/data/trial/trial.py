@@ -51,7 +51,7 @@ class Trimming:
 
 @dataclass(frozen=True)
 class WaveEncounter:
-    """How a run met the waves: ship speed [m/s], heading [rad, 0 following, pi head], and what they do to her.
+    """The encounter of a run with waves: ship speed [m/s], heading [rad, 0 following, pi head], excitation.
 
     `spectrum`: of the sea, where its elevation was not recorded.
     """
@@ -177,12 +177,12 @@ class Trial:
 
     Attributes:
         model: with the ship's particulars, the parameter set, fixed and start values, freedom, bounds and priors set.
-        noise: channel -> known standard deviation, SI; empty: estimated.
+        noise: channel -> known standard deviation, SI; that of other channels is estimated.
         truth: parameter -> true value where the records are simulated.
-        accept: codes of error findings the user takes upon himself.
+        accept: codes of error findings to accept; the run is used despite them.
         reference_point: m forward of midship to which the model's u, v, x0, y0 refer.
-        forces: static force points that are fitted beside the runs.
-        family: models to compare; None: the family of the house.
+        forces: static force points that are fitted with the runs.
+        family: models to compare; None: the default family of the model.
         design: the manoeuvre that is to be designed; None: none is.
         follow: the stream that is to be followed; None: none is.
         findings: what is odd about the trial itself: priors beyond their range, force points of unexpected sign.

@@ -32,7 +32,7 @@ def confirm_design(
     report_progress: Callable[[str], None],
 ) -> Confirmation:
     """One noisy record and one fit for every ship; `model_inputs` are the plan's inputs at the sensors' rate."""
-    foretold = ManoeuvreEvaluator(task, ships, 1.0 / task.request.rate).evaluate(model_inputs).relative_errors
+    predicted = ManoeuvreEvaluator(task, ships, 1.0 / task.request.rate).evaluate(model_inputs).relative_errors
     streams = np.random.SeedSequence(seed).spawn(ships.count)
 
     def fitted(number: int) -> Solution | None:
@@ -49,7 +49,7 @@ def confirm_design(
         if result is not None and result.status.is_success:
             true = ships.parameters[number, places]
             errors.append((result.point - true) / np.where(np.abs(true) > 1e-3 * scale, np.abs(true), scale))
-            bounds.append(foretold[number])
+            bounds.append(predicted[number])
     none = np.full((1, len(places)), np.nan)
     return Confirmation(ships.count, len(errors), _rms(errors or none), _rms(bounds or none))
 
@@ -81,17 +81,17 @@ def _model_with_values(model: Model, values: Array) -> Model:
 
 
 def _simulate_trial(task: DesignTask, ship: Model, planned: Record, generator: np.random.Generator) -> Record | None:
-    """Sensors and inputs of a ship that follows the plan; None where she is lost."""
+    """Sensors and inputs of a ship that follows the plan; None where the simulation diverges."""
     start = dict(zip(ship.states, task.initial_state.tolist(), strict=True))
     try:
-        sailed = replay(ship, planned, start)
+        simulated = replay(ship, planned, start)
     except InputError:
         return None
-    channels = {name: sailed.channel(name) for name in ship.input_names}
+    channels = {name: simulated.channel(name) for name in ship.input_names}
     for name, deviation in task.sensors.items():
-        channel = sailed.channel(name)
-        channels[name] = channel.with_values(channel.values + deviation * generator.standard_normal(len(sailed)))
-    return replace(sailed, channels=channels)
+        channel = simulated.channel(name)
+        channels[name] = channel.with_values(channel.values + deviation * generator.standard_normal(len(simulated)))
+    return replace(simulated, channels=channels)
 
 
 def _rms(values: "list[Array] | Array") -> Array:

@@ -1,4 +1,4 @@
-"""Coordinate exchange: one order at a time is tried elsewhere, and stays where it tells most.
+"""Coordinate exchange: one order at a time is tried elsewhere, and stays where it is most informative.
 
 Meyer & Nachtsheim 1995, The coordinate-exchange algorithm for constructing exact optimal experimental designs,
 Technometrics 37(1).

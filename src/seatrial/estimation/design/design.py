@@ -30,7 +30,7 @@ def design(
     confirmation_runs: int = CONFIRMATION_RUNS,
     generations: int = GENERATIONS,
 ) -> Design:
-    """The manoeuvre that tells the task's coefficients best within its limits, beside the standard ones.
+    """Return the manoeuvre that identifies the task's coefficients best within its limits, with the standard ones.
 
     Args:
         seed: of the ships, the search and the noise; the same seed gives the same bits.
@@ -38,7 +38,7 @@ def design(
         generations: of the evolution strategy.
 
     Raises:
-        InputError: no record of these sensors could tell the coefficients apart, or the limits cannot be kept.
+        InputError: no record of these sensors could determine the coefficients, or the limits cannot be kept.
     """
     began = time.perf_counter()
     refuse_unidentifiable(task.model, tuple(task.sensors), ())
@@ -71,7 +71,7 @@ def design(
         except KeyboardInterrupt:
             interrupted = True
     return Design(
-        question=task.question or f"Which manoeuvre tells the coefficients of {task.ship.name} best?",
+        question=task.question or f"Which manoeuvre identifies the coefficients of {task.ship.name} best?",
         ship=task.ship.name,
         model=task.model,
         coefficients=task.model.parameters.free_names,
@@ -98,12 +98,12 @@ def design(
 def _refuse_impossible_limits(evaluator: ManoeuvreEvaluator, standards: list[StandardManoeuvre]) -> None:
     """Refuse a limit that the ship assumed leaves without any order and under every standard manoeuvre."""
     task = evaluator.task
-    told = evaluator.evaluate(np.tile(task.neutral_inputs, (sample_count(task, evaluator.dt), 1)))
+    precision = evaluator.evaluate(np.tile(task.neutral_inputs, (sample_count(task, evaluator.dt), 1)))
     for what, reached, limit, factor, unit in (
         ("drift angle", attrgetter("drift"), task.request.limits.drift, math.degrees(1.0), "deg"),
         ("distance", attrgetter("distance"), task.request.limits.sea_room, 1.0, "m"),
     ):
-        value = reached(told)[0]
+        value = reached(precision)[0]
         if value > limit and all(reached(evaluator.evaluate(r.inputs_for(evaluator)))[0] > limit for r in standards):
             raise InputError(
                 f"[design] cannot be kept: without any order the ship reaches a {what} of {factor * value:.3g} {unit}, "

@@ -1,4 +1,4 @@
-"""What to warn of in a design: limits, ships that stray, coefficients nobody tells, trials that do not confirm it."""
+"""Warnings on a design: limits, ships that leave them, unidentified coefficients, trials that do not confirm it."""
 
 import math
 
@@ -70,12 +70,12 @@ def _unidentifiable(task: DesignTask, designed: ManoeuvrePrecision) -> list[Find
     if own.any():
         listed = ", ".join(n for n, bad in zip(names, own, strict=True) if bad)
         found.append(_warning("not-identifiable",
-                              f"even this manoeuvre cannot tell {listed}: the standard error exceeds the value",
+                              f"even this manoeuvre does not identify {listed}: the standard error exceeds the value",
                               "better sensors, a longer trial, wider limits, or give a prior for them"))  # fmt: skip
     if some.any():
         listed = ", ".join(n for n, bad in zip(names, some, strict=True) if bad)
         found.append(_warning("not-identifiable-drawn",
-                              f"for some ship of the prior this manoeuvre cannot tell {listed}",
+                              f"for some ship of the prior this manoeuvre does not identify {listed}",
                               "design again after a first trial, with --from and its model file"))  # fmt: skip
     return found
 
@@ -112,7 +112,7 @@ def _confirmation_findings(designed: ManoeuvrePrecision, confirmation: Confirmat
             _warning(
                 "unconfirmed",
                 f"only {confirmation.converged_runs} of {confirmation.runs} simulated trials "
-                "could be fitted, so that the errors foretold are not confirmed",
+                "could be fitted, so that the errors predicted are not confirmed",
                 "narrow the prior, measure more channels, or lengthen the trial",
             )
         )

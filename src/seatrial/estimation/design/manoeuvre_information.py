@@ -1,4 +1,4 @@
-"""What a manoeuvre tells: Cramer-Rao bounds of the coefficients for many ships at once, and where the ships go."""
+"""Information of a manoeuvre: Cramer-Rao bounds of the coefficients for many ships at once, and their tracks."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -72,7 +72,7 @@ class ManoeuvreEvaluator:
         return replace(batch, initial_states=batch.influential_states())
 
     def evaluate(self, model_inputs: Array) -> ManoeuvreInformation:
-        """What inputs (rows, nu) tell, the same for all ships, or (ships, rows, nu), one each; the model's signs."""
+        """Return the precision from inputs (rows, nu), or (ships, rows, nu) for one each, in the model's signs."""
         count, width = self.ships.count, len(self.task.model.inputs)
         each = np.broadcast_to(model_inputs, (count, *model_inputs.shape[-2:])).reshape(-1, width)
         batch = replace(self._batch_without_inputs, inputs=np.array(each))
@@ -122,10 +122,16 @@ def assess_manoeuvre(
     name: str, evaluator: ManoeuvreEvaluator, model_inputs: Array, executed: Record
 ) -> ManoeuvrePrecision:
     """A manoeuvre's worth for all ships of the bench, the model itself first."""
-    told = evaluator.evaluate(model_inputs)
-    own = float(told.drift[0]), float(told.distance[0])
+    precision = evaluator.evaluate(model_inputs)
+    own = float(precision.drift[0]), float(precision.distance[0])
     return ManoeuvrePrecision(
-        name, told.relative_errors[0], told.relative_errors[1:], *own, told.drift[1:], told.distance[1:], executed
+        name,
+        precision.relative_errors[0],
+        precision.relative_errors[1:],
+        *own,
+        precision.drift[1:],
+        precision.distance[1:],
+        executed,
     )
 
 
@@ -136,7 +142,7 @@ def simulate_plan(task: DesignTask, planned: Record, name: str) -> Record:
 
 
 def _standard_errors(information: Array, k: int) -> Array:
-    """Standard errors of the first k unknowns; huge for those that nothing tells."""
+    """Standard errors of the first k unknowns; huge for those that nothing determines."""
     scale = np.sqrt(information.diagonal())
     known = scale > 0.0
     unit = information[np.ix_(known, known)] / np.outer(scale[known], scale[known])

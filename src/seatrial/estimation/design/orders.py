@@ -1,4 +1,4 @@
-"""Orders: what is told the helmsman every few seconds, and what the inputs then do."""
+"""Orders: what the helmsman is to do every few seconds, and how the inputs respond."""
 
 import numpy as np
 

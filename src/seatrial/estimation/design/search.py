@@ -1,4 +1,4 @@
-"""The search: orders whose worst ship, measured by what standard sequences would have told of it, is told best."""
+"""The search: orders whose worst ship, measured against standard sequences, is identified best."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -44,20 +44,20 @@ class DesignObjective:
     @classmethod
     def from_standards(cls, evaluator: ManoeuvreEvaluator, standards: list[StandardManoeuvre]) -> "DesignObjective":
         """From the standard manoeuvres that keep within the limits, or all where none does."""
-        told = [evaluator.evaluate(r.inputs_for(evaluator)) for r in standards]
-        errors = np.array([criterion_errors(evaluator.task, t) for t in told])
-        within = np.array([not leaves_limits(evaluator.task, t) for t in told])
+        precision = [evaluator.evaluate(r.inputs_for(evaluator)) for r in standards]
+        errors = np.array([criterion_errors(evaluator.task, t) for t in precision])
+        within = np.array([not leaves_limits(evaluator.task, t) for t in precision])
         chosen = errors[within] if within.any() else errors
         return cls(evaluator, np.nanmin(np.where(np.isfinite(chosen), chosen, DIVERGED_RATIO), axis=0))
 
     def cost(self, point: Array) -> float:
         """Logarithm of the power mean of the ratios, and what leaving the limits costs."""
         task = self.evaluator.task
-        told = self.evaluator.evaluate(input_series(task, orders_at(task, point), self.evaluator.dt))
+        precision = self.evaluator.evaluate(input_series(task, orders_at(task, point), self.evaluator.dt))
         ratio = np.minimum(
-            np.nan_to_num(criterion_errors(task, told) / self.baseline_errors, nan=DIVERGED_RATIO), DIVERGED_RATIO
+            np.nan_to_num(criterion_errors(task, precision) / self.baseline_errors, nan=DIVERGED_RATIO), DIVERGED_RATIO
         )
-        return float(np.log(np.mean(ratio**MEAN_POWER)) / MEAN_POWER + _limit_cost(task, told))
+        return float(np.log(np.mean(ratio**MEAN_POWER)) / MEAN_POWER + _limit_cost(task, precision))
 
 
 @dataclass(frozen=True, eq=False)

@@ -68,8 +68,8 @@ def _largest_within_limits(evaluator: ManoeuvreEvaluator, switching: float, seed
             partial(binary_sequence_inputs, hold, share, seed),
             is_random=True,
         )
-        told = evaluator.evaluate(standard.inputs_for(evaluator))
-        if not leaves_limits(task, told) and np.isfinite(told.relative_errors).all():
+        precision = evaluator.evaluate(standard.inputs_for(evaluator))
+        if not leaves_limits(task, precision) and np.isfinite(precision.relative_errors).all():
             break
     return standard
 

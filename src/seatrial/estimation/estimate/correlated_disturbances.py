@@ -50,13 +50,13 @@ def select_disturbance_model(
     """
     if np.isnan(process_noise.newton_decrement):
         return process_noise
-    tell = report_progress or (lambda _: None)
+    report = report_progress or (lambda _: None)
     best, score = process_noise, 2.0 * process_noise.optimum.normal.cost
     for one in alternatives(process_noise):
-        tell(f"process noise: {one.description}")
+        report(f"process noise: {one.description}")
         if not np.isfinite(one.problem.cost(one.point, np.zeros((0, 0)))):
             continue
-        exact, optimum, slope = search_prediction_error(one.problem, one.point, evaluations, tell)
+        exact, optimum, slope = search_prediction_error(one.problem, one.point, evaluations, report)
         gained = 2.0 * (process_noise.optimum.normal.cost - optimum.normal.cost)
         without = process_noise.optimum.normal.cost + 0.5 * process_noise.test.likelihood_ratio
         verdict = likelihood_ratio_test(exact, optimum.solution.point, optimum.normal.cost, without, None)

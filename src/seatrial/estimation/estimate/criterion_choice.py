@@ -25,7 +25,7 @@ _CORRELATED = "coloured residuals mean model error or process noise"
 _SEGMENTED = "segments keep it from accumulating"
 _COARSE_SAMPLES = "samples too far apart for prediction error, which takes inputs as straight between them"
 _FREE_DECAY = (
-    "a free decay, which its initial state explains: whole runs tell what one decay has in common with the next"
+    "a free decay, which its initial state explains: whole runs show what one decay has in common with the next"
 )
 _WHITE = "residuals are white within segments and over whole runs: no process noise to guard against"
 _MAX_RESIDUAL_GROWTH = 1.05
@@ -76,21 +76,21 @@ def choose_criterion(
 ) -> CriterionChoice:
     """The criterion to use; `shooting` is the estimate over segments of `seconds`, `whole_runs` makes the other one.
 
-    is_undriven: nothing moves the ship but her initial state.
+    is_unforced: nothing moves the ship but its initial state.
     """
     shot = _output_error_choice(shooting, _output_error_name(seconds))
     match settings.criterion:
         case FitCriterion.OUTPUT_ERROR | FitCriterion.MULTIPLE_SHOOTING:
-            return _required_choice(shot, settings, noise, "the criterion was asked for")
+            return _required_choice(shot, settings, noise, "the criterion is set by the trial")
         case FitCriterion.PREDICTION_ERROR:
             process_noise = fit_prediction_error(shooting, noise, thorough=True, report_progress=report_progress)
-            return _prediction_error_choice(process_noise, "it was asked for", process_noise.test.summary)
+            return _prediction_error_choice(process_noise, "it is set by the trial", process_noise.test.summary)
         case FitCriterion.AUTO if is_unforced and _is_explained(shot):
             return _required_choice(shot, settings, noise, _FREE_DECAY)
         case FitCriterion.AUTO:
             pass
     if settings.segment_s is not None:
-        return _required_choice(shot, settings, noise, "the length of segments was asked for")
+        return _required_choice(shot, settings, noise, "the length of segments is set by the trial")
     whole = _whole_runs_choice(shot, fit_whole_runs()) if shot.is_white else None
     if whole is not None and whole.is_white:
         return whole.with_reasons(_WHITE)
@@ -149,9 +149,9 @@ def _required_choice(
             process_intensities=implied.process_intensities,
             implied_noise=compatible,
         )
-    told = (_CORRELATED,) if shooting.criterion == WHOLE_RUNS else (_CORRELATED, _SEGMENTED)
+    reasons = (_CORRELATED,) if shooting.criterion == WHOLE_RUNS else (_CORRELATED, _SEGMENTED)
     return replace(
-        shooting.with_reasons(reason, *told), process_intensities=implied_intensities(shooting.estimate, noise)
+        shooting.with_reasons(reason, *reasons), process_intensities=implied_intensities(shooting.estimate, noise)
     )
 
 

@@ -114,7 +114,7 @@ def innovations_uncertainty(noise: ProcessNoise, kind: IntervalMethod) -> Uncert
 
 def refuse_few_runs(kind: IntervalMethod, runs: int) -> None:
     """Raises:
-    InputError: a jackknife or bootstrap was asked for and there are too few runs.
+    InputError: a jackknife or bootstrap is required and there are too few runs.
     """
     if kind in (IntervalMethod.JACKKNIFE, IntervalMethod.BOOTSTRAP) and runs < RUNS_FOR_JACKKNIFE:
         raise InputError(

@@ -113,7 +113,7 @@ def _search(
     evaluations: int,
     report_progress: ProgressReporter | None,
 ) -> PointEstimate:
-    def tell(count: int, cost: float) -> None:
+    def report(count: int, cost: float) -> None:
         if report_progress:
             report_progress(f"{problem.data.count} segments, evaluation {count}: {cost:.6g}")
 
@@ -123,7 +123,7 @@ def _search(
         initial_states,
         negligible=_NEGLIGIBLE,
         evaluations=evaluations,
-        report_progress=tell,
+        report_progress=report,
     )
     return PointEstimate(problem, found)
 

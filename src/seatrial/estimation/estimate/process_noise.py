@@ -200,13 +200,13 @@ def fit_prediction_error(
     Raises:
         InputError: a driven state is none of the model's, or reaches no compared channel.
     """
-    tell = report_progress or (lambda _: None)
+    report = report_progress or (lambda _: None)
     problem = _initial_problem(estimate, known_noise or {}, driven_states)
-    tell("process noise: intensities")
+    report("process noise: intensities")
     point = np.concatenate([estimate.common_parameters, _fit_intensities(problem, estimate)])
     if not thorough and np.max(innovation_correlation(problem, point)[1]) > _HOPELESS_INFLATION:
         return _without_search(problem, point)
-    exact, found, slope = search_prediction_error(problem, point, evaluations, tell)
+    exact, found, slope = search_prediction_error(problem, point, evaluations, report)
     cost, before = _cost_without_process_noise(problem, estimate, found.solution.point)
     verdict = likelihood_ratio_test(exact, found.solution.point, found.normal.cost, cost, before)
     return ProcessNoise(exact, found, slope, verdict, problem.runs)

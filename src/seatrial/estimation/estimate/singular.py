@@ -1,4 +1,4 @@
-"""Directions in parameter space that the records cannot tell, named before anybody prints a number for them."""
+"""Directions in parameter space that the records do not determine, named before any number is printed for them."""
 
 import numpy as np
 
@@ -35,11 +35,11 @@ def refuse_singular(hessian: Array, names: tuple[str, ...], values: Array) -> No
     """Refuse a problem with an exactly free direction.
 
     Raises:
-        InputError: the direction that cannot be told, and what to do.
+        InputError: the direction that is not determined, and what to do.
     """
     curvature, direction = weakest_direction(hessian, names, values)
     if curvature < _SINGULAR:
         raise InputError(
-            f"the records cannot tell the direction {direction} (relative change of each parameter): moving along it "
-            "changes no output; fix one of these parameters under [model.fixed], or give it a prior"
+            f"the records do not determine the direction {direction} (relative change of each parameter): moving along "
+            "it changes no output; fix one of these parameters under [model.fixed], or give it a prior"
         )

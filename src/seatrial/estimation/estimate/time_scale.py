@@ -14,9 +14,9 @@ PERIOD_SHARE = 0.4
 
 
 def ship_length_seconds(records: Sequence[Record], length: float, segment_seconds: float | None = None) -> float:
-    """L/U: the time in which the ship travels her length at the records' median speed.
+    """Return L/U [s], the time in which the ship travels its length at the median speed of the records.
 
-    Records without any speed take it from the segment length that was asked for, if it is finite.
+    Records without any speed take it from the segment length that is set, if it is finite.
 
     Raises:
         InputError: the records show no speed.
@@ -37,9 +37,9 @@ def ship_length_seconds(records: Sequence[Record], length: float, segment_second
 def characteristic_time(
     model: Model, records: Sequence[Record], length: float, segment_seconds: float | None = None
 ) -> float:
-    """s in which the ship changes her motion: L/U where she is steered, sqrt(L/g) for a linear model in waves.
+    """Return the time [s] in which the ship changes its motion: L/U if steered, sqrt(L/g) for a linear model in waves.
 
-    Where she only swings about a rest (a model without heading that is not linear) it is a share of the period seen.
+    For roll (a model without heading that is not linear) it is a share of the period in the records.
 
     Raises:
         InputError: a ship is steered and the records show no speed.
@@ -52,7 +52,7 @@ def characteristic_time(
 
 
 def is_pure_roll(model: Model) -> bool:
-    """Whether the ship swings about a rest, with no heading and no speed of her own."""
+    """Return whether the ship swings about a rest: a model without heading and surge."""
     return not {"psi", "u"} & {*model.states, *model.input_names}
 
 

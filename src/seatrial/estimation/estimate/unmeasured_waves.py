@@ -1,4 +1,4 @@
-"""Waves that nobody measured: a fit that takes their motions for the ship's answer to something else is refused."""
+"""Waves that nobody measured: a fit that takes their motions for the ship's response to something else is refused."""
 
 from collections.abc import Sequence
 
@@ -26,11 +26,13 @@ def refuse_unmeasured_waves(estimation: Estimation, records: Sequence[Record]) -
     if np.max(estimation.inflation) <= WHITE_INFLATION and not estimation.has_process_noise:
         return
     problem = estimation.shooting.problem
-    left = np.sqrt(np.nanmean(estimation.shooting.residuals() ** 2, axis=0))
+    remaining = np.sqrt(np.nanmean(estimation.shooting.residuals() ** 2, axis=0))
     moved = np.nanstd(problem.data.measured, axis=0)
-    told = [_residual_text(channel, r, m) for channel, r, m in zip(problem.data.outputs, left, moved, strict=True)]
+    unexplained = [
+        _residual_text(channel, r, m) for channel, r, m in zip(problem.data.outputs, remaining, moved, strict=True)
+    ]
     raise InputError(
-        f"the ship moves although no wave is recorded: the model leaves {' and '.join(told)} unexplained; "
+        f"the ship moves although no wave is recorded: the model leaves {' and '.join(unexplained)} unexplained; "
         "give the elevation zeta with [excitation], or F3 and M5, or the sea under [records.waves], "
         "or record in calm water"
     )

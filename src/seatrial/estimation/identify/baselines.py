@@ -1,4 +1,4 @@
-"""Other estimators on the records of a fit: coefficients beside its own, and the runs sailed with them.
+"""Other estimators on the records of a fit: their coefficients, and the runs simulated with them.
 
 Every estimator gets the training runs as they are: no offsets, no priors, no bounds. Its model then sails every run
 open loop from the recorded inputs and from the initial state that the fit gave that run: coefficients alone differ.
@@ -48,10 +48,10 @@ def compare_estimators(
     """
     for record in train:
         features(fit.model, RegressionMotion.from_record(fit.model, record))
-    tell = report_progress or (lambda _: None)
+    report = report_progress or (lambda _: None)
     made = _fit_as_baselines(fit)
     for estimator in estimators:
-        tell(f"comparing: {estimator.name}")
+        report(f"comparing: {estimator.name}")
         made.append(_baseline(fit, train, estimator))
     return tuple(made)
 

@@ -174,8 +174,8 @@ def divergence_message(estimation: Estimation, error: DivergedError) -> str:
     problem, values = estimation.estimate.problem, estimation.estimate.common_parameters
     named = ", ".join(f"{name} {values[i]:.2g}" for i, name in enumerate(problem.free))
     return (
-        f"the records lead to no model that can be sailed ({str(error).partition(';')[0]}): too noisy, too short or "
-        f"too calm to tell {named}; fix or give priors for some of these, or take other records"
+        f"the records lead to no model that can be simulated ({str(error).partition(';')[0]}): too noisy, too short or "
+        f"too calm to determine {named}; fix or give priors for some of these, or take other records"
     )
 
 

@@ -1,4 +1,4 @@
-"""What the records can tell of a fitted model and what they cannot, put together for the report."""
+"""What the records determine of a fitted model and what they do not, put together for the report."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -28,7 +28,7 @@ _MIN_INFLUENCE = 1e-9
 def identifiability(
     estimation: Estimation, symmetries: Sequence[Symmetry], approach: Mapping[str, float], length: float
 ) -> Identifiability:
-    """Everything a report tells about it.
+    """Return everything a report shows about identifiability.
 
     structural: found before the fit; approach: steady speed u and inputs of the trials, SI, notation signs; length: m.
     """

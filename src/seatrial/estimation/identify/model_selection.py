@@ -1,4 +1,4 @@
-"""Choice of a model by cross-validation over whole runs, and the spread of the models that the runs cannot tell apart.
+"""Choice of a model by cross-validation over whole runs, and the spread of the models that the runs cannot distinguish.
 
 Every member of a declared family (structure, width of priors, segment length) is fitted to all training runs; each run
 is then predicted by the member without it (one-step jackknife), in windows. Members that are not worse than the best
@@ -115,7 +115,7 @@ def _better_candidate_warning(candidates: Sequence[CandidateModel]) -> tuple[Fin
 def variants(model: Model, family: ModelFamily | None, is_segmented: bool) -> tuple[ModelVariant, ...]:
     """The model as the trial has it, then each structure, each width of priors, each segment length by itself.
 
-    family: what the trial declares; without it the family of the house for this model.
+    family: what the trial declares; without it the default family of this model.
     """
     free, priors = set(model.parameters.free_names), any(p.prior for p in model.parameters.free)
     structures = FREED_PARAMETERS.get(model.name, {}) if family is None else family.structures

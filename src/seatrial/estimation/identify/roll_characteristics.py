@@ -1,4 +1,4 @@
-"""The identified roll model in the field's terms, with what was assumed of her inertia."""
+"""The identified roll model in the field's terms, with what was assumed of its inertia."""
 
 from collections.abc import Sequence
 

@@ -29,7 +29,7 @@ _ERROR_KEY = "phi_deg"
 
 
 def roll_structures(model: Model, family: ModelFamily | None) -> dict[str, Model]:
-    """Name -> model, the trial's own first; the house's leave coefficients out, a declared family's free further ones.
+    """Return name -> model, the trial's own first; default ones have fewer coefficients, a declared family's more.
 
     Raises:
         InputError: there is but one.

@@ -1,4 +1,4 @@
-"""The identified ship in the waves of her trial: operators, spectra and statistics for the report."""
+"""The identified ship in the waves of its trial: operators, spectra and statistics for the report."""
 
 import math
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Intervals of a manoeuvre that was never sailed: the helmsman steers ships beside the fit, and the tied models."""
+"""Intervals of a manoeuvre that was only simulated: steered with ships drawn from the fit and with tied models."""
 
 from collections.abc import Callable
 
@@ -33,9 +33,9 @@ def measure_intervals(
     Raises:
         InputError: more than half of these ships diverge.
     """
-    sailed = steer(model)
-    centre = measures(sailed, length)
-    reached = extrapolation(sailed, interval_basis.training_envelope)
+    nominal = steer(model)
+    centre = measures(nominal, length)
+    reached = extrapolation(nominal, interval_basis.training_envelope)
     index = reached.index if reached else 1.0
     pairs = [
         (_measures_or_none(up, steer, length), _measures_or_none(down, steer, length))

@@ -36,7 +36,7 @@ from seatrial.numerics.workers import map_in_threads
 
 @dataclass(frozen=True, eq=False)
 class TiedModel:
-    """A model that the runs cannot tell from the best one: its estimate, and the model there."""
+    """A model that the runs cannot distinguish from the best one: its estimate, and the model there."""
 
     estimate: PointEstimate
     model: Model
@@ -124,20 +124,20 @@ def predict_runs(
     Raises:
         InputError: a simulation diverges.
     """
-    tell = report_progress or (lambda _: None)
+    report = report_progress or (lambda _: None)
     problem, mean = (
         estimation.estimate.problem,
         mean_nuisances(estimation.estimate.problem, estimation.estimate.common_parameters),
     )
     runs = []
     for item in records:
-        tell(f"predicting {item.record.name}")
+        report(f"predicting {item.record.name}")
         own = session_nuisances(estimation, item.session) if item.role is Role.TRAIN else mean
         runs.append(simulate_open_loop(problem, estimation.model, item.record, own, seconds))
     train = [item for item in records if item.role is Role.TRAIN]
     fitted = [run.record for run, item in zip(runs, records, strict=True) if item.role is Role.TRAIN]
     covered = motion_envelope(fitted)
-    tell("runs left out, predicted")
+    report("runs left out, predicted")
     known = calibrate_intervals(estimation, train, fitted, seconds, length, seed)
     streams = np.random.SeedSequence((seed, 1)).spawn(len(records))
     made = []
@@ -200,8 +200,8 @@ def tied_model_spread(
             run = simulate_open_loop(problem, one.model, prediction.measured, own, seconds).record
         except InputError:
             continue
-        told = compare_measures(prediction.measured, run, length) if prediction.measures else {}
-        for name, m in told.items():
+        compared = compare_measures(prediction.measured, run, length) if prediction.measures else {}
+        for name, m in compared.items():
             simulated = prediction.measures[name].simulated if name in prediction.measures else None
             if m.simulated is not None and simulated is not None:
                 away.setdefault(name, []).append(m.simulated - simulated)

@@ -141,7 +141,7 @@ def _refuse_unidentifiable(problem: UnknownWaves, optimum: Optimum, interval: In
     if share < _MIN_WAVE_SHARE:
         raise InputError(
             f"the waves have next to no energy at the natural frequency ({100 * share:.1f} % of their peak), so that "
-            f"the roll tells their period and not the ship's; {advice}"
+            f"the roll shows their period and not the ship's; {advice}"
         )
     ratio = power / problem.windowed_density(point)
     for piece in np.array_split(np.arange(len(ratio)), _BANDS):
@@ -155,7 +155,7 @@ def _refuse_unidentifiable(problem: UnknownWaves, optimum: Optimum, interval: In
     error = interval.standard_error / np.exp(point[[DAMPING, RESTORING]])
     if error[0] > _MAX_DAMPING_ERROR or error[1] > _MAX_RESTORING_ERROR:
         raise InputError(
-            f"the roll's spectrum cannot tell the ship from the waves (standard errors of b_1 {100 * error[0]:.0f} %, "
+            f"the roll's spectrum cannot distinguish ship and waves (standard errors of b_1 {100 * error[0]:.0f} %, "
             f"c_1 {100 * error[1]:.0f} %); record longer, {advice}"
         )
 
@@ -164,7 +164,7 @@ def _linear_equivalent_finding(record: Record) -> Finding:
     rms = float(np.degrees(np.std(record["phi"])))
     what = f"b_1 and c_1 are the linear equivalent of roll in this sea, {rms:.2g} deg rms"
     evidence = "other coefficients held at zero; the sea is taken to have one peak (JONSWAP) and to fall off with depth"
-    return Finding(Severity.INFO, "equivalent-linear", what, evidence, "a decay tells damping over amplitude")
+    return Finding(Severity.INFO, "equivalent-linear", what, evidence, "a decay shows damping over amplitude")
 
 
 def _unused_prior_findings(model: Model) -> list[Finding]:

@@ -170,7 +170,8 @@ def _refuse_uncertain(problem: SpectralLikelihood, point: Array, information: Ar
     worst = int(np.argmax(error))
     if error[worst] > _MAX_RELATIVE_ERROR:
         raise InputError(
-            f"the sea's spectrum cannot tell {problem.free[worst]} (standard error {100 * error[worst]:.0f} %) nor the "
-            f"direction {weakest_direction(information, problem.free, point)[1]}; record the elevation or "
+            f"the sea's spectrum does not determine {problem.free[worst]} "
+            f"(standard error {100 * error[worst]:.0f} %) nor "
+            f"the direction {weakest_direction(information, problem.free, point)[1]}; record the elevation or "
             "the wave forces"
         )
