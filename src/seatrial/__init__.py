@@ -21,7 +21,8 @@ Functions (each also a command)
 Files
     read_record, write_record    records
     Layout, ColumnSpec           how a record file of another program is laid out
-    load_fit, save, report       result folders and their pages
+    save, load, load_fit         result folders
+    report                       the page of a result
     load_model, load_loop        model files, loop files
 
 Values

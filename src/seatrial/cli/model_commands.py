@@ -1,0 +1,162 @@
+"""Commands on a model: tune, simulate, models."""
+
+import math
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from seatrial.cli.application import Json, OwnModelPath, Seed, app, own_model, result_document
+from seatrial.cli.output import print_measures, progress_reporter, write_json
+from seatrial.cli.tuning_output import print_tuning
+
+
+@app.command()
+def tune(
+    loop: Annotated[Path, typer.Argument(metavar="LOOP.toml", help="Loop file.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Where report, gains, loop and tuning.json go.")
+    ] = None,
+    model_path: Annotated[
+        Path | None, typer.Option("--from", metavar="MODEL.toml", help="Ship model in place of plant.model.")
+    ] = None,
+    model: OwnModelPath = None,
+    json: Json = None,
+    seed: Seed = 0,
+) -> None:
+    """Tune a fin stabiliser, an autopilot or a speed control: gains with their margins, front, schedule, simulation.
+
+    Example: seatrial tune examples/fin_stabiliser.toml --out results/fins
+
+    On an identified ship: --from results/waterjet/model.toml
+    """
+    from seatrial import api
+    from seatrial.core.values.files import writable_folder
+
+    if out is not None:
+        writable_folder(out)
+    with progress_reporter() as report_progress:
+        result = api.tune(api.load_loop(loop, own_model(model), model_path), seed=seed, report_progress=report_progress)
+        if out is not None:
+            report_progress("report")
+            api.save(result, out)
+    print_tuning(result)
+    write_json(json, lambda: result_document(result))
+    if out is not None:
+        print(f"gains: {out / 'gains.toml'}")
+        print(f"report: {out / 'report.html'}")
+
+
+@app.command()
+def simulate(
+    model_file: Annotated[Path, typer.Argument(metavar="MODEL.toml", help="Model file, as identify writes it.")],
+    out: Annotated[Path, typer.Option("--out", metavar="FILE", help="Simulated record (CSV).")],
+    manoeuvre: Annotated[
+        str | None,
+        typer.Option(
+            "--manoeuvre", help="zigzag:20/20, zigzag:20/10, turning-circle:35, spiral, pull-out or prbs; add :port."
+        ),
+    ] = None,
+    inputs: Annotated[
+        str | None, typer.Option("--inputs", metavar="RECORD", help="Simulate the inputs of a record.")
+    ] = None,
+    trial: Annotated[
+        Path | None, typer.Option("--trial", metavar="TRIAL.toml", help="RECORD is the name of one of its runs.")
+    ] = None,
+    speed: Annotated[float | None, typer.Option(help="Approach speed, m/s; default: where surge balances.")] = None,
+    duration: Annotated[float | None, typer.Option(help="s at most.")] = None,
+    constant_inputs: Annotated[
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A constant input in SI units.")
+    ] = None,
+    rudder_rate: Annotated[float | None, typer.Option(help="deg/s; default: SOLAS's at the ship's scale.")] = None,
+    model: OwnModelPath = None,
+    json: Json = None,
+    seed: Seed = 0,
+) -> None:
+    """Simulate a manoeuvre or the inputs of a record with a model, and print its measures.
+
+    Example: seatrial simulate results/kvlcc2/model.toml --manoeuvre turning-circle:35 --out turn.csv
+
+    Measured inputs: --inputs table.csv, or --trial examples/kvlcc2_hsva.toml --inputs HSVA_CPMC_KVLCC2_Z_35_05
+    """
+    from seatrial import api
+    from seatrial.core.values import InputError
+    from seatrial.core.values.files import writable_folder
+    from seatrial.data.read import read_record_csv, write_record_csv
+
+    if (manoeuvre is None) == (inputs is None):
+        raise InputError("give either --manoeuvre or --inputs")
+    file = api.load_model(model_file, own_model(model))
+    writable_folder(out.parent)
+    measured, intervals = None, {}
+    if inputs is not None:
+        measured = read_record_csv(Path(inputs)) if trial is None else api.prepared_run(trial, inputs)
+        record = api.replay(file, measured, speed)
+    else:
+        constant = dict(_name_and_value(text) for text in constant_inputs or [])
+        steer = api.steering(
+            file,
+            manoeuvre or "",
+            speed=speed,
+            inputs=constant,
+            duration=duration,
+            rudder_rate=None if rudder_rate is None else math.radians(rudder_rate),
+            seed=seed,
+        )
+        record = steer(file.model)
+        try:
+            intervals = api.measure_intervals(file, steer)
+        except InputError as error:
+            print(f"seatrial: {error}", file=sys.stderr)
+    write_record_csv(record, out)
+    reference = measured if measured is not None and "psi" in measured else None
+    measures = api.measures(file, record, reference) if "psi" in record else {}
+    leaving = api.extrapolation(file, record)
+    print_measures(measures, intervals, leaving)
+    rms = {} if measured is None else api.rms_differences(measured, record)
+    if measured is not None and rms:
+        print(f"against {measured.name}: rms {', '.join(f'{name} {value:.3g}' for name, value in rms.items())}")
+    write_json(
+        json,
+        lambda: {
+            "record": str(out),
+            "measures": measures,
+            "intervals": {name: list(pair) for name, pair in intervals.items()},
+            "extrapolation_index": None if leaving is None else leaving.index,
+            "rms": rms,
+            "seed": seed,
+        },
+    )
+    print(f"record: {out}")
+
+
+@app.command()
+def models(
+    json: Json = None,
+    seed: Seed = 0,  # noqa: ARG001
+) -> None:
+    """List the built-in and the installed models: name, states, inputs, source.
+
+    Example: seatrial models
+    """
+    from dataclasses import asdict
+
+    from seatrial import api
+    from seatrial.cli.model_table import print_models
+
+    summaries = api.list_models()
+    print_models(summaries)
+    write_json(json, lambda: {"models": [asdict(summary) for summary in summaries]})
+
+
+def _name_and_value(text: str) -> tuple[str, float]:
+    from seatrial.core.values import InputError
+
+    name, equals, value = text.partition("=")
+    try:
+        if not equals:
+            raise ValueError
+        return name.strip(), float(value)
+    except ValueError:
+        raise InputError(f"--set {text}: write NAME=VALUE with a number in SI units, e.g. --set n=10.2") from None

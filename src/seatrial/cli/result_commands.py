@@ -1,0 +1,75 @@
+"""Commands on results and without records: report, reproduce, demo."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from seatrial.cli.application import Json, OwnModelPath, Seed, app, own_model, result_document
+from seatrial.cli.output import print_fit, print_study, progress_reporter, write_json
+
+
+@app.command()
+def report(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Result folder.")],
+    model: OwnModelPath = None,
+    json: Json = None,
+    seed: Seed = 0,  # noqa: ARG001
+) -> None:
+    """Render the report of a result folder again, without computing.
+
+    Example: seatrial report results/kvlcc2
+    """
+    from seatrial import api
+
+    result = api.load(folder, own_model(model))
+    page = api.report(result, folder / "report.html")
+    write_json(json, lambda: result_document(result))
+    print(f"report: {page}")
+
+
+@app.command()
+def reproduce(
+    study: Annotated[str, typer.Argument(metavar="STUDY", help="E.g. alexandersson2022.")],
+    quick: Annotated[bool, typer.Option("--quick", help="Fewer cases, under half a minute.")] = False,
+    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Where report and study.json go.")] = None,
+    json: Json = None,
+    seed: Seed = 0,
+) -> None:
+    """Repeat a published study and check its claims.
+
+    Example: seatrial reproduce alexandersson2022 --quick --out results/alexandersson2022
+    """
+    from seatrial import api
+    from seatrial.core.values.files import writable_folder
+
+    if out is not None:
+        writable_folder(out)
+    with progress_reporter() as report_progress:
+        result = api.reproduce(study, quick=quick, seed=seed, report_progress=report_progress)
+        page = None if out is None else api.save(result, out)
+    print_study(result)
+    write_json(json, lambda: result_document(result))
+    if page is not None:
+        print(f"report: {page}")
+
+
+@app.command()
+def demo(
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where trials, result and report go.")],
+    json: Json = None,
+    seed: Seed = 0,
+) -> None:
+    """Identify a craft with known coefficients from simulated trials.
+
+    Example: seatrial demo --out demo
+    """
+    from seatrial import api
+    from seatrial.core.values.files import writable_folder
+
+    writable_folder(out)
+    with progress_reporter() as report_progress:
+        fit = api.demo(out, seed=seed, report_progress=report_progress)
+    print_fit(fit)
+    write_json(json, lambda: result_document(fit))
+    print(f"report: {out / 'report.html'}")

@@ -1,0 +1,165 @@
+"""Commands on a trial: check, identify, follow, design."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from seatrial.cli.application import Json, OwnModelPath, Seed, TrialPath, app, own_model, result_document
+from seatrial.cli.follow_output import journal_path, live_display, print_outcome, stop_on_signal, stream_heading
+from seatrial.cli.output import print_design, print_findings, print_fit, progress_reporter, write_json
+
+FINDINGS_PER_CODE = 2  # findings of one kind that `check` prints without --all; ours, one screen for a bad file
+
+
+@app.command()
+def check(
+    trial: TrialPath,
+    show_all: Annotated[
+        bool, typer.Option("--all", help="Show every finding, not the first few of each kind.")
+    ] = False,
+    model: OwnModelPath = None,
+    json: Json = None,
+    seed: Seed = 0,  # noqa: ARG001
+) -> None:
+    """Check the records: frames, signs, units, gaps, jumps, lags.
+
+    Example: seatrial check examples/esso_osaka.toml
+    """
+    from seatrial import api
+    from seatrial.data.folder.document import findings_document
+
+    findings = api.check(api.load_trial(trial, own_model(model)))
+    print_findings(findings, len(findings) if show_all else FINDINGS_PER_CODE)
+    write_json(json, lambda: findings_document(findings))
+
+
+@app.command()
+def identify(
+    trial: TrialPath,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Result folder: model, result, report.")],
+    intervals: Annotated[
+        str, typer.Option("--intervals", metavar="KIND", help="auto, jackknife, bootstrap or profile.")
+    ] = "auto",
+    choose: Annotated[bool, typer.Option("--choose", help="Take the model that predicts left-out runs best.")] = False,
+    compare: Annotated[
+        bool, typer.Option("--compare", help="Compare with other estimators on the same records.")
+    ] = False,
+    model: OwnModelPath = None,
+    json: Json = None,
+    seed: Seed = 0,
+) -> None:
+    """Estimate the ship's model from the training runs and predict the validation runs, with intervals.
+
+    Example: seatrial identify examples/kvlcc2_hsva.toml --out results/kvlcc2
+
+    Every run left out and refitted, and the spread of tied models: --intervals jackknife
+    """
+    from seatrial import api
+    from seatrial.core.values.files import writable_folder
+
+    writable_folder(out)
+    with progress_reporter() as report_progress:
+        fit = api.identify(
+            api.load_trial(trial, own_model(model)),
+            seed=seed,
+            report_progress=report_progress,
+            intervals=intervals,
+            choose=choose,
+            compare=compare,
+        )
+        report_progress("report")
+        page = api.save(fit, out)
+    print_fit(fit)
+    write_json(json, lambda: result_document(fit))
+    print(f"report: {page}")
+
+
+@app.command()
+def follow(
+    trial: TrialPath,
+    once: Annotated[bool, typer.Option("--once", help="End with the input, with the fit of identify.")] = False,
+    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Where journal and result go.")] = None,
+    page: Annotated[
+        int | None, typer.Option("--page", metavar="PORT", help="Port of the page on this machine; 0: any.")
+    ] = None,
+    journal: Annotated[
+        Path | None,
+        typer.Option("--journal", metavar="FILE", help="Keep samples there; an existing one is read first."),
+    ] = None,
+    source: Annotated[
+        str | None, typer.Option("--source", metavar="KIND", help="file, stdin, udp, nmea-file, nmea-stdin, nmea-udp.")
+    ] = None,
+    model: OwnModelPath = None,
+    json: Json = None,
+    seed: Seed = 0,
+) -> None:
+    """Identify while the record is still being made: a growing file, standard input, NMEA 0183 or UDP.
+
+    Example: seatrial follow examples/heave_pitch_follow.toml --once --json fit.json
+
+    On board, with a page of moving plots and a journal: --page 8000 --out results/today
+    """
+    from seatrial import api
+    from seatrial.core.values.files import writable_folder
+    from seatrial.data.trial.follow_table import require_stream, with_source
+
+    if out is not None:
+        writable_folder(out)
+    stream = api.load_trial(trial, own_model(model))
+    stream = stream if source is None else with_source(stream, source)
+    port = page if page is not None else require_stream(stream).page_port or None
+    with (
+        stop_on_signal() as stop,
+        live_display(stream_heading(stream), port) as show,
+        progress_reporter() as report_progress,
+    ):
+        outcome = api.follow(
+            stream,
+            once=once,
+            journal=journal_path(journal, stream, out, once=once),
+            show=show,
+            stop=stop,
+            seed=seed,
+            report_progress=report_progress,
+        )
+    print_outcome(outcome)
+    if outcome.fit is not None:
+        print_fit(outcome.fit)
+    write_json(json, lambda: result_document(outcome.result))
+    if out is not None:
+        print(f"result: {api.save(outcome, out)}")
+
+
+@app.command()
+def design(
+    trial: TrialPath,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where report, orders, plan and design.json go.")],
+    model_path: Annotated[
+        Path | None, typer.Option("--from", metavar="MODEL.toml", help="Design for the model of an earlier fit.")
+    ] = None,
+    model: OwnModelPath = None,
+    json: Json = None,
+    seed: Seed = 0,
+) -> None:
+    """Design the manoeuvre that identifies the coefficients best within the limits of the table 'design'.
+
+    Example: seatrial design examples/waterjet_design.toml --out results/plan
+
+    After a first trial: --from results/waterjet/model.toml designs for its coefficients.
+    """
+    from seatrial import api
+    from seatrial.core.values.files import writable_folder
+
+    writable_folder(out)
+    equations = own_model(model)
+    request = api.load_trial(trial, equations)
+    prior = None if model_path is None else api.load_model(model_path, equations)
+    with progress_reporter() as report_progress:
+        result = api.design(request, seed=seed, report_progress=report_progress, prior_model=prior)
+        report_progress("report")
+        page = api.save(result, out)
+    print_design(result)
+    write_json(json, lambda: result_document(result))
+    print(f"orders: {out / 'orders.csv'}")
+    print(f"report: {page}")
