@@ -1,7 +1,8 @@
 """What a coefficient does to a manoeuvre: alone, as sensitivity analyses ask, and once the others may make up for it.
 
 The indirect method changes one coefficient and simulates again. It cannot see that other coefficients do the same: a
-large value says that a wrong coefficient is felt, not that the record can tell it. The unique part says that.
+large value says that a wrong coefficient changes the motion, not that the record can identify it. The unique part
+says that.
 """
 
 from collections.abc import Mapping, Sequence

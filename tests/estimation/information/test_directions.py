@@ -40,7 +40,7 @@ def test_sizes_make_changes_relative_with_the_sign_of_the_value() -> None:
 
 @pytest.mark.parametrize(
     ("deviation", "says"),
-    [(0.02, "is determined to 2 %"), (0.5, "leave 50 % open"), (3.0, "tell nothing"), (np.inf, "any amount")],
+    [(0.02, "is determined to 2 %"), (0.5, "leave 50 % open"), (3.0, "determine nothing"), (np.inf, "any amount")],
 )
 def test_words_say_how_well_a_combination_is_known(deviation: float, says: str) -> None:
     axis = np.array([0.8, -0.6])

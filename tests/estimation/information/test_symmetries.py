@@ -229,7 +229,9 @@ def test_without_a_simple_law_the_direction_at_the_values_is_given() -> None:
     )
     assert worst_difference(model, g.transformed_model(model, 1e-6), ("r",), begin(model)) < 1e-10
     (told,) = structural_symmetries(model, ("r",))
-    assert told.text.startswith("b, c, d and e are felt in 3 combinations only and can change together (near their")
+    assert told.text.startswith(
+        "b, c, d and e have an effect in 3 combinations only and can change together (near their"
+    )
 
 
 def exact(model: Model, point: dict[str, mpmath.mpf]) -> list[mpmath.mpf]:
@@ -364,7 +366,9 @@ def test_parameters_without_influence_are_told_with_the_reason() -> None:
 
 def test_free_parameters_that_trade_are_refused_unless_a_prior_settles_it() -> None:
     model = freed(waterjet(), "A_j", "m_x", "m_y", "J_z", "x_T")
-    with pytest.raises(InputError, match=r"no record can tell the free parameters apart: .* one of m_x, m_y, A_j; and"):
+    with pytest.raises(
+        InputError, match=r"no record can distinguish the free parameters: .* one of m_x, m_y, A_j; and"
+    ):
         refuse_unidentifiable(model, MOTION)
     half = model.with_parameters(model.parameters.with_priors({"A_j": Prior(0.035, 0.003)}))
     with pytest.raises(InputError, match=r"apart: x_T, N_v, N_r, N_rr and I_z \+ J_z can"):

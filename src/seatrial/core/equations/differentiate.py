@@ -17,12 +17,12 @@ _NAMES = {**vars(sp), "ExprCondPair": ExprCondPair}
 
 
 def parsed(text: str) -> sp.Expr:
-    """Return the expression that `sympy.srepr` wrote; the text is executed, so it must be one's own."""
+    """Return the expression that `sympy.srepr` wrote; the text is executed, so it must come from here."""
     return cast(sp.Expr, eval(text, dict(_NAMES)))
 
 
 def partial(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
-    """d expression / d symbol with d|x| = sign and d sign = 0."""
+    """Return d expression / d symbol with d|x| = sign and d sign = 0."""
     derivative = sp.diff(expression, symbol)
     plain = derivative.replace(sp.DiracDelta, lambda *_: sp.Integer(0)).replace(
         lambda e: isinstance(e, sp.Derivative), lambda _: sp.Integer(0)
@@ -31,14 +31,14 @@ def partial(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
 
 
 def partials(expression: sp.Expr) -> dict[str, sp.Expr]:
-    """Symbol name -> partial derivative, where it is not zero; symbols in the order of their names."""
+    """Return symbol name -> partial derivative, where it is not zero; symbols in the order of their names."""
     symbols = sorted(expression.free_symbols, key=str)
-    made = {str(s): partial(expression, s) for s in symbols if isinstance(s, sp.Symbol)}
-    return {name: value for name, value in made.items() if value != 0}
+    derivatives = {str(s): partial(expression, s) for s in symbols if isinstance(s, sp.Symbol)}
+    return {name: value for name, value in derivatives.items() if value != 0}
 
 
 def is_affine(equations: "ModelEquations") -> bool:
-    """Whether all rates and bindings are affine in states and inputs."""
+    """Return whether all rates and bindings are affine in states and inputs."""
     moving = {*equations.states, *equations.input_names}
     for binding in (*equations.bindings, *equations.rates):
         slopes = {name: slope for name, slope in partials(binding.expression).items() if name in moving}

@@ -113,7 +113,7 @@ def _tangent_lines(
 
 
 def source_text(equations: ModelEquations) -> str:
-    """The generated module as text; the same equations give the same text in every process."""
+    """Return the generated module as text; the same equations give the same text in every process."""
     rates_tangent, rates_pattern = _tangent_lines(equations, "rates_tangent", equations.rates)
     outputs_tangent, outputs_pattern = _tangent_lines(equations, "outputs_tangent", equations.output_bindings)
     lines = [
@@ -129,11 +129,11 @@ def source_text(equations: ModelEquations) -> str:
 
 
 def bindings_text(equations: ModelEquations) -> str:
-    """The module of the breakdown of forces as text."""
+    """Return the module of the breakdown of forces as text."""
     return _HEADER.format(name=equations.name) + "\n".join(_function_lines(equations, "bindings", equations.bindings))
 
 
 def tangent_text(equations: ModelEquations, names: Sequence[str]) -> str:
-    """The module of some bindings with their exact Jacobians as text."""
+    """Return the module of some bindings with their exact Jacobians as text."""
     wanted = [b for name in names for b in equations.bindings if b.name == name]
     return _HEADER.format(name=equations.name) + "\n".join(_tangent_lines(equations, "tangent", wanted)[0])

@@ -26,7 +26,7 @@ class LatexEquation:
 
 
 def latex_symbol(name: str) -> str:
-    r"""LaTeX of an ASCII name: ``x_P_prime`` -> ``x'_{P}``, ``gamma_R`` -> ``\gamma_{R}``, ``sin_psi`` -> upright."""
+    r"""Return LaTeX for a name: ``x_P_prime`` -> ``x'_{P}``, ``gamma_R`` -> ``\gamma_{R}``, ``sin_psi`` -> upright."""
     head, *rest = name.split("_")
     prime = "'" if rest and rest[-1] == "prime" else ""
     rest = rest[:-1] if prime else rest
@@ -40,7 +40,7 @@ def latex_symbol(name: str) -> str:
 
 
 def latex_symbols(model: Model) -> dict[str, str]:
-    """Name -> LaTeX for every symbol of the model: the parameter's own, the notation table's, else from the name."""
+    """Return name -> LaTeX for every symbol: the parameter's own, the notation table's, else from the name."""
     names = [*model.states, *model.input_names, *(b.name for b in model.bindings)]
     notated = {n: NOTATION[n].latex if n in NOTATION else latex_symbol(n) for n in names}
     return notated | {p.name: p.latex or latex_symbol(p.name) for p in model.parameters}

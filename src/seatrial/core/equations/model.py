@@ -24,7 +24,7 @@ class Model:
 
     @property
     def name(self) -> str:
-        """What the registry and model files call it."""
+        """The name in the registry and in model files."""
         return self.equations.name
 
     @property
@@ -73,7 +73,7 @@ class Model:
         return compile_equations(self.equations)
 
     def with_parameters(self, parameters: Parameters) -> Self:
-        """The same equations with other parameters (same names, same order).
+        """Return the same equations with other parameters (same names, same order).
 
         Raises:
             InputError: the names differ.
@@ -83,11 +83,11 @@ class Model:
         return replace(self, parameters=parameters)
 
     def with_values(self, values: Mapping[str, float], source: str | None = None) -> Self:
-        """Other parameter values."""
+        """Return the model with other parameter values."""
         return self.with_parameters(self.parameters.with_values(values, source))
 
     def with_ship(self, ship: Ship) -> Self:
-        """Particulars the model knows by name, taken from the ship.
+        """Return the model with the particulars that it shares with the ship.
 
         Raises:
             InputError: a parameter still has no value.
@@ -100,7 +100,7 @@ class Model:
         return model
 
     def forces(self, states: Array, inputs: Array) -> dict[str, Array]:
-        """Every binding along a record: states (n, nx), inputs (n, nu) -> name -> (n,)."""
+        """Return every binding along a record: states (n, nx), inputs (n, nu) -> name -> (n,)."""
         from seatrial.numerics.kernels.evaluate import evaluate
 
         out = np.empty((len(states), max(1, len(self.bindings))))

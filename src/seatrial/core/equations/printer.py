@@ -11,7 +11,7 @@ from sympy.printing.pycode import PythonCodePrinter
 
 
 def mangled(name: str) -> str:
-    """A Python name that cannot collide with a keyword or with the generated code's own."""
+    """Return a Python name that cannot collide with a keyword or with the generated code's own."""
     return f"{name}_"
 
 
@@ -68,7 +68,7 @@ class CodeLines:
         self._printer = _Printer({"fully_qualified_modules": True})
 
     def expression(self, value: sp.Expr) -> str:
-        """The text of an expression, after the sines and cosines it needs."""
+        """Return the text of an expression, after the sines and cosines it needs."""
         replaced = {}
         for call in sorted(value.atoms(sp.sin, sp.cos), key=sp.default_sort_key):
             angle = call.args[0]

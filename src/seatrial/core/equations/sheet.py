@@ -110,7 +110,7 @@ class Sheet:
         self._rates[str(state)] = _Rate(sp.sympify(expression), source)
 
     def output(self, channel: str, expression: sp.Expr, source: str = "", unit: str = "1") -> sp.Symbol:
-        """A binding that can be measured: the record channel of this name is compared with it."""
+        """Declare a binding that can be measured: the record channel of this name is compared with it."""
         symbol = self.bind(channel, expression, source, unit)
         self._outputs.append(channel)
         return symbol
@@ -121,7 +121,7 @@ class Sheet:
             raise InputError(f"model '{self.name}', {where}: unknown symbol '{strangers[0]}'; declare it first")
 
     def model(self) -> Model:
-        """The finished, immutable model."""
+        """Return the finished, immutable model."""
         absent = [s for s in self._states if s not in self._rates]
         if absent:
             raise InputError(f"model '{self.name}': no rate given for state '{absent[0]}'")

@@ -1,4 +1,4 @@
-"""Fisher information read direction by direction: what the records tell well, vaguely, or not at all.
+"""Fisher information read direction by direction: what the records determine well, vaguely, or not at all.
 
 Everything is in relative changes, parameter over its characteristic size, so that directions of different parameters
 compare (eigen-directions of the scaled information: Belsley, Kuh & Welsch 1980, Regression Diagnostics, section 3.2).
@@ -77,7 +77,7 @@ def direction_text(combination: Mapping[str, float], deviation: float) -> str:
         return f"the combination {terms} (relative changes) is determined to {known}"
     if deviation <= _POORLY_DETERMINED:
         return f"along {terms} (relative changes) the records leave {known} open: these trade against each other"
-    return f"along {terms} (relative changes) the records tell nothing: these may be wrong together by {known}"
+    return f"along {terms} (relative changes) the records determine nothing: these may be wrong together by {known}"
 
 
 def effective_parameters(information: Array, precision: Array) -> float:

@@ -1,4 +1,4 @@
-"""How far a prediction leaves the ground the training runs cover: coefficients are only known where they were felt."""
+"""How far a prediction leaves the ground the training runs cover: coefficients are known only where they had effect."""
 
 from collections.abc import Mapping, Sequence
 

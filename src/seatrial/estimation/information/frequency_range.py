@@ -1,4 +1,4 @@
-"""At which frequencies records show a linear ship: those that her constant coefficients stand for."""
+"""At which frequencies records show a linear ship: those that its constant coefficients stand for."""
 
 from collections.abc import Mapping, Sequence
 
@@ -51,7 +51,7 @@ def _central_band(powers: Sequence[tuple[Array, Array]]) -> tuple[float, float]:
 
 def frequency_range_finding(ranges: Mapping[str, tuple[float, float]]) -> Finding:
     """What it means for the coefficients."""
-    told = ", ".join(f"{NOTATION[c].meaning} {low:.2g} to {high:.2g} rad/s" for c, (low, high) in ranges.items())
+    ranges_text = ", ".join(f"{NOTATION[c].meaning} {low:.2g} to {high:.2g} rad/s" for c, (low, high) in ranges.items())
     low, high = min(a for a, _ in ranges.values()), max(b for _, b in ranges.values())
     return Finding(
         Severity.INFO,
@@ -59,6 +59,6 @@ def frequency_range_finding(ranges: Mapping[str, tuple[float, float]]) -> Findin
         f"the constant coefficients stand for frequencies of encounter from {low:.2g} to {high:.2g} rad/s; outside "
         f"they "
         "extrapolate, for added mass and damping change with frequency",
-        f"{100 * POWER_SHARE:.0f} % of the power: {told}",
+        f"{100 * POWER_SHARE:.0f} % of the power: {ranges_text}",
         "for another range, record other headings or speeds, or another sea, and fit them apart",
     )

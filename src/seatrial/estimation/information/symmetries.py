@@ -1,4 +1,4 @@
-"""What no record of the compared outputs can tell about the parameters, found in the equations before any fit.
+"""Changes of parameters that no record of the compared outputs can show, found in the equations before any fit.
 
 Structural identifiability: Pohjanpalo 1978, Math. Biosciences 41, 21-33; Walter & Pronzato 1997, Identification of
 Parametric Models, chapter 2. The changes come from `generators`; here they are put in order and in words.
@@ -28,13 +28,13 @@ _SOURCES = tuple(_PACKAGE / folder for folder in ("estimation/information", "dat
 
 
 def structural_symmetries(model: Model, outputs: Sequence[str], forces: Sequence[str] = ()) -> tuple[Symmetry, ...]:
-    """What no record of these outputs can tell about the free parameters, whatever the manoeuvre, in words.
+    """Return what no record of these outputs can show of the free parameters, whatever the manoeuvre, in words.
 
     Beside the free parameters those count as unknown that are fixed at an assumed value other than zero; particulars
     of the ship (length, mass, ...) are known, and a term that is fixed at zero is not there. First come parameters
     without any influence and changes of free parameters alone, which a fit needs priors for; then those changes in
     which an assumed value decides.
-    forces: bindings that captive tests or CFD give at known motions, ``X_sum``; what they tell is not hidden.
+    forces: bindings that captive tests or CFD give at known motions, ``X_sum``; what they show is not hidden.
 
     Raises:
         InputError: an output the model does not have, or a parameter without a value.
@@ -58,8 +58,10 @@ def refuse_unidentifiable(model: Model, outputs: Sequence[str], forces: Sequence
     """
     symmetries = _stored("unidentifiable", model, outputs, forces, lambda: _without_prior(model, outputs, forces))
     if symmetries:
-        told = "; and ".join(s.text for s in symmetries)
-        raise InputError(f"no record can tell the free parameters apart: {told} (under [model.fixed], [model.priors])")
+        reasons = "; and ".join(s.text for s in symmetries)
+        raise InputError(
+            f"no record can distinguish the free parameters: {reasons} (under [model.fixed], [model.priors])"
+        )
 
 
 def _without_prior(model: Model, outputs: Sequence[str], forces: Sequence[str]) -> tuple[Symmetry, ...]:
@@ -81,23 +83,23 @@ def _stored(
 
 
 def _describe_symmetries(symmetry_search: SymmetrySearch, changes: Sequence[Generator]) -> tuple[Symmetry, ...]:
-    """With their sentences; parameters that are silent for the same reason share one."""
+    """With their sentences; parameters without influence for the same reason share one."""
     parameters, outputs = symmetry_search.model.parameters, symmetry_search.conditions.compared_quantities
     silent: dict[NoInfluence, list[str]] = {}
     for g in (g for g in changes if len(g.parameters) == 1):
         silent.setdefault(_no_influence_reason(symmetry_search, g), []).append(g.parameters[0])
-    told = [
+    described = [
         Symmetry(tuple(s), no_influence_text(s, reason, outputs), dict.fromkeys(s, 1.0)) for reason, s in silent.items()
     ]
     for g, decisive in _with_decisive_parameters(
         symmetry_search.simplified([g for g in changes if len(g.parameters) > 1])
     ):
-        told.append(
+        described.append(
             Symmetry(
                 g.parameters, symmetry_text(g, parameters, decisive, outputs), g.relative_change(symmetry_search.model)
             )
         )
-    return tuple(told)
+    return tuple(described)
 
 
 def _with_decisive_parameters(changes: Sequence[Generator]) -> list[tuple[Generator, tuple[str, ...]]]:

@@ -120,7 +120,7 @@ def _shift_text(g: Generator, names: Sequence[str]) -> str:
     if max(sizes) - min(sizes) > 1e-9 * max(sizes):
         unit = g.shift[names[0]]
         steps = join_names([f"{n} by {g.shift[n] / unit:+.4g}" for n in names])
-        return f"{join_names(names)} are felt in combination only and can be shifted together ({steps})"
+        return f"{join_names(names)} have an effect in combination only and can be shifted together ({steps})"
     first, *rest = names
     against = [n for n in rest if g.shift[n] * g.shift[first] < 0.0]
     along = [first, *(n for n in rest if n not in against)]
@@ -132,9 +132,8 @@ def _shift_text(g: Generator, names: Sequence[str]) -> str:
 def _local_change_text(g: Generator, parameters: Parameters) -> str:
     """A change without a simple law: relative to the values, where these are there and few."""
     count = len(g.parameters) - 1
-    text = (
-        f"{_shortened_list(_free_first(g, parameters))} are felt in {count} combination{'' if count == 1 else 's'} only"
-    )
+    combinations = f"{count} combination{'' if count == 1 else 's'}"
+    text = f"{_shortened_list(_free_first(g, parameters))} have an effect in {combinations} only"
     values = [parameters[n].value for n in g.parameters]
     if len(values) > _MOST_ADVISED or not all(values):
         return f"{text} and can change together"

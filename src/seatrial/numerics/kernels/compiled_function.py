@@ -13,7 +13,7 @@ from seatrial.numerics.kernels.types import TANGENT, TANGENT_SIGNATURE
 
 
 class TangentPointer(types.WrapperAddressProtocol):
-    """Goes to kernels where a function with its Jacobian is wanted."""
+    """The argument of kernels where a function with its Jacobian is wanted."""
 
     _numba_type_ = TANGENT
 

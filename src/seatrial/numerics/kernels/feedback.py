@@ -42,19 +42,19 @@ from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
 
 @njit(inline="always", **OPTIONS)
 def controller_size(n):
-    """Places of one law: E (n, n), g0 (n), g1 (n), and the order a step ahead: row (n), r0, r1."""
+    """Return the places of one law: E (n, n), g0 (n), g1 (n), and the order a step ahead: row (n), r0, r1."""
     return n * n + 3 * n + 2
 
 
 @njit(inline="always", **OPTIONS)
 def clamp(value, bound):
-    """The value, cut to +- bound."""
+    """Return the value, cut to +- bound."""
     return min(max(value, -bound), bound)
 
 
 @njit(**OPTIONS)
 def effective_angle(angle, stall, loss):
-    """The angle that would lift as much without stall: beyond it, `loss` is lost for each unit, down to nothing."""
+    """Return the angle that would lift as much without stall: beyond it, `loss` is lost for each unit, down to 0."""
     size = abs(angle)
     if size <= stall:
         return angle
@@ -85,7 +85,7 @@ def _row_times_states(memory, start, states, n):
 
 @kernel(COMMAND_SIGNATURE, **OPTIONS)
 def linear_controller(_, x, memory, u):
-    """Order, angle, effect; slow states are held while a limit bites and they would drive further into it."""
+    """Set order, angle and effect; slow states are held while a limit bites and they would drive further into it."""
     n, count, k = int(memory[CONTROLLER_ORDER]), int(memory[COUNT]), int(memory[STEP])
     size = controller_size(n)
     slow = HEAD_SIZE + 2 * size

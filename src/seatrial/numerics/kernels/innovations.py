@@ -1,4 +1,4 @@
-"""Innovations of a continuous-discrete extended Kalman filter, for any model of the house.
+"""Innovations of a continuous-discrete extended Kalman filter, for any model.
 
 Between samples the mean follows the Runge-Kutta scheme of `integrate`, its transition matrix the same scheme
 differentiated (`sensitivity`); white process noise enters half before and half after (Strang splitting). Samples are
@@ -21,7 +21,7 @@ from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, O
 
 @njit(inline="always", **OPTIONS)
 def propagate_covariance(transition, covariance, process, noisy_states, dt, work):
-    """spread <- Phi (spread + Q/2) Phi' + Q/2, Phi the first columns of s, Q = diag(process) dt.
+    """Set spread to Phi (spread + Q/2) Phi' + Q/2, Phi the first columns of s, Q = diag(process) dt.
 
     spread[0] is the covariance, spread[1:] its derivatives by the process variances of the noisy states, then by those
     of the measurements.

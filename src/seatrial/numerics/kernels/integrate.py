@@ -16,7 +16,7 @@ DIVERGED = 1e9
 
 @njit(inline="always", **OPTIONS)
 def effective_input(inputs, first, last, k, gain, offset, delay, dt, out):
-    """out_j = gain_j * input_j(t_k - delay_j) + offset_j, linear between samples, clamped to the segment."""
+    """Set out_j = gain_j * input_j(t_k - delay_j) + offset_j, linear between samples, clamped to the segment."""
     for j in range(out.size):
         if delay[j] == 0.0:
             raw = inputs[k, j]

@@ -44,7 +44,7 @@ def _affine_matrices(f, nx, nu, parameter_index, p, value, slope, x, u, out, jac
 
 
 def affine_matrices(f, rows, nx, nu, parameter_index, p):
-    """Matrix [A | B | c] of an affine function and its derivatives by the parameters of index `wanted`.
+    """Return the matrix [A | B | c] of an affine function and its derivatives by the parameters of index `wanted`.
 
     f: a function with its Jacobian, columns [x | u | p]. As f is affine in x and u at fixed p, its slope by a parameter
     at a unit vector less that at the origin is the derivative of that vector's column: exact.
@@ -124,7 +124,7 @@ def _replay(e, g0, g1, c, d, matrix_index, inputs, offsets, substeps, x0, y_out,
 
 
 def replay(e, g0, g1, c, d, matrix_index, inputs, offsets, substeps, x0, y_out, failed):
-    """Run segments whose matrices are e[which[s]], ...; write y at every sample.
+    """Integrate segments whose matrices are e[which[s]], ...; write y at every sample.
 
     Segment s owns rows offsets[s]..offsets[s+1] of y_out. `inputs` holds `fine` steps to a sample (its last sample
     without any), segments end to end, the constant 1 as the last column.
@@ -231,7 +231,7 @@ def replay_tangent(
     s_out,
     failed,
 ):
-    """`replay` with sensitivities: columns of parameters (last axis of de, ...), of input corrections, of starts.
+    """Integrate with sensitivities: columns of parameters (last axis of de, ...), of input corrections, of starts.
 
     shifts: (corrections, 2), input column and sensitivity column of each; weights: (fine rows, corrections), derivative
     of that input by its correction. starts: (nx,), sensitivity column of each initial state or -1.

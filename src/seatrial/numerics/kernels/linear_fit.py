@@ -387,7 +387,7 @@ def residuals_and_jacobian(
     measured,
     weight,
 ):
-    """Residuals weight (x - measured), (samples ny,), and their Jacobian (samples ny, columns); zero where unmeasured.
+    """Return residuals weight (x - measured), (samples ny,), and Jacobian (samples ny, columns); 0 where unmeasured.
 
     f: rates with Jacobian, nu inputs; used: columns of [u | 1] that act; straight: places in `used` of inputs that are
     not held; h: fine step, s; v: ((samples - 1) fine, nv). select: states that are compared, (ny,); measured:

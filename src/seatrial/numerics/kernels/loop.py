@@ -15,7 +15,7 @@ _ANY_ORDER_SUMS = {**OPTIONS, "fastmath": {"contract", "reassoc", "nsz", "arcp"}
 
 @kernel(I8(VECTOR, I8), **OPTIONS)
 def is_hurwitz(row, n):
-    """1 where the polynomial row[:n + 1], highest power first, has all roots left of the axis (Routh 1877).
+    """Return 1 where the polynomial row[:n + 1], highest power first, has all roots left of the axis (Routh 1877).
 
     Destroys `row`, which has n + 1 places or more. The array is folded: row r of the scheme stands on alternate places.
     """
@@ -74,7 +74,7 @@ def _least_return_difference(x, y):
 
 @kernel(void(MATRIX, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX), **_ANY_ORDER_SUMS)
 def evaluate_loops(k, d, n, re, im, s_weights, t_weights, band_re, band_im, Ms, out):
-    """Sensitivity peak and variances of loops; infinite where a loop is unstable.
+    """Compute sensitivity peak and variances of loops; infinite where a loop is unstable.
 
     k: gains (m, g). d (n + 1,), n (g, n + 1): characteristic polynomial d + k n. re, im: L_i (g, f) at the frequencies
     of the sea; on_s (rs, f), on_t (rt, f): what |S|^2 and |L S|^2 weigh there. wide_re, wide_im: L_i over the whole

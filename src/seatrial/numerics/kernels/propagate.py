@@ -143,7 +143,7 @@ def _propagators(a, da, h, value, slope, power, dpower):
 
 
 def propagators(a, da, h):
-    """E, P, R stacked as (3, n, n), and their derivatives (count, 3, n, n) along the directions `da` (count, n, n).
+    """Return E, P, R stacked as (3, n, n), and their derivatives (count, 3, n, n) along `da` (count, n, n).
 
     a: (n, n), 1/s; h: step, s. NaN where a is too large to be scaled.
     """

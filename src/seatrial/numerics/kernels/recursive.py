@@ -85,7 +85,7 @@ def filter_linear(
     w,
     x,
 ):
-    """Take in rows first.. of an affine model; returns the row at which the state left all bounds, or -1.
+    """Process rows first.. of an affine model; returns the row at which the state left all bounds, or -1.
 
     plant (nx, nx + nw), seen (ny, nx + nu + 1): the step and the outputs about the coefficients `at`, columns state,
     then inputs; their derivatives by the coefficients, last axis: de (nx, nx, k), dg (nx, nw, k), dc (ny, nx, k),
@@ -204,7 +204,7 @@ def filter_runge_kutta(
     g_jac,
     g_value,
 ):
-    """The same for any model by Runge-Kutta steps, inputs running straight between samples, as `sensitivity` has it.
+    """Process rows of any model by Runge-Kutta steps, inputs running straight between samples, as `sensitivity` has it.
 
     places: of the coefficients in p, whose other values stay. No model depends on time itself: it counts as 0.
     links as in `simulate.batch`, columns [coefficients | state]; select: outputs, states first, then those of g.

@@ -18,7 +18,7 @@ OFFSET, GAIN, DELAY = 0, 1, 2
 
 @njit(inline="always", **OPTIONS)
 def input_derivatives(inputs, first, last, k, gain, delay, dt, out):
-    """d(effective input)/d(offset, gain, delay) at sample k, three slots an input; clamped, no delay is felt."""
+    """Set d(effective input)/d(offset, gain, delay) at sample k, three slots an input; a clamped input has no delay."""
     for j in range(gain.size):
         delayed = k - delay[j] / dt
         place = min(max(delayed, first * 1.0), last - 1.0)
@@ -31,7 +31,7 @@ def input_derivatives(inputs, first, last, k, gain, delay, dt, out):
 
 @njit(inline="always", **OPTIONS)
 def propagate_tangent(jac, chain, link_p, link_u, w, s, out):
-    """out = jac_x s + jac_p + jac_u w, over structural nonzeros: chain (row, state), links (row, jac column, ...)."""
+    """Set out = jac_x s + jac_p + jac_u w over structural nonzeros: chain (row, state), links (row, column, ...)."""
     ncol = out.shape[1]
     for i in range(out.shape[0]):
         for c in range(ncol):
@@ -49,7 +49,7 @@ def propagate_tangent(jac, chain, link_p, link_u, w, s, out):
 
 @njit(inline="always", **OPTIONS)
 def rk4_tangent_step(f, chain, link_p, link_u, t, x, s, u0, um, u1, w0, wm, w1, p, h, jac, k, y, acc, sk, sy, sacc):
-    """One step of state x and sensitivities s, both in place; the rest is scratch. Returns the stages' summed size."""
+    """Advance state x and sensitivities s, both in place; the rest is scratch. Returns the stages' summed size."""
     nx, ncol = s.shape
     size = 0.0
     f(t, x, u0, p, k, jac)
@@ -163,7 +163,7 @@ def replay_tangent(
     f, g, inputs, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay,
     chain, link_p, link_u, g_chain, g_link_p, g_link_u, start_column, select, ng, y_out, s_out, failed,
 ):  # fmt: skip
-    """`replay` with sensitivities: s_out[row, i, c] = d output_i / d column_c.
+    """Integrate as `replay` with sensitivities: s_out[row, i, c] = d output_i / d column_c.
 
     start_column[i] is the column of the initial value of state i, or -1; links map Jacobian columns to columns.
     """
@@ -177,6 +177,6 @@ def replay_tangent(
 
 @kernel(void(TANGENT, MATRIX, MATRIX, MATRIX, F8, MATRIX, CUBE), **OPTIONS)
 def evaluate_tangent(f, states, inputs, p, dt, out, jac):
-    """f and its Jacobian at every row of states and inputs; p has a row for each as well."""
+    """Evaluate f and its Jacobian at every row of states and inputs; p has a row for each as well."""
     for row in range(states.shape[0]):
         f(row * dt, states[row], inputs[row], p[row], out[row], jac[row])

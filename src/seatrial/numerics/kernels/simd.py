@@ -18,11 +18,11 @@ _CONTRACT = ("contract",)
 
 
 def aligned_scratch(slots: int) -> np.ndarray:
-    """Uninitialised slots, each on a boundary of its own size: loads across cache lines are slow (measured)."""
+    """Return uninitialised slots, each on a boundary of its own size: loads across cache lines are slow (measured)."""
     size = 8 * LANES
-    room = np.empty((slots + 1) * LANES)
-    skip = -room.__array_interface__["data"][0] % size // 8
-    return room[skip : skip + slots * LANES]
+    buffer = np.empty((slots + 1) * LANES)
+    skip = -buffer.__array_interface__["data"][0] % size // 8
+    return buffer[skip : skip + slots * LANES]
 
 
 def _instruction(definition: Callable[..., object]) -> Callable[..., None]:
@@ -55,7 +55,7 @@ class _SlotAccess:
 
 @_instruction
 def dot(_context, w, out, a, b, stride, count):  # noqa: ARG001
-    """w[out] = sum over k < count of w[a + k] w[b + k stride], k ascending."""
+    """Set w[out] = sum over k < count of w[a + k] w[b + k stride], k ascending."""
 
     def generate(context, builder, signature, arguments):
         _, out, a, b, stride, count = arguments
@@ -75,7 +75,7 @@ def dot(_context, w, out, a, b, stride, count):  # noqa: ARG001
 
 @_instruction
 def add_scaled(_context, w, out, a, a_stride, numbers, first, stride, count):  # noqa: ARG001
-    """w[out] += sum over k < count of numbers[at + k at_stride] w[a + k a_stride], k ascending."""
+    """Add w[out] += sum over k < count of numbers[at + k at_stride] w[a + k a_stride], k ascending."""
 
     def generate(context, builder, signature, arguments):
         _, out, a, a_stride, numbers, at, at_stride, count = arguments
@@ -97,7 +97,7 @@ def add_scaled(_context, w, out, a, a_stride, numbers, first, stride, count):  #
 
 @_instruction
 def broadcast(_context, w, out, number):  # noqa: ARG001
-    """w[out] = number in every lane."""
+    """Set w[out] = number in every lane."""
 
     def generate(context, builder, signature, arguments):
         slots = _SlotAccess(context, builder, signature, arguments)
@@ -109,7 +109,7 @@ def broadcast(_context, w, out, number):  # noqa: ARG001
 
 @_instruction
 def add_squared_difference(_context, w, out, a, number, factor):  # noqa: ARG001
-    """w[out] += factor (w[a] - number)^2."""
+    """Add w[out] += factor (w[a] - number)^2."""
 
     def generate(context, builder, signature, arguments):
         slots = _SlotAccess(context, builder, signature, arguments)
@@ -124,7 +124,7 @@ def add_squared_difference(_context, w, out, a, number, factor):  # noqa: ARG001
 
 @_instruction
 def copy_where_greater(_context, w, out, a, counts, threshold):  # noqa: ARG001
-    """w[out] = w[a] in the lanes where w[counts] > done."""
+    """Set w[out] = w[a] in the lanes where w[counts] > done."""
 
     def generate(context, builder, signature, arguments):
         _, out, a, counts, done = arguments

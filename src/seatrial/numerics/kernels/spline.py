@@ -33,7 +33,7 @@ def _slopes(u, slope, work):
 
 
 def spline_slopes(u):
-    """Rise a sample of the not-a-knot cubic spline at every sample of u (n, columns), as scipy's `CubicSpline` has it.
+    """Return the slope per sample of the not-a-knot cubic spline through u (n, columns), as SciPy's `CubicSpline`.
 
     Equal steps: s[i-1] + 4 s[i] + s[i+1] = 3 (u[i+1] - u[i-1]) (de Boor 1978, chapter IV). What lies m samples ahead
     acts on a slope by (2 - sqrt 3)^m of its own, so that a few samples ahead do for a whole record.

@@ -17,7 +17,7 @@ USED, OUTLIERS = 0, 1
 
 @njit(inline="always", **OPTIONS)
 def project_root(root, h, v):
-    """v = R' h; returns its square, the variance of h' z."""
+    """Set v = R' h; returns its square, the variance of h' z."""
     n = h.size
     for j in range(n):
         v[j] = 0.0
@@ -52,7 +52,7 @@ def update_scalar(root, z, v, predicted_variance, variance, e):
 def update_sample(
     root, z, z_reference, h, predicted, measured, variance, huber_limit, memory, running_means, counts, v
 ):
-    """All channels of one sample, NaN being no measurement.
+    """Update by all channels of one sample, NaN being no measurement.
 
     h (ny, n), predicted (ny,): slopes and values at z = `before`. An innovation beyond `limit` standard deviations
     counts linearly (Huber 1964): its variance is raised as far as its weight falls, and what moves z ends at the limit.
@@ -84,7 +84,7 @@ def update_sample(
 
 @njit(inline="always", **OPTIONS)
 def forget(root, z, floor_root, forgetting_factor, v):
-    """The geometric mean of the belief (power `kept`) and a wide one about the same point (power 1 - kept).
+    """Take the geometric mean of the estimate (power `kept`) and a wide one about the same point (power 1 - kept).
 
     Information <- kept * information + (1 - kept) * widest' widest: exponential forgetting that ends at the wide belief
     where nothing is learnt (Kulhavy & Zarrop 1993, section 3). widest (rows, n): root of the wide belief's information.

@@ -19,7 +19,7 @@ _C = tuple((-1.0) ** k / math.factorial(2 * k) for k in range(1, 10))
 
 @kernel(types.UniTuple(F8, 2)(F8), **OPTIONS)
 def sincos(angle: float) -> tuple[float, float]:
-    """(sin, cos) within 1e-16 for |angle| < 1e5 rad; Taylor polynomials on |r| <= pi/4, by Estrin's scheme."""
+    """Return (sin, cos) within 1e-16 for |angle| < 1e5 rad; Taylor polynomials on |r| <= pi/4, by Estrin's scheme."""
     k = math.floor(angle * _TWO_OVER_PI + 0.5)
     r = ((angle - k * _HALF_PI_1) - k * _HALF_PI_2) - k * _HALF_PI_3
     z = r * r

@@ -93,7 +93,7 @@ def _full_model() -> Model:
 
 
 def abkowitz(terms: Sequence[str] = STANDARD) -> Model:
-    """The expansion with exactly the named derivatives free (of `TERMS`), all others fixed at zero.
+    """Return the expansion with exactly the named derivatives free (of `TERMS`), all others fixed at zero.
 
     States u, v, r, psi, x0, y0 at midship; input delta [rad]. Ship particulars L, m, x_G, I_z, rho and the nominal
     speed U_n are given by the ship or the trial. Every subset has the same equations and the same compiled code.

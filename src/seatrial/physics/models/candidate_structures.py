@@ -1,6 +1,6 @@
 """Families of models worth comparing on the same records: which parameters a structure frees beyond the trial's own.
 
-They are the house's and the same for every ship; a trial file may declare another under `[family]`.
+They are the same for every ship; a trial file may declare another under `[family]`.
 """
 
 from collections.abc import Mapping

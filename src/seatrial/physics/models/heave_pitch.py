@@ -83,7 +83,7 @@ def _plant(sheet: Sheet, states: tuple[sp.Symbol, ...], c: dict[str, sp.Symbol],
 
 @cache
 def heave_pitch() -> Model:
-    """States z [m, down], z_dot [m/s], theta [rad, bow up], theta_dot [rad/s].
+    """Return linear heave and pitch with states z [m, down], z_dot [m/s], theta [rad, bow up], theta_dot [rad/s].
 
     Inputs F3 [N], M5 [N m] of the waves, continuous between samples; delta_f1, delta_f2 [rad] of the fins, held.
     Free: a33 a35 a55 a53 b33 b35 b55 b53; c33 c35 c53 c55 may be freed too. The ship gives m, I5 and the stiffnesses.
@@ -93,13 +93,13 @@ def heave_pitch() -> Model:
 
 @cache
 def heave_pitch_zoh() -> Model:
-    """The same with the wave force held over each sample, as the papers discretise it (Qi et al. 2025, eq. (8))."""
+    """Return `heave_pitch` with the wave force held over each sample, as Qi et al. 2025, eq. (8), discretise it."""
     return _assembled_model("heave_pitch_zoh", "heave and pitch, wave force held between samples", is_held=True)
 
 
 @cache
 def heave_pitch_strip() -> Model:
-    """Heave and pitch at any speed from six coefficients at rest, tied by strip theory (b35 - b53 = 2 U a33).
+    """Return heave and pitch at any speed from six coefficients at rest, tied by strip theory (b35 - b53 = 2 U a33).
 
     Inputs besides those of `heave_pitch`: u [m/s] and omega_e [rad/s], both constant in a record: the speed, and the
     frequency of encounter at which the speed terms are taken. Free: a33 b33 a35_0 b35_0 a55_0 b55_0; several speeds and

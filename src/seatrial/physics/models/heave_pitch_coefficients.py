@@ -9,9 +9,9 @@ START_DAMPING_RATIO = 0.3  # of critical, in both motions: chosen, of the order 
 
 
 def physical_start_values(values: dict[str, float]) -> dict[str, float]:
-    """The eight coefficients where nothing is known of them, from m, I5, c33 and c55.
+    """Return start values of the eight coefficients from m, I5, c33 and c55.
 
-    Added mass as large as the mass, no coupling, damping ratio .3 in both motions.
+    Added mass as large as the mass, no coupling, damping ratio 0.3 in both motions.
     """
     m, inertia = values["m"], values["I5"]
     start = dict.fromkeys(HEAVE_PITCH_COEFFICIENTS, 0.0)

@@ -308,7 +308,7 @@ def _accelerations(sheet: Sheet, motion: _Motion, X: sp.Symbol, Y: sp.Symbol, N:
 
 @cache
 def mmg() -> Model:
-    """The standard method with all extensions; hull coefficients are free, everything else fixed.
+    """Return the standard method with all extensions; hull coefficients are free, everything else fixed.
 
     States u, v, r [m/s, m/s, rad/s] through the water at midship, psi [rad], x0, y0 [m]; inputs delta [rad, positive
     turns to starboard], n [rps, negative astern], wind_speed [m/s], wind_direction [rad, the heading it comes from].

@@ -28,7 +28,7 @@ def _rudder(sheet: Sheet) -> sp.Expr:
 
 @cache
 def nomoto() -> Model:
-    """First order: T dr/dt + r + alpha r^3 = K (delta + delta_0).
+    """Return the model of first order: T dr/dt + r + alpha r^3 = K (delta + delta_0).
 
     States r [rad/s], psi [rad], x0, y0 [m]; input delta [rad]. Free: K [1/s], T [s]; the cubic alpha is fixed at 0.
     """
@@ -48,7 +48,7 @@ def nomoto() -> Model:
 
 @cache
 def nomoto2() -> Model:
-    """Second order: T_1 T_2 r'' + (T_1 + T_2) r' + r + alpha r^3 = K (delta + T_3 delta').
+    """Return the model of second order: T_1 T_2 r'' + (T_1 + T_2) r' + r + alpha r^3 = K (delta + T_3 delta').
 
     The rate of the rudder is no input: the state r_rest = r' - K T_3 delta / (T_1 T_2) takes its place.
     States r [rad/s], r_rest [rad/s^2], psi [rad], x0, y0 [m]; input delta [rad]. Free: K, T_1, T_2, T_3.

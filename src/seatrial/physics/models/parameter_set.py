@@ -29,7 +29,7 @@ class ParameterSet:
         object.__setattr__(self, "values", MappingProxyType(dict(self.values)))
 
     def applied_to(self, model: Model) -> Model:
-        """`model` with the ship's particulars and these values.
+        """Return `model` with the ship's particulars and these values.
 
         Raises:
             InputError: the model lacks one of the parameters, or still misses a value.

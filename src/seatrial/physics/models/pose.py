@@ -10,7 +10,7 @@ KINEMATICS = "Fossen 2021, eq. (2.50), horizontal plane"
 def pose_rates(
     sheet: Sheet, u: sp.Expr, v: sp.Expr, r: sp.Symbol, psi: sp.Symbol, x0: sp.Symbol, y0: sp.Symbol
 ) -> tuple[sp.Symbol, sp.Symbol]:
-    """Rates of psi, x0, y0 for velocities u, v through the water; gives the current's components, north and east."""
+    """Give the rates of psi, x0, y0 for velocities u, v through the water; return the current, north and east."""
     north = sheet.parameter("current_north", 0.0, "m/s", "current towards north", "none assumed", scale=0.1)
     east = sheet.parameter("current_east", 0.0, "m/s", "current towards east", "none assumed", scale=0.1)
     sheet.rate(psi, r, KINEMATICS)

@@ -42,7 +42,7 @@ _PARTICULARS = f"{YASUKAWA}, principal particulars"
 
 @cache
 def kvlcc2_l7() -> ParameterSet:
-    """The 7 m model of KVLCC2, scale 1:45.7, in fresh water."""
+    """Return the 7 m model of KVLCC2, scale 1:45.7, in fresh water."""
     ship = Ship("KVLCC2 model L7", _with_mass(_L7, 3.27, 1000.0), _PARTICULARS, 45.7)
     note = "k_2 is -0.1385; a transcription in circulation has -0.1359"
     return ParameterSet("kvlcc2", "mmg", ship, _KVLCC2, _COEFFICIENTS, note)
@@ -50,7 +50,7 @@ def kvlcc2_l7() -> ParameterSet:
 
 @cache
 def kvlcc2_full() -> ParameterSet:
-    """KVLCC2 at full scale in sea water; the same coefficients with the wake of the ship."""
+    """Return KVLCC2 at full scale in sea water; the same coefficients with the wake of the ship."""
     ship = Ship("KVLCC2", _with_mass(_FULL, 312600.0, 1025.0), _PARTICULARS)
     return ParameterSet(
         "kvlcc2-full", "mmg", ship, {**_KVLCC2, "w_P0": 0.35}, _COEFFICIENTS, "w_P0 0.35 at full scale, 0.40 for models"
@@ -83,7 +83,7 @@ _ESSO_NOTE = (
 
 @cache
 def esso_osaka() -> ParameterSet:
-    """The 3 m model of Esso Osaka (free-running data set of Osaka University): captive-test values, converted."""
+    """Return the 3 m model of Esso Osaka (data set of Osaka University): captive-test values, converted."""
     from seatrial.physics.hydro.empirical import cross_flow_coefficients
 
     ship = Ship(
@@ -110,7 +110,7 @@ PARAMETER_SETS: dict[str, Callable[[], ParameterSet]] = {
 
 
 def parameter_set(name: str) -> ParameterSet:
-    """A published set by name.
+    """Return a published set by name.
 
     Raises:
         InputError: there is none of that name; the nearest is given.
@@ -121,7 +121,7 @@ def parameter_set(name: str) -> ParameterSet:
 
 
 def kvlcc2() -> Model:
-    """The MMG model of the 7 m KVLCC2 with its published coefficients."""
+    """Return the MMG model of the 7 m KVLCC2 with its published coefficients."""
     from seatrial.physics.models.mmg import mmg
 
     return kvlcc2_l7().applied_to(mmg())

@@ -99,7 +99,7 @@ def _built_in(name: str) -> "Model":
 
 
 def model_named(name: str) -> "Model":
-    """A built-in model, or one installed under the entry point group `seatrial.models`.
+    """Return a built-in model, or one installed under the entry point group `seatrial.models`.
 
     Raises:
         InputError: there is no such model; the nearest name is given.
@@ -118,7 +118,7 @@ def model_named(name: str) -> "Model":
 
 
 def model_from_file(path: Path) -> "Model":
-    """The model that a user's Python file defines by a function `model()`; the file is executed.
+    """Return the model that a user's Python file defines by a function `model()`; the file is executed.
 
     Raises:
         InputError: the file is missing, fails, or defines no `model()` that returns a Model.
@@ -130,7 +130,7 @@ def model_from_file(path: Path) -> "Model":
         function = names.get("model")
         if not callable(function):
             raise InputError(f"model file {path} defines no function 'model'; add 'def model() -> Model'")
-        made = function()
+        model = function()
     except InputError:
         raise
     except Exception as error:
@@ -139,4 +139,4 @@ def model_from_file(path: Path) -> "Model":
         )
         place = f"{path}, line {line or getattr(error, 'lineno', 0)}"
         raise InputError(f"model file {place}: {type(error).__name__}: {error}; correct the file") from error
-    return _require_model(made, f"model file {path}")
+    return _require_model(model, f"model file {path}")

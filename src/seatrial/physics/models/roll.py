@@ -3,7 +3,7 @@
 phi'' + b_1 phi' + b_2 phi'|phi'| + b_3 phi'^3 + c_1 (phi - phi_0) + c_3 (phi - phi_0)^3 + c_5 (phi - phi_0)^5
     = c_1 (r_w alpha_w + K_alpha alpha_f)
 (ITTC 7.5-02-07-04.5, numerical estimation of roll damping; Spouge 1988). phi and p positive to starboard; so are the
-wave slope alpha_w and the fin angle alpha_f: a positive one rolls her to starboard.
+wave slope alpha_w and the fin angle alpha_f: a positive one rolls the ship to starboard.
 """
 
 from functools import cache
@@ -20,10 +20,12 @@ LIST = "chosen: a list, or a zero of the instrument"
 
 @cache
 def roll() -> Model:
-    """States phi [rad], p [rad/s]; inputs alpha_w [rad] of the waves, alpha_f [rad] of the fins, zero where absent.
+    """Return the roll model: states phi [rad], p [rad/s]; inputs alpha_w [rad] of waves, alpha_f [rad] of fins.
+
+    An absent input counts as zero.
 
     Free: damping b_1 b_2 b_3, restoring c_1 c_3 c_5 and the angle of rest phi_0. Fixed unless freed: r_w = 1, share of
-    alpha_w that she feels, and K_alpha = 0, the wave slope to which a radian of fin angle is equivalent.
+    alpha_w that acts on the hull, and K_alpha = 0, the wave slope to which a radian of fin angle is equivalent.
     c_1 is the square of the natural frequency at small angles, GM g / (k_xx^2 (1 + added inertia)); c_3 > 0 hardens.
     """
     sheet = Sheet("roll", ITTC, "roll")

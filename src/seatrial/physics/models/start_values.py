@@ -9,12 +9,12 @@ _REQUIRED_PARTICULARS = ("m", "I5", "c33", "c55")
 
 
 def with_start_values(model: Model, ship: Ship) -> Model:
-    """Heave and pitch: coefficients without a value start from mass, inertia and stiffness; others are as they are."""
+    """Return heave and pitch with missing coefficients from mass, inertia and stiffness; other models as given."""
     absent = [n for n in model.parameters.missing if n.removesuffix("_0") in COEFFICIENTS]
-    own = {p.name: p.value for p in model.parameters}
-    known = {n: ship.particulars.get(n, own.get(n, float("nan"))) for n in _REQUIRED_PARTICULARS}
-    if not absent or any(value != value for value in known.values()):
+    model_values = {p.name: p.value for p in model.parameters}
+    basis = {n: ship.particulars.get(n, model_values.get(n, float("nan"))) for n in _REQUIRED_PARTICULARS}
+    if not absent or any(value != value for value in basis.values()):
         return model
-    start = physical_start_values(known)
+    start = physical_start_values(basis)
     values = {n: start[n.removesuffix("_0")] for n in absent}
     return model.with_values(values, source="start: added mass as mass, no coupling, damping ratio 0.3")

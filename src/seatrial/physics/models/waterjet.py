@@ -1,4 +1,4 @@
-"""Simplified modular model of a waterjet craft in three degrees of freedom (Song et al. 2025), misprints mended.
+"""Simplified modular model of a waterjet craft in three degrees of freedom (Song et al. 2025), misprints corrected.
 
 Origin at G, x forward, y starboard, psi clockwise. A positive nozzle angle gives a force to starboard at the stern and
 so turns the craft to port.
@@ -27,7 +27,7 @@ WATERJET_COEFFICIENTS = tuple(TABLE_2)
 
 @cache
 def waterjet() -> Model:
-    """The eleven-coefficient model with the published ship; free parameters are the coefficients of Table 2.
+    """Return the eleven-coefficient model with the published ship; free parameters are the coefficients of Table 2.
 
     States u, v, r [m/s, m/s, rad/s], psi, x0, y0; inputs nozzle angle delta [rad], jet velocity v_j [m/s].
     A uniform current (current_north, current_east) moves the water; u and v are through it.
@@ -72,13 +72,13 @@ def waterjet() -> Model:
             + coefficient("Y_vr") * sp.Abs(v) * r_L
             + coefficient("Y_rr") * r_L * sp.Abs(r_L)
         ),
-        "eq. (2), v|v| and r|r| mended",
+        "eq. (2), v|v| and r|r| corrected",
         "N",
     )
     N_H = sheet.bind(
         "N_H",
         q * L * (coefficient("N_v") * v * U + coefficient("N_r") * r_L * U + coefficient("N_rr") * r_L * sp.Abs(r_L)),
-        "eq. (2), r|r| mended",
+        "eq. (2), r|r| corrected",
         "N m",
     )
     T = sheet.bind("T_jet", rho * A_j * v_j * (v_j - alpha * u), "eq. (3)", "N")
@@ -89,10 +89,10 @@ def waterjet() -> Model:
     Y = sheet.bind("Y_sum", Y_H + Y_P, "all forces, eq. (1)", "N")
     N = sheet.bind("N_sum", N_H + N_P, "all moments, eq. (1)", "N m")
     X_m = sheet.bind("X_m", (m + m_y) * v * r + X, "eq. (1), with the centripetal terms", "N")
-    Y_m = sheet.bind("Y_m", -(m + m_x) * u * r + Y, "eq. (1), with the centripetal terms, u r mended", "N")
+    Y_m = sheet.bind("Y_m", -(m + m_x) * u * r + Y, "eq. (1), with the centripetal terms, u r corrected", "N")
     N_m = sheet.bind("N_m", N, "eq. (1), no centripetal terms about G", "N m")
-    sheet.rate(u, X_m / (m + m_x), "eq. (1), parentheses mended")
+    sheet.rate(u, X_m / (m + m_x), "eq. (1), parentheses corrected")
     sheet.rate(v, Y_m / (m + m_y), "eq. (1)")
-    sheet.rate(r, N_m / (I_z + J_z), "eq. (1), parentheses mended")
+    sheet.rate(r, N_m / (I_z + J_z), "eq. (1), parentheses corrected")
     pose_rates(sheet, u, v, r, psi, x0, y0)
     return sheet.model()
