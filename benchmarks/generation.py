@@ -22,7 +22,7 @@ from seatrial.physics.models.mmg import mmg
 t = [time.perf_counter()]
 model = mmg(); t.append(time.perf_counter())
 generate.source_text(model.equations); t.append(time.perf_counter())
-model.compiled; t.append(time.perf_counter())
+model.compiled.load(); t.append(time.perf_counter())
 print(json.dumps({"write": t[1] - t[0], "generate": t[2] - t[1], "compile": t[3] - t[2]}))
 """
 

@@ -19,12 +19,14 @@ import population
 import roll_decay
 import simulation
 import tune
+import warm_start
 import waterjet_regressions
 from measure import Line, machine
 
 BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "simulation": simulation.run,
     "generation": generation.run,
+    "warm_start": warm_start.run,
     "against_shipmmg": against_shipmmg.run,
     "against_optimisers": against_optimisers.run,
     "montecarlo": montecarlo.run,

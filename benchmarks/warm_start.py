@@ -26,8 +26,8 @@ CHECK_LIMIT, IDENTIFY_LIMIT = 1.3, 3.3  # multiples of the floor, required
 REPEATS = 3
 # phase -> functions whose time it is, as module and name; what none of them holds is import or rest
 PHASES = {
-    "read": (("seatrial.data.read", "read_record"),),
-    "check": (("seatrial.data.check.examine", "examine"),),
+    "read": (("seatrial.data.read.record_file", "read_record"),),
+    "check": (("seatrial.data.check.examine", "examined_record"),),
     "identifiability": (
         ("seatrial.estimation.information.symmetries", "structural_symmetries"),
         ("seatrial.estimation.information.symmetries", "refuse_unidentifiable"),
@@ -79,8 +79,9 @@ class Stopwatch:
             with self.phase("import"):
                 module = plain(*arguments, **options)
             for (place, function), name in list(pending.items()):
-                if hasattr(sys.modules.get(place), function):
-                    setattr(sys.modules[place], function, self.timed(name, getattr(sys.modules[place], function)))
+                contents = vars(sys.modules[place]) if place in sys.modules else {}
+                if function in contents:
+                    contents[function] = self.timed(name, contents[function])
                     del pending[place, function]
             return module
 
@@ -150,8 +151,8 @@ def run(names: tuple[str, ...] = ("check", "identify", "simulate", "report")) ->
             phases = warm(commands(Path(folder))[name], environment)
             total = sum(phases.values())
             limit = {"check": CHECK_LIMIT, "identify": IDENTIFY_LIMIT}.get(name)
-            what = f"{name}, of the imports alone"
-            lines.append(at_most(what, total / least, "x", limit) if limit else Line(what, total / least, "x"))
+            quantity = f"{name}, of the imports alone"
+            lines.append(at_most(quantity, total / least, "x", limit) if limit else Line(quantity, total / least, "x"))
             lines += [Line(f"  {phase}", seconds, "s") for phase, seconds in phases.items() if seconds >= 0.005]
     return lines
 
@@ -162,4 +163,4 @@ if __name__ == "__main__":
     else:
         print(machine())
         for line in run(tuple(sys.argv[1:]) or tuple(commands(Path()))):
-            print(f"  {line.what:<40} {line.value:>8.3f} {line.unit:<3} {line.verdict}", flush=True)
+            print(f"  {line.quantity:<40} {line.value:>8.3f} {line.unit:<3} {line.verdict}", flush=True)
