@@ -20,8 +20,22 @@ EXAMPLES = {
     "fin_decay": "identify", "fin_stabiliser": "tune",
 }  # fmt: skip
 NOT_COMPARED = {"elapsed_s", "versions"}
-RENAMED: dict[str, str] = {}
-"""Key of the JSON today -> its name in the other revision."""
+RENAMED = {
+    "Ms": "peak", "baseline": "other", "baseline_costs": "others", "baselines": "rivals", "candidate_models": "family",
+    "conditions": "at", "constraints": "restriction", "converged_runs": "converged", "degrees_of_freedom": "freedom",
+    "distance": "room", "estimate_changes": "moves", "extended_fronts": "richer", "free_count": "free",
+    "gain_names": "names", "gyradius_source": "assumed", "is_chosen": "chosen", "is_identified": "told",
+    "is_significant": "is_told", "is_tied": "tied", "last_problem": "last", "most_changed": "most",
+    "noise_floor": "floor", "noise_model": "noise", "normalised_difference": "gap", "paired_differences": "paired",
+    "relative_error": "relative", "relative_spread": "spread", "rms_acceleration": "acceleration", "roll": "rolling",
+    "sampled_distance": "drawn_room", "sampled_drift": "drawn_drift", "sampled_relative_error": "drawn",
+    "saturation_loss": "lost", "sea_room": "room", "seaway_simulations": "sailed", "sickness_incidence": "sickness",
+    "significant_amplitude": "significant", "stage": "what", "tied_spread": "spread", "violated": "broken",
+    "worst_sampled_error": "worst_drawn", "zero_crossing_periods": "periods",
+}  # fmt: skip
+"""Key of the JSON today -> its name in version 0.1."""
+MOVED = {".extrapolation.index": ".extrapolation_index", ".extrapolation.ratios.": ".extrapolation."}
+"""Part of a place today -> the place in version 0.1."""
 
 
 def numbers(value: object, place: str = "") -> Iterator[tuple[str, object]]:
@@ -34,6 +48,8 @@ def numbers(value: object, place: str = "") -> Iterator[tuple[str, object]]:
         for index, inner in enumerate(value):
             yield from numbers(inner, f"{place}[{index}]")
     elif isinstance(value, int | float) or value is None:
+        for part, earlier in MOVED.items():
+            place = place.replace(part, earlier)
         yield place, value
 
 

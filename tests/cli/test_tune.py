@@ -15,9 +15,9 @@ from seatrial.cli.tuning_output import print_tuning
 from seatrial.control.loopfile.load import tuning_task
 from seatrial.core.results.tuning import Tuning
 from seatrial.core.values import InputError, Ship
+from seatrial.data.folder.gains_file import read_gains
 from seatrial.data.folder.model_file import ModelFile, write_model
 from seatrial.data.folder.result_folder import save_result
-from seatrial.data.folder.tuning_files import read_gains
 from seatrial.data.trial import load_trial
 from seatrial.physics.loops import margins
 from seatrial.physics.models import model_named

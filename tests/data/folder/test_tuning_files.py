@@ -14,7 +14,8 @@ from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_b
 
 from seatrial.core.results.tuning import Component, Tuning
 from seatrial.core.values import InputError
-from seatrial.data.folder.tuning_files import gains_toml, loop_mat, read_gains, schedule_csv
+from seatrial.data.folder.gains_file import gains_toml, read_gains, schedule_csv
+from seatrial.data.folder.loop_mat import loop_mat
 from seatrial.physics.loops import TransferLoop, margins
 from seatrial.physics.loops.fin import fin_loop
 

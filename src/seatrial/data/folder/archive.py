@@ -1,7 +1,7 @@
-"""Records and arrays to one .npz and back, to the last bit; what they mean stands in a table beside them."""
+"""Records and arrays to one .npz and back, to the last bit; what they mean stands in the document."""
 
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -10,30 +10,25 @@ from seatrial.core.values import Array, Channel, Provenance, Record, RecordKind,
 
 
 def npz_bytes(arrays: Mapping[str, Array]) -> bytes:
-    """A compressed .npz file."""
+    """Return a compressed .npz file."""
     buffer = io.BytesIO()
     np.savez_compressed(buffer, **dict(arrays))  # type: ignore[arg-type]
     return buffer.getvalue()
 
 
 def npz_arrays(content: bytes) -> dict[str, Array]:
-    """The inverse of `npz_bytes`; pickles are refused."""
+    """Return the inverse of `npz_bytes`; pickles are refused."""
     with np.load(io.BytesIO(content), allow_pickle=False) as file:
         return {name: frozen(file[name]) for name in file.files}
 
 
 def record_arrays(record: Record, prefix: str) -> dict[str, Array]:
-    """The record's numbers under `prefix/symbol`."""
+    """Return the record's numbers under `prefix/symbol`."""
     return {f"{prefix}/t": record.time} | {f"{prefix}/{s}": c.values for s, c in record.channels.items()}
 
 
 def record_from_arrays(table: Mapping[str, Any], arrays: Mapping[str, Array], prefix: str) -> Record:
-    """The inverse of `Record.metadata` and `record_arrays`."""
-    channels = {s: Channel(arrays[f"{prefix}/{s}"], **about) for s, about in table["channels"].items()}
+    """Return the record of its metadata and arrays, the inverse of `Record.metadata` and `record_arrays`."""
+    channels = {s: Channel(arrays[f"{prefix}/{s}"], **metadata) for s, metadata in table["channels"].items()}
     provenance = Provenance.from_metadata(table["provenance"])
     return Record(table["name"], arrays[f"{prefix}/t"], channels, RecordKind(table["kind"]), provenance)
-
-
-def distinct_records(records: Sequence[Record]) -> list[Record]:
-    """Each record object once, in order."""
-    return list({id(record): record for record in records}.values())

@@ -19,6 +19,8 @@ from seatrial.core.results.fields import ABSENT, STORED_KEY, NamedValues, Report
 from seatrial.core.values import Array, Finding, Record
 from seatrial.data.folder.archive import record_arrays, record_from_arrays
 
+FORMAT = 2
+"""Of every document; 1 described a fit twice and kept nothing of a design, a tuning or a study to render."""
 T = TypeVar("T")
 Table = dict[str, Any]
 NON_FINITE, STORED_RECORDS = "non_finite", "stored_records"
@@ -27,7 +29,7 @@ NON_FINITE, STORED_RECORDS = "non_finite", "stored_records"
 def document(result: object) -> Table:
     """Return what `--json` writes: every described field and derived value, without long arrays and records."""
     table = _adapter(type(result)).dump_python(result)
-    return _Writer(table, None).table()
+    return {"format": FORMAT, **_Writer(table, None).table()}
 
 
 def stored_document(result: object, repeated: frozenset[str] = frozenset()) -> tuple[Table, dict[str, Array]]:
@@ -44,7 +46,7 @@ def stored_document(result: object, repeated: frozenset[str] = frozenset()) -> t
         STORED_RECORDS: {name: record.metadata for record, name in writer.records.values()},
         NON_FINITE: writer.non_finite,
     }
-    return table | {key: value for key, value in kept.items() if value}, arrays
+    return {"format": FORMAT, **table, **{key: value for key, value in kept.items() if value}}, arrays
 
 
 def read_document(kind: type[T], table: Table, arrays: Mapping[str, Array]) -> T:
@@ -74,6 +76,7 @@ def document_schema(kind: type) -> Table:
         optional = {name for name, entry in properties.items() if entry.get("readOnly") or _is_stored(entry)}
         if "required" in table:
             table["required"] = [name for name in table["required"] if name not in optional]
+    schema["properties"] = _FRAME | schema["properties"]
     return schema
 
 
@@ -89,6 +92,24 @@ def strict_json(table: Mapping[str, Any]) -> str:
         ValueError: an infinite number or NaN is left in the table, which is an error of the program.
     """
     return json.dumps(table, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+_FRAME: Table = {
+    "format": {"const": FORMAT, "description": "of the document"},
+    "files": {
+        "type": "object", "additionalProperties": {"type": "string"},
+        "description": "SHA-256 of model.toml and arrays.npz, in a folder",
+    },
+    STORED_RECORDS: {
+        "type": "object", "additionalProperties": {"type": "object"},
+        "description": "meaning of the records in arrays.npz: name, kind, provenance, channels",
+    },
+    NON_FINITE: {
+        "type": "object", "additionalProperties": {"enum": ["nan", "inf", "-inf"]},
+        "description": "JSON Pointer of a null -> the number it stands for, in a folder",
+    },
+}  # fmt: skip
+"""Schema of the keys that stand around the fields of a result."""
 
 
 class _SchemaWriter(GenerateJsonSchema):

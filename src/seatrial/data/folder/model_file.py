@@ -56,7 +56,7 @@ class ModelFile:
 
     model: Model
     covariance: Array = field(default_factory=lambda: frozen(np.empty((0, 0))))
-    provenance: ModelProvenance = ModelProvenance()
+    provenance: ModelProvenance = field(default_factory=ModelProvenance)
     ship: Ship | None = None
     approach: Mapping[str, float] = field(default_factory=dict)
     interval_basis: IntervalBasis | None = None

@@ -17,16 +17,15 @@ from seatrial.core.results.tuning import Tuning
 from seatrial.core.values import Array, InputError
 from seatrial.core.values.files import write_files_atomically
 from seatrial.data.folder.archive import npz_arrays, npz_bytes
-from seatrial.data.folder.document import document, read_document, stored_document, strict_json
+from seatrial.data.folder.document import FORMAT, document, read_document, stored_document, strict_json
+from seatrial.data.folder.gains_file import gains_toml, schedule_csv
+from seatrial.data.folder.loop_mat import loop_mat
 from seatrial.data.folder.model_file import ModelFile, model_text, parse_model
 from seatrial.data.folder.model_tables import ModelProvenance, RecordSource
 from seatrial.data.folder.orders import orders_csv
-from seatrial.data.folder.tuning_files import gains_toml, loop_mat, schedule_csv
 from seatrial.data.read.record_csv import record_csv
 from seatrial.data.trial.approach import approach_condition
 
-FORMAT = 2
-"""Of the documents below; 1 described a fit twice and kept nothing of a design, a tuning or a study to render."""
 MODEL, ARRAYS = "model.toml", "arrays.npz"
 T = TypeVar("T")
 Result = Fit | Design | Tuning | Study
@@ -107,7 +106,7 @@ def folder_files(result: Result | Snapshot) -> dict[str, bytes]:
     if kind.model is not None:
         companions[MODEL] = model_text(kind.model(result)).encode()
     digests = {name: hashlib.sha256(content).hexdigest() for name, content in companions.items()}
-    text = strict_json({"format": FORMAT, "files": digests, **table})
+    text = strict_json(table | {"files": digests})
     return {**kind.products(result), **companions, kind.document: text.encode()}
 
 

@@ -1,0 +1,142 @@
+"""A tuned controller for its maker: gains, margins and schedule as TOML, the schedule as CSV."""
+
+import math
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from seatrial.core.results.tuning import Controller, OperatingPoint, Tuning
+from seatrial.core.values import InputError
+from seatrial.data.folder.orders import channel_display_unit
+
+FORMAT = 1
+
+
+def gains_toml(tuning: Tuning) -> str:
+    """Return ``gains.toml``: chosen gains, their task and constraints, their margins, the schedule if there is one.
+
+    Angles are in degrees where the key says so; what is infinite (no limit, any margin) is left out.
+    """
+    table: dict[str, Any] = {
+        "format": FORMAT,
+        "controller": {"name": tuning.name, "plant": tuning.plant, "output": tuning.output,
+                       "actuator": tuning.actuator, "seas": list(tuning.seas)},
+        "gains": _finite_numbers(tuning.chosen.gains),
+        "margins": _margin_table(tuning.chosen),
+        "constraints": _constraint_table(tuning),
+        "provenance": {"seed": tuning.seed, "versions": tuning.versions, "violated": list(tuning.chosen.violated)},
+    }  # fmt: skip
+    if tuning.schedule:
+        table["schedule"] = [_schedule_entry(point) for point in tuning.schedule]
+    return tomli_w.dumps(table)
+
+
+def read_gains(path: str | Path) -> dict[str, float]:
+    """Return the gains of a ``gains.toml``, name -> value to the last bit.
+
+    Raises:
+        InputError: the file cannot be read, is no TOML, or has no table [gains] of finite numbers.
+    """
+    try:
+        table = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"'{path}' cannot be read ({error.strerror}); give a gains.toml of 'seatrial tune'") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"'{path}' is no TOML ({error}); give a gains.toml of 'seatrial tune'") from None
+    gains = table.get("gains")
+    if not isinstance(gains, dict) or not gains:
+        raise InputError(f"'{path}' has no table [gains] with a line for each gain, such as KP = 11.053")
+    for name, value in gains.items():
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+            raise InputError(f"'{path}': gain {name} = {value!r} is no finite number; write one")
+    return {name: float(value) for name, value in gains.items()}
+
+
+def schedule_csv(tuning: Tuning) -> str:
+    """Return the schedule as CSV, a line for each condition; empty without one."""
+    if not tuning.schedule:
+        return ""
+    first = tuning.schedule[0]
+    heads = [
+        "U [m/s]",
+        "heading [deg]",
+        "height [m]",
+        *first.gains,
+        "cost",
+        *(f"cost {name}" for name in first.baseline_costs),
+        "Ms",
+        "saturation",
+        "feasible",
+    ]
+    rows = [
+        [
+            _number_text(x)
+            for x in (
+                s.U,
+                math.degrees(s.beta),
+                s.height,
+                *s.gains.values(),
+                s.cost,
+                *s.baseline_costs.values(),
+                s.Ms,
+                s.saturation,
+            )
+        ]
+        + ["yes" if s.is_feasible else "no"]
+        for s in tuning.schedule
+    ]
+    return "\n".join(",".join(cells) for cells in [[_csv_cell(h) for h in heads], *rows]) + "\n"
+
+
+def _finite_numbers(values: dict[str, float]) -> dict[str, float]:
+    """Return the finite ones as Python floats."""
+    return {name: float(value) for name, value in values.items() if math.isfinite(value)}
+
+
+def _margin_table(c: Controller) -> dict[str, float]:
+    return _finite_numbers({
+        "Ms": c.Ms,
+        "gain_margin": c.gain_margin,
+        "phase_margin_deg": math.degrees(c.phase_margin),
+        "delay_margin_s": c.delay_margin,
+        "damping_ratio": c.damping,
+        "reduction": c.reduction,
+        "saturation": c.saturation,
+        "rate_saturation": c.rate_saturation,
+    })  # fmt: skip
+
+
+def _constraint_table(tuning: Tuning) -> dict[str, float]:
+    """Return the constraints, keys of angles ending in their unit."""
+    r, (factor, unit) = tuning.constraints, channel_display_unit(tuning.actuator)
+    ending = "" if unit == "1" else f"_{unit}".replace("/", "_per_")
+    return _finite_numbers({
+        "Ms": r.Ms,
+        "saturation": r.saturation,
+        "rate_saturation": r.rate_saturation,
+        f"limit{ending}": r.limit * factor,
+        f"rate{ending}_per_s": r.rate * factor,
+        f"stall{ending}": r.stall * factor,
+    })  # fmt: skip
+
+
+def _schedule_entry(point: OperatingPoint) -> dict[str, Any]:
+    return {
+        "U": float(point.U),
+        "heading_deg": math.degrees(point.beta),
+        "height": float(point.height),
+        "gains": _finite_numbers(point.gains),
+        **_finite_numbers({"cost": point.cost, "Ms": point.Ms, "saturation": point.saturation}),
+        "feasible": bool(point.is_feasible),
+    }
+
+
+def _number_text(value: float) -> str:
+    return f"{value:.8g}" if math.isfinite(value) else ""
+
+
+def _csv_cell(text: str) -> str:
+    return '"' + text.replace('"', '""') + '"' if re.search(r'[",\n]', text) else text
