@@ -45,7 +45,7 @@ def test_once_writes_what_identify_writes(tmp_path: Path, run_command: Callable[
     assert run_command("follow", trial, "--once", "--json", tmp_path / "followed.json", "--out", tmp_path / "out") == 0
     said = capsys.readouterr().out
     assert "trial.toml: file voyage_1.csv" in said
-    assert "1501 samples accepted; nothing amiss" in said
+    assert "1501 samples accepted; no faults" in said
     assert "95 % from" in said
     assert (
         run_command("identify", as_records(trial), "--json", tmp_path / "identified.json", "--out", tmp_path / "other")
@@ -79,7 +79,7 @@ def test_what_was_amiss_is_counted_and_said(tmp_path: Path, run_command: Callabl
         ([('file = "voyage_1.csv"', 'file = "voyage_9.csv"')], [], "voyage_9.csv does not exist"),
         ([], ["--source", "udp"], "source 'udp' needs a port; add port to [follow]"),
         ([], ["--source", "nmea-udp"], "has other columns"),
-        ([], ["--page", "99999"], "port 99999 of the page is none"),
+        ([], ["--page", "99999"], "there is no port 99999 for the page"),
         ([], ["--journal", "."], "journal '.' cannot be written"),
         ([], ["--journal", str(EXAMPLES / "waterjet.toml")], "is not a journal of 'seatrial follow'"),
     ],
@@ -127,7 +127,7 @@ def test_ctrl_c_ends_it_with_what_is_known_and_the_journal_goes_on(tmp_path: Pat
         said, wrong = child.communicate()
         last_resort.cancel()
     assert child.returncode == 0, wrong
-    assert "1200 samples accepted; nothing amiss" in said
+    assert "1200 samples accepted; no faults" in said
     last = json.loads(told.read_text())
     assert (last["counts"]["accepted"], last["phase"], len(last["coefficients"])) == (1200, "window", 8)
     assert 0 < last["samples"] <= 1200

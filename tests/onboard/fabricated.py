@@ -35,7 +35,7 @@ def mmg(seconds: float, *, step: float = 0.5, seed: int = 4) -> Iterator[Snapsho
 
 def faulty_counts() -> SampleCounts:
     """Counts of a stream that is not quite what it should be."""
-    last = "line 611: 'abc' is no number in column 'theta'"
+    last = "line 611: 'abc' is not a number in column 'theta'"
     return SampleCounts(accepted=6104, late=3, repeated=1, missing=12, garbled=2, checksum=4, last_problem=last)
 
 

@@ -53,11 +53,11 @@ def opened(browser: "Browser", page: Page) -> "Iterator[tuple[Window, list[str]]
 
 def test_opens_with_nothing_moves_with_what_comes_and_says_when_it_ends(browser: "Browser", page: Page) -> None:
     with opened(browser, page) as (window, said):
-        window.get_by_text("nothing has come yet").wait_for()
+        window.get_by_text("no samples yet").wait_for()
         assert not window.locator("#body").is_visible()
         snapshots = list(heave_pitch(120.0))
         page.show(snapshots[0], SampleCounts())
-        window.get_by_text("waiting: too little has been seen yet").wait_for()
+        window.get_by_text("waiting: too few samples for an estimate yet").wait_for()
         for snapshot in snapshots[1:100]:
             page.show(snapshot, faulty_counts())
         window.locator("#facts").get_by_text("49.5 s").wait_for()
@@ -70,7 +70,7 @@ def test_opens_with_nothing_moves_with_what_comes_and_says_when_it_ends(browser:
         assert window.locator("#values path.course").first.get_attribute("d") != first
         assert window.locator("#status").inner_text() == "following"
         page.end("end of trial.csv")
-        window.get_by_text("the stream is over: end of trial.csv").wait_for()
+        window.get_by_text("the stream has ended: end of trial.csv").wait_for()
         assert said == []
 
 
@@ -125,7 +125,7 @@ def test_who_looks_as_the_stream_ends_sees_its_end(browser: "Browser") -> None:
         page.show(snapshots[-1], SampleCounts())
         page.end()
     window.wait_for_timeout(700)
-    assert window.locator("#status").inner_text() == "the stream is over"
+    assert window.locator("#status").inner_text() == "the stream has ended"
     assert window.locator("#facts").get_by_text("30.0 s").is_visible()
     window.close()
 
@@ -134,5 +134,5 @@ def test_silence_is_said(browser: "Browser", page: Page) -> None:
     page.show(list(heave_pitch(30.0))[-1], SampleCounts())
     page._updated_at -= 17.0
     with opened(browser, page) as (window, said):
-        window.get_by_text(re.compile(r"no news for (17|18|19|2\d) s")).wait_for()
+        window.get_by_text(re.compile(r"no samples for (17|18|19|2\d) s")).wait_for()
         assert said == []

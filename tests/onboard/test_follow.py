@@ -167,7 +167,7 @@ def test_kill_9_and_a_restart_are_as_one_voyage(tmp_path: Path) -> None:
     assert notes.runs == uninterrupted.runs
     assert np.array_equal(notes.values, uninterrupted.values, equal_nan=True)
     assert outcome.counts == whole.counts
-    assert outcome.messages == ("the last 15 bytes of 'a.journal' were torn by a break and are cut off",)
+    assert outcome.messages == ("the last 15 bytes of 'a.journal' were incomplete after a break and were cut off",)
     again = RecordingEstimator()
     follow(stream_trial(file), once=True, journal=journal, estimator=again)
     assert again.runs == uninterrupted.runs

@@ -53,7 +53,7 @@ def test_the_table_tells_values_intervals_trends_noise_and_trouble() -> None:
     assert "deg" in words and "rad" not in words
     assert any(bar in text for bar in "▁▂▃▅▆▇█") and ("→" in words or "↘" in words)
     assert "12 missing" in text and "4 wrong checksum" in text and "0 dropped" not in text
-    assert "psi 0.19" in text and "coloured" in text and "Since 220.0 s" in text
+    assert "psi 0.19" in text and "coloured" in text and "since 220.0 s" in text
 
 
 def mmg_names() -> tuple[str, ...]:
@@ -78,8 +78,8 @@ def test_a_heading_wraps_so_that_the_address_can_be_read() -> None:
 
 def test_silence_is_said() -> None:
     snapshots = list(heave_pitch(10.0))
-    assert "no news for 7.00 s" in drawn(snapshots=snapshots, silence=7.0)
-    assert "no news" not in drawn(snapshots=snapshots, silence=1.0)
+    assert "no samples for 7.00 s" in drawn(snapshots=snapshots, silence=7.0)
+    assert "no samples for" not in drawn(snapshots=snapshots, silence=1.0)
 
 
 def test_a_small_terminal_gets_what_fits() -> None:

@@ -80,7 +80,7 @@ def test_fields_in_si(body: str, expected: dict[str, float]) -> None:
 def test_a_field_that_is_not_what_it_should_be_raises(body: str) -> None:
     found = parse_sentence(sentence(body))
     assert isinstance(found, Sentence)
-    with pytest.raises(ValueError, match=r"no (number|time|latitude)"):
+    with pytest.raises(ValueError, match=r"not a (number|time|latitude)"):
         utc_time(found)
         readings(found)
 

@@ -160,7 +160,7 @@ def test_a_port_in_use_or_none_at_all_is_said_in_one_sentence(page: Page) -> Non
     with pytest.raises(InputError, match=rf"^port {page.port} of the page is in use .*; give another"), Page(page.port):
         pass
     for port in (-1, 70000):
-        with pytest.raises(InputError, match=f"port {port} of the page is none"), Page(port):
+        with pytest.raises(InputError, match=f"there is no port {port} for the page"), Page(port):
             pass
 
 

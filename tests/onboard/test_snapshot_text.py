@@ -19,7 +19,10 @@ def one(value: float, error: float, unit: str = "1") -> Snapshot:
 def test_text_of_value_and_interval_is_right_within_its_own_digits(value: float, error: float) -> None:
     row = estimate_rows(one(value, error))[0]
     scale = 10.0**row.power
-    texts = {k: float(getattr(row, k).replace("−", "-")) * scale for k in ("value", "half_width", "lower", "upper")}
+    texts = {
+        k: float(getattr(row, k).replace("−", "-").replace("\u202f", "")) * scale
+        for k in ("value", "half_width", "lower", "upper")
+    }
     last = scale * 10.0 ** -len(row.half_width.partition(".")[2]) if "." in row.half_width else scale
     allowed = max(last, 0.051 * 1.96 * error, 1e-6 * abs(value))
     assert abs(texts["value"] - value) <= allowed
@@ -49,7 +52,7 @@ def test_a_change_is_told_only_when_it_is_one() -> None:
         since=300.0, statistic=31.2, degrees_of_freedom=8, p=1.3e-4, is_significant=True, most_changed="b33"
     )
     assert (
-        "Since 300.0 s" in change_sentence(told)
+        "since 300.0 s" in change_sentence(told)
         and "b33" in change_sentence(told)
         and "p 0.00013" in change_sentence(told)
     )

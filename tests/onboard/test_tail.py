@@ -115,6 +115,10 @@ def test_a_long_wait_ends_with_the_first_line(tmp_path: Path) -> None:
 def test_what_cannot_be_followed_is_refused(tmp_path: Path) -> None:
     packed = tmp_path / "run.csv.gz"
     packed.write_bytes(b"")
-    for path, text in ((packed, "is packed"), (tmp_path / "no.csv", "does not exist"), (tmp_path, "no regular file")):
+    for path, text in (
+        (packed, "is compressed"),
+        (tmp_path / "no.csv", "does not exist"),
+        (tmp_path, "not a regular file"),
+    ):
         with pytest.raises(InputError, match=text):
             TailLines(path)

@@ -1,4 +1,4 @@
-"""What follow shows while it runs and says at its end; how it is stopped."""
+"""What follow shows while it runs and prints at its end, and how it is stopped."""
 
 import signal
 import sys
@@ -19,17 +19,17 @@ if TYPE_CHECKING:
 
 @contextmanager
 def stop_on_signal() -> Iterator[Callable[[], bool]]:
-    """Whether somebody asked for the end (Ctrl-C, or a polite kill); asked twice, it is cut short."""
-    asked: list[int] = []
+    """Yield a function that returns whether a signal to stop has arrived; a second signal interrupts at once."""
+    received: list[int] = []
 
     def note(number: int, _: FrameType | None) -> None:
-        if asked:
+        if received:
             raise KeyboardInterrupt
-        asked.append(number)
+        received.append(number)
 
     before = {number: signal.signal(number, note) for number in stop_signals()}
     try:
-        yield lambda: bool(asked)
+        yield lambda: bool(received)
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
@@ -37,7 +37,7 @@ def stop_on_signal() -> Iterator[Callable[[], bool]]:
 
 @contextmanager
 def live_display(heading: str, port: int | None) -> "Iterator[Callable[[Snapshot, SampleCounts], None]]":
-    """A live table or lines, and a page at that port where one is wanted (0: any that is free)."""
+    """Yield a function that shows a snapshot as table or lines, and on a page at `port` (None: none, 0: any free)."""
     from seatrial.onboard.live import LiveDisplay
 
     with ExitStack() as held:
@@ -60,7 +60,7 @@ def live_display(heading: str, port: int | None) -> "Iterator[Callable[[Snapshot
 
 
 def stream_heading(trial: "Trial") -> str:
-    """What is followed, in a line."""
+    """Return what is followed, in a line."""
     from seatrial.data.trial.follow_table import require_stream
 
     stream = require_stream(trial)
@@ -71,15 +71,15 @@ def stream_heading(trial: "Trial") -> str:
 
 
 def print_outcome(outcome: "FollowResult") -> None:
-    """What happened to the samples, then what is to be said besides; trouble on standard error."""
+    """Print the counts of samples, the latest fault and the findings; messages go to standard error."""
     from seatrial.core.text.words import printable
     from seatrial.onboard.snapshot_text import fault_counts
 
     counts = outcome.counts
     wrong = [f"{count} {words}" for words, count in fault_counts(counts) if count]
-    print(f"{counts.accepted} samples accepted" + (f"; {', '.join(wrong)}" if wrong else "; nothing amiss"))
+    print(f"{counts.accepted} samples accepted" + (f"; {', '.join(wrong)}" if wrong else "; no faults"))
     if counts.last_problem:
-        print(f"the latest: {printable(counts.last_problem)}")
+        print(f"latest fault: {printable(counts.last_problem)}")
     if outcome.snapshot is not None and outcome.snapshot.phase.value == "waiting" and outcome.snapshot.advice:
         print(f"no estimate yet: {printable(outcome.snapshot.advice)}")
     for finding in () if outcome.snapshot is None else outcome.snapshot.findings:
@@ -89,7 +89,7 @@ def print_outcome(outcome: "FollowResult") -> None:
 
 
 def journal_path(path: Path | None, trial: "Trial", out: Path | None, *, once: bool) -> Path | None:
-    """Where the journal goes: as given, as [follow] says, or in the result folder where no end is in sight."""
+    """Return the file of the journal: as given, as in [follow], or in the result folder if the stream has no end."""
     from seatrial.data.trial.follow_table import require_stream
 
     named = path or require_stream(trial).journal

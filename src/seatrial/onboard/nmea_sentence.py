@@ -1,4 +1,4 @@
-"""One NMEA 0183 sentence: its checksum, its fields, and what of them a ship model can use.
+"""One NMEA 0183 sentence: its checksum, its fields, and those that a ship model can use.
 
 Fields and signs as collected by E. S. Raymond, "NMEA Revealed" (gpsd project), from published manuals; the standard
 itself (IEC 61162-1) is sold. Negative is to port for ROT, RSA and transverse VBW, astern for longitudinal VBW, and
@@ -17,11 +17,12 @@ _ADDRESS = re.compile(r"P[A-Z0-9]{2,}|[A-Z0-9]{5}")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)")
 _TIME = re.compile(r"(\d\d)(\d\d)(\d\d(?:\.\d*)?)")
 _ANGLE = re.compile(r"(\d{1,3})(\d\d(?:\.\d*)?)")
+# m/s: a nautical mile an hour
 _KNOT = 1852.0 / 3600.0
 
 
 class SentenceFault(StrEnum):
-    """Why a line is no sentence."""
+    """Why a line is not a sentence."""
 
     GARBLED = "garbled"
     CHECKSUM = "checksum"
@@ -35,11 +36,11 @@ class Sentence:
     fields: tuple[str, ...]
 
     def text(self, index: int) -> str:
-        """Field `number`, counted from 1; empty where the sentence is shorter."""
+        """Return field `index`, counted from 1; empty where the sentence is shorter."""
         return self.fields[index - 1].strip() if index <= len(self.fields) else ""
 
     def number(self, index: int) -> float:
-        """Field `number` as a number; NaN where it is empty.
+        """Return field `index` as a number; NaN where it is empty.
 
         Raises:
             ValueError: it is something else.
@@ -48,12 +49,12 @@ class Sentence:
         if not text:
             return math.nan
         if not _NUMBER.fullmatch(text):
-            raise ValueError(f"{self.kind}: field {index} is no number")
+            raise ValueError(f"{self.kind}: field {index} is not a number")
         return float(text)
 
 
 def parse_sentence(line: bytes) -> Sentence | SentenceFault:
-    """The sentence in a line, what stands before its last ``$`` (or ``!``) left out; a checksum is demanded."""
+    """Return the sentence in a line, from its last ``$`` or ``!`` on; a checksum is required."""
     start = max(line.rfind(b"$"), line.rfind(b"!"))
     body, star, given = line[start + 1 :].strip().partition(b"*")
     if start < 0 or not star or not body.isascii():
@@ -67,34 +68,34 @@ def parse_sentence(line: bytes) -> Sentence | SentenceFault:
 
 
 def checksum(body: bytes) -> int:
-    """Exclusive or of the bytes between ``$`` and ``*``."""
+    """Return the exclusive or of the bytes between ``$`` and ``*``."""
     return reduce(xor, body, 0)
 
 
 def utc_time(sentence: Sentence) -> float:
-    """UTC of the sentence in s since midnight; NaN where it has none.
+    """Return the UTC of the sentence in s since midnight; NaN where it has none.
 
     Raises:
-        ValueError: the field is no time.
+        ValueError: the field is not a time.
     """
     field = _TIME_FIELDS.get(sentence.kind)
     text = sentence.text(field) if field else ""
     if not text:
         return math.nan
-    found = _TIME.fullmatch(text)
-    if not found:
-        raise ValueError(f"{sentence.kind}: '{text}' is no time")
-    hours, minutes, seconds = int(found[1]), int(found[2]), float(found[3])
+    match = _TIME.fullmatch(text)
+    if not match:
+        raise ValueError(f"{sentence.kind}: '{text}' is not a time")
+    hours, minutes, seconds = int(match[1]), int(match[2]), float(match[3])
     if hours > 23 or minutes > 59 or seconds >= 61.0:
-        raise ValueError(f"{sentence.kind}: '{text}' is no time")
+        raise ValueError(f"{sentence.kind}: '{text}' is not a time")
     return 3600.0 * hours + 60.0 * minutes + seconds
 
 
 def readings(sentence: Sentence) -> dict[str, float]:
-    """Place -> value in SI (angles rad, latitude and longitude rad, north and east positive); NaN where there is none.
+    """Return field -> value in SI (angles, latitude and longitude in rad, north and east positive); NaN where empty.
 
     Raises:
-        ValueError: a field is not what it should be.
+        ValueError: a field is not a number, a time or an angle as it should be.
     """
     reader = _READERS.get(sentence.kind)
     return reader(sentence) if reader else {}
@@ -154,10 +155,10 @@ def _angle(text: str, side: str, sides: str, limit: float) -> float:
     """Degrees and minutes (dddmm.mm) with their hemisphere, in rad."""
     if not text:
         return math.nan
-    found = _ANGLE.fullmatch(text)
-    degrees = int(found[1]) + float(found[2]) / 60.0 if found else math.inf
+    match = _ANGLE.fullmatch(text)
+    degrees = int(match[1]) + float(match[2]) / 60.0 if match else math.inf
     if degrees > limit or side not in tuple(sides):
-        raise ValueError(f"'{text},{side}' is no latitude or longitude")
+        raise ValueError(f"'{text},{side}' is not a latitude or longitude")
     return math.radians(degrees if side == sides[0] else -degrees)
 
 
@@ -182,14 +183,14 @@ def _revolutions(s: Sentence) -> dict[str, float]:
 
 def _transducers(s: Sentence) -> dict[str, float]:
     """XDR: groups of type, value, unit, name; angles in degrees, displacements in metres, others left out."""
-    found = {}
+    values = {}
     for first in range(1, len(s.fields) - 2, 4):
         kind, unit, name = s.text(first), s.text(first + 2), s.text(first + 3).upper()
         if kind == "A" and unit in ("D", ""):
-            found[f"XDR {name}"] = math.radians(s.number(first + 1))
+            values[f"XDR {name}"] = math.radians(s.number(first + 1))
         elif kind == "D" and unit in ("M", ""):
-            found[f"XDR {name}"] = s.number(first + 1)
-    return found
+            values[f"XDR {name}"] = s.number(first + 1)
+    return values
 
 
 def _if_valid(value: float, status: str) -> float:

@@ -11,16 +11,18 @@ from seatrial.onboard import page_state
 from seatrial.onboard.history import History
 from seatrial.onboard.server import LOOPBACK, Server, bind_server
 
+# s between looks for a request to stop
 POLL_INTERVAL_S = 0.1
+# s since the last request within which a page counts as watched; s to wait for its last request (two a second)
 WATCHED_S, LAST_REQUEST_WAIT_S = 3.0, 1.5
 
 
 class Page:
-    """Shows the snapshots it is given to whoever opens `address` on this machine.
+    """Shows the snapshots it is given in a browser that opens `address` on this machine.
 
     with Page(8000, title="trial.toml") as page: print(page.address); page.show(snapshot, counts)
 
-    port: 0 takes a free one; title: what is followed. Threads answer the browser; the estimate never waits for them.
+    port: 0 takes a free one; title: what is followed. Threads answer the browser; the estimation never waits for them.
     """
 
     def __init__(self, port: int = 0, *, title: str = "") -> None:
@@ -37,10 +39,10 @@ class Page:
         self._server: Server | None = None
 
     def __enter__(self) -> Self:
-        """Begin to listen.
+        """Start to listen.
 
         Raises:
-            InputError: the port is in use, not allowed, or no port at all.
+            InputError: the port is in use, not allowed, or outside 0 to 65535.
         """
         self._server = bind_server(self.port, self.state)
         self.port = self._server.server_port
@@ -56,11 +58,11 @@ class Page:
 
     @property
     def address(self) -> str:
-        """What to open in a browser."""
+        """The address to open in a browser."""
         return f"http://{LOOPBACK}:{self.port}/"
 
     def show(self, snapshot: Snapshot, counts: SampleCounts) -> None:
-        """This is the newest; the same snapshot and counts again are no news."""
+        """Show a snapshot; the same one with the same counts again changes nothing."""
         with self._lock:
             last = self._latest
             if last is None or last[0] is not snapshot:
@@ -70,15 +72,15 @@ class Page:
             self._latest = snapshot, counts
 
     def end(self, reason: str = "") -> None:
-        """Nothing more will come; the page says so and keeps what it shows."""
+        """Mark the stream as ended; the page says so and keeps its numbers."""
         with self._lock:
             self._end_reason, self._ended_at = reason, time.monotonic()
 
     def state(self, since: int) -> dict[str, Any]:
-        """What a browser that has the points up to number `since` needs; everything for -1."""
+        """Return what a browser that has the points up to number `since` needs; everything for -1."""
         with self._lock:
-            newest, over = self._latest, self._end_reason
-            some, stride = self._history.since(since), self._history.stride
+            newest, end_reason = self._latest, self._end_reason
+            points, stride = self._history.since(since), self._history.stride
             epoch = f"{self._instance_id}-{self._history.generation}"
             self._requested_at = time.monotonic()
             age = self._requested_at - self._updated_at
@@ -87,14 +89,14 @@ class Page:
             "epoch": epoch,
             "stride": stride,
             "age": round(age, 1),
-            "is_over": over is not None,
-            "reason": over or "",
+            "is_over": end_reason is not None,
+            "reason": end_reason or "",
             "snapshot": None if newest is None else page_state.snapshot_json(*newest),
-            "points": [] if newest is None else page_state.plot_points(some, newest[0]),
+            "points": [] if newest is None else page_state.plot_points(points, newest[0]),
         }
 
     def _wait_for_last_request(self) -> None:
-        """Whoever looks at the page as the stream ends gets its end before the page goes."""
+        """Wait until a page that is watched has fetched the end of the stream."""
         is_watched = self._ended_at - self._requested_at < WATCHED_S
         while (
             is_watched

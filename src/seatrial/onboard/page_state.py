@@ -1,4 +1,4 @@
-"""What the page asks for: the newest snapshot as text, and the points its plots do not have yet."""
+"""What the page requests: the newest snapshot as text, and the points its plots do not have yet."""
 
 import math
 from typing import Any
@@ -14,11 +14,12 @@ from seatrial.onboard import snapshot_text
 from seatrial.onboard.history import HistoryPoint
 
 _SEVERITIES = list(Severity)[::-1]
+# significant digits of plotted points
 JSON_DIGITS = 8
 
 
 def snapshot_json(snapshot: Snapshot, counts: SampleCounts) -> dict[str, Any]:
-    """The words of the newest snapshot: facts, rows of tables, findings; all of it text."""
+    """Return the newest snapshot as text: facts, table rows, findings."""
     worst_first = sorted(snapshot.findings, key=lambda f: _SEVERITIES.index(f.severity))
     return {
         "phase": snapshot.phase.value,
@@ -46,7 +47,7 @@ def snapshot_json(snapshot: Snapshot, counts: SampleCounts) -> dict[str, Any]:
 
 
 def plot_points(points: list[HistoryPoint], snapshot: Snapshot) -> list[list[Any]]:
-    """For each point: sequence, elapsed [s], values, half intervals, noise, in the units people read; null is unknown.
+    """Return for each point: sequence, elapsed [s], values, half intervals, noise, in display units; null: unknown.
 
     Values and half intervals as `snapshot.names`, noise as `snapshot.noise`.
     """
@@ -80,5 +81,5 @@ def _json_numbers(values: Array) -> list[float | None]:
 
 
 def _json_number(value: float) -> float | None:
-    """As JSON has it: no infinities, no more digits than a plot shows."""
+    """A number for JSON: no infinities, no more digits than a plot shows."""
     return float(f"{value:.{JSON_DIGITS}g}") if math.isfinite(value) else None

@@ -1,4 +1,4 @@
-"""Whether a stream has what its model needs, before anything is started."""
+"""Whether a stream has the channels its model needs, checked before anything is started."""
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
 from seatrial.physics.simulate.states import hidden_states, unobserved_states
 
 _WAVE_FORCES = ("F3", "M5")
+# samples of the record that stands for the stream: enough for every check of a record
 _REST_SAMPLES = 32
 
 
@@ -18,8 +19,8 @@ def check_required_channels(trial: Trial) -> None:
     """Refuse a trial whose [follow] lacks channels that the model needs, all of them named.
 
     Raises:
-        InputError: a file that is one of the trial's records already; which inputs and states are neither there nor
-            implied; no channel that the model can be compared with; conventions that cannot be turned into the house's.
+        InputError: the file is one of the trial's records already; inputs and states that are neither recorded nor
+            implied; no channel that the model can be compared with; conventions that cannot be converted.
     """
     stream, model = require_stream(trial), trial.model
     where = f"{trial.path}: " if trial.path else ""
@@ -30,9 +31,9 @@ def check_required_channels(trial: Trial) -> None:
         inputs += [] if "zeta" in record or set(_WAVE_FORCES) <= set(record.channels) else ["zeta (or F3 and M5)"]
     hidden = hidden_states(model, [record])
     states = [s for s in unobserved_states(model, record) if s not in hidden]
-    if lacking := [*inputs, *states]:
+    if missing := [*inputs, *states]:
         raise InputError(
-            f"{where}[follow] lacks channels that model '{model.name}' needs: {', '.join(lacking)}; add them to "
+            f"{where}[follow] lacks channels that model '{model.name}' needs: {', '.join(missing)}; add them to "
             "[follow.channels]"
         )
     if not any(name in record for name in model.observables):
@@ -54,7 +55,7 @@ def _check_not_a_record(trial: Trial, prefix: str) -> None:
 
 
 def _rest_record(trial: Trial) -> Record:
-    """A record of the stream's channels, at rest, in the house's conventions."""
+    """A record of the stream's channels, all zero, in canonical conventions."""
     stream = require_stream(trial)
     time = np.arange(_REST_SAMPLES) / stream.rate
     rest = record_from_values("stream", stream.layout, time, np.zeros((_REST_SAMPLES, len(stream.layout.columns))))

@@ -1,4 +1,4 @@
-"""Samples as a record as it was read, conventions as declared: what a file of the same lines would have given."""
+"""Samples as raw records, as a file of the same lines would have given them."""
 
 from array import array
 from dataclasses import replace
@@ -13,28 +13,29 @@ from seatrial.data.trial.follow_table import require_stream
 from seatrial.data.trial.trial import TrialRun
 from seatrial.onboard.sample import Sample
 
+# a record needs a time step
 _MIN_SAMPLES = 2
 
 
 class RunBuffer:
-    """Every sample that was accepted, run by run: eight bytes a number."""
+    """Keeps every sample accepted, run by run, at eight bytes a number."""
 
     def __init__(self, layout: Layout) -> None:
         self._layout = layout
         self._runs: list[tuple[str, array[float]]] = []
 
     def start_run(self, name: str) -> None:
-        """A run begins."""
+        """Begin a run."""
         self._runs.append((name, array("d")))
 
     def add(self, sample: Sample) -> None:
-        """One more sample of the run that was begun last."""
+        """Append a sample to the run begun last."""
         rows = self._runs[-1][1]
         rows.append(sample.time)
         rows.frombytes(sample.values.tobytes())
 
     def records(self) -> tuple[Record, ...]:
-        """Runs of two samples and more, in order."""
+        """Return the runs of two samples and more as records, in order."""
         width = 1 + len(self._layout.columns)
         tables = [(name, np.frombuffer(rows, dtype=np.float64).reshape(-1, width)) for name, rows in self._runs]
         return tuple(
@@ -45,7 +46,7 @@ class RunBuffer:
 
 
 def with_training_records(trial: Trial, records: tuple[Record, ...]) -> Trial:
-    """The trial with those records to train on, behind its training runs and before all others."""
+    """Return the trial with these records as training runs, behind its own and before all other runs."""
     waves = require_stream(trial).waves
     came = tuple(TrialRun(record, waves=waves) for record in records)
     others = tuple(run for run in trial.runs if run.role is not Role.TRAIN)

@@ -8,22 +8,22 @@ __all__ = ["Sample", "SampleSource"]
 
 
 class SampleSource(Protocol):
-    """Where samples come from. Never waits longer than asked, never raises for what somebody sends."""
+    """Where samples come from; never waits longer than the time given, never raises for what is sent."""
 
     def poll(self, seconds: float) -> list[Sample]:
-        """Samples that have come, waiting at most so long for the first; empty if none has."""
+        """Return the samples that have arrived, waiting up to `seconds` s for the first."""
         ...
 
     @property
     def is_over(self) -> bool:
-        """Whether nothing more will come (end of file, end of standard input)."""
+        """Whether the input has ended (end of file, end of standard input)."""
         ...
 
     @property
     def counts(self) -> SampleCounts:
-        """What could not be read so far: garbled, checksum, dropped, truncated."""
+        """Counts of what could not be read so far: garbled, checksum, dropped, truncated."""
         ...
 
     def close(self) -> None:
-        """Give back the file or the socket."""
+        """Close the file or the socket."""
         ...

@@ -1,4 +1,4 @@
-"""What of a stream is used: samples in order of time, each once; breaks of the clock begin a new run."""
+"""Which samples of a stream are used: in order of time, each once; a break of the clock begins a new run."""
 
 import math
 from dataclasses import dataclass, replace
@@ -9,13 +9,15 @@ import numpy as np
 from seatrial.core.results.online import SampleCounts
 from seatrial.onboard.sample import Sample
 
+# steps whose median is the nominal step where none is given
 _FIRST_STEPS = 20
+# share of a step within which two times are the same
 _SAME_TIME = 1e-3
 
 
 @dataclass(frozen=True)
 class RunStart:
-    """A new run begins with the sample that follows; time [s] is its own."""
+    """A new run begins with the next sample, whose time [s] this is."""
 
     time: float
     reason: str
@@ -25,13 +27,13 @@ StreamEvent = Sample | RunStart
 
 
 class SampleOrder:
-    """Puts a stream in order; its memory does not grow.
+    """Puts a stream in order, in constant memory.
 
-    A sample not later than the newest by up to `late_s` is late, one at its very time repeated; both are dropped. One
-    further back, or more than `longest_gap_s` ahead, is kept in doubt until the next: if that goes on from it, the
-    clock has jumped and a new run begins with it; if that goes on from before, the stamp was wrong and the sample is
-    dropped, as late or, if ahead, as garbled. Steps for which nothing came are counted from `dt`, or from the median
-    of the first twenty steps. Values that are not finite become NaN.
+    A sample up to `late_s` older than the newest is late, one of the same time repeated; both are dropped. One older
+    still, or more than `longest_gap_s` ahead, is suspect until the next arrives: if that continues from it, the clock
+    has jumped and a new run begins with it; if that continues from before, the time stamp was wrong and the sample is
+    dropped, as late or, if ahead, as garbled. Missing steps are counted from `dt`, or from the median of the first
+    twenty steps. Values that are not finite become NaN.
 
     Args:
         dt: s, nominal step; None: from the stream.
@@ -49,54 +51,46 @@ class SampleOrder:
 
     @property
     def dt(self) -> float | None:
-        """Nominal step [s]; None until twenty steps have been seen."""
+        """Nominal step [s]; None before it is known."""
         return self._dt
 
     @property
     def counts(self) -> SampleCounts:
-        """What happened to the samples; one in doubt is not yet counted."""
+        """Counts of the samples; a suspect one is not yet counted."""
         return replace(self._fault_counts, accepted=self._accepted, not_finite=self._not_finite, missing=self._missing)
 
     def admit(self, sample: Sample) -> list[StreamEvent]:
-        """What comes of a sample: nothing, the sample, or a new run that begins with it or with the one in doubt."""
-        time, doubt = sample.time, self._suspect
+        """Return what follows from a sample: nothing, the sample, or a new run that begins with it or a suspect one."""
+        time, suspect = sample.time, self._suspect
         if not math.isfinite(time):
             return self._count_garbled("a sample without a time")
         step = time - self._newest_time
         if step == math.inf:
             return self._start_run(sample, "the stream begins")
-        if doubt is not None and abs(time - doubt.time) < abs(step):
-            return self._resolve_suspect(doubt, sample)
+        if suspect is not None and abs(time - suspect.time) < abs(step):
+            return self._resolve_suspect(suspect, sample)
         if abs(step) <= _SAME_TIME * (self._dt or 0.0):
-            self._fault_counts = replace(
-                self._fault_counts, repeated=self._fault_counts.repeated + 1, last_problem=f"t = {time:g} s twice"
-            )
-            return []
+            return self._count_repeated(time)
         if 0.0 < step <= self._longest_gap:
             self._drop_suspect()
             return self._continue_run(sample, step)
         if -self._late_s <= step < 0.0:
-            return self._count_late(f"t = {time:g} s came after {self._newest_time:g} s")
+            return self._count_late(f"t = {time:g} s arrived after {self._newest_time:g} s")
         self._drop_suspect()
         self._suspect = sample
         return []
 
     def finish(self) -> list[StreamEvent]:
-        """At the end of the stream: a sample still in doubt is dropped and counted."""
+        """Drop and count a sample that is still suspect at the end of the stream."""
         self._drop_suspect()
         return []
 
     def _resolve_suspect(self, suspect: Sample, sample: Sample) -> list[StreamEvent]:
         step = sample.time - suspect.time
         if abs(step) <= _SAME_TIME * (self._dt or 0.0):
-            self._fault_counts = replace(
-                self._fault_counts,
-                repeated=self._fault_counts.repeated + 1,
-                last_problem=f"t = {sample.time:g} s twice",
-            )
-            return []
+            return self._count_repeated(sample.time)
         if -self._late_s <= step < 0.0:
-            return self._count_late(f"t = {sample.time:g} s came after {suspect.time:g} s")
+            return self._count_late(f"t = {sample.time:g} s arrived after {suspect.time:g} s")
         if not 0.0 < step <= self._longest_gap:
             self._drop_suspect()
             self._suspect = sample
@@ -135,9 +129,14 @@ class SampleOrder:
             return
         time, self._suspect = self._suspect.time, None
         if time < self._newest_time:
-            self._count_late(f"t = {time:g} s came after {self._newest_time:g} s")
+            self._count_late(f"t = {time:g} s arrived after {self._newest_time:g} s")
         else:
-            self._count_garbled(f"nothing went on from t = {time:g} s, far ahead of {self._newest_time:g} s")
+            self._count_garbled(f"no sample followed t = {time:g} s, far ahead of {self._newest_time:g} s")
+
+    def _count_repeated(self, time: float) -> list[StreamEvent]:
+        repeated = self._fault_counts.repeated + 1
+        self._fault_counts = replace(self._fault_counts, repeated=repeated, last_problem=f"t = {time:g} s twice")
+        return []
 
     def _count_late(self, message: str) -> list[StreamEvent]:
         self._fault_counts = replace(self._fault_counts, late=self._fault_counts.late + 1, last_problem=message)
@@ -149,7 +148,7 @@ class SampleOrder:
 
 
 def combined_counts(source: SampleCounts, ordering: SampleCounts) -> SampleCounts:
-    """The counts of a source and of the gate behind it as one."""
+    """Return the counts of a source and of the ordering behind it as one."""
     return SampleCounts(
         accepted=source.accepted + ordering.accepted,
         late=source.late + ordering.late,

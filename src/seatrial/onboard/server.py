@@ -18,28 +18,31 @@ from seatrial.core.values import InputError
 from seatrial.numerics.platform import reuses_addresses_safely
 
 LOOPBACK = "127.0.0.1"
+# s after which a request that has not been completed is dropped
 REQUEST_TIMEOUT_S = 5.0
 StateProvider = Callable[[int], dict[str, Any]]
 
 
 def bind_server(port: int, state: StateProvider) -> "Server":
-    """A server that has its port; 0 takes a free one.
+    """Return a server bound to its port; 0 takes a free one.
 
     Raises:
-        InputError: the port is in use, not allowed, or no port at all.
+        InputError: the port is in use, not allowed, or outside 0 to 65535.
     """
     if not 0 <= port < 65536:
-        raise InputError(f"port {port} of the page is none; give one from 1024 to 65535, or 0 for any that is free")
+        raise InputError(
+            f"there is no port {port} for the page; give one from 1024 to 65535, or 0 for any that is free"
+        )
     try:
         return Server(port, state)
     except OSError as error:
         in_use = error.errno == errno.EADDRINUSE
-        why = "is in use by another program" if in_use else f"cannot be had ({error.strerror or error})"
-        raise InputError(f"port {port} of the page {why}; give another, or 0 for any that is free") from None
+        why = "is in use by another program" if in_use else f"cannot be opened ({error.strerror or error})"
+        raise InputError(f"port {port} of the page {why}; give another, or 0 for a free one") from None
 
 
 class Server(ThreadingHTTPServer):
-    """Answers with the page and with what `state(since)` gives."""
+    """Answers with the page and with the result of `state(since)`."""
 
     daemon_threads = True
     allow_reuse_address = reuses_addresses_safely()
@@ -50,12 +53,12 @@ class Server(ThreadingHTTPServer):
         self.hosts = {f"{name}:{self.server_port}" for name in (LOOPBACK, "localhost")}
 
     def server_bind(self) -> None:
-        """As the socket does, without asking the network for this machine's name."""
+        """Bind as a socket does, without a look-up of this machine's name in the network."""
         socketserver.TCPServer.server_bind(self)
         self.server_name, self.server_port = LOOPBACK, self.server_address[1]
 
     def handle_error(self, request: object, client_address: object) -> None:
-        """A browser that went away is nobody's trouble; anything else is told."""
+        """Ignore a browser that has disconnected; report anything else."""
         if not isinstance(sys.exception(), OSError):
             super().handle_error(request, client_address)  # pyright: ignore[reportArgumentType]
 
@@ -85,7 +88,7 @@ class _RequestHandler(BaseHTTPRequestHandler):
             self._respond("application/json", text.encode())
 
     def do_other(self) -> None:
-        """No other method is known."""
+        """Refuse every other method."""
         self._respond_error(HTTPStatus.METHOD_NOT_ALLOWED)
 
     do_HEAD = do_POST = do_PUT = do_PATCH = do_DELETE = do_OPTIONS = do_TRACE = do_CONNECT = do_other
@@ -115,7 +118,7 @@ class _RequestHandler(BaseHTTPRequestHandler):
         self.end_headers()
 
     def log_message(self, format: str, *args: object) -> None:
-        """Nothing is logged."""
+        """Log nothing."""
 
 
 HEADERS = {
@@ -130,14 +133,14 @@ HEADERS = {
 
 @cache
 def html() -> str:
-    """The page, the same for every stream: style and script inside, nothing fetched but the state."""
+    """Return the page, the same for every stream: style and script inside, nothing fetched but the state."""
     page, style, script = (_template(name) for name in ("page.html", "page.css", "page.js"))
     return page.replace("{style}", style).replace("{script}", script)
 
 
 @cache
 def content_security_policy() -> str:
-    """What the page may do: run the one script and the one style it came with, ask its own address, nothing else."""
+    """Return the page's policy: only its own script and style, and requests to its own address."""
     style, script = (_digest(_template(name)) for name in ("page.css", "page.js"))
     return (
         f"default-src 'none'; script-src '{script}'; style-src '{style}'; connect-src 'self'; img-src data:; "
@@ -154,7 +157,7 @@ def _digest(text: str) -> str:
 
 
 def _parse_since(query: str) -> int | None:
-    """The number asked for, -1 if none is, None if it is no number."""
+    """The number in the query, -1 if there is none, None if it is not a number."""
     text = parse_qs(query).get("since", ["-1"])[0]
     is_number = text.removeprefix("-").isascii() and text.removeprefix("-").isdigit() and len(text) < 16
     return int(text) if is_number else None

@@ -1,4 +1,4 @@
-"""What a snapshot says, in the words and digits people read: one text for the terminal and for the page."""
+"""A snapshot in words and rounded numbers: one text for the terminal and for the page."""
 
 import math
 from dataclasses import dataclass
@@ -12,11 +12,12 @@ from seatrial.core.values.channel_text import channel_unit, unit_text
 
 # two-sided 95 % of a normal distribution
 NORMAL_95 = 1.96
+# s: a clock that shows more counts from 1970 (3 years later, at least)
 FIRST_UNIX_TIME = 1e8
 _PHASE_MEANINGS = {
-    EstimatorPhase.WAITING: "too little has been seen yet",
-    EstimatorPhase.WINDOW: "fit over everything seen, re-linearised as it grows",
-    EstimatorPhase.RECURSIVE: "filter that carries the fit's information on, sample by sample",
+    EstimatorPhase.WAITING: "too few samples for an estimate yet",
+    EstimatorPhase.WINDOW: "fit over all samples, repeated as they grow",
+    EstimatorPhase.RECURSIVE: "filter that continues the fit, sample by sample",
 }
 _FAULT_NAMES = {
     "late": "late", "repeated": "repeated", "not_finite": "not a number", "missing": "missing", "jumps": "clock jumps",
@@ -43,44 +44,45 @@ class EstimateRow:
 
 
 def estimate_rows(snapshot: Snapshot) -> list[EstimateRow]:
-    """The coefficients in the model's order; angles in degrees."""
-    untold = set(snapshot.unidentified)
-    told = zip(snapshot.names, snapshot.units, snapshot.value, snapshot.standard_error, strict=True)
+    """Return the coefficients in the model's order; angles in degrees."""
+    unidentified = set(snapshot.unidentified)
+    columns = zip(snapshot.names, snapshot.units, snapshot.value, snapshot.standard_error, strict=True)
     return [
-        _estimate_row(name, unit, float(value), float(error), name not in untold) for name, unit, value, error in told
+        _estimate_row(name, unit, float(value), float(error), name not in unidentified)
+        for name, unit, value, error in columns
     ]
 
 
 def residual_rms(snapshot: Snapshot) -> list[tuple[str, str, str]]:
-    """Channel, rms of measured minus model, unit; angles in degrees."""
+    """Return channel, rms of measured minus simulated, unit; angles in degrees."""
     units = {channel: channel_unit(channel) for channel in snapshot.noise}
     return [(printable(channel), significant(display_unit(units[channel])[0] * rms, 3), unit_text(units[channel]))
             for channel, rms in snapshot.noise.items()]  # fmt: skip
 
 
 def fault_counts(counts: SampleCounts) -> list[tuple[str, int]]:
-    """What went wrong with samples, and how often; all of them, in one order."""
+    """Return each kind of fault in words and its count, always in the same order."""
     return [(words, getattr(counts, key)) for key, words in _FAULT_NAMES.items()]
 
 
 def phase_meaning(phase: EstimatorPhase) -> str:
-    """What the phase means."""
+    """Return the meaning of a phase in words."""
     return _PHASE_MEANINGS[phase]
 
 
 def change_sentence(change: CoefficientChange | None) -> str:
-    """The change that was told, in a sentence; empty if none was."""
+    """Return a significant change as a sentence; empty if there is none."""
     if change is None or not change.is_significant:
         return ""
     since, freedom = time_text(change.since), f"{counted(change.degrees_of_freedom, 'degree')} of freedom"
     return (
-        f"Since {since} the data tell other coefficients than before, {printable(change.most_changed)} most of all "
+        f"The coefficients have changed since {since}, {printable(change.most_changed)} most of all "
         f"(chi-squared {significant(change.statistic, 3)} of {freedom}, p {significant(change.p, 2)})."
     )
 
 
 def time_text(time: float) -> str:
-    """A moment of the stream's clock: seconds, or a date where they count from 1970."""
+    """Return a time of the stream's clock: seconds, or a date where they count from 1970."""
     if not math.isfinite(time):
         return DASH
     if FIRST_UNIX_TIME <= time < 100 * FIRST_UNIX_TIME:

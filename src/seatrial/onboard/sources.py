@@ -15,55 +15,56 @@ from seatrial.onboard.stdin import PipeLines
 from seatrial.onboard.tail import TailLines
 from seatrial.onboard.udp import UdpLines
 
+# sentences that a talker sends with each sample, at most
 _SENTENCES_PER_SAMPLE = 20
 
 
 class LineReader(Protocol):
-    """Lines to samples; keeps what it needs of the lines before, never raises for what is in them."""
+    """Turns lines into samples; keeps what it needs of earlier lines, never raises for their content."""
 
     def samples(self, batch: LineBatch) -> list[Sample]:
-        """The samples that these lines complete, in order."""
+        """Return the samples that these lines complete, in order."""
         ...
 
     def flush(self) -> list[Sample]:
-        """What is left when no more lines will come."""
+        """Return the remaining samples, at the end of the input."""
         ...
 
     @property
     def counts(self) -> SampleCounts:
-        """What could not be read."""
+        """Counts of what could not be read."""
         ...
 
 
 class LineSampleSource:
-    """A source of samples: lines from one place, read in one way."""
+    """A source of samples: lines from one input, read by one reader."""
 
     def __init__(self, lines: LineSource, reader: LineReader) -> None:
         self._lines, self._reader = lines, reader
         self._is_over = False
 
     def poll(self, seconds: float) -> list[Sample]:
-        """Samples that have come, waiting at most so long for the first."""
+        """As `SampleSource.poll`."""
         deadline = monotonic() + seconds
-        found: list[Sample] = []
-        while not (found or self._is_over):
-            left = deadline - monotonic()
-            found = self._reader.samples(self._lines.read(max(left, 0.0)))
+        samples: list[Sample] = []
+        while not (samples or self._is_over):
+            remaining = deadline - monotonic()
+            samples = self._reader.samples(self._lines.read(max(remaining, 0.0)))
             if self._lines.is_over:
                 self._is_over = True
-                found += self._reader.flush()
-            if left <= 0.0:
+                samples += self._reader.flush()
+            if remaining <= 0.0:
                 break
-        return found
+        return samples
 
     @property
     def is_over(self) -> bool:
-        """Whether nothing more will come."""
+        """As `SampleSource.is_over`."""
         return self._is_over
 
     @property
     def counts(self) -> SampleCounts:
-        """What could not be read so far."""
+        """As `SampleSource.counts`."""
         return combined_counts(self._lines.counts, self._reader.counts)
 
     def close(self) -> None:
@@ -72,10 +73,10 @@ class LineSampleSource:
 
 
 def open_source(stream: Stream, *, once: bool = False) -> SampleSource:
-    """The source of a trial's stream; with `once` a file is over at its end.
+    """Return the source of a trial's stream; with `once` a file ends at its present end.
 
     Raises:
-        InputError: the file or address cannot be opened, the layout cannot be followed (see the readers).
+        InputError: the file or address cannot be opened, or the layout cannot be followed (see the readers).
     """
     is_nmea = stream.source in (StreamSource.NMEA_FILE, StreamSource.NMEA_STDIN, StreamSource.NMEA_UDP)
     reader: LineReader = NmeaReader(stream.layout, rate=stream.rate) if is_nmea else ColumnReader(stream.layout)
@@ -86,7 +87,7 @@ def _open_lines(stream: Stream, *, once: bool) -> LineSource:
     match stream.source:
         case StreamSource.FILE | StreamSource.NMEA_FILE:
             if stream.file is None:
-                raise InputError("follow.file is missing; name the file that is to be followed")
+                raise InputError("file is missing in [follow]; name the file to follow")
             return TailLines(stream.file, once=once)
         case StreamSource.STDIN | StreamSource.NMEA_STDIN:
             return PipeLines()

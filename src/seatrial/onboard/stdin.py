@@ -8,12 +8,13 @@ from seatrial.core.values import InputError
 from seatrial.numerics.platform import has_input
 from seatrial.onboard.lines import LineBatch, LineSplitter
 
+# bytes read at once: what a pipe holds
 _CHUNK = 1 << 16
 STANDARD_INPUT = 0
 
 
 class PipeLines:
-    """Lines of an open file descriptor, standard input unless told otherwise; over at its end.
+    """Lines of an open file descriptor, standard input by default, until its end.
 
     Raises:
         InputError: the descriptor is not open.
@@ -30,17 +31,17 @@ class PipeLines:
         self._starts_file = True
 
     def read(self, seconds: float) -> LineBatch:
-        """Lines that have come, waiting at most so long for the first."""
+        """As `LineSource.read`."""
         deadline = time.monotonic() + seconds
         lines: list[bytes] = []
-        left = seconds
-        while not (lines or self._is_over) and has_input(self._descriptor, left):
+        remaining = seconds
+        while not (lines or self._is_over) and has_input(self._descriptor, remaining):
             lines = self._read_lines()
-            left = deadline - time.monotonic()
-            if left <= 0.0:
+            remaining = deadline - time.monotonic()
+            if remaining <= 0.0:
                 break
-        begins, self._starts_file = self._starts_file, False
-        return LineBatch(lines, begins)
+        starts_file, self._starts_file = self._starts_file, False
+        return LineBatch(lines, starts_file)
 
     @property
     def is_over(self) -> bool:
@@ -53,7 +54,7 @@ class PipeLines:
         return SampleCounts(dropped=self._splitter.dropped)
 
     def close(self) -> None:
-        """Nothing: the descriptor belongs to whoever opened it."""
+        """Do nothing: the descriptor belongs to the caller."""
 
     def _read_lines(self) -> list[bytes]:
         try:

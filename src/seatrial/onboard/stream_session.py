@@ -1,4 +1,4 @@
-"""One stream on its way to an estimate: admitted, noted in the journal, kept where a fit is to be made of it."""
+"""One stream on its way to an estimate: ordered, journalled, kept where a fit is made of it at the end."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -14,28 +14,31 @@ from seatrial.onboard.run_buffer import RunBuffer
 from seatrial.onboard.sample import Sample
 from seatrial.onboard.sample_order import RunStart, SampleOrder, StreamEvent, combined_counts
 
+# messages kept; more would only repeat the same trouble
 _MAX_MESSAGES = 20
+# written into journals: not to be changed
 _RESTART_REASON = "followed again"
 
 
 class StreamEstimator(Protocol):
-    """What makes estimates of samples; it has no thread and no clock of its own."""
+    """Makes estimates from samples; it has no thread and no clock of its own."""
 
     def begin_run(self) -> None:
-        """A run begins with the next sample."""
+        """Begin a run with the next sample."""
         ...
 
     def update(self, sample: Sample) -> Snapshot:
-        """What is known with this sample."""
+        """Take in a sample and return the snapshot after it."""
         ...
 
 
 class StreamSession:
-    """Samples in, the newest snapshot out.
+    """Takes samples in and holds the newest snapshot.
 
     Attributes:
-        snapshot: the newest; None before the first sample. last_journalled: the last sample of the journal, if any.
-        messages: trouble of the estimator and of the journal, in words, each once.
+        snapshot: the newest; None before the first sample.
+        last_journalled: the last sample of the journal, if any.
+        messages: errors of the estimator and of the journal, in words, each once.
     """
 
     def __init__(
@@ -50,7 +53,7 @@ class StreamSession:
         self._estimator_error = ""
 
     def journal_events(self, journal: Journal) -> Iterator[StreamEvent]:
-        """What the journal holds, as it came; nothing of it is noted again.
+        """Yield the events of the journal, in order; they are not written again.
 
         Raises:
             InputError: the journal is damaged.
@@ -63,11 +66,12 @@ class StreamSession:
                 self._reset_order()
         if journal.torn_bytes:
             self._add_message(
-                f"the last {journal.torn_bytes} bytes of '{journal.path.name}' were torn by a break and are cut off"
+                f"the last {journal.torn_bytes} bytes of '{journal.path.name}' were incomplete after a break and were "
+                "cut off"
             )
 
     def admit(self, samples: Iterable[Sample]) -> list[StreamEvent]:
-        """What comes of these samples, in the journal before anything is made of it."""
+        """Return the events that follow from these samples, written to the journal first."""
         events = [event for sample in samples for event in self._order.admit(sample)]
         if self._journal is not None:
             for event in events:
@@ -89,17 +93,17 @@ class StreamSession:
             self._add_message(str(error))
 
     def restart(self) -> None:
-        """What comes begins a run, whatever its time: its positions may be counted from another place than before."""
+        """Begin a run with the next sample, whatever its time: its positions may have another origin than before."""
         self._reset_order()
         if self._journal is not None:
             self._journal.append(RunEntry(_RESTART_REASON))
 
     def finish(self) -> None:
-        """Nothing more comes."""
+        """End the stream."""
         self._order.finish()
 
     def counts(self, source: SampleCounts) -> SampleCounts:
-        """Of the source and the gate together, with the estimator's trouble in words."""
+        """Return the counts of the source and the ordering together, with the estimator's latest error in words."""
         made = combined_counts(source, combined_counts(self._earlier_counts, self._order.counts))
         return replace(
             made, last_problem="; ".join(text for text in (made.last_problem, self._estimator_error) if text)

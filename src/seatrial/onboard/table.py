@@ -36,7 +36,7 @@ _STYLES = {EstimatorPhase.WAITING: "yellow", EstimatorPhase.WINDOW: "green", Est
 
 @dataclass(frozen=True, eq=False)
 class TableContent:
-    """What a picture shows: the newest of everything; silence: s since something new came."""
+    """What a table shows; silence: s since the last sample arrived."""
 
     heading: str
     snapshot: Snapshot
@@ -46,7 +46,7 @@ class TableContent:
 
 
 def render_table(console: "Console", content: TableContent, height: int | None) -> "RenderableType":
-    """Head, coefficients, what else there is to say; so many coefficients that all fits in `height` lines, if given."""
+    """Return head, coefficients and notes; at most as many coefficients as fit in `height` lines, if given."""
     from rich.console import Group
     from rich.text import Text
 
@@ -70,7 +70,7 @@ def _head(content: TableContent) -> "RenderableType":
         f"  {time_text(snapshot.time)}  {counted(snapshot.samples, 'sample')}  {counted(snapshot.runs, 'run')}  "
     )
     if content.silence > SILENCE_S:
-        head.append(f"no news for {duration(content.silence)}", "yellow")
+        head.append(f"no samples for {duration(content.silence)}", "yellow")
     else:
         head.append(phase_meaning(snapshot.phase), "dim")
     return Group(*([Text(printable(content.heading), "bold")] if content.heading else []), head, Text())
@@ -82,20 +82,20 @@ def _coefficient_table(rows: list[EstimateRow], recent: RecentHistory, width: in
     from rich.text import Text
 
     is_wide = width >= MIN_TREND_WIDTH
-    made = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, expand=False)
-    made.add_column("coefficient", no_wrap=True)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, expand=False)
+    table.add_column("coefficient", no_wrap=True)
     for title in ("value", "95 % from", "to"):
-        made.add_column(title, justify="right", no_wrap=True)
-    made.add_column("unit", no_wrap=True, style="dim")
-    made.add_column("error %", justify="right", no_wrap=True)
+        table.add_column(title, justify="right", no_wrap=True)
+    table.add_column("unit", no_wrap=True, style="dim")
+    table.add_column("error %", justify="right", no_wrap=True)
     if is_wide:
-        made.add_column(f"last {duration(recent.seconds).removesuffix(' 00 s')}", no_wrap=True)
+        table.add_column(f"last {duration(recent.seconds).removesuffix(' 00 s')}", no_wrap=True)
     trends = _trends(recent) if is_wide else []
     for k, row in enumerate(rows):
         cells = [row.name, row.value, row.lower, row.upper, row.unit, row.error_percent]
         cells += [trends[k]] if k < len(trends) else []
-        made.add_row(*(Text(cell) for cell in cells), style="" if row.is_identified else "yellow")
-    return made
+        table.add_row(*(Text(cell) for cell in cells), style="" if row.is_identified else "yellow")
+    return table
 
 
 def _trends(recent: RecentHistory) -> list[str]:
@@ -110,21 +110,21 @@ def _trends(recent: RecentHistory) -> list[str]:
 
 
 def _foot(snapshot: Snapshot, counts: SampleCounts) -> "Table":
-    """Noise, what is not told, what would help, change, trouble, findings; only what there is."""
+    """Residuals, unidentified coefficients, advice, change, faults and findings, where there are any."""
     from rich.table import Table
     from rich.text import Text
 
-    made = Table.grid(padding=(0, 2, 0, 0))
-    made.add_column(no_wrap=True, style="dim")
-    made.add_column()
-    for what, words, style in _foot_lines(snapshot, counts):
+    table = Table.grid(padding=(0, 2, 0, 0))
+    table.add_column(no_wrap=True, style="dim")
+    table.add_column()
+    for label, words, style in _foot_lines(snapshot, counts):
         if words:
-            made.add_row(Text(what), Text(words, style))
-    return made
+            table.add_row(Text(label), Text(words, style))
+    return table
 
 
 def _foot_lines(snapshot: Snapshot, counts: SampleCounts) -> list[tuple[str, str, str]]:
-    """(what, words, style) of each line below the table; empty words where there is nothing to say."""
+    """Label, text and style of each line below the table; the text is empty where there is nothing to say."""
     wrong = ", ".join(f"{count} {words}" for words, count in fault_counts(counts) if count)
     worst_first = sorted(snapshot.findings, key=lambda f: _SEVERITIES.index(f.severity))
     more = len(worst_first) - MAX_FINDINGS

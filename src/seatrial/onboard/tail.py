@@ -9,50 +9,49 @@ from seatrial.core.results.online import SampleCounts
 from seatrial.core.values import InputError
 from seatrial.onboard.lines import LineBatch, LineSplitter
 
-_CHUNK = 1 << 18
-_MARK_BYTES = 64
-_POLL_INTERVAL_S = 0.05
+# bytes read at once; bytes at the end that are compared to notice a truncation; s between looks at the file
+_CHUNK, _MARK_BYTES, _POLL_INTERVAL_S = 1 << 18, 64, 0.05
 
 
 class TailLines:
-    """Lines of the file at `path`; with `once` it is over at the end of the file, whose last line may lack its end.
+    """Lines of the file at `path`; with `once` until its present end, where the last line may lack its line feed.
 
-    The last bytes read are read again each time: where they are no longer there, the file has been truncated (or
-    written anew), which is counted, and reading goes on from its start. Where another file has taken its place, the
-    old one is read to its end first.
+    The last bytes read are compared each time: where they have changed, the file has been truncated (or written anew),
+    which is counted, and reading goes on from its start. Where another file has taken its place, the old one is read to
+    its end first.
 
     Raises:
-        InputError: there is no such file, it is packed, or it is no regular file.
+        InputError: the file does not exist, is compressed, or is not a regular file.
     """
 
     def __init__(self, path: Path, *, once: bool = False) -> None:
         if path.suffix == ".gz":
-            raise InputError(f"{path.name} is packed and cannot be followed; unpack it, or run 'seatrial identify'")
+            raise InputError(f"{path.name} is compressed; decompress it to follow it, or run 'seatrial identify'")
         if not path.exists():
             raise InputError(f"{path} does not exist; start the logger first, or check the path")
         if not S_ISREG(path.stat().st_mode):
-            raise InputError(f"{path} is no regular file; feed it to standard input instead")
+            raise InputError(f"{path} is not a regular file; pipe it into standard input instead")
         self._path, self._once = path, once
         self._splitter = LineSplitter()
         self._truncated = self._garbled = 0
-        self._last_trouble = ""
+        self._last_error = ""
         self._is_over = False
         self._open()
 
     def read(self, seconds: float) -> LineBatch:
-        """Lines that have been appended, waiting at most so long for the first."""
+        """As `LineSource.read`."""
         deadline = time.monotonic() + seconds
         while True:
             lines = self._read_appended()
-            left = deadline - time.monotonic()
-            if lines or self._is_over or left <= 0:
-                begins, self._starts_file = self._starts_file, False
-                return LineBatch(lines, begins)
-            time.sleep(min(_POLL_INTERVAL_S, left))
+            remaining = deadline - time.monotonic()
+            if lines or self._is_over or remaining <= 0:
+                starts_file, self._starts_file = self._starts_file, False
+                return LineBatch(lines, starts_file)
+            time.sleep(min(_POLL_INTERVAL_S, remaining))
 
     @property
     def is_over(self) -> bool:
-        """Whether the end was reached; never unless `once`."""
+        """Whether the end was reached; never without `once`."""
         return self._is_over
 
     @property
@@ -62,7 +61,7 @@ class TailLines:
             garbled=self._garbled,
             dropped=self._splitter.dropped,
             truncated=self._truncated,
-            last_problem=self._last_trouble,
+            last_problem=self._last_error,
         )
 
     def close(self) -> None:
@@ -85,7 +84,7 @@ class TailLines:
             self._file.seek(self._position - len(self._last_bytes))
             data = self._file.read(len(self._last_bytes) + _CHUNK) or b""
         except OSError as error:
-            self._last_trouble = f"{self._path.name} could not be read ({error.strerror}); trying again"
+            self._last_error = f"{self._path.name} could not be read ({error.strerror}); trying again"
             return []
         if not data.startswith(self._last_bytes):
             self._restart()
@@ -103,7 +102,7 @@ class TailLines:
             return []
         rest = self._splitter.flush()
         if is_replaced and not rest:
-            self._last_trouble = (
+            self._last_error = (
                 f"{self._path.name} was replaced by another file while it was read; reading goes on there"
             )
             self._reopen()
@@ -122,12 +121,12 @@ class TailLines:
         try:
             self._open()
         except InputError as error:
-            self._last_trouble = str(error)
+            self._last_error = str(error)
         else:
             old.close()
 
     def _restart(self) -> None:
         self._truncated += 1
         self._garbled += len(self._splitter.flush())
-        self._last_trouble = f"{self._path.name} was truncated while it was read; reading goes on from its start"
+        self._last_error = f"{self._path.name} was truncated while it was read; reading goes on from its start"
         self._rewind()

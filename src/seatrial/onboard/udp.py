@@ -1,4 +1,4 @@
-"""Lines of UDP datagrams, from anyone who can reach the socket and therefore never trusted."""
+"""Lines of UDP datagrams; any sender that reaches the socket can write them, so none is trusted."""
 
 import select
 import socket
@@ -9,14 +9,14 @@ from seatrial.core.results.online import SampleCounts
 from seatrial.core.values import InputError
 from seatrial.onboard.lines import MAX_LINE_BYTES, LineBatch
 
-MAX_DATAGRAM_BYTES = 8192
-RATE_ALLOWANCE = 5.0
-_MAX_DATAGRAMS = 2048
-_MIN_CAPACITY = 20.0
+# bytes of a datagram, above what any logger sends at once; lines accepted, over those expected
+MAX_DATAGRAM_BYTES, RATE_ALLOWANCE = 8192, 5.0
+# datagrams read at once; lines that may arrive at once, however low the rate
+_MAX_DATAGRAMS, _MIN_CAPACITY = 2048, 20.0
 
 
 class TokenBucket:
-    """Lets through `rate` things a second on the average, and up to a second's worth at once."""
+    """Lets `rate` items a second pass on average, and up to one second's worth at once."""
 
     def __init__(self, rate: float, clock: Callable[[], float] = time.monotonic) -> None:
         self._rate, self._clock = rate, clock
@@ -25,7 +25,7 @@ class TokenBucket:
         self._refilled_at = clock()
 
     def take(self, count: int) -> int:
-        """How many of `count` may pass now."""
+        """Return how many of `count` items may pass now."""
         now = self._clock()
         self._tokens = min(self._capacity, self._tokens + self._rate * max(now - self._refilled_at, 0.0))
         self._refilled_at = now
@@ -35,11 +35,11 @@ class TokenBucket:
 
 
 class UdpLines:
-    """Lines of the datagrams that reach `host`:`port`; the last line of a datagram needs no end.
+    """Lines of the datagrams that reach `host`:`port`; the last line of a datagram needs no line feed.
 
-    rate: lines a second that are expected; five times as many pass, the rest is dropped and counted, as is a datagram
-    beyond 8 KiB (one) and a line beyond 4 KiB. Nothing is kept between reads. What the system drops because nobody
-    reads is not seen here. port 0: one that is free.
+    rate: lines expected a second; five times as many pass, the rest is dropped and counted, as are datagrams beyond
+    8 KiB and lines beyond 4 KiB. Nothing is kept between reads. Datagrams that the system drops between reads are not
+    counted. port 0: one that is free.
 
     Raises:
         InputError: the address cannot be listened to.
@@ -51,7 +51,7 @@ class UdpLines:
         self._bucket = TokenBucket(RATE_ALLOWANCE * rate, clock)
         self._rate = rate
         self._dropped = 0
-        self._last_trouble = ""
+        self._last_error = ""
         if not 0 <= port <= 65535:
             raise InputError(f"there is no UDP port {port}; choose one from 1 to 65535")
         try:
@@ -68,30 +68,30 @@ class UdpLines:
 
     @property
     def port(self) -> int:
-        """The port that is listened to."""
+        """The port in use."""
         return int(self._socket.getsockname()[1])
 
     def read(self, seconds: float) -> LineBatch:
-        """Lines that have come, waiting at most so long for the first."""
+        """As `LineSource.read`."""
         deadline = time.monotonic() + seconds
         lines: list[bytes] = []
-        left = seconds
-        while not lines and select.select([self._socket], [], [], max(left, 0.0))[0]:
+        remaining = seconds
+        while not lines and select.select([self._socket], [], [], max(remaining, 0.0))[0]:
             lines = self._receive()
-            left = deadline - time.monotonic()
-            if left <= 0.0:
+            remaining = deadline - time.monotonic()
+            if remaining <= 0.0:
                 break
         return LineBatch(lines)
 
     @property
     def is_over(self) -> bool:
-        """Never."""
+        """Whether the input has ended; never."""
         return False
 
     @property
     def counts(self) -> SampleCounts:
         """dropped: lines beyond the rate or too long, datagrams too long."""
-        return SampleCounts(dropped=self._dropped, last_problem=self._last_trouble)
+        return SampleCounts(dropped=self._dropped, last_problem=self._last_error)
 
     def close(self) -> None:
         """Close the socket."""
@@ -110,14 +110,14 @@ class UdpLines:
     def _accepted_lines(self, datagram: bytes) -> list[bytes]:
         if len(datagram) > MAX_DATAGRAM_BYTES:
             self._dropped += 1
-            self._last_trouble = f"a datagram of more than {MAX_DATAGRAM_BYTES} bytes was dropped"
+            self._last_error = f"a datagram of more than {MAX_DATAGRAM_BYTES} bytes was dropped"
             return []
         lines = [line for line in datagram.split(b"\n") if line.strip()]
         kept = [line for line in lines if len(line) <= MAX_LINE_BYTES]
         passed = kept[: self._bucket.take(len(kept))]
         self._dropped += len(lines) - len(passed)
         if len(passed) < len(kept):
-            self._last_trouble = (
+            self._last_error = (
                 f"more than {RATE_ALLOWANCE:g} times the {self._rate:g} lines a second expected; the rest is dropped"
             )
         return passed

@@ -186,13 +186,13 @@ function renderText(snapshot) {
   renew(byId("findings"), snapshot.findings, () => snapshot.findings.map(finding));
   renew(byId("change"), snapshot.change, () => [node("p", {}, snapshot.change)]);
   renew(byId("unidentified"), [snapshot.unidentified, snapshot.advice], () => [
-    node("p", {}, snapshot.unidentified.length ? `The data so far do not tell ${listed(snapshot.unidentified)}.` : "No estimate yet."),
+    node("p", {}, snapshot.unidentified.length ? `The data so far do not identify ${listed(snapshot.unidentified)}.` : "No estimate yet."),
     node("p", {}, snapshot.advice)]);
   byId("change").hidden = snapshot.change === "";
   byId("unidentified").hidden = snapshot.unidentified.length === 0 && snapshot.advice === "";
   byId("findings_section").hidden = snapshot.findings.length === 0;
   byId("residuals").hidden = snapshot.noise.length === 0;
-  byId("last").textContent = snapshot.last ? `The latest trouble: ${snapshot.last}` : "";
+  byId("last").textContent = snapshot.last ? `Latest fault: ${snapshot.last}` : "";
   byId("body").hidden = false;
 }
 function renderPlots(snapshot) {
@@ -217,9 +217,9 @@ function say(kind, text) {
 }
 function status(state) {
   client.isOver = state.is_over;
-  if (state.is_over) return say("over", `the stream is over${state.reason ? `: ${state.reason}` : ""}`);
-  if (!state.snapshot) return say("", "nothing has come yet");
-  return state.age > QUIET ? say("quiet", `no news for ${Math.round(state.age)} s`) : say("following", "following");
+  if (state.is_over) return say("over", `the stream has ended${state.reason ? `: ${state.reason}` : ""}`);
+  if (!state.snapshot) return say("", "no samples yet");
+  return state.age > QUIET ? say("quiet", `no samples for ${Math.round(state.age)} s`) : say("following", "following");
 }
 // keeps what the server keeps: every stride-th point and the newest
 function merge(state) {
