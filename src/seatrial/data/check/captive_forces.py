@@ -12,8 +12,11 @@ from seatrial.core.values import Array, Finding, ForceContent, ForcePoints, Seve
 # Architecture III, chapter IX, section 4); N_v is negative for nearly every hull and only helps to
 # distinguish the columns
 SLOPE_SIGNS = {("Y", "v"): -1, ("N", "r"): -1, ("Y", "delta"): -1, ("N", "delta"): 1}
+# sign of a slope that most hulls share; used to choose between columns only
 _AUXILIARY_SLOPE_SIGNS = {("N", "v"): -1}
+# standard errors beyond which the sign of a slope counts, ours
 _SIGNIFICANT_T = 4.0
+# slope of Y in v over rho/2 L d U of ships' hulls, dimensionless, ours
 _SIDE_FORCE_RANGE = (0.05, 2.5)
 _DIRECTIONS = {"X": ("forward", "aft"), "beta": ("bow to starboard", "bow to port")}
 

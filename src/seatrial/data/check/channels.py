@@ -16,7 +16,9 @@ from seatrial.data.check.velocity_conventions import best_convention
 from seatrial.data.check.yaw_rate_consistency import heading_rate
 
 OUTPUT_CHANNELS = ("x0", "y0", "psi", "u", "v", "r", "phi", "p", "theta", "z", "u_dot", "v_dot")
+# a channel sticks where it repeats a value for so many samples and this share of the record, ours
 STUCK_SAMPLES, STUCK_FRACTION = 20, 0.02
+# a lag is reported beyond so many standard errors and so many samples, ours
 LAG_STANDARD_ERRORS, LAG_SAMPLES = 4.0, 1.5
 
 

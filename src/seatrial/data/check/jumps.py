@@ -7,9 +7,13 @@ import numpy as np
 from seatrial.core.values import Array
 from seatrial.data.check.signal import RowIndices
 
+# samples on each side over which the mean step of the track is taken, ours
 HALF_WINDOW = 15
+# a step is a jump beyond these multiples of the mean and of the median step, ours
 STEP_RATIO, MEDIAN_STEP_RATIO = 4.0, 6.0
+# a position is held where it moves by less than this share of the mean step, for so many samples at most, ours
 HELD_RATIO, LONGEST_HOLD = 0.35, 50
+# a sample is wild where it leaves and returns by this multiple of the largest of so many neighbouring steps, ours
 SPIKE_RATIO, NEIGHBOURS = 4.0, 8
 _NO_ROWS: RowIndices = np.empty(0, dtype=np.intp)
 

@@ -9,7 +9,9 @@ from seatrial.data.check.motion import RecordedMotion, recorded_motion
 from seatrial.data.check.signal import cumulative_integral, least_squares, sample_noise
 from seatrial.data.check.velocity_conventions import best_convention
 
+# factors by which another reading must reduce the residual to be certain, or possible, ours
 CERTAIN_GAIN, DOUBTFUL_GAIN = 4.0, 2.0
+# residuals over path length that are negligible, and large; multiple of the noise that is tolerated, ours
 MIN_RELATIVE_ERROR, LARGE_RELATIVE_ERROR, NOISE_FACTOR = 1e-4, 3e-3, 1.5
 
 

@@ -10,6 +10,7 @@ from seatrial.data.check.signal import RowIndices, mask_intervals, unwrapped
 from seatrial.data.check.timestamps import without_empty_ends
 
 INPUT_CHANNELS = ("delta", "n", "v_j")
+# holes up to so many s or samples are interpolated, ours
 SHORT_GAP_S, SHORT_GAP_SAMPLES = 1.0, 5
 
 

@@ -10,7 +10,9 @@ from seatrial.data.check.signal import Mask, jackknife_least_squares, smoothed, 
 from seatrial.data.check.yaw_rate_consistency import heading_rate
 from seatrial.physics.manoeuvres.track import speed
 
+# rudder range [rad] that counts as excitation, ours
 MIN_RUDDER_RANGE = math.radians(0.2)
+# t values of one run and of all runs pooled that prove a sign, and that make it doubtful, ours
 CERTAIN_T, POOLED_T, DOUBTFUL_T = 5.0, 3.5, 2.0
 ZIGZAG_ADVICE = "run a zigzag, for example 10/10 or 20/20"
 

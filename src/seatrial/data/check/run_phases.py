@@ -6,7 +6,9 @@ from seatrial.core.values import Finding, Record, Severity
 from seatrial.data.check.signal import smoothed, window_length
 from seatrial.physics.manoeuvres.track import speed
 
+# shares of largest revolutions (stopped) and of the speed reached (slow, under way), ours
 STOPPED_FRACTION, SLOW_FRACTION, RUNNING_FRACTION = 0.05, 0.5, 0.8
+# s without propeller that count as coasting, ours
 MIN_COASTING_S = 2.0
 
 

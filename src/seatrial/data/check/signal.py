@@ -9,6 +9,7 @@ from seatrial.core.values import Array
 
 RowIndices = NDArray[np.intp]
 Mask = NDArray[np.bool_]
+# stretches of a record left out in turn, ours
 JACKKNIFE_BLOCKS = 8
 
 

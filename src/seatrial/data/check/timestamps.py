@@ -7,7 +7,9 @@ import numpy as np
 from seatrial.core.values import Array, Finding, InputError, Record, Severity
 from seatrial.data.check.signal import RowIndices, unwrapped
 
+# steps of time beyond which samples are missing, ours
 GAP_STEPS = 2.5
+# samples over which the mean step is taken, so that rounded stamps average out, ours
 STEP_LAG = 20
 
 

@@ -7,7 +7,9 @@ import numpy as np
 from seatrial.core.values import Finding, Record, Severity
 from seatrial.data.check.motion import RecordedMotion, VelocityConvention, recorded_motion
 
+# factors by which another convention must reduce the misfit to be certain, or possible, ours
 CERTAIN_RATIO, DOUBTFUL_RATIO = 3.0, 1.5
+# rms difference from the track over rms speed that is acceptable, and negligible, ours
 ACCEPTABLE_MISFIT, NEGLIGIBLE_MISFIT = 0.3, 0.03
 # factor from the number in the file, taken as m/s, to the true m/s (SI brochure 2019; 1 kn = 1852 m/h)
 _SPEED_UNITS = {

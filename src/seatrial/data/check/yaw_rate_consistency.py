@@ -8,8 +8,11 @@ from seatrial.core.values import Array, Finding, Record, Severity
 from seatrial.data.check.motion import DEGREES_PER_RADIAN
 from seatrial.data.check.signal import smoothed, smoothed_derivative, trimmed_rms, window_length
 
+# heading range [rad] below which the yaw rate is not compared, ours
 MIN_HEADING_RANGE = math.radians(2.0)
+# correlation at which another channel is taken for the yaw rate, ours
 MIN_CORRELATION = 0.98
+# rms difference from the rate of the heading, over its rms, that is wrong, and rough, ours
 WRONG_MISFIT, ROUGH_MISFIT = 0.9, 0.5
 
 

@@ -19,10 +19,14 @@ from seatrial.physics.simulate.steer import manoeuvre
 
 # standard deviations in SI units: log, gyro and GNSS of a small craft
 SENSOR_NOISE = {"u": 0.02, "v": 0.02, "r": math.radians(0.1), "psi": math.radians(0.2), "x0": 0.5, "y0": 0.5}
+# jet velocity of the craft [m/s], Song et al. 2025
 JET_VELOCITY = 1.866
+# rate of the nozzle [rad/s], ours
 SLEW_RATE = math.radians(4.0)
+# step of the simulation [s], rate of the records [Hz], straight run before the first order [s], ours
 FINE_STEP, SAMPLE_RATE, APPROACH_S = 0.01, 10.0, 10.0
 HELD_OUT = ("zigzag:25/25", "turning-circle:20")
+# rate [Hz] and seed of the records in examples/waterjet, ours
 EXAMPLE_RATE, EXAMPLE_SEED = 2.0, 2025
 EXAMPLE_COLUMNS = ("x0", "y0", "psi", "u", "v", "r", "delta", "v_j")
 

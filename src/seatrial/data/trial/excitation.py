@@ -11,6 +11,7 @@ from seatrial.physics.hydro.dispersion import G
 from seatrial.physics.hydro.excitation import BoxHull, Excitation
 from seatrial.physics.sea.encounter import speed_factor
 
+# Froude number beyond which the speed is taken for one in knots, ours
 _MAX_FROUDE = 1.0
 _BOX_DIMENSIONS = ("L", "B", "d", "c33", "c35", "c53", "c55")
 

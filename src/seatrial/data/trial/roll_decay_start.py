@@ -4,9 +4,13 @@ import numpy as np
 
 from seatrial.core.values import Array, InputError, Record
 
+# first angle over noise; largest angle of the last third over that of the first, ours
 _MIN_SIGNAL_TO_NOISE, _MAX_AMPLITUDE_RATIO = 5.0, 0.9
+# share of the largest angle that counts as a swing before it, and how many of them are allowed, ours
 _EARLY_SWING_FRACTION, _MAX_EARLY_SWINGS = 0.2, 4
+# fewest samples of a decay, ours
 _MIN_ROWS = 20
+# roll angle [rad] beyond which degrees were given without their unit
 _MAX_ROLL_ANGLE = np.pi / 2.0
 
 

@@ -18,6 +18,7 @@ from seatrial.numerics.optimise import Solution, levenberg_marquardt
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.simulate.replay import replay
 
+# half width of the windows of the weak form over the shortest hold, ours
 WINDOW_PER_HOLD = 1.5
 # of the criterion: a move of some 1e-4 standard errors
 NEGLIGIBLE_DECREASE = 1e-8

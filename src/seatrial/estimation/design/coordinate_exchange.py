@@ -13,6 +13,7 @@ from seatrial.numerics.workers import map_in_threads
 
 # as shares of the range; what lies beyond an end means that end
 MOVES = np.array([-1.0, -0.5, -0.2, 0.2, 0.5, 1.0])
+# decrease of the cost in a whole round below which the exchange ends, ours
 NO_GAIN = 1e-3
 
 

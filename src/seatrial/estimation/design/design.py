@@ -20,6 +20,7 @@ from seatrial.estimation.design.standard_manoeuvres import StandardManoeuvre, st
 from seatrial.estimation.design.task import DesignTask
 from seatrial.estimation.information.symmetries import refuse_unidentifiable
 
+# simulated trials that confirm a design, ours
 CONFIRMATION_RUNS = 20
 
 

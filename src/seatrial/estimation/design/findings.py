@@ -9,7 +9,9 @@ from seatrial.core.results.design_ranking import count_outside_limits, is_within
 from seatrial.core.values import Finding, InputError, Severity
 from seatrial.estimation.design.task import DesignTask
 
+# drift angle [rad] beyond which hull models are extrapolated, ours
 _FAR_DRIFT = math.radians(45.0)
+# share of drawn ships that leave the limits, and of fits that must converge, ours
 _MANY_LEAVING, _ENOUGH_CONVERGED = 0.2, 0.8
 
 

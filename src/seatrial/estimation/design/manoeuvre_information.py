@@ -16,6 +16,7 @@ from seatrial.physics.simulate.linear import batch_class
 from seatrial.physics.simulate.replay import replay
 
 _TRACK_CHANNELS = ("u", "v", "x0", "y0")
+# ridge on the information matrix of unit diagonal: the size of rounding
 _REGULARISATION = 1e-13
 
 

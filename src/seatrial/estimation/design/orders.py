@@ -7,6 +7,7 @@ from seatrial.core.values import Array, Record, RecordKind, frozen
 from seatrial.estimation.design.task import DesignTask
 from seatrial.physics.simulate.channels import record_of
 
+# rounding of orders and of their times
 _ORDER_TOLERANCE = 1e-9
 # of a hold: what rounding may take from a time
 _TIME_TOLERANCE = 1e-6

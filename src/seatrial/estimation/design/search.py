@@ -22,11 +22,15 @@ from seatrial.numerics.workers import map_in_threads
 
 # the mean over ships of (error / error of the best standard sequence)^4: near the worst ship's, and smooth
 MEAN_POWER = 4.0
+# error over that of standard sequences that stands for a simulation that diverges, ours
 DIVERGED_RATIO = 50.0
+# cost of exceeding a limit by its own size, ours
 LIMIT_PENALTY = 20.0
 # kept from the limits during the search, so that finer steps and other ships do not cross them
 LIMIT_MARGIN = 0.02
+# random orders tried before the evolution strategy, ours
 RANDOM_STARTS = 96
+# of the evolution strategy, ours
 GENERATIONS = 200
 # evaluations of the exchange for each generation that follows
 EXCHANGES_PER_GENERATION = 5

@@ -7,6 +7,7 @@ import numpy as np
 from seatrial.core.values import Array
 from seatrial.estimation.design.task import DesignTask
 
+# ships drawn lie within so many standard deviations, ours
 _MAX_DEVIATES = 2.0
 
 

@@ -18,9 +18,13 @@ from seatrial.physics.simulate.steer import RUDDER, SOLAS_SLEW_RATE, manoeuvre
 
 # switching times as shares of the designed one's hold; amplitudes as shares of the range, the first that keeps within
 SWITCHING_SHARES = (1.0 / 3.0, 2.0 / 3.0, 1.0, 4.0 / 3.0)
+# shares of the actuators' range that binary sequences are tried with, largest first, ours
 AMPLITUDES = (1.0, 0.85, 0.7, 0.55, 0.4, 0.25, 0.1)
+# of the binary sequences
 SEQUENCE_SEEDS = (0, 1)
+# deg; 10/10 and 20/20 by IMO MSC.137(76), 30/30 ours
 _ZIGZAG_ANGLES = (10.0, 20.0, 30.0)
+# of angles and of counts of holds
 _ROUNDING = 1e-6
 
 

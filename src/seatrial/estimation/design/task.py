@@ -11,6 +11,7 @@ from seatrial.core.values import Array, InputError, Ship, spelling_hint
 from seatrial.data.trial.design_request import DesignRequest
 from seatrial.physics.simulate.approach import approach_speed, held_inputs
 
+# orders of an actuator that a trial must have room for, ours
 _FEWEST_ORDERS = 4
 
 

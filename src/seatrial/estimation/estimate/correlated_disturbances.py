@@ -22,9 +22,13 @@ from seatrial.estimation.estimate.process_noise import ProcessNoise, search_pred
 from seatrial.estimation.problem.prediction_error import PredictionError
 
 POSITIONS, VELOCITIES = ("x0", "y0"), ("u", "v")
+# memories of gusts from which the search starts, samples, ours
 _MEMORY_SAMPLES = (10.0, 100.0)
+# lag of a log from which the search starts, samples, ours
 _LAG_SAMPLES = 2.0
+# s in which a bias changes by the noise of its channel, where the search starts, ours
 _DRIFT_SECONDS = 60.0
+# initial standard deviation of a gust over its stationary one, ours
 _SPREAD_FACTOR = 3.0
 
 

@@ -28,8 +28,11 @@ _FREE_DECAY = (
     "a free decay, which its initial state explains: whole runs show what one decay has in common with the next"
 )
 _WHITE = "residuals are white within segments and over whole runs: no process noise to guard against"
+# residuals over whole runs over those within segments that count as equal, ours
 _MAX_RESIDUAL_GROWTH = 1.05
+# rad from sample to sample, ours: straight lines between samples then lose 1 % of an input
 _MAX_PHASE_STEP = 0.3
+# residuals over spread of a free decay that its initial state explains, ours
 _MAX_RESIDUAL_SHARE = 0.1
 
 

@@ -6,6 +6,7 @@ from seatrial.core.values import Finding, Severity
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.problem.static_forces import StaticForces
 
+# rms residual in standard deviations beyond which points disagree, ours
 _MAX_RMS = 2.0
 
 

@@ -19,8 +19,11 @@ from seatrial.estimation.information.covariance import (
     with_prior,
 )
 
+# fewest runs for a jackknife, ours
 RUNS_FOR_JACKKNIFE = 4
+# fits of a bootstrap of standard errors, ours
 BOOTSTRAP_FITS = 40
+# fewest segments for a sandwich covariance, ours
 _BLOCKS_FOR_SANDWICH = 10
 
 

@@ -13,7 +13,9 @@ from seatrial.estimation.information.autocorrelation import autocorrelation, var
 from seatrial.estimation.problem.prediction_error import PredictionError
 from seatrial.estimation.problem.segments import Segments
 
+# of the likelihood-ratio test, ours: more disturbances than needed cost more than too few
 CONFIDENCE_LEVEL = 0.999
+# samples up to which autocorrelations are summed, ours
 _LAGS = 400
 
 

@@ -12,8 +12,11 @@ from seatrial.estimation.information.autocorrelation import autocorrelation, var
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt
 
+# promised decrease of the cost at which a search ends, ours
 _NEGLIGIBLE = 1e-8
+# of a search before noise levels are estimated anew, ours
 _FEW_EVALUATIONS = 12
+# of a channel, over its largest value
 _ROUNDING = 1e-9
 
 

@@ -26,13 +26,21 @@ from seatrial.estimation.problem.prediction_error import PredictionError, join_s
 from seatrial.numerics.optimise import NormalEquations, Optimum, Solution, Status, levenberg_marquardt
 
 KINEMATIC_STATES = ("psi", "phi", "theta", "x0", "y0", "z0", "z")
+# standard deviation of a measured initial state over its channel's noise, ours
 _DIFFUSE_FACTOR = 10.0
+# intensities tried first, over that which explains all motion, ours
 _SCAN_SHARES = 10.0 ** np.arange(-3.0, 0.5, 0.5)
+# promised decreases of the cost at which searches end: first, later; Newton decrement of an optimum, ours
 _ROUGH, _NEGLIGIBLE, _MAX_DECREMENT = 1.0, 1e-3, 1e-3
+# most steps by the exact gradient, ours
 _NEWTON_STEPS = 6
+# the filter eliminates initial states: there are no local unknowns
 _NO_INITIAL_STATES = np.zeros((0, 0))
+# of the search for intensities alone, ours
 _FEW_EVALUATIONS = 24
+# samples from which intensities for the floor of predictions are estimated, ours
 _MAX_SAMPLES = 3000
+# variance inflation of innovations beyond which no search makes them white, ours
 _HOPELESS_INFLATION = 3.0
 
 

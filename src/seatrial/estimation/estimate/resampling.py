@@ -16,6 +16,7 @@ from seatrial.numerics.workers import map_in_threads
 
 ReportCount = Callable[[int, int], None]
 
+# promised decrease of the cost at which a refit ends, ours
 _NEGLIGIBLE = 1e-4
 
 

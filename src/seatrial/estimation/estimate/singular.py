@@ -5,7 +5,9 @@ import numpy as np
 from seatrial.core.values import Array, InputError
 from seatrial.estimation.information.directions import signed_terms
 
+# curvature over the largest, unit diagonal, that counts as zero: rounding of the normal equations
 _SINGULAR = 1e-11
+# least component of a direction that is named, and most that are, ours
 _MIN_INFLUENCE, _MAX_NAMED = 0.1, 8
 
 

@@ -17,11 +17,14 @@ from seatrial.estimation.information.directions import directions, effective_par
 from seatrial.estimation.information.stability import stability
 from seatrial.estimation.problem.output_error import OutputError
 
+# change of a value whose consequences are shown, ours
 RELATIVE_CHANGE = 0.1
+# shown in a report, ours
 _MAX_CONSEQUENCES = 8
 _ASSUMED_PARTICULARS = ("I_z", "x_G")
 # what defines the coefficients, chosen with the equations: nothing that could be wrong
 _CONVENTIONS = ("prime", "U_n", "U_0")
+# information of a value over the largest that counts as none, ours
 _MIN_INFLUENCE = 1e-9
 
 

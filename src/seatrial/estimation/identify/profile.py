@@ -21,8 +21,11 @@ from seatrial.numerics.workers import map_in_threads
 CHI_SQUARED_LIMIT = 3.841
 """95 % quantile of chi squared with one degree of freedom."""
 
+# refits on each side of an estimate, and standard errors they reach at most, ours
 _MAX_POINTS_PER_SIDE, _MAX_DEVIATIONS = 8, 5.0
+# promised decrease of the cost at which a refit ends, ours
 _NEGLIGIBLE = 1e-4
+# relative difference of costs that count as one, ours
 _COST_TOLERANCE = 1e-6
 
 

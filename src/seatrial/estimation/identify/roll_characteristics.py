@@ -16,6 +16,7 @@ GYRADIUS_WITH_ADDED_INERTIA, DRY_GYRADIUS = "k_xx_prime", "k_xx"
 
 # share of the moment of inertia that the water adds in roll, and the radius of gyration with it over the breadth
 ADDED_INERTIA_SHARE, GYRADIUS_OVER_BREADTH = (0.05, 0.18, 0.30), (0.35, 0.40, 0.45)
+# amplitudes of the curves; least swing over the largest that is shown, ours
 _POINTS, _MIN_SWING_SHARE = 40, 0.05
 
 

@@ -24,6 +24,7 @@ from seatrial.physics.models.candidate_structures import OMITTED_PARAMETERS
 TIE_TOLERANCE = 0.1
 """A structure of fewer coefficients is taken where its error is larger than the least one by no more than this part."""
 
+# rms error over rms roll beyond which no structure predicts anything, ours
 _MAX_RESIDUAL_SHARE = 0.5
 _ERROR_KEY = "phi_deg"
 

@@ -20,7 +20,9 @@ from seatrial.physics.sea.response import (
 from seatrial.physics.sea.spectrum import G, Spectrum, ittc
 from seatrial.physics.simulate.harmonics import Complex, frequency_response, linear_system
 
+# frequencies of the curves, ours
 _POINTS = 160
+# shares of the sea's energy below the first and the last frequency, ours
 _ENERGY_BAND = (1e-3, 0.99)
 
 

@@ -13,6 +13,7 @@ from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.linear import batch_class
 
+# s for which a disturbance of the states is held constant, ours
 _KICK_SECONDS = 0.5
 
 

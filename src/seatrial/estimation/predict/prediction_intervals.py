@@ -24,6 +24,7 @@ from seatrial.physics.manoeuvres import measures
 
 _TRACK_CHANNELS = ("psi", "x0", "y0")
 _MEASURE_CHANNELS = ("psi", "x0", "y0", "u", "v", "r")
+# ships drawn for the interval of a prediction, and for that of a run left out, ours
 DRAWS, HOLDOUT_DRAWS = 100, 32
 
 

@@ -20,11 +20,15 @@ from seatrial.estimation.problem.unknown_waves import DAMPING, RESTORING, Unknow
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt
 
 FREE_COEFFICIENTS = ("b_1", "c_1")
+# lowest and highest frequency over that of the largest roll, ours
 _BAND_EDGES = (0.45, 3.0)
 # share of the waves' largest density that must be left at the natural frequency, and relative standard errors
 _MIN_WAVE_SHARE, _MAX_DAMPING_ERROR, _MAX_RESTORING_ERROR = 0.05, 0.4, 0.15
+# excess of power in a band that is tolerated, number of bands, standard errors allowed beyond it, ours
 _MAX_MISFIT, _BANDS, _SIGMAS = 0.5, 5, 4.0
+# frequencies over which the spectrum is averaged for its peak; fewest swings of a record, ours
 _SMOOTHING_BINS, _MIN_CYCLES = 9, 40
+# a spectrum has no local unknowns
 _NO_INITIAL_STATES = np.zeros((0, 0))
 
 

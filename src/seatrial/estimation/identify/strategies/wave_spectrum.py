@@ -30,6 +30,7 @@ _NOISE_FACTORS = (100.0, 30.0, 10.0, 3.0)
 _MAX_RELATIVE_ERROR, _MAX_MISFIT, _BANDS, _SIGMAS = 0.25, 0.5, 5, 4.0
 # coherence of force and moment over the whole band beyond which they count as one
 _MAX_COHERENCE = 0.99
+# a spectrum has no local unknowns
 _NO_INITIAL_STATES = np.zeros((0, 0))
 
 
