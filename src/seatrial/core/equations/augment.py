@@ -53,7 +53,7 @@ def with_gusts(model: Model, states: Sequence[str], memory: float) -> Model:
     def write() -> ModelEquations:
         gusts = {s: _symbol(gust_name(s)) for s in states}
         rates = [b.bound_to(b.expression + gusts[b.name]) if b.name in gusts else b for b in model.equations.rates]
-        rates += [Binding.of(str(g), -g / _symbol(GUST_MEMORY), _SOURCE) for g in gusts.values()]
+        rates += [Binding.from_expression(str(g), -g / _symbol(GUST_MEMORY), _SOURCE) for g in gusts.values()]
         return _extended(model, "gusts", rates, new=(GUST_MEMORY,))
 
     return _augmented(model, ("gusts", *states), write, _time_constant(GUST_MEMORY, memory, "memory of gusts"))
@@ -69,8 +69,13 @@ def with_biases(model: Model, channels: Sequence[str]) -> Model:
     def write() -> ModelEquations:
         import sympy as sp
 
-        rates = [*model.equations.rates, *(Binding.of(bias_name(c), sp.Float(0.0), _SOURCE) for c in channels)]
-        outputs = [Binding.of(biased_name(c), _symbol(c) + _symbol(bias_name(c)), _SOURCE) for c in channels]
+        rates = [
+            *model.equations.rates,
+            *(Binding.from_expression(bias_name(c), sp.Float(0.0), _SOURCE) for c in channels),
+        ]
+        outputs = [
+            Binding.from_expression(biased_name(c), _symbol(c) + _symbol(bias_name(c)), _SOURCE) for c in channels
+        ]
         return _extended(model, "biases", rates, outputs)
 
     return _augmented(model, ("biases", *channels), write)
@@ -87,7 +92,7 @@ def with_lags(model: Model, channels: Sequence[str], lag: float) -> Model:
 
     def write() -> ModelEquations:
         late = [(lagged_name(c), (_symbol(c) - _symbol(lagged_name(c))) / _symbol(SENSOR_LAG)) for c in channels]
-        followers = [Binding.of(name, rate, _SOURCE) for name, rate in late]
+        followers = [Binding.from_expression(name, rate, _SOURCE) for name, rate in late]
         return _extended(model, "lags", [*model.equations.rates, *followers], new=(SENSOR_LAG,))
 
     return _augmented(model, ("lags", *channels), write, _time_constant(SENSOR_LAG, lag, "lag of sensors"))
@@ -105,16 +110,18 @@ def _time_constant(name: str, value: float, meaning: str) -> Parameter:
 
 
 def _extended(
-    model: Model, what: str, rates: Sequence[Binding], outputs: Sequence[Binding] = (), new: tuple[str, ...] = ()
+    model: Model, addition: str, rates: Sequence[Binding], outputs: Sequence[Binding] = (), new: tuple[str, ...] = ()
 ) -> ModelEquations:
     """The equations with these rates, more outputs and new parameters."""
     old, names = model.equations, [b.name for b in (*rates, *outputs)]
     present = {*old.parameters, *old.input_names, *(b.name for b in old.bindings)}
     clash = sorted(present & {*names, *new})
     if clash or len(set(names)) < len(names):
-        raise InputError(f"model '{model.name}' has a '{(clash or sorted(names))[0]}' already and cannot take {what}")
+        raise InputError(
+            f"model '{model.name}' has a '{(clash or sorted(names))[0]}' already and cannot take {addition}"
+        )
     return replace(
-        old, name=f"{old.name} with {what}", rates=tuple(rates), bindings=(*old.bindings, *outputs),
+        old, name=f"{old.name} with {addition}", rates=tuple(rates), bindings=(*old.bindings, *outputs),
         outputs=(*old.outputs, *(b.name for b in outputs)), parameters=(*old.parameters, *new),
     )  # fmt: skip
 

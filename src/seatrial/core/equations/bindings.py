@@ -30,7 +30,7 @@ class Binding:
     unit: str = "1"
 
     @classmethod
-    def of(cls, name: str, expression: "sp.Expr", source: str = "", unit: str = "1") -> Self:
+    def from_expression(cls, name: str, expression: "sp.Expr", source: str = "", unit: str = "1") -> Self:
         """Return the binding of a name to a SymPy expression."""
         import sympy as sp
 
@@ -38,7 +38,7 @@ class Binding:
 
     def bound_to(self, expression: "sp.Expr") -> Self:
         """Return the same name, source and unit with another expression."""
-        return replace(self, text=type(self).of(self.name, expression).text)
+        return replace(self, text=type(self).from_expression(self.name, expression).text)
 
     @cached_property
     def expression(self) -> "sp.Expr":

@@ -102,7 +102,7 @@ def _tangent_lines(
         local[b.name] = _local_partials(lines, b)
     pattern = []
     for row, b in enumerate(wanted):
-        output = Binding.of(f"out{row}", sp.Symbol(b.name, real=True) if b.name in local else b.expression)
+        output = Binding.from_expression(f"out{row}", sp.Symbol(b.name, real=True) if b.name in local else b.expression)
         lines.assign(f"out[{row}]", output.expression)
         slopes = _adjoint_row(lines, row, _local_partials(lines, output), needed, local)
         for column, z in enumerate(base):

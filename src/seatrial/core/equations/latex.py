@@ -48,20 +48,20 @@ def latex_symbols(model: Model) -> dict[str, str]:
 
 def latex_equations(model: Model) -> list[LatexEquation]:
     """Return all bindings in order, then all rates."""
-    known = latex_symbols(model)
+    symbol_texts = latex_symbols(model)
     rates = model.equations.rates
-    key = (model.equation_hash, sorted(known.items()))
-    printed = stored("latex", key, lambda: _printed((*model.bindings, *rates), known))
-    names = [*(known[b.name] for b in model.bindings), *(f"\\dot{{{known[b.name]}}}" for b in rates)]
+    key = (model.equation_hash, sorted(symbol_texts.items()))
+    printed = stored("latex", key, lambda: _printed((*model.bindings, *rates), symbol_texts))
+    names = [*(symbol_texts[b.name] for b in model.bindings), *(f"\\dot{{{symbol_texts[b.name]}}}" for b in rates)]
     return [
         LatexEquation(b.name, f"{name} = {right}", b.source, b.unit, i >= len(model.bindings))
         for i, (b, name, right) in enumerate(zip((*model.bindings, *rates), names, printed, strict=True))
     ]
 
 
-def _printed(bindings: Sequence[Binding], known: Mapping[str, str]) -> list[str]:
+def _printed(bindings: Sequence[Binding], symbol_texts: Mapping[str, str]) -> list[str]:
     """The right-hand sides."""
     import sympy as sp
 
-    names = {sp.Symbol(name, real=True): text for name, text in known.items()}
+    names = {sp.Symbol(name, real=True): text for name, text in symbol_texts.items()}
     return [sp.latex(b.expression, symbol_names=names, fold_short_frac=False) for b in bindings]

@@ -97,7 +97,7 @@ class Sheet:
         """Name an expression of states, inputs, parameters and earlier bindings; returns its symbol."""
         symbol = self._declare(name)
         self._check(sp.sympify(expression), f"binding '{name}'")
-        self._bindings.append(Binding.of(name, sp.sympify(expression), source, unit))
+        self._bindings.append(Binding.from_expression(name, sp.sympify(expression), source, unit))
         return symbol
 
     def rate(self, state: sp.Symbol, expression: sp.Expr | float, source: str = "") -> None:
@@ -125,7 +125,9 @@ class Sheet:
         absent = [s for s in self._states if s not in self._rates]
         if absent:
             raise InputError(f"model '{self.name}': no rate given for state '{absent[0]}'")
-        rates = tuple(Binding.of(s, self._rates[s].expression, self._rates[s].source) for s in self._states)
+        rates = tuple(
+            Binding.from_expression(s, self._rates[s].expression, self._rates[s].source) for s in self._states
+        )
         parameters = Parameters(tuple(self._parameters))
         equations = ModelEquations(
             self.name,

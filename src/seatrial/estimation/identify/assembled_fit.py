@@ -31,14 +31,14 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
     trial, runs = task.trial, task.runs
     predicted = _predictions(task, selected)
     estimation = with_model_spread(selected.estimation, selected.tied)
-    known = _identifiability(task, estimation)
+    assessment = _identifiability(task, estimation)
     free = estimation.estimate.problem.free
     return Fit(
         question=trial.question
         or f"Which {trial.model.name} model explains these records, and how well does it predict?",
         ship=trial.ship,
         model=estimation.model,
-        coefficients=fit_result.coefficients(estimation, trial.truth, known.profiles),
+        coefficients=fit_result.coefficients(estimation, trial.truth, assessment.profiles),
         covariance=estimation.interval.covariance[: len(free), : len(free)],
         solution=estimation.estimate.optimum.solution,
         method=fit_result.method(estimation),
@@ -48,13 +48,13 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         predictions=predicted.predictions,
         findings=(
             *task.findings, *selected.findings, *findings, *fit_result.unidentified(task.estimation),
-            *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation), *_profile_findings(task, known),
+            *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation), *_profile_findings(task, assessment),
         ),
         records=tuple(r.record for r in task.records),
         seed=task.options.seed,
         elapsed_s=time.perf_counter() - task.began,
         versions=versions(),
-        identifiability=known,
+        identifiability=assessment,
         noise_model=estimation.noise_model,
         candidate_models=selected.candidates,
         interval_basis=predicted.interval_basis,
@@ -78,13 +78,15 @@ def _predictions(task: Identification, selected: SelectedModel) -> RunPrediction
 def _identifiability(task: Identification, estimation: Estimation) -> Identifiability:
     """Return what the records determine, with profile likelihoods where these are required."""
     approach = approach_condition(task.runs.records, estimation.model)
-    known = identifiability(estimation, task.symmetries, approach, task.runs.length)
+    assessment = identifiability(estimation, task.symmetries, approach, task.runs.length)
     if task.options.intervals is not IntervalMethod.PROFILE:
-        return known
+        return assessment
     estimate, free = estimation.estimate, estimation.estimate.problem.free
-    return replace(known, profiles=profiles(estimate, estimation.interval.standard_error, free, task.report_progress))
+    return replace(
+        assessment, profiles=profiles(estimate, estimation.interval.standard_error, free, task.report_progress)
+    )
 
 
-def _profile_findings(task: Identification, known: Identifiability) -> tuple[Finding, ...]:
-    is_missing = task.options.intervals is IntervalMethod.PROFILE and not known.profiles
+def _profile_findings(task: Identification, assessment: Identifiability) -> tuple[Finding, ...]:
+    is_missing = task.options.intervals is IntervalMethod.PROFILE and not assessment.profiles
     return (fit_result.NO_PROFILE,) if is_missing else ()

@@ -1,0 +1,67 @@
+"""The source as syntax trees, for the tests that hold it to its conventions."""
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+REPOSITORY = Path(__file__).parents[2]
+SOURCE = REPOSITORY / "src"
+PACKAGES = ("seatrial", "seatrial_studies")
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+@dataclass(frozen=True)
+class SourceFile:
+    """A Python file of the packages: its path, its text and its syntax tree."""
+
+    path: Path
+    text: str
+    tree: ast.Module
+
+    @property
+    def folder(self) -> str:
+        """Return the subpackage with slashes, such as ``core/values``; empty at the top of a package."""
+        return "/".join(self.path.relative_to(SOURCE).parts[1:-1])
+
+    def place(self, node: ast.stmt | ast.expr | ast.arg) -> str:
+        """Return where a node stands, as ``core/values/record.py:12``."""
+        return f"{self.path.relative_to(SOURCE)}:{node.lineno}"
+
+
+@cache
+def source_files(package: str) -> tuple[SourceFile, ...]:
+    """Return every Python file of a package, parsed, ordered by path."""
+    return tuple(parsed(path) for path in sorted((SOURCE / package).rglob("*.py")))
+
+
+def parsed(path: Path) -> SourceFile:
+    """Return one file with its syntax tree."""
+    text = path.read_text(encoding="utf-8")
+    return SourceFile(path, text, ast.parse(text))
+
+
+def functions(tree: ast.AST) -> Iterator[Function]:
+    """Yield every function and method in a tree."""
+    return (node for node in ast.walk(tree) if isinstance(node, Function))
+
+
+def parameters(function: Function) -> Iterator[ast.arg]:
+    """Yield the named parameters of a function."""
+    arguments = function.args
+    yield from (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)
+
+
+def used_names(tree: ast.AST) -> set[str]:
+    """Return every name, attribute and imported name that occurs in a tree."""
+    names: set[str] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name):
+            names.add(node.id)
+        elif isinstance(node, ast.Attribute):
+            names.add(node.attr)
+        elif isinstance(node, ast.alias):
+            names.add(node.name.rpartition(".")[2])
+    return names
