@@ -65,8 +65,8 @@ def test_it_writes_its_files_and_prints_what_they_say(
     ]
     said = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in said[1:5]] == ["designed", "prbs:35:10", "zigzag:20/20", "turning-circle:35"]
-    assert said[2].endswith("1 ship lost") and said[4].endswith("leaves the limits")
-    assert "39 of 40 fits of simulated trials succeed: worst error over them 10 %, 9 % foretold" in said
+    assert said[2].endswith("1 ship diverged") and said[4].endswith("leaves the limits")
+    assert "39 of 40 fits of simulated trials succeed: worst error over them 10 %, 9 % predicted" in said
     assert any("and 12 more orders" in line for line in said)
     printed, stored = (json.loads(path.read_text()) for path in (tmp_path / "d.json", out / "design.json"))
     assert printed["orders"] == stored["orders"] and printed["designed"].items() <= stored["designed"].items()

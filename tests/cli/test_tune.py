@@ -47,7 +47,7 @@ def test_it_writes_six_files_and_prints_what_they_say(
     assert table["chosen"]["gains"] == tuning.chosen.gains
     said = capsys.readouterr().out
     assert all(reason in said for reason in tuning.reasons)
-    rows = {line[:20].strip(): line for line in reversed(said.splitlines())}
+    rows = {line.partition("  ")[0]: line for line in reversed(said.splitlines())}
     assert rows["chosen"].split()[1:3] == ["74.0", "2.1"]
     assert rows["least roll"].endswith("20 % allowed")
     assert "schedule of 18 conditions" in said and "0.9800 of a grid's hypervolume" in said
@@ -93,7 +93,7 @@ def test_margins_that_nothing_limits_are_said_so(capsys: pytest.CaptureFixture) 
     tuning = fabricated_fin()
     free = replace(tuning.chosen, gain_margin=np.inf, phase_margin=np.inf, delay_margin=np.inf)
     print_tuning(replace(tuning, chosen=free))
-    assert "gain margin any, phase margin any, delay margin any" in capsys.readouterr().out
+    assert "gain margin unlimited, phase margin unlimited, delay margin unlimited" in capsys.readouterr().out
 
 
 def test_a_search_that_refuses_leaves_nothing_behind(

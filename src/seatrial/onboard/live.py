@@ -7,9 +7,10 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Protocol, Self, TextIO
 
 from seatrial.core.results.online import SampleCounts, Snapshot
+from seatrial.core.text.plain import ascii_text
 from seatrial.core.text.words import printable
 from seatrial.onboard.history import History, RecentHistory
-from seatrial.onboard.log_lines import ascii_text, log_line
+from seatrial.onboard.log_lines import log_line
 from seatrial.onboard.table import TableContent, render_table
 
 if TYPE_CHECKING:

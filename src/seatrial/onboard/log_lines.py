@@ -1,15 +1,13 @@
 """One snapshot as one line of plain text, for log files and for terminals that cannot draw."""
 
 from seatrial.core.results.online import SampleCounts, Snapshot
-from seatrial.core.text.numbers import MINUS, THIN_SPACE
+from seatrial.core.text.plain import ascii_text
 from seatrial.core.text.words import counted, enumeration, printable
 from seatrial.onboard.snapshot_text import change_sentence as change_words
 from seatrial.onboard.snapshot_text import estimate_rows, fault_counts, time_text
 
-_ASCII = str.maketrans({MINUS: "-", THIN_SPACE: "", "–": "-", "²": "^2", "³": "^3", "×": "x", "…": "...", "·": "?"})
 # coefficients named in a line at most
 MAX_NAMES = 8
-_SUPERSCRIPTS = dict(zip("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789", strict=True))
 
 
 def log_line(snapshot: Snapshot, counts: SampleCounts) -> str:
@@ -25,12 +23,3 @@ def log_line(snapshot: Snapshot, counts: SampleCounts) -> str:
     parts += [", ".join(wrong)] if wrong else []
     parts += [change_words(snapshot.change)]
     return ascii_text(" | ".join(part for part in parts if part))
-
-
-def ascii_text(text: str) -> str:
-    """Return the text without typographic signs: - for a minus, 10^5 for a power of ten."""
-    letters = []
-    for before, letter in zip(" " + text, text, strict=False):
-        is_first = letter in _SUPERSCRIPTS and before not in _SUPERSCRIPTS
-        letters.append(("^" if is_first else "") + _SUPERSCRIPTS.get(letter, letter))
-    return "".join(letters).translate(_ASCII)

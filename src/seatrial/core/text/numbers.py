@@ -13,7 +13,7 @@ LARGEST_ROUNDED = 1e4
 LARGEST_SHARE = 9.99
 # p-value below which only the bound is written
 SMALLEST_P = 0.001
-_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+SUPERSCRIPTS = dict(zip("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹", strict=True))
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ def interval(lower: float | None, upper: float | None, decimals: int) -> str:
 
 def raised(number: int) -> str:
     """Return a whole number in superscript: ``⁻⁵``."""
-    return str(number).translate(_SUPERSCRIPTS)
+    return "".join(SUPERSCRIPTS[sign] for sign in str(number))
 
 
 def power_of_ten(power: int) -> str:
