@@ -94,10 +94,10 @@ def shortfall(task: TuningTask, loop: TransferLoop, gains: Array, *, draws: int 
 def simulate_tracking(
     ship: TrimmedShip, loop: TransferLoop, gains: Array, limits: ActuatorLimits, dt: float, reference: Array
 ) -> tuple[Array, Array]:
-    """Output and actuator (n,), notation's signs, of a ship that follows a reference (n,) about her trim.
+    """Output and actuator (n,), notation's signs, of a ship that follows a reference (n,) about its trim.
 
     Raises:
-        DivergedError: she runs away.
+        DivergedError: the simulation diverges.
     """
     model = ship.model
     place, of = model.states.index(ship.output), model.input_names.index(ship.actuator)

@@ -105,11 +105,11 @@ def youla_bound(
     half, whole = (least_variance(loop, sea, held.rate, Ms, n) for n in (sections // 2, sections))
     capped = f", Ms <= {Ms:.3g}" if math.isfinite(Ms) else ""
     if whole < NEGLIGIBLE_SHARE * held.output:
-        told = "so much rate energy would cancel these waves altogether; the limit of the reference lies elsewhere."
+        detail = "so much rate energy would cancel these waves altogether; the limit of the reference lies elsewhere."
     else:
         changed = 100.0 * (1.0 - whole / half)
-        told = f"{2 * sections + 1} terms, of which the second half changed it by {changed:.0f} %."
-    note = f"However complicated, through the same sensor and servo, in this spectrum alone (Youla, convex): {told}"
+        detail = f"{2 * sections + 1} terms, of which the second half changed it by {changed:.0f} %."
+    note = f"However complicated, through the same sensor and servo, in this spectrum alone (Youla, convex): {detail}"
     at = f"equal rate energy of the actuator; {exposure.description}{capped}"
     return PerformanceBound("any linear controller", whole / held.output, at, note)
 

@@ -297,7 +297,7 @@ KIND = 'kind = "yu2014"'
         ([("[actuator]", "minimise = []\n[actuator]")], "unknown key 'controller.minimise'"),
         ([("[plant]", "minimise = []\n[plant]")], "minimise is an empty list"),
         ([("[plant]", 'minimise = "roll"\n[plant]')], "minimise = 'roll' is no list"),
-        ([("[plant]", 'minimise = ["roll", "fin", "output"]\n[plant]')], "the roll angle is asked for twice"),
+        ([("[plant]", 'minimise = ["roll", "fin", "output"]\n[plant]')], "the roll angle is named twice"),
         ([("[[seas]]", "[seas]")], "seas is one table where a list of them belongs; write it as [[seas]]"),
         ([('{ value = 25, unit = "deg/s" }', "25")], "actuator.rate = 25 is half a turn a second or more"),
         ([(ROLL, "den = [1.43242, 0.0, 1.0]")], "'fins to roll' swings undamped at 0.8355 rad/s"),

@@ -28,11 +28,11 @@ def loop_disturbances(
             "under [[slow_disturbances]]"
         )
     seas = (seaway(table, plant.U, hull, f"seas[{i}]") for i, table in enumerate(file.seas, start=1))
-    unrest = (
+    slow = (
         _slow_disturbance(table, plant, f"slow_disturbances[{i}]")
         for i, table in enumerate(file.slow_disturbances, start=1)
     )
-    return (*seas, *unrest)
+    return (*seas, *slow)
 
 
 def refuse_calm(

@@ -101,7 +101,7 @@ def _refuse_duplicates(tables: Sequence[ObjectiveTable], objectives: Sequence[Ob
     keys = [(made.name, aim.model_dump(exclude={"name"})) for aim, made in zip(tables, objectives, strict=True)]
     for i, key in enumerate(keys, start=1):
         if key in keys[: i - 1]:
-            raise InputError(f"minimise[{i}]: the {key[0]} is asked for twice; name it once")
+            raise InputError(f"minimise[{i}]: the {key[0]} is named twice; name it once")
 
 
 def _constraints(file: LoopFile, plant: LoopPlant) -> ControllerConstraints:
@@ -140,7 +140,7 @@ def _baselines(baselines: Mapping[str, Mapping[str, float]], loop: TransferLoop)
 
 
 def _simulation_settings(table: SimulationTable | None, seas: int, demand: Demand | None) -> SimulationSettings | None:
-    """The house's own for a stabiliser in a sea; none where a demand is followed or no seeds are wanted."""
+    """Return the default for a stabiliser in a sea; None where a demand is followed or no seeds are given."""
     if table is None:
         return SimulationSettings() if demand is None and seas else None
     if not table.seeds:
@@ -162,7 +162,7 @@ def _simulation_settings(table: SimulationTable | None, seas: int, demand: Deman
 
 
 def _demand(table: DemandTable, plant: LoopPlant) -> Demand:
-    """Without a time constant the ship's length over her speed; without a duration thirty time constants."""
+    """Without a time constant the ship's length over its speed; without a duration thirty time constants."""
     if plant.disturbed_by == "alpha_w":
         raise InputError("demand: a roll stabiliser follows no demand; leave the table out")
     unit = symbol_unit(plant.output)

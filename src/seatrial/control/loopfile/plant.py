@@ -187,4 +187,4 @@ def _trim_speed(ship: TrimmedShip, file: ModelFile) -> float:
         return float(model.parameters["U"].value)
     if file.approach.get("u", 0.0) > 0.0:
         return float(file.approach["u"])
-    raise InputError("key 'plant.speed' is missing, and the model file does not tell the ship's speed; add it")
+    raise InputError("key 'plant.speed' is missing, and the model file does not state the ship's speed; add it")

@@ -1,4 +1,4 @@
-"""Steady motion about which a model is linearised: a straight run, or rest; what drives her."""
+"""Steady motion about which a model is linearised: a straight run, or rest, with the propulsion that holds it."""
 
 from collections.abc import Mapping
 
@@ -18,7 +18,7 @@ _POSE = ("psi", "x0", "y0")
 def held_inputs_at_speed(
     model: Model, approach: Mapping[str, float], speed: float | None, given_inputs: Mapping[str, float] | None
 ) -> tuple[Model, Array]:
-    """The model and its held inputs in its own signs, with what drives her found where a speed is asked for."""
+    """The model and its held inputs in its own signs, with the propulsion solved for where a speed is required."""
     names, own = model.input_names, dict(given_inputs or {})
     known = {k: v for k, v in approach.items() if k in names and k != RUDDER and k not in ZERO_BY_DEFAULT} | own
     drives = [n for n in names if n != RUDDER and n not in ZERO_BY_DEFAULT and n != "u" and n != "omega_e"]
@@ -37,7 +37,7 @@ def held_inputs_at_speed(
         if abs(balanced - speed) > 1e-3 * speed:
             raise InputError(
                 f"model '{model.name}' runs at {balanced:.4g} m/s with these inputs, not at {speed:.4g} m/s; "
-                "give the speed or what drives her, not both"
+                "give the speed or the propulsion, not both"
             )
         return model, held
     held = held_inputs(model, known | {free[0]: known.get(free[0], 0.0)}, RUDDER)
@@ -71,7 +71,9 @@ def _balancing_input(model: Model, held: Array, name: str, speed: float) -> floa
     tried = np.geomspace(1e-3, 1e3, 121) * speed
     least = next((i for i, value in enumerate(tried) if surge(value) > 0.0), 0)
     if least == 0:
-        raise InputError(f"model '{model.name}' has no '{name}' that drives her at {speed:.4g} m/s; take another speed")
+        raise InputError(
+            f"model '{model.name}' has no '{name}' that drives the ship at {speed:.4g} m/s; take another speed"
+        )
     from scipy.optimize import brentq
 
     return float(brentq(surge, tried[least - 1], tried[least], xtol=1e-12))

@@ -76,10 +76,10 @@ def trim_ship(
 
 
 def with_parameters(ship: TrimmedShip, values: Mapping[str, float]) -> TrimmedShip:
-    """The same ship with other parameters, trimmed anew with what drives her held.
+    """Return the same ship with other parameters, trimmed anew with the propulsion held.
 
     Raises:
-        InputError: she has no such trim.
+        InputError: the ship has no such trim.
     """
     model, held = ship.model.with_values(values), ship.inputs.copy()
     if RUDDER in model.input_names:

@@ -139,7 +139,7 @@ class LinearOutputError:
 
     @cached_property
     def _last_evaluation(self) -> list[tuple[bytes, bytes, NormalEquations]]:
-        """The point whose cost was asked for last: a search that takes the step wants its slopes next."""
+        """The point whose cost was computed last: a search that takes the step needs its slopes next."""
         return []
 
     @cached_property

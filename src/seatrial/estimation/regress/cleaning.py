@@ -90,8 +90,8 @@ def without_small(record: Record, thresholds: Mapping[str, float]) -> Record:
             )
     # Song et al. 2025, eq. (8): |z_i| >= Lambda stays
     small = np.any([np.abs(record[symbol]) < threshold for symbol, threshold in thresholds.items()], axis=0)
-    told = ", ".join(f"|{symbol}| < {size:g} {record.channel(symbol).unit}" for symbol, size in thresholds.items())
-    return _keep_samples(record, ~small, f"small values, {told}")
+    limits = ", ".join(f"|{symbol}| < {size:g} {record.channel(symbol).unit}" for symbol, size in thresholds.items())
+    return _keep_samples(record, ~small, f"small values, {limits}")
 
 
 def standard_scores(values: Array) -> Array:
@@ -135,7 +135,7 @@ def _demand_channels(record: Record, channels: Sequence[str], step: str) -> None
 
 
 def _keep_samples(record: Record, mask: Mask, description: str) -> Record:
-    """The samples that stay, the step told in the provenance."""
+    """Return the samples that stay, with the step in the provenance."""
     gone = int(np.count_nonzero(~mask))
     if gone == len(record):
         raise InputError(

@@ -141,7 +141,7 @@ class Differenced:
 
 @dataclass(frozen=True)
 class Centred:
-    """Rows less their mean (Song et al. 2025, eq. (18)): a constant force can no longer be told."""
+    """Rows less their mean (Song et al. 2025, eq. (18)): a constant force is no longer identifiable."""
 
     inner: DerivativeOperator
 

@@ -88,8 +88,8 @@ def refuse_degenerate(system: RegressionSystem) -> None:
         share = np.abs(directions[-1])
         alike = [n for n, s in zip(system.names, share, strict=True) if s > _NAMED * share.max()]
         raise InputError(
-            f"the features of {', '.join(alike)} are collinear in these rows: record a manoeuvre that tells them "
-            "apart, or fix one of them under [model]"
+            f"the features of {', '.join(alike)} are collinear in these rows: record a manoeuvre that separates "
+            "them, or fix one of them under [model]"
         )
 
 

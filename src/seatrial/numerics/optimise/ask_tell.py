@@ -1,4 +1,4 @@
-"""The conversation of every population optimiser: it asks about points of a box and is told their fitness.
+"""The protocol of every population optimiser: `ask` gives points of a box, `tell` takes their fitness.
 
 A fitness is a number to be made small: half a sum of squares, a root mean square, a criterion. Infinity means that the
 model cannot be evaluated there; NaN is refused.
@@ -15,7 +15,7 @@ from seatrial.numerics.optimise.solution import Array, Solution, Status
 
 
 class SearchError(ValueError):
-    """What a search cannot be made with, in one sentence; rooms that know where it came from say so."""
+    """Input a search cannot run with, in one sentence; callers add where it came from."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +76,7 @@ class Optimiser(Protocol):
     """
 
     def ask(self) -> Array:
-        """Points to evaluate next, shape (n, d), inside the box; asked again, the same until told."""
+        """Points to evaluate next, shape (n, d), inside the box; the same until `tell` is called."""
         ...
 
     def tell(self, fitness: Array) -> None:

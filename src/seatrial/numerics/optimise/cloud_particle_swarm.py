@@ -52,7 +52,7 @@ class CloudSettings(SwarmSettings):
 
 
 class CloudParticleSwarm(ParticleSwarm):
-    """Meng et al. 2014, eqs. 4-6, mended where the print is lost.
+    """Meng et al. 2014, eqs. 4-6, completed where the print is illegible.
 
     Eq. 4 prints no inertia weight though eq. 6 sets it: it multiplies the velocity. Of eq. 6 only the constants are
     left; its form is that of the normal cloud in their reference to Wei et al. 2009. Which particles mutate, and with

@@ -31,7 +31,7 @@ class Population(ABC):
     """An optimiser that moves a population inside a box; one ask and one tell make an iteration.
 
     A kind says where the points go (`_propose`), what it makes of their fitness (`_learn`), and its best point; one of
-    several objectives also what it refuses to be told (`_refuse`). The first population counts as the first of the
+    several objectives also which values it refuses (`_refuse`). The first population counts as the first of the
     `iterations`.
     """
 
@@ -60,7 +60,7 @@ class Population(ABC):
         """The point that would be returned now, shape (d,), and its fitness; before the first tell infinite."""
 
     def ask(self) -> Array:
-        """Points to evaluate next, shape (n, d), the caller's own; asked again, the same until told."""
+        """Points to evaluate next, shape (n, d), a copy; the same until `tell` is called."""
         if self._pending_points is None:
             self._pending_points = np.clip(self._propose(), self.box.lower, self.box.upper)
         return self._pending_points.copy()
@@ -72,17 +72,17 @@ class Population(ABC):
             SearchError: nothing was asked; a fitness of another shape; NaN or minus infinity, naming the row.
         """
         if self._pending_points is None:
-            raise SearchError("A fitness was told before anything was asked; call ask() first.")
-        told = np.array(fitness, dtype=np.float64)
-        self._validate(self._pending_points, told)
-        self._learn(self._pending_points, told)
+            raise SearchError("A fitness was given before points were asked for; call ask() first.")
+        values = np.array(fitness, dtype=np.float64)
+        self._validate(self._pending_points, values)
+        self._learn(self._pending_points, values)
         self._pending_points = None
         point, value = self.best
         self._history.append(value)
         self._trace.append(point)
 
     def _validate(self, points: Array, values: Array) -> None:
-        """Raise SearchError where what was told about the points (n, d) cannot be a fitness (n,)."""
+        """Raise SearchError where the values given for the points (n, d) cannot be a fitness (n,)."""
         if values.shape != (len(points),):
             raise SearchError(f"A fitness for {len(points)} points has shape {values.shape}; give one number a point.")
         wrong = np.flatnonzero(np.isnan(values) | (values == -np.inf))
@@ -96,7 +96,7 @@ class Population(ABC):
 
     @property
     def iteration(self) -> int:
-        """Number of populations told so far: the index of the one at hand, from 0."""
+        """Number of populations evaluated so far: the index of the present one, from 0."""
         return len(self._history)
 
     @property

@@ -33,7 +33,7 @@ class GeneticSettings:
     Attributes:
         population: individuals, elite included.
         generations: populations evaluated, the first included.
-        objectives: numbers told about each point.
+        objectives: numbers given for each point.
         Pc: probability that a pair of parents crosses over.
         Pm: probability that a bit of a child flips.
         bits: length of one unknown's code; not printed, ours.
@@ -79,7 +79,7 @@ class NonDominatedSet:
 class RandomWeightGenetic(Population):
     """Binary codes bred for the inverse of a weighted sum of objectives, the weights drawn anew every generation.
 
-    It is told a matrix (n, m) of objectives to be made small, none below zero; a row with infinity cannot be, takes no
+    `tell` takes a matrix (n, m) of objectives to be minimised, none below zero; a row with infinity takes no
     part in normalisers and is never chosen while another row can. Parents are drawn by roulette with linear scaling
     over the whole population (yu2014 prints a sum over 3), pairs cross over at one point of the whole code, bits flip;
     the best of each objective are added to the next population as they are.
@@ -99,7 +99,7 @@ class RandomWeightGenetic(Population):
 
     @property
     def generation(self) -> int:
-        """Number of generations told so far."""
+        """Number of generations evaluated so far."""
         return self.iteration
 
     @property

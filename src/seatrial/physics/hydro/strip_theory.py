@@ -34,7 +34,7 @@ def excitation_at_speed(
     The diffraction of a section is proportional to omega omega_e there, so that at rest is taken omega_e / omega
     times, and the moment gains -U / (i omega_e) F3_D = i U / omega F3_D. With `coefficients_at_speed` a hull in
     a long wave then moves with it at any speed. Omega_e / omega times is exact for the part in phase with the water's
-    acceleration; a part in phase with its velocity should not be scaled, but cannot be told apart in a total.
+    acceleration; a part in phase with its velocity should not be scaled, but cannot be separated in a total.
 
     Raises:
         InputError: shapes do not agree or a frequency is not positive.

@@ -45,9 +45,8 @@ from seatrial.physics.loops.python_control import (
     open_loop_transfer_function as open_loop_transfer_function,
 )
 from seatrial.physics.loops.state_space import (
-    StateSpace as StateSpace,
+    controllable_form as controllable_form,
     plant_model as plant_model,
-    state_space as state_space,
 )
 from seatrial.physics.loops.structures import (
     FREQUENCIES_AND_DAMPINGS as FREQUENCIES_AND_DAMPINGS,

@@ -1,7 +1,7 @@
 """Loops that follow a demand, gains and bounds from the plant: heading by rudder, speed by propulsion, pitch by fin.
 
 Start values place poles (Fossen 2021, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., section 15.3)
-on the plant of first or second order that has the same frequency response at the natural frequency asked for, so that
+on the plant of first or second order that has the same frequency response at the required natural frequency, so that
 they hold for any plant and are the textbook's own for a Nomoto ship. Bounds are the same at other frequencies.
 """
 
@@ -72,7 +72,7 @@ def speed_loop(
     actuator: str = "n",
     disturbance_input: str = "",
 ) -> TransferLoop:
-    """PI on the speed error, from u to what drives her (propeller rate or jet velocity, its SI unit).
+    """PI on the speed error, from u to the propulsion input (propeller rate or jet velocity, its SI unit).
 
     Raises:
         InputError: the plant has no pole off the origin.

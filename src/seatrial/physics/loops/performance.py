@@ -81,7 +81,7 @@ class Performance:
         return tuple(np.ascontiguousarray(part) for part in (seen.real, seen.imag, wide.real, wide.imag))  # type: ignore[return-value]
 
     def evaluate(self, gains: Array, *, with_Ms: bool = True) -> LoopEvaluation:
-        """Loops with the gains (m, g); without the peak, `peak` tells only whether a loop is stable (zero).
+        """Loops with the gains (m, g); without the peak, `peak` only states whether a loop is stable (zero).
 
         Raises:
             InputError: there is not one gain for each term.

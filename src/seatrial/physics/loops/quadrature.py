@@ -1,4 +1,4 @@
-"""Sums that stand for integrals: trapezoids with mended ends, and many nodes gathered on few."""
+"""Quadrature: trapezoids with corrected ends, and many nodes condensed on few."""
 
 from itertools import pairwise
 

@@ -29,7 +29,7 @@ class Steering:
         slew_rate: rad/s.
         dt: step of the simulation [s].
         approach: s before the first execute.
-        characteristic_time: L/U0 [s], the time in which the ship travels her own length.
+        characteristic_time: L/U0 [s], the time in which the ship travels its length.
     """
 
     psi: int

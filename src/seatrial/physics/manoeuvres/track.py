@@ -1,4 +1,4 @@
-"""Track and speed of a record: where the ship was, how fast, and when her heading had changed by so much."""
+"""Track and speed of a record: position, speed, and the time at which the heading has changed by an angle."""
 
 from dataclasses import dataclass
 

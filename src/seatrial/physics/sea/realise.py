@@ -171,7 +171,7 @@ def refuse_above_nyquist(components: WaveComponents, dt: float) -> None:
 def refuse_short_record(components: WaveComponents, duration: float) -> None:
     """Refuse a record that does not last one period of its longest wave, as met.
 
-    In following seas shorter waves may run along with the ship for any time; they are not asked for.
+    In following seas shorter waves may run along with the ship for any time; no record can be required to hold them.
 
     Raises:
         InputError: how long it would have to be.

@@ -137,7 +137,7 @@ class Spectrum:
 
 
 def ittc(height: float) -> Spectrum:
-    """One-parameter ITTC spectrum: A = 8.1e-3 g^2, B = 3.11 / h13^2 (Qi et al. 2025, eq. 13, its h^-3 mended).
+    """One-parameter ITTC spectrum: A = 8.1e-3 g^2, B = 3.11 / h13^2 (Qi et al. 2025, eq. 13, its h^-3 corrected).
 
     Raises:
         InputError: the significant height [m] is not positive.

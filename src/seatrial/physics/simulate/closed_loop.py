@@ -1,4 +1,4 @@
-"""A loop in time: its controller, exact in steps, before any model of the house, with what an actuator cannot do."""
+"""A loop in time: an exactly discretised controller on any model, with the limits of its actuator."""
 
 import math
 from dataclasses import dataclass, field, replace

@@ -47,7 +47,7 @@ class Forcing:
             raise InputError(f"forcing with a sample interval of {self.dt} s; give a positive one")
         bad = np.flatnonzero(~np.isfinite(self.inputs).all(axis=1))
         if bad.size:
-            raise InputError(f"forcing is not finite in row {bad[0]}; mend the gap before simulating")
+            raise InputError(f"forcing is not finite in row {bad[0]}; fill the gap before simulating")
 
     @property
     def samples(self) -> int:
