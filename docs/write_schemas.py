@@ -34,14 +34,18 @@ def schema_texts() -> Iterator[tuple[Path, str]]:
 def page_text(page: str) -> str:
     """Return the page with its generated part, between two comments, written anew."""
     tables: dict[str, str] = {}
+    words: dict[str, str] = {}
     for name, kind in RESULTS.items():
         schema = document_schema(kind)
         tables.setdefault(kind.__name__, f"### {name}.json\n\n{_table(schema)}")
         for title, entry in schema.get("$defs", {}).items():
             if entry.get("properties"):
                 tables.setdefault(title, f"### {title}\n\n{_table(entry)}")
+            else:
+                words[title] = _kind(entry)
+    text = re.sub(r"\[(\w+)\]\(#\w+\)", lambda link: words.get(link[1], link[0]), "\n".join(tables.values()))
     parts = re.split(r"(<!-- (?:written|end of what is written) by write_schemas\.py -->\n)", page)
-    return "".join([parts[0], parts[1], "\n" + "\n".join(tables.values()), *parts[3:]])
+    return "".join([parts[0], parts[1], "\n" + text, *parts[3:]])
 
 
 def _table(schema: JsonSchema) -> str:

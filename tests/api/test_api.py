@@ -1,4 +1,4 @@
-"""The verbs as functions: what each hands over."""
+"""The commands as functions: what each returns, and what it refuses."""
 
 from pathlib import Path
 

@@ -87,7 +87,7 @@ class Tuning(Summarised):
         return self.solution.status.value
 
     def plot(self) -> "Figure":
-        """Draw the front with the controllers compared, or |S| and |T| where there is one objective, by Matplotlib.
+        """Draw the front with the controllers compared, or the magnitudes of S and T where there is one objective.
 
         Raises:
             InputError: neither a front nor a loop is known.

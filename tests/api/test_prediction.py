@@ -1,0 +1,61 @@
+"""A simulated run goes back in as a record: simulated again, predicted, written and read."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import seatrial as st
+from seatrial.data.folder.model_file import ModelFile
+
+JET = {"v_j": 1.866}  # jet velocity of the example's trials, m/s
+
+
+@pytest.fixture(scope="module")
+def craft(repository: Path) -> ModelFile:
+    """The waterjet craft of the examples, with its particulars."""
+    trial = st.load_trial(repository / "examples" / "waterjet.toml")
+    return ModelFile(trial.model, ship=trial.ship)
+
+
+@pytest.fixture(scope="module")
+def zigzag(craft: ModelFile) -> st.Record:
+    """A simulated zigzag."""
+    return st.simulate(craft, "zigzag:20/20", inputs=JET)
+
+
+def test_the_inputs_of_a_record_give_the_record_again(craft: ModelFile, zigzag: st.Record) -> None:
+    again = st.simulate(craft, zigzag)
+    np.testing.assert_allclose(again["psi"], zigzag["psi"], atol=1e-6)
+    assert again.kind == "simulated"
+
+
+def test_a_model_alone_simulates_what_its_model_file_does(craft: ModelFile, zigzag: st.Record) -> None:
+    alone = st.simulate(craft.model, "zigzag:20/20", inputs=JET)
+    assert alone["psi"].tobytes() == zigzag["psi"].tobytes()
+
+
+def test_a_prediction_compares_a_run_with_its_measurement(craft: ModelFile, zigzag: st.Record) -> None:
+    prediction = st.predict(craft, zigzag)
+    assert prediction.rms["psi_deg"] < 1e-4
+    overshoot = prediction.measures["overshoot_1_deg"]
+    assert overshoot.measured == pytest.approx(overshoot.simulated, rel=1e-3)
+    assert st.predict(craft.model, zigzag).measures == {}, "no length of the ship, no measures"
+
+
+def test_a_worse_model_predicts_worse(craft: ModelFile, zigzag: st.Record) -> None:
+    other = craft.model.with_values({"N_r": 1.2 * craft.model.parameters["N_r"].value})
+    assert st.predict(other, zigzag).rms["psi_deg"] > 1.0
+
+
+def test_a_record_survives_being_written_and_read(zigzag: st.Record, tmp_path: Path) -> None:
+    restored = st.read_record(st.write_record(zigzag, tmp_path / "zigzag.csv"))
+    assert restored.metadata == zigzag.metadata
+    assert restored.matrix(("u", "psi", "delta")).tobytes() == zigzag.matrix(("u", "psi", "delta")).tobytes()
+
+
+def test_a_file_of_another_program_is_read_by_its_layout(tmp_path: Path) -> None:
+    (tmp_path / "log.txt").write_text("t;kn\n0,0;10,0\n0,5;10,0\n")
+    columns = (st.ColumnSpec("u", "kn", "kn"),)
+    layout = st.Layout("text", st.ColumnSpec("time", "t", "s"), columns, separator=";", decimal=",")
+    np.testing.assert_allclose(st.read_record(tmp_path / "log.txt", layout)["u"], 10.0 * 1852.0 / 3600.0)
