@@ -34,7 +34,7 @@ PHASES = {
     ),
     "estimate": (("seatrial.estimation.estimate.fit", "estimate_model"),),
     "predict": (("seatrial.estimation.predict.predict_runs", "predict_runs"),),
-    "report": (("seatrial.reporting.page", "write_report"),),
+    "report": (("seatrial.reporting.page", "html"),),
 }
 
 

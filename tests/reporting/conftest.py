@@ -8,8 +8,7 @@ from tests.reporting.fabricated import fabricated_fit
 from tests.reporting.fabricated_study import fabricated_study
 
 from seatrial.core.results import Fit, Study
-from seatrial.reporting import write_report
-from seatrial.reporting.study import write_study
+from seatrial.reporting.pages import report_page
 
 
 @pytest.fixture(scope="session")
@@ -21,7 +20,9 @@ def fit() -> Fit:
 @pytest.fixture(scope="session")
 def page(fit: Fit, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Its report."""
-    return write_report(fit, tmp_path_factory.mktemp("report") / "report.html")
+    path = tmp_path_factory.mktemp("report") / "report.html"
+    path.write_text(report_page(fit), encoding="utf-8")
+    return path
 
 
 @pytest.fixture(scope="session")
@@ -33,4 +34,6 @@ def study(fit: Fit) -> Study:
 @pytest.fixture(scope="session")
 def study_page(study: Study, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Its page."""
-    return write_study(study, tmp_path_factory.mktemp("study") / "study.html")
+    path = tmp_path_factory.mktemp("study") / "study.html"
+    path.write_text(report_page(study), encoding="utf-8")
+    return path

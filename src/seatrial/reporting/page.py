@@ -1,7 +1,6 @@
 """The page of a fit: one self-contained HTML file with style and figures; nothing is fetched or fitted."""
 
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from markupsafe import Markup
@@ -13,7 +12,6 @@ from seatrial.core.results.fit_charts import coefficients_chart
 from seatrial.core.text.numbers import duration, significant
 from seatrial.core.text.words import common_prefix
 from seatrial.core.values.arrays import correlation_matrix
-from seatrial.core.values.files import write_atomically
 from seatrial.reporting import (
     baselines,
     identifiability_chapter,
@@ -50,16 +48,6 @@ TITLES = {
     "fixed": "Fixed values and priors",
     "method": "Method and provenance",
 }
-
-
-def write_report(fit: Fit, path: Path) -> Path:
-    """Write the fit's page atomically and return its path.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
-    write_atomically(path, html(fit).encode())
-    return path
 
 
 def html(fit: Fit) -> str:

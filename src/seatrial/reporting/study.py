@@ -1,7 +1,6 @@
 """The page of a study: claims with verdicts, checks with limits, tables, figures, runs; nothing is computed."""
 
 from dataclasses import dataclass
-from pathlib import Path
 
 from markupsafe import Markup
 
@@ -9,7 +8,6 @@ from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Check, Study, Verdict
 from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import counted
-from seatrial.core.values.files import write_atomically
 from seatrial.reporting import runs, tables
 from seatrial.reporting.figures.study_figures import study_chart
 from seatrial.reporting.page import environment
@@ -37,16 +35,6 @@ class CheckRow:
     value: str
     limit: str
     holds: bool
-
-
-def write_study(study: Study, path: Path) -> Path:
-    """Write the study's page atomically and return its path.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
-    write_atomically(path, html(study).encode())
-    return path
 
 
 def html(study: Study) -> str:

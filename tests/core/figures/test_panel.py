@@ -31,10 +31,6 @@ def test_names_that_do_not_fit_side_by_side_are_turned_and_take_more_room() -> N
     assert replace(long, has_frame=False).depth() == 0.0
 
 
-def test_an_axis_without_labels_has_no_name() -> None:
-    assert Axis((0.0, 1.0), "t [s]").without_labels() == Axis((0.0, 1.0), has_labels=False)
-
-
 def test_tiles_fill_the_page_row_by_row_without_overlap() -> None:
     first, second, third = tiles(3, 2, 100.0, start=64.0, left=50.0, right=10.0, gap=20.0, top=5.0)
     assert (first.left, first.top, third.top) == (114.0, 5.0, 125.0)

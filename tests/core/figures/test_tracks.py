@@ -43,7 +43,3 @@ def test_slender_tracks_become_strips() -> None:
 def test_a_ship_heading_east_points_east() -> None:
     outline = hull_outline(0.0, 0.0, np.pi / 2, 10.0)
     assert np.isclose(outline[:, 1].max(), 5.0) and np.abs(outline[:, 0]).max() < 1.0
-
-
-def test_a_track_without_positions_is_known_as_such() -> None:
-    assert SQUARE.is_finite and not Track(np.full(2, np.nan), np.zeros(2), None, STROKE).is_finite

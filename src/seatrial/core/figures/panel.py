@@ -1,7 +1,7 @@
 """Axes, and panels: a pair of axes in a box with marks."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -47,10 +47,6 @@ class Axis:
         if self.ticks is not None:
             return self.ticks
         return (decade_ticks if self.is_logarithmic else linear_ticks)(*self.ends, self.tick_count)
-
-    def without_labels(self) -> "Axis":
-        """Return the axis without texts at its ticks and without name."""
-        return replace(self, has_labels=False, name="")
 
 
 def row_axis(names: Sequence[str], *, has_grid: bool = False) -> Axis:

@@ -36,11 +36,6 @@ class Track:
     half_north: Array | None = None
     half_east: Array | None = None
 
-    @property
-    def is_finite(self) -> bool:
-        """Whether any position is known."""
-        return bool(np.isfinite(self.north + self.east).any())
-
 
 def extents(tracks: Sequence[Track]) -> tuple[float, float]:
     """Return the largest extent of any track to the north and to the east [m]."""
