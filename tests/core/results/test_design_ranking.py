@@ -1,13 +1,12 @@
-"""Standard manoeuvres are ranked by the criterion of the design, those within its limits first."""
+"""Manoeuvres compared: the criterion's error, the limits, the order of the standard ones."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.reporting.fabricated_design import LIMITS, fabricated_design
+from tests.reporting.fabricated_design import fabricated_design
 
-from seatrial.core.results import Design
+from seatrial.core.results import Design, TrialLimits
 from seatrial.core.results.design_ranking import (
     best_baseline,
     count_outside_limits,
@@ -21,42 +20,44 @@ from seatrial.core.results.design_ranking import (
 
 @pytest.fixture(scope="module")
 def design() -> Design:
-    """Three standard manoeuvres: prbs beats zigzag, the turning circle leaves the limits, prbs loses a drawn ship."""
     return fabricated_design()
 
 
-def test_the_smaller_error_comes_first_and_what_leaves_the_limits_last(design: Design) -> None:
-    errors = [criterion_error(manoeuvre, "worst") for manoeuvre in design.baselines]
-    assert errors[1] < errors[0] < errors[2] and not is_within_limits(design.baselines[2], LIMITS)
-    zigzag, prbs, turn = design.baselines
-    assert ranked_baselines(design) == (prbs, zigzag, turn)
-    assert best_baseline(design) is prbs
+def test_the_criterion_chooses_the_error(design: Design) -> None:
+    error = design.designed.relative_error
+    assert criterion_error(design.designed, "worst") == error.max()
+    assert criterion_error(design.designed, "mean") == pytest.approx(np.sqrt(np.mean(error**2)))
+
+
+@pytest.mark.parametrize("criterion", ["worst", "mean"])
+def test_a_drawn_ship_that_diverges_has_no_error(design: Design, criterion: str) -> None:
+    lost = next(m for m in design.baselines if m.diverged)
+    errors = sampled_criterion_errors(lost, criterion)
+    assert sum(np.isnan(errors)) == lost.diverged == 1
+    assert lost.worst_sampled_error == np.nanmax(lost.sampled_relative_error)
+
+
+def test_without_drawn_ships_there_is_no_worst(design: Design) -> None:
+    alone = replace(design.designed, sampled_relative_error=np.empty((0, len(design.coefficients))))
+    assert np.isnan(alone.worst_sampled_error) and alone.diverged == 0
+
+
+def test_manoeuvres_within_the_limits_come_first(design: Design) -> None:
+    ranked = ranked_baselines(design)
+    within = [is_within_limits(m, design.limits) for m in ranked]
+    assert within == sorted(within, reverse=True) and not all(within)
+    errors = [m.worst for m, inside in zip(ranked, within, strict=True) if inside]
+    assert errors == sorted(errors) and best_baseline(design) is ranked[0]
     assert best_baseline(replace(design, baselines=())) is None
 
 
-def test_mean_and_worst_look_at_different_errors(design: Design) -> None:
-    (manoeuvre,) = design.baselines[:1]
-    assert criterion_error(manoeuvre, "mean") == manoeuvre.mean <= manoeuvre.worst
-    worst, mean = (sampled_criterion_errors(manoeuvre, criterion) for criterion in ("worst", "mean"))
-    assert all(m <= w for m, w in zip(mean, worst, strict=True))
-    np.testing.assert_allclose(worst, manoeuvre.sampled_relative_error.max(axis=1))
+def test_limits_may_bind_every_drawn_ship(design: Design) -> None:
+    far = replace(design.designed, sampled_drift=np.array([0.1, 0.9]), sampled_distance=np.array([10.0, 10.0]))
+    limits = TrialLimits(drift=0.5, sea_room=1e6)
+    assert count_outside_limits(far, limits) == 1
+    assert is_within_limits(far, limits) and not is_within_limits(far, replace(limits, for_every_ship=True))
 
 
-def test_a_drawn_ship_that_diverges_is_counted_and_left_out(design: Design) -> None:
-    _, manoeuvre, _ = design.baselines
-    assert manoeuvre.diverged == 1 and math.isfinite(manoeuvre.worst_sampled_error)
-    lost = replace(manoeuvre, sampled_relative_error=np.full((2, 3), np.nan))
-    assert math.isnan(lost.worst_sampled_error) and lost.diverged == 2
-
-
-def test_drawn_ships_bind_only_where_the_limits_are_for_every_ship(design: Design) -> None:
-    (manoeuvre,) = design.baselines[:1]
-    wide = replace(manoeuvre, sampled_drift=np.array([0.0, 2.0 * LIMITS.drift]), sampled_distance=np.zeros(2))
-    assert count_outside_limits(wide, LIMITS) == 1
-    assert is_within_limits(wide, replace(LIMITS, for_every_ship=False))
-    assert not is_within_limits(wide, replace(LIMITS, for_every_ship=True))
-
-
-def test_a_design_without_positions_has_no_track(design: Design) -> None:
+def test_a_manoeuvre_that_stays_in_place_has_no_track(design: Design) -> None:
     assert has_track(design)
     assert not has_track(replace(design, designed=replace(design.designed, distance=0.0)))
