@@ -1,4 +1,4 @@
-"""The result folder: everything a report shows comes back; it is whole or it is not there."""
+"""Folders of results: everything a report shows comes back; all files are written or none."""
 
 import json
 import math

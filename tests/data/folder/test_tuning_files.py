@@ -44,8 +44,8 @@ def written(tmp_path: Path, text: str) -> Path:
 
 def test_gains_come_back_to_the_last_bit(tuning: Tuning, tmp_path: Path) -> None:
     uneven = {name: value / 3.0 for name, value in tuning.chosen.gains.items()}
-    told = replace(tuning, chosen=replace(tuning.chosen, gains=uneven))
-    assert read_gains(written(tmp_path, gains_toml(told))) == uneven
+    changed = replace(tuning, chosen=replace(tuning.chosen, gains=uneven))
+    assert read_gains(written(tmp_path, gains_toml(changed))) == uneven
 
 
 def test_gains_stand_beside_what_they_keep(fin: Tuning) -> None:
@@ -64,7 +64,7 @@ def test_what_is_unlimited_is_left_out() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("gains = 3", "has no table \\[gains\\]"),
         ("[gains]", "has no table \\[gains\\]"),
@@ -74,8 +74,8 @@ def test_what_is_unlimited_is_left_out() -> None:
         ("KP : 3", "is no TOML"),
     ],
 )
-def test_a_file_without_gains_is_refused(text: str, told: str, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=told):
+def test_a_file_without_gains_is_refused(text: str, message: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=message):
         read_gains(written(tmp_path, text))
 
 

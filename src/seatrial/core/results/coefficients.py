@@ -62,7 +62,7 @@ class Method:
 
 @dataclass(frozen=True)
 class CandidateModel:
-    """One model of the declared family, scored over whole runs left out."""
+    """One model of the declared family, scored over complete runs left out."""
 
     name: Annotated[str, Field(description="structure, prior and segment length")]
     free_count: Annotated[int, Field(description="number of free coefficients")]
@@ -75,5 +75,5 @@ class CandidateModel:
     note: Annotated[str, Field(description="why it failed; empty where it did not")] = ""
     roll_deg: Annotated[
         Number | None,
-        Field(description="rms over whole runs left out, degrees; null: no ship that rolls about rest"),
+        Field(description="rms over complete runs left out, degrees; null: no ship that rolls about rest"),
     ] = None

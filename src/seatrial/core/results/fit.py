@@ -49,7 +49,8 @@ class Fit(Summarised):
     identifiability: Annotated[Identifiability | None, Field(description="null: not examined")] = None
     noise_model: Annotated[NoiseModel | None, Field(description="null: not examined")] = None
     candidate_models: Annotated[
-        tuple[CandidateModel, ...], Field(description="models compared over whole runs left out; empty: none declared")
+        tuple[CandidateModel, ...],
+        Field(description="models compared over complete runs left out; empty: none declared"),
     ] = ()
     interval_basis: Annotated[IntervalBasis | None, Field(exclude=True)] = None
     seakeeping: Annotated[

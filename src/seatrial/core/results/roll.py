@@ -35,7 +35,7 @@ class RollCharacteristics:
     gyradius_source: Annotated[str, Field(description="where the gyradius comes from")]
     metacentric_height: Annotated[
         IntervalEstimate | None,
-        Field(description="m; its range is the coefficients' interval and the whole range of the gyradius"),
+        Field(description="m; its range is the coefficients' interval and the full range of the gyradius"),
     ]
     amplitude: Annotated[tuple[Number, ...], Field(description="rad, up to the largest recorded")]
     damping: Annotated[tuple[Number, ...], Field(description="1/s, equivalent linear damping b_e over amplitude")]
