@@ -12,9 +12,11 @@ def read_json_lines(path: Path, layout: Layout) -> RawTable:  # noqa: ARG001
     """Return the columns of the file as it holds them; units, frames and signs are the layout's concern.
 
     Raises:
-        InputError: a line is no JSON object, or lacks a key of the first line.
+        InputError: the file is empty, a line is no JSON object, or it lacks a key of the first line.
     """
     rows = [_row(path, number, line) for number, line in enumerate(path.read_text("utf-8").splitlines(), 1)]
+    if not rows:
+        raise InputError(f"{path.name} is empty; leave it out or replace it")
     names = tuple(rows[0])
     for number, row in enumerate(rows, 1):
         if missing := [name for name in names if name not in row]:

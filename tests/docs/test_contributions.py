@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from tests.estimation.regress.linear import zigzags
 
+from seatrial import testing
 from seatrial.core.results import Verdict
 from seatrial.core.values import InputError
 from seatrial.data import read
@@ -91,3 +92,12 @@ def test_the_study_confirms_its_claim_and_has_a_page() -> None:
     assert [claim.verdict for claim in study.claims] == [Verdict.CONFIRMED]
     assert all(check.holds for check in study.checks) and study.seed == 3 and len(lines) == 1
     assert study.claims[0].claim in html(study)
+
+
+def test_the_files_to_copy_conform(layout: Layout, tmp_path: Path) -> None:
+    sample = tmp_path / "log.jsonl"
+    rows = [{"t": 0.5 * k, "speed": 10.0 + 0.1 * k} for k in range(20)]
+    sample.write_text("\n".join(map(json.dumps, rows)), encoding="utf-8")
+    testing.check_reader(loaded("json_lines_reader").read_json_lines, sample, layout)
+    testing.check_model(model_from_file(FOLDER / "yaw_model.py"))
+    testing.check_estimator(loaded("least_deviations_estimator").LeastDeviations(5.0))
