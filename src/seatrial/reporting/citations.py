@@ -19,7 +19,7 @@ class Citations:
         self._publications: dict[str, str] = {}
 
     def mark(self, text: str) -> Markup:
-        """The text, escaped, with ``[k]`` in place of every publication in it."""
+        """Return the text, escaped, with ``[k]`` in place of every publication in it."""
         parts, at = [], 0
         for match in _CITATION.finditer(text):
             parts.append(html.escape(text[at : match.start()]))
@@ -36,7 +36,7 @@ class Citations:
         )
 
     def entries(self) -> list[Markup]:
-        """The publications in order, DOIs as links."""
+        """Return the publications in order, DOIs as links."""
         linked = r'<a href="https://doi.org/\1">doi:\1</a>'
         return [Markup(_DOI.sub(linked, html.escape(text.replace("-", "\u2013") if "doi" not in text else text)))
                 for text in self._publications.values()]  # fmt: skip

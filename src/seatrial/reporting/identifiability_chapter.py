@@ -23,14 +23,12 @@ from seatrial.core.values import display_unit
 from seatrial.core.values.channel_text import channel_meaning, channel_unit, unit_text
 from seatrial.reporting.figures.directions import direction_chart, sensitivity_chart
 from seatrial.reporting.figures.profile_likelihoods import profile_chart
-from seatrial.reporting.tables import assumption
+from seatrial.reporting.tables import WHITENESS_P, assumption
 
 # relative standard deviation up to which a combination is well determined, and up to which poorly
 WELL_DETERMINED, POORLY_DETERMINED = 0.1, 1.0
 # variance inflation from which on coefficients are collinear (Marquardt 1970)
 MIN_VARIANCE_INFLATION = 10.0
-# significance level of the whiteness test
-WHITENESS_P = 0.01
 # entries of each kind that are shown unfolded
 MAX_SHIFTS, MAX_TEXTS, MAX_ROWS, MAX_DIRECTIONS, MAX_BARS = 5, 5, 10, 16, 20
 

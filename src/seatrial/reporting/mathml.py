@@ -30,7 +30,7 @@ Pieces = list[str]
 
 
 def pieces(latex: str) -> Pieces:
-    """The formula as MathML elements between which a line may break; unreadable LaTeX as plain text."""
+    """Return the formula as MathML elements between which a line may break; unreadable LaTeX as plain text."""
     try:
         return [f'<math displaystyle="true">{piece}</math>' for piece in _Reader(latex).row(lambda _: False)]
     except (IndexError, StopIteration):
@@ -38,7 +38,7 @@ def pieces(latex: str) -> Pieces:
 
 
 def inline(latex: str) -> str:
-    """The formula as one MathML element."""
+    """Return the formula as one MathML element."""
     return "".join(pieces(latex)).replace('</math><math displaystyle="true">', "")
 
 
@@ -90,7 +90,7 @@ class _Reader:
         return pieces_so_far
 
     def scripted(self) -> Pieces:
-        """An atom with what hangs on it: primes, exponents, indices."""
+        """Return an atom with its primes, exponents, indices."""
         base = self.atom()
         primes, upper, lower = "", "", ""
         while self.position < len(self.tokens) and self.tokens[self.position] in ("^", "_", "'"):
@@ -111,7 +111,7 @@ class _Reader:
         return [f"<msup>{body}{upper}</msup>" if upper else f"<msub>{body}{lower}</msub>" if lower else body]
 
     def argument(self) -> Pieces:
-        """The next group in braces, or the next atom."""
+        """Return the next group in braces, or the next atom."""
         while self.tokens[self.position].isspace():
             self.position += 1
         return self.atom()
@@ -162,7 +162,7 @@ class _Reader:
         self.position += 1
 
     def word(self) -> str:
-        """The letters of the next group, as they stand."""
+        """Return the letters of the next group, as they stand."""
         self.position += 1
         start = self.position
         while self.tokens[self.position] != "}":
@@ -172,7 +172,7 @@ class _Reader:
         return html.escape("".join(letters)).replace("\\", "")
 
     def fenced(self) -> Pieces:
-        r"""From after \left to after \right and its fence."""
+        r"""Read from after \left to after \right and its fence."""
         opening = self.fence()
         inner = self.row(lambda t: t == r"\right")
         self.expect(r"\right")
@@ -187,7 +187,7 @@ class _Reader:
         return f'<mo stretchy="true" fence="true">{text}</mo>' if text else ""
 
     def cases(self) -> Pieces:
-        r"""A table of rows ended by \\ and columns by &, from after \begin to after \end{…}."""
+        r"""Read a table of rows ended by \\ and columns by &, from after \begin to after \end{…}."""
         self.word()
         rows, cells = [], []
         while True:

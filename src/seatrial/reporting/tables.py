@@ -9,7 +9,7 @@ from seatrial.core.equations import Model
 from seatrial.core.equations.latex import LatexEquation, latex_symbol
 from seatrial.core.equations.latex import latex_equations as latex_equations
 from seatrial.core.results import Coefficient, Fit, Method, Noise, Offset
-from seatrial.core.text.numbers import DASH, EstimateText, estimate_text, exact, significant
+from seatrial.core.text.numbers import DASH, EstimateText, estimate_text, exact, p_value, significant
 from seatrial.core.text.numbers import fixed as decimals
 from seatrial.core.values import Finding, Severity, display_unit
 from seatrial.core.values.channel_text import channel_meaning, unit_text
@@ -17,6 +17,9 @@ from seatrial.reporting.citations import Citations
 from seatrial.reporting.mathml import inline, pieces
 
 _SEVERITIES = (Severity.ERROR, Severity.WARNING, Severity.INFO)
+# significance level of the whiteness test
+WHITENESS_P = 0.01
+# findings of a group that are shown unfolded
 MAX_UNFOLDED = 3
 
 
@@ -64,7 +67,7 @@ class EquationList:
 
 
 def coefficient_symbol(c: Coefficient) -> Markup:
-    """The coefficient as MathML."""
+    """Return the coefficient as MathML."""
     return Markup(inline(c.latex or latex_symbol(c.name)))
 
 
@@ -73,7 +76,7 @@ def _display_value(value: float | None, unit: str) -> float | None:
 
 
 def coefficients(items: Sequence[Coefficient]) -> list[FitCoefficientRow]:
-    """The free coefficients."""
+    """Return a row for each free coefficient."""
     return [_coefficient_row(c) for c in items if not c.fixed]
 
 
@@ -103,7 +106,7 @@ def _prior_text(c: Coefficient) -> str:
 
 
 def assumption(c: Coefficient) -> str:
-    """What is assumed of a coefficient: its fixed value or its prior, with the source; empty where nothing is."""
+    """Return what is assumed of a coefficient, its fixed value or its prior with the source; empty for nothing."""
     unit = unit_text(c.unit)
     if c.fixed:
         value = f"{c.name} = {exact(_display_value(c.estimate, c.unit))} {unit}".rstrip()
@@ -114,7 +117,7 @@ def assumption(c: Coefficient) -> str:
 
 
 def finding_groups(items: Sequence[Finding]) -> list[FindingGroup]:
-    """Grouped by code and advice, the serious first."""
+    """Return findings grouped by code and advice, the most severe first."""
     groups: dict[tuple[int, str, str], list[Finding]] = {}
     for f in items:
         groups.setdefault((_SEVERITIES.index(f.severity), f.code, f.advice), []).append(f)
@@ -126,7 +129,7 @@ def finding_groups(items: Sequence[Finding]) -> list[FindingGroup]:
 
 
 def equations(model: Model, citations: Citations) -> EquationList:
-    """Every line of the model."""
+    """Return every equation of the model."""
     lines = latex_equations(model)
     rates = tuple(_equation_row(e, citations) for e in lines if e.is_rate)
     return EquationList(rates, tuple(_equation_row(e, citations) for e in lines if not e.is_rate))
@@ -142,7 +145,7 @@ def _equation_unit(unit: str, *, is_rate: bool) -> str:
 
 
 def records(fit: Fit) -> list[dict[str, str]]:
-    """Every record: role, duration, samples, rate, channels, where it comes from."""
+    """Return every record: role, duration, samples, rate, channels, where it comes from."""
     held = {p.record for p in fit.validation}
     return [
         {
@@ -161,7 +164,7 @@ def records(fit: Fit) -> list[dict[str, str]]:
 
 
 def noise(items: Sequence[Noise]) -> list[dict[str, str]]:
-    """Noise of each channel."""
+    """Return the noise of each channel."""
     return [
         {
             "channel": n.channel,
@@ -169,15 +172,15 @@ def noise(items: Sequence[Noise]) -> list[dict[str, str]]:
             "unit": unit_text(n.unit),
             "deviation": significant(_display_value(n.standard_deviation, n.unit), 3),
             "time": significant(n.correlation_time, 2),
-            "p": "< 0.001" if n.whiteness_p < 0.001 else decimals(n.whiteness_p, 3),
-            "verdict": "white" if n.whiteness_p >= 0.01 else "coloured",
+            "p": p_value(n.whiteness_p).removeprefix("p ").removeprefix("= "),
+            "verdict": "white" if n.whiteness_p >= WHITENESS_P else "coloured",
         }
         for n in items
     ]
 
 
 def offsets(items: Sequence[Offset]) -> dict[str, object]:
-    """Groups as rows, offsets as columns: `header` of name and unit, `rows` of group and texts."""
+    """Return groups as rows and offsets as columns: `header` of name and unit, `rows` of group and texts."""
     names = list(dict.fromkeys((o.name, o.unit) for o in items))
     cells = {(o.group, o.name): _offset_text(o) for o in items}
     groups = list(dict.fromkeys(o.group for o in items))
@@ -195,7 +198,7 @@ def _offset_text(o: Offset) -> tuple[str, str]:
 
 
 def fixed_parameters(items: Sequence[Coefficient], citations: Citations) -> list[dict[str, object]]:
-    """The fixed parameters grouped by source."""
+    """Return the fixed parameters grouped by source."""
     groups: dict[str, list[Coefficient]] = {}
     for c in items:
         if c.fixed:
@@ -219,7 +222,7 @@ def fixed_parameters(items: Sequence[Coefficient], citations: Citations) -> list
 
 
 def priors(items: Sequence[Coefficient], model: Model, citations: Citations) -> list[dict[str, object]]:
-    """Free coefficients with a prior: prior, estimate, its source and how much of its spread is left."""
+    """Return free coefficients with a prior: prior, estimate, source and the remaining share of the spread [%]."""
     rows = []
     for c in items:
         if c.fixed or c.prior_mean is None or not c.prior_standard_deviation:
@@ -235,5 +238,5 @@ def priors(items: Sequence[Coefficient], model: Model, citations: Citations) -> 
 
 
 def settings(method: Method) -> list[tuple[str, str]]:
-    """Settings as text."""
+    """Return settings as text."""
     return [(name, value if isinstance(value, str) else exact(value)) for name, value in method.settings.items()]

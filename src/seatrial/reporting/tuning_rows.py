@@ -57,7 +57,7 @@ def gain_texts(rows: Sequence[Mapping[str, float]], names: Sequence[str]) -> lis
 
 
 def rms_headings(tuning: Tuning) -> list[tuple[str, str]]:
-    """Names and units of the root mean squares."""
+    """Return names and units of the root mean squares."""
     names = (("output", tuning.output, ""), ("actuator", tuning.actuator, ""),
              ("actuator_rate", tuning.actuator, "/s"))  # fmt: skip
     words = {
@@ -69,7 +69,7 @@ def rms_headings(tuning: Tuning) -> list[tuple[str, str]]:
 
 
 def controller_rows(tuning: Tuning) -> list[ControllerRow]:
-    """The chosen controller, then its rivals."""
+    """Return the chosen controller, then the baselines."""
     controllers = (tuning.chosen, *tuning.baselines)
     gains = gain_texts([c.gains for c in controllers], gain_names(tuning))
     return [_controller_row(c, texts, tuning) for c, texts in zip(controllers, gains, strict=True)]

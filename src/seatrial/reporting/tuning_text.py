@@ -211,6 +211,6 @@ def settings(tuning: Tuning) -> list[tuple[str, str]]:
 
 
 def unit_label(symbol: str, per: str = "") -> str:
-    """Unit of a channel as people read it; `per`: ``/s`` for its rate."""
+    """Return the display unit of a channel; `per`: ``/s`` for its rate."""
     unit = channel_display_unit(symbol)[1]
     return (f"1{per}" if per else "") if unit == "1" else f"{unit}{per}"
