@@ -14,9 +14,9 @@ import sys
 from dataclasses import dataclass
 
 import numpy as np
+from cummins import RetardationFunctions, retardation_functions, simulate_cummins
+from hull_panels import solve_hull, wigley
 from measure import Line, at_least, machine
-from seatrial.physics.hydro.cummins import RetardationFunctions, retardation_functions, simulate_cummins
-from seatrial.physics.hydro.mesh import solve_hull, wigley
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Channel, InputError, Record, RecordKind, frozen
