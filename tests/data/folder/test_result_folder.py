@@ -156,6 +156,12 @@ def test_a_folder_of_an_earlier_version_is_refused_with_the_command_that_remakes
         load_fit(tmp_path)
 
 
+def test_a_study_of_an_earlier_version_names_no_format(tmp_path: Path) -> None:
+    (tmp_path / "study.json").write_text('{"study": "yu2014"}')
+    with pytest.raises(InputError, match=r"format 1, .* run 'seatrial reproduce STUDY --out "):
+        load_result(tmp_path)
+
+
 def test_a_fit_is_wanted_and_a_tuning_is_there(tmp_path: Path) -> None:
     save_result(fabricated_fin(), tmp_path)
     with pytest.raises(InputError, match="holds a tuning, no fit"):

@@ -138,8 +138,9 @@ def load_result(folder: str | Path, own_model: Model | None = None) -> Result:
     command = f"'{kind.command.replace('DIR', str(folder))}'"
     try:
         table = json.loads((folder / kind.document).read_text(encoding="utf-8"))
-        if table["format"] != FORMAT:
-            raise InputError(f"'{folder}' is of format {table['format']}, this version reads {FORMAT}; run {command}")
+        written_format = table.get("format", 1)  # studies of format 1 do not name it
+        if written_format != FORMAT:
+            raise InputError(f"'{folder}' is of format {written_format}, this version reads {FORMAT}; run {command}")
         arrays, fields = _companions(kind, folder, table["files"], own_model, command)
         return read_document(kind.result, table | fields, arrays)
     except OSError as error:
