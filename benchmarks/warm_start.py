@@ -34,7 +34,7 @@ PHASES = {
     ),
     "estimate": (("seatrial.estimation.estimate.fit", "estimate_model"),),
     "predict": (("seatrial.estimation.predict.predict_runs", "predict_runs"),),
-    "report": (("seatrial.reporting.page", "html"),),
+    "report": (("seatrial.reporting.pages", "report_page"),),
 }
 
 
@@ -79,13 +79,20 @@ class Stopwatch:
             with self.phase("import"):
                 module = plain(*arguments, **options)
             for (place, function), name in list(pending.items()):
-                contents = vars(sys.modules[place]) if place in sys.modules else {}
-                if function in contents:
-                    contents[function] = self.timed(name, contents[function])
+                original = vars(sys.modules[place]).get(function) if place in sys.modules else None
+                if original is not None:
+                    _replace_everywhere(function, original, self.timed(name, original))
                     del pending[place, function]
             return module
 
         builtins.__import__ = timed_import
+
+
+def _replace_everywhere(name: str, original: object, replacement: object) -> None:
+    """In every module of the package that holds the function: packages hand out what they export."""
+    for place, module in list(sys.modules.items()):
+        if place.startswith("seatrial") and vars(module).get(name) is original:
+            vars(module)[name] = replacement
 
 
 def measured(command: list[str]) -> None:

@@ -1,7 +1,5 @@
 """Intervals of coefficients at other levels than 95 %."""
 
-from scipy.special import ndtri, stdtrit
-
 from seatrial.core.results.coefficients import Coefficient
 from seatrial.core.values import InputError
 
@@ -28,5 +26,7 @@ def at_level(coefficient: Coefficient, level: float, degrees_of_freedom: float) 
 
 
 def _two_sided_quantile(level: float, degrees_of_freedom: float) -> float:
+    from scipy.special import ndtri, stdtrit  # here, as `check` imports this module and has no use for them
+
     probability = 0.5 * (1.0 + level)
     return float(ndtri(probability) if degrees_of_freedom == float("inf") else stdtrit(degrees_of_freedom, probability))
