@@ -24,24 +24,24 @@ LAG_STANDARD_ERRORS, LAG_SAMPLES = 4.0, 1.5
 
 def channel_findings(record: Record) -> tuple[Finding, ...]:
     """Dead, stuck and constant channels, and headings that wrap, of a record as it was read."""
-    found: list[Finding] = []
+    findings: list[Finding] = []
     wraps: dict[str, int] = {}
     for symbol, channel in record.channels.items():
         values = channel.values[np.isfinite(channel.values)]
         if values.size < 2:
             continue
         if np.ptp(values) == 0:
-            found.append(_constant_finding(record, symbol, float(values[0])))
+            findings.append(_constant_finding(record, symbol, float(values[0])))
         elif symbol in OUTPUT_CHANNELS:
-            found += _stuck_findings(record, symbol, channel.values)
+            findings += _stuck_findings(record, symbol, channel.values)
         if channel.unit == "rad" and symbol not in INPUT_CHANNELS:
             wraps[symbol] = int(np.sum(np.abs(np.diff(values)) > np.pi))
     wraps = {symbol: count for symbol, count in wraps.items() if count}
     if wraps:
         what = f"record '{record.name}': readings of {', '.join(wraps)} jump by a whole turn; they are unwrapped"
         evidence = ", ".join(f"{symbol} {count} times" for symbol, count in wraps.items())
-        found.append(Finding(Severity.INFO, "angle-wrap", what, evidence, "no action needed"))
-    return tuple(found)
+        findings.append(Finding(Severity.INFO, "angle-wrap", what, evidence, "no action needed"))
+    return tuple(findings)
 
 
 def _constant_finding(record: Record, symbol: str, value: float) -> Finding:
@@ -67,7 +67,7 @@ def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]
 
 def lag_findings(record: Record) -> tuple[Finding, ...]:
     """Lags of u, v behind the positions and of r behind the heading, of a clean, signed record as declared."""
-    found = []
+    findings = []
     for what, lag in (
         ("u, v lag behind the positions", velocity_lag(record)),
         ("r lags behind the heading", yaw_rate_lag(record)),
@@ -76,17 +76,17 @@ def lag_findings(record: Record) -> tuple[Finding, ...]:
             continue
         delay, error = lag
         if abs(delay) > LAG_SAMPLES * record.dt and abs(delay) > LAG_STANDARD_ERRORS * error:
-            said = what if delay > 0 else what.replace("lag behind", "lead").replace("lags behind", "leads")
-            found.append(
+            statement = what if delay > 0 else what.replace("lag behind", "lead").replace("lags behind", "leads")
+            findings.append(
                 Finding(
                     Severity.WARNING,
                     "lag",
-                    f"record '{record.name}': {said} by about {abs(delay):.2g} s",
+                    f"record '{record.name}': {statement} by about {abs(delay):.2g} s",
                     f"{abs(delay) / record.dt:.1f} samples, standard error {error:.2g} s",
                     "shift the channel, or estimate the delay as a nuisance",
                 )
             )
-    return tuple(found)
+    return tuple(findings)
 
 
 def velocity_lag(record: Record) -> tuple[float, float] | None:

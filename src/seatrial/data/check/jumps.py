@@ -74,9 +74,9 @@ def spike_rows(values: Array) -> RowIndices:
     floor = max(3.0 * float(np.quantile(sizes, 0.95)), 5.0 * float(moving.min()))
     both = np.minimum(sizes[:-1], sizes[1:])
     candidates = np.flatnonzero((steps[:-1] * steps[1:] < 0) & (both > floor))
-    found = []
+    spikes = []
     for c in candidates.tolist():
         before, after = sizes[max(0, c - NEIGHBOURS) : c], sizes[c + 2 : c + 2 + NEIGHBOURS]
         if both[c] > SPIKE_RATIO * max(before.max(initial=0.0), after.max(initial=0.0)):
-            found.append(c + 1)
-    return np.array(found, dtype=np.intp)
+            spikes.append(c + 1)
+    return np.array(spikes, dtype=np.intp)

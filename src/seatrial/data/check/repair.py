@@ -43,11 +43,11 @@ def interpolate_rows(channel: Channel, rows: RowIndices) -> Channel:
     """The channel with the given rows interpolated linearly (angles along the shorter arc)."""
     is_angle = channel.unit == "rad"
     smooth = unwrapped(channel.values) if is_angle else channel.values
-    known = np.setdiff1d(np.flatnonzero(np.isfinite(smooth)), rows)
+    finite = np.setdiff1d(np.flatnonzero(np.isfinite(smooth)), rows)
     values = np.array(channel.values)
-    values[rows] = np.interp(rows, known, smooth[known])
+    values[rows] = np.interp(rows, finite, smooth[finite])
     if is_angle:
-        left = known[np.clip(np.searchsorted(known, rows) - 1, 0, len(known) - 1)]
+        left = finite[np.clip(np.searchsorted(finite, rows) - 1, 0, len(finite) - 1)]
         values[rows] += channel.values[left] - smooth[left]
     return channel.with_values(values)
 
@@ -85,13 +85,13 @@ def _repair_position_jumps(record: Record) -> tuple[Record, tuple[Finding, ...]]
     """Positions held and caught up with are interpolated; jumps that stay are only reported."""
     if "x0" not in record or "y0" not in record:
         return record, ()
-    known = np.flatnonzero(np.isfinite(record["x0"]) & np.isfinite(record["y0"]))
-    if len(known) < 3:
+    finite = np.flatnonzero(np.isfinite(record["x0"]) & np.isfinite(record["y0"]))
+    if len(finite) < 3:
         return record, ()
-    jumps = track_jumps(record["x0"][known], record["y0"][known])
+    jumps = track_jumps(record["x0"][finite], record["y0"][finite])
     if jumps.rows.size == 0:
         return record, ()
-    held = known[jumps.held]
+    held = finite[jumps.held]
     largest = int(np.argmax(jumps.sizes))
     remaining = int(np.sum(~np.isin(jumps.rows - 1, jumps.held)))
     finding = Finding(
@@ -100,7 +100,7 @@ def _repair_position_jumps(record: Record) -> tuple[Record, tuple[Finding, ...]]
         f"record '{record.name}': the position jumps {_times_text(jumps.rows.size)}"
         + (f"; {held.size} samples it stood still before are interpolated" if held.size else "")
         + (f"; of the jumps {remaining} cannot be repaired and stay" if remaining else ""),
-        f"up to {jumps.sizes[largest]:.3g} m, at t = {record.time[known[jumps.rows[largest]]]:.6g} s",
+        f"up to {jumps.sizes[largest]:.3g} m, at t = {record.time[finite[jumps.rows[largest]]]:.6g} s",
         "weight positions robustly; split the run at a jump that stays" if remaining else "weight positions robustly",
     )
     if held.size == 0:
@@ -144,17 +144,17 @@ def _fill_short_gaps(record: Record) -> tuple[Record, tuple[Finding, ...]]:
 
 
 def _longest_complete_segment(record: Record) -> tuple[Record, tuple[Finding, ...]]:
-    whole = complete_segments(record)
-    if not whole:
+    segments = complete_segments(record)
+    if not segments:
         raise InputError(f"record '{record.name}': no sample has a value in every channel; leave out the emptiest one")
-    best = max(whole, key=len)
+    best = max(segments, key=len)
     if len(best) == len(record):
         return record, ()
     empty = {s: int(np.isnan(c.values).sum()) for s, c in record.channels.items() if np.isnan(c.values).any()}
     finding = Finding(
         Severity.WARNING,
         "empty-rows",
-        f"record '{record.name}' has long holes; of {len(whole)} complete parts the longest is kept",
+        f"record '{record.name}' has long holes; of {len(segments)} complete parts the longest is kept",
         f"t = {best.time[0]:.6g} to {best.time[-1]:.6g} s, {len(best)} of {len(record)} samples; empty cells: "
         + ", ".join(f"{s} {n}" for s, n in empty.items()),
         "split the file at the holes to use the other parts, or leave out the channel that is empty",

@@ -58,14 +58,14 @@ def _propeller_findings(record: Record) -> list[Finding]:
     if n.max() == 0 or turning.size == 0:
         return []
     first, last = int(turning[0]), int(turning[-1])
-    found = []
+    findings = []
     if first > 0:
         what = f"record '{record.name}': the propeller is stopped until t = {record.time[first]:.4g} s"
         advice = "cut the beginning, or use a model that covers rest"
-        found.append(Finding(Severity.INFO, "propeller-stopped", what, f"{first} samples", advice))
+        findings.append(Finding(Severity.INFO, "propeller-stopped", what, f"{first} samples", advice))
     rest = record.time[-1] - record.time[last]
     if rest >= MIN_COASTING_S:
         what = f"record '{record.name}': the ship coasts from t = {record.time[last]:.4g} s on, the propeller stopped"
         advice = "leave coasting out of turning measures; it carries information on resistance"
-        found.append(Finding(Severity.INFO, "coasting", what, f"{rest:.3g} s at the end", advice))
-    return found
+        findings.append(Finding(Severity.INFO, "coasting", what, f"{rest:.3g} s at the end", advice))
+    return findings

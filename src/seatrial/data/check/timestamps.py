@@ -128,13 +128,13 @@ def _fill_missing_stamps(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     if not missing.any():
         return record, ()
     rows = np.arange(len(record))
-    known = np.flatnonzero(~missing)
-    if known.size < 2:
+    stamped = np.flatnonzero(~missing)
+    if stamped.size < 2:
         raise InputError(f"record '{record.name}' has fewer than two time stamps; leave it out")
-    step = (record.time[known[-1]] - record.time[known[0]]) / (known[-1] - known[0])
-    time = np.interp(rows, known, record.time[known])
-    time[: known[0]] = record.time[known[0]] + step * (rows[: known[0]] - known[0])
-    time[known[-1] + 1 :] = record.time[known[-1]] + step * (rows[known[-1] + 1 :] - known[-1])
+    step = (record.time[stamped[-1]] - record.time[stamped[0]]) / (stamped[-1] - stamped[0])
+    time = np.interp(rows, stamped, record.time[stamped])
+    time[: stamped[0]] = record.time[stamped[0]] + step * (rows[: stamped[0]] - stamped[0])
+    time[stamped[-1] + 1 :] = record.time[stamped[-1]] + step * (rows[stamped[-1] + 1 :] - stamped[-1])
     finding = Finding(
         Severity.WARNING,
         "time-base",
@@ -166,11 +166,11 @@ def _without_duplicates(record: Record) -> tuple[Record, tuple[Finding, ...]]:
 
 def _time_base_findings(record: Record, grid: _Grid) -> tuple[Finding, ...]:
     steps = np.diff(record.time)
-    found = []
+    findings = []
     regular = np.delete(steps, grid.gaps)
     if regular.size and np.ptp(regular) > 1e-3 * grid.step:
         kind = f"{grid.repeated} repeated or rounded time stamps" if grid.repeated else "uneven time stamps"
-        found.append(
+        findings.append(
             Finding(
                 Severity.WARNING if grid.repeated or np.ptp(regular) > 0.5 * grid.step else Severity.INFO,
                 "time-base",
@@ -181,7 +181,7 @@ def _time_base_findings(record: Record, grid: _Grid) -> tuple[Finding, ...]:
         )
     if grid.gaps.size:
         longest = int(grid.gaps[np.argmax(steps[grid.gaps])])
-        found.append(
+        findings.append(
             Finding(
                 Severity.WARNING,
                 "time-gap",
@@ -191,4 +191,4 @@ def _time_base_findings(record: Record, grid: _Grid) -> tuple[Finding, ...]:
                 "short gaps are interpolated; split the run at long ones",
             )
         )
-    return tuple(found)
+    return tuple(findings)

@@ -28,15 +28,15 @@ def velocity_convention_findings(record: Record) -> tuple[Finding, ...]:
         return ()
     declared = motion.conventions[0]
     best = best_convention(motion)
-    own, reached = motion.misfit(declared), motion.misfit(best)
+    declared_misfit, reached = motion.misfit(declared), motion.misfit(best)
     if reached > ACCEPTABLE_MISFIT:
-        return (_no_convention_finding(record, own, reached),)
-    found = []
-    if best.changes and own > NEGLIGIBLE_MISFIT and own > CERTAIN_RATIO * reached:
-        found += _contradiction_findings(record, motion, best, own, reached)
-    elif best.changes and own > 0.1 and own > DOUBTFUL_RATIO * reached:
-        found.append(_doubtful_convention_finding(record, best, own, reached))
-    return (*found, *_speed_unit_findings(record, motion, best))
+        return (_no_convention_finding(record, declared_misfit, reached),)
+    findings = []
+    if best.changes and declared_misfit > NEGLIGIBLE_MISFIT and declared_misfit > CERTAIN_RATIO * reached:
+        findings += _contradiction_findings(record, motion, best, declared_misfit, reached)
+    elif best.changes and declared_misfit > 0.1 and declared_misfit > DOUBTFUL_RATIO * reached:
+        findings.append(_doubtful_convention_finding(record, best, declared_misfit, reached))
+    return (*findings, *_speed_unit_findings(record, motion, best))
 
 
 def best_convention(motion: RecordedMotion) -> VelocityConvention:
@@ -55,10 +55,10 @@ def _velocity_labels(record: Record) -> str:
 def _contradiction_findings(
     record: Record, motion: RecordedMotion, best: VelocityConvention, declared_misfit: float, best_misfit: float
 ) -> list[Finding]:
-    said: list[tuple[str, str, str]] = []
+    findings: list[tuple[str, str, str]] = []
     if best.frame != motion.frame:
         words = {"earth": "earth-fixed (north, east)", "body": "the ship's own (surge, sway)"}
-        said.append(
+        findings.append(
             (
                 "velocity-frame",
                 f"u, v ({_velocity_labels(record)}) are {words[best.frame]} velocities, not "
@@ -67,21 +67,21 @@ def _contradiction_findings(
             )
         )
     if best.v_sign < 0:
-        said.append(
+        findings.append(
             ("velocity-sign", "v has the opposite sign", f'declare positive = "{_opposite_direction(record)}" for v')
         )
     if best.psi_factor == -1.0:
-        said.append(("heading-sign", "psi turns the other way", "declare the opposite positive direction for psi"))
+        findings.append(("heading-sign", "psi turns the other way", "declare the opposite positive direction for psi"))
     elif best.psi_factor != 1.0:
         is_degrees = best.psi_factor < 1.0
         wrong, right = ("radians", "degrees") if is_degrees else ("degrees", "radians")
         unit = "deg" if is_degrees else "rad"
-        said.append(("angle-unit", f"psi is in {right}, not in {wrong}", f'declare unit = "{unit}" for psi'))
+        findings.append(("angle-unit", f"psi is in {right}, not in {wrong}", f'declare unit = "{unit}" for psi'))
     return [
         Finding(
             Severity.ERROR, code, f"record '{record.name}': {what}", _misfit_text(declared_misfit, best_misfit), advice
         )
-        for code, what, advice in said
+        for code, what, advice in findings
     ]
 
 

@@ -43,17 +43,17 @@ def _heading_consistency_findings(record: Record) -> list[Finding]:
     if turning is None:
         return []
     length = window_length(len(record))
-    found = []
+    findings = []
     for symbol, channel in record.channels.items():
         if channel.unit == "rad/s" and symbol != "r":
             factor, match = _regression_through_origin(smoothed(channel.values, length), turning)
             if abs(match) > MIN_CORRELATION and 0.9 < abs(factor) < 1.1:
-                found.append(_mislabelled_finding(record, symbol, factor, match))
+                findings.append(_mislabelled_finding(record, symbol, factor, match))
     if "r" not in record:
-        return found
+        return findings
     r = smoothed(record["r"], length)
     return [
-        *found,
+        *findings,
         *_yaw_rate_verdict(
             record, *_regression_through_origin(r, turning), trimmed_rms(r - turning) / trimmed_rms(turning), turning
         ),

@@ -62,14 +62,14 @@ def record_name(file: str) -> str:
 
 
 def _require_increasing_time(time: Array, table: RawTable, layout: Layout) -> None:
-    known = np.flatnonzero(np.isfinite(time))
-    if known.size < 2:
-        count = "no time stamp" if known.size == 0 else "one sample"
+    stamped = np.flatnonzero(np.isfinite(time))
+    if stamped.size < 2:
+        count = "no time stamp" if stamped.size == 0 else "one sample"
         raise InputError(f"{table.file} has {count} in {layout.time.display_name}; a record needs at least two")
-    back = np.flatnonzero(np.diff(time[known]) < 0)
+    back = np.flatnonzero(np.diff(time[stamped]) < 0)
     if back.size:
-        row = known[back[0] + 1]
+        row = stamped[back[0] + 1]
         raise InputError(
-            f"{table.file}: row {table.first_row + row}: time runs backwards from {time[known[back[0]]]:g} s "
+            f"{table.file}: row {table.first_row + row}: time runs backwards from {time[stamped[back[0]]]:g} s "
             f"to {time[row]:g} s; sort or split the file"
         )

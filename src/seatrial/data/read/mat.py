@@ -56,18 +56,18 @@ def _read_version_7(path: Path) -> dict[str, np.ndarray]:
         raise InputError(
             f"{path.name} is a MATLAB 7.3 file, which needs h5py; install it with: pip install 'seatrial[formats]'"
         ) from None
-    found: dict[str, np.ndarray] = {}
+    variables: dict[str, np.ndarray] = {}
 
     def visit(name: str, item: object) -> None:
         if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu" and not name.startswith("#"):
-            found[name.replace("/", ".")] = np.squeeze(np.asarray(item, dtype=float).T)
+            variables[name.replace("/", ".")] = np.squeeze(np.asarray(item, dtype=float).T)
 
     try:
         with h5py.File(path, "r") as file:
             file.visititems(visit)
     except OSError as error:
         raise InputError(f"{path.name} is not a readable MATLAB 7.3 file ({error})") from None
-    return found
+    return variables
 
 
 def _raw_table(file: str, variables: dict[str, np.ndarray], layout: Layout) -> RawTable:

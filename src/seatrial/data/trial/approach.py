@@ -26,12 +26,12 @@ def first_execution(record: Record) -> int:
 def approach_condition(records: Sequence[Record], model: Model) -> dict[str, float]:
     """Surge velocity and inputs other than rudder and wind: median over records of each one's approach."""
     symbols = ["u", *(name for name in model.input_names if name != "delta" and not name.startswith("wind"))]
-    found = {}
+    condition = {}
     for symbol in symbols:
         values = [_approach_value(r, symbol) for r in records if symbol in r]
         if values:
-            found[symbol] = float(np.median(values))
-    return found
+            condition[symbol] = float(np.median(values))
+    return condition
 
 
 def _approach_value(record: Record, symbol: str) -> float:

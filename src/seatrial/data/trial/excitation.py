@@ -39,11 +39,11 @@ def excitation_of(table: ExcitationTable | None, ship: Ship, model: Model, data_
 
 
 def _box_excitation(ship: Ship, model: Model) -> BoxHull:
-    known = {p.name: p.value for p in model.parameters} | dict(ship.particulars)
+    values = {p.name: p.value for p in model.parameters} | dict(ship.particulars)
     for name in _BOX_DIMENSIONS:
-        if name not in known:
+        if name not in values:
             raise InputError(f"[excitation] source = 'box' needs ship.{name}; add it")
-    L, B, T, c33, c35, c53, c55 = (known[name] for name in _BOX_DIMENSIONS)
+    L, B, T, c33, c35, c53, c55 = (values[name] for name in _BOX_DIMENSIONS)
     return BoxHull(L, B, T, c33, c35, c53, c55)
 
 

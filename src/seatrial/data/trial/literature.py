@@ -70,27 +70,27 @@ def _require_source_for_model(name: str, model: str) -> None:
         raise InputError(
             f"model.priors_from: unknown source '{name}'{spelling_hint(name, known)}; known: {', '.join(known)}"
         )
-    own = _FORMULA_MODEL if name in FORMULAS else parameter_set(name).model
-    if own != model:
+    source_model = _FORMULA_MODEL if name in FORMULAS else parameter_set(name).model
+    if source_model != model:
         raise InputError(
-            f"model.priors_from: '{name}' gives coefficients of model '{own}', in its prime system, not of '{model}'; "
-            f"choose '{own}', or write priors under [model.priors]"
+            f"model.priors_from: '{name}' gives coefficients of model '{source_model}', in its prime system, not of "
+            f"'{model}'; choose '{source_model}', or write priors under [model.priors]"
         )
 
 
 def prior_range_findings(names: Sequence[str], ship: Ship) -> tuple[Finding, ...]:
     """Warnings `prior-range` for formulas whose data did not hold ships of this form."""
-    made = []
+    findings = []
     for name in names:
         if name in FORMULAS:
             form = HullForm.from_ship(ship)
             estimate = FORMULAS[name](form, ship)
             if not estimate.valid:
-                own = f"C_b {form.C_b:.3g}, L/B {form.L / form.B:.3g}, B/d {form.B / form.d:.3g}"
-                made.append(Finding(
+                form_text = f"C_b {form.C_b:.3g}, L/B {form.L / form.B:.3g}, B/d {form.B / form.d:.3g}"
+                findings.append(Finding(
                     Severity.WARNING, "prior-range",
                     f"ship '{ship.name}' lies outside the range of '{name}' ({estimate.source})",
-                    f"{own}; fitted to {estimate.limits}",
+                    f"{form_text}; fitted to {estimate.limits}",
                     "widen prior_sd_percent, or take another source",
                 ))  # fmt: skip
-    return tuple(made)
+    return tuple(findings)

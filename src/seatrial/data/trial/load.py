@@ -61,15 +61,15 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
     try:
         ship = ship_of(file.ship)
         model = build_trial_model(file.model, ship, own_model)
-        known = set(NOTATION)
+        symbols = set(NOTATION)
         for number, block in enumerate(file.records, start=1):
-            _refuse_unknown_names(f"records[{number}].channels", list(block.channels), known)
+            _refuse_unknown_names(f"records[{number}].channels", list(block.channels), symbols)
         if file.follow is not None:
-            _refuse_unknown_names("follow.channels", list(file.follow.channels), known)
-        _refuse_unknown_names("noise", list(file.noise), known)
+            _refuse_unknown_names("follow.channels", list(file.follow.channels), symbols)
+        _refuse_unknown_names("noise", list(file.noise), symbols)
         _refuse_unknown_names("estimate.channels", list(file.estimate.channels), set(model.observables))
-        _refuse_unknown_names("estimate.offsets", list(file.estimate.offsets), known)
-        _refuse_unknown_names("estimate.gains", list(file.estimate.gains), known)
+        _refuse_unknown_names("estimate.offsets", list(file.estimate.offsets), symbols)
+        _refuse_unknown_names("estimate.gains", list(file.estimate.gains), symbols)
         _refuse_unknown_names("estimate.delays", list(file.estimate.delays), set(model.input_names))
         for structure, names in (file.family.structures if file.family else {}).items():
             _refuse_unknown_names(f"family.structures.'{structure}'", list(names), set(model.parameters.names))

@@ -62,11 +62,11 @@ def _fit_record(task: DesignTask, record: Record) -> Solution:
         task.model, cut_segments(task.model, [record], outputs, None), np.array(list(task.sensors.values())), workers=1
     )
     local = np.array([[task.initial_state[task.model.states.index(s)] for s in problem.starts]])
-    found = [
+    solutions = [
         levenberg_marquardt(problem, shared, local, negligible=NEGLIGIBLE_DECREASE).solution
         for shared in (*_weak_form_start(task, problem, record), problem.start())
     ]
-    return min(found, key=lambda solution: solution.value)
+    return min(solutions, key=lambda solution: solution.value)
 
 
 def _weak_form_start(task: DesignTask, problem: OutputError, record: Record) -> list[Array]:

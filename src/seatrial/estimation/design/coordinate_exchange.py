@@ -41,9 +41,9 @@ def coordinate_exchange(
 
 
 def _exchange_candidates(point: Array, coordinate: int) -> list[Array]:
-    made = []
+    candidates = []
     for to in np.unique(np.clip(point[coordinate] + MOVES, 0.0, 1.0)):
         if to != point[coordinate]:
-            made.append(point.copy())
-            made[-1][coordinate] = to
-    return made
+            candidates.append(point.copy())
+            candidates[-1][coordinate] = to
+    return candidates

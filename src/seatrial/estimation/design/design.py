@@ -49,21 +49,21 @@ def design(
     standard = standard_manoeuvres(bench)
     _refuse_impossible_limits(bench, standard)
     yardstick = DesignObjective.from_standards(bench, standard)
-    found = search_orders(yardstick, int(seeds[1]), report_progress, generations)
-    fine, orders = at_sensor_rate(bench), orders_at(task, found.solution.point)
-    made = input_series(task, orders, fine.dt)
-    planned = planned_record(task, made, fine.dt)
+    result = search_orders(yardstick, int(seeds[1]), report_progress, generations)
+    fine, orders = at_sensor_rate(bench), orders_at(task, result.solution.point)
+    inputs = input_series(task, orders, fine.dt)
+    planned = planned_record(task, inputs, fine.dt)
     report_progress("scoring at the sensors' rate")
-    designed = assess_manoeuvre("designed", fine, made, simulate_plan(task, planned, "designed"))
-    if not found.is_interrupted:
+    designed = assess_manoeuvre("designed", fine, inputs, simulate_plan(task, planned, "designed"))
+    if not result.is_interrupted:
         refuse_violated_limits(task, designed)
-    others = tuple(_evaluate_standard(fine, one) for one in standard)
-    tried, interrupted = None, found.is_interrupted
+    baselines = tuple(_evaluate_standard(fine, one) for one in standard)
+    tried, interrupted = None, result.is_interrupted
     if confirmation_runs and not interrupted:
         try:
             tried = confirm_design(
                 task,
-                made,
+                inputs,
                 planned,
                 draw_ships(task, int(seeds[2]), confirmation_runs - 1),
                 int(seeds[2]),
@@ -84,10 +84,10 @@ def design(
         criterion=task.request.criterion.value,
         relative_spread=relative_spread(task),
         designed=designed,
-        baselines=others,
+        baselines=baselines,
         orders=order_table(task, orders),
         plan=planned,
-        solution=found.solution,
+        solution=result.solution,
         confirmation=tried,
         findings=findings(task, designed, tried, is_interrupted=interrupted),
         seed=seed,
@@ -114,11 +114,11 @@ def _refuse_impossible_limits(evaluator: ManoeuvreEvaluator, standards: list[Sta
 
 
 def _evaluate_standard(evaluator: ManoeuvreEvaluator, standard: StandardManoeuvre) -> ManoeuvrePrecision:
-    made = standard.inputs_for(evaluator)
-    own = made[0] if made.ndim == 3 else made
+    inputs = standard.inputs_for(evaluator)
+    nominal_inputs = inputs[0] if inputs.ndim == 3 else inputs
     return assess_manoeuvre(
         standard.name,
         evaluator,
-        made,
-        simulate_plan(evaluator.task, planned_record(evaluator.task, own, evaluator.dt), standard.name),
+        inputs,
+        simulate_plan(evaluator.task, planned_record(evaluator.task, nominal_inputs, evaluator.dt), standard.name),
     )

@@ -42,14 +42,14 @@ def findings(
     task: DesignTask, designed: ManoeuvrePrecision, confirmation: Confirmation | None, *, is_interrupted: bool
 ) -> tuple[Finding, ...]:
     """Everything worth a warning, the gravest first."""
-    found = list[Finding]()
+    findings = list[Finding]()
     if is_interrupted:
-        found.append(_warning("interrupted", "the work was interrupted; this is the best so far",
+        findings.append(_warning("interrupted", "the work was interrupted; this is the best so far",
                               "let it finish for a better manoeuvre"))  # fmt: skip
         if not is_within_limits(designed, task.request.limits):
-            found.append(_warning("leaves-limits", "these orders leave the limits", "let the search finish"))
+            findings.append(_warning("leaves-limits", "these orders leave the limits", "let the search finish"))
     return (
-        *found,
+        *findings,
         *_unidentifiable(task, designed),
         *_limit_violations(task, designed),
         *_confirmation_findings(designed, confirmation),
@@ -62,46 +62,46 @@ def _warning(code: str, text: str, advice: str) -> Finding:
 
 def _unidentifiable(task: DesignTask, designed: ManoeuvrePrecision) -> list[Finding]:
     names = task.model.parameters.free_names
-    own = designed.relative_error > 1.0
+    by_model = designed.relative_error > 1.0
     some = (
-        np.any(np.nan_to_num(designed.sampled_relative_error) > 1.0, axis=0) & ~own
+        np.any(np.nan_to_num(designed.sampled_relative_error) > 1.0, axis=0) & ~by_model
         if len(designed.sampled_relative_error)
-        else np.zeros_like(own)
+        else np.zeros_like(by_model)
     )
-    found = []
-    if own.any():
-        listed = ", ".join(n for n, bad in zip(names, own, strict=True) if bad)
-        found.append(_warning("not-identifiable",
+    findings = []
+    if by_model.any():
+        listed = ", ".join(n for n, bad in zip(names, by_model, strict=True) if bad)
+        findings.append(_warning("not-identifiable",
                               f"even this manoeuvre does not identify {listed}: the standard error exceeds the value",
                               "better sensors, a longer trial, wider limits, or give a prior for them"))  # fmt: skip
     if some.any():
         listed = ", ".join(n for n, bad in zip(names, some, strict=True) if bad)
-        found.append(_warning("not-identifiable-drawn",
+        findings.append(_warning("not-identifiable-drawn",
                               f"for some ship of the prior this manoeuvre does not identify {listed}",
                               "design again after a first trial, with --from and its model file"))  # fmt: skip
-    return found
+    return findings
 
 
 def _limit_violations(task: DesignTask, designed: ManoeuvrePrecision) -> list[Finding]:
-    found, count = [], len(designed.sampled_relative_error)
+    findings, count = [], len(designed.sampled_relative_error)
     farthest = max([designed.drift, *designed.sampled_drift.tolist()])
     if straying := count_outside_limits(designed, task.request.limits):
         severity = Severity.WARNING if straying > _MANY_LEAVING * count else Severity.INFO
-        found.append(Finding(severity, "straying", f"{straying} of {count} ships drawn from the prior leave the limits "
-                             f"under these orders, with up to {math.degrees(farthest):.0f} deg of drift and "
+        findings.append(Finding(severity, "straying", f"{straying} of {count} ships drawn from the prior leave the "
+                             f"limits under these orders, with up to {math.degrees(farthest):.0f} deg of drift and "
                              f"{max(designed.sampled_distance.tolist()):.0f} m from the start", "",
                              "watch both and abort there; design.every_ship = true binds them, too"))  # fmt: skip
     elif farthest > _FAR_DRIFT:
-        found.append(_warning("drift", f"the manoeuvre reaches a drift angle of {math.degrees(farthest):.0f} deg for "
-                              "some ship of the prior", "few models hold so far; give a smaller design.drift, or abort "
-                              "there"))  # fmt: skip
-    return found
+        findings.append(_warning("drift", f"the manoeuvre reaches a drift angle of {math.degrees(farthest):.0f} deg "
+                              "for some ship of the prior", "few models hold so far; give a smaller design.drift, or "
+                              "abort there"))  # fmt: skip
+    return findings
 
 
 def _confirmation_findings(designed: ManoeuvrePrecision, confirmation: Confirmation | None) -> list[Finding]:
-    found = []
+    findings = []
     if lost := designed.diverged:
-        found.append(
+        findings.append(
             _warning(
                 "lost",
                 f"{lost} of {len(designed.sampled_relative_error)} ships drawn from the prior cannot be simulated "
@@ -110,7 +110,7 @@ def _confirmation_findings(designed: ManoeuvrePrecision, confirmation: Confirmat
             )
         )
     if confirmation is not None and confirmation.converged_runs < _ENOUGH_CONVERGED * confirmation.runs:
-        found.append(
+        findings.append(
             _warning(
                 "unconfirmed",
                 f"only {confirmation.converged_runs} of {confirmation.runs} simulated trials "
@@ -118,4 +118,4 @@ def _confirmation_findings(designed: ManoeuvrePrecision, confirmation: Confirmat
                 "narrow the prior, measure more channels, or lengthen the trial",
             )
         )
-    return found
+    return findings

@@ -124,12 +124,12 @@ def assess_manoeuvre(
 ) -> ManoeuvrePrecision:
     """A manoeuvre's worth for all ships of the bench, the model itself first."""
     precision = evaluator.evaluate(model_inputs)
-    own = float(precision.drift[0]), float(precision.distance[0])
+    nominal = float(precision.drift[0]), float(precision.distance[0])
     return ManoeuvrePrecision(
         name,
         precision.relative_errors[0],
         precision.relative_errors[1:],
-        *own,
+        *nominal,
         precision.drift[1:],
         precision.distance[1:],
         executed,
@@ -145,9 +145,9 @@ def simulate_plan(task: DesignTask, planned: Record, name: str) -> Record:
 def _standard_errors(information: Array, k: int) -> Array:
     """Standard errors of the first k unknowns; huge for those that nothing determines."""
     scale = np.sqrt(information.diagonal())
-    known = scale > 0.0
-    unit = information[np.ix_(known, known)] / np.outer(scale[known], scale[known])
+    is_informative = scale > 0.0
+    unit = information[np.ix_(is_informative, is_informative)] / np.outer(scale[is_informative], scale[is_informative])
     variance = np.full(len(scale), np.inf)
     inverse = np.linalg.inv(unit + _REGULARISATION * np.eye(len(unit)))
-    variance[known] = np.abs(inverse.diagonal()) / scale[known] ** 2
+    variance[is_informative] = np.abs(inverse.diagonal()) / scale[is_informative] ** 2
     return np.sqrt(np.minimum(variance[:k], 1e30))

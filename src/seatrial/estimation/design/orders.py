@@ -29,11 +29,11 @@ def actuator_response(actuator: Actuator, orders: Array, neutral: float, dt: flo
     wanted = orders[which]
     if np.isinf(actuator.rate):
         return wanted
-    step, now, made = actuator.rate * dt, neutral, []
+    step, now, positions = actuator.rate * dt, neutral, []
     for order in wanted.tolist():
-        made.append(now)
+        positions.append(now)
         now += min(max(order - now, -step), step)
-    return np.array(made)
+    return np.array(positions)
 
 
 def orders_at(task: DesignTask, point: Array) -> list[Array]:
@@ -48,12 +48,12 @@ def orders_at(task: DesignTask, point: Array) -> list[Array]:
 def input_series(task: DesignTask, orders: list[Array], dt: float) -> Array:
     """All inputs in the model's signs at a step `dt` [s], shape (rows, nu)."""
     count, neutral = sample_count(task, dt), task.neutral_positions
-    made = np.tile(task.neutral_inputs, (count, 1))
+    inputs = np.tile(task.neutral_inputs, (count, 1))
     for actuator, wanted in zip(task.request.actuators, orders, strict=True):
         j = task.model.input_names.index(actuator.name)
         sign = -1.0 if task.model.inputs[j].is_reversed else 1.0
-        made[:, j] = sign * actuator_response(actuator, wanted, neutral[actuator.name], dt, count)
-    return made
+        inputs[:, j] = sign * actuator_response(actuator, wanted, neutral[actuator.name], dt, count)
+    return inputs
 
 
 def order_table(task: DesignTask, orders: list[Array]) -> tuple[TimedOrder, ...]:

@@ -43,11 +43,13 @@ class StandardManoeuvre:
 def standard_manoeuvres(evaluator: ManoeuvreEvaluator) -> list[StandardManoeuvre]:
     """Random binary sequences and, by the model, zigzags and turning circles or steps and a sweep."""
     task = evaluator.task
-    found = [_largest_within_limits(evaluator, share, seed) for share in SWITCHING_SHARES for seed in SEQUENCE_SEEDS]
+    sequences = [
+        _largest_within_limits(evaluator, share, seed) for share in SWITCHING_SHARES for seed in SEQUENCE_SEEDS
+    ]
     if not _is_steered(task):
-        return [*found, StandardManoeuvre("sine sweep", _sweep_inputs), StandardManoeuvre("steps", _step_inputs)]
+        return [*sequences, StandardManoeuvre("sine sweep", _sweep_inputs), StandardManoeuvre("steps", _step_inputs)]
     steered = [StandardManoeuvre(text, partial(_steered_inputs, text)) for text in _programmes(task)]
-    return [*found, *(r for r in steered if _can_be_steered(evaluator, r))]
+    return [*sequences, *(r for r in steered if _can_be_steered(evaluator, r))]
 
 
 def binary_sequence_inputs(hold: float, amplitude: float, seed: int, evaluator: ManoeuvreEvaluator) -> Array:
@@ -118,14 +120,14 @@ def _simulate_steered(evaluator: ManoeuvreEvaluator, parameters: Array, text: st
     )
     (rudder,) = [a for a in task.request.actuators if a.name == RUDDER]
     step = 1.0 / task.request.rate
-    others = {a.name: task.neutral_positions[a.name] for a in task.request.actuators if a.name != RUDDER}
+    other_inputs = {a.name: task.neutral_positions[a.name] for a in task.request.actuators if a.name != RUDDER}
     record = manoeuvre(
         ship,
         programme(text),
         dt=step,
         duration=task.request.duration,
         speed=float(task.initial_state[model.states.index("u")]) if "u" in model.states else task.request.speed,
-        inputs={**task.request.held, **others},
+        inputs={**task.request.held, **other_inputs},
         slew_rate=rudder.rate if np.isfinite(rudder.rate) else SOLAS_SLEW_RATE,
     )
     held = inputs_of(model, record)[:: round(evaluator.dt / step)]
@@ -151,12 +153,12 @@ def _step_inputs(evaluator: ManoeuvreEvaluator) -> Array:
 def _drive_all(evaluator: ManoeuvreEvaluator, course: Array) -> Array:
     """Every actuator along a course between -1 and 1, at its own rate."""
     task, dt = evaluator.task, evaluator.dt
-    made = np.tile(task.neutral_inputs, (len(course), 1))
+    inputs = np.tile(task.neutral_inputs, (len(course), 1))
     for a in task.request.actuators:
         j = task.model.input_names.index(a.name)
         free = replace(a, hold=dt)
         wanted = actuator_response(
             free, _mid_range(a) + 0.5 * (a.upper - a.lower) * course, task.neutral_positions[a.name], dt, len(course)
         )
-        made[:, j] = -wanted if task.model.inputs[j].is_reversed else wanted
-    return made
+        inputs[:, j] = -wanted if task.model.inputs[j].is_reversed else wanted
+    return inputs

@@ -94,10 +94,10 @@ def choose_criterion(
             pass
     if settings.segment_s is not None:
         return _required_choice(shot, settings, noise, "the length of segments is set by the trial")
-    whole = _whole_runs_choice(shot, fit_whole_runs()) if shot.is_white else None
-    if whole is not None and whole.is_white:
-        return whole.with_reasons(_WHITE)
-    if shot.is_white and whole is None:
+    over_runs = _whole_runs_choice(shot, fit_whole_runs()) if shot.is_white else None
+    if over_runs is not None and over_runs.is_white:
+        return over_runs.with_reasons(_WHITE)
+    if shot.is_white and over_runs is None:
         shot = shot.with_reasons("whole runs do not fit within the noise of the segments")
     if settings.robust or not has_noise(shooting):
         return shot.with_reasons(_CORRELATED, _SEGMENTED)
@@ -109,8 +109,8 @@ def choose_criterion(
     if process_noise.test.favours_prediction_error:
         added = (f"added to the model: {process_noise.disturbance_model}",) if process_noise.disturbance_model else ()
         return _prediction_error_choice(process_noise, *shot.reasons, process_noise.test.summary, *added)
-    if whole is not None and not process_noise.test.is_needed:
-        return whole.with_reasons(process_noise.test.summary)
+    if over_runs is not None and not process_noise.test.is_needed:
+        return over_runs.with_reasons(process_noise.test.summary)
     return replace(
         shot.with_reasons(process_noise.test.summary, _SEGMENTED), process_intensities=process_noise.process_intensities
     )

@@ -72,27 +72,29 @@ def fit_output_error(
 
     Coloured channels count as their effective number of samples throughout (`OutputError.inflation`).
     """
-    known = np.array([known_noise.get(o, np.nan) for o in problem.data.outputs])
-    problem = replace(problem, noise=np.where(np.isfinite(known), known, problem.noise))
-    made = _search(problem, common_parameters, initial_states, min(_FEW_EVALUATIONS, evaluations), report_progress)
+    stated_noise = np.array([known_noise.get(o, np.nan) for o in problem.data.outputs])
+    problem = replace(problem, noise=np.where(np.isfinite(stated_noise), stated_noise, problem.noise))
+    estimate = _search(problem, common_parameters, initial_states, min(_FEW_EVALUATIONS, evaluations), report_progress)
     for _ in range(rounds):
-        noise = np.where(np.isfinite(known), known, residual_spread(made.problem, made.residuals()))
+        noise = np.where(
+            np.isfinite(stated_noise), stated_noise, residual_spread(estimate.problem, estimate.residuals())
+        )
         again = replace(
             problem,
             noise=noise,
-            inflation=_effective_inflation(residual_correlation(made.problem, made.residuals())[1]),
+            inflation=_effective_inflation(residual_correlation(estimate.problem, estimate.residuals())[1]),
         )
-        settled = _is_settled(made.problem, again)
-        made = _search(
+        settled = _is_settled(estimate.problem, again)
+        estimate = _search(
             again,
-            made.common_parameters,
-            made.optimum.local,
+            estimate.common_parameters,
+            estimate.optimum.local,
             evaluations if settled else _FEW_EVALUATIONS,
             report_progress,
         )
         if settled:
             break
-    return made
+    return estimate
 
 
 def _effective_inflation(inflation: Array) -> Array | None:
@@ -120,7 +122,7 @@ def _search(
         if report_progress:
             report_progress(f"{problem.data.count} segments, evaluation {count}: {cost:.6g}")
 
-    found = levenberg_marquardt(
+    optimum = levenberg_marquardt(
         problem,
         common_parameters,
         initial_states,
@@ -128,7 +130,7 @@ def _search(
         evaluations=evaluations,
         report_progress=report,
     )
-    return PointEstimate(problem, found)
+    return PointEstimate(problem, optimum)
 
 
 def split_segments(problem: OutputError, column: Array) -> list[Array]:

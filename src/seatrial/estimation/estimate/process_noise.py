@@ -228,21 +228,21 @@ def search_prediction_error(
     def counted(count: int, cost: float) -> None:
         report_progress(f"prediction error, evaluation {count}: {cost:.6g}")
 
-    found = levenberg_marquardt(
+    optimum = levenberg_marquardt(
         problem, point, _NO_INITIAL_STATES, negligible=_NEGLIGIBLE, evaluations=evaluations, report_progress=counted
     )
     report_progress("prediction error: exact gradient")
-    return _refine(problem, found)
+    return _refine(problem, optimum)
 
 
 def _without_search(problem: PredictionError, point: Array) -> ProcessNoise:
     """Intensities alone, the coefficients as they were: no search can make these innovations white."""
     normal = problem.normal(point, _NO_INITIAL_STATES)
-    found = Optimum(Solution(point, normal.cost, Status.STALLED, 1), _NO_INITIAL_STATES, normal)
+    optimum = Optimum(Solution(point, normal.cost, Status.STALLED, 1), _NO_INITIAL_STATES, normal)
     quiet = replace(problem, process=())
     held = np.concatenate([point[: problem.runs.size], point[problem.runs.size + len(problem.process) :]])
     verdict = likelihood_ratio_test(problem, point, normal.cost, quiet.cost(held, _NO_INITIAL_STATES), None)
-    return ProcessNoise(problem, found, np.nan, verdict, problem.runs)
+    return ProcessNoise(problem, optimum, np.nan, verdict, problem.runs)
 
 
 def _initial_problem(
@@ -295,16 +295,17 @@ def _fit_intensities(problem: PredictionError, estimate: PointEstimate) -> Array
     runs, begin = problem.runs, estimate.common_parameters
     held = runs.model.with_values(dict(zip(runs.free, begin[: len(runs.free)], strict=True)))
     held = held.with_parameters(held.parameters.fixed(*held.parameters.names))
-    own = begin[len(runs.free) :]
-    alone = replace(problem, runs=replace(runs, model=held, pinned=own, extra_terms=()))
+    session_values = begin[len(runs.free) :]
+    alone = replace(problem, runs=replace(runs, model=held, pinned=session_values, extra_terms=()))
     deviation = np.clip(_channel_noise(runs), 1e-2 * runs.noise, runs.noise)
     whole = _state_spread(estimate, problem.process) / np.sqrt(_longest_run(runs))
     scanned = [
-        _balance_noise(alone, np.concatenate([own, (share * whole) ** 2, deviation**2])) for share in _SCAN_SHARES
+        _balance_noise(alone, np.concatenate([session_values, (share * whole) ** 2, deviation**2]))
+        for share in _SCAN_SHARES
     ]
     best = min(scanned, key=lambda one: one[0])[1]
     found = levenberg_marquardt(alone, best, _NO_INITIAL_STATES, negligible=_ROUGH, evaluations=_FEW_EVALUATIONS)
-    return found.solution.point[len(own) :]
+    return found.solution.point[len(session_values) :]
 
 
 def _channel_noise(runs: OutputError) -> Array:

@@ -27,17 +27,17 @@ def process_noise_interval(estimate: PointEstimate, process_noise: ProcessNoise)
     score = problem.prior_precision(estimate.common_parameters)
     slopes = problem.slopes(estimate.common_parameters, estimate.optimum.local)
     trust = 1.0 / problem.noise**2 if problem.inflation is None else 1.0 / (problem.noise**2 * problem.inflation)
-    known = np.isfinite(problem.data.measured)
+    is_measured = np.isfinite(problem.data.measured)
     deviation = np.array(list(process_noise.measurement_noise.values()))
     intensity = np.array([process_noise.process_intensities.get(s, 0.0) for s in problem.model.states])
     for run, (a, b) in enumerate(pairwise(problem.data.offsets)):
         columns = problem.columns_of(int(problem.data.session[run]))
-        own = _eliminate_initial_state(slopes[a:b], len(columns), np.where(known[a:b], trust, 0.0))
-        moved, seen = process_noise.problem.transitions(run, estimate.common_parameters, estimate.optimum.local)
+        own = _eliminate_initial_state(slopes[a:b], len(columns), np.where(is_measured[a:b], trust, 0.0))
+        moved, observation = process_noise.problem.transitions(run, estimate.common_parameters, estimate.optimum.local)
         carried = own.transpose(0, 2, 1)
         white = np.einsum("tky,y,tly->kl", carried, deviation**2, carried)
         score[np.ix_(columns, columns)] += white + _driven_variance(
-            carried @ seen, moved, intensity**2 * problem.data.dt
+            carried @ observation, moved, intensity**2 * problem.data.dt
         )
     bread = inverse(hessian)
     return Interval(bread @ score @ bread, np.inf, MEANING)

@@ -31,18 +31,18 @@ def find_start(problem: OutputError, records: Sequence[Record], seconds: float) 
     The model's own values take their place where a state is hidden, or where the weak form's diverge.
     """
     local = problem.measured_initial_states()
-    hidden, how = hidden_states(problem.model, records), "weak form of the equations, no guess"
+    hidden, origin = hidden_states(problem.model, records), "weak form of the equations, no guess"
     if hidden:
-        how = f"the model's own values: nobody measures {', '.join(hidden)}, a state of the weak form"
+        origin = f"the model's own values: nobody measures {', '.join(hidden)}, a state of the weak form"
     shared = _with_coefficients(problem, weak_form_start(problem.model, records, seconds))
     simulated = problem.simulated_outputs(shared, local)
     if not np.all(np.isfinite(simulated)):
-        shared, how = problem.start(), "the model's own values: those of the weak form diverge"
+        shared, origin = problem.start(), "the model's own values: those of the weak form diverge"
         simulated = problem.simulated_outputs(shared, local)
     if np.all(np.isfinite(simulated)):
         left = simulated - problem.data.measured
         problem = replace(problem, noise=residual_spread(replace(problem, huber=1.0), left))
-    return SearchStart(problem, shared, local, how)
+    return SearchStart(problem, shared, local, origin)
 
 
 def _with_coefficients(problem: OutputError, point: Array) -> Array:
@@ -65,11 +65,11 @@ def weak_form_start(model: Model, records: Sequence[Record], seconds: float, rou
     inputs = tuple(inputs_of(model, r) for r in records)
     problem = WeakForm(model, states, inputs, records[0].dt, seconds, np.ones(len(model.states)))
     point = np.clip(point, problem.lower, problem.upper)
-    known = np.all([np.ptp(x, axis=0) > 0 for x in states], axis=0)
+    is_varying = np.all([np.ptp(x, axis=0) > 0 for x in states], axis=0)
     floor = 1e-9 * np.max(np.abs(np.concatenate(states)), axis=0)
     for _ in range(rounds):
         residual = problem.linearised(point)[0]
         spread = np.maximum(np.sqrt(np.mean(residual**2, axis=0)), floor)
-        problem = replace(problem, residual_sd=np.where(known, spread, np.inf))
+        problem = replace(problem, residual_sd=np.where(is_varying, spread, np.inf))
         point = levenberg_marquardt(problem, point, np.zeros((0, 0)), evaluations=30).solution.point
     return point

@@ -48,7 +48,8 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         predictions=predicted.predictions,
         findings=(
             *task.findings, *selected.findings, *findings, *fit_result.unidentified(task.estimation),
-            *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation), *_profile_findings(task, assessment),
+            *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation),
+            *_profile_findings(task, assessment),
         ),
         records=tuple(r.record for r in task.records),
         seed=task.options.seed,

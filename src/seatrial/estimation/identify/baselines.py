@@ -49,11 +49,11 @@ def compare_estimators(
     for record in train:
         features(fit.model, RegressionMotion.from_record(fit.model, record))
     report = report_progress or (lambda _: None)
-    made = _fit_as_baselines(fit)
+    baselines = _fit_as_baselines(fit)
     for estimator in estimators:
         report(f"comparing: {estimator.name}")
-        made.append(_baseline(fit, train, estimator))
-    return tuple(made)
+        baselines.append(_baseline(fit, train, estimator))
+    return tuple(baselines)
 
 
 def simulation_errors(model: Model, predictions: Sequence[Prediction]) -> OpenLoopScores:
@@ -79,14 +79,14 @@ def pooled_errors(runs: Sequence[tuple[Record, Record]]) -> OpenLoopScores:
 
 def correlation(measured: Record, simulated: Record) -> dict[str, float]:
     """Pearson's coefficient of u, v and r, as far as measured and not constant (Song et al. 2025 call it CC)."""
-    made = {}
+    coefficients = {}
     for symbol in _CORRELATED_CHANNELS:
         if symbol in measured and symbol in simulated:
             a, b = measured[symbol], simulated[symbol]
             known = np.isfinite(a) & np.isfinite(b)
             if known.any() and np.ptp(a[known]) > 0.0 and np.ptp(b[known]) > 0.0:
-                made[symbol] = float(np.corrcoef(a[known], b[known])[0, 1])
-    return made
+                coefficients[symbol] = float(np.corrcoef(a[known], b[known])[0, 1])
+    return coefficients
 
 
 def _common_keys(tables: Sequence[dict[str, float]]) -> list[str]:
@@ -109,22 +109,22 @@ def _fit_as_baselines(fit: Fit) -> list[Baseline]:
 
 def _baseline(fit: Fit, train: Sequence[Record], estimator: RegressionEstimator) -> Baseline:
     try:
-        found = estimator.estimate(fit.model, train)
+        regression = estimator.estimate(fit.model, train)
     except InputError as error:
         return Baseline(estimator.name, note=str(error))
     except np.linalg.LinAlgError:
         return Baseline(estimator.name, note="its equations are singular in these records")
-    if not np.all(np.isfinite(found.values)):
-        return Baseline(estimator.name, note="its coefficients are no finite numbers", findings=found.findings)
-    ship = found.in_model(fit.model)
-    values = dict(zip(fit.model.parameters.free_names, found.values.tolist(), strict=True))
+    if not np.all(np.isfinite(regression.values)):
+        return Baseline(estimator.name, note="its coefficients are no finite numbers", findings=regression.findings)
+    ship = regression.in_model(fit.model)
+    values = dict(zip(fit.model.parameters.free_names, regression.values.tolist(), strict=True))
     rival = Baseline(
         estimator.name,
         values,
         training=simulation_errors(ship, _predictions_of_role(fit, "training")),
         validation=simulation_errors(ship, _predictions_of_role(fit, "validation")),
-        bias=found.bias,
-        findings=found.findings,
+        bias=regression.bias,
+        findings=regression.findings,
     )
     return _with_differences(fit, rival)
 

@@ -72,12 +72,12 @@ def offsets(estimation: Estimation) -> tuple[Offset, ...]:
     problem, error = estimation.estimate.problem, estimation.interval.standard_error
     names = [(name, problem.model.parameters[name].unit) for name, _ in problem.session_parameters]
     names += [(n.correction.name, n.unit) for n in problem.nuisances]
-    made = []
+    table = []
     for k, session in enumerate(problem.data.sessions):
         for j, (name, unit) in enumerate(names):
             i = len(problem.free) + k * problem.unknowns_per_session + j
-            made.append(Offset(name, session, unit, float(estimation.estimate.common_parameters[i]), float(error[i])))
-    return tuple(made)
+            table.append(Offset(name, session, unit, float(estimation.estimate.common_parameters[i]), float(error[i])))
+    return tuple(table)
 
 
 def noise(estimation: Estimation) -> tuple[Noise, ...]:

@@ -102,27 +102,27 @@ def consequences(estimation: Estimation) -> tuple[Consequence, ...]:
     """What the estimates would do were an assumed value 10 % off, by one Gauss-Newton step; the worst first."""
     estimate, model = _output_error_estimate(estimation), estimation.model
     problem, names = _with_assumed_free(estimate.problem, model)
-    own, size = estimate.problem.free, len(problem.free)
+    free, size = estimate.problem.free, len(problem.free)
     place = {n: i for i, n in enumerate(problem.free)}
-    fitted = [place[n] for n in own]
-    shared = np.concatenate([problem.start()[:size], estimate.common_parameters[len(own) :]])
-    shared[fitted] = estimate.common_parameters[: len(own)]
+    fitted = [place[n] for n in free]
+    shared = np.concatenate([problem.start()[:size], estimate.common_parameters[len(free) :]])
+    shared[fitted] = estimate.common_parameters[: len(free)]
     information = problem.normal(shared, estimate.optimum.local).without_local()[1]
     moving = np.array([*fitted, *range(size, len(shared))])
-    deviation = np.maximum(estimation.interval.standard_error[: len(own)], 1e-300)
+    deviation = np.maximum(estimation.interval.standard_error[: len(free)], 1e-300)
     sizes = _signed_scales(estimation)
     felt = _MIN_INFLUENCE * np.max(np.diag(information)[fitted] * sizes**2)
-    left = 2.0 * problem.cost(shared, estimate.optimum.local)
-    made: list[tuple[float, Consequence]] = []
+    chi_squared = 2.0 * problem.cost(shared, estimate.optimum.local)
+    ranked: list[tuple[float, Consequence]] = []
     for name in names:
         p, value = place[name], model.parameters[name].value
         if information[p, p] * value**2 < felt:
             continue
         moves, misfit = estimate_shifts(information, moving, p, RELATIVE_CHANGE * value)
-        worst = float(np.max(np.abs(moves[: len(own)]) / deviation))
-        made.append((worst, _consequence(name, moves[: len(own)] / sizes, own, misfit, left)))
-    made.sort(key=lambda pair: -pair[0])
-    return tuple(one for _, one in made[:_MAX_CONSEQUENCES])
+        worst = float(np.max(np.abs(moves[: len(free)]) / deviation))
+        ranked.append((worst, _consequence(name, moves[: len(free)] / sizes, free, misfit, chi_squared)))
+    ranked.sort(key=lambda pair: -pair[0])
+    return tuple(one for _, one in ranked[:_MAX_CONSEQUENCES])
 
 
 def _with_assumed_free(problem: OutputError, model: Model) -> tuple[OutputError, list[str]]:

@@ -120,11 +120,11 @@ def variants(model: Model, family: ModelFamily | None, is_segmented: bool) -> tu
     free, priors = set(model.parameters.free_names), any(p.prior for p in model.parameters.free)
     structures = FREED_PARAMETERS.get(model.name, {}) if family is None else family.structures
     factors = (PRIOR_FACTORS, SEGMENT_FACTORS) if family is None else (family.prior_factors, family.segment_factors)
-    made = [ModelVariant("as in the trial")]
-    made += [ModelVariant(name, freed) for name, freed in structures.items() if not set(freed) <= free]
-    made += [ModelVariant(f"priors x {f:g}", prior_factor=f) for f in factors[0] if priors and f != 1.0]
-    made += [ModelVariant(f"segments x {f:g}", segment_factor=f) for f in factors[1] if is_segmented and f != 1.0]
-    return tuple(made)
+    members = [ModelVariant("as in the trial")]
+    members += [ModelVariant(name, freed) for name, freed in structures.items() if not set(freed) <= free]
+    members += [ModelVariant(f"priors x {f:g}", prior_factor=f) for f in factors[0] if priors and f != 1.0]
+    members += [ModelVariant(f"segments x {f:g}", segment_factor=f) for f in factors[1] if is_segmented and f != 1.0]
+    return tuple(members)
 
 
 def apply_variant(model: Model, variant: ModelVariant) -> Model:
@@ -276,12 +276,12 @@ def selected_estimation(
 
 def tied_models(fitted: Sequence[FittedVariant], candidates: Sequence[CandidateModel]) -> tuple[TiedModel, ...]:
     """The tied members but the one that is used."""
-    made = []
+    tied = []
     for f, row in zip(fitted, candidates, strict=True):
         if row.is_tied and not row.is_chosen and f.estimate is not None:
             values: Mapping[str, float] = dict(zip(f.estimate.problem.free, f.estimate.common_parameters, strict=False))
-            made.append(TiedModel(f.estimate, f.model.with_values(values)))
-    return tuple(made)
+            tied.append(TiedModel(f.estimate, f.model.with_values(values)))
+    return tuple(tied)
 
 
 def with_model_spread(estimation: Estimation, tied: Sequence[TiedModel]) -> Estimation:

@@ -40,15 +40,15 @@ def profiles(
     if not _is_minimum_of_its_problem(estimate):
         return ()
     place = {n: i for i, n in enumerate(estimate.problem.free)}
-    own = np.sqrt(np.diag(inverse(estimate.optimum.normal.without_local()[1])))
+    own_errors = np.sqrt(np.diag(inverse(estimate.optimum.normal.without_local()[1])))
     done: list[int] = []
 
     def one(name: str) -> Profile:
-        found = _profile(estimate, place[name], float(min(deviations[place[name]], own[place[name]])))
+        profile = _profile(estimate, place[name], float(min(deviations[place[name]], own_errors[place[name]])))
         done.append(1)
         if report_progress:
             report_progress(f"profile likelihood: {len(done)} of {len(names)}")
-        return found
+        return profile
 
     return tuple(map_in_threads(one, list(names), workers=estimate.problem.workers))
 
@@ -81,8 +81,8 @@ def _branch(estimate: PointEstimate, column: int, step: float) -> list[tuple[flo
     held = _hold_coefficient(estimate, column)
     shared, local = np.delete(estimate.common_parameters, column), estimate.optimum.local
     low, high = estimate.problem.lower[column], estimate.problem.upper[column]
-    least, away, found = 2.0 * estimate.optimum.solution.value, 0.5, []
-    while away <= _MAX_DEVIATIONS and len(found) < _MAX_POINTS_PER_SIDE:
+    least, away, points = 2.0 * estimate.optimum.solution.value, 0.5, []
+    while away <= _MAX_DEVIATIONS and len(points) < _MAX_POINTS_PER_SIDE:
         value = float(estimate.common_parameters[column]) + away * step
         if not low <= value <= high:
             break
@@ -92,11 +92,11 @@ def _branch(estimate: PointEstimate, column: int, step: float) -> list[tuple[flo
         if not np.isfinite(cost):
             break
         shared, local, least = again.solution.point, again.local, min(least, cost)
-        found.append((value, cost))
+        points.append((value, cost))
         if cost - least > CHI_SQUARED_LIMIT:
             break
         away += 0.5 if away < 2.5 else 1.25
-    return found
+    return points
 
 
 def _hold_coefficient(estimate: PointEstimate, column: int) -> Callable[[float], tuple[OutputError, float]]:

@@ -72,25 +72,27 @@ def roll_characteristics(
 
 def assumed_gyradius(ship: Ship) -> tuple[IntervalEstimate | None, str]:
     """Radius of gyration in roll with added inertia [m]: the ship's `k_xx_prime`, else by `k_xx`, else by breadth."""
-    known = ship.particulars
-    if GYRADIUS_WITH_ADDED_INERTIA in known:
-        k = known[GYRADIUS_WITH_ADDED_INERTIA]
+    particulars = ship.particulars
+    if GYRADIUS_WITH_ADDED_INERTIA in particulars:
+        k = particulars[GYRADIUS_WITH_ADDED_INERTIA]
         return IntervalEstimate(k, k, k), f"{GYRADIUS_WITH_ADDED_INERTIA} of the ship, {k:.4g} m, taken as exact"
-    if DRY_GYRADIUS in known:
-        low, middle, high = (known[DRY_GYRADIUS] * float(np.sqrt(1.0 + share)) for share in ADDED_INERTIA_SHARE)
-        said = (
-            f"{DRY_GYRADIUS} of the ship, {known[DRY_GYRADIUS]:.4g} m, and an added inertia of "
+    if DRY_GYRADIUS in particulars:
+        low, middle, high = (particulars[DRY_GYRADIUS] * float(np.sqrt(1.0 + share)) for share in ADDED_INERTIA_SHARE)
+        assumption = (
+            f"{DRY_GYRADIUS} of the ship, {particulars[DRY_GYRADIUS]:.4g} m, and an added inertia of "
             f"{_range_text(ADDED_INERTIA_SHARE, 100.0)} % of it"
         )
         return IntervalEstimate(
             middle, low, high
-        ), f"{said}, chosen; {GYRADIUS_WITH_ADDED_INERTIA} under [ship] would replace this"
-    if "B" in known:
-        low, middle, high = (share * known["B"] for share in GYRADIUS_OVER_BREADTH)
-        said = f"a radius of gyration with added inertia of {_range_text(GYRADIUS_OVER_BREADTH, 1.0)} of the breadth"
+        ), f"{assumption}, chosen; {GYRADIUS_WITH_ADDED_INERTIA} under [ship] would replace this"
+    if "B" in particulars:
+        low, middle, high = (share * particulars["B"] for share in GYRADIUS_OVER_BREADTH)
+        assumption = (
+            f"a radius of gyration with added inertia of {_range_text(GYRADIUS_OVER_BREADTH, 1.0)} of the breadth"
+        )
         return IntervalEstimate(
             middle, low, high
-        ), f"{said}, chosen; {GYRADIUS_WITH_ADDED_INERTIA} or {DRY_GYRADIUS} under [ship] would replace this"
+        ), f"{assumption}, chosen; {GYRADIUS_WITH_ADDED_INERTIA} or {DRY_GYRADIUS} under [ship] would replace this"
     return None, f"not known; give {GYRADIUS_WITH_ADDED_INERTIA}, {DRY_GYRADIUS} or B under [ship]"
 
 
@@ -130,12 +132,12 @@ def _is_excited(model: Model, records: Sequence[Record]) -> bool:
 
 def _swings(records: Sequence[Record], rest: float, reach: float) -> tuple[tuple[float, float, float], ...]:
     """Of all decays, without those of less than a twentieth of the largest, which the sensor's noise blurs."""
-    found = []
+    swings = []
     for record in records:
         phi = record["phi"] - rest
-        found += [s for s in zip(*map(_floats, observed_swings(phi, record.dt)), strict=True)
+        swings += [s for s in zip(*map(_floats, observed_swings(phi, record.dt)), strict=True)
                   if s[0] > _MIN_SWING_SHARE * reach]  # fmt: skip
-    return tuple(found)
+    return tuple(swings)
 
 
 def _range_text(values: tuple[float, float, float], factor: float) -> str:

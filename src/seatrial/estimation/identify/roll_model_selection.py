@@ -35,10 +35,10 @@ def roll_structures(model: Model, family: ModelFamily | None) -> dict[str, Model
     Raises:
         InputError: there is but one.
     """
-    parameters, made = model.parameters, {"as in the trial": model}
+    parameters, structures = model.parameters, {"as in the trial": model}
     if family is not None:
         for name, freed in family.structures.items():
-            made[name] = model.with_parameters(parameters.freed(*freed))
+            structures[name] = model.with_parameters(parameters.freed(*freed))
     else:
         house = OMITTED_PARAMETERS.get(model.name, {})
         gone = {n for dropped in house.values() for n in dropped if n not in parameters.free_names}
@@ -46,12 +46,14 @@ def roll_structures(model: Model, family: ModelFamily | None) -> dict[str, Model
         for name, dropped in house.items():
             known = [n for n in dropped if n not in gone]
             if known and absent <= set(dropped):
-                made[name] = model.with_parameters(parameters.with_values(dict.fromkeys(known, 0.0)).fixed(*known))
-    if len(made) < 2:
+                structures[name] = model.with_parameters(
+                    parameters.with_values(dict.fromkeys(known, 0.0)).fixed(*known)
+                )
+    if len(structures) < 2:
         raise InputError(
             f"model '{model.name}' has no family to choose from; free more coefficients, or declare [family]"
         )
-    return made
+    return structures
 
 
 def select_roll_model(

@@ -119,7 +119,7 @@ def window_errors(
     start = _initial_states(template, model, pieces, protocol.initial_s)
     problem, pinned = pieces.problem(template, model, _TRACK)
     simulated = problem.simulated_outputs(pinned, np.stack([start[s] for s in problem.starts], axis=1))
-    made = []
+    errors = []
     for piece, index, (a, b) in zip(pieces.records, pieces.record_indices, pairwise(problem.data.offsets), strict=True):
         if not np.all(np.isfinite(simulated[a:b])):
             raise InputError(
@@ -130,8 +130,8 @@ def window_errors(
             continue
         position = float(np.sqrt(np.nanmean(error[:, 0] ** 2 + error[:, 1] ** 2)))
         heading = float(np.degrees(np.sqrt(np.nanmean(error[:, 2] ** 2))))
-        made.append(WindowError(piece.name, labels[index], fold, float(piece.time[0]), position, heading))
-    return made
+        errors.append(WindowError(piece.name, labels[index], fold, float(piece.time[0]), position, heading))
+    return errors
 
 
 def _require_track(records: Sequence[Record]) -> None:

@@ -52,15 +52,15 @@ def measure_intervals(
     ]
     beyond = Discrepancy(interval_basis.measure_deviation, interval_basis.factor, 1.0, {})
     t = float(stdtrit(interval_basis.degrees_of_freedom, 0.975))
-    made = {}
+    intervals = {}
     for name, value in centre.items():
         away = [d for pair in pairs if (d := _half_difference(pair, name, value)) is not None]
         if 2 * len(away) > len(pairs) or not pairs:
             spread = beyond.measure_sd(name, float(np.sqrt(np.sum(np.square(away)))), index)
             apart = [m[name] - value for m in tied if name in m]
             half = t * float(np.hypot(spread, np.sqrt(np.mean(np.square(apart))) if apart else 0.0))
-            made[name] = (value - half, value + half)
-    return made
+            intervals[name] = (value - half, value + half)
+    return intervals
 
 
 def _half_difference(pair: MeasuresPair, name: str, centre: float) -> float | None:
@@ -75,7 +75,7 @@ def _perturbed_models(model: Model, interval_basis: IntervalBasis) -> list[tuple
     free = model.parameters.free_names
     centre: Array = np.array([p.value for p in model.parameters.free])
     columns = [c for c in square_root(interval_basis.covariance).T if np.any(c)]
-    made = [
+    models = [
         (
             model.with_values(dict(zip(free, centre + c, strict=True))),
             model.with_values(dict(zip(free, centre - c, strict=True))),
@@ -85,8 +85,8 @@ def _perturbed_models(model: Model, interval_basis: IntervalBasis) -> list[tuple
     between = interval_basis.offsets.get(_RUDDER_OFFSET, 0.0)
     if between > 0 and "delta_0" in model.parameters:
         zero = model.parameters["delta_0"].value
-        made.append((model.with_values({"delta_0": zero + between}), model.with_values({"delta_0": zero - between})))
-    return made
+        models.append((model.with_values({"delta_0": zero + between}), model.with_values({"delta_0": zero - between})))
+    return models
 
 
 def _measures_or_none(model: Model, steer: Callable[[Model], Record], length: float) -> dict[str, float] | None:

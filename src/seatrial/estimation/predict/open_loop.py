@@ -47,11 +47,11 @@ def simulate_open_loop(
     """
     start = estimate_initial_state(template, model, record, nuisances, seconds)
     point = np.array([[model.parameters[n].value for n in template.free]])
-    made = observables_record(
+    simulated = observables_record(
         model, record, simulate_points(template, model, record, start[None], point, nuisances[None])[0]
     )
-    require_bounded(model, record.time, np.stack([made[s] for s in model.states], axis=1), f"run '{record.name}'")
-    return OpenLoopRun(made, start)
+    require_bounded(model, record.time, np.stack([simulated[s] for s in model.states], axis=1), f"run '{record.name}'")
+    return OpenLoopRun(simulated, start)
 
 
 def observables_record(model: Model, record: Record, y: Array) -> Record:
@@ -66,18 +66,18 @@ def rms_errors(measured: Record, simulated: Record) -> dict[str, float]:
     def difference(symbol: str) -> Array:
         return simulated[symbol] - measured[symbol]
 
-    made = {}
+    errors = {}
     if "psi" in measured and "psi" in simulated:
-        made["psi_deg"] = float(np.degrees(np.sqrt(np.nanmean(difference("psi") ** 2))))
+        errors["psi_deg"] = float(np.degrees(np.sqrt(np.nanmean(difference("psi") ** 2))))
     if {"x0", "y0"} <= set(measured.channels) & set(simulated.channels):
-        made["position_m"] = float(np.sqrt(np.nanmean(difference("x0") ** 2 + difference("y0") ** 2)))
+        errors["position_m"] = float(np.sqrt(np.nanmean(difference("x0") ** 2 + difference("y0") ** 2)))
     for symbol, name in (("theta", "theta_deg"), ("phi", "phi_deg")):
         if symbol in measured and symbol in simulated:
-            made[name] = float(np.degrees(np.sqrt(np.nanmean(difference(symbol) ** 2))))
+            errors[name] = float(np.degrees(np.sqrt(np.nanmean(difference(symbol) ** 2))))
     for symbol in ("z", "u", "v", "r"):
         if symbol in measured and symbol in simulated:
-            made[symbol] = float(np.sqrt(np.nanmean(difference(symbol) ** 2)))
-    return made
+            errors[symbol] = float(np.sqrt(np.nanmean(difference(symbol) ** 2)))
+    return errors
 
 
 def is_steered(record: Record, model: Model) -> bool:

@@ -138,23 +138,23 @@ def predict_runs(
     fitted = [run.record for run, item in zip(runs, records, strict=True) if item.role is Role.TRAIN]
     covered = motion_envelope(fitted)
     report("runs left out, predicted")
-    known = calibrate_intervals(estimation, train, fitted, seconds, length, seed)
+    calibration = calibrate_intervals(estimation, train, fitted, seconds, length, seed)
     streams = np.random.SeedSequence((seed, 1)).spawn(len(records))
-    made = []
+    predictions = []
     for item, run, stream in zip(records, runs, streams, strict=True):
         role = "training" if item.role is Role.TRAIN else "validation"
         one = predict_run(estimation.model, item.record, role, run, seconds, length)
         one = replace(one, extrapolation=extrapolation(run.record, covered))
         if item.role is not Role.TRAIN:
             rng = np.random.default_rng(stream)
-            seen = prediction_spread(
-                problem, estimation.model, item.record, run, mean, length, known.uncertainty, rng, DRAWS
+            spread = prediction_spread(
+                problem, estimation.model, item.record, run, mean, length, calibration.uncertainty, rng, DRAWS
             )
             alone = _process_noise_floor(estimation, item.record, run.initial_state, mean)
             one = replace(one, tied_spread=tied_model_spread(tied, one, seconds, length), noise_floor=alone)
-            one = with_intervals(one, seen, known.discrepancy, known.uncertainty.degrees_of_freedom)
-        made.append(one)
-    return RunPredictions(tuple(made), _interval_basis(estimation, known, covered, tied))
+            one = with_intervals(one, spread, calibration.discrepancy, calibration.uncertainty.degrees_of_freedom)
+        predictions.append(one)
+    return RunPredictions(tuple(predictions), _interval_basis(estimation, calibration, covered, tied))
 
 
 def _process_noise_floor(estimation: Estimation, record: Record, start: Array, nuisances: Array) -> dict[str, float]:

@@ -84,16 +84,16 @@ def _measure_spread(
     place = {o: i for i, o in enumerate(model.observables)}
     noise = {c: sample_noise(record[c]) for c in _MEASURE_CHANNELS if c in record and c in place}
     centre = measures(simulation.record, length, reference=record)
-    found: dict[str, list[float]] = {name: [] for name in centre}
+    values_by_measure: dict[str, list[float]] = {name: [] for name in centre}
     for y in runs:
         read = y.copy()
         for channel, spread in noise.items():
             read[:, place[channel]] += spread * rng.standard_normal(len(y))
         for name, value in measures(observables_record(model, record, read), length, reference=record).items():
-            if name in found:
-                found[name].append(value - centre[name])
+            if name in values_by_measure:
+                values_by_measure[name].append(value - centre[name])
     enough = max(4, len(runs) // 2)
-    return {n: float(np.sqrt(np.mean(np.square(d)))) for n, d in found.items() if len(d) >= enough}
+    return {n: float(np.sqrt(np.mean(np.square(d)))) for n, d in values_by_measure.items() if len(d) >= enough}
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,21 +122,21 @@ def holdout_error(
 ) -> HoldoutError | None:
     """How a run is missed by a model that was fitted without it; None where the simulation diverges."""
     try:
-        made = simulate_open_loop(template, holdout.model, record, holdout.nuisances, seconds)
+        run = simulate_open_loop(template, holdout.model, record, holdout.nuisances, seconds)
     except InputError:
         return None
-    found = prediction_spread(
-        template, holdout.model, record, made, holdout.nuisances, length, uncertainty, rng, HOLDOUT_DRAWS
+    spread = prediction_spread(
+        template, holdout.model, record, run, holdout.nuisances, length, uncertainty, rng, HOLDOUT_DRAWS
     )
-    if not found.channels:
+    if not spread.channels:
         return None
-    pairs = compare_measures(record, made.record, length) if is_steered(record, holdout.model) else {}
+    pairs = compare_measures(record, run.record, length) if is_steered(record, holdout.model) else {}
     of_measures = {
-        n: (m.simulated - m.measured, found.measures[n])
+        n: (m.simulated - m.measured, spread.measures[n])
         for n, m in pairs.items()
-        if n in found.measures and m.measured is not None and m.simulated is not None
+        if n in spread.measures and m.measured is not None and m.simulated is not None
     }
-    return replace(_channel_errors(record, made, found.channels), measures=of_measures)
+    return replace(_channel_errors(record, run, spread.channels), measures=of_measures)
 
 
 def track_holdout_error(
@@ -149,15 +149,13 @@ def track_holdout_error(
 ) -> HoldoutError | None:
     """`missed` for a piece of a run, heading and track only."""
     try:
-        made = simulate_open_loop(template, holdout.model, piece, holdout.nuisances, seconds)
+        run = simulate_open_loop(template, holdout.model, piece, holdout.nuisances, seconds)
     except InputError:
         return None
     runs = _finite_draws(
-        draw_runs(
-            template, holdout.model, piece, made.initial_state, holdout.nuisances, uncertainty, rng, HOLDOUT_DRAWS
-        )
+        draw_runs(template, holdout.model, piece, run.initial_state, holdout.nuisances, uncertainty, rng, HOLDOUT_DRAWS)
     )
-    return _channel_errors(piece, made, _track_spread(holdout.model, made, runs)) if len(runs) else None
+    return _channel_errors(piece, run, _track_spread(holdout.model, run, runs)) if len(runs) else None
 
 
 def _channel_errors(record: Record, simulation: OpenLoopRun, channels: dict[str, Array]) -> HoldoutError:

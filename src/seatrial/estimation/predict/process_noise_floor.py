@@ -41,9 +41,9 @@ def process_noise_floor(
     at = FilterPoint(start[None], np.zeros((1, len(start))), values[None], nuisances[None, split:],
                np.array(list(intensities.values())), np.ones(len(template.data.outputs)))  # fmt: skip
     mean = dict(zip(model.states, run.variances(0, at).mean(axis=0), strict=True))
-    made = {}
+    floor = {}
     if "psi" in mean:
-        made["psi_deg"] = float(np.degrees(np.sqrt(mean["psi"])))
+        floor["psi_deg"] = float(np.degrees(np.sqrt(mean["psi"])))
     if {"x0", "y0"} <= set(mean):
-        made["position_m"] = float(np.sqrt(mean["x0"] + mean["y0"]))
-    return made | {s: float(np.sqrt(mean[s])) for s in ("u", "v", "r") if s in mean}
+        floor["position_m"] = float(np.sqrt(mean["x0"] + mean["y0"]))
+    return floor | {s: float(np.sqrt(mean[s])) for s in ("u", "v", "r") if s in mean}

@@ -46,7 +46,7 @@ def identify_in_unknown_waves(task: Identification) -> Fit:
     b_1, c_1 = np.exp(optimum.solution.point[[DAMPING, RESTORING]]).tolist()
     _refuse_unidentifiable(problem, optimum, interval)
     model = _linear_model(trial.model, b_1, c_1, float(np.mean(record["phi"])))
-    known = roll_characteristics(model, interval, FREE_COEFFICIENTS, [record], trial.ship)
+    characteristics = roll_characteristics(model, interval, FREE_COEFFICIENTS, [record], trial.ship)
     return Fit(
         question=trial.question or "What are natural period and damping of this ship's roll in waves?",
         ship=trial.ship,
@@ -72,7 +72,7 @@ def identify_in_unknown_waves(task: Identification) -> Fit:
         seed=task.options.seed,
         elapsed_s=time.perf_counter() - task.began,
         versions=versions(),
-        roll=None if known is None else _with_spectrum(known, problem, optimum.solution.point),
+        roll=None if characteristics is None else _with_spectrum(characteristics, problem, optimum.solution.point),
     )
 
 
@@ -99,11 +99,11 @@ def spectral_problem(record: Record) -> UnknownWaves:
 
 def maximum_likelihood(problem: UnknownWaves) -> Optimum:
     """The best of several beginnings."""
-    found = [
+    optima = [
         levenberg_marquardt(problem, begin, _NO_INITIAL_STATES, negligible=1e-6, evaluations=100)
         for begin in problem.start_points()
     ]
-    return min(found, key=lambda one: one.solution.value)
+    return min(optima, key=lambda one: one.solution.value)
 
 
 def roll_interval(problem: UnknownWaves, optimum: Optimum) -> Interval:

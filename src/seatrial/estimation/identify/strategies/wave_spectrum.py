@@ -137,13 +137,13 @@ def _refuse_coherent_forces(problem: SpectralLikelihood, record: Record) -> None
     """
     first, second = (problem.model.input_names.index(n) for n in ("F3", "M5"))
     across = np.abs(np.sum(problem.input_densities[:, first, second])) ** 2
-    own = np.sum(problem.input_densities[:, first, first].real) * np.sum(
+    separate = np.sum(problem.input_densities[:, first, first].real) * np.sum(
         problem.input_densities[:, second, second].real
     )
-    if across > _MAX_COHERENCE * own:
+    if across > _MAX_COHERENCE * separate:
         raise InputError(
             f"record '{record.name}': in this sea the waves' force and moment keep one ratio at all frequencies "
-            f"(coherence {across / own:.3f}), which its spectrum cannot take apart; "
+            f"(coherence {across / separate:.3f}), which its spectrum cannot take apart; "
             "record the elevation or the wave forces, or another heading"
         )
 
