@@ -83,9 +83,10 @@ def test_importing_costs_little_and_loads_nothing_heavy() -> None:
 @pytest.mark.parametrize("stub", sorted((Path(st.__file__).parent).rglob("__init__.pyi")), ids=lambda p: p.parent.name)
 def test_the_list_of_a_stub_names_what_it_imports(stub: Path) -> None:
     tree = ast.parse(stub.read_text(encoding="utf-8"))
-    imported = [a.asname or a.name for node in tree.body if isinstance(node, ast.ImportFrom) for a in node.names]
-    lists = [node.value for node in tree.body if isinstance(node, ast.Assign)]
-    assert sorted(imported) == sorted(ast.literal_eval(lists[0]))
+    names = [alias for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names]
+    lists = [ast.literal_eval(node.value) for node in tree.body if isinstance(node, ast.Assign)]
+    reexported = lists[0] if lists else [alias.name for alias in names if alias.asname == alias.name]
+    assert sorted(alias.asname or alias.name for alias in names) == sorted(reexported)
 
 
 def type_errors(folder: Path, script: str) -> list[str]:

@@ -10,6 +10,10 @@ from seatrial.estimation.regress.features import (
     RegressionMotion as RegressionMotion,
     features as features,
 )
+from seatrial.estimation.regress.named import (
+    available_estimators as available_estimators,
+    estimator_named as estimator_named,
+)
 from seatrial.estimation.regress.operators import (
     Central as Central,
     Centred as Centred,

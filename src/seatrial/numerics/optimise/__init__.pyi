@@ -38,6 +38,11 @@ from seatrial.numerics.optimise.multistart import (
     RestartSettings as RestartSettings,
     multistart as multistart,
 )
+from seatrial.numerics.optimise.named import (
+    OPTIMISERS as OPTIMISERS,
+    OptimiserFactory as OptimiserFactory,
+    optimiser_named as optimiser_named,
+)
 from seatrial.numerics.optimise.particle_swarm import (
     ParticleSwarm as ParticleSwarm,
     SwarmSettings as SwarmSettings,
