@@ -11,6 +11,8 @@ import pytest
 from tests.estimation.regress.linear import zigzags
 
 from seatrial import testing
+from seatrial.core.figures.marks import Rule
+from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Verdict
 from seatrial.core.values import InputError
 from seatrial.data import read
@@ -78,7 +80,20 @@ def test_the_reader_refuses_in_one_sentence(line: str, sentence: str, layout: La
         read_record(path, layout)
 
 
-def test_the_estimator_gives_the_true_coefficients_back_despite_an_outlier() -> None:
+def test_the_figure_shows_residuals_limits_and_names_and_leaves_gaps() -> None:
+    time = np.linspace(0.0, 60.0, 400)
+    residuals = np.sin(time)
+    residuals[100:150] = np.nan
+    chart = loaded("residuals_figure").residual_chart(time, residuals, 0.4, "r [deg/s]")
+    page = svg(chart)
+    for words in ("t [s]", "r [deg/s]", "95 % if the model is right"):
+        assert words in page
+    assert "nan" not in page
+    (panel,) = chart.panels
+    assert panel.y.ends[1] > 1.0 and sorted(m.value for m in panel.marks if isinstance(m, Rule)) == [-0.784, 0.784]
+
+
+def test_the_estimator_gives_the_true_coefficients_back() -> None:
     model, record = true_model(), zigzags()
     estimator = loaded("least_deviations_estimator").LeastDeviations(half_width=20.0)
     truth = np.array([model.parameters[name].value for name in model.parameters.free_names])
