@@ -27,11 +27,11 @@ def print_lines(lines: Iterable[str], indent: str = "") -> None:
         print(indent + ascii_text(line))
 
 
-def print_table(rows: Sequence[Sequence[str]], left: Sequence[int] = (0,), indent: str = "") -> None:
-    """Print rows whose columns line up; those of `left` are flush left."""
+def print_table(rows: Sequence[Sequence[str]], flush_left: Sequence[int] = (0,), indent: str = "") -> None:
+    """Print rows whose columns line up; those of `flush_left` are flush left."""
     from seatrial.core.text.plain import aligned, ascii_text
 
-    print_lines(aligned([[ascii_text(cell) for cell in row] for row in rows], left), indent)
+    print_lines(aligned([[ascii_text(cell) for cell in row] for row in rows], flush_left), indent)
 
 
 def print_findings(findings: "tuple[Finding, ...]", per_code: int) -> None:
@@ -64,7 +64,7 @@ def print_fit(fit: "Fit") -> None:
             numbers = [exact(c.estimate, DIGITS), significant(c.standard_error, 2), exact(c.lower, DIGITS),
                        exact(c.upper, DIGITS), *([exact(c.truth, DIGITS)] if has_truth else [])]  # fmt: skip
             rows.append([c.name, *numbers, c.unit if c.unit != "1" else ""])
-    print_table(rows, left=(0, len(rows[0]) - 1))
+    print_table(rows, flush_left=(0, len(rows[0]) - 1))
     for p in fit.validation:
         _print_prediction(p)
     _print_model_selection(fit)
@@ -115,7 +115,7 @@ def _print_model_selection(fit: "Fit") -> None:
             word for word, holds in (("used", m.is_chosen), ("tied", m.is_tied), (m.note, m.note)) if holds
         )
         rows.append([m.name, str(m.free_count), *(exact(x, ERROR_DIGITS) for x in scores), marks])
-    print_table(rows, left=(0, len(rows[0]) - 1))
+    print_table(rows, flush_left=(0, len(rows[0]) - 1))
 
 
 def _print_baselines(fit: "Fit") -> None:
@@ -126,7 +126,7 @@ def _print_baselines(fit: "Fit") -> None:
     reference = "errors" if first.error else "from this fit"
     head = [f"other estimators: {reference}, %", "median", "worst", "heading deg", "position m", "CC u, v, r"]
     rows = [head, *([r.name[:60], *_baseline_cells(r, first, fit)] for r in fit.baselines)]
-    print_table(rows, left=(0, 5))
+    print_table(rows, flush_left=(0, 5))
     for r in fit.baselines:
         print_lines((f"{SEVERITY_MARK[f.severity.value]} [{f.code}] {r.name[:60]}: {f.text}" for f in r.findings), "  ")
     print("  good trajectories and correlations (CC) prove nothing about coefficients")
@@ -172,7 +172,7 @@ def print_measures(
     for name, value in measures.items():
         ends = [exact(end, 4) for end in intervals.get(name, ())]
         rows.append([name, exact(value, 4), f"[{', '.join(ends)}]" if ends else ""])
-    print_table(rows, left=(0, 2), indent="  ")
+    print_table(rows, flush_left=(0, 2), indent="  ")
     if extrapolation is not None:
         _print_extrapolation(extrapolation)
 
@@ -185,7 +185,7 @@ def print_study(study: "Study") -> None:
     for check in study.checks:
         limit = check.limit if isinstance(check.limit, str) else exact(check.limit, 4)
         rows.append(["holds" if check.holds else "FAILS", f"{check.name}: {exact(check.value, 4)} (limit {limit})"])
-    print_table(rows, left=(0, 1), indent="  ")
+    print_table(rows, flush_left=(0, 1), indent="  ")
 
 
 def print_design(design: "Design") -> None:
@@ -196,7 +196,7 @@ def print_design(design: "Design") -> None:
     track = ["drift deg", "distance m"] if has_track(design) else []
     rows = [["relative std. error, %", "worst", "mean", "ships drawn", *track, ""]]
     rows += [_manoeuvre_cells(manoeuvre, design) for manoeuvre in (design.designed, *ranked_baselines(design))]
-    print_table(rows, left=(0, len(rows[0]) - 1))
+    print_table(rows, flush_left=(0, len(rows[0]) - 1))
     confirmation = design.confirmation
     if confirmation is not None:
         text = f"{confirmation.converged_runs} of {confirmation.runs} fits of simulated trials succeed"
@@ -227,7 +227,7 @@ def _print_orders(design: "Design") -> None:
     from seatrial.data.folder.orders import order_cells, order_headings
 
     orders = [order_cells(order, design.actuators) for order in design.orders[:MAX_ORDERS_PRINTED]]
-    print_table([order_headings(design.actuators), *orders], left=(), indent="  ")
+    print_table([order_headings(design.actuators), *orders], flush_left=(), indent="  ")
     if len(design.orders) > MAX_ORDERS_PRINTED:
         print(f"  ... and {len(design.orders) - MAX_ORDERS_PRINTED} more orders in orders.csv")
 

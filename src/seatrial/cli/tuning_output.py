@@ -57,7 +57,7 @@ def _print_controllers(tuning: "Tuning") -> None:
             *(exact(factor * c.rms.get(key, math.nan), 4) for key, factor in factors.items()), exact(c.Ms, 3),
             fixed(100.0 * c.saturation, 1), fixed(100.0 * c.rate_saturation, 1), "; ".join(c.violated),
         ])  # fmt: skip
-    print_table(rows, left=(0, 8))
+    print_table(rows, flush_left=(0, 8))
 
 
 def _print_fronts(tuning: "Tuning") -> None:

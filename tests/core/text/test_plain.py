@@ -17,6 +17,6 @@ def test_signs_have_plain_forms() -> None:
 
 
 def test_columns_line_up() -> None:
-    lines = aligned([["name", "value", ""], ["a", "1.5", "note"], ["longer", "-12.25", ""]], left=(0, 2))
+    lines = aligned([["name", "value", ""], ["a", "1.5", "note"], ["longer", "-12.25", ""]], flush_left=(0, 2))
     assert lines == ["name     value", "a          1.5  note", "longer  -12.25"]
     assert aligned([]) == []

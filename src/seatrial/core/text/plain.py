@@ -21,15 +21,15 @@ def ascii_text(text: str) -> str:
     return _INDEX.sub(lambda match: f"^{digits(match[0])}", plain).translate(_PLAIN)
 
 
-def aligned(rows: Sequence[Sequence[str]], left: Sequence[int] = (0,)) -> list[str]:
+def aligned(rows: Sequence[Sequence[str]], flush_left: Sequence[int] = (0,)) -> list[str]:
     """Return rows of equal length as lines whose columns line up.
 
     Args:
-        left: columns that are flush left, the others are flush right.
+        flush_left: columns that are flush left, the others are flush right.
     """
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))] if rows else []
     return [
-        "  ".join(f"{cell:<{width}}" if k in left else f"{cell:>{width}}"
+        "  ".join(f"{cell:<{width}}" if k in flush_left else f"{cell:>{width}}"
                   for k, (cell, width) in enumerate(zip(row, widths, strict=True))).rstrip()
         for row in rows
     ]  # fmt: skip
