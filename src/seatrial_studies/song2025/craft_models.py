@@ -110,7 +110,7 @@ def drift_angle(record: Record) -> Array:
 
 def with_expressions(craft: Model, name: str, expressions: Mapping[str, sp.Expr]) -> Model:
     """A model of another name in which some bindings have other expressions, their symbols being `symbol`s."""
-    bindings = tuple(replace(b, expression=expressions[b.name]) if b.name in expressions else b for b in craft.bindings)
+    bindings = tuple(b.bound_to(expressions[b.name]) if b.name in expressions else b for b in craft.bindings)
     return replace(craft, equations=replace(craft.equations, name=name, bindings=bindings))
 
 
