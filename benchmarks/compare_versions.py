@@ -1,8 +1,8 @@
 """Compare every number of the results of six examples with those of another revision, to the bit.
 
 `python benchmarks/compare_versions.py REVISION` checks the revision out into a temporary folder, runs both versions on
-the same examples (records of real ships in SEATRIAL_DATA) and lists each number that differs. Times, formats, versions of
-packages and seeds of the clock are left out; keys that were renamed since are looked up under their old names.
+the same examples (records of real ships in SEATRIAL_DATA) and lists each number that differs. Times, formats and
+versions of packages are left out; keys that were renamed since are looked up under their old names.
 """
 
 import json
