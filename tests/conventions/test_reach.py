@@ -25,13 +25,10 @@ EXCEPTIONS: dict[str, str] = {
     "api: load": _IN_DOCS,
     "api: load_fit": _IN_DOCS,
     "api: load_loop": _IN_DOCS,
-    "api: predict": _IN_DOCS,
     "api: report": _IN_DOCS,
     "api: tune": _IN_DOCS,
-    "api: write_record": _IN_DOCS,
     "core/equations: is_cached": "decides what is compiled ahead; tests/core/equations/test_cache.py",
     "data/example_series: write_demo": "tests/api/test_api.py loads what it writes",
-    "data/folder: distinct_records": "saving a fit calls it: tests/data/folder",
     "data/folder: findings_document": "`seatrial check --json` writes it: tests/cli",
     "data/trial: checked_records": "every identification reads its records by it: tests/estimation/identify",
     "data/trial: trial_schema": "docs/write_schemas.py writes the published schema with it",
@@ -49,9 +46,6 @@ EXCEPTIONS: dict[str, str] = {
     "estimation/predict: track_holdout_error": "tests/studies/test_alexandersson2022.py, whose study uses it",
     "numerics: distrust": "tests/core/equations/test_cache.py damages entries of every kind",
     "numerics: open_regular": "tests/core/equations/test_cache.py damages entries of every kind",
-    "physics/hydro: solve_hull": "needs Capytaine: tests/against_codes/test_capytaine.py",
-    "physics/models: precompile": "starts compiled code ahead of its use; every command runs it",
-    "reporting: report_page": "`seatrial report` chooses the page by it: tests/cli",
 }
 
 
