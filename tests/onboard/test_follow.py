@@ -40,9 +40,9 @@ from seatrial.onboard.udp import UdpLines
 FOLLOWER = """
 import sys
 from pathlib import Path
-from tests.onboard.streams import Notes, voyage_trial
+from tests.onboard.streams import RecordingEstimator, stream_trial
 from seatrial.onboard.follow import follow
-follow(voyage_trial(Path(sys.argv[1])), journal=Path(sys.argv[2]), estimator=Notes())
+follow(stream_trial(Path(sys.argv[1])), journal=Path(sys.argv[2]), estimator=RecordingEstimator())
 """
 
 
