@@ -33,7 +33,7 @@ def _retired(text: str) -> Iterator[str]:
 def test_no_page_uses_a_retired_word(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     if page.name == "CHANGELOG.md":
-        text = text.partition("## 0.1")[0]
+        text = re.sub(r"^\|.*$", "", text, flags=re.MULTILINE)  # tables of renamed things quote the old names
     if page.name == "glossary.md":
         text = text.partition("## Words that are not used")[0]
     assert list(_retired(text)) == []
