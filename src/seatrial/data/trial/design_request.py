@@ -24,6 +24,7 @@ from seatrial.data.trial.amounts import (
     SiAmount,
     Unit,
 )
+from seatrial.data.trial.schema_errors import raises_input_error
 from seatrial.data.trial.settings import Positive
 
 _HALF_TURN = math.pi
@@ -40,6 +41,7 @@ class DesignCriterion(StrEnum):
     MEAN = "mean"
 
 
+@raises_input_error
 @dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
 class InputRange:
     """`[design.inputs.NAME]`: what may be done with an input.
@@ -84,6 +86,7 @@ def _values_by_symbol(amounts: dict[str, Amount]) -> dict[str, float]:
     return {symbol: amount.in_si for symbol, amount in amounts.items()}
 
 
+@raises_input_error
 @dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
 class DesignRequest:
     """`[design]`: how long the manoeuvre lasts, what may be moved, and what it must keep to.

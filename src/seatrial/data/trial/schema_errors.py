@@ -1,15 +1,19 @@
 """From a pydantic error to one sentence: the key's path, what is wrong with it, the nearest known key."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import is_dataclass
+from functools import wraps
 from itertools import chain
 from types import NoneType
-from typing import Any, get_args
+from typing import Any, ParamSpec, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
 
 from seatrial.core.values import InputError, spelling_hint
 from seatrial.data.trial.amounts import InSi
+
+_Settings = TypeVar("_Settings")
+_Arguments = ParamSpec("_Arguments")
 
 _UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
 
@@ -48,11 +52,31 @@ def key_path(location: Sequence[str | int]) -> str:
     return path
 
 
-def schema_error(error: ValidationError, table: type[BaseModel], file: str) -> InputError:
-    """The first thing wrong, as one sentence; an unknown key before a missing one, which may be its right spelling."""
+def raises_input_error(table: type[_Settings]) -> type[_Settings]:
+    """Make a validated dataclass raise `InputError` for wrong settings written in Python, as for those of a file."""
+    setattr(table, "__init__", _checked_init(table.__init__, table))  # noqa: B010
+    return table
+
+
+def _checked_init(init: Callable[_Arguments, None], table: type) -> Callable[_Arguments, None]:
+    @wraps(init)
+    def checked(*args: _Arguments.args, **kwargs: _Arguments.kwargs) -> None:
+        try:
+            init(*args, **kwargs)
+        except ValidationError as error:
+            raise schema_error(error, table, table.__name__) from None
+
+    return checked
+
+
+def schema_error(error: ValidationError, table: type, source: str) -> InputError:
+    """Return the first fault as one sentence; an unknown key before a missing one, which may be its right spelling.
+
+    source: the file, or the class of settings written in Python, with which the sentence begins.
+    """
     first = min(error.errors(), key=lambda one: one["type"] not in _UNKNOWN_KEY)
     location = first["loc"]
-    where = f"{file}: "
+    where = f"{source}: "
     match first["type"]:
         case kind if kind in _UNKNOWN_KEY:
             hint = spelling_hint(str(location[-1]), known_keys(table, location))
@@ -60,7 +84,8 @@ def schema_error(error: ValidationError, table: type[BaseModel], file: str) -> I
         case "missing":
             return InputError(f"{where}key '{key_path(location)}' is missing; add it")
         case "value_error":
-            return InputError(f"{where}{key_path(location)}: {first.get('ctx', {}).get('error', first['msg'])}")
+            key = f"{key_path(location)}: " if location else ""
+            return InputError(f"{where}{key}{first.get('ctx', {}).get('error', first['msg'])}")
         case "tuple_type" if isinstance(first["input"], dict):
             return InputError(
                 f"{where}{key_path(location)} is one table where a list of them belongs; write it as "
@@ -69,7 +94,7 @@ def schema_error(error: ValidationError, table: type[BaseModel], file: str) -> I
         case "tuple_type":
             return InputError(f"{where}{key_path(location)} = {first['input']!r} is no list; put it into brackets")
         case "too_short":
-            return InputError(f"{where}{key_path(location)} is an empty list; give at least one entry")
+            return InputError(f"{where}{key_path(location)} is empty; give at least one entry")
         case "model_type" | "dataclass_type":
             return InputError(
                 f"{where}{key_path(location)} = {first['input']!r} is neither a table nor a number; write one"

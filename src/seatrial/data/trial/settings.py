@@ -8,6 +8,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from pydantic.dataclasses import dataclass
 
 from seatrial.data.trial.amounts import STRICT_FIELDS, Deviation
+from seatrial.data.trial.schema_errors import raises_input_error
 
 
 class FitCriterion(StrEnum):
@@ -28,6 +29,7 @@ Positive = Annotated[float, Field(gt=0)]
 Deviations = Annotated[Mapping[str, Deviation], BeforeValidator(_as_deviations)]
 
 
+@raises_input_error
 @dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
 class EstimateSettings:
     """`[estimate]`: settings of the estimator; what is not given follows the decision table.
@@ -65,6 +67,7 @@ class EstimateSettings:
         return self
 
 
+@raises_input_error
 @dataclass(frozen=True, config=STRICT_FIELDS)
 class ModelFamily:
     """`[family]`: models to compare on runs left out of the fit.
