@@ -30,7 +30,7 @@ def family_of(keys: dict[str, object]) -> ModelFamily:
         (lambda: ModelFamily(prior_factors=(1.0, 0.0)), "ModelFamily: prior_factors[2] = 0.0: input should be"),
         (lambda: replace(RUDDER, upper=-0.7), "InputRange: lower = -0.6 is not below upper = -0.7"),
         (lambda: replace(REQUEST, duration=-1.0), "DesignRequest: duration: -1 is not positive"),
-        (lambda: replace(REQUEST, inputs={}), "DesignRequest: inputs is empty; give at least one entry"),
+        (lambda: replace(REQUEST, inputs={}), "DesignRequest: inputs is an empty table; give at least one entry"),
     ],
 )
 def test_wrong_settings_in_python_are_refused_by_class_and_key(write: Callable[[], object], sentence: str) -> None:

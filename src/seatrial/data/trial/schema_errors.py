@@ -94,7 +94,8 @@ def schema_error(error: ValidationError, table: type, source: str) -> InputError
         case "tuple_type":
             return InputError(f"{where}{key_path(location)} = {first['input']!r} is no list; put it into brackets")
         case "too_short":
-            return InputError(f"{where}{key_path(location)} is empty; give at least one entry")
+            kind = "table" if isinstance(first["input"], dict) else "list"
+            return InputError(f"{where}{key_path(location)} is an empty {kind}; give at least one entry")
         case "model_type" | "dataclass_type":
             return InputError(
                 f"{where}{key_path(location)} = {first['input']!r} is neither a table nor a number; write one"
