@@ -199,18 +199,7 @@ def _if_valid(value: float, status: str) -> float:
 
 _TIME_FIELDS = {"RMC": 1, "GGA": 1, "GNS": 1, "ZDA": 1, "GLL": 5}
 _READERS: dict[str, Callable[[Sentence], dict[str, float]]] = {
-    "HDT": _heading,
-    "THS": _heading,
-    "HDM": _heading,
-    "ROT": _rate_of_turn,
-    "RSA": _rudder,
-    "VTG": _ground_course,
-    "RMC": _recommended_minimum,
-    "GGA": _gps_fix,
-    "GNS": _gnss_fix,
-    "GLL": _geographic_position,
-    "VHW": _through_water,
-    "VBW": _dual_speed,
-    "RPM": _revolutions,
-    "XDR": _transducers,
-}
+    "HDT": _heading, "THS": _heading, "HDM": _heading, "ROT": _rate_of_turn, "RSA": _rudder, "VTG": _ground_course,
+    "RMC": _recommended_minimum, "GGA": _gps_fix, "GNS": _gnss_fix, "GLL": _geographic_position,
+    "VHW": _through_water, "VBW": _dual_speed, "RPM": _revolutions, "XDR": _transducers,
+}  # fmt: skip

@@ -16,15 +16,9 @@ from seatrial.reporting.text_tables import text_table
 # channels a run is given rather than predicted
 INPUT_CHANNELS = ("delta", "n", "v_j", "wind_speed", "wind_direction")
 TITLES = {
-    "outcome": "Outcome",
-    "claims": "Claims",
-    "checks": "Checks",
-    "tables": "Tables",
-    "figures": "Figures",
-    "runs": "Runs",
-    "findings": "Findings",
-    "versions": "Versions",
-}
+    "outcome": "Outcome", "claims": "Claims", "checks": "Checks", "tables": "Tables", "figures": "Figures",
+    "runs": "Runs", "findings": "Findings", "versions": "Versions",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -38,19 +38,10 @@ def facts(fit: Fit) -> list[tuple[str, str]]:
 def sentences(fit: Fit) -> list[str]:
     """Return the summary, most important first."""
     parts = [
-        *_held_out(fit),
-        _coverage(fit),
-        *_extrapolation(fit),
-        _roll_properties(fit),
-        _identifiability(fit),
-        _significance(fit),
-        _truth_coverage(fit),
-        _prior_disagreement(fit),
-        _criterion(fit),
-        _residuals(fit),
-        _convergence(fit),
-        _warnings(fit),
-    ]
+        *_held_out(fit), _coverage(fit), *_extrapolation(fit), _roll_properties(fit), _identifiability(fit),
+        _significance(fit), _truth_coverage(fit), _prior_disagreement(fit), _criterion(fit), _residuals(fit),
+        _convergence(fit), _warnings(fit),
+    ]  # fmt: skip
     return [sentence for sentence in parts if sentence]
 
 

@@ -130,13 +130,7 @@ class Sheet:
         )
         parameters = Parameters(tuple(self._parameters))
         equations = ModelEquations(
-            self.name,
-            self.source,
-            tuple(self._inputs),
-            tuple(self._bindings),
-            rates,
-            tuple(self._outputs),
-            parameters.names,
-            self.meaning,
-        )
+            self.name, self.source, tuple(self._inputs), tuple(self._bindings), rates, tuple(self._outputs),
+            parameters.names, self.meaning,
+        )  # fmt: skip
         return Model(equations, parameters)

@@ -33,16 +33,9 @@ DPI = 100.0
 POINT = 72.0 / DPI
 # Matplotlib's letters of the shapes
 _LETTERS = {
-    Shape.CIRCLE: "o",
-    Shape.CROSS: "x",
-    Shape.PLUS: "+",
-    Shape.DIAMOND: "D",
-    Shape.SQUARE: "s",
-    Shape.UP: "^",
-    Shape.DOWN: "v",
-    Shape.RIGHT: ">",
-    Shape.UPRIGHT: "|",
-}
+    Shape.CIRCLE: "o", Shape.CROSS: "x", Shape.PLUS: "+", Shape.DIAMOND: "D", Shape.SQUARE: "s", Shape.UP: "^",
+    Shape.DOWN: "v", Shape.RIGHT: ">", Shape.UPRIGHT: "|",
+}  # fmt: skip
 
 
 def matplotlib_figure(chart: Chart) -> "Figure":

@@ -23,17 +23,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = [
-    "Component",
-    "Controller",
-    "ControllerConstraints",
-    "ManoeuvreResponse",
-    "OperatingPoint",
-    "PairedDifference",
-    "ParetoFront",
-    "PerformanceBound",
-    "SeawaySimulation",
-    "Tuning",
-]
+    "Component", "Controller", "ControllerConstraints", "ManoeuvreResponse", "OperatingPoint", "PairedDifference",
+    "ParetoFront", "PerformanceBound", "SeawaySimulation", "Tuning",
+]  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False, repr=False)

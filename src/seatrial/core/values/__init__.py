@@ -14,29 +14,7 @@ from seatrial.core.values.units import display_unit, si_unit
 from seatrial.core.values.versions import versions
 
 __all__ = [
-    "NOTATION",
-    "Array",
-    "Channel",
-    "DivergedError",
-    "Finding",
-    "ForceContent",
-    "ForcePoints",
-    "Index",
-    "InputError",
-    "Parameter",
-    "Parameters",
-    "Prior",
-    "ProgressReporter",
-    "Provenance",
-    "Quantity",
-    "Record",
-    "RecordKind",
-    "Severity",
-    "Ship",
-    "display_unit",
-    "frozen",
-    "quantity",
-    "si_unit",
-    "spelling_hint",
-    "versions",
-]
+    "NOTATION", "Array", "Channel", "DivergedError", "Finding", "ForceContent", "ForcePoints", "Index", "InputError",
+    "Parameter", "Parameters", "Prior", "ProgressReporter", "Provenance", "Quantity", "Record", "RecordKind",
+    "Severity", "Ship", "display_unit", "frozen", "quantity", "si_unit", "spelling_hint", "versions",
+]  # fmt: skip

@@ -9,22 +9,9 @@ from seatrial.core.values.record import Record
 
 # exponent of the length ratio by SI unit, equal gravity and density (ITTC 2021, 7.5-02-06-01, Froude scaling)
 _EXPONENTS: dict[str, float] = {
-    "1": 0.0,
-    "rad": 0.0,
-    "m": 1.0,
-    "m^2": 2.0,
-    "m^3": 3.0,
-    "s": 0.5,
-    "m/s": 0.5,
-    "m/s^2": 0.0,
-    "rad/s": -0.5,
-    "rps": -0.5,
-    "N": 3.0,
-    "N m": 4.0,
-    "kg": 3.0,
-    "kg/m^3": 0.0,
-    "kg m^2": 5.0,
-}
+    "1": 0.0, "rad": 0.0, "m": 1.0, "m^2": 2.0, "m^3": 3.0, "s": 0.5, "m/s": 0.5, "m/s^2": 0.0, "rad/s": -0.5,
+    "rps": -0.5, "N": 3.0, "N m": 4.0, "kg": 3.0, "kg/m^3": 0.0, "kg m^2": 5.0,
+}  # fmt: skip
 
 
 def froude_factor(unit: str, ratio: float) -> float:

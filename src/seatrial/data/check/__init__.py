@@ -8,14 +8,6 @@ from seatrial.data.check.signal import sample_noise
 from seatrial.data.check.timestamps import rebuild_time_base
 
 __all__ = [
-    "ExaminedRecord",
-    "canonical_record",
-    "complete_segments",
-    "examine",
-    "examined_record",
-    "is_excited",
-    "rebuild_time_base",
-    "repair",
-    "sample_noise",
-    "with_standard_signs",
-]
+    "ExaminedRecord", "canonical_record", "complete_segments", "examine", "examined_record", "is_excited",
+    "rebuild_time_base", "repair", "sample_noise", "with_standard_signs",
+]  # fmt: skip

@@ -15,18 +15,9 @@ ENTRY_POINT_GROUP = "seatrial.readers"
 READERS: dict[str, Reader] = {"text": read_text, "mat": read_mat, "parquet": read_parquet, "netcdf": read_netcdf}
 # suffix of a file name -> format; the suffix of an installed format is its name
 _SUFFIXES = {
-    ".csv": "text",
-    ".tsv": "text",
-    ".txt": "text",
-    ".dat": "text",
-    ".asc": "text",
-    ".mat": "mat",
-    ".parquet": "parquet",
-    ".pq": "parquet",
-    ".nc": "netcdf",
-    ".nc4": "netcdf",
-    ".netcdf": "netcdf",
-}
+    ".csv": "text", ".tsv": "text", ".txt": "text", ".dat": "text", ".asc": "text", ".mat": "mat",
+    ".parquet": "parquet", ".pq": "parquet", ".nc": "netcdf", ".nc4": "netcdf", ".netcdf": "netcdf",
+}  # fmt: skip
 
 
 def require_format(name: str) -> str:

@@ -7,19 +7,7 @@ from seatrial.data.trial.settings import EstimateSettings, FitCriterion, ModelFa
 from seatrial.data.trial.trial import RecordFile, Role, Trial, TrialRun, Trimming
 
 __all__ = [
-    "CheckedRecords",
-    "EstimateSettings",
-    "FitCriterion",
-    "ModelFamily",
-    "RecordFile",
-    "Role",
-    "Trial",
-    "TrialRecord",
-    "TrialRun",
-    "Trimming",
-    "approach_condition",
-    "checked_records",
-    "load_records",
-    "load_trial",
+    "CheckedRecords", "EstimateSettings", "FitCriterion", "ModelFamily", "RecordFile", "Role", "Trial",
+    "TrialRecord", "TrialRun", "Trimming", "approach_condition", "checked_records", "load_records", "load_trial",
     "refuse_errors",
-]
+]  # fmt: skip

@@ -6,13 +6,6 @@ from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS, Es
 from seatrial.estimation.estimate.time_scale import ship_length_seconds
 
 __all__ = [
-    "INITIAL_STATE_SHIP_LENGTHS",
-    "Estimation",
-    "EstimatorOptions",
-    "IntervalMethod",
-    "Runs",
-    "estimate_model",
-    "ship_length_seconds",
-    "training_runs",
-    "with_segment_seconds",
-]
+    "INITIAL_STATE_SHIP_LENGTHS", "Estimation", "EstimatorOptions", "IntervalMethod", "Runs", "estimate_model",
+    "ship_length_seconds", "training_runs", "with_segment_seconds",
+]  # fmt: skip

@@ -124,17 +124,9 @@ def _lags(process_noise: ProcessNoise, channels: tuple[str, ...], lag: float) ->
     names = {c: lagged_name(c) for c in channels}
     words = f"lags of {', '.join(channels)}"
     return _augmented_alternative(
-        process_noise,
-        model,
-        process_noise.problem.process,
-        _squared_intensities(process_noise),
-        spread,
-        means,
-        names,
-        [lag],
-        words,
-        1,
-    )
+        process_noise, model, process_noise.problem.process, _squared_intensities(process_noise), spread, means,
+        names, [lag], words, 1,
+    )  # fmt: skip
 
 
 def _squared_intensities(process_noise: ProcessNoise) -> Array:

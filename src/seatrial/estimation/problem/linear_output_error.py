@@ -95,20 +95,10 @@ class LinearOutputError:
         n, m = len(self._free_indices), len(self.starts)
         used, straight = self._active_columns
         made = residuals_and_jacobian(
-            self._rates,
-            len(self.model.inputs),
-            self._free_indices,
-            used,
-            straight,
-            self._parameter_values(shared),
-            self._step,
-            self._input_rows,
-            self._substeps,
-            self._initial_state(local),
-            self._start_columns,
-            n + m,
+            self._rates, len(self.model.inputs), self._free_indices, used, straight, self._parameter_values(shared),
+            self._step, self._input_rows, self._substeps, self._initial_state(local), self._start_columns, n + m,
             *self._comparison,
-        )
+        )  # fmt: skip
         if made is None:
             return NormalEquations(
                 np.inf,

@@ -17,27 +17,9 @@ from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
 
 (
-    CONTROLLER_ORDER,
-    COUNT,
-    OUTPUT,
-    ACTUATOR,
-    DISTURBED_INPUT,
-    TRIM,
-    EFFECT,
-    LIMIT,
-    SLEW,
-    STALL,
-    LOSS,
-    STEP,
-    ANGLE,
-    EFFECTIVE_ANGLE,
-    SATURATION_EXCESS,
-    ANTI_WINDUP,
-    OUTPUT_LAST,
-    OUTPUT_BEFORE_LAST,
-    ERROR_LAST,
-    HEAD_SIZE,
-) = range(20)
+    CONTROLLER_ORDER, COUNT, OUTPUT, ACTUATOR, DISTURBED_INPUT, TRIM, EFFECT, LIMIT, SLEW, STALL, LOSS, STEP, ANGLE,
+    EFFECTIVE_ANGLE, SATURATION_EXCESS, ANTI_WINDUP, OUTPUT_LAST, OUTPUT_BEFORE_LAST, ERROR_LAST, HEAD_SIZE,
+) = range(20)  # fmt: skip
 
 
 @njit(inline="always", **OPTIONS)

@@ -209,28 +209,9 @@ def _replay_tangent(
 
 
 def replay_tangent(
-    e,
-    g0,
-    g1,
-    c,
-    d,
-    de,
-    dg0,
-    dg1,
-    dc,
-    dd,
-    matrix_index,
-    inputs,
-    offsets,
-    substeps,
-    x0,
-    correction_columns,
-    weights,
-    start_column,
-    y_out,
-    s_out,
-    failed,
-):
+    e, g0, g1, c, d, de, dg0, dg1, dc, dd, matrix_index, inputs, offsets, substeps, x0, correction_columns, weights,
+    start_column, y_out, s_out, failed
+):  # fmt: skip
     """Integrate with sensitivities: columns of parameters (last axis of de, ...), of input corrections, of starts.
 
     shifts: (corrections, 2), input column and sensitivity column of each; weights: (fine rows, corrections), derivative
@@ -238,29 +219,7 @@ def replay_tangent(
     """
     nx, ncol = x0.shape[1], s_out.shape[2]
     _replay_tangent(
-        e,
-        g0,
-        g1,
-        c,
-        d,
-        de,
-        dg0,
-        dg1,
-        dc,
-        dd,
-        matrix_index,
-        inputs,
-        offsets,
-        substeps,
-        x0,
-        correction_columns,
-        weights,
-        start_column,
-        y_out,
-        s_out,
-        failed,
-        np.empty(nx),
-        np.empty(nx),
+        e, g0, g1, c, d, de, dg0, dg1, dc, dd, matrix_index, inputs, offsets, substeps, x0, correction_columns,
+        weights, start_column, y_out, s_out, failed, np.empty(nx), np.empty(nx), np.empty((nx, ncol)),
         np.empty((nx, ncol)),
-        np.empty((nx, ncol)),
-    )
+    )  # fmt: skip

@@ -209,24 +209,9 @@ def _load_plant_slopes(w, n, dplant, first_parameter, active_inputs, b_start):
 
 @njit(inline="always", **OPTIONS)
 def _simulate_with_slopes(
-    n,
-    plant,
-    dplant,
-    active_inputs,
-    ramp_inputs,
-    h,
-    v,
-    substeps,
-    x0,
-    start_column,
-    select,
-    measured,
-    weight,
-    residual,
-    jacobian,
-    z,
-    w,
-):
+    n, plant, dplant, active_inputs, ramp_inputs, h, v, substeps, x0, start_column, select, measured, weight,
+    residual, jacobian, z, w
+):  # fmt: skip
     nb, nv, nn, ny = active_inputs.size, v.shape[1], n * n, select.size
     samples = measured.shape[0]
     for first in range(0, jacobian.shape[1], LANES):
@@ -278,73 +263,20 @@ def _simulate_with_slopes(
     **LEAN,
 )
 def _residuals_and_jacobian(
-    f,
-    nu,
-    parameter_index,
-    active_inputs,
-    ramp_inputs,
-    p,
-    h,
-    v,
-    substeps,
-    x0,
-    start_column,
-    select,
-    measured,
-    weight,
-    residual,
-    jacobian,
-    plant,
-    dplant,
-    x,
-    u,
-    out,
-    jac,
-    slope_at_origin,
-    z,
-    w,
-):
+    f, nu, parameter_index, active_inputs, ramp_inputs, p, h, v, substeps, x0, start_column, select, measured,
+    weight, residual, jacobian, plant, dplant, x, u, out, jac, slope_at_origin, z, w
+):  # fmt: skip
     n = x0.size
     _affine_matrices(f, n, nu, parameter_index, p, plant, dplant, x, u, out, jac, slope_at_origin)
     if n == 4:
         return _simulate_with_slopes(
-            4,
-            plant,
-            dplant,
-            active_inputs,
-            ramp_inputs,
-            h,
-            v,
-            substeps,
-            x0,
-            start_column,
-            select,
-            measured,
-            weight,
-            residual,
-            jacobian,
-            z,
-            w,
-        )
+            4, plant, dplant, active_inputs, ramp_inputs, h, v, substeps, x0, start_column, select, measured, weight,
+            residual, jacobian, z, w,
+        )  # fmt: skip
     return _simulate_with_slopes(
-        n,
-        plant,
-        dplant,
-        active_inputs,
-        ramp_inputs,
-        h,
-        v,
-        substeps,
-        x0,
-        start_column,
-        select,
-        measured,
-        weight,
-        residual,
-        jacobian,
-        z,
-        w,
-    )
+        n, plant, dplant, active_inputs, ramp_inputs, h, v, substeps, x0, start_column, select, measured, weight,
+        residual, jacobian, z, w,
+    )  # fmt: skip
 
 
 def _allocate_scratch(nx, nu, count, active_inputs, ramp_inputs, p):
@@ -371,22 +303,9 @@ def _allocate_scratch(nx, nu, count, active_inputs, ramp_inputs, p):
 
 
 def residuals_and_jacobian(
-    f,
-    nu,
-    parameter_index,
-    active_inputs,
-    ramp_inputs,
-    p,
-    h,
-    v,
-    substeps,
-    x0,
-    start_column,
-    columns,
-    select,
-    measured,
-    weight,
-):
+    f, nu, parameter_index, active_inputs, ramp_inputs, p, h, v, substeps, x0, start_column, columns, select,
+    measured, weight
+):  # fmt: skip
     """Return residuals weight (x - measured), (samples ny,), and Jacobian (samples ny, columns); 0 where unmeasured.
 
     f: rates with Jacobian, nu inputs; used: columns of [u | 1] that act; straight: places in `used` of inputs that are
@@ -398,24 +317,7 @@ def residuals_and_jacobian(
     residual, jacobian = np.empty(measured.size), np.empty((measured.size, -(-columns // LANES) * LANES))
     room, size = _allocate_scratch(len(x0), nu, len(parameter_index), active_inputs, ramp_inputs, p)
     is_fine = _residuals_and_jacobian(
-        f,
-        nu,
-        parameter_index,
-        active_inputs,
-        ramp_inputs,
-        p,
-        h,
-        v,
-        substeps,
-        x0,
-        start_column,
-        select,
-        measured,
-        weight,
-        residual,
-        jacobian,
-        *room,
-        np.empty(size),
-        aligned_scratch(size),
-    )
+        f, nu, parameter_index, active_inputs, ramp_inputs, p, h, v, substeps, x0, start_column, select, measured,
+        weight, residual, jacobian, *room, np.empty(size), aligned_scratch(size),
+    )  # fmt: skip
     return (residual, jacobian[:, :columns]) if is_fine else None

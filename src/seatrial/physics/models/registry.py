@@ -71,16 +71,10 @@ def _roll() -> "Model":
 
 
 MODELS: dict[str, Callable[[], "Model"]] = {
-    "waterjet": _waterjet,
-    "nomoto": _nomoto,
-    "nomoto2": _nomoto2,
-    "abkowitz": _abkowitz,
-    "mmg": _mmg,
-    "heave_pitch": _heave_pitch,
-    "heave_pitch_zoh": _heave_pitch_zoh,
-    "heave_pitch_strip": _heave_pitch_strip,
+    "waterjet": _waterjet, "nomoto": _nomoto, "nomoto2": _nomoto2, "abkowitz": _abkowitz, "mmg": _mmg,
+    "heave_pitch": _heave_pitch, "heave_pitch_zoh": _heave_pitch_zoh, "heave_pitch_strip": _heave_pitch_strip,
     "roll": _roll,
-}
+}  # fmt: skip
 
 
 def _require_model(model: object, where: str) -> "Model":

@@ -134,32 +134,11 @@ class KalmanFilter(SegmentBatch):
         variance = np.empty((b - a if with_variance else 0, nx))
         compiled = self.model.compiled
         failed = filter_innovations(
-            compiled.rates_tangent,
-            compiled.outputs_tangent,
-            inputs,
-            weights,
-            self.dt,
-            self.substeps,
-            point.start[segment],
-            point.start_variance[segment],
-            point.parameters[segment],
-            chain,
-            link_p,
-            link_u,
-            g_link_p,
-            g_link_u,
-            self._output_columns,
-            len(self.model.outputs),
-            self._driven,
-            process,
-            point.deviation**2,
-            np.ascontiguousarray(measured[a:b]),
-            e,
-            v,
-            de,
-            dv,
-            variance,
-        )
+            compiled.rates_tangent, compiled.outputs_tangent, inputs, weights, self.dt, self.substeps,
+            point.start[segment], point.start_variance[segment], point.parameters[segment], chain, link_p, link_u,
+            g_link_p, g_link_u, self._output_columns, len(self.model.outputs), self._driven, process,
+            point.deviation**2, np.ascontiguousarray(measured[a:b]), e, v, de, dv, variance,
+        )  # fmt: skip
         return e, v, de, dv, variance, failed >= 0
 
 

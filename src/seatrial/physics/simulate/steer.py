@@ -94,16 +94,9 @@ def _steer_programme(
     states, inputs = np.empty((count, len(start))), np.empty((count, len(held)))
     memory = programme.memory(steering)
     diverged = steer(
-        model.compiled.rates,
-        programme.helmsman,
-        start,
-        held.copy(),
-        model.parameters.values,
-        memory,
-        dt,
-        states,
+        model.compiled.rates, programme.helmsman, start, held.copy(), model.parameters.values, memory, dt, states,
         inputs,
-    )
+    )  # fmt: skip
     if diverged >= 0:
         require_bounded(
             model, frozen(dt * np.arange(diverged + 1)), states[: diverged + 1], f"manoeuvre '{programme.text}'"

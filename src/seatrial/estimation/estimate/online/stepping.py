@@ -88,25 +88,12 @@ class RungeKuttaStepper:
     def run(self, filter_state: FilterState, inputs: Array, measured: Array, first: int, is_run_start: int) -> int:
         """As `Stepping.run`."""
         return filter_runge_kutta(
-            *self._rates_and_step,
-            *self._model_arguments,
-            filter_state.z,
-            filter_state.root,
-            inputs,
-            measured,
-            first,
-            is_run_start,
-            filter_state.variance,
-            filter_state.huber_limit,
-            filter_state.averaging_samples,
-            filter_state.running_means,
-            filter_state.counts,
-            filter_state.widest_precision,
-            filter_state.retained_share,
-            filter_state.forgetting_interval,
-            filter_state.since_forgetting,
+            *self._rates_and_step, *self._model_arguments, filter_state.z, filter_state.root, inputs, measured,
+            first, is_run_start, filter_state.variance, filter_state.huber_limit, filter_state.averaging_samples,
+            filter_state.running_means, filter_state.counts, filter_state.widest_precision,
+            filter_state.retained_share, filter_state.forgetting_interval, filter_state.since_forgetting,
             *self._scratch_arrays,
-        )
+        )  # fmt: skip
 
 
 class ExactStepper:
@@ -145,25 +132,12 @@ class ExactStepper:
             made = self._linearise(filter_state)
             until = min(row + self.CHECK_ROWS - self._rows_since_check, len(measured))
             failed = filter_linear(
-                *made,
-                filter_state.z,
-                filter_state.root,
-                inputs,
-                measured[:until],
-                row,
-                is_run_start,
-                slopes,
-                filter_state.variance,
-                filter_state.huber_limit,
-                filter_state.averaging_samples,
-                filter_state.running_means,
-                filter_state.counts,
-                filter_state.widest_precision,
-                filter_state.retained_share,
-                filter_state.forgetting_interval,
-                filter_state.since_forgetting,
+                *made, filter_state.z, filter_state.root, inputs, measured[:until], row, is_run_start, slopes,
+                filter_state.variance, filter_state.huber_limit, filter_state.averaging_samples,
+                filter_state.running_means, filter_state.counts, filter_state.widest_precision,
+                filter_state.retained_share, filter_state.forgetting_interval, filter_state.since_forgetting,
                 *self._scratch_arrays,
-            )
+            )  # fmt: skip
             if failed >= 0:
                 return failed
             is_run_start, self._rows_since_check, row = (
