@@ -134,7 +134,7 @@ def test_a_fitness_without_order_names_its_row(kind: str, value: float) -> None:
 @EVERY
 def test_telling_out_of_turn_or_another_shape_is_refused(kind: str) -> None:
     optimiser = make_optimiser(kind, BOX, 1)
-    with pytest.raises(SearchError, match="before points were asked for"):
+    with pytest.raises(SearchError, match=r"before ask\(\) was called"):
         optimiser.tell(np.zeros(40))
     optimiser.ask()
     with pytest.raises(SearchError, match=r"40 points has shape \(39,\)"):

@@ -288,7 +288,7 @@ def test_objectives_without_a_fitness_name_row_and_column(value: float, says: st
 
 def test_telling_out_of_turn_or_another_shape_is_refused() -> None:
     genetic = RandomWeightGenetic(BOX, np.random.default_rng(1), TWO)
-    with pytest.raises(SearchError, match="before points were asked for"):
+    with pytest.raises(SearchError, match=r"before ask\(\) was called"):
         genetic.tell(np.zeros((50, 2)))
     genetic.ask()
     for shape in ((50,), (50, 3), (49, 2)):

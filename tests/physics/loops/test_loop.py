@@ -61,12 +61,6 @@ def test_denominators_in_common_are_counted_once() -> None:
     assert len(RICH.polynomials[0]) - 1 == 1 + 1 + 2 + 2 + 1 + 2
 
 
-@pytest.mark.parametrize("loop", [*LOOPS, RICH], ids=lambda loop: loop.name)
-def test_the_controlled_response_is_that_to_the_disturbance_over_one_and_the_open_loop(loop: TransferLoop) -> None:
-    expected = loop.disturbance.frequency_response(OMEGA) / (1.0 + loop.open_loop(OMEGA))
-    np.testing.assert_allclose(loop.disturbance_response.frequency_response(OMEGA), expected, rtol=1e-9)
-
-
 def test_gains_in_another_order_than_terms_are_refused() -> None:
     with pytest.raises(InputError, match="loop 'rich': give one gain for each term"):
         replace(RICH, gains=Parameters(RICH.gains.free[::-1]))

@@ -9,6 +9,7 @@ from tests.physics.loops.example_loops import FIN, RATE, ROLL, ROWS, SHAPED, lya
 
 from seatrial.core.values import Array, InputError
 from seatrial.physics.loops import (
+    Block,
     EncounterSpectrum,
     HullFactor,
     LoopSignal,
@@ -74,8 +75,11 @@ def test_nodes_that_settle_under_control_resolve_any_loop(loop: TransferLoop, ga
     assert fragile.size
     for i in fragile:
         own = loop.with_gains(gains[i])
+        d, n = own.polynomials
+        num, den = np.polymul(own.disturbance.num, d), np.polymul(own.disturbance.den, d + own.gain_values @ n)
+        controlled = Block("controlled", tuple(num), tuple(den))
         fine = disturbance_spectrum(
-            lambda w: np.abs(SHAPED.frequency_response(w)) ** 2, 1e-4, 1e4, own.disturbance_response, "shaped noise"
+            lambda w: np.abs(SHAPED.frequency_response(w)) ** 2, 1e-4, 1e4, controlled, "shaped noise"
         )
         found = Performance(own, fine, ROWS).evaluate(gains[i]).variances[0]
         np.testing.assert_allclose(found, lyapunov_variances(loop, gains[i]), rtol=1e-6)

@@ -17,20 +17,17 @@ SEED, DRAWS = 0, 100
 
 @dataclass(frozen=True, eq=False)
 class ParameterDraws:
-    """Ships drawn, `draws` of them; `untrimmed` have no trim, or an actuator without effect.
+    """Ships sampled from the covariance of a fit.
 
     Attributes:
-        ships: the others; plants: of each, the mean of both sides and, where they differ, the two sides.
+        draws: number of samples, also of those without a trim or with an actuator without effect; no controller counts
+            as stable on these.
+        ships: the trimmed samples; plants: of each, the mean of both sides and, where they differ, the two sides.
     """
 
     draws: int
     ships: tuple[TrimmedShip, ...]
     plants: tuple[tuple[Block, ...], ...]
-
-    @property
-    def untrimmed(self) -> int:
-        """How many could not be trimmed; no controller is counted stable on them."""
-        return self.draws - len(self.ships)
 
     def stable_ships(self, loop: TransferLoop, gains: Array) -> tuple[bool, ...]:
         """Whether each ship's loop is stable with the gains (g,), on the straight course and beginning either turn."""

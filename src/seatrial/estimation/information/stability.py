@@ -86,13 +86,13 @@ def _gradient(model: Model, stability_index: Callable[[Model], float]) -> Array:
 
 
 def _stability_text(index: float, half: float, slowest: float) -> str:
-    told = "whether the ship is stable on her course cannot be told"
+    text = "whether the ship is course stable cannot be determined"
     if abs(index) > half:
-        told = f"the ship is {'stable' if index > 0 else 'unstable'} on her course"
+        text = f"the ship is course {'stable' if index > 0 else 'unstable'}"
     if slowest == 0.0:
-        return told
+        return text
     grown = "dies out" if slowest < 0 else "grows"
-    return f"{told}: at the estimate a disturbance {grown} by a factor e in {abs(1.0 / slowest):.2g} ship lengths"
+    return f"{text}: at the estimate a disturbance {grown} by a factor e in {abs(1.0 / slowest):.2g} ship lengths"
 
 
 def _asymmetry_text(starboard: float, port: float) -> str:

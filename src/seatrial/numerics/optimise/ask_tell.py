@@ -69,8 +69,8 @@ class Optimiser(Protocol):
     Attributes:
         done: whether its iterations are spent, or nothing is left to improve.
         best: the point it would return now, shape (d,), and its fitness.
-        history: fitness of `best` after each tell.
-        trace: `best` after each tell, shape (tells, d).
+        history: fitness of `best` after each iteration.
+        trace: `best` after each iteration, shape (iterations, d).
         status: how it stands, for the solution.
         seed: of its generator, where that is one whole number.
     """
@@ -109,7 +109,7 @@ def search(
 ) -> Solution:
     """Ask and tell until the optimiser is done; `fitness` takes (n, d) and gives (n,).
 
-    `progress` is called after each tell with the number of evaluations and the best fitness.
+    `progress` is called after each iteration with the number of evaluations and the best fitness.
 
     Raises:
         SearchError: a fitness that is NaN or has another shape.

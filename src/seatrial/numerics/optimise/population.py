@@ -28,7 +28,7 @@ class FitnessMemory(Enum):
 
 
 class Population(ABC):
-    """An optimiser that moves a population inside a box; one ask and one tell make an iteration.
+    """An optimiser that moves a population inside a box; one `ask()` and one `tell()` make an iteration.
 
     A kind says where the points go (`_propose`), what it makes of their fitness (`_learn`), and its best point; one of
     several objectives also which values it refuses (`_refuse`). The first population counts as the first of the
@@ -57,7 +57,7 @@ class Population(ABC):
     @property
     @abstractmethod
     def best(self) -> tuple[Array, float]:
-        """The point that would be returned now, shape (d,), and its fitness; before the first tell infinite."""
+        """Return the best point so far, shape (d,), and its fitness; infinite before the first `tell()`."""
 
     def ask(self) -> Array:
         """Points to evaluate next, shape (n, d), a copy; the same until `tell` is called."""
@@ -72,7 +72,7 @@ class Population(ABC):
             SearchError: nothing was asked; a fitness of another shape; NaN or minus infinity, naming the row.
         """
         if self._pending_points is None:
-            raise SearchError("A fitness was given before points were asked for; call ask() first.")
+            raise SearchError("A fitness was given before ask() was called; call ask() first.")
         values = np.array(fitness, dtype=np.float64)
         self._validate(self._pending_points, values)
         self._learn(self._pending_points, values)
@@ -111,12 +111,12 @@ class Population(ABC):
 
     @property
     def history(self) -> tuple[float, ...]:
-        """Fitness of the best point after each tell."""
+        """Return the fitness of the best point after each iteration."""
         return tuple(self._history)
 
     @property
     def trace(self) -> Array:
-        """The best point (own best of all, waterhole) after each tell, shape (tells, d)."""
+        """Return the best point (own best of all, waterhole) after each iteration, shape (iterations, d)."""
         return np.array(self._trace).reshape(-1, self.box.size)
 
     @property

@@ -86,7 +86,7 @@ def wave_slope_spectrum(
     Args:
         U: m/s; beta: rad, 0 following, pi / 2 beam, pi head.
         response: from the slope to the motion; nodes suffice for variances of its angle and rate with half of its
-            damping. A loop much nearer to instability, or slower, is resolved by its own `disturbance_response`.
+            damping. A loop much nearer to instability, or slower, is resolved by its own closed-loop response D S.
         spreading: exponent s of a short-crested sea, cos^2s over +- 90 deg; None: long-crested.
 
     Raises:

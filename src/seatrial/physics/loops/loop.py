@@ -100,13 +100,6 @@ class TransferLoop:
         return self.gain_values @ self.open_loop_terms(omega)
 
     @property
-    def disturbance_response(self) -> Block:
-        """D S at the loop's gains, from the disturbance to the output; nothing cancels."""
-        d, n = self.polynomials
-        num, den = np.polymul(self.disturbance.num, d), np.polymul(self.disturbance.den, d + self.gain_values @ n)
-        return Block("controlled", tuple(num), tuple(den))
-
-    @property
     def closed_loop_poles(self) -> Complex:
         """Roots of the characteristic polynomial at the loop's gains, rad/s."""
         d, n = self.polynomials

@@ -22,7 +22,7 @@ class StabilityMargins:
         Ms_frequency: rad/s.
         gain: the factor that the loop gain may grow by, infinite if any.
         phase: rad, positive: the least that L may turn, either way, where its size is one; infinite if it never is.
-        delay: s of dead time that the loop bears: the least lag up to -1 over the frequency, infinite if any.
+        delay: s of dead time that the loop tolerates: the least lag up to -1 over the frequency, infinite if any.
         damping: the least damping ratio of a closed-loop pole.
     """
 

@@ -37,8 +37,8 @@ class Performance:
     """The loop in one exposure.
 
     Variances are exact to 1e-8 up to Ms 5, at nodes that settle without control; to 1e-4 up to 10, to one in a hundred
-    up to 20, and worth nothing beyond 50. An exposure whose `response` is `disturbance_response` resolves any loop.
-    A loop slower than .002 rad/s in following seas, where waves keep up with the ship, may be .1 % off.
+    up to 20, and unusable beyond 50. An exposure whose `response` is the closed loop's, D S, resolves any loop.
+    A loop slower than 0.002 rad/s in following seas, where waves keep up with the ship, may be 0.1 % off.
 
     Attributes:
         variances: variances computed, in this order; those on the output must stand first.

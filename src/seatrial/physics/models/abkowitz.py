@@ -36,7 +36,6 @@ STANDARD = (
     "Y_0", "Y_v", "Y_r", "Y_d", "Y_vvv", "Y_vvr", "Y_vrr", "Y_rrr",
     "N_0", "N_v", "N_r", "N_d", "N_vvv", "N_vvr", "N_vrr", "N_rrr",
 )  # fmt: skip
-LINEAR = ("X_u", "Y_v", "Y_r", "Y_d", "N_v", "N_r", "N_d")
 
 
 def _series(sheet: Sheet, force: str, terms: Sequence[str], variables: dict[str, sp.Symbol]) -> sp.Expr:

@@ -1,4 +1,4 @@
-"""Whether the latest stretch tells other coefficients than what came before it.
+"""Test whether the latest stretch of a record gives other coefficients than the data before it.
 
 Both tests are Hausman's (1978, Econometrica 46, eq. (2.3)): a difference of estimates against its covariance, which is
 chi-squared where the ship has stayed the same. The covariances must be honest: noise as it is, colour counted.
@@ -67,14 +67,14 @@ def _wald_test(difference: Array, covariance: Array, scale: Array) -> ChangeStat
 
 @dataclass(eq=False)
 class ChangeDetector:
-    """Looks at a growing estimate once a stretch: the stretch against all before it.
+    """Test a growing estimate once an interval: the latest interval against all data before it.
 
-    The j-th look may spend alpha / (j (j + 1)) of the false alarms, alpha in all however often it looks (Bonferroni's
+    The j-th test may spend alpha / (j (j + 1)) of the false alarms, alpha in all however often it tests (Bonferroni's
     inequality; spending as Lan & DeMets 1983 have it).
 
     Attributes:
-        names: of the coefficients; stretch: s between looks; alpha: chance of any false alarm, however long the stream.
-        latest: what the last look found; told: the last one that told a change.
+        names: of the coefficients; interval: s between tests; alpha: probability of any false alarm in the stream.
+        latest: result of the last test; detected: the last result that was significant.
     """
 
     names: tuple[str, ...]

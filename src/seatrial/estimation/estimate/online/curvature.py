@@ -17,10 +17,10 @@ after 10 to 60 s; at 0.8 it was off by up to one, at 1.6 by up to three (waterje
 
 
 def curvature(problem: OutputError, common_parameters: Array, initial_states: Array, normal: NormalEquations) -> float:
-    """Largest bend over the principal axes: second difference of the outputs one standard error either way.
+    """Return the largest curvature over the principal axes: second difference of outputs, one standard error each way.
 
     In units of what the same step changes to first order, which is one standard deviation of noise; infinite where the
-    coefficients cannot all be told or a ship within their errors blows up. Initial states go along with the
+    coefficients are not all identifiable or a ship within their errors blows up. Initial states go along with the
     coefficients. Costs two simulations for each unknown.
     """
     information = normal.without_local()[1]

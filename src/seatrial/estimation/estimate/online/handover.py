@@ -15,19 +15,19 @@ from seatrial.physics.simulate.linear import batch_class
 def gaussian_state_from_fit(
     problem: OutputError, common_parameters: Array, initial_states: Array, normal: NormalEquations
 ) -> GaussianState:
-    """What an output-error fit knows at the last sample of its last segment; `normal` is its model at the optimum.
+    """Return the state of an output-error fit at the last sample; `normal` are its normal equations at the optimum.
 
     Corrections of inputs and a current count as the fit left them; their uncertainty is in the coefficients'.
 
     Raises:
-        InputError: the records do not tell every coefficient.
+        InputError: the records do not identify every coefficient.
     """
     model, data, k = problem.model, problem.data, len(problem.free)
     information = normal.without_local()[1]
     scale = np.sqrt(np.maximum(np.diagonal(information), 1e-300))
     scaled = information / np.outer(scale, scale)
     if not np.all(np.isfinite(scaled)) or np.linalg.eigvalsh(scaled)[0] < 1e-13:
-        raise InputError("the records so far do not tell every coefficient; keep the window until they do")
+        raise InputError("the records so far do not identify every coefficient; keep the window until they do")
     covariance = (np.linalg.inv(scaled) / np.outer(scale, scale))[:k, :k]
     first, last = data.offsets[-2:]
     start, values, corrections = problem.unpack(common_parameters, initial_states)
@@ -58,13 +58,13 @@ def filter_from_fit(
     forgetting: Forgetting | None = None,
     guard: DivergenceGuard | None = None,
 ) -> RecursiveFilter:
-    """The filter that goes on behind the last sample of the fit's last record; `normal` is the model at the optimum.
+    """Return the filter that continues after the fit's last sample; `normal` as for `gaussian_state_from_fit`.
 
     Its noise is the fit's, coloured channels counted as the fit counts them; an innovation is cut where the fit's loss
-    is (`Guard` where that is square). See `curvature` for whether the fit is good enough.
+    is (`DivergenceGuard` where that is square). See `curvature` for whether the fit is good enough.
 
     Raises:
-        InputError: the records do not tell every coefficient, or the fit corrects inputs or has a current, which a
+        InputError: the records do not identify every coefficient, or the fit corrects inputs or has a current, which a
             filter does not carry on.
     """
     if problem.unknowns_per_session:

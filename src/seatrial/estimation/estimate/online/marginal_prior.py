@@ -1,4 +1,4 @@
-"""What records no longer kept have told: information of the coefficients at the point where it was gathered."""
+"""Information of discarded records on the coefficients, as a Gaussian prior at the point of linearisation."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -13,11 +13,11 @@ from seatrial.estimation.problem.data_term import Contribution
 
 @dataclass(frozen=True, eq=False)
 class MarginalPrior:
-    """Gauss-Newton's model of all that went before, an `Addend`: slope' d + 1/2 d' information d, d = theta - point.
+    """Gauss-Newton's model of all discarded data, an `Addend`: gradient' d + 1/2 d' information d, d = theta - point.
 
     Attributes:
-        places: positions of the coefficients among all model parameters, (k,); point: (k,); information: (k, k).
-        slope: (k,), what the data pulled with at the point, where priors pulled as much the other way.
+        indices: positions of the coefficients among all model parameters, (k,); point: (k,); information: (k, k).
+        gradient: (k,), of the data at the point, where the gradient of the priors is its opposite.
     """
 
     indices: Index
@@ -42,13 +42,13 @@ class MarginalPrior:
         return Contribution(self.cost(values), gradient, hessian)
 
     def discounted(self, share: float) -> Self:
-        """With that share of the information left: what is older counts less (exponential forgetting)."""
+        """Return the prior with that share of its information: older data count less (exponential forgetting)."""
         return replace(self, information=share * self.information, gradient=share * self.gradient)
 
     def inflation(self, hessian: Array, covariance: Array) -> float:
-        """How many times the coefficients' covariance (k, k) exceeds that of white residuals, one at least.
+        """Return how many times the coefficients' covariance (k, k) exceeds that of white residuals, one at least.
 
-        hessian: as for `carried`. What the data tell most of weighs most.
+        hessian: as for `marginalise`. Well determined directions weigh most.
         """
         k = len(self.point)
         white = float(np.trace(self.information @ inverse(hessian)[:k, :k]))
@@ -57,7 +57,7 @@ class MarginalPrior:
 
 
 def marginalise(indices: Index, point: Array, hessian: Array, mean: Array, weight: Array) -> MarginalPrior:
-    """What data told at the optimum `point` (k,) of data and priors together.
+    """Return the information of the data at the optimum `point` (k,) of data and priors together.
 
     hessian: of coefficients, then nuisances if any, (n, n), priors included; the nuisances are eliminated.
     mean, weight: of the coefficients' priors, (k,); these stay with the problem and are taken out.

@@ -19,10 +19,14 @@ from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.numerics.optimise import levenberg_marquardt
 
-# a promised decrease of half the sum of squares: some hundredths of a standard error
+# predicted decrease of half the sum of squares: some hundredths of a standard error
 _NEGLIGIBLE = 1e-3
-_FIRST_EVALUATIONS, _LATER_EVALUATIONS = 40, 12
-_WHITENESS_LEVEL, _TIE_TOLERANCE = 0.01, 1e-3
+_FIRST_EVALUATIONS, _LATER_EVALUATIONS = (
+    40,
+    12,
+)  # of the residuals, from a cold start and from the last estimate; chosen
+_WHITENESS_LEVEL = 0.01  # significance of the whiteness test; chosen
+_TIE_TOLERANCE = 1e-3  # relative difference of misfits that counts as equal; chosen
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,12 +118,12 @@ def refuse_diverging(estimate: PointEstimate, runs: Runs, settings: EstimateSett
         simulated = problem.simulated_outputs(estimate.common_parameters, problem.measured_initial_states())
     if not np.all(np.isfinite(simulated)):
         raise InputError(
-            "what was seen so far leads to no model that can be sailed: too short or too calm yet; go on, or harder"
+            "the record so far gives no model that can be simulated; continue, or use larger rudder angles"
         )
 
 
 def better_estimate(one: WindowEstimate, other: WindowEstimate) -> WindowEstimate:
-    """The one that leaves less, both on the same records; a search that ended nowhere leaves infinitely much."""
+    """Return the estimate of smaller misfit, both on the same records; one that is not finite counts as infinite."""
     left = [known.misfit if np.isfinite(known.misfit) else np.inf for known in (one, other)]
     return other if left[1] < (1.0 - _TIE_TOLERANCE) * left[0] else one
 
@@ -147,7 +151,7 @@ def _search(
 
 
 def _inflation(problem: OutputError, residuals: Array) -> Array:
-    """Variance inflation of each channel's residuals; one where a short record cannot tell them from white."""
+    """Variance inflation of each channel's residuals; one where a short record does not distinguish them from white."""
     rho, inflation = residual_correlation(problem, residuals)
     samples = np.isfinite(residuals).sum(axis=0)
     p = np.array([whiteness_p(r, int(n)) for r, n in zip(rho, samples, strict=True)])
