@@ -2,7 +2,7 @@
 
 Every series has a ship of its own: the tanker KVLCC2 (7 m model) with hull coefficients off the published ones, side
 forces the fitted model does not know, a rudder zero for each run, gusts, and sensors whose noise is coloured. The
-helmsman steers the disturbed ship. Steps of .1 s; the records keep every second one, the fitted model steps at that.
+helmsman steers the disturbed ship. Steps of 0.1 s; the records keep every second one, the fitted model steps at that.
 """
 
 from collections.abc import Mapping, Sequence

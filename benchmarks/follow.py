@@ -103,7 +103,7 @@ def follow_stream(trial: Trial, record: Record, truth: Array) -> EstimateHistory
 
 
 def heave_pitch(heading: int, run: int, seconds: float) -> tuple[Trial, SeawayRun, Record]:
-    """A voyage in waves with a fin, 1 cm and .02 deg of noise at 10 Hz, and the trial that follows it."""
+    """A voyage in waves with a fin, 1 cm and 0.02 deg of noise at 10 Hz, and the trial that follows it."""
     voyage = SeawayScenario(heading, duration=seconds)
     truth = ship(90) if heading == 45 else None
     made = simulate_seaway_run(voyage, np.random.default_rng([heading, run]), truth)
@@ -218,7 +218,7 @@ def _rms(errors: list[Array]) -> float:
 def compare_with_wild_horses(seas: int) -> Iterator[Line]:
     """qi2025's online scheme, a sample an iteration in a box of +-50 % off centre; both with the sensors' noise.
 
-    The same 200 s in waves, every .5 s, held forces. The published scheme is given the true state before each sample.
+    The same 200 s in waves, every 0.5 s, held forces. The published scheme is given the true state before each sample.
     """
     theirs, ours = [], []
     for run in range(seas):

@@ -1,8 +1,8 @@
 """A gust of 1 N, one percent of thrust: output error believes it is certain and is wrong, prediction error knows.
 
 The craft of Song et al. 2025 in consecutive zigzags of 2075 s at 10 Hz with sensor noise, pushed by random forces on
-surge and sway and by the same force at a quarter of her length in yaw. The force is drawn anew every .1 s, or is a
-first-order Gauss-Markov process with a memory of 5 s. The helmsman steers the pushed craft; steps of .01 s, of which
+surge and sway and by the same force at a quarter of her length in yaw. The force is drawn anew every 0.1 s, or is a
+first-order Gauss-Markov process with a memory of 5 s. The helmsman steers the pushed craft; steps of 0.01 s, of which
 the record keeps every tenth. Every run is identified from coefficients zero. `python benchmarks/gust.py --runs 50`.
 """
 

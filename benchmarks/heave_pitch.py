@@ -120,7 +120,7 @@ def restart_lines(starts: int) -> list[Line]:
             found = multistart(problem, first, box, rng, TAKEN, local=problem.given_initial_states())
             made.append((found, largest_relative_error(found.solution.point, data.truth)))
     right = [error <= 1e-9 for _, error in made]
-    what = f"{len(made)} starts in a .2-5x box"
+    what = f"{len(made)} starts in a 0.2-5x box"
     return [
         at_least(f"{what}: right to 1e-9 with <= {MOST_RESTARTS} restarts", 100.0 * float(np.mean(right)), "%", 100.0),
         Line(f"{what}: right at the first start", 100.0 * float(np.mean([m.restarts == 0 for m, _ in made])), "%"),
@@ -129,7 +129,7 @@ def restart_lines(starts: int) -> list[Line]:
 
 
 def continuous_wave_problem(heading: int) -> tuple[LinearOutputError, Array]:
-    """Motions every .5 s in continuous waves and with a fin, forces recorded every .1 s; and the true coefficients.
+    """Motions every 0.5 s in continuous waves and with a fin, forces recorded every 0.1 s; and the true coefficients.
 
     The initial state counts as unknown.
     """

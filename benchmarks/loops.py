@@ -2,7 +2,7 @@
 
 The job is the same for all: three variances (roll, fin angle, fin rate) of the closed loop at some gains, from matrices
 or polynomials that are known. The time-domain search draws, breeds and selects as ours does; its objectives come from a
-compiled exact simulation in hold of 1000 s at .1 s under one record of the same sea, for stable individuals only: once
+compiled exact simulation in hold of 1000 s at 0.1 s under one record of the same sea, for stable individuals only: once
 with the loops written out for the machine's vectors, once with phi @ x as one would write it.
 """
 

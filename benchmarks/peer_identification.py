@@ -63,7 +63,7 @@ def pymoo_with(make: Callable[[], object]) -> Callable[[TimedFitness, int], None
 
 
 def cmaes_of(population: int | None) -> Callable[[TimedFitness, int], None]:
-    """From the middle of the box, sigma .3 of its width."""
+    """From the middle of the box, sigma 0.3 of its width."""
 
     def search(judge: TimedFitness, seed: int) -> None:
         strategy = CMA(np.full(SIZE, 0.5), 0.3, bounds=UNIT.T, seed=seed, population_size=population)

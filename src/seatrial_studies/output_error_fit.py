@@ -20,10 +20,10 @@ _EXACT = 1e-8
 
 @dataclass(frozen=True, eq=False)
 class OutputErrorResults:
-    """Relative errors of each run, (runs, 8), noise-free and with 1 cm / .02 deg.
+    """Relative errors of each run, (runs, 8), noise-free and with 1 cm / 0.02 deg.
 
     Attributes:
-        bound: standard errors of the Cramer-Rao bound over the truth, (runs, 8).
+        cramer_rao_bound: standard errors of the Cramer-Rao bound over the truth, (runs, 8).
         seconds: median time of a noise-free fit; evaluations: of one.
     """
 

@@ -17,8 +17,8 @@ def packaged_trial(name: str) -> Trial:
     """
     folder = os.environ.get("SEATRIAL_DATA")
     if not folder or not Path(folder).is_dir():
-        told = f"SEATRIAL_DATA names '{folder}', which is no folder" if folder else "SEATRIAL_DATA is not set"
-        raise InputError(f"the measured records are not part of the package and {told}; set it to their folder")
+        reason = f"SEATRIAL_DATA names '{folder}', which is no folder" if folder else "SEATRIAL_DATA is not set"
+        raise InputError(f"the measured records are not part of the package and {reason}; set it to their folder")
     for place in _EXAMPLE_FOLDERS:
         if (place / name).is_file():
             return load_trial(place / name)

@@ -25,17 +25,17 @@ HEAVE_NOISE, PITCH_NOISE = 0.01, math.radians(0.02)
 
 
 def box_hull() -> BoxHull:
-    """The paper's ship as a box: her force coefficients are not printed."""
+    """The paper's ship as a box: its force coefficients are not printed."""
     p = SHIP.particulars
     return BoxHull(p["L"], p["B"], p["d"], p["c33"], p["c35"], p["c53"], p["c55"])
 
 
 @dataclass(frozen=True)
 class SeawayScenario:
-    """What is sailed: heading in degrees, significant height [m], duration and time step [s], fin, sensors.
+    """The simulated scenario: heading in degrees, significant height [m], duration and time step [s], fin, sensors.
 
     Attributes:
-        every: only each `every`-th sample of the motions is measured.
+        motion_stride: only each `motion_stride`-th sample of the motions is measured.
         noise: standard deviations of heave [m] and pitch [rad].
     """
 
@@ -53,14 +53,14 @@ class SeawayScenario:
 
 @dataclass(frozen=True, eq=False)
 class SeawayRun:
-    """A record, the ship that made it, and the lines of the sea she met."""
+    """A record, the ship that was simulated, and the lines of the sea it met."""
 
     record: Record
     truth: Model
     lines: WaveComponents
 
     def with_sensor_noise(self, rng: np.random.Generator, scenario: SeawayScenario) -> Record:
-        """The record with a draw of sensor noise."""
+        """Return the record with a draw of sensor noise."""
         own = self.record.channels
         made = {
             name: own[name].with_values(own[name].values + sd * rng.standard_normal(len(self.record)))

@@ -38,7 +38,7 @@ def held_force_ship(heading: int, *, printed_sign: bool = False) -> Model:
 
 @dataclass(frozen=True, eq=False)
 class SearchData:
-    """One sea met by the ship at one heading, as the papers simulate it: samples every .5 s, forces held.
+    """One sea met by the ship at one heading, as the papers simulate it: samples every 0.5 s, forces held.
 
     Attributes:
         truth: (8,), in the order of COEFFICIENTS; states: (n, 4), noise-free; measured: (n, 2), with noise if any.
@@ -147,7 +147,7 @@ class RepeatedSearches:
     Attributes:
         points: what each run found, (runs, 8); seconds: time of one run; trace: best point after each iteration of the
             first run, (iterations, 8); history: its best fitness.
-        lower: lower ends of each run's box, by magnitude, (runs, 8).
+        lower_bounds: lower ends of each run's box, by magnitude, (runs, 8).
     """
 
     truth: Array

@@ -28,8 +28,9 @@ class LeftOutRun:
     """One training run left out.
 
     Attributes:
-        whole: the run open loop from beginning to end, nuisances from the runs that trained.
-        windows: number of windows of 30 s in it; heading_deg, position_m: mean of their rms errors.
+        prediction: the run open loop from beginning to end, offsets from the runs that trained.
+        window_count: number of windows of 30 s in it.
+        window_heading_deg, window_position_m: mean of the windows' rms errors.
         turns: side -> the 35 deg turn of the model without this run.
     """
 

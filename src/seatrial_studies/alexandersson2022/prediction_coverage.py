@@ -104,16 +104,16 @@ def simulated_turn_intervals(fit: Fit, side: str, approach: Mapping[str, float])
     held = {name: value for name, value in approach.items() if name in fit.model.input_names}
     slew = SOLAS_SLEW_RATE * math.sqrt(fit.ship.scale)
     orders = programme(f"turning-circle:35:{side}")
-    told = measure_intervals(
+    intervals = measure_intervals(
         fit.model,
         fit.interval_basis,
         lambda ship: manoeuvre(ship, orders, inputs=held, slew_rate=slew),
         fit.ship.length,
     )
     return [
-        TurnInterval(side, name, *told[key], float(getattr(MEASURED_TURNS[side], field)))
+        TurnInterval(side, name, *intervals[key], float(getattr(MEASURED_TURNS[side], field)))
         for key, (name, field) in _MEASURES.items()
-        if key in told
+        if key in intervals
     ]
 
 

@@ -12,7 +12,7 @@ SIDES = ("port", "starboard")
 
 @dataclass(frozen=True)
 class Turn:
-    """Advance and tactical diameter of a 35 deg turn in ship lengths; an empty `side` means it is not told."""
+    """Advance and tactical diameter of a 35 deg turn in ship lengths; an empty `side` means it is not stated."""
 
     side: str
     advance: float
@@ -28,7 +28,7 @@ MEASURED_TURNS = {
     "port": Turn("port", 21.59 / LENGTH, 21.72 / LENGTH, _TABLE),
     "starboard": Turn("starboard", 22.54 / LENGTH, 23.55 / LENGTH, _TABLE),
 }
-# metres at full scale, length 320 m; quoted by others, the side is not told
+# metres at full scale, length 320 m; quoted by others, the side is not stated
 OTHER_TURNS = (Turn("", 982.0 / 320.0, 1049.0 / 320.0, "Quadvlieg & Brouwer 2011, MARIN, at second hand"),)
 PREDICTED_TURNS = {
     "port": Turn("port", 21.21 / LENGTH, 23.07 / LENGTH, "the paper's prediction"),

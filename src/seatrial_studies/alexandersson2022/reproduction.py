@@ -30,10 +30,10 @@ class BenchmarkReproduction:
         fit: of the trial file as it is, the validation run predicted.
         warm_fit_s: s for the estimate alone, all code compiled.
         turns: side -> simulated 35 deg turn; tracks: the same as records.
-        labels: run -> errors the checks find when the columns are declared as the headers name them.
-        noise: channel -> noise from sample to sample, SI, median over runs.
-        left_out: one entry a training run; empty in the quick version.
-        margins: what the intervals are worth.
+        label_findings: run -> errors that the checks find when the columns are declared as the headers name them.
+        noise_levels: channel -> noise from sample to sample, SI, median over runs.
+        left_out_runs: one entry a training run; empty in the quick version.
+        coverage: how often the intervals of predictions hold the measured values.
     """
 
     fit: Fit
@@ -54,7 +54,7 @@ def reproduce_benchmark(
     Raises:
         InputError: what `identify` raises.
     """
-    tell = report_progress or (lambda _: None)
+    report = report_progress or (lambda _: None)
     fit = identify(trial, seed, report_progress)
     raw = load_records(trial)[0]
     rate = trial.estimate.rate
@@ -62,12 +62,12 @@ def reproduce_benchmark(
     train, held = ([r for r in used if r.role is role] for role in (Role.TRAIN, Role.VALIDATE))
     records = [r.record for r in train]
     approach = approach_condition(records, trial.model)
-    tell("the fit once more, warm")
+    report("the fit once more, warm")
     began = time.perf_counter()
     found = estimate_model(trial.model, training_runs(trial, train), trial.estimate)
     warm = time.perf_counter() - began
     wide = None if quick else identify(trial, seed, report_progress, intervals=IntervalMethod.JACKKNIFE)
-    tell("the headers' labels")
+    report("the headers' labels")
     labels = label_errors(trial)
     tracks = {side: turn_record(fit.model, side, approach, trial.ship.scale) for side in SIDES}
     return BenchmarkReproduction(

@@ -81,7 +81,7 @@ def turn_table(reproduction: BenchmarkReproduction) -> Table:
             rows.append(
                 (
                     truth.source,
-                    truth.side or "not told",
+                    truth.side or "not stated",
                     truth.advance,
                     truth.diameter,
                     percent_deviation(ours.advance, truth.advance),
@@ -91,7 +91,7 @@ def turn_table(reproduction: BenchmarkReproduction) -> Table:
     header = ("source", "side", "advance [L]", "tactical diameter [L]", "advance, here [%]", "diameter, here [%]")
     note = (
         "Simulated from the speed at which surge balances at the trials' propeller rate, rudder at SOLAS's rate. "
-        "The simulated track is that of midship; whether the measured one is, is not told (the centre of gravity, "
+        "The simulated track is that of midship; whether the measured one is, is not stated (the centre of gravity, "
         "0.035 L ahead, would have an advance shorter by as much and the same tactical diameter). The paper's table "
         "is that of notebook 06.20 in the authors' repository System-identification-of-Vessel-Manoeuvring-Models."
     )
@@ -150,7 +150,7 @@ def left_out_table(entries: tuple[LeftOutRun, ...]) -> Table:
     note = (
         "Open-loop rms errors. The run left out gives nothing but an initial state, from its first ship length or the "
         "first 5 s of a window; its offsets are the mean of those that trained. Whole runs at small rudder angles "
-        "are a hard test: the ship is nearly unstable on her course, and a small error of the offset grows."
+        "are a hard test: the ship is nearly unstable on its course, and a small error of the offset grows."
     )
     return Table("Leave one run out", header, tuple(rows), note)
 

@@ -36,7 +36,7 @@ def turning_claim(reproduction: BenchmarkReproduction) -> Claim:
     """
     errors = {m: [_turn_error(reproduction, side, m) for side in SIDES] for m in ("advance", "diameter")}
     worst = max(sum(map(abs, both)) / len(both) for both in errors.values())
-    told = "; ".join(
+    texts = "; ".join(
         f"{name} {errors[m][0]:+.1f} % to port, {errors[m][1]:+.1f} % to starboard"
         for m, name in (("advance", "advance"), ("diameter", "tactical diameter"))
     )
@@ -53,8 +53,8 @@ def turning_claim(reproduction: BenchmarkReproduction) -> Claim:
     return Claim(
         "Zigzags alone predict 35 deg turning circles with less than 5 % error of advance and tactical diameter",
         verdict,
-        f"ours against MARIN's circles: {told}; {tail}. The paper's own single errors reach 6.2 %, its means over both "
-        "sides 1.9 and 4.7 %",
+        f"ours against MARIN's circles: {texts}; {tail}. The paper's own single errors reach 6.2 %, its means over "
+        "both sides 1.9 and 4.7 %",
     )
 
 
@@ -71,7 +71,7 @@ def zigzag_claim(reproduction: BenchmarkReproduction) -> Claim:
 
 
 def filtering_claim(reproduction: BenchmarkReproduction) -> Claim:
-    """Refuted where unfiltered records with next to no noise predict the 35/5 zigzag as well; else not to be told."""
+    """Refuted where unfiltered records with next to no noise predict the 35/5 zigzag as well; else undecidable."""
     ratios = [
         n.standard_deviation / reproduction.noise_levels[n.channel]
         for n in reproduction.fit.channel_noise
@@ -102,29 +102,29 @@ def uncertainty_claim(reproduction: BenchmarkReproduction) -> Claim:
 
     That interval is the wider one: it sees model error that a regression's standard errors take for white noise.
     """
-    claim = "Realisations drawn from the regression's standard errors tell how well the predicted circle is known"
+    claim = "Realisations drawn from the regression's standard errors show how well the predicted circle is known"
     if not reproduction.left_out_runs:
         return Claim(claim, Verdict.UNKNOWABLE, NEEDS_FULL_VERSION)
-    told, outside = [], False
+    texts, outside = [], False
     for side in SIDES:
         error = jackknife_error([e.turns[side].diameter for e in reproduction.left_out_runs])
         missed = abs(reproduction.turns[side].diameter - MEASURED_TURNS[side].diameter)
         outside |= not missed <= TWO_SIDED_95 * error
-        told.append(
+        texts.append(
             f"{side} standard error {100.0 * error / reproduction.turns[side].diameter:.1f} %, "
             f"error {_turn_error(reproduction, side, 'diameter'):+.1f} %"
         )
     return Claim(
         claim,
         Verdict.REFUTED if outside else Verdict.UNKNOWABLE,
-        f"tactical diameter with one run left out at a time: {'; '.join(told)}. The paper's realisations hardly differ "
-        f"from one another, its own errors are +6.2 and +3.1 %. {_interval_text(reproduction)}",
+        f"tactical diameter with one run left out at a time: {'; '.join(texts)}. The paper's realisations hardly "
+        f"differ from one another, its own errors are +6.2 and +3.1 %. {_interval_text(reproduction)}",
     )
 
 
 def model_choice_claim(reproduction: BenchmarkReproduction) -> Claim:
-    """Not to be told from one run; the evidence is how far the errors of single runs lie apart."""
-    claim = "One validation run with larger angles than the training runs tells the best model structure"
+    """Undecidable from one run; the evidence is how far the errors of single runs lie apart."""
+    claim = "One validation run with larger angles than the training runs identifies the best model structure"
     if not reproduction.left_out_runs:
         return Claim(claim, Verdict.UNKNOWABLE, NEEDS_FULL_VERSION)
     heading = [e.prediction.rms["psi_deg"] for e in reproduction.left_out_runs]
@@ -184,14 +184,14 @@ def _interval_text(reproduction: BenchmarkReproduction) -> str:
         ("which count what runs left out missed", reproduction.coverage.turn_intervals),
         ("with the spread of tied models as well", reproduction.coverage.tied_turn_intervals),
     )
-    told = [
+    texts = [
         f"{how}, hold {sum(m.contains_measured for m in turns)} of {len(turns)} of MARIN's values at half widths up to "
         f"{max(m.half_width for m in turns):.1f} %, the farthest at "
         f"{max(m.relative_deviation for m in turns):.2f} of its half width"
         for how, turns in kinds
         if turns
     ]
-    return f"Our own intervals, {'; '.join(told)}" if told else "Our own intervals could not be had"
+    return f"Our own intervals, {'; '.join(texts)}" if texts else "Our own intervals could not be had"
 
 
 def _mean_window_heading(reproduction: BenchmarkReproduction) -> float:

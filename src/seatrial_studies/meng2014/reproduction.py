@@ -48,7 +48,7 @@ class BoxPlacement(Enum):
 
 
 def optimisers(iterations: int) -> dict[SwarmAlgorithm, Callable[[Box, np.random.Generator], Population]]:
-    """As the paper sets them: 60 particles, c1 = c2 = 2.05, A .15, B .93, p_m .2; PSO with the constriction's."""
+    """As the paper sets them: 60 particles, c1 = c2 = 2.05, A 0.15, B 0.93, p_m 0.2; PSO with the constriction's."""
     return {
         SwarmAlgorithm.ICPSO: partial(CloudParticleSwarm, settings=CloudSettings(iterations=iterations)),
         SwarmAlgorithm.PSO: partial(ParticleSwarm, settings=SwarmSettings(population=60, iterations=iterations)),

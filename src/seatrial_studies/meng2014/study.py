@@ -48,9 +48,9 @@ def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -
 
 
 def twelve_unknowns(seed: int) -> dict[str, float]:
-    """Relative curvature of the flattest direction of all twelve (1: as well told as the best), by what moves the ship.
+    """Return the relative curvature of the flattest direction of all twelve unknowns, by what moves the ship.
 
-    Below 1e-11 it is rounding: that direction cannot be told.
+    1: as well identified as the best. Below 1e-11 it is rounding: that direction is not identifiable.
     """
     known = {}
     for name, has_fin, heading, height in (

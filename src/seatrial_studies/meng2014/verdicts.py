@@ -122,7 +122,7 @@ def claims(evidence: CloudSwarmEvidence) -> tuple[Claim, ...]:
 
 
 def error_range_claim(evidence: CloudSwarmEvidence) -> Claim:
-    """Not to be told: the table is lost; ours beside it."""
+    """Undecidable: the table is lost; the evidence is ours."""
     narrow, wide = _error_shares(evidence, BoxPlacement.CENTRED), _error_shares(evidence, BoxPlacement.OFF_CENTRE)
     return Claim(
         "Errors are mostly within 5 %, some about 10 % (table 1)",
@@ -145,7 +145,7 @@ def premature_convergence_claim(evidence: CloudSwarmEvidence) -> Claim:
         f"{evidence.mean_error_text(BoxPlacement.OFF_CENTRE, SwarmAlgorithm.PSO)}; runs stuck above the better "
         f"fitness of the two: {own.sum()} and {plain.sum()} of {plain.size}; {SIGN_TEST_RUNS} more of one "
         "than of the other "
-        "would tell. Against CPSO, its parent, it cannot be judged",
+        "would decide. Against CPSO, its parent, it cannot be judged",
     )
 
 
@@ -170,7 +170,7 @@ def twelve_unknowns_claim(evidence: CloudSwarmEvidence) -> Claim:
     return Claim(
         "Twelve parameters are to be identified",
         Verdict.REFUTED if max(beam, fin) < SINGULAR_CURVATURE else Verdict.UNKNOWABLE,
-        "eight are, the stiffnesses being taken from theory. Beam waves alone could not tell twelve (flattest "
+        "eight are, the stiffnesses being taken from theory. Beam waves alone could not identify twelve (flattest "
         f"direction {beam:.0e} of the steepest), nor could one fin alone ({fin:.0e}); waves and fin together could "
         f"({both:.0e})",
     )
@@ -209,7 +209,7 @@ def coinciding_curves_claim(evidence: CloudSwarmEvidence) -> Claim:
 
 
 def theory_as_truth_claim() -> Claim:
-    """Not to be told: nothing is printed."""
+    """Undecidable: nothing is printed."""
     return Claim(
         "Theoretical values at 0, 45, 90, 135 and 180° serve as truth",
         Verdict.UNKNOWABLE,

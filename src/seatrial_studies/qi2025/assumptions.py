@@ -11,7 +11,7 @@ from seatrial_studies.qi2025.reproduction import (
 
 _ROWS = (
     ("box of the searches", "not printed", "±10 % about the truth, as WHO's clipped values suggest; others beside it"),
-    ("ω, c1, c2 of PSO", "not printed", ".7298, 1.49618, 1.49618 (constriction), clipped to the box"),
+    ("ω, c1, c2 of PSO", "not printed", "0.7298, 1.49618, 1.49618 (constriction), clipped to the box"),
     ("state a candidate steps from", "not printed", "the true previous one (generous); the model's own beside it"),
     ("unit of pitch in eq. (28)", "not printed", "rad; degrees beside it"),
     ("remembered fitness", "not printed", "judged again by each new sample; kept beside it (full run)"),
@@ -19,7 +19,7 @@ _ROWS = (
     ("forces of the waves", "not printed", "box-shaped hull in closed form, Jensen, Mansour & Olsen 2004"),
     ("phases of the harmonics", "not printed", "random, one sea a run; 30 equal intervals of frequency"),
     ("sign of b53", "positive", "negative, as strip theory has it"),
-    ("measurement noise", "V in eq. (7), no number", "none; 1 cm and .02° for our fit beside it"),
+    ("measurement noise", "V in eq. (7), no number", "none; 1 cm and 0.02° for our fit beside it"),
     ("state at the start", "not printed", "at rest"),
 )  # fmt: skip
 

@@ -23,15 +23,15 @@ class WildHorseAudit:
     """Numbers behind the verdicts.
 
     Attributes:
-        speeds: heading -> (b35 + |b53|) / (2 a33) and (b35 - |b53|) / (2 a33), m/s.
+        implied_speeds: heading -> (b35 + |b53|) / (2 a33) and (b35 - |b53|) / (2 a33), m/s.
         sign_effect: heading -> rms change of heave and pitch by the printed sign of b53, over their rms.
-        saturated: values of WHO at 90 and 135 degrees between -10 and -9.3 %, and their number.
-        extremes: largest heave [m] and pitch [deg] within 200 s at 45 degrees, median over seas.
-        kinematic: smallest pitch in degrees that goes with the heave of figures 1 and 2 in waves long enough to be
-                    followed.
-        heights: significant height [m] of the spectrum with B = 3.11 / h^3 as printed, and with h^2.
-        step_rank: directions of the eight unknowns that one step of two motions tells.
-        beyond: PSO's printed values farther from the truth than 10.05 %, their number, the largest error in per cent.
+        saturated_values: values of WHO at 90 and 135 degrees between -10 and -9.3 %, and their number.
+        median_extremes: largest heave [m] and pitch [deg] within 200 s at 45 degrees, median over seas.
+        kinematic_pitch: smallest pitch in degrees that goes with the heave of figures 1 and 2 in waves long
+            enough to be followed.
+        spectrum_heights: significant height [m] of the spectrum with B = 3.11 / h^3 as printed, and with h^2.
+        step_rank: directions of the eight unknowns that one step of two motions identifies.
+        beyond_box: PSO's printed values farther from the truth than 10.05 %, their number, the largest error [%].
     """
 
     implied_speeds: dict[int, tuple[float, float]]
@@ -96,7 +96,7 @@ def _statistics_at_45() -> tuple[float, float]:
 
 
 def _kinematic_pitch() -> float:
-    """Pitch [deg] of a ship that follows waves of .3 m amplitude and the sea's modal frequency at 45 degrees."""
+    """Pitch [deg] of a ship that follows waves of 0.3 m amplitude and the sea's modal frequency at 45 degrees."""
     slope = 0.3 * ittc(SIGNIFICANT_HEIGHT).modal_frequency ** 2 / G
     return math.degrees(slope * math.cos(math.radians(45.0)))
 
@@ -104,8 +104,8 @@ def _kinematic_pitch() -> float:
 def _spectrum_heights() -> tuple[float, float]:
     """4 sqrt(m0) with m0 = A / (4 B), A = 8.1e-3 g^2: the integral of eq. (13)."""
     heights = (4.0 * math.sqrt(8.1e-3 * G**2 * SIGNIFICANT_HEIGHT**power / (4.0 * 3.11)) for power in (3, 2))
-    printed, mended = heights
-    return printed, mended
+    printed, corrected = heights
+    return printed, corrected
 
 
 def _step_rank(data: SearchData, sample: int = 100, change: float = 1e-4) -> int:

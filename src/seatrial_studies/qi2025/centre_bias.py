@@ -24,7 +24,7 @@ class CentreBias:
 
 
 def centre_bias(seas: dict[int, list[SearchData]], seed: int) -> CentreBias:
-    """The paper's setting with unknowns x = (value / truth - 1) / .1 - x0 in [-1, 1]: x0 = 0, or +-.5 drawn for each.
+    """The paper's setting with unknowns x = (value / truth - 1) / 0.1 - x0 in [-1, 1]: x0 = 0, or +-0.5 drawn for each.
 
     The fitness is the paper's; nothing but the place of the truth in the box differs.
     """

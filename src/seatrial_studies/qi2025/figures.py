@@ -24,8 +24,8 @@ def _motions(reproduction: WildHorseReproduction) -> list[Figure]:
     heave = Curve("heave, up", time, -states[:, 0])
     pitch = Curve("pitch, bow down", time, -np.degrees(states[:, 2]))
     return [
-        Figure("Figure 1: heave", TIME_LABEL, "m", (heave,), f"{_ASSUMPTION_NOTE} The paper's stays within ±.3 m."),
-        Figure("Figure 2: pitch", TIME_LABEL, "deg", (pitch,), f"{_ASSUMPTION_NOTE} The paper's stays within ±.3°."),
+        Figure("Figure 1: heave", TIME_LABEL, "m", (heave,), f"{_ASSUMPTION_NOTE} The paper's stays within ±0.3 m."),
+        Figure("Figure 2: pitch", TIME_LABEL, "deg", (pitch,), f"{_ASSUMPTION_NOTE} The paper's stays within ±0.3°."),
     ]
 
 

@@ -18,10 +18,10 @@ CONTINUOUS_WAVES = SeawayScenario(135, dt=0.1, motion_stride=5, has_fin=False, n
 
 @dataclass(frozen=True, eq=False)
 class HoldBias:
-    """Relative errors (8,) without any noise, motions every .5 s, by what the model takes the wave force for.
+    """Relative errors (8,) without any noise, motions every 0.5 s, by what the model takes the wave force for.
 
     Attributes:
-        held: constant from sample to sample; sampled: continuous, known every .5 s; fine: continuous, every .1 s.
+        held: constant from sample to sample; sampled: continuous, known every 0.5 s; fine: continuous, every 0.1 s.
     """
 
     held: Array

@@ -34,8 +34,8 @@ def hold_claim(evidence: WildHorseEvidence) -> Claim:
     return Claim(
         "A zero-order hold before the continuous variables discretises the whole system (eq. 8)",
         Verdict.REFUTED if min(held) > 10.0 * max(sampled) else Verdict.UNKNOWABLE,
-        f"wave force is continuous: fitting motions every .5 s with a held force costs {percent_text(held)} mean error "
-        f"without any noise; taken as continuous between the same samples {percent_text(sampled)}. The "
+        f"wave force is continuous: fitting motions every 0.5 s with a held force costs {percent_text(held)} mean "
+        f"error without any noise; taken as continuous between the same samples {percent_text(sampled)}. The "
         "paper does not see "
         "it because its data are made with the same hold",
     )
@@ -49,15 +49,15 @@ def one_sample_claim(evidence: WildHorseEvidence) -> Claim:
     return Claim(
         "The smaller the fitness of eq. (28), the more accurate the parameters",
         Verdict.REFUTED if rank < len(COEFFICIENTS) and min(wide) > 1.0 else Verdict.UNKNOWABLE,
-        f"one step of two motions tells {rank} of {len(COEFFICIENTS)} directions. In a box of ±50 % off centre "
+        f"one step of two motions identifies {rank} of {len(COEFFICIENTS)} directions. In a box of ±50 % off centre "
         f"a run at 90° ends with a fitness of {left.best_fitness[-1]:.1e} and coefficients {off:.0f} % off; mean over "
         f"runs {percent_text(wide)}",
     )
 
 
 def pitch_unit_claim(evidence: WildHorseEvidence) -> Claim:
-    """Not to be told: the print does not say."""
-    told = "; ".join(
+    """Undecidable: the print does not say."""
+    error_text = "; ".join(
         f"{a} {percent_text(evidence.single_run_errors(SearchSetting.PAPER, a))} in rad, "
         f"{percent_text(evidence.single_run_errors(SearchSetting.DEGREES, a))} in degrees"
         for a in SearchAlgorithm
@@ -66,7 +66,7 @@ def pitch_unit_claim(evidence: WildHorseEvidence) -> Claim:
         "Heave and pitch can be added as eq. (28) does",
         Verdict.UNKNOWABLE,
         "metres and an angle are added and the angle's unit is not printed; mean errors of single runs in the box "
-        f"about the truth: {told}",
+        f"about the truth: {error_text}",
     )
 
 
@@ -96,7 +96,7 @@ def real_time_claim(evidence: WildHorseEvidence) -> Claim:
 
 
 def convergence_claim(evidence: WildHorseEvidence) -> Claim:
-    """Not to be told: the figures run on after the last iteration."""
+    """Undecidable: the figures run on after the last iteration."""
     found = evidence.reproduction.searches[SearchSetting.PAPER, FIGURE_HEADING, SearchAlgorithm.IWHO]
     errors = 100.0 * np.abs(found.trace / found.truth - 1.0)
     at = {t: errors[min(round(t / STEP), len(errors)) - 1] for t in (50.0, 100.0)}

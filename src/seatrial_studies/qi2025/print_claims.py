@@ -77,16 +77,16 @@ def search_box_claim(evidence: WildHorseEvidence) -> Claim:
 
 
 def motions_claim(evidence: WildHorseEvidence) -> Claim:
-    """Not to be told where the paper's figures of one condition contradict one another."""
+    """Undecidable where the paper's figures of one condition contradict one another."""
     heave, pitch = evidence.audit.median_extremes
     contradict = FIGURES_1_2 != FIGURES_6_7
     return Claim(
-        "At 45° the ship heaves within .3 m and pitches within .3° (figures 1, 2)",
+        "At 45° the ship heaves within 0.3 m and pitches within 0.3° (figures 1, 2)",
         Verdict.UNKNOWABLE if contradict or heave > FIGURES_1_2[0] else Verdict.CONFIRMED,
         f"figures 6 and 7 show {FIGURES_6_7[0]} m and {FIGURES_6_7[1]}° of the same condition: they contradict "
         "figures 1 and 2. Force coefficients and the coefficients at 45° are not printed; with the closed form "
         f"and those of 90°, assumed, {heave:.2f} m and {pitch:.1f}° are reached. A ship that follows waves of "
-        f".3 m at the modal frequency pitches {evidence.audit.kinematic_pitch:.2f}°",
+        f"0.3 m at the modal frequency pitches {evidence.audit.kinematic_pitch:.2f}°",
     )
 
 
@@ -123,12 +123,12 @@ def fitness_rebound_claim(evidence: WildHorseEvidence) -> Claim:
 
 def spectrum_claim(evidence: WildHorseEvidence) -> Claim:
     """Refuted where the printed exponent misses the stated height by more than 1 %."""
-    printed, mended = evidence.audit.spectrum_heights
+    printed, corrected = evidence.audit.spectrum_heights
     return Claim(
         "The sea is the two-parameter ITTC spectrum with B = 3.11 / h\u00b3 (eq. 13)",
         Verdict.REFUTED if abs(printed / SIGNIFICANT_HEIGHT - 1.0) > 0.01 else Verdict.CONFIRMED,
         f"it has one parameter, and its significant height is {printed:.2f} m for the stated {SIGNIFICANT_HEIGHT} m; "
-        f"with h\u00b2 it is {mended:.2f} m",
+        f"with h\u00b2 it is {corrected:.2f} m",
     )
 
 

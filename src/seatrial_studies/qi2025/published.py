@@ -91,7 +91,7 @@ def printed_mean_errors() -> list[float]:
 def misprinted_errors() -> list[tuple[int, SearchAlgorithm, str, float, float]]:
     """Printed errors that do not follow from the printed values: heading, algorithm, coefficient, printed, recomputed.
 
-    Four printed digits of estimate and truth leave some .02 points of doubt.
+    Four printed digits of estimate and truth leave some 0.02 points of doubt.
     """
     found = []
     for heading in HEADINGS:

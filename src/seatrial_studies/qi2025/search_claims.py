@@ -69,7 +69,7 @@ def iwho_against_who_claim(evidence: WildHorseEvidence) -> Claim:
 
 
 def particle_swarm_claim(evidence: WildHorseEvidence) -> Claim:
-    """Refuted where PSO is the best of the three with the whole record off centre; else not to be told."""
+    """Refuted where PSO is the best of the three with the whole record off centre; else undecidable."""
     whole = {a: evidence.single_run_errors(SearchSetting.WHOLE_OFF_CENTRE, a) for a in SearchAlgorithm}
     columns = zip(*whole.values(), strict=True)
     is_best = all(pso <= min(who, iwho) for pso, who, iwho in columns)
@@ -99,13 +99,13 @@ def same_conditions_claim(evidence: WildHorseEvidence) -> Claim:
 def global_optimum_claim(evidence: WildHorseEvidence) -> Claim:
     """Refuted where the truth is met exactly if it is the middle of the box, and missed a quarter of the box aside."""
     zero, aside = evidence.centre_bias.truth_at_centre, evidence.centre_bias.truth_off_centre
-    told = "; ".join(f"{a} {100 * zero[a]:.1e} % against {100 * aside[a]:.1f} %" for a in SearchAlgorithm)
+    error_text = "; ".join(f"{a} {100 * zero[a]:.1e} % against {100 * aside[a]:.1f} %" for a in SearchAlgorithm)
     is_drawn = zero[SearchAlgorithm.IWHO] <= EXACT_ERROR and aside[SearchAlgorithm.IWHO] >= MISSED_ERROR
     found_anyway = max(zero[SearchAlgorithm.IWHO], aside[SearchAlgorithm.IWHO]) <= MISSED_ERROR
     return Claim(
         "IWHO gets out of local optima and finds the global one",
         Verdict.REFUTED if is_drawn else Verdict.CONFIRMED if found_anyway else Verdict.UNKNOWABLE,
         "it finds the middle of a box that is symmetric about zero. Unknowns written as x in [-1, 1], fitness and box "
-        f"width as in the paper, mean error with the truth at x = 0 against the truth at ±.5: {told}. Eqs. (19) "
+        f"width as in the paper, mean error with the truth at x = 0 against the truth at ±0.5: {error_text}. Eqs. (19) "
         "and (23) multiply positions, which draws them to zero",
     )

@@ -74,7 +74,7 @@ def _errors(reproduction: WildHorseReproduction, output_error: OutputErrorResult
     mean = ("mean", *(float(np.mean(c)) for c in columns))
     note = (
         "Printed errors are those of the mean of ten runs, as 'of mean' here; 'single': mean error of single runs. "
-        "Ours: single fits, without noise and with 1 cm / .02°."
+        "Ours: single fits, without noise and with 1 cm / 0.02°."
     )
     return Table(f"Errors at {heading}°, %", tuple(header), (*rows, mean), note)
 
@@ -123,11 +123,11 @@ def _hold_bias(bias: dict[int, HoldBias]) -> Table:
         (f"{h}°", *(100.0 * float(f(np.abs(e))) for e in (b.held, b.sampled, b.fine) for f in (np.mean, np.max)))
         for h, b in bias.items()
     )
-    taken = ("held", "every .5 s", "every .1 s")
+    taken = ("held", "every 0.5 s", "every 0.1 s")
     header = ("Heading", *(f"{name}, {what}" for name in taken for what in ("mean", "largest")))
     note = (
-        "Errors of our fit; data from continuous waves without noise, motions every .5 s. Force held as in eq. (8), or "
-        "continuous and known every .5 s or .1 s."
+        "Errors of our fit; data from continuous waves without noise, motions every 0.5 s. Force held as in eq. (8), "
+        "or continuous and known every 0.5 s or 0.1 s."
     )
     return Table("What holding the wave force costs, %", header, rows, note)
 
@@ -140,7 +140,7 @@ def _centre_bias(centre: CentreBias) -> Table:
         "Unknowns as x in [-1, 1], ±10 % about the truth, one sample an iteration, pitch in rad; "
         f"{RUNS} runs at three headings."
     )
-    header = ("", "truth at x = 0: mean error %", "truth at x = ±.5: mean error %")
+    header = ("", "truth at x = 0: mean error %", "truth at x = ±0.5: mean error %")
     return Table("Drawn to the middle of the box", header, rows, note)
 
 
@@ -196,6 +196,6 @@ def _below_printed(output_error: dict[int, OutputErrorResults]) -> Table:
         for h, o in output_error.items()
     )
     total = ("of 24", *(sum(int(row[k]) for row in rows) for k in (1, 2, 3)))
-    header = ("Heading", "noise-free, single fits", "1 cm / .02°, single fits", "1 cm / .02°, mean of ten")
+    header = ("Heading", "noise-free, single fits", "1 cm / 0.02°, single fits", "1 cm / 0.02°, mean of ten")
     note = "Of eight entries a heading, how many of ours are below IWHO's printed error; the print is free of noise."
     return Table("Ours below the printed errors of IWHO", header, (*rows, total), note)

@@ -49,10 +49,10 @@ class SectionAnalysis:
 
     Attributes:
         probes: calibrated on the runs whose periods train heave.
-        untied: order -> standard error of heave's and roll's added mass without any tie.
-        coupled: sway-heave-roll and heave-roll runs' heave against the oscillator trained on sway-heave ones.
-        timings, dampings: fits had other stretches or laws of damping been chosen; empty in the quick version.
-        example: the two waves of one run.
+        untied_errors: order -> standard error of heave's and roll's added mass without any tie.
+        coupled_runs: sway-heave-roll and heave-roll runs' heave against the oscillator trained on sway-heave ones.
+        timing_fits, damping_fits: fits with other stretches or other laws of damping; empty in the quick version.
+        example_waves: the two waves of one run.
     """
 
     runs: tuple[FlumeRun, ...]
@@ -78,20 +78,20 @@ def analyse_records(folder: Path, *, quick: bool, report_progress: ProgressRepor
     Raises:
         InputError: the folder's records cannot be read or do not suffice.
     """
-    tell = report_progress or (lambda _: None)
-    tell("reading the records")
+    report = report_progress or (lambda _: None)
+    report("reading the records")
     runs = read_runs(folder)
     used = [r for r in runs if r.scenario == HEAVE.scenario and is_long_enough(r)]
     train, _ = split_periods([r.period_index for r in used])
     probes = calibrate_probes([r for r in used if r.period_index in train])
-    tell("waves and motions at the model")
+    report("waves and motions at the model")
     responses, heave, roll = fit_both_modes(runs, probes, STEADY_TIMING)
     untied = {
         order: (_untied_error(HEAVE, responses, order), _untied_error(ROLL, responses, order))
         for order in POLYNOMIAL_ORDERS
     }
     dead = tuple(f for r in runs for f in dead_channel_findings(r.record, CAMERA))
-    tell("instruments against one another")
+    report("instruments against one another")
     alive = [r for r in runs if not dead_channel_findings(r.record, CAMERA)]
     springs = sway_stiffness(alive)
     return SectionAnalysis(
@@ -186,8 +186,8 @@ def _prediction_error(fit: ModeFit, response: SectionResponse) -> tuple[float, f
 
 def _largest_deviations(values: Sequence[complex]) -> tuple[float, float]:
     mean = complex(np.mean(values))
-    told = [relative_difference(v, mean) for v in values]
-    return max(abs(a) for a, _ in told), max(abs(p) for _, p in told)
+    deviations = [relative_difference(v, mean) for v in values]
+    return max(abs(a) for a, _ in deviations), max(abs(p) for _, p in deviations)
 
 
 def _example_waves(runs: Sequence[FlumeRun], probes: Probes) -> tuple[FlumeRun, SeparatedWaves]:

@@ -23,7 +23,7 @@ class Friction:
         velocity: amplitude of sway velocity, m/s.
         damping: force against velocity over velocity, N s/m: linear damping of equal work.
         force: amplitude of that force, N.
-        third: third harmonic of the holding force over its first; 1/3 for dry friction alone.
+        third_harmonic_ratio: third harmonic of the holding force over its first; 1/3 for dry friction alone.
     """
 
     run: str

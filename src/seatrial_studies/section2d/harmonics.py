@@ -54,7 +54,7 @@ def harmonics(time: Array, values: Array, omega: float, orders: Sequence[int] = 
     if 1 not in made:
         raise InputError("harmonics need order 1, the wave frequency itself")
     if not np.all(np.isfinite(values)):
-        raise InputError("a channel holds NaN where harmonics are wanted; mend or leave out the record")
+        raise InputError("a channel holds NaN where harmonics are wanted; repair or leave out the record")
     count, highest = len(time), max(made)
     if count < 2 * len(made) + 3 or omega * (time[-1] - time[0]) < 0.95 * 2.0 * np.pi:
         raise InputError(f"{count} samples are less than one wave period of {2.0 * np.pi / omega:.3f} s; take more")

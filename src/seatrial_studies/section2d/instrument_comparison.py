@@ -16,9 +16,9 @@ class InstrumentComparison:
 
     Attributes:
         delay: s by which the first lags the second at the window's middle, modulo the wave period, within half of it.
-        drift: s per s; a clock that runs slow by 1 % drifts by .01.
+        clock_drift: s per s; a clock that runs slow by 1 % drifts by 0.01.
         gain: amplitude of the second over that of the first, median over windows.
-        spread: s, scatter of the delay about its line.
+        delay_scatter: s, scatter of the delay about its line.
     """
 
     delay: float

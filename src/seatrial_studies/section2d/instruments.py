@@ -12,7 +12,7 @@ DRIFT_LIMIT, LEAST_PERIOD_S = 0.001, 0.9
 
 
 def camera_gain(analysis: SectionAnalysis) -> tuple[float, float, float]:
-    """Median, smallest, largest ratio of accelerometers' to camera's heave, periods from .9 s on; NaN without."""
+    """Median, smallest, largest ratio of accelerometers' to camera's heave, periods from 0.9 s on; NaN without."""
     long = {r.name for r in analysis.runs if r.period >= LEAST_PERIOD_S}
     gains = [c.gain for name, c in analysis.clocks.items() if name in long]
     return (float(np.median(gains)), min(gains), max(gains)) if gains else (np.nan, np.nan, np.nan)
@@ -34,7 +34,7 @@ def instrument_findings(analysis: SectionAnalysis) -> tuple[Finding, ...]:
         Severity.WARNING,
         "instrument-gain",
         "heave by the accelerometers exceeds heave by the camera",
-        f"factor {median:.3f}, from {least:.3f} to {most:.3f} over runs with periods from .9 s on",
+        f"factor {median:.3f}, from {least:.3f} to {most:.3f} over runs with periods from 0.9 s on",
         "estimate one gain along with the coefficients",
     )
     return (
@@ -164,7 +164,7 @@ def wave_table(analysis: SectionAnalysis) -> Table:
             "beyond / onward",
         ),
         tuple(rows),
-        "The onward wave is what excites the model; the nominal heights are .024 and .040 m.",
+        "The onward wave is what excites the model; the nominal heights are 0.024 and 0.040 m.",
     )
 
 

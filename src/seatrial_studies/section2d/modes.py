@@ -29,8 +29,8 @@ class Mode:
         scenario: of the runs it is fitted on.
         sign: of the response's axis against the theory's.
         free: for the fit that predicts; scales: their typical sizes.
-        cross: share of the sway acceleration that the accelerometers' mean may feel.
-        documented: natural period, s.
+        cross_axis_share: share of the sway acceleration that the accelerometers' mean may feel.
+        documented_period: natural period, s.
     """
 
     motion: SectionMotion
@@ -43,7 +43,7 @@ class Mode:
     documented_period: float
 
     def measured_response(self, response: SectionResponse) -> complex:
-        """The response of this mode."""
+        """Return the measured response of this mode."""
         return response.heave if self.motion is SectionMotion.HEAVE else response.roll
 
 
@@ -64,9 +64,9 @@ class ModeFit:
 
     Attributes:
         period: natural period, s.
-        beside: damping beside the wave damping at that period in waves of the nominal height, kg/s (kg m^2/s).
-        errors, period_error, beside_error: standard errors by leaving each wave period out.
-        freed: name -> the fit on all periods with that coefficient free as well.
+        viscous_damping: damping besides the wave damping at that period in waves of nominal height, kg/s (kg m^2/s).
+        standard_errors, period_error, viscous_damping_error: by leaving each wave period out.
+        extended_fits: name -> the fit on all periods with that coefficient free as well.
     """
 
     mode: Mode

@@ -147,8 +147,8 @@ def fit_oscillator(
     frequencies = {round(o.omega, 6) for o in measurements}
     if len(free) > 2 * len(frequencies):
         raise InputError(
-            f"{len(free)} unknowns cannot be told from {len(frequencies)} wave periods, which give two numbers each; "
-            "fix some or add periods"
+            f"{len(free)} unknowns cannot be identified from {len(frequencies)} wave periods, which give two numbers "
+            "each; fix some or add periods"
         )
     sizes = np.array([(scales or {}).get(name, 1.0) for name in free])
     measured = np.array([o.response for o in measurements])

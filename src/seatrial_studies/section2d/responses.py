@@ -20,15 +20,16 @@ class SectionResponse:
     """One run in its steady stretch; complex amplitudes per m of the wave that goes on, at the model.
 
     Attributes:
-        periods: whole periods in the stretch.
-        wave: amplitude of the wave that goes on, m.
-        paddle: wave amplitude over the paddle's stroke.
-        back: of the wave that comes back; beyond: elevation behind the model.
+        period_count: whole periods in the stretch.
+        wave_amplitude: amplitude of the wave that goes on, m.
+        paddle_ratio: wave amplitude over the paddle's stroke.
+        reflected_ratio: of the wave that comes back.
+        transmitted_ratio: elevation behind the model.
         heave: up, from the mean of both accelerometers, m/m.
         roll: starboard over port accelerometer, m/m: roll angle times the distance between them.
         sway: from the accelerometer, m/m; force: holding force, N/m.
         camera_heave, camera_roll: amplitudes only; the camera's clock is its own. Zero where it is dead.
-        error: relative standard error of the heave amplitude by the harmonic fit.
+        relative_error: relative standard error of the heave amplitude by the harmonic fit.
     """
 
     run: FlumeRun

@@ -23,8 +23,8 @@ class Timing:
     """Where the steady stretch lies.
 
     Attributes:
-        settling: s after the full waves' arrival, for roll's transient to die (its time constant is about 2 s).
-        allowed: s of the beach's reflection that may be in: the beginning of a ramp 4 to 6 s long.
+        settling_s: s after the full waves' arrival, for roll's transient to die (its time constant is about 2 s).
+        allowed_reflection_s: s of the beach's reflection that may be in: the beginning of a ramp 4 to 6 s long.
     """
 
     settling_s: float = 1.5
@@ -111,8 +111,8 @@ def data_folder() -> Path:
     root = os.environ.get("SEATRIAL_DATA")
     folder = Path(root or "") / FOLDER
     if not root or not (folder / "periods.csv").is_file():
-        told = f"'{root}' holds no {FOLDER}/periods.csv" if root else "SEATRIAL_DATA is not set"
-        raise InputError(f"the measured records are not part of the package and {told}; set it to their folder")
+        reason = f"'{root}' holds no {FOLDER}/periods.csv" if root else "SEATRIAL_DATA is not set"
+        raise InputError(f"the measured records are not part of the package and {reason}; set it to their folder")
     return folder
 
 

@@ -1,4 +1,4 @@
-"""What regular waves alone cannot tell: added mass, damping and excitation when nothing ties them together."""
+"""What regular waves alone cannot identify: added mass, damping and excitation when nothing ties them together."""
 
 from collections.abc import Sequence
 

@@ -23,7 +23,7 @@ class SpringRegression:
     Attributes:
         lower, upper: N/m, regression of tension on sway and its inverse; all noise in the one or the other.
         delay, drift: s, s/s of the camera.
-        explained: share of the tension.
+        explained_share: share of the tension.
     """
 
     run: str
@@ -49,7 +49,7 @@ class SwayStiffness:
 
     @property
     def value(self) -> float:
-        """N/m; the middle of the documented range where no run tells."""
+        """N/m; the middle of the documented range where no run identifies it."""
         return self.mean if np.isfinite(self.mean) else sum(SWAY_STIFFNESS) / 2.0
 
 

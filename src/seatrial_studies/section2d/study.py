@@ -13,7 +13,7 @@ from seatrial_studies.section2d.tank import SOURCE
 from seatrial_studies.section2d.verdicts import checks, claims
 
 QUESTION = (
-    "What do measured motions of a ship section in regular beam waves tell of added mass, damping, stiffness and "
+    "What do measured motions of a ship section in regular beam waves show of added mass, damping, stiffness and "
     "excitation, and do they predict wave periods that were not used?"
 )
 

@@ -99,7 +99,7 @@ def score_table(fit: ModeFit) -> Table:
         tuple(rows),
         "Per m of the onward wave at the model. Trained are half of the periods, from the longest to the shortest, "
         "evenly spread; probes, gain, delay, distance and coefficients are frozen before the others are scored, and "
-        "the amplitude that sets the quadratic damping is the predicted one. Below .9 s heave is small "
+        "the amplitude that sets the quadratic damping is the predicted one. Below 0.9 s heave is small "
         f"and what the accelerometers feel of sway counts.{exactly}",
     )
 
@@ -129,24 +129,26 @@ def coefficient_table(analysis: SectionAnalysis) -> Table:
                 label, added, fit.standard_errors["extra_added_mass"], fit.all_periods.errors["extra_added_mass"]
             )
         )
-        off, told = 1e3 * (fit.period - fit.mode.documented_period), f"{fit.mode.documented_period:g} s"
+        off, documented = 1e3 * (fit.period - fit.mode.documented_period), f"{fit.mode.documented_period:g} s"
         rows.append(
-            _coefficient_row(f"{first}natural period, ms over the documented", off, 1e3 * fit.period_error, None, told)
+            _coefficient_row(
+                f"{first}natural period, ms over the documented", off, 1e3 * fit.period_error, None, documented
+            )
         )
-        label = f"{first}damping beside the wave damping, there, waves .024 m high [{units['linear_damping']}]"
+        label = f"{first}damping beside the wave damping, there, waves 0.024 m high [{units['linear_damping']}]"
         rows.append(
             _coefficient_row(
                 label, fit.viscous_damping, fit.viscous_damping_error, None, DOCUMENTED_DAMPING[motion_name(fit)]
             )
         )
         for key, free in fit.extended_fits.items():
-            told = (
+            documented = (
                 f"{fit.mode.start.stiffness:.4g} (hydrostatic)"
                 if key == "stiffness"
                 else DOCUMENTED_DAMPING[motion_name(fit)]
             )
             label = f"{first}{COEFFICIENT_MEANINGS[key]}, freed as well [{units[key]}]"
-            rows.append(_coefficient_row(label, getattr(free.oscillator, key), None, free.errors[key], told))
+            rows.append(_coefficient_row(label, getattr(free.oscillator, key), None, free.errors[key], documented))
     low, high = tank.SWAY_STIFFNESS
     rows.append(
         _coefficient_row(
@@ -277,7 +279,7 @@ def timing_table(analysis: SectionAnalysis) -> Table:
         "Other steady stretches",
         ("settling [s]", "of the reflection allowed [s]", "heave [%]", "[deg]", "roll [%]", "[deg]"),
         tuple(rows),
-        "Largest errors at held-out periods between trained ones from .9 s on; the first row is the choice in force.",
+        "Largest errors at held-out periods between trained ones from 0.9 s on; the first row is the choice in force.",
     )
 
 
@@ -291,7 +293,7 @@ def damping_table(analysis: SectionAnalysis) -> Table:
         "Other dampings beside the wave damping",
         ("damping", "heave [%]", "[deg]", "natural period [s]", "roll [%]", "[deg]", "natural period [s]"),
         tuple(rows),
-        "Largest errors at held-out periods between trained ones from .9 s on. That it is quadratic was decided by "
+        "Largest errors at held-out periods between trained ones from 0.9 s on. That it is quadratic was decided by "
         "fits to all periods, not by the training ones alone; the table shows what the decision is worth.",
     )
 

@@ -7,7 +7,7 @@ from seatrial_studies.section2d.lewis import LewisForm
 
 SOURCE = (
     "Regular beam waves on a 2-D ship section, NTNU (open data, CC0): sway-heave-roll (3PPH), sway-heave (4PPH) and "
-    "heave-roll (6PPH) in a flume .6 m wide; no paper's claims are judged, the documented values are"
+    "heave-roll (6PPH) in a flume 0.6 m wide; no paper's claims are judged, the documented values are"
 )
 RHO, G = 1000.0, 9.81
 BEAM, DRAUGHT, LENGTH = 0.40, 0.20, 0.586

@@ -44,7 +44,7 @@ def natural_period_claim(fit: ModeFit) -> Claim:
 
 
 def sway_stiffness_claim(analysis: SectionAnalysis) -> Claim:
-    """Confirmed where the 95 % interval meets the documented range; not to be told without two usable runs."""
+    """Confirmed where the 95 % interval meets the documented range; undecidable without two usable runs."""
     low, high = tank.SWAY_STIFFNESS
     mean, half = analysis.sway_stiffness.mean, TWO_SIDED_95 * analysis.sway_stiffness.error
     used = [s for s in analysis.sway_stiffness.runs if s.explained_share > 0.9]
@@ -82,7 +82,7 @@ def separability_claim(analysis: SectionAnalysis) -> Claim:
     """Refuted where the added mass is not known within 20 kg once its course over frequency is free to first order."""
     plain, linear = analysis.untied_errors[0][0], analysis.untied_errors[1][0]
     return Claim(
-        "Motions in regular waves tell added mass, damping and excitation without a computed shape",
+        "Motions in regular waves identify added mass, damping and excitation without a computed shape",
         Verdict.REFUTED if linear > SEPARABLE_LIMIT else Verdict.CONFIRMED,
         f"at one period nothing separates them; over all periods the standard error of heave's added mass is "
         f"{plain:.1f} kg if all are constant, {linear:.0f} kg if linear in frequency, "
@@ -93,16 +93,16 @@ def separability_claim(analysis: SectionAnalysis) -> Claim:
 
 def lewis_form_claim(analysis: SectionAnalysis) -> Claim:
     """Confirmed where the added masses need less than 10 % of correction."""
-    told, worst_share = [], 0.0
+    texts, worst_share = [], 0.0
     for fit in (analysis.heave, analysis.roll):
         theory = theory_of_model(fit.mode.motion, 2.0 * np.pi / fit.period).added_mass
         share = 100.0 * fit.all_periods.oscillator.extra_added_mass / theory
         worst_share = max(worst_share, abs(share))
-        told.append(f"{motion_name(fit)} {share:+.1f} %")
+        texts.append(f"{motion_name(fit)} {share:+.1f} %")
     return Claim(
         "The section is a Lewis form with the documented beam, draught and mass",
         Verdict.CONFIRMED if worst_share < SHAPE_LIMIT else Verdict.REFUTED,
-        f"correction of its computed added mass: {', '.join(told)}; area coefficient {tank.AREA_COEFFICIENT:.3f}",
+        f"correction of its computed added mass: {', '.join(texts)}; area coefficient {tank.AREA_COEFFICIENT:.3f}",
     )
 
 
@@ -115,7 +115,7 @@ def metacentric_height_claim(analysis: SectionAnalysis) -> Claim:
         f"GM of {tank.GM:g} m goes with the documented beam, draught and KG",
         Verdict.CONFIRMED if abs(gm / tank.GM - 1.0) <= 0.05 else Verdict.REFUTED,
         f"with KG {tank.KG:g} m they give {gm:.4f} m for the Lewis form; freed, the roll runs give {seen:.4f} "
-        f"±{half:.4f} m (95 %), too wide to judge, for they tell little more than stiffness over inertia. The "
+        f"±{half:.4f} m (95 %), too wide to judge, for they show little more than stiffness over inertia. The "
         "documented GM is kept, and the fitted inertia goes with it",
     )
 
@@ -131,8 +131,8 @@ def form_metacentric_height() -> float:
 
 
 def wave_heights_claim(analysis: SectionAnalysis) -> Claim:
-    """Confirmed where the mean of each nominal height is met within 5 %, periods from .85 s on."""
-    told, good = [], True
+    """Confirmed where the mean of each nominal height is met within 5 %, periods from 0.85 s on."""
+    texts, good = [], True
     for key, nominal in tank.HEIGHTS.items():
         off = [
             100.0 * (2.0 * r.wave_amplitude / nominal - 1.0)
@@ -140,12 +140,14 @@ def wave_heights_claim(analysis: SectionAnalysis) -> Claim:
             if r.run.height_index == key and r.run.period >= LEAST_HEIGHT_PERIOD_S
         ]
         if off:
-            told.append(f"{nominal:g} m: {np.mean(off):+.1f} % ({min(off):+.1f} to {max(off):+.1f} %, {len(off)} runs)")
+            texts.append(
+                f"{nominal:g} m: {np.mean(off):+.1f} % ({min(off):+.1f} to {max(off):+.1f} %, {len(off)} runs)"
+            )
             good &= bool(abs(np.mean(off)) <= HEIGHT_LIMIT)
     return Claim(
-        "The waves are .024 and .040 m high",
-        Verdict.UNKNOWABLE if not told else Verdict.CONFIRMED if good else Verdict.REFUTED,
-        "onward wave at the model, periods from .85 s on; " + "; ".join(told),
+        "The waves are 0.024 and 0.040 m high",
+        Verdict.UNKNOWABLE if not texts else Verdict.CONFIRMED if good else Verdict.REFUTED,
+        "onward wave at the model, periods from 0.85 s on; " + "; ".join(texts),
     )
 
 
@@ -154,11 +156,11 @@ def wavenumbers_claim(analysis: SectionAnalysis) -> Claim:
     rows = sorted({(r.nominal.omega, r.nominal.wavenumber) for r in analysis.runs})
     off = {2.0 * np.pi / w: 100.0 * (k / float(wavenumber(w, tank.DEPTH)) - 1.0) for w, k in rows}
     worst_first = sorted(off.items(), key=lambda item: -abs(item[1]))
-    told = " and ".join(f"{error:+.1f} % at {period:.2f} s" for period, error in worst_first[:2])
+    texts = " and ".join(f"{error:+.1f} % at {period:.2f} s" for period, error in worst_first[:2])
     return Claim(
         "The wave numbers listed with the periods hold in the flume",
         Verdict.REFUTED if abs(worst_first[0][1]) > WAVENUMBER_LIMIT else Verdict.CONFIRMED,
-        f"they are omega^2/g; at {tank.DEPTH:g} m depth they are off by {told}, less at shorter periods",
+        f"they are omega^2/g; at {tank.DEPTH:g} m depth they are off by {texts}, less at shorter periods",
     )
 
 
@@ -182,8 +184,8 @@ def checks(analysis: SectionAnalysis) -> tuple[Check, ...]:
         amplitude, phase = largest_errors(fit)
         off = abs(100.0 * (fit.period / fit.mode.documented_period - 1.0))
         rows += [
-            (f"{motion_name(fit)}, held-out periods from .9 s on, amplitude [%]", amplitude, AMPLITUDE_LIMIT),
-            (f"{motion_name(fit)}, held-out periods from .9 s on, phase [deg]", phase, PHASE_LIMIT),
+            (f"{motion_name(fit)}, held-out periods from 0.9 s on, amplitude [%]", amplitude, AMPLITUDE_LIMIT),
+            (f"{motion_name(fit)}, held-out periods from 0.9 s on, phase [deg]", phase, PHASE_LIMIT),
             (f"{motion_name(fit)}, natural period off the documented [%]", off, PERIOD_LIMIT),
         ]
     low, high = tank.SWAY_STIFFNESS

@@ -29,7 +29,7 @@ class AssumedParameters:
 
 
 def assumed_parameter_sets() -> tuple[AssumedParameters, ...]:
-    """Our own; fresh water; each of the others a third less and more (the nozzle .05 L farther and nearer).
+    """Our own; fresh water; each of the others a third less and more (the nozzle 0.05 L farther and nearer).
 
     J_z acts in sum with I_z alone.
     """
@@ -46,10 +46,11 @@ class SignCheck:
     """What the signs do under one choice.
 
     Attributes:
-        yaw_rates: deg/s at the end of a 20 deg turn to starboard, CFD column, N_v mended and as printed.
-        finishes: whether the 20/20 zigzag does, N_v mended and as printed.
-        diverges: s in the 35/35 zigzag on the truth's nozzle history, improved column, N_v mended; infinite where not.
-        cc: the same with Y_vv turned, against the CFD column under the same choice.
+        yaw_rates: deg/s at the end of a 20 deg turn to starboard, CFD column, N_v corrected and as printed.
+        completes_zigzag: whether the 20/20 zigzag is completed, N_v corrected and as printed.
+        divergence_time: s in the 35/35 zigzag on the truth's nozzle history, improved column, N_v corrected;
+            infinite where the motion stays bounded.
+        corrected_cc: the same with the sign of Y_vv changed, against the CFD column under the same choice.
     """
 
     assumption: str
@@ -60,25 +61,27 @@ class SignCheck:
 
     @property
     def confirms_misprints(self) -> bool:
-        """The printed N_v reverses the turn and stops the zigzag, the printed Y_vv diverges; mended, none of these."""
-        mended, printed = self.yaw_rates
-        return mended > 0.0 > printed and self.completes_zigzag == (True, False) and math.isfinite(self.divergence_time)
+        """The printed N_v reverses the turn and stops the zigzag, the printed Y_vv diverges; corrected, neither."""
+        corrected, printed = self.yaw_rates
+        return (
+            corrected > 0.0 > printed and self.completes_zigzag == (True, False) and math.isfinite(self.divergence_time)
+        )
 
 
 def check_signs(assumption: AssumedParameters) -> SignCheck:
-    """One choice (some .4 s)."""
+    """Return what the signs do under one choice (some 0.4 s)."""
     readings = (TRUTH, CoefficientSet(Table2Column.CFD), CoefficientSet(Table2Column.IMPROVED, ("N_v",)), CORRECTED[2])
-    mended, printed, driven, improved = (r.craft().with_values(assumption.values) for r in readings)
-    zigzag = manoeuvre_record(mended, PublishedManoeuvre.ZIGZAG_35)
+    corrected, printed, driven, improved = (r.craft().with_values(assumption.values) for r in readings)
+    zigzag = manoeuvre_record(corrected, PublishedManoeuvre.ZIGZAG_35)
     again = replay_inputs(driven, zigzag)
     return SignCheck(
         assumption.label,
         (
-            _degrees_per_second(manoeuvre_record(mended, TURN_PROGRAMME)["r"][-1]),
+            _degrees_per_second(manoeuvre_record(corrected, TURN_PROGRAMME)["r"][-1]),
             _degrees_per_second(manoeuvre_record(printed, TURN_PROGRAMME)["r"][-1]),
         ),
         (
-            simulate_manoeuvre(mended, PublishedManoeuvre.ZIGZAG_20).is_completed,
+            simulate_manoeuvre(corrected, PublishedManoeuvre.ZIGZAG_20).is_completed,
             simulate_manoeuvre(printed, PublishedManoeuvre.ZIGZAG_20).is_completed,
         ),
         math.inf if len(again) == len(zigzag) else float(again.time[-1]),

@@ -42,18 +42,18 @@ class SupportVectorAudit:
     """Numbers behind the verdicts on the print; no random number is drawn.
 
     Attributes:
-        turn: sign of N_v, table 2.
-        undamped: sign of Y_vv, table 2, improved column.
-        one_sided: alpha v in eq. (3), |v| and |r| in eq. (2).
+        reversed_turn: sign of N_v, table 2.
+        undamped_sway: sign of Y_vv, table 2, improved column.
+        asymmetry: alpha v in eq. (3), |v| and |r| in eq. (2).
         dimensions: of eq. (2).
-        parentheses: equation -> by what eq. (1) is too large without them.
-        regressions: eq. (14) mended, and with each misprint alone.
-        condition: eq. (27), sway.
-        conditions: table 3.
-        masses: table 1, in fresh and in salt water.
+        parenthesis_factors: equation -> by what eq. (1) is too large without them.
+        equation_14_fits: eq. (14) corrected, and with each misprint alone.
+        equation_27_readings: eq. (27), sway.
+        table_3_conditions: table 3.
+        table_1_masses: table 1, in fresh and in salt water.
         thrust: the balance at the stated speed.
-        implied: table 4.
-        held: the signs of N_v and Y_vv again, under other choices.
+        table_4_implications: table 4.
+        sign_checks: the signs of N_v and Y_vv again, under other choices.
     """
 
     reversed_turn: ReversedTurn
@@ -71,7 +71,7 @@ class SupportVectorAudit:
 
 
 def audit(assumptions: Sequence[AssumedParameters]) -> SupportVectorAudit:
-    """Everything: some 3 s, and .4 s for each of the `others` (`choices()` or some of them)."""
+    """Everything: some 3 s, and 0.4 s for each of the `others` (`choices()` or some of them)."""
     series = reference_record(PublishedManoeuvre.CONSECUTIVE)
     of_features = feature_conditions(series)
     return SupportVectorAudit(

@@ -76,7 +76,7 @@ class Equation14System:
 
 
 def equation_14_systems(record: Record) -> dict[MotionEquation, Equation14System]:
-    """Eq. (14) mended, from the model, with exact accelerations in place of differences.
+    """Eq. (14) corrected, from the model, with exact accelerations in place of differences.
 
     Rates times total inertia over rho L d / 2 (yaw: over rho L^2 d / 2).
     """
@@ -114,15 +114,15 @@ class Equation14Fit:
 
 
 def equation_14_fits(record: Record) -> tuple[Equation14Fit, ...]:
-    """Eq. (14) mended, then each misprint alone: [u^2, v^2, r^2] L^2, the sign of u r, L^3 in yaw."""
-    mended = equation_14_systems(record)
-    surge, sway, yaw = (mended[e] for e in MotionEquation)
+    """Eq. (14) corrected, then each misprint alone: [u^2, v^2, r^2] L^2, the sign of u r, L^3 in yaw."""
+    corrected = equation_14_systems(record)
+    surge, sway, yaw = (corrected[e] for e in MotionEquation)
     L, p = LENGTH, TRUTH.craft().parameters
     q = 0.5 * p["rho"].value * L * DRAUGHT
     ur = (p["m"].value + p["m_x"].value) / q * record["u"] * record["r"]
     r_dot = (p["I_z"].value + p["J_z"].value) / (q * L) * _yaw_acceleration(record)
     return (
-        *(_equation_14_fit(f"{_FORCE_LETTERS[e]}, mended", mended[e]) for e in MotionEquation),
+        *(_equation_14_fit(f"{_FORCE_LETTERS[e]}, corrected", corrected[e]) for e in MotionEquation),
         _equation_14_fit("X, [u^2, v^2, r^2] L^2", replace(surge, matrix=surge.matrix * np.array([L**2, L**2, 1.0]))),
         _equation_14_fit("Y, - (m' + m_x') L u r", replace(sway, target=sway.target - 2.0 * ur)),
         _equation_14_fit("N, (I' + J') L^3 dr/dt", replace(yaw, target=yaw.target + (L - 1.0) * r_dot)),
@@ -150,7 +150,7 @@ class Equation27Readings:
 
     Attributes:
         with_inverse: |A| |A^-1|.
-        by_values: largest over smallest singular value, eq. (28): the same.
+        by_singular_values: largest over smallest singular value, eq. (28): the same.
         without_inverse: |A| |A|, if the inverse is left out.
     """
 
@@ -177,7 +177,7 @@ class Thrust:
 
 
 def balancing_thrust() -> Thrust:
-    """Root of rho A_j v_j (v_j - alpha u) = rho L d / 2 |X_uu| u^2 at .8 m/s; the density cancels in the velocity."""
+    """Root of rho A_j v_j (v_j - alpha u) = rho L d / 2 |X_uu| u^2 at 0.8 m/s; the density cancels in the velocity."""
     p = TRUTH.craft().parameters
     half = 0.5 * p["alpha"].value * APPROACH_SPEED
     per_density = 0.5 * LENGTH * DRAUGHT * -printed_coefficients(Table2Column.CFD)["X_uu"] * APPROACH_SPEED**2

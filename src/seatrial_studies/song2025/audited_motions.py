@@ -1,4 +1,4 @@
-"""Misprints that show when the craft is sailed as printed: signs of table 2, equations (2) and (3)."""
+"""Misprints that show when the craft is simulated as printed: signs of table 2, equations (2) and (3)."""
 
 import math
 from dataclasses import dataclass
@@ -32,8 +32,8 @@ class ReversedTurn:
     """What the sign of N_v does, CFD column.
 
     Attributes:
-        yaw_rates: deg/s at the end of a turn with 20 deg to starboard, N_v mended and as printed.
-        finished: zigzags of 10, 20 and 35 deg that come to their end, mended and as printed.
+        yaw_rates: deg/s at the end of a turn with 20 deg to starboard, N_v corrected and as printed.
+        completed_zigzags: zigzags of 10, 20 and 35 deg that come to their end, corrected and as printed.
     """
 
     yaw_rates: tuple[float, float]
@@ -52,13 +52,13 @@ def reversed_turn() -> ReversedTurn:
 
 @dataclass(frozen=True)
 class UndampedSway:
-    """What the sign of the improved column's Y_vv does, N_v mended, on the truth's nozzle history.
+    """What the sign of the improved column's Y_vv does, N_v corrected, on the truth's nozzle history.
 
     Attributes:
-        diverges: run -> s after which the motion leaves all bounds, as printed; infinite where it does not.
-        mended: run -> accuracy with Y_vv negative.
-        drift: deg beyond which Y_v + Y_vv |v|/U is positive, so that sway is driven, as printed.
-        reached: run -> largest drift of the truth, deg.
+        divergence_times: run -> s after which the motion leaves all bounds, as printed; infinite where it does not.
+        corrected_accuracy: run -> accuracy with Y_vv negative.
+        critical_drift: deg beyond which Y_v + Y_vv |v|/U is positive, so that sway is driven, as printed.
+        largest_drifts: run -> largest drift of the truth, deg.
     """
 
     divergence_times: dict[PublishedManoeuvre, float]
@@ -69,7 +69,7 @@ class UndampedSway:
 
 def undamped_sway() -> UndampedSway:
     """The 20/20 and 35/35 zigzags and the 35 deg turn with the improved column's Y_vv of either sign."""
-    printed, mended = CoefficientSet(Table2Column.IMPROVED, ("N_v",)).craft(), CORRECTED[2].craft()
+    printed, corrected = CoefficientSet(Table2Column.IMPROVED, ("N_v",)).craft(), CORRECTED[2].craft()
     references = {
         run: reference_record(run)
         for run in (PublishedManoeuvre.ZIGZAG_20, PublishedManoeuvre.ZIGZAG_35, PublishedManoeuvre.TURN_35)
@@ -77,7 +77,7 @@ def undamped_sway() -> UndampedSway:
     values = printed_coefficients(Table2Column.IMPROVED)
     return UndampedSway(
         {run: _divergence_time(printed, record) for run, record in references.items()},
-        {run: prediction_accuracy(record, replay_inputs(mended, record)) for run, record in references.items()},
+        {run: prediction_accuracy(record, replay_inputs(corrected, record)) for run, record in references.items()},
         math.degrees(math.asin(-values["Y_v"] / values["Y_vv"])),
         {run: float(np.max(np.abs(drift_angle(record)))) for run, record in references.items()},
     )
@@ -88,13 +88,13 @@ class PortStarboardAsymmetry:
     """What alpha v in place of alpha u in Y_P, eq. (3), and |v|, |r| in Y_H, N_H, eq. (2), do to a symmetric craft.
 
     Attributes:
-        asymmetry: binding -> rms of the force plus that of the mirrored state, over the force's rms, along the 20/20
-            zigzag: mended, as printed. A symmetric craft has 0, an even force 2.
-        jet_turns: deg/s of yaw at the end of a 20 deg turn to starboard and to port, eq. (3) as printed.
+        force_asymmetry: binding -> rms of the force plus that of the mirrored state, over the force's rms, along the
+            20/20 zigzag, corrected and as printed. A symmetric craft has 0, an even force 2.
+        jet_yaw_rates: deg/s of yaw at the end of a 20 deg turn to starboard and to port, eq. (3) as printed.
         jet_drifts: deg of drift there.
-        mended_turns: deg/s of yaw with alpha u.
-        hull_diverges: s after which the motion leaves all bounds on the nozzle history of these turns, eq. (2) as
-            printed; infinite where it does not.
+        corrected_yaw_rates: deg/s of yaw with alpha u.
+        hull_divergence_times: s after which the motion leaves all bounds on the nozzle history of these turns, eq. (2)
+            as printed; infinite where it does not.
     """
 
     force_asymmetry: dict[str, tuple[float, float]]
@@ -114,13 +114,16 @@ def port_starboard_asymmetry() -> PortStarboardAsymmetry:
         for name, printed in (("Y_P", jet), ("Y_H", hull), ("N_H", hull))
     }
     sides = (f"turning-circle:{TURN_ANGLE}", f"turning-circle:{TURN_ANGLE}:port")
-    turns, mended = [manoeuvre_record(jet, side) for side in sides], [manoeuvre_record(craft, side) for side in sides]
+    turns, corrected = (
+        [manoeuvre_record(jet, side) for side in sides],
+        [manoeuvre_record(craft, side) for side in sides],
+    )
     return PortStarboardAsymmetry(
         asymmetries,
         _pair([math.degrees(_final_value(turn, "r")) for turn in turns]),
         _pair([float(drift_angle(turn)[-1]) for turn in turns]),
-        _pair([math.degrees(_final_value(turn, "r")) for turn in mended]),
-        _pair([_divergence_time(hull, turn) for turn in mended]),
+        _pair([math.degrees(_final_value(turn, "r")) for turn in corrected]),
+        _pair([_divergence_time(hull, turn) for turn in corrected]),
     )
 
 

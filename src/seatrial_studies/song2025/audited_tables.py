@@ -101,9 +101,9 @@ class Table4Implication:
 
     Attributes:
         deviation: standard deviation of the reference motion, m/s or rad/s; largest: its largest magnitude.
-        least: smallest root mean square error that the printed CC allows, deviation sqrt(1 - CC^2).
-        amplitude: ratio of standard deviations, predicted over reference, that CC and RMSE together ask for without an
-            error of the mean, which would explain some of the RMSE; NaN where no prediction has both.
+        least_rmse: smallest root mean square error that the printed CC allows, deviation sqrt(1 - CC^2).
+        amplitude_ratio: ratio of standard deviations, predicted over reference, that CC and RMSE imply
+            where the mean has no error, which would explain some of the RMSE; NaN where no prediction has both.
     """
 
     run: PublishedManoeuvre

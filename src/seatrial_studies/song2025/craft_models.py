@@ -1,4 +1,4 @@
-"""The craft that a column of table 2 describes, as printed or mended; how it is sailed; the equations misprinted."""
+"""Craft models from the columns of table 2, as printed or corrected; their simulation; the misprinted equations."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -25,14 +25,14 @@ FINISHED = "finished"
 
 @dataclass(frozen=True)
 class CoefficientSet:
-    """A column of table 2 with the signs of the `mended` coefficients turned."""
+    """A column of table 2 with the signs of the coefficients `sign_corrected` changed."""
 
     column: Table2Column
     sign_corrected: tuple[str, ...] = ()
 
     @property
     def title(self) -> str:
-        """What tables and figures call it."""
+        """Return the name of the column in tables and figures."""
         return (
             f"{self.column}, {' and '.join(self.sign_corrected)} turned"
             if self.sign_corrected
@@ -40,7 +40,7 @@ class CoefficientSet:
         )
 
     def craft(self) -> Model:
-        """The waterjet craft with these coefficients."""
+        """Return the waterjet craft with these coefficients."""
         values = printed_coefficients(self.column)
         turned = {name: -values[name] for name in self.sign_corrected}
         return waterjet().with_values(values | turned, source=f"{SOURCE}, table 2, {self.title}")
@@ -57,7 +57,7 @@ class ManoeuvreRun:
 
     Attributes:
         record: 10 Hz, from 10 s before the first execute; None where the simulation diverges.
-        finished: whether the helmsman came to the end of the programme.
+        is_completed: whether the helmsman came to the end of the programme.
         ending: in words.
     """
 
@@ -67,7 +67,7 @@ class ManoeuvreRun:
 
 
 def simulate_manoeuvre(craft: Model, text: str) -> ManoeuvreRun:
-    """One manoeuvre by its programme's text."""
+    """Simulate one manoeuvre, given by the text of its programme."""
     try:
         record = simulate_run(craft, text)
     except InputError as error:
@@ -78,42 +78,42 @@ def simulate_manoeuvre(craft: Model, text: str) -> ManoeuvreRun:
 
 @cache
 def reference_record(run: PublishedManoeuvre) -> Record:
-    """The truth's run: CFD column, N_v mended, helmsman in the loop, 10 Hz."""
+    """Return the truth's run: CFD column, N_v corrected, helmsman in the loop, 10 Hz."""
     return manoeuvre_record(TRUTH.craft(), run)
 
 
 def manoeuvre_record(craft: Model, text: str) -> Record:
-    """The record of a manoeuvre that can be sailed.
+    """Return the record of a simulated manoeuvre.
 
     Raises:
         InputError: the simulation diverges.
     """
-    made = simulate_manoeuvre(craft, text)
-    if made.record is None:
-        raise InputError(made.ending)
-    return made.record
+    run = simulate_manoeuvre(craft, text)
+    if run.record is None:
+        raise InputError(run.ending)
+    return run.record
 
 
 def replay_inputs(craft: Model, record: Record) -> Record:
-    """The record's inputs through `craft`, up to where the simulation diverges (all of it as a rule)."""
+    """Replay the record's inputs through `craft`, up to where the simulation diverges (all of it as a rule)."""
     inputs = inputs_of(craft, record)
     states, outputs = trajectory(craft, inputs, record.dt, initial_state(craft, record, {}))
-    whole = np.all(np.isfinite(states), axis=1)
-    last = len(whole) if whole.all() else int(np.argmin(whole))
+    is_finite = np.all(np.isfinite(states), axis=1)
+    last = len(is_finite) if is_finite.all() else int(np.argmin(is_finite))
     return record_of(craft, record.name, record.time[:last], states[:last], outputs[:last], inputs[:last])
 
 
 def drift_angle(record: Record) -> Array:
-    """Drift angle atan2(-v, u) along a record, deg, (n,); positive with the bow to starboard of the course."""
+    """Return the drift angle atan2(-v, u) along a record, deg, (n,); positive: bow to starboard of the course."""
     return np.degrees(np.arctan2(-record["v"], record["u"]))
 
 
 def with_expressions(craft: Model, name: str, expressions: Mapping[str, sp.Expr]) -> Model:
-    """A model of another name in which some bindings have other expressions, their symbols being `symbol`s."""
+    """Return a model of another name in which some bindings have other expressions, their symbols being `symbol`s."""
     bindings = tuple(b.bound_to(expressions[b.name]) if b.name in expressions else b for b in craft.bindings)
     return replace(craft, equations=replace(craft.equations, name=name, bindings=bindings))
 
 
 def symbol(name: str) -> sp.Symbol:
-    """The symbol of a state, input, parameter or binding."""
+    """Return the symbol of a state, input, parameter or binding."""
     return sp.Symbol(name, real=True)

@@ -1,4 +1,4 @@
-"""RMSE and CC as measures of coefficients: a move of 100 % along what the record tells least."""
+"""RMSE and CC as measures of coefficients: a move of 100 % along the least identifiable direction of a record."""
 
 from dataclasses import dataclass
 
@@ -20,10 +20,10 @@ class Discrimination:
     """What accuracy sees of coefficients moved by 100 % along the weakest direction of the Fisher information.
 
     Attributes:
-        direction: the weakest of output error with the sensors' noise, with its standard deviation.
+        weakest_direction: the weakest of output error with the sensors' noise, with its standard deviation.
         changes: coefficient -> relative change of the moved craft.
         accuracy: of the moved craft on the same nozzle history, against the truth.
-        sensors: channel -> the noise whose standard deviation the RMSE is to be compared with, SI units.
+        sensor_noise: channel -> the noise whose standard deviation the RMSE is to be compared with, SI units.
     """
 
     weakest_direction: Direction
@@ -33,24 +33,24 @@ class Discrimination:
 
     @property
     def cc_loss(self) -> dict[str, float]:
-        """1 - CC by channel."""
+        """Return 1 - CC by channel."""
         return {channel: 1.0 - cc for channel, cc in self.accuracy.cc.items()}
 
 
 def discrimination(series: Record) -> Discrimination:
-    """Of the consecutive zigzags, noise-free (.8 s)."""
+    """Return the discrimination of the consecutive zigzags, noise-free (0.8 s)."""
     craft = TRUTH.craft()
     names = craft.parameters.free_names
     sizes = np.array([p.characteristic_scale for p in craft.parameters.free])
     weakest = directions(fisher_information(craft, series), names, sizes)[0]
     moved = {p.name: p.value + weakest.combination[p.name] * p.characteristic_scale for p in craft.parameters.free}
     changes = {p.name: moved[p.name] / p.value - 1.0 for p in craft.parameters.free}
-    found = prediction_accuracy(series, replay_inputs(craft.with_values(moved), series))
-    return Discrimination(weakest, changes, found, {c: SENSOR_NOISE[c] for c in found.cc})
+    accuracy = prediction_accuracy(series, replay_inputs(craft.with_values(moved), series))
+    return Discrimination(weakest, changes, accuracy, {c: SENSOR_NOISE[c] for c in accuracy.cc})
 
 
 def fisher_information(craft: Model, record: Record) -> Array:
-    """Fisher information of the free coefficients (k, k): output error, given initial state, white sensor noise."""
+    """Return the Fisher information (k, k) of the free coefficients: output error, known initial state, white noise."""
     outputs = tuple(SENSOR_NOISE)
     offsets = np.array([0, len(record)])
     batch = SegmentBatch(craft, inputs_of(craft, record), offsets, record.dt, outputs, craft.parameters.free_names)

@@ -15,7 +15,7 @@ class SupportVectorEvidence:
     """Numbers of one run of the study.
 
     Attributes:
-        turn_drift: deg in the steady 35 deg turn, truth and improved column mended.
+        turn_drift: deg in the steady 35 deg turn, truth and improved column corrected.
     """
 
     reproduction: SupportVectorReproduction
@@ -27,15 +27,15 @@ class SupportVectorEvidence:
     turn_drift: tuple[float, float]
 
     def comparison(self, column: Table2Column, run: PublishedManoeuvre) -> RunComparison:
-        """The mended column's run."""
+        """Return the run of a corrected column."""
         return next(o for o in self.comparisons if o.coefficient_set.column is column and o.run is run)
 
     def best_regression(self) -> EstimatorResult:
-        """The regression with the smallest median error in sensor noise."""
+        """Return the regression with the smallest median error in sensor noise."""
         return min((r for r in self.reproduction.noisy_results if not r.note), key=lambda r: r.median_error)
 
 
 def percent_text(value: float) -> str:
-    """A share as text."""
+    """Return a share in per cent as text."""
     share = 100.0 * value
     return f"{share:.0f} %" if share >= 1000.0 else f"{share:.3g} %"

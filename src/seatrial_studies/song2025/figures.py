@@ -27,7 +27,7 @@ _EQUATION_NAMES = {MotionEquation.SURGE: "surge", MotionEquation.SWAY: "sway", M
 
 
 def figures(evidence: SupportVectorEvidence) -> tuple[Figure | Bars | Matrix, ...]:
-    """In the order of the page."""
+    """Return the figures in the order of the page."""
     drawn = [
         _table_2(evidence),
         _estimators(evidence),
@@ -41,7 +41,7 @@ def figures(evidence: SupportVectorEvidence) -> tuple[Figure | Bars | Matrix, ..
 
 
 def predictions(evidence: SupportVectorEvidence) -> tuple[Prediction, ...]:
-    """The improved column, signs mended, on the truth's nozzle history, beside the truth."""
+    """Return the runs of the improved column, signs corrected, on the truth's nozzle history, with the truth."""
     made = []
     for run in _FIGURE_RUNS:
         outcome = evidence.comparison(Table2Column.IMPROVED, run)
@@ -147,15 +147,15 @@ def _correlations(evidence: SupportVectorEvidence) -> list[Matrix]:
 def _motions(evidence: SupportVectorEvidence, run: PublishedManoeuvre) -> list[Figure]:
     outcome = evidence.comparison(Table2Column.IMPROVED, run)
     time, drawn = outcome.reference.time, []
-    pairs = [("truth", outcome.reference), ("improved column, signs mended", outcome.replayed)]
+    pairs = [("truth", outcome.reference), ("improved column, signs corrected", outcome.replayed)]
     if run is PublishedManoeuvre.ZIGZAG_20:
-        pairs.append(("original column, N_v mended", evidence.comparison(Table2Column.ORIGINAL, run).replayed))
+        pairs.append(("original column, N_v corrected", evidence.comparison(Table2Column.ORIGINAL, run).replayed))
     for c in CHANNELS:
         curves = tuple(_curve(name, r.time, r[c]) for name, r in pairs)
         drawn.append(Figure(f"Figures {_FIGURE_NUMBERS[run]}: {run}, {c}", "time [s]", f"{c} [{_UNITS[c]}]", curves))
     own, other = hull_and_jet_forces(TRUTH, outcome.reference), _forces(outcome)
     for letter, values in own.items():
-        curves = (_curve("truth", time, values), _curve("improved column, signs mended", time, other[letter]))
+        curves = (_curve("truth", time, values), _curve("improved column, signs corrected", time, other[letter]))
         unit = "N m" if letter == "N" else "N"
         drawn.append(
             Figure(f"Figures {_FIGURE_NUMBERS[run]}: {run}, {letter}", "time [s]", f"{letter} [{unit}]", curves)

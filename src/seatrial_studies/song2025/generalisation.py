@@ -1,4 +1,4 @@
-"""The columns of table 2 sailed: zigzags and a turn beside the truth's, with accuracy, forces and drift."""
+"""Simulations with the columns of table 2: zigzags and a turn compared with the truth's: accuracy, forces, drift."""
 
 import math
 from collections.abc import Sequence
@@ -26,11 +26,11 @@ STEADY_SECONDS, STEP = 1500.0, 0.1
 
 @dataclass(frozen=True, eq=False)
 class RunComparison:
-    """One run of one column beside the truth's.
+    """One run of one column and the truth's.
 
     Attributes:
         reference: the truth, helmsman in the loop.
-        sailed: the column's, helmsman in the loop, so that nozzle angles differ as in figures 4c and 7c.
+        steered: the column's, helmsman in the loop, so that nozzle angles differ as in figures 4c and 7c.
         replayed: the column's on the reference's nozzle history; shorter than the reference where it diverges.
         steered_accuracy, replayed_accuracy: over what reference and prediction have in common; None where one diverges.
         largest_drift: of the replayed motion, deg.
@@ -47,20 +47,20 @@ class RunComparison:
 
     @property
     def divergence_time(self) -> float:
-        """Seconds after which the replayed motion leaves all bounds; infinite where it does not."""
+        """Return the seconds after which the replayed motion leaves all bounds; infinite where it does not."""
         return math.inf if len(self.replayed) == len(self.reference) else float(self.replayed.time[-1])
 
 
 def compare_runs(
     coefficient_sets: Sequence[CoefficientSet], runs: Sequence[PublishedManoeuvre]
 ) -> tuple[RunComparison, ...]:
-    """Every reading in every run: some .1 s each; a craft that never finishes the consecutive zigzags takes 3 s."""
+    """Compare every reading in every run: some 0.1 s each, 3 s where the consecutive zigzags are never finished."""
     references = {run: reference_record(run) for run in runs}
     return tuple(compare_run(reading, run, references[run]) for reading in coefficient_sets for run in runs)
 
 
 def compare_run(coefficient_set: CoefficientSet, run: PublishedManoeuvre, truth: Record) -> RunComparison:
-    """One column in one run, beside the record `truth`."""
+    """Compare one column in one run with the record `truth`."""
     craft = coefficient_set.craft()
     steered, again = simulate_manoeuvre(craft, run), replay_inputs(craft, truth)
     return RunComparison(
@@ -76,7 +76,7 @@ def compare_run(coefficient_set: CoefficientSet, run: PublishedManoeuvre, truth:
 
 
 def prediction_accuracy(truth: Record, other: Record) -> Accuracy:
-    """Root mean square errors and correlation coefficients (Pearson) of u, v, r over the samples both have."""
+    """Return root mean square errors and correlation coefficients (Pearson) of u, v, r over the samples both have."""
     n = min(len(truth), len(other))
     pairs = {c: (truth[c][:n], other[c][:n]) for c in CHANNELS}
     return Accuracy(
@@ -86,13 +86,13 @@ def prediction_accuracy(truth: Record, other: Record) -> Accuracy:
 
 
 def hull_and_jet_forces(coefficient_set: CoefficientSet, record: Record) -> dict[str, Array]:
-    """X, Y [N] and N [N m] of hull and jet that the column's model gives along a record, by letter, each (n,)."""
+    """Return X, Y [N] and N [N m] of hull and jet along a record by the column's model, by letter, each (n,)."""
     of_model = forces(coefficient_set.craft(), record)
     return {letter: of_model[binding] for letter, binding in FORCES.items()}
 
 
 def steady_drift_angle(coefficient_set: CoefficientSet, degrees: float) -> float:
-    """Drift angle [deg] of the turn that a nozzle held at `degrees` ends in; NaN where the simulation diverges."""
+    """Return the steady drift angle [deg] of a turn with the nozzle held at `degrees`; NaN where it diverges."""
     craft = coefficient_set.craft()
     count = round(STEADY_SECONDS / STEP)
     held = {"delta": math.radians(degrees), "v_j": JET_VELOCITY}

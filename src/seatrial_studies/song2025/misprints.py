@@ -1,4 +1,4 @@
-"""The misprints of the paper, each with what the print does and what the mended equation does."""
+"""The misprints of the paper, each with what the print does and what the corrected equation does."""
 
 import math
 
@@ -8,24 +8,24 @@ from seatrial_studies.song2025.published import MotionEquation, PublishedManoeuv
 
 
 def misprint_table(audit: SupportVectorAudit) -> Table:
-    """One line each."""
+    """Return the misprints, one row each."""
     turn, wild, side, thrust = audit.reversed_turn, audit.undamped_sway, audit.asymmetry, audit.thrust
     worst = {r.variant: max(r.errors.items(), key=lambda item: abs(item[1])) for r in audit.equation_14_fits}
-    readings = {key: worst[key] for key in worst if "mended" not in key}
+    readings = {key: worst[key] for key in worst if "corrected" not in key}
     fresh, salt = audit.table_1_masses
     rows = [
         (
-            "table 2, N_v = +.1708 in all columns",
+            "table 2, N_v = +0.1708 in all columns",
             f"a 20 deg order to starboard ends at {turn.yaw_rates[1]:.2f} deg/s, "
             f"{turn.completed_zigzags[1]} of 3 zigzags finish",
-            f"-.1708: {turn.yaw_rates[0]:.2f} deg/s, {turn.completed_zigzags[0]} of 3 finish",
+            f"-0.1708: {turn.yaw_rates[0]:.2f} deg/s, {turn.completed_zigzags[0]} of 3 finish",
         ),
         (
-            "table 2, improved Y_vv = +.6083",
+            "table 2, improved Y_vv = +0.6083",
             "motion diverges after "
             + ", ".join(f"{seconds:.0f} s ({run})" for run, seconds in wild.divergence_times.items())
             + f": beyond {wild.critical_drift:.0f} deg of drift sway is driven",
-            "-.6083: 35/35 with CC "
+            "-0.6083: 35/35 with CC "
             + ", ".join(f"{c} {v:.4f}" for c, v in wild.corrected_accuracy[PublishedManoeuvre.ZIGZAG_35].cc.items()),
         ),
         (
@@ -64,7 +64,7 @@ def misprint_table(audit: SupportVectorAudit) -> Table:
         ),
         (
             "v_j and A_j are not printed",
-            f"A_j .035 m^2 chosen: v_j {thrust.jet_velocity:.4f} m/s balances .8 m/s",
+            f"A_j 0.035 m^2 chosen: v_j {thrust.jet_velocity:.4f} m/s balances 0.8 m/s",
             f"thrust {thrust.thrust:.1f} N",
         ),
         (
@@ -74,7 +74,7 @@ def misprint_table(audit: SupportVectorAudit) -> Table:
             "densities, added masses, inertias, jet, nozzle position",
         ),
     ]
-    return Table("Misprints, with evidence", ("print", "what it does", "mended"), tuple(rows))
+    return Table("Misprints, with evidence", ("print", "what it does", "corrected"), tuple(rows))
 
 
 def _impossible_error_text(audit: SupportVectorAudit) -> str:
@@ -84,4 +84,4 @@ def _impossible_error_text(audit: SupportVectorAudit) -> str:
         if math.isnan(cell.amplitude_ratio)
         else f"; with its CC the prediction would turn {cell.amplitude_ratio:.1f} times"
     )
-    return f"RMSE of r .0957 rad/s exceeds the largest |r| of the run, {cell.largest:.4f}{times}"
+    return f"RMSE of r 0.0957 rad/s exceeds the largest |r| of the run, {cell.largest:.4f}{times}"

@@ -97,15 +97,17 @@ class SupportVectorReproduction:
 
     Attributes:
         series, measured: the consecutive zigzags noise-free and with the sensors' noise.
-        cleaning: what its steps say, noise-free and measured.
-        swallowed: support vectors on the numbers as they come.
-        clean, noisy: every regression on either series.
-        tubes: the improved pipeline by penalty and tube.
-        differences: quasi-differences of eq. (17), noise-free; noise: white noise of the velocities.
-        exact, ours: output error without noise (same discretisation as the model's) and with the sensors' noise.
-        ratio: rms of ours' errors over their standard errors.
-        over_bound: the nearer regressions' rms errors over several series of noise, over ours' standard errors: medians
-            of the coefficients.
+        cleaning: what its steps report, noise-free and measured.
+        unscaled: support vectors on the numbers without scaling.
+        noise_free_results, noisy_results: every regression on either series.
+        tube_results: the improved pipeline by penalty and tube.
+        quasi_difference_sweep: quasi-differences of eq. (17), noise-free.
+        noise_sweep: white noise of the velocities.
+        output_error_noise_free: output error without noise, same discretisation as the model's.
+        output_error_noisy: output error with the sensors' noise.
+        output_error_ratio: rms of output error's errors over their standard errors.
+        errors_over_bound: the nearer regressions' rms errors over several series of noise, over output error's
+            standard errors: medians of the coefficients.
     """
 
     series: Record
@@ -139,27 +141,27 @@ class SupportVectorReproduction:
 def reproduce_regressions(
     *, quick: bool, seed: int, report_progress: Callable[[str], None] | None
 ) -> SupportVectorReproduction:
-    """All of it; `quick` leaves out the slow settings of the support vectors and most noise levels."""
-    tell = report_progress or (lambda _: None)
-    tell("the series")
+    """Run all regressions; `quick` leaves out the slow settings of the support vectors and most noise levels."""
+    report = report_progress or (lambda _: None)
+    report("the series")
     clean = reference_record(PublishedManoeuvre.CONSECUTIVE)
     measured = with_sensor_noise(clean, np.random.default_rng(seed), seed)
-    tell("regressions")
+    report("regressions")
     improved = Pipeline()
     unscaled = Pipeline(name="unscaled", operator=Euler(), solver=SupportVectors(is_standardised=False))
     of_clean = tuple(estimator_result(e, clean) for e in standard_estimators(WINDOW_S))
     of_noisy = tuple(estimator_result(e, measured) for e in standard_estimators(WINDOW_S))
-    tell("where the errors come from")
+    report("where the errors come from")
     tubes = tuple(
         estimator_result(replace(improved, name=f"C = {c:g}, tube {t:g}", solver=SupportVectors(c, t)), clean)
         for c in SVR_PENALTIES[: 1 if quick else None]
         for t in TUBE_WIDTHS[: 2 if quick else None]
     )
     differences = _sweep(QUASI_DIFFERENCES, lambda rho: (clean, _least_squares(Differenced(Euler(), rho))))
-    tell("noise")
+    report("noise")
     levels = VELOCITY_NOISE[1::2] if quick else VELOCITY_NOISE
     noise = _noise_sweep(clean, levels, seed)
-    tell("output error")
+    report("output error")
     exact, ours, errors = _output_error(measured)
     ratio = float(np.sqrt(np.mean((ours.errors / errors) ** 2)))
     return SupportVectorReproduction(

@@ -45,7 +45,7 @@ def tables(evidence: SupportVectorEvidence) -> tuple[Table, ...]:
 
 def _coefficients(evidence: SupportVectorEvidence) -> Table:
     made = evidence.reproduction
-    header = ("coefficient", "CFD, N_v mended", "paper original", "paper improved", "our original", "our improved",
+    header = ("coefficient", "CFD, N_v corrected", "paper original", "paper improved", "our original", "our improved",
               "output error, sensor noise")  # fmt: skip
     columns = [true_coefficients(), *(_printed(c) for c in (Table2Column.ORIGINAL, Table2Column.IMPROVED))]
     columns += [row.values for row in (*made.published[:2], made.output_error_noisy)]
@@ -60,7 +60,7 @@ def _coefficients(evidence: SupportVectorEvidence) -> Table:
         tuple(rows),
         "Paper's columns as printed: N_v with its sign turned in the first only. Ours: noise-free zigzags, "
         "standardised "
-        "columns, C = 1, tube .1, scikit-learn's defaults, since none of them is printed; on the numbers as they come "
+        "columns, C = 1, tube 0.1, scikit-learn's defaults, since none of them is printed; on the numbers as they come "
         f"the same regression returns {int(np.sum(made.unscaled.values == 0.0))} zeros of {len(COEFFICIENTS)}. Output "
         "error has sensor noise besides",
     )
@@ -90,8 +90,8 @@ def _errors(evidence: SupportVectorEvidence) -> Table:
         ("coefficient", "paper original", "paper improved", "ours original", "ours improved",
          "original, sensor noise", "improved, sensor noise", "output error, noise-free", "output error, sensor noise"),
         tuple(cells),
-        "Paper: magnitudes only, its signs being misprinted. Sensor noise: u, v .02 m/s, r .1 deg/s, and for output "
-        "error also psi .2 deg, x0, y0 .5 m, 10 Hz. One series of noise; the benchmark has 200",
+        "Paper: magnitudes only, its signs being misprinted. Sensor noise: u, v 0.02 m/s, r 0.1 deg/s, and for output "
+        "error also psi 0.2 deg, x0, y0 0.5 m, 10 Hz. One series of noise; the benchmark has 200",
     )  # fmt: skip
 
 
@@ -114,8 +114,8 @@ def _estimators(evidence: SupportVectorEvidence) -> Table:
         "Every estimator on the same series: relative errors, per cent",
         ("estimator", "noise-free: median", "largest", "sensor noise: median", "largest", "note"),
         tuple(rows),
-        "Noise-free: the series is generated in steps of .01 s, but output error's own row there has the model's own "
-        "steps of .1 s, so that it shows the search and not the discretisation",
+        "Noise-free: the series is generated in steps of 0.01 s, but output error's own row there has the model's own "
+        "steps of 0.1 s, so that it shows the search and not the discretisation",
     )
 
 
@@ -134,9 +134,8 @@ def _tube_and_penalty(evidence: SupportVectorEvidence) -> Table:
         "Tube and penalty: support vectors on differenced and centred rows, noise-free",
         ("setting", "median error %", "largest %", "wrong signs", "findings"),
         tuple(rows),
-        "A tube of .1 standard deviations is an error of that size nobody sees; a smaller one comes near least squares "
-        "on the same rows and does not pass it, because Euler's derivative remains. First row: Euler, numbers as they "
-        "come",
+        "A tube of 0.1 standard deviations is an error of that size nobody sees; a smaller one comes near least "
+        "squares on the same rows and does not pass it, because Euler's derivative remains. First row: Euler, unscaled",
     )
 
 
@@ -164,7 +163,7 @@ def _noise(evidence: SupportVectorEvidence) -> Table:
             (level, *(100.0 * float(values[i]) for values in sweep.medians.values()))
             for i, level in enumerate(sweep.levels)
         ),
-        "r: the same over one ship length a second. A log of a craft has .02 m/s",
+        "r: the same over one ship length a second. A log of a craft has 0.02 m/s",
     )
 
 
@@ -196,7 +195,7 @@ def _sensitivity(evidence: SupportVectorEvidence) -> Table:
         ("coefficient", *alone.states, "total", "variance inflation"),
         tuple(rows),
         "Variance inflation: total over unique sensitivity, squared. What a coefficient does alone says nothing of "
-        "whether a record can tell it",
+        "whether a record can identify it",
     )
 
 
@@ -223,7 +222,7 @@ def _accuracy(evidence: SupportVectorEvidence) -> Table:
             ours = (None, None) if found is None else (found.rmse[c], found.cc[c])
             rows.append((f"{run}, {c}", said.rmse[c], ours[0], said.cc[c], ours[1]))
     return Table(
-        "Table 4: the improved column, signs mended, on the truth's nozzle history",
+        "Table 4: the improved column, signs corrected, on the truth's nozzle history",
         ("run", "RMSE printed", "RMSE ours", "CC printed", "CC ours"),
         tuple(rows),
         f"m/s and rad/s. A move of 100 % along the weakest direction of the record "

@@ -37,7 +37,7 @@ def claims(evidence: SupportVectorEvidence) -> tuple[Claim, ...]:
         Claim(
             _statement_text("wider"),
             Verdict.UNKNOWABLE,
-            "one approach speed of .8 m/s and constant thrust were simulated; a "
+            "one approach speed of 0.8 m/s and constant thrust were simulated; a "
             f"nominal 35 deg turn of the craft has {evidence.turn_drift[0]:.0f} deg of drift, outside what a quadratic "
             "model holds for",
         ),
@@ -119,7 +119,7 @@ def _sensitivity_claim(evidence: SupportVectorEvidence) -> Claim:
         f"{', '.join(kept)}; here X_vv has "
         f"{total['X_vv']:.2g} and X_rr, which the text calls sensitive, {total['X_rr']:.2g}, against "
         f"{max(total.values()):.2g} of the largest. Y_vr does {total['Y_vr'] / total['X_vv']:.0f} times as much as "
-        "X_vv alone, and still no record of these zigzags can tell it (variance inflation in the table)",
+        "X_vv alone, and still no record of these zigzags can identify it (variance inflation in the table)",
     )
 
 
@@ -153,9 +153,9 @@ def _prediction_claim(evidence: SupportVectorEvidence) -> Claim:
     return Claim(
         _statement_text("predicts"),
         Verdict.CONFIRMED if least > GOOD_CC and sees else Verdict.UNKNOWABLE,
-        f"with both signs mended the improved column gives CC of at least {least:.3f} on the truth's nozzle history; "
-        "as printed no column finishes a zigzag. But CC and RMSE do not see coefficients that are 100 % off, and "
-        "prediction was judged on the craft and model that made the data",
+        f"with both signs corrected the improved column gives CC of at least {least:.3f} on the truth's nozzle "
+        "history; as printed no column finishes a zigzag. But CC and RMSE do not see coefficients that are 100 % off, "
+        "and prediction was judged on the craft and model that made the data",
     )
 
 
@@ -179,7 +179,7 @@ def _cleaning_claim(evidence: SupportVectorEvidence) -> Claim:
         "simulated data have nothing to clean: "
         + "; ".join(evidence.reproduction.cleaning[0])
         + ". Small values that are taken out "
-        "are no errors, and with them go the rows that tell linear from quadratic terms",
+        "are no errors, and with them go the rows that distinguish linear from quadratic terms",
     )
 
 

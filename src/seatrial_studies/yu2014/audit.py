@@ -46,18 +46,18 @@ class FinInertia:
 
 @dataclass(frozen=True, eq=False)
 class FinGainAudit:
-    """Numbers behind the verdicts on the print; no random number is drawn but for `roulette`.
+    """Numbers behind the verdicts on the print; no random number is drawn but for `roulette_sum`.
 
     Attributes:
         target: fin variance [deg^2] at which 20 % of amplitudes exceed 22 deg; target_rounded: with ln 5 as 1.61.
-        integral: rms [deg s] of the fin rate's print with 1/s, beside the rate itself [deg/s]; by reading.
-        roulette: what selection probabilities of 50 individuals add up to with the sum over 3, drawn at random.
+        fin_rate_readings: rms [deg s] of the fin rate's print with 1/s, and the rate itself [deg/s]; by reading.
+        roulette_sum: what selection probabilities of 50 individuals add up to with the sum over 3, drawn at random.
         lower_reductions, larger_rates: rows of table 1 in which the statements hold.
-        contradicting: rows whose two columns imply different rolls without fins, whatever was rounded.
-        bits: shortest code that holds every printed gain.
-        growth: of one Runge-Kutta step of .1 s along the gyro's poles.
-        motions: of the paper's gains where they were set, by reading.
-        steady: fin angle ordered for each degree, servo.
+        contradictory_rows: rows whose two columns imply different rolls without fins, whatever was rounded.
+        shortest_code_bits: shortest code that holds every printed gain.
+        runge_kutta_growth: of one Runge-Kutta step of 0.1 s along the gyro's poles.
+        roll_responses: of the paper's gains where they were set, by reading.
+        servo_gain: fin angle ordered for each degree, servo.
     """
 
     target: float
@@ -75,7 +75,7 @@ class FinGainAudit:
 
 
 def audit(seed: int) -> FinGainAudit:
-    """Everything, in some hundredths of a second."""
+    """Return all numbers of the audit (some hundredths of a second)."""
     return FinGainAudit(
         FIN_LIMIT**2 / (2.0 * math.log(1.0 / SATURATION)),
         FIN_LIMIT**2 / (2.0 * 1.61),

@@ -20,13 +20,14 @@ class FinGainEvidence:
     """Numbers of one run of the study.
 
     Attributes:
-        calibrated: K_q by reading; table_1: the GA's column at these, long-crested, by reading, in the table's order.
-        fitted: table 1 fitted, each reading in both senses of the heading.
-        variation: of the rms roll of one record of 1000 s, share.
-        in_time: s one search takes with records in time, compiled and with scipy's lsim.
-        elsewhere: for each row of table 1 the least that three gains can make of the larger of roll and fin-rate
+        calibrated_K_q: by reading.
+        table_1_responses: the GA's column at these, long-crested, by reading, in the table's order.
+        table_1_fits: table 1 fitted, each reading in both senses of the heading.
+        rms_variation: of the rms roll of one record of 1000 s, share.
+        time_domain_seconds: s one search takes with records in time, compiled and with scipy's lsim.
+        ratios_elsewhere: for each row of table 1 the least that three gains can make of the larger of roll and fin-rate
             variance over the paper's, by reading.
-        three: the best of three gains by reading, with Ms <= 2 and with the paper's own Ms.
+        three_gain_optima: the best of three gains by reading, with Ms <= 2 and with the paper's own Ms.
     """
 
     audit: FinGainAudit
@@ -42,12 +43,12 @@ class FinGainEvidence:
     five_gain_design: FiveGainDesign
 
     def fit(self, preamplifier: Preamplifier) -> Table1Fit:
-        """In the sense of the heading with the smaller error."""
+        """Return the fit in the sense of the heading with the smaller error."""
         return best_fit_of(self.table_1_fits, preamplifier)
 
     @property
     def best_fit(self) -> Table1Fit:
-        """Of both readings."""
+        """Return the better fit of both readings."""
         return min(self.table_1_fits, key=lambda f: f.log_error)
 
     def searches_with(

@@ -63,7 +63,7 @@ def _search_results(evidence: FinGainEvidence, preamplifier: Preamplifier) -> Ba
         tuple(str(k + 1) for k in range(len(shares))),
         {name: tuple(float(v) for v in shares[:, i]) for i, name in enumerate(GAIN_NAMES)},
         "share of the searched range [%]",
-        "The paper's answer: 11.1, .9 and 32.7 %.",
+        "The paper's answer: 11.1, 0.9 and 32.7 %.",
     )
 
 

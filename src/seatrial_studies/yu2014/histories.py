@@ -1,4 +1,4 @@
-"""Time histories of one sea, as in figures 3 to 7, and how much one record of 1000 s can tell."""
+"""Time histories of one sea, as in figures 3 to 7, and how much one record of 1000 s can show."""
 
 import math
 from dataclasses import dataclass
@@ -28,7 +28,8 @@ class RollHistories:
     """At 18 kn and 90 deg, all (n,); roll [deg] and fin rate [deg/s] at the fitted level.
 
     Attributes:
-        free: roll without fins; pid, genetic: (roll, fin rate) under the baseline and the paper's gains.
+        uncontrolled: roll without fins.
+        pid, genetic: (roll, fin rate) under the baseline and the paper's gains.
     """
 
     time: Array

@@ -75,10 +75,12 @@ class FiveGainDesign:
     """The controller with five gains, washout.
 
     Attributes:
-        gains: (5,); peak: Ms; designed: in the two seas it was searched in; held_out: in others.
-        three: what three gains reach, in the same two seas and under the same limits.
-        rates: fin-rate variance allowed, over the paper's, (k,); roll: by number of gains, worst roll variance over the
-            paper's in both seas at these rates, (k,).
+        gains: (5,).
+        design_seas: results in the two seas of the search.
+        held_out_seas: results in others.
+        three_gains: what three gains reach, in the same two seas and under the same limits.
+        rate_ratios: fin-rate variance allowed, over the paper's, (k,).
+        roll_ratios: by number of gains, worst roll variance over the paper's in both seas at these rates, (k,).
     """
 
     gains: Array
@@ -91,7 +93,7 @@ class FiveGainDesign:
 
 
 def design_five_gains(seed: int, rates: Array) -> FiveGainDesign:
-    """Searched, compared, and the trade between roll and fin rate."""
+    """Search five gains, compare them with the paper's, and trace roll against fin rate."""
     reading = Preamplifier.WASHOUT
 
     def optimise(rate: float, free: Array) -> Array:

@@ -18,7 +18,7 @@ def misprint_table(audit: FinGainAudit) -> Table:
         ),
         (
             "section 2.3, chord 2.22 m, then 2.2 m",
-            f"1.18 / .53 = {audit.fin_inertia.chord:.3f} m; I = "
+            f"1.18 / 0.53 = {audit.fin_inertia.chord:.3f} m; I = "
             f"{audit.fin_inertia.inertia:.1f} kg m² with {CHORD_OF_LEVER} in the lever, "
             f"{audit.fin_inertia.consistent_inertia:.1f} with {CHORD} throughout",
             f"{INERTIA} kg m²; with eta it cancels in eq. (7)",
@@ -47,7 +47,7 @@ def misprint_table(audit: FinGainAudit) -> Table:
         ("eq. (3), W without the 1 / (2 pi) of J1", "a factor that eq. (7) divides out", "neither has it"),
         ("eq. (7), sigma with 'max', in words 'the fittest'", "two searches, different answers", "max; best beside"),
         (
-            "section 3, step of .1 s",
+            "section 3, step of 0.1 s",
             f"a Runge-Kutta step grows by {audit.runge_kutta_growth:.0f} along the gyro's poles -40 ± 49i",
             "no step: variances in the frequency domain",
         ),

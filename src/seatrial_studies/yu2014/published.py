@@ -110,7 +110,7 @@ NOT_PRINTED = (
     ("the lag of 30 s", "a low-pass", "both readings: as printed, and as a washout 30 s / (30 s + 1)"),
     ("wave spectrum", "not printed", "one-parameter ITTC; short-crested cos² where the table is fitted"),
     ("ship's length, breadth, draught", "not printed", "a box of 100 x 10.5 x 3.4 m for the effective wave slope"),
-    ("K_alpha and speed", ".256, taken as constant", "grows with the square of the speed from 18 kn"),
+    ("K_alpha and speed", "0.256, taken as constant", "grows with the square of the speed from 18 kn"),
     ("sense of the heading", "not printed", "0° following, and both senses where the table is fitted"),
     ("sea of the search", "not printed", "18 kn, 90°, 3.3 m"),
     ("gains of the traditional PID", "not printed", "fitted to its column"),

@@ -46,9 +46,11 @@ class FinGainSearches:
     """Answers of n seeds.
 
     Attributes:
-        gains: (n, 3); peak: Ms (n,); shares: objectives over those of the paper's gains (n, 3), infinite where these
-            are zero; reduction: per cent (n,).
-        beaten: whether a point that some seed evaluated has all three objectives smaller (n,).
+        gains: (n, 3).
+        Ms: maximum sensitivity (n,).
+        objective_ratios: objectives over those of the paper's gains (n, 3), infinite where these are zero.
+        reduction: per cent (n,).
+        is_dominated: whether a point that some seed evaluated has all three objectives smaller (n,).
         seconds: of each search with its front (n,).
     """
 
@@ -62,7 +64,7 @@ class FinGainSearches:
 
     @property
     def relative_spread(self) -> Array:
-        """Of each gain, largest minus smallest over the width of the box, (3,)."""
+        """Return the spread of each gain, largest minus smallest over the width of the box, (3,)."""
         return np.ptp(self.gains, axis=0) / BOX.width
 
     @property
@@ -109,7 +111,7 @@ def _timed_search(
 
 
 def time_domain_seconds(seed: int) -> tuple[float, float]:
-    """s one search would take with a record of 1000 s at .1 s for each gain set, exact zero-order hold.
+    """s one search would take with a record of 1000 s at 0.1 s for each gain set, exact zero-order hold.
 
     First compiled, a population in vector lanes: one is simulated, and its time multiplied by the generations. Then
     scipy's lsim: one record is simulated, and its time multiplied by all evaluations. Roll alone, the sea free of cost.

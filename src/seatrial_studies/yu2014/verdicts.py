@@ -215,7 +215,7 @@ def checks(evidence: FinGainEvidence) -> tuple[Check, ...]:
         Check(
             "washout: narrowest spread of a gain over seeds, share of its range",
             narrowest,
-            "above .2: no attractor",
+            "above 0.2: no attractor",
             narrowest > 0.2,
         ),
         _check_at_most(

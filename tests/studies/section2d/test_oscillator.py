@@ -59,7 +59,7 @@ def test_the_amplitude_balances_the_equivalent_damping() -> None:
 
 
 def test_more_unknowns_than_periods_give_is_refused() -> None:
-    with pytest.raises(InputError, match="cannot be told from 2 wave periods"):
+    with pytest.raises(InputError, match="cannot be identified from 2 wave periods"):
         fit_oscillator(START, [observed(5.0), observed(6.0)], FREE)
     with pytest.raises(InputError, match="has no 'mass'"):
         fit_oscillator(START, [observed(5.0)], ("mass",))

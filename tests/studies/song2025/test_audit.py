@@ -1,4 +1,4 @@
-"""Every misprint shows in a simulation or a count of our own; mended, it does not."""
+"""Every misprint shows in a simulation or a count of our own; corrected, it does not."""
 
 import math
 
@@ -20,8 +20,8 @@ def seen():
 
 
 def test_with_the_printed_n_v_the_turn_reverses_and_no_zigzag_finishes(seen):
-    mended, printed = seen.reversed_turn.yaw_rates
-    assert mended == pytest.approx(2.21, abs=0.01)
+    corrected, printed = seen.reversed_turn.yaw_rates
+    assert corrected == pytest.approx(2.21, abs=0.01)
     assert printed < 0.0
     assert seen.reversed_turn.completed_zigzags == (3, 0)
 
@@ -58,8 +58,8 @@ def test_alpha_v_makes_turns_differ_by_side(seen):
 
 
 def test_even_forces_do_not_turn_with_the_craft(seen):
-    for mended, printed in seen.asymmetry.force_asymmetry.values():
-        assert mended == 0.0
+    for corrected, printed in seen.asymmetry.force_asymmetry.values():
+        assert corrected == 0.0
         assert printed > 0.05
     assert all(math.isfinite(s) for s in seen.asymmetry.hull_divergence_times)
 
@@ -72,10 +72,10 @@ def test_without_parentheses_accelerations_are_off_by_orders(seen):
     assert all(factor > 1e5 for factor in seen.parenthesis_factors.values())
 
 
-def test_only_the_mended_regression_gives_the_truth(seen):
+def test_only_the_corrected_regression_gives_the_truth(seen):
     for of in seen.equation_14_fits:
         worst = max(abs(e) for e in of.errors.values())
-        assert worst < 1e-9 if of.variant.endswith("mended") else worst > 90.0, of.variant
+        assert worst < 1e-9 if of.variant.endswith("corrected") else worst > 90.0, of.variant
 
 
 def test_the_wrong_sign_of_ur_hardly_shows_in_the_residual(seen):

@@ -28,9 +28,9 @@ def test_particulars_are_the_model_s():
 
 
 def test_mending_turns_only_the_signs_named():
-    for printed, mended in zip(PRINTED, CORRECTED, strict=True):
+    for printed, corrected in zip(PRINTED, CORRECTED, strict=True):
         turned = tuple(
-            n for n in COEFFICIENTS if printed.craft().parameters[n].value == -mended.craft().parameters[n].value
+            n for n in COEFFICIENTS if printed.craft().parameters[n].value == -corrected.craft().parameters[n].value
         )
         assert turned == tuple(n for n in COEFFICIENTS if n in MISPRINTED_SIGNS[printed.column])
 
