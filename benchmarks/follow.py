@@ -21,7 +21,8 @@ from seatrial.core.values import NOTATION, Channel, Record
 from seatrial.data.example_series import series
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial import Role, Trial, load_trial
-from seatrial.data.trial.trial import Stream, StreamSource
+from seatrial.data.trial.stream_settings import StreamSource
+from seatrial.data.trial.trial import Stream
 from seatrial.estimation.identify.identify import identify
 from seatrial.estimation.identify.online import OnlineEstimator
 from seatrial.estimation.problem.linear_output_error import LinearOutputError
@@ -107,7 +108,7 @@ def heave_pitch(heading: int, run: int, seconds: float) -> tuple[Trial, SeawayRu
     voyage = SeawayScenario(heading, duration=seconds)
     truth = ship(90) if heading == 45 else None
     made = simulate_seaway_run(voyage, np.random.default_rng([heading, run]), truth)
-    stream = Stream(StreamSource.STDIN, layout(WAVES_AND_FIN), RATE)
+    stream = Stream(source=StreamSource.STDIN, layout=layout(WAVES_AND_FIN), rate=RATE)
     trial = Trial(ship=SHIP, runs=(), model=with_physics_start(made.truth), noise=NOISE, stream=stream)
     return trial, made, made.with_sensor_noise(np.random.default_rng([heading, run, 1]), voyage)
 
@@ -134,7 +135,7 @@ def in_waves(heading: int, runs: int) -> Iterator[Line]:
         truth = np.array([made.truth.parameters[n].value for n in trial.model.parameters.free_names])
         courses.append(follow_stream(trial, record, truth))
         assert trial.stream is not None
-        narrow = replace(trial, stream=replace(trial.stream, batch_window=SHORT_WINDOW))
+        narrow = replace(trial, stream=replace(trial.stream, batch_window_s=SHORT_WINDOW))
         short.append(follow_stream(narrow, record, truth))
         bounds.append(bound(made, record))
     where = f"{heading} deg, {runs} seas"
@@ -164,7 +165,7 @@ def speed(seconds: float) -> Iterator[Line]:
     first, rest = _processing_seconds(whole, all_samples[:ten]), _processing_seconds(whole, all_samples[ten:])
     yield Line(f"first {SECONDS:g} s while re-linearising", ten / first, "samples/s")
     yield at_least(f"{seconds:g} s while re-linearising", len(all_samples) / (first + rest), "samples/s", 10_000)
-    beyond = OnlineEstimator(replace(trial, stream=replace(trial.stream, batch_window=SECONDS)))
+    beyond = OnlineEstimator(replace(trial, stream=replace(trial.stream, batch_window_s=SECONDS)))
     _processing_seconds(beyond, all_samples[: ten + 1])
     after = all_samples[ten + 1 :]
     yield at_least(
@@ -187,7 +188,9 @@ def zigzags(seeds: int) -> Iterator[Line]:
     online, before, batch, told, seconds = [], [], [], 0.0, 0.0
     for seed in range(seeds):
         records = [r.resampled(series.EXAMPLE_RATE) for r in series.demo_series(seed)[0]]
-        stream = Stream(StreamSource.STDIN, layout(series.EXAMPLE_COLUMNS), series.EXAMPLE_RATE, name="run")
+        stream = Stream(
+            source=StreamSource.STDIN, layout=layout(series.EXAMPLE_COLUMNS), rate=series.EXAMPLE_RATE, name="run"
+        )
         trial = replace(known, runs=(), stream=stream)
         estimator, shown = OnlineEstimator(trial), None
         began = time.process_time()
@@ -235,7 +238,7 @@ def compare_with_wild_horses(seas: int) -> Iterator[Line]:
         made = {n: Channel.from_notation(n, np.ascontiguousarray(v)) for n, v in columns.items()}
         when = np.arange(len(data.measured), dtype=np.float64) * swarm_search.STEP
         record = Record("sea", when, made)
-        stream = Stream(StreamSource.STDIN, layout(tuple(columns)), 1.0 / swarm_search.STEP)
+        stream = Stream(source=StreamSource.STDIN, layout=layout(tuple(columns)), rate=1.0 / swarm_search.STEP)
         trial = Trial(ship=SHIP, runs=(), model=with_physics_start(data.model), noise=NOISE, stream=stream)
         ours.append(follow_stream(trial, record, data.truth).mean[-1])
     what = f"135 deg, {seas} seas of 200 s"
@@ -253,7 +256,7 @@ def tanker() -> Iterator[Line]:
     runs = tuple(run for run in trial.runs if run.role is Role.TRAIN)
     raws = [run.raw_record() for run in runs]
     assert runs[0].file is not None
-    stream = Stream(StreamSource.STDIN, runs[0].file.layout, 1.0 / raws[0].dt)
+    stream = Stream(source=StreamSource.STDIN, layout=runs[0].file.layout, rate=1.0 / raws[0].dt)
     estimator, began = OnlineEstimator(replace(trial, runs=(), stream=stream)), time.process_time()
     for raw in raws:
         estimator.begin_run()

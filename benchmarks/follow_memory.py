@@ -13,7 +13,8 @@ import numpy as np
 from seatrial.core.results.online import Sample
 from seatrial.core.values import NOTATION
 from seatrial.data.read import ColumnSpec, Layout
-from seatrial.data.trial.trial import Stream, StreamSource, Trial
+from seatrial.data.trial.stream_settings import StreamSource
+from seatrial.data.trial.trial import Stream, Trial
 from seatrial.estimation.identify.online import OnlineEstimator
 from seatrial.physics.models.qi2025 import SHIP
 from seatrial_studies.output_error_fit import with_physics_start
@@ -29,7 +30,12 @@ def main(voyages: int) -> None:
     made = simulate_seaway_run(voyage, np.random.default_rng(1))
     record = made.with_sensor_noise(np.random.default_rng(2), voyage)
     columns = tuple(ColumnSpec(c, k + 2, NOTATION[c].unit) for k, c in enumerate(CHANNELS))
-    stream = Stream(StreamSource.STDIN, Layout("text", ColumnSpec("time", 1, "s"), columns), 10.0, batch_window=600.0)
+    stream = Stream(
+        source=StreamSource.STDIN,
+        layout=Layout("text", ColumnSpec("time", 1, "s"), columns),
+        rate=10.0,
+        batch_window_s=600.0,
+    )
     noise = {"z": HEAVE_NOISE, "theta": PITCH_NOISE}
     estimator = OnlineEstimator(
         Trial(ship=SHIP, runs=(), model=with_physics_start(made.truth), noise=noise, stream=stream)

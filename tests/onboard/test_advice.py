@@ -9,7 +9,8 @@ from seatrial.core.results.online import EstimatorPhase, Snapshot
 from seatrial.core.values import NOTATION, Channel, Record, Ship
 from seatrial.data.example_series.series import JET_VELOCITY, SENSOR_NOISE
 from seatrial.data.read import ColumnSpec, Layout
-from seatrial.data.trial.trial import Stream, StreamSource, Trial
+from seatrial.data.trial.stream_settings import StreamSource
+from seatrial.data.trial.trial import Stream, Trial
 from seatrial.onboard.advice import ManoeuvreAdviser, advice, ranked_candidates
 from seatrial.onboard.candidate_manoeuvres import candidate_manoeuvres, fisher_information
 from seatrial.physics.models.heave_pitch import heave_pitch
@@ -23,7 +24,7 @@ CRAFT = Ship("craft", {"L": 9.8, "B": 3.17, "d": 0.71})
 
 def _trial(model, ship, channels, rate=2.0) -> Trial:
     columns = tuple(ColumnSpec(c, k + 2, NOTATION[c].unit) for k, c in enumerate(channels))
-    stream = Stream(StreamSource.STDIN, Layout("text", ColumnSpec("time", 1, "s"), columns), rate)
+    stream = Stream(source=StreamSource.STDIN, layout=Layout("text", ColumnSpec("time", 1, "s"), columns), rate=rate)
     return Trial(ship=ship, runs=(), model=model, stream=stream)
 
 

@@ -10,7 +10,8 @@ from tests.onboard.sentences import sentence
 
 from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, Layout
-from seatrial.data.trial.trial import Stream, StreamSource
+from seatrial.data.trial.stream_settings import StreamSource
+from seatrial.data.trial.trial import Stream
 from seatrial.onboard.sample import Sample, SampleSource
 from seatrial.onboard.sources import open_source
 
@@ -36,7 +37,7 @@ def everything(source: SampleSource) -> list[float]:
 def test_a_file_once(tmp_path: Path, feed: StreamSource, layout: Layout, text: bytes) -> None:
     path = tmp_path / "run.txt"
     path.write_bytes(text)
-    source = open_source(Stream(feed, layout, 1.0, file=path), once=True)
+    source = open_source(Stream(source=feed, layout=layout, rate=1.0, file=path), once=True)
     assert everything(source) == [0, 1, 2, 3, 4, 5] and source.is_over and source.poll(0.0) == []
 
 
@@ -58,7 +59,7 @@ def standard_input() -> Iterator[int]:
 def test_standard_input(standard_input: int, feed: StreamSource, layout: Layout, text: bytes) -> None:
     os.write(standard_input, text)
     os.close(standard_input)
-    assert everything(open_source(Stream(feed, layout, 1.0))) == [0, 1, 2, 3, 4, 5]
+    assert everything(open_source(Stream(source=feed, layout=layout, rate=1.0))) == [0, 1, 2, 3, 4, 5]
 
 
 @pytest.mark.parametrize(
@@ -68,7 +69,7 @@ def test_datagrams(feed: StreamSource, layout: Layout, text: bytes) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         sender.bind(("127.0.0.1", 0))
         port = sender.getsockname()[1]
-    source = open_source(Stream(feed, layout, 10.0, port=port))
+    source = open_source(Stream(source=feed, layout=layout, rate=10.0, port=port))
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         for line in (*text.splitlines(), b"garbage", b"\x00" * 9000):
             sender.sendto(line, ("127.0.0.1", port))
@@ -79,5 +80,5 @@ def test_datagrams(feed: StreamSource, layout: Layout, text: bytes) -> None:
 
 
 def test_a_file_that_is_not_named_is_refused() -> None:
-    with pytest.raises(InputError, match="file is missing"):
-        open_source(Stream(StreamSource.FILE, COLUMNS, 1.0))
+    with pytest.raises(InputError, match="Stream: source = 'file' needs a file; add it"):
+        Stream(source=StreamSource.FILE, layout=COLUMNS, rate=1.0)

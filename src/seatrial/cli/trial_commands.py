@@ -108,7 +108,7 @@ def follow(
         writable_folder(out)
     stream = api.load_trial(trial, own_model(model))
     stream = stream if source is None else with_source(stream, source)
-    port = page if page is not None else require_stream(stream).page_port or None
+    port = page if page is not None else require_stream(stream).page or None
     with (
         stop_on_signal() as stop,
         live_display(stream_heading(stream), port) as show,

@@ -5,7 +5,8 @@ from typing import Protocol
 
 from seatrial.core.results.online import SampleCounts
 from seatrial.core.values import InputError
-from seatrial.data.trial.trial import Stream, StreamSource
+from seatrial.data.trial.stream_settings import StreamSource
+from seatrial.data.trial.trial import Stream
 from seatrial.onboard.columns import ColumnReader
 from seatrial.onboard.lines import LineBatch, LineSource
 from seatrial.onboard.nmea import NmeaReader
@@ -92,6 +93,6 @@ def _open_lines(stream: Stream, *, once: bool) -> LineSource:
         case StreamSource.STDIN | StreamSource.NMEA_STDIN:
             return PipeLines()
         case StreamSource.UDP:
-            return UdpLines(stream.port, rate=stream.rate, host=stream.host)
+            return UdpLines(stream.port or 0, rate=stream.rate, host=stream.host)
         case StreamSource.NMEA_UDP:
-            return UdpLines(stream.port, rate=stream.rate * _SENTENCES_PER_SAMPLE, host=stream.host)
+            return UdpLines(stream.port or 0, rate=stream.rate * _SENTENCES_PER_SAMPLE, host=stream.host)

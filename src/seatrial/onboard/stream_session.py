@@ -127,4 +127,4 @@ class StreamSession:
 
 
 def _sample_order(stream: Stream) -> SampleOrder:
-    return SampleOrder(1.0 / stream.rate, stream.longest_gap)
+    return SampleOrder(1.0 / stream.rate, stream.longest_gap_s)

@@ -7,7 +7,8 @@ import pytest
 from seatrial.core.values import InputError
 from seatrial.data.trial import load_trial
 from seatrial.data.trial.follow_table import require_stream, with_source
-from seatrial.data.trial.trial import Role, StreamSource
+from seatrial.data.trial.stream_settings import StreamSource
+from seatrial.data.trial.trial import Role
 
 SHIP = '[ship]\nname = "craft"\nL = 9.8\n[model]\nname = "nomoto"\n'
 STREAM = """[follow]
@@ -39,8 +40,9 @@ def refused(folder: Path, text: str) -> str:
 def test_the_table_becomes_a_stream_with_the_house_s_defaults(tmp_path: Path) -> None:
     stream = require_stream(load_trial(written(tmp_path, SHIP + STREAM)))
     assert (stream.source, stream.name, stream.file) == (StreamSource.FILE, "log", tmp_path / "log.csv")
-    assert (stream.rate, stream.batch_window, stream.forgetting_time, stream.longest_gap) == (10.0, 3600.0, None, 30.0)
-    assert (stream.host, stream.port, stream.page_port, stream.journal) == ("127.0.0.1", 0, 0, None)
+    assert (stream.rate, stream.batch_window_s) == (10.0, 3600.0)
+    assert (stream.forgetting_time_s, stream.longest_gap_s) == (None, 30.0)
+    assert (stream.host, stream.port, stream.page, stream.journal) == ("127.0.0.1", None, 0, None)
     delta = stream.layout.columns[1]
     assert (delta.source, delta.unit, delta.positive, stream.layout.format) == (3, "deg", "port", "text")
 
@@ -67,6 +69,7 @@ channels.r = { column = "r", unit = "deg/s" }
     [
         ('source = "file"', 'source = "files"', "follow.source"),
         ('file = "log.csv"\n', "", "source = 'file' needs a file"),
+        ('file = "log.csv"', "file = 3", "follow.file = 3: input should be a valid string"),
         ('source = "file"', 'source = "udp"', "source = 'udp' needs a port"),
         ("rate = 10\n", "", "key 'follow.rate' is missing"),
         ("rate = 10", "rate = 0", "follow.rate"),

@@ -6,11 +6,15 @@ from dataclasses import replace
 import pytest
 
 from seatrial.core.values import InputError
+from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial.design_request import DesignRequest, InputRange
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
+from seatrial.data.trial.stream_settings import StreamSource
+from seatrial.data.trial.trial import Stream
 
 RUDDER = InputRange(lower=-0.6, upper=0.6, unit="rad", hold=4.0)
 REQUEST = DesignRequest(duration=600.0, rate=5.0, inputs={"delta": RUDDER})
+STREAM = Stream(source=StreamSource.STDIN, rate=10.0, layout=Layout("text", ColumnSpec("time", 1, "s"), ()))
 
 
 def family_of(keys: dict[str, object]) -> ModelFamily:
@@ -30,6 +34,8 @@ def family_of(keys: dict[str, object]) -> ModelFamily:
         (lambda: ModelFamily(prior_factors=(1.0, 0.0)), "ModelFamily: prior_factors[2] = 0.0: input should be"),
         (lambda: replace(RUDDER, upper=-0.7), "InputRange: lower = -0.6 is not below upper = -0.7"),
         (lambda: replace(REQUEST, duration=-1.0), "DesignRequest: duration: -1 is not positive"),
+        (lambda: replace(STREAM, rate=0.0), "Stream: rate = 0.0: input should be greater than 0"),
+        (lambda: replace(STREAM, source=StreamSource.UDP), "Stream: source = 'udp' needs a port; add it"),
         (lambda: replace(REQUEST, inputs={}), "DesignRequest: inputs is an empty table; give at least one entry"),
     ],
 )

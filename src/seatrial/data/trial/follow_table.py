@@ -1,14 +1,16 @@
-"""The table `[follow]` of a trial file into a `Stream`: columns as in `[[records]]`, places and lengths tested."""
+"""The table `[follow]` of a trial file into a `Stream`: its settings, paths resolved, columns as in `[[records]]`."""
 
 import re
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
+from typing import Any
 
 from seatrial.core.values import InputError, spelling_hint
 from seatrial.data.trial.excitation import wave_encounter
 from seatrial.data.trial.runs import expand_variables, layout_of
 from seatrial.data.trial.schema import FollowTable
-from seatrial.data.trial.trial import Stream, StreamSource, Trial, run_name
+from seatrial.data.trial.stream_settings import StreamSettings, StreamSource
+from seatrial.data.trial.trial import Stream, Trial, run_name
 from seatrial.physics.hydro.excitation import Excitation
 
 _FILE_SOURCES = (StreamSource.FILE, StreamSource.NMEA_FILE)
@@ -19,7 +21,7 @@ _HOST_PATTERN = re.compile(r"[A-Za-z0-9.:_-]+")
 def stream_of(
     table: FollowTable, data_folder: Path, trial_folder: Path, excitation: Excitation | None = None, length: float = 1.0
 ) -> Stream:
-    """The stream that the table describes; files count from `base`, the journal from the trial file's folder `home`.
+    """Return the stream that the table describes; files count from `data_folder`, the journal from `trial_folder`.
 
     excitation, length [m]: of a ship that meets waves.
 
@@ -34,21 +36,15 @@ def stream_of(
         )
     if not _HOST_PATTERN.fullmatch(table.host):
         raise InputError(f"follow.host = '{table.host}' is no address; give one such as 127.0.0.1")
-    file = None if table.file is None else data_folder / expand_variables(table.file)
+    file = None if table.file is None else data_folder / expand_variables(str(table.file))
+    journal = None if table.journal is None else trial_folder / expand_variables(str(table.journal))
+    resolved = replace(table, file=file, journal=journal)
+    settings: dict[str, Any] = {setting.name: getattr(resolved, setting.name) for setting in fields(StreamSettings)}
     return Stream(
-        source=StreamSource(table.source),
+        **settings,
         layout=layout_of(table, "text", "follow"),
-        rate=table.rate,
-        name=_stream_name(StreamSource(table.source), file),
-        file=file,
-        host=table.host,
-        port=table.port or 0,
+        name=_stream_name(table.source, file),
         waves=wave_encounter(table.waves, excitation, length, "follow"),
-        batch_window=table.batch_window_s,
-        forgetting_time=table.forgetting_time_s,
-        longest_gap=table.longest_gap_s,
-        page_port=table.page,
-        journal=None if table.journal is None else trial_folder / expand_variables(table.journal),
     )
 
 

@@ -4,13 +4,15 @@ import re
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic.dataclasses import dataclass
 
 from seatrial.data.read.layout import Separator
 from seatrial.data.read.registry import require_format
-from seatrial.data.trial.amounts import Angle, Deviation, SiAmount, Speed, StrictTable, Unit
+from seatrial.data.trial.amounts import STRICT_FIELDS, Angle, Deviation, SiAmount, Speed, StrictTable, Unit
 from seatrial.data.trial.design_request import DesignRequest
 from seatrial.data.trial.sea_table import SeaTable
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
+from seatrial.data.trial.stream_settings import StreamSettings
 
 
 def _as_tuple(value: object) -> object:
@@ -76,7 +78,8 @@ class WavesTable(StrictTable):
     sea: SeaTable | None = None
 
 
-class ColumnsTable(StrictTable):
+@dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
+class ColumnsTable:
     """Where time and channels stand, in a file or in a stream."""
 
     header_lines: Annotated[int, Field(ge=0)] = 0
@@ -98,6 +101,7 @@ class ColumnsTable(StrictTable):
         return self
 
 
+@dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
 class RecordsTable(ColumnsTable):
     """One `[[records]]` block: files of one layout, their roles and trimming."""
 
@@ -123,35 +127,11 @@ class RecordsTable(ColumnsTable):
         return self
 
 
-class FollowTable(ColumnsTable):
-    """`[follow]`: samples that come while the record is being made, from where and in which columns.
+@dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
+class FollowTable(ColumnsTable, StreamSettings):
+    """`[follow]`: the settings of a stream, and in which columns its samples stand."""
 
-    `source`: lines of a growing file, of standard input or of UDP datagrams, or NMEA 0183 sentences from them.
-    """
-
-    source: Literal["file", "stdin", "udp", "nmea-file", "nmea-stdin", "nmea-udp"]
-    file: str | None = None
-    host: str = "127.0.0.1"
-    port: Annotated[int, Field(ge=1, le=65535)] | None = None
-    rate: Annotated[float, Field(gt=0)]
     waves: WavesTable | None = None
-    batch_window_s: Annotated[float, Field(gt=0)] = 3600.0
-    forgetting_time_s: Annotated[float, Field(gt=0)] | None = None
-    longest_gap_s: Annotated[float, Field(gt=0)] = 30.0
-    page: Annotated[int, Field(ge=0, le=65535)] = 0
-    journal: str | None = None
-
-    @model_validator(mode="after")
-    def _place_where_needed(self) -> Self:
-        if self.source.endswith("file") and self.file is None:
-            raise ValueError(f"source = '{self.source}' needs a file; add it")
-        if self.source.endswith("udp") and self.port is None:
-            raise ValueError(f"source = '{self.source}' needs a port; add it")
-        if self.longest_gap_s * self.rate < 1.0:
-            raise ValueError(
-                f"longest_gap_s = {self.longest_gap_s:g} is shorter than a step at {self.rate:g} Hz; make it longer"
-            )
-        return self
 
 
 class MotionColumn(StrictTable):

@@ -100,6 +100,8 @@ def schema_error(error: ValidationError, table: type, source: str) -> InputError
             return InputError(
                 f"{where}{key_path(location)} = {first['input']!r} is neither a table nor a number; write one"
             )
+        case "path_type":
+            return InputError(f"{where}{key_path(location)} = {first['input']!r}: input should be a valid string")
         case _:
             message = first["msg"][0].lower() + first["msg"][1:]
             return InputError(f"{where}{key_path(location)} = {first['input']!r}: {message}")

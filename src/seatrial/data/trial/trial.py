@@ -6,11 +6,17 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pydantic import InstanceOf
+from pydantic.dataclasses import dataclass as validated_dataclass
+
 from seatrial.core.equations import Model
 from seatrial.core.values import Finding, ForcePoints, Record, Ship
 from seatrial.data.read import Layout, read_record
+from seatrial.data.trial.amounts import STRICT_FIELDS
 from seatrial.data.trial.design_request import DesignRequest
+from seatrial.data.trial.schema_errors import raises_input_error
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
+from seatrial.data.trial.stream_settings import StreamSettings
 from seatrial.physics.hydro.excitation import Excitation
 from seatrial.physics.sea.spectrum import Spectrum
 
@@ -126,44 +132,20 @@ class TrialRun:
         return self.data.read() if isinstance(self.data, RecordFile) else self.data
 
 
-class StreamSource(StrEnum):
-    """Where the samples of a stream come from; NMEA 0183 sentences or lines of columns."""
-
-    FILE = "file"
-    STDIN = "stdin"
-    UDP = "udp"
-    NMEA_FILE = "nmea-file"
-    NMEA_STDIN = "nmea-stdin"
-    NMEA_UDP = "nmea-udp"
-
-
-@dataclass(frozen=True)
-class Stream:
-    """Samples that come while the record is being made, SI.
+@raises_input_error
+@validated_dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
+class Stream(StreamSettings):
+    """Samples that come while the record is being made, with the layout of their columns.
 
     Attributes:
-        feed: where they come from; layout: which column is what; rate: Hz, nominal.
+        layout: which column is what.
         name: of the runs it makes, as the stem of a file names a record's.
-        file: of a feed from a file; host, port: on which UDP is listened to.
         waves: how the ship meets them, for an elevation in the stream.
-        whole: s over which the batch criterion is kept; forgetting: s after which the past counts 1/e, None for ever.
-        longest_gap: s without a sample after which a new run begins.
-        page: port of the local page, 0 none; journal: where what was admitted is kept, None beside the result.
     """
 
-    source: StreamSource
-    layout: Layout
-    rate: float
+    layout: InstanceOf[Layout]
     name: str = "stream"
-    file: Path | None = None
-    host: str = "127.0.0.1"
-    port: int = 0
-    waves: WaveEncounter | None = None
-    batch_window: float = 3600.0
-    forgetting_time: float | None = None
-    longest_gap: float = 30.0
-    page_port: int = 0
-    journal: Path | None = None
+    waves: InstanceOf[WaveEncounter] | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,8 @@ from seatrial.core.values import NOTATION, Record
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial import Trial
 from seatrial.data.trial.follow_table import require_stream
-from seatrial.data.trial.trial import Stream, StreamSource
+from seatrial.data.trial.stream_settings import StreamSource
+from seatrial.data.trial.trial import Stream
 from seatrial.estimation.identify.online import OnlineEstimator
 from seatrial.estimation.identify.online.stream_window import StreamWindow
 from seatrial.physics.models.qi2025 import SHIP
@@ -38,7 +39,9 @@ def sea_stream(heading: int, duration: float, seed: int = 1) -> SeaStream:
     model = with_physics_start(run.truth)
     truth = np.array([run.truth.parameters[n].value for n in model.parameters.free_names])
     noise = {"z": HEAVE_NOISE, "theta": PITCH_NOISE}
-    trial = Trial(ship=SHIP, runs=(), model=model, noise=noise, stream=Stream(StreamSource.STDIN, LAYOUT, 10.0))
+    trial = Trial(
+        ship=SHIP, runs=(), model=model, noise=noise, stream=Stream(source=StreamSource.STDIN, layout=LAYOUT, rate=10.0)
+    )
     return SeaStream(trial, run.with_sensor_noise(np.random.default_rng(seed + 1), scenario), truth)
 
 

@@ -49,7 +49,7 @@ def test_beyond_the_window_a_filter_carries_its_information_on():
     whole = OnlineEstimator(trial)
     feed(whole, record, trial)
     best = whole.relinearise()
-    short = OnlineEstimator(replace(trial, stream=replace(trial.stream, batch_window=120.0)))
+    short = OnlineEstimator(replace(trial, stream=replace(trial.stream, batch_window_s=120.0)))
     feed(short, record, trial)
     snapshot = short.relinearise()
     assert snapshot.phase is EstimatorPhase.RECURSIVE
@@ -60,7 +60,7 @@ def test_beyond_the_window_a_filter_carries_its_information_on():
 def test_a_gap_beyond_the_window_goes_on_with_what_the_filter_knew():
     stream = sea_stream(135, 400.0)
     trial, record, truth = stream.trial, stream.record, stream.truth
-    estimator = OnlineEstimator(replace(trial, stream=replace(trial.stream, batch_window=120.0)))
+    estimator = OnlineEstimator(replace(trial, stream=replace(trial.stream, batch_window_s=120.0)))
     feed(estimator, record, trial, slice(0, 2000))
     known = estimator.relinearise()
     estimator.begin_run()
@@ -81,7 +81,7 @@ def test_a_ship_that_becomes_another_is_told_and_followed(forgetting):
         np.random.default_rng(6), voyage
     )
     estimator = OnlineEstimator(
-        replace(trial, stream=replace(trial.stream, batch_window=60.0, forgetting_time=forgetting))
+        replace(trial, stream=replace(trial.stream, batch_window_s=60.0, forgetting_time_s=forgetting))
     )
     feed(estimator, record, trial)
     before = estimator.relinearise().change
@@ -146,7 +146,7 @@ def test_a_ship_that_stays_the_same_is_not_told_to_change():
 
 def test_each_run_counts_once_after_a_filter_has_been_left():
     stream = sea_stream(135, 160.0)
-    trial = replace(stream.trial, stream=replace(stream.trial.stream, batch_window=60.0))
+    trial = replace(stream.trial, stream=replace(stream.trial.stream, batch_window_s=60.0))
     estimator = OnlineEstimator(trial)
     feed(estimator, stream.record, trial, slice(0, 1000))  # beyond the window: a filter
     for rows in (slice(1050, 1250), slice(1300, 1500)):
@@ -157,7 +157,7 @@ def test_each_run_counts_once_after_a_filter_has_been_left():
 
 def test_a_run_that_ends_as_the_window_is_full_is_not_joined_to_the_next():
     stream = sea_stream(135, 80.0)
-    trial = replace(stream.trial, stream=replace(stream.trial.stream, batch_window=30.0))
+    trial = replace(stream.trial, stream=replace(stream.trial.stream, batch_window_s=30.0))
     estimator = OnlineEstimator(trial)
     feed(estimator, stream.record, trial, slice(0, 290))
     for sample in samples(stream.record, trial, slice(290, 420)):

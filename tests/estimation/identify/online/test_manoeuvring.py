@@ -12,7 +12,8 @@ from seatrial.core.results.online import EstimatorPhase, Snapshot
 from seatrial.core.values import Record
 from seatrial.data.trial import Role, Trial, load_trial
 from seatrial.data.trial.roll_decay_start import trim_to_decay_start
-from seatrial.data.trial.trial import Stream, StreamSource
+from seatrial.data.trial.stream_settings import StreamSource
+from seatrial.data.trial.trial import Stream
 from seatrial.estimation.identify.identify import identify
 from seatrial.estimation.identify.online import OnlineEstimator
 
@@ -25,7 +26,11 @@ def _stream(name: str) -> tuple[Trial, Record]:
     (run,) = [r for r in trial.runs if r.role is Role.TRAIN]
     assert run.file is not None
     raw = run.raw_record()
-    return replace(trial, runs=(), stream=Stream(StreamSource.STDIN, run.file.layout, 1.0 / raw.dt, name=run.name)), raw
+    return replace(
+        trial,
+        runs=(),
+        stream=Stream(source=StreamSource.STDIN, layout=run.file.layout, rate=1.0 / raw.dt, name=run.name),
+    ), raw
 
 
 def _off(snapshot: Snapshot, fit: Fit) -> np.ndarray:

@@ -40,16 +40,16 @@ def test_warm_up_becomes_a_window_with_the_first_estimate(stream, window_phase):
 
 
 def test_a_window_is_full_after_its_time_and_never_before_an_estimate(stream, window_phase):
-    hour = replace(stream.trial.stream, batch_window=3600.0)
+    hour = replace(stream.trial.stream, batch_window_s=3600.0)
     assert not is_window_full(WarmUp(), 1e6, hour, CONTINUED_INTERVALS)
     assert not is_window_full(window_phase, 3599.0, hour, CONTINUED_INTERVALS)
     assert is_window_full(window_phase, 3600.0, hour, CONTINUED_INTERVALS)
-    assert is_window_full(window_phase, 100.0, replace(hour, forgetting_time=100.0), CONTINUED_INTERVALS)
+    assert is_window_full(window_phase, 100.0, replace(hour, forgetting_time_s=100.0), CONTINUED_INTERVALS)
 
 
 @pytest.mark.parametrize(("intervals", "stretch"), [(CONTINUED_INTERVALS, 60.0), (REPEATED_INTERVALS, 900.0)])
 def test_carried_information_is_renewed_after_a_stretch(stream, window_phase, intervals, stretch):
-    hour = replace(stream.trial.stream, batch_window=3600.0)
+    hour = replace(stream.trial.stream, batch_window_s=3600.0)
     assert not is_window_full(window_phase.carried(), stretch - 1.0, hour, intervals)
     assert is_window_full(window_phase.carried(), stretch, hour, intervals)
 
@@ -76,7 +76,7 @@ def test_a_window_becomes_carried_information_of_the_same_weight(stream, window_
 
 def test_forgetting_discounts_what_is_carried(stream, window_phase):
     full = carried_phase(window_phase, 50.0, stream.trial.stream, is_efficient=False)
-    half = replace(stream.trial.stream, forgetting_time=50.0 / np.log(2.0))
+    half = replace(stream.trial.stream, forgetting_time_s=50.0 / np.log(2.0))
     halved = carried_phase(window_phase, 50.0, half, is_efficient=False)
     np.testing.assert_allclose(halved.prior.information, 0.5 * full.prior.information)
 

@@ -1,6 +1,6 @@
 """One estimator fed sample by sample: the criterion of `identify` over a growing window, then over carried information.
 
-While the window lasts (`Stream.batch_window`) every re-linearisation goes over all samples, so that the numbers are
+While the window lasts (`Stream.batch_window_s`) every re-linearisation goes over all samples, so that the numbers are
 those of the batch fit. Beyond it a recursive filter goes on with the same information (`RecursivePhase`). Where a
 filter cannot take over (nuisances, waves from an elevation, segments, a new run) the window's normal equations are kept
 instead of its samples (`Carried`), and further stretches are added one by one.
@@ -139,7 +139,7 @@ class OnlineEstimator:
             is_efficient = self._search.is_efficient
             following = carried_phase(phase, self._window.seconds, self._stream, is_efficient=is_efficient)
             self._schedule.note_search(0.0, is_carried=True)
-        elif isinstance(phase, Carried) and self._stream.forgetting_time is not None:
+        elif isinstance(phase, Carried) and self._stream.forgetting_time_s is not None:
             self._change_detector.reset()
         self._phase = following
         self._window.clear()
@@ -166,7 +166,7 @@ class OnlineEstimator:
         They are not while old samples are forgotten, where every search chooses its criterion anew, and where the
         forces of the same waves change as more of their elevation is known.
         """
-        is_nested = self._search.is_efficient and self._stream.waves is None and self._stream.forgetting_time is None
+        is_nested = self._search.is_efficient and self._stream.waves is None and self._stream.forgetting_time_s is None
         if is_nested and np.all(np.isfinite(estimate.covariance)):
             self._change_detector.update(self._progress.elapsed, estimate.value, estimate.covariance)
         return self._change_detector.reported

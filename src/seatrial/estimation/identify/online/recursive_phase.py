@@ -45,7 +45,7 @@ class RecursivePhase:
             raise InputError("the fit is too curved within its own errors for a filter to take over")
         self._estimate, self._stream, self._reference_point = estimate, stream, reference_point
         widest = tuple(float(v) for v in np.maximum(np.abs(estimate.value), _scales(estimate)))
-        forgetting = None if stream.forgetting_time is None else Forgetting(stream.forgetting_time, widest)
+        forgetting = None if stream.forgetting_time_s is None else Forgetting(stream.forgetting_time_s, widest)
         self._filter = filter_from_fit(*optimum, forgetting=forgetting)
         self._unforgetting_filter = self._filter if forgetting is None else filter_from_fit(*optimum)
         self._model, self._outputs = fit.problem.model, fit.problem.data.outputs

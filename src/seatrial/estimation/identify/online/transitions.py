@@ -13,7 +13,7 @@ from seatrial.estimation.identify.online.schedule import SearchIntervals
 
 def is_window_full(phase: KeptPhase, seconds: float, stream: Stream, intervals: SearchIntervals) -> bool:
     """Return whether a phase with `seconds` s of samples in its window is to be left; never before an estimate."""
-    window = min(stream.batch_window, stream.forgetting_time or np.inf)
+    window = min(stream.batch_window_s, stream.forgetting_time_s or np.inf)
     match phase:
         case WarmUp():
             return False
@@ -42,6 +42,6 @@ def carried_phase(phase: Window | Carried, seconds: float, stream: Stream, *, is
     carried = phase.carried()
     if is_efficient and phase.estimate.estimate.problem.inflation is None:
         carried = carried.discounted(1.0 / max(float(np.max(phase.estimate.inflation)), 1.0))
-    if stream.forgetting_time is not None:
-        carried = carried.discounted(float(np.exp(-seconds / stream.forgetting_time)))
+    if stream.forgetting_time_s is not None:
+        carried = carried.discounted(float(np.exp(-seconds / stream.forgetting_time_s)))
     return carried

@@ -1,0 +1,62 @@
+"""What a stream of samples is followed by: keys of the table `[follow]`, settings of a `Stream` in Python."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+from pydantic.dataclasses import dataclass
+
+from seatrial.data.trial.amounts import STRICT_FIELDS
+from seatrial.data.trial.settings import Positive
+
+
+class StreamSource(StrEnum):
+    """Where the samples of a stream come from; NMEA 0183 sentences or lines of columns."""
+
+    FILE = "file"
+    STDIN = "stdin"
+    UDP = "udp"
+    NMEA_FILE = "nmea-file"
+    NMEA_STDIN = "nmea-stdin"
+    NMEA_UDP = "nmea-udp"
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
+class StreamSettings:
+    """Where samples come from while the record is being made, and how they are followed.
+
+    Attributes:
+        source: lines of a growing file, of standard input or of UDP datagrams, or NMEA 0183 sentences from them.
+        rate: nominal rate of the samples [Hz].
+        file: of a source that is a file.
+        host, port: on which UDP is listened to.
+        batch_window_s: time over which the batch criterion is kept [s].
+        forgetting_time_s: time after which the past counts 1/e [s]; None: it counts for ever.
+        longest_gap_s: time without a sample after which a new run begins [s].
+        page: port of the local page; 0: none.
+        journal: file in which admitted samples are kept; None: beside the result.
+    """
+
+    source: StreamSource
+    rate: Positive
+    file: Path | None = None
+    host: str = "127.0.0.1"
+    port: Annotated[int, Field(ge=1, le=65535)] | None = None
+    batch_window_s: Positive = 3600.0
+    forgetting_time_s: Positive | None = None
+    longest_gap_s: Positive = 30.0
+    page: Annotated[int, Field(ge=0, le=65535)] = 0
+    journal: Path | None = None
+
+    @model_validator(mode="after")
+    def _place_where_needed(self) -> Self:
+        if self.source.endswith("file") and self.file is None:
+            raise ValueError(f"source = '{self.source}' needs a file; add it")
+        if self.source.endswith("udp") and self.port is None:
+            raise ValueError(f"source = '{self.source}' needs a port; add it")
+        if self.longest_gap_s * self.rate < 1.0:
+            raise ValueError(
+                f"longest_gap_s = {self.longest_gap_s:g} is shorter than a step at {self.rate:g} Hz; make it longer"
+            )
+        return self
