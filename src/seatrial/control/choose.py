@@ -14,9 +14,11 @@ from seatrial.core.results.tuning import ParetoFront
 from seatrial.core.values import Array
 from seatrial.numerics.optimise import non_dominated
 
-CANDIDATE_COUNT = 8
-MAX_SATURATION_LOSS = 0.03
+CANDIDATE_COUNT = 8  # gains of a front that are simulated; chosen
+MAX_SATURATION_LOSS = 0.03  # reduction lost to the actuator's limits, as a share of one; chosen
+# seas of the selection, and their distance from the seeds of the final simulations; chosen
 _SELECTION_SEEDS, _SELECTION_SEED_OFFSET = 8, 100_000
+# reductions that differ less count as equal; share of the permitted loss used in the selection; chosen
 _EQUAL_REDUCTION, _LOSS_MARGIN = 0.003, 0.85
 
 

@@ -10,7 +10,7 @@ from seatrial.core.values import Array
 from seatrial.physics.loops import TransferLoop, margins
 from seatrial.physics.loops.margins import frequency_band
 
-_POINTS = 400
+_POINTS = 400  # frequencies of the curves in the result, evenly in the logarithm; chosen
 
 
 def describe_controller(evaluator: GainEvaluator, name: str, gains: Array) -> Controller:

@@ -26,9 +26,10 @@ from seatrial.physics.loops.autopilot import mean_pole
 from seatrial.physics.simulate.closed_loop import REFERENCE, ActuatorLimits, ClosedLoop
 
 DEMAND = "demand"
-_SHOWN_DRAWS, _SAMPLES = 20, 1000
+_SHOWN_DRAWS, _SAMPLES = 20, 1000  # sampled ships and samples in time that a figure shows; chosen
+# steps of a simulation, and its step as a share of the fastest pole's time constant; chosen
 _FEWEST_STEPS, _MOST_STEPS, _STEP_SHARE = 1000, 20_000, 0.2
-_SETTLING_BAND = 0.05
+_SETTLING_BAND = 0.05  # share of the change: the usual 5 % settling band
 _LEGS = 4
 _CHANGE_NAMES = {"psi": "course change", "u": "speed change"}
 

@@ -9,7 +9,7 @@ from seatrial.control.gradient_refinement import all_gains, free_gain_bounds
 from seatrial.core.results.tuning import Controller
 from seatrial.core.values import InputError
 
-_SAMPLES, _ROUNDS = 20_000, 8
+_SAMPLES, _ROUNDS = 20_000, 8  # random gains in all, in rounds of shrinking size; chosen
 _IDLE = (
     "the best that was found is no control at all, with every gain at zero: raise limits.Ms, limits.saturation or "
     "the actuator's own limits where they leave nothing else, and name the motion first under minimise"
@@ -36,7 +36,7 @@ def refuse_infeasible(evaluator: GainEvaluator, seed: int) -> None:
     rng = np.random.default_rng(seed)
     _, (low, high) = free_gain_bounds(evaluator)
     best, least = low, math.inf
-    for size in np.geomspace(1.0, 0.003, _ROUNDS):
+    for size in np.geomspace(1.0, 0.003, _ROUNDS):  # steps from the whole range down to 0.3 % of it; chosen
         steps = rng.uniform(-size, size, (_SAMPLES // _ROUNDS, len(low))) * (high - low)
         tried = np.clip((0.5 * (low + high) if size == 1.0 else best) + steps, low, high)
         excess = evaluator.evaluate(all_gains(evaluator, tried)).excess.max(axis=1)

@@ -13,8 +13,8 @@ from seatrial.core.results.tuning import (
 )
 from seatrial.core.values import Finding, Severity
 
-_ON_BOUND = 1e-3
-_LEAST_COVERAGE = 0.97
+_ON_BOUND = 1e-3  # share of a gain's range that counts as on the bound; chosen
+_LEAST_COVERAGE = 0.97  # share of the hypervolume of the checking grid; chosen
 
 
 def findings(

@@ -14,19 +14,19 @@ from seatrial.numerics.optimise import non_dominated
 
 @dataclass(frozen=True)
 class Effort:
-    """How much a front is worth: NSGA-II population and generations, points polished, rounds and size of filling in."""
+    """Effort spent on a front: NSGA-II, refinement by gradients, filling in by random neighbours."""
 
-    population: int = 200
-    generations: int = 60
-    refined: int = 48
-    fill_rounds: int = 6
-    neighbours: int = 40_000
+    population: int = 200  # of NSGA-II; chosen
+    generations: int = 60  # of NSGA-II; chosen
+    refined: int = 48  # points refined by gradients; chosen
+    fill_rounds: int = 6  # rounds of random neighbours; chosen
+    neighbours: int = 40_000  # random neighbours a round; chosen
 
 
 def pareto_front(
     evaluator: GainEvaluator, name: str, seed: int, report_progress: Callable[[str], None], effort: Effort
 ) -> ParetoFront:
-    """The feasible non-dominated gains found; empty where nothing is feasible (see `refuse_infeasible`)."""
+    """Return the feasible non-dominated gains found; empty where nothing is feasible (see `refuse_infeasible`)."""
     rng = np.random.default_rng(seed)
     explored = _explore(evaluator, seed, effort)
     report_progress(f"{name}: explored")
@@ -37,6 +37,7 @@ def pareto_front(
         kept, values = _feasible_non_dominated(evaluator, np.concatenate([kept, edge]))
         report_progress(f"{name}: polished")
         low, high = free_gain_bounds(evaluator)[1]
+        # steps from 6 % down to 0.4 % of each gain's range; chosen
         for size in np.geomspace(0.06, 0.004, effort.fill_rounds):
             base = kept[rng.integers(len(kept), size=effort.neighbours)]
             step = size * (high - low) * rng.standard_normal(base.shape) * rng.random((len(base), 1))

@@ -9,11 +9,12 @@ from seatrial.control.gain_evaluation import GainEvaluator
 from seatrial.core.values import Array, Index
 
 GainBounds = tuple[Array, Array]
+# in the place of infinity; least value whose logarithm is taken; share of a range that is rounding
 _HUGE, _TINY, _ROUNDING = 1e30, 1e-300, 1e-12
 
 
 def free_gain_bounds(evaluator: GainEvaluator) -> tuple[Index, GainBounds]:
-    """Places of the free gains and their bounds."""
+    """Return the indices of the free gains and their bounds."""
     gains = evaluator.loop.gains
     places = np.array([i for i, p in enumerate(gains) if p.free], dtype=np.int64)
     return places, (np.array([gains.items[i].lower for i in places]), np.array([gains.items[i].upper for i in places]))

@@ -25,7 +25,7 @@ from seatrial.physics.loops import Block, EncounterSpectrum, TransferLoop, in_se
 from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
 from seatrial.physics.loops.state_space import controllable_form
 
-_FIT, _SPAN = 800, 30.0
+_FIT, _SPAN = 800, 30.0  # frequencies of the fit, and their span as a factor either side of the mean frequency; chosen
 _TAIL_FACTOR = 100.0
 
 
@@ -87,7 +87,9 @@ def fit_shaping_filter(exposure: EncounterSpectrum, response: Block) -> ShapingF
         energy = np.abs(_shaping_block(point, 1.0).frequency_response(omega)) ** 2 * through * steps
         return np.concatenate([_cumulative_share(e) for e in (energy, omega**2 * energy)])
 
+    # first guess: two resonances about the mean frequency, damping ratios 0.2 and 0.3
     start = np.log([0.8 * mean, 0.2, 1.2 * mean, 0.3])
+    # a decade either side in frequency; damping ratios 0.01 to 2
     edges = np.log([0.1 * mean, 0.01, 0.1 * mean, 0.01]), np.log([10.0 * mean, 2.0, 10.0 * mean, 2.0])
     best = least_squares(lambda p: shares(p) - true, start, bounds=edges)
     off = (shares(best.x) - true)[:_FIT]
@@ -132,6 +134,7 @@ def full_information(plant: Block, disturbance: Block, shaping: Block, reference
     def off(log_weight: float) -> float:
         return math.log(cost(math.exp(log_weight)).rate / reference.rate)
 
+    # half width of the bracket in the logarithm of the weight, widened until it holds the root
     for reach in (4.0, 8.0, 12.0, 16.0):
         if off(middle - reach) > 0.0 > off(middle + reach):
             return cost(math.exp(float(brentq(off, middle - reach, middle + reach, xtol=1e-9)))).output  # type: ignore[arg-type]

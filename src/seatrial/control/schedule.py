@@ -13,6 +13,7 @@ from seatrial.control.task import ScheduleGrid, Seaway, TuningTask
 from seatrial.core.results.tuning import OperatingPoint
 from seatrial.core.values import Array
 
+# Sobol points, refined starts, rounds of random neighbours and neighbours a round; chosen
 _SAMPLES, _STARTS, _ROUNDS, _NEIGHBOURS = 4096, 3, 8, 1024
 
 
@@ -89,7 +90,7 @@ def _common_gains(conditions: tuple[ScheduleCondition, ...], samples: Array, rng
     """Gains (g,) of the least mean cost among those that keep the restrictions everywhere; None without any."""
     places, (low, high) = free_gain_bounds(conditions[0].evaluator)
     best, least, tried = None, math.inf, samples
-    for size in np.geomspace(0.1, 0.003, _ROUNDS):
+    for size in np.geomspace(0.1, 0.003, _ROUNDS):  # steps from 10 % down to 0.3 % of each gain's range; chosen
         total = np.mean(
             [np.where(c.evaluator.evaluate(tried).is_feasible, c.cost(tried), np.inf) for c in conditions], axis=0
         )

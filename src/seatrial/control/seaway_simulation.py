@@ -22,11 +22,12 @@ from seatrial.physics.loops.state_space import plant_model
 from seatrial.physics.sea.realise import Spacing, WaveComponents, realise, short_crested
 from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop
 
+# wave components of a simulated sea; chosen
 LONG_CRESTED_LINES, SHORT_CRESTED_LINES = 800, 1600
 RUN_IN_SECONDS = 100.0
 UNCONTROLLED = "uncontrolled"
-_ENERGY_SHARE = 1e-4
-_CONFIDENCE = 0.95
+_ENERGY_SHARE = 1e-4  # share of the energy cut at either end of the spectrum; chosen
+_CONFIDENCE = 0.95  # level of the intervals of means over seeds
 
 
 def simulate_in_seaway(task: TuningTask, loop: TransferLoop, name: str, gains: Array, seed: int) -> SeawaySimulation:

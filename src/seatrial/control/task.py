@@ -14,7 +14,7 @@ from seatrial.physics.loops import EncounterSpectrum, HullFactor, Objective, Tra
 from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
 from seatrial.physics.sea.spectrum import Spectrum
 
-_UNDAMPED = 1e-9
+_UNDAMPED = 1e-9  # real part over size of a pole, below which it counts as undamped: rounding
 
 
 @dataclass(frozen=True)
@@ -95,9 +95,9 @@ class ScheduleGrid:
 class SimulationSettings:
     """Nonlinear simulation: seeds of the sea, duration [s], step [s]."""
 
-    seeds: int = 20
-    duration: float = 1000.0
-    dt: float = 0.05
+    seeds: int = 20  # seas; chosen
+    duration: float = 1000.0  # s; chosen
+    dt: float = 0.05  # s; chosen
 
 
 @dataclass(frozen=True)

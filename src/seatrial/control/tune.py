@@ -31,7 +31,7 @@ from seatrial.core.values import Array
 from seatrial.core.values.versions import versions
 from seatrial.numerics.optimise import Solution, Status, hypervolume
 
-FRONT_POINTS = 300
+FRONT_POINTS = 300  # points of a front that are kept in the result; chosen
 PARAMETER_DRAWS = 100
 # points a gain of the grid that the front is checked against
 _GRID = {1: 2000, 2: 400, 3: 100}

@@ -20,10 +20,10 @@ from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops import EncounterSpectrum, LoopSignal, Performance, TransferLoop, WeightedVariance, in_series
 
-KAUTZ_DAMPING = 0.7
-KAUTZ_SECTIONS = 32
-_GRID = 260
-NEGLIGIBLE_SHARE = 0.01
+KAUTZ_DAMPING = 0.7  # damping ratio of each Kautz section; chosen
+KAUTZ_SECTIONS = 32  # second-order sections of the expansion; chosen
+_GRID = 260  # frequencies of the penalty on the sensitivity; chosen
+NEGLIGIBLE_SHARE = 0.01  # share of the reference's output variance below which a bound is not informative
 BOUND_ROWS = (WeightedVariance(LoopSignal.OUTPUT, np.ones_like), WeightedVariance(LoopSignal.ACTUATOR, lambda w: w))
 
 

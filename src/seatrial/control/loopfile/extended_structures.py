@@ -21,11 +21,11 @@ from seatrial.physics.loops.structures import (
 )
 
 _STRUCTURE_KINDS = ("band-pass", "low-pass")
-_NOTCH_DEFAULTS = 0.5, 0.1
+_NOTCH_DEFAULTS = 0.5, 0.1  # damping ratio and depth of a notch, as in `NotchTable`; chosen
 
 
 def extended_structure(loop: TransferLoop, table: ExtendedStructureTable, where: str) -> TransferLoop:
-    """The loop with what the table adds; band-pass and low-pass bring gains of their own, KB and KL.
+    """Return the loop with the filters of the table; band-pass and low-pass have gains of their own, KB and KL.
 
     Where the file does not set them they stand at the multiples of the plant's own frequency that were found for the
     published fins. Without bounds the new gains may lie within the largest bound of the loop's own, to either side.

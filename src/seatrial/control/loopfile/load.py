@@ -21,13 +21,13 @@ from seatrial.core.values import InputError, spelling_hint
 from seatrial.data.trial.schema_errors import schema_error
 from seatrial.physics.loops import Objective, TransferLoop
 
-_TIME_CONSTANTS = 30.0
-_MOST_STEPS = 1e7
-_MOST_TIME_CONSTANTS = 1e4
+_TIME_CONSTANTS = 30.0  # duration of a demand where none is given, in its time constants; chosen
+_MOST_STEPS = 1e7  # steps over all seeds; guards against a wrong unit
+_MOST_TIME_CONSTANTS = 1e4  # longest duration of a demand, in its time constants; guards against a wrong unit
 
 
 def parse_loop(path: Path) -> LoopFile:
-    """The file's tables, checked key by key.
+    """Return the file's tables, checked key by key.
 
     Raises:
         InputError: no such file, no TOML, an unknown or missing key, a value of the wrong kind.

@@ -18,7 +18,7 @@ from seatrial.physics.loops.fin import K_alpha_at
 
 FINS = ("phi", "alpha_f", "alpha_w")
 STEERING = ("psi", "delta", "")
-_KNOTS = 3600.0 / 1852.0
+_KNOTS = 3600.0 / 1852.0  # kn in 1 m/s: 1 kn is 1852 m an hour (exact)
 
 
 @dataclass(frozen=True, eq=False)

@@ -40,14 +40,14 @@ class NotchTable(StrictTable):
 
     omega: SiAmount
     damping: Positive = 0.5
-    depth: Annotated[float, Field(ge=0, lt=1)] = 0.1
+    depth: Annotated[float, Field(ge=0, lt=1)] = 0.1  # gain at omega; chosen
 
 
 class PassTable(StrictTable):
     """Of second order: low-pass omega^2, band-pass 2 damping omega s, high-pass s^2, over the polynomial of both."""
 
     omega: SiAmount
-    damping: Positive = 0.7
+    damping: Positive = 0.7  # damping ratio, about that of Butterworth's filter, 0.707
 
 
 class BlockTable(StrictTable):
@@ -258,8 +258,8 @@ class LimitsTable(StrictTable):
     """`[limits]`: largest Ms, and shares of amplitudes beyond the actuator's limit and rate."""
 
     Ms: Annotated[float, Field(gt=1)] = 2.0
-    saturation: Share = 0.2
-    rate_saturation: Share = 0.2
+    saturation: Share = 0.2  # of amplitudes beyond the limit; chosen
+    rate_saturation: Share = 0.2  # of rate amplitudes beyond the rate; chosen
 
 
 class ScheduleTable(StrictTable):
@@ -273,16 +273,16 @@ class ScheduleTable(StrictTable):
 class SimulationTable(StrictTable):
     """`[simulation]`: the nonlinear check; no seeds, no check."""
 
-    seeds: Annotated[int, Field(ge=0, le=1000)] = 20
-    duration: SiAmount = Amount(value=1000.0)
-    step: SiAmount = Amount(value=0.05)
+    seeds: Annotated[int, Field(ge=0, le=1000)] = 20  # seas, as in `SimulationSettings`
+    duration: SiAmount = Amount(value=1000.0)  # s, as in `SimulationSettings`
+    step: SiAmount = Amount(value=0.05)  # s, as in `SimulationSettings`
 
 
 class DemandTable(StrictTable):
     """`[demand]`: a change of the output that the loop has to follow, and the largest overshoot as a share of it."""
 
     change: SiAmount
-    overshoot: Annotated[float, Field(ge=0, lt=1)] = 0.02
+    overshoot: Annotated[float, Field(ge=0, lt=1)] = 0.02  # share of the change; chosen
     time_constant: SiAmount | None = None
     duration: SiAmount | None = None
 

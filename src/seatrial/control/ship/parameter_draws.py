@@ -1,4 +1,4 @@
-"""Ships that a fit allows: drawn from its covariance, each trimmed anew, and how many a controller keeps stable."""
+"""Ships sampled from the covariance of a fit, each trimmed anew, and how many of them a controller keeps stable."""
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -30,13 +30,13 @@ class ParameterDraws:
     plants: tuple[tuple[Block, ...], ...]
 
     def stable_ships(self, loop: TransferLoop, gains: Array) -> tuple[bool, ...]:
-        """Whether each ship's loop is stable with the gains (g,), on the straight course and beginning either turn."""
+        """Return for each ship whether gains (g,) stabilise it, on the straight course and starting either turn."""
         return tuple(all(_is_stable(loop, plant, gains) for plant in plants) for plants in self.plants)
 
 
 @lru_cache(maxsize=8)
 def draw_parameters(ship: TrimmedShip, draws: int = DRAWS, seed: int = SEED) -> ParameterDraws:
-    """Gaussian draws of the free parameters from the fit's covariance; none where there is no covariance.
+    """Return ships sampled from the Gaussian of the free parameters; none where the fit has no covariance.
 
     The same seed gives the same ships. Nothing is truncated.
     """
@@ -48,9 +48,9 @@ def draw_parameters(ship: TrimmedShip, draws: int = DRAWS, seed: int = SEED) -> 
     ships, plants = [], []
     for point in points:
         try:
-            drawn = with_parameters(ship, dict(zip([p.name for p in free], point.tolist(), strict=True)))
-            plants.append(_plant_blocks(drawn))
-            ships.append(drawn)
+            sampled = with_parameters(ship, dict(zip([p.name for p in free], point.tolist(), strict=True)))
+            plants.append(_plant_blocks(sampled))
+            ships.append(sampled)
         except InputError:
             continue
     return ParameterDraws(draws, tuple(ships), tuple(plants))
@@ -59,11 +59,11 @@ def draw_parameters(ship: TrimmedShip, draws: int = DRAWS, seed: int = SEED) -> 
 def stable_draws(
     task: TuningTask, gains: Array, loop: TransferLoop | None = None, *, draws: int = DRAWS
 ) -> tuple[int, int]:
-    """How many of the ships drawn the gains (g,) keep stable, and how many were drawn; (0, 0) without a covariance."""
+    """Return how many sampled ships the gains (g,) stabilise, and how many were sampled; (0, 0) without covariance."""
     if task.trimmed_ship is None:
         return 0, 0
-    made = draw_parameters(task.trimmed_ship, draws, SEED)
-    return sum(made.stable_ships(task.loop if loop is None else loop, gains)), made.draws
+    samples = draw_parameters(task.trimmed_ship, draws, SEED)
+    return sum(samples.stable_ships(task.loop if loop is None else loop, gains)), samples.draws
 
 
 def _plant_blocks(ship: TrimmedShip) -> tuple[Block, ...]:

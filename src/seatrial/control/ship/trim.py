@@ -10,8 +10,8 @@ from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 from seatrial.physics.simulate.approach import RUDDER, approach_speed, held_inputs
 from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
 
-_ITERATIONS = 30
-_MOST_RUDDER = 0.6
+_ITERATIONS = 30  # Newton steps at most; chosen
+_MOST_RUDDER = 0.6  # rad, 34 deg: largest mean rudder of a trim; chosen
 _POSE = ("psi", "x0", "y0")
 
 

@@ -19,6 +19,7 @@ from seatrial.physics.hydro.free_roll import equivalent_damping
 from seatrial.physics.loops import Block
 from seatrial.physics.simulate.approach import RUDDER
 
+# SI, off the straight course, for one-sided slopes; relative rounding error
 _LATERAL_OFFSET, _NEGLIGIBLE = 1e-12, 1e-10
 _ROLL_PARAMETERS = ("b_1", "b_2", "b_3", "c_1", "c_3", "c_5", "phi_0")
 
@@ -157,13 +158,14 @@ def _roll_equivalent_matrix(model: Model, A: Array, amplitude: float) -> Array:
     b_e as in `hydro.rolling`; c_e = c_1 + 3/4 c_3 a^2 + 5/8 c_5 a^4, the first harmonic of the restoring moment
     (ITTC 7.5-02-07-04.5; Nayfeh & Mook 1979, section 4.1).
     """
-    if not 0.0 <= amplitude < 1.5:
+    if not 0.0 <= amplitude < 1.5:  # rad, 86 deg: largest amplitude accepted; chosen
         raise InputError(
             f"the roll amplitude of a linearisation must lie between 0 and 86 degrees, not at {amplitude:g} rad"
         )
     b, c = (np.array([model.parameters[f"{letter}_{i}"].value for i in of])
             for letter, of in (("b", (1, 2, 3)), ("c", (1, 3, 5))))  # fmt: skip
     damping = float(equivalent_damping(b, c, np.array([amplitude]))[0][0])
+    # first harmonics of x^3 and x^5: 3/4 and 5/8
     stiffness = float(c @ [1.0, 0.75 * amplitude**2, 0.625 * amplitude**4])
     if not (np.isfinite(damping) and stiffness > 0.0):
         raise InputError(
