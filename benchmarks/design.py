@@ -40,7 +40,7 @@ _CHUNK = 17
 
 
 def task(inputs: Mapping[str, InputRange], drift: float | None = None) -> DesignTask:
-    """The craft, her sensors and what may be moved; thrust is held where it is not moved."""
+    """Return the task: the craft, its sensors and what may be moved; thrust is held where it is not moved."""
     craft = true_model()
     held = {} if "v_j" in inputs else {"v_j": JET_VELOCITY}
     return DesignTask(
@@ -123,7 +123,7 @@ def outcome(
 
 
 def worst_standard_errors(test: ManoeuvreEvaluator, manoeuvre: StandardManoeuvre) -> Array:
-    """The least well told coefficient's relative standard error of every ship, at the sensors' rate, (ships,)."""
+    """Return the worst coefficient's relative standard error of every ship, at the sensors' rate, (ships,)."""
     found = []
     for first in range(0, test.ships.count, _CHUNK):
         few = PriorShips(test.ships.parameters[first : first + _CHUNK], test.ships.precision)

@@ -121,15 +121,15 @@ def search(seed: int, met: list[EncounterSpectrum]) -> tuple[Array, PublishedCom
     optimiser = CMA(start, 0.25, bounds=np.array([[0.0, 1.0]] * 4), seed=seed, population_size=POPULATION)
     best: tuple[float, Array, PublishedComparison | None] = (math.inf, start, None)
     for _ in range(GENERATIONS):
-        told = []
+        evaluated = []
         for _ in range(POPULATION):
             x = optimiser.ask()
             made = best_gains(with_structure(LOWER + span * x), met, PEAK)
             value = REJECTED if made is None else float(made.ratios[:, 0].mean())
-            told.append((x, value))
+            evaluated.append((x, value))
             if value < best[0]:
                 best = value, x, made
-        optimiser.tell(told)
+        optimiser.tell(evaluated)
     if best[2] is None:
         raise SystemExit(f"seed {seed}: nothing feasible found")
     return np.exp(LOWER + span * best[1]), best[2]

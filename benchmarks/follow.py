@@ -185,7 +185,7 @@ def zigzags(seeds: int) -> Iterator[Line]:
     known = load_trial(EXAMPLES / "waterjet.toml")
     names = known.model.parameters.free_names
     true = np.array([known.truth[n] for n in names])
-    online, before, batch, told, seconds = [], [], [], 0.0, 0.0
+    online, before, batch, sample_count, seconds = [], [], [], 0.0, 0.0
     for seed in range(seeds):
         records = [r.resampled(series.EXAMPLE_RATE) for r in series.demo_series(seed)[0]]
         stream = Stream(
@@ -207,11 +207,11 @@ def zigzags(seeds: int) -> Iterator[Line]:
         online.append((ended.value - true) / error)
         before.append((shown.value - true) / error)
         batch.append((np.array([value[n][0] for n in names]) - true) / error)
-        told += len(records[0]) + len(records[1]) + len(records[2])
+        sample_count += len(records[0]) + len(records[1]) + len(records[2])
     where = f"waterjet, {seeds} series"
     yield at_most(f"{where}: error when the stream ends / batch", _rms(online) / _rms(batch), "", 1.3)
     yield at_most(f"{where}: error as shown last before that / batch", _rms(before) / _rms(batch), "", 1.3)
-    yield Line(f"{where}: 2 Hz while re-linearising", told / seconds, "samples/s")
+    yield Line(f"{where}: 2 Hz while re-linearising", sample_count / seconds, "samples/s")
 
 
 def _rms(errors: list[Array]) -> float:

@@ -44,7 +44,7 @@ class Size:
 
 @dataclass(frozen=True, eq=False)
 class Stream:
-    """A ship and what her sensors say."""
+    """A ship and what its sensors measure."""
 
     ship: Model
     inputs: Array
@@ -133,7 +133,7 @@ def with_load_change(stream: Stream, seed: int) -> Stream:
 
 
 def alarm_times(stream: Stream) -> list[float]:
-    """When a watch that looks every 30 s tells a change, s."""
+    """Return the times [s] at which a test run every 30 s reports a change."""
     made, watch, clock, found = stream.filter(), ChangeDetector(COEFFICIENTS, STRETCH), (FIRST - 1) * DT, []
     watch.update(clock, made.value, made.covariance)
     before = None
@@ -148,14 +148,14 @@ def alarm_times(stream: Stream) -> list[float]:
 
 
 def change_detection_lines(streams: int) -> Iterator[Line]:
-    """False alarms over all headings, and the time until a change of loading is told."""
+    """False alarms over all headings, and the time until a change of loading is reported."""
     alarms: list[bool] = []
     for heading in HEADINGS:
         seas = [simulate_stream(heading, 1000 + seed) for seed in range(streams)]
         alarms += [bool(alarm_times(sea)) for sea in seas]
         after = [[t for t in alarm_times(with_load_change(sea, k)) if t > LOADED_AT] for k, sea in enumerate(seas)]
         delays = np.array([times[0] - LOADED_AT if times else np.inf for times in after])
-        where = f"{heading} deg, {streams} streams: mass and inertia +10 % told"
+        where = f"{heading} deg, {streams} streams: mass and inertia +10 % reported"
         yield Line(f"{where} after, median", float(np.median(delays)), "s")
         yield Line(f"{where} after, latest", float(np.max(delays)), "s")
         yield at_least(f"{where} within a minute", 100.0 * float(np.mean(delays <= 60.0)), "%", 95.0)

@@ -1,6 +1,6 @@
 """What constant coefficients are worth when the truth remembers: hull by panels, motions with memory, constants fitted.
 
-A Wigley hull of the qi2025 ship's dimensions through Capytaine (extra `hydro`), her motions by Cummins' equation, the
+A Wigley hull of the qi2025 ship's dimensions through Capytaine (extra `hydro`), its motions by Cummins' equation, the
 constants of `heave_pitch` fitted to them. The range that they represent is where 90 % of the motions' power lies. For
 each speed and heading: the constants against added mass and damping in that range and outside, the error of heave and
 pitch per wave, and of their rms in seas of other periods.
@@ -52,7 +52,7 @@ def hull() -> HullData:
 
 
 def ship(data: HullData) -> Model:
-    """The hull floating level, pitch radius a quarter of her length."""
+    """The hull floating level, pitch radius a quarter of its length."""
     m = data.stiffness[0, 0] / (RHO * 9.81) * T * RHO * 2.0 / 3.0
     (c33, c35), (c53, c55) = data.stiffness
     known = {"m": m, "I5": m * (0.25 * L) ** 2, "c33": c33, "c35": c35, "c53": c53, "c55": c55}
@@ -76,7 +76,7 @@ def simulate_with_memory(data: HullData, memory: RetardationFunctions, model: Mo
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """One fit: what was sailed, the constants, and the range of frequencies that the motions show.
+    """One fit: the simulated case, the constants, and the range of frequencies that the motions show.
 
     Attributes:
         outputs: motions fitted; names: coefficients fitted; errors: their standard errors by the fit's own account.

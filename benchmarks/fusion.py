@@ -1,10 +1,10 @@
 """What captive points do for a prediction from zigzags: how far the tactical diameter moves with the prior's width.
 
-KVLCC2 at full scale with her published coefficients is the truth. Two zigzags 10/10, first to either side, train, with
+KVLCC2 at full scale with its published coefficients is the truth. Two zigzags 10/10, first to either side, train, with
 the noise of GNSS and gyro and in a gusty wind that nobody records. All coefficients of hull, rudder interaction and
 added masses are free; their prior means lie 10-20 % off the truth, to either side. The 35 deg turn in calm air is
 predicted with priors of 10, 30 and 100 %, without and with a table of captive points of 3 % noise, everything over
-several draws. (With zigzags 20/20 as well the records alone tell enough: the diameter moves by some 1 point only.)
+several draws. (With zigzags 20/20 as well the records alone suffice: the diameter moves by some 1 point only.)
 `python benchmarks/fusion.py` alone; `--draws 3` for a quicker look.
 
 Where SEATRIAL_DATA is set, the same with the recorded zigzags of the 7 m KVLCC2 (examples/kvlcc2_hsva.toml) and points

@@ -1,7 +1,7 @@
 """A gust of 1 N, one percent of thrust: output error believes it is certain and is wrong, prediction error knows.
 
 The craft of Song et al. 2025 in consecutive zigzags of 2075 s at 10 Hz with sensor noise, pushed by random forces on
-surge and sway and by the same force at a quarter of her length in yaw. The force is drawn anew every 0.1 s, or is a
+surge and sway and by the same force at a quarter of its length in yaw. The force is drawn anew every 0.1 s, or is a
 first-order Gauss-Markov process with a memory of 5 s. The helmsman steers the pushed craft; steps of 0.01 s, of which
 the record keeps every tenth. Every run is identified from coefficients zero. `python benchmarks/gust.py --runs 50`.
 """
@@ -159,12 +159,12 @@ def outcome(item: Item) -> GustOutcome:
     cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
     problem = output_error_problem(model, runs, np.inf, EstimateSettings(), workers=1)
     whole = fit_output_error(problem, problem.start(), problem.measured_initial_states(), {})
-    # the information matrix of white residuals: what a user of output error is told
-    told = from_information(
+    # the information matrix of white residuals: what output error reports to its user
+    reported = from_information(
         replace(whole.problem, inflation=None).normal(whole.common_parameters, whole.optimum.local).without_local()[1]
     )
     return GustOutcome(
-        (whole.common_parameters - values, told.standard_error),
+        (whole.common_parameters - values, reported.standard_error),
         (found.common_parameters - values, found.interval.standard_error),
         found.test.is_needed,
         found.test.is_white,
@@ -183,8 +183,8 @@ def outcomes(kind: str, runs: int, executes: int, seed: int, workers: int | None
 
 def ratios(pairs: Sequence[tuple[Array, Array]]) -> Array:
     """Root-mean-square error over the root-mean-square predicted one, each coefficient."""
-    errors, told = np.array([e for e, _ in pairs]), np.array([s for _, s in pairs])
-    return np.sqrt(np.mean(errors**2, axis=0) / np.mean(told**2, axis=0))
+    errors, predicted = np.array([e for e, _ in pairs]), np.array([s for _, s in pairs])
+    return np.sqrt(np.mean(errors**2, axis=0) / np.mean(predicted**2, axis=0))
 
 
 def lines(kind: str, results: Sequence[GustOutcome]) -> list[Line]:

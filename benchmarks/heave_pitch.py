@@ -1,7 +1,7 @@
 """Heave and pitch identified from seas of known truth: exactness, restarts, bias, errors against their bound, time.
 
 `python benchmarks/heave_pitch.py --quick` for a look; the whole takes about a minute and the peers' installation.
-At 45 degrees the coefficients are those of 90 degrees, assumed. Fits start from physics unless told otherwise.
+At 45 degrees the coefficients are those of 90 degrees, assumed. Fits start from physics unless stated otherwise.
 """
 
 import argparse

@@ -66,8 +66,8 @@ def held_out_intervals(
     records = [TrialRecord(r, Role.TRAIN, r.name) for r in train] + [
         TrialRecord(r, Role.VALIDATE, r.name) for r in held
     ]
-    told = predict_runs(found, records, ship_length_seconds(train, length), length, number).predictions
-    return [entry for p in told if p.role == "validation" for entry in _measure_intervals(p, number)]
+    predictions = predict_runs(found, records, ship_length_seconds(train, length), length, number).predictions
+    return [entry for p in predictions if p.role == "validation" for entry in _measure_intervals(p, number)]
 
 
 def _measure_intervals(p: Prediction, number: int) -> list[MeasureInterval]:

@@ -44,10 +44,10 @@ def turn_lines(fit: Fit, kind: str) -> Iterator[Line]:
         what, is_limited = f"{kind}: {m.measure} to {m.side}, half width", m.measure == "tactical diameter"
         yield at_most(what, m.half_width, "%", HALF_WIDTH_LIMIT) if is_limited else Line(what, m.half_width, "%")
     yield Line(f"{kind}: MARIN's values inside", sum(m.contains_measured for m in made), f"of {len(made)}")
-    told = [m for p in fit.validation for m in p.measures.values() if None not in (m.measured, m.lower, m.upper)]
-    told = [m for m in told if m.upper != m.lower]
-    inside = sum(m.lower <= m.measured <= m.upper for m in told)  # type: ignore[operator]
-    yield Line(f"{kind}: measures of Z_35_05 inside", inside, f"of {len(told)}")
+    measures = [m for p in fit.validation for m in p.measures.values() if None not in (m.measured, m.lower, m.upper)]
+    measures = [m for m in measures if m.upper != m.lower]
+    inside = sum(m.lower <= m.measured <= m.upper for m in measures)  # type: ignore[operator]
+    yield Line(f"{kind}: measures of Z_35_05 inside", inside, f"of {len(measures)}")
 
 
 def band_lines(estimation: Estimation, train: Sequence[TrialRecord], held: Sequence[TrialRecord]) -> Iterator[Line]:

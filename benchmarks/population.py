@@ -1,7 +1,7 @@
 """Fitness of a population of 40 heave-pitch candidates over 400 samples, beside JAX, NumPy, SciPy and python-control.
 
 The job is the same for all: continuous matrices in, fitness out. For JAX and NumPy the march alone, with the discrete
-matrices given, is told as well, beside our march alone.
+matrices given, is reported as well, with our march alone.
 """
 
 import subprocess

@@ -1,6 +1,6 @@
 """Regressions made as strong as we could, for the comparison alone: all channels smoothed first, or rows weighted.
 
-Both are told what no regression knows by itself, the true noise of every sensor; the smoother's bandwidth is the one
+Both are given what no regression knows by itself, the true noise of every sensor; the smoother's bandwidth is the one
 that served it best.
 """
 

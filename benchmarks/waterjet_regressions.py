@@ -52,7 +52,7 @@ def package_regressions() -> tuple[RegressionEstimator, ...]:
 
 
 def published_regressions() -> tuple[RegressionEstimator, ...]:
-    """The strongest of publications: told the true noise, all six channels used."""
+    """The strongest of publications: given the true noise, all six channels used."""
     by = OrdinaryLeastSquares()
     return (
         SmoothedRegression("smoother, central differences", LinearRegression("", Central(), by), 3.0),

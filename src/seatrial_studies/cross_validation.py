@@ -48,7 +48,7 @@ class CrossValidation:
         return tuple(dict.fromkeys(w.label for w in self.windows))
 
     def pooled(self, label: str, fold: int | None = None) -> PooledError:
-        """All windows of a label, or those of one fold.
+        """Return all windows of a label, or those of one fold.
 
         Raises:
             InputError: there is none.
@@ -61,7 +61,7 @@ class CrossValidation:
         return PooledError(label, len(mine), float(mean[0]), float(mean[1]), float(rms[0]), float(rms[1]))
 
     def fold_spread(self, label: str) -> tuple[float, float]:
-        """Standard deviation over folds of the pooled position [m] and heading error [deg]."""
+        """Return the standard deviation over folds of the pooled position [m] and heading error [deg]."""
         of_label = sorted({w.fold for w in self.windows if w.label == label})
         each = [self.pooled(label, fold) for fold in of_label]
         spread = np.std([(p.position_m, p.heading_deg) for p in each], axis=0, ddof=1 if len(each) > 1 else 0)

@@ -35,18 +35,18 @@ class OutputErrorResults:
 
     @property
     def error_over_bound(self) -> float:
-        """Root mean square of the errors in noise over their bound."""
+        """Return the root mean square of the errors in noise over their bound."""
         return float(np.sqrt(np.mean((self.noisy_errors / self.cramer_rao_bound) ** 2)))
 
 
 def with_physics_start(model: Model) -> Model:
-    """The model with the coefficients of the physics start."""
+    """Return the model with the coefficients of the physics start."""
     known = dict(zip(model.parameters.names, map(float, model.parameters.values), strict=True))
     return model.with_values(physical_start_values(known))
 
 
 def output_error_problem(data: SearchData, measured: Array) -> LinearOutputError:
-    """The run from rest, as the searches have it; coefficients start from physics."""
+    """Return the run from rest, as the searches have it; coefficients start from physics."""
     inputs = np.zeros((len(data.forces), 4))
     inputs[:, :2] = data.forces
     one = np.zeros(1, dtype=np.int64)
@@ -56,7 +56,7 @@ def output_error_problem(data: SearchData, measured: Array) -> LinearOutputError
 
 
 def fit_output_error(problem: LinearOutputError, negligible: float = 1e-6) -> Optimum:
-    """The optimum from the start."""
+    """Return the optimum from the start."""
     return levenberg_marquardt(problem, problem.start(), problem.given_initial_states(), negligible=negligible)
 
 
@@ -68,7 +68,7 @@ def _with_noise(data: SearchData, rng: np.random.Generator) -> Array:
 
 
 def output_error_results(seas: Sequence[SearchData], seed: int) -> OutputErrorResults:
-    """All seas of one heading, without noise and with a draw of it."""
+    """Return all seas of one heading, without noise and with a draw of it."""
     exact, noisy, bound, seconds, evaluations = [], [], [], [], 0
     for run, data in enumerate(seas):
         clean = output_error_problem(data, data.states[:, [0, 2]])

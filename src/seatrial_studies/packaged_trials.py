@@ -10,7 +10,7 @@ _EXAMPLE_FOLDERS = (Path(__file__).with_name("examples"), Path(__file__).parents
 
 
 def packaged_trial(name: str) -> Trial:
-    """The trial of ``examples/NAME`` on the records in SEATRIAL_DATA.
+    """Return the trial of ``examples/NAME`` on the records in SEATRIAL_DATA.
 
     Raises:
         InputError: SEATRIAL_DATA is not set or no folder, the file is not there, or the trial's own errors.

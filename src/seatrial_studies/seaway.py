@@ -25,7 +25,7 @@ HEAVE_NOISE, PITCH_NOISE = 0.01, math.radians(0.02)
 
 
 def box_hull() -> BoxHull:
-    """The paper's ship as a box: its force coefficients are not printed."""
+    """Return the paper's ship as a box: its force coefficients are not printed."""
     p = SHIP.particulars
     return BoxHull(p["L"], p["B"], p["d"], p["c33"], p["c35"], p["c53"], p["c55"])
 
@@ -70,12 +70,12 @@ class SeawayRun:
 
 
 def ship(heading: int) -> Model:
-    """The paper's ship at a heading of its tables, with the assumed fin."""
+    """Return the paper's ship at a heading of its tables, with the assumed fin."""
     return theoretical_coefficients(heading).applied_to(heave_pitch()).with_values(FIN)
 
 
 def simulate_seaway_run(scenario: SeawayScenario, rng: np.random.Generator, truth: Model | None = None) -> SeawayRun:
-    """The voyage without sensor noise; `rng` draws the sea's phases and the fin's commands.
+    """Return the voyage without sensor noise; `rng` draws the sea's phases and the fin's commands.
 
     Raises:
         InputError: no coefficients at this heading, or a sea that cannot be made.

@@ -54,7 +54,7 @@ class SearchData:
 
     @property
     def forcing(self) -> Forcing:
-        """What all candidates meet."""
+        """Return the forcing that all candidates meet."""
         return Forcing(self.forces, STEP, is_held=True)
 
 
@@ -68,7 +68,7 @@ def simulate_search_data(
     noise: tuple[float, float] = (0.0, 0.0),
     printed_sign: bool = False,
 ) -> SearchData:
-    """A realisation of 30 equally spaced lines (Qi et al. 2025, eq. (14)) met by the ship, from rest."""
+    """Return a realisation of 30 equally spaced lines (Qi et al. 2025, eq. (14)) met by the ship, from rest."""
     model = held_force_ship(heading, printed_sign=printed_sign)
     lines = realise(ittc(height), SPEED, math.radians(heading), rng)
     when = np.arange(samples) * STEP
@@ -98,7 +98,7 @@ Fitness = Callable[[Array], Array]
 
 
 def candidate_matrices(points: Array) -> tuple[Array, Array]:
-    """A and B of candidates (count, 8), everything else as in the ship."""
+    """Return A and B of candidates (count, 8), everything else as in the ship."""
     known = {name: SHIP.particulars[name] for name in ("m", "I5", *STIFFNESSES)}
     return heave_pitch_matrices(complete_parameters(points, known))
 
@@ -128,7 +128,7 @@ def whole_record_objective(data: SearchData, pitch_unit: PitchUnit = PitchUnit.D
 
 
 def centred_box(truth: Array, half_width: float) -> Box:
-    """The truth +- a share of it: the truth in the middle."""
+    """Return the box of the truth +- a share of it: the truth in the middle."""
     ends = np.stack([truth * (1.0 - half_width), truth * (1.0 + half_width)])
     return Box(ends.min(axis=0), ends.max(axis=0))
 
@@ -159,17 +159,17 @@ class RepeatedSearches:
 
     @property
     def errors(self) -> Array:
-        """Relative errors of all runs, (runs, 8)."""
+        """Return the relative errors of all runs, (runs, 8)."""
         return self.points / self.truth - 1.0
 
     @property
     def error_of_mean(self) -> Array:
-        """Relative error of the mean of the runs, as the papers print it, (8,)."""
+        """Return the relative error of the mean of the runs, as the papers print it, (8,)."""
         return np.abs(np.mean(self.points, axis=0) / self.truth - 1.0)
 
     @property
     def mean_error(self) -> Array:
-        """Mean of the runs' relative errors, (8,)."""
+        """Return the mean of the runs' relative errors, (8,)."""
         return np.mean(np.abs(self.errors), axis=0)
 
 

@@ -82,7 +82,7 @@ def leave_one_out(
 
 
 def jackknife_error(values: Sequence[float]) -> float:
-    """Standard error from values with one run left out each (Tukey 1958, Ann. Math. Stat. 29, 614)."""
+    """Return the standard error from values with one run left out each (Tukey 1958, Ann. Math. Stat. 29, 614)."""
     given = np.asarray(values, dtype=float)
     count = len(given)
     return math.sqrt((count - 1) / count * float(np.sum((given - given.mean()) ** 2)))

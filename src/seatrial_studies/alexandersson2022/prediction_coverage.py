@@ -35,17 +35,17 @@ class TurnInterval:
 
     @property
     def half_width(self) -> float:
-        """In per cent of the interval's middle."""
+        """Return the half width in per cent of the interval's middle."""
         return 100.0 * (self.upper - self.lower) / (self.upper + self.lower)
 
     @property
     def relative_deviation(self) -> float:
-        """Distance of MARIN's value from the middle over the half width; 1 at the interval's end."""
+        """Return the distance of MARIN's value from the middle over the half width; 1 at the interval's end."""
         return abs(2.0 * self.measured - self.lower - self.upper) / (self.upper - self.lower)
 
     @property
     def contains_measured(self) -> bool:
-        """Whether the measured value lies inside."""
+        """Return whether the measured value lies inside."""
         return self.lower <= self.measured <= self.upper
 
 
@@ -65,7 +65,7 @@ class PredictionCoverage:
 
     @property
     def heading_share(self) -> float:
-        """Mean share of headings over the runs left out."""
+        """Return the mean share of headings over the runs left out."""
         return float(np.mean([c.shares["psi"] for c in self.left_out_coverage]))
 
 
@@ -94,7 +94,7 @@ def assess_coverage(
 
 
 def simulated_turn_intervals(fit: Fit, side: str, approach: Mapping[str, float]) -> list[TurnInterval]:
-    """Advance and tactical diameter of the 35 deg turn to one side.
+    """Return the advance and tactical diameter of the 35 deg turn to one side.
 
     Raises:
         InputError: the fit has no margin, or most ships beside it cannot be steered through the turn.
@@ -184,7 +184,7 @@ def family_table(members: Sequence[CandidateModel]) -> Table:
 
 
 def checks(coverage: PredictionCoverage) -> tuple[Check, ...]:
-    """Half widths of the tactical diameters, shares inside the bands."""
+    """Return the half widths of the tactical diameters, shares inside the bands."""
     low, high = SHARE_LIMITS
     widths = [(m.side, m.half_width) for m in coverage.turn_intervals if m.measure in _LIMITED_MEASURES]
     held = float(np.mean([c.shares["psi"] for c in coverage.held_out_coverage]))

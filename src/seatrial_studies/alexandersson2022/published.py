@@ -44,7 +44,7 @@ RERUN_SECONDS = 184.0
 
 
 def percent_deviation(value: float, reference: float) -> float:
-    """Deviation of `value` from `reference` in per cent."""
+    """Return the deviation of `value` from `reference` in per cent."""
     return 100.0 * (value / reference - 1.0)
 
 

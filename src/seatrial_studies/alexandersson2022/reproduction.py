@@ -93,20 +93,20 @@ def _leave_one_out(
 
 
 def turn_record(model: Model, side: str, approach: Mapping[str, float], scale: float) -> Record:
-    """The 35 deg turn as ``seatrial simulate MODEL --manoeuvre turning-circle:35:SIDE`` steers it."""
+    """Return the 35 deg turn as ``seatrial simulate MODEL --manoeuvre turning-circle:35:SIDE`` steers it."""
     held = {name: value for name, value in approach.items() if name in model.input_names}
     text = f"turning-circle:35:{side}"
     return manoeuvre(model, programme(text), inputs=held, slew_rate=SOLAS_SLEW_RATE * math.sqrt(scale))
 
 
 def turn_measures(record: Record, side: str, length: float) -> Turn:
-    """Advance and tactical diameter of a simulated turn; NaN where it does not come round."""
+    """Return the advance and tactical diameter of a simulated turn; NaN where it does not come round."""
     found = measures(record, length)
     return Turn(side, found.get("advance_L", math.nan), found.get("tactical_diameter_L", math.nan), "simulated here")
 
 
 def label_errors(trial: Trial) -> dict[str, tuple[Finding, ...]]:
-    """Errors the checks find in each run when its columns are declared as the files' headers name them."""
+    """Return errors the checks find in each run when its columns are declared as the files' headers name them."""
     return {
         run.name: tuple(
             finding
@@ -131,7 +131,7 @@ def layout_as_labelled(layout: Layout) -> Layout:
 
 
 def median_noise(records: Sequence[Record], channels: Sequence[str]) -> dict[str, float]:
-    """Noise of each channel from sample to sample, SI: median over the records as they were sampled."""
+    """Return noise of each channel from sample to sample, SI: median over the records as they were sampled."""
     made = {}
     for channel in channels:
         found = [sample_noise(r[channel]) for r in records if channel in r]

@@ -19,7 +19,7 @@ from seatrial_studies.alexandersson2022.reproduction import BenchmarkReproductio
 
 
 def tables(reproduction: BenchmarkReproduction) -> tuple[Table, ...]:
-    """All tables; those of leave-one-run-out only where it was done."""
+    """Return all tables; those of leave-one-run-out only where it was done."""
     always = (
         comparison_table(reproduction),
         turn_table(reproduction),
@@ -35,12 +35,12 @@ def tables(reproduction: BenchmarkReproduction) -> tuple[Table, ...]:
 
 
 def validation_prediction(reproduction: BenchmarkReproduction) -> Prediction:
-    """The prediction of the validation run."""
+    """Return the prediction of the validation run."""
     return reproduction.fit.validation[0]
 
 
 def comparison_table(reproduction: BenchmarkReproduction) -> Table:
-    """The paper's numbers, those of its code run again, and ours."""
+    """Return the paper's numbers, those of its code run again, and ours."""
     rms, again = validation_prediction(reproduction).rms, "{:.1f} to {:.1f}"
     rows: list[tuple[str | float | None, ...]] = [
         ("Z_35_05 open loop, heading rms [deg]", None, again.format(*published.RERUN_HEADING), rms["psi_deg"]),
@@ -113,7 +113,7 @@ def offset_table(reproduction: BenchmarkReproduction) -> Table:
 
 
 def noise_table(reproduction: BenchmarkReproduction) -> Table:
-    """Noise from sample to sample beside what the model leaves."""
+    """Return noise from sample to sample beside what the model leaves."""
     rows = []
     for item in reproduction.fit.channel_noise:
         if item.channel in reproduction.noise_levels:
@@ -129,7 +129,7 @@ def noise_table(reproduction: BenchmarkReproduction) -> Table:
 
 
 def left_out_table(entries: tuple[LeftOutRun, ...]) -> Table:
-    """Errors of each run when the others trained."""
+    """Return errors of each run when the others trained."""
     rows: list[tuple[str | float | None, ...]] = [
         (
             e.run,

@@ -155,7 +155,7 @@ def column_labels_claim(reproduction: BenchmarkReproduction) -> Claim:
 
 
 def checks(reproduction: BenchmarkReproduction) -> tuple[Check, ...]:
-    """Our own numbers against limits that were set before."""
+    """Return the checks of our own numbers against limits set beforehand."""
     rms = validation_prediction(reproduction).rms
     plain = [
         ("Z_35_05 open loop, heading rms [deg]", rms["psi_deg"], HEADING_LIMIT),
@@ -199,12 +199,12 @@ def _mean_window_heading(reproduction: BenchmarkReproduction) -> float:
 
 
 def check_at_most(name: str, value: float, limit: float) -> Check:
-    """A check that holds up to its limit; NaN does not hold."""
+    """Return a check that holds up to its limit; NaN does not hold."""
     return Check(name, value, limit, bool(value <= limit))
 
 
 def check_in_published_range(name: str, value: float, measure: str) -> Check:
-    """A turning measure against the published range, widened by the paper's own largest error."""
+    """Return a turning measure against the published range, widened by the paper's own largest error."""
     lower, upper = published_range(measure)
     return Check(name, value, f"{lower:.2f} to {upper:.2f}", math.isfinite(value) and lower <= value <= upper)
 

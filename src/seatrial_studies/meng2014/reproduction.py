@@ -74,7 +74,7 @@ class CloudSwarmReproduction:
         return self._relative_excess(heading, self.searches[BoxPlacement.OFF_CENTRE, heading, algorithm])
 
     def unweighted_excess_fitness(self, heading: int) -> Array:
-        """The same of the law as printed."""
+        """Return the same of the law as printed."""
         return self._relative_excess(heading, self.unweighted_searches[heading])
 
     def _relative_excess(self, heading: int, searches: RepeatedSearches) -> Array:

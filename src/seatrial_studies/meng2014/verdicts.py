@@ -38,7 +38,7 @@ class CloudSwarmEvidence:
     undetected_change: UndetectedChange
 
     def mean_error(self, setting: BoxPlacement, algorithm: SwarmAlgorithm, heading: int) -> float:
-        """Mean relative error over coefficients and runs, per cent."""
+        """Return the mean relative error over coefficients and runs, per cent."""
         return 100.0 * float(np.mean(self.reproduction.searches[setting, heading, algorithm].mean_error))
 
     def mean_error_text(self, setting: BoxPlacement, algorithm: SwarmAlgorithm) -> str:
@@ -47,12 +47,12 @@ class CloudSwarmEvidence:
 
     @property
     def output_error_ratio(self) -> float:
-        """Root mean square of our errors in noise over their Cramer-Rao bound, all headings."""
+        """Return the root mean square of our errors in noise over their Cramer-Rao bound, all headings."""
         return float(np.sqrt(np.mean([self.output_error[h].error_over_bound ** 2 for h in HEADINGS])))
 
     @property
     def swarm_ratio(self) -> float:
-        """The same of ICPSO's errors off centre."""
+        """Return the same of ICPSO's errors off centre."""
         found = [
             (
                 self.reproduction.searches[BoxPlacement.OFF_CENTRE, h, SwarmAlgorithm.ICPSO].errors,
@@ -109,7 +109,7 @@ def _error_by_iterations(evidence: CloudSwarmEvidence) -> dict[int, float]:
 
 
 def claims(evidence: CloudSwarmEvidence) -> tuple[Claim, ...]:
-    """Each with what it rests on."""
+    """Return the claims, each with its evidence."""
     return (
         error_range_claim(evidence),
         premature_convergence_claim(evidence),

@@ -36,7 +36,7 @@ class WildHorseEvidence:
         ]
 
     def single_run_errors(self, setting: SearchSetting, algorithm: SearchAlgorithm) -> list[float]:
-        """Mean error of single runs at each heading, per cent."""
+        """Return the mean error of single runs at each heading, per cent."""
         return [100.0 * float(np.mean(self.reproduction.searches[setting, h, algorithm].mean_error)) for h in HEADINGS]
 
     def share_at_lower_bound(self, setting: SearchSetting, algorithm: SearchAlgorithm) -> float:

@@ -74,17 +74,17 @@ def true_values(heading: int) -> Array:
 
 
 def recomputed_error(heading: int, algorithm: SearchAlgorithm) -> Array:
-    """Relative errors of the printed estimates, per cent, (8,), with their sign."""
+    """Return the relative errors of the printed estimates, per cent, (8,), with their sign."""
     return 100.0 * (printed_estimate(heading, algorithm) / true_values(heading) - 1.0)
 
 
 def mean_recomputed_error(heading: int, algorithm: SearchAlgorithm) -> float:
-    """Mean absolute error of the printed estimates, per cent."""
+    """Return the mean absolute error of the printed estimates, per cent."""
     return float(np.mean(np.abs(recomputed_error(heading, algorithm))))
 
 
 def printed_mean_errors() -> list[float]:
-    """Mean printed error of IWHO at each heading, per cent."""
+    """Return the mean printed error of IWHO at each heading, per cent."""
     return [float(np.mean(printed_error(heading, SearchAlgorithm.IWHO))) for heading in HEADINGS]
 
 

@@ -75,7 +75,7 @@ OptimiserFactory = Callable[[Box, np.random.Generator], Population]
 def optimisers(
     iterations: int, memory: FitnessMemory, variant: StrideVariant = StrideVariant.PAPER
 ) -> dict[SearchAlgorithm, OptimiserFactory]:
-    """The three of the paper; PSO's omega, c1, c2 are not printed, ours are the constriction's."""
+    """Return the paper's three algorithms; PSO's omega, c1, c2 are not printed, ours are the constriction's."""
     plain = HerdSettings(iterations=iterations, memory=memory, variant=variant)
     improved = ImprovedHerdSettings(iterations=iterations, memory=memory, variant=variant)
     return {

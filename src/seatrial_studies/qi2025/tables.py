@@ -26,7 +26,7 @@ _RANDOM_GUESS_NOTE = "Means over the coefficients. A guess at random in a box of
 
 
 def tables(evidence: WildHorseEvidence) -> tuple[Table, ...]:
-    """All of them."""
+    """Return all tables in the order of the page."""
     made, own = evidence.reproduction, evidence.output_error
     values = (table for h in HEADINGS for table in (_values(made, h), _errors(made, own[h], h)))
     return (

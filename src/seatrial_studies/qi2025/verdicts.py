@@ -20,12 +20,12 @@ BOUND_RATIO_RANGE = (0.7, 1.3)
 
 
 def claims(evidence: WildHorseEvidence) -> tuple[Claim, ...]:
-    """Each with what it rests on."""
+    """Return the claims, each with its evidence."""
     return (*search_claims.claims(evidence), *print_claims.claims(evidence), *method_claims.claims(evidence))
 
 
 def checks(evidence: WildHorseEvidence) -> tuple[Check, ...]:
-    """Ours; each can fail."""
+    """Return the checks of our own numbers; each can fail."""
     return (*_search_checks(evidence), *_output_error_checks(evidence))
 
 

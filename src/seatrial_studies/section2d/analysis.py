@@ -128,7 +128,7 @@ def fit_both_modes(
 
 
 def is_long_enough(run: FlumeRun, timing: Timing = STEADY_TIMING) -> bool:
-    """Whether a whole wave period lies between the ramp and the beach's reflection."""
+    """Return whether a whole wave period lies between the ramp and the beach's reflection."""
     start, stop = run.steady_window(timing)
     return stop - start >= run.period
 
@@ -149,7 +149,7 @@ def group_repeated_runs(responses: Sequence[SectionResponse]) -> tuple[RepeatedR
 
 
 def compare_camera_clock(run: FlumeRun) -> InstrumentComparison:
-    """The camera's heave against the accelerometers' mean, integrated twice, about the steady stretch."""
+    """Return the camera's heave against the accelerometers' mean, integrated twice, about the steady stretch."""
     record = with_standard_signs(run.record)
     start, stop = run.steady_window(STEADY_TIMING)
     part = record.between(start - _CLOCK_MARGINS_S[0], min(stop + _CLOCK_MARGINS_S[1], float(record.time[-1])))

@@ -29,7 +29,7 @@ class Harmonics:
 
     @property
     def first(self) -> complex:
-        """The amplitude at the wave frequency."""
+        """Return the amplitude at the wave frequency."""
         return complex(self.amplitudes[self.orders.index(1)])
 
     @property
@@ -87,7 +87,7 @@ def whole_periods(time: Array, start: float, stop: float, omega: float) -> slice
 
 
 def best_fit_frequency(time: Array, values: Array, omega: float, relative_range: float = 0.02) -> float:
-    """The frequency [rad/s] at which one harmonic fits best, within a share of `omega` to either side.
+    """Return the frequency [rad/s] at which one harmonic fits best, within a share of `omega` to either side.
 
     Raises:
         InputError: as `harmonics`.

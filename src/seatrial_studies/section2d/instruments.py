@@ -60,7 +60,7 @@ def _short_stretch_findings(analysis: SectionAnalysis) -> list[Finding]:
 
 
 def clock_table(analysis: SectionAnalysis) -> Table:
-    """The camera run by run."""
+    """Return the camera run by run."""
     rows: list[TableRow] = [
         (name, 1e3 * c.delay, 1e3 * c.clock_drift, 1e3 * c.delay_scatter, c.gain) for name, c in analysis.clocks.items()
     ]
@@ -96,7 +96,7 @@ def spring_table(analysis: SectionAnalysis) -> Table:
 
 
 def guide_table(analysis: SectionAnalysis) -> Table:
-    """The force in the sway guide run by run."""
+    """Return the force in the sway guide run by run."""
     rows: list[TableRow] = [
         (f.run, f.velocity, f.damping, f.force, f.third_harmonic_ratio)
         for f in sorted(analysis.guide.runs, key=lambda f: -f.velocity)

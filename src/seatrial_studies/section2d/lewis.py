@@ -27,7 +27,7 @@ class LewisForm:
 
     @classmethod
     def from_dimensions(cls, beam: float, draught: float, area_coefficient: float) -> Self:
-        """The form with that beam, draught [m] and area / (beam draught).
+        """Return the form with that beam, draught [m] and area / (beam draught).
 
         a1, a3 from B / 2d and sigma (von Kerczek & Tuck 1969, J. Ship Research 13, 284-289).
 

@@ -125,7 +125,7 @@ def theory_of_model(motion: SectionMotion, omega: float, sign: float = 1.0) -> S
 
 
 def observation(mode: Mode, response: SectionResponse) -> MeasuredResponse:
-    """A response with its spread: repeatability and what sway may leak into the accelerometers."""
+    """Return a response with its spread: repeatability and what sway may leak into the accelerometers."""
     value = mode.measured_response(response)
     spread = float(np.hypot(REPEATABILITY, mode.cross_axis_share * abs(response.sway / value)))
     theory = theory_of_model(mode.motion, response.run.omega, mode.sign)

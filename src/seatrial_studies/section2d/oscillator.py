@@ -105,7 +105,7 @@ class Oscillator:
         return self.linear_damping + self.quadratic_damping * 8.0 / (3.0 * np.pi) * omega * size
 
     def measured_response(self, measurement: MeasuredResponse) -> complex:
-        """The response as it would be measured."""
+        """Return the response as it would be measured."""
         turned = np.exp(-1j * (measurement.wavenumber * self.distance + measurement.omega * self.delay))
         return complex(
             self.gain * turned * self.motion_response(measurement.theory, measurement.omega, measurement.wave_amplitude)

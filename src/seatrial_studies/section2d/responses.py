@@ -63,7 +63,7 @@ def waves_at_model(run: FlumeRun, probes: Probes) -> SeparatedWaves:
 
 
 def steady_samples(run: FlumeRun, timing: Timing = STEADY_TIMING) -> slice:
-    """The samples of whole periods in the window.
+    """Return the samples of whole periods in the window.
 
     Raises:
         InputError: the window holds no period.
@@ -72,7 +72,7 @@ def steady_samples(run: FlumeRun, timing: Timing = STEADY_TIMING) -> slice:
 
 
 def measure_response(run: FlumeRun, probes: Probes, timing: Timing = STEADY_TIMING) -> SectionResponse:
-    """Amplitudes of one run.
+    """Return the complex amplitudes of one run.
 
     Raises:
         InputError: the window holds no period.
@@ -113,6 +113,6 @@ def _stroke_amplitude(run: FlumeRun) -> float:
 
 
 def relative_difference(one: complex, other: complex) -> tuple[float, float]:
-    """One over the other: per cent of amplitude, degrees of phase."""
+    """Return one over the other: per cent of amplitude, degrees of phase."""
     ratio = one / other
     return 100.0 * (abs(ratio) - 1.0), float(np.degrees(np.angle(ratio)))

@@ -43,27 +43,27 @@ class FlumeRun:
 
     @property
     def name(self) -> str:
-        """As in the file name."""
+        """Return the name of the run as in the file name."""
         return self.record.name
 
     @property
     def scenario(self) -> int:
-        """3 sway-heave-roll, 4 sway-heave, 6 heave-roll."""
+        """Return the scenario: 3 sway-heave-roll, 4 sway-heave, 6 heave-roll."""
         return int(self.name[0])
 
     @property
     def period_index(self) -> int:
-        """Of the wave period."""
+        """Return the index of the wave period."""
         return int(self.name[1:3])
 
     @property
     def height_index(self) -> int:
-        """1 or 2."""
+        """Return the index of the wave height, 1 or 2."""
         return int(self.name[3])
 
     @cached_property
     def stroke_times(self) -> tuple[float, float, float]:
-        """s: the paddle starts, reaches its full stroke, leaves it."""
+        """Return the times [s] at which the paddle starts, reaches its full stroke and leaves it."""
         stroke = np.abs(self.record["x_wm"])
         most, time = float(stroke.max()), self.record.time
         full = np.flatnonzero(stroke > _FULL_SHARE * most)
@@ -71,23 +71,23 @@ class FlumeRun:
 
     @cached_property
     def omega(self) -> float:
-        """rad/s, of the paddle at full stroke."""
+        """Return the angular frequency of the paddle at full stroke [rad/s]."""
         _, full, left = self.stroke_times
         stretch = self.record.between(full + _TRIM_S, left - _TRIM_S)
         return best_fit_frequency(stretch.time, stretch["x_wm"], self.nominal.omega)
 
     @property
     def period(self) -> float:
-        """s."""
+        """Return the wave period [s]."""
         return 2.0 * np.pi / self.omega
 
     @property
     def wavenumber(self) -> float:
-        """rad/m, at the flume's depth."""
+        """Return the wave number at the flume's depth [rad/m]."""
         return float(wavenumber(self.omega, DEPTH))
 
     def steady_window(self, timing: "Timing") -> tuple[float, float]:
-        """s: from full waves at the model to the first of what the beach sends back.
+        """Return the interval [s] from full waves at the model to the beach's first reflection.
 
         The front travels with the group velocity; reflections from the beach take 12 m more, as in periods.csv.
         """
@@ -98,12 +98,12 @@ class FlumeRun:
         return start, stop
 
     def elevations(self, probes: tuple[str, ...]) -> Array:
-        """(n, p), m."""
+        """Return the surface elevations at the probes [m], (n, p)."""
         return self.record.matrix(probes)
 
 
 def data_folder() -> Path:
-    """The folder of the section's records in SEATRIAL_DATA.
+    """Return the folder of the section's records in SEATRIAL_DATA.
 
     Raises:
         InputError: SEATRIAL_DATA is not set, or holds no such folder.
@@ -125,7 +125,7 @@ class NominalWave:
 
 
 def read_periods(path: Path) -> dict[int, NominalWave]:
-    """Index -> wave period as listed.
+    """Return the listed wave periods [s] by index.
 
     Raises:
         InputError: a row is no pair of numbers.
@@ -138,7 +138,7 @@ def read_periods(path: Path) -> dict[int, NominalWave]:
 
 
 def read_runs(folder: Path, scenarios: tuple[int, ...] = (3, 4, 6)) -> tuple[FlumeRun, ...]:
-    """All runs of those scenarios, by name.
+    """Return all runs of those scenarios, by name.
 
     Raises:
         InputError: none is there, or a file cannot be read.

@@ -13,7 +13,7 @@ ORDER = 2
 def untied_mass_error(
     observations: Sequence[MeasuredResponse], inertia: float, stiffness: float, order: int = ORDER
 ) -> float:
-    """Standard error [kg, kg m^2] of an added mass when the excitation is only known to be smooth.
+    """Return the standard error [kg, kg m^2] of an added mass when the excitation is only known to be smooth.
 
     Unknown: added mass, damping, the excitation's log amplitude and phase, each a polynomial of that order in
     frequency; neither Haskind's relation nor a shape. Linearised at the theory, with each response's own spread; the

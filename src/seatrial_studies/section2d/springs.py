@@ -35,7 +35,7 @@ class SpringRegression:
 
     @property
     def geometric_mean(self) -> float:
-        """N/m, the reduced major axis: geometric mean of both."""
+        """Return the slope [N/m] of the reduced major axis: the geometric mean of both."""
         return float(np.sqrt(self.lower * self.upper))
 
 
@@ -49,7 +49,7 @@ class SwayStiffness:
 
     @property
     def value(self) -> float:
-        """N/m; the middle of the documented range where no run identifies it."""
+        """Return the stiffness [N/m]; the middle of the documented range where no run identifies it."""
         return self.mean if np.isfinite(self.mean) else sum(SWAY_STIFFNESS) / 2.0
 
 

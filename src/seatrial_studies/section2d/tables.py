@@ -45,7 +45,7 @@ LEAST_CAMERA_SWAY = 1e-6
 
 
 def tables(analysis: SectionAnalysis) -> tuple[Table, ...]:
-    """All tables, in the order of the page."""
+    """Return all tables in the order of the page."""
     return (
         score_table(analysis.heave),
         score_table(analysis.roll),
@@ -66,12 +66,12 @@ def tables(analysis: SectionAnalysis) -> tuple[Table, ...]:
 
 
 def motion_name(fit: ModeFit) -> str:
-    """heave or roll."""
+    """Return heave or roll."""
     return fit.mode.motion.value
 
 
 def score_table(fit: ModeFit) -> Table:
-    """Measured and predicted responses, trained and held out."""
+    """Return measured and predicted responses, trained and held out."""
     rows: list[TableRow] = []
     for s in sorted(fit.scores, key=lambda s: -s.response.run.period):
         value = fit.mode.measured_response(s.response)
@@ -105,7 +105,7 @@ def score_table(fit: ModeFit) -> Table:
 
 
 def coefficient_table(analysis: SectionAnalysis) -> Table:
-    """Estimates on all periods with both kinds of intervals, beside what is documented."""
+    """Return estimates on all periods with both kinds of intervals, beside what is documented."""
     rows: list[TableRow] = []
     for fit in (analysis.heave, analysis.roll):
         units, first = UNITS[motion_name(fit)], f"{motion_name(fit)}: "
@@ -186,7 +186,7 @@ def _coefficient_row(
 
 
 def period_table(fit: ModeFit) -> Table:
-    """Added mass, dampings and excitation at each wave period."""
+    """Return added mass, dampings and excitation at each wave period."""
     rows: list[TableRow] = []
     seen: set[int] = set()
     for s in sorted(fit.scores, key=lambda s: -s.response.run.period):
@@ -215,7 +215,7 @@ def period_table(fit: ModeFit) -> Table:
 
 
 def separability_table(analysis: SectionAnalysis) -> Table:
-    """Standard error of the added mass without ties."""
+    """Return the standard error of the added mass without ties."""
     names = ("constant", "linear in frequency", "quadratic in frequency")
     rows: list[TableRow] = [
         (names[order], *(None if not np.isfinite(e) else e for e in errors))
@@ -240,7 +240,7 @@ def separability_table(analysis: SectionAnalysis) -> Table:
 
 
 def repeatability_table(analysis: SectionAnalysis) -> Table:
-    """Largest deviation from the mean of repeated runs."""
+    """Return the largest deviation from the mean of repeated runs."""
     rows: list[TableRow] = [(", ".join(r.names), *r.heave, *r.roll) for r in analysis.repeated_runs]
     return Table(
         "Repeated runs",
@@ -271,7 +271,7 @@ def coupled_run_table(analysis: SectionAnalysis) -> Table:
 
 
 def timing_table(analysis: SectionAnalysis) -> Table:
-    """Worst held-out errors had the stretch been another."""
+    """Return the worst held-out errors with other stretches."""
     rows: list[TableRow] = []
     for timing, heave, roll in ((STEADY_TIMING, analysis.heave, analysis.roll), *analysis.timing_fits):
         rows.append((timing.settling_s, timing.allowed_reflection_s, *largest_errors(heave), *largest_errors(roll)))
@@ -284,7 +284,7 @@ def timing_table(analysis: SectionAnalysis) -> Table:
 
 
 def damping_table(analysis: SectionAnalysis) -> Table:
-    """Worst held-out errors had another law of damping been chosen."""
+    """Return the worst held-out errors with other laws of damping."""
     rows: list[TableRow] = [
         (label, *largest_errors(heave), heave.period, *largest_errors(roll), roll.period)
         for label, heave, roll in (("quadratic, in force", analysis.heave, analysis.roll), *analysis.damping_fits)

@@ -53,5 +53,5 @@ LAYOUT = Layout(
 
 
 def natural_period(inertia: float, stiffness: float) -> float:
-    """s."""
+    """Return the natural period [s]."""
     return 2.0 * math.pi * math.sqrt(inertia / stiffness)

@@ -17,7 +17,7 @@ DEAD_CAMERA_RUNS = ("3102_4", "4061_2")
 
 
 def claims(analysis: SectionAnalysis) -> tuple[Claim, ...]:
-    """What is documented of the records, and what they say to it."""
+    """Return the claims on what is documented of the records."""
     return (
         natural_period_claim(analysis.heave),
         natural_period_claim(analysis.roll),
@@ -178,7 +178,7 @@ def common_clock_claim(analysis: SectionAnalysis) -> Claim:
 
 
 def checks(analysis: SectionAnalysis) -> tuple[Check, ...]:
-    """Our own numbers against limits that were set before."""
+    """Return the checks of our own numbers against limits set beforehand."""
     rows = []
     for fit in (analysis.heave, analysis.roll):
         amplitude, phase = largest_errors(fit)

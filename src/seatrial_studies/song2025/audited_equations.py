@@ -69,7 +69,7 @@ class Equation14System:
     target: Array
 
     def solve(self) -> dict[str, float]:
-        """Least squares."""
+        """Return the least-squares solution by coefficient."""
         scale = np.sqrt(np.mean(self.matrix**2, axis=0))
         found = np.linalg.lstsq(self.matrix / scale, self.target)[0] / scale
         return dict(zip(self.names, map(float, found), strict=True))
@@ -160,7 +160,7 @@ class Equation27Readings:
 
 
 def equation_27_readings(correlation: Array) -> Equation27Readings:
-    """Of a correlation matrix (k, k)."""
+    """Return the readings of eq. (27) for a correlation matrix (k, k)."""
     size = float(np.linalg.norm(correlation, 2))
     values = np.linalg.svd(correlation, compute_uv=False)
     return Equation27Readings(

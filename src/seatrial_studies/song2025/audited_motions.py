@@ -68,7 +68,7 @@ class UndampedSway:
 
 
 def undamped_sway() -> UndampedSway:
-    """The 20/20 and 35/35 zigzags and the 35 deg turn with the improved column's Y_vv of either sign."""
+    """Return the 20/20 and 35/35 zigzags and the 35 deg turn with the improved column's Y_vv of either sign."""
     printed, corrected = CoefficientSet(Table2Column.IMPROVED, ("N_v",)).craft(), CORRECTED[2].craft()
     references = {
         run: reference_record(run)
@@ -105,7 +105,7 @@ class PortStarboardAsymmetry:
 
 
 def port_starboard_asymmetry() -> PortStarboardAsymmetry:
-    """Forces at mirrored states, and turns to either side."""
+    """Return forces at mirrored states, and turns to either side."""
     craft = TRUTH.craft()
     jet, hull = jet_as_printed(craft), hull_as_printed(craft)
     record = manoeuvre_record(craft, PublishedManoeuvre.ZIGZAG_20)
@@ -128,7 +128,7 @@ def port_starboard_asymmetry() -> PortStarboardAsymmetry:
 
 
 def jet_as_printed(craft: Model) -> Model:
-    """Side force of the jet with alpha v, eq. (3)."""
+    """Return the side force of the jet with alpha v, eq. (3)."""
     rho, A_j, v_j, alpha, v, delta = (symbol(n) for n in ("rho", "A_j", "v_j", "alpha", "v", "delta"))
     return with_expressions(
         craft, "waterjet_jet_as_printed", {"Y_P": rho * A_j * v_j * (v_j - alpha * v) * sp.sin(delta)}

@@ -44,7 +44,7 @@ class Table1Mass:
 
 
 def table_1_mass(density: float) -> Table1Mass:
-    """What table 1's mass is worth with a density."""
+    """Return what table 1's mass implies with a density."""
     return Table1Mass(density, density * BLOCK * LENGTH * BEAM * DRAUGHT, MASS / (0.5 * density * LENGTH**2 * DRAUGHT))
 
 
@@ -85,7 +85,7 @@ def feature_conditions(series: Record) -> FeatureConditions:
 
 
 def feature_correlations(series: Record, operator: DerivativeOperator) -> dict[MotionEquation, Array]:
-    """Correlation matrices (k, k) of the features of each equation."""
+    """Return the correlation matrices (k, k) of the features of each equation."""
     craft = waterjet()
     made = build_systems(craft, [RegressionMotion.from_record(craft, series)], operator)
     return {MotionEquation(s.equations[0]): np.asarray(np.corrcoef(s.matrix, rowvar=False)) for s in made}

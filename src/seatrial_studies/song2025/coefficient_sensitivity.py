@@ -106,7 +106,7 @@ def unique_sensitivity(
     scales: Mapping[str, float] | None = None,
     initial: Mapping[str, float] | None = None,
 ) -> UniqueSensitivity:
-    """Sensitivities from exact slopes of the replayed record, and their parts orthogonal to all others'.
+    """Return sensitivities from exact slopes of the replayed record, and their parts orthogonal to all others'.
 
     With c_i the slopes of all states and samples by ln a_i, each state over its scale, unique_i is the rms of
     c_i - C b, b from least squares of c_i on the columns C of the other coefficients: their first-order adjustment. It
@@ -135,7 +135,7 @@ def unique_sensitivity(
 
 
 def orthogonal_parts(columns: Array) -> Array:
-    """Norm of what least squares on all other columns leaves of each, columns (n, k): shape (k,)."""
+    """Return the norm of what least squares on all other columns leaves of each, columns (n, k): shape (k,)."""
     lengths = np.linalg.norm(columns, axis=0)
     # the triangle keeps all lengths and angles
     triangle: Array = np.linalg.qr(columns / np.where(lengths > 0.0, lengths, 1.0))[1]

@@ -176,7 +176,7 @@ NOT_PRINTED = (
 
 
 def printed_coefficients(column: Table2Column) -> dict[str, float]:
-    """A column of table 2 as printed, by coefficient in the order of `COEFFICIENTS`."""
+    """Return a column of table 2 as printed, by coefficient in the order of `COEFFICIENTS`."""
     return dict(zip(COEFFICIENTS, _TABLE_2[column], strict=True))
 
 

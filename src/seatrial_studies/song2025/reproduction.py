@@ -56,12 +56,12 @@ class EstimatorResult:
 
     @property
     def median_error(self) -> float:
-        """Of the relative errors' magnitudes."""
+        """Return the median of the relative errors' magnitudes."""
         return float(np.median(np.abs(self.errors)))
 
     @property
     def largest_error(self) -> float:
-        """Of the relative errors' magnitudes."""
+        """Return the largest of the relative errors' magnitudes."""
         return float(np.max(np.abs(self.errors)))
 
 
@@ -184,17 +184,17 @@ def reproduce_regressions(
 
 
 def true_coefficients() -> Array:
-    """The eleven coefficients."""
+    """Return the eleven true coefficients."""
     return np.array([p.value for p in TRUTH.craft().parameters.free])
 
 
 def craft_without_coefficients() -> Model:
-    """The craft whose coefficients are not known."""
+    """Return the craft whose coefficients are not known."""
     return TRUTH.craft().with_values(dict.fromkeys(COEFFICIENTS, 0.0))
 
 
 def estimator_result(estimator: RegressionEstimator, record: Record) -> EstimatorResult:
-    """One estimator on one record."""
+    """Run one estimator on one record."""
     try:
         found = estimator.estimate(craft_without_coefficients(), [record])
     except InputError as error:

@@ -22,7 +22,7 @@ TURN_ANGLE = 35.0
 
 
 def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -> Study:
-    """Every table and figure beside ours.
+    """Run the study: the paper's tables and figures, each compared with ours.
 
     Args:
         quick: fewer settings of the support vectors, noise levels, and other choices of what is not printed.

@@ -25,7 +25,7 @@ _EQUATION_NAMES = {MotionEquation.SURGE: "surge", MotionEquation.SWAY: "sway", M
 
 
 def tables(evidence: SupportVectorEvidence) -> tuple[Table, ...]:
-    """In the order of the page."""
+    """Return all tables in the order of the page."""
     return (
         _coefficients(evidence),
         _errors(evidence),

@@ -24,7 +24,7 @@ BOUND_RATIO_RANGE = (0.5, 1.6)
 
 
 def claims(evidence: SupportVectorEvidence) -> tuple[Claim, ...]:
-    """Each with what it rests on."""
+    """Return the claims, each with its evidence."""
     return (
         _accuracy_claim(evidence),
         _improvement_claim(evidence),
@@ -184,7 +184,7 @@ def _cleaning_claim(evidence: SupportVectorEvidence) -> Claim:
 
 
 def checks(evidence: SupportVectorEvidence) -> tuple[Check, ...]:
-    """Ours; each can fail."""
+    """Return the checks of our own numbers; each can fail."""
     made = evidence.reproduction
     central = _result_named(made.noise_free_results, "central differences, least squares").largest_error
     pipeline = made.published[3]

@@ -119,7 +119,7 @@ def roulette_sum(generator: np.random.Generator) -> float:
 
 
 def contradictory_rows() -> tuple[str, ...]:
-    """Rows whose columns cannot come from one sea."""
+    """Return rows whose columns cannot come from one sea."""
     made = []
     for row in TABLE_1:
         (low, high), (other_low, other_high) = row.traditional.uncontrolled_bounds, row.genetic.uncontrolled_bounds
@@ -129,7 +129,7 @@ def contradictory_rows() -> tuple[str, ...]:
 
 
 def shortest_code_bits() -> int:
-    """Bits of the shortest code whose values round to all gains as they are printed."""
+    """Return bits of the shortest code whose values round to all gains as they are printed."""
     return next(bits for bits in range(2, LONGEST_CODE) if _represents_gains(bits))
 
 

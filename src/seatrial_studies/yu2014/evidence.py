@@ -57,7 +57,7 @@ class FinGainEvidence:
         fin_objective: FinObjective = FinObjective.PRINTED,
         normaliser: Normaliser = Normaliser.MAX,
     ) -> FinGainSearches:
-        """Searches of one setting."""
+        """Return the searches of one setting."""
         wanted = (preamplifier, fin_objective, normaliser)
         return next(
             s
@@ -67,10 +67,10 @@ class FinGainEvidence:
 
     @property
     def search_seconds(self) -> float:
-        """Of one search with its front, median."""
+        """Return the median time [s] of one search with its front."""
         return float(np.median(np.concatenate([s.seconds for s in self.searches])))
 
 
 def responses_at_table_1(preamplifier: Preamplifier) -> tuple[RollResponse, ...]:
-    """The paper's gains at every row of table 1, long-crested."""
+    """Return the paper's gains at every row of table 1, long-crested."""
     return tuple(roll_response(performance(preamplifier, SeaCondition(row.speed, row.heading))) for row in TABLE_1)

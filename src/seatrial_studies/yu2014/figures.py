@@ -11,7 +11,7 @@ from seatrial_studies.yu2014.searches import BOX
 
 
 def figures(evidence: FinGainEvidence) -> tuple[Figure | Bars, ...]:
-    """In the order of the page."""
+    """Return all figures in the order of the page."""
     return (
         _reductions(evidence),
         *_histories(evidence),

@@ -8,7 +8,7 @@ from seatrial_studies.yu2014.published_loop import PREAMPLIFIER_LABELS
 
 
 def misprint_table(audit: FinGainAudit) -> Table:
-    """One line each."""
+    """Return the misprints, one row each."""
     both = [(PREAMPLIFIER_LABELS[r], audit.roll_responses[r], audit.fin_rate_readings[r]) for r in Preamplifier]
     rows = [
         (

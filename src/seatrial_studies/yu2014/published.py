@@ -24,7 +24,7 @@ class ControllerResult:
 
     @property
     def uncontrolled(self) -> float:
-        """The roll without fins [deg] that the other two imply."""
+        """Return the roll without fins [deg] that the other two imply."""
         return self.roll / (1.0 - 0.01 * self.reduction)
 
     @property
@@ -35,7 +35,7 @@ class ControllerResult:
 
     @property
     def log_values(self) -> Array:
-        """Logarithms of roll, fin rate and what is left of the roll, (3,)."""
+        """Return logarithms of roll, fin rate and what is left of the roll, (3,)."""
         return np.log([self.roll, self.rate, 1.0 - 0.01 * self.reduction])
 
 
@@ -50,7 +50,7 @@ class Table1Row:
 
     @property
     def name(self) -> str:
-        """As the table has it."""
+        """Return the name of the row as in the table."""
         return f"{self.speed:.0f} / {self.heading:.0f}"
 
 

@@ -81,7 +81,7 @@ DESIGN_SEA = SeaCondition()
 
 @cache
 def effective_slope(sea: SeaCondition) -> EncounterSpectrum:
-    """The effective wave slope."""
+    """Return the effective wave slope."""
     spectrum = sea.spectrum or ittc(HEIGHT)
     return wave_slope_spectrum(
         spectrum,
@@ -105,12 +105,12 @@ class RollResponse:
 
     @property
     def reduction(self) -> float:
-        """Of the rms roll, per cent."""
+        """Return the reduction of the rms roll [%]."""
         return 100.0 * (1.0 - self.roll / self.uncontrolled)
 
     @property
     def saturation_percent(self) -> float:
-        """Probability that a fin amplitude exceeds 22 deg, per cent (Rayleigh, as section 2.2)."""
+        """Return the probability that a fin amplitude exceeds 22 deg, per cent (Rayleigh, as section 2.2)."""
         return 100.0 * math.exp(-(22.0**2) / (2.0 * self.fin**2))
 
 
@@ -126,7 +126,7 @@ def performance(preamplifier: Preamplifier, sea: SeaCondition = DESIGN_SEA, K_q:
 
 
 def roll_response(loop_performance: Performance, gains: Array = PUBLISHED_VALUES) -> RollResponse:
-    """At some gains (g,)."""
+    """Return the roll response at the gains (g,)."""
     found = loop_performance.evaluate(gains)
     roll, fin, rate = np.degrees(np.sqrt(found.variances[0]))
     return RollResponse(

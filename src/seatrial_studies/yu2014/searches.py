@@ -74,12 +74,12 @@ class FinGainSearches:
 
     @property
     def fragile_count(self) -> int:
-        """How many have an Ms above 2."""
+        """Return how many answers have an Ms above 2."""
         return int(np.sum(self.Ms > FRAGILE_MS))
 
 
 def search_over_seeds(setting: GeneticSearchSetting, seeds: int, seed: int) -> FinGainSearches:
-    """One search for each seed."""
+    """Run one search for each seed."""
     of = performance(setting.preamplifier)
     made = [_timed_search(of, setting, np.random.default_rng([seed, k])) for k in range(seeds)]
     gains = np.stack([genetic.best[0] for genetic, _ in made])

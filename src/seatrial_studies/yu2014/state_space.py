@@ -24,7 +24,7 @@ class StateSpace:
     a: Array
 
     def closed_loop_matrix(self, gains: Array) -> Array:
-        """A at those gains, (n, n)."""
+        """Return the matrix A at the gains, (n, n)."""
         return self.A[0] + np.tensordot(gains, self.A[1:], 1)
 
     def actuator_row(self, gains: Array) -> Array:
@@ -48,7 +48,7 @@ def state_space(loop: TransferLoop) -> StateSpace:
     place = iter(zip(where, blocks, strict=True))
 
     def through(signal: Array) -> Array:
-        """The next block's answer to a signal, (1 + g, n) over the states."""
+        """Return the next block's answer to a signal, (1 + g, n) over the states."""
         at, block = next(place)
         own_A, own_b, own_c, d = controllable_form(block)
         A[0, at, at] += own_A

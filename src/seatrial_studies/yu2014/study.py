@@ -24,7 +24,7 @@ RATES = np.linspace(0.5, 1.75, 11)
 
 
 def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -> Study:
-    """Every table and figure beside ours.
+    """Run the study: the paper's tables and figures, each compared with ours.
 
     Args:
         quick: 4 seeds of the search instead of 12, fewer points of the trade between roll and fin rate.

@@ -62,7 +62,7 @@ class Table1Fit:
         return int(np.sum((self.baseline < 0.001 * UPPER) | (self.baseline > 0.999 * UPPER)))
 
     def sea(self, heading: float, speed: float) -> SeaCondition:
-        """A sea of table 1 as fitted."""
+        """Return a sea of table 1 as fitted."""
         return SeaCondition(speed, heading if self.following_is_zero else 180.0 - heading, spreading=SPREADING)
 
     def row_result(self, log_values: Array, row: int) -> ControllerResult:
@@ -72,7 +72,7 @@ class Table1Fit:
 
 
 def fit_table_1(preamplifier: Preamplifier, *, following_is_zero: bool) -> Table1Fit:
-    """Least squares of logarithms, twice."""
+    """Fit table 1 by least squares of logarithms, in both senses of the heading."""
     printed, traditional = _printed_logs()
 
     def residuals(x: Array) -> Array:
@@ -136,5 +136,5 @@ def _rms(errors: Array) -> float:
 
 
 def best_fit_of(fits: tuple[Table1Fit, ...], preamplifier: Preamplifier) -> Table1Fit:
-    """The sense of the heading with the smaller error."""
+    """Return the sense of the heading with the smaller error."""
     return min((f for f in fits if f.preamplifier is preamplifier), key=lambda f: f.log_error)

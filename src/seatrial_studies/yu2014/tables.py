@@ -20,7 +20,7 @@ _FIVE_GAIN_NAMES = (*GAIN_NAMES, "KB", "KL")
 
 
 def tables(evidence: FinGainEvidence) -> tuple[Table, ...]:
-    """In the order of the page."""
+    """Return all tables in the order of the page."""
     return (
         _table_1(evidence),
         _fitted_table_1(evidence),

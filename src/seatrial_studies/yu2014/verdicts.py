@@ -20,7 +20,7 @@ REDUCTION_TOLERANCE = 2.0  # points of reduction
 
 
 def claims(evidence: FinGainEvidence) -> tuple[Claim, ...]:
-    """In the order of the page."""
+    """Return all claims in the order of the page."""
     return (
         _fin_rate_claim(evidence),
         _reduction_claim(evidence),
@@ -168,7 +168,7 @@ def _gain_text(values: np.ndarray) -> str:
 
 
 def checks(evidence: FinGainEvidence) -> tuple[Check, ...]:
-    """Ours; each can fail."""
+    """Return the checks of our own numbers; each can fail."""
     made = evidence.five_gain_design
     held = made.held_out_seas[:2]
     at_22 = evidence.table_1_responses[WASHOUT][4].reduction - DESIGN_ROW_AT_22_KN.genetic.reduction
