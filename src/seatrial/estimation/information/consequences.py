@@ -11,8 +11,8 @@ import numpy as np
 
 from seatrial.core.values import Array, Index
 
-_MOST_NAMED, _LEAST_SHIFT = 4, 0.005
-_VISIBLE_GROWTH = 0.05
+_MOST_NAMED, _LEAST_SHIFT = 4, 0.005  # coefficients named in a text; relative shift worth naming; chosen
+_VISIBLE_GROWTH = 0.05  # relative growth of the residuals that is visible; chosen
 
 
 def estimate_shifts(information: Array, fitted: Index, assumed: int, step: float) -> tuple[Array, float]:

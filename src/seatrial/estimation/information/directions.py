@@ -12,10 +12,11 @@ from seatrial.core.results import Direction
 from seatrial.core.values import Array
 from seatrial.estimation.information.covariance import inverse
 
-_MOST_NAMED, _SHARE = 5, 0.25
-_NARROWED = 0.9
+_MOST_NAMED, _SHARE = 5, 0.25  # parameters named in a text; share of the largest component worth naming; chosen
+_NARROWED = 0.9  # ratio of deviations below which prior knowledge counts as narrowing; chosen
+# relative standard deviations that bound the classes; chosen
 _WELL_DETERMINED, _POORLY_DETERMINED, _UNDETERMINED = 0.1, 1.0, 10.0
-_NO_INFORMATION = 1e-24
+_NO_INFORMATION = 1e-24  # of the largest eigenvalue, below which one counts as zero: rounding squared
 
 
 def relative_information(information: Array, sizes: Array) -> Array:

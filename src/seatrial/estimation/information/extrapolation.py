@@ -7,7 +7,8 @@ import numpy as np
 from seatrial.core.results import Extrapolation
 from seatrial.core.values import Array, Record
 
-_PERCENTILE = 99.5
+_PERCENTILE = 99.5  # per cent of the samples within the envelope; chosen
+# rad/s, rad, rad, m/s, m/s, below which a range counts as none; chosen
 _NEGLIGIBLE = {"yaw_rate": 1e-4, "drift": 1e-3, "rudder": 1e-3, "fastest": 1e-3, "slowest": 1e-3}
 
 

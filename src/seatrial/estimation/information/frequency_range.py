@@ -6,7 +6,7 @@ import numpy as np
 
 from seatrial.core.values import NOTATION, Array, Finding, Record, Severity
 
-POWER_SHARE = 0.9
+POWER_SHARE = 0.9  # middle share of the power; chosen
 _WELCH_SEGMENTS = 4
 
 

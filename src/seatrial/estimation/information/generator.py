@@ -16,7 +16,7 @@ from seatrial.core.values import Array
 EXACT = 1e-7
 """Relative error of a law below which it counts as exact: rounding gives 1e-10."""
 
-_LARGEST_DENOMINATOR = 12
+_LARGEST_DENOMINATOR = 12  # of a rational exponent in a law; chosen
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,8 @@ from seatrial.estimation.information.generator import EXACT, Generator, affine_l
 from seatrial.estimation.information.invariance import InvarianceConditions, invariance_conditions
 from seatrial.estimation.information.null_space import null_space, sparse_basis
 
-_POINTS = 5
-_ROUNDING_LEVELS = (1e-5, 1e-8, 1e-10)
+_POINTS = 5  # random parameter points that a law is fitted to; chosen
+_ROUNDING_LEVELS = (1e-5, 1e-8, 1e-10)  # of the largest component, below which one counts as rounding; tried in turn
 
 
 @dataclass(frozen=True, eq=False)

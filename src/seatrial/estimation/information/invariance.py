@@ -21,10 +21,11 @@ from seatrial.core.values import NOTATION, Array, Index, InputError
 from seatrial.estimation.information.null_space import SINGULAR, column_span
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 
-_POINTS, _ATTEMPTS = 300, 6
+_POINTS, _ATTEMPTS = 300, 6  # random states, and attempts to get as many with finite rates; chosen
+# least and largest size of random values by unit: those of ships and models
 _RANGES = {"m/s": (0.03, 10.0), "rad/s": (1e-3, 0.3), "rps": (0.1, 30.0)}
-_ORDINARY = (0.05, 20.0)
-_COMPENSATING = 1e-7
+_ORDINARY = (0.05, 20.0)  # the same for other units, SI; chosen
+_COMPENSATING = 1e-7  # share of a hidden coefficient in a compensation: rounding is less
 _CAPTIVE_MOTION, _CALM_INPUTS = ("u", "v", "r"), ("wind_speed", "wind_direction")
 
 

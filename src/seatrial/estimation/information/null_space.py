@@ -9,6 +9,7 @@ from seatrial.core.values import Array, Index
 SINGULAR = 1e-11
 """Singular values below this, of columns with unit norm, count as zero: rounding gives 1e-15, real ones 1e-6 and up."""
 
+# relative rounding levels: of a member, pivots first and last, independence; orders of columns tried
 _PRESENT, _PIVOT, _LAST_PIVOT, _DISTINCT, _ORDERS = 1e-8, 1e-4, 1e-9, 1e-6, 40
 
 

@@ -15,7 +15,8 @@ from seatrial.core.results import Stability
 from seatrial.core.values import Array
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 
-_STEP = 1e-4
+_STEP = 1e-4  # of a coefficient's characteristic size, for central differences
+# of the speed, for one-sided slopes; relative difference of equal sides; chosen
 _LATERAL_OFFSET, _EQUAL_SIDES = 1e-12, 0.01
 
 

@@ -21,7 +21,7 @@ from seatrial.estimation.information.generators import SymmetrySearch, search_sy
 from seatrial.estimation.information.invariance import invariance_conditions
 from seatrial.estimation.information.symmetry_text import NoInfluence, no_influence_text, symmetry_text
 
-_LEAST_INFLUENCE = 1e-7
+_LEAST_INFLUENCE = 1e-7  # relative effect below which a coefficient has none: rounding is less
 _PACKAGE = Path(__file__).parents[2]
 # folders of the texts that decide what is stated
 _SOURCES = tuple(_PACKAGE / folder for folder in ("estimation/information", "data/trial", "core/values"))

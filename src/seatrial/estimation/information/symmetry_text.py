@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from seatrial.core.values import Parameters
 from seatrial.estimation.information.generator import Generator
 
-_MOST_ADVISED, _MOST_LISTED = 8, 24
+_MOST_ADVISED, _MOST_LISTED = 8, 24  # coefficients that a text advises on, and lists; chosen
 
 
 @dataclass(frozen=True)

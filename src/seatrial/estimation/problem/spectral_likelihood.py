@@ -20,7 +20,7 @@ from seatrial.physics.simulate.harmonics import Complex
 _WINDOW_CORRELATION = 35.0 / 18.0
 # points a bin at which the model is evaluated before the window's leakage smears it, over that many bins either way
 POINTS_PER_BIN = 4
-_LEAKAGE_BINS = 8
+_LEAKAGE_BINS = 8  # bins either way, as above
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,9 +16,9 @@ from seatrial.numerics.optimise import NormalEquations
 from seatrial.physics.simulate.harmonics import Complex
 
 DAMPING, RESTORING = 5, 6
-_SIGMA = (0.07, 0.09)
-_WINDOW_CORRELATION = 35.0 / 18.0
-_STEP = 1e-5
+_SIGMA = (0.07, 0.09)  # peak widths of JONSWAP, Hasselmann et al. 1973
+_WINDOW_CORRELATION = 35.0 / 18.0  # of a Hann window, as in `spectral_likelihood`
+_STEP = 1e-5  # of the logarithmic unknowns, for central differences
 _NO_LOCAL = np.zeros((0, 0))
 
 

@@ -12,8 +12,8 @@ from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.states import hidden_states, measured_states
 
-_PROBE_FACTOR = 1.37
-_TIME_TOLERANCE = 1e-3
+_PROBE_FACTOR = 1.37  # no round number, so that no term vanishes at the probe; chosen
+_TIME_TOLERANCE = 1e-3  # of a sampling step, beyond which it is a gap
 
 
 def demand_positive(name: str, value: float) -> None:

@@ -16,7 +16,7 @@ from seatrial.estimation.regress.features import Features, RegressionMotion, dem
 from seatrial.estimation.regress.weak import window_bounds, window_function
 from seatrial.numerics.local_polynomials import smoothed_locally
 
-_ROUNDING = 1e-12
+_ROUNDING = 1e-12  # of the mean, below which a deviation from it is rounding
 
 
 @dataclass(frozen=True, eq=False)

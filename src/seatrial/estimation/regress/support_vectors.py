@@ -10,8 +10,8 @@ from seatrial.estimation.regress.features import demand_positive
 from seatrial.estimation.regress.solvers import RegressionSolution, scale_system
 from seatrial.estimation.regress.system import RegressionSystem
 
-_MANY_ROWS = 3000
-_STEPS = 500_000
+_MANY_ROWS = 3000  # default of the largest number of rows; chosen
+_STEPS = 500_000  # of the solver at most; chosen
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ from seatrial.core.values import Array, InputError
 from seatrial.estimation.regress.features import RegressionMotion
 from seatrial.estimation.regress.operators import DerivativeOperator, RegressionRows
 
-_COLLINEAR = 1e-12
-_NAMED = 0.05
+_COLLINEAR = 1e-12  # ratio of singular values: rounding
+_NAMED = 0.05  # share of the largest component worth naming; chosen
 
 
 @dataclass(frozen=True, eq=False)

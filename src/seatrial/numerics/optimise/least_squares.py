@@ -14,7 +14,7 @@ from seatrial.numerics.optimise.solution import Array, Solution, Status
 
 # where no step lowers the cost: promises this small, against the cost and against the first cost, are rounding
 _ROUNDING = 1e-8
-_EXHAUSTED = 1e-20
+_EXHAUSTED = 1e-20  # of the first cost, as above
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ from seatrial.numerics.optimise.population import Population, reject_nonfinite_s
 from seatrial.numerics.optimise.solution import Array
 
 Bits = NDArray[np.bool_]
-MOST_BITS = 52
+MOST_BITS = 52  # mantissa bits of a double
 
 
 class Normaliser(Enum):

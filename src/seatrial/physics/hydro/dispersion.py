@@ -5,8 +5,8 @@ from numpy.typing import ArrayLike
 
 from seatrial.core.values import Array, InputError
 
-G = 9.81
-_ITERATIONS = 60
+G = 9.81  # m/s^2, acceleration of gravity, rounded
+_ITERATIONS = 60  # Newton steps at most; chosen
 
 
 def wavenumber(omega: ArrayLike, depth: float) -> Array:

@@ -11,7 +11,7 @@ from seatrial.physics.hydro.dispersion import G
 
 Complex = NDArray[np.complex128]
 
-MAX_SHIP_SPEED = 50.0
+MAX_SHIP_SPEED = 50.0  # m/s; guards against a wrong unit
 
 
 class Excitation(Protocol):

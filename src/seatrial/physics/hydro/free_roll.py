@@ -10,7 +10,7 @@ import numpy as np
 from seatrial.core.values import Array
 from seatrial.physics.hydro.dispersion import G
 
-_POINTS = 32
+_POINTS = 32  # points of the trapezoidal rule on a period; chosen
 
 
 def swing_period(restoring: Array, amplitude: Array) -> tuple[Array, Array]:

@@ -7,7 +7,7 @@ import numpy as np
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.excitation import Complex, checked_waves
 
-_ROUNDING = 1e-9
+_ROUNDING = 1e-9  # of the largest grid value, by which a value may lie outside the table: rounding
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from seatrial.physics.hydro.tabulated import WaveTable
 
 CARTESIAN_COLUMNS = ("F3_real", "F3_imag", "M5_real", "M5_imag")
 POLAR_COLUMNS = ("F3_amplitude", "F3_phase_deg", "M5_amplitude", "M5_phase_deg")
-_SPEED_TOLERANCE = 1e-6
+_SPEED_TOLERANCE = 1e-6  # m/s by which the speeds of a file may differ: rounding
 
 
 @dataclass(frozen=True)

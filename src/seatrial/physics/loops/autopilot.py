@@ -14,11 +14,11 @@ from seatrial.physics.loops.block import Block
 from seatrial.physics.loops.loop import Term, TransferLoop
 
 FOSSEN = "pole placement, Fossen 2021, section 15.3"
-DAMPING_RATIO = 0.8
-_SLOWEST, _START, _FASTEST = 0.75, 1.5, 6.0
+DAMPING_RATIO = 0.8  # of the closed loop, Fossen 2021, section 15.3
+_SLOWEST, _START, _FASTEST = 0.75, 1.5, 6.0  # bandwidths over the plant's mean pole: least, first and largest; chosen
 _LARGEST_KD = 10.0
-_FILTER_RATIO = 0.1
-_NEGLIGIBLE_POLE = 1e-9
+_FILTER_RATIO = 0.1  # derivative filter's time constant times the largest bandwidth; chosen
+_NEGLIGIBLE_POLE = 1e-9  # of the largest pole, below which a pole counts as zero: rounding
 MEANINGS = {"KP": "proportional gain", "KI": "gain of the integral", "KD": "gain of the filtered derivative"}
 UNITS = {"KP": "1", "KI": "1/s", "KD": "s"}
 Gains = dict[str, float]

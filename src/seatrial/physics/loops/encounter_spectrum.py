@@ -19,11 +19,12 @@ from seatrial.physics.loops.block import Block
 from seatrial.physics.sea.encounter import speed_factor
 from seatrial.physics.sea.spectrum import Spectrum
 
-_DIRECTIONS = 513
-_MIN_NODES, _REDUCED_NODES, _MAX_NODES = 48, 512, 12288
-_ACCURACY, _ACCURACY_OF_REDUCED = 1e-10, 1e-9
+_DIRECTIONS = 513  # directions of a short-crested sea on the finest grid; chosen
+_MIN_NODES, _REDUCED_NODES, _MAX_NODES = 48, 512, 12288  # frequencies: first grid, reduced grid, finest grid; chosen
+_ACCURACY, _ACCURACY_OF_REDUCED = 1e-10, 1e-9  # relative, of variances on all nodes and on the reduced ones; chosen
+# relative, of variances over directions and in one of them; chosen
 _ACCURACY_OF_DIRECTIONS, _ACCURACY_OF_ONE = 1e-6, 1e-8
-_NEGLIGIBLE_EXPONENT = 36.0
+_NEGLIGIBLE_EXPONENT = 36.0  # exp(-36) is 2e-16, rounding
 _DAMPING_DIVISOR = 2.0
 # rad/s: a wave that keeps up with the ship
 _LOWEST_FREQUENCY = 1e-9

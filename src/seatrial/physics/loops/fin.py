@@ -12,14 +12,15 @@ from seatrial.physics.loops.block import Block
 from seatrial.physics.loops.loop import Term, TransferLoop
 
 PAPER = "Yu et al. 2014, section 1"
-K_ALPHA = 0.256
-GYRO = Block("rate gyro", (400.0, 0.0), (1.0, 80.0, 4000.0), PAPER)
-SERVO = Block("servo", (550.0,), (1.0, 15.0, 225.0), PAPER)
-ROLL = Block("roll", (1.0,), (1.43242, 0.3796, 1.0), PAPER)
+K_ALPHA = 0.256  # fin effectiveness, Yu et al. 2014, section 1
+GYRO = Block("rate gyro", (400.0, 0.0), (1.0, 80.0, 4000.0), PAPER)  # rate gyro, as printed
+SERVO = Block("servo", (550.0,), (1.0, 15.0, 225.0), PAPER)  # fin servo, as printed
+ROLL = Block("roll", (1.0,), (1.43242, 0.3796, 1.0), PAPER)  # roll of the ship, as printed
+# filtered derivative, as printed
 DERIVATIVE = Block("derivative", (0.064, 0.0), (0.064 * 0.18, 0.064 + 0.18, 1.0), f"{PAPER}, eq. (1)")
-INTEGRAL = Block("integral", (1.0,), (24.607, 1.0), f"{PAPER}, eq. (1)")
-PUBLISHED_GAINS = {"KP": 11.053, "KI": 0.428, "KD": 32.736}
-BOUNDS = {"KP": (0.0, 100.0), "KI": (0.0, 50.0), "KD": (0.0, 100.0)}
+INTEGRAL = Block("integral", (1.0,), (24.607, 1.0), f"{PAPER}, eq. (1)")  # slow lag of 24.607 s, as printed
+PUBLISHED_GAINS = {"KP": 11.053, "KI": 0.428, "KD": 32.736}  # as printed
+BOUNDS = {"KP": (0.0, 100.0), "KI": (0.0, 50.0), "KD": (0.0, 100.0)}  # search ranges of the gains, as in Yu et al. 2014
 MEANINGS = {"KP": "proportional gain", "KI": "gain of the slow lag", "KD": "gain of the filtered derivative"}
 
 
@@ -29,14 +30,14 @@ class Preamplifier(Enum):
     Fitted, not published: 18 kn, 90 deg, ITTC spectrum of 3.3 m, hull of 100 x 10.5 x 3.4 m (assumed).
     """
 
-    PRINTED = 142.0
-    WASHOUT = 2.51
+    PRINTED = 142.0  # K_q, fitted as above
+    WASHOUT = 2.51  # K_q, fitted as above
 
     def block(self, K_q: float | None = None) -> Block:
-        """G_q = K_q / ((30 s + 1) (.056 s + 1)), with 30 s in the numerator as washout."""
+        """G_q = K_q / ((30 s + 1) (0.056 s + 1)), with 30 s in the numerator as washout."""
         gain = self.value if K_q is None else K_q
-        num = (gain,) if self is Preamplifier.PRINTED else (30.0 * gain, 0.0)
-        return Block("preamplifier", num, (30.0 * 0.056, 30.056, 1.0), PAPER)
+        num = (gain,) if self is Preamplifier.PRINTED else (30.0 * gain, 0.0)  # 30 s: the lag, as printed
+        return Block("preamplifier", num, (30.0 * 0.056, 30.056, 1.0), PAPER)  # lags of 30 s and 0.056 s, as printed
 
 
 def published_gains() -> Parameters:

@@ -10,7 +10,7 @@ from seatrial.core.values import Array
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops.loop import TransferLoop
 
-_SAMPLES = 2000
+_SAMPLES = 2000  # frequencies that the margins are bracketed on; chosen
 
 
 @dataclass(frozen=True)

@@ -116,7 +116,7 @@ def motion_sickness(lever: float) -> Objective:
 
     def slope(v: Array) -> Array:
         z, ratio = score(v)
-        density = np.exp(-0.5 * z**2) / math.sqrt(2.0 * math.pi) / 0.4
+        density = np.exp(-0.5 * z**2) / math.sqrt(2.0 * math.pi) / 0.4  # normal density; 0.4 as in `sea.response`
         half = 0.5 / math.log(10.0)
         return np.stack(
             [density * 2.32 * 2.0 * ratio * half / v[:, 0], density * (1.0 - 2.32 * 2.0 * ratio) * half / v[:, 1]],

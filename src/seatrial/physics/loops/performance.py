@@ -16,7 +16,7 @@ from seatrial.physics.loops.loop import TransferLoop
 from seatrial.physics.loops.margins import frequency_band
 from seatrial.physics.loops.objective import LoopSignal, Objective, WeightedVariance
 
-_MS_SAMPLES = 192
+_MS_SAMPLES = 192  # frequencies that the peak of |S| is bracketed on; chosen
 
 
 @dataclass(frozen=True, eq=False)

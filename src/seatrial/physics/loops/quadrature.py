@@ -7,7 +7,7 @@ from scipy.special import bernoulli
 
 from seatrial.core.values import Array
 
-_ORDER = 8
+_ORDER = 8  # of the end correction of the trapezoidal rule (Gregory, Euler-Maclaurin); chosen
 _END_WEIGHTS = 1.0 + np.linalg.solve(
     np.vander(np.arange(float(_ORDER)), increasing=True).T, bernoulli(_ORDER)[1:] / np.arange(1.0, _ORDER + 1.0)
 )

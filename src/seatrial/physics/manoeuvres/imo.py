@@ -82,12 +82,12 @@ def imo_criteria(
 
 def first_overshoot_limit(time: float) -> float:
     """Limit [deg] of the first overshoot of a 10/10 zigzag, L/V in s: 5.3.3.1."""
-    return float(np.clip(5.0 + 0.5 * time, 10.0, 20.0))
+    return float(np.clip(5.0 + 0.5 * time, 10.0, 20.0))  # deg; time is L/V in s; MSC.137(76), 5.3.3
 
 
 def second_overshoot_limit(time: float) -> float:
     """Limit [deg] of the second overshoot of a 10/10 zigzag, L/V in s: 5.3.3.2."""
-    return float(np.clip(17.5 + 0.75 * time, 25.0, 40.0))
+    return float(np.clip(17.5 + 0.75 * time, 25.0, 40.0))  # deg; time is L/V in s; MSC.137(76), 5.3.3
 
 
 def _turning_limits(values: dict[str, float]) -> list[tuple[str, float, str]]:

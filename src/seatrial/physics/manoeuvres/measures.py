@@ -11,7 +11,7 @@ from seatrial.physics.manoeuvres.track import Swing, mean_between, speed, steady
 
 QUARTER_TURN, HALF_TURN = float(np.radians(90.0)), float(np.radians(180.0))
 INITIAL_TURN = float(np.radians(10.0))
-PEAK_HALF_WIDTH = 0.04
+PEAK_HALF_WIDTH = 0.04  # of the swing's samples, over which its peak is fitted; chosen
 
 
 def measures(

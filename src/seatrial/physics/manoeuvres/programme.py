@@ -9,11 +9,11 @@ from seatrial.physics.manoeuvres import schedule, turning, zigzag
 from seatrial.physics.manoeuvres.steering import Steering
 
 SIDES = {"starboard": 1, "port": -1}
-ZIGZAG_EXECUTES = 5
-LENGTHS_PER_EXECUTE = 40.0
-TURNING_CIRCLE_TURN = 540.0
+ZIGZAG_EXECUTES = 5  # executes of a zigzag where none are given: two overshoots each side; chosen
+LENGTHS_PER_EXECUTE = 40.0  # longest time of an execute, ship lengths travelled; chosen
+TURNING_CIRCLE_TURN = 540.0  # deg of heading change, one and a half turns: enough for a steady turn
 PULL_OUT_TURN = 360.0
-SPIRAL_HOLD_LENGTHS = 15.0
+SPIRAL_HOLD_LENGTHS = 15.0  # ship lengths travelled at each rudder angle; chosen
 
 
 @dataclass(frozen=True)
@@ -88,6 +88,7 @@ def _consecutive_zigzags(text: str, fields: list[str]) -> Programme:
     each = int(fields[0]) if fields else ZIGZAG_EXECUTES
     if not 1 <= each <= 50:
         raise InputError(f"{each} executes of each angle are not between 1 and 50")
+    # deg, zigzag angles 10/10 to 30/30; chosen
     executes = [(angle, angle) for angle in (10.0, 15.0, 20.0, 25.0, 30.0) for _ in range(each)]
     return _zigzag_programme(text, "consecutive-zigzags", executes, 1)
 

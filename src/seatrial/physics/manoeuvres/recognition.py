@@ -13,6 +13,7 @@ from seatrial.core.values import Array, InputError, Record
 # 15 % of its level and it lasts a tenth of the median hold
 OVER_SHARE, HOLD_TOLERANCE, HOLD_SHARE, SHORTEST_HOLD = 0.25, 0.15, 0.5, 0.1
 MINIMUM_RUDDER = float(np.radians(0.5))
+# rad; a longest hold that turns the ship less is no turning circle; chosen
 TURN_HEADING_CHANGE = float(np.radians(135.0))
 # course keeping before the first execute: off the common level by a quarter, and the heading less than 8 deg away after
 ANGLE_TOLERANCE, COURSE_TOLERANCE = 0.25, float(np.radians(8.0))

@@ -17,7 +17,7 @@ from seatrial.physics.manoeuvres.steering import (
     turn_rudder,
 )
 
-REGISTER_BITS = 9
+REGISTER_BITS = 9  # of the shift register: 511 switching times a period; chosen
 
 
 @kernel(COMMAND_SIGNATURE, **OPTIONS)
@@ -33,6 +33,7 @@ def helmsman(t, x, memory, u):
 
 def spiral_steps(largest: float, side: int) -> tuple[float, ...]:
     """Rudder orders [rad] from `largest` [deg] through amidships to the other side and back (direct spiral)."""
+    # deg, steps of the direct spiral, closer near amidships; chosen
     inner = [a for a in (25.0, 20.0, 15.0, 10.0, 5.0, 3.0, 1.0) if a < largest]
     down = [largest, *inner, 0.0, *(-a for a in reversed(inner)), -largest]
     return tuple(side * float(np.radians(a)) for a in (*down, *down[-2::-1]))

@@ -14,6 +14,7 @@ from numba import njit
 from seatrial.core.values import Array
 from seatrial.numerics.kernels.types import OPTIONS
 
+# positions in the memory
 PSI, R, DELTA, SIGN, SLEW, DT, APPROACH, COURSE, ANGLE, FINISHED, STAGE, STAGE_START, COUNT, TABLE = range(14)
 NOT_FINISHED = -1.0
 

@@ -34,4 +34,4 @@ OMITTED_PARAMETERS: Mapping[str, Mapping[str, tuple[str, ...]]] = MappingProxyTy
 """Families that count the other way: which parameters a structure leaves out, at zero."""
 
 PRIOR_FACTORS = (0.5, 3.0)
-SEGMENT_FACTORS = (0.7, 1.5)
+SEGMENT_FACTORS = (0.7, 1.5)  # of the segments' length, by which a choice of structure is repeated; chosen

@@ -49,6 +49,7 @@ class _Motion:
 
 def _coefficient(sheet: Sheet, name: str, meaning: str = "hull force coefficient", *, free: bool = False) -> sp.Symbol:
     latex = f"{name[0]}'_{{{name[2:].replace('_', ' ')}}}"
+    # 0.02: characteristic size of a dimensionless coefficient; chosen
     return sheet.parameter(name, 0.0, "1", meaning, free=free, scale=0.02, latex=latex)
 
 

@@ -17,6 +17,7 @@ MIYAUCHI = "Miyauchi et al. 2022, J Mar Sci Technol 27, 1065-1083, doi 10.1007/s
 
 # principal particulars of the 7 m model and of the ship; radius of gyration 0.25 L
 _L7 = {"L": 7.00, "B": 1.27, "d": 0.46, "C_b": 0.810, "x_G": 0.25, "D_P": 0.216, "H_R": 0.345, "A_R": 0.0539}
+# particulars of the ship, from the same table
 _FULL = {"L": 320.0, "B": 58.0, "d": 20.8, "C_b": 0.810, "x_G": 11.2, "D_P": 9.86, "H_R": 15.80, "A_R": 112.5}
 
 
@@ -51,7 +52,7 @@ def kvlcc2_l7() -> ParameterSet:
 @cache
 def kvlcc2_full() -> ParameterSet:
     """Return KVLCC2 at full scale in sea water; the same coefficients with the wake of the ship."""
-    ship = Ship("KVLCC2", _with_mass(_FULL, 312600.0, 1025.0), _PARTICULARS)
+    ship = Ship("KVLCC2", _with_mass(_FULL, 312600.0, 1025.0), _PARTICULARS)  # m^3 displaced; kg/m^3, sea water
     return ParameterSet(
         "kvlcc2-full", "mmg", ship, {**_KVLCC2, "w_P0": 0.35}, _COEFFICIENTS, "w_P0 0.35 at full scale, 0.40 for models"
     )
@@ -89,7 +90,7 @@ def esso_osaka() -> ParameterSet:
     ship = Ship(
         "Esso Osaka 3 m model", _ESSO_SHIP, "FRT-DS-ESSO data set, Wakita et al. 2022, Miyauchi et al. 2022", 108.33
     )
-    unit = 0.5 * 998.0 * 3.0**4 * 0.201
+    unit = 0.5 * 998.0 * 3.0**4 * 0.201  # rho/2 L^4 d [kg m^2], which makes a moment of inertia dimensionless
     converted = {
         **cross_flow_coefficients(0.9665, 2.217, 0.8097),
         "J_z_prime": 0.0286 - _ESSO_SHIP["I_z"] / unit,

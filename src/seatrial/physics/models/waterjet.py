@@ -13,8 +13,8 @@ from seatrial.physics.models.pose import pose_rates
 
 SONG = "Song et al. 2025, doi 10.19693/j.issn.1673-3185.03832"
 ZHOU = "Zhou et al. 1983, through Song et al. 2025"
-RHO = 1025.0
-LENGTH, DRAUGHT, MASS = 9.8, 0.71, 5540.0
+RHO = 1025.0  # kg/m^3, sea water
+LENGTH, DRAUGHT, MASS = 9.8, 0.71, 5540.0  # m, m, kg; Song et al. 2025, principal particulars
 
 # Table 2, column CFD; N_v is -0.1708: with the printed sign the steady turn reverses and no zigzag finishes
 TABLE_2 = {

@@ -7,8 +7,8 @@ from seatrial.physics.hydro.excitation import Complex, Excitation, encounter_fre
 from seatrial.physics.sea.encounter import speed_factor
 from seatrial.physics.sea.spectrum import Spectrum
 
-_CELLS = 100_000
-_BAND = (5e-4, 0.9995)
+_CELLS = 100_000  # cells of the wave spectrum; chosen
+_BAND = (5e-4, 0.9995)  # shares of the energy below either end; chosen
 
 
 def force_density(spectrum: Spectrum, excitation: Excitation, U: float, beta: float, edges: Array) -> Complex:

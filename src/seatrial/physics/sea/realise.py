@@ -11,7 +11,7 @@ from seatrial.physics.hydro.excitation import Complex, Excitation, encounter_fre
 from seatrial.physics.sea.encounter import speed_factor
 from seatrial.physics.sea.spectrum import Spectrum
 
-DEFAULT_COMPONENTS = 30
+DEFAULT_COMPONENTS = 30  # wave components of a realisation; chosen
 
 
 @dataclass(frozen=True, eq=False)

@@ -109,11 +109,11 @@ def motion_sickness(motion: MotionStatistics) -> float:
     """
     if motion.m4 <= 0.0:
         return 0.0
-    mean_absolute = 0.798 * motion.acceleration
-    mu = -0.819 + 2.32 * math.log10(math.sqrt(motion.m4 / motion.m2)) ** 2
+    mean_absolute = 0.798 * motion.acceleration  # sqrt(2 / pi): mean over r.m.s. of a Gaussian
+    mu = -0.819 + 2.32 * math.log10(math.sqrt(motion.m4 / motion.m2)) ** 2  # O'Hanlon & McCauley 1974
     from scipy.special import ndtr
 
-    return float(ndtr((math.log10(mean_absolute / G) - mu) / 0.4))
+    return float(ndtr((math.log10(mean_absolute / G) - mu) / 0.4))  # standard deviation 0.4, O'Hanlon & McCauley 1974
 
 
 def _require_finite(omega: Array, operator: Complex) -> None:

@@ -9,12 +9,12 @@ from numpy.typing import ArrayLike
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.dispersion import G
 
-SIGMA_BELOW, SIGMA_ABOVE = 0.07, 0.09
+SIGMA_BELOW, SIGMA_ABOVE = 0.07, 0.09  # peak widths of JONSWAP, Hasselmann et al. 1973
 # beyond nine sigma the raised peak adds less than a rounding error
 _PEAK_REACH = 9.0
-_LOWEST_RATIO = 0.1
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
-_BISECTIONS = 64
+_LOWEST_RATIO = 0.1  # of the modal frequency: exp(-1.25 / x^4) is zero below
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)  # 64 points of Gauss-Legendre quadrature; chosen
+_BISECTIONS = 64  # halve an interval below rounding
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Spectrum:
     @property
     def modal_frequency(self) -> float:
         """Where the density is largest, (4 B / 5)^(1/4), rad/s."""
-        return (0.8 * self.B) ** 0.25
+        return (0.8 * self.B) ** 0.25  # maximum of omega^-5 exp(-B / omega^4)
 
     @property
     def significant_height(self) -> float:
@@ -114,7 +114,7 @@ class Spectrum:
         return float(first), float(last)
 
     def _base_density(self, x: Array) -> Array:
-        """Density without the raised peak at omega = x omega_p; exp(-1.25 / x^4) is zero below x = .1."""
+        """Density without the raised peak at omega = x omega_p; exp(-1.25 / x^4) is zero below x = 0.1."""
         safe = np.maximum(x, _LOWEST_RATIO)
         return self.A / (safe * self.modal_frequency) ** 5 * np.exp(-1.25 / safe**4)
 
@@ -164,17 +164,18 @@ def bretschneider(height: float, peak_period: float) -> Spectrum:
         InputError: the significant height [m] or the peak period [s] is not positive.
     """
     h, period = _positive("significant height", height, "m"), _positive("peak period", peak_period, "s")
-    B = 1.25 * (2.0 * math.pi / period) ** 4
+    B = 1.25 * (2.0 * math.pi / period) ** 4  # maximum of omega^-5 exp(-B / omega^4)
     return Spectrum("Bretschneider", B * h**2 / 4.0, B)
 
 
+# gamma 3.3: mean of JONSWAP, Hasselmann et al. 1973
 def jonswap(height: float, peak_period: float, gamma: float = 3.3) -> Spectrum:
     """JONSWAP (Hasselmann et al. 1973), scaled so that 4 sqrt(m0) = height.
 
     Raises:
         InputError: the significant height [m] or the peak period [s] is not positive, or gamma is not from 1 to 20.
     """
-    if not 1.0 <= gamma <= 20.0:
+    if not 1.0 <= gamma <= 20.0:  # the records of JONSWAP have 1 to 7; beyond 20 is a mistake
         raise InputError(f"the peak enhancement gamma of a JONSWAP spectrum lies from 1 to 20, not at {gamma:g}")
     raw = replace(bretschneider(height, peak_period), name="JONSWAP", gamma=gamma)
     return replace(raw, A=raw.A * height**2 / (16.0 * raw.moment(0)))

@@ -48,7 +48,7 @@ def approach_speed(model: Model, held: Array) -> float:
         model.compiled.rates(0.0, state, held, parameters, rates)
         return float(rates[place])
 
-    speeds = np.geomspace(1e-3, _MAX_SPEED, 60)
+    speeds = np.geomspace(1e-3, _MAX_SPEED, 60)  # m/s; grid that brackets the speed; chosen
     for low, high in pairwise(speeds):
         if surge(low) > 0.0 >= surge(high):
             return float(brentq(surge, low, high, xtol=1e-12))

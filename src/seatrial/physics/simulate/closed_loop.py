@@ -224,4 +224,5 @@ def hold_equivalent(series: Array) -> Array:
     """
     w = np.concatenate([2.0 * series[:1] - series[1:2], series, 2.0 * series[-1:] - series[-2:-1]])
     w = np.concatenate([w, 2.0 * w[-1:] - w[-2:-1]])
+    # the cubic's mid-value less 1/24 of its second difference: 7/12 and -1/12
     return (7.0 * (w[1:-2] + w[2:-1]) - w[:-3] - w[3:]) / 12.0

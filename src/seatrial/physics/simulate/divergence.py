@@ -7,7 +7,7 @@ from seatrial.core.values import NOTATION, Array, DivergedError
 
 # by SI unit: beyond these no ship is believable (and nothing is, beyond 1e9)
 _LIMITS_BY_UNIT = {"m": 1e7, "m/s": 150.0, "rad": 1e4, "rad/s": 20.0}
-_DEFAULT_LIMIT = 1e9
+_DEFAULT_LIMIT = 1e9  # of a state in any other unit, as said above
 
 
 def state_limits(model: Model) -> Array:

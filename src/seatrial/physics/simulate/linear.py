@@ -22,7 +22,7 @@ from seatrial.physics.simulate.batch import INPUT_KINDS, SegmentBatch
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
 
-SUBSTEPS = 8
+SUBSTEPS = 8  # straight pieces of a spline in one sample; chosen
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import NOTATION, Array, InputError, Record
 from seatrial.numerics.local_polynomials import smoothed_locally
 
-_SMOOTHING_SAMPLES = 15
+_SMOOTHING_SAMPLES = 15  # window of the local polynomials, samples; chosen
 
 
 def _slope(record: Record, symbol: str) -> Array:

@@ -12,7 +12,7 @@ from scipy.special import gammaincc
 from seatrial.core.results.online import CoefficientChange
 from seatrial.core.values import Array, InputError
 
-_MIN_INFORMATION_SHARE = 1e-6
+_MIN_INFORMATION_SHARE = 1e-6  # share of a direction's variance, below which new data added nothing: rounding
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,20 +17,20 @@ from seatrial.core.values import Array, InputError
 from seatrial.estimation.estimate.online.gaussian_state import GaussianState
 from seatrial.estimation.estimate.online.stepping import FilterState, stepper_for
 
-_HISTORY_SAMPLES = 12
-_FORGETTING_STEPS = 200
+_HISTORY_SAMPLES = 12  # inputs kept before the sample in work, for the spline; chosen
+_FORGETTING_STEPS = 200  # forgetting acts so many times in a time constant; chosen
 
 
 @dataclass(frozen=True)
 class Forgetting:
-    """Slow change: older samples count exp(-age / seconds) times.
+    """Slow change: older samples count exp(-age / time_constant) times.
 
-    Information of what is not excited falls to that of `widest` and no further (Kulhavy & Zarrop 1993). Standard errors
-    are those of the weighted sum of squares, up to sqrt 2 more than the spread of a ship that stays the same.
+    Information of what is not excited falls to that of `widest_deviation` and no further (Kulhavy & Zarrop 1993).
+    Standard errors are those of the weighted sum of squares, at most sqrt 2 times the spread of an unchanging ship.
 
     Attributes:
-        seconds: infinite: nothing is forgotten.
-        widest: standard deviation of each coefficient where all is forgotten, (k,), in its unit.
+        time_constant: s; infinite: nothing is forgotten.
+        widest_deviation: standard deviation of each coefficient where all is forgotten, (k,), in its unit.
     """
 
     time_constant: float = np.inf
@@ -39,12 +39,12 @@ class Forgetting:
 
 @dataclass(frozen=True)
 class DivergenceGuard:
-    """When to distrust.
+    """Limits beyond which innovations are outliers or the filter has diverged.
 
     Attributes:
-        limit: an innovation of more standard deviations counts linearly (Huber 1964) and as an outlier.
-        memory: s over which innovations are averaged.
-        unsound: mean squared innovation, in its own variance, beyond which the filter has lost the ship.
+        huber_limit: an innovation of more standard deviations counts linearly (Huber 1964) and as an outlier.
+        averaging_seconds: s over which innovations are averaged.
+        divergence_ratio: mean squared innovation over its variance, beyond which the filter has diverged.
     """
 
     huber_limit: float = 6.0

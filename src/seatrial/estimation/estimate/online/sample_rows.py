@@ -4,7 +4,7 @@ import numpy as np
 
 from seatrial.core.values import Array
 
-_INITIAL_CAPACITY = 256
+_INITIAL_CAPACITY = 256  # rows; chosen
 
 
 class SampleRows:

@@ -17,8 +17,8 @@ from seatrial.physics.simulate.linear import SUBSTEPS, DiscreteMatrices, discret
 LOOK_AHEAD = 6
 """Samples that a smooth input is known ahead of its step: a spline's end is felt by 4e-4 of itself there."""
 
-_MAX_MOVE_ERRORS = 0.2
-_MAX_MOVE_SHARE = 0.01
+_MAX_MOVE_ERRORS = 0.2  # standard errors; see `ExactStepper`; chosen
+_MAX_MOVE_SHARE = 0.01  # share of the coefficient; see `ExactStepper`; chosen
 
 # of `follow_linear`: de, dg, dc, dd, plant, seen, at
 _Linearisation = tuple[Array, Array, Array, Array, Array, Array, Array]
@@ -100,11 +100,11 @@ class ExactStepper:
     """Affine models by exact propagators; smooth inputs along a spline in straight pieces, as in `simulate.linear`.
 
     The pieces of a sample are multiplied together once. That is done again when a coefficient has moved by a fifth of
-    its standard error or by one per cent, which is looked at every `ROWS` samples; until then its move acts to first
+    its standard error or by one per cent, checked every `CHECK_ROWS` samples; until then its move acts to first
     order.
     """
 
-    CHECK_ROWS = 16
+    CHECK_ROWS = 16  # samples between two checks; chosen
 
     def __init__(self, model: Model, names: tuple[str, ...], outputs: tuple[str, ...], dt: float, substeps: int):
         nx, k = len(model.states), len(names)
