@@ -15,6 +15,7 @@ from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE
 from seatrial_studies.swarm_search import STEP, SearchData
 
 MOTION_NOISE = np.array([HEAVE_NOISE, PITCH_NOISE])
+# tolerance at which the fit of noise-free data ends; our choice
 _EXACT = 1e-8
 
 

@@ -26,7 +26,9 @@ from seatrial.physics.simulate import (
 from seatrial_studies.published_ship import SHIP, SIGNIFICANT_HEIGHT, SPEED, theoretical_coefficients
 from seatrial_studies.seaway import FIN, box_hull, fin_commands
 
+# s, sampling interval of the papers' records
 STEP = 0.5
+# samples of 200 s, both ends counted
 SAMPLES = 401
 
 

@@ -20,6 +20,7 @@ from seatrial.estimation.predict import HoldoutProtocol, predict_run, session_nu
 from seatrial_studies.alexandersson2022.published import Turn
 from seatrial_studies.cross_validation import cross_validate, fit_folds
 
+# s, length of the windows that are predicted; our choice
 WINDOW_S = 30.0
 
 

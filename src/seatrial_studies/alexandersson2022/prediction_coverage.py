@@ -17,7 +17,9 @@ from seatrial.physics.simulate import SOLAS_SLEW_RATE, manoeuvre
 from seatrial_studies.alexandersson2022.published import MEASURED_TURNS, SIDES
 from seatrial_studies.alexandersson2022.window_bands import BandCoverage, band_coverage, holdout_windows
 
+# s, length of the windows that are predicted; our choice
 WINDOW_S = 30.0
+# limits of our checks: half width [%], shares of samples inside 95 % bands, least share of headings of Z_35_05
 HALF_WIDTH_LIMIT, SHARE_LIMITS, HELD_OUT_SHARE = 10.0, (0.88, 0.99), 0.80
 _LIMITED_MEASURES = ("tactical diameter",)
 _MEASURES = {"advance_L": ("advance", "advance"), "tactical_diameter_L": ("tactical diameter", "diameter")}

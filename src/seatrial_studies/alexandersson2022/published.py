@@ -6,6 +6,7 @@ SOURCE = (
     "Alexandersson, Mao & Ringsberg 2022, System identification of vessel manoeuvring models, "
     "Ocean Engineering 266, 112940, doi 10.1016/j.oceaneng.2022.112940"
 )
+# m, length of the KVLCC2 model
 LENGTH = 7.0
 SIDES = ("port", "starboard")
 
@@ -40,6 +41,7 @@ RERUN_DIAMETER = {"port": 6.1, "starboard": 3.0}
 # the same: lower and upper value over its variants, open loop from rudder and propeller rate
 RERUN_HEADING = (11.2, 11.7)
 RERUN_POSITION = (10.0, 10.4)
+# s of computing time, the same code
 RERUN_SECONDS = 184.0
 
 

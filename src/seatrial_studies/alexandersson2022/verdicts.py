@@ -12,7 +12,9 @@ from seatrial_studies.alexandersson2022.reproduction import BenchmarkReproductio
 from seatrial_studies.alexandersson2022.tables import validation_prediction
 
 NEEDS_FULL_VERSION = "needs one run left out at a time: repeat without --quick"
+# per cent that the paper accepts; least ratio at which records count as quiet, ours; the normal 97.5 % point
 ACCEPTED_PERCENT, QUIET_RATIO, TWO_SIDED_95 = 5.0, 3.0, 1.96
+# limits of our own checks: deg, m, s of the fit, s of identify, deg of a window
 HEADING_LIMIT, POSITION_LIMIT, FIT_LIMIT, IDENTIFY_LIMIT, WINDOW_LIMIT = 11.0, 6.0, 5.0, 18.0, 1.6
 
 

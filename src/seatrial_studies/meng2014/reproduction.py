@@ -25,11 +25,16 @@ SOURCE = (
     "swarm optimization algorithm (in Chinese), Ship Science and Technology 2014(7), 37-40, "
     "doi 10.3404/j.issn.1672-7649.2014.07.0083"
 )
+# deg, headings of the paper's tables
 HEADINGS = (0, 45, 90, 135, 180)
+# m, significant height assumed for sea state 3
 SEA_STATE_3 = 0.88
 NOISE = (HEAVE_NOISE, PITCH_NOISE)
+# iterations and runs of each search; our choice
 ITERATIONS, QUICK_ITERATIONS, RUNS, QUICK_RUNS = 1000, 400, 5, 3
+# shares of the iterations that the shorter searches have; our choice
 SHORTER_SHARES = (0.2, 0.5)
+# half widths of the search box, shares of the truth; our choice
 NARROW_HALF_WIDTH, WIDE_HALF_WIDTH = 0.1, 0.5
 
 

@@ -10,6 +10,7 @@ from seatrial_studies.meng2014.reproduction import HEADINGS, BoxPlacement, Swarm
 from seatrial_studies.meng2014.verdicts import CloudSwarmEvidence
 from seatrial_studies.swarm_search import STEP, candidate_matrices
 
+# deg, heading of the figures
 FIGURE_HEADING = 135
 
 

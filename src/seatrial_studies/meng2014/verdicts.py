@@ -12,6 +12,7 @@ from seatrial_studies.meng2014.reproduction import HEADINGS, BoxPlacement, Cloud
 from seatrial_studies.output_error_fit import OutputErrorResults
 from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE
 
+# relative curvature below which a direction is lost in rounding
 SINGULAR_CURVATURE = 1e-11
 MOST_SHARE = 0.5
 # runs of one swarm stuck and not of the other in the same sea and box: fewer may be chance (sign test, 5 %)

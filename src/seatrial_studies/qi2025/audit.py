@@ -15,6 +15,7 @@ from seatrial_studies.qi2025.published import SearchAlgorithm, recomputed_error,
 from seatrial_studies.seaway import box_hull
 from seatrial_studies.swarm_search import SearchData, candidate_matrices, held_force_ship, simulate_search_data
 
+# per cent, errors that stand at the end of the search box
 SATURATED_RANGE = (-10.05, -9.3)
 
 

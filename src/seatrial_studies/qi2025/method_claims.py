@@ -10,6 +10,7 @@ from seatrial_studies.qi2025.published import PRINTED_SECONDS, SearchAlgorithm
 from seatrial_studies.qi2025.reproduction import FIGURE_HEADING, ITERATIONS, SearchSetting
 from seatrial_studies.swarm_search import STEP
 
+# s, end of the figures' time axis
 FIGURE_END_S = 200.0
 
 

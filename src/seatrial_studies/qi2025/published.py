@@ -44,6 +44,7 @@ _ERRORS = {
     (180, SearchAlgorithm.WHO): (0.02, 7.81, 0.65, 7.84, 4.62, 8.21, 2.56, 8.02),
     (180, SearchAlgorithm.IWHO): (0.09, 1.10, 0.29, 0.02, 0.12, 0.10, 0.32, 0.17),
 }
+# s of computing time as printed, by heading in degrees
 PRINTED_SECONDS = {
     90: {SearchAlgorithm.PSO: 7.903, SearchAlgorithm.WHO: 0.935, SearchAlgorithm.IWHO: 1.122},
     135: {SearchAlgorithm.PSO: 7.661, SearchAlgorithm.WHO: 0.928, SearchAlgorithm.IWHO: 1.194},

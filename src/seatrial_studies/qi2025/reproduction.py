@@ -36,11 +36,13 @@ from seatrial_studies.swarm_search import (
     whole_record_objective,
 )
 
+# iterations of a search, runs of the full and of the quick version
 ITERATIONS, RUNS, QUICK_RUNS = 200, 10, 5
 # how often the ten runs are made again, for the scatter of what they give
 TEN_RUN_REPEATS, QUICK_TEN_RUN_REPEATS = 10, 3
 # the heading of the paper's figures, whose coefficients it does not print
 FIGURE_HEADING = 45
+# half widths of the search box, shares of the truth
 NARROW_HALF_WIDTH, WIDE_HALF_WIDTH = 0.1, 0.5
 
 

@@ -17,6 +17,7 @@ from seatrial.physics.hydro import G, group_velocity
 from seatrial_studies.section2d.lewis import LewisForm
 
 Complex = NDArray[np.complex128]
+# kg/m^3, fresh water
 RHO = 1000.0
 TERMS, NODES = 16, 100
 

@@ -40,6 +40,7 @@ COEFFICIENT_MEANINGS = {
     "stiffness": "stiffness",
 }
 DOCUMENTED_DAMPING = {"heave": f"{tank.RIG_DAMPING:g} (rig)", "roll": None}
+# the normal distribution's 97.5 % point
 TWO_SIDED_95 = 1.96
 LEAST_CAMERA_SWAY = 1e-6
 

@@ -34,6 +34,7 @@ from seatrial_studies.song2025.audited_tables import (
 from seatrial_studies.song2025.craft_models import reference_record
 from seatrial_studies.song2025.published import MotionEquation, PublishedManoeuvre
 
+# kg/m^3, customary densities
 FRESH_WATER_DENSITY, SALT_WATER_DENSITY = 1000.0, 1025.0
 
 

@@ -24,6 +24,7 @@ from seatrial_studies.song2025.craft_models import (
 from seatrial_studies.song2025.generalisation import prediction_accuracy
 from seatrial_studies.song2025.published import Accuracy, PublishedManoeuvre, Table2Column, printed_coefficients
 
+# deg, nozzle angles of the zigzags and of the turn
 ZIGZAGS, TURN_ANGLE = (10, 20, 35), 20
 
 

@@ -36,9 +36,13 @@ from seatrial_studies.song2025.candidates import thirteen_coefficient_model
 from seatrial_studies.song2025.craft_models import TRUTH, reference_record
 from seatrial_studies.song2025.published import PublishedManoeuvre
 
+# s, windows of the weak form; series of noise; our choice
 WINDOW_S, NOISE_SERIES = 20.0, 6
+# support vectors: tube in standard deviations, penalty C; our choice
 TUBE_WIDTHS, SVR_PENALTIES = (0.1, 0.01, 0.001), (1.0, 10.0)
+# m/s, standard deviations of white noise in u and v; our choice
 VELOCITY_NOISE = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
+# rho of eq. (17), from none to full differences
 QUASI_DIFFERENCES = (0.0, 0.5, 0.9, 0.99, 1.0)
 YAW_LENGTH = 9.8  # m: noise in r is that in u and v over one ship length
 

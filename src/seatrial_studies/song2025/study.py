@@ -18,6 +18,7 @@ from seatrial_studies.song2025.tables import tables
 from seatrial_studies.song2025.verdicts import checks, claims
 
 QUESTION = "Do support vectors identify the coefficients of a waterjet craft from zigzags, and what does better?"
+# deg, nozzle angle of the paper's turn
 TURN_ANGLE = 35.0
 
 

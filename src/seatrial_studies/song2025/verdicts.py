@@ -17,9 +17,11 @@ from seatrial_studies.song2025.published import (
 )
 from seatrial_studies.song2025.reproduction import EstimatorResult, true_coefficients
 
+# limits of our own verdicts and checks: relative errors, a correlation that is good, a loss of it that goes unnoticed
 CENTRAL_LIMIT, EXACT_LIMIT, NEAR_LIMIT, GOOD_CC, UNNOTICED_CC_LOSS = 1e-3, 1e-8, 0.05, 0.98, 1e-4
 # a condition number that is severe (Belsley, Kuh & Welsch 1980: 30 squared), a sensitivity that is slight
 SEVERE_CONDITION, SLIGHT_SENSITIVITY = 900.0, 0.05
+# rms error over its standard error that agrees with the bound; our choice
 BOUND_RATIO_RANGE = (0.5, 1.6)
 
 

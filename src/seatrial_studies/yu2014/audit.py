@@ -26,6 +26,7 @@ from seatrial_studies.yu2014.published import (
 )  # fmt: skip
 from seatrial_studies.yu2014.published_loop import DESIGN_SEA, RollResponse, effective_slope, performance, roll_response
 
+# bits, longest code that is tried
 LONGEST_CODE = 24
 PRINTED_DIGITS = 3
 

@@ -20,6 +20,7 @@ from seatrial_studies.yu2014.published_loop import (
 )
 from seatrial_studies.yu2014.table_1_fit import Table1Fit
 
+# s, s and lines of the sea; our choice
 DURATION, SAMPLE, LINES = 200.0, 0.25, 300
 
 

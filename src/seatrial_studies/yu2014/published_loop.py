@@ -28,6 +28,7 @@ from seatrial.physics.sea import Spectrum, ittc
 from seatrial_studies.yu2014.published import DESIGN_ROW, HEIGHT, PUBLISHED_LOOP, PUBLISHED_VALUES, TARGET
 
 HULL_FACTOR = HullFactor(100.0, 10.5, 3.4)
+# m/s, by definition
 KNOT = 1852.0 / 3600.0
 PREAMPLIFIER_LABELS = {Preamplifier.PRINTED: "as printed", Preamplifier.WASHOUT: "washout"}
 

@@ -15,6 +15,7 @@ from seatrial_studies.yu2014.published import LOWER, PUBLISHED_VALUES, RECORD_SE
 from seatrial_studies.yu2014.published_loop import FinObjective, objective_values, performance
 from seatrial_studies.yu2014.state_space import state_space
 
+# searches in the full and in the quick version; our choice
 SEEDS, QUICK_SEEDS = 12, 4
 BITS = 17
 BOX = Box(LOWER, UPPER)

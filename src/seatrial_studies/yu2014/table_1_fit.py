@@ -72,7 +72,7 @@ class Table1Fit:
 
 
 def fit_table_1(preamplifier: Preamplifier, *, following_is_zero: bool) -> Table1Fit:
-    """Fit table 1 by least squares of logarithms, in both senses of the heading."""
+    """Fit K_q and the level to the GA's column, then the baseline's gains, by least squares of logarithms."""
     printed, traditional = _printed_logs()
 
     def residuals(x: Array) -> Array:

@@ -15,6 +15,7 @@ THREE_GAIN_LIMIT, FIVE_GAIN_LIMIT = 0.62, 0.70
 ON_FRONT = 0.99
 ELSEWHERE_LIMIT = 0.8
 TIME_RATIO_LIMIT = 1e-3
+# rms log errors up to which table 1 and its baseline count as fitted; our choice
 FIT_ERROR, BASELINE_ERROR = 0.25, 0.30
 REDUCTION_TOLERANCE = 2.0  # points of reduction
 
