@@ -13,8 +13,6 @@ EMPTY_WORDS = frozenset(
 
 # In figures `left` is a side, next to `right` and `top`.
 SIDES = ("left",)
-# Names that still stand for two things, and for which.
-SHARED_NAMES = {"Box": "a rectangle of a figure, and the bounds of a search"}
 
 
 def _files() -> list[SourceFile]:
@@ -27,7 +25,7 @@ def test_a_public_class_name_stands_for_one_thing() -> None:
         for node in ast.walk(file.tree):
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 places[node.name].append(file.place(node))
-    assert {name: where for name, where in places.items() if len(where) > 1 and name not in SHARED_NAMES} == {}
+    assert {name: where for name, where in places.items() if len(where) > 1} == {}
 
 
 def test_no_class_function_attribute_or_parameter_is_a_word_that_names_nothing() -> None:

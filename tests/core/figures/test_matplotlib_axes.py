@@ -8,7 +8,7 @@ import pytest
 from seatrial.core.figures.chart import Chart, LegendEntry
 from seatrial.core.figures.marks import Area, Line, Marker, Points, Rectangle, Rule, Shape, Stroke, Text
 from seatrial.core.figures.matplotlib_axes import matplotlib_figure
-from seatrial.core.figures.panel import Axis, Box, Panel, row_axis
+from seatrial.core.figures.panel import Axis, Panel, Region, row_axis
 
 STROKE = Stroke("#123456", 1.0, "5 2")
 TWO = np.array([1.0, 2.0])
@@ -26,10 +26,20 @@ def close() -> Iterator[None]:
 
 
 def test_panels_become_axes_at_their_place_with_their_ranges() -> None:
-    panel = Panel(Box(100.0, 20.0, 200.0, 100.0), Axis((0.1, 100.0), "f [Hz]", is_logarithmic=True), Axis((0.0, 1.0)),
-                  (Line(TWO, TWO, STROKE),), "gain", is_y_down=True)  # fmt: skip
-    chart = Chart("c", (panel, panel), (LegendEntry("a", STROKE), LegendEntry("b", Marker(Shape.UP, 3.0, "#123456")),
-                                        LegendEntry("c", "#123456")), width=400.0)  # fmt: skip
+    panel = Panel(
+        Region(100.0, 20.0, 200.0, 100.0),
+        Axis((0.1, 100.0), "f [Hz]", is_logarithmic=True),
+        Axis((0.0, 1.0)),
+        (Line(TWO, TWO, STROKE),),
+        "gain",
+        is_y_down=True,
+    )
+    chart = Chart(
+        "c",
+        (panel, panel),
+        (LegendEntry("a", STROKE), LegendEntry("b", Marker(Shape.UP, 3.0, "#123456")), LegendEntry("c", "#123456")),
+        width=400.0,
+    )
     figure = matplotlib_figure(chart)
     first = figure.axes[0]
     assert len(figure.axes) == 2 and tuple(figure.get_size_inches()) == pytest.approx((4.0, chart.height() / 100.0))
@@ -46,7 +56,7 @@ def test_every_kind_of_mark_is_drawn() -> None:
         Rule(1.5, STROKE, is_vertical=True), Area(np.array([1.0, 2.0, 2.0]), np.array([0.0, 1.0, 0.0]), "#ffffff"),
         Rectangle(1.0, 0.0, 2.0, 1.0, "#ffffff", gap=1.0), Text(1.0, 0.5, "here", dx=3.0),
     )  # fmt: skip
-    panel = Panel(Box(50.0, 5.0, 200.0, 100.0), row_axis(("a", "b", "c")), Axis((0.0, 1.0)), marks)
+    panel = Panel(Region(50.0, 5.0, 200.0, 100.0), row_axis(("a", "b", "c")), Axis((0.0, 1.0)), marks)
     figure = matplotlib_figure(Chart("c", (panel,)))
     figure.canvas.draw()
     axes = figure.axes[0]
@@ -55,5 +65,5 @@ def test_every_kind_of_mark_is_drawn() -> None:
 
 
 def test_a_panel_without_frame_has_no_axis() -> None:
-    panel = Panel(Box(0.0, 0.0, 200.0, 100.0), Axis((0.0, 1.0)), Axis((0.0, 1.0)), has_frame=False)
+    panel = Panel(Region(0.0, 0.0, 200.0, 100.0), Axis((0.0, 1.0)), Axis((0.0, 1.0)), has_frame=False)
     assert not matplotlib_figure(Chart("c", (panel,))).axes[0].axison

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatrial.core.figures.panel import WIDTH, Axis, Box, Panel, row_axis, tiles
+from seatrial.core.figures.panel import WIDTH, Axis, Panel, Region, row_axis, tiles
 
-BOX = Box(10.0, 20.0, 100.0, 50.0)
+BOX = Region(10.0, 20.0, 100.0, 50.0)
 
 
 def test_values_grow_upwards_or_downwards() -> None:

@@ -4,7 +4,7 @@ import numpy as np
 
 from seatrial.core.figures.bands import BAND
 from seatrial.core.figures.marks import Area, Stroke
-from seatrial.core.figures.panel import Box
+from seatrial.core.figures.panel import Region
 from seatrial.core.figures.run import ChannelPanel, TimeCurve, channel_panel, run_chart
 from seatrial.core.figures.tracks import Track
 
@@ -28,7 +28,7 @@ def test_only_the_last_of_each_column_names_the_time() -> None:
 
 
 def test_a_band_is_drawn_below_its_curve_and_widens_the_axis() -> None:
-    plain = channel_panel(CHANNEL, Box(0.0, 0.0, 100.0, 100.0))
+    plain = channel_panel(CHANNEL, Region(0.0, 0.0, 100.0, 100.0))
     wide = channel_panel(ChannelPanel("u", CHANNEL.curves, np.full(300, -2.0), np.full(300, 2.0)), plain.box)
     assert isinstance(wide.marks[0], Area) and wide.marks[0].fill == BAND
     assert wide.y.ends[1] > 2.0 > plain.y.ends[1]

@@ -7,14 +7,14 @@ import pytest
 
 from seatrial.core.figures.chart import Chart, LegendEntry
 from seatrial.core.figures.marks import Area, Line, Mark, Marker, Points, Rectangle, Rule, Shape, Stroke, Text
-from seatrial.core.figures.panel import Axis, Box, Panel
+from seatrial.core.figures.panel import Axis, Panel, Region
 from seatrial.core.figures.svg_text import svg
 
 STROKE = Stroke("#123456", 1.0, "5 2")
 
 
 def drawn(*marks: Mark) -> str:
-    panel = Panel(Box(0.0, 0.0, 100.0, 100.0), Axis((0.0, 4.0)), Axis((0.0, 1.0)), marks, has_frame=False)
+    panel = Panel(Region(0.0, 0.0, 100.0, 100.0), Axis((0.0, 4.0)), Axis((0.0, 1.0)), marks, has_frame=False)
     return svg(Chart("c", (panel,), width=100.0))
 
 
@@ -55,20 +55,20 @@ def test_an_area_needs_three_points() -> None:
 
 def test_words_are_escaped_everywhere() -> None:
     hostile = '"><script>'
-    panel = Panel(Box(0, 0, 99, 99), Axis((0, 1), hostile), Axis((0, 1), hostile), (Text(0, 0, hostile),), hostile)
+    panel = Panel(Region(0, 0, 99, 99), Axis((0, 1), hostile), Axis((0, 1), hostile), (Text(0, 0, hostile),), hostile)
     text = svg(Chart(hostile, (panel,), (LegendEntry(hostile, "#ffffff"),)))
     assert "<script>" not in text and text.count("&lt;script&gt;") == 6
 
 
 @pytest.mark.parametrize("sample", [STROKE, Marker(Shape.UP, 4.0, "#123456"), "#123456"])
 def test_a_legend_has_a_sample_before_each_name(sample: Stroke | Marker | str) -> None:
-    panel = Panel(Box(0.0, 0.0, 100.0, 100.0), Axis((0.0, 4.0)), Axis((0.0, 1.0)), has_frame=False)
+    panel = Panel(Region(0.0, 0.0, 100.0, 100.0), Axis((0.0, 4.0)), Axis((0.0, 1.0)), has_frame=False)
     text = svg(Chart("c", (panel,), (LegendEntry("name", sample),)))
     assert text.count("#123456") == 1 and text.index("#123456") < text.index(">name<")
 
 
 def test_ticks_stand_at_their_values() -> None:
-    panel = Panel(Box(50.0, 10.0, 100.0, 100.0), Axis((0.0, 2.0), tick_count=3), Axis((0.0, 1.0), has_labels=False))
+    panel = Panel(Region(50.0, 10.0, 100.0, 100.0), Axis((0.0, 2.0), tick_count=3), Axis((0.0, 1.0), has_labels=False))
     assert re.findall(r'<text x="([\d.]+)" y="123.0"[^>]*>([^<]*)', svg(Chart("c", (panel,)))) == [
         ("50.0", "0"), ("100.0", "1"), ("150.0", "2"),
     ]  # fmt: skip

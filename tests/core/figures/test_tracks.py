@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.figures.marks import Area, Stroke
-from seatrial.core.figures.panel import Box
+from seatrial.core.figures.panel import Region
 from seatrial.core.figures.tracks import Track, extents, hull_outline, is_slender, strip_height, track_panel
 
 STROKE = Stroke("#000000", 1.0)
@@ -15,21 +15,21 @@ SQUARE = Track(90.0 * SHARE, 80.0 * SHARE, SHARE, STROKE)
 
 @pytest.mark.parametrize("track", [NORTHERLY, SQUARE])
 def test_a_track_keeps_its_shape_and_stays_inside(track: Track) -> None:
-    panel = track_panel([track], 10.0, Box(0.0, 0.0, 400.0, 90.0))
+    panel = track_panel([track], 10.0, Region(0.0, 0.0, 400.0, 90.0))
     across, along = (panel.x.ends[1] - panel.x.ends[0]) / 400.0, (panel.y.ends[1] - panel.y.ends[0]) / 90.0
     assert across == pytest.approx(along)
     assert panel.x.ends[0] < 0.0 and panel.x.ends[1] > (300.0 if track is NORTHERLY else 80.0)
 
 
 def test_a_northerly_track_lies_on_its_side() -> None:
-    lying, standing = (track_panel([t], 0.0, Box(0.0, 0.0, 100.0, 100.0)) for t in (NORTHERLY, SQUARE))
+    lying, standing = (track_panel([t], 0.0, Region(0.0, 0.0, 100.0, 100.0)) for t in (NORTHERLY, SQUARE))
     assert lying.is_y_down and lying.x.name.startswith("x₀, north")
     assert not standing.is_y_down and standing.x.name.startswith("y₀, east")
 
 
 def test_hulls_stand_along_a_track_whose_heading_is_known() -> None:
     def hulls(track: Track, length: float) -> int:
-        return sum(isinstance(m, Area) for m in track_panel([track], length, Box(0.0, 0.0, 100.0, 100.0)).marks)
+        return sum(isinstance(m, Area) for m in track_panel([track], length, Region(0.0, 0.0, 100.0, 100.0)).marks)
 
     assert hulls(SQUARE, 5.0) == 7 and hulls(SQUARE, 0.0) == 0 == hulls(NORTHERLY, 5.0)
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from seatrial.core.figures.chart import Chart, LegendEntry
 from seatrial.core.figures.marks import ACCENT, GREY, SECOND, Anchor, Mark, Rectangle, Rule, Stroke, Text
-from seatrial.core.figures.panel import WIDTH, Axis, Box, Panel, row_axis
+from seatrial.core.figures.panel import WIDTH, Axis, Panel, Region, row_axis
 from seatrial.core.figures.ticks import MARGIN
 from seatrial.core.text.numbers import DASH
 
@@ -24,7 +24,7 @@ def bars_chart(
     """Return bars with a legend; a dash, 0 or ∞ stands where there is no bar. None without values."""
     if not labels or not series:
         return None
-    box = Box(LEFT, 6.0, WIDTH - LEFT - 8.0, HEIGHT)
+    box = Region(LEFT, 6.0, WIDTH - LEFT - 8.0, HEIGHT)
     finite = [v for row in series.values() for v in row if v is not None and math.isfinite(v)]
     y = _log_axis(finite, unit) if is_logarithmic else _linear_axis(finite, unit)
     base = y.ends[0] if is_logarithmic else 0.0

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from seatrial.core.figures.chart import Chart, LegendEntry
 from seatrial.core.figures.marks import ACCENT, INK, SECOND, Array, Line, Stroke
-from seatrial.core.figures.panel import WIDTH, Axis, Box, Panel
+from seatrial.core.figures.panel import WIDTH, Axis, Panel, Region
 from seatrial.core.figures.sampling import decimated, thinned
 from seatrial.core.figures.ticks import span
 
@@ -30,10 +30,10 @@ class NamedCurve:
 def curves_chart(title: str, curves: Sequence[NamedCurve], x_name: str, y_name: str, *, is_map: bool = False) -> Chart:
     """Return curves with their legend; the axes of a map have equal scales."""
     x, y = span([c.x for c in curves]), span([c.y for c in curves])
-    box = Box(LEFT, 8.0, WIDTH - LEFT - 8.0, HEIGHT)
+    box = Region(LEFT, 8.0, WIDTH - LEFT - 8.0, HEIGHT)
     if is_map:
         scale = max((x[1] - x[0]) / box.width, (y[1] - y[0]) / (MAP_RATIO * HEIGHT))
-        box = Box(LEFT, 8.0, (x[1] - x[0]) / scale, (y[1] - y[0]) / scale)
+        box = Region(LEFT, 8.0, (x[1] - x[0]) / scale, (y[1] - y[0]) / scale)
     sampled = thinned if is_map else decimated
     styled = [(c, STROKES[k % len(STROKES)]) for k, c in enumerate(curves)]
     lines = tuple(Line(*sampled(c.x, c.y), stroke) for c, stroke in styled)

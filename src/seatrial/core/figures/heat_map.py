@@ -6,7 +6,7 @@ import numpy as np
 
 from seatrial.core.figures.chart import Chart
 from seatrial.core.figures.marks import Anchor, Array, Mark, Rectangle, Text, text_width
-from seatrial.core.figures.panel import WIDTH, Axis, Box, Panel, row_axis
+from seatrial.core.figures.panel import WIDTH, Axis, Panel, Region, row_axis
 from seatrial.core.text.numbers import exact, fixed, significant
 
 # numbers are left out from this number of columns on
@@ -34,7 +34,7 @@ def heat_map(title: str, rows: Sequence[str], columns: Sequence[str], values: Ar
     full = limit if limit is not None else float(np.abs(values[np.isfinite(values)]).max(initial=0.0)) or 1.0
     left = max(text_width(name) for name in rows) + 12.0
     side = float(np.clip((WIDTH - left - KEY_WIDTH) / len(columns), SMALLEST, LARGEST))
-    box = Box(left, 0.0, side * len(columns), side * len(rows))
+    box = Region(left, 0.0, side * len(columns), side * len(rows))
     inside = np.tri(*values.shape, dtype=bool) if is_lower else np.ones(values.shape, dtype=bool)
     marks = [
         m
@@ -90,5 +90,5 @@ def colour_key(left: float, limit: float, *, is_signed: bool, top: float = 0.0) 
     for k, share in enumerate(shares):
         marks.append(Rectangle(0.0, k, 1.0, k + 1.0, colour(share * limit, limit), gap=1.0))
         marks.append(Text(1.0, k + 1.0, exact(share * limit, 2), size=10.0, dx=4.0, dy=-3.0))
-    box = Box(left, top, KEY_SIZE, KEY_SIZE * len(shares))
+    box = Region(left, top, KEY_SIZE, KEY_SIZE * len(shares))
     return Panel(box, Axis((0.0, 1.0)), Axis((0.0, float(len(shares)))), tuple(marks), is_y_down=True, has_frame=False)

@@ -55,7 +55,7 @@ def row_axis(names: Sequence[str], *, has_grid: bool = False) -> Axis:
 
 
 @dataclass(frozen=True)
-class Box:
+class Region:
     """Rectangle of a figure in px, counted to the right and down."""
 
     left: float
@@ -84,7 +84,7 @@ class Panel:
         tick_size: font size of the ticks [px].
     """
 
-    box: Box
+    box: Region
     x: Axis
     y: Axis
     marks: tuple[Mark, ...] = ()
@@ -122,13 +122,13 @@ class Panel:
 
 
 def tiles(count: int, columns: int, height: float, *, start: float = 0.0, left: float = 64.0, right: float = 8.0,
-          gap: float = 26.0, top: float = 20.0) -> list[Box]:  # fmt: skip
+          gap: float = 26.0, top: float = 20.0) -> list[Region]:  # fmt: skip
     """Return boxes row by row between `start` and the right edge [px].
 
     `left` and `right` px are free beside each box, `gap` px between two rows.
     """
     tile = (WIDTH - start) / columns
     return [
-        Box(start + tile * (k % columns) + left, top + (height + gap) * (k // columns), tile - left - right, height)
+        Region(start + tile * (k % columns) + left, top + (height + gap) * (k // columns), tile - left - right, height)
         for k in range(count)
     ]

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from seatrial.core.figures.marks import GREY, Anchor, Mark, Text, text_width
-from seatrial.core.figures.panel import WIDTH, Axis, Box, Panel, row_axis
+from seatrial.core.figures.panel import WIDTH, Axis, Panel, Region, row_axis
 from seatrial.core.figures.ticks import Tick, whole_decades
 from seatrial.core.text.numbers import exact
 
@@ -17,7 +17,7 @@ def row_panel(names: Sequence[str], x: Axis, marks: Sequence[Mark], *, top: floa
               has_grid: bool = False) -> Panel:  # fmt: skip
     """Return a panel whose row k lies at y = k, the first on top; `top` and `right` px are free beside it."""
     left = min(MAX_NAME_SHARE * WIDTH, max(text_width(name, SMALL) for name in names) + 14.0)
-    box = Box(left, top, WIDTH - left - right, ROW * len(names))
+    box = Region(left, top, WIDTH - left - right, ROW * len(names))
     return Panel(box, x, row_axis(names, has_grid=has_grid), tuple(marks), is_y_down=True)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from seatrial.core.figures.bands import band, visible_edges
 from seatrial.core.figures.chart import Chart, LegendEntry
 from seatrial.core.figures.marks import Array, Line, Mark, Stroke
-from seatrial.core.figures.panel import WIDTH, Axis, Box, Panel, tiles
+from seatrial.core.figures.panel import WIDTH, Axis, Panel, Region, tiles
 from seatrial.core.figures.sampling import decimated
 from seatrial.core.figures.ticks import span
 from seatrial.core.figures.tracks import Track, is_slender, strip_height, track_panel
@@ -49,12 +49,12 @@ def run_chart(title: str, channels: Sequence[ChannelPanel], tracks: Sequence[Tra
     panels, left, top, columns, height = [], 0.0, 6.0, 3, HEIGHT
     if tracks and is_slender(tracks):
         width = WIDTH - LEFT - 8.0
-        box = Box(LEFT, top, width, max(MIN_STRIP, strip_height(tracks, width, length)))
+        box = Region(LEFT, top, width, max(MIN_STRIP, strip_height(tracks, width, length)))
         panels.append(track_panel(tracks, length, box, x_ticks=9, y_ticks=3))
         top = box.bottom + panels[0].depth() + 12.0
     elif tracks:
         side = TRACK_WIDTH - LEFT - 8.0
-        panels.append(track_panel(tracks, length, Box(LEFT, top, side, side)))
+        panels.append(track_panel(tracks, length, Region(LEFT, top, side, side)))
         left, columns = TRACK_WIDTH, 2
         height = max(HEIGHT - 10.0, side / max(math.ceil(len(channels) / columns), 1) - GAP + 4.0)
     boxes = tiles(len(channels), columns, height, start=left, left=LEFT, right=10.0, gap=GAP, top=top)
@@ -63,7 +63,7 @@ def run_chart(title: str, channels: Sequence[ChannelPanel], tracks: Sequence[Tra
     return Chart(title, tuple(panels), tuple(legend))
 
 
-def channel_panel(channel: ChannelPanel, box: Box, *, is_last: bool = True, x_ticks: int = 5, y_ticks: int = 4,
+def channel_panel(channel: ChannelPanel, box: Region, *, is_last: bool = True, x_ticks: int = 5, y_ticks: int = 4,
                   points: int = 400) -> Panel:  # fmt: skip
     """Return one channel over time; the last of a column names the time."""
     values, marks = [curve.values for curve in channel.curves], list[Mark]()

@@ -22,7 +22,7 @@ from seatrial.core.figures.marks import (
     Stroke,
     Text,
 )
-from seatrial.core.figures.panel import Box, Panel
+from seatrial.core.figures.panel import Panel, Region
 
 FONT = "Arial, Helvetica, 'Liberation Sans', 'DejaVu Sans', sans-serif"
 GRID, AXIS = Stroke("#ececec", 0.8), Stroke("#8a9299", 0.8)
@@ -126,7 +126,7 @@ def _mark(panel: Panel, mark: Mark) -> str:
             return _text(x, y, mark.words, mark.anchor, mark.size, mark.colour, mark.turn)
 
 
-def _is_inside(box: Box, px: Array, py: Array) -> NDArray[np.bool_]:
+def _is_inside(box: Region, px: Array, py: Array) -> NDArray[np.bool_]:
     across = (px >= box.left - EDGE) & (px <= box.right + EDGE)
     return across & (py >= box.top - EDGE) & (py <= box.bottom + EDGE)
 

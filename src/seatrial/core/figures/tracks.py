@@ -8,7 +8,7 @@ import numpy as np
 
 from seatrial.core.figures.bands import track_envelope
 from seatrial.core.figures.marks import Area, Array, Line, Mark, Stroke
-from seatrial.core.figures.panel import Axis, Box, Panel
+from seatrial.core.figures.panel import Axis, Panel, Region
 from seatrial.core.figures.sampling import thinned
 from seatrial.core.figures.ticks import span
 
@@ -56,8 +56,17 @@ def strip_height(tracks: Sequence[Track], width: float, length: float) -> float:
     return width * (shorter + length) / (longer + length)
 
 
-def track_panel(tracks: Sequence[Track], length: float, box: Box, *, room: Sequence[Track] = (), has_names: bool = True,
-                x_ticks: int = 5, y_ticks: int = 5, title: str = "") -> Panel:  # fmt: skip
+def track_panel(
+    tracks: Sequence[Track],
+    length: float,
+    box: Region,
+    *,
+    room: Sequence[Track] = (),
+    has_names: bool = True,
+    x_ticks: int = 5,
+    y_ticks: int = 5,
+    title: str = "",
+) -> Panel:
     """Return a panel at equal scales: north up, or to the right (east down) where the tracks are long and northerly.
 
     Args:

@@ -23,7 +23,7 @@ from seatrial.core.figures.marks import (
     Stroke,
     Text,
 )
-from seatrial.core.figures.panel import Axis, Box, Panel, tiles
+from seatrial.core.figures.panel import Axis, Panel, Region, tiles
 from seatrial.core.results.tuning import Controller, Tuning
 
 # loops drawn at most
@@ -85,7 +85,7 @@ def nyquist_chart(tuning: Tuning) -> Chart | None:
     marks += [Line(c.open_loop.real, c.open_loop.imag, stroke) for c, stroke in reversed(styled)]
     marks += [Points(np.array([-1.0]), np.zeros(1), Marker(Shape.PLUS, 4.0, INK, edge_width=1.6)),
               Text(-1.0, 0.0, "−1", size=10.0, dx=6.0, dy=-5.0)]  # fmt: skip
-    panel = Panel(Box(58.0, 4.0, width, NYQUIST_HEIGHT), Axis(REAL, "Re L", tick_count=7),
+    panel = Panel(Region(58.0, 4.0, width, NYQUIST_HEIGHT), Axis(REAL, "Re L", tick_count=7),
                   Axis(IMAGINARY, "Im L", tick_count=7), tuple(marks))  # fmt: skip
     return Chart("open loop near -1", (panel,), _legend(styled), width=width + 98.0)
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.core.figures.chart import Chart, LegendEntry
 from seatrial.core.figures.marks import ACCENT, GREY, INK, SECOND, Array, Line, Rule, Stroke
-from seatrial.core.figures.panel import Axis, Box, Panel, tiles
+from seatrial.core.figures.panel import Axis, Panel, Region, tiles
 from seatrial.core.figures.sampling import decimated
 from seatrial.core.figures.ticks import span
 from seatrial.core.results.tuning import ManoeuvreResponse, Tuning
@@ -51,14 +51,14 @@ def manoeuvre_chart(m: ManoeuvreResponse, tuning: Tuning) -> Chart | None:
     panels = [_panel(record, m.output, record.channel(output).unit, curves, above, is_last=not actuator)]
     if actuator:
         panels.append(
-            _manoeuvre_actuator(record, actuator, tuning, Box(below.left, below.top, below.width, ACTUATOR_HEIGHT))
+            _manoeuvre_actuator(record, actuator, tuning, Region(below.left, below.top, below.width, ACTUATOR_HEIGHT))
         )
     legend = [LegendEntry("response", RESPONSE), *(LegendEntry(name, stroke) for name, stroke in demands.items())]
     legend += [LegendEntry(counted(len(ships), "ship") + " drawn", Stroke(GREY, 1.2))] if ships else []
     return Chart(m.name, tuple(panels), tuple(legend))
 
 
-def _panel(record: Record, name: str, unit: str, curves: Sequence[tuple[Array, Stroke]], box: Box, *, is_last: bool,
+def _panel(record: Record, name: str, unit: str, curves: Sequence[tuple[Array, Stroke]], box: Region, *, is_last: bool,
            ranges: Sequence[Array] = (), limits: Sequence[float] = (), title: str = "", y_ticks: int = 5,
            points: int = POINTS, margin: float = 0.06) -> Panel:  # fmt: skip
     """Curves of one quantity over time with its limits, both in SI; `ranges`: what the axis shows besides."""
@@ -72,7 +72,7 @@ def _panel(record: Record, name: str, unit: str, curves: Sequence[tuple[Array, S
     return Panel(box, x, y, (*(Rule(limit * factor, LIMIT) for limit in limits), *lines), title)
 
 
-def _manoeuvre_actuator(record: Record, name: str, tuning: Tuning, box: Box) -> Panel:
+def _manoeuvre_actuator(record: Record, name: str, tuning: Tuning, box: Region) -> Panel:
     """The actuator, which begins at its steady value; its limits lie about that, and are drawn where they are near."""
     values, limit = record[name], tuning.constraints.limit
     steady = float(values[0])

@@ -6,7 +6,7 @@ import numpy as np
 
 from seatrial.core.figures.chart import Chart
 from seatrial.core.figures.marks import ACCENT, GREY, INK, SECOND, Anchor, Array, Line, Mark, Rule, Stroke, Text
-from seatrial.core.figures.panel import WIDTH, Axis, Box, Panel, tiles
+from seatrial.core.figures.panel import WIDTH, Axis, Panel, Region, tiles
 from seatrial.core.figures.sampling import decimated
 from seatrial.core.figures.ticks import span
 from seatrial.core.figures.tracks import Track, is_slender, strip_height, track_panel
@@ -44,7 +44,7 @@ def drift_angle(record: Record) -> Array | None:
     return np.arctan2(-record["v"], record["u"]) if {"u", "v"} <= set(record.channels) else None
 
 
-def _order_panel(design: Design, actuator: Actuator, box: Box, x: Axis) -> Panel:
+def _order_panel(design: Design, actuator: Actuator, box: Region, x: Axis) -> Panel:
     name, unit = actuator.name, channel_unit(actuator.name)
     factor, executed = display_unit(unit)[0], design.designed.executed
     ordered = [(order.time, order.values[name]) for order in design.orders if name in order.values]
@@ -57,7 +57,7 @@ def _order_panel(design: Design, actuator: Actuator, box: Box, x: Axis) -> Panel
     return Panel(box, x, Axis(span([limits], 0.1), channel_label(name, unit), tick_count=3), tuple(marks))
 
 
-def _drift_panel(design: Design, drift: Array | None, box: Box, x: Axis) -> Panel:
+def _drift_panel(design: Design, drift: Array | None, box: Region, x: Axis) -> Panel:
     degrees, limit = np.degrees(np.zeros(0) if drift is None else drift), math.degrees(design.limits.drift)
     limits = np.array([-limit, limit]) if math.isfinite(limit) else np.empty(0)
     marks: list[Mark] = [Rule(float(end), LIMIT) for end in limits]
@@ -77,7 +77,7 @@ def track_chart(design: Design) -> Chart | None:
     is_strip = is_slender([track, *circle])
     width = WIDTH - LEFT - RIGHT if is_strip else SQUARE_SHARE * WIDTH
     height = max(MIN_STRIP, strip_height([track, *circle], width, length)) if is_strip else width
-    panel = track_panel([track], length, Box(LEFT, 12.0, width, height), room=circle, x_ticks=7,
+    panel = track_panel([track], length, Region(LEFT, 12.0, width, height), room=circle, x_ticks=7,
                         y_ticks=3 if is_strip else 7)  # fmt: skip
     note: tuple[Mark, ...] = ()
     if math.isfinite(room):

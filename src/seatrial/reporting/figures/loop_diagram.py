@@ -20,7 +20,7 @@ from seatrial.core.figures.marks import (
     Stroke,
     Text,
 )
-from seatrial.core.figures.panel import WIDTH, Axis, Box, Panel
+from seatrial.core.figures.panel import WIDTH, Axis, Panel, Region
 from seatrial.core.results.tuning import Component
 from seatrial.core.values.channel_text import channel_letter
 
@@ -74,7 +74,7 @@ def loop_diagram(components: Sequence[Component], output: str, actuator: str) ->
         _wire((back, middle), (back, low), (26.0, low)),
         *_arrow((26.0, low), (26.0, middle + RADIUS)),
     ]
-    page = Box(0.0, 0.0, end + 26.0, low + 8.0)
+    page = Region(0.0, 0.0, end + 26.0, low + 8.0)
     panel = Panel(
         page, Axis((0.0, page.width)), Axis((0.0, page.height)), tuple(marks), is_y_down=True, has_frame=False
     )

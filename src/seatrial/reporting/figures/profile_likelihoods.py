@@ -6,7 +6,7 @@ import numpy as np
 
 from seatrial.core.figures.chart import Chart
 from seatrial.core.figures.marks import ACCENT, SECOND, Anchor, Line, Rule, Stroke, Text
-from seatrial.core.figures.panel import Axis, Box, Panel, tiles
+from seatrial.core.figures.panel import Axis, Panel, Region, tiles
 from seatrial.core.results import Profile
 from seatrial.core.values import display_unit
 from seatrial.core.values.channel_text import unit_text
@@ -30,7 +30,7 @@ def profile_chart(profiles: Sequence[Profile], units: Mapping[str, str]) -> Char
     return Chart("profile likelihoods", panels)
 
 
-def _panel(profile: Profile, unit: str, box: Box) -> Panel:
+def _panel(profile: Profile, unit: str, box: Region) -> Panel:
     factor, unit_shown = display_unit(unit)[0], unit_text(unit)
     values, costs = np.array(profile.values) * factor, np.array(profile.costs)
     order = np.argsort(values)

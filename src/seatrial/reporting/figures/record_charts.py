@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.core.figures.chart import Chart
 from seatrial.core.figures.marks import GREY, Anchor, Line, Mark, Text, text_width
-from seatrial.core.figures.panel import WIDTH, Axis, Box, Panel, tiles
+from seatrial.core.figures.panel import WIDTH, Axis, Panel, Region, tiles
 from seatrial.core.figures.sampling import decimated
 from seatrial.core.figures.ticks import span
 from seatrial.core.figures.tracks import Track, is_slender, strip_height, track_panel
@@ -101,7 +101,7 @@ def _track_rows(tracks: Sequence[tuple[str, Track]], length: float, top: float, 
         is_strip = columns == STRIP_COLUMNS
         height = max(MIN_STRIP, *(strip_height([t], inner, 0.06 * inner) for _, t in row)) if is_strip else inner
         for j, (name, track) in enumerate(row):
-            box = Box(WIDTH / columns * j + LEFT, top + TOP, inner, height)
+            box = Region(WIDTH / columns * j + LEFT, top + TOP, inner, height)
             panels.append(track_panel([track], length, box, has_names=False, x_ticks=4, y_ticks=2 if is_strip else 4,
                                       title=name))  # fmt: skip
         top += height + ROW_GAP

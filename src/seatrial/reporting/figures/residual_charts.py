@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.core.figures.chart import Chart
 from seatrial.core.figures.marks import ACCENT, INK, SECOND, Array, Line, Mark, Rectangle, Rule, Stroke
-from seatrial.core.figures.panel import Axis, Box, Panel
+from seatrial.core.figures.panel import Axis, Panel, Region
 from seatrial.core.figures.sampling import decimated
 from seatrial.core.figures.ticks import span
 from seatrial.core.results import Residuals
@@ -30,9 +30,9 @@ def residual_chart(residuals: Sequence[Residuals]) -> Chart | None:
     for k, r in enumerate(usable):
         top = 26.0 + k * (HEIGHT + GAP)
         row = [
-            _series(r, Box(66.0, top, 320.0, HEIGHT)),
-            _autocorrelation(r, Box(446.0, top, 210.0, HEIGHT)),
-            _histogram(r.values[np.isfinite(r.values)], Box(700.0, top, 150.0, HEIGHT)),
+            _series(r, Region(66.0, top, 320.0, HEIGHT)),
+            _autocorrelation(r, Region(446.0, top, 210.0, HEIGHT)),
+            _histogram(r.values[np.isfinite(r.values)], Region(700.0, top, 150.0, HEIGHT)),
         ]
         titles = ("residual", "autocorrelation, 95 % band", "against the normal") if k == 0 else ("", "", "")
         is_last = k == len(usable) - 1
@@ -41,7 +41,7 @@ def residual_chart(residuals: Sequence[Residuals]) -> Chart | None:
     return Chart("residuals, their autocorrelation and histogram", tuple(panels)) if panels else None
 
 
-def _series(r: Residuals, box: Box) -> Panel:
+def _series(r: Residuals, box: Region) -> Panel:
     unit = channel_unit(r.channel)
     values = r.values * display_unit(unit)[0]
     samples = np.arange(len(values), dtype=float)
@@ -50,8 +50,8 @@ def _series(r: Residuals, box: Box) -> Panel:
     return Panel(box, x, y, (Line(*decimated(samples, values, 500), Stroke(INK, 0.6)),))
 
 
-def _autocorrelation(r: Residuals, box: Box) -> Panel:
-    """Band +-1.96 / sqrt(n) of white residuals (Box, Jenkins & Reinsel 2008, section 2.1.6)."""
+def _autocorrelation(r: Residuals, box: Region) -> Panel:
+    """Band +-1.96 / sqrt(n) of white residuals (Region, Jenkins & Reinsel 2008, section 2.1.6)."""
     edge = NORMAL_95 / np.sqrt(np.isfinite(r.values).sum())
     rho, lags = r.autocorrelation, np.arange(len(r.autocorrelation)) / r.rate
     low = min(-0.25, float(np.nanmin(rho)) - 0.05) if len(rho) else -0.25
@@ -65,7 +65,7 @@ def _autocorrelation(r: Residuals, box: Box) -> Panel:
     return Panel(box, x, Axis((low, 1.05), tick_count=3), tuple(marks))
 
 
-def _histogram(values: Array, box: Box) -> Panel:
+def _histogram(values: Array, box: Region) -> Panel:
     spread = float(np.std(values)) or 1.0
     scaled = np.clip((values - np.mean(values)) / spread, -WIDEST, WIDEST)
     density, edges = np.histogram(scaled, bins=np.linspace(-WIDEST, WIDEST, BINS), density=True)

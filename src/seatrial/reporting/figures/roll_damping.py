@@ -5,7 +5,7 @@ import numpy as np
 from seatrial.core.figures.bands import band
 from seatrial.core.figures.chart import Chart, LegendEntry
 from seatrial.core.figures.marks import INK, Array, Line, Marker, Points, Shape, Stroke
-from seatrial.core.figures.panel import Axis, Box, Panel, tiles
+from seatrial.core.figures.panel import Axis, Panel, Region, tiles
 from seatrial.core.figures.ticks import span
 from seatrial.core.results import RollCharacteristics
 
@@ -32,7 +32,7 @@ def roll_damping_chart(roll: RollCharacteristics) -> Chart | None:
 
 
 def _panel(
-    roll: RollCharacteristics, swings: Array, curves: tuple[tuple[float, ...], ...], box: Box, name: str
+    roll: RollCharacteristics, swings: Array, curves: tuple[tuple[float, ...], ...], box: Region, name: str
 ) -> Panel:
     amplitude = np.degrees(np.array(roll.amplitude))
     middle, low, high = (np.array(curve) for curve in curves)

@@ -9,7 +9,7 @@ import numpy as np
 from seatrial.core.figures.chart import Chart
 from seatrial.core.figures.heat_map import colour, colour_key, text_colour
 from seatrial.core.figures.marks import INK, Anchor, Line, Mark, Rectangle, Stroke, Text
-from seatrial.core.figures.panel import WIDTH, Box, Panel, row_axis
+from seatrial.core.figures.panel import WIDTH, Panel, Region, row_axis
 from seatrial.core.results.tuning import OperatingPoint
 from seatrial.core.text.numbers import DASH, exact, fixed
 
@@ -44,7 +44,7 @@ def schedule_chart(points: Sequence[OperatingPoint]) -> Chart | None:
             marks += [Text(-0.5, -0.5, f"{exact(height, 3)} m", Anchor.END, dx=-5.0, dy=-6.0)] if k == 0 else []
             x = replace(columns, name="heading [deg]" if is_last else "", has_labels=is_last)
             y = replace(rows, name="speed [m/s]" if k == 0 else "", has_labels=k == 0)
-            box = Box(LEFT + k * (size[0] + GAP), top, *size)
+            box = Region(LEFT + k * (size[0] + GAP), top, *size)
             panels.append(Panel(box, x, y, tuple(marks), name if height == heights[0] else "", is_y_down=True,
                                 has_lines=False))  # fmt: skip
         top += size[1] + 26.0
