@@ -64,7 +64,7 @@ def test_what_was_amiss_is_counted_and_said(tmp_path: Path, run_command: Callabl
     assert run_command("follow", trial_at(tmp_path, lines), "--once") == 0
     said = capsys.readouterr().out
     assert "1491 samples accepted; 1 late, 1 repeated, 10 missing, 1 garbled" in said
-    assert "the latest: " in said
+    assert "latest fault: " in said
 
 
 @pytest.mark.parametrize(
