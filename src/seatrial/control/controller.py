@@ -10,6 +10,9 @@ from seatrial.core.values import Array
 from seatrial.physics.loops import TransferLoop, margins
 from seatrial.physics.loops.margins import frequency_band
 
+# relative excess over a limit that rounding explains; far below any margin that matters, our choice
+_ROUNDING = 1e-9
+
 _POINTS = 400  # frequencies of the curves in the result, evenly in the logarithm; chosen
 
 
@@ -49,12 +52,12 @@ def violated_restrictions(evaluator: GainEvaluator, evaluation: GainEvaluation) 
         return ("stability: the closed loop is unstable",)
     limits, worst = evaluator.task.constraints, evaluation.variances[0].max(axis=0)
     said = []
-    if evaluation.excess[0, 0] > 1e-9:
+    if evaluation.excess[0, 0] > _ROUNDING:
         said.append(f"Ms {evaluation.Ms[0]:.3g} where {limits.Ms:.3g} is allowed")
     for i, (what, limit, share) in enumerate(
         (("angle", limits.limit, limits.saturation), ("rate", limits.rate, limits.rate_saturation)), start=1
     ):
-        if evaluation.excess[0, i] > 1e-9:
+        if evaluation.excess[0, i] > _ROUNDING:
             said.append(
                 f"{100.0 * exceedance_share(limit, float(worst[i])):.0f} % of the actuator's {what} "
                 "amplitudes beyond its limit "

@@ -17,7 +17,7 @@ SERIES = 3
 def coverage(repository: Path) -> ModuleType:
     sys.path.insert(0, str(repository / "benchmarks"))
     try:
-        return importlib.import_module("coverage")
+        return importlib.import_module("interval_coverage")
     finally:
         sys.path.pop(0)
 

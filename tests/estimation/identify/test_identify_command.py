@@ -24,9 +24,9 @@ def test_identify_tells_what_the_records_tell(told: Path) -> None:
     assert {"structural", "directions", "effective_parameters"} <= set(fit["identifiability"])
     assert all({"combination", "standard_deviation", "text"} <= set(d) for d in fit["identifiability"]["directions"])
     assert fit["identifiability"]["effective_parameters"] == 2
-    assert {"method", "whiteness_p", "process", "measurement"} <= set(fit["noise"])
+    assert {"method", "whiteness_p", "process", "measurement"} <= set(fit["noise_model"])
     (prediction,) = fit["validation"]
-    assert prediction["extrapolation_index"] == pytest.approx(1.0, abs=0.3)
+    assert prediction["extrapolation"]["index"] == pytest.approx(1.0, abs=0.3)
     bounded = [m for m in prediction["measures"].values() if m["lower"] is not None]
     assert len(bounded) == len([m for m in prediction["measures"].values() if m["simulated"] is not None])
     assert all(m["lower"] <= m["simulated"] <= m["upper"] for m in bounded)

@@ -106,7 +106,7 @@ def test_both_axes_of_the_track_share_their_discrepancy(rng: np.random.Generator
     """North and east depend on the course the run happened to take."""
     track = [
         replace(missed(k, rng), errors={"x0": np.full(50, 1.0), "y0": np.zeros(50)},
-                foreseen={"x0": np.full(50, 1e-3), "y0": np.full(50, 1e-3)})
+                predicted_sd={"x0": np.full(50, 1e-3), "y0": np.full(50, 1e-3)})
         for k in range(5)
     ]  # fmt: skip
     found = discrepancy(track)

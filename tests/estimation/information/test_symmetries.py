@@ -371,7 +371,7 @@ def test_free_parameters_that_trade_are_refused_unless_a_prior_settles_it() -> N
     ):
         refuse_unidentifiable(model, MOTION)
     half = model.with_parameters(model.parameters.with_priors({"A_j": Prior(0.035, 0.003)}))
-    with pytest.raises(InputError, match=r"apart: x_T, N_v, N_r, N_rr and I_z \+ J_z can"):
+    with pytest.raises(InputError, match=r"free parameters: x_T, N_v, N_r, N_rr and I_z \+ J_z can"):
         refuse_unidentifiable(half, MOTION)
     both = half.with_parameters(half.parameters.with_priors({"x_T": Prior(-4.4, 0.1)}))
     refuse_unidentifiable(both, MOTION)
@@ -388,10 +388,10 @@ def test_fixing_one_of_those_named_for_each_settles_everything() -> None:
 def test_measured_forces_tell_what_records_cannot() -> None:
     """Captive tests give the scale of all forces (S1) and of the yaw moment (S2); still air tells nothing of wind."""
     model = freed(waterjet(), "A_j", "m_x", "m_y", "J_z", "x_T")
-    with pytest.raises(InputError, match="no record can tell"):
+    with pytest.raises(InputError, match="no record can distinguish"):
         refuse_unidentifiable(model, MOTION)
     refuse_unidentifiable(model, MOTION, ("X_sum", "Y_sum", "N_sum"))
-    with pytest.raises(InputError, match="apart: x_T, N_v, N_r, N_rr and I_z"):
+    with pytest.raises(InputError, match="free parameters: x_T, N_v, N_r, N_rr and I_z"):
         refuse_unidentifiable(model, MOTION, ("X_sum", "Y_sum"))
     tanker = esso_osaka().applied_to(mmg())
     tanker = tanker.with_parameters(tanker.parameters.only_free(["C_X0", "C_X1", "C_X3", "C_Y1", "rho_air"]))

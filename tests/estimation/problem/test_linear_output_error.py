@@ -29,7 +29,7 @@ def data_of(model, **voyage):
 @pytest.mark.parametrize(
     ("model", "voyage"),
     [
-        (heave_pitch, {"dt": 0.1, "every": 5}),
+        (heave_pitch, {"dt": 0.1, "motion_stride": 5}),
         (heave_pitch_zoh, {"dt": 0.5}),
         (heave_pitch, {"dt": 0.5, "has_waves": False}),
     ],
@@ -94,7 +94,7 @@ def test_a_run_beyond_all_bounds_costs_infinitely_much():
 
 
 def test_what_is_not_measured_does_not_count():
-    truth, data = data_of(heave_pitch(), dt=0.1, every=5)
+    truth, data = data_of(heave_pitch(), dt=0.1, motion_stride=5)
     silent = replace(data, measured=np.full_like(data.measured, np.nan))
     problem = LinearOutputError(truth, silent, NOISE, np.zeros(4))
     normal = problem.normal(problem.start(), problem.given_initial_states())

@@ -174,7 +174,7 @@ def test_models_and_points_that_do_not_go_together_are_refused() -> None:
 
 
 def test_tables_that_say_nothing_are_refused() -> None:
-    with pytest.raises(InputError, match="no force at all"):
+    with pytest.raises(InputError, match="hold no force"):
         replace(points(), forces={"Y": np.full(len(points()), np.nan)})
     with pytest.raises(InputError, match="'Y' has no positive standard deviation"):
         replace(points(), sd={"X": 1.0, "Y": 0.0, "N": 1.0})
@@ -182,5 +182,5 @@ def test_tables_that_say_nothing_are_refused() -> None:
         replace(points(), motion={s: x for s, x in points().motion.items() if s != "r"})
     holed = points().motion["u"].copy()
     holed[3] = np.nan
-    with pytest.raises(InputError, match="'u' is no number in point 4"):
+    with pytest.raises(InputError, match="'u' is not a number in point 4"):
         replace(points(), motion={**points().motion, "u": holed})

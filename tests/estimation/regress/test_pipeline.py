@@ -69,4 +69,4 @@ def test_cleaning_looks_at_the_velocities() -> None:
 def test_a_block_shorter_than_a_manoeuvre_is_refused() -> None:
     """Two hundredths of 415 s hold no execute."""
     with pytest.raises(InputError, match="shorter than the longest manoeuvre"):
-        replace(Pipeline(), share=0.98).estimate(BLANK, [zigzags()])
+        replace(Pipeline(), training_share=0.98).estimate(BLANK, [zigzags()])
