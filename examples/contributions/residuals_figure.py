@@ -4,10 +4,10 @@ import numpy as np
 
 from seatrial.core.figures.chart import Chart, LegendEntry
 from seatrial.core.figures.marks import ACCENT, SECOND, Line, Rule, Stroke
-from seatrial.core.figures.panel import WIDTH, Axis, Box, Panel
+from seatrial.core.figures.panel import WIDTH, Axis, Panel, Region
 from seatrial.core.values import Array
 
-PANEL = Box(64.0, 20.0, WIDTH - 84.0, 220.0)  # [px] leaves room for the numbers of both axes; chosen by eye
+PANEL = Region(64.0, 20.0, WIDTH - 84.0, 220.0)  # [px] leaves room for the numbers of both axes; chosen by eye
 TWO_SIDED = 1.96  # [-] quantile of the normal distribution that 95 % lie within on both sides
 RESIDUAL, LIMIT = Stroke(ACCENT, 1.2), Stroke(SECOND, 1.0, "4 3")  # [px] widths, and the dashes of the limit
 

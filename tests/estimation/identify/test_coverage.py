@@ -28,7 +28,7 @@ def test_intervals_hold_what_is_measured(coverage: ModuleType) -> None:
     assert len(told) > 12 * SERIES
     assert {t.kind for t in told} >= {"overshoot_deg", "tactical_diameter_L", "advance_L"}
     assert np.mean([t.is_inside for t in told]) >= 0.85
-    halves = [t.half / t.measured for t in told if t.kind == "tactical_diameter_L"]
+    halves = [t.half_width / t.measured for t in told if t.kind == "tactical_diameter_L"]
     assert 0.003 < np.median(halves) < 0.1
 
 
