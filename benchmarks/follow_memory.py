@@ -13,8 +13,8 @@ import numpy as np
 from seatrial.core.results.online import Sample
 from seatrial.core.values import NOTATION
 from seatrial.data.read import ColumnSpec, Layout
-from seatrial.data.trial.stream_settings import StreamSource
-from seatrial.data.trial.trial import Stream, Trial
+from seatrial.data.trial.stream import Stream, StreamSource
+from seatrial.data.trial.trial import Trial
 from seatrial.estimation.identify.online import OnlineEstimator
 from seatrial.physics.models.qi2025 import SHIP
 from seatrial_studies.output_error_fit import with_physics_start

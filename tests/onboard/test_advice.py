@@ -9,8 +9,8 @@ from seatrial.core.results.online import EstimatorPhase, Snapshot
 from seatrial.core.values import NOTATION, Channel, Record, Ship
 from seatrial.data.example_series.series import JET_VELOCITY, SENSOR_NOISE
 from seatrial.data.read import ColumnSpec, Layout
-from seatrial.data.trial.stream_settings import StreamSource
-from seatrial.data.trial.trial import Stream, Trial
+from seatrial.data.trial.stream import Stream, StreamSource
+from seatrial.data.trial.trial import Trial
 from seatrial.onboard.advice import ManoeuvreAdviser, advice, ranked_candidates
 from seatrial.onboard.candidate_manoeuvres import candidate_manoeuvres, fisher_information
 from seatrial.physics.models.heave_pitch import heave_pitch

@@ -10,8 +10,7 @@ from tests.onboard.sentences import sentence
 
 from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, Layout
-from seatrial.data.trial.stream_settings import StreamSource
-from seatrial.data.trial.trial import Stream
+from seatrial.data.trial.stream import Stream, StreamSource
 from seatrial.onboard.sample import Sample, SampleSource
 from seatrial.onboard.sources import open_source
 

@@ -16,8 +16,7 @@ from seatrial.core.results.online import NO_SAMPLE, SampleCounts, Snapshot
 from seatrial.core.values import ProgressReporter
 from seatrial.data.trial import Trial
 from seatrial.data.trial.follow_table import require_stream
-from seatrial.data.trial.stream_settings import StreamSource
-from seatrial.data.trial.trial import Stream
+from seatrial.data.trial.stream import Stream, StreamSource
 from seatrial.estimation.identify import identify
 from seatrial.estimation.identify.online import OnlineEstimator
 from seatrial.onboard.advice import ManoeuvreAdviser

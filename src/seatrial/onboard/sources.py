@@ -5,8 +5,7 @@ from typing import Protocol
 
 from seatrial.core.results.online import SampleCounts
 from seatrial.core.values import InputError
-from seatrial.data.trial.stream_settings import StreamSource
-from seatrial.data.trial.trial import Stream
+from seatrial.data.trial.stream import Stream, StreamSource
 from seatrial.onboard.columns import ColumnReader
 from seatrial.onboard.lines import LineBatch, LineSource
 from seatrial.onboard.nmea import NmeaReader

@@ -8,7 +8,7 @@ import numpy as np
 
 from seatrial.core.results.online import SampleCounts, Snapshot
 from seatrial.core.values import InputError
-from seatrial.data.trial.trial import Stream
+from seatrial.data.trial.stream import Stream
 from seatrial.onboard.journal import Journal, RunEntry
 from seatrial.onboard.run_buffer import RunBuffer
 from seatrial.onboard.sample import Sample

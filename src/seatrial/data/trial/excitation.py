@@ -6,10 +6,9 @@ from pathlib import Path
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Ship
 from seatrial.data.trial.schema import ExcitationTable, WavesTable
-from seatrial.data.trial.trial import WaveEncounter
 from seatrial.physics.hydro.dispersion import G
 from seatrial.physics.hydro.excitation import BoxHull, Excitation
-from seatrial.physics.sea.encounter import speed_factor
+from seatrial.physics.sea.encounter import WaveEncounter, speed_factor
 
 # Froude number beyond which the speed is taken for one in knots, ours
 _MAX_FROUDE = 1.0

@@ -9,8 +9,8 @@ from seatrial.core.values import InputError, spelling_hint
 from seatrial.data.trial.excitation import wave_encounter
 from seatrial.data.trial.runs import expand_variables, layout_of
 from seatrial.data.trial.schema import FollowTable
-from seatrial.data.trial.stream_settings import StreamSettings, StreamSource
-from seatrial.data.trial.trial import Stream, Trial, run_name
+from seatrial.data.trial.stream import Stream, StreamSettings, StreamSource
+from seatrial.data.trial.trial import Trial, run_name
 from seatrial.physics.hydro.excitation import Excitation
 
 _FILE_SOURCES = (StreamSource.FILE, StreamSource.NMEA_FILE)

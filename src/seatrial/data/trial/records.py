@@ -8,7 +8,8 @@ from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.check import canonical_record, examined_record
 from seatrial.data.trial.approach import first_execution
 from seatrial.data.trial.roll_decay_start import trim_to_decay_start
-from seatrial.data.trial.trial import Role, Trial, TrialRun, Trimming, WaveEncounter
+from seatrial.data.trial.trial import Role, Trial, TrialRun, Trimming
+from seatrial.physics.sea.encounter import WaveEncounter
 from seatrial.physics.sea.wave_forces import with_wave_forces
 
 _ACCELERATED_FRACTION = 0.9

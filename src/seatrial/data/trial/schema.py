@@ -12,7 +12,7 @@ from seatrial.data.trial.amounts import STRICT_FIELDS, Angle, Deviation, SiAmoun
 from seatrial.data.trial.design_request import DesignRequest
 from seatrial.data.trial.sea_table import SeaTable
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
-from seatrial.data.trial.stream_settings import StreamSettings
+from seatrial.data.trial.stream import StreamSettings
 
 
 def _as_tuple(value: object) -> object:

@@ -6,19 +6,13 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pydantic import InstanceOf
-from pydantic.dataclasses import dataclass as validated_dataclass
-
 from seatrial.core.equations import Model
 from seatrial.core.values import Finding, ForcePoints, Record, Ship
 from seatrial.data.read import Layout, read_record
-from seatrial.data.trial.amounts import STRICT_FIELDS
 from seatrial.data.trial.design_request import DesignRequest
-from seatrial.data.trial.schema_errors import raises_input_error
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
-from seatrial.data.trial.stream_settings import StreamSettings
-from seatrial.physics.hydro.excitation import Excitation
-from seatrial.physics.sea.spectrum import Spectrum
+from seatrial.data.trial.stream import Stream
+from seatrial.physics.sea.encounter import WaveEncounter
 
 if TYPE_CHECKING:
     from seatrial.estimation.estimate.trial_problem import TrialProblem
@@ -53,19 +47,6 @@ class Trimming:
     skip_acceleration: bool = False
     rate: float | None = None
     from_release: bool = False
-
-
-@dataclass(frozen=True)
-class WaveEncounter:
-    """The encounter of a run with waves: ship speed [m/s], heading [rad, 0 following, pi head], excitation.
-
-    `spectrum`: of the sea, where its elevation was not recorded.
-    """
-
-    excitation: Excitation
-    U: float
-    beta: float
-    spectrum: Spectrum | None = None
 
 
 @dataclass(frozen=True)
@@ -130,22 +111,6 @@ class TrialRun:
             InputError: its file cannot be read.
         """
         return self.data.read() if isinstance(self.data, RecordFile) else self.data
-
-
-@raises_input_error
-@validated_dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
-class Stream(StreamSettings):
-    """Samples that come while the record is being made, with the layout of their columns.
-
-    Attributes:
-        layout: which column is what.
-        name: of the runs it makes, as the stem of a file names a record's.
-        waves: how the ship meets them, for an elevation in the stream.
-    """
-
-    layout: InstanceOf[Layout]
-    name: str = "stream"
-    waves: InstanceOf[WaveEncounter] | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,16 +6,31 @@ the ship overtakes. |omega_e| then belongs to three waves below 1 / (4 q) and to
 """
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.hydro.excitation import MAX_SHIP_SPEED
+from seatrial.physics.hydro.excitation import MAX_SHIP_SPEED, Excitation
+from seatrial.physics.sea.spectrum import Spectrum
 
 # |cos(beta)| below which the sea is from abeam, -: cos(pi / 2) is 6e-17 by rounding
 _BEAM_TOLERANCE = 1e-12
+
+
+@dataclass(frozen=True)
+class WaveEncounter:
+    """The encounter of a run with waves: ship speed [m/s], heading [rad, 0 following, pi head], excitation.
+
+    `spectrum`: of the sea, where its elevation was not recorded.
+    """
+
+    excitation: Excitation
+    U: float
+    beta: float
+    spectrum: Spectrum | None = None
 
 
 def speed_factor(U: float, beta: float) -> float:

@@ -9,8 +9,7 @@ from seatrial.core.values import NOTATION, Record
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial import Trial
 from seatrial.data.trial.follow_table import require_stream
-from seatrial.data.trial.stream_settings import StreamSource
-from seatrial.data.trial.trial import Stream
+from seatrial.data.trial.stream import Stream, StreamSource
 from seatrial.estimation.identify.online import OnlineEstimator
 from seatrial.estimation.identify.online.stream_window import StreamWindow
 from seatrial.physics.models.qi2025 import SHIP

@@ -12,8 +12,7 @@ from seatrial.core.results.online import EstimatorPhase, Snapshot
 from seatrial.core.values import Record
 from seatrial.data.trial import Role, Trial, load_trial
 from seatrial.data.trial.roll_decay_start import trim_to_decay_start
-from seatrial.data.trial.stream_settings import StreamSource
-from seatrial.data.trial.trial import Stream
+from seatrial.data.trial.stream import Stream, StreamSource
 from seatrial.estimation.identify.identify import identify
 from seatrial.estimation.identify.online import OnlineEstimator
 

@@ -6,7 +6,7 @@ from seatrial.core.results.online import CoefficientChange
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.check.conventions import canonical_record
 from seatrial.data.read.assemble import record_from_values
-from seatrial.data.trial.trial import Stream
+from seatrial.data.trial.stream import Stream
 from seatrial.estimation.estimate.online.change_detection import ChangeDetector
 from seatrial.estimation.estimate.online.curvature import LINEAR_ENOUGH, curvature
 from seatrial.estimation.estimate.online.handover import filter_from_fit

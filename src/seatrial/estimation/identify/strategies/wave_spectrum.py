@@ -10,7 +10,6 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Fit, Method
 from seatrial.core.values import Array, InputError, Record
 from seatrial.core.values.versions import versions
-from seatrial.data.trial.trial import WaveEncounter
 from seatrial.estimation.estimate.singular import weakest_direction
 from seatrial.estimation.identify.fit_result import coefficient_table
 from seatrial.estimation.identify.identification import Identification
@@ -20,6 +19,7 @@ from seatrial.estimation.information.frequency_range import frequency_range, fre
 from seatrial.estimation.problem.segments import compared_outputs
 from seatrial.estimation.problem.spectral_likelihood import SpectralLikelihood, fine_grid, hann_transform
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt
+from seatrial.physics.sea.encounter import WaveEncounter
 from seatrial.physics.sea.force_spectrum import force_density
 from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.harmonics import Complex

@@ -1,14 +1,17 @@
-"""What a stream of samples is followed by: keys of the table `[follow]`, settings of a `Stream` in Python."""
+"""A stream of samples and how it is followed: the keys of the table `[follow]`, and a `Stream` in Python."""
 
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, InstanceOf, model_validator
 from pydantic.dataclasses import dataclass
 
+from seatrial.data.read import Layout
 from seatrial.data.trial.amounts import STRICT_FIELDS
+from seatrial.data.trial.schema_errors import raises_input_error
 from seatrial.data.trial.settings import Positive
+from seatrial.physics.sea.encounter import WaveEncounter
 
 
 class StreamSource(StrEnum):
@@ -60,3 +63,19 @@ class StreamSettings:
                 f"longest_gap_s = {self.longest_gap_s:g} is shorter than a step at {self.rate:g} Hz; make it longer"
             )
         return self
+
+
+@raises_input_error
+@dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
+class Stream(StreamSettings):
+    """Samples that come while the record is being made, with the layout of their columns.
+
+    Attributes:
+        layout: which column is what.
+        name: of the runs it makes, as the stem of a file names a record's.
+        waves: how the ship meets them, for an elevation in the stream.
+    """
+
+    layout: InstanceOf[Layout]
+    name: str = "stream"
+    waves: InstanceOf[WaveEncounter] | None = None
