@@ -109,13 +109,15 @@ def save(result: "Result | Snapshot | FollowResult", folder: str | Path) -> Path
     Raises:
         InputError: the folder cannot be written.
     """
+    from seatrial.core.results import Design, Fit, Study
     from seatrial.core.results.online import Snapshot
+    from seatrial.core.results.tuning import Tuning
     from seatrial.core.values.files import write_files_atomically
     from seatrial.data.folder.result_folder import folder_files
-    from seatrial.onboard.follow import FollowResult
     from seatrial.reporting.pages import report_page
 
-    value = result.result if isinstance(result, FollowResult) else result
+    # asked this way round, no result but that of `follow` needs its module
+    value = result if isinstance(result, Fit | Design | Tuning | Study | Snapshot) else result.result
     page = {} if isinstance(value, Snapshot) else {"report.html": report_page(value).encode()}
     files = folder_files(value) | page
     return write_files_atomically(Path(folder), files) / list(files)[-1]

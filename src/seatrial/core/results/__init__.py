@@ -1,34 +1,5 @@
 """Results: fits, designs, tunings, studies and estimates on a stream, described field by field."""
 
-from seatrial.core.results.baseline import Baseline, OpenLoopScores
-from seatrial.core.results.coefficients import CandidateModel, Coefficient, Method, Offset
-from seatrial.core.results.design import Actuator, Confirmation, Design, TimedOrder, TrialLimits
-from seatrial.core.results.fit import Fit
-from seatrial.core.results.identifiability import (
-    Collinearity,
-    Consequence,
-    Direction,
-    Identifiability,
-    Profile,
-    Sensitivity,
-    Stability,
-    Symmetry,
-)
-from seatrial.core.results.manoeuvre_precision import ManoeuvrePrecision
-from seatrial.core.results.noise import Noise, NoiseModel, Residuals
-from seatrial.core.results.prediction import Extrapolation, IntervalBasis, Measure, Prediction
-from seatrial.core.results.roll import IntervalEstimate, RollCharacteristics
-from seatrial.core.results.seakeeping import PointMotion, Seakeeping
-from seatrial.core.results.study import Check, Claim, Study, Verdict
-from seatrial.core.results.study_figures import Bars, Curve, Figure, Matrix, Table
-from seatrial.core.results.summary import Summary
-from seatrial.numerics.optimise import Solution, Status
+from seatrial._lazy import export_lazily
 
-__all__ = [
-    "Actuator", "Bars", "Baseline", "CandidateModel", "Check", "Claim", "Coefficient", "Collinearity",
-    "Confirmation", "Consequence", "Curve", "Design", "Direction", "Extrapolation", "Figure", "Fit",
-    "Identifiability", "IntervalBasis", "IntervalEstimate", "ManoeuvrePrecision", "Matrix", "Measure", "Method",
-    "Noise", "NoiseModel", "Offset", "OpenLoopScores", "PointMotion", "Prediction", "Profile", "Residuals",
-    "RollCharacteristics", "Seakeeping", "Sensitivity", "Solution", "Stability", "Status", "Study", "Summary",
-    "Symmetry", "Table", "TimedOrder", "TrialLimits", "Verdict",
-]  # fmt: skip
+export_lazily(__name__)

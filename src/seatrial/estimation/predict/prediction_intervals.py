@@ -21,6 +21,7 @@ from seatrial.estimation.predict.open_loop import (
 )
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.manoeuvres import measures
+from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre
 
 _TRACK_CHANNELS = ("psi", "x0", "y0")
 _MEASURE_CHANNELS = ("psi", "x0", "y0", "u", "v", "r")
@@ -83,13 +84,14 @@ def _measure_spread(
 ) -> dict[str, float]:
     place = {o: i for i, o in enumerate(model.observables)}
     noise = {c: sample_noise(record[c]) for c in _MEASURE_CHANNELS if c in record and c in place}
-    centre = measures(simulation.record, length, reference=record)
+    reference = ObservedManoeuvre.from_record(record)
+    centre = measures(simulation.record, length, reference=reference)
     values_by_measure: dict[str, list[float]] = {name: [] for name in centre}
     for y in runs:
         read = y.copy()
         for channel, spread in noise.items():
             read[:, place[channel]] += spread * rng.standard_normal(len(y))
-        for name, value in measures(observables_record(model, record, read), length, reference=record).items():
+        for name, value in measures(observables_record(model, record, read), length, reference=reference).items():
             if name in values_by_measure:
                 values_by_measure[name].append(value - centre[name])
     enough = max(4, len(runs) // 2)

@@ -76,8 +76,9 @@ class WeakForm:
             out, jac = np.empty((len(x), nx)), np.zeros((len(x), nx, nx + nu + len(values)))
             evaluate_tangent(self.model.compiled.rates_tangent, x, u, np.tile(values, (len(x), 1)), self.dt, out, jac)
             jac = jac[:, :, [nx + nu + i for i in self._free]]
-            for first, last in window_bounds(len(x), self._half):
-                w, w_dot = window_function((last - first) // 2, self.dt)
+            bounds = window_bounds(len(x), self._half)
+            w, w_dot = window_function((bounds[0][1] - bounds[0][0]) // 2, self.dt)
+            for first, last in bounds:
                 piece = slice(first, last + 1)
                 middle = x[(first + last) // 2]
                 residuals.append(self.dt * (w_dot @ (x[piece] - middle) + w @ out[piece]))

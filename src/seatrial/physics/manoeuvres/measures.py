@@ -15,7 +15,7 @@ PEAK_HALF_WIDTH = 0.04  # of the swing's samples, over which its peak is fitted;
 
 
 def measures(
-    record: Record, length: float, switching: float | None = None, reference: Record | None = None
+    record: Record, length: float, switching: float | None = None, reference: Record | ObservedManoeuvre | None = None
 ) -> dict[str, float]:
     """Measures of the manoeuvre the record shows, by name; those it does not allow are absent.
 
@@ -25,8 +25,9 @@ def measures(
         switching: switching heading [rad] of a zigzag where it is known; overshoots are counted from it. By default
             they are counted from the heading at which the rudder began to move.
         reference: record of the same rudder history and times, e.g. the measured run of which `record` is the open
-            loop simulation. Manoeuvre and executes are then made out on it, so that a heading that drifts off hides
-            nothing; headings, tracks and speeds are `record`'s own. By default all is read from `record`.
+            loop simulation, or the manoeuvre recognised on it, where many records share one. Manoeuvre and executes are
+            then made out on it, so that a heading that drifts off hides nothing; headings, tracks and speeds are
+            `record`'s own. By default all is read from `record`.
 
     Returns:
         Zigzag: ``overshoot_1_deg``, ``overshoot_2_deg``, …; ``initial_turning_time_s`` and ``initial_turning_L`` to 10
@@ -41,11 +42,9 @@ def measures(
     """
     if not length > 0.0:
         raise InputError(f"the ship's length {length:g} m is not positive; measures need it")
-    seen = (
-        ObservedManoeuvre.from_record(record)
-        if reference is None
-        else ObservedManoeuvre.from_record(reference).transferred_to(record)
-    )
+    if isinstance(reference, Record):
+        reference = ObservedManoeuvre.from_record(reference)
+    seen = reference.transferred_to(record) if reference else ObservedManoeuvre.from_record(record)
     match seen.kind:
         case ManoeuvreKind.ZIGZAG:
             return _zigzag_measures(seen, length, switching)
