@@ -22,6 +22,9 @@ class Quantity:
     standard_name: str
 
 
+_INDEXED = range(1, 13)
+"""Numbers of the channels that a craft has one of for each thruster: ``command_1``, ``alpha_1``, ``rpm_1``; chosen."""
+
 _TABLE = [
     Quantity("x0", "position north", "m", "earth", "north", "x_0", "position_north"),
     Quantity("y0", "position east", "m", "earth", "east", "y_0", "position_east"),
@@ -79,6 +82,16 @@ _TABLE = [
         "starboard",
         r"\gamma_A",
         "apparent_wind_from_direction",
+    ),
+    Quantity("voltage", "voltage of the batteries", "V", "none", "none", "V", "battery_voltage"),
+    *(
+        Quantity(f"{letter}_{k}", f"{meaning} {k}", unit, frame, positive, rf"{latex}_{{{k}}}", f"{name}_{k}")
+        for letter, meaning, unit, frame, positive, latex, name in (
+            ("command", "command of thruster", "1", "none", "ahead", "c", "thruster_command"),
+            ("alpha", "direction of the thrust of thruster", "rad", "body", "starboard", r"\alpha", "thruster_angle"),
+            ("rpm", "rate of the propeller of thruster", "rps", "none", "ahead", "n", "thruster_rate"),
+        )
+        for k in _INDEXED
     ),
 ]
 
