@@ -1,11 +1,11 @@
-"""The command line: parse, call, print, exit code."""
+"""The command line: parse, call, print, exit code (0 done, 2 input, 70 internal, 130 interrupted)."""
 
 import gc
 import sys
 
 from seatrial.cli.commands import app
 
-INTERRUPT_EXIT_CODE = 130
+INPUT_EXIT_CODE, INTERNAL_EXIT_CODE, INTERRUPT_EXIT_CODE = 2, 70, 130  # 70: EX_SOFTWARE of sysexits.h
 # new objects between two searches for unreachable cycles: most are modules and classes that live as long as the
 # process; chosen: Python's own 700 costs a sixteenth of the time of a command
 _COLLECTION_THRESHOLD = 50_000
@@ -13,17 +13,10 @@ _INTERRUPT_MESSAGE = "seatrial: interrupted; files are written whole or not at a
 
 
 def main() -> None:
-    """Run the command line; bad input is one line on standard error and exit code 2."""
+    """Run the command line; bad input is one line on standard error, and so is an error of the program itself."""
     gc.set_threshold(_COLLECTION_THRESHOLD)
     try:
         app()
-    except ValueError as error:
-        from seatrial.core.values import InputError
-
-        if not isinstance(error, InputError):
-            raise
-        print(f"seatrial: {' '.join(str(error).split())}", file=sys.stderr)
-        sys.exit(2)
     except SystemExit as ending:
         if ending.code == INTERRUPT_EXIT_CODE:
             print(_INTERRUPT_MESSAGE, file=sys.stderr)
@@ -31,6 +24,12 @@ def main() -> None:
     except KeyboardInterrupt:
         print(_INTERRUPT_MESSAGE, file=sys.stderr)
         sys.exit(INTERRUPT_EXIT_CODE)
+    except Exception as error:
+        from seatrial.cli.errors import error_message
+        from seatrial.core.values import InputError
+
+        print(f"seatrial: {error_message(error)}", file=sys.stderr)
+        sys.exit(INPUT_EXIT_CODE if isinstance(error, InputError) else INTERNAL_EXIT_CODE)
 
 
 __all__ = ["app", "main"]

@@ -4,11 +4,14 @@ Nothing else in the package asks which system it runs on. Where a system lacks s
 instead.
 """
 
+import ctypes
 import os
 import select
 import signal
 import stat
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from io import RawIOBase
 from pathlib import Path
 
@@ -20,6 +23,9 @@ _REPLACE_PAUSE_S, _REPLACE_ATTEMPTS = 0.05, 10
 # offset of the byte that stands for a whole file where only ranges can be locked: beyond every file that is locked, and
 # within the 31 bits that msvcrt takes
 _LOCKED_BYTE = 2**31 - 2
+
+# renameat2(2): paths relative to the working directory (AT_FDCWD); RENAME_EXCHANGE, which macOS calls RENAME_SWAP
+_AT_WORKING_DIRECTORY, _EXCHANGE = -100, 2
 
 
 def usable_cores() -> int:
@@ -87,6 +93,58 @@ def flush_to_disk(descriptor: int) -> None:
         OSError: the disk is full or has failed.
     """
     os.fsync(descriptor)
+
+
+def flush_folder_to_disk(folder: Path) -> None:
+    """Wait until the names in a folder are on the disk; nothing where folders cannot be opened (Windows).
+
+    Raises:
+        OSError: the disk has failed.
+    """
+    if _SYSTEM == "nt":
+        return
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def exchange_folders(one: Path, other: Path) -> bool:
+    """Exchange the names of two folders in one step and return whether the system could (Linux, macOS)."""
+    if _SYSTEM != "posix":
+        return False
+    library = ctypes.CDLL(None)
+    paths = os.fsencode(one), os.fsencode(other)
+    if hasattr(library, "renameat2"):  # Linux, renameat2(2)
+        return library.renameat2(_AT_WORKING_DIRECTORY, paths[0], _AT_WORKING_DIRECTORY, paths[1], _EXCHANGE) == 0
+    if hasattr(library, "renamex_np"):  # macOS, renamex_np(2)
+        return library.renamex_np(*paths, _EXCHANGE) == 0
+    return False
+
+
+@contextmanager
+def held_lock(folder: Path) -> Iterator[bool]:
+    """Lock a folder for this process while the body runs and give whether that succeeded.
+
+    False as well where folders cannot be locked (Windows).
+    """
+    try:
+        import fcntl
+
+        descriptor = os.open(folder, os.O_RDONLY)
+    except (ImportError, OSError):
+        yield False
+        return
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        locked = True
+    except OSError:
+        locked = False
+    try:
+        yield locked
+    finally:
+        os.close(descriptor)
 
 
 def open_regular(path: Path) -> int:

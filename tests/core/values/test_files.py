@@ -1,5 +1,9 @@
 """Files and folders: written whole or not at all, tried before the work without leaving a trace."""
 
+import os
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -39,3 +43,64 @@ def test_files_that_belong_together_are_written_together(tmp_path: Path) -> None
         write_files_atomically(tmp_path / "b" / "kept" / "inside", {"one": b"1"})
     assert write_files_atomically(tmp_path / "b", {"one": b"1", "two": b"2"}) == tmp_path / "b"
     assert sorted(place.name for place in (tmp_path / "b").iterdir()) == ["kept", "one", "two"]
+
+
+def test_the_users_umask_and_symbolic_links_are_respected(tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "elsewhere")
+    (tmp_path / "name.json").symlink_to(tmp_path / "target.json")
+    before = os.umask(0o027)
+    try:
+        write_atomically(tmp_path / "name.json", b"content")
+        write_files_atomically(tmp_path / "link", {"one": b"1"})
+        write_files_atomically(tmp_path / "new", {"one": b"1"})
+    finally:
+        os.umask(before)
+    assert (tmp_path / "name.json").is_symlink() and (tmp_path / "link").is_symlink()
+    modes = [(tmp_path / place).stat().st_mode & 0o777 for place in ("target.json", "elsewhere/one", "new")]
+    assert modes == [0o640, 0o640, 0o750]
+
+
+def test_folders_of_the_user_in_a_result_folder_stay(tmp_path: Path) -> None:
+    write_files_atomically(tmp_path / "fit", {"one": b"1", "two": b"2"})
+    (tmp_path / "fit" / "notes").mkdir()
+    (tmp_path / "fit" / "notes" / "today.txt").write_text("windy")
+    write_files_atomically(tmp_path / "fit", {"one": b"3", "two": b"4"})
+    assert (tmp_path / "fit" / "notes" / "today.txt").read_text() == "windy"
+    assert (tmp_path / "fit" / "one").read_bytes() == b"3"
+    assert [place.name for place in tmp_path.iterdir()] == ["fit"]
+
+
+def test_a_failure_leaves_the_old_files_and_no_empty_folders(tmp_path: Path) -> None:
+    write_files_atomically(tmp_path / "fit", {"one": b"1"})
+    name_no_system_takes = "two" * 100
+    with pytest.raises(InputError, match="cannot be written"):
+        write_files_atomically(tmp_path / "fit", {"one": b"3", name_no_system_takes: b"4"})
+    with pytest.raises(InputError, match="cannot be written"):
+        write_files_atomically(tmp_path / "a" / "b", {name_no_system_takes: b"4"})
+    assert (tmp_path / "fit" / "one").read_bytes() == b"1"
+    assert [place.name for place in tmp_path.iterdir()] == ["fit"]
+
+
+WRITER = """
+import itertools, sys
+from pathlib import Path
+from seatrial.core.values.files import write_files_atomically
+for k in itertools.count():
+    write_files_atomically(Path(sys.argv[1]), {name: b"%d" % k for name in ("a", "b", "c", "d")})
+    print(k, flush=True)
+"""
+
+
+def test_a_killed_process_leaves_the_old_files_or_the_new_ones(tmp_path: Path) -> None:
+    folder = tmp_path / "fit"
+    for kill in range(5):
+        with subprocess.Popen([sys.executable, "-c", WRITER, str(folder)], stdout=subprocess.PIPE) as process:
+            assert process.stdout is not None
+            process.stdout.readline()
+            time.sleep(0.013 * kill)  # s, anywhere in one of the writings
+            process.kill()
+        assert len({(folder / name).read_bytes() for name in ("a", "b", "c", "d")}) == 1
+        assert sorted(place.name for place in folder.iterdir()) == ["a", "b", "c", "d"]
+    write_files_atomically(folder, {"a": b"", "b": b""})
+    assert [place.name for place in tmp_path.iterdir()] == ["fit"]

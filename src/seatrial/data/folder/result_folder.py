@@ -105,9 +105,9 @@ def folder_files(result: Result | Snapshot) -> dict[str, bytes]:
     companions = {ARRAYS: npz_bytes(arrays)} if arrays else {}
     if kind.model is not None:
         companions[MODEL] = model_text(kind.model(result)).encode()
-    digests = {name: hashlib.sha256(content).hexdigest() for name, content in companions.items()}
-    text = strict_json(table | {"files": digests})
-    return {**kind.products(result), **companions, kind.document: text.encode()}
+    files = {**kind.products(result), **companions}
+    digests = {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
+    return {**files, kind.document: strict_json(table | {"files": digests}).encode()}
 
 
 def save_result(result: Result | Snapshot, folder: str | Path) -> Path:
@@ -169,9 +169,10 @@ def _companions(
     kind: FolderKind[Any], folder: Path, digests: Mapping[str, str], own_model: Model | None, command: str
 ) -> tuple[dict[str, Array], dict[str, Any]]:
     """Return the arrays of a folder, and the fields of its result that stand in the model file."""
-    contents = {name: (folder / name).read_bytes() for name in digests}
-    for name, digest in digests.items():
-        if hashlib.sha256(contents[name]).hexdigest() != digest:
+    needed = digests.keys() & {ARRAYS, MODEL}
+    contents = {name: (folder / name).read_bytes() for name in digests if name in needed or (folder / name).exists()}
+    for name, content in contents.items():
+        if hashlib.sha256(content).hexdigest() != digests[name]:
             raise InputError(f"'{folder / name}' has changed since the result was written; run {command} again")
     arrays = npz_arrays(contents[ARRAYS]) if ARRAYS in contents else {}
     if MODEL not in contents:

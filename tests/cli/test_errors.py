@@ -1,0 +1,69 @@
+"""What is left when a command fails: one sentence, an exit code, and a file where the program is at fault."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from seatrial import InputError, api
+from seatrial.cli import INPUT_EXIT_CODE, INTERNAL_EXIT_CODE, INTERRUPT_EXIT_CODE
+
+
+@pytest.fixture
+def failing_with(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[BaseException], None]:
+    """Let `check` raise an exception as soon as it loads a trial; error files go below a folder of the test."""
+    monkeypatch.setattr("platformdirs.user_log_path", lambda _: tmp_path / "log")
+
+    def prepare(error: BaseException) -> None:
+        def load_trial(*_: object) -> None:
+            raise error
+
+        monkeypatch.setattr(api, "load_trial", load_trial)
+
+    return prepare
+
+
+def test_an_error_of_the_program_is_a_sentence_and_a_file_to_send(
+    failing_with: Callable[..., None],
+    run_command: Callable[..., int],
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+) -> None:
+    failing_with(IndexError("index 5 is out of bounds"))
+    assert run_command("check", "any.toml") == INTERNAL_EXIT_CODE == 70
+    said = capsys.readouterr().err
+    (file,) = (tmp_path / "log").iterdir()
+    assert said.count("\n") == 1 and said.strip().endswith(str(file)) and "IndexError" in said
+    text = file.read_text()
+    assert "index 5 is out of bounds" in text and "any.toml" in text and "numpy " in text
+
+
+def test_the_file_goes_to_the_temporary_folder_where_there_is_no_other(
+    failing_with: Callable[..., None],
+    run_command: Callable[..., int],
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "log").touch()
+    monkeypatch.setattr("tempfile.gettempdir", lambda: str(tmp_path))
+    failing_with(MemoryError())
+    assert run_command("check", "any.toml") == INTERNAL_EXIT_CODE
+    (file,) = tmp_path.glob("seatrial-error-*.txt")
+    assert capsys.readouterr().err.strip().endswith(f"memory of this computer does not suffice; nothing was written by "
+                                                    f"halves. Please send the file {file}")  # fmt: skip
+
+
+def test_bad_input_and_interruption_keep_their_exit_codes(
+    failing_with: Callable[..., None],
+    run_command: Callable[..., int],
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+) -> None:
+    failing_with(InputError("rudder missing;\n  name it"))
+    assert run_command("check", "any.toml") == INPUT_EXIT_CODE == 2
+    assert capsys.readouterr().err == "seatrial: rudder missing; name it\n"
+    failing_with(KeyboardInterrupt())
+    assert run_command("check", "any.toml") == INTERRUPT_EXIT_CODE == 130
+    assert "interrupted" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
