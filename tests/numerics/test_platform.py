@@ -176,3 +176,22 @@ def test_input_that_cannot_be_waited_for_counts_as_there(monkeypatch: pytest.Mon
 def test_windows_would_share_a_port(monkeypatch: pytest.MonkeyPatch, system: str, is_safe: bool) -> None:
     monkeypatch.setattr(platform, "_SYSTEM", system)
     assert platform.reuses_addresses_safely() is is_safe
+
+
+def test_two_folders_exchange_their_names_in_one_step(tmp_path: Path) -> None:
+    for name in ("one", "other"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / name).touch()
+        platform.flush_folder_to_disk(tmp_path / name)
+    if platform.exchange_folders(tmp_path / "one", tmp_path / "other"):
+        assert (tmp_path / "one" / "other").exists() and (tmp_path / "other" / "one").exists()
+    assert not platform.exchange_folders(tmp_path / "one", tmp_path / "absent")
+
+
+def test_a_locked_folder_is_not_locked_again(tmp_path: Path) -> None:
+    with platform.held_lock(tmp_path) as first, platform.held_lock(tmp_path) as second:
+        assert not (first and second)
+    with platform.held_lock(tmp_path) as again:
+        assert again == first
+    with platform.held_lock(tmp_path / "absent") as absent:
+        assert not absent
