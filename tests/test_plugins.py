@@ -126,7 +126,9 @@ def test_a_broken_optimiser_is_one_sentence(monkeypatch: pytest.MonkeyPatch, tmp
 
 def test_a_broken_study_is_one_sentence(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     install(monkeypatch, tmp_path, "seatrial.studies", "paper", "import no_such_module", "study")
+    lines: list[str] = []
     with pytest.raises(InputError, match=r"'paper' .* fails: ModuleNotFoundError"):
-        reproduce("paper")
+        reproduce("paper", report_progress=lines.append)
+    assert lines == ["study paper: loading and compiling"]
     with pytest.raises(InputError, match="unknown study 'papre'; did you mean 'paper'"):
         reproduce("papre")

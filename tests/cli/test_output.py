@@ -5,8 +5,9 @@ from dataclasses import replace
 import pytest
 from tests.reporting.complete_fit import baselines, complete_fit
 from tests.reporting.fabricated import fabricated_fit
+from tests.reporting.fabricated_study import fabricated_study
 
-from seatrial.cli.output import print_fit
+from seatrial.cli.output import print_fit, print_study
 
 
 def printed(capsys: pytest.CaptureFixture[str]) -> str:
@@ -45,3 +46,14 @@ def test_other_estimators_stand_in_one_table(capsys: pytest.CaptureFixture[str])
     assert lines[head + 5].endswith("failed: run a is too short")
     assert "[lasso-dropped] ridge: Lasso drops" in lines[head + 6]
     assert "prove nothing about coefficients" in lines[head + 7]
+
+
+def test_a_study_ends_with_the_three_counts_of_its_checks(capsys: pytest.CaptureFixture[str]) -> None:
+    print_study(fabricated_study(fabricated_fit()))
+    lines = printed(capsys).splitlines()
+    assert lines[-2:] == [
+        "claims: 1 confirmed, 1 holds in its own setting, 1 refuted, 1 unknowable",
+        "checks: 1 holding, 1 failing, 1 withdrawn",
+    ]
+    assert any(line.strip().startswith("FAILS") and line.endswith("few runs") for line in lines)
+    assert any("Setting: search box about the truth." in line for line in lines)

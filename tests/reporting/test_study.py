@@ -9,14 +9,15 @@ from seatrial.reporting.study import html, outcome
 
 def test_claims_and_checks_are_there(study_page: Path, study: Study) -> None:
     text = study_page.read_text()
-    for word in ("confirmed", "refuted", "unknowable", "holds", "fails", "0.85 to 1.2", study.source, "3.25"):
+    for word in ("confirmed", "refuted", "unknowable", "holds", "fails", "0.85 to 1.2", study.source, "3.25",
+                 "holds in its own setting", "search box about the truth", "few runs", "withdrawn"):  # fmt: skip
         assert word in text
 
 
 def test_outcome_names_what_fails(study: Study) -> None:
     assert outcome(study) == [
-        "3 claims judged: 1 confirmed, 1 refuted, 1 unknowable.",
-        "1 of 2 checks hold; it fails: RMSE over bound.",
+        "4 claims judged: 1 confirmed, 1 holds in its own setting, 1 refuted, 1 unknowable.",
+        "3 checks: 1 holding, 1 failing, 1 withdrawn. Failing: RMSE over bound.",
     ]
 
 
@@ -31,7 +32,10 @@ def test_table_for_json(study: Study) -> None:
     assert table["claims"][0] == {
         "claim": "The model predicts a turn within 5 %", "verdict": "confirmed", "evidence": "advance −1.6 %",
     }  # fmt: skip
-    assert set(table["checks"][0]) == {"name", "value", "limit", "holds"}
+    assert table["claims"][2]["setting"] == "search box about the truth"
+    assert [set(check) - {"name", "value", "limit", "holds"} for check in table["checks"]] == [
+        set(), {"reason"}, {"withdrawal"},
+    ]  # fmt: skip
 
 
 def test_figures_of_every_kind_have_title_and_note(study_page: Path, study: Study) -> None:

@@ -37,6 +37,8 @@ def reproduce(
 
     if study not in (names := installed(STUDY_GROUP)):
         raise InputError(f"unknown study '{study}'{spelling_hint(study, list(names))}")
+    if report_progress:
+        report_progress(f"study {study}: loading and compiling")
     reproduction: Reproduction = load_plugin(STUDY_GROUP, study, InputError)
     return replace(reproduction(quick=quick, seed=seed, report_progress=report_progress), quick=quick)
 

@@ -178,14 +178,21 @@ def print_measures(
 
 
 def print_study(study: "Study") -> None:
-    """Print claims with their verdicts, then checks with their limits."""
+    """Print claims with their verdicts, then checks with their limits, then how many there are of each kind."""
+    from seatrial.core.results import CheckStatus
     from seatrial.core.text.numbers import exact
 
-    rows = [[claim.verdict, f"{claim.claim}: {claim.evidence}"] for claim in study.claims]
+    rows = []
+    for claim in study.claims:
+        setting = f" Setting: {claim.setting}." if claim.setting else ""
+        rows.append([claim.verdict, f"{claim.claim}: {claim.evidence}{setting}"])
     for check in study.checks:
         limit = check.limit if isinstance(check.limit, str) else exact(check.limit, 4)
-        rows.append(["holds" if check.holds else "FAILS", f"{check.name}: {exact(check.value, 4)} (limit {limit})"])
+        status = check.status.upper() if check.status is CheckStatus.FAILS else check.status
+        remark = f": {check.remark}" if check.remark else ""
+        rows.append([status, f"{check.name}: {exact(check.value, 4)} (limit {limit}){remark}"])
     print_table(rows, flush_left=(0, 1), indent="  ")
+    print_lines([f"claims: {study.claim_counts or 'none'}", f"checks: {study.check_counts}"])
 
 
 def print_design(design: "Design") -> None:

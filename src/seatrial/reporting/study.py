@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from seatrial.core.figures.svg_text import svg
-from seatrial.core.results import Check, Study, Verdict
+from seatrial.core.results import Check, CheckStatus, Study
 from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import counted
 from seatrial.reporting import runs, tables
@@ -19,6 +19,8 @@ TITLES = {
     "outcome": "Outcome", "claims": "Claims", "checks": "Checks", "tables": "Tables", "figures": "Figures",
     "runs": "Runs", "findings": "Findings", "versions": "Versions",
 }  # fmt: skip
+# how the page colours a check
+_CSS_CLASS = {CheckStatus.HOLDS: "good", CheckStatus.FAILS: "bad", CheckStatus.WITHDRAWN: "u"}
 
 
 @dataclass(frozen=True)
@@ -28,7 +30,9 @@ class CheckRow:
     name: str
     value: str
     limit: str
-    holds: bool
+    status: str
+    css_class: str
+    remark: str
 
 
 def html(study: Study) -> str:
@@ -47,28 +51,24 @@ def html(study: Study) -> str:
         "titles": titles,
         "study": study,
         "outcome": outcome(study),
+        "has_remarks": any(c.remark for c in study.checks),
         "scores": runs.score_table(study.predictions, 0.0),
     }
     return environment().get_template("study.html").render(context)
 
 
 def outcome(study: Study) -> list[str]:
-    """Return how many claims have which verdict, and which checks fail."""
-    counts = [(verdict, sum(c.verdict is verdict for c in study.claims)) for verdict in Verdict]
+    """Return how many claims have which verdict, how many checks hold, fail and are withdrawn, and which fail."""
     sentences = []
     if study.claims:
-        verdicts = ", ".join(f"{number} {verdict}" for verdict, number in counts if number)
-        sentences.append(f"{counted(len(study.claims), 'claim').capitalize()} judged: {verdicts}.")
+        sentences.append(f"{counted(len(study.claims), 'claim').capitalize()} judged: {study.claim_counts}.")
     if study.checks:
-        failed = [c.name for c in study.checks if not c.holds]
-        holding = len(study.checks) - len(failed)
-        tail = (
-            f"; it fails: {failed[0]}" if len(failed) == 1 else f"; these fail: {', '.join(failed)}" if failed else ""
-        )
-        sentences.append(f"{holding} of {counted(len(study.checks), 'check')} hold{tail}.")
+        failed = [c.name for c in study.checks if c.status is CheckStatus.FAILS]
+        tail = f" Failing: {'; '.join(failed)}." if failed else ""
+        sentences.append(f"{counted(len(study.checks), 'check').capitalize()}: {study.check_counts}.{tail}")
     return sentences
 
 
 def _check_row(c: Check) -> CheckRow:
     limit = c.limit if isinstance(c.limit, str) else significant(c.limit)
-    return CheckRow(c.name, significant(c.value), limit, c.holds)
+    return CheckRow(c.name, significant(c.value), limit, c.status.value, _CSS_CLASS[c.status], c.remark)

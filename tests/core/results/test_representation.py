@@ -29,7 +29,7 @@ NOUNS: dict[str, tuple[Callable[[], object], tuple[str, ...]]] = {
     "prediction": (lambda: tanker().predictions[0], ("HSVA_Z_10_05", "rms")),
     "design": (fabricated_design, ("waterjet craft", "coefficients 11")),
     "tuning": (fabricated_fin, ("fin stabiliser", "alpha_f")),
-    "study": (lambda: fabricated_study(fabricated_fit()), ("somebody2022", "1 of 2 hold")),
+    "study": (lambda: fabricated_study(fabricated_fit()), ("somebody2022", "1 holding, 1 failing, 1 withdrawn")),
 }
 
 

@@ -1,9 +1,11 @@
-"""Figures of a study refuse values that do not fit their names or their axis."""
+"""Claims and checks of a study with their statuses; figures refuse values that do not fit their names or axis."""
+
+import math
 
 import numpy as np
 import pytest
 
-from seatrial.core.results import Bars, Matrix
+from seatrial.core.results import Bars, Check, CheckStatus, Claim, Matrix, Study, Verdict
 from seatrial.core.values import InputError
 
 
@@ -17,3 +19,31 @@ def test_bars_need_a_value_for_each_label_and_positive_ones_on_a_logarithmic_axi
 def test_a_matrix_needs_a_name_for_each_row_and_column() -> None:
     with pytest.raises(InputError, match=r"shape \(2, 3\)"):
         Matrix("m", ("X_uu", "Y_v", "N_r"), ("v", "r"), np.zeros((2, 3)))
+
+
+def test_a_claim_names_the_setting_in_which_alone_it_holds() -> None:
+    assert Claim("c", Verdict.HOLDS_IN_OWN_SETTING, "1.0 %", "box about the truth").setting == "box about the truth"
+    with pytest.raises(InputError, match="has no setting"):
+        Claim("c", Verdict.HOLDS_IN_OWN_SETTING, "1.0 %")
+    with pytest.raises(InputError, match="has a setting"):
+        Claim("c", Verdict.REFUTED, "1.0 %", "box about the truth")
+
+
+def test_a_check_holds_up_to_its_limit_and_never_with_nan() -> None:
+    assert [Check.at_most("c", value, 2.0).holds for value in (2.0, 2.1, math.nan)] == [True, False, False]
+    assert [Check.at_least("c", value, 2.0).holds for value in (2.0, 1.9, math.nan)] == [True, False, False]
+    between = [Check.between("c", value, 0.7, 1.3) for value in (0.7, 1.3, 1.4, math.nan)]
+    assert [check.holds for check in between] == [True, True, False, False]
+    assert between[0].limit == "0.7 to 1.3"
+
+
+def test_a_withdrawn_check_stays_listed_with_its_derivation() -> None:
+    failing = Check.at_most("time, s", 3.0, 2.0, "the machine was busy")
+    withdrawn = failing.withdrawn("a time is no property of the result")
+    assert (failing.status, failing.remark) == (CheckStatus.FAILS, "the machine was busy")
+    assert (withdrawn.status, withdrawn.remark) == (CheckStatus.WITHDRAWN, "a time is no property of the result")
+    assert Check.at_most("c", 1.0, 0.0).remark == "The reason is not known."
+    with pytest.raises(InputError, match="without a derivation"):
+        failing.withdrawn("")
+    study = Study("s", "paper", (), (failing, withdrawn, Check.at_most("c", 0.0, 1.0)))
+    assert study.check_counts == "1 holding, 1 failing, 1 withdrawn" and study.claim_counts == ""

@@ -19,13 +19,14 @@ from seatrial.core.results.noise import Noise, NoiseModel, Residuals
 from seatrial.core.results.prediction import Extrapolation, IntervalBasis, Measure, Prediction
 from seatrial.core.results.roll import IntervalEstimate, RollCharacteristics
 from seatrial.core.results.seakeeping import PointMotion, Seakeeping
-from seatrial.core.results.study import Check, Claim, Study, Verdict
+from seatrial.core.results.study import Check, CheckStatus, Claim, Study, Verdict
 from seatrial.core.results.study_figures import Bars, Curve, Figure, Matrix, Table
 from seatrial.core.results.summary import Summary
 from seatrial.numerics.optimise import Solution, Status
 
 __all__ = [
-    "Actuator", "Bars", "Baseline", "CandidateModel", "Check", "Claim", "Coefficient", "Collinearity",
+    "Actuator", "Bars", "Baseline", "CandidateModel", "Check", "CheckStatus", "Claim", "Coefficient",
+    "Collinearity",
     "Confirmation", "Consequence", "Curve", "Design", "Direction", "Extrapolation", "Figure", "Fit",
     "Identifiability", "IntervalBasis", "IntervalEstimate", "ManoeuvrePrecision", "Matrix", "Measure", "Method",
     "Noise", "NoiseModel", "Offset", "OpenLoopScores", "PointMotion", "Prediction", "Profile", "Residuals",

@@ -1,44 +1,119 @@
 """A study: a published paper worked through again, its claims judged."""
 
-from dataclasses import dataclass, field
+import math
+from collections import Counter
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, Self
 
-from pydantic import Field
+from pydantic import Field, PlainSerializer, WithJsonSchema
 
-from seatrial.core.results.fields import Number, ReportedFinding
+from seatrial.core.results.fields import ABSENT, Number, ReportedFinding
 from seatrial.core.results.prediction import Prediction
 from seatrial.core.results.study_figures import Bars, Curve, Figure, Matrix, Table
 from seatrial.core.results.summary import Summarised, Summary
+from seatrial.core.values import InputError
 
-__all__ = ["Bars", "Check", "Claim", "Curve", "Figure", "Matrix", "Study", "Table", "Verdict"]
+__all__ = ["Bars", "Check", "CheckStatus", "Claim", "Curve", "Figure", "Matrix", "Study", "Table", "Verdict"]
+
+
+def _absent_if_empty(text: str) -> object:
+    return text or ABSENT
+
+
+_Remark = Annotated[str, PlainSerializer(_absent_if_empty), WithJsonSchema({"type": "string"})]
 
 
 class Verdict(StrEnum):
-    """What became of a claim."""
+    """What became of a claim: unknowable where the print does not decide."""
 
     CONFIRMED = "confirmed"
+    HOLDS_IN_OWN_SETTING = "holds in its own setting"
     REFUTED = "refuted"
     UNKNOWABLE = "unknowable"
 
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement of the paper and the verdict on it."""
+    """A statement of the paper and the verdict on it.
+
+    Raises:
+        InputError: a claim that holds in its own setting without that setting, or a setting with another verdict.
+    """
 
     claim: str
     verdict: Verdict
     evidence: Annotated[str, Field(description="the numbers the verdict rests on")]
+    setting: Annotated[_Remark, Field(description="where a claim holds that holds in its own setting; else absent")] = (
+        ""
+    )
+
+    def __post_init__(self) -> None:
+        if (self.verdict is Verdict.HOLDS_IN_OWN_SETTING) is not bool(self.setting):
+            wrong = "has no setting; name it" if not self.setting else "has a setting; leave it out"
+            raise InputError(f"claim '{self.claim}' with verdict '{self.verdict}' {wrong}")
+
+
+class CheckStatus(StrEnum):
+    """What became of a check."""
+
+    HOLDS = "holds"
+    FAILS = "fails"
+    WITHDRAWN = "withdrawn"
 
 
 @dataclass(frozen=True)
 class Check:
-    """A number compared with a limit."""
+    """A number compared with a limit set beforehand; it stays listed whether it holds, fails or is withdrawn."""
 
     name: str
     value: Number
     limit: Annotated[int | Number | str, Field(description="not to be exceeded, or a range as text")]
-    holds: bool
+    holds: Annotated[bool, Field(description="whether the value keeps the limit")]
+    reason: Annotated[_Remark, Field(description="why it fails; absent where that is not known")] = ""
+    withdrawal: Annotated[
+        _Remark, Field(description="the derivation that shows the limit to be wrong; absent: the check is in force")
+    ] = ""
+
+    @classmethod
+    def at_most(cls, name: str, value: float, limit: float, reason: str = "") -> Self:
+        """Return a check that holds up to its limit; NaN does not hold."""
+        return cls(name, float(value), limit, bool(value <= limit), reason)
+
+    @classmethod
+    def at_least(cls, name: str, value: float, limit: float, reason: str = "") -> Self:
+        """Return a check that holds from its limit upwards; NaN does not hold."""
+        return cls(name, float(value), f"at least {limit:g}", bool(value >= limit), reason)
+
+    @classmethod
+    def between(cls, name: str, value: float, lower: float, upper: float, reason: str = "") -> Self:
+        """Return a check that holds between two limits, both included; NaN does not hold."""
+        holds = math.isfinite(value) and lower <= value <= upper
+        return cls(name, float(value), f"{lower:g} to {upper:g}", bool(holds), reason)
+
+    @property
+    def status(self) -> CheckStatus:
+        """Return whether it holds, fails or is withdrawn."""
+        if self.withdrawal:
+            return CheckStatus.WITHDRAWN
+        return CheckStatus.HOLDS if self.holds else CheckStatus.FAILS
+
+    @property
+    def remark(self) -> str:
+        """Return why it is withdrawn or fails; empty where it holds."""
+        if self.status is CheckStatus.FAILS:
+            return self.reason or "The reason is not known."
+        return self.withdrawal
+
+    def withdrawn(self, derivation: str) -> Self:
+        """Return the check as one whose limit the derivation shows to be wrong.
+
+        Raises:
+            InputError: no derivation is given.
+        """
+        if not derivation:
+            raise InputError(f"check '{self.name}' is withdrawn without a derivation; say why its limit was wrong")
+        return replace(self, withdrawal=derivation)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -64,6 +139,20 @@ class Study(Summarised):
     def summary(self) -> Summary:
         """Return the claims with their verdicts as a table."""
         rows = tuple((claim.verdict.value, claim.claim) for claim in self.claims)
-        holding = sum(check.holds for check in self.checks)
-        facts = {"source": self.source, "checks": f"{holding} of {len(self.checks)} hold"}
+        facts = {"source": self.source, "checks": self.check_counts}
         return Summary(f"Study {self.name}", ("verdict", "claim"), rows, facts)
+
+    @property
+    def claim_counts(self) -> str:
+        """Return how many claims have which verdict, such as ``2 confirmed, 1 unknowable``."""
+        counts = Counter(claim.verdict for claim in self.claims)
+        return ", ".join(f"{counts[verdict]} {verdict}" for verdict in Verdict if counts[verdict])
+
+    @property
+    def check_counts(self) -> str:
+        """Return how many checks hold, fail and are withdrawn: always all three numbers."""
+        counts = Counter(check.status for check in self.checks)
+        return (
+            f"{counts[CheckStatus.HOLDS]} holding, {counts[CheckStatus.FAILS]} failing, "
+            f"{counts[CheckStatus.WITHDRAWN]} withdrawn"
+        )

@@ -1,0 +1,140 @@
+"""What wrong coefficients cost: a controller tuned on each method's coefficients and simulated on the truth."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import numpy as np
+from scipy.optimize import minimize
+
+from seatrial.core.results import Table
+from seatrial.core.values import Array
+
+Coefficients = TypeVar("Coefficients")
+# relative change of gains and cost at which the simplex of the tuning stops (Nelder & Mead 1965); our choice
+_TOLERANCE = 1e-9
+# evaluations at which a tuning gives up; our choice, ten times what two gains need
+_MAX_EVALUATIONS = 2000
+TRUTH = "the truth itself"
+"""Name of the row whose controller is tuned on the true coefficients."""
+
+
+@dataclass(frozen=True)
+class ControlledMotion:
+    """A motion under control: rms of what is to be small and of the actuator; infinite where it runs away."""
+
+    output_rms: float
+    actuator_rms: float
+
+
+@dataclass(frozen=True)
+class ControlLabels:
+    """Headings of a table of controllers, with units: each gain, rms of the output, rms of the actuator."""
+
+    gains: tuple[str, ...]
+    output: str
+    actuator: str
+
+
+@dataclass(frozen=True, eq=False)
+class ControlTask(Generic[Coefficients]):
+    """A controller to be tuned, and the motion by which it is judged.
+
+    Attributes:
+        simulate: motion of a ship with these coefficients under a controller with these gains (g,); deterministic.
+        start: gains from which the tuning starts, none zero, (g,).
+        actuator_weight: output rms that counts as much as an actuator rms of 1.
+    """
+
+    simulate: Callable[[Coefficients, Array], ControlledMotion]
+    start: Array
+    actuator_weight: float
+
+    def cost(self, motion: ControlledMotion) -> float:
+        """Return output variance plus weighted actuator variance; infinite for a motion that runs away."""
+        cost = motion.output_rms**2 + (self.actuator_weight * motion.actuator_rms) ** 2
+        return float(cost) if np.isfinite(cost) else np.inf
+
+
+@dataclass(frozen=True, eq=False)
+class ControllerCost:
+    """A controller tuned on one method's coefficients.
+
+    Attributes:
+        method: whose coefficients; gains: (g,).
+        predicted: motion of the ship that these coefficients describe; actual: of the true ship.
+        excess: cost on the true ship over that of the controller tuned on the truth, minus 1.
+    """
+
+    method: str
+    gains: Array
+    predicted: ControlledMotion
+    actual: ControlledMotion
+    excess: float
+
+
+def tuned_gains(task: ControlTask[Coefficients], coefficients: Coefficients) -> Array:
+    """Return the gains of least cost for a ship with these coefficients, (g,), from the task's start values."""
+
+    def cost(scaled: Array) -> float:
+        return min(task.cost(task.simulate(coefficients, scaled * task.start)), np.finfo(float).max)
+
+    start = np.ones(len(task.start))
+    solution = minimize(
+        cost,
+        start,
+        method="Nelder-Mead",
+        options={"xatol": _TOLERANCE, "fatol": _TOLERANCE * cost(start), "maxfev": _MAX_EVALUATIONS},
+    )
+    return np.asarray(solution.x * task.start, dtype=np.float64)
+
+
+def controller_costs(
+    columns: Mapping[str, Coefficients], truth: Coefficients, task: ControlTask[Coefficients]
+) -> tuple[ControllerCost, ...]:
+    """Return one for each column, in its order, the controller tuned on the truth first.
+
+    Each controller is tuned by simulation of the ship that its coefficients describe; all are then simulated on the
+    true ship under the same disturbance, so that nothing differs but the coefficients.
+    """
+    best = task.simulate(truth, tuned_gains(task, truth))
+    costs = []
+    for method, coefficients in {TRUTH: truth, **columns}.items():
+        gains = tuned_gains(task, coefficients)
+        actual = task.simulate(truth, gains)
+        excess = task.cost(actual) / task.cost(best) - 1.0
+        costs.append(ControllerCost(method, gains, task.simulate(coefficients, gains), actual, excess))
+    return tuple(costs)
+
+
+def controller_cost_table(
+    title: str, groups: Mapping[str, tuple[ControllerCost, ...]], labels: ControlLabels, note: str
+) -> Table:
+    """Return the table that ends the page: a row for each controller of each group, such as a heading."""
+    header = (
+        "",
+        "tuned on",
+        *labels.gains,
+        f"{labels.output}, predicted",
+        labels.output,
+        labels.actuator,
+        "cost over best, %",
+    )
+    rows = tuple(
+        (
+            group,
+            cost.method,
+            *map(float, cost.gains),
+            _finite(cost.predicted.output_rms),
+            _finite(cost.actual.output_rms),
+            _finite(cost.actual.actuator_rms),
+            _finite(100.0 * cost.excess),
+        )
+        for group, costs in groups.items()
+        for cost in costs
+    )
+    return Table(title, header, rows, note)
+
+
+def _finite(value: float) -> float | str:
+    return value if np.isfinite(value) else "runs away"
