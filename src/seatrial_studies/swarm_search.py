@@ -5,31 +5,34 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from functools import cache, partial
 
 import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array
-from seatrial.numerics.optimise import Box, Population, search
+from seatrial.estimation.search import (
+    Fitness,
+    JudgedRun,
+    LinearCandidates,
+    one_sample_fitness,
+    run_search,
+    whole_record_fitness,
+)
+from seatrial.numerics.optimise import Box, Population
 from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
-from seatrial.physics.models import HEAVE_PITCH_STIFFNESSES as STIFFNESSES
 from seatrial.physics.models import heave_pitch_zoh
 from seatrial.physics.sea import ittc, realise
-from seatrial.physics.simulate import (
-    Forcing,
-    LinearBatch,
-    complete_parameters,
-    fitness,
-    heave_pitch_matrices,
-    one_sample_fitness,
-)
-from seatrial_studies.published_ship import SHIP, SIGNIFICANT_HEIGHT, SPEED, theoretical_coefficients
+from seatrial.physics.simulate import Forcing, LinearBatch
+from seatrial_studies.published_ship import SIGNIFICANT_HEIGHT, SPEED, theoretical_coefficients
 from seatrial_studies.seaway import FIN, box_hull, fin_commands
 
 # s, sampling interval of the papers' records
 STEP = 0.5
 # samples of 200 s, both ends counted
 SAMPLES = 401
+# F3 and M5 among the model's inputs, z and theta among its states
+WAVE_FORCE_INPUTS, HEAVE_AND_PITCH = (0, 1), (0, 2)
 
 
 def held_force_ship(heading: int, *, printed_sign: bool = False) -> Model:
@@ -96,37 +99,39 @@ class PitchUnit(Enum):
     RADIANS = 1.0
 
 
-Fitness = Callable[[Array], Array]
+@cache
+def _known_ship() -> Model:
+    """The ship of which only the eight coefficients are unknown; those it has here do not matter."""
+    return held_force_ship(90)
+
+
+def candidates_for(
+    data: SearchData, pitch_unit: PitchUnit = PitchUnit.DEGREES, *, starts_from_truth: bool = False
+) -> LinearCandidates:
+    """Return candidates for the eight coefficients, judged by one sea from rest, everything else as in the ship.
+
+    starts_from_truth: whether a step from sample to sample begins in the true state.
+    """
+    run = JudgedRun(data.forcing, data.states[0], data.measured, data.states if starts_from_truth else None)
+    return LinearCandidates(
+        _known_ship(), COEFFICIENTS, WAVE_FORCE_INPUTS, (run,), HEAVE_AND_PITCH, np.array([1.0, pitch_unit.value])
+    )
 
 
 def candidate_matrices(points: Array) -> tuple[Array, Array]:
     """Return A and B of candidates (count, 8), everything else as in the ship."""
-    known = {name: SHIP.particulars[name] for name in ("m", "I5", *STIFFNESSES)}
-    return heave_pitch_matrices(complete_parameters(points, known))
+    candidates = LinearCandidates(_known_ship(), COEFFICIENTS, WAVE_FORCE_INPUTS, (), HEAVE_AND_PITCH, np.ones(2))
+    return candidates.matrices(points)
 
 
 def one_sample_objective(data: SearchData, optimiser: Population, pitch_unit: PitchUnit = PitchUnit.DEGREES) -> Fitness:
     """Eq. (28): iteration k compares sample k alone, one step from the true state before it (our choice: generous)."""
-    sigma = np.array([1.0, pitch_unit.value])
-    forcing = data.forcing
-
-    def objective(points: Array) -> Array:
-        k = min(optimiser.iteration, len(data.states) - 2)
-        A, B = candidate_matrices(points)
-        return np.sqrt(0.5 * one_sample_fitness(A, B, forcing, k, data.states[k], data.measured[k + 1], sigma))
-
-    return objective
+    return one_sample_fitness(candidates_for(data, pitch_unit, starts_from_truth=True), optimiser)
 
 
 def whole_record_objective(data: SearchData, pitch_unit: PitchUnit = PitchUnit.DEGREES) -> Fitness:
     """Eq. (27): root mean square over the whole record."""
-    sigma, forcing, count = np.array([1.0, pitch_unit.value]), data.forcing, data.measured.size
-
-    def objective(points: Array) -> Array:
-        A, B = candidate_matrices(points)
-        return np.sqrt(fitness(A, B, forcing, np.zeros(4), data.measured, sigma) / count)
-
-    return objective
+    return whole_record_fitness(candidates_for(data, pitch_unit))
 
 
 def centred_box(truth: Array, half_width: float) -> Box:
@@ -147,13 +152,15 @@ class RepeatedSearches:
     """Repeated searches of one optimiser for one truth.
 
     Attributes:
-        points: what each run found, (runs, 8); seconds: time of one run; trace: best point after each iteration of the
-            first run, (iterations, 8); history: its best fitness.
+        points: what each run found, (runs, 8); evaluations: candidates that each judged, (runs,).
+        seconds: time of one run.
+        trace: best point after each iteration of the first run, (iterations, 8); best_fitness: its fitness.
         lower_bounds: lower ends of each run's box, by magnitude, (runs, 8).
     """
 
     truth: Array
     points: Array
+    evaluations: Array
     lower_bounds: Array
     seconds: float
     trace: Array
@@ -183,16 +190,15 @@ def repeat_searches(
     seed: int,
 ) -> RepeatedSearches:
     """One run in each sea and box, each with a generator of its own."""
-    points, traces, histories = [], [], []
     began = time.perf_counter()
-    for run, (data, bounds) in enumerate(zip(seas, boxes, strict=True)):
-        optimiser = make_optimiser(bounds, np.random.default_rng([seed, run]))
-        found = search(optimiser, make_objective(data, optimiser))
-        points.append(found.point)
-        traces.append(optimiser.trace)
-        histories.append(np.array(found.history))
+    finished = [
+        run_search(box, make_optimiser, partial(make_objective, data), seed, run)
+        for run, (data, box) in enumerate(zip(seas, boxes, strict=True))
+    ]
+    seconds = (time.perf_counter() - began) / len(seas)
     truth = seas[0].truth
     lower = np.array([np.where(truth > 0, b.lower, b.upper) for b in boxes])
-    return RepeatedSearches(
-        truth, np.array(points), lower, (time.perf_counter() - began) / len(seas), traces[0], histories[0]
-    )
+    points = np.array([f.solution.point for f in finished])
+    evaluations = np.array([f.solution.evaluations for f in finished])
+    history = np.array(finished[0].solution.history)
+    return RepeatedSearches(truth, points, evaluations, lower, seconds, finished[0].trace, history)

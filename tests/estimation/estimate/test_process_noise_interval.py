@@ -6,7 +6,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
-from seatrial.data.trial import EstimateSettings, FitCriterion
+from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.process_noise import ProcessNoise, implied_process_noise
@@ -50,7 +50,7 @@ def fitted(record: Record) -> PointEstimate:
     return estimate_model(
         linear(),
         Runs.one_session_each([record], 5.0),
-        EstimateSettings(criterion=FitCriterion.OUTPUT_ERROR),
+        EstimateSettings(method=EstimateMethod.OUTPUT_ERROR),
         EstimatorOptions(workers=1),
     ).estimate
 

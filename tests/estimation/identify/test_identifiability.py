@@ -8,7 +8,7 @@ import pytest
 from seatrial.core.results import Identifiability
 from seatrial.core.values import ForceContent, ForcePoints, Prior, Record
 from seatrial.data.example_series.series import SENSOR_NOISE, simulate_run, true_model, with_sensor_noise
-from seatrial.data.trial import EstimateSettings, FitCriterion
+from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
@@ -47,7 +47,7 @@ def record() -> Record:
 
 @pytest.fixture(scope="module")
 def found(record: Record) -> Estimation:
-    settings = EstimateSettings(criterion=FitCriterion.OUTPUT_ERROR)
+    settings = EstimateSettings(method=EstimateMethod.OUTPUT_ERROR)
     return estimate_model(true_model(), Runs.one_session_each([record], 9.8), settings, ONE_WORKER)
 
 
@@ -90,7 +90,7 @@ def test_a_wrong_added_mass_moves_the_estimates_as_foretold(found: Estimation, r
     foretold = next(c for c in consequences(found) if c.parameter == "m_y")
     model = true_model()
     wrong = model.with_values({"m_y": 1.02 * model.parameters["m_y"].value})
-    settings = EstimateSettings(criterion=FitCriterion.OUTPUT_ERROR)
+    settings = EstimateSettings(method=EstimateMethod.OUTPUT_ERROR)
     again = estimate_model(wrong, Runs.one_session_each([record], 9.8), settings, ONE_WORKER)
     for name in ("Y_v", "X_vv", "Y_rr"):
         i = found.estimate.problem.free.index(name)
@@ -163,7 +163,7 @@ def test_what_defines_the_coefficients_is_not_assumed() -> None:
     model = abkowitz().with_values(ABKOWITZ).with_ship(kvlcc2_l7().ship)
     record = manoeuvre(model, programme("zigzag:20/20"), speed=1.18, slew_rate=np.radians(15.8))
     record = with_sensor_noise(record.resampled(2.0), np.random.default_rng(5), 5)
-    settings = EstimateSettings(criterion=FitCriterion.OUTPUT_ERROR)
+    settings = EstimateSettings(method=EstimateMethod.OUTPUT_ERROR)
     told = consequences(estimate_model(model, Runs.one_session_each([record], 7.0), settings, ONE_WORKER))
     assert {c.parameter for c in told} <= {"I_z", "x_G", "X_udot", "Y_vdot", "N_rdot"}
     assert "Y_vdot" in {c.parameter for c in told}
@@ -228,7 +228,7 @@ def test_a_profile_ends_at_a_bound(found: Estimation) -> None:
 
 def test_prediction_error_has_no_profile_of_output_error(record: Record) -> None:
     """Its cost is another one; a comparison would give an interval of rounding's width."""
-    settings = EstimateSettings(criterion=FitCriterion.PREDICTION_ERROR)
+    settings = EstimateSettings(method=EstimateMethod.PREDICTION_ERROR)
     short = record.between(0.0, 400.0)
     filtered = estimate_model(true_model(), Runs.one_session_each([short], 9.8), settings, ONE_WORKER)
     assert filtered.has_process_noise

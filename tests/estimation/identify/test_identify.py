@@ -77,7 +77,7 @@ def test_the_trials_wishes_become_settings(trial_of: WriteTrial) -> None:
 psi = { sd = 1, unit = "deg" }
 
 [estimate]
-criterion = "output-error"
+method = "output-error"
 robust = true
 channels = ["psi"]
 offsets = { delta = 0.01 }

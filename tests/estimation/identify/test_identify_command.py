@@ -45,7 +45,7 @@ def test_a_steered_manoeuvre_has_intervals_and_an_index(told: Path, run_command:
 def test_every_kind_of_interval_can_be_had(
     trial_of: WriteTrial, tmp_path: Path, run_command: Callable[..., int], kind: str
 ) -> None:
-    trial = trial_of(RUNS, more='[estimate]\ncriterion = "multiple-shooting"')
+    trial = trial_of(RUNS, more='[estimate]\nmethod = "multiple-shooting"')
     arguments = ("--intervals", kind, "--out", tmp_path / "out", "--json", tmp_path / "fit.json")
     assert run_command("identify", trial, *arguments) == 0
     fit = json.loads((tmp_path / "fit.json").read_text())
@@ -59,7 +59,7 @@ def test_every_kind_of_interval_can_be_had(
 def test_a_profile_that_cannot_be_had_is_said(
     trial_of: WriteTrial, tmp_path: Path, run_command: Callable[..., int]
 ) -> None:
-    trial = trial_of({"a": 0.0}, more='[estimate]\ncriterion = "prediction-error"')
+    trial = trial_of({"a": 0.0}, more='[estimate]\nmethod = "prediction-error"')
     arguments = ("--intervals", "profile", "--out", tmp_path / "out", "--json", tmp_path / "fit.json")
     assert run_command("identify", trial, *arguments) == 0
     fit = json.loads((tmp_path / "fit.json").read_text())
@@ -108,6 +108,6 @@ def test_an_interrupt_during_refits_leaves_nothing_half_written(
 
     monkeypatch.setattr("seatrial.estimation.estimate.intervals.full_jackknife", interrupted)
     out = tmp_path / "out"
-    trial = trial_of(RUNS, more='[estimate]\ncriterion = "multiple-shooting"')
+    trial = trial_of(RUNS, more='[estimate]\nmethod = "multiple-shooting"')
     assert run_command("identify", trial, "--out", out, "--intervals", "jackknife") == 130
     assert not out.exists() or not list(out.iterdir())

@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Prior, Record
-from seatrial.data.trial import EstimateSettings, FitCriterion, ModelFamily
+from seatrial.data.trial import EstimateMethod, EstimateSettings, ModelFamily
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.identify.model_selection import (
     FittedVariant,
@@ -164,7 +164,7 @@ def test_a_chosen_segment_length_is_that_which_was_compared(
 ) -> None:
     """Also where the trial leaves the length to the house."""
     runs = Runs.one_session_each(records, LENGTH)
-    settings = EstimateSettings(segment_s=seconds, criterion=FitCriterion.MULTIPLE_SHOOTING)
+    settings = EstimateSettings(segment_s=seconds, method=EstimateMethod.MULTIPLE_SHOOTING)
     own = estimate_model(model, runs, settings, OPTIONS)
     members = fit_variants(own, model, runs, 20.0, settings, OPTIONS, ModelFamily({}, (), (0.5,)))
     rows = [replace(row, is_chosen=row.name == "segments x 0.5") for row in rank_candidates(members, choose=False)]

@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import expm
 
 from seatrial.core.equations import Model
-from seatrial.numerics.kernels.linear import affine_matrices
+from seatrial.numerics.kernels.linear import affine_matrices, affine_population
 from seatrial.numerics.kernels.linear_population import discretise, misfit, trajectories
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 
@@ -21,6 +21,14 @@ def test_matrices_and_their_slopes_come_out_of_the_code(oscillator: Model) -> No
     expected = np.zeros((3, 2, 4))
     expected[0, 1, 0], expected[1, 1, 1], expected[2, 1, 2] = -1.0, -1.0, 1.0
     np.testing.assert_allclose(slope, expected, atol=1e-15)
+
+
+def test_matrices_of_many_parameter_sets_are_those_of_each(oscillator: Model, rng: np.random.Generator) -> None:
+    parameters = rng.standard_normal((5, 3))
+    code = oscillator.compiled.rates_tangent
+    nothing = np.empty(0, dtype=np.int64)
+    for row, value in zip(parameters, affine_population(code, 2, 1, parameters), strict=True):
+        np.testing.assert_array_equal(value, affine_matrices(code, 2, 2, 1, nothing, row)[0])
 
 
 def test_rates_and_jacobian_are_evaluated_row_by_row(oscillator: Model, rng: np.random.Generator) -> None:

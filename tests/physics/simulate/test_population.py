@@ -9,10 +9,12 @@ from scipy.linalg import expm
 from scipy.signal import lsim
 
 from seatrial.core.values import Array, InputError
+from seatrial.physics.models import heave_pitch_zoh
 from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models.qi2025 import SHIP, theoretical_coefficients
 from seatrial.physics.simulate.population import (
     Forcing,
+    affine_population_matrices,
     complete_parameters,
     discretised_hold,
     discretised_ramp,
@@ -166,6 +168,27 @@ def test_matrices_are_those_of_the_equations_of_motion(rng: np.random.Generator)
         loads = np.array([[c33, b33, c35, b35], [c53, b53, c55, b55]])
         np.testing.assert_allclose(mass @ a[1::2], -loads, rtol=1e-9)
         np.testing.assert_allclose(mass @ b[1::2], np.eye(2), atol=1e-9)
+
+
+def test_the_models_own_code_gives_the_matrices_of_the_equations_of_motion(rng: np.random.Generator) -> None:
+    model = theoretical_coefficients(90).applied_to(heave_pitch_zoh())
+    points = rng.uniform(1e5, 1e6, (7, 8))
+    parameters = np.tile(model.parameters.values, (7, 1))
+    parameters[:, [model.parameters.index(name) for name in COEFFICIENTS]] = points
+    expected = heave_pitch_matrices(complete_parameters(points, SHIP.particulars))
+    for found, known in zip(affine_population_matrices(model, parameters, (0, 1)), expected, strict=True):
+        np.testing.assert_allclose(found, known, rtol=1e-9, atol=1e-18)
+
+
+def test_a_held_input_is_constant_between_rows_while_the_others_run_straight(rng: np.random.Generator) -> None:
+    A, B = plants(rng, 3)
+    u = waves(rng, 9)
+    mixed = Forcing(u, DT, is_held=False, held_columns=(1,))
+    straight, held = u * [1.0, 0.0], u * [0.0, 1.0]
+    apart = trajectories(A, B, Forcing(straight, DT, is_held=False), AT_REST)
+    apart += trajectories(A, B, Forcing(held, DT, is_held=True), AT_REST)
+    np.testing.assert_allclose(trajectories(A, B, mixed, AT_REST), apart, rtol=1e-9, atol=1e-12)
+    assert mixed.one_step(2).held_columns == (1,)
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,15 @@
 """Trials: ship, runs and their roles, model and settings, from a trial file or made in Python."""
 
 from seatrial.data.trial.approach import approach_condition
+from seatrial.data.trial.estimate_method import SEARCHES, EstimateMethod, FitCriterion
 from seatrial.data.trial.load import load_trial
 from seatrial.data.trial.records import CheckedRecords, TrialRecord, checked_records, load_records, refuse_errors
-from seatrial.data.trial.settings import EstimateSettings, FitCriterion, ModelFamily
+from seatrial.data.trial.search_settings import SearchFitness, SearchSettings
+from seatrial.data.trial.settings import EstimateSettings, ModelFamily
 from seatrial.data.trial.trial import RecordFile, Role, Trial, TrialRun, Trimming
 
 __all__ = [
-    "CheckedRecords", "EstimateSettings", "FitCriterion", "ModelFamily", "RecordFile", "Role", "Trial",
-    "TrialRecord", "TrialRun", "Trimming", "approach_condition", "checked_records", "load_records", "load_trial",
-    "refuse_errors",
+    "SEARCHES", "CheckedRecords", "EstimateMethod", "EstimateSettings", "FitCriterion", "ModelFamily",
+    "RecordFile", "Role", "SearchFitness", "SearchSettings", "Trial", "TrialRecord", "TrialRun", "Trimming",
+    "approach_condition", "checked_records", "load_records", "load_trial", "refuse_errors",
 ]  # fmt: skip

@@ -1,5 +1,6 @@
 """From a pydantic error to one sentence: the key's path, what is wrong with it, the nearest known key."""
 
+import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import is_dataclass
 from functools import wraps
@@ -8,6 +9,7 @@ from types import NoneType
 from typing import Any, ParamSpec, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
 
 from seatrial.core.values import InputError, spelling_hint
 from seatrial.data.trial.amounts import InSi
@@ -16,6 +18,8 @@ _Settings = TypeVar("_Settings")
 _Arguments = ParamSpec("_Arguments")
 
 _UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
+RENAMED_KEYS = {"criterion": "method"}
+"""Key of earlier versions -> its name today, in the tables that have that name."""
 
 
 def _table_classes(annotation: object) -> Iterator[type]:
@@ -69,6 +73,16 @@ def _checked_init(init: Callable[_Arguments, None], table: type) -> Callable[_Ar
     return checked
 
 
+def _key_hint(error: ErrorDetails, table: type) -> str:
+    """Return the end of the sentence on an unknown key: the edit where it was renamed, else the nearest key."""
+    key, keys = str(error["loc"][-1]), known_keys(table, error["loc"])
+    renamed = RENAMED_KEYS.get(key)
+    if renamed not in keys:
+        return spelling_hint(key, keys)
+    value = str(error["input"]) if isinstance(error["input"], str) else error["input"]
+    return f", which is '{renamed}' now; write {renamed} = {json.dumps(value, default=str)}"
+
+
 def schema_error(error: ValidationError, table: type, source: str) -> InputError:
     """Return the first fault as one sentence; an unknown key before a missing one, which may be its right spelling.
 
@@ -79,8 +93,7 @@ def schema_error(error: ValidationError, table: type, source: str) -> InputError
     where = f"{source}: "
     match first["type"]:
         case kind if kind in _UNKNOWN_KEY:
-            hint = spelling_hint(str(location[-1]), known_keys(table, location))
-            return InputError(f"{where}unknown key '{key_path(location)}'{hint}")
+            return InputError(f"{where}unknown key '{key_path(location)}'{_key_hint(first, table)}")
         case "missing":
             return InputError(f"{where}key '{key_path(location)}' is missing; add it")
         case "value_error":

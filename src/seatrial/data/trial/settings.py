@@ -1,23 +1,15 @@
 """Settings of the estimator and of the comparison of models: tables of a trial file, values in Python."""
 
 from collections.abc import Mapping
-from enum import StrEnum
 from typing import Annotated, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 from pydantic.dataclasses import dataclass
 
 from seatrial.data.trial.amounts import STRICT_FIELDS, Deviation
+from seatrial.data.trial.estimate_method import EstimateMethod, FitCriterion, method_named
 from seatrial.data.trial.schema_errors import raises_input_error
-
-
-class FitCriterion(StrEnum):
-    """What is minimised; `auto` is the decision table's choice."""
-
-    AUTO = "auto"
-    OUTPUT_ERROR = "output-error"
-    MULTIPLE_SHOOTING = "multiple-shooting"
-    PREDICTION_ERROR = "prediction-error"
+from seatrial.data.trial.search_settings import SearchSettings
 
 
 def _as_deviations(value: object) -> object:
@@ -26,6 +18,7 @@ def _as_deviations(value: object) -> object:
 
 
 Positive = Annotated[float, Field(gt=0)]
+Method = Annotated[EstimateMethod, BeforeValidator(method_named)]
 Deviations = Annotated[Mapping[str, Deviation], BeforeValidator(_as_deviations)]
 
 
@@ -35,7 +28,8 @@ class EstimateSettings:
     """`[estimate]`: settings of the estimator; what is not given follows the decision table.
 
     Attributes:
-        criterion: what is minimised.
+        method: the package's own criteria, or a published method, which is compared with the package's own estimate.
+        search: settings of a search by a population; None: those of the method's source.
         channels: observables that are fitted; empty: all that the records measure.
         segment_s: length of a multiple-shooting segment [s].
         segment_lengths: the same in ship lengths travelled at the median speed of the runs.
@@ -48,7 +42,8 @@ class EstimateSettings:
         initial_s: s of a validation run from which its initial state is estimated; None: L/U.
     """
 
-    criterion: FitCriterion = FitCriterion.AUTO
+    method: Method = EstimateMethod.AUTO
+    search: SearchSettings | None = None
     channels: tuple[str, ...] = ()
     segment_s: Positive | None = None
     segment_lengths: Positive | None = None
@@ -59,6 +54,11 @@ class EstimateSettings:
     delays: Deviations = Field(default_factory=dict)
     current: Annotated[float, Field(ge=0)] = 0.0
     initial_s: Positive | None = None
+
+    @property
+    def criterion(self) -> FitCriterion:
+        """Return what the package's own estimate minimises."""
+        return self.method.criterion
 
     @model_validator(mode="after")
     def _one_segment_length(self) -> Self:

@@ -17,7 +17,7 @@ NO_PROFILE = Finding(
     "no-profile",
     "no profile likelihood: the coefficients come from prediction error, which has no outputs to fit again",
     "",
-    "intervals are those of the innovations' information; ask for another criterion under [estimate] to have profiles",
+    "intervals are those of the innovations' information; set another method under [estimate] to have profiles",
 )
 
 

@@ -53,6 +53,8 @@ def identify(
     """
     began = time.perf_counter()
     checked = checked_records(trial)
+    if trial.estimate.method.is_published:
+        raise InputError(f"method '{trial.estimate.method}' is offered by studies only as yet; leave [estimate] method")
     options = EstimatorOptions(intervals, seed)
     task = Identification(trial, checked.records, checked.findings, options, choose, began, report_progress)
     situation = identification_situation(task)

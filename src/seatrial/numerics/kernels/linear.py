@@ -71,6 +71,27 @@ def affine_matrices(f, rows, nx, nu, parameter_index, p):
     return value, slope
 
 
+@kernel(void(TANGENT, I8, I8, MATRIX, CUBE, VECTOR, VECTOR, VECTOR, MATRIX), **LEAN)
+def _affine_population(f, nx, nu, p, value, x, u, out, jac):
+    for c in range(p.shape[0]):
+        f(0.0, x, u, p[c], out, jac)
+        for i in range(nx):
+            for k in range(nx + nu):
+                value[c, i, k] = jac[i, k]
+            value[c, i, nx + nu] = out[i]
+
+
+def affine_population(f, nx, nu, p):
+    """Return the matrices [A | B | c] of an affine function's rates at each row of parameters p (count, parameters).
+
+    f: as in `affine_matrices`. Returns (count, nx, nx + nu + 1).
+    """
+    value = np.empty((len(p), nx, nx + nu + 1))
+    scratch = np.zeros(nx), np.zeros(max(nu, 1)), np.empty(nx), np.zeros((nx, nx + nu + p.shape[1]))
+    _affine_population(f, nx, nu, np.ascontiguousarray(p), value, *scratch)
+    return value
+
+
 @njit(inline="always", **OPTIONS)
 def _advance(e, g0, g1, x, u0, u1, y):
     """x <- e x + g0 u0 + g1 u1; y is scratch. Returns the size of the new state."""

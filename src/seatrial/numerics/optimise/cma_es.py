@@ -26,6 +26,11 @@ class AdaptationSettings:
     step: float = 0.3
     resampling: int = 20
 
+    @staticmethod
+    def default_population(unknowns: int) -> int:
+        """Return the points of a generation where none are given, eq. 48."""
+        return 4 + floor(3 * log(unknowns))
+
     def __post_init__(self) -> None:
         reject_nonfinite_settings(self)
         if self.population is not None and self.population < 4:
@@ -59,7 +64,7 @@ class CovarianceAdaptation(Population):
             bounds=unit,
             n_max_resampling=self.settings.resampling,
             seed=int(generator.integers(2**32)),
-            population_size=self.settings.population or 4 + floor(3 * log(box.size)),
+            population_size=self.settings.population or self.settings.default_population(box.size),
         )
         self._unit_points = np.zeros((0, box.size))
         self._best, self._best_fitness = box.scaled(unit.mean(axis=1)), np.inf

@@ -18,6 +18,7 @@ from seatrial.physics.simulate.linear import (
 )
 from seatrial.physics.simulate.population import (
     Forcing as Forcing,
+    affine_population_matrices as affine_population_matrices,
     complete_parameters as complete_parameters,
     discretised_hold as discretised_hold,
     discretised_ramp as discretised_ramp,

@@ -3,13 +3,15 @@
 Every candidate has matrices of its own, x' = A x + B u. A candidate's numbers do not depend on its neighbours.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
+from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError
+from seatrial.numerics.kernels.linear import affine_population
 from seatrial.numerics.kernels.linear_population import discretise, misfit
 from seatrial.numerics.kernels.linear_population import trajectories as simulated
 from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
@@ -27,6 +29,7 @@ class Forcing:
         inputs: ((samples - 1) substeps + 1, nu), `substeps` intervals to a sample.
         dt: s, between samples.
         is_held: constant over each interval (Qi et al. 2025, eq. (8)); otherwise straight between rows.
+        held_columns: inputs that are held though the others run straight.
 
     Raises:
         InputError: on construction, if the rows do not fit the substeps, dt is not positive, or a value is not finite.
@@ -36,6 +39,7 @@ class Forcing:
     dt: float
     is_held: bool
     substeps: int = 1
+    held_columns: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         if self.substeps < 1 or len(self.inputs) < 2 or (len(self.inputs) - 1) % self.substeps:
@@ -58,7 +62,11 @@ class Forcing:
     def rows(self) -> Array:
         """What a step multiplies by Gamma: u_k, or u_k beside u_{k+1}."""
         u = np.array(self.inputs, dtype=np.float64, order="C")
-        return u if self.is_held else np.hstack([u, np.vstack([u[1:], u[-1:]])])
+        if self.is_held:
+            return u
+        after = np.vstack([u[1:], u[-1:]])
+        after[:, self.held_columns] = u[:, self.held_columns]
+        return np.hstack([u, after])
 
     def one_step(self, sample: int) -> "Forcing":
         """From one sample to the next.
@@ -69,7 +77,22 @@ class Forcing:
         if not 0 <= sample < self.samples - 1:
             raise InputError(f"no step from sample {sample} in a forcing of {self.samples} samples")
         first = sample * self.substeps
-        return Forcing(self.inputs[first : first + self.substeps + 1], self.dt, self.is_held, self.substeps)
+        return replace(self, inputs=self.inputs[first : first + self.substeps + 1])
+
+
+def affine_population_matrices(model: Model, parameters: Array, inputs: Sequence[int]) -> tuple[Array, Array]:
+    """A (count, nx, nx) and B (count, nx, inputs) of an affine model at each row of parameters, all of the model's.
+
+    inputs: the columns of B that are kept, those of the inputs that move.
+
+    Raises:
+        InputError: the model's rates are not zero at rest, which such a population cannot simulate.
+    """
+    nx, nu = len(model.states), len(model.inputs)
+    value = affine_population(model.compiled.rates_tangent, nx, nu, parameters)
+    if np.any(value[:, :, nx + nu] != 0.0):
+        raise InputError(f"model '{model.name}' has rates at rest; a population of it cannot be simulated at once")
+    return value[:, :, :nx], value[:, :, [nx + j for j in inputs]]
 
 
 def discretised_hold(A: Array, B: Array, dt: float) -> tuple[Array, Array]:

@@ -20,7 +20,7 @@ def stream():
 def test_linear_models_under_output_error_continue_their_search(stream):
     assert suits_whole_runs(stream.trial)
     assert not suits_whole_runs(replace(stream.trial, estimate=replace(stream.trial.estimate, segment_s=20.0)))
-    prediction = replace(stream.trial.estimate, criterion="prediction-error")
+    prediction = replace(stream.trial.estimate, method="prediction-error")
     assert not suits_whole_runs(replace(stream.trial, estimate=prediction))
 
 
