@@ -3,12 +3,15 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
 from seatrial.core.values import Array
 from seatrial.estimation.search.fitness import Fitness
-from seatrial.numerics.optimise import Box, Optimiser, OptimiserFactory, Solution, search
+from seatrial.numerics.optimise import Box, Optimiser, Solution, search
+
+AnyOptimiser = TypeVar("AnyOptimiser", bound=Optimiser)
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,8 +30,8 @@ class FinishedSearch:
 
 def run_search(
     box: Box,
-    create: OptimiserFactory,
-    fitness_of: Callable[[Optimiser], Fitness],
+    create: Callable[[Box, np.random.Generator], AnyOptimiser],
+    fitness_of: Callable[[AnyOptimiser], Fitness],
     seed: int,
     restart: int,
     report_progress: Callable[[int, float], None] | None = None,
