@@ -109,6 +109,12 @@ def test_resampling_otherwise_is_linear(record: Record) -> None:
     assert made.provenance.steps[-1] == "resampled to 7 Hz"
 
 
+@pytest.mark.parametrize("rate", [1e12, np.inf, np.nan])
+def test_a_rate_beyond_any_memory_is_refused(record: Record, rate: float) -> None:
+    with pytest.raises(InputError, match="give a lower rate"):
+        record.resampled(rate)
+
+
 def test_cutting_is_inclusive_of_both_ends(record: Record) -> None:
     made = record.between(1.0, 2.0)
     assert (made.time[0], made.time[-1]) == pytest.approx((1.0, 2.0))

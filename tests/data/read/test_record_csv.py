@@ -86,6 +86,19 @@ def test_refusals(tmp_path: Path) -> None:
     (tmp_path / "other.csv").write_text("a,b\n1,2\n")
     with pytest.raises(InputError, match=r"column 'a' should read 'symbol \[unit\]'"):
         read_record_csv(tmp_path / "other.csv")
-    (tmp_path / "other.csv").write_text("# seatrial record {nonsense\ntime [s]\n1\n")
+
+
+@pytest.mark.parametrize("metadata", ["{nonsense", "[]", '{"channels": {}}', "[" * 5000, '{"channels": {"u": 1}}'])
+def test_a_damaged_first_line_is_refused(tmp_path: Path, metadata: str) -> None:
+    (tmp_path / "other.csv").write_text(f"# seatrial record {metadata}\ntime [s],u [m/s]\n1,2\n")
     with pytest.raises(InputError, match="first line is damaged"):
+        read_record_csv(tmp_path / "other.csv")
+
+
+@pytest.mark.parametrize(
+    "text", ["", "time [s]\n", '# seatrial record {"name": "x"}\n', "# seatrial record {}\ntime [s]\n"]
+)
+def test_a_file_without_samples_is_refused(tmp_path: Path, text: str) -> None:
+    (tmp_path / "other.csv").write_text(text)
+    with pytest.raises(InputError, match=r"holds no samples|is empty"):
         read_record_csv(tmp_path / "other.csv")

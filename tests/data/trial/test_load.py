@@ -111,6 +111,7 @@ REFUSALS = [
     ("unknown direction", '"port"', '"left"', "positive = 'left'"),
     ("unknown format", "header_lines", 'format = "txt"\nheader_lines', "unknown format 'txt'; did you mean 'text'"),
     ("no match", '"*.csv"', '"*.dat"', "matches no file"),
+    ("no pattern", '"*.csv"', '"a**b/*.csv"', "is no pattern"),
     ("no such file", '"*.csv"', '"z.csv"', "there is no file"),
     ("unset variable", '"*.csv"', '"${SEATRIAL_NOWHERE}/*.csv"', "SEATRIAL_NOWHERE .* is not set"),
     ("run to validate", '"c_*"', '"d_*"', r"validate: no run is called 'd_\*'"),

@@ -33,6 +33,12 @@ def test_errors_refuse_unless_accepted() -> None:
     assert refuse_errors((error,), ("rudder-sign",))[0].severity is Severity.WARNING
 
 
+def test_noise_beyond_all_that_is_recorded_is_refused(trial_file: Path) -> None:
+    trial_file.write_text(trial_file.read_text() + '\n[noise]\nr = { sd = 1e308, unit = "deg/s" }\n')
+    with pytest.raises(InputError, match=r"\[noise\] r = .* is over 1000 times the largest value in the records"):
+        load_records(load_trial(trial_file))
+
+
 def _run_up() -> Record:
     time = np.arange(0.0, 60.0, 0.5)
     speed = np.minimum(time / 20.0, 1.0)

@@ -112,6 +112,11 @@ def test_waves_without_energy_at_the_natural_frequency_are_refused(tmp_path: Pat
         trial_of(tmp_path, simulate_roll_record(bretschneider(2.0, 6.5), 2))
 
 
+def test_a_record_of_a_few_samples_has_no_spectrum() -> None:
+    with pytest.raises(InputError, match="too few for a spectrum"):
+        spectral_problem(simulate_roll_record(bretschneider(2.0, 9.0), 1).rows(slice(9)))
+
+
 def test_too_short_a_record_is_refused(tmp_path: Path) -> None:
     """With the number of swings it has."""
     with pytest.raises(InputError, match="swings in waves that nobody measured are too few"):

@@ -91,3 +91,9 @@ def test_what_is_missing_is_named() -> None:
 
 def test_a_model_without_speed_keeps_its_own_time() -> None:
     assert manoeuvre(nomoto(), programme("zigzag:10/10")).provenance.steps[1].startswith("finished")
+
+
+@pytest.mark.parametrize("duration", [math.nan, math.inf, 1e12, 0.01])
+def test_a_duration_without_an_end_or_a_step_is_refused(duration: float) -> None:
+    with pytest.raises(InputError, match=r"is not between 1 and 1e\+08 steps of 0.1 s"):
+        manoeuvre(nomoto(), programme("zigzag:10/10"), duration=duration)

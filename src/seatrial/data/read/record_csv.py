@@ -42,35 +42,36 @@ def read_record_csv(path: Path) -> Record:
         raise InputError(f"{path} does not exist; check the path")
     text = decoded_text(path, "utf-8")
     lines = text.splitlines()
-    metadata = _parse_metadata(lines[0], path.name) if lines[0].startswith(RECORD_MARK) else {}
-    header = [_split_heading(cell, path.name) for cell in lines[1 if metadata else 0].split(",")]
+    marked = bool(lines) and lines[0].startswith(RECORD_MARK)
+    if len(lines) < 2 + marked:
+        raise InputError(f"{path.name} holds no samples; a record file has a line 'time [s],…' and one line a sample")
+    header = [_split_heading(cell, path.name) for cell in lines[marked].split(",")]
     if header[0] != ("time", "s"):
         raise InputError(f"{path.name} is not a record table: its first column must be 'time [s]'")
     layout = Layout("text", ColumnSpec("time", 1, "s"), (), header_lines=1, separator=",")
     sheet = read_text(path, layout)
-    columns = [sheet.numbers(ColumnSpec("time", number + 1, "s")) for number in range(len(header))]
-    described = metadata.get("channels", {})
-    channels = {
-        symbol: _channel(symbol, unit, values, described.get(symbol, {}))
-        for (symbol, unit), values in zip(header[1:], columns[1:], strict=True)
-    }
-    provenance = Provenance(path.name, hashlib.sha256(path.read_bytes()).hexdigest())
-    if metadata:
+    time, *columns = [sheet.numbers(ColumnSpec("time", number + 1, "s")) for number in range(len(header))]
+    if not marked:
+        plain = {s: _plain_channel(s, unit, values) for (s, unit), values in zip(header[1:], columns, strict=True)}
+        source = Provenance(path.name, hashlib.sha256(path.read_bytes()).hexdigest())
+        return Record(path.stem, time, plain, provenance=source)
+    try:
+        metadata = json.loads(lines[0].removeprefix(RECORD_MARK))
+        described = metadata["channels"]
+        channels = {
+            symbol: Channel(frozen(values), **{**described[symbol], "unit": unit})
+            for (symbol, unit), values in zip(header[1:], columns, strict=True)
+        }
         provenance = Provenance.from_metadata(metadata["provenance"])
-    return Record(
-        metadata.get("name", path.stem), columns[0], channels, RecordKind(metadata.get("kind", "measured")), provenance
-    )
+        return Record(metadata["name"], time, channels, RecordKind(metadata["kind"]), provenance)
+    except (KeyError, TypeError, ValueError, RecursionError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{path.name}: its first line is damaged; delete it to read the numbers alone") from None
 
 
 def _cell_text(value: float) -> str:
     return "" if value != value else repr(value)
-
-
-def _parse_metadata(line: str, file: str) -> dict:
-    try:
-        return json.loads(line.removeprefix(RECORD_MARK))
-    except json.JSONDecodeError:
-        raise InputError(f"{file}: its first line is damaged; delete it to read the numbers alone") from None
 
 
 def _split_heading(cell: str, file: str) -> tuple[str, str]:
@@ -80,9 +81,8 @@ def _split_heading(cell: str, file: str) -> tuple[str, str]:
     return symbol, unit[:-1]
 
 
-def _channel(symbol: str, unit: str, values: Array, metadata: dict) -> Channel:
-    if metadata:
-        return Channel(frozen(values), **{**metadata, "unit": unit})
+def _plain_channel(symbol: str, unit: str, values: Array) -> Channel:
+    """A channel in the notation's conventions."""
     q = quantity(symbol)
     column = ColumnSpec(symbol, symbol, unit)
     return Channel(frozen(values * column.si_factor(q.unit)), q.unit, q.frame, q.positive)

@@ -1,5 +1,6 @@
 """From the runs of a trial to checked records in standard frames, signs and units."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,8 +13,9 @@ from seatrial.data.trial.trial import Role, Trial, TrialRun, Trimming
 from seatrial.physics.sea.encounter import WaveEncounter
 from seatrial.physics.sea.wave_forces import with_wave_forces
 
-_ACCELERATED_FRACTION = 0.9
-"""Speed at the end of an acceleration run over the speed at the first rudder execution; chosen."""
+# speed at the end of an acceleration run over the speed at the first rudder execution; largest standard deviation of
+# a sensor over the largest value recorded: chosen
+_ACCELERATED_FRACTION, _LARGEST_NOISE = 0.9, 1000.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +60,21 @@ def load_records(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, 
         where = f"{trial.path}: " if trial.path else ""
         raise InputError(f"{where}there are no [[records]] to read; add them, or plan a trial with 'seatrial design'")
     records = tuple(load_run(run, trial.reference_point) for run in trial.runs if run.role is not Role.LEAVE_OUT)
+    for channel, deviation in trial.noise.items():
+        _refuse_absurd_noise(channel, deviation, [r.record for r in records])
     return records, (*trial.findings, *(finding for record in records for finding in record.findings))
+
+
+def _refuse_absurd_noise(channel: str, deviation: float, records: Sequence[Record]) -> None:
+    """Raises:
+    InputError: noise of a channel is stated that dwarfs all that its records show.
+    """
+    largest = max((float(np.nanmax(np.abs(r[channel]), initial=0.0)) for r in records if channel in r), default=0.0)
+    if largest and deviation > _LARGEST_NOISE * largest:
+        raise InputError(
+            f"[noise] {channel} = {deviation:g} is over {_LARGEST_NOISE:g} times the largest value in the records "
+            f"({largest:g}, SI); correct the number or its unit"
+        )
 
 
 def load_run(run: TrialRun, reference_point: float) -> TrialRecord:

@@ -91,10 +91,13 @@ def _matching_files(text: str, data_folder: Path, where: str) -> list[Path]:
     if not any(c in text for c in "*?["):
         raise InputError(f"{where}.files: there is no file '{full}'; check the name and [data] folder")
     root = Path(full.anchor)
-    found = [p for p in root.glob(str(full.relative_to(root))) if p.is_file()]
-    if not found:
+    try:
+        matching = [p for p in root.glob(str(full.relative_to(root))) if p.is_file()]
+    except ValueError as error:  # '**' within a name
+        raise InputError(f"{where}.files: '{text}' is no pattern ({error}); correct it") from None
+    if not matching:
         raise InputError(f"{where}.files: '{full}' matches no file; check the pattern and [data] folder")
-    return found
+    return matching
 
 
 def _roles(block: RecordsTable, names: Sequence[str], where: str) -> list[Role]:

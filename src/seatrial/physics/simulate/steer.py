@@ -8,6 +8,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Provenance, Record, frozen
+from seatrial.core.values.record import MAX_SAMPLES
 from seatrial.numerics.kernels.steering import steer
 from seatrial.physics.manoeuvres.programme import Programme
 from seatrial.physics.manoeuvres.steering import FINISHED, NOT_FINISHED, Steering, rudder_angles
@@ -88,9 +89,10 @@ def _steer_programme(
     model: Model, programme: Programme, steering: Steering, start: Array, held: Array, longest: float
 ) -> tuple[Array, bool]:
     """Inputs at the samples (n, nu), in the model's signs, and whether the helmsman has finished."""
-    dt, count = steering.dt, int(longest / steering.dt) + 1
-    if count < 2:
-        raise InputError(f"a manoeuvre of {longest:g} s is shorter than one step of {dt:g} s")
+    dt = steering.dt
+    if not 1.0 <= longest / dt < MAX_SAMPLES:
+        raise InputError(f"a manoeuvre of {longest:g} s is not between 1 and {MAX_SAMPLES:.0e} steps of {dt:g} s")
+    count = int(longest / dt) + 1
     states, inputs = np.empty((count, len(start))), np.empty((count, len(held)))
     memory = programme.memory(steering)
     diverged = steer(

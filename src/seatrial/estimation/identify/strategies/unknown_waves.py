@@ -87,7 +87,7 @@ def spectral_problem(record: Record) -> UnknownWaves:
         raise InputError(f"record '{record.name}': channel 'phi' has gaps, which a spectrum cannot have; repair it")
     omega, motion = hann_transform(phi[:, None], record.dt)
     power = np.abs(motion[:, 0]) ** 2
-    centre = float(omega[np.argmax(_smoothed(power))])
+    centre = float(omega[np.argmax(_smoothed(power))]) if len(omega) >= _SMOOTHING_BINS else 0.0
     if record.duration * centre < 2.0 * np.pi * _MIN_CYCLES:
         raise InputError(
             f"record '{record.name}': {record.duration * centre / (2.0 * np.pi):.0f} swings in waves that nobody "
