@@ -8,6 +8,7 @@ import pytest
 from seatrial.core.results import Study, Verdict
 from seatrial.physics.hydro.dispersion import G
 from seatrial.physics.loops.fin import Preamplifier
+from seatrial.physics.loops.loop_states import state_space
 from seatrial.physics.sea.spectrum import ittc
 from seatrial_studies import yu2014
 from seatrial_studies.yu2014.audit import audit
@@ -30,7 +31,6 @@ from seatrial_studies.yu2014.published_loop import (
     roll_response,
 )
 from seatrial_studies.yu2014.searches import GeneticSearchSetting, search_over_seeds
-from seatrial_studies.yu2014.state_space import state_space
 from seatrial_studies.yu2014.table_1_fit import fit_table_1
 
 PRINTED, WASHOUT = Preamplifier.PRINTED, Preamplifier.WASHOUT

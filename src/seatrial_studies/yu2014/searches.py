@@ -9,11 +9,10 @@ from scipy.signal import lsim
 
 from seatrial.core.values import Array
 from seatrial.numerics.optimise import Box, GeneticSettings, Normaliser, RandomWeightGenetic, non_dominated
-from seatrial.physics.loops import Performance, Preamplifier
+from seatrial.physics.loops import Performance, Preamplifier, state_space
 from seatrial.physics.simulate import Forcing, trajectories
 from seatrial_studies.yu2014.published import LOWER, PUBLISHED_VALUES, RECORD_SECONDS, STEP, UPPER
 from seatrial_studies.yu2014.published_loop import FinObjective, objective_values, performance
-from seatrial_studies.yu2014.state_space import state_space
 
 # searches in the full and in the quick version; our choice
 SEEDS, QUICK_SEEDS = 12, 4

@@ -9,7 +9,7 @@ from tests.physics.loops.example_loops import second_order
 from seatrial.core.values import InputError, Parameter, Parameters
 from seatrial.physics.loops import Block, Term, TransferLoop
 from seatrial.physics.loops.fin import Preamplifier, fin_loop
-from seatrial_studies.yu2014.state_space import state_space
+from seatrial.physics.loops.loop_states import state_space
 
 OMEGA = np.geomspace(1e-3, 1e2, 40)
 LOOPS = [fin_loop(reading) for reading in Preamplifier]

@@ -12,11 +12,11 @@ from seatrial.core.values import Array, DivergedError, InputError, Parameter, Pa
 from seatrial.numerics.kernels.feedback import effective_angle
 from seatrial.physics.loops import Block, Term, TransferLoop
 from seatrial.physics.loops.fin import Preamplifier, fin_loop
+from seatrial.physics.loops.loop_states import state_space
 from seatrial.physics.loops.state_space import plant_model
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop, closed_loop, hold_equivalent
-from seatrial_studies.yu2014.state_space import state_space
 
 WASHOUT, PRINTED = fin_loop(Preamplifier.WASHOUT), fin_loop(Preamplifier.PRINTED)
 FINS = {"actuator": "alpha_f", "disturbance_input": "alpha_w", "output": "phi"}

@@ -23,6 +23,10 @@ from seatrial.physics.loops.loop import (
     Term as Term,
     TransferLoop as TransferLoop,
 )
+from seatrial.physics.loops.loop_states import (
+    StateSpace as StateSpace,
+    state_space as state_space,
+)
 from seatrial.physics.loops.margins import (
     StabilityMargins as StabilityMargins,
     margins as margins,
