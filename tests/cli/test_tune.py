@@ -184,3 +184,34 @@ def test_the_autopilots_of_the_examples_turn_their_ships(repository: Path, tmp_p
         task = api.load_loop(repository / "examples" / f"{name}_autopilot.toml", model_file=known)
         assert task.demand is not None and task.demand.overshoot == 0.02 and task.constraints.Ms == 1.7
         assert margins(task.loop).is_stable
+
+
+def test_a_method_is_front_or_genetic(
+    tmp_path: Path, run_command: Callable[..., int], capsys: pytest.CaptureFixture
+) -> None:
+    path = write_loop_file(tmp_path, FIN)
+    assert run_command("tune", path, "--method", "genetics") == 2
+    assert "there is no tuning method 'genetics'; did you mean 'genetic'?" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("population = 3", "genetic.population"),
+        ("mutation = 2.0", "genetic.mutation"),
+        ("bits = 60", "genetic.bits"),
+        ('objectives = "print"', "genetic.objectives"),
+        ("rates = 1", "genetic.rates"),
+    ],
+)
+def test_settings_of_the_search_are_checked(tmp_path: Path, line: str, says: str) -> None:
+    path = write_loop_file(tmp_path, f"{FIN}\n[genetic]\n{line}\n")
+    with pytest.raises(InputError, match=says) as refused:
+        api.load_loop(path)
+    assert "\n" not in str(refused.value)
+
+
+def test_settings_of_the_search_reach_the_task(tmp_path: Path) -> None:
+    path = write_loop_file(tmp_path, f'{FIN}\n[genetic]\npopulation = 30\nobjectives = "one-sided"\n')
+    genetic = api.load_loop(path).genetic
+    assert (genetic.population, genetic.objectives, genetic.generations) == (30, "one-sided", 200)

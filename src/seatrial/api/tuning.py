@@ -26,19 +26,30 @@ def load_loop(path: str | Path, own_model: "Model | None" = None, model_file: st
     return tuning_task(Path(path), own_model, None if model_file is None else Path(model_file))
 
 
-def tune(task: "TuningTask | str | Path", seed: int = 0, report_progress: "ProgressReporter | None" = None) -> "Tuning":
+def tune(
+    task: "TuningTask | str | Path",
+    seed: int = 0,
+    report_progress: "ProgressReporter | None" = None,
+    method: str = "front",
+) -> "Tuning":
     """Tune a feedback loop: the front, the chosen gains with the reasons, and their nonlinear simulation.
 
     Args:
         task: as `load_loop` returns it, or the path of a loop file.
         seed: of the search, of the simulated seas, and of the ships drawn from the fit.
         report_progress: called with one line of text at each step.
+        method: where the chosen gains come from: "front", or "genetic" (Yu et al. 2014, settings of the loop file's
+            table [genetic]), with the choice from the front beside it as `reference`.
 
     Raises:
-        InputError: as `load_loop`; no gains keep the limits (which limit, by how much).
+        InputError: as `load_loop`; an unknown method; no gains keep the limits (which limit, by how much).
     """
     from seatrial.control.task import TuningTask
     from seatrial.control.tune import tune
+    from seatrial.core.results.tuning import TuningMethod
+    from seatrial.core.values import InputError, spelling_hint
 
+    if method not in (known := [one.value for one in TuningMethod]):
+        raise InputError(f"there is no tuning method '{method}'{spelling_hint(method, known)}")
     task = task if isinstance(task, TuningTask) else load_loop(task)
-    return tune(task, seed=seed, report_progress=report_progress or (lambda _: None))
+    return tune(task, seed=seed, report_progress=report_progress or (lambda _: None), method=TuningMethod(method))

@@ -21,6 +21,9 @@ def tune(
     model_path: Annotated[
         Path | None, typer.Option("--from", metavar="MODEL.toml", help="Ship model in place of plant.model.")
     ] = None,
+    method: Annotated[
+        str, typer.Option("--method", metavar="METHOD", help="front, or genetic (Yu et al. 2014) beside it.")
+    ] = "front",
     model: OwnModelPath = None,
     json: Json = None,
     seed: Seed = 0,
@@ -37,7 +40,8 @@ def tune(
     if out is not None:
         writable_folder(out)
     with progress_reporter() as report_progress:
-        result = api.tune(api.load_loop(loop, own_model(model), model_path), seed=seed, report_progress=report_progress)
+        task = api.load_loop(loop, own_model(model), model_path)
+        result = api.tune(task, seed=seed, report_progress=report_progress, method=method)
         if out is not None:
             report_progress("report")
             api.save(result, out)

@@ -18,6 +18,7 @@ def print_tuning(tuning: "Tuning") -> None:
     print_lines([_margins_text(tuning.chosen), *tuning.reasons], "  ")
     _print_controllers(tuning)
     _print_fronts(tuning)
+    _print_search(tuning)
     _print_simulations(tuning)
     _print_schedule(tuning)
     print_lines(f"bound {b.name}: output variance {exact(b.ratio, 3)} of the chosen gains', {b.conditions}"
@@ -51,7 +52,7 @@ def _print_controllers(tuning: "Tuning") -> None:
     channels = [f"{names[0]} [{output_unit}]", f"{names[1]} [{actuator_unit}]", f"rate [{rate}]"]
     rows = [["controller", "reduced %", *channels, "Ms", "sat. %", "rate sat. %", ""]]
     factors = {"output": output_factor, "actuator": actuator_factor, "actuator_rate": actuator_factor}
-    for c in (tuning.chosen, *tuning.baselines):
+    for c in tuning.compared:
         rows.append([
             c.name, "" if drifts or math.isnan(c.reduction) else fixed(100.0 * c.reduction, 1),
             *(exact(factor * c.rms.get(key, math.nan), 4) for key, factor in factors.items()), exact(c.Ms, 3),
@@ -66,6 +67,15 @@ def _print_fronts(tuning: "Tuning") -> None:
     for front in (tuning.front, *tuning.extended_fronts):
         volume = "" if math.isnan(front.hypervolume) else f", {fixed(front.hypervolume, 4)} of a grid's hypervolume"
         print_lines([f"front of {front.name}: {len(front.gains)} controllers{volume}"])
+
+
+def _print_search(tuning: "Tuning") -> None:
+    from seatrial.reporting.gain_search import search_sentences, search_table
+
+    table = search_table(tuning)
+    if table is not None:
+        print_table([table.header, *table.rows])
+        print_lines(search_sentences(tuning), "  ")
 
 
 def _print_simulations(tuning: "Tuning") -> None:

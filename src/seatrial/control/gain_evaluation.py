@@ -79,15 +79,24 @@ class GainEvaluator:
         made = [performance.evaluate(gains) for performance in self.performances]
         places = self._variance_indices[-3:]
         variances = np.stack([e.variances[:, [p[0] for p in places]] for e in made], axis=1)
-        values = [
-            np.mean([objective.value(e.variances[:, at]) for e in made], axis=0)
-            for objective, at in zip(self.objectives, self._variance_indices, strict=False)
-        ]
         peak = np.max([e.Ms for e in made], axis=0)
         worst = variances[:, :, 1:].max(axis=1)
         over = np.where(np.isfinite(worst), worst, 1e30) / self.allowed_variances - 1.0
         excess = np.column_stack([peak / self.task.constraints.Ms - 1.0, over])
-        return GainEvaluation(np.stack(values, axis=1), excess, peak, variances)
+        return GainEvaluation(self._mean_objectives([e.variances for e in made]), excess, peak, variances)
+
+    def objective_values(self, gains: Array) -> Array:
+        """Objectives (n, m) of the gains (n, g), means over what disturbs the loop; infinite where unstable."""
+        made = [performance.evaluate(gains, with_Ms=False).variances for performance in self.performances]
+        return self._mean_objectives(made)
+
+    def _mean_objectives(self, variances: list[Array]) -> Array:
+        """Objectives (n, m) of the variances (n, r) that each disturbance causes."""
+        values = [
+            np.mean([objective.value(made[:, at]) for made in variances], axis=0)
+            for objective, at in zip(self.objectives, self._variance_indices, strict=False)
+        ]
+        return np.stack(values, axis=1)
 
     def slopes(self, gains: Array) -> tuple[Array, Array]:
         """d objectives / d gains (m, g) and d excess / d gains (3, g) at one stable point (g,)."""

@@ -7,6 +7,7 @@ from enum import Enum
 
 import numpy as np
 
+from seatrial.control.genetic_settings import GeneticTuning
 from seatrial.core.equations import Model
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import Array, InputError, display_unit
@@ -144,6 +145,7 @@ class TuningTask:
         baselines: gains by name of the controller; extended_structures: loops with more terms on the same plant.
         trimmed_ship: behind the plant; None where only transfer functions are known (simulated from those).
         demand: for servo loops (autopilot, speed); None for stabilisers.
+        genetic: settings of the published search, used where that method is chosen.
 
     Raises:
         InputError: nothing disturbs the loop, a plant with poles right of the axis, gains of other names.
@@ -164,6 +166,7 @@ class TuningTask:
     simulation: SimulationSettings | None = None
     trimmed_ship: TrimmedShip | None = None
     demand: Demand | None = None
+    genetic: GeneticTuning = field(default_factory=GeneticTuning)
 
     def __post_init__(self) -> None:
         if not self.disturbances or not self.objectives:

@@ -1,7 +1,7 @@
 """A task in, a tuning out: fronts, choice, simulation, schedule, bounds."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -14,6 +14,7 @@ from seatrial.control.feasibility import refuse_idle, refuse_infeasible
 from seatrial.control.findings import findings
 from seatrial.control.front import Effort, grid_front, pareto_front, thin_front
 from seatrial.control.gain_evaluation import GainEvaluator, gain_evaluator
+from seatrial.control.published_search import OWN_CHOICE, published_search
 from seatrial.control.schedule import schedule
 from seatrial.control.seaway_simulation import compare_pairwise, simulate_in_seaway
 from seatrial.control.task import TuningTask
@@ -26,6 +27,7 @@ from seatrial.core.results.tuning import (
     PerformanceBound,
     SeawaySimulation,
     Tuning,
+    TuningMethod,
 )
 from seatrial.core.values import Array
 from seatrial.core.values.versions import versions
@@ -55,8 +57,11 @@ def tune(
     seed: int = 0,
     report_progress: Callable[[str], None] = lambda _: None,
     effort: Effort | None = None,
+    method: TuningMethod = TuningMethod.FRONT,
 ) -> Tuning:
     """Tune the task's loop; the same seed gives the same gains, `effort` is that of each front.
+
+    With a published `method` the chosen gains are its answer, and the choice from the front stands beside them.
 
     Raises:
         InputError: no gains keep the restrictions (which, by how much), or none but zero do, or the simulation runs
@@ -67,13 +72,21 @@ def tune(
     fronts = tuple((one, _checked_front(one, task, seed, report_progress, effort or Effort())) for one in judges)
     if not len(fronts[0][1].gains):
         refuse_infeasible(judges[0], seed)
-    choice = choose(task, fronts, seed, report_progress)
+    own = choose(task, fronts, seed, report_progress)
+    refuse_idle(describe_controller(own.evaluator, "chosen", own.gains))
+    searched = None
+    if method is TuningMethod.GENETIC:
+        report_progress(f"genetic algorithm, {task.genetic.seeds} seeds")
+        searched = published_search(judges[0], task.genetic, fronts[0][1], seed)
+    choice = own if searched is None else searched.choice
     chosen = describe_controller(choice.evaluator, "chosen", choice.gains)
-    refuse_idle(chosen)
-    rivals = {name: np.array([gains[n] for n in task.loop.gains.names]) for name, gains in task.baselines.items()}
-    others = tuple(describe_controller(judges[0], name, gains) for name, gains in rivals.items())
+    reference = None if searched is None else describe_controller(own.evaluator, OWN_CHOICE, own.gains)
+    rivals = {name: _given_gains(judges[0], name, gains) for name, gains in task.baselines.items()}
+    others = tuple(describe_controller(one.evaluator, name, one.gains) for name, one in rivals.items())
     stable = {one.name: rivals[one.name] for one in others if np.isfinite(one.Ms)}
-    checked = _run_checks(task, choice, stable, seed, report_progress)
+    compared = stable if reference is None else {reference.name: own, **stable}
+    checked = _run_checks(task, choice, compared, seed, report_progress)
+    more_fronts = (*(made for _, made in fronts[1:]), *(() if searched is None else (searched.front,)))
     return Tuning(
         question=task.question,
         name=task.name,
@@ -84,10 +97,10 @@ def tune(
         objectives={objective.name: objective.unit for objective in task.objectives},
         constraints=task.constraints,
         chosen=chosen,
-        reasons=(*choice.reasons, *_comparison_reasons(chosen, others)),
+        reasons=(*choice.reasons, *_comparison_reasons(chosen, others if reference is None else (reference, *others))),
         baselines=others,
         front=thin_front(fronts[0][1], FRONT_POINTS),
-        extended_fronts=tuple(thin_front(made, FRONT_POINTS) for _, made in fronts[1:] if len(made.gains)),
+        extended_fronts=tuple(thin_front(made, FRONT_POINTS) for made in more_fronts if len(made.gains)),
         components=components(choice.evaluator.loop),
         seaway_simulations=checked.simulations,
         paired_differences=checked.comparisons,
@@ -109,14 +122,22 @@ def tune(
             choice.gains,
             float(chosen.objectives[0]),
             Status.EXHAUSTED,
-            sum(made.evaluations for _, made in fronts),
+            sum(made.evaluations for _, made in fronts) if searched is None else searched.result.evaluations,
             (),
             seed,
         ),
         seed=seed,
         elapsed_s=time.perf_counter() - began,
         versions=versions(),
+        method=method,
+        search=None if searched is None else searched.result,
+        reference=reference,
     )
+
+
+def _given_gains(evaluator: GainEvaluator, name: str, gains: Mapping[str, float]) -> GainChoice:
+    """Gains by name as a choice for the loop of `evaluator`."""
+    return GainChoice(evaluator, np.array([gains[n] for n in evaluator.loop.gains.names]), name, ())
 
 
 def _checked_front(
@@ -124,7 +145,9 @@ def _checked_front(
 ) -> ParetoFront:
     """The front of one loop; with up to three free gains its hypervolume over that of a grid, to the grid's nadir."""
     name = f"{len(evaluator.loop.gains.free)} gains" if evaluator.loop is task.loop else evaluator.loop.name
+    began = time.process_time()
     made = pareto_front(evaluator, name, seed, report_progress, effort)
+    made = replace(made, cpu_s=time.process_time() - began)
     count = _GRID.get(len(evaluator.loop.gains.free))
     if count is None or not len(made.gains):
         return made
@@ -140,7 +163,11 @@ def _checked_front(
 
 
 def _run_checks(
-    task: TuningTask, choice: GainChoice, baselines: dict[str, Array], seed: int, report_progress: Callable[[str], None]
+    task: TuningTask,
+    choice: GainChoice,
+    compared: dict[str, GainChoice],
+    seed: int,
+    report_progress: Callable[[str], None],
 ) -> _Checks:
     """Simulation, schedule and bounds, as far as the task asks for them and nobody interrupts."""
     made, loop = _Checks(), choice.evaluator.loop
@@ -149,11 +176,10 @@ def _run_checks(
             report_progress(f"the demand, with {PARAMETER_DRAWS} ships that the fit allows")
             made.manoeuvres = simulate_manoeuvres(task, loop, "chosen", choice.gains, seed, draws=PARAMETER_DRAWS)
         if task.simulation is not None and task.demand is None:
-            made.simulations, made.comparisons = _simulate_controllers(task, choice, baselines, seed, report_progress)
+            made.simulations, made.comparisons = _simulate_controllers(task, choice, compared, seed, report_progress)
         if task.schedule_grid is not None:
-            made.schedule = schedule(
-                task, task.schedule_grid, {**baselines, **_chosen_gains(task, choice)}, seed, report_progress
-            )
+            fixed = _gains_of_own_loop(task, {**compared, "chosen": choice})
+            made.schedule = schedule(task, task.schedule_grid, fixed, seed, report_progress)
         if is_available() and task.demand is None:
             report_progress("bounds")
             made.bounds = bounds(task, loop, choice.gains)
@@ -162,20 +188,24 @@ def _run_checks(
     return made
 
 
-def _chosen_gains(task: TuningTask, choice: GainChoice) -> dict[str, Array]:
-    """The chosen gains, where they belong to the task's own loop."""
-    return {"chosen": choice.gains} if choice.evaluator.loop is task.loop else {}
+def _gains_of_own_loop(task: TuningTask, choices: dict[str, GainChoice]) -> dict[str, Array]:
+    """The gains that belong to the task's own loop, by name."""
+    return {name: one.gains for name, one in choices.items() if one.evaluator.loop is task.loop}
 
 
 def _simulate_controllers(
-    task: TuningTask, choice: GainChoice, baselines: dict[str, Array], seed: int, report_progress: Callable[[str], None]
+    task: TuningTask,
+    choice: GainChoice,
+    compared: dict[str, GainChoice],
+    seed: int,
+    report_progress: Callable[[str], None],
 ) -> tuple[tuple[SeawaySimulation, ...], tuple[PairedDifference, ...]]:
     report_progress("chosen gains simulated")
     first = simulate_in_seaway(task, choice.evaluator.loop, "chosen", choice.gains, seed)
     others = []
-    for name, gains in baselines.items():
+    for name, one in compared.items():
         report_progress(f"{name} simulated")
-        others.append(simulate_in_seaway(task, task.loop, name, gains, seed))
+        others.append(simulate_in_seaway(task, one.evaluator.loop, name, one.gains, seed))
     pairs = [compare_pairwise(first, other, what) for other in others for what in ("limited", "stalled")]
     return (first, *others), tuple(pairs)
 

@@ -9,7 +9,7 @@ from seatrial.core.results.front_chart import degree_unit, front_chart
 from seatrial.core.results.loop_charts import nyquist_chart, sensitivity_chart, styled_controllers
 from seatrial.core.results.tuning import Tuning
 from seatrial.core.values.channel_text import channel_meaning
-from seatrial.reporting import tuning_rows, tuning_text
+from seatrial.reporting import gain_search, tuning_rows, tuning_text
 from seatrial.reporting.figures.controlled_runs import manoeuvre_chart, seaway_chart
 from seatrial.reporting.figures.loop_diagram import loop_diagram, signal_order
 from seatrial.reporting.figures.paired_differences import difference_chart
@@ -22,6 +22,7 @@ TITLES = {
     "findings": "Findings",
     "controllers": "Controllers compared",
     "front": "Front",
+    "search": "The published search",
     "margins": "Margins",
     "simulation": "Simulation with limits and stall",
     "manoeuvres": "Response to demands",
@@ -40,6 +41,7 @@ def html(tuning: Tuning) -> str:
     has_content = {
         "findings": bool(tuning.findings),
         "front": bool(front),
+        "search": tuning.search is not None,
         "margins": len(styled_controllers(tuning)) > 0,
         "simulation": bool(tuning.seaway_simulations),
         "manoeuvres": bool(tuning.manoeuvres),
@@ -63,6 +65,7 @@ def html(tuning: Tuning) -> str:
         "has_reduction": tuning_text.has_reduction(tuning),
         "controllers": controllers,
         "front": Markup(front),
+        "search": _search_context(tuning),
         "sensitivities": Markup(svg(sensitivity_chart(tuning))),
         "nyquist": Markup(svg(nyquist_chart(tuning))),
         "reductions": Markup(_reductions_figure(tuning)),
@@ -80,6 +83,19 @@ def html(tuning: Tuning) -> str:
         "components": [tuning_rows.component_row(c, tuning.chosen.gains) for c in signal_order(tuning.components)],
     }
     return environment().get_template("tuning.html").render(context)
+
+
+def _search_context(tuning: Tuning) -> dict[str, object]:
+    """What the chapter on a published search shows; empty without one."""
+    if tuning.search is None:
+        return {}
+    return {
+        "table": gain_search.search_table(tuning),
+        "sentences": gain_search.search_sentences(tuning),
+        "settings": tuning.search.settings,
+        "convergence": Markup(svg(gain_search.convergence_chart(tuning.search))),
+        "scatter": Markup(svg(gain_search.scatter_chart(tuning.search))),
+    }
 
 
 def _reductions_figure(tuning: Tuning) -> str:

@@ -42,7 +42,7 @@ def gain_symbol(name: str) -> Markup:
 
 def gain_names(tuning: Tuning) -> list[str]:
     """Return the names of all gains, in order, each once."""
-    return list(dict.fromkeys(name for c in (tuning.chosen, *tuning.baselines) for name in c.gains))
+    return list(dict.fromkeys(name for c in tuning.compared for name in c.gains))
 
 
 def gain_texts(rows: Sequence[Mapping[str, float]], names: Sequence[str]) -> list[tuple[str, ...]]:
@@ -70,7 +70,7 @@ def rms_headings(tuning: Tuning) -> list[tuple[str, str]]:
 
 def controller_rows(tuning: Tuning) -> list[ControllerRow]:
     """Return the chosen controller, then the baselines."""
-    controllers = (tuning.chosen, *tuning.baselines)
+    controllers = tuning.compared
     gains = gain_texts([c.gains for c in controllers], gain_names(tuning))
     return [_controller_row(c, texts, tuning) for c, texts in zip(controllers, gains, strict=True)]
 

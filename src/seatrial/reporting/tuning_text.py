@@ -23,7 +23,7 @@ def sentences(tuning: Tuning) -> list[str]:
 
 def has_reduction(tuning: Tuning) -> bool:
     """Return whether a reduction is shown: a loop that follows a demand is judged by the remaining error."""
-    is_known = any(math.isfinite(c.reduction) for c in (tuning.chosen, *tuning.baselines))
+    is_known = any(math.isfinite(c.reduction) for c in tuning.compared)
     return is_known and not tuning.manoeuvres
 
 

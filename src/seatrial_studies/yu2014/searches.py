@@ -1,17 +1,15 @@
 """The published genetic algorithm on the published objectives, over seeds."""
 
-import time
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lsim
 
+from seatrial.control import GeneticRun, genetic_run, record_cost
 from seatrial.core.values import Array
-from seatrial.numerics.optimise import Box, GeneticSettings, Normaliser, RandomWeightGenetic, non_dominated
-from seatrial.physics.loops import Performance, Preamplifier, state_space
-from seatrial.physics.simulate import Forcing, trajectories
-from seatrial_studies.yu2014.published import LOWER, PUBLISHED_VALUES, RECORD_SECONDS, STEP, UPPER
+from seatrial.numerics.optimise import Box, GeneticSettings, Normaliser, non_dominated
+from seatrial.physics.loops import Performance, Preamplifier
+from seatrial_studies.yu2014.published import LOWER, PUBLISHED_VALUES, UPPER
 from seatrial_studies.yu2014.published_loop import FinObjective, objective_values, performance
 
 # searches in the full and in the quick version; our choice
@@ -51,7 +49,7 @@ class FinGainSearches:
         objective_ratios: objectives over those of the paper's gains (n, 3), infinite where these are zero.
         reduction: per cent (n,).
         is_dominated: whether a point that some seed evaluated has all three objectives smaller (n,).
-        seconds: of each search with its front (n,).
+        seconds: CPU time of each search with its front (n,).
     """
 
     setting: GeneticSearchSetting
@@ -81,9 +79,9 @@ class FinGainSearches:
 def search_over_seeds(setting: GeneticSearchSetting, seeds: int, seed: int) -> FinGainSearches:
     """Run one search for each seed."""
     of = performance(setting.preamplifier)
-    made = [_timed_search(of, setting, np.random.default_rng([seed, k])) for k in range(seeds)]
-    gains = np.stack([genetic.best[0] for genetic, _ in made])
-    front = np.concatenate([genetic.front.objectives for genetic, _ in made])
+    made = [_search(of, setting, np.random.default_rng([seed, k])) for k in range(seeds)]
+    gains = np.stack([run.gains for run in made])
+    front = np.concatenate([run.front.objectives for run in made])
     found, paper = (
         of.evaluate(gains),
         objective_values(of.evaluate(PUBLISHED_VALUES, with_Ms=False).variances, setting.fin_objective)[0],
@@ -94,40 +92,24 @@ def search_over_seeds(setting: GeneticSearchSetting, seeds: int, seed: int) -> F
     front = front[non_dominated(front)]
     beaten = np.any((front[:, None] < J).all(axis=2), axis=0)
     reduction = 100.0 * (1.0 - np.sqrt(found.variances[:, 0] / of.uncontrolled_variances[0]))
-    return FinGainSearches(setting, gains, found.Ms, shares, reduction, beaten, np.array([s for _, s in made]))
+    return FinGainSearches(setting, gains, found.Ms, shares, reduction, beaten, np.array([r.cpu_s for r in made]))
 
 
-def _timed_search(
-    loop_performance: Performance, setting: GeneticSearchSetting, generator: np.random.Generator
-) -> tuple[RandomWeightGenetic, float]:
-    """A search and its time [s], the front included."""
-    began = time.perf_counter()
-    genetic = RandomWeightGenetic(BOX, generator, GeneticSettings(bits=BITS, normaliser=setting.normaliser))
-    while not genetic.done:
-        variances = loop_performance.evaluate(genetic.ask(), with_Ms=False).variances
-        genetic.tell(objective_values(variances, setting.fin_objective))
-    genetic.front  # noqa: B018
-    return genetic, time.perf_counter() - began
+def _search(loop_performance: Performance, setting: GeneticSearchSetting, generator: np.random.Generator) -> GeneticRun:
+    """One search, the same that `seatrial tune --method genetic` makes."""
+
+    def objectives(gains: Array) -> Array:
+        return objective_values(loop_performance.evaluate(gains, with_Ms=False).variances, setting.fin_objective)
+
+    return genetic_run(objectives, BOX, GeneticSettings(bits=BITS, normaliser=setting.normaliser), generator)
 
 
 def time_domain_seconds(seed: int) -> tuple[float, float]:
-    """s one search would take with a record of 1000 s at 0.1 s for each gain set, exact zero-order hold.
+    """CPU time [s] one search takes with a record of 1000 s at 0.1 s for each gain set, exact zero-order hold.
 
-    First compiled, a population in vector lanes: one is simulated, and its time multiplied by the generations. Then
-    scipy's lsim: one record is simulated, and its time multiplied by all evaluations. Roll alone, the sea free of cost.
+    By a compiled scalar loop, and by scipy's lsim: the time of one record times all evaluations; the sea free of cost.
     """
     settings = GeneticSettings()
-    generator = np.random.default_rng([seed, 4])
-    states = state_space(performance(Preamplifier.WASHOUT).loop)
-    gains = np.concatenate([PUBLISHED_VALUES[None], BOX.random_points(generator, settings.population - 1)])
-    A = states.A[0] + np.tensordot(gains, states.A[1:], 1)
-    B = np.repeat(states.b[None, :, None], len(gains), axis=0)
-    slope = generator.normal(size=(round(RECORD_SECONDS / STEP) + 1, 1))
-    began = time.perf_counter()
-    trajectories(A, B, Forcing(slope, STEP, is_held=True), np.zeros(A.shape[1]), (0,))
-    compiled = time.perf_counter() - began
-    system = (A[0], B[0], states.c[None], np.zeros((1, 1)))
-    began = time.perf_counter()
-    lsim(system, slope, STEP * np.arange(len(slope)), interp=False)
-    single = time.perf_counter() - began
-    return compiled * settings.generations, single * settings.generations * settings.population
+    cost = record_cost(performance(Preamplifier.WASHOUT).loop, PUBLISHED_VALUES, seed)
+    count = settings.generations * settings.population
+    return cost.compiled * count, cost.lsim * count

@@ -223,7 +223,7 @@ def checks(evidence: FinGainEvidence) -> tuple[Check, ...]:
             "the search's time over scipy's lsim records", evidence.search_seconds / single, TIME_RATIO_LIMIT
         ),
         _check_at_most(
-            "the search's time over compiled records in vector lanes",
+            "the search's time over compiled records",
             evidence.search_seconds / compiled,
             TIME_RATIO_LIMIT,
         ),

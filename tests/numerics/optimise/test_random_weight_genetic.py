@@ -87,7 +87,7 @@ def test_roulette_ends_belong_to_rows_that_can_be_chosen() -> None:
 
 
 def test_children_exchange_everything_from_one_point_on() -> None:
-    mothers, fathers = np.zeros((3, 6), dtype=bool), np.ones((3, 6), dtype=bool)
+    mothers, fathers = np.zeros((3, 6), dtype=np.uint8), np.ones((3, 6), dtype=np.uint8)
     children = cross_over(mothers, fathers, np.array([1, 4, 6])).astype(int)
     assert children[:3].tolist() == [[0, 1, 1, 1, 1, 1], [0, 0, 0, 0, 1, 1], [0] * 6]
     assert np.array_equal(children[3:], 1 - children[:3])

@@ -93,6 +93,7 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant) -> TuningTask:
         simulation=_simulation_settings(file.simulation, len(file.seas), demand),
         trimmed_ship=plant.trimmed_ship,
         demand=demand,
+        genetic=file.genetic,
     )
 
 

@@ -4,6 +4,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from seatrial.control.genetic_settings import GeneticTuning
 from seatrial.data.trial.amounts import Amount, SiAmount, StrictTable, Unit
 from seatrial.data.trial.sea_table import SeaTable
 
@@ -308,6 +309,7 @@ class LoopFile(StrictTable):
     schedule: ScheduleTable | None = None
     simulation: SimulationTable | None = None
     demand: DemandTable | None = None
+    genetic: GeneticTuning = GeneticTuning()
 
 
 def loop_schema() -> dict[str, Any]:

@@ -78,6 +78,7 @@ class ParetoFront:
     hypervolume: Annotated[Number, Field(description="of the front over that of a brute-force grid; null: no grid")] = (
         float("nan")
     )
+    cpu_s: Annotated[Number, Field(description="CPU time of the search; null: not measured")] = float("nan")
 
 
 @dataclass(frozen=True, eq=False)

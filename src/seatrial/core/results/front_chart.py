@@ -72,7 +72,7 @@ def scaled_axis(values: list[Array], name: str) -> Axis:
 
 def _marked_controllers(tuning: Tuning) -> list[tuple[Controller, Marker]]:
     """Baselines first, so that the chosen one lies on top."""
-    baselines = [(c, BASELINES[k % len(BASELINES)]) for k, c in enumerate(tuning.baselines)]
+    baselines = [(c, BASELINES[k % len(BASELINES)]) for k, c in enumerate(tuning.compared[1:])]
     return [*baselines, (tuning.chosen, CHOSEN)]
 
 

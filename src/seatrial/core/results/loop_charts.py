@@ -39,8 +39,8 @@ CUT, LEAST_TOP = 2.5, 1.15
 
 def styled_controllers(tuning: Tuning) -> list[tuple[Controller, Stroke]]:
     """Return the chosen controller and the first baselines, as far as their loop is known, with their lines."""
-    strokes = [CHOSEN, *(BASELINE_STROKES[k % len(BASELINE_STROKES)] for k in range(len(tuning.baselines)))]
-    controllers = zip((tuning.chosen, *tuning.baselines), strokes, strict=True)
+    strokes = [CHOSEN, *(BASELINE_STROKES[k % len(BASELINE_STROKES)] for k in range(len(tuning.compared) - 1))]
+    controllers = zip(tuning.compared, strokes, strict=True)
     return [(c, stroke) for c, stroke in controllers if len(c.omega) > 1][:MAX_LOOPS]
 
 

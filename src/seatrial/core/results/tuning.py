@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field, computed_field
@@ -15,6 +16,7 @@ from seatrial.core.results.controller import (
     PerformanceBound,
 )
 from seatrial.core.results.fields import ReportedFinding, StoredSolution
+from seatrial.core.results.gain_search import GainSearch
 from seatrial.core.results.seaway_simulation import ManoeuvreResponse, PairedDifference, SeawaySimulation
 from seatrial.core.results.summary import Summarised, Summary
 from seatrial.core.values import InputError
@@ -24,8 +26,15 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Component", "Controller", "ControllerConstraints", "ManoeuvreResponse", "OperatingPoint", "PairedDifference",
-    "ParetoFront", "PerformanceBound", "SeawaySimulation", "Tuning",
+    "ParetoFront", "PerformanceBound", "SeawaySimulation", "Tuning", "TuningMethod",
 ]  # fmt: skip
+
+
+class TuningMethod(StrEnum):
+    """Where the chosen gains come from: the package's own front, or a published search."""
+
+    FRONT = "front"
+    GENETIC = "genetic"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -60,6 +69,16 @@ class Tuning(Summarised):
     seed: int
     elapsed_s: float
     versions: Annotated[dict[str, str], Field(description="package -> version")] = field(default_factory=dict)
+    method: Annotated[TuningMethod, Field(description="where the chosen gains come from")] = TuningMethod.FRONT
+    search: Annotated[GainSearch | None, Field(description="the published search; null: none")] = None
+    reference: Annotated[
+        Controller | None, Field(description="the package's own choice beside that of a published search; null: chosen")
+    ] = None
+
+    @property
+    def compared(self) -> tuple[Controller, ...]:
+        """Return the chosen controller, the package's own where it is another, and the baselines."""
+        return (self.chosen, *(() if self.reference is None else (self.reference,)), *self.baselines)
 
     @property
     def units(self) -> tuple[str, ...]:
@@ -101,7 +120,7 @@ class Tuning(Summarised):
                 c.name, *(f"{c.gains[name]:.5g}" if name in c.gains else "" for name in self.chosen.gains),
                 f"{c.Ms:.3g}", f"{c.gain_margin:.3g}", f"{math.degrees(c.phase_margin):.3g}", f"{c.damping:.2g}",
             )
-            for c in (self.chosen, *self.baselines)
+            for c in self.compared
         )  # fmt: skip
         facts = {"plant": self.plant, "output": self.output, "actuator": self.actuator, "search": self.status}
         return Summary(f"Tuning of {self.name}", header, rows, facts, self.reasons)

@@ -6,12 +6,13 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
+from seatrial.numerics.kernels.breeding import breed, decode_codes, exchange_tails, selection_shares, spin
 from seatrial.numerics.optimise.ask_tell import Box, SearchError
 from seatrial.numerics.optimise.dominance import non_dominated
 from seatrial.numerics.optimise.population import Population, reject_nonfinite_settings
 from seatrial.numerics.optimise.solution import Array
 
-Bits = NDArray[np.bool_]
+Bits = NDArray[np.uint8]  # 0 and 1
 MOST_BITS = 52  # mantissa bits of a double
 
 
@@ -92,7 +93,8 @@ class RandomWeightGenetic(Population):
     def __init__(self, box: Box, generator: np.random.Generator, settings: GeneticSettings | None = None) -> None:
         self.settings = settings or GeneticSettings()
         super().__init__(box, generator, self.settings.generations)
-        self._codes = generator.random((self.settings.population, box.size * self.settings.bits)) < 0.5
+        drawn = generator.random((self.settings.population, box.size * self.settings.bits))
+        self._codes: Bits = (drawn < 0.5).astype(np.uint8)  # fair bits
         self._scale: Array | None = None
         self._points: list[Array] = []
         self._objectives: list[Array] = []
@@ -157,15 +159,14 @@ class RandomWeightGenetic(Population):
         settings, generator = self.settings, self._generator
         r = generator.integers(1, settings.largest_weight, settings.objectives, endpoint=True)
         J = self._weighted_sums(r / r.sum())  # eq. 6
-        elite = self._codes[np.argmin(self._objectives[-1], axis=0)] if np.isfinite(J).any() else self._codes[:0]
+        elite = np.argmin(self._objectives[-1], axis=0)[: None if np.isfinite(J).any() else 0]
         count = settings.population - len(elite)
-        pairs = (count + 1) // 2
-        p = selection_probabilities(1 / np.maximum(J, np.finfo(float).tiny))  # eq. 8
-        mothers, fathers = self._codes[roulette(p, generator.random((2, pairs)))]
-        children = cross_over(mothers, fathers, crossover_points(generator, pairs, self._codes.shape[1], settings.Pc))[
-            :count
-        ]
-        return np.concatenate([elite, children ^ (generator.random(children.shape) < settings.Pm)])
+        pairs, length = (count + 1) // 2, self._codes.shape[1]
+        spins = generator.random((2, pairs))
+        cut = crossover_points(generator, pairs, length, settings.Pc)
+        offspring = np.empty_like(self._codes)
+        breed(self._codes, J, elite, spins, cut, generator.random((count, length)), settings.Pm, offspring)
+        return offspring
 
 
 def normalisers(objectives: Array, kind: Normaliser) -> Array | None:
@@ -183,18 +184,16 @@ def normalisers(objectives: Array, kind: Normaliser) -> Array | None:
 
 def selection_probabilities(fitness: Array) -> Array:
     """Linear scaling (f - f_min) / sum (f - f_min), shape (n,); even where all are alike."""
-    scaled = fitness - fitness.min()
-    largest = scaled.max()
-    if not largest > 0:
-        return np.full(len(fitness), 1 / len(fitness))
-    scaled /= largest
-    return scaled / scaled.sum()
+    share = np.empty(len(fitness))
+    selection_shares(np.ascontiguousarray(fitness, dtype=np.float64), share)
+    return share
 
 
-def roulette(probabilities: Array, uniforms: Array) -> NDArray[np.intp]:
-    """Rows on which numbers drawn from [0, 1), any shape, fall; rows of probability zero never."""
-    edges = np.cumsum(probabilities)
-    return np.searchsorted(edges, uniforms * edges[-1], side="right").clip(max=np.flatnonzero(probabilities)[-1])
+def roulette(probabilities: Array, uniforms: Array) -> NDArray[np.int64]:
+    """Rows on which numbers drawn from [0, 1), shape (k,), fall; rows of probability zero never."""
+    rows = np.empty((1, len(uniforms)), dtype=np.int64)
+    spin(probabilities, np.ascontiguousarray(uniforms)[None], rows)
+    return rows[0]
 
 
 def crossover_points(generator: np.random.Generator, pairs: int, length: int, Pc: float) -> NDArray[np.int64]:
@@ -205,19 +204,20 @@ def crossover_points(generator: np.random.Generator, pairs: int, length: int, Pc
 
 def cross_over(mothers: Bits, fathers: Bits, crossover_point: NDArray[np.int64]) -> Bits:
     """Children of pairs, shape (2 pairs, length): all codes are exchanged from the cut on."""
-    tail = np.arange(mothers.shape[1]) >= crossover_point[:, None]
-    return np.concatenate([np.where(tail, fathers, mothers), np.where(tail, mothers, fathers)])
+    children = np.empty((2 * len(mothers), mothers.shape[1]), dtype=np.uint8)
+    exchange_tails(mothers, fathers, crossover_point, children)
+    return children
 
 
 def decode(codes: Bits, box: Box) -> Array:
     """Points (..., d) of codes (..., d * bits), highest bit first: all zeros lower bound, all ones upper bound."""
-    digits = codes.reshape(*codes.shape[:-1], box.size, -1)
-    bits = digits.shape[-1]
-    return box.scaled(digits @ 2.0 ** np.arange(bits - 1, -1, -1) / (2.0**bits - 1))
+    unit = np.empty((codes.size // codes.shape[-1], box.size))
+    decode_codes(np.ascontiguousarray(codes, dtype=np.uint8).reshape(len(unit), -1), unit)
+    return box.scaled(unit).reshape(*codes.shape[:-1], box.size)
 
 
 def encode(points: Array, box: Box, bits: int) -> Bits:
     """Codes (..., d * bits) nearest to points (..., d) of the box."""
     steps = np.rint((points - box.lower) / box.width * (2.0**bits - 1)).astype(np.int64)
     digits = steps[..., None] >> np.arange(bits - 1, -1, -1) & 1
-    return digits.astype(bool).reshape(*points.shape[:-1], -1)
+    return digits.astype(np.uint8).reshape(*points.shape[:-1], -1)

@@ -1,0 +1,75 @@
+"""The chapter on a published search: one table with the own front, what it cost, and nothing without a search."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.reporting.fabricated_tuning import fabricated_fin
+
+from seatrial.cli.application import result_document
+from seatrial.cli.tuning_output import print_tuning
+from seatrial.core.results.gain_search import GainSearch
+from seatrial.core.results.tuning import Tuning, TuningMethod
+from seatrial.reporting.gain_search import convergence_chart, scatter_chart, search_sentences, search_table
+from seatrial.reporting.tuning import html
+
+
+@pytest.fixture(scope="module")
+def tuning() -> Tuning:
+    """A tuning whose gains come from a search of three seeds."""
+    plain = fabricated_fin()
+    gains = np.array([list(plain.chosen.gains.values()), [30.0, 2.0, 10.0], [80.0, 40.0, 90.0]])
+    search = GainSearch(
+        source="Yu et al. 2014", settings={"population": "50"}, objectives={"J1": "rad^2", "J2": "", "J3": "rad^2/s^2"},
+        evaluations=10_000, cpu_s=0.05, histories=np.linspace(0.9, 0.3, 30).reshape(3, 10),
+        gain_names=("KP", "KI", "KD"), lower=np.zeros(3), upper=np.array([100.0, 50.0, 100.0]), gains=gains,
+        spread=np.ptp(gains, axis=0) / [100.0, 50.0, 100.0], values=np.tile(plain.chosen.objectives, (3, 1)),
+        Ms=np.array([1.5, 2.5, 80.0]), is_feasible=(True, False, False), dominated=2, hypervolume=0.61,
+        compiled_record_s=1e-3, lsim_record_s=0.05,
+    )  # fmt: skip
+    own = replace(plain.baselines[0], name="own front")
+    return replace(plain, method=TuningMethod.GENETIC, search=search, reference=own)
+
+
+def test_one_table_has_the_own_front_the_answer_and_the_scatter(tuning: Tuning) -> None:
+    table = search_table(tuning)
+    assert table is not None
+    assert table.header == ("", "own front", "genetic algorithm", "least", "median", "largest")
+    rows = {row[0]: row[1:] for row in table.rows}
+    assert rows["KP"] == ("11.05", "19.4", "19.4", "30", "80")
+    assert rows["Ms"][2:] == ("1.5", "2.5", "80")
+    assert rows["keeps the limits"] == ("yes", "yes", "", "1 of 3", "")
+    assert rows["evaluations"][1] == "10\N{NARROW NO-BREAK SPACE}000" or rows["evaluations"][1].startswith("10")
+
+
+def test_costs_are_ratios_of_measurements(tuning: Tuning) -> None:
+    assert tuning.search is not None
+    assert tuning.search.compiled_ratio == pytest.approx(200.0)
+    assert tuning.search.lsim_ratio == pytest.approx(10_000.0)
+    covered, cost = search_sentences(tuning)
+    assert "covers 0.61" in covered
+    assert "200 times as long by a compiled scalar loop (1" in cost
+
+
+def test_curves_and_bars_show_every_seed(tuning: Tuning) -> None:
+    assert tuning.search is not None
+    assert len(convergence_chart(tuning.search).legend) == 3
+    assert scatter_chart(tuning.search) is not None
+
+
+def test_page_terminal_and_document_have_it(tuning: Tuning, capsys: pytest.CaptureFixture) -> None:
+    page = html(tuning)
+    assert "The published search" in page and "Settings of the search" in page
+    print_tuning(tuning)
+    said = capsys.readouterr().out
+    assert "own front" in said and "scipy.signal.lsim" in said
+    document = result_document(tuning)
+    assert document["method"] == "genetic" and document["search"]["evaluations"] == 10_000
+    assert len(document["search"]["history"]) == 10 and document["search"]["cpu_s"] == 0.05
+    assert document["reference"]["name"] == "own front"
+
+
+def test_without_a_search_there_is_no_chapter() -> None:
+    plain = fabricated_fin()
+    assert search_table(plain) is None and search_sentences(plain) == ()
+    assert "The published search" not in html(plain)
