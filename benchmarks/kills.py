@@ -1,0 +1,118 @@
+"""Kill commands at random moments and look at what they leave: the old result, the new one, or none.
+
+`python benchmarks/kills.py --command identify --kills 100 --seed 1`. A folder of results is whole when it loads (its
+document names the digest of every data file) and its page is the one that its document gives, to the byte. Between the
+kills the command runs with two seeds by turns, so that a mixture of two results would show. The last run is not killed:
+nothing that a killed one left may stop it.
+"""
+
+import argparse
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from measure import Line, at_most
+
+import seatrial as st
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+COMMANDS = {
+    "identify": ["identify", f"{EXAMPLES}/waterjet.toml"],
+    "tune": ["tune", f"{EXAMPLES}/fin_stabiliser.toml"],
+    "design": ["design", f"{EXAMPLES}/waterjet_design.toml"],
+    "reproduce": ["reproduce", "meng2014", "--quick"],
+    "follow": ["follow", f"{EXAMPLES}/waterjet_follow.toml", "--once"],
+}
+# a kill falls anywhere in the time that the command took undisturbed, and a little beyond: dimensionless, chosen
+LONGEST_WAIT = 1.1
+# every other kill falls into the last part of that time, where files are written: dimensionless, chosen
+WRITING_SHARE = 0.1
+
+
+@dataclass
+class Tally:
+    """What was found after the kills."""
+
+    killed: int = 0
+    finished_first: int = 0
+    none_yet: int = 0
+    whole: int = 0
+    broken: int = 0
+
+
+def look_at(folder: Path, tally: Tally) -> None:
+    """Count the state of a result folder after a kill."""
+    if not folder.exists():
+        tally.none_yet += 1
+        return
+    try:
+        page = st.report(folder, folder.parent / "again.html").read_bytes()
+        whole = page == (folder / "report.html").read_bytes()
+    except st.InputError as error:
+        print(f"broken: {error}")
+        whole = False
+    tally.whole, tally.broken = tally.whole + whole, tally.broken + (not whole)
+
+
+def _started(command: list[str], seed: int) -> subprocess.Popen[bytes]:
+    program = [sys.executable, "-c", "from seatrial.cli import main; main()", *command, "--seed", str(seed)]
+    return subprocess.Popen(program, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+
+
+def _undisturbed_duration(command: list[str]) -> float:
+    """Wall time [s] of a command."""
+    began = time.monotonic()
+    if _started(command, 0).wait() != 0:
+        raise RuntimeError(f"seatrial {' '.join(command)} fails undisturbed")
+    return time.monotonic() - began
+
+
+def kills(name: str, count: int, seed: int) -> tuple[Tally, bool]:
+    """Kill a command `count` times; the tally, and whether the undisturbed run afterwards succeeds."""
+    rng, tally = random.Random(seed), Tally()
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place) / "result"
+        command = [*COMMANDS[name], "--out", str(folder)]
+        duration = min(_undisturbed_duration([*COMMANDS[name], "--out", f"{place}/timed"]) for _ in range(2))
+        for kill in range(count):
+            process = _started(command, kill % 2)
+            share = rng.random() * (WRITING_SHARE if kill % 2 else 1.0)
+            try:
+                process.wait((LONGEST_WAIT - share) * duration)
+                tally.finished_first += 1
+            except subprocess.TimeoutExpired:
+                process.send_signal(signal.SIGKILL)
+                process.wait()
+                tally.killed += 1
+            look_at(folder, tally)
+        finished = _started(command, 0).wait() == 0
+        look_at(folder, tally)
+        return tally, finished
+
+
+def run(name: str = "identify", count: int = 20, seed: int = 1) -> list[Line]:
+    """The tally as a table."""
+    tally, finished = kills(name, count, seed)
+    return [
+        Line(f"{name}: killed", tally.killed, ""),
+        Line("finished before the kill", tally.finished_first, ""),
+        Line("no result yet", tally.none_yet, ""),
+        Line("whole results", tally.whole, ""),
+        at_most("half results", tally.broken, "", 0),
+        at_most("undisturbed runs stopped by what was left", float(not finished), "", 0),
+    ]
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--command", choices=COMMANDS, default="identify")
+    parser.add_argument("--kills", type=int, default=20)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    for line in run(options.command, options.kills, options.seed):
+        print(f"  {line.quantity:<50} {line.value:>8.0f} {line.verdict}")
