@@ -154,7 +154,8 @@ class RepeatedSearches:
     Attributes:
         points: what each run found, (runs, 8); evaluations: candidates that each judged, (runs,).
         seconds: time of one run.
-        trace: best point after each iteration of the first run, (iterations, 8); best_fitness: its fitness.
+        trace: best point after each iteration of the first run, (iterations, 8).
+        histories: best fitness of each run after each iteration, (runs, iterations).
         lower_bounds: lower ends of each run's box, by magnitude, (runs, 8).
     """
 
@@ -164,7 +165,12 @@ class RepeatedSearches:
     lower_bounds: Array
     seconds: float
     trace: Array
-    best_fitness: Array
+    histories: Array
+
+    @property
+    def best_fitness(self) -> Array:
+        """Return the best fitness of the first run after each iteration, (iterations,)."""
+        return self.histories[0]
 
     @property
     def errors(self) -> Array:
@@ -200,5 +206,5 @@ def repeat_searches(
     lower = np.array([np.where(truth > 0, b.lower, b.upper) for b in boxes])
     points = np.array([f.solution.point for f in finished])
     evaluations = np.array([f.solution.evaluations for f in finished])
-    history = np.array(finished[0].solution.history)
-    return RepeatedSearches(truth, points, evaluations, lower, seconds, finished[0].trace, history)
+    histories = np.array([f.solution.history for f in finished])
+    return RepeatedSearches(truth, points, evaluations, lower, seconds, finished[0].trace, histories)

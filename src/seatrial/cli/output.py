@@ -184,7 +184,7 @@ def print_study(study: "Study") -> None:
 
     rows = []
     for claim in study.claims:
-        setting = f" Setting: {claim.setting}." if claim.setting else ""
+        setting = f". Setting: {claim.setting}" if claim.setting else ""
         rows.append([claim.verdict, f"{claim.claim}: {claim.evidence}{setting}"])
     for check in study.checks:
         limit = check.limit if isinstance(check.limit, str) else exact(check.limit, 4)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array
+from seatrial_studies.controller_cost import ControllerCost
 from seatrial_studies.output_error_fit import OutputErrorResults
 from seatrial_studies.published_ship import HEADINGS
 from seatrial_studies.qi2025.audit import WildHorseAudit
@@ -12,6 +13,7 @@ from seatrial_studies.qi2025.centre_bias import CentreBias
 from seatrial_studies.qi2025.hold_bias import HoldBias
 from seatrial_studies.qi2025.published import SearchAlgorithm, printed_error
 from seatrial_studies.qi2025.reproduction import SearchSetting, WildHorseReproduction
+from seatrial_studies.qi2025.tracking import Tracking
 
 # a value counts as on its bound where it is off by no more than this share of it
 ON_BOUND_SHARE = 0.005
@@ -21,13 +23,18 @@ SATURATED_FROM_PERCENT = -9.3
 
 @dataclass(frozen=True, eq=False)
 class WildHorseEvidence:
-    """Searches, the print worked through, our fits and the cost of a hold by heading, the bias to the middle."""
+    """Searches, the print worked through, our fits and the cost of a hold by heading, the bias to the middle.
+
+    Also the model carried on while its coefficients evolve, and controllers tuned on coefficients, by heading.
+    """
 
     reproduction: WildHorseReproduction
     audit: WildHorseAudit
     output_error: dict[int, OutputErrorResults]
     hold_bias: dict[int, HoldBias]
     centre_bias: CentreBias
+    tracking: Tracking
+    controllers: dict[int, tuple[ControllerCost, ...]]
 
     def errors_of_mean(self, setting: SearchSetting, algorithm: SearchAlgorithm) -> list[float]:
         """Error of the mean of the runs at each heading, per cent, mean over the coefficients: as the paper prints."""
@@ -50,6 +57,10 @@ class WildHorseEvidence:
         return sum(
             int(np.sum(100.0 * (f.points.mean(axis=0) / f.truth - 1.0) <= SATURATED_FROM_PERCENT)) for f in found
         )
+
+    def evaluations(self, algorithm: SearchAlgorithm) -> int:
+        """Return the candidates that a run judges in the paper's setting."""
+        return int(self.reproduction.searches[SearchSetting.PAPER, HEADINGS[0], algorithm].evaluations[0])
 
     def search_seconds(self, algorithm: SearchAlgorithm) -> float:
         """Time of a run, mean over the headings."""

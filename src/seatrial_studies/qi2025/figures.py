@@ -4,18 +4,32 @@ import numpy as np
 
 from seatrial.core.results import Curve, Figure
 from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
-from seatrial.physics.simulate import trajectories
-from seatrial_studies.qi2025.published import SearchAlgorithm
-from seatrial_studies.qi2025.reproduction import FIGURE_HEADING, SearchSetting, WildHorseReproduction
-from seatrial_studies.swarm_search import STEP, candidate_matrices
+from seatrial_studies.qi2025.published import FIGURES_6_7, SearchAlgorithm
+from seatrial_studies.qi2025.reproduction import FIGURE_HEADING, ITERATIONS, SearchSetting, WildHorseReproduction
+from seatrial_studies.qi2025.tracking import Tracking
+from seatrial_studies.swarm_search import STEP
 
 TIME_LABEL = "t, s"
 _ASSUMPTION_NOTE = "45°, 2.27 m, 18 kn. Coefficients assumed: those of 90°; the paper prints none."
 
 
-def figures(reproduction: WildHorseReproduction) -> tuple[Figure, ...]:
+# the coefficients of figures 8 to 11, with their units
+_HISTORY_PAIRS = {
+    ("a33", "b33"): ("kg", "kg/s"),
+    ("a35", "b35"): ("kg m", "kg m/s"),
+    ("a55", "b55"): ("kg m²", "kg m²/s"),
+    ("a53", "b53"): ("kg m", "kg m/s"),
+}
+
+
+def figures(reproduction: WildHorseReproduction, tracking: Tracking) -> tuple[Figure, ...]:
     """Figures 1-2, 5, 6-7 and 8-11, at 45 degrees as in the paper."""
-    return (*_motions(reproduction), *_convergence(reproduction), *_tracking(reproduction), *_histories(reproduction))
+    return (
+        *_motions(reproduction),
+        *_convergence(reproduction),
+        *_tracking(reproduction, tracking),
+        *_histories(reproduction),
+    )
 
 
 def _motions(reproduction: WildHorseReproduction) -> list[Figure]:
@@ -50,33 +64,41 @@ def _convergence(reproduction: WildHorseReproduction) -> list[Figure]:
     return drawn
 
 
-def _tracking(reproduction: WildHorseReproduction) -> list[Figure]:
+def _tracking(reproduction: WildHorseReproduction, tracking: Tracking) -> list[Figure]:
     data = reproduction.seas[FIGURE_HEADING][0]
-    found = reproduction.searches[SearchSetting.PAPER, FIGURE_HEADING, SearchAlgorithm.IWHO]
-    A, B = candidate_matrices(found.points[:1])
-    y = trajectories(A, B, data.forcing, np.zeros(4))[0]
-    time = np.arange(len(y), dtype=np.float64) * STEP
+    time = np.arange(len(data.states), dtype=np.float64) * STEP
     note = (
-        f"IWHO's first run, open loop from rest. Good tracking says little about the coefficients. {_ASSUMPTION_NOTE}"
+        "IWHO's first run: the model is carried on from rest, each sample with the best point of its own iteration, "
+        f"from {ITERATIONS * STEP:.0f} s on with the last one. Good tracking says little about the coefficients. "
+        f"{_ASSUMPTION_NOTE}"
     )
-    pairs = ((0, 0, 1.0, "Figure 6: heave tracked", "m"), (1, 2, 57.29578, "Figure 7: pitch tracked", "deg"))
-    drawn = []
-    for j, state, factor, title, unit in pairs:
-        ship, identified = -factor * data.states[:, state], -factor * y[:, j]
-        drawn.append(
-            Figure(title, TIME_LABEL, unit, (Curve("ship", time, ship), Curve("identified", time, identified)), note)
-        )
-    return drawn
+    ranges = f"The paper's stays within {FIGURES_6_7[0]} m", f"The paper's stays within {FIGURES_6_7[1]}°"
+    rows = ((0, 1.0, "Figure 6: heave tracked", "m"), (2, float(np.degrees(1.0)), "Figure 7: pitch tracked", "deg"))
+    figures_ = []
+    for (state, factor, title, unit), printed in zip(rows, ranges, strict=True):
+        observed, identified = (-factor * states[:, state] for states in (data.states, tracking.states))
+        curves = (Curve("observed", time, observed), Curve("identified", time, identified))
+        figures_.append(Figure(title, TIME_LABEL, unit, curves, f"{printed}. {note}"))
+    return figures_
 
 
 def _histories(reproduction: WildHorseReproduction) -> list[Figure]:
+    """Return figures 8 to 11 in the tables' units over the paper's 200 s; b53 by magnitude, as printed."""
+    data = reproduction.seas[FIGURE_HEADING][0]
     found = reproduction.searches[SearchSetting.PAPER, FIGURE_HEADING, SearchAlgorithm.IWHO]
-    time = np.arange(len(found.trace), dtype=np.float64) * STEP
-    errors = 100.0 * (found.trace / found.truth - 1.0)
-    drawn = []
-    for number, pair in enumerate((("a33", "b33"), ("a35", "b35"), ("a55", "b55"), ("a53", "b53")), start=8):
-        curves = tuple(Curve(name, time, errors[:, COEFFICIENTS.index(name)]) for name in pair)
-        title = f"Figure {number}: {pair[0]} and {pair[1]}"
-        note = "IWHO's first run at 45°, box ±10 % about the truth; coefficients of 90° assumed."
-        drawn.append(Figure(title, TIME_LABEL, "error, %", curves, note))
-    return drawn
+    time = np.arange(len(data.states), dtype=np.float64) * STEP
+    rows = np.abs(found.trace[np.minimum(np.arange(len(time)), len(found.trace) - 1)])
+    note = (
+        "IWHO's first run at 45°, box ±10 % about the truth; coefficients of 90° assumed. The search ends at "
+        f"{ITERATIONS * STEP:.0f} s, the figures of the paper at {time[-1]:.0f} s: the last point is kept."
+    )
+    figures_ = []
+    for number, (pair, units) in enumerate(_HISTORY_PAIRS.items(), start=8):
+        curves = []
+        for name, unit in zip(pair, units, strict=True):
+            k = COEFFICIENTS.index(name)
+            curves.append(Curve(f"{name}, {unit}", time, rows[:, k]))
+            curves.append(Curve(f"{name}, theory", time, np.full(len(time), abs(found.truth[k]))))
+        label = " and ".join(units)
+        figures_.append(Figure(f"Figure {number}: {pair[0]} and {pair[1]}", TIME_LABEL, label, tuple(curves), note))
+    return figures_

@@ -3,13 +3,17 @@
 import numpy as np
 
 from seatrial.core.results import Claim, Verdict
+from seatrial.core.values import Array
 from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial_studies.published_ship import HEADINGS
 from seatrial_studies.qi2025.evidence import WildHorseEvidence, percent_text
 from seatrial_studies.qi2025.published import PRINTED_SECONDS, SearchAlgorithm
 from seatrial_studies.qi2025.reproduction import FIGURE_HEADING, ITERATIONS, SearchSetting
+from seatrial_studies.qi2025.search_claims import ABOUT_ONE_PERCENT
 from seatrial_studies.swarm_search import STEP
 
+# share of the rms of a motion that an error of tracking may have; our choice
+TRACKED_SHARE = 0.1
 # s, end of the figures' time axis
 FIGURE_END_S = 200.0
 
@@ -22,6 +26,7 @@ def claims(evidence: WildHorseEvidence) -> tuple[Claim, ...]:
         pitch_unit_claim(evidence),
         computing_time_claim(evidence),
         real_time_claim(evidence),
+        tracking_claim(evidence),
         convergence_claim(evidence),
     )
 
@@ -72,28 +77,67 @@ def pitch_unit_claim(evidence: WildHorseEvidence) -> Claim:
 
 
 def computing_time_claim(evidence: WildHorseEvidence) -> Claim:
-    """Refuted where PSO does not take twice as long on one simulator."""
+    """Refuted where PSO does not judge twice as many candidates."""
     printed = float(
         np.mean([PRINTED_SECONDS[h][SearchAlgorithm.PSO] / PRINTED_SECONDS[h][SearchAlgorithm.WHO] for h in HEADINGS])
     )
-    times = {a: evidence.search_seconds(a) for a in SearchAlgorithm}
+    judged = {a: evidence.evaluations(a) for a in SearchAlgorithm}
+    ratio = judged[SearchAlgorithm.PSO] / judged[SearchAlgorithm.WHO]
+    counts = ", ".join(f"{a} {count}" for a, count in judged.items())
+    times = ", ".join(f"{1e3 * evidence.search_seconds(a):.0f}" for a in SearchAlgorithm)
     return Claim(
         "PSO takes eight times as long as WHO and IWHO",
-        Verdict.REFUTED if times[SearchAlgorithm.PSO] < 2.0 * times[SearchAlgorithm.WHO] else Verdict.UNKNOWABLE,
-        f"table 5 has {printed:.1f}; on one simulator PSO, WHO and IWHO take "
-        f"{', '.join(f'{1e3 * t:.0f}' for t in times.values())} ms, judging as many candidates",
+        Verdict.REFUTED if ratio < 2.0 else Verdict.UNKNOWABLE,
+        f"table 5 has {printed:.1f}. Almost all of the work is judging candidates, and in the setting that is judged "
+        f"here a run judges {counts}: PSO {ratio:.1f} times as many as WHO, because all its remembered points are "
+        "judged again, of a herd only the stallions; where fitness is remembered all judge the same number. They "
+        f"take {times} ms here",
     )
 
 
 def real_time_claim(evidence: WildHorseEvidence) -> Claim:
-    """Confirmed where a run takes less than the record it is made on."""
-    seconds, record = evidence.search_seconds(SearchAlgorithm.IWHO), ITERATIONS * STEP
-    return Claim(
-        "The method is real-time",
-        Verdict.CONFIRMED if seconds < record else Verdict.REFUTED,
-        f"{ITERATIONS} iterations, {record:.0f} s of samples, take {1e3 * seconds:.0f} ms here; our fit of the whole "
-        f"record takes {1e3 * evidence.output_error_seconds:.1f} ms. What is in time is not thereby right",
+    """Judged by accuracy where the true state is at hand and where it is not; causality needs no clock."""
+    setting = "the true state before each sample is known, velocities included; box ±10 % about the truth"
+    true, carried = (
+        evidence.single_run_errors(s, SearchAlgorithm.IWHO) for s in (SearchSetting.PAPER, SearchSetting.MODEL_STATE)
     )
+    record = ITERATIONS * STEP
+    slowest = max(PRINTED_SECONDS[h][SearchAlgorithm.IWHO] for h in HEADINGS)
+    text = (
+        f"iteration k needs no sample after k and judges {evidence.evaluations(SearchAlgorithm.IWHO) / ITERATIONS:.0f} "
+        f"candidates by one step: table 5 has up to {slowest:.1f} s for {record:.0f} s of samples, here it takes "
+        f"{1e3 * evidence.search_seconds(SearchAlgorithm.IWHO):.0f} ms, our fit of the whole record "
+        f"{1e3 * evidence.output_error_seconds:.1f} ms. Stepping from the true state a run ends {percent_text(true)} "
+        "off; but only positions are measured (eq. 7), and from the identified model's own state it ends "
+        f"{percent_text(carried)} off, a random guess in the box 5 %"
+    )
+    claim = "The method gives accurate parameters in real time"
+    if max(true) > ABOUT_ONE_PERCENT:
+        return Claim(claim, Verdict.REFUTED, text)
+    if max(carried) <= ABOUT_ONE_PERCENT:
+        return Claim(claim, Verdict.CONFIRMED, text)
+    return Claim(claim, Verdict.HOLDS_IN_OWN_SETTING, text, setting)
+
+
+def tracking_claim(evidence: WildHorseEvidence) -> Claim:
+    """Held where the error stays below a tenth of the motion; limited to the box where a guess does nearly as well."""
+    own = evidence.tracking.errors[SearchAlgorithm.IWHO]
+    guess = evidence.tracking.guess_errors
+    text = (
+        f"IWHO's model, carried on while its coefficients evolve, is off by {_share_text(own)} of the rms of heave "
+        f"and of pitch in 200 s (PSO {_share_text(evidence.tracking.errors[SearchAlgorithm.PSO])}, WHO "
+        f"{_share_text(evidence.tracking.errors[SearchAlgorithm.WHO])}); coefficients drawn once from the box and "
+        f"never corrected by {_share_text(guess)}. The waves' force is known and the box is narrow: tracking says "
+        "little of the coefficients (45°, coefficients of 90° assumed)"
+    )
+    claim = "The identified heave and pitch follow the observed ones while coefficients evolve (figures 6, 7)"
+    if max(own) > TRACKED_SHARE:
+        return Claim(claim, Verdict.REFUTED, text)
+    return Claim(claim, Verdict.HOLDS_IN_OWN_SETTING, text, "wave force known, box ±10 % about the truth, no noise")
+
+
+def _share_text(shares: Array) -> str:
+    return " and ".join(f"{100.0 * share:.1f} %" for share in shares)
 
 
 def convergence_claim(evidence: WildHorseEvidence) -> Claim:

@@ -44,6 +44,27 @@ _ERRORS = {
     (180, SearchAlgorithm.WHO): (0.02, 7.81, 0.65, 7.84, 4.62, 8.21, 2.56, 8.02),
     (180, SearchAlgorithm.IWHO): (0.09, 1.10, 0.29, 0.02, 0.12, 0.10, 0.32, 0.17),
 }
+# table 1: quantity, symbol, unit, printed value, name of the value used here, remark
+PRINTED_SHIP: tuple[tuple[str, str, str, float, str, str], ...] = (
+    ("mass", "m", "kg", 4.42e5, "m", "known to the search"),
+    (
+        "pitch moment of inertia",
+        "I5",
+        "kg m²",
+        9.945e7,
+        "I5",
+        "known to the search; radius 15 m, a quarter of the length",
+    ),
+    ("draught", "h", "m", 2.27, "d", "for the forces of the waves"),
+    ("equivalent radius", "rr", "m", 30.0, "", "taken for half the length: L = 60 m"),
+    ("equivalent section", "ss", "m²", 16.2, "", "taken for beam times draught: B = 7.14 m"),
+    ("restoring coefficient", "c33", "N/m", 3.15e6, "c33", "known to the search"),
+    ("restoring coefficient", "c35", "N/rad", 6.83e6, "c35", "known to the search"),
+    ("restoring coefficient", "c53", "N", 6.83e6, "c53", "known to the search"),
+    ("restoring coefficient", "c55", "N m/rad", 6.54e8, "c55", "known to the search"),
+    ("significant height", "h1/3", "m", 2.27, "h13", "the same number as the draught"),
+    ("speed", "v", "kn", 18.0, "v", "9.26 m/s"),
+)
 # s of computing time as printed, by heading in degrees
 PRINTED_SECONDS = {
     90: {SearchAlgorithm.PSO: 7.903, SearchAlgorithm.WHO: 0.935, SearchAlgorithm.IWHO: 1.122},

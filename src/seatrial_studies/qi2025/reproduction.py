@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from seatrial.core.values import Array, ProgressReporter
+from seatrial.core.values import ProgressReporter
 from seatrial.numerics.optimise import (
     Box,
     FitnessMemory,
@@ -23,6 +23,7 @@ from seatrial.numerics.optimise import (
 from seatrial_studies.published_ship import HEADINGS
 from seatrial_studies.qi2025.model_state_objective import model_state_objective
 from seatrial_studies.qi2025.published import SearchAlgorithm
+from seatrial_studies.qi2025.ten_runs import RUNS, TenRuns
 from seatrial_studies.swarm_search import (
     Fitness,
     PitchUnit,
@@ -36,8 +37,8 @@ from seatrial_studies.swarm_search import (
     whole_record_objective,
 )
 
-# iterations of a search, runs of the full and of the quick version
-ITERATIONS, RUNS, QUICK_RUNS = 200, 10, 5
+# iterations of a search, runs of a setting in the quick version
+ITERATIONS, QUICK_RUNS = 200, 5
 # how often the ten runs are made again, for the scatter of what they give
 TEN_RUN_REPEATS, QUICK_TEN_RUN_REPEATS = 10, 3
 # the heading of the paper's figures, whose coefficients it does not print
@@ -92,12 +93,12 @@ class WildHorseReproduction:
     """Searches by setting, heading and algorithm, and the seas they met, by heading.
 
     At 45 degrees one run of the settings of the figures, with the coefficients of 90 degrees, assumed.
-    `tens`: by heading, IWHO's mean error of the mean of ten in the paper's setting, as often as ten runs were made.
+    `ten_runs`: by heading, IWHO's runs in the paper's setting, the ten of the tables and as many tens more.
     """
 
     searches: dict[tuple[SearchSetting, int, SearchAlgorithm], RepeatedSearches]
     seas: dict[int, list[SearchData]]
-    ten_run_errors: dict[int, Array]
+    ten_runs: dict[int, TenRuns]
     run_count: int
     is_quick: bool
 
@@ -109,6 +110,8 @@ class WildHorseReproduction:
 
 def reproduce_searches(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -> WildHorseReproduction:
     """Ten runs of every setting; `quick` leaves out those that no claim rests on and runs others five times."""
+    if report_progress:
+        report_progress("seas")
     headings = (*HEADINGS, FIGURE_HEADING)
     seas = {
         h: [simulate_search_data(h, np.random.default_rng([seed, h, run])) for run in range(RUNS)] for h in headings
@@ -126,18 +129,15 @@ def reproduce_searches(*, quick: bool, seed: int, report_progress: ProgressRepor
             found |= _search_setting(setting, heading, seas[heading][:runs], seed)
     if report_progress:
         report_progress("the ten runs again")
-    again = {h: _ten_run_errors(h, QUICK_TEN_RUN_REPEATS if quick else TEN_RUN_REPEATS, seed) for h in HEADINGS}
+    again = {h: _repeat_ten_runs(h, QUICK_TEN_RUN_REPEATS if quick else TEN_RUN_REPEATS, seed) for h in HEADINGS}
     return WildHorseReproduction(found, seas, again, RUNS, quick)
 
 
-def _ten_run_errors(heading: int, count: int, seed: int) -> Array:
-    """Mean error of the mean of each ten runs, shape (count,); the first ten are those of the tables."""
+def _repeat_ten_runs(heading: int, count: int, seed: int) -> TenRuns:
+    """Ten runs as often as `count` says; the first ten are those of the tables."""
     seas = [simulate_search_data(heading, np.random.default_rng([seed, heading, run])) for run in range(count * RUNS)]
-    found = _search_setting(SearchSetting.PAPER, heading, seas, seed, (SearchAlgorithm.IWHO,))[
-        SearchSetting.PAPER, heading, SearchAlgorithm.IWHO
-    ]
-    means = found.points.reshape(count, RUNS, -1).mean(axis=1)
-    return np.mean(np.abs(means / found.truth - 1.0), axis=1)
+    searches = _search_setting(SearchSetting.PAPER, heading, seas, seed, (SearchAlgorithm.IWHO,))
+    return TenRuns(searches[SearchSetting.PAPER, heading, SearchAlgorithm.IWHO].errors, seed)
 
 
 def _search_setting(

@@ -8,12 +8,14 @@ from seatrial_studies.output_error_fit import output_error_results
 from seatrial_studies.published_ship import HEADINGS
 from seatrial_studies.qi2025.audit import audit
 from seatrial_studies.qi2025.centre_bias import centre_bias
+from seatrial_studies.qi2025.controllers import controllers
 from seatrial_studies.qi2025.evidence import WildHorseEvidence
 from seatrial_studies.qi2025.figures import figures
 from seatrial_studies.qi2025.hold_bias import hold_bias
 from seatrial_studies.qi2025.published import SOURCE
 from seatrial_studies.qi2025.reproduction import FIGURE_HEADING, reproduce_searches
 from seatrial_studies.qi2025.tables import tables
+from seatrial_studies.qi2025.tracking import track
 from seatrial_studies.qi2025.verdicts import checks, claims
 
 QUESTION = "Do wild horses identify heave and pitch coefficients from motions in waves, and how well need it be done?"
@@ -27,22 +29,26 @@ def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -
         seed: of seas, boxes and searches.
     """
     began = time.perf_counter()
-    made = reproduce_searches(quick=quick, seed=seed, report_progress=report_progress)
-    if report_progress:
-        report_progress("audit and our own fits")
-    own = {h: output_error_results(made.seas[h], seed) for h in HEADINGS}
-    seen = WildHorseEvidence(
-        made, audit(made.seas[FIGURE_HEADING], seed), own, hold_bias(seed), centre_bias(made.seas, seed)
+    report = report_progress or (lambda _: None)
+    reproduction = reproduce_searches(quick=quick, seed=seed, report_progress=report)
+    report("audit and our own fits")
+    fits = {h: output_error_results(reproduction.seas[h], seed) for h in HEADINGS}
+    audited, held, centred = (
+        audit(reproduction.seas[FIGURE_HEADING], seed), hold_bias(seed), centre_bias(reproduction.seas, seed),
+    )  # fmt: skip
+    report("controllers tuned on each method's coefficients")
+    evidence = WildHorseEvidence(
+        reproduction, audited, fits, held, centred, track(reproduction, seed), controllers(reproduction, fits, seed)
     )
     return Study(
         name="qi2025",
         source=SOURCE,
         title="Wild horses and heave-pitch coefficients: a published search repeated",
         question=QUESTION,
-        claims=claims(seen),
-        checks=checks(seen),
-        tables=tables(seen),
-        figures=figures(made),
+        claims=claims(evidence),
+        checks=checks(evidence),
+        tables=tables(evidence),
+        figures=figures(reproduction, evidence.tracking),
         seed=seed,
         elapsed_s=time.perf_counter() - began,
         versions=versions(),

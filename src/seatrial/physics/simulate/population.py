@@ -5,12 +5,13 @@ Every candidate has matrices of its own, x' = A x + B u. A candidate's numbers d
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError
+from seatrial.numerics.kernels.compiled_function import TangentPointer
 from seatrial.numerics.kernels.linear import affine_population
 from seatrial.numerics.kernels.linear_population import discretise, misfit
 from seatrial.numerics.kernels.linear_population import trajectories as simulated
@@ -80,6 +81,10 @@ class Forcing:
         return replace(self, inputs=self.inputs[first : first + self.substeps + 1])
 
 
+# one pointer for each compiled function: numba needs more time to look a function up than a population takes
+_rates_pointer = cache(TangentPointer)
+
+
 def affine_population_matrices(model: Model, parameters: Array, inputs: Sequence[int]) -> tuple[Array, Array]:
     """A (count, nx, nx) and B (count, nx, inputs) of an affine model at each row of parameters, all of the model's.
 
@@ -89,7 +94,7 @@ def affine_population_matrices(model: Model, parameters: Array, inputs: Sequence
         InputError: the model's rates are not zero at rest, which such a population cannot simulate.
     """
     nx, nu = len(model.states), len(model.inputs)
-    value = affine_population(model.compiled.rates_tangent, nx, nu, parameters)
+    value = affine_population(_rates_pointer(model.compiled.rates_tangent), nx, nu, parameters)
     if np.any(value[:, :, nx + nu] != 0.0):
         raise InputError(f"model '{model.name}' has rates at rest; a population of it cannot be simulated at once")
     return value[:, :, :nx], value[:, :, [nx + j for j in inputs]]

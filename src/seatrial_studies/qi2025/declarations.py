@@ -1,0 +1,97 @@
+"""What the page declares of the paper: its symbols, what is assumed, what deviates from the print, its figures."""
+
+from seatrial.core.results import Table
+from seatrial_studies.declarations import Assumption, Declarations, Deviation, FigureCounterpart, Symbol
+from seatrial_studies.qi2025.reproduction import (
+    QUICK_RUNS,
+    RUNS,
+    TEN_RUN_SETTINGS,
+    SearchSetting,
+    WildHorseReproduction,
+)
+
+_SYMBOLS = (
+    Symbol("z, θ", "heave and pitch", "m, rad", "z up, θ bow down in figures; the model has z down, θ bow up"),
+    Symbol("m, I5", "mass and pitch moment of inertia", "kg, kg m²", "table 1"),
+    Symbol("a33, a35, a53, a55", "added masses", "kg, kg m, kg m, kg m²", "searched; theory in tables 2 to 4"),
+    Symbol("b33, b35, b53, b55", "damping", "kg/s, kg m/s, kg m/s, kg m²/s", "searched; theory in tables 2 to 4"),
+    Symbol("c33, c35, c53, c55", "restoring coefficients", "N/m, N/rad, N, N m/rad", "table 1, known to the search"),
+    Symbol("F3, M5", "force and moment of the waves, eq. (14)", "N, N m", "30 harmonics, known to the search"),
+    Symbol("X, Y, U, V", "states, motions, forces, measurement noise", "SI", "eqs. (2) to (7)"),
+    Symbol("A, B, H; Φ, Ψ", "matrices in continuous time; over a sample, eq. (12)", "SI", "zero-order hold, eq. (8)"),
+    Symbol("T_S", "sampling interval, one iteration", "s", "0.5"),
+    Symbol("S_ξ, A, B, h1/3", "spectrum of the waves, eq. (13)", "m² s, m²/s⁴, 1/s⁴, m", "h1/3 = 2.27"),
+    Symbol("ω, Δω, ξ_ak", "frequency of a harmonic, interval, amplitude", "rad/s, rad/s, m", "√(2 S_ξ Δω)"),
+    Symbol("N, P_S, P_C, T_max", "population, stallions, crossover, iterations", "1", "40, 0.25, 0.13, 200"),
+    Symbol("ω_min, ω_max", "limits of the dynamic inertia weight, eq. (22)", "1", "0.1, 0.9"),
+    Symbol("Z, R, IDX, P, FT", "adaptive parameter of a stride and what it is drawn from", "1", "eqs. (16), (17)"),
+    Symbol("N_S, WH", "place of a stallion, of the best one (waterhole)", "as the unknowns", "eqs. (15), (19)"),
+    Symbol("ub, lb", "bounds of the search", "as the unknowns", "not printed"),
+    Symbol("ω, c1, c2, r1, r2", "particle swarm, eq. (29)", "1", "not printed"),
+    Symbol(
+        "J, ε, F", "error functional, output error, fitness, eqs. (26) to (28)", "m and an angle", "unit not printed"
+    ),
+)
+_ASSUMPTIONS = (
+    Assumption(
+        "box of the searches", "not printed", "±10 % about the truth, as WHO's clipped values suggest; others beside it"
+    ),
+    Assumption("ω, c1, c2 of PSO", "not printed", "0.7298, 1.49618, 1.49618 (constriction), clipped to the box"),
+    Assumption(
+        "state a candidate steps from", "not printed", "the true previous one (generous); the model's own beside it"
+    ),
+    Assumption("unit of pitch in eq. (28)", "not printed", "rad; degrees beside it"),
+    Assumption("remembered fitness", "not printed", "judged again by each new sample; kept beside it (full run)"),
+    Assumption("coefficients at 45°", "not printed", "those of 90°"),
+    Assumption("forces of the waves", "not printed", "box-shaped hull in closed form, Jensen, Mansour & Olsen 2004"),
+    Assumption("hull behind table 1", "half length 30 m, section 16.2 m²", "L 60 m, B 16.2/2.27 = 7.14 m"),
+    Assumption("phases of the harmonics", "not printed", "random, one sea a run; 30 equal intervals of frequency"),
+    Assumption("band of the harmonics", "not printed", "0.1 to 99 % of the energy, 0.544 to 2.78 rad/s"),
+    Assumption("measurement noise", "V in eq. (7), no number", "none; 1 cm and 0.02° for our fit beside it"),
+    Assumption("state at the start", "not printed", "at rest"),
+    Assumption("after the last iteration", "figures run to 200 s, the search ends at 100 s", "the last point is kept"),
+)
+_DEVIATIONS = (
+    Deviation("tables 2 to 4", "b53 positive", "negative", "(b35 + |b53|) / (2 a33) is the speed only then"),
+    Deviation("eq. (14)", "harmonics at ω", "at the frequency of encounter ω − ω² U cos β / g", "the ship has way on"),
+    Deviation("eq. (14)", "no phases", "a random phase for each harmonic", "without them every crest meets at t = 0"),
+    Deviation("eq. (13)", "B = 3.11 / h³", "B = 3.11 / h²", "h³ gives 3.42 m for 2.27 m; one parameter, not two"),
+    Deviation("eq. (2)", "states z, θ, ż, θ̇", "z, ż, θ, θ̇", "the matrices of eqs. (3), (4) and H fit this order only"),
+    Deviation("eq. (7)", "Ẋ = AX + AU", "Ẋ = AX + BU", "eq. (6) has B, and A has no columns for the forces"),
+    Deviation("eqs. (19), (25)", "a stallion takes its new place", "only where the new place is fitter",
+              "as the program of WHO's authors; otherwise the waterhole itself is lost"),
+    Deviation("eqs. (15), (19), (25)", "places may leave the box", "clipped to it", "eq. (21) has bounds for all"),
+    Deviation("eq. (22)", "undefined if f_avg = f_min", "ω_min", "no division by zero"),
+    Deviation("eq. (15)", "x̄ on the left lost in print", "new place of the foal", "the text explains the symbol so"),
+)  # fmt: skip
+_FIGURES = (
+    FigureCounterpart("Figure 1", "heave at 45°, 200 s", ("Figure 1: heave",)),
+    FigureCounterpart("Figure 2", "pitch at 45°, 200 s", ("Figure 2: pitch",)),
+    FigureCounterpart("Figure 3", "block diagram of the output error",
+                      reason="It shows no result; eqs. (26) to (28) say the same."),
+    FigureCounterpart("Figure 4", "pseudo-code of the identification",
+                      reason="It shows no result; the steps are those of section 3.2."),
+    FigureCounterpart("Figure 5", "fitness over iterations at 45°",
+                      ("Figure 5a: fitness of the best point", "Figure 5b: fitness of the best point")),
+    FigureCounterpart("Figure 6", "heave, observed and identified, at 45°", ("Figure 6: heave tracked",)),
+    FigureCounterpart("Figure 7", "pitch, observed and identified, at 45°", ("Figure 7: pitch tracked",)),
+    FigureCounterpart("Figure 8", "a33 and b33 over time at 45°", ("Figure 8: a33 and b33",)),
+    FigureCounterpart("Figure 9", "a35 and b35 over time at 45°", ("Figure 9: a35 and b35",)),
+    FigureCounterpart("Figure 10", "a55 and b55 over time at 45°", ("Figure 10: a55 and b55",)),
+    FigureCounterpart("Figure 11", "a53 and b53 over time at 45°", ("Figure 11: a53 and b53",)),
+)  # fmt: skip
+DECLARATIONS = Declarations(_SYMBOLS, _ASSUMPTIONS, _DEVIATIONS, _FIGURES)
+
+
+def declaration_tables(reproduction: WildHorseReproduction) -> tuple[Table, ...]:
+    """Return the tables of the page; a note says what was left out of a quick run."""
+    ten = " and ".join(f"'{s.value}'" for s in TEN_RUN_SETTINGS)
+    times = f"{QUICK_RUNS} times ({ten}: {RUNS})" if reproduction.is_quick else f"{RUNS} times"
+    note = (
+        "Unit, memory and state were chosen as the combination whose IWHO comes nearest to the print; the tables of "
+        f"settings show the others. Every setting is run {times}."
+    )
+    absent = [s.value for s in SearchSetting if s not in reproduction.settings]
+    if absent:
+        note += f" Left out of this quick run: {'; '.join(absent)}."
+    return DECLARATIONS.tables(note)
