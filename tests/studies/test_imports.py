@@ -11,8 +11,8 @@ import seatrial_studies
 
 ROOT = Path(__file__).parents[2]
 STUDIES = Path(seatrial_studies.__path__[0])
-# the table of docs/architecture.md: | `physics.sea` | what it offers | ...
-TABLE = re.findall(r"^\| `([a-z_]+\.[a-z_]+)` \|", (ROOT / "docs" / "architecture.md").read_text(), re.MULTILINE)
+# the table of docs/architecture.md: | `physics.sea` | what it offers | ..., a layer without subpackages by its own name
+TABLE = re.findall(r"^\| `([a-z_]+(?:\.[a-z_]+)?)` \|", (ROOT / "docs" / "architecture.md").read_text(), re.MULTILINE)
 DOCUMENTED = [name for name in TABLE if hasattr(importlib.import_module(f"seatrial.{name}"), "__all__")]
 
 
