@@ -110,9 +110,9 @@ def _single_runs(evidence: WildHorseEvidence, setting: SearchSetting) -> dict[Se
     return {a: evidence.single_run_errors(setting, a) for a in SearchAlgorithm}
 
 
-def _is_far_better(errors: list[float], others: list[float]) -> bool:
+def _is_far_better(errors: list[float], reference: list[float]) -> bool:
     """Whether errors are FAR_BETTER_FACTOR times smaller at every heading."""
-    return all(FAR_BETTER_FACTOR * error <= other for error, other in zip(errors, others, strict=True))
+    return all(FAR_BETTER_FACTOR * error <= size for error, size in zip(errors, reference, strict=True))
 
 
 def same_conditions_claim(evidence: WildHorseEvidence) -> Claim:
