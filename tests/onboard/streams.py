@@ -6,12 +6,11 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.core.results import Fit
-from seatrial.core.results.online import EstimatorPhase, SampleCounts, Snapshot
+from seatrial.core.results.online import EstimatorPhase, Sample, SampleCounts, Snapshot
 from seatrial.data.folder.document import document
 from seatrial.data.trial import Trial, load_trial
 from seatrial.data.trial.follow_table import require_stream
 from seatrial.onboard.follow import FollowResult
-from seatrial.onboard.sample import Sample
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 VOYAGE = EXAMPLES / "heave_pitch" / "voyage_1.csv"

@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from seatrial.core.results.online import Sample
 from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, Layout, read_record
 from seatrial.data.trial import load_trial
 from seatrial.onboard.columns import ColumnReader
 from seatrial.onboard.lines import LineBatch
-from seatrial.onboard.sample import Sample
 from seatrial.onboard.tail import TailLines
 
 NAMED = Layout(

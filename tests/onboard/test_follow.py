@@ -23,7 +23,7 @@ from tests.onboard.streams import (
     stream_trial,
 )
 
-from seatrial.core.results.online import SampleCounts, Snapshot
+from seatrial.core.results.online import Sample, SampleCounts, Snapshot
 from seatrial.core.values import InputError
 from seatrial.data.trial import RecordFile, Role, Trial, load_trial
 from seatrial.data.trial.follow_table import require_stream
@@ -32,7 +32,6 @@ from seatrial.estimation.identify import identify
 from seatrial.onboard.columns import ColumnReader
 from seatrial.onboard.follow import follow
 from seatrial.onboard.required_channels import check_required_channels
-from seatrial.onboard.sample import Sample
 from seatrial.onboard.sources import LineSampleSource
 from seatrial.onboard.tail import TailLines
 from seatrial.onboard.udp import UdpLines

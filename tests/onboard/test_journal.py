@@ -12,10 +12,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from seatrial.core.results.online import Sample
 from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.onboard.journal import Journal, JournalEntry, RunEntry, journal_identity
-from seatrial.onboard.sample import Sample
 from seatrial.physics.models import model_named
 
 WRITER = """
@@ -23,7 +23,7 @@ import sys, time
 from pathlib import Path
 import numpy as np
 from seatrial.onboard.journal import RunEntry, Journal
-from seatrial.onboard.sample import Sample
+from seatrial.core.results.online import Sample
 journal = Journal(Path(sys.argv[1]), "a", 3)
 list(journal.entries())
 journal.append(RunEntry("start"))

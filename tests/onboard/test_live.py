@@ -13,8 +13,7 @@ from tests.onboard.fabricated import faulty_counts, heave_pitch, mmg
 from seatrial.core.results.online import EstimatorPhase, SampleCounts, Snapshot
 from seatrial.onboard import live as module
 from seatrial.onboard.history import History, RecentHistory
-from seatrial.onboard.live import LiveDisplay
-from seatrial.onboard.log_lines import log_line
+from seatrial.onboard.live import LiveDisplay, log_line
 from seatrial.onboard.table import TableContent, render_table
 
 

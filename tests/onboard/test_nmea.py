@@ -9,11 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.onboard.sentences import sentence
 
+from seatrial.core.results.online import Sample
 from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.onboard.lines import LineBatch, LineSplitter
 from seatrial.onboard.nmea import NmeaReader, east_distance, north_distance
-from seatrial.onboard.sample import Sample
 
 STAMP, ARRIVAL = ColumnSpec("time", "stamp", "s"), ColumnSpec("time", "arrival", "s")
 

@@ -8,8 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.core.results.online import SampleCounts
-from seatrial.onboard.sample import Sample
+from seatrial.core.results.online import Sample, SampleCounts
 from seatrial.onboard.sample_order import RunStart, SampleOrder, StreamEvent, combined_counts
 
 TIMES = st.lists(
@@ -27,7 +26,9 @@ def at(time: float, *values: float) -> Sample:
 
 
 def passed(gate: SampleOrder, times: list[float]) -> list[StreamEvent]:
-    return [event for time in times for event in gate.admit(at(time))] + gate.finish()
+    events = [event for time in times for event in gate.admit(at(time))]
+    gate.drop_suspect()
+    return events
 
 
 def runs(events: list[StreamEvent]) -> list[list[float]]:

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 from tests.onboard.sentences import sentence
 
+from seatrial.core.results.online import Sample
 from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial.stream import Stream, StreamSource
-from seatrial.onboard.sample import Sample, SampleSource
-from seatrial.onboard.sources import open_source
+from seatrial.onboard.sources import SampleSource, open_source
 
 COLUMNS = Layout("text", ColumnSpec("time", 1, "s"), (ColumnSpec("psi", 2, "deg"),))
 SENTENCES = Layout("text", ColumnSpec("time", "stamp", "s"), (ColumnSpec("psi", "psi", "deg"),))

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from seatrial.data.folder.model_file import ModelFile
     from seatrial.data.trial import Trial
     from seatrial.onboard.follow import FollowResult
-    from seatrial.onboard.sample import SampleSource
+    from seatrial.onboard.sources import SampleSource
 
 
 def load_trial(path: str | Path, own_model: "Model | None" = None) -> "Trial":

@@ -73,11 +73,10 @@ def stream_heading(trial: "Trial") -> str:
 def print_outcome(outcome: "FollowResult") -> None:
     """Print the counts of samples, the latest fault and the findings; messages go to standard error."""
     from seatrial.core.text.words import printable
-    from seatrial.onboard.snapshot_text import fault_counts
+    from seatrial.onboard.snapshot_text import faults_text
 
     counts = outcome.counts
-    wrong = [f"{count} {words}" for words, count in fault_counts(counts) if count]
-    print(f"{counts.accepted} samples accepted" + (f"; {', '.join(wrong)}" if wrong else "; no faults"))
+    print(f"{counts.accepted} samples accepted; {faults_text(counts) or 'no faults'}")
     if counts.last_problem:
         print(f"latest fault: {printable(counts.last_problem)}")
     if outcome.snapshot is not None and outcome.snapshot.phase.value == "waiting" and outcome.snapshot.advice:

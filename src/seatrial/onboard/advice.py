@@ -20,15 +20,16 @@ from seatrial.onboard.candidate_manoeuvres import CandidateManoeuvre, candidate_
 from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
 from seatrial.physics.simulate.steer import RUDDER
 
-# a coefficient is identified once its standard error is below this multiple of its value
+# a coefficient is identified once its standard error is below this multiple of its value; chosen: its sign is known
 _IDENTIFIED_BELOW = 1.0
-# a random sequence, which cannot be steered by hand, must leave errors smaller by this factor to be proposed
+# a random sequence, which cannot be steered by hand, must leave errors smaller by this factor to be proposed; chosen
 _RANDOM_PENALTY = 2.0
-# an unstable ship's course identifies everything in theory: manoeuvres of smaller relative errors are not proposed
+# an unstable ship's course identifies everything in theory: manoeuvres of smaller relative errors are not proposed;
+# chosen: far below what any trial has reached
 _LEAST_CREDIBLE_ERROR = 1e-5
-# s between two evaluations, each of which costs some seconds of simulation
+# s between two evaluations; chosen: each costs some seconds of simulation
 _ADVICE_INTERVAL_S = 60.0
-# names in a sentence before "and 2 more"
+# names in a sentence before "and 2 more"; chosen
 _MAX_NAMED = 3
 _MAX_ITEMS = _MAX_NAMED + 1
 
@@ -64,7 +65,7 @@ class ManoeuvreAdviser:
         self._latest_advice, self._advised_at, self._advised_names = "", -np.inf, ()
 
     def with_advice(self, snapshot: Snapshot) -> Snapshot:
-        """The snapshot with what would help; unchanged where nothing is untold or nothing is known yet."""
+        """Return the snapshot with what would help; unchanged where all is identified or nothing is known yet."""
         if self._estimator is None or not snapshot.unidentified or snapshot.phase is EstimatorPhase.WAITING:
             return snapshot
         if self._clock() - self._advised_at >= _ADVICE_INTERVAL_S:
@@ -73,7 +74,7 @@ class ManoeuvreAdviser:
         return replace(snapshot, advice=self._latest_advice)
 
     def _records(self) -> tuple[Record, ...]:
-        """What the estimator still keeps; nothing where that is too short to be read."""
+        """Return the records that the estimator still keeps; none where they are too short to be read."""
         try:
             return () if self._estimator is None else self._estimator.records()
         except InputError:
@@ -136,9 +137,9 @@ def _unidentified_indices(snapshot: Snapshot) -> list[int]:
 
 
 def _error_scales(snapshot: Snapshot, model: Model) -> Array:
-    """The size to which an error is compared: the value, or the parameter's scale where that is larger, (k,)."""
+    """Return the size to which an error is compared: the value, or the parameter's scale where that is larger, (k,)."""
     scale = np.array([model.parameters[n].scale for n in snapshot.names])
-    return np.maximum(np.maximum(np.abs(snapshot.value), scale), 1e-300)
+    return np.maximum(np.maximum(np.abs(snapshot.value), scale), 1e-300)  # above zero, for a division
 
 
 def _precision(covariance: Array) -> Array:
@@ -192,4 +193,4 @@ def _qualitative_advice(snapshot: Snapshot, model: Model, records: Sequence[Reco
 def _percent(share: float) -> str:
     if share >= 10.0:
         return "more than 1000 %"
-    return f"{100.0 * share:.0f} %" if share >= 0.1 else f"{100.0 * share:.2g} %"
+    return f"{100.0 * share:.0f} %" if share >= 0.1 else f"{100.0 * share:.2g} %"  # two digits from 10 % down

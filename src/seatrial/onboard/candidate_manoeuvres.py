@@ -24,12 +24,12 @@ from seatrial.physics.simulate.linear import batch_class
 from seatrial.physics.simulate.steer import RUDDER, SOLAS_SLEW_RATE
 
 # where the trial has no [design]: duration and hold in characteristic times of the ship (length over speed, or a
-# period); 20 cover a zigzag or two, 40 the resonances of a linear model
+# period); chosen: 20 cover a zigzag or two, 40 the resonances of a linear model
 _DURATION, _HOLD, _LINEAR_DURATION = 20.0, 1.0, 40.0
-# rad: the rudder angle of turning trials (IMO MSC.137(76)); a fin angle below stall; rad/s: a usual fin drive
+# rad: the rudder angle of turning trials (IMO MSC.137(76)); chosen: a fin angle below stall; rad/s: a usual fin drive
 _RUDDER_LIMIT, _FIN_LIMIT, _FIN_RATE = math.radians(35.0), math.radians(10.0), math.radians(20.0)
 _FIN_INPUTS = ("delta_f1", "delta_f2", "alpha_f")
-# roll releases as multiples of the largest angle recorded; rad, none is larger: a deck edge immerses at about that
+# chosen: roll releases as multiples of the largest angle recorded; rad, the largest: a deck edge immerses at about that
 _RELEASE_FACTORS, _MAX_RELEASE_ANGLE = (1.5, 2.0, 3.0), math.radians(35.0)
 
 
@@ -71,10 +71,8 @@ def candidate_manoeuvres(
     for item in standard_manoeuvres(evaluator):
         inputs = item.inputs_for(evaluator)
         inputs = inputs[0] if inputs.ndim == 3 else inputs
-        description = _describe(item.name, task)
-        candidates.append(
-            CandidateManoeuvre(item.name, description, task.initial_state, inputs, evaluator.dt, item.is_random)
-        )
+        text = _describe(item.name, task)
+        candidates.append(CandidateManoeuvre(item.name, text, task.initial_state, inputs, evaluator.dt, item.is_random))
     return candidates
 
 
@@ -128,12 +126,8 @@ def _roll_releases(model: Model, records: Sequence[Record]) -> list[CandidateMan
 
 def _design_task(trial: Trial, model: Model, records: Sequence[Record], noise: dict[str, float]) -> DesignTask:
     rate = trial.estimate.rate or require_stream(trial).rate
-    stated = trial.design_request
-    if stated is not None:
-        request = replace(stated, rate=rate, draws=0)
-    else:
-        request = _default_request(trial, model, records, rate)
-    return DesignTask("", trial.ship, model, noise, request)
+    request = trial.design_request or _default_request(trial, model, records, rate)
+    return DesignTask("", trial.ship, model, noise, replace(request, rate=rate, draws=0))
 
 
 def _default_request(trial: Trial, model: Model, records: Sequence[Record], rate: float) -> DesignRequest:
@@ -149,7 +143,9 @@ def _default_request(trial: Trial, model: Model, records: Sequence[Record], rate
     inputs = {name: one for name, one in ranges.items() if one is not None}
     if not inputs:
         raise InputError(f"model '{model.name}' has no rudder and no fin that could be moved")
-    held = {n: _median(records, n) for n in model.input_names if n not in inputs and _is_constant_input(n, records)}
+    # propellers and jets keep their recorded value; waves and wind are zero
+    others = [n for n in model.input_names if n not in inputs and n not in ZERO_BY_DEFAULT]
+    held = {n: _median(records, n) for n in others if any(n in r for r in records)}
     speed = _median(records, "u") if "u" in model.states and any("u" in r for r in records) else None
     return DesignRequest(duration=duration, rate=rate, inputs=inputs, held=held, speed=speed, draws=0)
 
@@ -163,11 +159,6 @@ def _default_range(trial: Trial, model: Model, name: str, hold: float) -> InputR
     if name in _FIN_INPUTS and lift in model.parameters.names and model.parameters[lift].value:
         return InputRange(lower=-_FIN_LIMIT, upper=_FIN_LIMIT, unit="rad", rate=_FIN_RATE, hold=hold)
     return None
-
-
-def _is_constant_input(name: str, records: Sequence[Record]) -> bool:
-    """Whether an input keeps its recorded value (propellers, jets); waves and wind are zero."""
-    return name not in ZERO_BY_DEFAULT and any(name in r for r in records)
 
 
 def _median(records: Sequence[Record], name: str) -> float:

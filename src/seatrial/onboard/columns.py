@@ -6,12 +6,11 @@ from operator import itemgetter
 
 import numpy as np
 
-from seatrial.core.results.online import SampleCounts
+from seatrial.core.results.online import Sample, SampleCounts
 from seatrial.core.values import Array, InputError, quantity, spelling_hint
 from seatrial.data.read.layout import ColumnSpec, Layout
 from seatrial.data.read.text import RECORD_MARK, detect_separator
 from seatrial.onboard.lines import LineBatch
-from seatrial.onboard.sample import Sample
 
 # lines in a row with more cells than before after which their number is taken as the right one
 _WIDTH_CONFIRMATIONS = 3

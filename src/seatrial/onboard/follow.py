@@ -12,7 +12,7 @@ from time import monotonic
 import numpy as np
 
 from seatrial.core.results import Fit
-from seatrial.core.results.online import NO_SAMPLE, SampleCounts, Snapshot
+from seatrial.core.results.online import NO_SAMPLE, Sample, SampleCounts, Snapshot
 from seatrial.core.values import ProgressReporter
 from seatrial.data.trial import Trial
 from seatrial.data.trial.follow_table import require_stream
@@ -23,16 +23,15 @@ from seatrial.onboard.advice import ManoeuvreAdviser
 from seatrial.onboard.journal import Journal, journal_identity
 from seatrial.onboard.required_channels import check_required_channels
 from seatrial.onboard.run_buffer import RunBuffer, with_training_records
-from seatrial.onboard.sample import Sample, SampleSource
-from seatrial.onboard.sources import open_source
+from seatrial.onboard.sources import SampleSource, open_source
 from seatrial.onboard.stream_session import StreamEstimator, StreamSession
 
-# s: longest wait for samples, longest computation between two polls, shortest time between two displays; short enough
-# that a user sees no delay, long enough that they cost nothing
+# s: longest wait for samples, longest computation between two polls, shortest time between two displays; chosen: no
+# user sees a delay, and they cost nothing
 _POLL_WAIT_S, _PROCESSING_S, _DISPLAY_INTERVAL_S = 0.2, 0.1, 0.5
-# polls without a sample after which a file is taken to hold no more for now
+# polls without a sample after which a file is taken to hold no more for now; chosen: one may fall between two writes
 _MAX_EMPTY_POLLS = 3
-# samples that may wait for the estimator: a quarter of an hour at 10 Hz, some megabytes
+# samples that may wait for the estimator; chosen: a quarter of an hour at 10 Hz, some megabytes
 _MAX_QUEUE = 10_000
 # sources that can be read again from their start
 _REOPENABLE = (StreamSource.FILE, StreamSource.NMEA_FILE)
@@ -77,17 +76,7 @@ def follow(
 ) -> FollowResult:
     """Estimate the trial's model from the samples of its stream, until they end, `stop` returns True, or Ctrl-C.
 
-    Args:
-        source: replaces the one that [follow] names, and is left open.
-        once: end at the end of the input, with the fit of the samples accepted that `identify` makes.
-        journal: file that keeps accepted samples; those in it already are processed first.
-        show: called with the newest snapshot at most twice a second, and at the end.
-        estimator: replaces `OnlineEstimator`.
-        seed: of the fit at the end.
-
-    Raises:
-        InputError: no [follow], missing channels, a source that cannot be opened, a journal of another trial; with
-            `once` also what `identify` refuses.
+    Arguments and errors as in `seatrial.follow`; `source` is left open, `estimator` replaces `OnlineEstimator`.
     """
     stream = require_stream(trial)
     check_required_channels(trial)
@@ -101,15 +90,12 @@ def follow(
         current = source or _open_stream(stack, stream, once=once)
         estimator = estimator or OnlineEstimator(trial)
         session, adviser = StreamSession(stream, estimator, log, buffer), ManoeuvreAdviser(trial, estimator)
-        display = _Display(session, _show_with_advice(show, adviser), stop or _never_stop)
-        reopen = None
-        if source is None and stream.source in _REOPENABLE:
-            reopen = partial(_open_stream, stack, stream, once=once)
+        display = _Display(session, adviser, show, stop)
+        can_reopen = source is None and stream.source in _REOPENABLE
+        reopen = partial(_open_stream, stack, stream, once=once) if can_reopen else None
         is_ended = False
         try:
-            early = (
-                [] if log is None else _replay_journal(session, log, current, display, source_waits=reopen is not None)
-            )
+            early = [] if log is None else _replay_journal(session, log, current, display, source_waits=can_reopen)
             if early is not None:
                 current, first = _resume_source(session, current, early, reopen)
                 is_ended = _process_stream(session, current, first, display)
@@ -131,18 +117,11 @@ def follow(
     return FollowResult(latest, counts, fit, (*session.messages, *errors))
 
 
-def _show_with_advice(show: Show | None, adviser: ManoeuvreAdviser) -> Show:
-    """Return a display that adds the adviser's sentence."""
-    if show is None:
-        return _show_nothing
-    return lambda snapshot, counts: show(adviser.with_advice(snapshot), counts)
-
-
 class _Display:
-    """Shows the newest snapshot and polls `stop`, at most twice a second."""
+    """Shows the newest snapshot with advice and polls `stop`, at most twice a second."""
 
-    def __init__(self, session: StreamSession, show: Show, stop: Stop) -> None:
-        self._session, self._show, self._stop = session, show, stop
+    def __init__(self, session: StreamSession, adviser: ManoeuvreAdviser, show: Show | None, stop: Stop | None) -> None:
+        self._session, self._adviser, self._show, self._stop = session, adviser, show, stop
         self._shown_at = -math.inf
 
     def should_continue(self, source: SampleSource) -> bool:
@@ -150,9 +129,9 @@ class _Display:
         if monotonic() - self._shown_at < _DISPLAY_INTERVAL_S:
             return True
         self._shown_at = monotonic()
-        if self._session.snapshot is not None:
-            self._show(self._session.snapshot, self._session.counts(source.counts))
-        return not self._stop()
+        if self._show is not None and self._session.snapshot is not None:
+            self._show(self._adviser.with_advice(self._session.snapshot), self._session.counts(source.counts))
+        return self._stop is None or not self._stop()
 
 
 def _replay_journal(
@@ -236,11 +215,3 @@ def _open_journal(stack: ExitStack, path: Path, trial: Trial) -> Journal:
     journal = Journal(path, journal_identity(trial.model, layout), len(layout.columns))
     stack.callback(journal.close)
     return journal
-
-
-def _show_nothing(snapshot: Snapshot, counts: SampleCounts) -> None:
-    """Stands for a display where there is none."""
-
-
-def _never_stop() -> bool:
-    return False

@@ -18,10 +18,10 @@ from time import monotonic
 import numpy as np
 
 from seatrial.core.equations import Model
+from seatrial.core.results.online import Sample
 from seatrial.core.values import InputError
 from seatrial.data.read import Layout
 from seatrial.numerics.platform import flush_to_disk, lock_exclusively
-from seatrial.onboard.sample import Sample
 
 _HEADER_PREFIX = b"seatrial journal 1 "
 _CRC = struct.Struct("<I")

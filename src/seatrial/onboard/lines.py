@@ -20,18 +20,16 @@ class LineBatch:
 class LineSource(Protocol):
     """Where lines come from; never waits longer than the time given, never raises for what is sent."""
 
-    def read(self, seconds: float) -> LineBatch:
-        """Return the lines that have arrived, of one file only, waiting up to `seconds` s for the first."""
-        ...
-
-    @property
-    def is_over(self) -> bool:
-        """Whether the input has ended."""
-        ...
+    is_over: bool
+    """Whether the input has ended."""
 
     @property
     def counts(self) -> SampleCounts:
         """What did not become a line: dropped, garbled (half a line whose end was lost), truncated."""
+        ...
+
+    def read(self, seconds: float) -> LineBatch:
+        """Return the lines that have arrived, of one file only, waiting up to `seconds` s for the first."""
         ...
 
     def close(self) -> None:

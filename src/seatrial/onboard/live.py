@@ -8,17 +8,18 @@ from typing import TYPE_CHECKING, Protocol, Self, TextIO
 
 from seatrial.core.results.online import SampleCounts, Snapshot
 from seatrial.core.text.plain import ascii_text
-from seatrial.core.text.words import printable
+from seatrial.core.text.words import counted, enumeration, printable
 from seatrial.onboard.history import History, RecentHistory
-from seatrial.onboard.log_lines import log_line
-from seatrial.onboard.table import TableContent, render_table
+from seatrial.onboard.snapshot_text import change_sentence, estimate_rows, faults_text, time_text
+from seatrial.onboard.table import MAX_NAMES, TableContent, render_table
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-# s between drawings, as fast as figures can be read
+# s between drawings; chosen: as fast as figures can be read
 REDRAW_INTERVAL_S = 0.5
-# s between lines, at least and at most, and as a share of the time followed: a log of an hour has some hundred lines
+# s between lines, at least and at most, and as a share of the time followed; chosen: a log of an hour has some hundred
+# lines
 MIN_LINE_INTERVAL_S, MAX_LINE_INTERVAL_S, INTERVAL_GROWTH = 1.0, 60.0, 0.05
 
 
@@ -127,6 +128,21 @@ class _Lines:
     def _write(self, text: str) -> None:
         if not self._has_failed:
             self._has_failed = not _try_write(lambda: _print_encoded(text, self._stream))
+
+
+def log_line(snapshot: Snapshot, counts: SampleCounts) -> str:
+    """Return moment, phase, coefficients with half of their 95 % intervals, what is not identified, faults, change."""
+    sizes = f"{counted(snapshot.samples, 'sample')} {counted(snapshot.runs, 'run')}"
+    rows = [f"{row.name} {row.value} +- {row.half_width} {row.unit}".rstrip() for row in estimate_rows(snapshot)]
+    names = [printable(name) for name in snapshot.unidentified]
+    parts = [
+        f"{time_text(snapshot.time)} {snapshot.phase.value} {sizes}",
+        ", ".join(rows),
+        f"not identified: {enumeration(names, MAX_NAMES)}" if names else "",
+        faults_text(counts),
+        change_sentence(snapshot.change),
+    ]
+    return ascii_text(" | ".join(part for part in parts if part))
 
 
 def _open_console(stream: TextIO) -> "Console | None":

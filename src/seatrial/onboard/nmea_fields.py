@@ -7,24 +7,12 @@ from seatrial.data.read.layout import ColumnSpec
 
 # field -> SI unit; a second word distinguishes the quantities of one sentence
 _FIELD_UNITS = {
-    "HDT": "rad",
-    "THS": "rad",
-    "HDM": "rad",
-    "VHW heading": "rad",
+    **dict.fromkeys(("HDT", "THS", "HDM", "VHW heading", "RSA", "RSA port"), "rad"),
     "ROT": "rad/s",
-    "RSA": "rad",
-    "RSA port": "rad",
-    "VBW": "m/s",
-    "VBW transverse": "m/s",
-    "VBW ground": "m/s",
-    "VBW ground transverse": "m/s",
-    "VHW": "m/s",
-    "VTG north": "m/s",
-    "VTG east": "m/s",
-    "RMC north": "m/s",
-    "RMC east": "m/s",
+    **dict.fromkeys(("VBW", "VBW transverse", "VBW ground", "VBW ground transverse", "VHW"), "m/s"),
+    **{f"{kind} {part}": "m/s" for kind in ("VTG", "RMC") for part in ("north", "east")},
     **{f"{kind} {part}": "m" for kind in ("GGA", "RMC", "GNS", "GLL") for part in ("lat", "lon")},
-    **{f"RPM {shaft}": "rps" for shaft in ("S0", "S1", "S2", "S3", "S4", "E0", "E1", "E2", "E3", "E4")},
+    **{f"RPM {source}{number}": "rps" for source in "SE" for number in range(5)},  # five shafts, five engines
 }
 _TRANSDUCER_PREFIX = "XDR "
 

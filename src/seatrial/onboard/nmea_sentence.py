@@ -13,6 +13,7 @@ from enum import StrEnum
 from functools import reduce
 from operator import xor
 
+# address of a talker or a maker; number; hhmmss.ss; dddmm.mm
 _ADDRESS = re.compile(r"P[A-Z0-9]{2,}|[A-Z0-9]{5}")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)")
 _TIME = re.compile(r"(\d\d)(\d\d)(\d\d(?:\.\d*)?)")
@@ -86,9 +87,9 @@ def utc_time(sentence: Sentence) -> float:
     if not match:
         raise ValueError(f"{sentence.kind}: '{text}' is not a time")
     hours, minutes, seconds = int(match[1]), int(match[2]), float(match[3])
-    if hours > 23 or minutes > 59 or seconds >= 61.0:
+    if hours > 23 or minutes > 59 or seconds >= 61.0:  # of a day, of an hour, of a minute with a leap second
         raise ValueError(f"{sentence.kind}: '{text}' is not a time")
-    return 3600.0 * hours + 60.0 * minutes + seconds
+    return 3600.0 * hours + 60.0 * minutes + seconds  # s of an hour, of a minute
 
 
 def readings(sentence: Sentence) -> dict[str, float]:
@@ -107,7 +108,7 @@ def _heading(s: Sentence) -> dict[str, float]:
 
 
 def _rate_of_turn(s: Sentence) -> dict[str, float]:
-    return {"ROT": _if_valid(math.radians(s.number(1)) / 60.0, s.text(2))}
+    return {"ROT": _if_valid(math.radians(s.number(1)) / 60.0, s.text(2))}  # deg/min
 
 
 def _rudder(s: Sentence) -> dict[str, float]:
@@ -116,16 +117,15 @@ def _rudder(s: Sentence) -> dict[str, float]:
 
 
 def _ground_course(s: Sentence) -> dict[str, float]:
-    """VTG: course and speed over ground, in knots or else in km/h."""
-    speed = s.number(5) * _KNOT if s.text(5) else s.number(7) / 3.6
-    return {} if s.text(9) == "N" else _over_ground("VTG", speed, s.number(1))
+    """VTG: course and speed over ground."""
+    return {} if s.text(9) == "N" else _over_ground("VTG", _speed(s), s.number(1))  # field 9: "N" for not valid
 
 
 def _recommended_minimum(s: Sentence) -> dict[str, float]:
     """RMC: position, speed and course over ground."""
     if s.text(2) != "A":
         return {}
-    return _position(s, 3) | _over_ground("RMC", s.number(7) * _KNOT, s.number(8))
+    return _position(s, 3) | _over_ground("RMC", s.number(7) * _KNOT, s.number(8))  # fields 7, 8: knots, degrees
 
 
 def _over_ground(kind: str, speed: float, course: float) -> dict[str, float]:
@@ -133,16 +133,9 @@ def _over_ground(kind: str, speed: float, course: float) -> dict[str, float]:
     return {f"{kind} north": speed * math.cos(angle), f"{kind} east": speed * math.sin(angle)}
 
 
-def _gps_fix(s: Sentence) -> dict[str, float]:
-    return {} if s.text(6) in ("", "0") else _position(s, 2)
-
-
-def _geographic_position(s: Sentence) -> dict[str, float]:
-    return {} if s.text(6) == "V" else _position(s, 1)
-
-
-def _gnss_fix(s: Sentence) -> dict[str, float]:
-    return {} if not s.text(6).strip("N") else _position(s, 2)
+def _fix(s: Sentence, first: int, *, is_valid: bool) -> dict[str, float]:
+    """Return the position from field `first` on; nothing where the receiver says that there is no fix."""
+    return _position(s, first) if is_valid else {}
 
 
 def _position(s: Sentence, first: int) -> dict[str, float]:
@@ -156,19 +149,24 @@ def _angle(text: str, side: str, sides: str, limit: float) -> float:
     if not text:
         return math.nan
     match = _ANGLE.fullmatch(text)
-    degrees = int(match[1]) + float(match[2]) / 60.0 if match else math.inf
+    degrees = int(match[1]) + float(match[2]) / 60.0 if match else math.inf  # 60 minutes
     if degrees > limit or side not in tuple(sides):
         raise ValueError(f"'{text},{side}' is not a latitude or longitude")
     return math.radians(degrees if side == sides[0] else -degrees)
 
 
 def _through_water(s: Sentence) -> dict[str, float]:
-    speed = s.number(5) * _KNOT if s.text(5) else s.number(7) / 3.6
-    return {"VHW": speed, "VHW heading": math.radians(s.number(1))}
+    return {"VHW": _speed(s), "VHW heading": math.radians(s.number(1))}
+
+
+def _speed(s: Sentence) -> float:
+    """Return the speed of VTG and VHW: knots in field 5, or else km/h in field 7."""
+    return s.number(5) * _KNOT if s.text(5) else s.number(7) / 3.6  # field numbers; km/h of a m/s
 
 
 def _dual_speed(s: Sentence) -> dict[str, float]:
-    water, ground = s.text(3), s.text(6)
+    water, ground = s.text(3), s.text(6)  # field numbers of the two states
+    # field numbers: longitudinal, transverse
     return {
         "VBW": _if_valid(s.number(1) * _KNOT, water),
         "VBW transverse": _if_valid(s.number(2) * _KNOT, water),
@@ -178,7 +176,7 @@ def _dual_speed(s: Sentence) -> dict[str, float]:
 
 
 def _revolutions(s: Sentence) -> dict[str, float]:
-    return {f"RPM {s.text(1)}{s.text(2)}": _if_valid(s.number(3) / 60.0, s.text(5))}
+    return {f"RPM {s.text(1)}{s.text(2)}": _if_valid(s.number(3) / 60.0, s.text(5))}  # fields 3, 5: rev/min, validity
 
 
 def _transducers(s: Sentence) -> dict[str, float]:
@@ -197,9 +195,12 @@ def _if_valid(value: float, status: str) -> float:
     return value if status == "A" else math.nan
 
 
+# sentence -> number of the field with its time
 _TIME_FIELDS = {"RMC": 1, "GGA": 1, "GNS": 1, "ZDA": 1, "GLL": 5}
 _READERS: dict[str, Callable[[Sentence], dict[str, float]]] = {
     "HDT": _heading, "THS": _heading, "HDM": _heading, "ROT": _rate_of_turn, "RSA": _rudder, "VTG": _ground_course,
-    "RMC": _recommended_minimum, "GGA": _gps_fix, "GNS": _gnss_fix, "GLL": _geographic_position,
-    "VHW": _through_water, "VBW": _dual_speed, "RPM": _revolutions, "XDR": _transducers,
+    "RMC": _recommended_minimum, "GGA": lambda s: _fix(s, 2, is_valid=s.text(6) not in ("", "0")),
+    "GNS": lambda s: _fix(s, 2, is_valid=s.text(6).strip("N") != ""),
+    "GLL": lambda s: _fix(s, 1, is_valid=s.text(6) != "V"), "VHW": _through_water, "VBW": _dual_speed,
+    "RPM": _revolutions, "XDR": _transducers,
 }  # fmt: skip

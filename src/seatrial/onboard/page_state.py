@@ -6,29 +6,29 @@ from typing import Any
 import numpy as np
 
 from seatrial.core.results.online import SampleCounts, Snapshot
-from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import printable
-from seatrial.core.values import NOTATION, Array, Severity, display_unit
-from seatrial.core.values.channel_text import channel_unit, unit_text
+from seatrial.core.values import NOTATION, Array, display_unit, worst_first
+from seatrial.core.values.channel_text import channel_unit
 from seatrial.onboard import snapshot_text
 from seatrial.onboard.history import HistoryPoint
 
-_SEVERITIES = list(Severity)[::-1]
-# significant digits of plotted points
-JSON_DIGITS = 8
+# digits of plotted points, letters of a finding; chosen: finer than a screen, longer than any sentence of ours
+JSON_DIGITS, MAX_LENGTH = 8, 1000
 
 
 def snapshot_json(snapshot: Snapshot, counts: SampleCounts) -> dict[str, Any]:
     """Return the newest snapshot as text: facts, table rows, findings."""
-    worst_first = sorted(snapshot.findings, key=lambda f: _SEVERITIES.index(f.severity))
     return {
         "phase": snapshot.phase.value,
-        "meaning": snapshot_text.phase_meaning(snapshot.phase),
+        "meaning": snapshot_text.PHASE_MEANINGS[snapshot.phase],
         "time": snapshot_text.time_text(snapshot.time),
         "samples": snapshot.samples,
         "runs": snapshot.runs,
         "rows": [vars(row) for row in snapshot_text.estimate_rows(snapshot)],
-        "noise": [_noise_json(name, rms) for name, rms in snapshot.noise.items()],
+        "noise": [
+            {"name": name, "meaning": NOTATION[name].meaning if name in NOTATION else "", "rms": rms, "unit": unit}
+            for name, rms, unit in snapshot_text.residual_rms(snapshot)
+        ],
         "unidentified": [printable(name) for name in snapshot.unidentified],
         "advice": printable(snapshot.advice),
         "change": snapshot_text.change_sentence(snapshot.change),
@@ -38,10 +38,10 @@ def snapshot_json(snapshot: Snapshot, counts: SampleCounts) -> dict[str, Any]:
         "findings": [
             {
                 "severity": f.severity.value,
-                "text": printable(f.text, 1000),
-                "advice": printable(f.advice, 1000),
+                "text": printable(f.text, MAX_LENGTH),
+                "advice": printable(f.advice, MAX_LENGTH),
             }
-            for f in worst_first
+            for f in worst_first(snapshot.findings)
         ],
     }
 
@@ -63,17 +63,6 @@ def plot_points(points: list[HistoryPoint], snapshot: Snapshot) -> list[list[Any
         ]
         for point in points
     ]
-
-
-def _noise_json(channel: str, rms: float) -> dict[str, str]:
-    factor = display_unit(channel_unit(channel))[0]
-    meaning = NOTATION[channel].meaning if channel in NOTATION else ""
-    return {
-        "name": printable(channel),
-        "meaning": meaning,
-        "rms": significant(factor * rms, 3),
-        "unit": unit_text(channel_unit(channel)),
-    }
 
 
 def _json_numbers(values: Array) -> list[float | None]:

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from seatrial.core.results.online import Sample
 from seatrial.core.values import Record
 from seatrial.data.read import Layout
 from seatrial.data.read.assemble import record_from_values
 from seatrial.data.trial import Role, Trial
 from seatrial.data.trial.follow_table import require_stream
 from seatrial.data.trial.trial import TrialRun
-from seatrial.onboard.sample import Sample
 
 # a record needs a time step
 _MIN_SAMPLES = 2

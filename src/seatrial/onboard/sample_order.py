@@ -1,17 +1,17 @@
 """Which samples of a stream are used: in order of time, each once; a break of the clock begins a new run."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from statistics import median
+from typing import Literal
 
 import numpy as np
 
-from seatrial.core.results.online import SampleCounts
-from seatrial.onboard.sample import Sample
+from seatrial.core.results.online import Sample, SampleCounts
 
-# steps whose median is the nominal step where none is given
+# steps whose median is the nominal step where none is given; chosen: a few pauses among them do not move it
 _FIRST_STEPS = 20
-# share of a step within which two times are the same
+# share of a step within which two times are the same; chosen: above the rounding of a logger that writes four digits
 _SAME_TIME = 1e-3
 
 
@@ -63,36 +63,31 @@ class SampleOrder:
         """Return what follows from a sample: nothing, the sample, or a new run that begins with it or a suspect one."""
         time, suspect = sample.time, self._suspect
         if not math.isfinite(time):
-            return self._count_garbled("a sample without a time")
+            return self._dropped("garbled", "a sample without a time")
         step = time - self._newest_time
         if step == math.inf:
             return self._start_run(sample, "the stream begins")
         if suspect is not None and abs(time - suspect.time) < abs(step):
             return self._resolve_suspect(suspect, sample)
         if abs(step) <= _SAME_TIME * (self._dt or 0.0):
-            return self._count_repeated(time)
+            return self._dropped("repeated", f"t = {time:g} s twice")
         if 0.0 < step <= self._longest_gap:
-            self._drop_suspect()
+            self.drop_suspect()
             return self._continue_run(sample, step)
         if -self._late_s <= step < 0.0:
-            return self._count_late(f"t = {time:g} s arrived after {self._newest_time:g} s")
-        self._drop_suspect()
+            return self._dropped("late", f"t = {time:g} s arrived after {self._newest_time:g} s")
+        self.drop_suspect()
         self._suspect = sample
-        return []
-
-    def finish(self) -> list[StreamEvent]:
-        """Drop and count a sample that is still suspect at the end of the stream."""
-        self._drop_suspect()
         return []
 
     def _resolve_suspect(self, suspect: Sample, sample: Sample) -> list[StreamEvent]:
         step = sample.time - suspect.time
         if abs(step) <= _SAME_TIME * (self._dt or 0.0):
-            return self._count_repeated(sample.time)
+            return self._dropped("repeated", f"t = {sample.time:g} s twice")
         if -self._late_s <= step < 0.0:
-            return self._count_late(f"t = {sample.time:g} s arrived after {suspect.time:g} s")
+            return self._dropped("late", f"t = {sample.time:g} s arrived after {suspect.time:g} s")
         if not 0.0 < step <= self._longest_gap:
-            self._drop_suspect()
+            self.drop_suspect()
             self._suspect = sample
             return []
         reason = f"the clock jumped from {self._newest_time:g} s to {suspect.time:g} s"
@@ -124,44 +119,28 @@ class SampleOrder:
             return [sample]
         return [Sample(sample.time, np.where(np.isfinite(sample.values), sample.values, np.nan))]
 
-    def _drop_suspect(self) -> None:
+    def drop_suspect(self) -> None:
+        """Drop and count a sample that is still suspect, as at the end of the stream."""
         if self._suspect is None:
             return
         time, self._suspect = self._suspect.time, None
         if time < self._newest_time:
-            self._count_late(f"t = {time:g} s arrived after {self._newest_time:g} s")
+            self._dropped("late", f"t = {time:g} s arrived after {self._newest_time:g} s")
         else:
-            self._count_garbled(f"no sample followed t = {time:g} s, far ahead of {self._newest_time:g} s")
+            self._dropped("garbled", f"no sample followed t = {time:g} s, far ahead of {self._newest_time:g} s")
 
-    def _count_repeated(self, time: float) -> list[StreamEvent]:
-        repeated = self._fault_counts.repeated + 1
-        self._fault_counts = replace(self._fault_counts, repeated=repeated, last_problem=f"t = {time:g} s twice")
-        return []
-
-    def _count_late(self, message: str) -> list[StreamEvent]:
-        self._fault_counts = replace(self._fault_counts, late=self._fault_counts.late + 1, last_problem=message)
-        return []
-
-    def _count_garbled(self, message: str) -> list[StreamEvent]:
-        self._fault_counts = replace(self._fault_counts, garbled=self._fault_counts.garbled + 1, last_problem=message)
+    def _dropped(self, fault: Literal["late", "repeated", "garbled"], message: str) -> list[StreamEvent]:
+        """Count a sample that is not used; nothing follows from it."""
+        count = {fault: getattr(self._fault_counts, fault) + 1}
+        self._fault_counts = replace(self._fault_counts, last_problem=message, **count)
         return []
 
 
-def combined_counts(source: SampleCounts, ordering: SampleCounts) -> SampleCounts:
-    """Return the counts of a source and of the ordering behind it as one."""
-    return SampleCounts(
-        accepted=source.accepted + ordering.accepted,
-        late=source.late + ordering.late,
-        repeated=source.repeated + ordering.repeated,
-        not_finite=source.not_finite + ordering.not_finite,
-        missing=source.missing + ordering.missing,
-        jumps=source.jumps + ordering.jumps,
-        garbled=source.garbled + ordering.garbled,
-        checksum=source.checksum + ordering.checksum,
-        dropped=source.dropped + ordering.dropped,
-        truncated=source.truncated + ordering.truncated,
-        last_problem="; ".join(text for text in (source.last_problem, ordering.last_problem) if text),
-    )
+def combined_counts(*parts: SampleCounts) -> SampleCounts:
+    """Return the counts of a source and of the orderings behind it as one."""
+    names = [field.name for field in fields(SampleCounts) if field.name != "last_problem"]
+    sums = {name: sum(getattr(part, name) for part in parts) for name in names}
+    return SampleCounts(**sums, last_problem="; ".join(part.last_problem for part in parts if part.last_problem))
 
 
 def _missing_steps(step: float, dt: float) -> int:

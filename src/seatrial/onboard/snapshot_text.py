@@ -10,11 +10,11 @@ from seatrial.core.text.words import counted, printable
 from seatrial.core.values import display_unit
 from seatrial.core.values.channel_text import channel_unit, unit_text
 
-# two-sided 95 % of a normal distribution
+# quantile of the standard normal distribution for 95 %, two-sided
 NORMAL_95 = 1.96
-# s: a clock that shows more counts from 1970 (3 years later, at least)
+# s: a clock that shows more counts from 1970; chosen: three years later, longer than any stream from its own start
 FIRST_UNIX_TIME = 1e8
-_PHASE_MEANINGS = {
+PHASE_MEANINGS = {
     EstimatorPhase.WAITING: "too few samples for an estimate yet",
     EstimatorPhase.WINDOW: "fit over all samples, repeated as they grow",
     EstimatorPhase.RECURSIVE: "filter that continues the fit, sample by sample",
@@ -65,9 +65,9 @@ def fault_counts(counts: SampleCounts) -> list[tuple[str, int]]:
     return [(words, getattr(counts, key)) for key, words in _FAULT_NAMES.items()]
 
 
-def phase_meaning(phase: EstimatorPhase) -> str:
-    """Return the meaning of a phase in words."""
-    return _PHASE_MEANINGS[phase]
+def faults_text(counts: SampleCounts) -> str:
+    """Return the faults that occurred: ``3 late, 1 garbled``; empty for none."""
+    return ", ".join(f"{count} {words}" for words, count in fault_counts(counts) if count)
 
 
 def change_sentence(change: CoefficientChange | None) -> str:
@@ -91,20 +91,18 @@ def time_text(time: float) -> str:
 
 
 def _estimate_row(name: str, unit: str, value: float, error: float, is_identified: bool) -> EstimateRow:
-    factor, shown = display_unit(unit)[0], printable(unit_text(unit))
-    value, half = factor * value, NORMAL_95 * factor * error
-    share = percent(_relative_error(value, factor * error))
-    if not math.isfinite(value) or not math.isfinite(half) or half <= 0.0:
-        return EstimateRow(printable(name), significant(value, 4), DASH, DASH, DASH, shown, 0, share, is_identified)
+    factor, si_text = display_unit(unit)[0], printable(unit_text(unit))
+    value, error = factor * value, factor * error
+    half, is_finite = NORMAL_95 * error, math.isfinite(value) and math.isfinite(error)
+    share = percent(error / abs(value) if value != 0.0 and is_finite else math.inf)
+    if not is_finite or half <= 0.0:
+        return EstimateRow(printable(name), significant(value, 4), DASH, DASH, DASH, si_text, 0, share, is_identified)
     largest = max(abs(value), half)
+    # sizes outside this range are written with a power of ten; chosen, as in `significant`
     power = 0 if 1e-2 <= largest < 1e5 else exponent(largest, 2)
     scale = 10.0**power
     # no more than seven digits of the largest: a value known to a millionth is known
     decimals = min(1 - exponent(half / scale, 2), 6 - exponent(largest / scale, 2))
-    texts = [fixed(x / scale, decimals) for x in (value, half, value - half, value + half)]
-    unit = f"10{raised(power)} {shown}".strip() if power else shown
-    return EstimateRow(printable(name), texts[0], texts[1], texts[2], texts[3], unit, power, share, is_identified)
-
-
-def _relative_error(value: float, error: float) -> float:
-    return error / abs(value) if value != 0.0 and math.isfinite(value) and math.isfinite(error) else math.inf
+    text, width, *ends = (fixed(x / scale, decimals) for x in (value, half, value - half, value + half))
+    unit = f"10{raised(power)} {si_text}".strip() if power else si_text
+    return EstimateRow(printable(name), text, width, ends[0], ends[1], unit, power, share, is_identified)

@@ -3,20 +3,39 @@
 from time import monotonic
 from typing import Protocol
 
-from seatrial.core.results.online import SampleCounts
+from seatrial.core.results.online import Sample, SampleCounts
 from seatrial.core.values import InputError
 from seatrial.data.trial.stream import Stream, StreamSource
 from seatrial.onboard.columns import ColumnReader
 from seatrial.onboard.lines import LineBatch, LineSource
 from seatrial.onboard.nmea import NmeaReader
-from seatrial.onboard.sample import Sample, SampleSource
 from seatrial.onboard.sample_order import combined_counts
 from seatrial.onboard.stdin import PipeLines
 from seatrial.onboard.tail import TailLines
 from seatrial.onboard.udp import UdpLines
 
-# sentences that a talker sends with each sample, at most
+# sentences that a talker sends with each sample, at most; chosen: an integrated bridge repeats about ten
 _SENTENCES_PER_SAMPLE = 20
+
+
+class SampleSource(Protocol):
+    """Where samples come from; never waits longer than the time given, never raises for what is sent."""
+
+    is_over: bool
+    """Whether the input has ended (end of file, end of standard input)."""
+
+    @property
+    def counts(self) -> SampleCounts:
+        """Counts of what could not be read so far: garbled, checksum, dropped, truncated."""
+        ...
+
+    def poll(self, seconds: float) -> list[Sample]:
+        """Return the samples that have arrived, waiting up to `seconds` s for the first."""
+        ...
+
+    def close(self) -> None:
+        """Close the file or the socket."""
+        ...
 
 
 class LineReader(Protocol):
@@ -41,26 +60,21 @@ class LineSampleSource:
 
     def __init__(self, lines: LineSource, reader: LineReader) -> None:
         self._lines, self._reader = lines, reader
-        self._is_over = False
+        self.is_over = False
 
     def poll(self, seconds: float) -> list[Sample]:
         """As `SampleSource.poll`."""
         deadline = monotonic() + seconds
         samples: list[Sample] = []
-        while not (samples or self._is_over):
+        while not (samples or self.is_over):
             remaining = deadline - monotonic()
             samples = self._reader.samples(self._lines.read(max(remaining, 0.0)))
             if self._lines.is_over:
-                self._is_over = True
+                self.is_over = True
                 samples += self._reader.flush()
             if remaining <= 0.0:
                 break
         return samples
-
-    @property
-    def is_over(self) -> bool:
-        """As `SampleSource.is_over`."""
-        return self._is_over
 
     @property
     def counts(self) -> SampleCounts:

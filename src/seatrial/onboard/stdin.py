@@ -27,7 +27,7 @@ class PipeLines:
             raise InputError("standard input is closed; pipe the samples into the command") from None
         self._descriptor = descriptor
         self._splitter = LineSplitter()
-        self._is_over = False
+        self.is_over = False
         self._starts_file = True
 
     def read(self, seconds: float) -> LineBatch:
@@ -35,18 +35,13 @@ class PipeLines:
         deadline = time.monotonic() + seconds
         lines: list[bytes] = []
         remaining = seconds
-        while not (lines or self._is_over) and has_input(self._descriptor, remaining):
+        while not (lines or self.is_over) and has_input(self._descriptor, remaining):
             lines = self._read_lines()
             remaining = deadline - time.monotonic()
             if remaining <= 0.0:
                 break
         starts_file, self._starts_file = self._starts_file, False
         return LineBatch(lines, starts_file)
-
-    @property
-    def is_over(self) -> bool:
-        """Whether the writer has closed its end."""
-        return self._is_over
 
     @property
     def counts(self) -> SampleCounts:
@@ -65,5 +60,5 @@ class PipeLines:
             chunk = b""
         if chunk:
             return self._splitter.split(chunk)
-        self._is_over = True
+        self.is_over = True
         return self._splitter.flush()

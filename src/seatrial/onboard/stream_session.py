@@ -1,20 +1,18 @@
 """One stream on its way to an estimate: ordered, journalled, kept where a fit is made of it at the end."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
 
-from seatrial.core.results.online import SampleCounts, Snapshot
+from seatrial.core.results.online import Sample, SampleCounts, Snapshot
 from seatrial.core.values import InputError
 from seatrial.data.trial.stream import Stream
 from seatrial.onboard.journal import Journal, RunEntry
 from seatrial.onboard.run_buffer import RunBuffer
-from seatrial.onboard.sample import Sample
 from seatrial.onboard.sample_order import RunStart, SampleOrder, StreamEvent, combined_counts
 
-# messages kept; more would only repeat the same trouble
+# messages kept; chosen: more would only repeat the same trouble
 _MAX_MESSAGES = 20
 # written into journals: not to be changed
 _RESTART_REASON = "followed again"
@@ -65,10 +63,8 @@ class StreamSession:
             elif entry.reason == _RESTART_REASON:
                 self._reset_order()
         if journal.torn_bytes:
-            self._add_message(
-                f"the last {journal.torn_bytes} bytes of '{journal.path.name}' were incomplete after a break and were "
-                "cut off"
-            )
+            torn = f"the last {journal.torn_bytes} bytes of '{journal.path.name}'"
+            self._add_message(f"{torn} were incomplete after a break and were cut off")
 
     def admit(self, samples: Iterable[Sample]) -> list[StreamEvent]:
         """Return the events that follow from these samples, written to the journal first."""
@@ -80,7 +76,7 @@ class StreamSession:
         return events
 
     def process(self, event: StreamEvent) -> None:
-        """Make of it what can be made; what the estimator refuses is said, and the next may be better."""
+        """Update the estimate with an event; what the estimator refuses becomes a message, and the next may succeed."""
         try:
             if isinstance(event, RunStart):
                 self._start_run()
@@ -100,20 +96,16 @@ class StreamSession:
 
     def finish(self) -> None:
         """End the stream."""
-        self._order.finish()
+        self._order.drop_suspect()
 
     def counts(self, source: SampleCounts) -> SampleCounts:
         """Return the counts of the source and the ordering together, with the estimator's latest error in words."""
-        made = combined_counts(source, combined_counts(self._earlier_counts, self._order.counts))
-        return replace(
-            made, last_problem="; ".join(text for text in (made.last_problem, self._estimator_error) if text)
-        )
+        estimator_error = SampleCounts(last_problem=self._estimator_error)
+        return combined_counts(source, self._earlier_counts, self._order.counts, estimator_error)
 
     def _reset_order(self) -> None:
-        self._earlier_counts, self._order = (
-            combined_counts(self._earlier_counts, self._order.counts),
-            _sample_order(self._stream),
-        )
+        self._earlier_counts = combined_counts(self._earlier_counts, self._order.counts)
+        self._order = _sample_order(self._stream)
 
     def _start_run(self) -> None:
         self._run_count += 1

@@ -6,31 +6,22 @@ from typing import TYPE_CHECKING
 from seatrial.core.results.online import EstimatorPhase, SampleCounts, Snapshot
 from seatrial.core.text.numbers import duration
 from seatrial.core.text.words import counted, enumeration, printable
-from seatrial.core.values import Severity
+from seatrial.core.values import Severity, worst_first
+from seatrial.onboard import snapshot_text
 from seatrial.onboard.history import RecentHistory
-from seatrial.onboard.snapshot_text import (
-    NORMAL_95,
-    EstimateRow,
-    change_sentence,
-    estimate_rows,
-    fault_counts,
-    phase_meaning,
-    residual_rms,
-    time_text,
-)
+from seatrial.onboard.snapshot_text import NORMAL_95, EstimateRow, estimate_rows
 from seatrial.onboard.trend import sparkline, trend_arrow
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
     from rich.table import Table
 
-MAX_FINDINGS = 3
-# coefficients named in a line at most
-MAX_NAMES = 8
-MIN_TREND_WIDTH = 76
-SILENCE_S = 5.0
+# findings in the table and coefficients named in a line at most; chosen: the table stays on one screen
+MAX_FINDINGS, MAX_NAMES = 3, 8
+# characters of a line from which on the trends are shown beside the numbers; s without a sample that are said
+MIN_TREND_WIDTH, SILENCE_S = 76, 5.0
+# coefficients shown on the lowest screen; lines of it that hold no coefficient
 MIN_ROWS, RESERVED_LINES = 3, 4
-_SEVERITIES = list(Severity)[::-1]
 _STYLES = {EstimatorPhase.WAITING: "yellow", EstimatorPhase.WINDOW: "green", EstimatorPhase.RECURSIVE: "cyan"}
 
 
@@ -66,13 +57,12 @@ def _head(content: TableContent) -> "RenderableType":
     snapshot = content.snapshot
     head = Text(no_wrap=True, overflow="ellipsis")
     head.append(snapshot.phase.value, f"bold {_STYLES[snapshot.phase]}")
-    head.append(
-        f"  {time_text(snapshot.time)}  {counted(snapshot.samples, 'sample')}  {counted(snapshot.runs, 'run')}  "
-    )
+    time = snapshot_text.time_text(snapshot.time)
+    head.append(f"  {time}  {counted(snapshot.samples, 'sample')}  {counted(snapshot.runs, 'run')}  ")
     if content.silence > SILENCE_S:
         head.append(f"no samples for {duration(content.silence)}", "yellow")
     else:
-        head.append(phase_meaning(snapshot.phase), "dim")
+        head.append(snapshot_text.PHASE_MEANINGS[snapshot.phase], "dim")
     return Group(*([Text(printable(content.heading), "bold")] if content.heading else []), head, Text())
 
 
@@ -125,17 +115,16 @@ def _foot(snapshot: Snapshot, counts: SampleCounts) -> "Table":
 
 def _foot_lines(snapshot: Snapshot, counts: SampleCounts) -> list[tuple[str, str, str]]:
     """Label, text and style of each line below the table; the text is empty where there is nothing to say."""
-    wrong = ", ".join(f"{count} {words}" for words, count in fault_counts(counts) if count)
-    worst_first = sorted(snapshot.findings, key=lambda f: _SEVERITIES.index(f.severity))
-    more = len(worst_first) - MAX_FINDINGS
+    residuals = [f"{name} {rms} {unit}".rstrip() for name, rms, unit in snapshot_text.residual_rms(snapshot)]
+    more = len(snapshot.findings) - MAX_FINDINGS
     return [
-        ("residuals", ", ".join(f"{name} {rms} {unit}".rstrip() for name, rms, unit in residual_rms(snapshot)), ""),
+        ("residuals", ", ".join(residuals), ""),
         ("not identified", enumeration([printable(name) for name in snapshot.unidentified], MAX_NAMES), "yellow"),
         ("would help" if snapshot.unidentified else "why not yet", printable(snapshot.advice), ""),
-        ("change", change_sentence(snapshot.change), "bold red"),
-        ("samples", wrong, "yellow"),
+        ("change", snapshot_text.change_sentence(snapshot.change), "bold red"),
+        ("samples", snapshot_text.faults_text(counts), "yellow"),
         ("last", printable(counts.last_problem), "dim"),
         *((f.severity.value, printable(f.text), "red" if f.severity is Severity.ERROR else "")
-          for f in worst_first[:MAX_FINDINGS]),
+          for f in worst_first(snapshot.findings)[:MAX_FINDINGS]),
         ("", f"and {more} more findings" if more > 0 else "", "dim"),
     ]  # fmt: skip

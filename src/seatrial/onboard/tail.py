@@ -9,7 +9,8 @@ from seatrial.core.results.online import SampleCounts
 from seatrial.core.values import InputError
 from seatrial.onboard.lines import LineBatch, LineSplitter
 
-# bytes read at once; bytes at the end that are compared to notice a truncation; s between looks at the file
+# bytes read at once; bytes at the end that are compared to notice a truncation; s between looks at the file; chosen: no
+# logger writes more in between, and a wait that nobody notices
 _CHUNK, _MARK_BYTES, _POLL_INTERVAL_S = 1 << 18, 64, 0.05
 
 
@@ -35,7 +36,7 @@ class TailLines:
         self._splitter = LineSplitter()
         self._truncated = self._garbled = 0
         self._last_error = ""
-        self._is_over = False
+        self.is_over = False
         self._open()
 
     def read(self, seconds: float) -> LineBatch:
@@ -44,25 +45,16 @@ class TailLines:
         while True:
             lines = self._read_appended()
             remaining = deadline - time.monotonic()
-            if lines or self._is_over or remaining <= 0:
+            if lines or self.is_over or remaining <= 0:
                 starts_file, self._starts_file = self._starts_file, False
                 return LineBatch(lines, starts_file)
             time.sleep(min(_POLL_INTERVAL_S, remaining))
 
     @property
-    def is_over(self) -> bool:
-        """Whether the end was reached; never without `once`."""
-        return self._is_over
-
-    @property
     def counts(self) -> SampleCounts:
         """truncated, garbled (half lines lost with it) and dropped (too long)."""
-        return SampleCounts(
-            garbled=self._garbled,
-            dropped=self._splitter.dropped,
-            truncated=self._truncated,
-            last_problem=self._last_error,
-        )
+        dropped, truncated = self._splitter.dropped, self._truncated
+        return SampleCounts(garbled=self._garbled, dropped=dropped, truncated=truncated, last_problem=self._last_error)
 
     def close(self) -> None:
         """Close the file."""
@@ -107,7 +99,7 @@ class TailLines:
             )
             self._reopen()
         elif not is_replaced:
-            self._is_over = True
+            self.is_over = True
         return rest
 
     def _is_replaced(self) -> bool:

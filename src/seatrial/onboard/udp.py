@@ -9,9 +9,10 @@ from seatrial.core.results.online import SampleCounts
 from seatrial.core.values import InputError
 from seatrial.onboard.lines import MAX_LINE_BYTES, LineBatch
 
-# bytes of a datagram, above what any logger sends at once; lines accepted, over those expected
+# bytes of a datagram, above what any logger sends at once; lines accepted, over those expected; chosen: a sender that
+# bursts still passes, a flood does not
 MAX_DATAGRAM_BYTES, RATE_ALLOWANCE = 8192, 5.0
-# datagrams read at once; lines that may arrive at once, however low the rate
+# datagrams read at once, lines that may arrive at once, however low the rate; chosen as the above
 _MAX_DATAGRAMS, _MIN_CAPACITY = 2048, 20.0
 
 
@@ -44,6 +45,8 @@ class UdpLines:
     Raises:
         InputError: the address cannot be listened to.
     """
+
+    is_over = False
 
     def __init__(
         self, port: int, *, rate: float, host: str = "127.0.0.1", clock: Callable[[], float] = time.monotonic
@@ -84,11 +87,6 @@ class UdpLines:
         return LineBatch(lines)
 
     @property
-    def is_over(self) -> bool:
-        """Whether the input has ended; never."""
-        return False
-
-    @property
     def counts(self) -> SampleCounts:
         """dropped: lines beyond the rate or too long, datagrams too long."""
         return SampleCounts(dropped=self._dropped, last_problem=self._last_error)
@@ -117,9 +115,8 @@ class UdpLines:
         passed = kept[: self._bucket.take(len(kept))]
         self._dropped += len(lines) - len(passed)
         if len(passed) < len(kept):
-            self._last_error = (
-                f"more than {RATE_ALLOWANCE:g} times the {self._rate:g} lines a second expected; the rest is dropped"
-            )
+            expected = f"{RATE_ALLOWANCE:g} times the {self._rate:g} lines a second expected"
+            self._last_error = f"more than {expected}; the rest is dropped"
         return passed
 
 

@@ -3,7 +3,7 @@
 from seatrial.core.values.arrays import Array, Index, frozen
 from seatrial.core.values.channel import Channel, Provenance
 from seatrial.core.values.errors import DivergedError, InputError, spelling_hint
-from seatrial.core.values.finding import Finding, Severity
+from seatrial.core.values.finding import Finding, Severity, worst_first
 from seatrial.core.values.force_points import ForceContent, ForcePoints
 from seatrial.core.values.notation import NOTATION, Quantity, quantity
 from seatrial.core.values.parameters import Parameter, Parameters, Prior
@@ -17,4 +17,5 @@ __all__ = [
     "NOTATION", "Array", "Channel", "DivergedError", "Finding", "ForceContent", "ForcePoints", "Index", "InputError",
     "Parameter", "Parameters", "Prior", "ProgressReporter", "Provenance", "Quantity", "Record", "RecordKind",
     "Severity", "Ship", "display_unit", "frozen", "quantity", "si_unit", "spelling_hint", "versions",
+    "worst_first",
 ]  # fmt: skip

@@ -1,5 +1,6 @@
 """A finding: one statement of a check or an estimate, with its evidence and what to do."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -34,3 +35,9 @@ class Finding:
     def text(self) -> str:
         """Message and evidence in one line."""
         return f"{self.message} ({self.evidence})" if self.evidence else self.message
+
+
+def worst_first(findings: Iterable[Finding]) -> list[Finding]:
+    """Return findings with the errors first, those of one severity in their order."""
+    severities = list(Severity)
+    return sorted(findings, key=lambda finding: -severities.index(finding.severity))

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from seatrial.core.values import Finding, Record, Severity
+from seatrial.core.values import Finding, Record, worst_first
 from seatrial.data.check.channels import channel_findings, lag_findings
 from seatrial.data.check.conventions import with_standard_signs
 from seatrial.data.check.kinematic_consistency import kinematic_consistency_findings
@@ -13,15 +13,10 @@ from seatrial.data.check.timestamps import rebuild_time_base
 from seatrial.data.check.velocity_conventions import velocity_convention_findings
 from seatrial.data.check.yaw_rate_consistency import yaw_rate_findings
 
-_SEVERITY_ORDER = {Severity.ERROR: 0, Severity.WARNING: 1, Severity.INFO: 2}
 _CHECKS_WITH_STANDARD_SIGNS = (
-    velocity_convention_findings,
-    kinematic_consistency_findings,
-    yaw_rate_findings,
-    rudder_findings,
-    lag_findings,
+    velocity_convention_findings, kinematic_consistency_findings, yaw_rate_findings, rudder_findings, lag_findings,
     phase_findings,
-)
+)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +47,7 @@ def examined_record(record: Record) -> ExaminedRecord:
     findings = [*channel_findings(record), *time_findings, *repair_findings]
     for check in _CHECKS_WITH_STANDARD_SIGNS:
         findings += check(declared)
-    return ExaminedRecord(complete, tuple(sorted(findings, key=lambda finding: _SEVERITY_ORDER[finding.severity])))
+    return ExaminedRecord(complete, tuple(worst_first(findings)))
 
 
 def examine(record: Record) -> tuple[Finding, ...]:
