@@ -39,16 +39,9 @@ def froude_scaled(record: Record, ratio: float) -> Record:
     if ratio == 1.0:
         return record
     length = froude_factor("m", ratio)
-    channels = {
-        symbol: replace(
-            channel.with_values(channel.values * froude_factor(channel.unit, ratio)),
-            reference_point=channel.reference_point * length,
-        )
-        for symbol, channel in record.channels.items()
-    }
-    return replace(
-        record,
-        time=record.time * froude_factor("s", ratio),
-        channels=channels,
-        provenance=record.provenance.with_step(f"Froude-scaled by {ratio:g}"),
-    )
+    channels = {}
+    for symbol, channel in record.channels.items():
+        scaled = channel.with_values(channel.values * froude_factor(channel.unit, ratio))
+        channels[symbol] = replace(scaled, reference_point=channel.reference_point * length)
+    time = record.time * froude_factor("s", ratio)
+    return replace(record, time=time, channels=channels).with_step(f"Froude-scaled by {ratio:g}")

@@ -141,8 +141,12 @@ class Record:
 
     def with_channel(self, symbol: str, channel: Channel, step: str = "") -> Self:
         """Return the record with one channel added or replaced, and the step in its provenance."""
-        provenance = self.provenance.with_step(step) if step else self.provenance
-        return replace(self, channels={**self.channels, symbol: channel}, provenance=provenance)
+        changed = replace(self, channels={**self.channels, symbol: channel})
+        return changed.with_step(step) if step else changed
+
+    def with_step(self, step: str) -> Self:
+        """Return the record with one more step in its provenance."""
+        return replace(self, provenance=self.provenance.with_step(step))
 
     def without(self, *symbols: str) -> Self:
         """Return the record without the named channels."""
@@ -189,12 +193,7 @@ class Record:
         count = int(np.floor(self.duration * rate * (1 + _ROUNDING))) + 1
         time = self.time[0] + np.arange(count) / rate
         channels = {s: c.with_values(np.interp(time, self.time, c.values)) for s, c in self.channels.items()}
-        return replace(
-            self,
-            time=frozen(time),
-            channels=channels,
-            provenance=self.provenance.with_step(f"resampled to {rate:g} Hz"),
-        )
+        return replace(self, time=frozen(time), channels=channels).with_step(f"resampled to {rate:g} Hz")
 
     def plot(self, length: float = 0.0) -> "Figure":
         """Draw the track and every channel over time as a Matplotlib figure.

@@ -33,9 +33,9 @@ class _Slope:
 
 
 def force_findings(points: ForcePoints, reference_force: float | None = None) -> tuple[Finding, ...]:
-    """Errors `force-sign` where drag drives, a side force follows the drift, or a moment its own turning; `force-size`.
+    """Return errors: `force-sign` where drag drives, a side force follows the drift or a moment its turn; `force-size`.
 
-    unit: rho/2 L d of the ship [kg/m^2], with which the size of the side force is judged.
+    reference_force: rho/2 L d of the ship [kg/m^2], with which the size of the side force is judged.
     """
     slopes = {(f, m): s for f in ("Y", "N") if f in points.forces for m, s in _slopes(points, f).items()}
     return (
@@ -53,15 +53,10 @@ def _side_force_findings(
     low, high = _SIDE_FORCE_RANGE
     if slope is None or slope.sign == 0 or low <= abs(slope.value) / reference_force <= high:
         return []
-    return [
-        Finding(
-            Severity.ERROR,
-            "force-size",
-            f"force points '{points.name}': {points.label('Y')} is not of the size of this ship's side force",
-            f"|Y_v'| is {abs(slope.value) / reference_force:.2g} over rho/2 L d U^2, ships have {low:g} to {high:g}",
-            "check the prime system, the unit and the scale declared under forces",
-        )
-    ]
+    text = f"force points '{points.name}': {points.label('Y')} is not of the size of this ship's side force"
+    size = f"|Y_v'| is {abs(slope.value) / reference_force:.2g} over rho/2 L d U^2, ships have {low:g} to {high:g}"
+    advice = "check the prime system, the unit and the scale declared under forces"
+    return [Finding(Severity.ERROR, "force-size", text, size, advice)]
 
 
 def _drag_findings(points: ForcePoints) -> list[Finding]:
@@ -74,19 +69,16 @@ def _drag_findings(points: ForcePoints) -> list[Finding]:
     if not chosen.any() or np.median(points.forces["X"][chosen]) <= 0:
         return []
     level = float(np.median(points.forces["X"][chosen]))
-    return [
-        _force_sign_finding(
-            points, "X", f"X is {level:+.3g} N in the median of {int(chosen.sum())} points without propeller"
-        )
-    ]
+    evidence = f"X is {level:+.3g} N in the median of {int(chosen.sum())} points without propeller"
+    return [_force_sign_finding(points, "X", evidence)]
 
 
 def _slope_sign_findings(points: ForcePoints, slopes: dict[tuple[str, str], _Slope]) -> list[Finding]:
     wrong = [key for key, law in SLOPE_SIGNS.items() if key in slopes and slopes[key].sign == -law]
     if not wrong:
         return []
-    seen = "; ".join(f"d{f}/d{m} = {slopes[f, m].value:.3g} +- {slopes[f, m].error:.2g}" for f, m in wrong)
-    return [_force_sign_finding(points, _reversed_column(slopes), seen)]
+    evidence = "; ".join(f"d{f}/d{m} = {slopes[f, m].value:.3g} +- {slopes[f, m].error:.2g}" for f, m in wrong)
+    return [_force_sign_finding(points, _reversed_column(slopes), evidence)]
 
 
 def _slopes(points: ForcePoints, force: str) -> dict[str, _Slope]:
@@ -129,10 +121,6 @@ def _force_sign_finding(points: ForcePoints, symbol: str, evidence: str) -> Find
     key = "beta" if symbol == "v" and "beta" in points.columns else symbol
     one, other = _DIRECTIONS.get(key, ("starboard", "port"))
     table = "measured" if key in points.forces else "motion"
-    return Finding(
-        Severity.ERROR,
-        "force-sign",
-        f"force points '{points.name}': {points.label(key)} looks turned: the signs are those of no ship",
-        evidence,
-        f'turn positive of forces.{table}.{key} round, "{one}" or "{other}"',
-    )
+    text = f"force points '{points.name}': {points.label(key)} looks turned: the signs are those of no ship"
+    advice = f'turn positive of forces.{table}.{key} round, "{one}" or "{other}"'
+    return Finding(Severity.ERROR, "force-sign", text, evidence, advice)

@@ -13,7 +13,7 @@ from seatrial.data.check.signal import (
     window_length,
 )
 from seatrial.data.check.velocity_conventions import best_convention
-from seatrial.data.check.yaw_rate_consistency import heading_rate
+from seatrial.data.check.yaw_rate_consistency import FOLLOWS, heading_rate
 
 OUTPUT_CHANNELS = ("x0", "y0", "psi", "u", "v", "r", "phi", "p", "theta", "z", "u_dot", "v_dot")
 # a channel sticks where it repeats a value for so many samples and this share of the record, ours
@@ -38,19 +38,19 @@ def channel_findings(record: Record) -> tuple[Finding, ...]:
             wraps[symbol] = int(np.sum(np.abs(np.diff(values)) > np.pi))
     wraps = {symbol: count for symbol, count in wraps.items() if count}
     if wraps:
-        what = f"record '{record.name}': readings of {', '.join(wraps)} jump by a whole turn; they are unwrapped"
+        text = f"record '{record.name}': readings of {', '.join(wraps)} jump by a whole turn; they are unwrapped"
         evidence = ", ".join(f"{symbol} {count} times" for symbol, count in wraps.items())
-        findings.append(Finding(Severity.INFO, "angle-wrap", what, evidence, "no action needed"))
+        findings.append(Finding(Severity.INFO, "angle-wrap", text, evidence, "no action needed"))
     return tuple(findings)
 
 
 def _constant_finding(record: Record, symbol: str, value: float) -> Finding:
     evidence = f"{value:.6g} {record.channel(symbol).unit} throughout"
     if symbol in OUTPUT_CHANNELS:
-        what = f"record '{record.name}': channel '{symbol}' is dead, it never changes"
-        return Finding(Severity.WARNING, "dead-channel", what, evidence, "leave the channel out or repair the sensor")
-    what = f"record '{record.name}': channel '{symbol}' is constant"
-    return Finding(Severity.INFO, "constant", what, evidence, "its effect is that of a constant force")
+        text = f"record '{record.name}': channel '{symbol}' is dead, it never changes"
+        return Finding(Severity.WARNING, "dead-channel", text, evidence, "leave the channel out or repair the sensor")
+    text = f"record '{record.name}': channel '{symbol}' is constant"
+    return Finding(Severity.INFO, "constant", text, evidence, "its effect is that of a constant force")
 
 
 def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]:
@@ -58,39 +58,33 @@ def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]
     first, last = max(mask_intervals(np.diff(values) == 0), key=lambda ends: ends[1] - ends[0], default=(0, 0))
     if last - first < max(STUCK_SAMPLES, STUCK_FRACTION * len(values)):
         return []
-    what = f"record '{record.name}': channel '{symbol}' is stuck for {last - first + 1} samples"
-    evidence = (
-        f"{values[first]:.6g} from t = {record.time[first]:.6g} to {record.time[min(last, len(values) - 1)]:.6g} s"
-    )
-    return [Finding(Severity.WARNING, "stuck", what, evidence, "look whether the sensor stopped or the ship lay still")]
+    text = f"record '{record.name}': channel '{symbol}' is stuck for {last - first + 1} samples"
+    end = record.time[min(last, len(values) - 1)]
+    evidence = f"{values[first]:.6g} from t = {record.time[first]:.6g} to {end:.6g} s"
+    return [Finding(Severity.WARNING, "stuck", text, evidence, "look whether the sensor stopped or the ship lay still")]
 
 
 def lag_findings(record: Record) -> tuple[Finding, ...]:
     """Lags of u, v behind the positions and of r behind the heading, of a clean, signed record as declared."""
+    late_and_early = (
+        (velocity_lag(record), "u, v lag behind the positions", "u, v lead the positions"),
+        (yaw_rate_lag(record), "r lags behind the heading", "r leads the heading"),
+    )
     findings = []
-    for what, lag in (
-        ("u, v lag behind the positions", velocity_lag(record)),
-        ("r lags behind the heading", yaw_rate_lag(record)),
-    ):
-        if lag is None:
-            continue
-        delay, error = lag
-        if abs(delay) > LAG_SAMPLES * record.dt and abs(delay) > LAG_STANDARD_ERRORS * error:
-            statement = what if delay > 0 else what.replace("lag behind", "lead").replace("lags behind", "leads")
-            findings.append(
-                Finding(
-                    Severity.WARNING,
-                    "lag",
-                    f"record '{record.name}': {statement} by about {abs(delay):.2g} s",
-                    f"{abs(delay) / record.dt:.1f} samples, standard error {error:.2g} s",
-                    "shift the channel, or estimate the delay as a nuisance",
-                )
-            )
+    for lag, late, early in late_and_early:
+        delay, error = lag or (0.0, 0.0)
+        if abs(delay) > max(LAG_SAMPLES * record.dt, LAG_STANDARD_ERRORS * error):
+            text = f"record '{record.name}': {late if delay > 0 else early} by about {abs(delay):.2g} s"
+            evidence = f"{abs(delay) / record.dt:.1f} samples, standard error {error:.2g} s"
+            advice = "shift the channel, or estimate the delay as a nuisance"
+            findings.append(Finding(Severity.WARNING, "lag", text, evidence, advice))
     return tuple(findings)
 
 
 def velocity_lag(record: Record) -> tuple[float, float] | None:
-    """Delay of the measured velocity [s] and its standard error: d(position)/dt - w = tau dw/dt - d lever + constant.
+    """Return the delay tau of the measured velocity w [s] and its standard error.
+
+    Fitted: d(position)/dt - w = tau dw/dt - d lever + constant.
 
     A reference point d ahead is fitted along (its lever is the turned yaw rate), so that it does not pass for a lag.
     None where positions are missing or the declared frame is refuted.
@@ -98,27 +92,26 @@ def velocity_lag(record: Record) -> tuple[float, float] | None:
     motion = recorded_motion(record)
     if motion is None or best_convention(motion).changes:
         return None
-    length = motion.window_samples
-    levers = (-np.sin(motion.psi), np.cos(motion.psi))
-    turning = np.gradient(motion.psi, motion.dt)
+    length, psi, dt = motion.window_samples, record["psi"], record.dt
+    levers, turning = (-np.sin(psi), np.cos(psi)), np.gradient(psi, dt)
     features, levered, target = [], [], []
     for position, velocity, lever in zip(
         motion.position_derivative, motion.velocity(motion.conventions[0]), levers, strict=True
     ):
-        features.append(smoothed_derivative(velocity, motion.dt, length))
+        features.append(smoothed_derivative(velocity, dt, length))
         levered.append(smoothed(turning * lever, length))
         target.append(position - smoothed(velocity, length))
     return _estimate_delay(features, target, levered)
 
 
 def yaw_rate_lag(record: Record) -> tuple[float, float] | None:
-    """The same for r against the heading; None where they do not belong together."""
+    """Return the same for r against the heading; None where they do not belong together."""
     turning = heading_rate(record)
     if turning is None or "r" not in record:
         return None
     length = window_length(len(record))
     r = smoothed(record["r"], length)
-    if np.ptp(r) == 0 or np.corrcoef(r, turning)[0, 1] < 0.8:
+    if np.ptp(r) == 0 or np.corrcoef(r, turning)[0, 1] < FOLLOWS:
         return None
     return _estimate_delay([smoothed_derivative(record["r"], record.dt, length)], [turning - r])
 
@@ -131,5 +124,5 @@ def _estimate_delay(
     if not np.any(rate):
         return None
     offsets = np.tile(np.eye(len(features)), (len(features[0]), 1))
-    answer, errors = jackknife_least_squares(np.column_stack([rate, *rest, offsets]), misfit)
-    return float(answer[0]), float(errors[0])
+    solution, errors = jackknife_least_squares(np.column_stack([rate, *rest, offsets]), misfit)
+    return float(solution[0]), float(errors[0])

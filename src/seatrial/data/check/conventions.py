@@ -13,7 +13,7 @@ _UNWRAPPED_CHANNELS = ("psi", "wind_direction", "wind_direction_relative")
 
 
 def canonical_record(record: Record, reference_point: float = 0.0) -> Record:
-    """The record in the notation table's conventions, by its declared metadata only.
+    """Return the record in the notation table's conventions, by its declared metadata only.
 
     Every channel points in the table's positive direction (positive rudder turns to starboard), u and v are body-fixed,
     v, x0 and y0 refer to the point `reference_point` metres forward of midship, headings and wind angles are
@@ -26,15 +26,15 @@ def canonical_record(record: Record, reference_point: float = 0.0) -> Record:
 
 
 def with_standard_signs(record: Record) -> Record:
-    """Signs and unwrapping only; frames and reference points as they were.
+    """Return the record with the table's signs and angles unwrapped; frames and reference points as they were.
 
     Raises:
         InputError: a positive direction is neither the notation table's nor its opposite.
     """
     flipped = [s for s, c in record.channels.items() if _has_opposite_sign(s, c, record.name)]
     channels = {s: _with_standard_sign(s, c, flip=s in flipped) for s, c in record.channels.items()}
-    provenance = record.provenance.with_step(f"sign of {', '.join(flipped)} turned") if flipped else record.provenance
-    return replace(record, channels=channels, provenance=provenance)
+    record = replace(record, channels=channels)
+    return record.with_step(f"sign of {', '.join(flipped)} turned") if flipped else record
 
 
 def _has_opposite_sign(symbol: str, channel: Channel, record: str) -> bool:
@@ -67,10 +67,9 @@ def _in_body_axes(record: Record) -> Record:
             )
         c, s = np.cos(record["psi"]), np.sin(record["psi"])
         north, east = record.channel(a), record.channel(b)
-        record = record.with_channel(a, _body_fixed_channel(a, north, north.values * c + east.values * s))
-        record = record.with_channel(
-            b, _body_fixed_channel(b, east, east.values * c - north.values * s), f"{a}, {b} turned into the ship's axes"
-        )
+        ahead = _body_fixed_channel(a, north, north.values * c + east.values * s)
+        aside = _body_fixed_channel(b, east, east.values * c - north.values * s)
+        record = record.with_channel(a, ahead).with_channel(b, aside, f"{a}, {b} turned into the ship's axes")
     return record
 
 
@@ -96,21 +95,10 @@ def _moved_to_reference_point(record: Record, reference_point: float) -> Record:
             moved.append(symbol)
     same = {s: replace(record.channel(s), reference_point=reference_point) for s in ("u", "u_dot") if s in record}
     record = replace(record, channels={**record.channels, **same})
-    if not moved:
-        return record
-    return replace(
-        record,
-        provenance=record.provenance.with_step(f"{', '.join(moved)} referred to {reference_point:g} m from midship"),
-    )
+    return record.with_step(f"{', '.join(moved)} referred to {reference_point:g} m from midship") if moved else record
 
 
 def _lever(symbol: str, record: Record) -> Array:
-    match symbol:
-        case "v":
-            return record["r"]
-        case "v_dot":
-            return np.gradient(record["r"], record.time)
-        case "x0":
-            return np.cos(record["psi"])
-        case _:
-            return np.sin(record["psi"])
+    if symbol in ("x0", "y0"):
+        return (np.cos if symbol == "x0" else np.sin)(record["psi"])
+    return record["r"] if symbol == "v" else np.gradient(record["r"], record.time)

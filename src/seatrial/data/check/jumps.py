@@ -13,6 +13,10 @@ HALF_WINDOW = 15
 STEP_RATIO, MEDIAN_STEP_RATIO = 4.0, 6.0
 # a position is held where it moves by less than this share of the mean step, for so many samples at most, ours
 HELD_RATIO, LONGEST_HOLD = 0.35, 50
+# a jump matches the distance missed while the position was held between these shares of it; chosen
+MATCHING = (0.3, 2.5)
+# least step of a wild sample: over the quantile of all steps, and over the smallest (quantisation); chosen
+STEP_QUANTILE, OVER_QUANTILE, OVER_SMALLEST = 0.95, 3.0, 5.0
 # a sample is wild where it leaves and returns by this multiple of the largest of so many neighbouring steps, ours
 SPIKE_RATIO, NEIGHBOURS = 4.0, 8
 _NO_ROWS: RowIndices = np.empty(0, dtype=np.intp)
@@ -34,7 +38,7 @@ class Jumps:
 
 
 def track_jumps(x: Array, y: Array) -> Jumps:
-    """Steps of more than four times the mean step around them and six times the median step of the run.
+    """Return steps of more than four times the mean step around them and six times the median step of the run.
 
     x, y: shape (n,), no NaN. A receiver that holds its last position and then catches up shows small steps first.
     """
@@ -55,13 +59,13 @@ def _held_before(j: int, steps: Array, mean: Array) -> RowIndices:
     while count < LONGEST_HOLD and j - 1 - count >= 0 and steps[j - 1 - count] < HELD_RATIO * mean[j]:
         count += 1
     missed = (count + 1) * mean[j]
-    if count == 0 or not 0.3 * missed < steps[j] < 2.5 * missed:
+    if count == 0 or not MATCHING[0] * missed < steps[j] < MATCHING[1] * missed:
         return _NO_ROWS
     return np.arange(j - count + 1, j + 1, dtype=np.intp)
 
 
 def spike_rows(values: Array) -> RowIndices:
-    """Rows of single samples that leave and return in steps over four times any other step within eight samples.
+    """Return rows of single samples that leave and return in steps over four times any other within eight samples.
 
     values: shape (n,), no NaN. The step must also exceed three times the record's 95 % step, and five times its
     smallest (quantisation).
@@ -71,7 +75,7 @@ def spike_rows(values: Array) -> RowIndices:
     moving = sizes[sizes > 0]
     if moving.size == 0 or len(values) < 2 * NEIGHBOURS:
         return _NO_ROWS
-    floor = max(3.0 * float(np.quantile(sizes, 0.95)), 5.0 * float(moving.min()))
+    floor = max(OVER_QUANTILE * float(np.quantile(sizes, STEP_QUANTILE)), OVER_SMALLEST * float(moving.min()))
     both = np.minimum(sizes[:-1], sizes[1:])
     candidates = np.flatnonzero((steps[:-1] * steps[1:] < 0) & (both > floor))
     spikes = []

@@ -35,34 +35,33 @@ def kinematic_consistency_findings(record: Record) -> tuple[Finding, ...]:
     rms = float(np.sqrt(np.mean(error**2))) * np.sqrt(2.0)
     ranked = sorted(candidate_causes(motion, error), key=lambda e: e.residual_rms)
     best, second = ranked[0], ranked[1]
-    gain = rms / max(best.residual_rms, 1e-12)
-    noise = float(np.hypot(sample_noise(motion.x), sample_noise(motion.y)))
+    gain = rms / max(best.residual_rms, 1e-12)  # above zero, for a division
+    noise = float(np.hypot(sample_noise(record["x0"]), sample_noise(record["y0"])))
     if rms < MIN_RELATIVE_ERROR * motion.path_length or (
         gain < DOUBTFUL_GAIN and rms < max(LARGE_RELATIVE_ERROR * motion.path_length, NOISE_FACTOR * noise)
     ):
         return ()
-    named = gain >= DOUBTFUL_GAIN
-    is_certain = (
-        best.name == "point" and gain > CERTAIN_GAIN and second.residual_rms > DOUBTFUL_GAIN * best.residual_rms
-    )
-    return (
-        Finding(
-            Severity.ERROR if is_certain else Severity.WARNING,
-            "closure",
-            f"record '{record.name}': integrated velocity leaves the position"
-            + (f"; {best.text} would explain it" if named else ""),
-            f"{rms:.3g} m rms over {motion.path_length:.4g} m travelled"
-            + (f", {best.residual_rms:.3g} m with it, {second.residual_rms:.3g} m with {second.text}" if named else ""),
-            best.advice if named else "check frame, reference point, lag and bias of u, v against the positions",
-        ),
-    )
+    message = f"record '{record.name}': integrated velocity leaves the position"
+    evidence = f"{rms:.3g} m rms over {motion.path_length:.4g} m travelled"
+    if gain < DOUBTFUL_GAIN:
+        advice = "check frame, reference point, lag and bias of u, v against the positions"
+        return (Finding(Severity.WARNING, "closure", message, evidence, advice),)
+    message += f"; {best.text} would explain it"
+    evidence += f", {best.residual_rms:.3g} m with it, {second.residual_rms:.3g} m with {second.text}"
+    is_alone = second.residual_rms > DOUBTFUL_GAIN * best.residual_rms
+    is_certain = best.name == "point" and gain > CERTAIN_GAIN and is_alone
+    return (Finding(Severity.ERROR if is_certain else Severity.WARNING, "closure", message, evidence, best.advice),)
 
 
 def consistency_error(motion: RecordedMotion) -> Array:
     """Integrated velocity minus position, each from its mean; north then east, shape (2 n,) [m]."""
+    x, y = _integrated_velocity(motion)
+    return np.concatenate([part - part.mean() for part in (x - motion.record["x0"], y - motion.record["y0"])])
+
+
+def _integrated_velocity(motion: RecordedMotion) -> tuple[Array, Array]:
     north, east = motion.velocity(motion.conventions[0])
-    parts = (cumulative_integral(north, motion.dt) - motion.x, cumulative_integral(east, motion.dt) - motion.y)
-    return np.concatenate([part - part.mean() for part in parts])
+    return cumulative_integral(north, motion.record.dt), cumulative_integral(east, motion.record.dt)
 
 
 def candidate_causes(motion: RecordedMotion, error: Array) -> list[ErrorCause]:
@@ -71,43 +70,36 @@ def candidate_causes(motion: RecordedMotion, error: Array) -> list[ErrorCause]:
     point: velocities of a point d ahead of the position's add d (cos psi, sin psi); lag tau: -tau times the velocity;
     current or bias: grows with time; misalignment a of heading or log: a (-y, x) of the track; scale: the track.
     """
-    north, east = motion.velocity(motion.conventions[0])
-    x, y = cumulative_integral(north, motion.dt), cumulative_integral(east, motion.dt)
-    zero, t = np.zeros_like(x), motion.time - motion.time[0]
+    x, y = _integrated_velocity(motion)
+    zero, t, psi = np.zeros_like(x), motion.record.time - motion.record.time[0], motion.record["psi"]
     causes = {
-        "point": [np.concatenate([np.cos(motion.psi), np.sin(motion.psi)])],
-        "lag": [-np.concatenate([north, east])],
+        "point": [np.concatenate([np.cos(psi), np.sin(psi)])],
+        "lag": [-np.concatenate(motion.velocity(motion.conventions[0]))],
         "drift": [np.concatenate([t, zero]), np.concatenate([zero, t])],
         "misalignment": [np.concatenate([-y, x])],
         "scale": [np.concatenate([x, y])],
     }
     constants = [np.concatenate([zero + 1, zero]), np.concatenate([zero, zero + 1])]
-    found = []
+    fitted = []
     for name, features in causes.items():
-        answer, rms = least_squares(np.stack([*constants, *features], axis=1), error)
-        value = tuple(float(a) for a in answer[2:])
-        found.append(ErrorCause(name, *_cause_text(name, value), value, rms * np.sqrt(2.0)))
-    return found
+        solution, rms = least_squares(np.stack([*constants, *features], axis=1), error)
+        value = tuple(float(a) for a in solution[2:])
+        fitted.append(ErrorCause(name, *_cause_text(name, value), value, rms * np.sqrt(2.0)))
+    return fitted
 
 
 def _cause_text(name: str, coefficients: tuple[float, ...]) -> tuple[str, str]:
     match name:
         case "point":
-            return (
-                f"velocities referred to a point {coefficients[0]:+.3g} m ahead of the positions' point",
-                "correct reference_point of u, v or of x0, y0",
-            )
+            text = f"velocities referred to a point {coefficients[0]:+.3g} m ahead of the positions' point"
+            return text, "correct reference_point of u, v or of x0, y0"
         case "lag":
             return f"a lag of {coefficients[0]:.2g} s of the velocities", "shift u, v by the lag, or estimate it"
         case "drift":
-            return (
-                f"a current or velocity bias of {np.hypot(coefficients[0], coefficients[1]):.3g} m/s",
-                "if the speed is through water, estimate a current for the run",
-            )
+            text = f"a current or velocity bias of {np.hypot(coefficients[0], coefficients[1]):.3g} m/s"
+            return text, "if the speed is through water, estimate a current for the run"
         case "misalignment":
-            return (
-                f"a misalignment of {np.degrees(coefficients[0]):+.2g} deg between heading and log",
-                "check the zero of the compass",
-            )
+            text = f"a misalignment of {np.degrees(coefficients[0]):+.2g} deg between heading and log"
+            return text, "check the zero of the compass"
         case _:
             return f"a scale error of {coefficients[0]:+.2%} of the velocities", "check the calibration of the log"

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -9,6 +10,8 @@ from seatrial.core.values import Array, Record
 from seatrial.data.check.signal import cumulative_integral, smoothed, smoothed_derivative, trimmed_rms, window_length
 
 DEGREES_PER_RADIAN = 180.0 / math.pi
+# samples of a record from which on it is compared with itself; chosen: some windows of smoothing
+MIN_SAMPLES = 30
 
 
 @dataclass(frozen=True)
@@ -30,92 +33,73 @@ class VelocityConvention:
 
 @dataclass(frozen=True)
 class RecordedMotion:
-    """Channels in SI, signs already turned to the notation table's, angles unwrapped; shape (n,) each.
+    """A clean, evenly sampled record with x0, y0, psi, u and v, standard signs and unwrapped angles."""
 
-    `ahead` is how far the position's reference point lies ahead of the velocities' [m].
-    """
+    record: Record
 
-    name: str
-    time: Array
-    dt: float
-    x: Array
-    y: Array
-    psi: Array
-    u: Array
-    v: Array
-    frame: str
-    reference_offset: float
+    @property
+    def frame(self) -> str:
+        """Declared frame of u and v."""
+        return self.record.channel("u").frame
+
+    @property
+    def reference_offset(self) -> float:
+        """Distance by which the position's reference point lies ahead of the velocities' [m]."""
+        return self.record.channel("x0").reference_point - self.record.channel("v").reference_point
 
     @property
     def window_samples(self) -> int:
         """Smoothing window in samples."""
-        return window_length(len(self.time))
+        return window_length(len(self.record))
 
     @property
     def position_derivative(self) -> tuple[Array, Array]:
         """Smoothed derivative of position, north and east [m/s]."""
-        return smoothed_derivative(self.x, self.dt, self.window_samples), smoothed_derivative(
-            self.y, self.dt, self.window_samples
-        )
+        north, east = (smoothed_derivative(self.record[s], self.record.dt, self.window_samples) for s in ("x0", "y0"))
+        return north, east
 
     @property
     def conventions(self) -> list[VelocityConvention]:
         """The declared reading first, then all others."""
         frames = (self.frame, "earth" if self.frame == "body" else "body")
         factors = (1.0, -1.0, DEGREES_PER_RADIAN, 1.0 / DEGREES_PER_RADIAN)
-        return [
-            VelocityConvention(f, sv, fp, (f != self.frame) + (sv < 0) + (fp != 1.0))
-            for f in frames
-            for sv in (1.0, -1.0)
-            for fp in factors
-        ]
+        return [VelocityConvention(frame, v_sign, factor, (frame != self.frame) + (v_sign < 0) + (factor != 1.0))
+                for frame, v_sign, factor in product(frames, (1.0, -1.0), factors)]  # fmt: skip
 
     def velocity(self, convention: VelocityConvention) -> tuple[Array, Array]:
-        """Velocity of the position's reference point, north and east [m/s], as the reading has it."""
-        psi, v = convention.psi_factor * self.psi, convention.v_sign * self.v
+        """Return the velocity of the position's reference point, north and east [m/s], as the reading has it."""
+        u, v, psi = self.record["u"], convention.v_sign * self.record["v"], convention.psi_factor * self.record["psi"]
         c, s = np.cos(psi), np.sin(psi)
-        north, east = (self.u * c - v * s, self.u * s + v * c) if convention.frame == "body" else (self.u, v)
+        north, east = (u * c - v * s, u * s + v * c) if convention.frame == "body" else (u, v)
         if self.reference_offset == 0.0:
             return north, east
-        lever = self.reference_offset * np.gradient(psi, self.dt)
+        lever = self.reference_offset * np.gradient(psi, self.record.dt)
         return north - lever * s, east + lever * c
 
     def speed_scale(self, convention: VelocityConvention) -> float:
-        """Least-squares factor from the reading's velocity to the position's."""
+        """Return the least-squares factor from the reading's velocity to the position's."""
         north, east = (smoothed(w, self.window_samples) for w in self.velocity(convention))
         gx, gy = self.position_derivative
         power = float(north @ north + east @ east)
         return float(gx @ north + gy @ east) / power if power > 0 else 0.0
 
     def misfit(self, convention: VelocityConvention) -> float:
-        """Size of (derivative of position - scaled velocity) over size of the derivative."""
+        """Return the size of (derivative of position - scaled velocity) over the size of the derivative."""
         north, east = (smoothed(w, self.window_samples) for w in self.velocity(convention))
         gx, gy = self.position_derivative
-        power = float(north @ north + east @ east)
-        k = max(float(gx @ north + gy @ east) / power, 0.0) if power > 0 else 0.0
-        return trimmed_rms(gx - k * north, gy - k * east) / max(trimmed_rms(gx, gy), 1e-12)
+        k = max(self.speed_scale(convention), 0.0)
+        return trimmed_rms(gx - k * north, gy - k * east) / max(
+            trimmed_rms(gx, gy), 1e-12
+        )  # above zero, for a division
 
     @property
     def path_length(self) -> float:
         """Length of the smoothed track [m]."""
-        return float(cumulative_integral(np.hypot(*self.position_derivative), self.dt)[-1])
+        return float(cumulative_integral(np.hypot(*self.position_derivative), self.record.dt)[-1])
 
 
 def recorded_motion(record: Record) -> RecordedMotion | None:
-    """The motion of a clean, evenly sampled, signed record, or None where channels are missing."""
-    if any(s not in record for s in ("x0", "y0", "psi", "u", "v")) or len(record) < 30:
+    """Return the motion of a clean, evenly sampled, signed record; None where channels are missing or it is short."""
+    if any(s not in record for s in ("x0", "y0", "psi", "u", "v")) or len(record) < MIN_SAMPLES:
         return None
-    if record.channel("u").frame != record.channel("v").frame:
-        return None
-    return RecordedMotion(
-        record.name,
-        record.time,
-        record.dt,
-        record["x0"],
-        record["y0"],
-        record["psi"],
-        record["u"],
-        record["v"],
-        record.channel("u").frame,
-        record.channel("x0").reference_point - record.channel("v").reference_point,
-    )
+    return RecordedMotion(record) if record.channel("u").frame == record.channel("v").frame else None

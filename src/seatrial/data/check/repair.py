@@ -10,16 +10,16 @@ from seatrial.data.check.signal import RowIndices, mask_intervals, unwrapped
 from seatrial.data.check.timestamps import without_empty_ends
 
 INPUT_CHANNELS = ("delta", "n", "v_j")
-# holes up to so many s or samples are interpolated, ours
+# holes up to so many s or samples are interpolated; chosen: what a sensor loses now and then
 SHORT_GAP_S, SHORT_GAP_SAMPLES = 1.0, 5
 
 
 def repair(record: Record) -> tuple[Record, tuple[Finding, ...]]:
-    """The record without holes and wild samples, and a finding for each kind of change.
+    """Return the record without holes and wild samples, and a finding for each kind of change.
 
     Empty rows at the ends are cut; single wild samples and positions a receiver held are interpolated, as are holes
-    of up to one second or five samples; of a record with longer holes the longest complete part is kept (`parts`
-    gives them all). Inputs are never smoothed. The time base should be even (`timebase` first).
+    of up to one second or five samples; of a record with longer holes the longest complete part is kept
+    (`complete_segments` gives them all). Inputs are never smoothed. The time base should be even (`rebuild_time_base`).
 
     Raises:
         InputError: a channel holds no value, or nothing complete remains.
@@ -34,13 +34,13 @@ def repair(record: Record) -> tuple[Record, tuple[Finding, ...]]:
 
 
 def complete_segments(record: Record) -> tuple[Record, ...]:
-    """The complete stretches of a record, in order: no NaN in any channel or stamp."""
+    """Return the complete stretches of a record, in order: no NaN in any channel or stamp."""
     holes = np.any([np.isnan(c.values) for c in record.channels.values()], axis=0) | np.isnan(record.time)
     return tuple(record.rows(slice(first, last)) for first, last in mask_intervals(~holes))
 
 
 def interpolate_rows(channel: Channel, rows: RowIndices) -> Channel:
-    """The channel with the given rows interpolated linearly (angles along the shorter arc)."""
+    """Return the channel with the given rows interpolated linearly (angles along the shorter arc)."""
     is_angle = channel.unit == "rad"
     smooth = unwrapped(channel.values) if is_angle else channel.values
     finite = np.setdiff1d(np.flatnonzero(np.isfinite(smooth)), rows)
@@ -69,15 +69,10 @@ def _interpolate_spikes(record: Record) -> tuple[Record, tuple[Finding, ...]]:
             repaired = interpolate_rows(channel, rows)
             off = np.max(np.abs(smooth[rows] - interpolate_rows(channel.with_values(smooth), rows).values[rows]))
             record = record.with_channel(symbol, repaired, f"{rows.size} wild samples of {symbol} interpolated")
-            findings.append(
-                Finding(
-                    Severity.WARNING,
-                    "outlier",
-                    f"record '{record.name}', channel '{symbol}': {rows.size} single wild sample(s), interpolated",
-                    f"off by up to {off:.4g} {channel.unit}, first at t = {record.time[rows[0]]:.6g} s",
-                    "no action needed unless they are real",
-                )
-            )
+            text = f"record '{record.name}', channel '{symbol}': {rows.size} single wild sample(s), interpolated"
+            evidence = f"off by up to {off:.4g} {channel.unit}, first at t = {record.time[rows[0]]:.6g} s"
+            advice = "no action needed unless they are real"
+            findings.append(Finding(Severity.WARNING, "outlier", text, evidence, advice))
     return record, tuple(findings)
 
 
@@ -94,26 +89,19 @@ def _repair_position_jumps(record: Record) -> tuple[Record, tuple[Finding, ...]]
     held = finite[jumps.held]
     largest = int(np.argmax(jumps.sizes))
     remaining = int(np.sum(~np.isin(jumps.rows - 1, jumps.held)))
-    finding = Finding(
-        Severity.WARNING,
-        "jump",
-        f"record '{record.name}': the position jumps {_times_text(jumps.rows.size)}"
-        + (f"; {held.size} samples it stood still before are interpolated" if held.size else "")
-        + (f"; of the jumps {remaining} cannot be repaired and stay" if remaining else ""),
-        f"up to {jumps.sizes[largest]:.3g} m, at t = {record.time[finite[jumps.rows[largest]]]:.6g} s",
-        "weight positions robustly; split the run at a jump that stays" if remaining else "weight positions robustly",
+    text = (
+        f"record '{record.name}': the position jumps {'once' if jumps.rows.size == 1 else f'{jumps.rows.size} times'}"
     )
+    text += f"; {held.size} samples it stood still before are interpolated" if held.size else ""
+    text += f"; of the jumps {remaining} cannot be repaired and stay" if remaining else ""
+    evidence = f"up to {jumps.sizes[largest]:.3g} m, at t = {record.time[finite[jumps.rows[largest]]]:.6g} s"
+    advice = "weight positions robustly" + ("; split the run at a jump that stays" if remaining else "")
+    finding = Finding(Severity.WARNING, "jump", text, evidence, advice)
     if held.size == 0:
         return record, (finding,)
     step = f"{held.size} held positions interpolated"
     repaired = {s: interpolate_rows(record.channel(s), held) for s in ("x0", "y0")}
-    return replace(record, channels={**record.channels, **repaired}, provenance=record.provenance.with_step(step)), (
-        finding,
-    )
-
-
-def _times_text(count: int) -> str:
-    return "once" if count == 1 else f"{count} times"
+    return replace(record, channels={**record.channels, **repaired}).with_step(step), (finding,)
 
 
 def _fill_short_gaps(record: Record) -> tuple[Record, tuple[Finding, ...]]:
@@ -132,15 +120,10 @@ def _fill_short_gaps(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     if not counts:
         return record, ()
     named = ", ".join(f"{s} {n}" for s, n in counts.items())
-    finding = Finding(
-        Severity.WARNING,
-        "empty-cells",
-        f"record '{record.name}': {sum(counts.values())} cells in short holes are interpolated",
-        f"{named}; holes of up to {limit} samples",
-        "no action needed for a few",
-    )
-    provenance = record.provenance.with_step(f"{sum(counts.values())} empty cells interpolated")
-    return replace(record, provenance=provenance), (finding,)
+    text = f"record '{record.name}': {sum(counts.values())} cells in short holes are interpolated"
+    evidence = f"{named}; holes of up to {limit} samples"
+    finding = Finding(Severity.WARNING, "empty-cells", text, evidence, "no action needed for a few")
+    return record.with_step(f"{sum(counts.values())} empty cells interpolated"), (finding,)
 
 
 def _longest_complete_segment(record: Record) -> tuple[Record, tuple[Finding, ...]]:
@@ -151,13 +134,10 @@ def _longest_complete_segment(record: Record) -> tuple[Record, tuple[Finding, ..
     if len(best) == len(record):
         return record, ()
     empty = {s: int(np.isnan(c.values).sum()) for s, c in record.channels.items() if np.isnan(c.values).any()}
-    finding = Finding(
-        Severity.WARNING,
-        "empty-rows",
-        f"record '{record.name}' has long holes; of {len(segments)} complete parts the longest is kept",
-        f"t = {best.time[0]:.6g} to {best.time[-1]:.6g} s, {len(best)} of {len(record)} samples; empty cells: "
-        + ", ".join(f"{s} {n}" for s, n in empty.items()),
-        "split the file at the holes to use the other parts, or leave out the channel that is empty",
-    )
-    step = f"longest complete part kept: {best.time[0]:.6g} to {best.time[-1]:.6g} s"
-    return replace(best, provenance=best.provenance.with_step(step)), (finding,)
+    text = f"record '{record.name}' has long holes; of {len(segments)} complete parts the longest is kept"
+    ends, cells = f"{best.time[0]:.6g} to {best.time[-1]:.6g} s", ", ".join(f"{s} {n}" for s, n in empty.items())
+    evidence = f"t = {ends}, {len(best)} of {len(record)} samples; empty cells: {cells}"
+    advice = "split the file at the holes to use the other parts, or leave out the channel that is empty"
+    finding = Finding(Severity.WARNING, "empty-rows", text, evidence, advice)
+    step = f"longest complete part kept: {ends}"
+    return best.with_step(step), (finding,)

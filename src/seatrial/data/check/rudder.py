@@ -6,19 +6,23 @@ from itertools import accumulate
 import numpy as np
 
 from seatrial.core.values import Array, Finding, Record, Severity
+from seatrial.data.check.motion import MIN_SAMPLES
+from seatrial.data.check.run_phases import STOPPED_FRACTION
 from seatrial.data.check.signal import Mask, jackknife_least_squares, smoothed, smoothed_derivative, window_length
-from seatrial.data.check.yaw_rate_consistency import heading_rate
+from seatrial.data.check.yaw_rate_consistency import FOLLOWS, channel_name, heading_rate
 from seatrial.physics.manoeuvres.track import speed
 
-# rudder range [rad] that counts as excitation, ours
+# rudder range [rad] that counts as excitation; chosen: more than the noise of a sensor
 MIN_RUDDER_RANGE = math.radians(0.2)
-# t values of one run and of all runs pooled that prove a sign, and that make it doubtful, ours
+# t values of one run and of all runs pooled that prove a sign, and that make it doubtful; chosen
 CERTAIN_T, POOLED_T, DOUBTFUL_T = 5.0, 3.5, 2.0
+# lags of the rudder that are tried; chosen: each a third longer than the one before, about
+LAGS = 12
 ZIGZAG_ADVICE = "run a zigzag, for example 10/10 or 20/20"
 
 
 def is_excited(record: Record) -> bool:
-    """Whether the rudder moves by more than 0.2 degrees in all; False without a rudder."""
+    """Return whether the rudder moves by more than 0.2 degrees in all; False without a rudder."""
     if "delta" not in record:
         return False
     delta = record["delta"][np.isfinite(record["delta"])]
@@ -26,38 +30,33 @@ def is_excited(record: Record) -> bool:
 
 
 def rudder_findings(record: Record) -> tuple[Finding, ...]:
-    """Findings on delta of a clean, signed record."""
+    """Return findings on delta of a clean, signed record."""
     if "delta" not in record:
         return ()
     if not is_excited(record):
-        what = f"record '{record.name}': the rudder never moves, so nothing can be learnt about steering"
+        text = f"record '{record.name}': the rudder never moves, so nothing can be learnt about steering"
         span = f"range {math.degrees(float(np.ptp(record['delta']))):.2g} deg"
-        return (Finding(Severity.WARNING, "no-excitation", what, span, ZIGZAG_ADVICE),)
+        return (Finding(Severity.WARNING, "no-excitation", text, span, ZIGZAG_ADVICE),)
     first, steady = _t_ratio(yaw_acceleration_response(record)), _t_ratio(steady_turning_response(record))
     pooled = (first + steady) / math.sqrt(2.0) if max(first, steady) < 0 else 0.0
     if min(first, pooled) > -DOUBTFUL_T:
         return ()
-    label = record.channel("delta").label
     is_clear = first < -CERTAIN_T or pooled < -POOLED_T
-    return (
-        Finding(
-            Severity.ERROR if is_clear else Severity.WARNING,
-            "rudder-sign",
-            f"record '{record.name}': rudder 'delta'{f' ({label})' if label else ''} "
-            f"{'has' if is_clear else 'may have'} the opposite sign: "
-            "the ship turns to port where starboard rudder is declared",
-            f"effect over standard error: {first:.1f} on yaw acceleration, {steady:.1f} on the turn that follows",
-            'declare positive = "port" for delta if it says starboard now, "starboard" if it says port',
-        ),
+    text = (
+        f"record '{record.name}': rudder {channel_name(record, 'delta')} {'has' if is_clear else 'may have'} the opposite "
+        "sign: the ship turns to port where starboard rudder is declared"
     )
+    evidence = f"effect over standard error: {first:.1f} on yaw acceleration, {steady:.1f} on the turn that follows"
+    advice = 'declare positive = "port" for delta if it says starboard now, "starboard" if it says port'
+    return (Finding(Severity.ERROR if is_clear else Severity.WARNING, "rudder-sign", text, evidence, advice),)
 
 
 def _t_ratio(estimate: tuple[float, float] | None) -> float:
-    return 0.0 if estimate is None else estimate[0] / max(estimate[1], 1e-300)
+    return 0.0 if estimate is None else estimate[0] / max(estimate[1], 1e-300)  # above zero
 
 
 def yaw_acceleration_response(record: Record) -> tuple[float, float] | None:
-    """Yaw acceleration per rudder angle [1/s^2] and its standard error, None where the heading shows none.
+    """Return the yaw acceleration per rudder angle [1/s^2] and its standard error, None where the heading shows none.
 
     First-order response dr/dt = a r + b delta + c (Nomoto 1957, eq. 1) by least squares on smoothed signals, errors by
     block jackknife; where the propeller also turns astern only the samples with it ahead count.
@@ -68,7 +67,7 @@ def yaw_acceleration_response(record: Record) -> tuple[float, float] | None:
     length = window_length(len(record))
     delta = smoothed(record["delta"], length)
     ahead = _propeller_ahead(record, length)
-    if ahead.sum() < 30 or np.ptp(delta[ahead]) < MIN_RUDDER_RANGE:
+    if ahead.sum() < MIN_SAMPLES or np.ptp(delta[ahead]) < MIN_RUDDER_RANGE:
         return None
     features = np.column_stack([smoothed(yaw, length), delta, np.ones_like(delta)])
     coefficients, errors = jackknife_least_squares(features[ahead], smoothed_derivative(yaw, record.dt, length)[ahead])
@@ -76,7 +75,7 @@ def yaw_acceleration_response(record: Record) -> tuple[float, float] | None:
 
 
 def steady_turning_response(record: Record) -> tuple[float, float] | None:
-    """Yaw rate per (speed times lagged rudder) [1/m] and its standard error, or None as for `response`.
+    """Return the yaw rate per (speed times lagged rudder) [1/m] and its standard error; None as before.
 
     r = K U delta_T + c with delta_T the rudder behind a first-order lag T, the one of twelve that correlates best:
     the sign of a long turn, to which the initial response adds little.
@@ -88,9 +87,9 @@ def steady_turning_response(record: Record) -> tuple[float, float] | None:
     r, ahead = smoothed(yaw, length), _propeller_ahead(record, length)
     U = speed(record)
     best, best_match = None, 0.0
-    for samples in np.geomspace(length / 2, len(record) / 3, 12):
+    for samples in np.geomspace(length / 2, len(record) / 3, LAGS):
         effect = smoothed(_first_order_lag(record["delta"], samples) * (1.0 if U is None else U), length)
-        if ahead.sum() < 30 or np.ptp(effect[ahead]) == 0 or np.ptp(r[ahead]) == 0:
+        if ahead.sum() < MIN_SAMPLES or np.ptp(effect[ahead]) == 0 or np.ptp(r[ahead]) == 0:
             continue
         match = abs(float(np.corrcoef(effect[ahead], r[ahead])[0, 1]))
         if match > best_match:
@@ -115,7 +114,7 @@ def _yaw_rate_signal(record: Record) -> Array | None:
         return None
     if "r" in record:
         r = smoothed(record["r"], window_length(len(record)))
-        if np.corrcoef(r, turning)[0, 1] > 0.8:
+        if np.corrcoef(r, turning)[0, 1] > FOLLOWS:
             return record["r"]
     return np.gradient(record["psi"], record.dt)
 
@@ -125,4 +124,4 @@ def _propeller_ahead(record: Record, length: int) -> Mask:
     if "n" not in record or record["n"].max() <= 0:
         return np.ones(count, dtype=bool)
     n = smoothed(record["n"], length)
-    return n > 0.05 * record["n"].max()
+    return n > STOPPED_FRACTION * record["n"].max()

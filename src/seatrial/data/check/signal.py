@@ -9,13 +9,15 @@ from seatrial.core.values import Array
 
 RowIndices = NDArray[np.intp]
 Mask = NDArray[np.bool_]
-# stretches of a record left out in turn, ours
+# variance of third differences of white noise over its own: 1 + 9 + 9 + 1
+_THIRD_DIFFERENCES = 20.0
+# stretches of a record left out in turn; chosen
 JACKKNIFE_BLOCKS = 8
 
 
 def window_length(count: int) -> int:
     """Odd length of the smoothing window in samples: a sixtieth of the record, between 11 and a quarter of it."""
-    return max(3, min(max(11, count // 60), count // 4)) | 1
+    return max(3, min(max(11, count // 60), count // 4)) | 1  # chosen: short against a manoeuvre
 
 
 def smoothed(values: Array, length: int) -> Array:
@@ -31,8 +33,9 @@ def smoothed_derivative(values: Array, dt: float, length: int) -> Array:
 
 def trimmed_rms(*components: Array) -> float:
     """Root mean square of a vector's length over the 95 % smallest: a few bad samples do not count."""
+    kept = 0.95  # share of the samples; chosen
     squares = np.sort(np.sum([c**2 for c in components], axis=0))
-    return float(np.sqrt(np.mean(squares[: max(1, int(0.95 * len(squares)))])))
+    return float(np.sqrt(np.mean(squares[: max(1, int(kept * len(squares)))])))
 
 
 def cumulative_integral(rate: Array, dt: float) -> Array:
@@ -45,13 +48,13 @@ def sample_noise(values: Array) -> float:
 
     What does not change within a few samples cancels (Gasser, Sroka & Jennen-Steinmetz 1986, Biometrika 73, 625-633).
     """
-    return float(np.sqrt(np.nanmean(np.diff(values, 3) ** 2) / 20.0)) if len(values) > 3 else 0.0
+    return float(np.sqrt(np.nanmean(np.diff(values, 3) ** 2) / _THIRD_DIFFERENCES)) if len(values) > 3 else 0.0
 
 
 def least_squares(features: Array, target: Array) -> tuple[Array, float]:
     """Least squares: coefficients and rms of the residual."""
-    answer = np.asarray(np.linalg.lstsq(features, target, rcond=None)[0], dtype=np.float64)
-    return answer, float(np.sqrt(np.mean((target - features @ answer) ** 2)))
+    solution = np.asarray(np.linalg.lstsq(features, target, rcond=None)[0], dtype=np.float64)
+    return solution, float(np.sqrt(np.mean((target - features @ solution) ** 2)))
 
 
 def jackknife_least_squares(features: Array, target: Array) -> tuple[Array, Array]:
@@ -67,9 +70,8 @@ def jackknife_least_squares(features: Array, target: Array) -> tuple[Array, Arra
         partial.append(least_squares(features[keep], target[keep])[0])
         keep[first:last] = True
     spread = np.array(partial) - np.mean(partial, axis=0)
-    return least_squares(features, target)[0], np.sqrt(
-        (JACKKNIFE_BLOCKS - 1) / JACKKNIFE_BLOCKS * np.sum(spread**2, axis=0)
-    )
+    errors = np.sqrt((JACKKNIFE_BLOCKS - 1) / JACKKNIFE_BLOCKS * np.sum(spread**2, axis=0))
+    return least_squares(features, target)[0], errors
 
 
 def mask_intervals(mask: Mask) -> list[tuple[int, int]]:

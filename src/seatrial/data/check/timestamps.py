@@ -7,10 +7,15 @@ import numpy as np
 from seatrial.core.values import Array, Finding, InputError, Record, Severity
 from seatrial.data.check.signal import RowIndices, unwrapped
 
-# steps of time beyond which samples are missing, ours
-GAP_STEPS = 2.5
-# samples over which the mean step is taken, so that rounded stamps average out, ours
+# steps of time beyond which samples are missing, and roundings of the stamps by which such a step must exceed the mean
+# one; chosen: a single lost sample is no gap
+GAP_STEPS, GAP_QUANTA = 2.5, 1.5
+# samples over which the mean step is taken; chosen: rounded stamps average out
 STEP_LAG = 20
+# distance of a stamp from the even base, in steps and in roundings, up to which the samples are even; chosen
+LARGEST_JITTER, LARGEST_ROUNDING = 0.6, 1.01
+# differences of steps over the mean step that are rounding, and that are worth a warning; chosen
+SMALL_UNEVENNESS, LARGE_UNEVENNESS = 1e-3, 0.5
 
 
 def without_empty_ends(record: Record) -> tuple[Record, tuple[Finding, ...]]:
@@ -36,8 +41,7 @@ def without_empty_ends(record: Record) -> tuple[Record, tuple[Finding, ...]]:
         f"{cells} empty cells, {last - first} of {len(record)} rows remain",
         "nothing to do if the run ended there; otherwise look for the lost samples",
     )
-    kept = record.rows(slice(first, last))
-    return replace(kept, provenance=kept.provenance.with_step(f"{count} empty rows cut off")), (finding,)
+    return record.rows(slice(first, last)).with_step(f"{count} empty rows cut off"), (finding,)
 
 
 def rebuild_time_base(record: Record) -> tuple[Record, tuple[Finding, ...]]:
@@ -58,11 +62,9 @@ def rebuild_time_base(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     if record.is_uniform:
         return record, findings
     grid = _grid(record.time)
-    if grid.jitter <= max(0.6 * grid.step, 1.01 * grid.quantum):
-        rebuilt = _placed_on_grid(record, grid)
-    else:
-        rebuilt = _interpolated_on_grid(record, grid)
-    return rebuilt, findings + _time_base_findings(record, grid)
+    is_even = grid.jitter <= max(LARGEST_JITTER * grid.step, LARGEST_ROUNDING * grid.quantum)
+    rebuilt = _placed_on_grid(record, grid) if is_even else _interpolated_on_grid(record, grid)
+    return rebuilt.with_step("time base rebuilt"), findings + _time_base_findings(record, grid)
 
 
 @dataclass(frozen=True)
@@ -82,7 +84,7 @@ def _grid(time: Array) -> _Grid:
     nominal = float(np.median((time[lag:] - time[:-lag]) / lag))
     repeated = int(np.sum(steps == 0))
     quantum = float(np.min(steps[steps > 0], initial=np.inf)) if repeated else 0.0
-    gaps = np.flatnonzero((steps > GAP_STEPS * nominal) & (steps > nominal + 1.5 * quantum))
+    gaps = np.flatnonzero((steps > GAP_STEPS * nominal) & (steps > nominal + GAP_QUANTA * quantum))
     skipped = np.zeros(len(time))
     skipped[gaps + 1] = np.round(steps[gaps] / nominal) - 1
     index = np.arange(len(time)) + np.cumsum(skipped)
@@ -99,12 +101,12 @@ def _placed_on_grid(record: Record, grid: _Grid) -> Record:
         values = np.full(index[-1] + 1, np.nan)
         values[index] = channel.values
         channels[symbol] = channel.with_values(values)
-    return _with_time_base(record, grid.start + grid.step * np.arange(index[-1] + 1), channels)
+    return replace(record, time=grid.start + grid.step * np.arange(index[-1] + 1), channels=channels)
 
 
 def _interpolated_on_grid(record: Record, grid: _Grid) -> Record:
     time, rows = np.unique(record.time, return_index=True)
-    count = int(np.floor((time[-1] - time[0]) / grid.step * (1 + 1e-12))) + 1
+    count = int(np.floor((time[-1] - time[0]) / grid.step * (1 + 1e-12))) + 1  # rounding of the division
     even = time[0] + grid.step * np.arange(count)
     right = np.clip(np.searchsorted(time, even), 1, len(time) - 1)
     inside_gap = (time[right] - time[right - 1] > GAP_STEPS * grid.step) & ~np.isin(even, time)
@@ -114,12 +116,7 @@ def _interpolated_on_grid(record: Record, grid: _Grid) -> Record:
         values = np.interp(even, time, values[rows])
         values[inside_gap] = np.nan
         channels[symbol] = channel.with_values(values)
-    return _with_time_base(record, even, channels)
-
-
-def _with_time_base(record: Record, time: Array, channels: dict) -> Record:
-    provenance = record.provenance.with_step("time base rebuilt")
-    return replace(record, time=time, channels=channels, provenance=provenance)
+    return replace(record, time=even, channels=channels)
 
 
 def _fill_missing_stamps(record: Record) -> tuple[Record, tuple[Finding, ...]]:
@@ -160,35 +157,27 @@ def _without_duplicates(record: Record) -> tuple[Record, tuple[Finding, ...]]:
         f"first at t = {record.time[repeat][0]:g} s",
         "see whether the logger wrote twice",
     )
-    provenance = record.provenance.with_step(f"{repeat.sum()} repeated rows dropped")
-    return replace(record, time=record.time[keep], channels=channels, provenance=provenance), (finding,)
+    kept = replace(record, time=record.time[keep], channels=channels)
+    return kept.with_step(f"{repeat.sum()} repeated rows dropped"), (finding,)
 
 
 def _time_base_findings(record: Record, grid: _Grid) -> tuple[Finding, ...]:
     steps = np.diff(record.time)
     findings = []
     regular = np.delete(steps, grid.gaps)
-    if regular.size and np.ptp(regular) > 1e-3 * grid.step:
+    if regular.size and np.ptp(regular) > SMALL_UNEVENNESS * grid.step:
         kind = f"{grid.repeated} repeated or rounded time stamps" if grid.repeated else "uneven time stamps"
-        findings.append(
-            Finding(
-                Severity.WARNING if grid.repeated or np.ptp(regular) > 0.5 * grid.step else Severity.INFO,
-                "time-base",
-                f"record '{record.name}' has {kind}; the time base is rebuilt with even steps of {grid.step:.6g} s",
-                f"steps {regular.min():.4g} to {regular.max():.4g} s, stamps off by up to {grid.jitter:.3g} s",
-                "give more decimals of time if the logger has them",
-            )
-        )
+        is_rough = grid.repeated or np.ptp(regular) > LARGE_UNEVENNESS * grid.step
+        text = f"record '{record.name}' has {kind}; the time base is rebuilt with even steps of {grid.step:.6g} s"
+        evidence = f"steps {regular.min():.4g} to {regular.max():.4g} s, stamps off by up to {grid.jitter:.3g} s"
+        advice = "give more decimals of time if the logger has them"
+        severity = Severity.WARNING if is_rough else Severity.INFO
+        findings.append(Finding(severity, "time-base", text, evidence, advice))
     if grid.gaps.size:
         longest = int(grid.gaps[np.argmax(steps[grid.gaps])])
-        findings.append(
-            Finding(
-                Severity.WARNING,
-                "time-gap",
-                f"record '{record.name}' has {grid.gaps.size} gaps in time",
-                f"{steps[grid.gaps].sum() - grid.gaps.size * grid.step:.4g} s lost, the longest from "
-                f"t = {record.time[longest]:.6g} to {record.time[longest + 1]:.6g} s",
-                "short gaps are interpolated; split the run at long ones",
-            )
-        )
+        text = f"record '{record.name}' has {grid.gaps.size} gaps in time"
+        ends = f"t = {record.time[longest]:.6g} to {record.time[longest + 1]:.6g} s"
+        evidence = f"{steps[grid.gaps].sum() - grid.gaps.size * grid.step:.4g} s lost, the longest from {ends}"
+        advice = "short gaps are interpolated; split the run at long ones"
+        findings.append(Finding(Severity.WARNING, "time-gap", text, evidence, advice))
     return tuple(findings)

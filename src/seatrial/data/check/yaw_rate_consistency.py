@@ -5,25 +5,34 @@ import math
 import numpy as np
 
 from seatrial.core.values import Array, Finding, Record, Severity
-from seatrial.data.check.motion import DEGREES_PER_RADIAN
+from seatrial.data.check.motion import DEGREES_PER_RADIAN, MIN_SAMPLES
 from seatrial.data.check.signal import smoothed, smoothed_derivative, trimmed_rms, window_length
 
-# heading range [rad] below which the yaw rate is not compared, ours
+# heading range [rad] below which the yaw rate is not compared; chosen: above the noise of a compass
 MIN_HEADING_RANGE = math.radians(2.0)
-# correlation at which another channel is taken for the yaw rate, ours
-MIN_CORRELATION = 0.98
-# rms difference from the rate of the heading, over its rms, that is wrong, and rough, ours
+# correlation at which another channel is taken for the yaw rate, and largest relative departure of its factor; chosen
+MIN_CORRELATION, MAX_DEPARTURE = 0.98, 0.1
+# correlation with the rate of the heading from which on a yaw rate follows it; chosen
+FOLLOWS = 0.8
+# departure of a factor from that of a wrong unit, as a logarithm; range of the factor of a turned sign; chosen
+SAME_UNIT, TURNED_RANGE = 0.2, (0.5, 2.0)
+# rms difference from the rate of the heading, over its rms, that is wrong, and rough; chosen
 WRONG_MISFIT, ROUGH_MISFIT = 0.9, 0.5
+# rate of the course over that of the heading between which the heading's unit is right; speed over its rms from which on
+# a ship has a course; chosen
+COURSE_RANGE, MOVING = (0.2, 5.0), 0.3
+# rad: a rudder that never goes further, were its unit mistaken; share of it that its range must exceed; chosen
+FULL_RUDDER, MOVED_SHARE = math.radians(45.0), 0.5
 
 
 def yaw_rate_findings(record: Record) -> tuple[Finding, ...]:
-    """Findings on r, p, psi and delta of a clean, signed record."""
+    """Return findings on r, p, psi and delta of a clean, signed record."""
     return (*_heading_consistency_findings(record), *_rudder_unit_findings(record))
 
 
 def heading_rate(record: Record) -> Array | None:
-    """Smoothed d(psi)/dt [rad/s], or None where the heading is missing or hardly moves."""
-    if "psi" not in record or len(record) < 30:
+    """Return the smoothed d(psi)/dt [rad/s]; None where the heading is missing or hardly moves."""
+    if "psi" not in record or len(record) < MIN_SAMPLES:
         return None
     length = window_length(len(record))
     if np.ptp(smoothed(record["psi"], length)) < MIN_HEADING_RANGE:
@@ -35,7 +44,7 @@ def _regression_through_origin(rate: Array, psi_dot: Array) -> tuple[float, floa
     """Regression factor rate / turning and their correlation through the origin."""
     product = float(rate @ psi_dot)
     powers = float(rate @ rate), float(psi_dot @ psi_dot)
-    return product / powers[1], product / math.sqrt(max(powers[0] * powers[1], 1e-300))
+    return product / powers[1], product / math.sqrt(max(powers[0] * powers[1], 1e-300))  # above zero
 
 
 def _heading_consistency_findings(record: Record) -> list[Finding]:
@@ -47,43 +56,36 @@ def _heading_consistency_findings(record: Record) -> list[Finding]:
     for symbol, channel in record.channels.items():
         if channel.unit == "rad/s" and symbol != "r":
             factor, match = _regression_through_origin(smoothed(channel.values, length), turning)
-            if abs(match) > MIN_CORRELATION and 0.9 < abs(factor) < 1.1:
+            if abs(match) > MIN_CORRELATION and abs(abs(factor) - 1.0) < MAX_DEPARTURE:
                 findings.append(_mislabelled_finding(record, symbol, factor, match))
     if "r" not in record:
         return findings
-    r = smoothed(record["r"], length)
-    return [
-        *findings,
-        *_yaw_rate_verdict(
-            record, *_regression_through_origin(r, turning), trimmed_rms(r - turning) / trimmed_rms(turning), turning
-        ),
-    ]
+    return findings + _yaw_rate_verdict(record, smoothed(record["r"], length), turning)
 
 
-def _channel_label(record: Record, symbol: str) -> str:
+def channel_name(record: Record, symbol: str) -> str:
+    """Return how messages name a channel: its symbol, and its name in the file."""
     label = record.channel(symbol).label
     return f"'{symbol}' ({label})" if label else f"'{symbol}'"
 
 
 def _mislabelled_finding(record: Record, symbol: str, factor: float, match: float) -> Finding:
-    return Finding(
-        Severity.ERROR,
-        "mislabelled",
-        f"record '{record.name}': channel {_channel_label(record, symbol)} is in truth the yaw rate"
-        + (" with the opposite sign" if factor < 0 else ""),
-        f"correlation with d(psi)/dt {match:.4f}, factor {factor:.3f}",
-        "declare this column as r",
-    )
+    text = f"record '{record.name}': channel {channel_name(record, symbol)} is in truth the yaw rate"
+    text += " with the opposite sign" if factor < 0 else ""
+    evidence = f"correlation with d(psi)/dt {match:.4f}, factor {factor:.3f}"
+    return Finding(Severity.ERROR, "mislabelled", text, evidence, "declare this column as r")
 
 
-def _yaw_rate_verdict(record: Record, factor: float, match: float, misfit: float, psi_dot: Array) -> list[Finding]:
+def _yaw_rate_verdict(record: Record, r: Array, psi_dot: Array) -> list[Finding]:
+    factor, match = _regression_through_origin(r, psi_dot)
+    misfit = trimmed_rms(r - psi_dot) / trimmed_rms(psi_dot)
     evidence = f"correlation with d(psi)/dt {match:.3f}, factor {factor:.3g}, misfit {misfit:.0%}"
-    name = f"record '{record.name}': channel {_channel_label(record, 'r')}"
-    if abs(match) > 0.8 and abs(math.log(abs(factor) / DEGREES_PER_RADIAN)) < 0.2:
+    name = f"record '{record.name}': channel {channel_name(record, 'r')}"
+    if abs(match) > FOLLOWS and abs(math.log(abs(factor) / DEGREES_PER_RADIAN)) < SAME_UNIT:
         return [_angle_unit_finding(record, "r", "psi", psi_dot, evidence)]
-    if abs(match) > 0.8 and abs(math.log(abs(factor) * DEGREES_PER_RADIAN)) < 0.2:
+    if abs(match) > FOLLOWS and abs(math.log(abs(factor) * DEGREES_PER_RADIAN)) < SAME_UNIT:
         return [_angle_unit_finding(record, "psi", "r", psi_dot, evidence)]
-    if match < -0.8 and 0.5 < abs(factor) < 2.0:
+    if match < -FOLLOWS and TURNED_RANGE[0] < abs(factor) < TURNED_RANGE[1]:
         what = f"{name} has the opposite sign of d(psi)/dt"
         return [Finding(Severity.ERROR, "yaw-rate", what, evidence, "declare the opposite positive direction for r")]
     if misfit > WRONG_MISFIT:
@@ -101,14 +103,13 @@ def _angle_unit_finding(record: Record, large: str, small: str, psi_dot: Array, 
     if course is None:
         what = f"either '{large}' is in degrees although declared in radians, or '{small}' the other way round"
     else:
-        psi_is_right = 0.2 < course < 5.0
+        psi_is_right = COURSE_RANGE[0] < course < COURSE_RANGE[1]
         guilty = large if psi_is_right == (large == "r") else small
         units = "in degrees although declared in radians" if guilty == large else "in radians, declared in degrees"
         what = f"'{guilty}' is {units}"
         evidence += f"; the course turns {course:.3g} times as fast as the heading"
-    return Finding(
-        Severity.ERROR, "angle-unit", f"record '{record.name}': {what}", evidence, "correct the unit in the trial file"
-    )
+    text = f"record '{record.name}': {what}"
+    return Finding(Severity.ERROR, "angle-unit", text, evidence, "correct the unit in the trial file")
 
 
 def _course_rate_ratio(record: Record, psi_dot: Array) -> float | None:
@@ -121,7 +122,7 @@ def _course_rate_ratio(record: Record, psi_dot: Array) -> float | None:
         return None
     course = np.unwrap(np.arctan2(east, north))
     rate = np.gradient(course, record.dt)
-    moving = np.hypot(north, east) > 0.3 * trimmed_rms(north, east)
+    moving = np.hypot(north, east) > MOVING * trimmed_rms(north, east)
     return abs(_regression_through_origin(rate[moving], psi_dot[moving])[0])
 
 
@@ -133,7 +134,7 @@ def _rudder_unit_findings(record: Record) -> list[Finding]:
         what = f"record '{record.name}': the rudder reaches {math.degrees(largest):.0f} deg"
         advice = 'the column is probably in degrees: declare unit = "deg" for delta'
         return [Finding(Severity.ERROR, "angle-unit", what, f"{largest:.4g} rad as declared", advice)]
-    if 0.0 < largest < math.radians(45.0) / DEGREES_PER_RADIAN and np.ptp(record["delta"]) > 0.5 * largest:
+    if 0.0 < largest < FULL_RUDDER / DEGREES_PER_RADIAN and np.ptp(record["delta"]) > MOVED_SHARE * largest:
         what = f"record '{record.name}': the rudder reaches only {math.degrees(largest):.2g} deg"
         advice = 'if the column is in radians, declare unit = "rad" for delta'
         return [Finding(Severity.WARNING, "angle-unit", what, f"{largest:.3g} rad as declared", advice)]

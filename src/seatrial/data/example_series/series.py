@@ -17,7 +17,7 @@ from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate.steer import manoeuvre
 
-# standard deviations in SI units: log, gyro and GNSS of a small craft
+# standard deviations in SI units; chosen: log, gyro and GNSS of a small craft
 SENSOR_NOISE = {"u": 0.02, "v": 0.02, "r": math.radians(0.1), "psi": math.radians(0.2), "x0": 0.5, "y0": 0.5}
 # jet velocity of the craft [m/s], Song et al. 2025
 JET_VELOCITY = 1.866
@@ -32,12 +32,12 @@ EXAMPLE_COLUMNS = ("x0", "y0", "psi", "u", "v", "r", "delta", "v_j")
 
 
 def true_model() -> Model:
-    """The craft with the coefficients that estimates are compared with."""
+    """Return the craft with the coefficients that estimates are compared with."""
     return waterjet()
 
 
 def demo_series(seed: int, executes: int = 5) -> tuple[tuple[Record, ...], Model]:
-    """Records with sensor noise at 10 Hz, and the model that made them.
+    """Return records with sensor noise at 10 Hz, and the model that made them.
 
     The first record is for training: consecutive zigzags 10/10 to 30/30, `executes` of each (5: 2075 s).
     The others are held out: a 25/25 zigzag and a turning circle with 20 deg, where drift stays within the model's
@@ -59,36 +59,30 @@ def demo_series(seed: int, executes: int = 5) -> tuple[tuple[Record, ...], Model
 
 
 def simulate_run(craft: Model, programme_text: str) -> Record:
-    """One noise-free manoeuvre of the series, sampled at 10 Hz, named after its programme."""
-    fine = manoeuvre(
-        craft,
-        programme(programme_text),
-        dt=FINE_STEP,
-        inputs={"v_j": JET_VELOCITY},
-        slew_rate=SLEW_RATE,
-        approach=APPROACH_S,
-    )
+    """Return one noise-free manoeuvre of the series, sampled at 10 Hz, named after its programme."""
+    orders, inputs = programme(programme_text), {"v_j": JET_VELOCITY}
+    fine = manoeuvre(craft, orders, dt=FINE_STEP, inputs=inputs, slew_rate=SLEW_RATE, approach=APPROACH_S)
     kept = fine.resampled(SAMPLE_RATE)
     step = f"generated in steps of {FINE_STEP:g} s, every {round(1.0 / (FINE_STEP * SAMPLE_RATE))}th kept"
-    return replace(kept, name=file_name(programme_text), provenance=kept.provenance.with_step(step))
+    return kept.renamed(file_name(programme_text)).with_step(step)
 
 
 def with_sensor_noise(record: Record, rng: np.random.Generator, seed: int) -> Record:
-    """The record with white Gaussian sensor noise (`SENSOR_NOISE`) on its measured channels."""
+    """Return the record with white Gaussian sensor noise (`SENSOR_NOISE`) on its measured channels."""
     channels = dict(record.channels)
     for symbol, deviation in SENSOR_NOISE.items():
         values = record[symbol] + deviation * rng.standard_normal(len(record))
         channels[symbol] = record.channel(symbol).with_values(values)
-    return replace(record, channels=channels, provenance=record.provenance.with_step(f"sensor noise, seed {seed}"))
+    return replace(record, channels=channels).with_step(f"sensor noise, seed {seed}")
 
 
 def file_name(programme_text: str) -> str:
-    """A programme's text as the name of a record or file."""
+    """Return a programme's text as the name of a record or file."""
     return programme_text.replace(":", "_").replace("/", "_")
 
 
 def write_csv(record: Record, path: Path, columns: Sequence[str] = EXAMPLE_COLUMNS) -> None:
-    """Time and `columns` in the units people read, header ``symbol [unit]``; whole or not at all.
+    """Write time and `columns` in the units people read, header ``symbol [unit]``; whole or not at all.
 
     Raises:
         InputError: the place cannot be written.
@@ -105,10 +99,8 @@ def _number(value: float) -> str:
 
 def main(folder: str) -> None:
     """Write the example series to `folder`."""
-    place = Path(folder)
-    records, _ = demo_series(EXAMPLE_SEED)
-    for record in records:
-        path = place / f"{record.name}.csv"
+    for record in demo_series(EXAMPLE_SEED)[0]:
+        path = Path(folder) / f"{record.name}.csv"
         write_csv(record.resampled(EXAMPLE_RATE), path)
         print(f"{path}: {record.duration:.0f} s, {path.stat().st_size / 1000:.0f} kB")
 
