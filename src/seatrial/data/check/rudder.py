@@ -42,10 +42,8 @@ def rudder_findings(record: Record) -> tuple[Finding, ...]:
     if min(first, pooled) > -DOUBTFUL_T:
         return ()
     is_clear = first < -CERTAIN_T or pooled < -POOLED_T
-    text = (
-        f"record '{record.name}': rudder {channel_name(record, 'delta')} {'has' if is_clear else 'may have'} the opposite "
-        "sign: the ship turns to port where starboard rudder is declared"
-    )
+    text = f"record '{record.name}': rudder {channel_name(record, 'delta')} {'has' if is_clear else 'may have'}"
+    text += " the opposite sign: the ship turns to port where starboard rudder is declared"
     evidence = f"effect over standard error: {first:.1f} on yaw acceleration, {steady:.1f} on the turn that follows"
     advice = 'declare positive = "port" for delta if it says starboard now, "starboard" if it says port'
     return (Finding(Severity.ERROR if is_clear else Severity.WARNING, "rudder-sign", text, evidence, advice),)

@@ -16,12 +16,12 @@ MIN_COASTING_S = 2.0
 
 
 def phase_findings(record: Record) -> tuple[Finding, ...]:
-    """Return findings on acceleration at the beginning and a stopped propeller at the beginning or end, of a clean, signed record."""
+    """Return findings on acceleration and a stopped propeller at the ends of a clean, signed record."""
     return (*_acceleration_findings(record), *_propeller_findings(record))
 
 
 def acceleration_end_time(record: Record) -> float | None:
-    """Return the time at which a run that starts below half its speed first reaches four fifths of it; None if it starts faster.
+    """Return the time at which a run that starts below half its speed reaches four fifths of it; None if it starts faster.
 
     Its speed is the 95 % quantile of the smoothed speed.
     """

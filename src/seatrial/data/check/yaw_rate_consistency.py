@@ -18,8 +18,8 @@ FOLLOWS = 0.8
 SAME_UNIT, TURNED_RANGE = 0.2, (0.5, 2.0)
 # rms difference from the rate of the heading, over its rms, that is wrong, and rough; chosen
 WRONG_MISFIT, ROUGH_MISFIT = 0.9, 0.5
-# rate of the course over that of the heading between which the heading's unit is right; speed over its rms from which on
-# a ship has a course; chosen
+# rate of the course over that of the heading between which the heading's unit is right; speed over its rms from which
+# on a ship has a course; chosen
 COURSE_RANGE, MOVING = (0.2, 5.0), 0.3
 # rad: a rudder that never goes further, were its unit mistaken; share of it that its range must exceed; chosen
 FULL_RUDDER, MOVED_SHARE = math.radians(45.0), 0.5
