@@ -88,9 +88,8 @@ class RecordedMotion:
         north, east = (smoothed(w, self.window_samples) for w in self.velocity(convention))
         gx, gy = self.position_derivative
         k = max(self.speed_scale(convention), 0.0)
-        return trimmed_rms(gx - k * north, gy - k * east) / max(
-            trimmed_rms(gx, gy), 1e-12
-        )  # above zero, for a division
+        size = max(trimmed_rms(gx, gy), 1e-12)  # above zero, for the division
+        return trimmed_rms(gx - k * north, gy - k * east) / size
 
     @property
     def path_length(self) -> float:

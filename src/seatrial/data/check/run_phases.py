@@ -21,7 +21,7 @@ def phase_findings(record: Record) -> tuple[Finding, ...]:
 
 
 def acceleration_end_time(record: Record) -> float | None:
-    """Return the time at which a run that starts below half its speed reaches four fifths of it; None if it starts faster.
+    """Return when a run that starts below half its speed first reaches four fifths of it [s]; None if it starts faster.
 
     Its speed is the 95 % quantile of the smoothed speed.
     """
