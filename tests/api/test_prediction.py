@@ -1,11 +1,13 @@
 """A simulated run goes back in as a record: simulated again, predicted, written and read."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import seatrial as st
+from seatrial.core.values import RecordKind
 from seatrial.data.folder.model_file import ModelFile
 
 JET = {"v_j": 1.866}  # jet velocity of the example's trials, m/s
@@ -41,6 +43,21 @@ def test_a_prediction_compares_a_run_with_its_measurement(craft: ModelFile, zigz
     overshoot = prediction.measures["overshoot_1_deg"]
     assert overshoot.measured == pytest.approx(overshoot.simulated, rel=1e-3)
     assert st.predict(craft.model, zigzag).measures == {}, "no length of the ship, no measures"
+
+
+def test_a_noisy_run_starts_at_an_estimated_state_not_at_its_first_sample(craft: ModelFile, zigzag: st.Record) -> None:
+    rng = np.random.default_rng(1)
+    noise = {"u": 0.05, "v": 0.05, "r": 0.01, "psi": 0.02, "x0": 0.5, "y0": 0.5}  # SI, some times a sensor's
+    channels = {
+        s: zigzag.channel(s).with_values(zigzag[s] + sd * rng.standard_normal(len(zigzag))) for s, sd in noise.items()
+    }
+    noisy = replace(zigzag, kind=RecordKind.MEASURED, channels={**zigzag.channels, **channels})
+    prediction = st.predict(craft, noisy)
+    assert prediction.initial_seconds > 0.0
+    error = np.degrees(np.abs(prediction.simulated["psi"] - zigzag["psi"]).max())
+    at_first_sample = np.degrees(np.abs(st.simulate(craft, noisy)["psi"] - zigzag["psi"]).max())
+    assert error < 0.5 * at_first_sample
+    assert st.predict(craft.model, noisy).initial_seconds == pytest.approx(0.1 * noisy.duration), "length not known"
 
 
 def test_a_worse_model_predicts_worse(craft: ModelFile, zigzag: st.Record) -> None:

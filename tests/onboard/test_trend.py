@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.onboard.trend import sparkline, trend_arrow
+from seatrial.onboard.table import sparkline, trend_arrow
 
 
 @given(st.lists(st.floats(-1e9, 1e9) | st.just(float("nan")), max_size=50), st.floats(0, 1e9) | st.just(float("inf")))

@@ -8,7 +8,7 @@ from tests.reporting.complete_fit import baselines as fabricated
 from tests.reporting.fabricated import fabricated_fit
 
 from seatrial.core.results import Fit
-from seatrial.core.results.baseline import NO_COMPARISON
+from seatrial.core.results.prediction import NO_COMPARISON
 from seatrial.core.values import Finding, Severity
 from seatrial.reporting.baselines import baseline_chapter, baseline_sentences
 from seatrial.reporting.page import html

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from seatrial.core.results import Extrapolation
-from seatrial.reporting.extrapolation import extrapolation_text, extrapolation_zone
+from seatrial.reporting.measures import extrapolation_text, extrapolation_zone
 
 
 @pytest.mark.parametrize(("index", "where"), [(0.7, "inside"), (1.04, "inside"), (1.15, "edge"), (1.9, "beyond"),

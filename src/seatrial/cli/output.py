@@ -10,12 +10,13 @@ if TYPE_CHECKING:
     from seatrial.core.results import Baseline, Design, Extrapolation, Fit, ManoeuvrePrecision, Prediction, Study
     from seatrial.core.values import Finding
 
-# index of extrapolation beyond which intervals are lower limits
+# index of extrapolation beyond which intervals are lower limits; chosen, as in the report
 EXTRAPOLATION_LIMIT = 1.2
 EXTRAPOLATION_NOTE = ": beyond the training runs, read its intervals as lower limits"
+# orders that are printed; chosen: the file has them all
 MAX_ORDERS_PRINTED = 8
 SEVERITY_MARK = {"error": "ERROR  ", "warning": "warning", "info": "note   "}
-# significant digits of estimates, of errors
+# significant digits of estimates, of errors; chosen
 DIGITS, ERROR_DIGITS = 5, 3
 
 
@@ -126,7 +127,7 @@ def _print_baselines(fit: "Fit") -> None:
     reference = "errors" if first.error else "from this fit"
     head = [f"other estimators: {reference}, %", "median", "worst", "heading deg", "position m", "CC u, v, r"]
     rows = [head, *([r.name[:60], *_baseline_cells(r, first, fit)] for r in fit.baselines)]
-    print_table(rows, flush_left=(0, 5))
+    print_table(rows, flush_left=(0, len(head) - 1))
     for r in fit.baselines:
         print_lines((f"{SEVERITY_MARK[f.severity.value]} [{f.code}] {r.name[:60]}: {f.text}" for f in r.findings), "  ")
     print("  good trajectories and correlations (CC) prove nothing about coefficients")
@@ -197,7 +198,7 @@ def print_study(study: "Study") -> None:
 
 def print_design(design: "Design") -> None:
     """Print the manoeuvre's precision compared with the standard ones, findings, and its first orders."""
-    from seatrial.core.results.design_ranking import has_track, ranked_baselines
+    from seatrial.core.results.design import has_track, ranked_baselines
     from seatrial.core.text.numbers import duration, exact
 
     track = ["drift deg", "distance m"] if has_track(design) else []
@@ -219,7 +220,7 @@ def print_design(design: "Design") -> None:
 def _manoeuvre_cells(manoeuvre: "ManoeuvrePrecision", design: "Design") -> list[str]:
     import math
 
-    from seatrial.core.results.design_ranking import has_track, is_within_limits
+    from seatrial.core.results.design import has_track, is_within_limits
     from seatrial.core.text.numbers import exact
     from seatrial.core.text.words import counted
 

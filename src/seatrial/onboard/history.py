@@ -32,7 +32,7 @@ class History:
     The stride doubles when there are more, so that the points stay evenly spaced over the whole time.
     """
 
-    def __init__(self, limit: int = 2000) -> None:
+    def __init__(self, limit: int = 2000) -> None:  # points, chosen: more than a screen has columns
         self.limit = max(4, limit)
         self.stride = 1
         self.generation = 0

@@ -29,7 +29,7 @@ _SAMPLE_TAG, _RUN_TAG = b"S", b"R"
 _SAMPLE_HEAD = struct.Struct("<cd")
 # s between two flushes: with the wait for samples, an entry is on disk within a second
 _FLUSH_S = 0.7
-# bytes that a break can tear off: more than a second of samples, far less than a run
+# bytes that a break can tear off; chosen: more than a second of samples, far less than a run
 _MAX_TORN = 1 << 18
 # bytes read at once
 _CHUNK = 1 << 20
@@ -66,7 +66,7 @@ class Journal:
             InputError: it cannot be written, is not a journal, belongs to another trial, or is open elsewhere.
         """
         self.path, self.torn_bytes, self.write_error = path, 0, ""
-        self._columns, self._sample_size = columns, _SAMPLE_HEAD.size + 8 * columns
+        self._columns, self._sample_size = columns, _SAMPLE_HEAD.size + 8 * columns  # bytes of a float64
         self._pending: list[bytes] = []
         self._clock, self._flushed_at = clock, clock()
         header = _HEADER_PREFIX + f"{identity} {columns}\n".encode()

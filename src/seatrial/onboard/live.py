@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 
 # s between drawings; chosen: as fast as figures can be read
 REDRAW_INTERVAL_S = 0.5
-# s between lines, at least and at most, and as a share of the time followed; chosen: a log of an hour has some hundred
-# lines
+# s between lines, at least and at most, and as a share of the time followed; chosen: some hundred lines in an hour
 MIN_LINE_INTERVAL_S, MAX_LINE_INTERVAL_S, INTERVAL_GROWTH = 1.0, 60.0, 0.05
 
 

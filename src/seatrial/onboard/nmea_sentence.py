@@ -60,6 +60,7 @@ def parse_sentence(line: bytes) -> Sentence | SentenceFault:
     body, star, given = line[start + 1 :].strip().partition(b"*")
     if start < 0 or not star or not body.isascii():
         return SentenceFault.GARBLED
+    # two hexadecimal digits
     if not re.fullmatch(rb"[0-9A-Fa-f]{2}", given) or int(given, 16) != checksum(body):
         return SentenceFault.CHECKSUM
     address, *fields = body.decode("ascii").split(",")
@@ -149,7 +150,7 @@ def _angle(text: str, side: str, sides: str, limit: float) -> float:
     if not text:
         return math.nan
     match = _ANGLE.fullmatch(text)
-    degrees = int(match[1]) + float(match[2]) / 60.0 if match else math.inf  # 60 minutes
+    degrees = int(match[1]) + float(match[2]) / 60.0 if match else math.inf  # minutes of a degree
     if degrees > limit or side not in tuple(sides):
         raise ValueError(f"'{text},{side}' is not a latitude or longitude")
     return math.radians(degrees if side == sides[0] else -degrees)
@@ -197,6 +198,7 @@ def _if_valid(value: float, status: str) -> float:
 
 # sentence -> number of the field with its time
 _TIME_FIELDS = {"RMC": 1, "GGA": 1, "GNS": 1, "ZDA": 1, "GLL": 5}
+# sentence -> its reader; numbers of the fields of a position and of its validity
 _READERS: dict[str, Callable[[Sentence], dict[str, float]]] = {
     "HDT": _heading, "THS": _heading, "HDM": _heading, "ROT": _rate_of_turn, "RSA": _rudder, "VTG": _ground_course,
     "RMC": _recommended_minimum, "GGA": lambda s: _fix(s, 2, is_valid=s.text(6) not in ("", "0")),

@@ -40,7 +40,7 @@ class SampleOrder:
         longest_gap_s: s; late_s: s by which a stamp may be behind and still belong to the same clock.
     """
 
-    def __init__(self, dt: float | None, longest_gap_s: float, *, late_s: float = 5.0) -> None:
+    def __init__(self, dt: float | None, longest_gap_s: float, *, late_s: float = 5.0) -> None:  # seconds, chosen
         self._dt = dt
         self._longest_gap, self._late_s = longest_gap_s, late_s
         self._newest_time = -math.inf

@@ -29,7 +29,7 @@ def bind_server(port: int, state: StateProvider) -> "Server":
     Raises:
         InputError: the port is in use, not allowed, or outside 0 to 65535.
     """
-    if not 0 <= port < 65536:
+    if not 0 <= port < 65536:  # ports are 16 bits
         raise InputError(
             f"there is no port {port} for the page; give one from 1024 to 65535, or 0 for any that is free"
         )
@@ -159,5 +159,6 @@ def _digest(text: str) -> str:
 def _parse_since(query: str) -> int | None:
     """The number in the query, -1 if there is none, None if it is not a number."""
     text = parse_qs(query).get("since", ["-1"])[0]
-    is_number = text.removeprefix("-").isascii() and text.removeprefix("-").isdigit() and len(text) < 16
+    digits = text.removeprefix("-")
+    is_number = digits.isascii() and digits.isdigit() and len(digits) < 16  # digits that JavaScript counts
     return int(text) if is_number else None

@@ -55,7 +55,7 @@ class UdpLines:
         self._rate = rate
         self._dropped = 0
         self._last_error = ""
-        if not 0 <= port <= 65535:
+        if not 0 <= port <= 65535:  # ports are 16 bits
             raise InputError(f"there is no UDP port {port}; choose one from 1 to 65535")
         try:
             kind, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0]

@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Baseline, Coefficient, Fit, OpenLoopScores, Table
-from seatrial.core.results.baseline import NO_COMPARISON
+from seatrial.core.results.prediction import NO_COMPARISON
 from seatrial.core.text.numbers import exact, fixed, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import display_unit

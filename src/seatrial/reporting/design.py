@@ -8,7 +8,7 @@ from markupsafe import Markup
 from seatrial.core.equations.latex import latex_symbol
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Actuator, Design, ManoeuvrePrecision
-from seatrial.core.results.design_ranking import (
+from seatrial.core.results.design import (
     best_baseline,
     criterion_error,
     has_track,
@@ -119,7 +119,7 @@ def percent_text(share: float) -> str:
 
 def minutes_seconds(seconds: float) -> str:
     """Return minutes and seconds: ``2:05``, ``0:07.5``."""
-    minutes, rest = divmod(round(seconds, 2), 60.0)
+    minutes, rest = divmod(round(seconds, 2), 60.0)  # s of a minute
     return f"{int(minutes)}:{exact(rest, 4).rjust(2, '0') if rest >= 10 else '0' + exact(rest, 4)}"
 
 

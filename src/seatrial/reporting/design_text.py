@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from seatrial.core.results import Actuator, Design, ManoeuvrePrecision
-from seatrial.core.results.design_ranking import (
+from seatrial.core.results.design import (
     best_baseline,
     count_outside_limits,
     criterion_error,

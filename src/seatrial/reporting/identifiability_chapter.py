@@ -21,8 +21,7 @@ from seatrial.core.text.numbers import DASH, fixed, p_value, rounded, signed_per
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import display_unit
 from seatrial.core.values.channel_text import channel_meaning, channel_unit, unit_text
-from seatrial.reporting.figures.directions import direction_chart, sensitivity_chart
-from seatrial.reporting.figures.profile_likelihoods import profile_chart
+from seatrial.reporting.figures.directions import direction_chart, profile_chart, sensitivity_chart
 from seatrial.reporting.tables import WHITENESS_P, assumption
 
 # relative standard deviation up to which a combination is well determined, and up to which poorly

@@ -7,7 +7,7 @@ from markupsafe import Markup
 
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Curve, Figure, RollCharacteristics
-from seatrial.core.results.roll import IntervalEstimate
+from seatrial.core.results.ship_motions import IntervalEstimate
 from seatrial.core.text.numbers import DASH, estimate_text, fixed, significant
 from seatrial.reporting.figures.roll_damping import roll_damping_chart
 from seatrial.reporting.figures.study_figures import study_chart

@@ -13,8 +13,13 @@ from seatrial.core.text.numbers import DASH, column_texts, fixed, interval, rati
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import InputError, Record
 from seatrial.physics.manoeuvres import ImoCriterion, imo_criteria
-from seatrial.reporting.extrapolation import extrapolation_text, extrapolation_zone
-from seatrial.reporting.measures import is_inside, measure_decimals, measure_label
+from seatrial.reporting.measures import (
+    extrapolation_text,
+    extrapolation_zone,
+    is_inside,
+    measure_decimals,
+    measure_label,
+)
 
 _ERROR_LABELS = {"psi_deg": ("heading", "deg"), "position_m": ("position", "m"), "u": ("u", "m/s"), "v": ("v", "m/s"),
            "r": ("r", "deg/s"), "z": ("heave", "m"), "theta_deg": ("pitch", "deg"),

@@ -37,7 +37,7 @@ def figures(seakeeping: Seakeeping) -> list[tuple[Markup, Figure]]:
         return Markup(svg(study_chart(figure))), figure
 
     pitch, sea = np.array(seakeeping.pitch_density), np.array(seakeeping.sea_density)
-    share = float(np.max(sea) / max(np.max(pitch), 1e-300))
+    share = float(np.max(sea) / max(np.max(pitch), 1e-300))  # above zero
     return [
         render("Response amplitude operators", "per wave", "Heave per wave amplitude, pitch per wave slope. A hull "
               "that the wave carries has 1, in pitch the heading's cosine; constant damping keeps pitch from it.",

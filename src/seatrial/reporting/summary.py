@@ -7,9 +7,14 @@ from seatrial.core.text.numbers import duration, estimate_text, exact, fixed, in
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import Severity
 from seatrial.estimation.estimate.settings import WHITE_INFLATION
-from seatrial.reporting.extrapolation import extrapolation_text, extrapolation_zone
 from seatrial.reporting.identifiability_chapter import determined_sentence
-from seatrial.reporting.measures import is_inside, measure_decimals, measure_label
+from seatrial.reporting.measures import (
+    extrapolation_text,
+    extrapolation_zone,
+    is_inside,
+    measure_decimals,
+    measure_label,
+)
 
 # distance of an estimate from its prior's mean, in the prior's standard deviations, from which on they disagree
 PRIOR_DISAGREEMENT = 3.0

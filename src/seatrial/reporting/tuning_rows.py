@@ -106,7 +106,7 @@ def bound_row(b: PerformanceBound) -> tuple[str, str, str, str, str]:
 
 def component_row(c: Component, gains: dict[str, float]) -> tuple[str | Markup, ...]:
     """Return role, name, transfer function, gain and its value, source."""
-    value = exact(gains[c.gain], 5) if c.gain in gains else ""
+    value = exact(gains[c.gain], 5) if c.gain in gains else ""  # digits of the gains file
     letter = gain_symbol(c.gain) if c.gain else ""
     return c.role, c.name, Markup(inline(transfer_latex(c.num, c.den))), letter, value, c.source
 
@@ -161,7 +161,7 @@ def _polynomial_latex(coefficients: tuple[float, ...]) -> str:
 
 def _latex_number(value: float) -> str:
     """Up to five digits, without thin spaces; powers of ten in LaTeX."""
-    if value and not 1e-3 <= value < 1e5:
+    if value and not 1e-3 <= value < 1e5:  # sizes written without a power of ten, chosen
         mantissa, _, power = f"{value:.4e}".partition("e")
         return f"{mantissa.rstrip('0').rstrip('.')} \\cdot 10^{{{int(power)}}}"
     return f"{value:.5g}"

@@ -39,7 +39,7 @@ def percent(share: float) -> str:
     """Return a share in per cent: ``74.2 %``; less than 1 % with one digit, less than 0.05 % as next to 0."""
     if not math.isfinite(share):
         return "–"
-    if abs(share) < 5e-4:
+    if abs(share) < 5e-4:  # rounds to 0.0 %
         return "next to 0 %" if share else "0 %"
     return f"{fixed(100.0 * share, 1) if abs(share) >= 0.01 else significant(100.0 * share, 1)} %"
 
@@ -203,7 +203,7 @@ def settings(tuning: Tuning) -> list[tuple[str, str]]:
     ]
     return [
         ("Fronts", "; ".join(texts)),
-        ("Evaluations", exact(tuning.solution.evaluations, 12)),
+        ("Evaluations", exact(tuning.solution.evaluations, 12)),  # every digit of a count
         ("Seed", str(tuning.seed)),
         ("Elapsed", duration(tuning.elapsed_s)),
         ("Versions", ", ".join(f"{name} {version}" for name, version in tuning.versions.items())),

@@ -1,7 +1,21 @@
-"""What every conformance check shares: the error, and calls that must refuse or must not fail."""
+"""What the conformance checks share: the error, calls that must refuse, units."""
 
+import re
 from collections.abc import Callable
 from typing import Any
+
+# SI units by symbol (SI brochure 2019), and revolutions per second
+_SYMBOLS = ("1", "m", "s", "kg", "rad", "N", "Pa", "J", "W", "K", "A", "V", "rps")
+_FACTOR = re.compile(rf"(?:{'|'.join(_SYMBOLS)})(?:\^-?\d+(?:\.\d+)?)?")
+
+
+def is_unit(text: str) -> bool:
+    """Return whether a unit is a product of SI units, divided by one unit or by a product in parentheses."""
+    numerator, slash, denominator = text.partition("/")
+    if slash and denominator.startswith("(") and denominator.endswith(")"):
+        denominator = denominator[1:-1]
+    parts = [*numerator.split(" "), *(denominator.split(" ") if slash else [])]
+    return all(_FACTOR.fullmatch(part) for part in parts)
 
 
 class ConformanceError(AssertionError):

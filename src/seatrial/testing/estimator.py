@@ -48,9 +48,10 @@ def steering_model() -> Model:
     sheet = Sheet("steering", source="Norrbin 1963, nonlinear steering equation, solved for the yaw acceleration")
     r, psi = sheet.states("r psi")
     delta = sheet.input("delta")
+    # coefficients of a ship that is straight-line stable; chosen
     damping = sheet.parameter("a_r", -0.3, "1/s", "damping", free=True)
     cubic = sheet.parameter("a_rrr", -8.0, "s/rad^2", "cubic damping", free=True)
-    rudder = sheet.parameter("a_delta", 0.12, "1/s^2", "rudder", free=True)
+    rudder = sheet.parameter("a_delta", 0.12, "1/s^2", "rudder", free=True)  # of a model of some metres; chosen
     sheet.rate(r, damping * r + cubic * r**3 + rudder * delta)
     sheet.rate(psi, r)
     return sheet.model()

@@ -5,9 +5,8 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import Array
 from seatrial.data.folder.model_file import ModelFile, model_text, parse_model
-from seatrial.testing.conformance import require
+from seatrial.testing.conformance import is_unit, require
 from seatrial.testing.model_points import MirrorLaw, Point, random_points
-from seatrial.testing.units import is_unit
 
 # dimensionless: by what share of the largest entry of its row an exact derivative may differ from a central difference;
 # ours, a hundred times the rounding error of such a difference

@@ -11,7 +11,7 @@ from seatrial.core.values import NOTATION, Array
 # standard deviation of the states and inputs at which a model is evaluated, SI, by symbol; ours: a ship model of some
 # metres; every other state 1 and every other input 0.4 in its SI unit
 _SPREAD = {"omega_e": 2.0, "F3": 1e5, "M5": 1e6, "u": 1.0, "v": 0.3, "r": 0.1, "n": 8.0, "wind_speed": 3.0, "v_j": 2.0}
-_STATE_SPREAD, _INPUT_SPREAD = 1.0, 0.4
+_STATE_SPREAD, _INPUT_SPREAD = 1.0, 0.4  # SI of any other state and input; chosen
 
 
 @dataclass(frozen=True)

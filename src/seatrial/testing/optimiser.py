@@ -12,11 +12,9 @@ OptimiserFactory = Callable[[Box, np.random.Generator], Optimiser]
 
 # a box of unequal sides off the origin, dimensionless; the minimum lies at 0.3 of each side
 _BOX = Box(np.array([-1.0, 10.0, 0.0]), np.array([3.0, 11.0, 0.02]))
-_MINIMUM = _BOX.scaled(np.full(3, 0.3))
+_MINIMUM = _BOX.scaled(np.full(3, 0.3))  # dimensionless; chosen, off the middle
 _MOST_EVALUATIONS = 200_000  # dimensionless; ours, far beyond what a sphere of three unknowns needs
-_LEAST_IMPROVEMENT = (
-    0.1  # final over first best fitness, dimensionless; ours, a random search of 2000 points does better
-)
+_LEAST_IMPROVEMENT = 0.1  # final over first best fitness; chosen: a random search of 2000 points does better
 _ROUNDING = 1e-12  # relative; fitness evaluated in another order
 
 

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from seatrial.core.figures.chart import Chart, LegendEntry
+from seatrial.core.figures.chart import Axis, Chart, LegendEntry, Panel, Region
 from seatrial.core.figures.marks import Line, Marker, Shape, Stroke
-from seatrial.core.figures.panel import Axis, Panel, Region
 
 LINE = Line(np.arange(2.0), np.arange(2.0), Stroke("#000000", 1.0))
 PANEL = Panel(Region(64.0, 0.0, 400.0, 100.0), Axis((0.0, 1.0), "x"), Axis((0.0, 1.0)), (LINE,))

@@ -5,10 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from seatrial.core.figures.chart import Chart, LegendEntry
+from seatrial.core.figures.chart import Axis, Chart, LegendEntry, Panel, Region, row_axis
 from seatrial.core.figures.marks import Area, Line, Marker, Points, Rectangle, Rule, Shape, Stroke, Text
 from seatrial.core.figures.matplotlib_axes import matplotlib_figure
-from seatrial.core.figures.panel import Axis, Panel, Region, row_axis
 
 STROKE = Stroke("#123456", 1.0, "5 2")
 TWO = np.array([1.0, 2.0])

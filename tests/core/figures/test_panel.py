@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatrial.core.figures.panel import WIDTH, Axis, Panel, Region, row_axis, tiles
+from seatrial.core.figures.chart import WIDTH, Axis, Panel, Region, row_axis, tiles
 
 BOX = Region(10.0, 20.0, 100.0, 50.0)
 

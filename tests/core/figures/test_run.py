@@ -3,8 +3,8 @@
 import numpy as np
 
 from seatrial.core.figures.bands import BAND
+from seatrial.core.figures.chart import Region
 from seatrial.core.figures.marks import Area, Stroke
-from seatrial.core.figures.panel import Region
 from seatrial.core.figures.run import ChannelPanel, TimeCurve, channel_panel, run_chart
 from seatrial.core.figures.tracks import Track
 

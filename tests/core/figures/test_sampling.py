@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from seatrial.core.figures.sampling import decimated, thinned
+from seatrial.core.figures.ticks import decimated, thinned
 
 
 def test_decimation_keeps_extremes_order_and_gaps(rng: np.random.Generator) -> None:

@@ -5,9 +5,8 @@ import re
 import numpy as np
 import pytest
 
-from seatrial.core.figures.chart import Chart, LegendEntry
+from seatrial.core.figures.chart import Axis, Chart, LegendEntry, Panel, Region
 from seatrial.core.figures.marks import Area, Line, Mark, Marker, Points, Rectangle, Rule, Shape, Stroke, Text
-from seatrial.core.figures.panel import Axis, Panel, Region
 from seatrial.core.figures.svg_text import svg
 
 STROKE = Stroke("#123456", 1.0, "5 2")

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from seatrial.core.figures.chart import Region
 from seatrial.core.figures.marks import Area, Stroke
-from seatrial.core.figures.panel import Region
 from seatrial.core.figures.tracks import Track, extents, hull_outline, is_slender, strip_height, track_panel
 
 STROKE = Stroke("#000000", 1.0)

@@ -7,7 +7,7 @@ import pytest
 from tests.reporting.fabricated_design import fabricated_design
 
 from seatrial.core.results import Design, TrialLimits
-from seatrial.core.results.design_ranking import (
+from seatrial.core.results.design import (
     best_baseline,
     count_outside_limits,
     criterion_error,

@@ -12,7 +12,7 @@ from tests.estimation.identify.conftest import WriteTrial
 
 from seatrial.core.equations import Model
 from seatrial.core.results import Baseline, Fit, Offset
-from seatrial.core.results.baseline import NO_COMPARISON
+from seatrial.core.results.prediction import NO_COMPARISON
 from seatrial.core.values import InputError, Record
 from seatrial.data.trial import load_trial
 from seatrial.estimation.identify import identify

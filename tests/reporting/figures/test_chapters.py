@@ -13,8 +13,8 @@ from tests.reporting.test_roll_chapter import KNOWN
 from seatrial.core.figures.marks import Area, Line, Points, Rule, Text
 from seatrial.core.results import Bars, Curve, Figure, Fit, Matrix, TrialLimits
 from seatrial.reporting.figures.designed_manoeuvre import drift_angle, order_chart, track_chart
+from seatrial.reporting.figures.directions import profile_chart
 from seatrial.reporting.figures.paired_differences import difference_chart
-from seatrial.reporting.figures.profile_likelihoods import profile_chart
 from seatrial.reporting.figures.record_charts import channel_overview, track_overview
 from seatrial.reporting.figures.residual_charts import residual_chart
 from seatrial.reporting.figures.roll_damping import roll_damping_chart

@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 from tests.reporting.fabricated_tuning import fabricated_fin
 
+from seatrial.core.figures.chart import Panel
 from seatrial.core.figures.marks import Line, Rectangle, Text
-from seatrial.core.figures.panel import Panel
 from seatrial.core.results.tuning import OperatingPoint
 from seatrial.reporting.figures.schedule_maps import schedule_chart
 

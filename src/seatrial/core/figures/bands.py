@@ -3,11 +3,11 @@
 import numpy as np
 
 from seatrial.core.figures.marks import Area, Array
-from seatrial.core.figures.sampling import thinned
+from seatrial.core.figures.ticks import thinned
 
 # blue of the model, transparent to 19 %
 BAND = "#1b4f7230"
-POINTS = 120
+POINTS = 120  # px, chosen
 # how far axes follow a band beyond its curves, in spans of these
 REACH = 1.0
 

@@ -3,18 +3,17 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 
-from seatrial.core.figures.chart import Chart, LegendEntry
+from seatrial.core.figures.chart import WIDTH, Axis, Chart, LegendEntry, Panel, Region, row_axis
 from seatrial.core.figures.marks import ACCENT, GREY, SECOND, Anchor, Mark, Rectangle, Rule, Stroke, Text
-from seatrial.core.figures.panel import WIDTH, Axis, Panel, Region, row_axis
 from seatrial.core.figures.ticks import MARGIN
 from seatrial.core.text.numbers import DASH
 
 # dark and pale in turn, so that neighbours differ without colour
 SHADES = (ACCENT, "#a9bccb", SECOND, "#e6c4b8", "#5d676f", "#d8c48e", "#2e7d5b", GREY)
-HEIGHT, LEFT = 230.0, 64.0
+HEIGHT, LEFT = 230.0, 64.0  # px, chosen
 # share of a group's width that its bars take, and the width of the widest bar [px]
 GROUP, WIDEST_BAR = 0.82, 34.0
-BASE = Stroke("#8a9299", 0.9)
+BASE = Stroke("#8a9299", 0.9)  # px, chosen
 
 
 def bars_chart(
@@ -24,7 +23,7 @@ def bars_chart(
     """Return bars with a legend; a dash, 0 or ∞ stands where there is no bar. None without values."""
     if not labels or not series:
         return None
-    box = Region(LEFT, 6.0, WIDTH - LEFT - 8.0, HEIGHT)
+    box = Region(LEFT, 6.0, WIDTH - LEFT - 8.0, HEIGHT)  # px, chosen
     finite = [v for row in series.values() for v in row if v is not None and math.isfinite(v)]
     y = _log_axis(finite, unit) if is_logarithmic else _linear_axis(finite, unit)
     base = y.ends[0] if is_logarithmic else 0.0
@@ -45,7 +44,7 @@ def _linear_axis(values: Sequence[float], unit: str) -> Axis:
 def _log_axis(values: Sequence[float], unit: str) -> Axis:
     """Whole decades; a smallest bar that would have no height gets one."""
     powers = [math.log10(v) for v in values if v > 0.0] or [0.0]
-    low, high = math.floor(min(powers) - 0.1), math.ceil(max(powers) + 0.02)
+    low, high = math.floor(min(powers) - 0.1), math.ceil(max(powers) + 0.02)  # px, chosen
     return Axis((10.0**low, 10.0 ** max(high, low + 1)), unit, is_logarithmic=True)
 
 
@@ -58,7 +57,7 @@ def _series(row: Sequence[float | None], start: float, width: float, base: float
         if value is None or sign:
             yield Text(left + 0.5 * width, base, sign, Anchor.MIDDLE, 10.0, dy=-4.0)
         else:
-            yield Rectangle(left, base, left + 0.95 * width, value, shade)
+            yield Rectangle(left, base, left + 0.95 * width, value, shade)  # px, chosen
 
 
 def _sign_of_no_bar(value: float | None, *, is_logarithmic: bool) -> str:

@@ -4,9 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatrial.core.figures.chart import Chart
+from seatrial.core.figures.chart import WIDTH, Axis, Chart, Panel, Region, row_axis
 from seatrial.core.figures.marks import Anchor, Array, Mark, Rectangle, Text, text_width
-from seatrial.core.figures.panel import WIDTH, Axis, Panel, Region, row_axis
 from seatrial.core.text.numbers import exact, fixed, significant
 
 # numbers are left out from this number of columns on
@@ -32,7 +31,7 @@ def heat_map(title: str, rows: Sequence[str], columns: Sequence[str], values: Ar
     if values.size == 0:
         return None
     full = limit if limit is not None else float(np.abs(values[np.isfinite(values)]).max(initial=0.0)) or 1.0
-    left = max(text_width(name) for name in rows) + 12.0
+    left = max(text_width(name) for name in rows) + 12.0  # px, chosen
     side = float(np.clip((WIDTH - left - KEY_WIDTH) / len(columns), SMALLEST, LARGEST))
     box = Region(left, 0.0, side * len(columns), side * len(rows))
     inside = np.tri(*values.shape, dtype=bool) if is_lower else np.ones(values.shape, dtype=bool)
@@ -47,7 +46,7 @@ def heat_map(title: str, rows: Sequence[str], columns: Sequence[str], values: Ar
         return Chart(title, (panel,), width=box.right + 4.0)
     return Chart(
         title,
-        (panel, colour_key(box.right + 14.0, full, is_signed=bool(np.any(values < 0.0)))),
+        (panel, colour_key(box.right + 14.0, full, is_signed=bool(np.any(values < 0.0)))),  # px, chosen
         width=box.right + KEY_WIDTH,
     )
 
@@ -56,7 +55,7 @@ def colour(value: float, limit: float) -> str:
     """Return the fill of a cell."""
     if not np.isfinite(value):
         return _EMPTY
-    red, green, blue = (255 - strength(value, limit) * (255 - (_RED if value > 0 else _BLUE))).astype(int)
+    red, green, blue = (255 - strength(value, limit) * (255 - (_RED if value > 0 else _BLUE))).astype(int)  # px, chosen
     return f"#{red:02x}{green:02x}{blue:02x}"
 
 
@@ -80,6 +79,7 @@ def _cell(row: int, column: int, value: float, limit: float, side: float, *, has
     if not has_number or not np.isfinite(value):
         return [square]
     words = cell_text(value, limit)
+    # px, chosen
     return [square, Text(column, row, words, Anchor.MIDDLE, 0.3 * side, text_colour(value, limit), dx=-0.5, dy=3.0)]
 
 

@@ -59,7 +59,7 @@ class Marker:
     size: float
     edge: str
     fill: str = "none"
-    edge_width: float = 1.2
+    edge_width: float = 1.2  # px, chosen
 
 
 @dataclass(frozen=True)

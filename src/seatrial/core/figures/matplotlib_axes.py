@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from seatrial.core.figures.chart import Chart, LegendPosition
+from seatrial.core.figures.chart import Chart, LegendPosition, Panel
 from seatrial.core.figures.marks import (
     TEXT_SIZE,
     Area,
@@ -19,7 +19,6 @@ from seatrial.core.figures.marks import (
     Stroke,
     Text,
 )
-from seatrial.core.figures.panel import Panel
 from seatrial.core.figures.svg_text import AXIS, GRID
 
 if TYPE_CHECKING:
@@ -76,7 +75,7 @@ def _draw_panel(axes: "Axes", panel: Panel) -> None:
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
     axes.spines[["left", "bottom"]].set(color=AXIS.colour, linewidth=AXIS.width * POINT, visible=panel.has_lines)
-    axes.set_title(panel.title, loc="left", fontsize=TEXT_SIZE * POINT, pad=5.0)
+    axes.set_title(panel.title, loc="left", fontsize=TEXT_SIZE * POINT, pad=5.0)  # px, chosen
     if not panel.has_frame:
         axes.set_axis_off()
 
@@ -117,12 +116,13 @@ def _draw_mark(axes: "Axes", mark: Mark) -> None:
 
 def _draw_legend_entry(figure: "Figure", position: LegendPosition, width: float, height: float) -> None:
     entry, left, right = position.entry, position.left / width, (position.left + position.entry.sample_width) / width
-    y = np.full(2, 1.0 - (position.top + 6.0) / height)
+    y = np.full(2, 1.0 - (position.top + 6.0) / height)  # px, chosen
     if isinstance(entry.sample, Stroke):
-        sample = _line(np.array([left, right - 6.0 / width]), y, entry.sample)
+        sample = _line(np.array([left, right - 6.0 / width]), y, entry.sample)  # px, chosen
     else:
+        # px, chosen
         marker = entry.sample if isinstance(entry.sample, Marker) else Marker(Shape.SQUARE, 5.5, "none", entry.sample)
-        sample = _markers(np.array([left + 6.0 / width]), y[:1], marker)
+        sample = _markers(np.array([left + 6.0 / width]), y[:1], marker)  # px, chosen
     figure.add_artist(sample)
     figure.text(right, y[0], entry.words, fontsize=TEXT_SIZE * POINT, va="center_baseline")
 

@@ -3,20 +3,21 @@
 import math
 from collections.abc import Sequence
 
+from seatrial.core.figures.chart import WIDTH, Axis, Panel, Region, row_axis
 from seatrial.core.figures.marks import GREY, Anchor, Mark, Text, text_width
-from seatrial.core.figures.panel import WIDTH, Axis, Panel, Region, row_axis
 from seatrial.core.figures.ticks import Tick, whole_decades
 from seatrial.core.text.numbers import exact
 
 # height of a row [px]; share of the width that names take at most
 ROW, MAX_NAME_SHARE = 18.0, 0.45
-SMALL = 10.5
+SMALL = 10.5  # px, chosen
 
 
+# px, chosen
 def row_panel(names: Sequence[str], x: Axis, marks: Sequence[Mark], *, top: float = 22.0, right: float = 24.0,
               has_grid: bool = False) -> Panel:  # fmt: skip
     """Return a panel whose row k lies at y = k, the first on top; `top` and `right` px are free beside it."""
-    left = min(MAX_NAME_SHARE * WIDTH, max(text_width(name, SMALL) for name in names) + 14.0)
+    left = min(MAX_NAME_SHARE * WIDTH, max(text_width(name, SMALL) for name in names) + 14.0)  # px, chosen
     box = Region(left, top, WIDTH - left - right, ROW * len(names))
     return Panel(box, x, row_axis(names, has_grid=has_grid), tuple(marks), is_y_down=True)
 

@@ -5,16 +5,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from seatrial.core.figures.bands import band, visible_edges
-from seatrial.core.figures.chart import Chart, LegendEntry
+from seatrial.core.figures.chart import WIDTH, Axis, Chart, LegendEntry, Panel, Region, tiles
 from seatrial.core.figures.marks import Array, Line, Mark, Stroke
-from seatrial.core.figures.panel import WIDTH, Axis, Panel, Region, tiles
-from seatrial.core.figures.sampling import decimated
-from seatrial.core.figures.ticks import span
+from seatrial.core.figures.ticks import decimated, span
 from seatrial.core.figures.tracks import Track, is_slender, strip_height, track_panel
 
 # height of a channel's panel and the gap between two [px]
 HEIGHT, GAP = 96.0, 26.0
-LEFT = 56.0
+LEFT = 56.0  # px, chosen
 # width of the track's column [px], and the least height of a strip
 TRACK_WIDTH, MIN_STRIP = WIDTH / 3 + 20.0, 60.0
 
@@ -46,14 +44,14 @@ def run_chart(title: str, channels: Sequence[ChannelPanel], tracks: Sequence[Tra
         tracks: with positions; empty where there are none.
         length: of the ship [m]; 0: no hulls along the track.
     """
-    panels, left, top, columns, height = [], 0.0, 6.0, 3, HEIGHT
+    panels, left, top, columns, height = [], 0.0, 6.0, 3, HEIGHT  # px, chosen
     if tracks and is_slender(tracks):
-        width = WIDTH - LEFT - 8.0
+        width = WIDTH - LEFT - 8.0  # px, chosen
         box = Region(LEFT, top, width, max(MIN_STRIP, strip_height(tracks, width, length)))
-        panels.append(track_panel(tracks, length, box, x_ticks=9, y_ticks=3))
-        top = box.bottom + panels[0].depth() + 12.0
+        panels.append(track_panel(tracks, length, box, x_ticks=9, y_ticks=3))  # ticks, chosen
+        top = box.bottom + panels[0].depth() + 12.0  # px, chosen
     elif tracks:
-        side = TRACK_WIDTH - LEFT - 8.0
+        side = TRACK_WIDTH - LEFT - 8.0  # px, chosen
         panels.append(track_panel(tracks, length, Region(LEFT, top, side, side)))
         left, columns = TRACK_WIDTH, 2
         height = max(HEIGHT - 10.0, side / max(math.ceil(len(channels) / columns), 1) - GAP + 4.0)
@@ -63,6 +61,7 @@ def run_chart(title: str, channels: Sequence[ChannelPanel], tracks: Sequence[Tra
     return Chart(title, tuple(panels), tuple(legend))
 
 
+# ticks, chosen
 def channel_panel(channel: ChannelPanel, box: Region, *, is_last: bool = True, x_ticks: int = 5, y_ticks: int = 4,
                   points: int = 400) -> Panel:  # fmt: skip
     """Return one channel over time; the last of a column names the time."""

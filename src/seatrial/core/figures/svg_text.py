@@ -5,7 +5,7 @@ import html
 import numpy as np
 from numpy.typing import NDArray
 
-from seatrial.core.figures.chart import Chart, LegendPosition
+from seatrial.core.figures.chart import Chart, LegendPosition, Panel, Region
 from seatrial.core.figures.marks import (
     INK,
     TEXT_SIZE,
@@ -22,10 +22,9 @@ from seatrial.core.figures.marks import (
     Stroke,
     Text,
 )
-from seatrial.core.figures.panel import Panel, Region
 
 FONT = "Arial, Helvetica, 'Liberation Sans', 'DejaVu Sans', sans-serif"
-GRID, AXIS = Stroke("#ececec", 0.8), Stroke("#8a9299", 0.8)
+GRID, AXIS = Stroke("#ececec", 0.8), Stroke("#8a9299", 0.8)  # px, chosen
 # a point this far outside the panel still belongs to it [px]
 EDGE = 0.5
 # corners of markers relative to their size, closed
@@ -54,13 +53,13 @@ def svg(chart: Chart | None) -> str:
 
 
 def _legend_entry(position: LegendPosition) -> str:
-    sample, x, y = position.entry.sample, position.left, position.top + 6.0
+    sample, x, y = position.entry.sample, position.left, position.top + 6.0  # px, chosen
     if isinstance(sample, Stroke):
-        shape = _segment(x, y, x + position.entry.sample_width - 6.0, y, sample)
+        shape = _segment(x, y, x + position.entry.sample_width - 6.0, y, sample)  # px, chosen
     elif isinstance(sample, Marker):
-        shape = _markers(np.array([x + 6.0]), np.array([y]), sample)
+        shape = _markers(np.array([x + 6.0]), np.array([y]), sample)  # px, chosen
     else:
-        shape = _rectangle(x, y - 5.5, 11.0, 11.0, sample)
+        shape = _rectangle(x, y - 5.5, 11.0, 11.0, sample)  # px, chosen
     return shape + _text(x + position.entry.sample_width, y + 4.0, position.entry.words)
 
 
@@ -77,12 +76,13 @@ def _axes(panel: Panel) -> str:
         x = float(panel.px(tick.value))
         parts.append(_segment(x, box.top, x, box.bottom, GRID) if panel.x.has_grid else "")
         if panel.x.has_labels and is_turned:
-            parts.append(_text(x + middle, box.bottom + 6.0, tick.text, Anchor.END, size, turn=-90.0))
+            parts.append(_text(x + middle, box.bottom + 6.0, tick.text, Anchor.END, size, turn=-90.0))  # px, chosen
         elif panel.x.has_labels:
             parts.append(_text(x, box.bottom + size + 3.0, tick.text, Anchor.MIDDLE, size))
     for tick in panel.y.tick_list():
         y = float(panel.py(tick.value))
         parts.append(_segment(box.left, y, box.right, y, GRID) if panel.y.has_grid else "")
+        # px, chosen
         parts.append(_text(box.left - 5.0, y + middle, tick.text, Anchor.END, size) if panel.y.has_labels else "")
     if panel.has_lines:
         parts.append(_segment(box.left, box.top, box.left, box.bottom, AXIS))
@@ -90,9 +90,10 @@ def _axes(panel: Panel) -> str:
     if panel.x.name:
         parts.append(_text(box.left + box.width / 2, box.bottom + panel.depth() - 1.0, panel.x.name, Anchor.MIDDLE))
     if panel.y.name:
+        # px, chosen
         parts.append(_text(box.left - 41.0, box.top + box.height / 2, panel.y.name, Anchor.MIDDLE, turn=-90.0))
     if panel.title:
-        parts.append(_text(box.left, box.top - 7.0, panel.title))
+        parts.append(_text(box.left, box.top - 7.0, panel.title))  # px, chosen
     return "".join(parts)
 
 

@@ -7,10 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.core.figures.bands import track_envelope
+from seatrial.core.figures.chart import Axis, Panel, Region
 from seatrial.core.figures.marks import Area, Array, Line, Mark, Stroke
-from seatrial.core.figures.panel import Axis, Panel, Region
-from seatrial.core.figures.sampling import thinned
-from seatrial.core.figures.ticks import span
+from seatrial.core.figures.ticks import span, thinned
 
 # hulls along a track; ratio of extents from which a track is long and narrow
 HULLS, SLENDER = 7, 2.5
@@ -63,8 +62,8 @@ def track_panel(
     *,
     room: Sequence[Track] = (),
     has_names: bool = True,
-    x_ticks: int = 5,
-    y_ticks: int = 5,
+    x_ticks: int = 5,  # ticks, chosen
+    y_ticks: int = 5,  # ticks, chosen
     title: str = "",
 ) -> Panel:
     """Return a panel at equal scales: north up, or to the right (east down) where the tracks are long and northerly.
@@ -114,7 +113,7 @@ def _marks(track: Track, length: float, *, is_rotated: bool) -> list[Mark]:
         marks += [envelope] if envelope else []
     marks.append(Line(*thinned(across, along), track.stroke))
     if track.heading is not None and length > 0.0:
-        edge = Stroke(track.stroke.colour if track.hull_fill == "none" else "#9a9a9a", 0.8)
+        edge = Stroke(track.stroke.colour if track.hull_fill == "none" else "#9a9a9a", 0.8)  # px, chosen
         for i in np.linspace(0, len(track.north) - 1, HULLS).astype(int):
             outline = hull_outline(float(track.north[i]), float(track.east[i]), float(track.heading[i]), length)
             x, y = outline.T if is_rotated else outline.T[::-1]

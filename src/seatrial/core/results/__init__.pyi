@@ -1,6 +1,6 @@
 """Results: fits, designs, tunings, studies and estimates on a stream, described field by field."""
 
-from seatrial.core.results.baseline import Baseline, OpenLoopScores
+from seatrial.core.results.prediction import Baseline, OpenLoopScores
 from seatrial.core.results.coefficients import CandidateModel, Coefficient, Method, Offset
 from seatrial.core.results.design import Actuator, Confirmation, Design, TimedOrder, TrialLimits
 from seatrial.core.results.fit import Fit
@@ -14,13 +14,13 @@ from seatrial.core.results.identifiability import (
     Stability,
     Symmetry,
 )
-from seatrial.core.results.manoeuvre_precision import ManoeuvrePrecision
-from seatrial.core.results.noise import Noise, NoiseModel, Residuals
+from seatrial.core.results.design import ManoeuvrePrecision
+from seatrial.core.results.coefficients import Noise, NoiseModel, Residuals
 from seatrial.core.results.prediction import Extrapolation, IntervalBasis, Measure, Prediction
-from seatrial.core.results.roll import IntervalEstimate, RollCharacteristics
-from seatrial.core.results.seakeeping import PointMotion, Seakeeping
+from seatrial.core.results.ship_motions import IntervalEstimate, RollCharacteristics
+from seatrial.core.results.ship_motions import PointMotion, Seakeeping
 from seatrial.core.results.study import Check, CheckStatus, Claim, Study, Verdict
-from seatrial.core.results.study_figures import Bars, Curve, Figure, Matrix, Table
+from seatrial.core.results.study import Bars, Curve, Figure, Matrix, Table
 from seatrial.core.results.summary import Summary
 from seatrial.numerics.optimise import Solution, Status
 

@@ -1,11 +1,12 @@
-"""What a fit says of each parameter, how it was estimated, and which models it was compared with."""
+"""What a fit says of each parameter and of the noise, how it was estimated, and which models it was compared with."""
 
 from dataclasses import dataclass, field
 from typing import Annotated
 
 from pydantic import Field, PlainSerializer, WithJsonSchema
 
-from seatrial.core.results.fields import ABSENT, Number
+from seatrial.core.results.fields import ABSENT, Number, StoredArray
+from seatrial.core.values import InputError
 
 
 def _absent_unless_given(value: float | None) -> object:
@@ -77,3 +78,73 @@ class CandidateModel:
         Number | None,
         Field(description="rms over complete runs left out, degrees; null: no ship that rolls about rest"),
     ] = None
+
+
+STORED_LEVEL = 0.95
+"""Probability of the interval that a coefficient carries, 1."""
+
+
+def at_level(coefficient: Coefficient, level: float, degrees_of_freedom: float) -> tuple[float, float]:
+    """Return the ends of a coefficient's interval at a probability; NaN where an end is not known.
+
+    Each side of the 95 % interval is scaled by the ratio of the two-sided quantiles of Student's t.
+
+    Raises:
+        InputError: `level` is not between 0 and 1.
+    """
+    if not 0.0 < level < 1.0:
+        raise InputError(f"the level {level:g} of an interval is not between 0 and 1; give a probability such as 0.95")
+    value = coefficient.estimate
+    lower, upper = (float("nan") if end is None else end for end in (coefficient.lower, coefficient.upper))
+    if level == STORED_LEVEL:
+        return lower, upper
+    factor = _two_sided_quantile(level, degrees_of_freedom) / _two_sided_quantile(STORED_LEVEL, degrees_of_freedom)
+    return value - factor * (value - lower), value + factor * (upper - value)
+
+
+def _two_sided_quantile(level: float, degrees_of_freedom: float) -> float:
+    from scipy.special import ndtri, stdtrit  # here, as `check` imports this module and has no use for them
+
+    probability = 0.5 * (1.0 + level)
+    return float(ndtri(probability) if degrees_of_freedom == float("inf") else stdtrit(degrees_of_freedom, probability))
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Estimated noise of one channel and the colour of its residuals."""
+
+    channel: str
+    unit: Annotated[str, Field(description="SI")]
+    standard_deviation: Annotated[Number, Field(description="in `unit`")]
+    correlation_time: Annotated[Number, Field(description="s, integral scale of the residuals' autocorrelation")]
+    whiteness_p: Annotated[
+        Number, Field(description="p-value of a portmanteau test (Ljung & Box 1978) that the residuals are white")
+    ]
+
+
+@dataclass(frozen=True)
+class NoiseModel:
+    """Process noise in the states and measurement noise in the channels, as the criterion of the fit allows for."""
+
+    method: Annotated[str, Field(description="output error or prediction error, the criterion of the fit")]
+    whiteness_p: Annotated[
+        Number, Field(description="smallest p-value over the channels that the residuals (innovations) are white")
+    ]
+    process: Annotated[
+        dict[str, Number],
+        Field(description="state -> intensity, SI unit of the state over the root of a second; 0: none needed"),
+    ]
+    measurement: Annotated[dict[str, Number], Field(description="channel -> standard deviation, SI")]
+    text: Annotated[str, Field(description="why this criterion")] = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Residuals:
+    """Residuals of one channel of the training runs, in order, for whiteness plots."""
+
+    channel: str
+    rate: Annotated[float, Field(description="Hz")]
+    values: Annotated[StoredArray, Field(description="shape (n,), SI; runs one after another")]
+    autocorrelation: Annotated[
+        StoredArray, Field(description="shape (k,), lags 0, 1, ... at `rate`, averaged over segments")
+    ]

@@ -4,9 +4,11 @@ import math
 from dataclasses import dataclass, field
 from typing import Annotated
 
+import numpy as np
 from pydantic import Field, computed_field
 
 from seatrial.core.results.fields import (
+    ListedArray,
     NamedModel,
     Number,
     ReportedFinding,
@@ -14,11 +16,58 @@ from seatrial.core.results.fields import (
     StoredSolution,
     named_by,
 )
-from seatrial.core.results.manoeuvre_precision import ManoeuvrePrecision
 from seatrial.core.results.summary import Summarised, Summary
 from seatrial.core.values import Array
 
 BY_COEFFICIENT = named_by("coefficients")
+
+
+@dataclass(frozen=True, eq=False)
+class ManoeuvrePrecision:
+    """Standard errors, over the magnitude of the coefficients, that a manoeuvre of the trial's duration gives."""
+
+    name: Annotated[str, Field(description="designed, zigzag:20/20, prbs:35:10 and the like")]
+    relative_error: Annotated[
+        Array,
+        BY_COEFFICIENT,
+        Field(description="coefficient -> relative standard error, by the model's own values; shape (k,)"),
+    ]
+    sampled_relative_error: Annotated[
+        Array,
+        BY_COEFFICIENT,
+        Field(description="the same for each ship drawn from the prior, shape (draws, k); null where it diverges"),
+    ]
+    drift: Annotated[Number, Field(description="rad, largest drift angle of the ship as assumed")]
+    distance: Annotated[Number, Field(description="m, largest distance of the ship as assumed from the start")]
+    sampled_drift: Annotated[ListedArray, Field(description="rad, the same for each drawn ship, shape (draws,)")]
+    sampled_distance: Annotated[ListedArray, Field(description="m, the same for each drawn ship, shape (draws,)")]
+    executed: Annotated[StoredRecord, Field(description="simulated with the model's own values at the sensors' rate")]
+
+    @computed_field(description="largest relative standard error")
+    @property
+    def worst(self) -> Number:
+        """Return the relative standard error of the least precise coefficient."""
+        return float(self.relative_error.max())
+
+    @computed_field(description="root mean square of the relative standard errors")
+    @property
+    def mean(self) -> Number:
+        """Return the root mean square of the relative standard errors."""
+        return float((self.relative_error**2).mean() ** 0.5)
+
+    @computed_field(description="largest over all drawn ships that do not diverge; null: none")
+    @property
+    def worst_sampled_error(self) -> Number:
+        """Return the largest relative standard error over all drawn ships that do not diverge; NaN without one."""
+        rows = self.sampled_relative_error
+        valid = rows[~np.isnan(rows).any(axis=1)] if rows.size else rows
+        return float(valid.max()) if valid.size else math.nan
+
+    @computed_field(description="number of drawn ships whose simulation diverges")
+    @property
+    def diverged(self) -> int:
+        """Return the number of drawn ships whose simulation diverges."""
+        return sum(bool(np.isnan(row).any()) for row in self.sampled_relative_error)
 
 
 @dataclass(frozen=True)
@@ -145,3 +194,53 @@ class Design(Summarised):
         }  # fmt: skip
         header = ("manoeuvre", "worst error [%]", "mean error [%]", "drift [deg]", "distance [m]")
         return Summary(f"Manoeuvre designed for {self.ship}, model {self.model.name}", header, rows, facts)
+
+
+ROUNDING = 1e-6
+"""Relative excess of a limit that counts as kept, 1: what the rounding of orders can add."""
+
+
+def criterion_error(manoeuvre: ManoeuvrePrecision, criterion: str) -> float:
+    """Return the relative standard error that the criterion ``worst`` or ``mean`` compares."""
+    return manoeuvre.worst if criterion == "worst" else manoeuvre.mean
+
+
+def sampled_criterion_errors(manoeuvre: ManoeuvrePrecision, criterion: str) -> list[float]:
+    """Return the same for each ship drawn from the prior; NaN where the simulation diverges."""
+    if criterion == "worst":
+        return [float(row.max()) for row in manoeuvre.sampled_relative_error]
+    return [float((row**2).mean() ** 0.5) for row in manoeuvre.sampled_relative_error]
+
+
+def ranked_baselines(design: Design) -> tuple[ManoeuvrePrecision, ...]:
+    """Return the standard manoeuvres: those within the limits before the others, the smaller error first."""
+    return tuple(
+        sorted(
+            design.baselines,
+            key=lambda m: (not is_within_limits(m, design.limits), criterion_error(m, design.criterion)),
+        )
+    )
+
+
+def best_baseline(design: Design) -> ManoeuvrePrecision | None:
+    """Return the best standard manoeuvre within the limits, or of all where none is; None where none was tried."""
+    return next(iter(ranked_baselines(design)), None)
+
+
+def is_within_limits(manoeuvre: ManoeuvrePrecision, limits: TrialLimits) -> bool:
+    """Return whether drift angle and distance stay within the limits for the ships that these bind."""
+    assumed_ship = manoeuvre.drift <= limits.drift * (1.0 + ROUNDING) and manoeuvre.distance <= limits.sea_room * (
+        1.0 + ROUNDING
+    )
+    return assumed_ship and not (limits.for_every_ship and count_outside_limits(manoeuvre, limits))
+
+
+def count_outside_limits(manoeuvre: ManoeuvrePrecision, limits: TrialLimits) -> int:
+    """Return the number of drawn ships that leave the limits."""
+    beyond = manoeuvre.sampled_drift > limits.drift * (1.0 + ROUNDING)
+    return int(np.sum(beyond | (manoeuvre.sampled_distance > limits.sea_room * (1.0 + ROUNDING))))
+
+
+def has_track(design: Design) -> bool:
+    """Return whether the ship changes its place, so that drift angle and distance mean something."""
+    return {"x0", "y0"} <= set(design.designed.executed.channels) and design.designed.distance > 0.0

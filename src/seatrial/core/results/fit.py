@@ -5,15 +5,20 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field, computed_field
 
-from seatrial.core.results.baseline import Baseline
-from seatrial.core.results.coefficients import CandidateModel, Coefficient, Method, Offset
+from seatrial.core.results.coefficients import (
+    CandidateModel,
+    Coefficient,
+    Method,
+    Noise,
+    NoiseModel,
+    Offset,
+    Residuals,
+    at_level,
+)
 from seatrial.core.results.fields import ListedArray, NamedModel, ReportedFinding, StoredRecord, StoredSolution
 from seatrial.core.results.identifiability import Identifiability
-from seatrial.core.results.intervals import at_level
-from seatrial.core.results.noise import Noise, NoiseModel, Residuals
-from seatrial.core.results.prediction import IntervalBasis, Prediction
-from seatrial.core.results.roll import RollCharacteristics
-from seatrial.core.results.seakeeping import Seakeeping
+from seatrial.core.results.prediction import Baseline, IntervalBasis, Prediction
+from seatrial.core.results.ship_motions import RollCharacteristics, Seakeeping
 from seatrial.core.results.summary import Summarised, Summary
 from seatrial.core.values import InputError, Record, Ship, spelling_hint
 
@@ -171,5 +176,5 @@ class Fit(Summarised):
         return Summary(f"Fit of model {self.model.name}", header, rows, facts)
 
 
-def _number(value: float | None, digits: int = 5) -> str:
+def _number(value: float | None, digits: int = 5) -> str:  # significant digits, chosen
     return "" if value is None else f"{value:.{digits}g}"

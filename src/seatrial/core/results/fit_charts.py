@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.figures.bands import BAND
-from seatrial.core.figures.chart import Chart, LegendEntry
+from seatrial.core.figures.chart import Axis, Chart, LegendEntry, tiles
 from seatrial.core.figures.marks import (
     ACCENT,
     GREY,
@@ -21,7 +21,6 @@ from seatrial.core.figures.marks import (
     Stroke,
     Text,
 )
-from seatrial.core.figures.panel import Axis, tiles
 from seatrial.core.figures.rows import row_panel
 from seatrial.core.figures.run import ChannelPanel, TimeCurve, channel_panel, run_chart
 from seatrial.core.results.fit import Coefficient, Prediction
@@ -31,13 +30,13 @@ from seatrial.core.values.record_chart import PLAIN, has_track, is_constant, rec
 
 # least and largest reach of the axis of coefficients [% of the estimate]
 NARROWEST, WIDEST = 1.0, 120.0
-MEASURED, SIMULATED = Stroke(GREY, 3.0), Stroke(ACCENT, 1.4, "5 2.5")
-MAX_PANELS = 9
+MEASURED, SIMULATED = Stroke(GREY, 3.0), Stroke(ACCENT, 1.4, "5 2.5")  # px, chosen
+MAX_PANELS = 9  # px, chosen
 # points of a curve over the whole width of a page
 FINE_POINTS = 1600
-_PRIOR, _INTERVAL, _ZERO = Stroke("#d3dae0", 9.0), Stroke(ACCENT, 2.2), Stroke("#999999", 0.9)
-_ESTIMATE = Marker(Shape.CIRCLE, 3.4, ACCENT, ACCENT, 0.0)
-_TRUTH = Marker(Shape.DIAMOND, 3.4, SECOND, "#ffffff", 1.4)
+_PRIOR, _INTERVAL, _ZERO = Stroke("#d3dae0", 9.0), Stroke(ACCENT, 2.2), Stroke("#999999", 0.9)  # px, chosen
+_ESTIMATE = Marker(Shape.CIRCLE, 3.4, ACCENT, ACCENT, 0.0)  # px, chosen
+_TRUTH = Marker(Shape.DIAMOND, 3.4, SECOND, "#ffffff", 1.4)  # px, chosen
 # quantile of the standard normal distribution for 95 %, two-sided
 NORMAL_95 = 1.96
 
@@ -70,6 +69,7 @@ def _coefficient_marks(c: Coefficient, row: int, reach: float) -> list[Mark]:
         marks.append(_interval(_deviation(c, c.prior_mean - spread), _deviation(c, c.prior_mean + spread), row, _PRIOR))
     lower, upper = _deviation(c, c.lower), _deviation(c, c.upper)
     marks.append(_interval(lower, upper, row, _INTERVAL))
+    # px, chosen
     marks += [Text(np.sign(end) * reach, row, sign, Anchor.MIDDLE, colour=ACCENT, dx=5.0 * np.sign(end), dy=4.0)
               for end, sign in ((lower, "‹"), (upper, "›")) if abs(end) > reach]  # fmt: skip
     row_array = np.array([float(row)])
@@ -145,15 +145,16 @@ def _single_channel(prediction: Prediction, name: str, title: str, legend: Seque
     measured, unit = prediction.measured, prediction.measured.channel(name).unit
     curves = (time_curve(measured, name, MEASURED), _simulated_curve(measured, prediction.simulated, name))
     error = TimeCurve(measured.time, curves[1].values - curves[0].values, PLAIN)
-    above, below = tiles(2, 1, 190.0, left=56.0, top=6.0)
+    above, below = tiles(2, 1, 190.0, left=56.0, top=6.0)  # px, chosen
+    # ticks, chosen
     panels = (
         channel_panel(
             ChannelPanel(channel_label(name, unit), curves), above, is_last=False, x_ticks=8, points=FINE_POINTS
         ),
         channel_panel(
             ChannelPanel(f"error {channel_label('', unit)}", (error,)),
-            replace(below, height=70.0),
-            x_ticks=8,
+            replace(below, height=70.0),  # px, chosen
+            x_ticks=8,  # ticks, chosen
             y_ticks=3,
             points=FINE_POINTS,
         ),

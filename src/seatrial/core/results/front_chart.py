@@ -5,9 +5,8 @@ from itertools import combinations
 
 import numpy as np
 
-from seatrial.core.figures.chart import Chart, LegendEntry
+from seatrial.core.figures.chart import WIDTH, Axis, Chart, LegendEntry, Panel, tiles
 from seatrial.core.figures.marks import ACCENT, INK, SECOND, Array, Marker, Points, Shape
-from seatrial.core.figures.panel import WIDTH, Axis, Panel, tiles
 from seatrial.core.figures.ticks import span
 from seatrial.core.results.tuning import Controller, Tuning
 from seatrial.core.text.numbers import raised
@@ -16,11 +15,12 @@ from seatrial.core.text.numbers import raised
 POINTS, COLUMNS = 400, 3
 # ratio of largest to smallest from which on an axis of positive numbers is logarithmic
 WIDE = 12.0
-CHOSEN = Marker(Shape.DIAMOND, 5.4, "#ffffff", SECOND)
+CHOSEN = Marker(Shape.DIAMOND, 5.4, "#ffffff", SECOND)  # px, chosen
+# px, chosen
 BASELINES = tuple(Marker(shape, 4.6, INK, "#ffffff") for shape in (Shape.SQUARE, Shape.UP, Shape.DOWN, Shape.RIGHT))
 FRONTS = (
-    Marker(Shape.CIRCLE, 1.9, ACCENT, ACCENT, 0.0), Marker(Shape.CROSS, 2.1, "#8e6c1f"),
-    Marker(Shape.UP, 2.4, "#2e7d5b"), Marker(Shape.SQUARE, 2.0, "#5b4a7a"),
+    Marker(Shape.CIRCLE, 1.9, ACCENT, ACCENT, 0.0), Marker(Shape.CROSS, 2.1, "#8e6c1f"),  # px, chosen
+    Marker(Shape.UP, 2.4, "#2e7d5b"), Marker(Shape.SQUARE, 2.0, "#5b4a7a"),  # px, chosen
 )  # fmt: skip
 _RADIANS = re.compile(r"rad(?:\^(\d+))?")
 

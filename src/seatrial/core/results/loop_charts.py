@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from seatrial.core.figures.chart import Chart, LegendEntry
+from seatrial.core.figures.chart import Axis, Chart, LegendEntry, Panel, Region, tiles
 from seatrial.core.figures.curves import STROKES
 from seatrial.core.figures.marks import (
     ACCENT,
@@ -23,12 +23,11 @@ from seatrial.core.figures.marks import (
     Stroke,
     Text,
 )
-from seatrial.core.figures.panel import Axis, Panel, Region, tiles
 from seatrial.core.results.tuning import Controller, Tuning
 
 # loops drawn at most
 MAX_LOOPS = 6
-CHOSEN, LIMIT = Stroke(ACCENT, 2.2), Stroke(SECOND, 1.1, "5 3")
+CHOSEN, LIMIT = Stroke(ACCENT, 2.2), Stroke(SECOND, 1.1, "5 3")  # px, chosen
 # dashes distinguish the baselines without colour
 BASELINE_STROKES = (Stroke(INK, 1.1, "6 2.5"), *STROKES[2:])
 # range of the open loop about -1: real and imaginary part; height of its panel [px]
@@ -58,7 +57,7 @@ def sensitivity_chart(tuning: Tuning) -> Chart | None:
                                         dx=5.0, dy=-4.0)]  # fmt: skip
     panels = []
     for box, title, sizes, extra in zip(
-        tiles(2, 2, 220.0, left=58.0, right=12.0),
+        tiles(2, 2, 220.0, left=58.0, right=12.0),  # px, chosen
         ("sensitivity |S|", "complementary sensitivity |T|"),
         (sensitivities, complementary),
         (limit if math.isfinite(allowed) else [], []),
@@ -75,15 +74,15 @@ def nyquist_chart(tuning: Tuning) -> Chart | None:
     if not styled:
         return None
     width = NYQUIST_HEIGHT * (REAL[1] - REAL[0]) / (IMAGINARY[1] - IMAGINARY[0])
-    marks: list[Mark] = [_circle(0.0, 1.0, Stroke(GREY, 0.9))]
+    marks: list[Mark] = [_circle(0.0, 1.0, Stroke(GREY, 0.9))]  # px, chosen
     radius = 1.0 / tuning.constraints.Ms
     if 0.0 < radius < math.inf:
         marks += [
             _circle(-1.0, radius, LIMIT, "#f9efec"),
-            Text(-1.0, radius, f"Ms = {tuning.constraints.Ms:.3g}", Anchor.MIDDLE, 10.0, SECOND, dy=-5.0),
+            Text(-1.0, radius, f"Ms = {tuning.constraints.Ms:.3g}", Anchor.MIDDLE, 10.0, SECOND, dy=-5.0),  # px, chosen
         ]
     marks += [Line(c.open_loop.real, c.open_loop.imag, stroke) for c, stroke in reversed(styled)]
-    marks += [Points(np.array([-1.0]), np.zeros(1), Marker(Shape.PLUS, 4.0, INK, edge_width=1.6)),
+    marks += [Points(np.array([-1.0]), np.zeros(1), Marker(Shape.PLUS, 4.0, INK, edge_width=1.6)),  # px, chosen
               Text(-1.0, 0.0, "−1", size=10.0, dx=6.0, dy=-5.0)]  # fmt: skip
     panel = Panel(Region(58.0, 4.0, width, NYQUIST_HEIGHT), Axis(REAL, "Re L", tick_count=7),
                   Axis(IMAGINARY, "Im L", tick_count=7), tuple(marks))  # fmt: skip
@@ -103,5 +102,5 @@ def _axis_top(sizes: list[Array], allowed: float) -> float:
 
 
 def _circle(centre: float, radius: float, stroke: Stroke, fill: str = "none") -> Area:
-    angle = np.linspace(0.0, 2.0 * math.pi, 121)
+    angle = np.linspace(0.0, 2.0 * math.pi, 121)  # points of a curve, chosen
     return Area(centre + radius * np.cos(angle), radius * np.sin(angle), fill, stroke)

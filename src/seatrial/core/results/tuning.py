@@ -1,33 +1,180 @@
-"""A tuned controller: the front, the choice and its reasons, its schedule. Plain values, SI."""
+"""A tuned controller: judged by linear theory and in simulation, the front, the choice, the schedule. SI."""
 
 import math
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING, Annotated
 
+import numpy as np
 from pydantic import Field, computed_field
 
-from seatrial.core.results.controller import (
-    Component,
-    Controller,
-    ControllerConstraints,
-    OperatingPoint,
-    ParetoFront,
-    PerformanceBound,
+from seatrial.core.results.fields import (
+    ComplexArray,
+    ListedArray,
+    Number,
+    ReportedFinding,
+    StoredArray,
+    StoredRecord,
+    StoredSolution,
+    named_by,
 )
-from seatrial.core.results.fields import ReportedFinding, StoredSolution
 from seatrial.core.results.gain_search import GainSearch
-from seatrial.core.results.seaway_simulation import ManoeuvreResponse, PairedDifference, SeawaySimulation
 from seatrial.core.results.summary import Summarised, Summary
-from seatrial.core.values import InputError
+from seatrial.core.values import Array, InputError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = [
-    "Component", "Controller", "ControllerConstraints", "ManoeuvreResponse", "OperatingPoint", "PairedDifference",
-    "ParetoFront", "PerformanceBound", "SeawaySimulation", "Tuning", "TuningMethod",
-]  # fmt: skip
+
+@dataclass(frozen=True)
+class Component:
+    """One block of the loop: num(s) / den(s), coefficients of s [rad/s], highest power first."""
+
+    role: Annotated[str, Field(description="sensor, term, filter, servo, plant, disturbance")]
+    name: str
+    num: tuple[float, ...]
+    den: tuple[float, ...]
+    gain: Annotated[str, Field(description="name of the gain that multiplies a term; empty for other blocks")] = ""
+    source: str = ""
+
+
+@dataclass(frozen=True)
+class ControllerConstraints:
+    """What every controller must keep."""
+
+    Ms: Annotated[Number, Field(description="largest Ms")] = 2.0
+    saturation: Annotated[
+        Number, Field(description="largest share of actuator amplitudes beyond its limit (Rayleigh)")
+    ] = 0.2  # dimensionless, chosen
+    # dimensionless, chosen
+    rate_saturation: Annotated[Number, Field(description="largest share of rate amplitudes beyond its rate")] = 0.2
+    limit: Annotated[Number, Field(description="of the actuator, SI; null: none (infinite)")] = float("inf")
+    rate: Annotated[Number, Field(description="of the actuator, SI per second; null: none (infinite)")] = float("inf")
+    stall: Annotated[Number, Field(description="of the actuator, SI; null: none (infinite)")] = float("inf")
+
+
+@dataclass(frozen=True, eq=False)
+class Controller:
+    """One set of gains and what linear theory says of it in the seas of the task."""
+
+    name: Annotated[str, Field(description="chosen, given, fitted baseline and the like")]
+    gains: Annotated[dict[str, float], Field(description="name -> value")]
+    objectives: Annotated[Array, named_by("objectives"), Field(description="objective -> value, shape (m,)")]
+    rms: Annotated[
+        dict[str, Number], Field(description="of output, actuator, actuator_rate, SI, mean square over the seas")
+    ]
+    reduction: Annotated[
+        Number,
+        Field(description="of the output's rms against no control, 0 to 1; null: nothing to compare with"),
+    ]
+    Ms: Annotated[Number, Field(description="Ms, the largest |S|; null: unstable")]
+    gain_margin: Annotated[Number, Field(description="factor by which the loop gain may grow; null: any")]
+    phase_margin: Annotated[Number, Field(description="rad; null: the loop gain never crosses one")]
+    delay_margin: Annotated[Number, Field(description="s of dead time until the loop is unstable; null: any")]
+    damping: Annotated[Number, Field(description="least damping ratio of a closed-loop pole")]
+    saturation: Annotated[
+        Number, Field(description="share of actuator amplitudes beyond the limit, worst of the seas, 0 to 1")
+    ]
+    rate_saturation: Annotated[Number, Field(description="the same of rate amplitudes")]
+    violated: Annotated[tuple[str, ...], Field(description="constraints not kept, a phrase each; empty: feasible")]
+    omega: Annotated[ListedArray, Field(description="rad/s at which the open loop is given, shape (n,)")]
+    open_loop: Annotated[
+        ComplexArray, Field(description="L there, real and imaginary part; the sensitivity is 1 / (1 + L)")
+    ]
+
+
+@dataclass(frozen=True, eq=False)
+class ParetoFront:
+    """Controllers of which none is better than another in all objectives; a row of each array for each."""
+
+    name: Annotated[str, Field(description="three gains and the like")]
+    gain_names: Annotated[tuple[str, ...], Field(description="columns of `gains`")]
+    gains: Annotated[ListedArray, Field(description="shape (n, g)")]
+    objectives: Annotated[ListedArray, Field(description="shape (n, m), columns in the order of the objectives")]
+    Ms: Annotated[ListedArray, Field(description="shape (n,)")]
+    evaluations: Annotated[int, Field(description="number of controllers evaluated")]
+    hypervolume: Annotated[Number, Field(description="of the front over that of a brute-force grid; null: no grid")] = (
+        float("nan")
+    )
+    cpu_s: Annotated[Number, Field(description="CPU time of the search; null: not measured")] = float("nan")
+
+
+@dataclass(frozen=True, eq=False)
+class OperatingPoint:
+    """One condition of the schedule; a cost is the output's rms over that without control."""
+
+    U: Annotated[float, Field(description="m/s")]
+    beta: Annotated[float, Field(description="rad, 0: following sea, pi: head sea")]
+    height: Annotated[float, Field(description="m, significant wave height")]
+    gains: dict[str, float]
+    cost: Number
+    Ms: Number
+    saturation: Number
+    baseline_costs: Annotated[dict[str, Number], Field(description="name of other gains -> their cost there")]
+    is_feasible: bool
+
+
+@dataclass(frozen=True)
+class PerformanceBound:
+    """The least output variance that a linear controller of its kind reaches."""
+
+    name: str
+    ratio: Annotated[Number, Field(description="output variance over that of the chosen controller")]
+    conditions: Annotated[str, Field(description="what is held equal (actuator rate energy), the spectrum and the Ms")]
+    note: Annotated[str, Field(description="what it means")]
+
+
+@dataclass(frozen=True, eq=False)
+class SeawaySimulation:
+    """One controller over seeds of the sea: reductions of the output's rms, 0 to 1, shape (seeds,)."""
+
+    name: str
+    linear: Annotated[ListedArray, Field(description="without limits")]
+    limited: Annotated[ListedArray, Field(description="with limits of angle and rate")]
+    stalled: Annotated[ListedArray, Field(description="with stall, too")]
+    record: Annotated[
+        StoredRecord,
+        Field(
+            description="first seed, all limits on: output, actuator, disturbance, and the output of the same sea "
+            "without control, its name with _uncontrolled"
+        ),
+    ]
+
+    @computed_field(description="reduction lost to limits of angle and rate, mean over the seeds")
+    @property
+    def saturation_loss(self) -> Number:
+        """Return the reduction lost to limits of angle and rate, mean over the seeds."""
+        return float(np.mean(self.linear - self.limited))
+
+
+@dataclass(frozen=True)
+class PairedDifference:
+    """Reduction of the chosen controller minus that of another on the same seas, with its 95 % interval."""
+
+    baseline: Annotated[str, Field(description="name of the other controller")]
+    stage: Annotated[str, Field(description="linear, limited or stalled")]
+    mean: Number
+    lower: Number
+    upper: Number
+    seeds: int
+
+
+@dataclass(frozen=True, eq=False)
+class ManoeuvreResponse:
+    """One controller through a demand with the nonlinear model: a course or speed change, a zigzag."""
+
+    name: str
+    controller: Annotated[str, Field(description="name of the controller")]
+    record: Annotated[StoredRecord, Field(description="demand and response")]
+    output: Annotated[str, Field(description="symbol of the output")]
+    overshoot: Annotated[Number, Field(description="share of the change")]
+    settling: Annotated[Number, Field(description="s to stay within 5 %; null: never")]
+    stable_draws: Annotated[int, Field(description="ships drawn from the fit's covariance with a stable loop")]
+    draws: Annotated[int, Field(description="ships drawn from the fit's covariance")]
+    worst_overshoot: Annotated[Number, Field(description="over the ships drawn; null: none drawn")]
+    sampled_outputs: Annotated[
+        StoredArray, Field(description="outputs of some of the ships drawn, on the record's time, shape (k, n)")
+    ]
 
 
 class TuningMethod(StrEnum):

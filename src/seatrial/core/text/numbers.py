@@ -56,7 +56,7 @@ def rounded(value: float) -> str:
     return fixed(value / 10.0**power, 1) + power_of_ten(power)
 
 
-def exact(value: float | None, digits: int = 6) -> str:
+def exact(value: float | None, digits: int = 6) -> str:  # more digits than anybody measures, chosen
     """Return a given value as somebody wrote it: up to `digits` significant digits, no trailing zeros."""
     text = significant(value, digits)
     mantissa, times, power = text.partition(THIN_SPACE + "×")
@@ -130,16 +130,15 @@ def power_of_ten(power: int) -> str:
 
 def duration(seconds: float) -> str:
     """Return seconds, from two minutes on minutes and seconds, then hours and minutes, then days and hours."""
-    if seconds < 120:
+    if seconds < 120:  # s, chosen: two minutes
         return f"{significant(seconds, 3)} s"
-    minutes, rest = divmod(round(seconds), 60)
-    if minutes < 60:
+    minutes, rest = divmod(round(seconds), 60)  # s of a minute
+    hours, minutes_left = divmod(minutes, 60)  # minutes of an hour
+    if hours == 0:
         return f"{minutes} min {rest:02d} s"
-    hours, minutes = divmod(minutes, 60)
-    if hours < 48:
-        return f"{hours} h {minutes:02d} min"
-    days, hours = divmod(hours, 24)
-    return f"{days} d {hours:02d} h"
+    if hours < 48:  # hours, chosen: two days
+        return f"{hours} h {minutes_left:02d} min"
+    return f"{hours // 24} d {hours % 24:02d} h"  # hours of a day
 
 
 def exponent(value: float, digits: int) -> int:

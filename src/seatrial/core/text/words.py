@@ -12,11 +12,12 @@ NAMES_SHOWN = 12
 
 def ordinal(number: int) -> str:
     """Return 1st, 2nd, 3rd, 4th, … 11th, 21st."""
+    # English: the teens end in th
     ending = "th" if number % 100 in (11, 12, 13) else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
     return f"{number}{ending}"
 
 
-def enumeration(items: Sequence[str], max_items: int = 6) -> str:
+def enumeration(items: Sequence[str], max_items: int = 6) -> str:  # items that a sentence holds, chosen
     """Return a, b and c; beyond `max_items`: a, b, c and 5 more."""
     if len(items) > max_items:
         return f"{', '.join(items[: max_items - 1])} and {len(items) - max_items + 1} more"

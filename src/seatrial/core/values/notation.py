@@ -41,7 +41,7 @@ _TABLE = [
     Quantity("zeta", "wave elevation at the ship's origin", "m", "earth", "up", r"\zeta", "sea_surface_height"),
     *(
         Quantity(f"zeta_{k}", f"wave elevation at probe {k}", "m", "earth", "up", rf"\zeta_{k}", f"wave_elevation_{k}")
-        for k in range(1, 7)
+        for k in range(1, 7)  # the six probes of a towing tank
     ),
     Quantity("x_wm", "position of the wave maker", "m", "earth", "forward", "x_{wm}", "wave_maker_position"),
     Quantity("F_y", "sway force of the holding on the model", "N", "body", "starboard", "F_y", "holding_sway_force"),
@@ -64,25 +64,11 @@ _TABLE = [
     Quantity("u_dot", "surge acceleration", "m/s^2", "body", "forward", r"\dot u", "platform_surge_acceleration"),
     Quantity("v_dot", "sway acceleration", "m/s^2", "body", "starboard", r"\dot v", "platform_sway_acceleration"),
     Quantity("wind_speed", "true wind speed", "m/s", "earth", "none", "V_w", "wind_speed"),
-    Quantity(
-        "wind_direction",
-        "direction the true wind comes from, as a heading",
-        "rad",
-        "earth",
-        "starboard",
-        r"\gamma_w",
-        "wind_from_direction",
-    ),
+    Quantity("wind_direction", "direction the true wind comes from, as a heading", "rad", "earth", "starboard",
+             r"\gamma_w", "wind_from_direction"),
     Quantity("wind_speed_relative", "apparent wind speed", "m/s", "body", "none", "V_A", "apparent_wind_speed"),
-    Quantity(
-        "wind_direction_relative",
-        "direction the apparent wind comes from, off the bow",
-        "rad",
-        "body",
-        "starboard",
-        r"\gamma_A",
-        "apparent_wind_from_direction",
-    ),
+    Quantity("wind_direction_relative", "direction the apparent wind comes from, off the bow", "rad", "body",
+             "starboard", r"\gamma_A", "apparent_wind_from_direction"),
     Quantity("voltage", "voltage of the batteries", "V", "none", "none", "V", "battery_voltage"),
     *(
         Quantity(f"{letter}_{k}", f"{meaning} {k}", unit, frame, positive, rf"{latex}_{{{k}}}", f"{name}_{k}")
@@ -93,18 +79,13 @@ _TABLE = [
         )
         for k in _INDEXED
     ),
-]
+]  # fmt: skip
 
 # positive direction -> its opposite, both ways
 _PAIRS = {
-    "starboard": "port",
-    "north": "south",
-    "east": "west",
-    "forward": "aft",
-    "up": "down",
-    "bow up": "bow down",
+    "starboard": "port", "north": "south", "east": "west", "forward": "aft", "up": "down", "bow up": "bow down",
     "ahead": "astern",
-}
+}  # fmt: skip
 OPPOSITE: dict[str, str] = _PAIRS | {other: one for one, other in _PAIRS.items()}
 _POSITIVE_ON_EARTH = {"u": "north", "v": "east", "u_dot": "north", "v_dot": "east"}
 

@@ -9,7 +9,7 @@ from seatrial.core.figures.tracks import Track
 from seatrial.core.values.channel_text import POSITIONS, channel_label, display_values, reading_order
 from seatrial.core.values.record import Record
 
-PLAIN = Stroke(INK, 0.9)
+PLAIN = Stroke(INK, 0.9)  # px, chosen
 
 
 def record_chart(record: Record, length: float = 0.0) -> Chart:
@@ -43,4 +43,5 @@ def has_track(record: Record) -> bool:
 def is_constant(record: Record, name: str) -> bool:
     """Return whether a channel never changes by more than a billionth of its largest value."""
     values = record[name][np.isfinite(record[name])]
-    return values.size == 0 or float(np.ptp(values)) <= 1e-9 * max(1.0, float(np.max(np.abs(values))))
+    # rounding of stored numbers
+    return values.size == 0 or float(np.ptp(values)) <= 1e-9 * max(1.0, float(np.max(np.abs(values))))  # px, chosen

@@ -1,9 +1,10 @@
-"""Results as strict JSON and back, by the types of their fields: one way for every result.
+"""Results as strict JSON with an archive of arrays, and back, by the types of their fields: one way for every result.
 
 A number that JSON does not know (infinity, NaN) is null; in a folder, `non_finite` lists which null is which, by JSON
 Pointer (RFC 6901), so that a result reloads exactly. Long arrays and records are left out of a document, or stored.
 """
 
+import io
 import json
 import math
 from collections.abc import Mapping
@@ -16,8 +17,33 @@ from pydantic import TypeAdapter, ValidationError
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaWarningKind
 
 from seatrial.core.results.fields import ABSENT, STORED_KEY, NamedValues, ReportedFinding, StoredValue
-from seatrial.core.values import Array, Finding, Record
-from seatrial.data.folder.archive import record_arrays, record_from_arrays
+from seatrial.core.values import Array, Channel, Finding, Provenance, Record, RecordKind, frozen
+
+
+def npz_bytes(arrays: Mapping[str, Array]) -> bytes:
+    """Return a compressed .npz file."""
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, **dict(arrays))  # type: ignore[arg-type]
+    return buffer.getvalue()
+
+
+def npz_arrays(content: bytes) -> dict[str, Array]:
+    """Return the inverse of `npz_bytes`; pickles are refused."""
+    with np.load(io.BytesIO(content), allow_pickle=False) as file:
+        return {name: frozen(file[name]) for name in file.files}
+
+
+def record_arrays(record: Record, prefix: str) -> dict[str, Array]:
+    """Return the record's numbers under `prefix/symbol`."""
+    return {f"{prefix}/t": record.time} | {f"{prefix}/{s}": c.values for s, c in record.channels.items()}
+
+
+def record_from_arrays(table: Mapping[str, Any], arrays: Mapping[str, Array], prefix: str) -> Record:
+    """Return the record of its metadata and arrays, the inverse of `Record.metadata` and `record_arrays`."""
+    channels = {s: Channel(arrays[f"{prefix}/{s}"], **metadata) for s, metadata in table["channels"].items()}
+    provenance = Provenance.from_metadata(table["provenance"])
+    return Record(table["name"], arrays[f"{prefix}/t"], channels, RecordKind(table["kind"]), provenance)
+
 
 FORMAT = 2
 """Of every document; 1 described a fit twice and kept nothing of a design, a tuning or a study to render."""

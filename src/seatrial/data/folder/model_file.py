@@ -17,14 +17,14 @@ from seatrial.core.results import IntervalBasis
 from seatrial.core.values import Array, InputError, Parameters, Ship, frozen
 from seatrial.core.values.files import write_atomically
 from seatrial.data.folder import model_tables
-from seatrial.data.folder.interval_tables import (
+from seatrial.data.folder.model_tables import (
+    ModelProvenance,
     covariance_matrix,
     interval_basis,
     interval_basis_table,
     matrix_rows,
     number_table,
 )
-from seatrial.data.folder.model_tables import ModelProvenance
 from seatrial.physics.models import model_named
 
 FORMAT = 1

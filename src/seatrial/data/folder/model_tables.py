@@ -1,12 +1,93 @@
-"""Ship, parameters and provenance as tables of a model file and back."""
+"""Ship, parameters, provenance, covariances and the basis of intervals as tables of a model file and back."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from seatrial.core.values import Parameter, Prior, Ship
-from seatrial.data.folder.interval_tables import number_table
+import numpy as np
+
+from seatrial.core.results import IntervalBasis
+from seatrial.core.values import Array, InputError, Parameter, Parameters, Prior, Ship, frozen
+
+ROUNDING = 1e-8
+"""Negative eigenvalue of a correlation matrix, 1, that rounding of its entries explains."""
+ASYMMETRY = 1e-6
+"""Difference of two mirrored entries, 1 as a correlation, that rounding explains."""
+SMALLEST_VARIANCE = 1e-300
+"""Squared unit of the parameter; keeps the scale of a parameter without variance above zero."""
+VALUE_TABLES = ("measure_deviation", "offsets", "process", "training_envelope")
+EARLIER_KEYS = {"measure_deviation": "kinds", "training_envelope": "covered"}
+"""Key today -> key in files that call the table ``margin``."""
+
+
+def number_table(numbers: Mapping[str, float]) -> dict[str, float]:
+    """Return the numbers as Python floats, which are written to the last bit."""
+    return {name: float(number) for name, number in numbers.items()}
+
+
+def matrix_rows(matrix: Array) -> list[list[float]]:
+    """Return the rows of a matrix as Python floats."""
+    return [[float(cell) for cell in row] for row in matrix]
+
+
+def interval_basis_table(basis: IntervalBasis) -> dict[str, Any]:
+    """Return the table ``interval_basis`` of a model file."""
+    return {
+        "degrees_of_freedom": float(basis.degrees_of_freedom),
+        "factor": float(basis.factor),
+        "covariance": matrix_rows(basis.covariance),
+        "tied": [number_table(values) for values in basis.tied],
+        **{name: number_table(getattr(basis, name)) for name in VALUE_TABLES},
+    }
+
+
+def interval_basis(table: Mapping[str, Any], where: str, parameters: Parameters) -> IntervalBasis | None:
+    """Return what a model file holds for intervals of predictions; None where it holds nothing.
+
+    Raises:
+        InputError: the covariance is none.
+        ValueError: it does not fit the parameters.
+    """
+    entry = table.get("interval_basis", table.get("margin"))
+    if entry is None:
+        return None
+    degrees, tied = float(entry["degrees_of_freedom"]), tuple(number_table(values) for values in entry["tied"])
+    covariance = covariance_matrix(entry["covariance"], f"{where}': interval_basis.covariance")
+    if len(covariance) != len(parameters.free):
+        raise ValueError(
+            f"interval_basis.covariance has {len(covariance)} rows for {len(parameters.free)} free parameters"
+        )
+    if not degrees > 0.0:
+        raise ValueError(f"interval_basis.degrees_of_freedom is {degrees:g}")
+    if strangers := [name for values in tied for name in values if name not in parameters]:
+        raise ValueError(f"interval_basis.tied names '{strangers[0]}', which is no parameter of the model")
+    keys = EARLIER_KEYS if "interval_basis" not in table else {}
+    tables = {name: number_table(entry[keys.get(name, name)]) for name in VALUE_TABLES}
+    return IntervalBasis(covariance, degrees, float(entry["factor"]), tied=tied, **tables)
+
+
+def covariance_matrix(rows: Sequence[Sequence[float]], where: str) -> Array:
+    """Return a covariance, shape (n, n), from the rows of a file.
+
+    Raises:
+        InputError: it is not finite, not symmetric, or negative in any direction beyond rounding.
+    """
+    matrix = np.array(rows, dtype=float).reshape(len(rows), len(rows))
+    scale = np.sqrt(np.maximum(np.diag(matrix), SMALLEST_VARIANCE))
+    size = np.outer(scale, scale)
+    if not np.all(np.isfinite(matrix)) or np.any(np.abs(matrix - matrix.T) > ASYMMETRY * size):
+        raise InputError(
+            f"model file '{where} is not a symmetric matrix of finite numbers; "
+            "write the file again with 'seatrial identify'"
+        )
+    smallest = float(np.min(np.linalg.eigvalsh(matrix / size))) if len(rows) else 0.0
+    if not smallest > -ROUNDING:
+        raise InputError(
+            f"model file '{where} is not positive definite (smallest eigenvalue {smallest:.3g} of its correlation "
+            "matrix); write the file again with 'seatrial identify'"
+        )
+    return frozen(matrix)
 
 
 @dataclass(frozen=True)

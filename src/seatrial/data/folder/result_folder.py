@@ -16,8 +16,15 @@ from seatrial.core.results.online import Snapshot
 from seatrial.core.results.tuning import Tuning
 from seatrial.core.values import Array, InputError
 from seatrial.core.values.files import write_files_atomically
-from seatrial.data.folder.archive import npz_arrays, npz_bytes
-from seatrial.data.folder.document import FORMAT, document, read_document, stored_document, strict_json
+from seatrial.data.folder.document import (
+    FORMAT,
+    document,
+    npz_arrays,
+    npz_bytes,
+    read_document,
+    stored_document,
+    strict_json,
+)
 from seatrial.data.folder.gains_file import gains_toml, schedule_csv
 from seatrial.data.folder.loop_mat import loop_mat
 from seatrial.data.folder.model_file import ModelFile, model_text, parse_model

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from seatrial.core.results import Confirmation, ManoeuvrePrecision
-from seatrial.core.results.design_ranking import count_outside_limits, is_within_limits
+from seatrial.core.results.design import count_outside_limits, is_within_limits
 from seatrial.core.values import Finding, InputError, Severity
 from seatrial.estimation.design.task import DesignTask
 

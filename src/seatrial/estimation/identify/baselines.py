@@ -11,7 +11,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.results import Baseline, Coefficient, Fit, OpenLoopScores, Prediction
-from seatrial.core.results.baseline import NO_COMPARISON
+from seatrial.core.results.prediction import NO_COMPARISON
 from seatrial.core.values import Finding, InputError, ProgressReporter, Record, Severity
 from seatrial.estimation.predict.open_loop import rms_errors
 from seatrial.estimation.regress.estimators import RegressionEstimator

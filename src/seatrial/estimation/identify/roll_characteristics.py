@@ -6,7 +6,7 @@ import numpy as np
 from scipy.special import stdtrit
 
 from seatrial.core.equations import Model
-from seatrial.core.results.roll import IntervalEstimate, RollCharacteristics
+from seatrial.core.results.ship_motions import IntervalEstimate, RollCharacteristics
 from seatrial.core.values import Array, Record, Ship
 from seatrial.estimation.information.covariance import Interval
 from seatrial.physics.hydro.free_roll import equivalent_damping, metacentric_height, observed_swings, swing_period

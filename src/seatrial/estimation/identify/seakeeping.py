@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.results.seakeeping import PointMotion, Seakeeping
+from seatrial.core.results.ship_motions import PointMotion, Seakeeping
 from seatrial.core.values import Array, Record
 from seatrial.data.trial import TrialRecord
 from seatrial.physics.hydro.excitation import encounter_frequency

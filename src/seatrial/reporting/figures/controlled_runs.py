@@ -5,11 +5,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatrial.core.figures.chart import Chart, LegendEntry
+from seatrial.core.figures.chart import Axis, Chart, LegendEntry, Panel, Region, tiles
 from seatrial.core.figures.marks import ACCENT, GREY, INK, SECOND, Array, Line, Rule, Stroke
-from seatrial.core.figures.panel import Axis, Panel, Region, tiles
-from seatrial.core.figures.sampling import decimated
-from seatrial.core.figures.ticks import span
+from seatrial.core.figures.ticks import decimated, span
 from seatrial.core.results.tuning import ManoeuvreResponse, Tuning
 from seatrial.core.text.words import counted
 from seatrial.core.values import Record, display_unit
@@ -21,9 +19,9 @@ MAX_SIMULATIONS, WINDOW, SEAWAY_POINTS = 3, 150.0, 1200
 MAX_SHIPS, POINTS = 40, 500
 # heights of panels [px]
 SEAWAY_HEIGHT, OUTPUT_HEIGHT, ACTUATOR_HEIGHT = 112.0, 170.0, 90.0
-RESPONSE, CONTROLLED, FREE = Stroke(ACCENT, 2.0), Stroke(ACCENT, 1.3), Stroke(GREY, 1.5)
-SHIP, LIMIT = Stroke(GREY, 0.6), Stroke(SECOND, 1.0, "6 3")
-DEMANDS = {"demand": Stroke(INK, 0.9, "1.5 2"), "reference": Stroke(INK, 1.2, "5 3")}
+RESPONSE, CONTROLLED, FREE = Stroke(ACCENT, 2.0), Stroke(ACCENT, 1.3), Stroke(GREY, 1.5)  # px, chosen
+SHIP, LIMIT = Stroke(GREY, 0.6), Stroke(SECOND, 1.0, "6 3")  # px, chosen
+DEMANDS = {"demand": Stroke(INK, 0.9, "1.5 2"), "reference": Stroke(INK, 1.2, "5 3")}  # px, chosen
 UNCONTROLLED = ("uncontrolled", "free", "without")
 
 
@@ -47,22 +45,24 @@ def manoeuvre_chart(m: ManoeuvreResponse, tuning: Tuning) -> Chart | None:
     curves = [(row, SHIP) for row in ships] + [(record[output], RESPONSE)]
     curves += [(record[name], stroke) for name, stroke in demands.items()]
     actuator = first_channel(record, tuning.actuator, "actuator")
-    above, below = tiles(2, 1, OUTPUT_HEIGHT, gap=24.0, top=6.0)
+    above, below = tiles(2, 1, OUTPUT_HEIGHT, gap=24.0, top=6.0)  # px, chosen
     panels = [_panel(record, m.output, record.channel(output).unit, curves, above, is_last=not actuator)]
     if actuator:
         panels.append(
             _manoeuvre_actuator(record, actuator, tuning, Region(below.left, below.top, below.width, ACTUATOR_HEIGHT))
         )
     legend = [LegendEntry("response", RESPONSE), *(LegendEntry(name, stroke) for name, stroke in demands.items())]
-    legend += [LegendEntry(counted(len(ships), "ship") + " drawn", Stroke(GREY, 1.2))] if ships else []
+    legend += [LegendEntry(counted(len(ships), "ship") + " drawn", Stroke(GREY, 1.2))] if ships else []  # px, chosen
     return Chart(m.name, tuple(panels), tuple(legend))
 
 
 def _panel(record: Record, name: str, unit: str, curves: Sequence[tuple[Array, Stroke]], box: Region, *, is_last: bool,
+           # ticks, chosen
            ranges: Sequence[Array] = (), limits: Sequence[float] = (), title: str = "", y_ticks: int = 5,
            points: int = POINTS, margin: float = 0.06) -> Panel:  # fmt: skip
     """Curves of one quantity over time with its limits, both in SI; `ranges`: what the axis shows besides."""
     factor = display_unit(unit)[0]
+    # ticks, chosen
     x = Axis(
         (float(record.time[0]), float(record.time[-1])), "t [s]" if is_last else "", tick_count=9, has_labels=is_last
     )

@@ -1,11 +1,11 @@
-"""How well each direction is determined, and what each coefficient does, over logarithmic axes."""
+"""How well each direction is determined, what each coefficient does, and profile likelihoods."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from seatrial.core.figures.chart import Chart
+from seatrial.core.figures.chart import Axis, Chart, Panel, Region, tiles
 from seatrial.core.figures.marks import (
     ACCENT,
     GREY,
@@ -23,8 +23,10 @@ from seatrial.core.figures.marks import (
     Text,
 )
 from seatrial.core.figures.rows import SMALL, decades_axis, no_information, row_panel
-from seatrial.core.results import Direction, Sensitivity
+from seatrial.core.results import Direction, Profile, Sensitivity
 from seatrial.core.text.numbers import MINUS, fixed
+from seatrial.core.values import display_unit
+from seatrial.core.values.channel_text import unit_text
 
 # standard deviation [%] from which on a direction is poorly determined, and from which on it is not
 POORLY_DETERMINED, UNDETERMINED = 10.0, 100.0
@@ -39,7 +41,7 @@ _ZONE_MARKERS = (
     Marker(Shape.CIRCLE, 3.8, _ZONE_COLOURS[1], "#ffffff", 1.6),
     Marker(Shape.SQUARE, 3.6, _ZONE_COLOURS[2], _ZONE_COLOURS[2], 0.0),
 )
-_LIMIT, _STEM = Stroke(INK, 0.9, "3 2"), Stroke(GREY, 0.7)
+_LIMIT, _STEM = Stroke(INK, 0.9, "3 2"), Stroke(GREY, 0.7)  # px, chosen
 
 
 def direction_chart(directions: Sequence[Direction]) -> Chart | None:
@@ -56,6 +58,7 @@ def direction_chart(directions: Sequence[Direction]) -> Chart | None:
     bounds = (axis.ends[0], POORLY_DETERMINED, UNDETERMINED, axis.ends[1])
     for k, (name, fill) in enumerate(zip(_ZONE_NAMES, _ZONE_FILLS, strict=True)):
         marks.append(Rectangle(bounds[k], -0.5, bounds[k + 1], len(directions) - 0.5, fill))
+        # px, chosen
         marks.append(
             Text(math.sqrt(bounds[k] * bounds[k + 1]), -0.5, name, Anchor.MIDDLE, SMALL, _ZONE_COLOURS[k], dy=-7.0)
         )
@@ -81,6 +84,7 @@ def sensitivity_chart(sensitivities: Sequence[Sensitivity]) -> Chart | None:
         (0.1, 10.0),
         "change of the compared outputs for 10 % of the coefficient, in units of their noise",
     )
+    # px, chosen
     bars = [Rectangle(axis.ends[0], row - 0.28, s.effect, row + 0.28, ACCENT if s.effect >= 1.0 else "#a9bccb")
             for row, s in enumerate(finite)]  # fmt: skip
     note = Text(1.0, -0.5, "as large as the noise", Anchor.MIDDLE, SMALL, dy=-7.0)
@@ -99,3 +103,39 @@ def combination_text(direction: Direction) -> str:
 def _factor(part: float) -> str:
     factor = fixed(abs(part), 2)
     return "" if factor == "1.00" else f"{factor} "
+
+
+COLUMNS, HEIGHT = 3, 120.0  # px, chosen
+# 95 % quantile of chi-squared with one degree of freedom, and the highest loss drawn
+BOUND, HIGHEST = 3.84, 12.0
+
+
+def profile_chart(profiles: Sequence[Profile], units: Mapping[str, str]) -> Chart | None:
+    """Return a panel for each coefficient with its bound of 95 %; None for none.
+
+    Args:
+        units: parameter -> SI unit.
+    """
+    usable = [p for p in profiles if len(p.values) > 1 and min(p.values) < max(p.values)]
+    if not usable:
+        return None
+    boxes = tiles(len(usable), COLUMNS, HEIGHT, left=54.0, right=10.0, gap=46.0)  # px, chosen
+    panels = tuple(_panel(p, units.get(p.parameter, "1"), box) for p, box in zip(usable, boxes, strict=True))
+    return Chart("profile likelihoods", panels)
+
+
+def _panel(profile: Profile, unit: str, box: Region) -> Panel:
+    factor, unit_shown = display_unit(unit)[0], unit_text(unit)
+    values, costs = np.array(profile.values) * factor, np.array(profile.costs)
+    order = np.argsort(values)
+    highest = float(np.clip(1.05 * np.nanmax(costs), 1.3 * BOUND, HIGHEST))  # the bound is always visible
+    x = Axis((float(values.min()), float(values.max())), tick_count=3)
+    marks = [
+        Rule(BOUND, Stroke(SECOND, 1.0, "4 2.5")),
+        Text(x.ends[1], BOUND, "95 %", Anchor.END, 9.5, SECOND, dx=-2.0, dy=-4.0),  # px, chosen
+        Line(values[order], np.where(costs <= highest, costs, np.nan)[order], Stroke(ACCENT, 1.6)),  # px, chosen
+        *(Line(np.full(2, end * factor), np.array([0.0, BOUND]), Stroke(SECOND, 0.8))  # px, chosen
+          for end in (profile.lower, profile.upper) if end is not None),
+    ]  # fmt: skip
+    name = f"{profile.parameter} [{unit_shown}]" if unit_shown else profile.parameter
+    return Panel(box, x, Axis((0.0, highest), "χ² lost", tick_count=3), tuple(marks), name)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatrial.core.figures.chart import Chart
+from seatrial.core.figures.chart import WIDTH, Axis, Chart, Panel, Region
 from seatrial.core.figures.marks import (
     ACCENT,
     INK,
@@ -20,7 +20,6 @@ from seatrial.core.figures.marks import (
     Stroke,
     Text,
 )
-from seatrial.core.figures.panel import WIDTH, Axis, Panel, Region
 from seatrial.core.results.tuning import Component
 from seatrial.core.values.channel_text import channel_letter
 
@@ -33,8 +32,8 @@ LETTER = 5.6
 # height that the block of the disturbance and its arrow take above the middle [px]
 ABOVE = ROW + HEIGHT + 18.0
 ROLES = ("sensor", "term", "filter", "servo", "plant", "disturbance")
-_WIRE, _EDGE, _PALE = Stroke(INK, 1.1), Stroke(ACCENT, 1.0), "#eef3f7"
-_SUM = Marker(Shape.CIRCLE, RADIUS, "#8a9299", "#ffffff", 1.1)
+_WIRE, _EDGE, _PALE = Stroke(INK, 1.1), Stroke(ACCENT, 1.0), "#eef3f7"  # px, chosen
+_SUM = Marker(Shape.CIRCLE, RADIUS, "#8a9299", "#ffffff", 1.1)  # px, chosen
 
 
 def signal_order(components: Sequence[Component]) -> list[Component]:
@@ -52,12 +51,12 @@ def loop_diagram(components: Sequence[Component], output: str, actuator: str) ->
     columns += [[c] for role in ("filter", "servo", "plant") for c in by_role[role]]
     tallest = max((len(column) for column in columns), default=1)
     sums = 1 + (len(terms) > 1) + bool(disturbance)
-    width = min(WIDEST, (WIDTH - 92.0 - sums * (2 * RADIUS + GAP)) / max(1, len(columns)) - GAP)
-    middle = 6.0 + max(0.5 * (ROW * (tallest - 1) + HEIGHT), ABOVE if disturbance else 0.0)
-    marks, x = [*_arrow((0.0, middle), (18.0, middle)), *_sum(26.0, middle, "−")], 26.0 + RADIUS
+    width = min(WIDEST, (WIDTH - 92.0 - sums * (2 * RADIUS + GAP)) / max(1, len(columns)) - GAP)  # px, chosen
+    middle = 6.0 + max(0.5 * (ROW * (tallest - 1) + HEIGHT), ABOVE if disturbance else 0.0)  # px, chosen
+    marks, x = [*_arrow((0.0, middle), (18.0, middle)), *_sum(26.0, middle, "−")], 26.0 + RADIUS  # px, chosen
     for column in columns:
         if column[0].role == "plant":
-            marks.append(Text(x + GAP / 2, middle - 6, channel_letter(actuator), Anchor.MIDDLE, 10.5))
+            marks.append(Text(x + GAP / 2, middle - 6, channel_letter(actuator), Anchor.MIDDLE, 10.5))  # px, chosen
         marks += _parallel(column, x, middle, width)
         x += GAP + width
         if len(column) > 1:
@@ -66,15 +65,15 @@ def loop_diagram(components: Sequence[Component], output: str, actuator: str) ->
     if disturbance:
         marks += _disturbance(disturbance[0], x + GAP + RADIUS, x, middle, width)
         x += GAP + 2 * RADIUS
-    end, low = x + 40.0, middle + 0.5 * ROW * tallest + 22.0
+    end, low = x + 40.0, middle + 0.5 * ROW * tallest + 22.0  # px, chosen
     back = (x + end) / 2
     marks += [
         *_arrow((x, middle), (end, middle)),
         Text(end + 4, middle + 4, channel_letter(output)),
-        _wire((back, middle), (back, low), (26.0, low)),
-        *_arrow((26.0, low), (26.0, middle + RADIUS)),
+        _wire((back, middle), (back, low), (26.0, low)),  # px, chosen
+        *_arrow((26.0, low), (26.0, middle + RADIUS)),  # px, chosen
     ]
-    page = Region(0.0, 0.0, end + 26.0, low + 8.0)
+    page = Region(0.0, 0.0, end + 26.0, low + 8.0)  # px, chosen
     panel = Panel(
         page, Axis((0.0, page.width)), Axis((0.0, page.height)), tuple(marks), is_y_down=True, has_frame=False
     )
@@ -86,7 +85,7 @@ def _parallel(column: Sequence[Component], x: float, middle: float, width: float
     left, marks = x + GAP, list[Mark]()
     if len(column) == 1:
         return [*_arrow((x, middle), (left, middle)), *_block(left, middle, width, column[0])]
-    fork, join = x + 6.0, left + width + GAP + RADIUS
+    fork, join = x + 6.0, left + width + GAP + RADIUS  # px, chosen
     for k, c in enumerate(column):
         y = middle + ROW * (k - 0.5 * (len(column) - 1))
         marks += [
@@ -108,15 +107,16 @@ def _disturbance(c: Component, x: float, from_x: float, middle: float, width: fl
     top = y - HEIGHT / 2
     return [
         *_arrow((from_x, middle), (x - RADIUS, middle)), *_sum(x, middle), *_block(x - 0.5 * width, y, width, c),
-        *_arrow((x, y + HEIGHT / 2), (x, middle - RADIUS)), *_arrow((x, top - 18.0), (x, top)),
-        Text(x + 5, top - 9.0, "disturbance", size=10.0),
+        *_arrow((x, y + HEIGHT / 2), (x, middle - RADIUS)), *_arrow((x, top - 18.0), (x, top)),  # px, chosen
+        Text(x + 5, top - 9.0, "disturbance", size=10.0),  # px, chosen
     ]  # fmt: skip
 
 
 def _block(left: float, y: float, width: float, c: Component) -> list[Mark]:
     words = f"{c.gain} · {c.name}" if c.gain else c.name
-    lines = textwrap.wrap(words, max(6, int(width / LETTER)))[:3] or [c.role]
-    first = y + 3.6 - 6.0 * (len(lines) - 1)
+    lines = textwrap.wrap(words, max(6, int(width / LETTER)))[:3] or [c.role]  # px, chosen
+    first = y + 3.6 - 6.0 * (len(lines) - 1)  # px, chosen
+    # px, chosen
     return [
         Rectangle(left, y - HEIGHT / 2, left + width, y + HEIGHT / 2, _PALE, edge=_EDGE),
         *(Text(left + width / 2, first + 12.0 * k, line, Anchor.MIDDLE, 10.0) for k, line in enumerate(lines)),
@@ -126,6 +126,7 @@ def _block(left: float, y: float, width: float, c: Component) -> list[Mark]:
 def _sum(x: float, y: float, sign: str = "+") -> list[Mark]:
     """A sum with its sign: + inside, − below the lower left."""
     inside = sign == "+"
+    # px, chosen
     words = Text(x, y + 4, sign, Anchor.MIDDLE) if inside else Text(x - 12, y + 20, sign, Anchor.MIDDLE, 13.0)
     return [Points(np.array([x]), np.array([y]), _SUM), words]
 
@@ -140,5 +141,5 @@ def _arrow(start: tuple[float, float], tip: tuple[float, float]) -> list[Mark]:
     a, b = np.array(start), np.array(tip)
     forward = np.sign(b - a)
     aside = 3.0 * forward[::-1]
-    head = np.array([b, b - 6.0 * forward - aside, b - 6.0 * forward + aside])
-    return [_wire(start, tuple(b - 5.0 * forward)), Area(head[:, 0], head[:, 1], INK)]
+    head = np.array([b, b - 6.0 * forward - aside, b - 6.0 * forward + aside])  # px, chosen
+    return [_wire(start, tuple(b - 5.0 * forward)), Area(head[:, 0], head[:, 1], INK)]  # px, chosen

@@ -5,11 +5,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatrial.core.figures.chart import Chart
+from seatrial.core.figures.chart import WIDTH, Axis, Chart, Panel, Region, tiles
 from seatrial.core.figures.marks import GREY, Anchor, Line, Mark, Text, text_width
-from seatrial.core.figures.panel import WIDTH, Axis, Panel, Region, tiles
-from seatrial.core.figures.sampling import decimated
-from seatrial.core.figures.ticks import span
+from seatrial.core.figures.ticks import decimated, span
 from seatrial.core.figures.tracks import Track, is_slender, strip_height, track_panel
 from seatrial.core.text.words import common_prefix
 from seatrial.core.values import Array, Record
@@ -22,9 +20,9 @@ MAX_COLUMNS, MAX_ROWS = 8, 16
 DISSIMILAR = 0.25
 # tracks in a row: square ones, and strips; free room above, between and beside them [px]
 COLUMNS, STRIP_COLUMNS = 4, 2
-TOP, ROW_GAP, LEFT, RIGHT = 22.0, 56.0, 52.0, 12.0
-MIN_STRIP = 44.0
-SMALL = 8.5
+TOP, ROW_GAP, LEFT, RIGHT = 22.0, 56.0, 52.0, 12.0  # px, chosen
+MIN_STRIP = 44.0  # px, chosen
+SMALL = 8.5  # px, chosen
 
 
 def channel_overview(records: Sequence[Record]) -> list[Chart]:
@@ -39,10 +37,11 @@ def channel_overview(records: Sequence[Record]) -> list[Chart]:
 
 def _overview(records: Sequence[Record], names: Sequence[str], prefix: str, all_records: Sequence[Record]) -> Chart:
     labels = [r.name.removeprefix(prefix) for r in records]
-    margin = min(190.0, max(text_width(label) for label in labels) + 10.0)
+    margin = min(190.0, max(text_width(label) for label in labels) + 10.0)  # px, chosen
     durations = [r.duration for r in all_records]
     is_alike = min(durations) > DISSIMILAR * max(durations)
-    height, gap = (46.0 if len(records) > 6 else 74.0), (10.0 if is_alike else 24.0)
+    height, gap = (46.0 if len(records) > 6 else 74.0), (10.0 if is_alike else 24.0)  # px, chosen
+    # px, chosen
     boxes = tiles(len(records) * len(names), len(names), height, start=margin, left=30.0, right=10.0, gap=gap, top=22.0)
     panels = []
     for k, box in enumerate(boxes):
@@ -74,7 +73,7 @@ def _values(record: Record, name: str) -> Array:
 def _curve(record: Record, name: str, x: Axis, y: Axis) -> list[Mark]:
     if name not in record:
         return [Text(sum(x.ends) / 2, sum(y.ends) / 2, "not recorded", Anchor.MIDDLE, SMALL, GREY)]
-    return [Line(*decimated(record.time - record.time[0], _values(record, name), 200), PLAIN)]
+    return [Line(*decimated(record.time - record.time[0], _values(record, name), 200), PLAIN)]  # px, chosen
 
 
 def track_overview(records: Sequence[Record], length: float) -> Chart | None:
@@ -99,6 +98,7 @@ def _track_rows(tracks: Sequence[tuple[str, Track]], length: float, top: float, 
     for k in range(0, len(tracks), columns):
         row = tracks[k : k + columns]
         is_strip = columns == STRIP_COLUMNS
+        # px, chosen
         height = max(MIN_STRIP, *(strip_height([t], inner, 0.06 * inner) for _, t in row)) if is_strip else inner
         for j, (name, track) in enumerate(row):
             box = Region(WIDTH / columns * j + LEFT, top + TOP, inner, height)

@@ -14,11 +14,11 @@ from seatrial.core.figures.rows import decades_axis, no_information, row_panel
 NO_INFORMATION = 1e4
 # least range of the axis [%]: of relative standard errors, of estimators
 ERROR_RANGE, ESTIMATOR_RANGE = (1.0, 10.0), (0.1, 100.0)
-FILLED = Marker(Shape.CIRCLE, 4.0, ACCENT, ACCENT, 1.4)
-OPEN = Marker(Shape.CIRCLE, 3.4, "#6c7a89", "#ffffff", 1.4)
-TICK = Marker(Shape.UPRIGHT, 6.0, INK, edge_width=1.6)
-_NEAR, _FAR = Marker(Shape.CIRCLE, 3.2, ACCENT, ACCENT), Marker(Shape.CIRCLE, 3.2, SECOND, "#ffffff")
-_MEDIAN, _REACH = Marker(Shape.UPRIGHT, 7.0, INK, edge_width=2.0), Stroke(GREY, 0.7)
+FILLED = Marker(Shape.CIRCLE, 4.0, ACCENT, ACCENT, 1.4)  # px, chosen
+OPEN = Marker(Shape.CIRCLE, 3.4, "#6c7a89", "#ffffff", 1.4)  # px, chosen
+TICK = Marker(Shape.UPRIGHT, 6.0, INK, edge_width=1.6)  # px, chosen
+_NEAR, _FAR = Marker(Shape.CIRCLE, 3.2, ACCENT, ACCENT), Marker(Shape.CIRCLE, 3.2, SECOND, "#ffffff")  # px, chosen
+_MEDIAN, _REACH = Marker(Shape.UPRIGHT, 7.0, INK, edge_width=2.0), Stroke(GREY, 0.7)  # px, chosen
 
 
 @dataclass(frozen=True)
@@ -75,5 +75,5 @@ def estimator_chart(rows: Mapping[str, Mapping[str, CoefficientError]], axis_nam
             Points(np.array([max(least, median(e.size for e in row.values()))]), np.array([float(k)]), _MEDIAN)
         )
         worst = max(sizes, key=lambda name, sizes=sizes: sizes[name])
-        marks.append(Text(sizes[worst], k, worst, size=9.0, colour=SECOND, dx=7.0, dy=3.5))
-    return Chart(axis_name, (row_panel(list(rows), axis, marks, top=4.0, right=80.0, has_grid=True),))
+        marks.append(Text(sizes[worst], k, worst, size=9.0, colour=SECOND, dx=7.0, dy=3.5))  # px, chosen
+    return Chart(axis_name, (row_panel(list(rows), axis, marks, top=4.0, right=80.0, has_grid=True),))  # px, chosen

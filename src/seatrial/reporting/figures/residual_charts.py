@@ -5,18 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from seatrial.core.figures.chart import Chart
+from seatrial.core.figures.chart import Axis, Chart, Panel, Region
 from seatrial.core.figures.marks import ACCENT, INK, SECOND, Array, Line, Mark, Rectangle, Rule, Stroke
-from seatrial.core.figures.panel import Axis, Panel, Region
-from seatrial.core.figures.sampling import decimated
-from seatrial.core.figures.ticks import span
+from seatrial.core.figures.ticks import decimated, span
 from seatrial.core.results import Residuals
 from seatrial.core.values import display_unit
 from seatrial.core.values.channel_text import channel_label, channel_unit
 
 # bars of the histogram, its reach in standard deviations, and the density of the normal at zero
 BINS, WIDEST, NORMAL_PEAK = 41, 4.5, 0.42
-HEIGHT, GAP = 76.0, 26.0
+HEIGHT, GAP = 76.0, 26.0  # px, chosen
 # lags up to which the autocorrelation is drawn as stems
 MAX_STEMS = 60
 # quantile of the standard normal distribution for 95 %, two-sided
@@ -28,11 +26,11 @@ def residual_chart(residuals: Sequence[Residuals]) -> Chart | None:
     usable = [r for r in residuals if np.isfinite(r.values).sum() > 2]
     panels: list[Panel] = []
     for k, r in enumerate(usable):
-        top = 26.0 + k * (HEIGHT + GAP)
+        top = 26.0 + k * (HEIGHT + GAP)  # px, chosen
         row = [
-            _series(r, Region(66.0, top, 320.0, HEIGHT)),
-            _autocorrelation(r, Region(446.0, top, 210.0, HEIGHT)),
-            _histogram(r.values[np.isfinite(r.values)], Region(700.0, top, 150.0, HEIGHT)),
+            _series(r, Region(66.0, top, 320.0, HEIGHT)),  # px, chosen
+            _autocorrelation(r, Region(446.0, top, 210.0, HEIGHT)),  # px, chosen
+            _histogram(r.values[np.isfinite(r.values)], Region(700.0, top, 150.0, HEIGHT)),  # px, chosen
         ]
         titles = ("residual", "autocorrelation, 95 % band", "against the normal") if k == 0 else ("", "", "")
         is_last = k == len(usable) - 1
@@ -47,22 +45,23 @@ def _series(r: Residuals, box: Region) -> Panel:
     samples = np.arange(len(values), dtype=float)
     x = Axis((0.0, float(max(1, len(values) - 1))), "sample", tick_count=4)
     y = Axis(span([values]), channel_label(r.channel, unit), tick_count=3)
-    return Panel(box, x, y, (Line(*decimated(samples, values, 500), Stroke(INK, 0.6)),))
+    return Panel(box, x, y, (Line(*decimated(samples, values, 500), Stroke(INK, 0.6)),))  # px, chosen
 
 
 def _autocorrelation(r: Residuals, box: Region) -> Panel:
     """Band +-1.96 / sqrt(n) of white residuals (Region, Jenkins & Reinsel 2008, section 2.1.6)."""
     edge = NORMAL_95 / np.sqrt(np.isfinite(r.values).sum())
     rho, lags = r.autocorrelation, np.arange(len(r.autocorrelation)) / r.rate
-    low = min(-0.25, float(np.nanmin(rho)) - 0.05) if len(rho) else -0.25
-    x = Axis((-0.02 * lags[-1], lags[-1] * 1.02 or 1.0), "lag [s]", tick_count=4)
+    low = min(-0.25, float(np.nanmin(rho)) - 0.05) if len(rho) else -0.25  # px, chosen
+    x = Axis((-0.02 * lags[-1], lags[-1] * 1.02 or 1.0), "lag [s]", tick_count=4)  # px and ticks, chosen
+    # px, chosen
     marks: list[Mark] = [Rectangle(x.ends[0], -edge, x.ends[1], edge, "#d9e4ec"), Rule(0.0, Stroke("#999999", 0.6))]
     if len(lags) <= MAX_STEMS:
         stems = [np.array([lag, lag, np.nan]) for lag in lags], [np.array([0.0, value, np.nan]) for value in rho]
-        marks.append(Line(np.concatenate(stems[0]), np.concatenate(stems[1]), Stroke(ACCENT, 1.6)))
+        marks.append(Line(np.concatenate(stems[0]), np.concatenate(stems[1]), Stroke(ACCENT, 1.6)))  # px, chosen
     else:
         marks.append(Line(*decimated(lags, rho), Stroke(ACCENT, 1.0)))
-    return Panel(box, x, Axis((low, 1.05), tick_count=3), tuple(marks))
+    return Panel(box, x, Axis((low, 1.05), tick_count=3), tuple(marks))  # px and ticks, chosen
 
 
 def _histogram(values: Array, box: Region) -> Panel:
@@ -74,7 +73,8 @@ def _histogram(values: Array, box: Region) -> Panel:
         for height, left, right in zip(density, edges[:-1], edges[1:], strict=True)
         if height > 0
     ]
-    z = np.linspace(-WIDEST, WIDEST, 91)
-    marks.append(Line(z, np.exp(-0.5 * z**2) / np.sqrt(2 * np.pi), Stroke(SECOND, 1.2, "4 2.5")))
+    z = np.linspace(-WIDEST, WIDEST, 91)  # points of a curve, chosen
+    marks.append(Line(z, np.exp(-0.5 * z**2) / np.sqrt(2 * np.pi), Stroke(SECOND, 1.2, "4 2.5")))  # px, chosen
+    # px and ticks, chosen
     y = Axis((0.0, max(NORMAL_PEAK, 1.05 * float(density.max()))), tick_count=1, has_labels=False)
     return Panel(box, Axis((-WIDEST, WIDEST), "residual / std. deviation", tick_count=4), y, tuple(marks))

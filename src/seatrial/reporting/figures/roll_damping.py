@@ -3,15 +3,14 @@
 import numpy as np
 
 from seatrial.core.figures.bands import band
-from seatrial.core.figures.chart import Chart, LegendEntry
+from seatrial.core.figures.chart import Axis, Chart, LegendEntry, Panel, Region, tiles
 from seatrial.core.figures.marks import INK, Array, Line, Marker, Points, Shape, Stroke
-from seatrial.core.figures.panel import Axis, Panel, Region, tiles
 from seatrial.core.figures.ticks import span
 from seatrial.core.results import RollCharacteristics
 
 # how far the axis follows the band, in spans of model and swings
 REACH = 1.5
-_MODEL, _SWING = Stroke(INK, 1.5), Marker(Shape.CIRCLE, 1.8, "none", "#1b4f72b3", 0.0)
+_MODEL, _SWING = Stroke(INK, 1.5), Marker(Shape.CIRCLE, 1.8, "none", "#1b4f72b3", 0.0)  # px, chosen
 
 
 def roll_damping_chart(roll: RollCharacteristics) -> Chart | None:
@@ -19,7 +18,7 @@ def roll_damping_chart(roll: RollCharacteristics) -> Chart | None:
     if not roll.amplitude:
         return None
     swings = np.array(roll.swings).reshape(-1, 3)
-    left, right = tiles(2, 2, 250.0, left=58.0, right=12.0, top=8.0)
+    left, right = tiles(2, 2, 250.0, left=58.0, right=12.0, top=8.0)  # px, chosen
     panels = (
         _panel(roll, swings[:, [0, 1]], (roll.damping, roll.damping_lower, roll.damping_upper), left,
                "equivalent damping b_e, 1/s"),
@@ -36,7 +35,7 @@ def _panel(
 ) -> Panel:
     amplitude = np.degrees(np.array(roll.amplitude))
     middle, low, high = (np.array(curve) for curve in curves)
-    reach = REACH * max(float(np.ptp(np.concatenate([middle, swings[:, 1]]))), 1e-6)
+    reach = REACH * max(float(np.ptp(np.concatenate([middle, swings[:, 1]]))), 1e-6)  # px, chosen
     visible = [middle, swings[:, 1], np.maximum(low, middle.min() - reach), np.minimum(high, middle.max() + reach)]
     marks = (band(amplitude, low, high), Points(np.degrees(swings[:, 0]), swings[:, 1], _SWING),
              Line(amplitude, middle, _MODEL))  # fmt: skip

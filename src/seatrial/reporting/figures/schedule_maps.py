@@ -6,10 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from seatrial.core.figures.chart import Chart
+from seatrial.core.figures.chart import WIDTH, Chart, Panel, Region, row_axis
 from seatrial.core.figures.heat_map import colour, colour_key, text_colour
 from seatrial.core.figures.marks import INK, Anchor, Line, Mark, Rectangle, Stroke, Text
-from seatrial.core.figures.panel import WIDTH, Panel, Region, row_axis
 from seatrial.core.results.tuning import OperatingPoint
 from seatrial.core.text.numbers import DASH, exact, fixed
 
@@ -18,7 +17,7 @@ THIS_SCHEDULE = "this schedule"
 LEFT, KEY, GAP = 66.0, 64.0, 14.0
 # sides of a cell [px], its height over its width
 WIDEST, LOWEST, HIGHEST, CELL_RATIO = 54.0, 22.0, 34.0, 0.62
-_LACKING = Stroke(INK, 1.6)
+_LACKING = Stroke(INK, 1.6)  # px, chosen
 
 
 def schedule_chart(points: Sequence[OperatingPoint]) -> Chart | None:
@@ -35,7 +34,7 @@ def schedule_chart(points: Sequence[OperatingPoint]) -> Chart | None:
     size = (wide * len(headings), min(HIGHEST, max(LOWEST, CELL_RATIO * wide)) * len(speeds))
     columns = row_axis([exact(math.degrees(beta), 3) for beta in headings])
     rows = row_axis([exact(U, 3) for U in speeds])
-    panels, top = [], 40.0
+    panels, top = [], 40.0  # px, chosen
     for height in heights:
         is_last = height == heights[-1]
         for k, name in enumerate(names):
@@ -48,7 +47,7 @@ def schedule_chart(points: Sequence[OperatingPoint]) -> Chart | None:
             panels.append(Panel(box, x, y, tuple(marks), name if height == heights[0] else "", is_y_down=True,
                                 has_lines=False))  # fmt: skip
         top += size[1] + 26.0
-    key = colour_key(LEFT + len(names) * (size[0] + GAP) + 4.0, 1.0, is_signed=False, top=40.0)
+    key = colour_key(LEFT + len(names) * (size[0] + GAP) + 4.0, 1.0, is_signed=False, top=40.0)  # px, chosen
     return Chart("costs of the schedule", (*panels, key))
 
 
@@ -56,9 +55,9 @@ def _cell(point: OperatingPoint, name: str, column: int, row: int) -> list[Mark]
     cost = point.cost if name == THIS_SCHEDULE else point.baseline_costs.get(name, math.nan)
     words = "unst." if math.isinf(cost) else DASH if math.isnan(cost) else fixed(cost, 2)
     marks: list[Mark] = [
-        Rectangle(column - 0.5, row - 0.5, column + 0.5, row + 0.5, colour(cost, 1.0), gap=1.5),
-        Text(column, row, words, Anchor.MIDDLE, 10.5, text_colour(cost, 1.0), dx=-1.0, dy=3.5),
+        Rectangle(column - 0.5, row - 0.5, column + 0.5, row + 0.5, colour(cost, 1.0), gap=1.5),  # px, chosen
+        Text(column, row, words, Anchor.MIDDLE, 10.5, text_colour(cost, 1.0), dx=-1.0, dy=3.5),  # px, chosen
     ]
     if name == THIS_SCHEDULE and not point.is_feasible:
-        marks.append(Line(np.array([column - 0.45, column + 0.42]), np.full(2, row + 0.38), _LACKING))
+        marks.append(Line(np.array([column - 0.45, column + 0.42]), np.full(2, row + 0.38), _LACKING))  # px, chosen
     return marks
