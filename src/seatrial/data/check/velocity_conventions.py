@@ -47,13 +47,13 @@ class _Comparison:
         """Return whether the best reading departs from the declared one, which is worse than `least` and by `ratio`."""
         return self.best.changes > 0 and self.declared_misfit > max(least, ratio * self.best_misfit)
 
-    def finding(self, severity: Severity, code: str, what: str, advice: str) -> Finding:
+    def finding(self, severity: Severity, code: str, text: str, advice: str) -> Finding:
         """Return a finding whose evidence are the misfits."""
         evidence = (
             f"rms misfit with the derivative of position {self.declared_misfit:.1%} as declared, "
             f"{self.best_misfit:.1%} otherwise"
         )
-        return Finding(severity, code, f"record '{self.motion.record.name}': {what}", evidence, advice)
+        return Finding(severity, code, f"record '{self.motion.record.name}': {text}", evidence, advice)
 
 
 def _comparison_findings(comparison: _Comparison) -> list[Finding]:

@@ -60,7 +60,10 @@ def _panel(record: Record, name: str, unit: str, curves: Sequence[tuple[Array, S
            # ticks, chosen
            ranges: Sequence[Array] = (), limits: Sequence[float] = (), title: str = "", y_ticks: int = 5,
            points: int = POINTS, margin: float = 0.06) -> Panel:  # fmt: skip
-    """Curves of one quantity over time with its limits, both in SI; `ranges`: what the axis shows besides."""
+    """Curves of one quantity over time with its limits, both in SI; `ranges`: what the axis shows besides.
+
+    y_ticks: number of ticks, chosen; points: of a curve at most.
+    """
     factor = display_unit(unit)[0]
     # ticks, chosen
     x = Axis(
