@@ -1,8 +1,7 @@
 """Results: fits, designs, tunings, studies and estimates on a stream, described field by field."""
 
-from seatrial.core.results.prediction import Baseline, OpenLoopScores
-from seatrial.core.results.coefficients import CandidateModel, Coefficient, Method, Offset
-from seatrial.core.results.design import Actuator, Confirmation, Design, TimedOrder, TrialLimits
+from seatrial.core.results.coefficients import CandidateModel, Coefficient, Method, Noise, NoiseModel, Offset, Residuals
+from seatrial.core.results.design import Actuator, Confirmation, Design, ManoeuvrePrecision, TimedOrder, TrialLimits
 from seatrial.core.results.fit import Fit
 from seatrial.core.results.identifiability import (
     Collinearity,
@@ -14,13 +13,9 @@ from seatrial.core.results.identifiability import (
     Stability,
     Symmetry,
 )
-from seatrial.core.results.design import ManoeuvrePrecision
-from seatrial.core.results.coefficients import Noise, NoiseModel, Residuals
-from seatrial.core.results.prediction import Extrapolation, IntervalBasis, Measure, Prediction
-from seatrial.core.results.ship_motions import IntervalEstimate, RollCharacteristics
-from seatrial.core.results.ship_motions import PointMotion, Seakeeping
-from seatrial.core.results.study import Check, CheckStatus, Claim, Study, Verdict
-from seatrial.core.results.study import Bars, Curve, Figure, Matrix, Table
+from seatrial.core.results.prediction import Baseline, Extrapolation, IntervalBasis, Measure, OpenLoopScores, Prediction
+from seatrial.core.results.ship_motions import IntervalEstimate, PointMotion, RollCharacteristics, Seakeeping
+from seatrial.core.results.study import Bars, Check, CheckStatus, Claim, Curve, Figure, Matrix, Study, Table, Verdict
 from seatrial.core.results.summary import Summary
 from seatrial.numerics.optimise import Solution, Status
 
