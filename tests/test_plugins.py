@@ -28,13 +28,13 @@ def model():
 """
 READER = """
 from seatrial.core.values import InputError
-from seatrial.data.read import RawTable
+from seatrial.data.read import Log, RawTable
 
 def read(path, layout):
-    rows = [line.split("|") for line in path.read_text().split()]
+    rows = [line.split("|") for line in path.read_text(errors="replace").split()]
     if not rows or len({len(row) for row in rows}) != 1 or rows[0][0] != "t":
         raise InputError(f"{path.name} is damaged; replace it")
-    return RawTable(path.name, tuple(rows[0]), tuple(zip(*rows[1:])), 2)
+    return Log.of_table(RawTable(path.name, tuple(rows[0]), tuple(zip(*rows[1:])), 2))
 """
 ESTIMATOR = """
 from seatrial.estimation.regress.estimators import LinearRegression

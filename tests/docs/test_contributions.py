@@ -9,13 +9,13 @@ from types import ModuleType
 import numpy as np
 import pytest
 from tests.estimation.regress.linear import zigzags
+from tests.installed_package import install
 
 from seatrial import testing
 from seatrial.core.figures.marks import Rule
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Verdict
 from seatrial.core.values import InputError
-from seatrial.data import read
 from seatrial.data.example_series.series import true_model
 from seatrial.data.read import ColumnSpec, Layout, read_record
 from seatrial.physics.models import model_from_file
@@ -54,9 +54,10 @@ def test_the_model_turns_to_the_side_of_its_rudder_and_loses_speed() -> None:
 
 
 @pytest.fixture
-def layout(monkeypatch: pytest.MonkeyPatch) -> Layout:
+def layout(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Layout:
     """The layout of a JSON lines file, the reader installed for the time of a test."""
-    monkeypatch.setitem(read.READERS, "jsonl", loaded("json_lines_reader").read_json_lines)  # type: ignore[misc]
+    code = (FOLDER / "json_lines_reader.py").read_text(encoding="utf-8")
+    install(monkeypatch, tmp_path, "seatrial.readers", "jsonl", code, "read_json_lines")
     return Layout("jsonl", ColumnSpec("time", "t", "s"), (ColumnSpec("u", "speed", "kn"),))  # type: ignore[arg-type]
 
 

@@ -1,6 +1,6 @@
 """Sentences with their checksums, for tests."""
 
-from seatrial.onboard.nmea_sentence import checksum
+from seatrial.data.read.nmea_sentence import checksum
 
 
 def sentence(body: str) -> bytes:

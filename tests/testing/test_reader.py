@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record
-from seatrial.data.read import ColumnSpec, Layout, RawTable, write_record_csv
-from seatrial.data.read.text import read_text
+from seatrial.data.read import ColumnSpec, Layout, Log, RawTable, write_record_csv
+from seatrial.data.read.formats.text import read_text
 from seatrial.testing import ConformanceError, check_reader
 
 LAYOUT = Layout("text", ColumnSpec("time", "time [s]", "s"), (ColumnSpec("u", "u [m/s]", "m/s"),))
@@ -26,30 +26,44 @@ def test_the_text_reader_conforms(sample: Path) -> None:
     check_reader(read_text, sample, LAYOUT)
 
 
-def careless(path: Path, _: Layout) -> RawTable:
+def careless(path: Path, _: Layout) -> Log:
     """A reader that lets exceptions of the format through."""
     names, *rows = [line.split(",") for line in path.read_text().splitlines() if not line.startswith("#")]
-    return RawTable(path.name, tuple(names), tuple(zip(*[map(float, row) for row in rows], strict=True)))
+    cells = tuple(zip(*[map(float, row) for row in rows], strict=True))
+    return Log.of_table(RawTable(path.name, tuple(names), cells))
 
 
-def forgetful(path: Path, layout: Layout) -> RawTable:
-    return replace(read_text(path, layout), file="file")
+def altered(path: Path, layout: Layout, **changes: object) -> Log:
+    return Log.of_table(replace(read_text(path, layout).tables[0], **changes))
 
 
-def ragged(path: Path, layout: Layout) -> RawTable:
-    table = read_text(path, layout)
-    return replace(table, cells=(table.cells[0], table.cells[1][:-1]))
+def forgetful(path: Path, layout: Layout) -> Log:
+    return altered(path, layout, file="file")
 
 
-def noisy(path: Path, layout: Layout) -> RawTable:
-    table = read_text(path, layout)
-    return replace(table, cells=(table.cells[0], np.random.default_rng().normal(size=len(table.cells[1]))))
+def ragged(path: Path, layout: Layout) -> Log:
+    cells = read_text(path, layout).tables[0].cells
+    return altered(path, layout, cells=(cells[0], cells[1][:-1]))
 
 
-def destructive(path: Path, layout: Layout) -> RawTable:
-    table = read_text(path, layout)
+def noisy(path: Path, layout: Layout) -> Log:
+    cells = read_text(path, layout).tables[0].cells
+    return altered(path, layout, cells=(cells[0], np.random.default_rng().normal(size=len(cells[1]))))
+
+
+def repeated(path: Path, layout: Layout) -> Log:
+    table = read_text(path, layout).tables[0]
+    return Log(path.name, (table, table))
+
+
+def timeless(path: Path, layout: Layout) -> Log:
+    return altered(path, layout, time_name="clock")
+
+
+def destructive(path: Path, layout: Layout) -> Log:
+    log = read_text(path, layout)
     path.write_text(path.read_text() + "\n")
-    return table
+    return log
 
 
 @pytest.mark.parametrize(
@@ -60,7 +74,9 @@ def destructive(path: Path, layout: Layout) -> RawTable:
         (ragged, "columns differ in length"),
         (noisy, "reading twice gives other numbers in channel 'u'"),
         (destructive, "changes the file that it reads"),
-        (lambda *_: None, "returns a NoneType, not a RawTable"),
+        (lambda *_: None, "returns a NoneType, not a Log"),
+        (repeated, "the topic '' stands twice"),
+        (timeless, "time column 'clock' is none of its columns"),
     ],
 )
 def test_violations_are_named(reader, sentence: str, sample: Path) -> None:

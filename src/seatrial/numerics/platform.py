@@ -191,3 +191,18 @@ def has_input(descriptor: int, seconds: float) -> bool:
 def reuses_addresses_safely() -> bool:
     """Return whether a port just given up may be bound again; on Windows that would let two programs share it."""
     return _SYSTEM != "nt"
+
+
+def limit_resources(memory_bytes: int, cpu_s: int) -> None:
+    """Limit the memory and the CPU time of this process; beyond them it fails to allocate, or is ended.
+
+    Without effect where the system has no such limits.
+    """
+    try:
+        import resource
+    except ImportError:
+        return
+    for kind, limit in ((resource.RLIMIT_AS, memory_bytes), (resource.RLIMIT_CPU, cpu_s), (resource.RLIMIT_CORE, 0)):
+        _, hard = resource.getrlimit(kind)
+        wanted = limit if hard == resource.RLIM_INFINITY else min(limit, hard)
+        resource.setrlimit(kind, (wanted, hard))

@@ -8,8 +8,8 @@ import numpy as np
 
 from seatrial.core.results.online import Sample, SampleCounts
 from seatrial.core.values import Array, InputError, quantity, spelling_hint
+from seatrial.data.read.formats.text import RECORD_MARK, detect_separator
 from seatrial.data.read.layout import ColumnSpec, Layout
-from seatrial.data.read.text import RECORD_MARK, detect_separator
 from seatrial.onboard.lines import LineBatch
 
 # lines in a row with more cells than before after which their number is taken as the right one

@@ -10,9 +10,9 @@ import numpy as np
 from seatrial.core.results.online import Sample, SampleCounts
 from seatrial.core.values import Array, InputError
 from seatrial.data.read.layout import Layout
+from seatrial.data.read.nmea_sentence import SentenceFault, parse_sentence, readings, utc_time
 from seatrial.onboard.lines import LineBatch
 from seatrial.onboard.nmea_fields import columns_by_field
-from seatrial.onboard.nmea_sentence import SentenceFault, parse_sentence, readings, utc_time
 
 ARRIVAL = "arrival"
 _STAMP_NAMES = ("stamp", "time")

@@ -120,7 +120,7 @@ def test_channel_given_twice() -> None:
 
 def test_frame_that_does_not_exist(tmp_path: Path) -> None:
     layout = Layout("text", TIME, (ColumnSpec("u", "speed", "m/s", frame="ship"),))
-    assert "frame must be body, earth or none, not 'ship'" in message(tmp_path, "t,speed\n0,1\n1,1\n", layout)
+    assert "frame must be body, earth, none or enu, not 'ship'" in message(tmp_path, "t,speed\n0,1\n1,1\n", layout)
 
 
 def test_format_by_suffix() -> None:

@@ -8,7 +8,7 @@ import pytest
 from scipy.io import savemat
 
 from seatrial.core.values import InputError
-from seatrial.data.read import ColumnSpec, Layout, read_record
+from seatrial.data.read import FORMATS, ColumnSpec, Layout, read_record
 
 T, U = np.arange(6) * 0.1, np.array([1.0, 1.1, np.nan, 1.3, 1.4, 1.5])
 
@@ -62,10 +62,26 @@ def test_netcdf(tmp_path: Path) -> None:
     expect(tmp_path / "run.nc", layout("netcdf"))
 
 
-@pytest.mark.parametrize(("format", "module"), [("parquet", "pyarrow.parquet"), ("netcdf", "xarray")])
-def test_a_missing_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, format: str, module: str) -> None:
+EXTRAS = {
+    "parquet": ("pyarrow.parquet", "formats"),
+    "netcdf": ("xarray", "formats"),
+    "nmea2000": ("nmea2000", "logs"),
+    "ardupilot-bin": ("pymavlink.DFReader", "logs"),
+    "ardupilot-tlog": ("pymavlink.mavutil", "logs"),
+    "rosbag": ("rosbags.highlevel", "logs"),
+    "ulog": ("pyulog", "logs"),
+    "excel": ("openpyxl", "logs"),
+    "hdf5": ("h5py", "logs"),
+    "tdms": ("nptdms", "logs"),
+    "mdf4": ("asammdf", "logs"),
+}
+
+
+@pytest.mark.parametrize("format", EXTRAS)
+def test_a_missing_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, format: str) -> None:
+    module, extra = EXTRAS[format]
     path = tmp_path / "run.bin"
     path.write_bytes(b"anything")
     monkeypatch.setitem(sys.modules, module, None)
-    with pytest.raises(InputError, match=r"pip install 'seatrial\[formats\]'"):
-        read_record(path, layout(format))
+    with pytest.raises(InputError, match=rf"pip install 'seatrial\[{extra}\]'"):
+        FORMATS[format].reader()(path, layout(format))

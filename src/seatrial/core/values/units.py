@@ -4,16 +4,19 @@ import math
 
 from seatrial.core.values.errors import InputError, spelling_hint
 
+_DEGREE = math.pi / 180.0  # rad
 # unit -> (factor to SI, SI unit); exact by definition (SI brochure 2019; 1 kn = 1852 m/h)
 _UNITS: dict[str, tuple[float, str]] = {
-    "1": (1.0, "1"), "s": (1.0, "s"), "ms": (1e-3, "s"), "min": (60.0, "s"), "h": (3600.0, "s"), "m": (1.0, "m"),
-    "mm": (1e-3, "m"), "cm": (1e-2, "m"), "km": (1e3, "m"), "ft": (0.3048, "m"), "nmi": (1852.0, "m"),
-    "rad": (1.0, "rad"), "deg": (math.pi / 180.0, "rad"), "m/s": (1.0, "m/s"), "km/h": (1.0 / 3.6, "m/s"),
-    "kn": (1852.0 / 3600.0, "m/s"), "rad/s": (1.0, "rad/s"), "deg/s": (math.pi / 180.0, "rad/s"),
-    "deg/min": (math.pi / 10800.0, "rad/s"), "m/s^2": (1.0, "m/s^2"), "g": (9.80665, "m/s^2"), "rps": (1.0, "rps"),
-    "rpm": (1.0 / 60.0, "rps"), "N": (1.0, "N"), "kN": (1e3, "N"), "MN": (1e6, "N"), "N m": (1.0, "N m"),
-    "kN m": (1e3, "N m"), "kg": (1.0, "kg"), "t": (1e3, "kg"), "kg/m^3": (1.0, "kg/m^3"), "kg m^2": (1.0, "kg m^2"),
-    "V": (1.0, "V"), "mV": (1e-3, "V"), "percent": (0.01, "1"), "m^2": (1.0, "m^2"), "m^3": (1.0, "m^3"),
+    "1": (1.0, "1"), "percent": (0.01, "1"), "s": (1.0, "s"), "ms": (1e-3, "s"), "us": (1e-6, "s"), "ns": (1e-9, "s"),
+    "min": (60.0, "s"), "h": (3600.0, "s"), "m": (1.0, "m"), "mm": (1e-3, "m"), "cm": (1e-2, "m"), "km": (1e3, "m"),
+    "ft": (0.3048, "m"), "nmi": (1852.0, "m"), "rad": (1.0, "rad"), "deg": (_DEGREE, "rad"), "°": (_DEGREE, "rad"),
+    "m/s": (1.0, "m/s"), "km/h": (1.0 / 3.6, "m/s"), "kn": (1852.0 / 3600.0, "m/s"), "kt": (1852.0 / 3600.0, "m/s"),
+    "rad/s": (1.0, "rad/s"), "deg/s": (_DEGREE, "rad/s"), "°/s": (_DEGREE, "rad/s"),
+    "deg/min": (_DEGREE / 60.0, "rad/s"), "°/min": (_DEGREE / 60.0, "rad/s"), "m/s^2": (1.0, "m/s^2"),
+    "g": (9.80665, "m/s^2"), "rps": (1.0, "rps"), "rpm": (1.0 / 60.0, "rps"), "N": (1.0, "N"), "kN": (1e3, "N"),
+    "MN": (1e6, "N"), "N m": (1.0, "N m"), "kN m": (1e3, "N m"), "kg": (1.0, "kg"), "t": (1e3, "kg"),
+    "kg/m^3": (1.0, "kg/m^3"), "kg m^2": (1.0, "kg m^2"), "V": (1.0, "V"), "mV": (1e-3, "V"), "m^2": (1.0, "m^2"),
+    "m^3": (1.0, "m^3"),
 }  # fmt: skip
 
 

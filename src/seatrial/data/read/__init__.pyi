@@ -1,19 +1,24 @@
 from seatrial.data.read.layout import ColumnSpec, Layout
-from seatrial.data.read.raw_table import RawTable, Reader
+from seatrial.data.read.log import Log, LogEvent, Reader, topic_table
+from seatrial.data.read.raw_table import RawTable
 from seatrial.data.read.record_csv import read_record_csv, write_record_csv
-from seatrial.data.read.record_file import read_record
-from seatrial.data.read.registry import READERS, format_of, reader_of, require_format
+from seatrial.data.read.record_file import read_log, read_record
+from seatrial.data.read.registry import FORMATS, format_of, reader_of, require_format
 
 __all__ = [
-    "READERS",
+    "FORMATS",
     "ColumnSpec",
     "Layout",
+    "Log",
+    "LogEvent",
     "RawTable",
     "Reader",
     "format_of",
+    "read_log",
     "read_record",
     "read_record_csv",
     "reader_of",
     "require_format",
+    "topic_table",
     "write_record_csv",
 ]

@@ -1,34 +1,128 @@
-"""From a sheet of cells to a record in SI units, conventions as declared."""
+"""From the cells of logs to a record in SI units, conventions as declared."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from seatrial.core.values import Array, Channel, InputError, Provenance, Record, frozen, quantity
 from seatrial.core.values.froude import froude_scaled
-from seatrial.data.read.layout import Layout
+from seatrial.data.read.clock import stamps
+from seatrial.data.read.derive import Measured, derived_channels
+from seatrial.data.read.join import Series, common_time, ordered_series, values_at
+from seatrial.data.read.layout import ColumnSpec, Layout
+from seatrial.data.read.log import Log
 from seatrial.data.read.raw_table import RawTable
 
 
-def assemble_record(table: RawTable, layout: Layout, sha256: str) -> Record:
-    """The record of a sheet; empty cells stay NaN, frames and signs stay as declared.
+@dataclass(frozen=True, eq=False)
+class LogSource:
+    """A log with the layout of what is wanted of it, and its digest."""
+
+    log: Log
+    layout: Layout
+    sha256: str = ""
+
+
+def assemble_record(log: Log, layout: Layout, sha256: str) -> Record:
+    """The record of one log; empty cells stay NaN, frames and signs stay as declared.
+
+    Columns of one topic keep its time stamps; those of several are joined as in `record_of_sources`.
 
     Raises:
         InputError: time runs backwards, fewer than two samples, a channel without any number, wrong unit.
     """
-    time = table.numbers(layout.time) * layout.time.si_factor("s")
-    _require_increasing_time(time, table, layout)
-    columns = []
+    tables = [log.table_of(column) for column in layout.columns or (layout.time,)]
+    if any(table is not tables[0] for table in tables):
+        return record_of_sources(record_name(log.file), [LogSource(log, layout, sha256)])
+    table = tables[0]
+    read = stamps(table, _time_column(layout, table))
+    _require_increasing_time(read.seconds, table, layout)
+    measured = {column.symbol: _measured(column, table) for column in layout.columns}
+    channels = derived_channels(measured, layout.geometry, log.file)
+    provenance = Provenance(log.file, sha256, _notes(f"read as {layout.format}", read.note))
+    return _record(record_name(log.file), read.seconds, channels, layout.scale, provenance)
+
+
+def record_of_sources(name: str, sources: Sequence[LogSource]) -> Record:
+    """The record of several logs or topics, each with its own clock and rate, on one even time base.
+
+    Commands are held, angles unwrapped, the rest is interpolated linearly; what lies in a gap longer than the layout's
+    `longest_gap` stays NaN. Rate, gaps, geometry and scale are those of the first source.
+
+    Raises:
+        InputError: as `assemble_record`; a channel is given twice, or the sources do not overlap in time.
+    """
+    series = [one for source in sources for one in _series(source)]
+    symbols = [one.column.symbol for one in series]
+    for symbol in symbols:
+        if symbols.count(symbol) > 1:
+            raise InputError(f"run '{name}': channel '{symbol}' is given by two sources; keep one")
+    layout = sources[0].layout
+    time = common_time(series, layout.rate)
+    measured = {
+        one.column.symbol: Measured(one.column, values_at(one, time, layout.longest_gap), one.label) for one in series
+    }
+    channels = derived_channels(measured, layout.geometry, name)
+    files = ", ".join(dict.fromkeys(source.log.file for source in sources))
+    topics = len({one.topic for one in series})
+    step = f"{topics} topics of {len(files.split(', '))} files joined every {time[1] - time[0]:.6g} s"
+    digest = sources[0].sha256 if len(sources) == 1 else " ".join(source.sha256 for source in sources)
+    return _record(name, time, channels, layout.scale, Provenance(files, digest, (step,)))
+
+
+def _series(source: LogSource) -> list[Series]:
+    """The columns of a source, each with the stamps of its topic."""
+    log, layout = source.log, source.layout
+    clocks: dict[int, Array] = {}
+    series = []
     for column in layout.columns:
-        values = table.numbers(column) * column.si_factor(quantity(column.symbol).unit)
-        if np.all(np.isnan(values)):
-            raise InputError(
-                f"{table.file}: {column.display_name} (channel '{column.symbol}') holds no number at all; leave it out"
-            )
-        columns.append(values)
-    labels = tuple(table.label(column) for column in layout.columns)
-    provenance = Provenance(table.file, sha256, (f"read as {layout.format}",))
-    return record_from_values(record_name(table.file), layout, time, np.stack(columns, axis=1), labels, provenance)
+        table = log.table_of(column)
+        if id(table) not in clocks:
+            clocks[id(table)] = stamps(table, _time_column(layout, table)).seconds
+        one = _measured(column, table)
+        series.append(ordered_series(column, clocks[id(table)], one.values, one.label, f"{log.file} {table.topic}"))
+    return series
+
+
+def _time_column(layout: Layout, table: RawTable) -> ColumnSpec:
+    """The layout's time column; where it names the one of another topic, that of the table itself."""
+    source = layout.time.source
+    if isinstance(source, str) and table.time_name and source not in table.names:
+        topic, _, name = source.rpartition("/")
+        if topic != table.topic and (not topic or name == table.time_name):
+            return ColumnSpec("time", "", "s")
+    return layout.time
+
+
+def _measured(column: ColumnSpec, table: RawTable) -> Measured:
+    values = column.in_si(table.numbers(column))
+    if np.all(np.isnan(values)):
+        raise InputError(
+            f"{table.title}: {column.display_name} (channel '{column.symbol}') holds no number at all; leave it out"
+        )
+    return Measured(column, values, table.label(column))
+
+
+def _notes(*notes: str) -> tuple[str, ...]:
+    return tuple(note for note in notes if note)
+
+
+def _record(name: str, time: Array, measured: dict[str, Measured], scale: float, provenance: Provenance) -> Record:
+    channels = {symbol: _channel(one.column, one.values, one.label) for symbol, one in measured.items()}
+    return froude_scaled(Record(name, time, channels, provenance=provenance), scale)
+
+
+def _channel(column: ColumnSpec, values: Array, label: str) -> Channel:
+    return Channel(
+        frozen(values),
+        quantity(column.symbol).unit,
+        column.declared_frame,
+        column.declared_positive,
+        column.reference_point,
+        label,
+    )
 
 
 def record_from_values(
@@ -41,18 +135,8 @@ def record_from_values(
 ) -> Record:
     """The record of rows that are numbers already: time (n,) [s], the layout's columns (n, k) [SI], as declared."""
     named = labels or tuple(column.label or column.display_name for column in layout.columns)
-    channels = {
-        column.symbol: Channel(
-            frozen(values[:, k]),
-            quantity(column.symbol).unit,
-            column.declared_frame,
-            column.declared_positive,
-            column.reference_point,
-            named[k],
-        )
-        for k, column in enumerate(layout.columns)
-    }
-    return froude_scaled(Record(name, time, channels, provenance=provenance or Provenance(name)), layout.scale)
+    measured = {column.symbol: Measured(column, values[:, k], named[k]) for k, column in enumerate(layout.columns)}
+    return _record(name, time, measured, layout.scale, provenance or Provenance(name))
 
 
 def record_name(file: str) -> str:
@@ -65,11 +149,15 @@ def _require_increasing_time(time: Array, table: RawTable, layout: Layout) -> No
     stamped = np.flatnonzero(np.isfinite(time))
     if stamped.size < 2:
         count = "no time stamp" if stamped.size == 0 else "one sample"
-        raise InputError(f"{table.file} has {count} in {layout.time.display_name}; a record needs at least two")
+        raise InputError(f"{table.title} has {count} in {layout.time.display_name}; a record needs at least two")
     back = np.flatnonzero(np.diff(time[stamped]) < 0)
     if back.size:
         row = stamped[back[0] + 1]
         raise InputError(
-            f"{table.file}: row {table.first_row + row}: time runs backwards from {time[stamped[back[0]]]:g} s "
-            f"to {time[row]:g} s; sort or split the file"
+            f"{table.title}: row {table.first_row + row}: time runs backwards from {time[stamped[back[0]]]:g} s "
+            f"to {time[row]:g} s{_more(back.size)}; sort or split the file"
         )
+
+
+def _more(count: int) -> str:
+    return f", and {count - 1} times more" if count > 1 else ""

@@ -3,12 +3,15 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from seatrial.core.values import InputError, quantity, si_unit
-from seatrial.core.values.notation import positive_direction
+from seatrial.core.values import Array, InputError, si_unit
+from seatrial.core.values.notation import NOTATION, positive_direction
+from seatrial.data.read.quantities import log_quantity
 
 Separator = Literal["auto", ",", ";", "tab", "whitespace"]
 
-_FRAME_NAMES = ("body", "earth", "none")
+_FRAME_NAMES = ("body", "earth", "none", "enu")
+# units of time stamps that are not a number of seconds, see `seatrial.data.read.clock`
+TEXT_CLOCKS = ("utc", "hhmmss", "excel", "gnss")
 
 
 @dataclass(frozen=True)
@@ -19,10 +22,13 @@ class ColumnSpec:
         symbol: the notation table's symbol (``time`` for the time column).
         source: column name, or its number counted from 1.
         unit: the unit in the file.
-        frame: ``body``, ``earth`` or ``none``; empty: the notation table's.
+        frame: ``body``, ``earth`` or ``none``; empty: the notation table's. ``enu``: x east, y north, z up, angles
+            counter-clockwise from east, as ROS has it.
         positive: positive direction; empty: the notation table's (north and east for earth-fixed velocities).
         reference_point: metres forward of midship, at the scale of the file.
         label: the name to keep; empty: the file's own, or ``column k``.
+        zero, span, factor, offset: the number in `unit` is (cell - zero) / span * factor + offset.
+        is_held: whether a value holds until the next one (commands), in place of a straight line between them.
     """
 
     symbol: str
@@ -32,6 +38,11 @@ class ColumnSpec:
     positive: str = ""
     reference_point: float = 0.0
     label: str = ""
+    zero: float = 0.0
+    span: float = 1.0
+    factor: float = 1.0
+    offset: float = 0.0
+    is_held: bool = False
 
     @property
     def display_name(self) -> str:
@@ -45,15 +56,28 @@ class ColumnSpec:
         Raises:
             InputError: neither ``body``, ``earth`` nor ``none``.
         """
-        frame = self.frame or quantity(self.symbol).frame
+        frame = self.frame or log_quantity(self.symbol).frame
         if frame not in _FRAME_NAMES:
-            raise InputError(f"channel '{self.symbol}': frame must be body, earth or none, not '{frame}'")
+            raise InputError(f"channel '{self.symbol}': frame must be body, earth, none or enu, not '{frame}'")
         return frame
 
     @property
     def declared_positive(self) -> str:
         """The positive direction in force."""
-        return self.positive or positive_direction(self.symbol, self.declared_frame)
+        if self.positive or self.symbol not in NOTATION:
+            return self.positive or log_quantity(self.symbol).positive
+        return positive_direction(self.symbol, self.declared_frame)
+
+    def in_si(self, cells: Array) -> Array:
+        """Return the numbers of the file in the SI unit of the channel.
+
+        Raises:
+            InputError: as `si_factor`.
+        """
+        expected = log_quantity(self.symbol).unit
+        # a share of a span has no unit: that of the cells is then only a label, such as "us" of a pulse width
+        size = 1.0 if self.span != 1.0 and expected == "1" else self.si_factor(expected)
+        return ((cells - self.zero) / self.span * self.factor + self.offset) * size
 
     def si_factor(self, expected: str) -> float:
         """Factor from the file's unit to the SI unit `expected`.
@@ -71,6 +95,39 @@ class ColumnSpec:
 
 
 @dataclass(frozen=True)
+class TimeSpec(ColumnSpec):
+    """The column of time stamps, and what completes them.
+
+    Attributes:
+        date: column of dates, where `source` holds the time of day.
+        nanoseconds: column of nanoseconds, where `source` holds whole seconds.
+        week: column of GNSS weeks, where `source` holds seconds of the week.
+        clock_offset: s to be added to the stamps.
+    """
+
+    date: str | int = ""
+    nanoseconds: str | int = ""
+    week: str | int = ""
+    clock_offset: float = 0.0
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """What positions, velocities and headings are derived with.
+
+    Attributes:
+        origin: latitude and longitude [rad] of the plane on which x0 and y0 lie; None: the first fix.
+        variation: magnetic variation [rad], positive to the east; None: it is not stated.
+        antenna_x, antenna_y: m forward of midship and to starboard of the centre line: where the GNSS antenna is.
+    """
+
+    origin: tuple[float, float] | None = None
+    variation: float | None = None
+    antenna_x: float = 0.0
+    antenna_y: float = 0.0
+
+
+@dataclass(frozen=True)
 class Layout:
     """The layout of one kind of file.
 
@@ -84,6 +141,9 @@ class Layout:
         separator: between the cells of a text file; ``auto`` looks at the first data line.
         decimal: decimal sign of a text file.
         scale: length ratio by which the record is Froude-scaled; 1 leaves it as it is.
+        geometry: what positions and headings are derived with.
+        rate: Hz of the common time base of columns from several topics; None: that of the slowest measured one.
+        longest_gap: s between two samples of a topic over which nothing is interpolated; None: five of its steps.
     """
 
     format: str
@@ -94,6 +154,9 @@ class Layout:
     separator: Separator = "auto"
     decimal: str = "."
     scale: float = 1.0
+    geometry: Geometry = Geometry()
+    rate: float | None = None
+    longest_gap: float | None = None
 
     def __post_init__(self) -> None:
         symbols = [column.symbol for column in self.columns]

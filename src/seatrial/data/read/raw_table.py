@@ -1,32 +1,45 @@
-"""What every reader returns: named columns of cells, before anything is known about them."""
+"""One table of a log: named columns of cells, before anything is known about them."""
 
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from seatrial.core.values import Array, InputError, spelling_hint
-from seatrial.data.read.layout import ColumnSpec, Layout
+from seatrial.data.read.layout import ColumnSpec
 
 EMPTY_CELLS = ("", "na", "n/a", "null", "none")
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?|[+-]?(nan|inf|infinity)|true|false", re.IGNORECASE | re.ASCII)
+_GROUPED_NUMBER = re.compile(r"[+-]?\d{1,3}([,.' ]\d{3})+([.,]\d*)?")
+_MINUS_SIGN = "\u2212"
+_LONGEST_CELL = 40  # characters of a cell that a message quotes; ours
 
 
 @dataclass(frozen=True)
 class RawTable:
-    """Columns of one file.
+    """Columns of one file, or of one topic in it.
 
     Attributes:
         file: file name for messages.
         names: column names; empty strings where the file has none.
         cells: one sequence for each column, numbers or text, all of the same length.
         first_row: line (or row) number of the first cell.
+        topic: name of the topic; empty for a plain table.
+        units: of the columns as the file states them, empty strings where it does not; empty: it states none.
+        time_name: the column of time stamps where the format defines one.
     """
 
     file: str
     names: tuple[str, ...]
     cells: tuple[Sequence | np.ndarray, ...]
     first_row: int = 1
+    topic: str = ""
+    units: tuple[str, ...] = ()
+    time_name: str = ""
+
+    def __len__(self) -> int:
+        return len(self.cells[0]) if self.cells else 0
 
     def column_index(self, column: ColumnSpec) -> int:
         """Position of a wanted column.
@@ -34,6 +47,8 @@ class RawTable:
         Raises:
             InputError: there is no such column; the nearest one is named.
         """
+        if column.symbol == "time" and not column.source:
+            return self._time_index()
         if isinstance(column.source, int):
             if not 1 <= column.source <= len(self.cells):
                 raise InputError(
@@ -41,11 +56,28 @@ class RawTable:
                     f"but the file has {len(self.cells)} columns; columns count from 1"
                 )
             return column.source - 1
-        if column.source not in self.names:
+        name = column.source if column.source in self.names else column.source.removeprefix(self.topic).lstrip("/")
+        if name not in self.names:
             known = [name for name in self.names if name]
-            hint = spelling_hint(column.source, known) if known else "; the file has no column names, give numbers"
+            hint = spelling_hint(name, known) if known else "; the file has no column names, give numbers"
             raise InputError(f"{self.file}: no column '{column.source}' for channel '{column.symbol}'{hint}")
-        return self.names.index(column.source)
+        places = [k + 1 for k, one in enumerate(self.names) if one == name]
+        if len(places) > 1:
+            raise InputError(
+                f"{self.file}: the header has '{name}' {len(places)} times; for channel '{column.symbol}' give the "
+                f"number of the column: column = {' or '.join(map(str, places))}"
+            )
+        return places[0] - 1
+
+    def _time_index(self) -> int:
+        if not self.time_name:
+            raise InputError(f"{self.title} has no time stamps of its own; name the column with time = {{ column = }}")
+        return self.names.index(self.time_name)
+
+    @property
+    def title(self) -> str:
+        """How messages name the table."""
+        return f"{self.file}, topic '{self.topic}'" if self.topic else self.file
 
     def label(self, column: ColumnSpec) -> str:
         """The name kept with the channel: the user's, the file's, or ``column k``."""
@@ -59,9 +91,9 @@ class RawTable:
             InputError: no such column, or a cell that is not a finite number (row and column named).
         """
         cells = self.cells[self.column_index(column)]
-        try:
+        if isinstance(cells, np.ndarray) and cells.dtype.kind in "fiub":
             values = np.asarray(cells, dtype=np.float64)
-        except (TypeError, ValueError):
+        else:
             values = np.array([self._to_number(cell, row, column) for row, cell in enumerate(cells)])
         infinite = np.flatnonzero(np.isinf(values))
         if infinite.size:
@@ -73,14 +105,10 @@ class RawTable:
     def _to_number(self, cell: object, row: int, column: ColumnSpec) -> float:
         if cell is None or (isinstance(cell, str) and cell.strip().lower() in EMPTY_CELLS):
             return np.nan
-        try:
-            return float(cell)  # type: ignore[arg-type]
-        except (TypeError, ValueError):
-            raise InputError(
-                f"{self.file}: row {self.first_row + row}, {column.display_name}: '{str(cell).strip()}' is "
-                "not a number; "
-                "check header_lines, separator and decimal"
-            ) from None
-
-
-Reader = Callable[[Path, Layout], RawTable]
+        text = str(cell).strip().replace(_MINUS_SIGN, "-")
+        if _NUMBER.fullmatch(text):
+            return float(text[0] in "tT") if text[0] in "tTfF" else float(text)
+        where = f"{self.file}: row {self.first_row + row}, {column.display_name}: '{text[:_LONGEST_CELL]}'"
+        if _GROUPED_NUMBER.fullmatch(text):
+            raise InputError(f"{where} has a thousands separator; write the file without, or set decimal")
+        raise InputError(f"{where} is not a number; check header_lines, separator and decimal")

@@ -8,8 +8,8 @@ import numpy as np
 
 from seatrial.core.values import Array, Channel, InputError, Provenance, Record, RecordKind, frozen, quantity
 from seatrial.core.values.files import write_atomically
+from seatrial.data.read.formats.text import RECORD_MARK, decoded_text, read_text
 from seatrial.data.read.layout import ColumnSpec, Layout
-from seatrial.data.read.text import RECORD_MARK, decoded_text, read_text
 
 
 def write_record_csv(record: Record, path: Path) -> None:
@@ -49,7 +49,7 @@ def read_record_csv(path: Path) -> Record:
     if header[0] != ("time", "s"):
         raise InputError(f"{path.name} is not a record table: its first column must be 'time [s]'")
     layout = Layout("text", ColumnSpec("time", 1, "s"), (), header_lines=1, separator=",")
-    sheet = read_text(path, layout)
+    sheet = read_text(path, layout).tables[0]
     time, *columns = [sheet.numbers(ColumnSpec("time", number + 1, "s")) for number in range(len(header))]
     if not marked:
         plain = {s: _plain_channel(s, unit, values) for (s, unit), values in zip(header[1:], columns, strict=True)}

@@ -6,6 +6,7 @@ from pathlib import Path
 from seatrial.core.values import InputError, Record
 from seatrial.data.read.assemble import assemble_record
 from seatrial.data.read.layout import Layout
+from seatrial.data.read.log import Log
 from seatrial.data.read.registry import reader_of
 
 
@@ -18,9 +19,36 @@ def read_record(path: Path, layout: Layout) -> Record:
         InputError: missing, empty or binary file, wrong encoding, column, unit or cell, time that runs backwards,
             a channel without numbers, fewer than two samples.
     """
+    log = read_log(path, layout)
+    return assemble_record(log, layout, file_digest(path))
+
+
+def read_log(path: Path, layout: Layout) -> Log:
+    """Read one file as its format has it: topics, columns, parameters, events.
+
+    Raises:
+        InputError: the file is missing, empty, damaged, or no regular file.
+    """
     read = reader_of(layout.format)
-    if not path.is_file():
+    require_file(path)
+    return read(path, layout)
+
+
+def require_file(path: Path) -> None:
+    """Raises:
+    InputError: the path is missing, a folder, a device or a pipe, or an empty file.
+    """
+    if path.is_dir():
+        raise InputError(f"{path} is a folder; name a file in it")
+    if not path.exists():
         raise InputError(f"{path} does not exist; check the path and SEATRIAL_DATA")
+    if not path.is_file():
+        raise InputError(f"{path} is a device or a pipe; records are read from files, streams by 'seatrial follow'")
     if path.stat().st_size == 0:
         raise InputError(f"{path.name} is empty; leave it out or replace it")
-    return assemble_record(read(path, layout), layout, hashlib.sha256(path.read_bytes()).hexdigest())
+
+
+def file_digest(path: Path) -> str:
+    """Return the SHA-256 of a file, in hexadecimal digits."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

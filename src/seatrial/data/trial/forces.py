@@ -8,8 +8,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, ForceContent, ForcePoints, InputError, quantity, si_unit, spelling_hint
 from seatrial.core.values.froude import froude_factor
 from seatrial.core.values.notation import OPPOSITE
-from seatrial.data.read import ColumnSpec, Layout, format_of, reader_of
-from seatrial.data.read.raw_table import RawTable
+from seatrial.data.read import ColumnSpec, Layout, RawTable, format_of, read_log
 from seatrial.data.trial.runs import expand_variables
 from seatrial.data.trial.schema import ForceColumn, ForcesTable, MotionColumn
 
@@ -61,7 +60,7 @@ def _read_columns(table: ForcesTable, data_folder: Path, where: str) -> RawTable
     # readers of several variables take those that share the first column's length, as they do with a record's time
     layout = Layout(table.format or format_of(path), columns[0], columns, table.header_lines, table.encoding,
                     table.separator, table.decimal)  # fmt: skip
-    return reader_of(layout.format)(path, layout)
+    return read_log(path, layout).table_of(columns[0])
 
 
 def _column(symbol: str, column: MotionColumn | ForceColumn) -> ColumnSpec:

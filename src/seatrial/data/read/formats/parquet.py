@@ -3,26 +3,22 @@
 from pathlib import Path
 
 from seatrial.core.values import InputError
+from seatrial.data.read.extras import require_library
 from seatrial.data.read.layout import Layout
+from seatrial.data.read.log import Log
 from seatrial.data.read.raw_table import RawTable
 
 
-def read_parquet(path: Path, layout: Layout) -> RawTable:  # noqa: ARG001
+def read_parquet(path: Path, layout: Layout) -> Log:  # noqa: ARG001
     """Every column of the table under its name; an index becomes the first columns.
 
     Raises:
         InputError: pyarrow is not installed, or not a Parquet file.
     """
-    try:
-        import pyarrow.parquet as parquet  # type: ignore[import-untyped]
-    except ImportError:
-        raise InputError(
-            f"{path.name} is a Parquet file, which needs pyarrow; install it with: pip install 'seatrial[formats]'"
-        ) from None
+    parquet = require_library("pyarrow.parquet", path.name, "a Parquet file", "formats")
     try:
         table = parquet.read_table(path)
-    except (OSError, ValueError) as error:
+    except Exception as error:  # pyarrow raises OS, value and its own errors on damaged files
         raise InputError(f"{path.name} is not a readable Parquet file ({error})") from None
-    return RawTable(
-        path.name, tuple(table.column_names), tuple(column.to_numpy(zero_copy_only=False) for column in table.columns)
-    )
+    cells = tuple(column.to_numpy(zero_copy_only=False) for column in table.columns)
+    return Log.of_table(RawTable(path.name, tuple(table.column_names), cells))

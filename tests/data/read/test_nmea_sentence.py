@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.onboard.sentences import sentence
 
-from seatrial.onboard.nmea_sentence import Sentence, SentenceFault, parse_sentence, readings, utc_time
+from seatrial.data.read.nmea_sentence import Sentence, SentenceFault, parse_sentence, readings, utc_time
 
 KNOT = 1852 / 3600
 

@@ -2,17 +2,20 @@
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from seatrial.core.values import InputError
+from seatrial.data.read.extras import require_library
 from seatrial.data.read.layout import Layout
+from seatrial.data.read.log import Log
 from seatrial.data.read.raw_table import RawTable
 
 _HDF5 = b"\x89HDF"
 
 
-def read_mat(path: Path, layout: Layout) -> RawTable:
+def read_mat(path: Path, layout: Layout) -> Log:
     """Vectors become columns under their names (``run.u`` for a field of a struct); a matrix under its numbers.
 
     Column numbers count through the columns of the largest matrix of the file.
@@ -21,9 +24,9 @@ def read_mat(path: Path, layout: Layout) -> RawTable:
         InputError: not a MATLAB file, or h5py is needed and not installed.
     """
     with path.open("rb") as file:
-        head = file.read(520)
+        head = file.read(520)  # the signature of HDF5, at 0 or after a block of 512 bytes
     variables = _read_version_7(path) if _HDF5 in head[:8] or head[512:516] == _HDF5 else _read_version_5(path)
-    return _raw_table(path.name, variables, layout)
+    return Log.of_table(_raw_table(path.name, variables, layout))
 
 
 def _read_version_5(path: Path) -> dict[str, np.ndarray]:
@@ -50,22 +53,17 @@ def _flatten(variables: Mapping, prefix: str = "") -> dict[str, np.ndarray]:
 
 
 def _read_version_7(path: Path) -> dict[str, np.ndarray]:
-    try:
-        import h5py  # type: ignore[import-untyped]
-    except ImportError:
-        raise InputError(
-            f"{path.name} is a MATLAB 7.3 file, which needs h5py; install it with: pip install 'seatrial[formats]'"
-        ) from None
+    h5py = require_library("h5py", path.name, "a MATLAB 7.3 file", "formats")
     variables: dict[str, np.ndarray] = {}
 
-    def visit(name: str, item: object) -> None:
+    def visit(name: str, item: Any) -> None:
         if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu" and not name.startswith("#"):
             variables[name.replace("/", ".")] = np.squeeze(np.asarray(item, dtype=float).T)
 
     try:
         with h5py.File(path, "r") as file:
             file.visititems(visit)
-    except OSError as error:
+    except Exception as error:  # h5py raises OS, runtime, key and value errors on damaged files
         raise InputError(f"{path.name} is not a readable MATLAB 7.3 file ({error})") from None
     return variables
 

@@ -1,0 +1,162 @@
+"""Time stamps as seconds: numbers, ISO 8601, date and time in two columns, whole seconds and nanoseconds, GNSS weeks,
+Excel days, hhmmss with midnights passed."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+
+from seatrial.core.values import Array, InputError
+from seatrial.data.read.layout import ColumnSpec, TimeSpec
+from seatrial.data.read.raw_table import RawTable
+
+_DAY_S, _WEEK_S, _NANO = 86400.0, 604800.0, 1e-9  # s, of a day, of a week, of a nanosecond
+_GNSS_EPOCH_S = 315964800.0  # 1980-01-06 in s since 1970 (IS-GPS-200); leap seconds are not taken off
+_EXCEL_EPOCH_DAYS = 25569.0  # days from 1899-12-30, where Excel counts from, to 1970-01-01
+_DATE_TIME = re.compile(
+    r"\d{4}[-/.]\d{1,2}[-/.]\d{1,2}([T ]\d{1,2}:\d{2}(:\d{2}([.,]\d*)?)?)?\s*(Z|UTC|[+-]\d{2}:?\d{2})?"
+)
+_TIME_OF_DAY = re.compile(r"\d{1,2}:\d{2}:\d{2}([.,]\d*)?")
+_FRACTION = re.compile(r"(?<=:\d\d)[.,](\d+)")
+
+
+@dataclass(frozen=True, eq=False)
+class Stamps:
+    """Time stamps of a table.
+
+    Attributes:
+        seconds: shape (n,), NaN where the cell is empty; since 1970, or as the logger counts.
+        note: how they were read, for the provenance; empty where there is nothing to say.
+    """
+
+    seconds: Array
+    note: str = ""
+
+
+def stamps(table: RawTable, time: ColumnSpec) -> Stamps:
+    """Return the time stamps of a table.
+
+    Raises:
+        InputError: no such column, a stamp that is neither a number nor a date, or a unit that is no time.
+    """
+    if isinstance(time, TimeSpec) and (time.date or time.nanoseconds or time.week):
+        read = _completed(table, time)
+    else:
+        read = _column_stamps(table, time)
+    offset = time.clock_offset if isinstance(time, TimeSpec) else 0.0
+    return Stamps(read.seconds + offset, read.note)
+
+
+def _completed(table: RawTable, time: TimeSpec) -> Stamps:
+    """Stamps of two columns."""
+    if time.nanoseconds:
+        return Stamps(_numbers(table, time, time.source) + _NANO * _numbers(table, time, time.nanoseconds))
+    if time.week:
+        return Stamps(_GNSS_EPOCH_S + _WEEK_S * _numbers(table, time, time.week) + _numbers(table, time, time.source))
+    days, clock = (table.cells[table.column_index(_other(time, place))] for place in (time.date, time.source))
+    joined = [f"{str(day).strip()} {str(moment).strip()}" for day, moment in zip(days, clock, strict=True)]
+    return _parsed(joined, table, time)
+
+
+def _column_stamps(table: RawTable, time: ColumnSpec) -> Stamps:
+    cells = table.cells[table.column_index(time)]
+    if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
+        return Stamps(np.asarray(cells.astype("datetime64[ns]").astype(np.int64) * _NANO, dtype=np.float64))
+    first = next((text for cell in cells if (text := _text(cell))), "") if not _is_numeric(cells) else ""
+    if _DATE_TIME.fullmatch(first):
+        return _parsed([_text(cell) for cell in cells], table, time)
+    if _TIME_OF_DAY.fullmatch(first):
+        return _parsed([f"1970-01-01 {text}" if (text := _text(cell)) else "" for cell in cells], table, time)
+    numbers = table.numbers(time)
+    match time.unit:
+        case "utc":
+            raise InputError(
+                f"{table.title}: {time.display_name}: '{first or _text(cells[0])}' is no date and time; give the "
+                'unit of the number, such as "s" or "ms"'
+            )
+        case "hhmmss":
+            return Stamps(_without_midnights(_clock_seconds(numbers)))
+        case "excel":
+            return Stamps((numbers - _EXCEL_EPOCH_DAYS) * _DAY_S)
+        case _:
+            return Stamps(numbers * time.si_factor("s"))
+
+
+def _parsed(texts: list[str], table: RawTable, time: ColumnSpec) -> Stamps:
+    """Dates with their time of day as seconds since 1970, fractions padded as the order of the stamps demands."""
+    import pandas as pd
+
+    plain = [text.replace("/", "-").replace(",", ".").removesuffix("UTC") for text in texts]
+    whole = [_FRACTION.sub("", text) for text in plain]
+    try:
+        parsed = pd.to_datetime(pd.Series(whole).replace("", None), format="ISO8601", utc=True)
+    except (ValueError, TypeError):
+        row = next((k for k, text in enumerate(texts) if text and not _is_date(text)), 0)
+        where = f"{table.title}: row {table.first_row + row}, {time.display_name}"
+        raise InputError(
+            f"{where}: '{texts[row][:40]}' is no date and time; write it as 2026-05-14T09:20:00.000Z, or give the unit "
+            "of the number"
+        ) from None
+    seconds = cast("Array", parsed.to_numpy(dtype="datetime64[s]").astype("float64"))
+    seconds[parsed.isna().to_numpy()] = np.nan
+    digits = [match[1] if (match := _FRACTION.search(text)) else "" for text in plain]
+    fractions, note = _fractions(digits, seconds)
+    seconds = seconds + fractions
+    is_clock_only = texts and _text(texts[0]).startswith("1970-01-01 ")
+    return Stamps(_without_midnights(seconds) if is_clock_only else seconds, note)
+
+
+def _is_date(text: str) -> bool:
+    return _DATE_TIME.fullmatch(text.strip()) is not None
+
+
+def _fractions(digits: Sequence[str], seconds: Array) -> tuple[Array, str]:
+    """Fractions of a second: decimal, or whole nanoseconds (micro-, milliseconds) that the logger did not pad.
+
+    Un-padded are those of varying length of which fewer run backwards when they are read so.
+    """
+    decimal = np.array([float(f"0.{part}") if part else 0.0 for part in digits])
+    lengths = {len(part) for part in digits if part}
+    if len(lengths) < 2:
+        return decimal, ""
+    # digits of milli-, micro- and nanoseconds
+    longest = next((size for size in (3, 6, 9) if size >= max(lengths)), max(lengths))
+    padded = np.array([int(part) / 10.0**longest if part else 0.0 for part in digits])
+    backward, padded_backward = (int(np.sum(np.diff(seconds + part) < 0)) for part in (decimal, padded))
+    if padded_backward >= backward:
+        return decimal, ""
+    return padded, f"fractions of {backward} time stamps that ran backwards read as numbers of {longest} digits"
+
+
+def _clock_seconds(numbers: Array) -> Array:
+    """hhmmss.sss as seconds since midnight."""
+    hours, minutes = np.floor(numbers / 1e4), np.floor(numbers / 1e2) % 100.0  # decimal digits of hhmm
+    return hours * 3600.0 + minutes * 60.0 + numbers % 100.0  # s, of an hour and of a minute
+
+
+def _without_midnights(seconds: Array) -> Array:
+    """Seconds of the day that go on counting when midnight passes."""
+    known = np.flatnonzero(np.isfinite(seconds))
+    result = np.array(seconds)
+    passed = np.diff(seconds[known], prepend=seconds[known[0]] if known.size else 0.0) < -_DAY_S / 2.0
+    result[known] += _DAY_S * np.cumsum(passed)
+    return result
+
+
+def _numbers(table: RawTable, time: TimeSpec, source: str | int) -> Array:
+    return table.numbers(_other(time, source))
+
+
+def _other(time: TimeSpec, source: str | int) -> ColumnSpec:
+    """Another column that completes the stamps."""
+    return ColumnSpec(time.symbol, source, time.unit)
+
+
+def _is_numeric(cells: Sequence | np.ndarray) -> bool:
+    return isinstance(cells, np.ndarray) and cells.dtype.kind in "fiub"
+
+
+def _text(cell: object) -> str:
+    return "" if cell is None or cell != cell else str(cell).strip()

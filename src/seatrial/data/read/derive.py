@@ -1,0 +1,183 @@
+"""Channels of a record out of what a log measures: positions on a plane, velocities, headings."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from seatrial.core.values import Array, InputError
+from seatrial.data.read.layout import ColumnSpec, Geometry
+from seatrial.data.read.quantities import LOG_QUANTITIES
+
+_QUATERNION = ("q_w", "q_x", "q_y", "q_z")
+_ENU_PAIRS = (("x0", "y0"), ("u", "v"), ("u_dot", "v_dot"))
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """A column in SI units, shape (n,), with what is declared about it."""
+
+    column: ColumnSpec
+    values: Array
+    label: str
+
+    def turned_into(self, symbol: str, values: Array, *, frame: str = "", reference_point: float = 0.0) -> "Measured":
+        """Return a channel derived from this one, in the notation table's sign."""
+        column = ColumnSpec(symbol, self.column.source, "", frame, "", reference_point)
+        return Measured(column, values, self.label)
+
+
+_Measurements = dict[str, Measured]
+
+
+def derived_channels(measured: _Measurements, geometry: Geometry, name: str) -> _Measurements:
+    """Return the channels: those that were measured, and those that follow from the rest, which is left out.
+
+    lat, lon -> x0, y0 on the plane that touches the ellipsoid at the origin; sog, cog -> u, v over ground; stw -> u;
+    psi_magnetic and the variation -> psi; a quaternion -> psi, phi, theta; ENU axes -> north, east.
+
+    Raises:
+        InputError: one of a pair is missing, a channel comes from two measurements, no variation for a magnetic
+            heading.
+    """
+    present = dict(measured)
+    steps: tuple[Callable[[_Measurements, Geometry], _Measurements], ...] = (
+        _attitude, _magnetic_heading, _in_north_east, _position, _ground_velocity, _water_speed, _antenna_beside,
+    )  # fmt: skip
+    try:
+        for step in steps:
+            new = step(present, geometry)
+            for symbol in new:
+                if symbol in measured and measured[symbol].column.frame != "enu" and step is not _antenna_beside:
+                    raise InputError(
+                        f"channel '{symbol}' is given, and follows from other columns as well; keep one of them"
+                    )
+            present |= new
+    except InputError as error:
+        raise InputError(f"{name}: {error}") from None
+    return {symbol: one for symbol, one in present.items() if symbol not in LOG_QUANTITIES}
+
+
+def _pair(present: _Measurements, one: str, other: str) -> tuple[Measured, Measured] | None:
+    if (one in present) != (other in present):
+        lone, missing = (one, other) if one in present else (other, one)
+        raise InputError(f"channel '{lone}' needs '{missing}' as well; add it, or leave '{lone}' out")
+    return (present[one], present[other]) if one in present else None
+
+
+def _position(present: _Measurements, geometry: Geometry) -> _Measurements:
+    """East and north on the tangent plane (pymap3d; WGS 84); altitude is ignored."""
+    pair = _pair(present, "lat", "lon")
+    if pair is None:
+        return {}
+    import pymap3d
+
+    lat, lon = pair
+    known = np.flatnonzero(np.isfinite(lat.values) & np.isfinite(lon.values))
+    if known.size == 0:
+        raise InputError("there is no fix: 'lat' and 'lon' are never given together; leave them out")
+    first = int(known[0])
+    origin = geometry.origin or (float(lat.values[first]), float(lon.values[first]))
+    east, north, _ = pymap3d.geodetic2enu(lat.values, lon.values, 0.0, origin[0], origin[1], 0.0, deg=False)
+    place = geometry.antenna_x
+    return {
+        "x0": lat.turned_into("x0", np.asarray(north, dtype=float), reference_point=place),
+        "y0": lon.turned_into("y0", np.asarray(east, dtype=float), reference_point=place),
+    }
+
+
+def _ground_velocity(present: _Measurements, geometry: Geometry) -> _Measurements:
+    pair = _pair(present, "sog", "cog")
+    if pair is None:
+        return {}
+    speed, course = pair
+    place = geometry.antenna_x
+    return {
+        "u": speed.turned_into("u", speed.values * np.cos(course.values), frame="earth", reference_point=place),
+        "v": course.turned_into("v", speed.values * np.sin(course.values), frame="earth", reference_point=place),
+    }
+
+
+def _water_speed(present: _Measurements, geometry: Geometry) -> _Measurements:  # noqa: ARG001
+    return {"u": present["stw"].turned_into("u", present["stw"].values)} if "stw" in present else {}
+
+
+def _magnetic_heading(present: _Measurements, geometry: Geometry) -> _Measurements:
+    if "psi_magnetic" not in present:
+        return {}
+    magnetic = present["psi_magnetic"]
+    if "variation" in present:
+        variation: Array | float = present["variation"].values
+    elif geometry.variation is not None:
+        variation = geometry.variation
+    else:
+        raise InputError(
+            "a magnetic heading needs the variation of the place, positive to the east; add it, such as "
+            'variation = { value = 3.4, unit = "deg" }'
+        )
+    return {"psi": magnetic.turned_into("psi", magnetic.values + variation)}
+
+
+def _attitude(present: _Measurements, geometry: Geometry) -> _Measurements:  # noqa: ARG001
+    """Euler angles of a unit quaternion, z-y-x (Fossen 2021, eq. 2.77-2.79).
+
+    In ENU axes with the body's x forward, y to port, z up, psi = pi/2 - yaw and theta = -pitch.
+    """
+    components = [symbol for symbol in _QUATERNION if symbol in present]
+    if not components:
+        return {}
+    if len(components) < len(_QUATERNION):
+        missing = next(symbol for symbol in _QUATERNION if symbol not in present)
+        raise InputError(f"the quaternion lacks '{missing}'; give q_w, q_x, q_y and q_z")
+    w, x, y, z = (present[symbol].values for symbol in _QUATERNION)
+    roll = np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
+    pitch = np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0))
+    yaw = np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    source = present["q_w"]
+    is_enu = source.column.frame == "enu"
+    angles = {"psi": np.pi / 2.0 - yaw if is_enu else yaw, "phi": roll, "theta": -pitch if is_enu else pitch}
+    return {symbol: source.turned_into(symbol, angle) for symbol, angle in angles.items() if symbol not in present}
+
+
+def _in_north_east(present: _Measurements, geometry: Geometry) -> _Measurements:  # noqa: ARG001
+    """Columns in ENU axes: x is east, y north; headings count from east to north, yaw rates to port."""
+    turned: _Measurements = {}
+    for one, other in _ENU_PAIRS:
+        frames = {present[symbol].column.frame for symbol in (one, other) if symbol in present}
+        if "enu" not in frames:
+            continue
+        pair = _pair(present, one, other)
+        if pair is None or frames != {"enu"}:
+            raise InputError(f"frame = \"enu\" must be declared for both of '{one}' and '{other}'; add it")
+        for symbol, values, kept in ((one, pair[1].values, pair[0]), (other, pair[0].values, pair[1])):
+            turned[symbol] = Measured(replace(kept.column, frame="earth"), values, kept.label)
+    for symbol in ("psi", "r"):
+        if symbol in present and present[symbol].column.frame == "enu":
+            one = present[symbol]
+            values = np.pi / 2.0 - one.values if symbol == "psi" else -one.values
+            turned[symbol] = Measured(replace(one.column, frame="", positive=""), values, one.label)
+    return turned
+
+
+def _antenna_beside(present: _Measurements, geometry: Geometry) -> _Measurements:
+    """Positions and velocities of an antenna b m to starboard moved to the centre line (Fossen 2021, section 2.3).
+
+    North + b sin psi, east - b cos psi; earth-fixed velocities + b r (cos psi, sin psi).
+    """
+    b = geometry.antenna_y
+    if b == 0.0 or not {"lat", "sog"} & set(present):
+        return {}
+    if "psi" not in present:
+        raise InputError("an antenna beside the centre line needs the heading 'psi'; add it")
+    psi = present["psi"].values * (-1.0 if present["psi"].column.positive == "port" else 1.0)
+    moved: _Measurements = {}
+    if "lat" in present:
+        moved["x0"] = replace(present["x0"], values=present["x0"].values + b * np.sin(psi))
+        moved["y0"] = replace(present["y0"], values=present["y0"].values - b * np.cos(psi))
+    if "sog" in present:
+        if "r" not in present:
+            raise InputError("velocities of an antenna beside the centre line need the yaw rate 'r'; add it")
+        rate = present["r"].values * (-1.0 if present["r"].column.positive == "port" else 1.0)
+        moved["u"] = replace(present["u"], values=present["u"].values + b * rate * np.cos(psi))
+        moved["v"] = replace(present["v"], values=present["v"].values + b * rate * np.sin(psi))
+    return moved

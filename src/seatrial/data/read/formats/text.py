@@ -1,0 +1,167 @@
+"""Text files: comma, semicolon, tab or whitespace separated, plain or .gz, either decimal sign."""
+
+import codecs
+import csv
+import gzip
+import io
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from seatrial.core.values import InputError
+from seatrial.data.read.layout import Layout
+from seatrial.data.read.log import Log
+from seatrial.data.read.raw_table import EMPTY_CELLS, RawTable
+
+if TYPE_CHECKING:
+    import pandas
+
+RECORD_MARK = "# seatrial record"
+_SEPARATORS = {",": ",", ";": ";", "tab": "\t", "whitespace": r"\s+"}
+_BYTE_ORDER_MARKS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-sig"}
+_ASCII_COMPATIBLE = ("utf-8", "cp1252", "iso8859-1", "ascii")
+# unpacked over packed bytes of a .gz, and bytes that any may unpack to; ours: tables of numbers reach 30
+_LARGEST_EXPANSION, _ALWAYS_ALLOWED = 200, 2**26
+
+
+def utf8_text(path: Path, encoding: str) -> bytes:
+    """The text of a file in UTF-8, without a byte order mark; one of UTF-16 overrides the encoding.
+
+    Raises:
+        InputError: empty, packed wrongly or without end, binary, or not in that encoding.
+    """
+    data = _unpacked(path) if path.suffix == ".gz" else path.read_bytes()
+    if not data.strip():
+        raise InputError(f"{path.name} is empty; leave it out or replace it")
+    mark = next((mark for mark in _BYTE_ORDER_MARKS if data.startswith(mark)), b"")
+    encoding = _BYTE_ORDER_MARKS.get(mark, encoding)
+    if b"\0" in data[:65536] and not encoding.lower().startswith(("utf-16", "utf_16", "utf-32", "utf_32")):
+        raise InputError(f"{path.name} is not a text file (it holds binary data); check the format")
+    try:
+        if codecs.lookup(encoding).name in _ASCII_COMPATIBLE and data.isascii():
+            return data
+        return data.decode(encoding).encode()
+    except UnicodeDecodeError as error:
+        line = data[: error.start].count(b"\n") + 1
+        raise InputError(
+            f"{path.name} is not {encoding} text (byte 0x{data[error.start]:02x} in line {line}); "
+            "set encoding, for example to 'cp1252'"
+        ) from None
+    except LookupError:
+        raise InputError(f"{path.name}: unknown encoding '{encoding}'; try 'utf-8' or 'cp1252'") from None
+
+
+def decoded_text(path: Path, encoding: str) -> str:
+    """The text of a file; errors as `utf8_text`."""
+    return utf8_text(path, encoding).decode()
+
+
+def _unpacked(path: Path) -> bytes:
+    size = path.stat().st_size
+    limit = max(_ALWAYS_ALLOWED, _LARGEST_EXPANSION * size)
+    try:
+        with gzip.open(path) as file:
+            data = file.read(limit + 1)
+    except (OSError, EOFError, gzip.zlib.error) as error:  # type: ignore[attr-defined]
+        if size == 0:
+            return b""
+        raise InputError(f"{path.name} is not a gzip file ({error}); rename or repack it") from None
+    if len(data) > limit:
+        raise InputError(f"{path.name} unpacks to more than {limit / 1e6:.0f} MB, which no table does; repack it")
+    return data
+
+
+def detect_separator(sample_line: str, layout: Layout) -> str:
+    """The separator of the layout, or the one the line shows."""
+    if layout.separator != "auto":
+        return _SEPARATORS[layout.separator]
+    for candidate in ("\t", ";"):
+        if candidate in sample_line.strip(" \r\n"):
+            return candidate
+    return "," if "," in sample_line and layout.decimal != "," else r"\s+"
+
+
+def column_names(line: str, separator: str) -> list[str]:
+    """The cells of a header line."""
+    if separator == r"\s+":
+        return [cell.strip().strip('"') for cell in re.split(separator, line.strip())]
+    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
+
+
+def read_text(path: Path, layout: Layout) -> Log:
+    """The table of a text file; a leading ``# seatrial record`` line is skipped and not counted.
+
+    Raises:
+        InputError: see `utf8_text`; no data lines; a line with too many cells; a quote that does not end in its line.
+    """
+    data = utf8_text(path, layout.encoding).rstrip()
+    first = int(data.startswith(RECORD_MARK.encode()))
+    start = first + (max(layout.header_lines, 1) if layout.has_named_columns else layout.header_lines)
+    header, sample_line = _leading_lines(data, start)
+    if sample_line is None:
+        lines = data.count(b"\n") + 1
+        raise InputError(f"{path.name} has no data lines: {lines} lines, {start} of them header")
+    separator = detect_separator(sample_line, layout)
+    if b'"' in data:
+        _refuse_open_quotes(data, start, path.name)
+    frame = _data_frame(data, start, separator, layout, path.name)
+    names = column_names(header[-1], separator) if layout.has_named_columns else []
+    width = frame.shape[1]
+    padded = (*names[:width], *[""] * (width - len(names)))
+    cells = tuple(_cells(frame.pop(column), layout.decimal) for column in tuple(frame.columns))
+    return Log.of_table(RawTable(path.name, padded, cells, start + 1))
+
+
+def _leading_lines(data: bytes, start: int) -> tuple[list[str], str | None]:
+    """The header lines and the first line of data; None where there is none."""
+    lines = (line.decode() for line in io.BytesIO(data.replace(b"\r", b"\n") if b"\n" not in data else data))
+    header = [line.rstrip("\r\n") for _, line in zip(range(start), lines, strict=False)]
+    return header, next((line for line in lines if line.strip()), None)
+
+
+def _refuse_open_quotes(data: bytes, start: int, file: str) -> None:
+    for number, line in enumerate(data.splitlines()[start:], start=start + 1):
+        if line.count(b'"') % 2:
+            raise InputError(
+                f"{file}: row {number} has a quote that is opened and not closed, which would swallow the rows after "
+                "it; remove the quote"
+            )
+
+
+def _data_frame(data: bytes, start: int, separator: str, layout: Layout, file: str) -> "pandas.DataFrame":
+    import pandas as pd
+
+    try:
+        return pd.read_csv(
+            io.BytesIO(data),
+            sep=separator,
+            header=None,
+            skiprows=start,
+            decimal=layout.decimal,
+            keep_default_na=False,
+            na_values=list(EMPTY_CELLS),
+            skip_blank_lines=False,
+            skipinitialspace=separator != r"\s+",
+            low_memory=False,
+            **_exact_numbers(pd.__version__),
+        )
+    except pd.errors.ParserError as error:
+        found = re.search(r"Expected (\d+) fields in line (\d+), saw (\d+)", str(error))
+        where = f"row {found[2]} has {found[3]} cells instead of {found[1]}" if found else str(error)
+        raise InputError(f"{file}: {where}; check the separator and header_lines") from None
+
+
+def _exact_numbers(version: str) -> dict:
+    """The option that makes pandas read decimal numbers to the last bit, as it does by itself from 3.1 on."""
+    major, minor = (int(part) for part in version.split(".")[:2])
+    return {} if (major, minor) >= (3, 1) else {"float_precision": "round_trip"}
+
+
+def _cells(column: "pandas.Series", decimal: str) -> np.ndarray | list[str]:
+    """A column as numbers where pandas parsed it, else its text with a decimal point; empty cells are empty text."""
+    if column.dtype.kind in "fiub":
+        return column.to_numpy()
+    text = ["" if cell is None or cell != cell else str(cell) for cell in column.tolist()]
+    return text if decimal == "." else [cell.replace(decimal, ".") for cell in text]
