@@ -1,14 +1,22 @@
 """The paper's searches made again, beside plain particle swarms, in boxes about the truth and beside it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum, StrEnum
 from functools import partial
 
 import numpy as np
 
 from seatrial.core.values import Array, ProgressReporter
-from seatrial.numerics.optimise import Box, CloudParticleSwarm, CloudSettings, ParticleSwarm, Population, SwarmSettings
+from seatrial.estimation.search import Fitness
+from seatrial.numerics.optimise import (
+    Box,
+    CloudParticleSwarm,
+    CloudSettings,
+    ParticleSwarm,
+    Population,
+    SwarmSettings,
+)
 from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE
 from seatrial_studies.swarm_search import (
     RepeatedSearches,
@@ -25,6 +33,7 @@ SOURCE = (
     "swarm optimization algorithm (in Chinese), Ship Science and Technology 2014(7), 37-40, "
     "doi 10.3404/j.issn.1672-7649.2014.07.0083"
 )
+SwarmFactory = Callable[[Box, np.random.Generator], Population]
 # deg, headings of the paper's tables
 HEADINGS = (0, 45, 90, 135, 180)
 # m, significant height assumed for sea state 3
@@ -52,7 +61,7 @@ class BoxPlacement(Enum):
     CENTRED = "±10 % about the truth"
 
 
-def optimisers(iterations: int) -> dict[SwarmAlgorithm, Callable[[Box, np.random.Generator], Population]]:
+def optimisers(iterations: int) -> dict[SwarmAlgorithm, SwarmFactory]:
     """As the paper sets them: 60 particles, c1 = c2 = 2.05, A 0.15, B 0.93, p_m 0.2; PSO with the constriction's."""
     return {
         SwarmAlgorithm.ICPSO: partial(CloudParticleSwarm, settings=CloudSettings(iterations=iterations)),
@@ -60,91 +69,107 @@ def optimisers(iterations: int) -> dict[SwarmAlgorithm, Callable[[Box, np.random
     }
 
 
+class CloudVariant(StrEnum):
+    """ICPSO with one of its two uses of the cloud left out."""
+
+    STEADY_WEIGHT = "ICPSO, weight without randomness (He = 0)"
+    NO_MUTATION = "ICPSO without mutation"
+
+
 @dataclass(frozen=True, eq=False)
 class CloudSwarmReproduction:
     """Searches by setting, heading and algorithm; the seas by heading.
 
-    `shorter`: searches of ICPSO off centre with fewer iterations, by their number and heading.
-    `unweighted`: searches off centre by eq. (4) as it is printed, without an inertia weight, by heading.
+    Attributes:
+        shorter_searches: of ICPSO off centre with fewer iterations, by their number and heading.
+        unweighted_searches: off centre by eq. (4) as it is printed, without an inertia weight, by heading.
+        variants: of ICPSO off centre, by variant and heading.
+        noise_free_searches: of ICPSO off centre in the first sea without noise, by number of iterations and heading.
+        iterations: of a search.
     """
 
     searches: dict[tuple[BoxPlacement, int, SwarmAlgorithm], RepeatedSearches]
     seas: dict[int, list[SearchData]]
     shorter_searches: dict[tuple[int, int], RepeatedSearches]
     unweighted_searches: dict[int, RepeatedSearches]
+    variants: dict[tuple[CloudVariant, int], RepeatedSearches]
+    noise_free_searches: dict[tuple[int, int], RepeatedSearches]
     iterations: int
 
-    def excess_fitness(self, heading: int, algorithm: SwarmAlgorithm) -> Array:
-        """Fitness at each run's end off centre, over the better of both swarms in its sea and box, less 1; (runs,)."""
-        return self._relative_excess(heading, self.searches[BoxPlacement.OFF_CENTRE, heading, algorithm])
-
-    def unweighted_excess_fitness(self, heading: int) -> Array:
-        """Return the same of the law as printed."""
-        return self._relative_excess(heading, self.unweighted_searches[heading])
-
-    def _relative_excess(self, heading: int, searches: RepeatedSearches) -> Array:
-        swarms = [
-            self._final_fitness(heading, self.searches[BoxPlacement.OFF_CENTRE, heading, a]) for a in SwarmAlgorithm
-        ]
-        return self._final_fitness(heading, searches) / np.min(swarms, axis=0) - 1.0
-
-    def _final_fitness(self, heading: int, searches: RepeatedSearches) -> Array:
-        pairs = zip(self.seas[heading], searches.points, strict=True)
-        return np.array([float(whole_record_objective(sea)(point[None])[0]) for sea, point in pairs])
+    def excess_fitness(self, heading: int, searches: RepeatedSearches) -> Array:
+        """Fitness off centre after each iteration over the better end of both swarms, less 1; (runs, iterations)."""
+        ends = [self.searches[BoxPlacement.OFF_CENTRE, heading, a].histories[:, -1] for a in SwarmAlgorithm]
+        return searches.histories / np.min(ends, axis=0)[:, None] - 1.0
 
 
-def reproduce_searches(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -> CloudSwarmReproduction:
+def reproduce_searches(*, quick: bool, seed: int, report_progress: ProgressReporter) -> CloudSwarmReproduction:
     """Five runs of 1000 iterations; `quick`: three of 400."""
     runs, iterations = (QUICK_RUNS, QUICK_ITERATIONS) if quick else (RUNS, ITERATIONS)
-    seas = {
-        heading: [
-            simulate_search_data(
-                heading, np.random.default_rng([seed, heading, run]), height=SEA_STATE_3, has_fin=True, noise=NOISE
-            )
-            for run in range(runs)
-        ]
-        for heading in HEADINGS
-    }
-    found = {}
+    report_progress("seas")
+    seas = {heading: [_sea(heading, run, seed, NOISE) for run in range(runs)] for heading in HEADINGS}
+    searches = {}
     for setting in BoxPlacement:
-        if report_progress:
-            report_progress(f"searches: {setting.value}")
+        report_progress(f"searches: {setting.value}")
         for heading, met in seas.items():
-            for algorithm, made in optimisers(iterations).items():
-                boxes = _boxes(setting, met, seed)
-                found[setting, heading, algorithm] = repeat_searches(met, boxes, made, _objective, seed)
-    if report_progress:
-        report_progress("fewer iterations, and the law as printed")
-    shorter = {}
-    for few in (round(share * iterations) for share in SHORTER_SHARES):
-        made = optimisers(few)[SwarmAlgorithm.ICPSO]
+            for algorithm, make in optimisers(iterations).items():
+                searches[setting, heading, algorithm] = _search(met, make, seed, setting)
+    lengths = [round(share * iterations) for share in (*SHORTER_SHARES, 1.0)]
+    report_progress("fewer iterations, and without noise")
+    shorter, quiet = {}, {}
+    for few in lengths:
+        make = optimisers(few)[SwarmAlgorithm.ICPSO]
         for heading, met in seas.items():
-            boxes = _boxes(BoxPlacement.OFF_CENTRE, met, seed)
-            shorter[few, heading] = repeat_searches(met, boxes, made, _objective, seed)
-    unweighted = {
-        heading: repeat_searches(
-            met, _boxes(BoxPlacement.OFF_CENTRE, met, seed), _unweighted_swarm(iterations), _objective, seed
-        )
+            if few < iterations:
+                shorter[few, heading] = _search(met, make, seed)
+            quiet[few, heading] = _search([_sea(heading, 0, seed, (0.0, 0.0))], make, seed)
+    report_progress("the law as printed, and the cloud left out")
+    unweighted = {heading: _search(met, _unweighted_swarm(iterations), seed) for heading, met in seas.items()}
+    variants = {
+        (variant, heading): _search(met, _variant(variant, iterations), seed)
+        for variant in CloudVariant
         for heading, met in seas.items()
     }
-    return CloudSwarmReproduction(found, seas, shorter, unweighted, iterations)
+    return CloudSwarmReproduction(searches, seas, shorter, unweighted, variants, quiet, iterations)
 
 
-def _unweighted_swarm(iterations: int) -> Callable[[Box, np.random.Generator], Population]:
+def _sea(heading: int, run: int, seed: int, noise: tuple[float, float]) -> SearchData:
+    rng = np.random.default_rng([seed, heading, run])
+    return simulate_search_data(heading, rng, height=SEA_STATE_3, has_fin=True, noise=noise)
+
+
+def _search(
+    seas: list[SearchData], make: SwarmFactory, seed: int, setting: BoxPlacement = BoxPlacement.OFF_CENTRE
+) -> RepeatedSearches:
+    return repeat_searches(seas, _boxes(setting, seas, seed), make, _objective, seed)
+
+
+def _unweighted_swarm(iterations: int) -> SwarmFactory:
     """Eq. (4) as printed: the velocity counts whole; velocities limited as ICPSO's."""
     cloud = CloudSettings()
     plain = SwarmSettings(cloud.population, iterations, 1.0, cloud.c1, cloud.c2, cloud.velocity_limit)
     return partial(ParticleSwarm, settings=plain)
 
 
+def _variant(variant: CloudVariant, iterations: int) -> SwarmFactory:
+    whole = CloudSettings(iterations=iterations)
+    settings = {
+        CloudVariant.STEADY_WEIGHT: replace(whole, hyper_entropy=0.0),
+        CloudVariant.NO_MUTATION: replace(whole, mutation=0.0),
+    }[variant]
+    return partial(CloudParticleSwarm, settings=settings)
+
+
 def _boxes(setting: BoxPlacement, seas: list[SearchData], seed: int) -> list[Box]:
-    truth = seas[0].truth
     if setting is BoxPlacement.OFF_CENTRE:
-        return [
-            off_centre_box(truth, WIDE_HALF_WIDTH, np.random.default_rng([seed, 7, run])) for run in range(len(seas))
-        ]
-    return [centred_box(truth, NARROW_HALF_WIDTH)] * len(seas)
+        return off_centre_boxes(seas, seed)
+    return [centred_box(seas[0].truth, NARROW_HALF_WIDTH)] * len(seas)
 
 
-def _objective(data: SearchData, _: Population) -> Callable[[np.ndarray], np.ndarray]:
+def off_centre_boxes(seas: list[SearchData], seed: int) -> list[Box]:
+    """Return the box of each run off centre."""
+    truth = seas[0].truth
+    return [off_centre_box(truth, WIDE_HALF_WIDTH, np.random.default_rng([seed, 7, run])) for run in range(len(seas))]
+
+
+def _objective(data: SearchData, _: Population) -> Fitness:
     return whole_record_objective(data)
