@@ -53,7 +53,7 @@ _ASSUMPTIONS = (
     ),
 )
 _DEVIATIONS = (
-    Deviation("eq. (4)", "no inertia weight", "w multiplies the velocity", "eq. (6) adjusts one; nothing converges else"),
+    Deviation("eq. (4)", "no inertia weight", "w multiplies the velocity", "eq. (6) adjusts one; see the claim"),
     Deviation("parameters", "twelve listed", "eight searched", "as the paper itself: stiffnesses come from theory"),
     Deviation("truth", "full-scale trials in eq. (7), theory in the text", "theory", "the simulation has no trials"),
     Deviation("waves", "harmonics at ω", "at the frequency of encounter", "the ship makes 18 kn"),
