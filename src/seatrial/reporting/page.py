@@ -90,6 +90,7 @@ def html(fit: Fit) -> str:
         "channels": [Markup(svg(chart)) for chart in channel_overview(fit.records)],
         "findings": tables.finding_groups(fit.findings),
         "equations": tables.equations(fit.model, citations),
+        "sign_conventions": tables.sign_conventions(fit.model),
         "coefficients": tables.coefficients(fit.coefficients),
         "has_truth": any(c.truth is not None for c in fit.coefficients if not c.fixed),
         "has_meaning": any(c.meaning for c in fit.coefficients if not c.fixed),

@@ -11,8 +11,8 @@ from seatrial.core.equations.latex import latex_equations as latex_equations
 from seatrial.core.results import Coefficient, Fit, Method, Noise, Offset
 from seatrial.core.text.numbers import DASH, EstimateText, estimate_text, exact, p_value, significant
 from seatrial.core.text.numbers import fixed as decimals
-from seatrial.core.values import Finding, Severity, display_unit
-from seatrial.core.values.channel_text import channel_meaning, unit_text
+from seatrial.core.values import NOTATION, Finding, Severity, display_unit, quantity
+from seatrial.core.values.channel_text import channel_letter, channel_meaning, unit_text
 from seatrial.reporting.citations import Citations
 from seatrial.reporting.mathml import inline, pieces
 
@@ -133,6 +133,23 @@ def equations(model: Model, citations: Citations) -> EquationList:
     lines = latex_equations(model)
     rates = tuple(_equation_row(e, citations) for e in lines if e.is_rate)
     return EquationList(rates, tuple(_equation_row(e, citations) for e in lines if not e.is_rate))
+
+
+def sign_conventions(model: Model) -> str:
+    """Return the sentences on axes and positive directions in a model's equations, as the model declares its inputs."""
+    heading = "; heading ψ clockwise from north" if "psi" in model.observables else ""
+    sentences = [f"Axes: x forward, y to starboard, z down{heading}."]
+    for item in model.inputs:
+        letter, usual = channel_letter(item.name), quantity(item.name).positive if item.name in NOTATION else ""
+        words = "when it turns the craft to " if item.name == "delta" else ""
+        if item.is_reversed:
+            sentences.append(
+                f"In these equations {letter} is positive {words}{item.direction}; records, plots and tables give it "
+                f"positive to {usual}."
+            )
+        elif words:
+            sentences.append(f"{channel_meaning(item.name).capitalize()} {letter} is positive {words}{usual}.")
+    return " ".join(sentences)
 
 
 def _equation_row(e: LatexEquation, citations: Citations) -> EquationRow:
