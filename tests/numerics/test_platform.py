@@ -3,6 +3,7 @@
 import ast
 import os
 import signal
+import subprocess
 import sys
 from pathlib import Path
 
@@ -195,3 +196,11 @@ def test_a_locked_folder_is_not_locked_again(tmp_path: Path) -> None:
         assert again == first
     with platform.held_lock(tmp_path / "absent") as absent:
         assert not absent
+
+
+def test_a_process_with_little_memory_cannot_take_more() -> None:
+    program = (
+        f"from {platform.limit_resources.__module__} import limit_resources; limit_resources(2**28, 60); bytes(2**29)"
+    )
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (ended.returncode == 1 and "MemoryError" in ended.stderr) or os.name == "nt"
