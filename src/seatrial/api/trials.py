@@ -1,6 +1,7 @@
 """From a trial to a fit: load, check, identify, follow, design."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -49,6 +50,7 @@ def identify(
     intervals: str = "auto",
     choose: bool = False,
     compare: bool = False,
+    method: str | None = None,
 ) -> "Fit":
     """Estimate the trial's model from its training runs and predict its validation runs, with intervals.
 
@@ -59,9 +61,12 @@ def identify(
             ``bootstrap`` or ``profile``.
         choose: compare the family of models and take the one that predicts left-out runs best.
         compare: compare the fit with other estimators (regressions) on the same records.
+        method: takes the place of the trial's ``[estimate] method``: ``auto``, ``output-error``, ...; or a published
+            one such as ``iwho`` or ``svr``, which is compared with the package's own estimate.
 
     Raises:
-        InputError: the records do not pass the checks, show no excitation, or cannot distinguish the parameters.
+        InputError: the records do not pass the checks, show no excitation, or cannot distinguish the parameters; an
+            unknown method, or one that cannot serve this model.
     """
     from seatrial.core.values import InputError, spelling_hint
     from seatrial.physics.models.precompile import precompile
@@ -69,10 +74,16 @@ def identify(
     with precompile(trial.model.name):
         from seatrial.estimation.identify import IntervalMethod, identify
 
-    if intervals not in (methods := [method.value for method in IntervalMethod]):
-        raise InputError(f"unknown kind of intervals '{intervals}'{spelling_hint(intervals, methods)}")
-    method = IntervalMethod(intervals)
-    return identify(trial, seed=seed, report_progress=report_progress, intervals=method, choose=choose, compare=compare)
+    if intervals not in (kinds := [kind.value for kind in IntervalMethod]):
+        raise InputError(f"unknown kind of intervals '{intervals}'{spelling_hint(intervals, kinds)}")
+    return identify(
+        trial if method is None else replace(trial, estimate=trial.estimate.with_method(method)),
+        seed=seed,
+        report_progress=report_progress,
+        intervals=IntervalMethod(intervals),
+        choose=choose,
+        compare=compare,
+    )
 
 
 def follow(

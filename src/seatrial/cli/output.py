@@ -7,7 +7,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from seatrial.core.results import Baseline, Design, Extrapolation, Fit, ManoeuvrePrecision, Prediction, Study
+    from seatrial.core.results import (
+        Baseline,
+        Design,
+        Extrapolation,
+        Fit,
+        ManoeuvrePrecision,
+        Prediction,
+        ReferenceEstimate,
+        Study,
+    )
     from seatrial.core.values import Finding
 
 # index of extrapolation beyond which intervals are lower limits; chosen, as in the report
@@ -56,7 +65,22 @@ def print_findings(findings: "tuple[Finding, ...]", per_code: int) -> None:
 
 def print_fit(fit: "Fit") -> None:
     """Print free coefficients, predictions of the runs held out, models and estimators compared, identifiability."""
-    from seatrial.core.text.numbers import duration, exact, significant
+    from seatrial.core.text.numbers import duration
+
+    if fit.reference is None:
+        _print_coefficients(fit)
+    else:
+        _print_method_comparison(fit, fit.reference)
+    for p in fit.validation:
+        _print_prediction(p)
+    _print_model_selection(fit)
+    _print_baselines(fit)
+    _print_identifiability(fit)
+    print_lines([f"intervals: {fit.method.intervals}", f"{fit.method.criterion}; {duration(fit.elapsed_s)}"])
+
+
+def _print_coefficients(fit: "Fit") -> None:
+    from seatrial.core.text.numbers import exact, significant
 
     has_truth = any(c.truth is not None for c in fit.coefficients)
     rows = [["coefficient", "estimate", "std. error", "95 % from", "to", *(["known"] if has_truth else []), ""]]
@@ -66,12 +90,17 @@ def print_fit(fit: "Fit") -> None:
                        exact(c.upper, DIGITS), *([exact(c.truth, DIGITS)] if has_truth else [])]  # fmt: skip
             rows.append([c.name, *numbers, c.unit if c.unit != "1" else ""])
     print_table(rows, flush_left=(0, len(rows[0]) - 1))
-    for p in fit.validation:
-        _print_prediction(p)
-    _print_model_selection(fit)
-    _print_baselines(fit)
-    _print_identifiability(fit)
-    print_lines([f"intervals: {fit.method.intervals}", f"{fit.method.criterion}; {duration(fit.elapsed_s)}"])
+
+
+def _print_method_comparison(fit: "Fit", reference: "ReferenceEstimate") -> None:
+    """A published method beside the package's own estimate: coefficients, then what each took and how it predicts."""
+    from seatrial.core.results.method_comparison import coefficient_comparison, cost_comparison
+
+    for table in (coefficient_comparison(fit, reference), cost_comparison(fit, reference)):
+        last = len(table.header) - 1
+        print_table([table.header, *table.rows], flush_left=(0, last) if table.header[last] == "unit" else (0,))
+    if fit.search is not None and fit.search.is_interrupted:
+        print(f"interrupted after {len(fit.search.restarts)} searches, which are kept")
 
 
 def _print_prediction(p: "Prediction") -> None:

@@ -9,6 +9,14 @@ from seatrial.cli.application import Json, OwnModelPath, Seed, TrialPath, app, o
 from seatrial.cli.follow_output import journal_path, live_display, print_outcome, stop_on_signal, stream_heading
 from seatrial.cli.output import print_design, print_findings, print_fit, progress_reporter, write_json
 
+Method = Annotated[
+    str | None,
+    typer.Option(
+        "--method",
+        metavar="METHOD",
+        help="auto, output-error, ..., or a published one: iwho, icpso, pso, svr, ...",
+    ),
+]
 FINDINGS_PER_CODE = 2  # findings of one kind that `check` prints without --all; ours, one screen for a bad file
 
 
@@ -45,6 +53,7 @@ def identify(
     compare: Annotated[
         bool, typer.Option("--compare", help="Compare with other estimators on the same records.")
     ] = False,
+    method: Method = None,
     model: OwnModelPath = None,
     json: Json = None,
     seed: Seed = 0,
@@ -54,6 +63,8 @@ def identify(
     Example: seatrial identify examples/kvlcc2_hsva.toml --out results/kvlcc2
 
     Every run left out and refitted, and the spread of tied models: --intervals jackknife
+
+    A published method compared with the package's own estimate: --method iwho, --method svr
     """
     from seatrial import api
     from seatrial.core.values.files import writable_folder
@@ -67,6 +78,7 @@ def identify(
             intervals=intervals,
             choose=choose,
             compare=compare,
+            method=method,
         )
         report_progress("report")
         page = api.save(fit, out)

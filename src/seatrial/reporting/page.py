@@ -15,6 +15,7 @@ from seatrial.core.values.arrays import correlation_matrix
 from seatrial.reporting import (
     baselines,
     identifiability_chapter,
+    published_chapter,
     roll_chapter,
     runs,
     seakeeping_chapter,
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 
 TITLES = {
     "answer": "Summary",
+    "published": "The published method and the package’s own estimate",
     "identifiability": "Identifiability: what the records determine",
     "records": "Records",
     "findings": "Findings",
@@ -61,6 +63,7 @@ def html(fit: Fit) -> str:
     )
     is_steered = "psi" in fit.model.states or "delta" in fit.model.input_names
     has_content = {
+        "published": fit.reference is not None,
         "identifiability": bool(identifiability),
         "rolling": fit.roll is not None,
         "waves": seakeeping is not None,
@@ -79,6 +82,7 @@ def html(fit: Fit) -> str:
         "rolling": None
         if fit.roll is None
         else {"tables": roll_chapter.tables(fit.roll, fit.ship.scale), "figures": roll_chapter.figures(fit.roll)},
+        "published": published_chapter.published_chapter(fit),
         "identifiability": identifiability,
         "baselines": comparison,
         "answer": summary.sentences(fit),

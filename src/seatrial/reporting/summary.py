@@ -2,7 +2,8 @@
 
 import math
 
-from seatrial.core.results import Coefficient, Fit, Prediction, Symmetry
+from seatrial.core.results import Coefficient, Fit, Prediction, ReferenceEstimate, Symmetry
+from seatrial.core.results.method_comparison import count_inside_own_intervals
 from seatrial.core.text.numbers import duration, estimate_text, exact, fixed, interval, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import Severity
@@ -177,12 +178,23 @@ def _free_coefficients(fit: Fit) -> list[Coefficient]:
 
 def _significance(fit: Fit) -> str:
     free = _free_coefficients(fit)
+    if fit.reference is not None:
+        return _published_sentence(fit, fit.reference)
     vague = [c.name for c in free if c.lower is not None and c.upper is not None and c.lower < 0 < c.upper]
     if not vague:
         return f"All {len(free)} free coefficients differ from zero at the 95 % level."
     return (
         f"{len(vague)} of {len(free)} free coefficients do not differ significantly from zero at the 95 % level "
         f"({enumeration(vague)})."
+    )
+
+
+def _published_sentence(fit: Fit, reference: ReferenceEstimate) -> str:
+    """How a published method's values compare with the package's own estimate."""
+    inside, count = count_inside_own_intervals(fit, reference), len(_free_coefficients(fit))
+    return (
+        f"The method gives no intervals. {inside} of its {count} coefficients lie inside the 95 % intervals of the "
+        "package’s own estimate, which the next section shows with it."
     )
 
 

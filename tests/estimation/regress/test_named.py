@@ -3,7 +3,9 @@
 import pytest
 
 from seatrial.core.values import InputError
-from seatrial.estimation.regress.named import available_estimators, estimator_named
+from seatrial.data.trial import EstimateMethod
+from seatrial.estimation.regress.named import available_estimators, estimator_named, estimator_of_method
+from seatrial.estimation.regress.standard_estimators import standard_estimators
 
 
 def test_names_are_unique_and_lead_to_their_estimator() -> None:
@@ -15,3 +17,11 @@ def test_names_are_unique_and_lead_to_their_estimator() -> None:
 def test_an_unknown_name_gets_the_nearest() -> None:
     with pytest.raises(InputError, match=r"unknown estimator 'weak form, rigde'; did you mean 'weak form, ridge'"):
         estimator_named("weak form, rigde", 5.0)
+
+
+def test_every_method_that_is_a_regression_leads_to_an_estimator_of_its_own() -> None:
+    regressions = [m for m in EstimateMethod if m.is_published and not m.is_search]
+    names = [estimator_of_method(method, 5.0).name for method in regressions]
+    assert sorted(names) == sorted(e.name for e in standard_estimators(5.0))
+    with pytest.raises(InputError, match="method 'iwho' is no regression; these are euler, "):
+        estimator_of_method(EstimateMethod.IWHO, 5.0)

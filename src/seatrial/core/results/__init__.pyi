@@ -16,15 +16,16 @@ from seatrial.core.results.identifiability import (
 from seatrial.core.results.prediction import Baseline, Extrapolation, IntervalBasis, Measure, OpenLoopScores, Prediction
 from seatrial.core.results.ship_motions import IntervalEstimate, PointMotion, RollCharacteristics, Seakeeping
 from seatrial.core.results.study import Bars, Check, CheckStatus, Claim, Curve, Figure, Matrix, Study, Table, Verdict
+from seatrial.core.results.published_method import ReferenceEstimate, Search, SearchRestart
 from seatrial.core.results.summary import Summary
 from seatrial.numerics.optimise import Solution, Status
 
 __all__ = [
     "Actuator", "Bars", "Baseline", "CandidateModel", "Check", "CheckStatus", "Claim", "Coefficient",
-    "Collinearity",
-    "Confirmation", "Consequence", "Curve", "Design", "Direction", "Extrapolation", "Figure", "Fit",
-    "Identifiability", "IntervalBasis", "IntervalEstimate", "ManoeuvrePrecision", "Matrix", "Measure", "Method",
-    "Noise", "NoiseModel", "Offset", "OpenLoopScores", "PointMotion", "Prediction", "Profile", "Residuals",
-    "RollCharacteristics", "Seakeeping", "Sensitivity", "Solution", "Stability", "Status", "Study", "Summary",
-    "Symmetry", "Table", "TimedOrder", "TrialLimits", "Verdict",
+    "Collinearity", "Confirmation", "Consequence", "Curve", "Design", "Direction", "Extrapolation", "Figure",
+    "Fit", "Identifiability", "IntervalBasis", "IntervalEstimate", "ManoeuvrePrecision", "Matrix", "Measure",
+    "Method", "Noise", "NoiseModel", "Offset", "OpenLoopScores", "PointMotion", "Prediction", "Profile",
+    "ReferenceEstimate", "Residuals", "RollCharacteristics", "Seakeeping", "Search", "SearchRestart",
+    "Sensitivity", "Solution", "Stability", "Status", "Study", "Summary", "Symmetry", "Table", "TimedOrder",
+    "TrialLimits", "Verdict",
 ]  # fmt: skip

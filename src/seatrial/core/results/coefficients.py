@@ -20,9 +20,11 @@ class Coefficient:
     name: str
     unit: Annotated[str, Field(description="SI; 1 for a number, in the prime system of the model's source")]
     estimate: Number
-    standard_error: Annotated[Number | None, Field(description="null for a fixed parameter")]
-    lower: Annotated[Number | None, Field(description="null for a fixed parameter")]
-    upper: Annotated[Number | None, Field(description="null for a fixed parameter")]
+    standard_error: Annotated[
+        Number | None, Field(description="null for a fixed parameter, and where the method gives no interval")
+    ]
+    lower: Annotated[Number | None, Field(description="null as `standard_error`")]
+    upper: Annotated[Number | None, Field(description="null as `standard_error`")]
     fixed: Annotated[bool, Field(description="whether it was held at its value")]
     truth: Annotated[
         float | None,
@@ -59,6 +61,7 @@ class Method:
     settings: Annotated[dict[str, int | float | str], Field(description="name -> value used")] = field(
         default_factory=dict
     )
+    name: Annotated[str, Field(description="as in `[estimate] method`")] = "auto"
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from seatrial.core.results.coefficients import (
 from seatrial.core.results.fields import ListedArray, NamedModel, ReportedFinding, StoredRecord, StoredSolution
 from seatrial.core.results.identifiability import Identifiability
 from seatrial.core.results.prediction import Baseline, IntervalBasis, Prediction
+from seatrial.core.results.published_method import ReferenceEstimate, Search
 from seatrial.core.results.ship_motions import RollCharacteristics, Seakeeping
 from seatrial.core.results.summary import Summarised, Summary
 from seatrial.core.values import InputError, Record, Ship, spelling_hint
@@ -67,6 +68,13 @@ class Fit(Summarised):
     ] = ()
     roll: Annotated[
         RollCharacteristics | None, Field(description="meaning of a roll model's coefficients; null: another model")
+    ] = None
+    search: Annotated[Search | None, Field(description="what a published search did; null: the estimate is none")] = (
+        None
+    )
+    reference: Annotated[
+        ReferenceEstimate | None,
+        Field(description="the package's own estimate, which a published method is compared with; null: this is it"),
     ] = None
 
     @computed_field(description="the predictions of runs that were not fitted")

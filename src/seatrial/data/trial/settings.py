@@ -1,6 +1,7 @@
 """Settings of the estimator and of the comparison of models: tables of a trial file, values in Python."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Annotated, Self
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -59,6 +60,15 @@ class EstimateSettings:
     def criterion(self) -> FitCriterion:
         """Return what the package's own estimate minimises."""
         return self.method.criterion
+
+    def with_method(self, name: str) -> "EstimateSettings":
+        """Return these settings with the method of that name.
+
+        Raises:
+            InputError: there is no such method; the nearest is named.
+        """
+        method_named(name)
+        return replace(self, method=EstimateMethod(name))
 
     @model_validator(mode="after")
     def _one_segment_length(self) -> Self:

@@ -70,11 +70,14 @@ def fit_output_error(
 ) -> PointEstimate:
     """Alternate short searches with estimates of the noise and its colour until both settle, then search to the end.
 
+    The evaluations of all of them are counted.
+
     Coloured channels count as their effective number of samples throughout (`OutputError.inflation`).
     """
     stated_noise = np.array([known_noise.get(o, np.nan) for o in problem.data.outputs])
     problem = replace(problem, noise=np.where(np.isfinite(stated_noise), stated_noise, problem.noise))
     estimate = _search(problem, common_parameters, initial_states, min(_FEW_EVALUATIONS, evaluations), report_progress)
+    spent = estimate.optimum.solution.evaluations
     for _ in range(rounds):
         noise = np.where(
             np.isfinite(stated_noise), stated_noise, residual_spread(estimate.problem, estimate.residuals())
@@ -92,9 +95,11 @@ def fit_output_error(
             evaluations if settled else _FEW_EVALUATIONS,
             report_progress,
         )
+        spent += estimate.optimum.solution.evaluations
         if settled:
             break
-    return estimate
+    solution = replace(estimate.optimum.solution, evaluations=spent)
+    return replace(estimate, optimum=replace(estimate.optimum, solution=solution))
 
 
 def _effective_inflation(inflation: Array) -> Array | None:

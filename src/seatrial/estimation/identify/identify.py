@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 
 from seatrial.core.results import Fit
@@ -11,9 +12,13 @@ from seatrial.estimation.estimate import EstimatorOptions, IntervalMethod
 from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS
 from seatrial.estimation.identify.baselines import with_baselines
 from seatrial.estimation.identify.identification import Identification
+from seatrial.estimation.identify.search_problem import check_search_settings
 from seatrial.estimation.identify.situation import Situation, is_explained, situation_of
+from seatrial.estimation.identify.strategies.published import published_fit, refuse_options
 from seatrial.estimation.identify.strategies.recorded_waves import identify_in_recorded_waves
+from seatrial.estimation.identify.strategies.regression import estimate_by_regression
 from seatrial.estimation.identify.strategies.roll import identify_driven_roll, identify_free_decay
+from seatrial.estimation.identify.strategies.search import estimate_by_search
 from seatrial.estimation.identify.strategies.steered import identify_steered, identify_with_static_forces
 from seatrial.estimation.identify.strategies.unknown_waves import identify_in_unknown_waves
 from seatrial.estimation.identify.strategies.wave_spectrum import identify_by_wave_spectrum
@@ -41,6 +46,8 @@ def identify(
 ) -> Fit:
     """Estimate the trial's model from its training runs and predict its validation runs open loop, with intervals.
 
+    A published method that the trial names gives no intervals; the package's own estimate stands in the fit with it.
+
     Args:
         seed: of the draws behind the intervals of predictions, and of a bootstrap.
         intervals: where intervals of coefficients come from; a jackknife brings the spread of tied models with it.
@@ -52,17 +59,46 @@ def identify(
             too few for the intervals that are required.
     """
     began = time.perf_counter()
+    method = trial.estimate.method
+    check_search_settings(trial)
+    refuse_options(method, choose=choose, compare=compare)
     checked = checked_records(trial)
-    if trial.estimate.method.is_published:
-        raise InputError(f"method '{trial.estimate.method}' is offered by studies only as yet; leave [estimate] method")
     options = EstimatorOptions(intervals, seed)
     task = Identification(trial, checked.records, checked.findings, options, choose, began, report_progress)
     situation = identification_situation(task)
+    if method.is_published:
+        return _published(task, situation)
     fit = STRATEGIES[situation](task)
+    fit = replace(fit, method=replace(fit.method, name=method.value))
     if not compare or situation is Situation.UNKNOWN_WAVES:  # no input, so that there is nothing to regress on
         return fit
     window = WEAK_FORM_SHIP_LENGTHS * task.characteristic_time
     return with_baselines(fit, task.runs.records, window, report_progress)
+
+
+def _published(task: Identification, situation: Situation) -> Fit:
+    """The fit of the published method that the trial names, compared with the package's own.
+
+    Raises:
+        InputError: the runs cannot be simulated from recorded inputs, or what the method raises.
+    """
+    trial, method = task.trial, task.trial.estimate.method
+    if situation in (Situation.WAVE_SPECTRUM, Situation.UNKNOWN_WAVES):
+        raise InputError(
+            f"method '{method}' needs what moves the ship in every sample, and here the waves were not recorded; "
+            'record them, or write method = "auto"'
+        )
+    began = time.process_time()
+    _ = task.estimation
+    cpu_s = time.process_time() - began
+    reference = STRATEGIES[situation](task)
+    if method.is_search:
+        estimate = estimate_by_search(trial, reference, task.options.seed, task.report_progress)
+    else:
+        window = WEAK_FORM_SHIP_LENGTHS * task.characteristic_time
+        estimate = estimate_by_regression(trial.model, task.runs.records, method, window)
+    fit = published_fit(reference, estimate, cpu_s)
+    return replace(fit, elapsed_s=time.perf_counter() - task.began)
 
 
 def identification_situation(task: Identification) -> Situation:

@@ -13,6 +13,7 @@ from seatrial.estimation.regress.features import (
 from seatrial.estimation.regress.named import (
     available_estimators as available_estimators,
     estimator_named as estimator_named,
+    estimator_of_method as estimator_of_method,
 )
 from seatrial.estimation.regress.operators import (
     Central as Central,

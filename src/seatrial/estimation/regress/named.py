@@ -1,15 +1,35 @@
 """Estimators by name: the standard regressions, and those that other packages install under ``seatrial.estimators``."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 
 from seatrial._plugins import failure_text, installed, load_plugin
 from seatrial.core.values import InputError, spelling_hint
+from seatrial.data.trial.estimate_method import EstimateMethod
 from seatrial.estimation.regress.estimators import RegressionEstimator
 from seatrial.estimation.regress.standard_estimators import standard_estimators
 
 ENTRY_POINT_GROUP = "seatrial.estimators"
 # what an entry point names: from the half width of a window [s] to an estimator
 EstimatorFactory = Callable[[float], RegressionEstimator]
+_NAMES: Mapping[EstimateMethod, str] = MappingProxyType({
+    EstimateMethod.EULER: "Euler differences, least squares",
+    EstimateMethod.EULER_DIFFERENCED: "Euler, differenced",
+    EstimateMethod.EULER_CENTRED: "Euler, differenced and centred",
+    EstimateMethod.OLS: "central differences, least squares",
+    EstimateMethod.RIDGE: "central differences, ridge",
+    EstimateMethod.TSVD: "central differences, truncated SVD",
+    EstimateMethod.LASSO: "central differences, Lasso",
+    EstimateMethod.LS_SVM: "central differences, least-squares SVM",
+    EstimateMethod.SVR: "central differences, support vectors",
+    EstimateMethod.SMOOTHED: "smoothed derivative, least squares",
+    EstimateMethod.WEAK_FORM: "weak form, least squares",
+    EstimateMethod.WEAK_FORM_RIDGE: "weak form, ridge",
+    EstimateMethod.SONG2025: "published pipeline (Song et al. 2025)",
+    EstimateMethod.SONG2025_IMPROVED: "published pipeline, improved (Song et al. 2025)",
+    EstimateMethod.INSTRUMENTAL_VARIABLES: "weak form, instrumental variables",
+})  # fmt: skip
+"""Name in tables of each regression that `[estimate] method` can name."""
 
 
 def available_estimators(half_width: float) -> tuple[RegressionEstimator, ...]:
@@ -31,6 +51,17 @@ def estimator_named(name: str, half_width: float) -> RegressionEstimator:
     if name not in estimators:
         raise InputError(f"unknown estimator '{name}'{spelling_hint(name, list(estimators))}")
     return estimators[name]
+
+
+def estimator_of_method(method: EstimateMethod, half_width: float) -> RegressionEstimator:
+    """Return the regression that `[estimate] method` names; windows of that half width [s].
+
+    Raises:
+        InputError: the method is no regression.
+    """
+    if method not in _NAMES:
+        raise InputError(f"method '{method}' is no regression; these are {', '.join(_NAMES)}")
+    return estimator_named(_NAMES[method], half_width)
 
 
 def _plugin(name: str, half_width: float) -> RegressionEstimator:

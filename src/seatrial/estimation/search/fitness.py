@@ -21,6 +21,16 @@ class Candidates(Protocol):
     """
 
     @property
+    def output_names(self) -> tuple[str, ...]:
+        """Observables that are compared."""
+        ...
+
+    @property
+    def sigma(self) -> Array:
+        """Deviation of each that counts as 1, in its unit, (outputs,)."""
+        ...
+
+    @property
     def step_count(self) -> int:
         """Number of steps in all runs."""
         ...

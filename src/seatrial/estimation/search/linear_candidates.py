@@ -7,8 +7,8 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array
+from seatrial.estimation.search.runs import JudgedRun, first_steps, measured_count, run_of_step
 from seatrial.physics.simulate.population import (
-    Forcing,
     affine_population_matrices,
     discretised_hold,
     discretised_ramp,
@@ -18,29 +18,12 @@ from seatrial.physics.simulate.population import (
 
 
 @dataclass(frozen=True, eq=False)
-class JudgedRun:
-    """One run by which candidates are judged.
-
-    Attributes:
-        forcing: the inputs that move, in the order of the candidates' `inputs`.
-        initial_state: (states,).
-        measured: (samples, channels), NaN where nothing was measured.
-        states: recorded states (samples, states); None where not every state was recorded.
-    """
-
-    forcing: Forcing
-    initial_state: Array
-    measured: Array
-    states: Array | None = None
-
-
-@dataclass(frozen=True, eq=False)
 class LinearCandidates:
     """Candidates for some coefficients of an affine model; everything else is as in the model.
 
     Attributes:
         names: the coefficients that are sought, in the order of a point.
-        inputs: indices of the model's inputs that move.
+        inputs: indices of the model's inputs that move; the runs' forcings hold these in this order.
         channels: indices of the states that are compared; sigma: weight of each is 1/sigma, in its unit.
     """
 
@@ -58,9 +41,14 @@ class LinearCandidates:
         return affine_population_matrices(self.model, parameters, self.inputs)
 
     @property
+    def output_names(self) -> tuple[str, ...]:
+        """Observables that are compared."""
+        return tuple(self.model.states[i] for i in self.channels)
+
+    @property
     def step_count(self) -> int:
         """Number of steps from one sample to the next in all runs."""
-        return int(self._first_steps[-1])
+        return int(first_steps(self.runs)[-1])
 
     def record_rms(self, points: Array) -> Array:
         """Root mean square of all weighted residuals of each candidate (Qi et al. 2025, eq. (27)), (count,)."""
@@ -68,11 +56,11 @@ class LinearCandidates:
         total = np.zeros(len(points))
         for run in self.runs:
             total += fitness(A, B, run.forcing, run.initial_state, run.measured, self.sigma, self.channels)
-        return np.sqrt(total / self._measured_count)
+        return np.sqrt(total / measured_count(self.runs))
 
     def step_rms(self, points: Array, step: int, state: Array) -> Array:
         """Root mean square of the sample at the end of a step (Qi et al. 2025, eq. (28)), (count,)."""
-        run, sample = self._run_of(step)
+        run, sample = run_of_step(self.runs, step)
         measured = run.measured[sample + 1]
         count = np.count_nonzero(np.isfinite(measured))
         if not count:
@@ -83,14 +71,12 @@ class LinearCandidates:
 
     def given_state(self, step: int) -> Array | None:
         """State at the start of a step where it was recorded or a run begins."""
-        run, sample = self._run_of(step)
-        if run.states is not None:
-            return run.states[sample]
-        return run.initial_state if sample == 0 else None
+        run, sample = run_of_step(self.runs, step)
+        return run.state_at(sample)
 
     def advanced_state(self, point: Array, step: int, state: Array) -> Array:
         """State to which one candidate is carried by a step."""
-        run, sample = self._run_of(step)
+        run, sample = run_of_step(self.runs, step)
         forcing = run.forcing
         A, B = self.matrices(point[None])
         dt = forcing.dt / forcing.substeps
@@ -102,19 +88,6 @@ class LinearCandidates:
         for row in range(sample * forcing.substeps, (sample + 1) * forcing.substeps):
             state = phi[0] @ state + gamma[0] @ forcing.rows[row]
         return state
-
-    def _run_of(self, step: int) -> tuple[JudgedRun, int]:
-        """The run of a step, and the sample at which the step begins."""
-        run = int(np.searchsorted(self._first_steps, step, side="right")) - 1
-        return self.runs[run], step - int(self._first_steps[run])
-
-    @cached_property
-    def _first_steps(self) -> Array:
-        return np.cumsum([0, *(run.forcing.samples - 1 for run in self.runs)])
-
-    @cached_property
-    def _measured_count(self) -> int:
-        return sum(int(np.count_nonzero(np.isfinite(run.measured))) for run in self.runs)
 
     @cached_property
     def _values(self) -> Array:

@@ -1,0 +1,106 @@
+"""The chapter on a published method: its values set beside the package's own estimate, and what its search did."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from markupsafe import Markup
+
+from seatrial.core.figures.chart import Chart
+from seatrial.core.figures.curves import NamedCurve, curves_chart
+from seatrial.core.figures.svg_text import svg
+from seatrial.core.results import Fit, ReferenceEstimate, Search
+from seatrial.core.results.method_comparison import (
+    ComparisonTable,
+    coefficient_comparison,
+    cost_comparison,
+    count_inside_own_intervals,
+)
+from seatrial.core.text.numbers import exact
+from seatrial.core.text.words import counted, enumeration
+from seatrial.core.values import Array
+from seatrial.reporting.figures.search_charts import restart_chart, trace_charts, waterfall_chart
+from seatrial.reporting.text_tables import TextTable
+
+
+@dataclass(frozen=True)
+class PublishedChapter:
+    """Sentences, tables and figures with their captions."""
+
+    sentences: tuple[str, ...]
+    tables: tuple[TextTable, ...]
+    figures: tuple[tuple[Markup, str], ...]
+
+
+def published_chapter(fit: Fit) -> PublishedChapter | None:
+    """Return the chapter; None where the fit is the package's own estimate."""
+    reference = fit.reference
+    if reference is None:
+        return None
+    tables = (
+        _text_table("Coefficients", coefficient_comparison(fit, reference),
+                    "Difference: of the method from the package’s estimate, in its standard errors."
+                    + (" Scatter: standard deviation over the restarts." if fit.search and fit.search.scatter else "")),
+        _text_table("Effort, and errors of simulated runs", cost_comparison(fit, reference),
+                    "Evaluations of the package’s estimate are those under its final criterion, each with exact "
+                    "slopes; its processor time holds everything from the start to the intervals."),
+    )  # fmt: skip
+    figures = _search_figures(fit.search, reference) if fit.search else ()
+    return PublishedChapter(tuple(_sentences(fit, reference)), tables, figures)
+
+
+def _sentences(fit: Fit, reference: ReferenceEstimate) -> list[str]:
+    count = sum(not c.fixed for c in fit.coefficients)
+    text = [
+        f"{fit.method.criterion[:1].upper()}{fit.method.criterion[1:]}. The method gives no intervals.",
+        f"{count_inside_own_intervals(fit, reference)} of its {counted(count, 'coefficient')} lie inside the 95 % "
+        "intervals of the package’s own estimate.",
+    ]
+    search = fit.search
+    if search is None:
+        return text
+    if reference.record_rms is not None:
+        level = search.restarts[search.used].record_rms
+        text.append(
+            f"Over the whole record it leaves a weighted rms of {exact(level, 5)}, the package’s own estimate "
+            f"{exact(reference.record_rms, 5)}, after {search.evaluations} and {reference.evaluations} evaluations."
+        )
+    ends = [name for name, value in search.restarts[search.used].values.items() if value in search.bounds[name]]
+    if ends:
+        text.append(f"On an end of the range searched: {enumeration(ends)}.")
+    if search.is_interrupted:
+        text.append(f"The search was interrupted; {counted(len(search.restarts), 'restart')} are shown.")
+    return text
+
+
+def _text_table(title: str, table: ComparisonTable, note: str) -> TextTable:
+    numeric = (False, *(name != "unit" for name in table.header[1:]))
+    return TextTable(title, table.header, numeric, table.rows, note)
+
+
+def _search_figures(search: Search, reference: ReferenceEstimate) -> tuple[tuple[Markup, str], ...]:
+    by_samples = search.fitness == "sample"
+    convergence = "Best fitness after each iteration of each restart (logarithm to base 10)."
+    if by_samples:
+        convergence += " Each iteration judges by a sample of its own, so that the best may rise."
+    drawn: list[tuple[Chart | None, str]] = [(_convergence_chart(search), convergence)]
+    drawn.append((waterfall_chart(search, reference), "Weighted rms over the whole record at the end of each restart, "
+                  "in order of size, and of the package’s own estimate."))  # fmt: skip
+    drawn.append((restart_chart(search, reference), "Values of each restart less the package’s own estimate, per cent "
+                  "of it; bars: its 95 % intervals, diamonds: known values."))  # fmt: skip
+    if by_samples:
+        caption = "Best value after each iteration of the restart that is used."
+        drawn += [(chart, caption) for chart in trace_charts(search, reference)]
+    return tuple((Markup(svg(chart)), caption) for chart, caption in drawn if chart is not None)
+
+
+def _convergence_chart(search: Search) -> Chart | None:
+    curves = [
+        NamedCurve(f"restart {k + 1}", *_iterations(np.array(one.history))) for k, one in enumerate(search.restarts)
+    ]
+    return curves_chart("convergence of the search", curves, "iteration", "log10 of the best fitness")
+
+
+def _iterations(history: Array) -> tuple[Array, Array]:
+    """Numbers of the iterations from 1, and the logarithms of positive, finite fitness."""
+    usable = np.isfinite(history) & (history > 0.0)
+    return np.arange(1.0, len(history) + 1.0)[usable], np.log10(history[usable])

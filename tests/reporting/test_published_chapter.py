@@ -1,0 +1,48 @@
+"""The chapter on a published method: one table with the package's own estimate, effort, and what the search did."""
+
+import pytest
+from tests.reporting.published_fit import published
+
+from seatrial.core.results import Fit
+from seatrial.reporting.pages import report_page
+from seatrial.reporting.published_chapter import published_chapter
+
+TITLE = "The published method and the package’s own estimate"
+
+
+@pytest.fixture
+def search_fit(fit: Fit) -> Fit:
+    return published(fit)
+
+
+def test_both_estimates_stand_in_one_table_with_effort_below(search_fit: Fit) -> None:
+    chapter = published_chapter(search_fit)
+    assert chapter is not None
+    coefficients, effort = chapter.tables
+    assert coefficients.header[1:4] == ("iwho", "scatter", "seatrial")
+    assert coefficients.numeric[0] is False
+    assert coefficients.numeric[-1] is False
+    assert effort.rows[0][:2] == ("iwho", "240")
+    assert effort.rows[1][:2] == ("seatrial", "7")
+    assert "after 240 and 7 evaluations" in chapter.sentences[-1]
+
+
+def test_a_search_over_the_record_shows_convergence_waterfall_and_scatter(search_fit: Fit) -> None:
+    chapter = published_chapter(search_fit)
+    assert chapter is not None
+    assert [caption.split()[0] for _, caption in chapter.figures] == ["Best", "Weighted", "Values"]
+
+
+def test_sample_by_sample_the_coefficients_are_drawn_over_the_iterations(fit: Fit) -> None:
+    by_samples = published_chapter(published(fit, "sample"))
+    assert by_samples is not None
+    assert sum("Best value after each iteration" in caption for _, caption in by_samples.figures) >= 1
+    assert "the best may rise" in by_samples.figures[0][1]
+
+
+def test_the_page_has_the_chapter_and_claims_no_significance(fit: Fit, search_fit: Fit) -> None:
+    text = report_page(search_fit)
+    assert TITLE in text
+    assert "The method gives no intervals." in text
+    assert "differ from zero at the 95 % level" not in text
+    assert TITLE not in report_page(fit)
