@@ -5,10 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatrial.core.figures.bars import bars_chart
-from seatrial.core.figures.chart import Chart, LegendEntry
+from seatrial.core.figures.chart import Axis, Chart, LegendEntry
 from seatrial.core.figures.curves import NamedCurve, curves_chart
 from seatrial.core.figures.marks import ACCENT, GREY, INK, SECOND, Line, Mark, Marker, Points, Rule, Shape, Stroke
-from seatrial.core.figures.panel import Axis
 from seatrial.core.figures.rows import row_panel
 from seatrial.core.results import Coefficient, ReferenceEstimate, Search
 from seatrial.core.results.method_comparison import OWN_NAME
