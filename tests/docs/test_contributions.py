@@ -15,7 +15,7 @@ from seatrial import testing
 from seatrial.core.figures.marks import Rule
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Verdict
-from seatrial.core.values import InputError
+from seatrial.core.values import InputError, Record
 from seatrial.data.example_series.series import true_model
 from seatrial.data.read import ColumnSpec, Layout, read_record
 from seatrial.physics.models import model_from_file
@@ -51,6 +51,16 @@ def test_the_model_turns_to_the_side_of_its_rudder_and_loses_speed() -> None:
     yaw_acceleration, yaw_rate, surge_acceleration = rates
     assert yaw_acceleration > 0.0 and yaw_rate == 0.02 and surge_acceleration < 0.0
     assert jacobian[0, 3 + 1 + model.parameters.index("K")] == pytest.approx(0.3 / 10.0)
+
+
+def test_the_check_finds_a_ship_that_leans_to_one_side() -> None:
+    heel_findings = loaded("heel_check").heel_findings
+    time = np.arange(100) * 0.1
+    rolling = np.radians(5.0) * np.sin(2.0 * np.pi * time / 5.0)
+    upright, leaning = (Record.from_arrays("run", time, {"phi": rolling + heel}) for heel in (0.0, -0.1))
+    assert heel_findings(upright) == () and heel_findings(upright.without("phi")) == ()
+    (finding,) = heel_findings(leaning)
+    assert finding.code == "heel" and "5.7 deg to port" in finding.text
 
 
 @pytest.fixture
