@@ -117,15 +117,9 @@ def follow(
     with precompile(trial.model.name):
         from seatrial.onboard.follow import follow
     return follow(
-        trial,
-        source=source,
-        once=once,
-        journal=None if journal is None else Path(journal),
-        show=show,
-        stop=stop,
-        seed=seed,
-        report_progress=report_progress,
-    )
+        trial, source=source, once=once, journal=None if journal is None else Path(journal), show=show, stop=stop,
+        seed=seed, report_progress=report_progress,
+    )  # fmt: skip
 
 
 def design(

@@ -67,12 +67,15 @@ def baseline_chapter(fit: Fit) -> BaselineChapter | None:
     free = [c for c in fit.coefficients if not c.fixed]
     first = fit.baselines[0]
     held, fitted = _named_runs(fit.baselines, "validation"), _named_runs(fit.baselines, "training")
+    axis_name = "error, per cent of the known value" if first.error else (
+        "difference from the fit, per cent of its estimate"
+    )  # fmt: skip
     return BaselineChapter(
         baseline_sentences(fit),
         tuple((c.name, unit_text(c.unit)) for c in free),
         tuple(exact(_display_value(c.truth, c), 4) for c in free) if first.error else (),
         tuple(_baseline_row(r, first, free) for r in fit.baselines if r.values and (r is first or not r.is_fit)),
-        Markup(svg(estimator_chart(_coefficient_errors(fit.baselines), _axis_label(first)))),
+        Markup(svg(estimator_chart(_coefficient_errors(fit.baselines), axis_name))),
         tuple(text_table(t) for t in (_table("Held-out runs", held), _table("Training runs", fitted)) if t.header[1:]),
         tuple(note for r in fit.baselines for note in _notes(r)),
     )
@@ -109,13 +112,9 @@ def _nearest_sentence(reference: Baseline, solved: Sequence[Baseline]) -> str:
     best = min(solved, key=lambda r: _median_deviation(r, reference))
     if not reference.error:
         return f"Nearest to the fit comes “{best.name}”: {_difference(best, reference)}."
-    own_errors = (
-        f"{_percent(_median_deviation(reference, reference))} % and "
-        f"{_percent(_worst_deviation(reference, reference))} %"
-    )
-    return (
-        f"Nearest to the known values comes “{best.name}”: {_difference(best, reference)}; the fit is {own_errors} off."
-    )
+    own = [_percent(part(reference, reference)) for part in (_median_deviation, _worst_deviation)]
+    nearest = f"Nearest to the known values comes “{best.name}”: {_difference(best, reference)}"
+    return f"{nearest}; the fit is {own[0]} % and {own[1]} % off."
 
 
 def _difference(baseline: Baseline, reference: Baseline) -> str:
@@ -188,13 +187,12 @@ def _display_value(value: float | None, c: Coefficient) -> float | None:
 
 def _baseline_row(baseline: Baseline, reference: Baseline, free: Sequence[Coefficient]) -> BaselineRow:
     is_first = baseline is reference
-    away = "" if is_first and not reference.error else None
+    has_errors = bool(reference.error) or not is_first
     middle, worst = (
-        _percent(part(baseline, reference)) if away is None else away for part in (_median_deviation, _worst_deviation)
+        _percent(part(baseline, reference)) if has_errors else "" for part in (_median_deviation, _worst_deviation)
     )
-    return BaselineRow(
-        baseline.name, middle, worst, tuple(_fit_cell(c) if is_first else _baseline_cell(baseline, c) for c in free)
-    )
+    cells = tuple(_fit_cell(c) if is_first else _baseline_cell(baseline, c) for c in free)
+    return BaselineRow(baseline.name, middle, worst, cells)
 
 
 def _fit_cell(c: Coefficient) -> BaselineCell:
@@ -210,12 +208,6 @@ def _baseline_cell(baseline: Baseline, c: Coefficient) -> BaselineCell:
     where = "near" if abs(gap) <= NEAR else "off" if abs(gap) <= OFF else "far"
     sign = "+" if gap > 0 else ""
     return BaselineCell(value, f"{where}: {sign}{significant(gap, 2)}", where)
-
-
-def _axis_label(reference: Baseline) -> str:
-    return (
-        "error, per cent of the known value" if reference.error else "difference from the fit, per cent of its estimate"
-    )
 
 
 def _coefficient_errors(items: Sequence[Baseline]) -> dict[str, dict[str, CoefficientError]]:

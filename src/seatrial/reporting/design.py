@@ -108,13 +108,9 @@ def html(design: Design) -> str:
 
 def percent_text(share: float) -> str:
     """Return per cent with two digits; beyond the largest shown error only that it is larger."""
-    if math.isnan(share):
-        return DASH
-    return (
-        significant(100.0 * share, 2)
-        if share < LARGEST_SHOWN_ERROR
-        else f"> {significant(100.0 * LARGEST_SHOWN_ERROR, 1)}"
-    )
+    if math.isnan(share) or share < LARGEST_SHOWN_ERROR:
+        return significant(100.0 * share, 2)
+    return f"> {significant(100.0 * LARGEST_SHOWN_ERROR, 1)}"
 
 
 def minutes_seconds(seconds: float) -> str:
@@ -145,13 +141,10 @@ def _meaning(name: str) -> str:
 
 def order_columns(design: Design) -> list[list[list[str]]]:
     """Return the helmsman's table cut into columns that stand side by side: minutes and seconds, then the orders."""
-    rows = [
-        [
-            minutes_seconds(order.time),
-            *(cell.replace("-", "−") or DASH for cell in order_cells(order, design.actuators)[1:]),
-        ]
-        for order in design.orders
-    ]
+    rows = []
+    for order in design.orders:
+        cells = [cell.replace("-", "−") or DASH for cell in order_cells(order, design.actuators)[1:]]
+        rows.append([minutes_seconds(order.time), *cells])
     count = min(MAX_COLUMNS, max(1, math.ceil(len(rows) / MIN_COLUMN_ROWS)))
     each = math.ceil(len(rows) / count) if rows else 1
     return [rows[k : k + each] for k in range(0, len(rows), each)]
@@ -202,17 +195,13 @@ def _errors_figure(design: Design) -> str:
 
 
 def _drawn_ships_figure(design: Design, baselines: tuple[ManoeuvrePrecision, ...]) -> str:
-    """A row for each manoeuvre, a dot for each ship prior_draws from the prior."""
-    manoeuvres = (design.designed, *baselines)
-    prior_draws = ErrorSeries(
-        "ships prior_draws from the prior",
-        [[100.0 * x for x in sampled_criterion_errors(w, design.criterion)] for w in manoeuvres],
-        OPEN,
-    )
-    assumed = ErrorSeries(
-        "the ship as assumed", [[100.0 * criterion_error(w, design.criterion)] for w in manoeuvres], TICK
-    )
-    kind = "worst" if design.criterion == "worst" else "mean"
-    return svg(
-        error_chart([w.name for w in manoeuvres], [prior_draws, assumed], f"{kind} relative standard error, per cent")
-    )
+    """A row for each manoeuvre, a dot for each ship drawn from the prior."""
+    manoeuvres, criterion = (design.designed, *baselines), design.criterion
+    sampled = [[100.0 * x for x in sampled_criterion_errors(w, criterion)] for w in manoeuvres]
+    assumed = [[100.0 * criterion_error(w, criterion)] for w in manoeuvres]
+    series = [
+        ErrorSeries("ships drawn from the prior", sampled, OPEN),
+        ErrorSeries("the ship as assumed", assumed, TICK),
+    ]
+    axis_name = f"{'worst' if criterion == 'worst' else 'mean'} relative standard error, per cent"
+    return svg(error_chart([w.name for w in manoeuvres], series, axis_name))

@@ -31,11 +31,9 @@ def sentences(design: Design) -> list[str]:
 
 
 def _percent(share: float) -> str:
-    return (
-        f"{significant(100.0 * share, 2)} %"
-        if share < LARGEST_SHOWN_ERROR
-        else f"more than {significant(100.0 * LARGEST_SHOWN_ERROR, 1)} %"
-    )
+    if share < LARGEST_SHOWN_ERROR:
+        return f"{significant(100.0 * share, 2)} %"
+    return f"more than {significant(100.0 * LARGEST_SHOWN_ERROR, 1)} %"
 
 
 def _weakest_coefficient(manoeuvre: ManoeuvrePrecision, design: Design) -> str:
@@ -51,12 +49,8 @@ def _comparison(design: Design) -> str:
     if best is None:
         return f"{start}; there is no standard manoeuvre to compare it with."
     theirs = criterion_error(best, criterion)
-    against = (
-        f"{_percent(theirs)}{_weakest_coefficient(best, design)} with the best standard manoeuvre of "
-        f"equal length, {best.name}"
-    )
-    if not is_within_limits(best, design.limits):
-        against += ", which leaves the limits"
+    against = f"{_percent(theirs)}{_weakest_coefficient(best, design)} with the best standard manoeuvre of equal length"
+    against += f", {best.name}" + ("" if is_within_limits(best, design.limits) else ", which leaves the limits")
     if error >= theirs:
         return f"{start}, no better than the {against}."
     ratio = f" ({significant(theirs / error, 2)} times as much)" if theirs < LARGEST_SHOWN_ERROR else ""
@@ -112,11 +106,9 @@ def _limits(design: Design) -> str:
     if not reached:
         return ""
     verb = "reaches" if is_within_limits(manoeuvre, limits) else "leaves the limits: it reaches"
-    straying = count_outside_limits(manoeuvre, limits)
-    straying_text = (
-        f"; {straying} of {len(manoeuvre.sampled_relative_error)} drawn ships leave the limits" if straying else ""
-    )
-    return f"The ship as assumed {verb} at most {enumeration(reached)}{straying_text}."
+    straying, draws = count_outside_limits(manoeuvre, limits), len(manoeuvre.sampled_relative_error)
+    drawn = f"; {straying} of {draws} drawn ships leave the limits" if straying else ""
+    return f"The ship as assumed {verb} at most {enumeration(reached)}{drawn}."
 
 
 def _degrees(angle: float) -> str:

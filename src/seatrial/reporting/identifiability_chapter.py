@@ -134,7 +134,7 @@ def identifiability_chapter(fit: Fit) -> IdentifiabilityChapter | None:
     content = identifiability or Identifiability((), (), math.nan, math.nan)
     names = [c.name for c in fit.coefficients]
     strongest = sorted(content.sensitivities, key=lambda s: -s.effect)
-    pairs = _collinear_rows(content)
+    pairs, more = _collinear_rows(content), counted(len(strongest[MAX_BARS:]), "further coefficient")
     texts = tuple(sentence(d.text, names) for d in content.directions if d.standard_deviation >= WELL_DETERMINED)
     return IdentifiabilityChapter(
         is_examined=identifiability is not None,
@@ -150,7 +150,7 @@ def identifiability_chapter(fit: Fit) -> IdentifiabilityChapter | None:
         collinear_more=tuple(pairs[MAX_ROWS:]),
         has_sensitivities=bool(strongest),
         sensitivities=Markup(svg(sensitivity_chart(strongest[:MAX_BARS]))),
-        sensitivities_more=_more_sensitivities(len(strongest) - MAX_BARS),
+        sensitivities_more=f" {more.capitalize()} with smaller effects not drawn." if strongest[MAX_BARS:] else "",
         consequences=tuple(_consequence_row(c) for c in content.consequences),
         consequence_texts=tuple(sentence(c.text, names) for c in content.consequences if c.text),
         stability=_stability_sentence(content.stability, names) if content.stability else "",
@@ -179,12 +179,8 @@ def determined_sentence(fit: Fit) -> str:
 def _symmetry_row(s: Symmetry, fit: Fit, names: Sequence[str]) -> SymmetryRow:
     inside = sorted((c for c in fit.coefficients if c.name in s.parameters), key=lambda c: not c.fixed)
     assumed = tuple(text for text in (assumption(c) for c in inside) if text)
-    return SymmetryRow(
-        sentence(s.text, names),
-        assumed[:MAX_TEXTS],
-        assumed[MAX_TEXTS:],
-        has_no_assumption=bool(inside) and not assumed,
-    )
+    has_no_assumption = bool(inside) and not assumed
+    return SymmetryRow(sentence(s.text, names), assumed[:MAX_TEXTS], assumed[MAX_TEXTS:], has_no_assumption)
 
 
 def _accuracy_classes(items: Sequence[Direction]) -> tuple[AccuracyClass, ...]:
@@ -218,10 +214,6 @@ def _collinear_rows(identifiability: Identifiability) -> list[tuple[str, str, st
         for c in items
         if c.variance_inflation > MIN_VARIANCE_INFLATION
     ]  # fmt: skip
-
-
-def _more_sensitivities(rest: int) -> str:
-    return f" {counted(rest, 'further coefficient').capitalize()} with smaller effects not drawn." if rest > 0 else ""
 
 
 def _consequence_row(c: Consequence) -> ConsequenceRow:
@@ -260,13 +252,8 @@ def _noise_text(d: NoiseModel, names: Sequence[str]) -> NoiseText:
 
 def _noise_row(name: str, value: float, ending: str) -> NoiseRow:
     si = channel_unit(name)
-    unit = unit_text(si)
-    return NoiseRow(
-        name,
-        channel_meaning(name),
-        significant(value * display_unit(si)[0], 2),
-        f"{unit or '1'}{ending}" if ending else unit,
-    )
+    unit, size = unit_text(si), significant(value * display_unit(si)[0], 2)
+    return NoiseRow(name, channel_meaning(name), size, f"{unit or '1'}{ending}" if ending else unit)
 
 
 def _unbounded_sentence(identifiability: Identifiability) -> str:

@@ -86,15 +86,9 @@ def _coefficient_row(c: Coefficient) -> FitCoefficientRow:
     if c.truth is not None and c.lower is not None and c.upper is not None:
         holds = c.lower <= c.truth <= c.upper
     return FitCoefficientRow(
-        coefficient_symbol(c),
-        c.name,
-        c.meaning,
-        unit_text(c.unit),
-        estimate_text(value or 0.0, error, lower, upper),
-        _prior_text(c),
-        exact(_display_value(c.truth, c.unit)),
-        holds,
-    )
+        coefficient_symbol(c), c.name, c.meaning, unit_text(c.unit), estimate_text(value or 0.0, error, lower, upper),
+        _prior_text(c), exact(_display_value(c.truth, c.unit)), holds,
+    )  # fmt: skip
 
 
 def _prior_text(c: Coefficient) -> str:
@@ -153,12 +147,8 @@ def sign_conventions(model: Model) -> str:
 
 
 def _equation_row(e: LatexEquation, citations: Citations) -> EquationRow:
-    unit = _equation_unit(e.unit, is_rate=e.is_rate)
+    unit = "" if e.is_rate or e.unit == "1" else e.unit.replace("^2", "²").replace("^3", "³")
     return EquationRow(e.name, tuple(Markup(p) for p in pieces(e.latex)), unit, citations.mark(e.source))
-
-
-def _equation_unit(unit: str, *, is_rate: bool) -> str:
-    return "" if is_rate or unit == "1" else unit.replace("^2", "²").replace("^3", "³")
 
 
 def records(fit: Fit) -> list[dict[str, str]]:
@@ -208,9 +198,8 @@ def offsets(items: Sequence[Offset]) -> dict[str, object]:
 
 
 def _offset_text(o: Offset) -> tuple[str, str]:
-    text = estimate_text(
-        _display_value(o.estimate, o.unit) or 0.0, _display_value(o.standard_error, o.unit), None, None
-    )
+    value, error = _display_value(o.estimate, o.unit), _display_value(o.standard_error, o.unit)
+    text = estimate_text(value or 0.0, error, None, None)
     return text.value + text.power, text.error
 
 
@@ -220,22 +209,9 @@ def fixed_parameters(items: Sequence[Coefficient], citations: Citations) -> list
     for c in items:
         if c.fixed:
             groups.setdefault(c.source, []).append(c)
-    return [
-        {
-            "source": citations.mark(source or "no source given"),
-            "rows": [
-                (
-                    coefficient_symbol(c),
-                    c.name,
-                    exact(_display_value(c.estimate, c.unit)),
-                    unit_text(c.unit),
-                    c.meaning,
-                )
-                for c in group
-            ],
-        }
-        for source, group in groups.items()
-    ]
+    rows = {source: [(coefficient_symbol(c), c.name, exact(_display_value(c.estimate, c.unit)), unit_text(c.unit),
+                      c.meaning) for c in group] for source, group in groups.items()}  # fmt: skip
+    return [{"source": citations.mark(source or "no source given"), "rows": row} for source, row in rows.items()]
 
 
 def priors(items: Sequence[Coefficient], model: Model, citations: Citations) -> list[dict[str, object]]:

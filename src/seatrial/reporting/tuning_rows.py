@@ -58,14 +58,8 @@ def gain_texts(rows: Sequence[Mapping[str, float]], names: Sequence[str]) -> lis
 
 def rms_headings(tuning: Tuning) -> list[tuple[str, str]]:
     """Return names and units of the root mean squares."""
-    names = (("output", tuning.output, ""), ("actuator", tuning.actuator, ""),
-             ("actuator_rate", tuning.actuator, "/s"))  # fmt: skip
-    words = {
-        "output": channel_meaning(tuning.output),
-        "actuator": channel_meaning(tuning.actuator),
-        "actuator_rate": "its rate",
-    }
-    return [(words[key], tuning_text.unit_label(name, per)) for key, name, per in names]
+    channels = [(channel_meaning(name), tuning_text.unit_label(name)) for name in (tuning.output, tuning.actuator)]
+    return [*channels, ("its rate", tuning_text.unit_label(tuning.actuator, "/s"))]
 
 
 def controller_rows(tuning: Tuning) -> list[ControllerRow]:
@@ -83,18 +77,12 @@ def schedule_table(operating_points: tuple[OperatingPoint, ...]) -> TextTable:
     gain_cells = gain_texts([s.gains for s in operating_points], gains)
     rows = [
         (
-            exact(s.U, 4),
-            exact(math.degrees(s.beta), 4),
-            exact(s.height, 3),
-            *texts,
-            fixed(s.cost, 3),
-            *(_cost_text(s.baseline_costs.get(name, math.nan)) for name in baselines),
-            fixed(s.Ms, 2),
-            fixed(100.0 * s.saturation, 1),
-            "" if s.is_feasible else "infeasible",
+            exact(s.U, 4), exact(math.degrees(s.beta), 4), exact(s.height, 3), *texts, fixed(s.cost, 3),
+            *(_cost_text(s.baseline_costs.get(name, math.nan)) for name in baselines), fixed(s.Ms, 2),
+            fixed(100.0 * s.saturation, 1), "" if s.is_feasible else "infeasible",
         )
         for s, texts in zip(operating_points, gain_cells, strict=True)
-    ]
+    ]  # fmt: skip
     return TextTable("Gains of the schedule", header, tuple([True] * (len(header) - 1) + [False]), tuple(rows), "")
 
 

@@ -60,35 +60,15 @@ def schedule_csv(tuning: Tuning) -> str:
     if not tuning.schedule:
         return ""
     first = tuning.schedule[0]
-    heads = [
-        "U [m/s]",
-        "heading [deg]",
-        "height [m]",
-        *first.gains,
-        "cost",
-        *(f"cost {name}" for name in first.baseline_costs),
-        "Ms",
-        "saturation",
-        "feasible",
-    ]
-    rows = [
-        [
-            _number_text(x)
-            for x in (
-                s.U,
-                math.degrees(s.beta),
-                s.height,
-                *s.gains.values(),
-                s.cost,
-                *s.baseline_costs.values(),
-                s.Ms,
-                s.saturation,
-            )
-        ]
-        + ["yes" if s.is_feasible else "no"]
-        for s in tuning.schedule
-    ]
-    return "\n".join(",".join(cells) for cells in [[_csv_cell(h) for h in heads], *rows]) + "\n"
+    costs = [f"cost {name}" for name in first.baseline_costs]
+    heads = ["U [m/s]", "heading [deg]", "height [m]", *first.gains, "cost", *costs, "Ms", "saturation", "feasible"]
+    rows = [[_csv_cell(head) for head in heads]]
+    for s in tuning.schedule:
+        numbers = (s.U, math.degrees(s.beta), s.height, *s.gains.values(), s.cost, *s.baseline_costs.values(), s.Ms,
+                   s.saturation)  # fmt: skip
+        texts = [f"{x:.8g}" if math.isfinite(x) else "" for x in numbers]  # digits of a single-precision number
+        rows.append([*texts, "yes" if s.is_feasible else "no"])
+    return "\n".join(",".join(cells) for cells in rows) + "\n"
 
 
 def _finite_numbers(values: dict[str, float]) -> dict[str, float]:
@@ -132,10 +112,6 @@ def _schedule_entry(point: OperatingPoint) -> dict[str, Any]:
         **_finite_numbers({"cost": point.cost, "Ms": point.Ms, "saturation": point.saturation}),
         "feasible": bool(point.is_feasible),
     }
-
-
-def _number_text(value: float) -> str:
-    return f"{value:.8g}" if math.isfinite(value) else ""
 
 
 def _csv_cell(text: str) -> str:
