@@ -78,6 +78,8 @@ class ModelEquations:
         rates: one binding a state, in the order of the states.
         outputs: names of bindings that can be measured, besides the states.
         parameters: names of all parameters, in order.
+        sensors: text from which the instruments' outputs are written again, where the model has any.
+        layout: text from which the registry writes the equations again, where a name alone does not (thrusters).
     """
 
     name: str
@@ -88,6 +90,8 @@ class ModelEquations:
     outputs: tuple[str, ...]
     parameters: tuple[str, ...]
     meaning: str = ""
+    layout: str = ""
+    sensors: str = ""
 
     @property
     def states(self) -> tuple[str, ...]:

@@ -47,7 +47,7 @@ def _equations(about: dict[str, Any]) -> ModelEquations:
     equations = ModelEquations(
         about["name"], about["source"], tuple(Input(**i) for i in about["inputs"]),
         tuple(Binding(**b) for b in about["bindings"]), tuple(Binding(**b) for b in about["rates"]),
-        tuple(about["outputs"]), tuple(about["parameters"]), about["meaning"],
+        tuple(about["outputs"]), tuple(about["parameters"]), about["meaning"], about["layout"], about["sensors"],
     )  # fmt: skip
     vars(equations)["is_affine"] = about["is_affine"]  # of the cached property, which would import SymPy
     return equations

@@ -10,6 +10,13 @@ from seatrial.core.equations.bindings import Binding, Input, ModelEquations
 from seatrial.core.equations.compiled import CompiledEquations, compile_equations
 from seatrial.core.values import Array, InputError, Parameters, Ship
 
+MEASURED = "_measured"
+
+
+def measured_name(channel: str) -> str:
+    """Return the name of the output that a channel's instrument shows, where that is not the state itself."""
+    return f"{channel}{MEASURED}"
+
 
 @dataclass(frozen=True)
 class Model:
@@ -56,6 +63,16 @@ class Model:
     def observables(self) -> tuple[str, ...]:
         """Everything a record can be compared with: states, then measurable outputs."""
         return (*self.states, *self.outputs)
+
+    def observable_of(self, channel: str) -> str:
+        """Return the observable that a record's channel of this name is compared with: what its instrument shows."""
+        shown = measured_name(channel)
+        return shown if shown in self.outputs else channel
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of the channels that a record can hold of it; readings of instruments by the channel they fill."""
+        return tuple(o for o in self.observables if not o.endswith(MEASURED))
 
     @property
     def equation_hash(self) -> str:

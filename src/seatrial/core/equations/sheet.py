@@ -35,8 +35,8 @@ class Sheet:
         InputError: a name used twice, a rate missing or given twice, a symbol the sheet does not know.
     """
 
-    def __init__(self, name: str, source: str = "", meaning: str = "") -> None:
-        self.name, self.source, self.meaning = name, source, meaning
+    def __init__(self, name: str, source: str = "", meaning: str = "", layout: str = "") -> None:
+        self.name, self.source, self.meaning, self.layout = name, source, meaning, layout
         self._states: list[str] = []
         self._inputs: list[Input] = []
         self._parameters: list[Parameter] = []
@@ -131,6 +131,6 @@ class Sheet:
         parameters = Parameters(tuple(self._parameters))
         equations = ModelEquations(
             self.name, self.source, tuple(self._inputs), tuple(self._bindings), rates, tuple(self._outputs),
-            parameters.names, self.meaning,
+            parameters.names, self.meaning, self.layout,
         )  # fmt: skip
         return Model(equations, parameters)

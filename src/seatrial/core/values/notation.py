@@ -81,6 +81,9 @@ _TABLE = [
     ),
 ]  # fmt: skip
 
+COMMANDS = tuple(f"{letter}_{k}" for letter in ("command", "alpha", "rpm") for k in _INDEXED)
+"""Channels of thrusters: what is ordered or follows an order, never a measurement to be smoothed."""
+
 # positive direction -> its opposite, both ways
 _PAIRS = {
     "starboard": "port", "north": "south", "east": "west", "forward": "aft", "up": "down", "bow up": "bow down",

@@ -5,11 +5,13 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.values import Array, Channel, InputError, Record, quantity
-from seatrial.core.values.notation import OPPOSITE, positive_direction
+from seatrial.core.values.notation import COMMANDS, OPPOSITE, positive_direction
 from seatrial.data.check.signal import unwrapped
 
 _VELOCITY_PAIRS = (("u", "v"), ("u_dot", "v_dot"))
-_UNWRAPPED_CHANNELS = ("psi", "wind_direction", "wind_direction_relative")
+_UNWRAPPED_CHANNELS = (
+    "psi", "wind_direction", "wind_direction_relative", *(c for c in COMMANDS if c.startswith("alpha"))
+)  # fmt: skip
 
 
 def canonical_record(record: Record, reference_point: float = 0.0) -> Record:

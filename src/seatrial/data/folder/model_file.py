@@ -26,6 +26,7 @@ from seatrial.data.folder.model_tables import (
     number_table,
 )
 from seatrial.physics.models import model_named
+from seatrial.physics.sensors import Sensors, with_sensors
 
 FORMAT = 1
 EARLIER_MODEL_NAMES = {"heave_pitch_held": "heave_pitch_zoh"}
@@ -69,6 +70,8 @@ def model_text(file: ModelFile) -> str:
     if covariance.size and covariance.shape != (len(free), len(free)):
         raise ValueError(f"covariance of shape {covariance.shape} for {len(free)} free parameters")
     equations = {"name": model.name, "equation_hash": model.equation_hash, "source": model.equations.source}
+    parts = {"layout": model.equations.layout, "sensors": model.equations.sensors}
+    equations |= {key: text for key, text in parts.items() if text}
     table: dict[str, Any] = {"format": FORMAT, "model": equations | {"conventions": CONVENTIONS}}
     if file.ship is not None:
         table["ship"] = model_tables.ship_table(file.ship)
@@ -157,7 +160,9 @@ def _model_with_equations(entry: Mapping[str, Any], where: str, own_model: Model
         model = own_model
     else:
         try:
-            model = model_named(name)
+            model = model_named(name, str(entry.get("layout", "")))
+            if "sensors" in entry:
+                model = with_sensors(model, Sensors.from_text(str(entry["sensors"])))
         except InputError as error:
             raise InputError(f"model file '{where}': {error}; give a model of your own with --model FILE.py") from None
     equation_hash = str(entry["equation_hash"])

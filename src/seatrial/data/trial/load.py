@@ -17,6 +17,7 @@ from seatrial.data.trial.model_table import build_trial_model, ship_of
 from seatrial.data.trial.runs import expand_variables, require_training_run, runs_of
 from seatrial.data.trial.schema import TrialFile
 from seatrial.data.trial.schema_errors import schema_error
+from seatrial.data.trial.thruster_table import layout_text
 from seatrial.data.trial.trial import Trial
 
 
@@ -60,7 +61,8 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
     file = parse_trial(path)
     try:
         ship = ship_of(file.ship)
-        model = build_trial_model(file.model, ship, own_model)
+        layout = layout_text(file.model.name, file.model.damping, file.thruster, ship)
+        model = build_trial_model(file.model, ship, own_model, layout, file.sensors)
         symbols = set(NOTATION)
         for number, block in enumerate(file.records, start=1):
             _refuse_unknown_names(f"records[{number}].channels", list(block.channels), symbols)

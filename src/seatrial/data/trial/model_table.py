@@ -10,6 +10,7 @@ from seatrial.data.trial.schema import ModelTable, PriorTable, ShipTable
 from seatrial.physics.models import model_named
 from seatrial.physics.models.published import parameter_set
 from seatrial.physics.models.start_values import with_start_values
+from seatrial.physics.sensors import Sensors, with_sensors
 
 # particulars that people state although not every model asks for them
 COMMON_PARTICULARS = (
@@ -28,8 +29,12 @@ def ship_of(table: ShipTable) -> Ship:
     return Ship(table.name, table.particulars, table.source, table.scale)
 
 
-def build_trial_model(table: ModelTable, ship: Ship, own_model: Model | None = None) -> Model:
+def build_trial_model(
+    table: ModelTable, ship: Ship, own_model: Model | None = None, layout: str = "", sensors: Sensors | None = None
+) -> Model:
     """The model of `[model]` for this ship, ready to be estimated.
+
+    layout: of its thrusters, as `model_named` takes it; sensors: what stands between its motion and the records.
 
     Later ones win: the model's own values, those of `priors_from`, the parameter set, the ship's particulars, `start`,
     `fixed`.
@@ -38,7 +43,8 @@ def build_trial_model(table: ModelTable, ship: Ship, own_model: Model | None = N
         InputError: unknown model, parameter set, source of priors, parameter or particular; a value outside its bounds
             or missing.
     """
-    model = own_model or model_named(table.name)
+    model = own_model or model_named(table.name, layout)
+    craft, model = model, with_sensors(model, sensors or Sensors())
     literature = literature_priors(table.priors_from, ship, model.name)
     for name, known in literature.items():
         model = model.with_values({name: known.mean}, source=known.source)
@@ -50,9 +56,9 @@ def build_trial_model(table: ModelTable, ship: Ship, own_model: Model | None = N
     parameters = _with_amounts(parameters, table.start, "model.start", "start value of the trial file")
     parameters = _with_amounts(parameters, table.fixed, "model.fixed", "fixed in the trial file")
     own_ship = _without_particulars(ship, (*table.start, *table.fixed))
-    model = with_start_values(model.with_parameters(_with_free_and_fixed(parameters, table)), own_ship).with_ship(
-        own_ship
-    )
+    model = with_start_values(
+        model.with_parameters(_with_free_and_fixed(parameters, table, craft)), own_ship
+    ).with_ship(own_ship)
     return model.with_parameters(_with_priors(_with_bounds(model.parameters, table), table, literature))
 
 
@@ -85,13 +91,15 @@ def _with_amounts(parameters: Parameters, amounts: Mapping[str, Amount], where: 
     return parameters.with_values({name: amount.in_si for name, amount in amounts.items()}, source)
 
 
-def _with_free_and_fixed(parameters: Parameters, table: ModelTable) -> Parameters:
+def _with_free_and_fixed(parameters: Parameters, table: ModelTable, craft: Model) -> Parameters:
+    """Free what the trial frees and the sensors' coefficients; fix what it fixes."""
     if table.free is not None:
         _refuse_unknown("model.free", table.free, parameters)
         for name in table.free:
             if name in table.fixed:
                 raise InputError(f"model: parameter '{name}' is named under both 'free' and 'fixed'; keep one")
-        parameters = parameters.only_free(table.free)
+        of_sensors = (p.name for p in parameters.free if p.name not in craft.parameters)
+        parameters = parameters.only_free((*table.free, *of_sensors))
     return parameters.fixed(*table.fixed)
 
 

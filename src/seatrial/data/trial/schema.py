@@ -13,6 +13,9 @@ from seatrial.data.trial.design_request import DesignRequest
 from seatrial.data.trial.sea_table import SeaTable
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
 from seatrial.data.trial.stream import StreamSettings
+from seatrial.data.trial.thruster_table import ThrusterTable
+from seatrial.physics.models.thruster_layout import Damping
+from seatrial.physics.sensors import Sensors
 
 
 def _as_tuple(value: object) -> object:
@@ -213,6 +216,7 @@ class ModelTable(StrictTable):
 
     name: str
     parameter_set: str | None = None
+    damping: Damping | None = None
     reference_point: float = 0.0
     fixed: dict[str, SiAmount] = Field(default_factory=dict)
     start: dict[str, SiAmount] = Field(default_factory=dict)
@@ -249,6 +253,8 @@ class TrialFile(StrictTable):
     data: DataTable = DataTable()
     records: tuple[RecordsTable, ...] = ()
     model: ModelTable
+    thruster: tuple[ThrusterTable, ...] = ()
+    sensors: Sensors = Sensors()
     forces: tuple[ForcesTable, ...] = ()
     excitation: ExcitationTable | None = None
     family: ModelFamily | None = None

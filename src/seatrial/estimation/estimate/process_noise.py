@@ -252,7 +252,7 @@ def _initial_problem(
     problem, first = join_segments(estimate.problem)
     measured, local = problem.measured_initial_states(), estimate.optimum.local[first]
     model, outputs = problem.model, problem.data.outputs
-    start = np.zeros((problem.data.count, len(model.states)))
+    start = problem.unpack(estimate.common_parameters, measured)[0]
     variance = np.zeros_like(start)
     for m, state in enumerate(problem.starts):
         i = model.states.index(state)

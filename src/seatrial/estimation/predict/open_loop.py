@@ -25,8 +25,7 @@ def estimate_initial_state(
     data = cut_segments(held, [beginning], template.data.outputs, None)
     problem = replace(template, model=held, data=data, pinned=nuisances, inflation=None)
     found = levenberg_marquardt(problem, nuisances, problem.measured_initial_states(), evaluations=40)
-    known = dict(zip(problem.starts, found.local[0], strict=True))
-    return np.array([known.get(s, 0.0) for s in model.states])
+    return problem.unpack(nuisances, found.local)[0][0]
 
 
 @dataclass(frozen=True, eq=False)

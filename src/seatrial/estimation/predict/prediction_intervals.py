@@ -71,7 +71,7 @@ def _finite_draws(runs: Array) -> Array:
 
 
 def _track_spread(model: Model, simulation: OpenLoopRun, runs: Array) -> dict[str, Array]:
-    place = {o: i for i, o in enumerate(model.observables)}
+    place = {c: model.observables.index(model.observable_of(c)) for c in model.channels}
     return {
         c: np.sqrt(np.mean((runs[:, :, place[c]] - simulation.record[c]) ** 2, axis=0))
         for c in _TRACK_CHANNELS
@@ -82,7 +82,7 @@ def _track_spread(model: Model, simulation: OpenLoopRun, runs: Array) -> dict[st
 def _measure_spread(
     model: Model, record: Record, simulation: OpenLoopRun, runs: Array, length: float, rng: np.random.Generator
 ) -> dict[str, float]:
-    place = {o: i for i, o in enumerate(model.observables)}
+    place = {c: model.observables.index(model.observable_of(c)) for c in model.channels}
     noise = {c: sample_noise(record[c]) for c in _MEASURE_CHANNELS if c in record and c in place}
     reference = ObservedManoeuvre.from_record(record)
     centre = measures(simulation.record, length, reference=reference)

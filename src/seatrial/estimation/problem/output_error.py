@@ -16,6 +16,7 @@ from seatrial.estimation.problem.data_term import DataTerm
 from seatrial.estimation.problem.segments import Segments
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.numerics.workers import map_in_threads
+from seatrial.physics.sensors.measured_outputs import is_late
 from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
 from seatrial.physics.simulate.linear import batch_class
 
@@ -67,19 +68,31 @@ class OutputError:
         own = {name for name, _ in self.session_parameters}
         return tuple(n for n in self.model.parameters.free_names if n not in own)
 
+    @property
+    def observables(self) -> tuple[str, ...]:
+        """What the model says of each compared channel."""
+        return tuple(self.model.observable_of(channel) for channel in self.data.outputs)
+
     @cached_property
     def _batch(self) -> SegmentBatch:
         batch = batch_class(self.model)(
-            self.model, self.data.inputs, self.data.offsets, self.data.dt, self.data.outputs,
+            self.model, self.data.inputs, self.data.offsets, self.data.dt, self.observables,
             (*self.free, *(name for name, _ in self.session_parameters)),
             tuple(n.correction for n in self.nuisances), (), self.substeps,
         )  # fmt: skip
-        return replace(batch, initial_states=batch.influential_states())
+        return replace(batch, initial_states=(*self._starts_of(batch), *self._actuators))
 
     @property
+    def _actuators(self) -> tuple[str, ...]:
+        return () if self.data.history is None else self.data.history.states
+
+    def _starts_of(self, batch: SegmentBatch) -> tuple[str, ...]:
+        return tuple(s for s in batch.influential_states() if s not in self._actuators)
+
+    @cached_property
     def starts(self) -> tuple[str, ...]:
-        """States whose initial value is estimated in every segment."""
-        return self._batch.initial_states
+        """States whose initial value is estimated in every segment; those that follow the inputs alone are known."""
+        return self._starts_of(self._batch)
 
     @property
     def unknowns_per_session(self) -> int:
@@ -132,8 +145,9 @@ class OutputError:
         """Initial states from each segment's first measured samples, (segments, len(starts)); zero if unmeasured."""
         local = np.zeros((self.data.count, len(self.starts)))
         for m, state in enumerate(self.starts):
-            if state in self.data.outputs:
-                column = self.data.measured[:, self.data.outputs.index(state)]
+            channel = state.split("_")[0] if is_late(state) else state
+            if channel in self.data.outputs:
+                column = self.data.measured[:, self.data.outputs.index(channel)]
                 for s, (a, b) in enumerate(pairwise(self.data.offsets)):
                     good = np.flatnonzero(np.isfinite(column[a:b]))
                     if len(good):
@@ -150,7 +164,40 @@ class OutputError:
         values[:, [parameters.index(n) for n, _ in self.session_parameters]] = own[:, :split]
         start = np.zeros((count, len(self.model.states)))
         start[:, [self.model.states.index(s) for s in self.starts]] = local
-        return start, values, np.ascontiguousarray(own[:, split:])
+        corrections = np.ascontiguousarray(own[:, split:])
+        if self.data.history is not None:
+            first = self._first_segments
+            known = self.data.history.starts(values[first], corrections[first], self._batch.corrections)
+            start[:, [self.model.states.index(s) for s in self._actuators]] = known
+        return start, values, corrections
+
+    @cached_property
+    def _first_segments(self) -> Index:
+        """The first segment of each session; the first of all for sessions that have none."""
+        return np.array(
+            [int(np.argmax(self.data.session == s)) for s in range(len(self.data.sessions))], dtype=np.int64
+        )
+
+    def _actuator_slopes(self, values: Array, corrections: Array) -> Array | None:
+        """Derivatives of the known initial states by a session's columns, (segments, actuators, n)."""
+        if self.data.history is None:
+            return None
+        first, batch = self._first_segments, self._batch
+        return self.data.history.slopes(batch.parameters, values[first], corrections[first], batch.corrections)
+
+    def _differentiate(
+        self, bounds: tuple[int, int], start: Array, values: Array, corrections: Array, by_actuator: Array | None
+    ) -> tuple[Array, Array]:
+        """Outputs of some segments and their derivatives by a session's columns, then by unknown initial states."""
+        y, s, _ = self._batch.differentiate(*bounds, start, values, corrections)
+        if by_actuator is None:
+            return y, s
+        n, width = len(self.free) + self.unknowns_per_session, s.shape[2] - len(self._actuators)
+        base = self.data.offsets[bounds[0]]
+        for k in range(*bounds):
+            rows = slice(self.data.offsets[k] - base, self.data.offsets[k + 1] - base)
+            s[rows, :, :n] += s[rows, :, width:] @ by_actuator[k]
+        return y, s[:, :, :width]
 
     def _work_ranges(self) -> list[tuple[int, int]]:
         """Ranges of segments of some thousand rows each: the units of work."""
@@ -231,9 +278,10 @@ class OutputError:
         """Gauss-Newton blocks of every segment, prior left out."""
         start, values, corrections = self.unpack(shared, local)
         n, m = len(self.free) + self.unknowns_per_session, len(self.starts)
+        by_actuator = self._actuator_slopes(values, corrections)
 
         def piece(bounds: tuple[int, int]) -> tuple[Array, Array, Array]:
-            y, s, _ = self._batch.differentiate(*bounds, start, values, corrections)
+            y, s = self._differentiate(bounds, start, values, corrections, by_actuator)
             base = self.data.offsets[bounds[0]]
             scaled = self._scaled_residuals(y, slice(base, base + len(y)))
             costs, gradients, hessians = [], [], []
@@ -254,8 +302,9 @@ class OutputError:
     def slopes(self, shared: Array, local: Array) -> Array:
         """Derivatives of the outputs by a session's columns (`columns_of`), then by initial states, (rows, ny, n)."""
         start, values, corrections = self.unpack(shared, local)
+        by_actuator = self._actuator_slopes(values, corrections)
         parts = map_in_threads(
-            lambda p: self._batch.differentiate(*p, start, values, corrections)[1],
+            lambda p: self._differentiate(p, start, values, corrections, by_actuator)[1],
             self._work_ranges(),
             workers=self.workers,
         )
@@ -265,9 +314,10 @@ class OutputError:
         """Rms slope of each output, in units of its noise, by each free parameter, (ny, free); initial states held."""
         start, values, corrections = self.unpack(shared, local)
         known = np.isfinite(self.data.measured)
+        by_actuator = self._actuator_slopes(values, corrections)
 
         def piece(bounds: tuple[int, int]) -> Array:
-            _, s, _ = self._batch.differentiate(*bounds, start, values, corrections)
+            _, s = self._differentiate(bounds, start, values, corrections, by_actuator)
             rows = slice(self.data.offsets[bounds[0]], self.data.offsets[bounds[1]])
             return np.einsum("tyf,ty->yf", s[:, :, : len(self.free)] ** 2, known[rows].astype(float))
 

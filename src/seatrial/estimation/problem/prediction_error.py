@@ -103,7 +103,7 @@ class PredictionError:
         runs = self.runs
         names = (*runs.free, *(name for name, _ in runs.session_parameters))
         return KalmanFilter(
-            runs.model, runs.data.inputs, runs.data.offsets, runs.data.dt, runs.data.outputs, names,
+            runs.model, runs.data.inputs, runs.data.offsets, runs.data.dt, runs.observables, names,
             tuple(n.correction for n in runs.nuisances), (), runs.substeps, self.process,
         )  # fmt: skip
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, InputError, Record, spelling_hint
+from seatrial.physics.simulate.actuators import ActuatorHistory
 from seatrial.physics.simulate.channels import inputs_of
 
 
@@ -19,6 +20,7 @@ class Segments:
         inputs: (rows, nu) in the model's signs; measured: (rows, ny), NaN where nothing was measured.
         offsets: (segments + 1,); run, session: (segments,), indices into `runs` and `sessions`.
         outputs: observables that are compared, in order; dt: s.
+        history: commands of the whole runs, where the model has states that follow them; None: it has none.
     """
 
     inputs: Array
@@ -30,6 +32,7 @@ class Segments:
     sessions: tuple[str, ...]
     outputs: tuple[str, ...]
     dt: float
+    history: ActuatorHistory | None = None
 
     @property
     def count(self) -> int:
@@ -51,6 +54,7 @@ class Segments:
             offsets=np.concatenate([[0], np.cumsum([len(r) for r in rows])]).astype(np.int64),
             run=self.run[indices],
             session=self.session[indices],
+            history=None if self.history is None else self.history.selected(indices),
         )
 
 
@@ -60,7 +64,7 @@ def compared_outputs(model: Model, records: Sequence[Record], requested: Sequenc
     Raises:
         InputError: there is none, or a wanted one is no observable of the model or in no record.
     """
-    found = tuple(o for o in model.observables if any(o in r for r in records))
+    found = tuple(o for o in model.channels if any(o in r for r in records))
     for name in requested:
         if name not in found:
             raise InputError(f"channel '{name}' cannot be compared{spelling_hint(name, list(found))}")
@@ -92,7 +96,7 @@ def cut_segments(
         InputError: time steps differ, or a record has fewer than three samples.
     """
     dt = records[0].dt
-    inputs, measured, lengths, runs = [], [], [], []
+    of_runs, inputs, measured, firsts, lengths, runs = [], [], [], [], [], []
     for index, record in enumerate(records):
         if abs(record.dt - dt) > 1e-3 * dt:
             raise InputError(
@@ -102,9 +106,11 @@ def cut_segments(
             raise InputError(f"record '{record.name}' has {len(record)} samples; at least three are needed")
         u = inputs_of(model, record)
         y = np.stack([record[o] if o in record else np.full(len(record), np.nan) for o in outputs], axis=1)
+        of_runs.append(u)
         length = len(record) - 1 if segment_seconds is None else max(2, round(segment_seconds / dt))
         for first, last in _segment_bounds(len(record), length):
             inputs.append(u[first:last])
+            firsts.append(first)
             measured.append(y[first:last])
             lengths.append(last - first)
             runs.append(index)
@@ -112,14 +118,16 @@ def cut_segments(
     of_run = tuple(sessions) if sessions is not None else names
     distinct = tuple(dict.fromkeys(of_run))
     run = np.array(runs, dtype=np.int64)
+    session = np.array([distinct.index(of_run[i]) for i in runs], dtype=np.int64)
     return Segments(
         np.concatenate(inputs),
         np.concatenate(measured),
         np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64),
         run,
-        np.array([distinct.index(of_run[i]) for i in runs], dtype=np.int64),
+        session,
         names,
         distinct,
         outputs,
         dt,
+        ActuatorHistory.from_runs(model, of_runs, dt, run, np.array(firsts, dtype=np.int64), session),
     )

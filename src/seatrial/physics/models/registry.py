@@ -70,11 +70,20 @@ def _roll() -> "Model":
     return roll()
 
 
+def _thrusters(layout: str = "") -> "Model":
+    from seatrial.physics.models.thruster_layout import CATAMARAN, ThrusterLayout
+    from seatrial.physics.models.thrusters import thrusters
+
+    return thrusters(ThrusterLayout.from_text(layout) if layout else CATAMARAN)
+
+
 MODELS: dict[str, Callable[[], "Model"]] = {
     "waterjet": _waterjet, "nomoto": _nomoto, "nomoto2": _nomoto2, "abkowitz": _abkowitz, "mmg": _mmg,
     "heave_pitch": _heave_pitch, "heave_pitch_zoh": _heave_pitch_zoh, "heave_pitch_strip": _heave_pitch_strip,
-    "roll": _roll,
+    "roll": _roll, "thrusters": _thrusters,
 }  # fmt: skip
+LAYOUT_MODELS: dict[str, Callable[[str], "Model"]] = {"thrusters": _thrusters}
+"""Models whose equations depend on a layout; without one they have a default."""
 
 
 def _require_model(model: object, where: str) -> "Model":
@@ -86,20 +95,26 @@ def _require_model(model: object, where: str) -> "Model":
 
 
 @cache
-def _built_in(name: str) -> "Model":
+def _built_in(name: str, layout: str) -> "Model":
     from seatrial.core.equations.manifest import stored_model
 
-    return stored_model((name,), MODELS[name], (Path(__file__).parent,))
+    if not layout:
+        return stored_model((name,), MODELS[name], (Path(__file__).parent,))
+    return stored_model((name, layout), lambda: LAYOUT_MODELS[name](layout), (Path(__file__).parent,))
 
 
-def model_named(name: str) -> "Model":
+def model_named(name: str, layout: str = "") -> "Model":
     """Return a built-in model, or one installed under the entry point group `seatrial.models`.
+
+    layout: as `ThrusterLayout.text` writes it, for the model `thrusters`; empty: the model's default.
 
     Raises:
         InputError: there is no such model; the nearest name is given.
     """
+    if layout and name not in LAYOUT_MODELS:
+        raise InputError(f"model '{name}' has no thrusters to lay out; name the model 'thrusters'")
     if name in MODELS:
-        return _built_in(name)
+        return _built_in(name, layout)
     plugins = installed(ENTRY_POINT_GROUP)
     if name not in plugins:
         raise InputError(f"unknown model '{name}'{spelling_hint(name, sorted((*MODELS, *plugins)))}")

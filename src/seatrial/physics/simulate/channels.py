@@ -3,6 +3,7 @@
 import numpy as np
 
 from seatrial.core.equations import Input, Model
+from seatrial.core.equations.model import MEASURED
 from seatrial.core.values import NOTATION, Array, Channel, InputError, Record, RecordKind, frozen
 from seatrial.core.values.notation import OPPOSITE
 
@@ -53,9 +54,15 @@ def record_of(
     inputs: Array,
     kind: RecordKind = RecordKind.SIMULATED,
 ) -> Record:
-    """States, measurable outputs and inputs (model's signs) as a record in the notation table's signs."""
-    channels = {s: _channel(s, states[:, i]) for i, s in enumerate(model.states)}
-    channels |= {s: _channel(s, outputs[:, i]) for i, s in enumerate(model.outputs)}
+    """States, measurable outputs and inputs (model's signs) as a record in the notation table's signs.
+
+    Of a model with sensors a channel is what its instrument shows; the state itself has `_true` behind its name.
+    """
+    shown = {s: s if model.observable_of(s) == s else f"{s}_true" for s in model.states}
+    channels = {shown[s]: _channel(s, states[:, i]) for i, s in enumerate(model.states)}
+    for i, output in enumerate(model.outputs):
+        channel = output.removesuffix(MEASURED)
+        channels[channel] = _channel(channel, outputs[:, i])
     for j, item in enumerate(model.inputs):
         channels[item.name] = _channel(item.name, -inputs[:, j] if item.is_reversed else inputs[:, j])
     return Record(name, frozen(time), channels, kind)

@@ -7,6 +7,9 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import NOTATION, Array, InputError, Record
 from seatrial.numerics.local_polynomials import smoothed_locally
+from seatrial.physics.sensors.measured_outputs import is_late
+from seatrial.physics.simulate.actuators import actuator_motion, actuator_states
+from seatrial.physics.simulate.channels import inputs_of
 
 _SMOOTHING_SAMPLES = 15  # window of the local polynomials, samples; chosen
 
@@ -19,8 +22,10 @@ def _slope(record: Record, symbol: str) -> Array:
 
 
 def hidden_states(model: Model, records: Sequence[Record]) -> tuple[str, ...]:
-    """States that no instrument shows (they are not in the notation table) and no record holds."""
-    return tuple(s for s in model.states if s not in NOTATION and not all(s in r for r in records))
+    """States that no instrument shows, no record holds and that do not follow the inputs alone."""
+    hidden = tuple(s for s in model.states if s not in NOTATION and not is_late(s) and not all(s in r for r in records))
+    following = actuator_states(model) if hidden else ()
+    return tuple(s for s in hidden if s not in following)
 
 
 def unobserved_states(model: Model, record: Record) -> tuple[str, ...]:
@@ -62,6 +67,11 @@ def _available_states(model: Model, record: Record) -> dict[str, Array]:
     for rate in model.states:
         if rate.endswith("_dot") and rate not in found and rate.removesuffix("_dot") in record:
             found[rate] = _slope(record, rate.removesuffix("_dot"))
+    if any(s not in NOTATION and s not in found for s in model.states):
+        found = actuator_motion(model, inputs_of(model, record), record.dt) | found
+    for state in model.states:
+        if is_late(state) and state.split("_")[0] in found:
+            found.setdefault(state, found[state.split("_")[0]])
     for unused in ("x0", "y0"):
         found.setdefault(unused, np.zeros(len(record)))
     return found

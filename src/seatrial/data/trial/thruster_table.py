@@ -1,0 +1,150 @@
+"""`[[thruster]]`: a craft's thrusters as a trial file describes them, made the layout of the model `thrusters`."""
+
+import math
+from typing import Annotated, Literal, Self
+
+from pydantic import BeforeValidator, Field, TypeAdapter, model_validator
+
+from seatrial.core.values import NOTATION, InputError, Ship, spelling_hint
+from seatrial.data.trial.amounts import Amount, Angle, InSi, PositiveLength, StrictTable
+from seatrial.physics.models.thruster_layout import (
+    DEFAULT_LAG,
+    AngleInput,
+    CommandInput,
+    Damping,
+    ThrustCurve,
+    Thruster,
+    ThrusterLayout,
+)
+
+CommandUnit = Literal["us", "percent", "rpm", "rps", "1"]
+
+_ZERO_AND_SPAN: dict[CommandUnit, tuple[float, float | None]] = {
+    "us": (1500.0, 400.0), "percent": (0.0, 100.0), "rpm": (0.0, None), "rps": (0.0, None), "1": (0.0, 1.0),
+}  # fmt: skip
+"""Reading at rest and from there to full ahead where the file does not say: RC servo pulses 1100 to 1900 us; shares."""
+
+_RPM = 1.0 / 60.0  # rps, by definition
+_ADDED_SHARE = 1.05  # M_u over the mass, start: a slender hull adds some 5 % in surge; chosen
+
+
+class CommandTable(StrictTable):
+    """Channel of a command, and which of its readings are rest and full ahead."""
+
+    channel: str
+    unit: CommandUnit = "1"
+    zero: float | None = None
+    span: Annotated[float, Field(gt=0)] | None = None
+    positive: Literal["ahead", "astern"] = "ahead"
+
+
+class AngleTable(StrictTable):
+    """Channel of a thruster's direction, its lag [s] and the fastest turn [rad/s]."""
+
+    channel: str
+    lag: Annotated[float, Field(ge=0)] = 0.0
+    rate: Annotated[float, InSi("rad/s", is_positive=True)] | None = None
+
+
+def _angle(value: object) -> object:
+    """A table with a channel, or an angle as anywhere else."""
+    if isinstance(value, dict) and "channel" in value:
+        return AngleTable.model_validate(value)
+    return TypeAdapter(Angle).validate_python(value)
+
+
+class ThrusterTable(StrictTable):
+    """One `[[thruster]]`: place [m], direction, command, curve, lag [s], dead band, thrust at full command [N].
+
+    `same_as`: the thruster whose coefficients it shares. Lengths and angles take a unit as {value, unit}.
+    """
+
+    name: str
+    x: Annotated[float, InSi("m")]
+    y: Annotated[float, InSi("m")]
+    angle: Annotated[
+        float | AngleTable, BeforeValidator(_angle, json_schema_input_type=float | Amount | AngleTable)
+    ] = 0.0
+    command: CommandTable
+    curve: ThrustCurve = ThrustCurve.POWER
+    knots: tuple[float, ...] = ()
+    diameter: PositiveLength | None = None
+    lag: Annotated[float, Field(ge=0)] = DEFAULT_LAG
+    dead_band: Annotated[float, Field(ge=0, lt=1)] = 0.0
+    bollard: Annotated[float, InSi("N", is_positive=True)] | None = None
+    same_as: str = ""
+
+    @model_validator(mode="after")
+    def _angle_in_radians(self) -> Self:
+        if isinstance(self.angle, float) and abs(self.angle) > 2.0 * math.pi:
+            raise ValueError(
+                f"angle = {self.angle:g} is in rad and more than a full turn; "
+                f'write angle = {{ value = {self.angle:g}, unit = "deg" }}'
+            )
+        return self
+
+
+def thruster_layout(tables: tuple[ThrusterTable, ...], ship: Ship, damping: Damping) -> ThrusterLayout:
+    """Return the layout of a craft.
+
+    Raises:
+        InputError: no thruster; a channel, a curve or a sharing that cannot be; the mass missing where it is needed.
+    """
+    thrusters = tuple(_thruster(table) for table in tables)
+    needs_mass = [t.name for t in thrusters if t.bollard or t.curve is ThrustCurve.OPEN_WATER]
+    if needs_mass and "m" not in ship.particulars:
+        raise InputError(f"thruster '{needs_mass[0]}' has its thrust in newtons; give the craft's mass, ship.m [kg]")
+    mass = _ADDED_SHARE * ship.particulars["m"] if needs_mass else 1.0
+    channels = {c for t in thrusters for c in (t.command.channel, getattr(t.angle, "channel", ""))}
+    return ThrusterLayout(thrusters, damping, ship.length, mass, has_voltage="voltage" in channels)
+
+
+def _thruster(table: ThrusterTable) -> Thruster:
+    where = f"thruster '{table.name}'"
+    angle = table.angle
+    if isinstance(angle, AngleTable):
+        angle = AngleInput(_channel(angle.channel, "rad", f"{where}: angle"), angle.lag, angle.rate)
+    return Thruster(
+        table.name, table.x, table.y, _command(table, where), angle, table.curve, table.knots, table.diameter or 0.0,
+        table.lag, table.dead_band, table.bollard or 0.0, table.same_as,
+    )  # fmt: skip
+
+
+def _command(table: ThrusterTable, where: str) -> CommandInput:
+    command = table.command
+    turns = command.unit in ("rpm", "rps")
+    factor = _RPM if command.unit == "rpm" else 1.0
+    zero, span = _ZERO_AND_SPAN[command.unit]
+    if table.curve is ThrustCurve.OPEN_WATER:
+        if not turns:
+            raise InputError(
+                f"{where}: an open-water curve is one over the rate of turning; give a command in rpm or rps"
+            )
+        span = 1.0 / factor  # the share of full command is then the rate in rps
+    span = span if command.span is None else command.span
+    if span is None:
+        raise InputError(f"{where}: add command.span, the {command.unit} at full command")
+    sign = 1.0 if command.positive == "ahead" else -1.0
+    channel = _channel(command.channel, "rps" if turns else "1", f"{where}: command")
+    return CommandInput(channel, factor * (zero if command.zero is None else command.zero), sign * factor * span)
+
+
+def _channel(name: str, unit: str, where: str) -> str:
+    suited = sorted(s for s, q in NOTATION.items() if q.unit == unit)
+    if name not in suited:
+        raise InputError(f"{where}: '{name}' is no channel in {unit}{spelling_hint(name, suited)}")
+    return name
+
+
+def layout_text(model_name: str, damping: Damping | None, tables: tuple[ThrusterTable, ...], ship: Ship) -> str:
+    """Return the text of a craft's layout for `model_named`; empty for a model without thrusters.
+
+    Raises:
+        InputError: thrusters without the model, the model without thrusters, or as `thruster_layout`.
+    """
+    if model_name != "thrusters":
+        if tables or damping is not None:
+            key = "[[thruster]]" if tables else "model.damping"
+            raise InputError(f"{key} is of the model 'thrusters' and the model is '{model_name}'; change one of them")
+        return ""
+    return thruster_layout(tables, ship, damping or Damping.FULL).text()

@@ -1,0 +1,220 @@
+"""Force of one thruster: command, lag, curve, loss with speed through the water, direction."""
+
+import math
+from dataclasses import dataclass
+
+import sympy as sp
+
+from seatrial.core.equations import Sheet
+from seatrial.physics.models.thruster_layout import MIN_LAG, AngleInput, ThrustCurve, Thruster, ThrusterLayout
+
+FOSSEN_THRUST = "Fossen 2021, section 9.2, thrust configuration"
+FOSSEN_PROPELLER = "Fossen 2021, eq. (9.5), T = rho D^4 K_T(J) n |n|"
+CURVE = "four-quadrant curve fitted to field records (docs/thrusters.md)"
+LAG = "Fossen 2021, section 9.8, actuator of first order; time constants up and down"
+
+_EXPONENT = {ThrustCurve.QUADRATIC: 2, ThrustCurve.LINEAR: 1}
+_LAG_FACTOR = 25.0  # largest over starting time constant, chosen: beyond, a lag is a constant
+_ROUNDED = 1e-3  # shares of full command squared, about which spinning up and down change over smoothly; chosen
+_EXPONENT_START, _EXPONENTS = 1.5, (1.0, 4.0)
+"""Exponent of a power curve where a search starts, and its bounds: from a linear one to far beyond a square; chosen."""
+_OPEN_WATER = (0.4, -0.3, -0.1)
+"""K_T polynomial in J where a search starts: a Wageningen B propeller of pitch ratio 0.9, roughly; chosen."""
+_OPEN_WATER_ASTERN = -0.25
+"""K_T astern where a search starts, two thirds of that ahead; chosen."""
+_DIMENSIONLESS = 0.05
+"""Size of a dimensionless coefficient that counts; chosen."""
+_THRUST = 1.0  # N for each kg of M_u at full command, start: a craft that gains 1 m/s in a second; chosen
+
+
+@dataclass(frozen=True)
+class Water:
+    """Velocity through the water and what else thrust depends on."""
+
+    u: sp.Symbol
+    v: sp.Symbol
+    r: sp.Symbol
+    voltage: sp.Expr
+
+
+@dataclass(frozen=True)
+class ThrusterForce:
+    """Forces of one thruster ahead, to starboard and about the origin."""
+
+    X: sp.Symbol
+    Y: sp.Symbol
+    N: sp.Symbol
+
+
+class ThrusterSheet:
+    """Writes the thrusters of a layout on a sheet; thrusters that share coefficients declare them once."""
+
+    def __init__(self, sheet: Sheet, layout: ThrusterLayout) -> None:
+        self.sheet, self.layout = sheet, layout
+        self._coefficients: dict[str, sp.Symbol] = {}
+        self._inputs: dict[str, sp.Symbol] = {}
+
+    def force(self, thruster: Thruster, water: Water) -> ThrusterForce:
+        """Write command, direction, inflow, thrust and force of a thruster."""
+        name, sheet = thruster.name, self.sheet
+        share = self._share_of_full(thruster)
+        a = self._direction(thruster)
+        x = sheet.parameter(f"x_{name}", thruster.x, "m", f"place of '{name}' forward of the origin", "layout")
+        y = sheet.parameter(f"y_{name}", thruster.y, "m", f"place of '{name}' to starboard", "layout")
+        cosine = sheet.bind(f"cos_{name}", sp.cos(a), FOSSEN_THRUST)
+        sine = sheet.bind(f"sin_{name}", sp.sin(a), FOSSEN_THRUST)
+        w = sheet.bind(
+            f"w_{name}", (water.u - y * water.r) * cosine + (water.v + x * water.r) * sine,
+            "speed through the water along the thruster", "m/s",
+        )  # fmt: skip
+        T = sheet.output(f"T_{name}", self._thrust(thruster, share, w) * water.voltage, CURVE, "N")
+        X = sheet.bind(f"X_{name}", T * cosine, FOSSEN_THRUST, "N")
+        Y = sheet.bind(f"Y_{name}", T * sine, FOSSEN_THRUST, "N")
+        return ThrusterForce(X, Y, sheet.bind(f"N_{name}", x * Y - y * X, FOSSEN_THRUST, "N m"))
+
+    def _coefficient(
+        self, thruster: Thruster, symbol: str, value: float, unit: str, meaning: str, *,
+        free: bool = True, lower: float = -math.inf, upper: float = math.inf, scale: float = 0.0,
+    ) -> sp.Symbol:  # fmt: skip
+        name = symbol + self.layout.suffix(thruster)
+        if name not in self._coefficients:
+            self._coefficients[name] = self.sheet.parameter(
+                name, value, unit, meaning, CURVE, free=free, lower=lower, upper=upper, scale=scale
+            )
+        return self._coefficients[name]
+
+    def _input(self, channel: str) -> sp.Symbol:
+        if channel not in self._inputs:
+            self._inputs[channel] = self.sheet.input(channel)
+        return self._inputs[channel]
+
+    def _share_of_full(self, thruster: Thruster) -> sp.Expr:
+        """The command as a share of full command, behind its lag."""
+        name, command, sheet = thruster.name, thruster.command, self.sheet
+        zero = sheet.parameter(f"zero_{name}", command.zero, meaning="command at rest", source="layout", scale=0.02)
+        span = sheet.parameter(f"span_{name}", command.span, meaning="full command from there", source="layout")
+        order = sheet.bind(f"order_{name}", (self._input(command.channel) - zero) / span, "share of full command")
+        if not thruster.lag:
+            return order
+        lag = self.layout.leader(thruster).lag
+        upper = _LAG_FACTOR * lag
+        tau, down = (
+            self._coefficient(thruster, symbol, lag, "s", meaning, lower=MIN_LAG, upper=upper)
+            for symbol, meaning in (("tau", "time constant of spinning up"), ("tau_down", "of spinning down"))
+        )
+        (c,) = sheet.states(f"c_{name}")
+        gap = sheet.bind(f"gap_{name}", order - c, LAG)
+        growth = sheet.bind(f"growth_{name}", gap * c, LAG)
+        up = sheet.bind(f"up_{name}", (1 + growth / sp.sqrt(growth**2 + sp.Float(_ROUNDED) ** 2)) / 2, LAG)
+        sheet.rate(c, gap / (down + (tau - down) * up), LAG)
+        return c
+
+    def _direction(self, thruster: Thruster) -> sp.Expr:
+        name, sheet = thruster.name, self.sheet
+        if not isinstance(thruster.angle, AngleInput):
+            return sheet.parameter(
+                f"angle_{name}", thruster.angle, "rad", f"direction of '{name}'", "layout", scale=_DIMENSIONLESS
+            )
+        ordered = self._input(thruster.angle.channel)
+        if not thruster.angle.lag:
+            return ordered
+        lag = self._coefficient(
+            thruster, "tau_a", thruster.angle.lag, "s", "time constant of turning", lower=MIN_LAG,
+            upper=_LAG_FACTOR * thruster.angle.lag,
+        )  # fmt: skip
+        (a,) = sheet.states(f"a_{name}")
+        rate = sheet.bind(f"turn_{name}", (ordered - a) / lag, LAG, "rad/s")
+        if thruster.angle.rate is not None:
+            most = sheet.parameter(f"rate_{name}", thruster.angle.rate, "rad/s", f"fastest turn of '{name}'", "layout")
+            rate = sp.Piecewise((most, rate > most), (-most, rate < -most), (rate, True))
+        sheet.rate(a, rate, LAG)
+        return a
+
+    def _thrust(self, thruster: Thruster, c: sp.Expr, w: sp.Symbol) -> sp.Expr:
+        if thruster.curve is ThrustCurve.OPEN_WATER:
+            return self._open_water(thruster, c, w)
+        ahead = self._still_knots(thruster, c) if thruster.curve is ThrustCurve.KNOTS else self._still(thruster, c)
+        loss = self._coefficient(thruster, "k_J", 0.0, "N^0.5 s/m", "loss of thrust with speed ahead", scale=0.1)
+        decay = self._coefficient(
+            thruster, "k_4", 0.0, "s^2/m^2", "loss of thrust astern with speed", scale=0.02, lower=0
+        )
+        root = self.sheet.bind(
+            f"root_{thruster.name}", sp.Piecewise((sp.sqrt(ahead), ahead > 0), (0, True)), CURVE, "N^0.5"
+        )
+        return sp.Piecewise((ahead - loss * root * w, c > 0), (ahead * sp.exp(-decay * w**2), True))
+
+    def _still(self, thruster: Thruster, c: sp.Expr) -> sp.Symbol:
+        """Thrust in water at rest: powers of the share of full command beyond the dead band."""
+        leader = self.layout.leader(thruster)
+        dead = self._coefficient(
+            thruster, "dead", leader.dead_band, "1", "share of full command without thrust", free=False, lower=0.0,
+            upper=0.5,
+        )  # fmt: skip
+        start = _THRUST * self.layout.mass
+        k = [
+            self._coefficient(
+                thruster,
+                f"k_{way}",
+                bollard or start,
+                "N",
+                f"thrust at full command {text}",
+                lower=0.0,
+                free=not bollard,
+            )
+            for way, text, bollard in (("f", "ahead", leader.bollard), ("b", "astern", 0.0))
+        ]
+        excess = self.sheet.bind(f"m_{thruster.name}", (sp.Abs(c) - dead) / (1 - dead), CURVE)
+        p: list[sp.Expr] = [sp.Integer(_EXPONENT.get(thruster.curve, 0))] * 2
+        if thruster.curve is ThrustCurve.POWER:
+            p = [
+                self._coefficient(
+                    thruster,
+                    f"p_{way}",
+                    _EXPONENT_START,
+                    "1",
+                    f"exponent {text}",
+                    lower=_EXPONENTS[0],
+                    upper=_EXPONENTS[1],
+                )
+                for way, text in (("f", "ahead"), ("b", "astern"))
+            ]
+        thrust = sp.Piecewise((0, excess <= 0), (k[0] * excess ** p[0], c > 0), (-k[1] * excess ** p[1], True))
+        return self.sheet.bind(f"still_{thruster.name}", thrust, CURVE, "N")
+
+    def _still_knots(self, thruster: Thruster, c: sp.Expr) -> sp.Symbol:
+        """Thrust in water at rest, straight between its values at the knots, the last slopes beyond them."""
+        knots = thruster.knots
+        values = [
+            sp.Integer(0) if knot == 0.0 else self._coefficient(
+                thruster, f"T_{i}", _THRUST * self.layout.mass * knot * abs(knot), "N", f"thrust at {knot:g} of full",
+                scale=_DIMENSIONLESS * self.layout.mass,
+            )
+            for i, knot in enumerate(knots)
+        ]  # fmt: skip
+        pieces = []
+        for i in range(len(knots) - 1):
+            slope = (values[i + 1] - values[i]) / sp.Float(knots[i + 1] - knots[i])
+            within = c < knots[i + 1] if i < len(knots) - 2 else True
+            pieces.append((values[i] + slope * (c - sp.Float(knots[i])), within))
+        return self.sheet.bind(f"still_{thruster.name}", sp.Piecewise(*pieces), CURVE, "N")
+
+    def _open_water(self, thruster: Thruster, n: sp.Expr, w: sp.Symbol) -> sp.Expr:
+        """Thrust of a propeller at n [rps]: a polynomial K_T(J) ahead, a constant K_T astern."""
+        sheet, name = self.sheet, thruster.name
+        D = sheet.parameter(f"D_{name}", thruster.diameter, "m", "propeller diameter", "layout")
+        rho_t = self._coefficient(thruster, "rho_P", 1025.0, "kg/m^3", "density over the mass scale M_u", free=False)
+        wake = self._coefficient(thruster, "w_P", 0.0, "1", "wake fraction", free=False, scale=0.1, upper=0.9)
+        deduction = self._coefficient(thruster, "t_P", 0.0, "1", "thrust deduction", free=False, scale=0.1, upper=0.9)
+        k = [
+            self._coefficient(
+                thruster, f"k_{i}", value, "1", f"K_T polynomial, J^{i}", scale=_DIMENSIONLESS, free=i < 2
+            )
+            for i, value in enumerate(_OPEN_WATER)
+        ]
+        back = self._coefficient(
+            thruster, "k_0_astern", _OPEN_WATER_ASTERN, "1", "K_T astern", scale=_DIMENSIONLESS, upper=0.0
+        )
+        nD = sheet.bind(f"nD_{name}", n * D, FOSSEN_PROPELLER, "m/s")
+        V = sheet.bind(f"V_{name}", w * (1 - wake), FOSSEN_PROPELLER, "m/s")
+        K = sp.Piecewise((nD * (k[0] * nD + k[1] * V) + k[2] * V * sp.Abs(V), nD > 0), (back * nD**2, True))
+        return (1 - deduction) * rho_t * D**2 * K

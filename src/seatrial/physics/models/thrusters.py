@@ -1,0 +1,150 @@
+"""Craft with thrusters in three degrees of freedom: any number of them, fixed or azimuth (Fossen 2021, ch. 6 and 9).
+
+    M dnu/dt + C(M) nu + D(nu) nu = sum of B_i T_i + wind,   nu = (u, v, r) through the water
+
+Origin where the layout puts it, x forward, y to starboard, psi clockwise; coefficients carry the signs of Fossen: drag
+is negative. Of mass and added mass, motions show sums only: M_u = m + m_x, M_v = m + m_y, M_r = I_z + J_z and
+M_c = m x_G - Y_rdot. They also show only ratios to M_u, unless the thrust at some command is known in newtons: M_u is 1
+until it is given, and forces are then those on each kg of it.
+"""
+
+import sympy as sp
+
+from seatrial.core.equations import Model, Sheet
+from seatrial.physics.models.pose import pose_rates
+from seatrial.physics.models.thruster_forces import ThrusterForce, ThrusterSheet, Water
+from seatrial.physics.models.thruster_layout import CATAMARAN, Damping, ThrusterLayout
+
+FOSSEN = "Fossen 2021, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed."
+HULL = f"{FOSSEN}, section 6.5, damping"
+STRIPS = f"{FOSSEN}, section 6.4.3, cross-flow drag by strips (Faltinsen 1990)"
+MASSES = f"{FOSSEN}, eqs. (6.14) and (6.40), M and C(M) in surge, sway and yaw"
+
+# coefficient -> start value on each kg of M_u for a hull of 1 m, unit, power of the length it grows with, whether it is
+# free unless the trial says otherwise; starts: a craft that loses its speed within some lengths; chosen
+_DIAGONAL = {
+    "X_u": (0.0, "kg/s", -1, True), "X_uu": (-0.3, "kg/m", -1, True), "Y_v": (-1.0, "kg/s", -1, True),
+    "Y_vv": (-1.0, "kg/m", -1, True), "N_r": (-0.2, "kg m^2/s", 1, True), "N_rr": (-0.2, "kg m^2", 2, True),
+}  # fmt: skip
+_COUPLED = {
+    "N_ur": (0.0, "kg m", 1, True), "N_uv": (0.0, "kg", 0, False), "Y_ur": (0.0, "kg", 0, False),
+    "Y_uv": (0.0, "kg/m", -1, True), "N_v": (0.0, "kg m/s", 0, False), "Y_r": (0.0, "kg m/s", 0, False),
+    "N_u": (0.0, "kg m/s", 0, False), "N_uu": (0.0, "kg", 0, False), "Y_T": (0.0, "1", 0, False),
+    "Y_NT": (0.0, "1/m", -1, True),
+}  # fmt: skip
+_STATIONS = (-0.9602898564975363, -0.7966664774136267, -0.5255324099163290, -0.1834346424956498)
+_WEIGHTS = (0.1012285362903763, 0.2223810344533745, 0.3137066458778873, 0.3626837833783620)
+"""Gauss-Legendre rule of eight points, its negative half (Abramowitz & Stegun 1964, table 25.4)."""
+_GYRATION = 0.1  # I_z + J_z over M_u L^2, start: a radius of gyration of about 0.3 L, water included; chosen
+_BOUNDS = (0.05, 30.0)  # of masses and inertia over where they start: beyond, no craft; chosen
+_SCALE = 0.05  # size of a coefficient that counts, on each kg of M_u for a hull of 1 m; chosen
+
+
+def thrusters(layout: ThrusterLayout = CATAMARAN) -> Model:
+    """Return the model of a craft with these thrusters; hull and thrust coefficients are free.
+
+    States u, v, r [m/s, m/s, rad/s] through the water, psi, x0, y0, then the share of full command of each thruster
+    with a lag and the direction of each that turns with one. Inputs: the channels the layout names, and voltage where
+    it has it. Outputs T_name: thrust of each; every other binding is found by `Model.forces`.
+    """
+    sheet = Sheet("thrusters", FOSSEN, "craft with thrusters", layout.text())
+    u, v, r, psi, x0, y0 = sheet.states("u v r psi x0 y0")
+    voltage = _voltage_factor(sheet) if layout.has_voltage else sp.Integer(1)
+    writer, water = ThrusterSheet(sheet, layout), Water(u, v, r, voltage)
+    forces = [writer.force(thruster, water) for thruster in layout.thrusters]
+    pose_rates(sheet, u, v, r, psi, x0, y0)
+    X_T, Y_T, N_T = (
+        sheet.bind(f"{axis}_T_sum", sp.Add(*(getattr(f, axis) for f in forces)), "all thrusters", unit)
+        for axis, unit in (("X", "N"), ("Y", "N"), ("N", "N m"))
+    )
+    hull = _hull(sheet, layout, water, ThrusterForce(X_T, Y_T, N_T))
+    X = sheet.bind("X_sum", hull.X + X_T, MASSES, "N")
+    Y = sheet.bind("Y_sum", hull.Y + Y_T, MASSES, "N")
+    N = sheet.bind("N_sum", hull.N + N_T, MASSES, "N m")
+    _accelerations(sheet, layout, water, ThrusterForce(X, Y, N))
+    return sheet.model()
+
+
+def _voltage_factor(sheet: Sheet) -> sp.Symbol:
+    """Thrust over that at the nominal voltage, (V / V_0)^k_V."""
+    V = sheet.input("voltage")
+    V_0 = sheet.parameter("V_0", 12.0, "V", "nominal voltage", "chosen", lower=0.1)
+    k_V = sheet.parameter("k_V", 0.0, "1", "power of the voltage", "none assumed", free=True, scale=0.5)
+    return sheet.bind("V_factor", (V / V_0) ** k_V, "thrust changes with a power of the voltage")
+
+
+def _coefficient(sheet: Sheet, layout: ThrusterLayout, name: str, entry: tuple[float, str, int, bool]) -> sp.Symbol:
+    value, unit, power, free = entry
+    free = free and (name in _DIAGONAL or layout.damping is Damping.FULL)
+    size = layout.length**power * (layout.mass if "kg" in unit else 1.0)
+    return sheet.parameter(name, value * size, unit, "hull damping", HULL, free=free, scale=_SCALE * size)
+
+
+def _hull(sheet: Sheet, layout: ThrusterLayout, water: Water, thrust: ThrusterForce) -> ThrusterForce:
+    """Damping; terms even in u act astern as ahead. Those that the layout's damping leaves out stay fixed at zero."""
+    is_strips = layout.damping is Damping.CROSS_FLOW
+    names = [n for n in (*_DIAGONAL, *_COUPLED) if not (is_strips and n in ("Y_vv", "N_rr"))]
+    c = {name: _coefficient(sheet, layout, name, {**_DIAGONAL, **_COUPLED}[name]) for name in names}
+    u, v, r = water.u, water.v, water.r
+    fast = sheet.bind("u_abs", sp.Abs(u), HULL, "m/s")
+    Y_flow, N_flow = _strips(sheet, layout, water) if is_strips else (
+        c["Y_vv"] * sp.Abs(v) * v, c["N_rr"] * sp.Abs(r) * r
+    )  # fmt: skip
+    X = sheet.bind("X_H", c["X_u"] * u + c["X_uu"] * fast * u, HULL, "N")
+    Y = sheet.bind(
+        "Y_H",
+        c["Y_v"] * v + c["Y_r"] * r + Y_flow + c["Y_uv"] * fast * v + c["Y_ur"] * u * r
+        + c["Y_T"] * thrust.X + c["Y_NT"] * thrust.N,
+        f"{HULL}; side force of the wash", "N",
+    )  # fmt: skip
+    N = sheet.bind(
+        "N_H",
+        c["N_r"] * r + c["N_v"] * v + N_flow + c["N_ur"] * fast * r + c["N_uv"] * u * v
+        + c["N_u"] * u + c["N_uu"] * fast * u,
+        HULL, "N m",
+    )  # fmt: skip
+    return ThrusterForce(X, Y, N)
+
+
+def _strips(sheet: Sheet, layout: ThrusterLayout, water: Water) -> tuple[sp.Symbol, sp.Symbol]:
+    """Drag of the flow across the hull, -D_c |v + x r| (v + x r) on each metre, D_c = rho/2 d C_D."""
+    half = 0.5 * layout.length
+    D_c = sheet.parameter(
+        "D_c", layout.mass / layout.length**2, "kg/m^2", "rho/2 d C_D, cross-flow drag on a metre", STRIPS, free=True,
+        lower=0.0, scale=_SCALE * layout.mass,
+    )  # fmt: skip
+    Y: list[sp.Expr] = []
+    N: list[sp.Expr] = []
+    for i, (station, weight) in enumerate(
+        zip((*_STATIONS, *(-s for s in _STATIONS)), (*_WEIGHTS, *_WEIGHTS), strict=True)
+    ):
+        x = sp.Float(half * station)
+        flow = sheet.bind(f"flow_{i}", water.v + x * water.r, STRIPS, "m/s")
+        drag = sheet.bind(f"strip_{i}", -sp.Float(half * weight) * D_c * sp.Abs(flow) * flow, STRIPS, "N")
+        Y.append(drag)
+        N.append(x * drag)
+    return sheet.bind("Y_flow", sp.Add(*Y), STRIPS, "N"), sheet.bind("N_flow", sp.Add(*N), STRIPS, "N m")
+
+
+def _accelerations(sheet: Sheet, layout: ThrusterLayout, water: Water, force: ThrusterForce) -> None:
+    """Accelerations; X_m, Y_m, N_m are forces with the Coriolis terms moved to their side."""
+    u, v, r, m, (low, high) = water.u, water.v, water.r, layout.mass, _BOUNDS
+    inertia = _GYRATION * m * layout.length**2
+    M_u = sheet.parameter(
+        "M_u", m, "kg", "m + m_x; 1: forces are those on each kg of it", MASSES, free=layout.has_bollard, lower=low * m,
+        upper=high * m,
+    )  # fmt: skip
+    M_v = sheet.parameter("M_v", 1.5 * m, "kg", "m + m_y", MASSES, free=True, lower=low * m, upper=high * m)
+    M_c = sheet.parameter("M_c", 0.0, "kg m", "m x_G - Y_rdot", MASSES, scale=_SCALE * m * layout.length)
+    M_r = sheet.parameter(
+        "M_r", inertia, "kg m^2", "I_z + J_z", MASSES, free=True, lower=low * inertia, upper=high * inertia
+    )
+    D = sheet.bind("D_M", M_v * M_r - M_c**2, "determinant of the inertia matrix in sway and yaw", "kg^2 m^2")
+    across = sheet.bind("P_v", M_v * v + M_c * r, MASSES, "kg m/s")
+    u_r = sheet.bind("M_u_u", M_u * u, MASSES, "kg m/s")
+    X_m = sheet.bind("X_m", force.X + across * r, MASSES, "N")
+    Y_m = sheet.bind("Y_m", force.Y - u_r * r, MASSES, "N")
+    N_m = sheet.bind("N_m", force.N - across * u + u_r * v, MASSES, "N m")
+    sheet.rate(u, X_m / M_u, MASSES)
+    sheet.rate(v, (Y_m * M_r - N_m * M_c) / D, f"{MASSES}, inverted")
+    sheet.rate(r, (N_m * M_v - Y_m * M_c) / D, f"{MASSES}, inverted")

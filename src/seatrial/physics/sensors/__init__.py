@@ -1,0 +1,6 @@
+"""Instruments between a craft's motion and its records: any model with the outputs that its sensors show."""
+
+from seatrial.physics.sensors.measured_outputs import with_sensors
+from seatrial.physics.sensors.settings import Compass, Sensors, VelocityReference
+
+__all__ = ["Compass", "Sensors", "VelocityReference", "with_sensors"]

@@ -1,0 +1,204 @@
+"""A model with what its instruments show: for each channel they change, an output of that name with ``_measured``.
+
+States keep their names and meaning; who compares with records asks `Model.observable_of`. The compass turns what a
+receiver measures over ground: with e = A + B sin(shown) + C cos(shown) it shows psi - e (deviation of the first
+harmonic; Bowditch 2019, American Practical Navigator, ch. 8), and velocities over ground resolved along the shown
+heading are turned by e. A lag of velocities is two equal time constants in a row, which together delay by their sum.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from seatrial.core.equations import Model
+from seatrial.core.equations.bindings import Binding, ModelEquations
+from seatrial.core.equations.manifest import stored_equations
+from seatrial.core.equations.model import measured_name
+from seatrial.core.values import InputError, Parameter, Parameters, Prior
+from seatrial.physics.sensors.settings import Compass, Sensors, VelocityReference
+
+if TYPE_CHECKING:
+    import sympy as sp
+
+SOURCE = "sensor model"
+_CURRENT = ("current_north", "current_east")
+_DEVIATION, _RATE_BIAS, _LEVER = 0.2, 0.02, 0.5
+"""Prior standard deviations: of compass coefficients [rad], a yaw rate's bias [rad/s], a lever arm [m]; chosen."""
+_MIN_LAG = 0.05
+"""Least lag of velocities [s] that two time constants can hold at 10 Hz; chosen."""
+
+
+def with_sensors(model: Model, sensors: Sensors) -> Model:
+    """Return the model with the outputs that its instruments show, their coefficients free.
+
+    Raises:
+        InputError: the model lacks a state that an instrument measures, or has sensors already.
+    """
+    if not sensors.changes_outputs:
+        return model
+    if model.equations.sensors:
+        raise InputError(f"model '{model.name}' has sensors already; give the model without them")
+    parameters = _parameters(sensors)
+    for state in sorted(_required_states(sensors)):
+        if state not in model.states:
+            raise InputError(f"model '{model.name}' has no state '{state}'; leave its sensor out of [sensors]")
+    equations = stored_equations(
+        (model.equation_hash, "sensors", sensors.text()), lambda: _Writer(model, sensors, parameters).equations()
+    )
+    equations = replace(equations, layout=model.equations.layout)
+    return Model(equations, Parameters((*model.parameters, *parameters)))
+
+
+def _required_states(sensors: Sensors) -> set[str]:
+    required: set[str] = set()
+    if sensors.compass is not Compass.TRUE:
+        required |= {"psi"}
+    if sensors.velocity is VelocityReference.GROUND or sensors.velocity_lag:
+        required |= {"u", "v", "r", "psi"}
+    if sensors.yaw_rate_bias:
+        required |= {"r"}
+    return required | ({"x0", "y0", "psi", "r"} if sensors.antenna else set())
+
+
+def _parameters(sensors: Sensors) -> tuple[Parameter, ...]:
+    """The coefficients of the instruments."""
+
+    def one(name: str, value: float, unit: str, meaning: str, spread: float, lower: float = float("-inf")) -> Parameter:
+        prior = Prior(value, spread, SOURCE)
+        return Parameter(name, value, unit, lower, float("inf"), spread, prior, True, SOURCE, meaning, "")
+
+    items = []
+    if sensors.compass is not Compass.TRUE:
+        items.append(one("compass_A", 0.0, "rad", "heading over that of the compass", _DEVIATION))
+    if sensors.compass is Compass.HARMONIC:
+        items.append(one("compass_B", 0.0, "rad", "deviation with the sine of the heading shown", _DEVIATION))
+        items.append(one("compass_C", 0.0, "rad", "deviation with its cosine", _DEVIATION))
+    if sensors.yaw_rate_bias:
+        items.append(one("r_bias", 0.0, "rad/s", "yaw rate shown over the true one", _RATE_BIAS))
+    if sensors.antenna is not None:
+        items.append(one("x_antenna", sensors.antenna.x, "m", "antenna forward of the origin", _LEVER))
+        items.append(one("y_antenna", sensors.antenna.y, "m", "antenna to starboard", _LEVER))
+    if sensors.velocity_lag:
+        lag = max(sensors.velocity_lag, _MIN_LAG)
+        items.append(one("lag_velocity", lag, "s", "time by which u and v are late", lag, _MIN_LAG))
+    return tuple(items)
+
+
+@dataclass(frozen=True, eq=False)
+class _Motion:
+    u: "sp.Expr"
+    v: "sp.Expr"
+
+
+class _Writer:
+    """Writes the outputs of one model's instruments."""
+
+    def __init__(self, model: Model, sensors: Sensors, parameters: Sequence[Parameter]) -> None:
+        self.model, self.sensors = model, sensors
+        self.names = tuple(p.name for p in parameters)
+        self.bindings: list[Binding] = []
+        self.rates: list[Binding] = []
+        self.outputs: list[str] = []
+
+    def equations(self) -> ModelEquations:
+        """Return the model's equations with the outputs."""
+        import sympy as sp
+
+        sensors, old = self.sensors, self.model.equations
+        deviation = self._deviation()
+        if sensors.compass is not Compass.TRUE:
+            self._output("psi", _symbol("psi") - deviation, "rad")
+        if sensors.velocity is VelocityReference.GROUND or sensors.velocity_lag:
+            self._velocities(deviation)
+        if sensors.yaw_rate_bias:
+            self._output("r", _symbol("r") + _symbol("r_bias"), "rad/s")
+        if sensors.antenna is not None:
+            sine, cosine = sp.sin(_symbol("psi")), sp.cos(_symbol("psi"))
+            x, y = _symbol("x_antenna"), _symbol("y_antenna")
+            self._output("x0", _symbol("x0") + x * cosine - y * sine, "m")
+            self._output("y0", _symbol("y0") + x * sine + y * cosine, "m")
+        return replace(
+            old, rates=(*old.rates, *self.rates), bindings=(*old.bindings, *self.bindings),
+            outputs=(*old.outputs, *self.outputs), parameters=(*old.parameters, *self.names), sensors=sensors.text(),
+        )  # fmt: skip
+
+    def _bind(self, name: str, expression: "sp.Expr", unit: str = "1") -> "sp.Symbol":
+        self.bindings.append(Binding.from_expression(name, expression, SOURCE, unit))
+        return _symbol(name)
+
+    def _output(self, channel: str, expression: "sp.Expr", unit: str) -> None:
+        self._bind(measured_name(channel), expression, unit)
+        self.outputs.append(measured_name(channel))
+
+    def _deviation(self) -> "sp.Expr":
+        """e at the heading shown, by two steps of psi_shown = psi - e(psi_shown) from the true heading."""
+        import sympy as sp
+
+        if self.sensors.compass is Compass.TRUE:
+            return sp.Integer(0)
+        if self.sensors.compass is Compass.OFFSET:
+            return _symbol("compass_A")
+        A, B, C = (_symbol(f"compass_{letter}") for letter in "ABC")
+        psi = _symbol("psi")
+        first = self._bind("deviation_1", A + B * sp.sin(psi) + C * sp.cos(psi), "rad")
+        shown = self._bind("shown_1", psi - first, "rad")
+        second = self._bind("deviation_2", A + B * sp.sin(shown) + C * sp.cos(shown), "rad")
+        shown = self._bind("shown_2", psi - second, "rad")
+        return self._bind("deviation", A + B * sp.sin(shown) + C * sp.cos(shown), "rad")
+
+    def _velocities(self, deviation: "sp.Expr") -> None:
+        import sympy as sp
+
+        motion = _Motion(_symbol("u"), _symbol("v"))
+        if self.sensors.velocity is VelocityReference.GROUND:
+            motion = self._turned(self._at_antenna(self._over_ground(motion)), deviation)
+        for channel, value in (("u", motion.u), ("v", motion.v)):
+            late = self._late(channel, value) if self.sensors.velocity_lag else value
+            self._output(channel, sp.sympify(late), "m/s")
+
+    def _over_ground(self, motion: _Motion) -> _Motion:
+        import sympy as sp
+
+        if not set(_CURRENT) <= set(self.model.parameters.names):
+            return motion
+        north, east = (_symbol(name) for name in _CURRENT)
+        sine, cosine = sp.sin(_symbol("psi")), sp.cos(_symbol("psi"))
+        return _Motion(motion.u + north * cosine + east * sine, motion.v - north * sine + east * cosine)
+
+    def _at_antenna(self, motion: _Motion) -> _Motion:
+        if self.sensors.antenna is None:
+            return motion
+        r = _symbol("r")
+        return _Motion(motion.u - _symbol("y_antenna") * r, motion.v + _symbol("x_antenna") * r)
+
+    def _turned(self, motion: _Motion, deviation: "sp.Expr") -> _Motion:
+        import sympy as sp
+
+        ahead, across = self._bind("u_ground", motion.u, "m/s"), self._bind("v_ground", motion.v, "m/s")
+        sine, cosine = sp.sin(deviation), sp.cos(deviation)
+        return _Motion(ahead * cosine - across * sine, ahead * sine + across * cosine)
+
+    def _late(self, channel: str, value: "sp.Expr") -> "sp.Symbol":
+        """Two time constants in a row, each half the lag: states `u_late_1`, `u_late`."""
+        half = _symbol("lag_velocity") / 2
+        source = self._bind(f"{channel}_prompt", value, "m/s")
+        for name in (f"{channel}_late_1", late_name(channel)):
+            self.rates.append(Binding.from_expression(name, (source - _symbol(name)) / half, SOURCE))
+            source = _symbol(name)
+        return source
+
+
+def late_name(channel: str) -> str:
+    """Return the name of the state that follows a channel late."""
+    return f"{channel}_late"
+
+
+def is_late(state: str) -> bool:
+    """Return whether a state follows a channel late: it starts where the channel does."""
+    return "_late" in state
+
+
+def _symbol(name: str) -> "sp.Symbol":
+    import sympy as sp
+
+    return sp.Symbol(name, real=True)

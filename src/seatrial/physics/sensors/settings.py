@@ -1,0 +1,67 @@
+"""What a craft's instruments do to its motion, as a trial declares it: the table `[sensors]`, and a value in Python."""
+
+from enum import StrEnum
+from typing import Annotated
+
+from pydantic import ConfigDict, Field, TypeAdapter
+from pydantic.dataclasses import dataclass as validated
+
+
+class Compass(StrEnum):
+    """How the heading that the compass shows differs from the craft's."""
+
+    TRUE = "true"
+    OFFSET = "offset"
+    HARMONIC = "harmonic"
+
+
+class VelocityReference(StrEnum):
+    """What u and v are in the records: through the water, or a receiver's over ground turned by the compass."""
+
+    WATER = "water"
+    GROUND = "ground"
+
+
+_STRICT = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+
+@validated(frozen=True, config=_STRICT)
+class Antenna:
+    """Place of the receiver's antenna forward and to starboard of the origin [m], where the estimate starts."""
+
+    x: float = 0.0
+    y: float = 0.0
+
+
+@validated(frozen=True, kw_only=True, config=_STRICT)
+class Sensors:
+    """`[sensors]`: what stands between motion and records. Its coefficients are free unless `[model.fixed]` has them.
+
+    Attributes:
+        compass: ``offset`` estimates compass_A, ``harmonic`` also compass_B and compass_C: the compass shows
+            psi - e with e = A + B sin(shown) + C cos(shown).
+        velocity: what u and v are: ``water``, or ``ground``: over ground, turned by the compass's heading.
+        velocity_lag: start value of the time by which u and v are late [s]; 0: they are not.
+        yaw_rate_bias: whether r_bias is added to the yaw rate.
+        antenna: place of the receiver's antenna, to which position (and u, v over ground) refer; None: the origin.
+    """
+
+    compass: Compass = Compass.TRUE
+    velocity: VelocityReference = VelocityReference.WATER
+    velocity_lag: Annotated[float, Field(ge=0.0)] = 0.0
+    yaw_rate_bias: bool = False
+    antenna: Antenna | None = None
+
+    @property
+    def changes_outputs(self) -> bool:
+        """Whether any channel shows something else than the state of its name."""
+        return self != Sensors()
+
+    def text(self) -> str:
+        """Return the settings as JSON, from which `from_text` makes them again."""
+        return TypeAdapter(Sensors).dump_json(self).decode()
+
+    @classmethod
+    def from_text(cls, text: str) -> "Sensors":
+        """Return the settings that `text` wrote; raises ValueError where it is none."""
+        return TypeAdapter(cls).validate_json(text)

@@ -1,0 +1,100 @@
+"""What instruments show, against closed forms; exact Jacobians; the model file keeps them."""
+
+import math
+
+import numpy as np
+import pytest
+
+from seatrial.core.equations import Model
+from seatrial.core.values import InputError, Record
+from seatrial.data.folder.model_file import ModelFile, model_text, parse_model
+from seatrial.estimation.problem.segments import compared_outputs
+from seatrial.physics.models import model_named
+from seatrial.physics.sensors import Compass, Sensors, VelocityReference, with_sensors
+from seatrial.physics.sensors.measured_outputs import is_late, late_name
+from seatrial.physics.sensors.settings import Antenna
+from seatrial.physics.simulate.replay import replay
+from seatrial.testing import check_model
+
+ALL = Sensors(
+    compass=Compass.HARMONIC, velocity=VelocityReference.GROUND, velocity_lag=0.4, yaw_rate_bias=True,
+    antenna=Antenna(0.8, -0.3),
+)  # fmt: skip
+DEVIATION = {"compass_A": 0.05, "compass_B": 0.1, "compass_C": -0.08, "r_bias": 0.01}
+CURRENT = {"current_north": 0.2, "current_east": -0.1}
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    return with_sensors(model_named("waterjet"), ALL).with_values(DEVIATION | CURRENT)
+
+
+@pytest.fixture(scope="module")
+def shown(model: Model) -> Record:
+    """A turn, as the instruments show it."""
+    time = 0.1 * np.arange(400)
+    planned = Record.from_arrays("turn", time, {"delta": np.where(time > 5.0, 0.3, 0.0), "v_j": np.full(400, 10.0)})
+    start = dict.fromkeys(model.states, 0.0) | {"u": 4.0, "u_late_1": 4.2, "u_late": 4.2}
+    return replay(model, planned, start)
+
+
+def test_the_compass_shows_the_heading_less_its_deviation(shown: Record) -> None:
+    psi = shown["psi"]
+    e = 0.05 + 0.1 * np.sin(psi) - 0.08 * np.cos(psi)
+    np.testing.assert_allclose(shown["psi_true"] - psi, e, atol=3e-4)  # two steps leave the third power of e
+
+
+def test_positions_are_those_of_the_antenna(shown: Record) -> None:
+    psi = shown["psi_true"]
+    np.testing.assert_allclose(shown["x0"] - shown["x0_true"], 0.8 * np.cos(psi) + 0.3 * np.sin(psi), atol=1e-12)
+    np.testing.assert_allclose(shown["y0"] - shown["y0_true"], 0.8 * np.sin(psi) - 0.3 * np.cos(psi), atol=1e-12)
+
+
+def test_velocities_are_those_of_the_antenna_over_ground_turned_by_the_compass_and_late(shown: Record) -> None:
+    speed_of_antenna = np.hypot(np.gradient(shown["x0"], 0.1), np.gradient(shown["y0"], 0.1))
+    course = np.arctan2(np.gradient(shown["y0"], 0.1), np.gradient(shown["x0"], 0.1))
+    settled = slice(30, -5)
+    late = np.interp(shown.time - 0.4, shown.time, speed_of_antenna)
+    np.testing.assert_allclose(np.hypot(shown["u"], shown["v"])[settled], late[settled], rtol=0.03)
+    drift = np.arctan2(shown["v"], shown["u"])[settled]
+    expected = np.interp(shown.time - 0.4, shown.time, np.unwrap(course) - shown["psi"])[settled]
+    np.testing.assert_allclose(drift, expected, atol=0.03)
+
+
+def test_late_states_start_where_their_channel_does(model: Model) -> None:
+    assert [s for s in model.states if is_late(s)] == ["u_late_1", "u_late", "v_late_1", "v_late"]
+    assert late_name("u") == "u_late"
+
+
+def test_a_bias_is_added_to_the_yaw_rate(shown: Record) -> None:
+    np.testing.assert_allclose(shown["r"] - shown["r_true"], 0.01, atol=1e-15)
+
+
+def test_a_record_is_compared_with_what_the_instruments_show(model: Model, shown: Record) -> None:
+    assert compared_outputs(model, [shown])[:6] == ("u", "v", "r", "psi", "x0", "y0")
+    assert [model.observable_of(c) for c in ("psi", "delta")] == ["psi_measured", "delta"]
+
+
+def test_sensors_have_exact_derivatives_and_keep_in_the_model_file(model: Model) -> None:
+    check_model(model, points=5)
+    restored = parse_model(model_text(ModelFile(model)), "model.toml").model
+    assert restored.equation_hash == model.equation_hash
+    assert Sensors.from_text(restored.equations.sensors) == ALL
+
+
+def test_perfect_instruments_leave_the_model_as_it_is() -> None:
+    assert with_sensors(model_named("nomoto"), Sensors()) is model_named("nomoto")
+
+
+def test_an_instrument_of_what_the_model_lacks_is_refused() -> None:
+    with pytest.raises(InputError, match="no state 'u'"):
+        with_sensors(model_named("nomoto"), Sensors(velocity=VelocityReference.GROUND))
+    with pytest.raises(InputError, match="has sensors already"):
+        with_sensors(with_sensors(model_named("nomoto"), Sensors(yaw_rate_bias=True)), Sensors(yaw_rate_bias=True))
+
+
+def test_an_offset_turns_the_compass_only() -> None:
+    model = with_sensors(model_named("nomoto"), Sensors(compass=Compass.OFFSET))
+    assert math.isclose(model.parameters["compass_A"].value, 0.0)
+    assert model.parameters["compass_A"].free
+    assert model.outputs == ("psi_measured",)
