@@ -79,7 +79,7 @@ channels.r = { column = "r", unit = "deg/s" }
         ("rate = 10", 'rate = 10\nhost = "no host"', "follow.host = 'no host' is no address"),
         ("rate = 10", 'rate = 10\nfiles = "*.csv"', "unknown key 'follow.files'; did you mean 'file'?"),
         ('unit = "deg/s"', 'unit = "deg"', "follow.channels.r.unit: 'deg' is no unit of yaw rate"),
-        ('r = { column = "r"', 'rr = { column = "r"', "follow.channels: unknown name 'rr'"),
+        ('r = { column = "r"', 'rr = { column = "r"', "follow.channels.rr: unknown channel 'rr'"),
         ("column = 3", 'column = "r"', "column 'r' is named for 'r' and 'delta'"),
     ],
 )

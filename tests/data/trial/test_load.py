@@ -107,7 +107,7 @@ REFUSALS = [
     ),
     ("unknown unit", '"kn"', '"knots"', r"channels.u.unit: unknown unit 'knots'"),
     ("unit of another kind", '"kn"', '"deg"', "'deg' is no unit of surge velocity"),
-    ("unknown channel", "u = { column", "uu = { column", "unknown name 'uu'"),
+    ("unknown channel", "u = { column", "uu = { column", "unknown channel 'uu'"),
     ("unknown direction", '"port"', '"left"', "positive = 'left'"),
     ("unknown format", "header_lines", 'format = "txt"\nheader_lines', "unknown format 'txt'; did you mean 'text'"),
     ("no match", '"*.csv"', '"*.dat"', "matches no file"),

@@ -147,7 +147,7 @@ class Layout:
     """
 
     format: str
-    time: ColumnSpec
+    time: ColumnSpec | TimeSpec
     columns: tuple[ColumnSpec, ...]
     header_lines: int = 0
     encoding: str = "utf-8"

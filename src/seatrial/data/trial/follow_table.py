@@ -7,10 +7,11 @@ from typing import Any
 
 from seatrial.core.values import InputError, spelling_hint
 from seatrial.data.trial.excitation import wave_encounter
+from seatrial.data.trial.run_data import run_name
 from seatrial.data.trial.runs import expand_variables, layout_of
 from seatrial.data.trial.schema import FollowTable
 from seatrial.data.trial.stream import Stream, StreamSettings, StreamSource
-from seatrial.data.trial.trial import Trial, run_name
+from seatrial.data.trial.trial import Trial
 from seatrial.physics.hydro.excitation import Excitation
 
 _FILE_SOURCES = (StreamSource.FILE, StreamSource.NMEA_FILE)

@@ -64,10 +64,6 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         layout = layout_text(file.model.name, file.model.damping, file.thruster, ship)
         model = build_trial_model(file.model, ship, own_model, layout, file.sensors)
         symbols = set(NOTATION)
-        for number, block in enumerate(file.records, start=1):
-            _refuse_unknown_names(f"records[{number}].channels", list(block.channels), symbols)
-        if file.follow is not None:
-            _refuse_unknown_names("follow.channels", list(file.follow.channels), symbols)
         _refuse_unknown_names("noise", list(file.noise), symbols)
         _refuse_unknown_names("estimate.channels", list(file.estimate.channels), set(model.observables))
         _refuse_unknown_names("estimate.offsets", list(file.estimate.offsets), symbols)

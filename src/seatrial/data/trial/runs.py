@@ -1,24 +1,31 @@
 """Which files a trial names, what each is for and with which others it shares its offsets."""
 
 import fnmatch
+import glob
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
-from seatrial.core.values import InputError, quantity, si_unit, spelling_hint
+from seatrial.core.values import InputError, si_unit, spelling_hint
 from seatrial.data.read import ColumnSpec, Layout, format_of
+from seatrial.data.read.layout import Geometry, TimeSpec
+from seatrial.data.read.quantities import log_quantity
 from seatrial.data.trial.excitation import wave_encounter
+from seatrial.data.trial.run_data import RecordFile, RecordSources, RunPart, SourceFile, run_name
 from seatrial.data.trial.schema import ChannelColumn, ColumnsTable, RecordsTable
-from seatrial.data.trial.trial import RecordFile, Role, TrialRun, Trimming, run_name
+from seatrial.data.trial.trial import Role, TrialRun, Trimming
 from seatrial.physics.hydro.excitation import Excitation
 
 _DATE = re.compile(r"\d{4}-\d{2}-\d{2}|\d{1,2}-[A-Z][a-z]{2}-\d{4}|(?<!\d)(?:19|20)\d{6}(?!\d)")
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 
 
-def expand_variables(text: str) -> str:
+def expand_variables(text: str, quote: Callable[[str], str] = str) -> str:
     """`text` with every ${NAME} replaced by the environment variable; a folder in it counts from the working folder.
+
+    quote: applied to each value.
 
     Raises:
         InputError: the variable is not set.
@@ -29,7 +36,7 @@ def expand_variables(text: str) -> str:
         if not os.environ.get(name):
             raise InputError(f"the environment variable {name} in '{text}' is not set; set it to the data's folder")
         folder = Path(os.environ[name])
-        return str(folder.resolve()) if folder.exists() else os.environ[name]
+        return quote(str(folder.resolve()) if folder.exists() else os.environ[name])
 
     return _VARIABLE.sub(value, text)
 
@@ -57,7 +64,10 @@ def runs_of(
     names = [run.name for run in runs]
     for name in names:
         if names.count(name) > 1:
-            raise InputError(f"two record files are called '{name}'; rename one, or narrow the globs")
+            raise InputError(
+                f"two runs are called '{name}'; rename one, narrow the globs, or cut one log into named parts: "
+                'parts = [{ name = "zz1", from = "0 s", to = "120 s" }]'
+            )
     return tuple(runs)
 
 
@@ -72,27 +82,70 @@ def require_training_run(runs: Sequence[TrialRun]) -> None:
 def _block_runs(
     block: RecordsTable, data_folder: Path, where: str, excitation: Excitation | None, length: float
 ) -> list[TrialRun]:
-    paths = sorted({path for text in block.files for path in _matching_files(text, data_folder, where)})
+    whole = _sources_of(block, data_folder, where) if block.sources else _files_of(block, data_folder, where)
+    data = [replace(one, part=part) for one in whole for part in _parts(block, one.name, len(whole))]
     trimming = Trimming(block.from_s, block.to_s, block.skip_acceleration, block.rate, block.from_release)
-    roles = _roles(block, [run_name(p) for p in paths], where)
+    roles = _roles(block, [one.name for one in data], where)
     met = wave_encounter(block.waves, excitation, length, where)
-    layouts = [layout_of(block, block.format or format_of(path), where, block.scale) for path in paths]
     return [
-        TrialRun(RecordFile(path, layout), role, session_of(path, block.session), trimming, block.source, met)
-        for path, layout, role in zip(paths, layouts, roles, strict=True)
+        TrialRun(one, role, session_of(_session_path(one), block.session), trimming, block.source, met)
+        for one, role in zip(data, roles, strict=True)
     ]
 
 
+def _files_of(block: RecordsTable, data_folder: Path, where: str) -> list[RecordFile | RecordSources]:
+    paths = sorted({path for text in block.files for path in _matching_files(text, data_folder, where)})
+    layouts = [layout_of(block, block.format or format_of(path), where) for path in paths]
+    return [RecordFile(path, _joined(layout, block)) for path, layout in zip(paths, layouts, strict=True)]
+
+
+def _sources_of(block: RecordsTable, data_folder: Path, where: str) -> list[RecordFile | RecordSources]:
+    files = []
+    for i, source in enumerate(block.sources, start=1):
+        place = f"{where}.sources[{i}]"
+        (path,) = _matching_files(source.file, data_folder, place)[:1]
+        layout = layout_of(source, source.format or format_of(path), place)
+        files.append(SourceFile(path, _joined(layout, block, source.clock_offset)))
+    return [RecordSources(block.name, tuple(files))]
+
+
+def _joined(layout: Layout, block: RecordsTable, clock_offset: float = 0.0) -> Layout:
+    """The layout with what the whole block says: scale, geometry, rate, longest gap, offset of the clock [s]."""
+    origin = None if block.origin is None else (block.origin.lat, block.origin.lon)
+    return replace(
+        layout,
+        time=replace(layout.time, clock_offset=block.clock_offset + clock_offset),
+        scale=block.scale,
+        geometry=Geometry(origin, block.variation, block.antenna.x, block.antenna.y),
+        rate=block.rate,
+        longest_gap=block.longest_gap,
+    )
+
+
+def _parts(block: RecordsTable, name: str, count: int) -> list[RunPart | None]:
+    """The parts into which a record is cut, called after its file where there are several; None: it stays whole."""
+    if not block.parts:
+        return [None]
+    prefix = f"{name}-" if count > 1 else ""
+    return [RunPart(prefix + part.name, part.start, part.stop) for part in block.parts]
+
+
+def _session_path(data: RecordFile | RecordSources) -> Path:
+    """The name in which a session is sought: of the file, or of the run."""
+    return data.path if isinstance(data, RecordFile) else Path(data.run)
+
+
 def _matching_files(text: str, data_folder: Path, where: str) -> list[Path]:
-    pattern = Path(expand_variables(text))
-    full = data_folder / pattern
+    full = data_folder / expand_variables(text)
     if full.is_file():
         return [full]
     if not any(c in text for c in "*?["):
         raise InputError(f"{where}.files: there is no file '{full}'; check the name and [data] folder")
-    root = Path(full.anchor)
+    # brackets in the names of folders that are not part of the pattern are brackets
+    pattern = Path(expand_variables(text, quote=glob.escape))
+    root = Path(pattern.anchor) if pattern.is_absolute() else data_folder
     try:
-        matching = [p for p in root.glob(str(full.relative_to(root))) if p.is_file()]
+        matching = [p for p in root.glob(str(pattern.relative_to(pattern.anchor))) if p.is_file()]
     except ValueError as error:  # '**' within a name
         raise InputError(f"{where}.files: '{text}' is no pattern ({error}); correct it") from None
     if not matching:
@@ -135,28 +188,43 @@ def session_of(path: Path, rule: str) -> str:
     return match.group(1) if match.re.groups else match.group(0)
 
 
-def layout_of(block: ColumnsTable, file_format: str, where: str, scale: float = 1.0) -> Layout:
+def layout_of(block: ColumnsTable, file_format: str, where: str) -> Layout:
     """How to parse one file or stream of the block, in the terms of `seatrial.data.read`.
 
     Raises:
         InputError: a unit of another kind than the channel's.
     """
+    time = block.time
     return Layout(
         format=file_format,
-        time=ColumnSpec("time", block.time.column, block.time.unit),
+        time=TimeSpec("time", time.column, time.unit, date=time.date, nanoseconds=time.nanoseconds, week=time.week),
         columns=tuple(_column(s, c, f"{where}.channels.{s}") for s, c in block.channels.items()),
         header_lines=block.header_lines,
         encoding=block.encoding,
         separator=block.separator,
         decimal=block.decimal,
-        scale=scale,
     )
 
 
 def _column(symbol: str, column: ChannelColumn, where: str) -> ColumnSpec:
-    known = quantity(symbol)
-    if si_unit(column.unit)[1] != known.unit:
+    try:
+        known = log_quantity(symbol)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+    is_share = known.unit == "1" and column.span != 1.0
+    if si_unit(column.unit)[1] != known.unit and not is_share:
         raise InputError(f"{where}.unit: '{column.unit}' is no unit of {known.meaning}, which is in {known.unit}")
+    is_command = symbol.startswith("command_") if column.kind is None else column.kind == "command"
     return ColumnSpec(
-        symbol, column.column, column.unit, column.frame or "", column.positive or "", column.reference_point
+        symbol,
+        column.column,
+        column.unit,
+        column.frame or "",
+        column.positive or "",
+        column.reference_point,
+        zero=column.zero,
+        span=column.span,
+        factor=column.scale,
+        offset=column.offset,
+        is_held=is_command,
     )

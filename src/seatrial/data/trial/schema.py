@@ -6,7 +6,8 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 from pydantic.dataclasses import dataclass
 
-from seatrial.data.read.layout import Separator
+from seatrial.core.values import si_unit
+from seatrial.data.read.layout import TEXT_CLOCKS, Separator
 from seatrial.data.read.registry import require_format
 from seatrial.data.trial.amounts import STRICT_FIELDS, Angle, Deviation, SiAmount, Speed, StrictTable, Unit
 from seatrial.data.trial.design_request import DesignRequest
@@ -31,6 +32,20 @@ def _valid_pattern(session: object) -> object:
     return session
 
 
+def _valid_clock(unit: object) -> object:
+    if isinstance(unit, str) and unit not in TEXT_CLOCKS:
+        si_unit(unit)
+    return unit
+
+
+def _not_zero(value: float) -> float:
+    if value == 0.0:
+        raise ValueError("0 makes every number the same; give another")
+    return value
+
+
+ClockUnit = Annotated[str, BeforeValidator(_valid_clock)]
+NonZero = Annotated[float, AfterValidator(_not_zero)]
 Strings = Annotated[tuple[str, ...], BeforeValidator(_as_tuple)]
 Format = Annotated[str, AfterValidator(require_format)]
 Bound = Annotated[float, Field(allow_inf_nan=True)]
@@ -53,21 +68,41 @@ class ShipTable(BaseModel):
 
 
 class TimeColumn(StrictTable):
-    """Where the time stands: header name, or number counted from 1."""
+    """Where the time stands: header name, or number counted from 1; without one the log's own time stamps count.
 
-    column: str | Annotated[int, Field(ge=1)]
-    unit: Unit = "s"
+    `date`, `nanoseconds`, `week`: the columns that complete a time of day, whole seconds, seconds of the GNSS week.
+    """
+
+    column: str | Annotated[int, Field(ge=1)] = ""
+    unit: ClockUnit = "s"
+    date: str | Annotated[int, Field(ge=1)] = ""
+    nanoseconds: str | Annotated[int, Field(ge=1)] = ""
+    week: str | Annotated[int, Field(ge=1)] = ""
+
+    @model_validator(mode="after")
+    def _one_complement(self) -> Self:
+        if sum(part != "" for part in (self.date, self.nanoseconds, self.week)) > 1:
+            raise ValueError("date, nanoseconds and week complete a time each in its own way; keep one")
+        return self
 
 
 class ChannelColumn(StrictTable):
-    """Where a channel stands and what its numbers mean; frame and sign default to the notation table's."""
+    """Where a channel stands and what its numbers mean; frame and sign default to the notation table's.
+
+    The number in `unit` is (cell - zero) / span * scale + offset. A command is held until the next one.
+    """
 
     column: str | Annotated[int, Field(ge=1)]
     unit: Unit
-    frame: Literal["body", "earth", "none"] | None = None
-    positive: Literal["forward", "aft", "ahead", "starboard", "port", "north", "south", "east", "west",
+    frame: Literal["body", "earth", "none", "enu"] | None = None
+    positive: Literal["forward", "aft", "ahead", "astern", "starboard", "port", "north", "south", "east", "west",
                       "up", "down", "bow up", "bow down", "none"] | None = None  # fmt: skip
     reference_point: float = 0.0
+    zero: float = 0.0
+    span: NonZero = 1.0
+    scale: NonZero = 1.0
+    offset: float = 0.0
+    kind: Literal["command", "measured"] | None = None
 
 
 class WavesTable(StrictTable):
@@ -89,8 +124,8 @@ class ColumnsTable:
     encoding: str = "utf-8"
     separator: Separator = "auto"
     decimal: Literal[".", ","] = "."
-    time: TimeColumn
-    channels: dict[str, ChannelColumn]
+    time: TimeColumn = TimeColumn()
+    channels: dict[str, ChannelColumn] = Field(default_factory=dict)
 
     @model_validator(mode="after")
     def _one_channel_a_column(self) -> Self:
@@ -105,10 +140,49 @@ class ColumnsTable:
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
-class RecordsTable(ColumnsTable):
-    """One `[[records]]` block: files of one layout, their roles and trimming."""
+class SourceTable(ColumnsTable):
+    """`[[records.sources]]`: one file of a run, with its layout and clock."""
 
-    files: Strings
+    file: str
+    format: Format | None = None
+    clock_offset: float = 0.0
+
+
+class PartTable(StrictTable):
+    """A run cut out of a log: from and to are times after its first sample (``"120 s"``), or names of events."""
+
+    name: str
+    start: str = Field("", alias="from")
+    stop: str = Field("", alias="to")
+
+
+class OriginTable(StrictTable):
+    """Where the plane of x0 and y0 touches the ellipsoid."""
+
+    lat: Angle
+    lon: Angle
+
+
+class AntennaTable(StrictTable):
+    """Where the GNSS antenna is, m forward of midship and to starboard of the centre line."""
+
+    x: float = 0.0
+    y: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
+class RecordsTable(ColumnsTable):
+    """One `[[records]]` block: files of one layout, or one run in several sources; roles, parts and trimming."""
+
+    files: Strings = ()
+    name: str = ""
+    sources: tuple[SourceTable, ...] = ()
+    parts: tuple[PartTable, ...] = ()
+    clock_offset: float = 0.0
+    longest_gap: Annotated[float, Field(gt=0)] | None = None
+    origin: OriginTable | None = None
+    variation: Angle | None = None
+    antenna: AntennaTable = AntennaTable()
     format: Format | None = None
     scale: Annotated[float, Field(gt=0)] = 1.0
     source: str = ""
@@ -124,6 +198,20 @@ class RecordsTable(ColumnsTable):
     waves: WavesTable | None = None
 
     @model_validator(mode="after")
+    def _files_or_sources(self) -> Self:
+        if bool(self.files) == bool(self.sources):
+            raise ValueError(
+                "give files, or sources of one run, and not both" if self.files else "key 'files' is missing; add it"
+            )
+        if self.sources and not self.name:
+            raise ValueError("a run of several sources needs a name; add it")
+        if self.sources and self.channels:
+            raise ValueError("channels of a run of several sources belong to each of [[records.sources]]; move them")
+        if not self.sources and not self.channels:
+            raise ValueError("key 'channels' is missing; add it")
+        return self
+
+    @model_validator(mode="after")
     def _times_in_order(self) -> Self:
         if self.from_s is not None and self.to_s is not None and self.from_s >= self.to_s:
             raise ValueError(f"from_s = {self.from_s:g} is not before to_s = {self.to_s:g}")
@@ -135,6 +223,13 @@ class FollowTable(ColumnsTable, StreamSettings):
     """`[follow]`: the settings of a stream, and in which columns its samples stand."""
 
     waves: WavesTable | None = None
+
+    @model_validator(mode="after")
+    def _columns_are_stated(self) -> Self:
+        for key, missing in (("time", self.time.column == ""), ("channels", not self.channels)):
+            if missing:
+                raise ValueError(f"key '{key}' is missing; add it")
+        return self
 
 
 class MotionColumn(StrictTable):

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Finding, ForcePoints, Record, Ship
-from seatrial.data.read import Layout, read_record
 from seatrial.data.trial.design_request import DesignRequest
+from seatrial.data.trial.run_data import RecordFile, RecordSources
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
 from seatrial.data.trial.stream import Stream
 from seatrial.physics.sea.encounter import WaveEncounter
@@ -24,11 +24,6 @@ class Role(StrEnum):
     TRAIN = "train"
     VALIDATE = "validate"
     LEAVE_OUT = "leave_out"
-
-
-def run_name(path: Path) -> str:
-    """The name of a run's file without its ending, ``.gz`` included."""
-    return Path(path.name.removesuffix(".gz")).stem
 
 
 @dataclass(frozen=True)
@@ -50,32 +45,11 @@ class Trimming:
 
 
 @dataclass(frozen=True)
-class RecordFile:
-    """A file with the record of a run, and how to parse it."""
-
-    path: Path
-    layout: Layout
-
-    @property
-    def name(self) -> str:
-        """The file's name without its ending."""
-        return run_name(self.path)
-
-    def read(self) -> Record:
-        """Read the record, named as the file.
-
-        Raises:
-            InputError: the file cannot be read as its layout says.
-        """
-        return read_record(self.path, self.layout).renamed(self.name)
-
-
-@dataclass(frozen=True)
 class TrialRun:
     """One run of a trial.
 
     Attributes:
-        data: the record as it was read, in the frames and signs that its channels declare, or the file to read.
+        data: the record as it was read, in the frames and signs that its channels declare, or its files.
         role: what the run is for.
         session: name of the group of runs that share offsets; empty: the run's own name.
         trimming: which part is used.
@@ -83,7 +57,7 @@ class TrialRun:
         waves: how the ship met the waves; None: no waves, or the record holds their forces.
     """
 
-    data: RecordFile | Record
+    data: RecordFile | RecordSources | Record
     role: Role = Role.TRAIN
     session: str = ""
     trimming: Trimming = Trimming()
@@ -101,7 +75,7 @@ class TrialRun:
 
     @property
     def file(self) -> RecordFile | None:
-        """The file of the record; None where the record is given."""
+        """The file of the record; None where the record is given, or joined of several."""
         return self.data if isinstance(self.data, RecordFile) else None
 
     def raw_record(self) -> Record:
@@ -110,7 +84,7 @@ class TrialRun:
         Raises:
             InputError: its file cannot be read.
         """
-        return self.data.read() if isinstance(self.data, RecordFile) else self.data
+        return self.data if isinstance(self.data, Record) else self.data.read()
 
 
 @dataclass(frozen=True, eq=False)

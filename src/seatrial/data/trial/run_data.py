@@ -1,0 +1,141 @@
+"""Where the record of a run stands: a file, several sources, or a part of either."""
+
+import re
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from seatrial.core.values import InputError, Record, spelling_hint
+from seatrial.data.read import Layout, LogEvent, read_log
+from seatrial.data.read.assemble import LogSource, assemble_record, record_of_sources
+from seatrial.data.read.record_file import file_digest
+
+_SECONDS = re.compile(r"\s*(\d+\.?\d*)\s*(s|min|h)?\s*")
+_UNIT_S = {None: 1.0, "s": 1.0, "min": 60.0, "h": 3600.0}  # s, of each unit
+_LOGS_KEPT = 2  # assembled logs that are kept while the parts of one are cut; ours
+_EPOCH_CLOCK_S = 1e8  # s beyond which a clock counts from 1970 or the like, three years; ours
+
+
+def run_name(path: Path) -> str:
+    """The name of a run's file without its ending, ``.gz`` included."""
+    return Path(path.name.removesuffix(".gz")).stem
+
+
+@dataclass(frozen=True)
+class SourceFile:
+    """A file and how to parse it."""
+
+    path: Path
+    layout: Layout
+
+
+@dataclass(frozen=True)
+class RunPart:
+    """A stretch of a log; `start` and `stop` are times after its first sample (``120 s``, ``2 min``) or events.
+
+    An empty start is the beginning, an empty stop the end; an event as `stop` is the first of its name after `start`.
+    """
+
+    name: str
+    start: str = ""
+    stop: str = ""
+
+
+@dataclass(frozen=True)
+class RecordFile:
+    """A file with the record of a run, and how to parse it; or a part of it."""
+
+    path: Path
+    layout: Layout
+    part: RunPart | None = None
+
+    @property
+    def name(self) -> str:
+        """The part's name, or the file's without its ending."""
+        return self.part.name if self.part else run_name(self.path)
+
+    def read(self) -> Record:
+        """Read the record, named as the run.
+
+        Raises:
+            InputError: the file cannot be read as its layout says, or has no such part.
+        """
+        return _run_record((SourceFile(self.path, self.layout),), self.name, self.part)
+
+
+@dataclass(frozen=True)
+class RecordSources:
+    """Several files of one run, each with layout and clock of its own; or a part of their record.
+
+    Rate, longest gap, geometry and scale are those of the first.
+    """
+
+    run: str
+    files: tuple[SourceFile, ...]
+    part: RunPart | None = None
+
+    @property
+    def name(self) -> str:
+        """The part's name, or the run's."""
+        return self.part.name if self.part else self.run
+
+    def read(self) -> Record:
+        """Read and join the sources, named as the run.
+
+        Raises:
+            InputError: a file cannot be read as its layout says, the sources do not overlap, or there is no such part.
+        """
+        return _run_record(self.files, self.name, self.part)
+
+
+def _run_record(files: tuple[SourceFile, ...], name: str, part: RunPart | None) -> Record:
+    states = tuple(file.path.stat() for file in files if file.path.is_file())
+    record, events = _assembled(files, tuple((state.st_mtime_ns, state.st_size) for state in states))
+    if part is not None:
+        first, last = float(record.time[0]), float(record.time[-1])
+        start = _time_of(part.start, part.name, events, first, first) if part.start else first
+        stop = _time_of(part.stop, part.name, events, first, start) if part.stop else last
+        if not start < stop:
+            raise InputError(
+                f"part '{name}' ends {stop - first:g} s after the first sample, but starts {start - first:g} s after "
+                "it; give a later 'to'"
+            )
+        record = record.between(start, stop)
+    return record.renamed(name)
+
+
+@lru_cache(maxsize=_LOGS_KEPT)
+def _assembled(
+    files: tuple[SourceFile, ...],
+    states: tuple[tuple[int, int], ...],  # noqa: ARG001  times and sizes of the files: a changed file is read again
+) -> tuple[Record, tuple[LogEvent, ...]]:
+    """The record of the files and the events of their logs, on a clock that starts near zero."""
+    sources = [LogSource(read_log(file.path, file.layout), file.layout, file_digest(file.path)) for file in files]
+    if len(sources) == 1:
+        record = assemble_record(sources[0].log, sources[0].layout, sources[0].sha256)
+    else:
+        record = record_of_sources(run_name(files[0].path), sources)
+    events = sorted((event for source in sources for event in source.log.events), key=lambda event: event.time)
+    first = float(np.nanmin(record.time))
+    if first < _EPOCH_CLOCK_S:
+        return record, tuple(events)
+    start = float(np.floor(first))
+    step = f"time counted from {datetime.fromtimestamp(start, UTC):%Y-%m-%dT%H:%M:%SZ}"
+    record = replace(record, time=record.time - start, provenance=record.provenance.with_step(step))
+    return record, tuple(replace(event, time=event.time - start) for event in events)
+
+
+def _time_of(text: str, part: str, events: tuple[LogEvent, ...], first: float, after: float) -> float:
+    """The time [s] of the record's clock that a text means: after the first sample, or of an event after `after`."""
+    if match := _SECONDS.fullmatch(text):
+        return first + float(match[1]) * _UNIT_S[match[2]]
+    times = [event.time for event in events if event.name == text and event.time >= after]
+    if times:
+        return times[0]
+    names = sorted({event.name for event in events})
+    if not names:
+        raise InputError(f"part '{part}': '{text}' is no time such as '120 s', and the log has no events")
+    raise InputError(f"part '{part}': no event '{text}' follows{spelling_hint(text, names)}")
