@@ -19,7 +19,7 @@ from seatrial.reporting.tuning_text import comparison_sentence, demand_sentence,
 LARGEST = 600_000
 MADE = {"fin": fabricated_fin, "autopilot": fabricated_autopilot, "bare": fabricated_bare}
 SECTIONS = {
-    "fin": set(TITLES) - {"manoeuvres"},
+    "fin": set(TITLES) - {"manoeuvres", "search"},
     "autopilot": {"answer", "controllers", "front", "margins", "manoeuvres", "loop", "method"},
     "bare": {"answer", "controllers", "method"},
 }
