@@ -153,7 +153,7 @@ class RepeatedSearches:
 
     Attributes:
         points: what each run found, (runs, 8); evaluations: candidates that each judged, (runs,).
-        seconds: time of one run.
+        seconds: time of one run, median.
         trace: best point after each iteration of the first run, (iterations, 8).
         histories: best fitness of each run after each iteration, (runs, iterations).
         lower_bounds: lower ends of each run's box, by magnitude, (runs, 8).
@@ -196,12 +196,11 @@ def repeat_searches(
     seed: int,
 ) -> RepeatedSearches:
     """One run in each sea and box, each with a generator of its own."""
-    began = time.perf_counter()
-    finished = [
-        run_search(box, make_optimiser, partial(make_objective, data), seed, run)
-        for run, (data, box) in enumerate(zip(seas, boxes, strict=True))
-    ]
-    seconds = (time.perf_counter() - began) / len(seas)
+    finished, clock = [], [time.perf_counter()]
+    for run, (data, box) in enumerate(zip(seas, boxes, strict=True)):
+        finished.append(run_search(box, make_optimiser, partial(make_objective, data), seed, run))
+        clock.append(time.perf_counter())
+    seconds = float(np.median(np.diff(clock)))
     truth = seas[0].truth
     lower = np.array([np.where(truth > 0, b.lower, b.upper) for b in boxes])
     points = np.array([f.solution.point for f in finished])

@@ -6,7 +6,7 @@ from markupsafe import Markup
 
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Check, CheckStatus, Study
-from seatrial.core.text.numbers import significant
+from seatrial.core.text.numbers import exact
 from seatrial.core.text.words import counted
 from seatrial.reporting import runs, tables
 from seatrial.reporting.figures.study_figures import study_chart
@@ -19,6 +19,8 @@ TITLES = {
     "outcome": "Outcome", "claims": "Claims", "checks": "Checks", "tables": "Tables", "figures": "Figures",
     "runs": "Runs", "findings": "Findings", "versions": "Versions",
 }  # fmt: skip
+# significant digits of a check's value and limit; chosen
+_CHECK_DIGITS = 3
 # how the page colours a check
 _CSS_CLASS = {CheckStatus.HOLDS: "good", CheckStatus.FAILS: "bad", CheckStatus.WITHDRAWN: "u"}
 
@@ -70,5 +72,5 @@ def outcome(study: Study) -> list[str]:
 
 
 def _check_row(c: Check) -> CheckRow:
-    limit = c.limit if isinstance(c.limit, str) else significant(c.limit)
-    return CheckRow(c.name, significant(c.value), limit, c.status.value, _CSS_CLASS[c.status], c.remark)
+    limit = c.limit if isinstance(c.limit, str) else exact(c.limit, _CHECK_DIGITS)
+    return CheckRow(c.name, exact(c.value, _CHECK_DIGITS), limit, c.status.value, _CSS_CLASS[c.status], c.remark)

@@ -22,13 +22,13 @@ def text_table(table: Table) -> TextTable:
     numeric = tuple(
         all(not isinstance(row[k], str) for row in table.rows if k < len(row)) for k in range(len(table.header))
     )
-    rows = tuple(tuple(_cell_text(cell) for cell in row) for row in table.rows)
+    rows = tuple(tuple(_cell_text(cell, table.digits) for cell in row) for row in table.rows)
     return TextTable(table.title, table.header, numeric, rows, table.note)
 
 
-def _cell_text(cell: str | float | None) -> str:
+def _cell_text(cell: str | float | None, digits: int) -> str:
     if cell is None:
         return DASH
     if isinstance(cell, (str, int)):
         return str(cell)
-    return significant(cell)
+    return significant(cell, digits)

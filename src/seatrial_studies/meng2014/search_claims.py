@@ -59,7 +59,8 @@ def premature_convergence_claim(evidence: CloudSwarmEvidence) -> Claim:
         f"mean error off centre at 0/45/90/135/180°: ICPSO {error_text(swarms[SwarmAlgorithm.ICPSO])}, plain "
         f"PSO with a constant inertia {error_text(swarms[SwarmAlgorithm.PSO])}; runs stuck above the better "
         f"fitness of the two: {cloud.sum()} and {plain.sum()} of {plain.size}; {SIGN_TEST_RUNS} more of one "
-        "than of the other would decide. Against CPSO, its parent, it cannot be judged: no source prints its law",
+        "than of the other would decide. Against CPSO, its parent, it cannot be judged: no source at hand prints its "
+        "law",
     )
 
 
@@ -119,10 +120,10 @@ def adaptive_weight_claim(evidence: CloudSwarmEvidence) -> Claim:
         f"{settings.b} the weight goes from {weight.at_ends[0]:.3f} to {weight.at_ends[1]:.3f}, {100.0 * used:.0f} % "
         f"of its range, and 95 % of its draws lie in {weight.central[0]:.2f} to {weight.central[1]:.2f} (mean "
         f"{weight.mean:.3f}). In the searches {below:.0f} % of the particles are below A, {middle:.0f} % in the "
-        f"band, {above:.0f} % above B, where it is {settings.w2}: it is two constants. Without the cloud's "
-        f"randomness (He = 0) the median of iterations needed is {_median_text(needed[1])} instead of "
-        f"{_median_text(needed[0])}, the mean error {error_text(steady)}. The form of eq. (6) is assumed, only its "
-        "constants are printed",
+        f"band, {above:.0f} % above B, where it is {settings.w2}: it is in effect two constants, by any law that is "
+        "linear in the cloud's certainty of r. Without the cloud's randomness (He = 0) the median of iterations "
+        f"needed is {_median_text(needed[1])} instead of {_median_text(needed[0])}, the mean error "
+        f"{error_text(steady)}. The form of eq. (6) is assumed, only its constants are printed",
     )
 
 

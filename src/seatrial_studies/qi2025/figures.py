@@ -4,7 +4,7 @@ import numpy as np
 
 from seatrial.core.results import Curve, Figure
 from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
-from seatrial_studies.qi2025.published import FIGURES_6_7, SearchAlgorithm
+from seatrial_studies.qi2025.published import FIGURE_5_TOP, FIGURES_6_7, REBOUND_ITERATIONS, SearchAlgorithm
 from seatrial_studies.qi2025.reproduction import FIGURE_HEADING, ITERATIONS, SearchSetting, WildHorseReproduction
 from seatrial_studies.qi2025.tracking import Tracking
 from seatrial_studies.swarm_search import STEP
@@ -13,12 +13,12 @@ TIME_LABEL = "t, s"
 _ASSUMPTION_NOTE = "45°, 2.27 m, 18 kn. Coefficients assumed: those of 90°; the paper prints none."
 
 
-# the coefficients of figures 8 to 11, with their units
+# the coefficients of figures 8 to 11, with their units and the power of ten that the tables print
 _HISTORY_PAIRS = {
-    ("a33", "b33"): ("kg", "kg/s"),
-    ("a35", "b35"): ("kg m", "kg m/s"),
-    ("a55", "b55"): ("kg m²", "kg m²/s"),
-    ("a53", "b53"): ("kg m", "kg m/s"),
+    ("a33", "b33"): (("kg", "kg/s"), 1e5, "10⁵"),
+    ("a35", "b35"): (("kg m", "kg m/s"), 1e6, "10⁶"),
+    ("a55", "b55"): (("kg m²", "kg m²/s"), 1e8, "10⁸"),
+    ("a53", "b53"): (("kg m", "kg m/s"), 1e6, "10⁶"),
 }
 
 
@@ -49,7 +49,7 @@ def _convergence(reproduction: WildHorseReproduction) -> list[Figure]:
         SearchSetting.MODEL_STATE: "From the identified model's own state: the size of the paper's figure, which ends "
         "at 0.010.",
     }
-    drawn = []
+    drawn = [_printed_convergence(reproduction)]
     for (setting, said), letter in zip(note.items(), "ab", strict=True):
         histories = {a: reproduction.searches[setting, FIGURE_HEADING, a].best_fitness for a in SearchAlgorithm}
         curves = tuple(
@@ -62,6 +62,17 @@ def _convergence(reproduction: WildHorseReproduction) -> list[Figure]:
         )
         drawn.append(Figure(title, "iteration", y_label, curves, f"{said} {more}"))
     return drawn
+
+
+def _printed_convergence(reproduction: WildHorseReproduction) -> Figure:
+    """Return IWHO alone on a linear axis, as the paper draws it."""
+    history = reproduction.searches[SearchSetting.MODEL_STATE, FIGURE_HEADING, SearchAlgorithm.IWHO].best_fitness
+    curve = Curve("IWHO", np.arange(len(history), dtype=np.float64), history)
+    note = (
+        f"{SearchSetting.MODEL_STATE.value}. The paper's axis ends at {FIGURE_5_TOP:.3f}, its curve rebounds at "
+        f"iterations {REBOUND_ITERATIONS[0]} and {REBOUND_ITERATIONS[1]}. {_ASSUMPTION_NOTE}"
+    )
+    return Figure("Figure 5: fitness of IWHO", "iteration", "fitness (m and deg)", (curve,), note)
 
 
 def _tracking(reproduction: WildHorseReproduction, tracking: Tracking) -> list[Figure]:
@@ -93,12 +104,12 @@ def _histories(reproduction: WildHorseReproduction) -> list[Figure]:
         f"{ITERATIONS * STEP:.0f} s, the figures of the paper at {time[-1]:.0f} s: the last point is kept."
     )
     figures_ = []
-    for number, (pair, units) in enumerate(_HISTORY_PAIRS.items(), start=8):
+    for number, (pair, (units, size, power)) in enumerate(_HISTORY_PAIRS.items(), start=8):
         curves = []
         for name, unit in zip(pair, units, strict=True):
             k = COEFFICIENTS.index(name)
-            curves.append(Curve(f"{name}, {unit}", time, rows[:, k]))
-            curves.append(Curve(f"{name}, theory", time, np.full(len(time), abs(found.truth[k]))))
-        label = " and ".join(units)
+            curves.append(Curve(f"{name}, {power} {unit}", time, rows[:, k] / size))
+            curves.append(Curve(f"{name}, theory", time, np.full(len(time), abs(found.truth[k]) / size)))
+        label = ", ".join(f"{power} {unit}" for unit in units)
         figures_.append(Figure(f"Figure {number}: {pair[0]} and {pair[1]}", TIME_LABEL, label, tuple(curves), note))
     return figures_

@@ -25,6 +25,7 @@ class Table:
         tuple[tuple[Cell, ...], ...], Field(description="text or numbers in the header's units; null prints as a dash")
     ]
     note: Annotated[str, Field(description="one sentence below it")] = ""
+    digits: Annotated[int, Field(description="significant digits with which numbers are printed")] = 3
 
 
 @dataclass(frozen=True, eq=False)
