@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from seatrial.core.values import Finding, Record, worst_first
 from seatrial.data.check.channels import channel_findings, lag_findings
 from seatrial.data.check.conventions import with_standard_signs
+from seatrial.data.check.dropped_rows import dropped_rows_findings
 from seatrial.data.check.kinematic_consistency import kinematic_consistency_findings
 from seatrial.data.check.repair import repair
 from seatrial.data.check.rudder import rudder_findings
@@ -44,7 +45,9 @@ def examined_record(record: Record) -> ExaminedRecord:
     even, time_findings = rebuild_time_base(record)
     complete, repair_findings = repair(even)
     declared = with_standard_signs(complete)
-    findings = [*channel_findings(record), *time_findings, *repair_findings]
+    findings = [
+        *channel_findings(record), *time_findings, *repair_findings, *dropped_rows_findings(record, even, complete)
+    ]  # fmt: skip
     for check in _CHECKS_WITH_STANDARD_SIGNS:
         findings += check(declared)
     return ExaminedRecord(complete, tuple(worst_first(findings)))

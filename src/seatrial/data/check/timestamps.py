@@ -1,19 +1,13 @@
 """The time base: repeated, rounded or missing stamps, gaps; rebuilt evenly, never silently."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from seatrial.core.values import Array, Finding, InputError, Record, Severity
-from seatrial.data.check.signal import RowIndices, unwrapped
+from seatrial.core.values import Finding, InputError, Record, Severity
+from seatrial.data.check.even_base import GAP_STEPS, EvenBase, even_base
+from seatrial.data.check.signal import unwrapped
 
-# steps of time beyond which samples are missing, and roundings of the stamps by which such a step must exceed the mean
-# one; chosen: a single lost sample is no gap
-GAP_STEPS, GAP_QUANTA = 2.5, 1.5
-# samples over which the mean step is taken; chosen: rounded stamps average out
-STEP_LAG = 20
-# distance of a stamp from the even base, in steps and in roundings, up to which the samples are even; chosen
-LARGEST_JITTER, LARGEST_ROUNDING = 0.6, 1.01
 # differences of steps over the mean step that are rounding, and that are worth a warning; chosen
 SMALL_UNEVENNESS, LARGE_UNEVENNESS = 1e-3, 0.5
 
@@ -61,39 +55,12 @@ def rebuild_time_base(record: Record) -> tuple[Record, tuple[Finding, ...]]:
         raise InputError(f"record '{record.name}' has one sample; at least two are needed")
     if record.is_uniform:
         return record, findings
-    grid = _grid(record.time)
-    is_even = grid.jitter <= max(LARGEST_JITTER * grid.step, LARGEST_ROUNDING * grid.quantum)
-    rebuilt = _placed_on_grid(record, grid) if is_even else _interpolated_on_grid(record, grid)
+    grid = even_base(record.time)
+    rebuilt = _placed_on_grid(record, grid) if grid.is_even else _interpolated_on_grid(record, grid)
     return rebuilt.with_step("time base rebuilt"), findings + _time_base_findings(record, grid)
 
 
-@dataclass(frozen=True)
-class _Grid:
-    index: RowIndices
-    start: float
-    step: float
-    quantum: float
-    jitter: float
-    repeated: int
-    gaps: RowIndices
-
-
-def _grid(time: Array) -> _Grid:
-    steps = np.diff(time)
-    lag = min(STEP_LAG, len(steps))
-    nominal = float(np.median((time[lag:] - time[:-lag]) / lag))
-    repeated = int(np.sum(steps == 0))
-    quantum = float(np.min(steps[steps > 0], initial=np.inf)) if repeated else 0.0
-    gaps = np.flatnonzero((steps > GAP_STEPS * nominal) & (steps > nominal + GAP_QUANTA * quantum))
-    skipped = np.zeros(len(time))
-    skipped[gaps + 1] = np.round(steps[gaps] / nominal) - 1
-    index = np.arange(len(time)) + np.cumsum(skipped)
-    step, start = np.polyfit(index, time, 1)
-    jitter = float(np.max(np.abs(time - start - step * index)))
-    return _Grid(index.astype(np.intp), float(start), float(step), quantum, jitter, repeated, gaps)
-
-
-def _placed_on_grid(record: Record, grid: _Grid) -> Record:
+def _placed_on_grid(record: Record, grid: EvenBase) -> Record:
     """Every sample kept as it is, at its place on the even base."""
     index = grid.index
     channels = {}
@@ -104,7 +71,7 @@ def _placed_on_grid(record: Record, grid: _Grid) -> Record:
     return replace(record, time=grid.start + grid.step * np.arange(index[-1] + 1), channels=channels)
 
 
-def _interpolated_on_grid(record: Record, grid: _Grid) -> Record:
+def _interpolated_on_grid(record: Record, grid: EvenBase) -> Record:
     time, rows = np.unique(record.time, return_index=True)
     count = int(np.floor((time[-1] - time[0]) / grid.step * (1 + 1e-12))) + 1  # rounding of the division
     even = time[0] + grid.step * np.arange(count)
@@ -161,7 +128,7 @@ def _without_duplicates(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     return kept.with_step(f"{repeat.sum()} repeated rows dropped"), (finding,)
 
 
-def _time_base_findings(record: Record, grid: _Grid) -> tuple[Finding, ...]:
+def _time_base_findings(record: Record, grid: EvenBase) -> tuple[Finding, ...]:
     steps = np.diff(record.time)
     findings = []
     regular = np.delete(steps, grid.gaps)
