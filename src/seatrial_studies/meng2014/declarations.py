@@ -58,9 +58,9 @@ _DEVIATIONS = (
     Deviation("truth", "full-scale trials in eq. (7), theory in the text", "theory", "the simulation has no trials"),
     Deviation("waves", "harmonics at ω", "at the frequency of encounter", "the ship makes 18 kn"),
     Deviation("CPSO, the parent (Wei et al. 2009; Zhang et al. 2008)", "cited as its base", "left out",
-              "no source of its law: the stored documentation, web pages and source texts were searched for its "
-              "English and "
-              "Chinese names; they hold one program of a variant, which names no source, so it is not one"),
+              "no source of its law: stored documentation, web pages and program texts were searched for its English "
+              "and "
+              "Chinese names; only a program of a variant was found, which cites nothing"),
 )  # fmt: skip
 _FIGURES = (
     FigureCounterpart("Figure 1", "flow chart", reason="It shows no result; section 3 says the same."),

@@ -36,12 +36,12 @@ def _convergence(evidence: CloudSwarmEvidence) -> Table:
         needed = evidence.iterations_needed(searches)
         medians = [float(np.median(row)) for row in needed]
         error = 100.0 * float(np.mean([f.mean_error for f in searches.values()]))
-        texts = [f"{m:.0f}" if np.isfinite(m) else "never" for m in medians]
-        rows.append((name, *texts, int(np.sum(~np.isfinite(needed))), error))
+        cells = [int(median) if np.isfinite(median) else None for median in medians]
+        rows.append((name, *cells, int(np.sum(~np.isfinite(needed))), error))
     header = ("", *(f"{h}\u00b0" for h in HEADINGS), f"runs of {runs} that never do", "mean error %")
     note = (
         "Iterations until the better end of both swarms in the same sea and box is reached within what noise excuses, "
-        "median over the runs; box \u00b150 % off centre."
+        "median over the runs, a dash where it is never; box \u00b150 % off centre."
     )
     return Table("How fast the swarms converge", header, tuple(rows), note)
 
