@@ -19,7 +19,7 @@ from seatrial.data.trial import (
     load_trial,
 )
 from seatrial.estimation.identify import identify
-from seatrial.estimation.identify.search_problem import search_candidates
+from seatrial.estimation.identify.search_problem import search_candidates, simulated_starts
 from seatrial.estimation.search import run_search, whole_record_fitness
 from seatrial.numerics.optimise import Box, FitnessMemory
 from seatrial.physics.simulate import record_of
@@ -88,7 +88,7 @@ def test_over_the_whole_record_the_search_of_meng2014_is_the_users() -> None:
         "sea", "training", record, sea_record(replace(data, measured=data.states[:, [0, 2]])), {}, {}, 0
     )
     trial = user_trial(data, EstimateMethod.ICPSO, box, SearchFitness.RECORD)
-    candidates = search_candidates(trial, data.model, [from_rest])
+    candidates = search_candidates(trial, data.model, [record], simulated_starts(data.model, [from_rest]))
     points = box.random_points(np.random.default_rng(0), 5)
     np.testing.assert_array_equal(candidates.record_rms(points), whole_record_objective(data)(points))
     create = meng.optimisers(ITERATIONS)[meng.SwarmAlgorithm.ICPSO]
@@ -109,7 +109,8 @@ def test_on_the_shipped_example_the_loop_of_the_studies_gives_the_users_bits(
     fit = identify(trial, seed=SEED)
     assert fit.search is not None
     own = identify(replace(trial, estimate=EstimateSettings()), seed=SEED)
-    candidates = search_candidates(trial, trial.model, [p for p in own.predictions if p.role == "training"])
+    runs = [p for p in own.predictions if p.role == "training"]
+    candidates = search_candidates(trial, trial.model, [p.measured for p in runs], simulated_starts(trial.model, runs))
     box = Box(*np.array(list(fit.search.bounds.values())).T)
     if method is EstimateMethod.IWHO:
         create = qi.optimisers(ITERATIONS, FitnessMemory.KEEP)[SearchAlgorithm.IWHO]

@@ -96,6 +96,7 @@ def follow(
     stop: Callable[[], bool] | None = None,
     seed: int = 0,
     report_progress: "ProgressReporter | None" = None,
+    method: str | None = None,
 ) -> "FollowResult":
     """Estimate while the record is being made, from the samples that the trial's table ``[follow]`` names.
 
@@ -105,8 +106,10 @@ def follow(
         journal: file in which admitted samples are kept; an existing one is read first and continued.
         show: called with the present estimate and the sample counts, twice a second at most.
         stop: called several times a second; following ends when it returns True.
-        seed: of the fit of `once`.
+        seed: of the fit of `once`, and of a search.
         report_progress: called with one line of text at each step.
+        method: takes the place of the trial's ``[estimate] method``; a search such as ``iwho`` judges by one sample
+            after the other and is compared with the package's own follower.
 
     Raises:
         InputError: the trial has no ``[follow]``, lacks channels, its source cannot be opened, or the journal belongs
@@ -116,8 +119,9 @@ def follow(
 
     with precompile(trial.model.name):
         from seatrial.onboard.follow import follow
+    followed = trial if method is None else replace(trial, estimate=trial.estimate.with_method(method))
     return follow(
-        trial, source=source, once=once, journal=None if journal is None else Path(journal), show=show, stop=stop,
+        followed, source=source, once=once, journal=None if journal is None else Path(journal), show=show, stop=stop,
         seed=seed, report_progress=report_progress,
     )  # fmt: skip
 

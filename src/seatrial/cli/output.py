@@ -154,12 +154,18 @@ def _print_baselines(fit: "Fit") -> None:
         return
     first = fit.baselines[0]
     reference = "errors" if first.error else "from this fit"
-    head = [f"other estimators: {reference}, %", "median", "worst", "heading deg", "position m", "CC u, v, r"]
+    head = [f"other estimators: {reference}, %", "median", "worst", *_error_columns(first).values(), "CC u, v, r"]
     rows = [head, *([r.name[:60], *_baseline_cells(r, first, fit)] for r in fit.baselines)]
     print_table(rows, flush_left=(0, len(head) - 1))
     for r in fit.baselines:
         print_lines((f"{SEVERITY_MARK[f.severity.value]} [{f.code}] {r.name[:60]}: {f.text}" for f in r.findings), "  ")
     print("  good trajectories and correlations (CC) prove nothing about coefficients")
+
+
+def _error_columns(fit: "Baseline") -> dict[str, str]:
+    """Two errors of simulated runs by which estimators are compared, and their names: of a track, else of waves."""
+    columns = {"psi_deg": "heading deg", "position_m": "position m"}
+    return {"theta_deg": "pitch deg", "z": "heave m"} if "z" in fit.training.rms else columns
 
 
 def _baseline_cells(baseline: "Baseline", reference: "Baseline", fit: "Fit") -> list[str]:
@@ -176,7 +182,7 @@ def _baseline_cells(baseline: "Baseline", reference: "Baseline", fit: "Fit") -> 
         count = f"{len(baseline.diverged)} of {len(fit.predictions)} runs"
         return [*errors, "", "", f"diverges in {count}, {baseline.diverged[0]} first"]
     runs = baseline.validation if fit.validation else baseline.training
-    cells = [exact(runs.rms.get(key), ERROR_DIGITS) for key in ("psi_deg", "position_m")]
+    cells = [exact(runs.rms.get(key), ERROR_DIGITS) for key in _error_columns(fit.baselines[0])]
     return [*errors, *cells, ", ".join(fixed(cc, 3) for cc in runs.correlation.values())]
 
 

@@ -102,6 +102,7 @@ def follow(
     source: Annotated[
         str | None, typer.Option("--source", metavar="KIND", help="file, stdin, udp, nmea-file, nmea-stdin, nmea-udp.")
     ] = None,
+    method: Method = None,
     model: OwnModelPath = None,
     json: Json = None,
     seed: Seed = 0,
@@ -109,6 +110,8 @@ def follow(
     """Identify while the record is still being made: a growing file, standard input, NMEA 0183 or UDP.
 
     Example: seatrial follow examples/heave_pitch_follow.toml --once --json fit.json
+
+    A published search, sample by sample, compared with the package's own follower: --method iwho --once
 
     On board, with a page of moving plots and a journal: --page 8000 --out results/today
     """
@@ -134,6 +137,7 @@ def follow(
             stop=stop,
             seed=seed,
             report_progress=report_progress,
+            method=method,
         )
     print_outcome(outcome)
     if outcome.fit is not None:

@@ -7,7 +7,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from time import monotonic
+from time import monotonic, process_time
 
 import numpy as np
 
@@ -18,7 +18,8 @@ from seatrial.data.trial import Trial
 from seatrial.data.trial.follow_table import require_stream
 from seatrial.data.trial.stream import Stream, StreamSource
 from seatrial.estimation.identify import identify
-from seatrial.estimation.identify.online import OnlineEstimator
+from seatrial.estimation.identify.online import OnlineEstimator, SearchFollower, own_trial
+from seatrial.estimation.identify.strategies.published import published_fit
 from seatrial.onboard.advice import ManoeuvreAdviser
 from seatrial.onboard.journal import Journal, journal_identity
 from seatrial.onboard.required_channels import check_required_channels
@@ -88,7 +89,7 @@ def follow(
             report_progress(f"reading {log.path.name}")
         # opened before the journal is read, so that samples that arrive meanwhile wait in the socket
         current = source or _open_stream(stack, stream, once=once)
-        estimator = estimator or OnlineEstimator(trial)
+        estimator = estimator or _estimator(trial, seed)
         session, adviser = StreamSession(stream, estimator, log, buffer), ManoeuvreAdviser(trial, estimator)
         display = _Display(session, adviser, show, stop)
         can_reopen = source is None and stream.source in _REOPENABLE
@@ -106,15 +107,29 @@ def follow(
         counts = session.counts(current.counts)
     latest = session.snapshot
     if latest is not None:
-        latest = estimator.relinearise() if isinstance(estimator, OnlineEstimator) else latest
+        latest = estimator.relinearise() if isinstance(estimator, OnlineEstimator | SearchFollower) else latest
         latest = adviser.with_final_advice(latest)
     if latest is not None and show is not None:
         show(latest, counts)
     fit = None
     if buffer is not None and is_ended:
-        fit = identify(with_training_records(trial, buffer.records()), seed=seed, report_progress=report_progress)
+        fit = _final_fit(with_training_records(trial, buffer.records()), estimator, seed, report_progress)
     errors = (log.write_error,) if log is not None and log.write_error else ()
     return FollowResult(latest, counts, fit, (*session.messages, *errors))
+
+
+def _estimator(trial: Trial, seed: int) -> StreamEstimator:
+    """The package's own follower, or that of the published method which the trial names."""
+    return SearchFollower(trial, seed) if trial.estimate.method.is_published else OnlineEstimator(trial)
+
+
+def _final_fit(trial: Trial, estimator: StreamEstimator, seed: int, report_progress: ProgressReporter | None) -> Fit:
+    """The fit that `identify` makes; where a published method followed the stream, its values with that fit."""
+    if not isinstance(estimator, SearchFollower):
+        return identify(trial, seed=seed, report_progress=report_progress)
+    began = process_time()
+    reference = identify(own_trial(trial), seed=seed, report_progress=report_progress)
+    return published_fit(reference, estimator.estimate(reference), process_time() - began)
 
 
 class _Display:

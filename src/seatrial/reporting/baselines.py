@@ -23,7 +23,7 @@ NEAR, OFF = 2.0, 10.0
 HIGH_CORRELATION = 0.9
 _COLUMNS = {
     "psi_deg": ("heading, deg", 1.0), "position_m": ("position, m", 1.0), "u": ("u, m/s", 1.0), "v": ("v, m/s", 1.0),
-    "r": ("r, deg/s", math.degrees(1.0)),
+    "r": ("r, deg/s", math.degrees(1.0)), "z": ("heave, m", 1.0), "theta_deg": ("pitch, deg", 1.0),
 }  # fmt: skip
 
 
@@ -87,7 +87,8 @@ def baseline_sentences(fit: Fit) -> tuple[str, ...]:
     solved = [r for r in regressions if r.values]
     failed = [f"“{r.name}”" for r in regressions if not r.values]
     lost = [f"“{r.name}”" for r in solved if r.diverged]
-    text = [f"{counted(len(regressions), 'regression').capitalize()} on the same training runs, as recorded."]
+    kind = "other estimator" if fit.model.is_affine else "regression"
+    text = [f"{counted(len(regressions), kind).capitalize()} on the same training runs, as recorded."]
     if failed:
         text.append(f"{_count_word(failed)} of them {'fails' if len(failed) == 1 else 'fail'}: {enumeration(failed)}.")
     if lost:

@@ -8,7 +8,7 @@ from markupsafe import Markup
 from seatrial.core.figures.chart import Chart
 from seatrial.core.figures.curves import NamedCurve, curves_chart
 from seatrial.core.figures.svg_text import svg
-from seatrial.core.results import Fit, ReferenceEstimate, Search
+from seatrial.core.results import Fit, ReferenceEstimate, Search, SearchTrack
 from seatrial.core.results.method_comparison import (
     ComparisonTable,
     coefficient_comparison,
@@ -18,7 +18,13 @@ from seatrial.core.results.method_comparison import (
 from seatrial.core.text.numbers import exact
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import Array
-from seatrial.reporting.figures.search_charts import restart_chart, trace_charts, waterfall_chart
+from seatrial.reporting.figures.search_charts import (
+    restart_chart,
+    trace_charts,
+    track_charts,
+    value_charts,
+    waterfall_chart,
+)
 from seatrial.reporting.text_tables import TextTable
 
 
@@ -45,6 +51,8 @@ def published_chapter(fit: Fit) -> PublishedChapter | None:
                     "slopes; its processor time holds everything from the start to the intervals."),
     )  # fmt: skip
     figures = _search_figures(fit.search, reference) if fit.search else ()
+    if fit.search and fit.search.track:
+        figures = (*_track_figures(fit.search.track, reference, fit.method.name), *figures)
     return PublishedChapter(tuple(_sentences(fit, reference)), tables, figures)
 
 
@@ -83,6 +91,8 @@ def _search_figures(search: Search, reference: ReferenceEstimate) -> tuple[tuple
     if by_samples:
         convergence += " Each iteration judges by a sample of its own, so that the best may rise."
     drawn: list[tuple[Chart | None, str]] = [(_convergence_chart(search), convergence)]
+    if search.track:
+        return tuple((Markup(svg(chart)), caption) for chart, caption in drawn if chart is not None)
     drawn.append((waterfall_chart(search, reference), "Weighted rms over the whole record at the end of each restart, "
                   "in order of size, and of the package’s own estimate."))  # fmt: skip
     drawn.append((restart_chart(search, reference), "Values of each restart less the package’s own estimate, per cent "
@@ -91,6 +101,15 @@ def _search_figures(search: Search, reference: ReferenceEstimate) -> tuple[tuple
         caption = "Best value after each iteration of the restart that is used."
         drawn += [(chart, caption) for chart in trace_charts(search, reference)]
     return tuple((Markup(svg(chart)), caption) for chart, caption in drawn if chart is not None)
+
+
+def _track_figures(track: SearchTrack, reference: ReferenceEstimate, method: str) -> tuple[tuple[Markup, str], ...]:
+    motion = "Recorded, and simulated with the coefficients that the search and the package’s own follower had at each "
+    motion += "moment."
+    values = "Coefficient of each moment, by the search and by the package’s own follower."
+    drawn = [(chart, motion) for chart in track_charts(track, method)]
+    drawn += [(chart, values) for chart in value_charts(track, reference, method)]
+    return tuple((Markup(svg(chart)), caption) for chart, caption in drawn)
 
 
 def _convergence_chart(search: Search) -> Chart | None:

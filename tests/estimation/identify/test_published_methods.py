@@ -23,7 +23,7 @@ from seatrial.data.trial import (
     Trial,
     load_trial,
 )
-from seatrial.estimation.identify import identify, search_problem
+from seatrial.estimation.identify import baselines, identify, search_problem
 from seatrial.estimation.identify.strategies import search as search_strategy
 from seatrial.estimation.regress import estimator_named
 
@@ -186,7 +186,7 @@ def free_bounds(trial: Trial, **bounds: tuple[float, float]) -> Trial:
          "[estimate.search] is not used by method 'svr'; remove the table, or write method = \"iwho\""),
         (lambda t: replace(t, estimate=EstimateSettings(search=FEW)),
          "[estimate.search] is not used by method 'auto'"),
-        (lambda t: free_bounds(t),
+        (free_bounds,
          "method 'iwho' searches within bounds, which b33 lacks; add [estimate.search.bounds] b33 = [lower, upper]"),
         (lambda t: free_bounds(t, b_33=(0.0, 1.0)), "[estimate.search.bounds] names 'b_33', no free coefficient; did"),
         (lambda t: replace(t, estimate=EstimateSettings(method="iwho", search=SearchSettings(population=3))),
@@ -209,6 +209,22 @@ def test_what_a_method_cannot_do_is_one_sentence(
 def test_options_of_the_own_estimate_are_refused(repository: Path) -> None:
     with pytest.raises(InputError, match="--compare goes with the package's own estimate, and method 'iwho'"):
         identify(example(repository, "heave_pitch", EstimateMethod.IWHO), compare=True)
+
+
+def test_a_comparison_in_waves_lists_the_searches_behind_the_own_fit(
+    repository: Path, own: Fit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(baselines, "SEARCHES", (EstimateMethod.DE,))
+    trial = example(repository, "heave_pitch", EstimateMethod.AUTO)
+    compared = baselines.with_search_baselines(own, trial, 3)
+    fit_row, found = compared.baselines
+    assert fit_row.is_fit
+    assert found.name == "differential evolution (de)"
+    assert set(found.training.rms) == {"z", "theta_deg"}
+    alone = identify(example(repository, "heave_pitch", EstimateMethod.DE, replace(FEW, restarts=1)), seed=3)
+    assert found.values == alone.params
+    no_box = baselines.with_search_baselines(own, free_bounds(trial), 3)
+    assert "b33 lacks" in no_box.baselines[1].note
 
 
 def test_channels_count_by_their_noise_where_all_are_stated(repository: Path) -> None:

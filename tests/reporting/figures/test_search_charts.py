@@ -5,8 +5,14 @@ import pytest
 from tests.reporting.published_fit import published
 
 from seatrial.core.figures.marks import Points
-from seatrial.core.results import Fit
-from seatrial.reporting.figures.search_charts import restart_chart, trace_charts, waterfall_chart
+from seatrial.core.results import Fit, SearchTrack
+from seatrial.reporting.figures.search_charts import (
+    restart_chart,
+    trace_charts,
+    track_charts,
+    value_charts,
+    waterfall_chart,
+)
 
 
 def test_restarts_stand_in_order_with_the_own_estimate_last(fit: Fit) -> None:
@@ -39,3 +45,24 @@ def test_coefficients_over_iterations_come_in_small_groups(fit: Fit) -> None:
     free = sum(not c.fixed for c in fit.coefficients)
     assert len(charts) == int(np.ceil(free / 4))
     assert charts[0].legend
+
+
+def test_a_followed_stream_shows_motion_and_coefficients_over_time(fit: Fit) -> None:
+    found = published(fit, "sample")
+    assert found.search is not None
+    assert found.reference is not None
+    time = np.arange(5.0)
+    name = next(iter(found.search.trace))
+    track = SearchTrack(
+        time,
+        {"theta": 0.1 * time},
+        {"theta": 0.2 * time},
+        {"theta": 0.1 * time},
+        {name: 2e7 * time},
+        {name: 1e7 * time},
+    )
+    (motion,) = track_charts(track, "iwho")
+    assert [entry.name for entry in motion.legend] == ["recorded", "iwho", "seatrial"]
+    assert motion.panels[0].y.name == "theta, deg"
+    (values,) = value_charts(track, found.reference, "iwho")
+    assert values.panels[0].y.ends[1] == pytest.approx(80.0, rel=0.2)

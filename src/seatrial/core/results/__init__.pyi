@@ -16,7 +16,7 @@ from seatrial.core.results.identifiability import (
 from seatrial.core.results.prediction import Baseline, Extrapolation, IntervalBasis, Measure, OpenLoopScores, Prediction
 from seatrial.core.results.ship_motions import IntervalEstimate, PointMotion, RollCharacteristics, Seakeeping
 from seatrial.core.results.study import Bars, Check, CheckStatus, Claim, Curve, Figure, Matrix, Study, Table, Verdict
-from seatrial.core.results.published_method import ReferenceEstimate, Search, SearchRestart
+from seatrial.core.results.published_method import ReferenceEstimate, Search, SearchRestart, SearchTrack
 from seatrial.core.results.summary import Summary
 from seatrial.numerics.optimise import Solution, Status
 
@@ -25,7 +25,7 @@ __all__ = [
     "Collinearity", "Confirmation", "Consequence", "Curve", "Design", "Direction", "Extrapolation", "Figure",
     "Fit", "Identifiability", "IntervalBasis", "IntervalEstimate", "ManoeuvrePrecision", "Matrix", "Measure",
     "Method", "Noise", "NoiseModel", "Offset", "OpenLoopScores", "PointMotion", "Prediction", "Profile",
-    "ReferenceEstimate", "Residuals", "RollCharacteristics", "Seakeeping", "Search", "SearchRestart",
+    "ReferenceEstimate", "Residuals", "RollCharacteristics", "Seakeeping", "Search", "SearchRestart", "SearchTrack",
     "Sensitivity", "Solution", "Stability", "Status", "Study", "Summary", "Symmetry", "Table", "TimedOrder",
     "TrialLimits", "Verdict",
 ]  # fmt: skip

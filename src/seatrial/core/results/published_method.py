@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import Field
 
 from seatrial.core.results.coefficients import Coefficient, Method
-from seatrial.core.results.fields import Number
+from seatrial.core.results.fields import Number, StoredArray
 
 
 @dataclass(frozen=True)
@@ -22,6 +22,23 @@ class SearchRestart:
     history: Annotated[
         tuple[Number, ...],
         Field(description="best fitness after each iteration; judged by one sample each it may rise"),
+    ]
+
+
+@dataclass(frozen=True, eq=False)
+class SearchTrack:
+    """A stream followed by a search sample by sample, and by the package's own follower; (samples,) each, SI."""
+
+    time: Annotated[StoredArray, Field(description="s on the clock of the stream")]
+    measured: Annotated[dict[str, StoredArray], Field(description="channel -> recorded")]
+    tracked: Annotated[
+        dict[str, StoredArray],
+        Field(description="channel -> simulated with the coefficients that the search had at that moment"),
+    ]
+    reference: Annotated[dict[str, StoredArray], Field(description="the same with those of the package's own follower")]
+    values: Annotated[dict[str, StoredArray], Field(description="coefficient -> of the search at that moment")]
+    reference_values: Annotated[
+        dict[str, StoredArray], Field(description="coefficient -> of the package's own follower at that moment")
     ]
 
 
@@ -53,6 +70,11 @@ class Search:
         dict[str, tuple[Number, ...]],
         Field(description="coefficient -> best value after each iteration of the restart that is used, SI"),
     ] = field(default_factory=dict)
+    reference_trace: Annotated[
+        dict[str, tuple[Number, ...]],
+        Field(description="as `trace`, of the package's own follower at the same samples; empty: no stream"),
+    ] = field(default_factory=dict)
+    track: Annotated[SearchTrack | None, Field(description="null: no stream was followed")] = None
 
 
 @dataclass(frozen=True)

@@ -13,13 +13,17 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Baseline, Coefficient, Fit, OpenLoopScores, Prediction
 from seatrial.core.results.prediction import NO_COMPARISON
 from seatrial.core.values import Finding, InputError, ProgressReporter, Record, Severity
+from seatrial.data.trial import SEARCHES, SearchFitness, SearchSettings, Trial
+from seatrial.estimation.identify.strategies.search import estimate_by_search
 from seatrial.estimation.predict.open_loop import rms_errors
 from seatrial.estimation.regress.estimators import RegressionEstimator
 from seatrial.estimation.regress.features import RegressionMotion, features
 from seatrial.estimation.regress.named import available_estimators
+from seatrial.estimation.search import search_method
 from seatrial.physics.simulate.replay import replay
 
 _CORRELATED_CHANNELS = ("u", "v", "r")
+_NO_COMPARISON_TEXT = "no other estimators to compare: "
 
 
 def with_baselines(
@@ -29,8 +33,49 @@ def with_baselines(
     try:
         return replace(fit, baselines=compare_estimators(fit, train, available_estimators(seconds), report_progress))
     except InputError as error:
-        said = Finding(Severity.INFO, NO_COMPARISON, f"no other estimators to compare: {error}", "")
+        said = Finding(Severity.INFO, NO_COMPARISON, f"{_NO_COMPARISON_TEXT}{error}", "")
         return replace(fit, findings=(*fit.findings, said))
+
+
+def with_search_baselines(fit: Fit, trial: Trial, seed: int, report_progress: ProgressReporter | None = None) -> Fit:
+    """The fit with one search of each published kind over its training runs, behind the regressions if there are any.
+
+    A search that cannot begin says why.
+
+    Args:
+        trial: its bounds, iterations and population are those of the searches.
+        seed: of their random numbers.
+    """
+    settings = replace(trial.estimate.search or SearchSettings(), restarts=1, fitness=SearchFitness.RECORD)
+    baselines = list(fit.baselines) or [*_fit_as_baselines(fit), *_failed_regressions(fit)]
+    for method in SEARCHES:
+        named = replace(trial, estimate=replace(trial.estimate, method=method, search=settings))
+        title = f"{search_method(method).title} ({method})"
+        try:
+            found = estimate_by_search(named, fit, seed, report_progress)
+        except InputError as error:
+            baselines.append(Baseline(title, note=str(error)))
+            continue
+        names = fit.model.parameters.free_names
+        values = dict(zip(names, found.solution.point.tolist(), strict=True))
+        baselines.append(_with_differences(fit, _simulated_baseline(fit, Baseline(title, values))))
+    findings = tuple(f for f in fit.findings if f.code != NO_COMPARISON)
+    return replace(fit, baselines=tuple(baselines), findings=findings)
+
+
+def _failed_regressions(fit: Fit) -> list[Baseline]:
+    """Why the regressions could not be compared."""
+    return [Baseline("regressions", note=f.message.removeprefix(_NO_COMPARISON_TEXT)) for f in fit.findings
+            if f.code == NO_COMPARISON]  # fmt: skip
+
+
+def _simulated_baseline(fit: Fit, baseline: Baseline) -> Baseline:
+    """With the errors of all runs that are simulated with its values."""
+    ship = fit.model.with_values(dict(baseline.values))
+    training, validation = (
+        simulation_errors(ship, _predictions_of_role(fit, role)) for role in ("training", "validation")
+    )
+    return replace(baseline, training=training, validation=validation)
 
 
 def compare_estimators(
@@ -116,17 +161,9 @@ def _baseline(fit: Fit, train: Sequence[Record], estimator: RegressionEstimator)
         return Baseline(estimator.name, note="its equations are singular in these records")
     if not np.all(np.isfinite(regression.values)):
         return Baseline(estimator.name, note="its coefficients are no finite numbers", findings=regression.findings)
-    ship = regression.in_model(fit.model)
     values = dict(zip(fit.model.parameters.free_names, regression.values.tolist(), strict=True))
-    rival = Baseline(
-        estimator.name,
-        values,
-        training=simulation_errors(ship, _predictions_of_role(fit, "training")),
-        validation=simulation_errors(ship, _predictions_of_role(fit, "validation")),
-        bias=regression.bias,
-        findings=regression.findings,
-    )
-    return _with_differences(fit, rival)
+    rival = Baseline(estimator.name, values, bias=regression.bias, findings=regression.findings)
+    return _with_differences(fit, _simulated_baseline(fit, rival))
 
 
 def _with_differences(fit: Fit, baseline: Baseline) -> Baseline:

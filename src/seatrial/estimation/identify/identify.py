@@ -10,7 +10,7 @@ from seatrial.core.values import InputError, ProgressReporter
 from seatrial.data.trial import FitCriterion, Trial, checked_records
 from seatrial.estimation.estimate import EstimatorOptions, IntervalMethod
 from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS
-from seatrial.estimation.identify.baselines import with_baselines
+from seatrial.estimation.identify.baselines import with_baselines, with_search_baselines
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.search_problem import check_search_settings
 from seatrial.estimation.identify.situation import Situation, is_explained, situation_of
@@ -52,7 +52,8 @@ def identify(
         seed: of the draws behind the intervals of predictions, and of a bootstrap.
         intervals: where intervals of coefficients come from; a jackknife brings the spread of tied models with it.
         choose: whether the best member of the family takes the place of the trial's model.
-        compare: whether regressions on the same training runs are compared with the fit.
+        compare: whether regressions on the same training runs, for a linear model searches as well, are compared with
+            the fit.
 
     Raises:
         InputError: the records do not pass the checks, show no excitation, do not determine the coefficients, or are
@@ -73,7 +74,9 @@ def identify(
     if not compare or situation is Situation.UNKNOWN_WAVES:  # no input, so that there is nothing to regress on
         return fit
     window = WEAK_FORM_SHIP_LENGTHS * task.characteristic_time
-    return with_baselines(fit, task.runs.records, window, report_progress)
+    fit = with_baselines(fit, task.runs.records, window, report_progress)
+    has_searches = trial.model.is_affine and situation is Situation.RECORDED_WAVES
+    return with_search_baselines(fit, trial, seed, report_progress) if has_searches else fit
 
 
 def _published(task: Identification, situation: Situation) -> Fit:

@@ -1,6 +1,6 @@
 """From a trial's runs to what a search needs: candidates, the box of their coefficients, the budget."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -21,30 +21,40 @@ from seatrial.numerics.optimise import Box, FitnessMemory, SearchError
 from seatrial.physics.simulate import Forcing, LinearBatch, inputs_of
 
 
-def search_candidates(trial: Trial, model: Model, runs: Sequence[Prediction]) -> Candidates:
-    """Return the candidates for the free coefficients of a model, judged by training runs.
+def search_candidates(
+    trial: Trial,
+    model: Model,
+    records: Sequence[Record],
+    starts: Sequence[Array],
+    weights: Mapping[str, float] | None = None,
+) -> Candidates:
+    """Return the candidates for the free coefficients of a model, judged by records.
 
     Args:
-        runs: simulated from the initial states of the package's estimate, which candidates are given as well.
+        starts: initial state of each record, (states,).
+        weights: deviation of each compared channel that counts as 1; None: `channel_weights`.
 
     Raises:
-        InputError: the runs cannot be compared with the model.
+        InputError: the records cannot be compared with the model.
     """
-    records = [run.measured for run in runs]
     outputs = compared_outputs(model, records, trial.estimate.channels)
     measured = [_columns(record, outputs) for record in records]
-    sigma = np.array([channel_weights(trial, outputs, measured)[name] for name in outputs])
-    starts = [np.array([run.simulated[state][0] for state in model.states]) for run in runs]
+    weights = weights or channel_weights(trial, outputs, measured)
+    sigma = np.array([weights[name] for name in outputs])
     states = [_recorded_states(model, record) for record in records]
     names = model.parameters.free_names
-    if model.is_affine and set(outputs) <= set(model.states):
-        used, forcings = _linear_forcings(model, records)
-        judged = [JudgedRun(*run) for run in zip(forcings, starts, measured, states, strict=True)]
+    is_linear = model.is_affine and set(outputs) <= set(model.states)
+    used, forcings = _linear_forcings(model, records) if is_linear else ((), _recorded_forcings(model, records))
+    judged = tuple(JudgedRun(*run) for run in zip(forcings, starts, measured, states, strict=True))
+    if is_linear:
         channels = tuple(model.states.index(name) for name in outputs)
-        return LinearCandidates(model, names, used, tuple(judged), channels, sigma)
-    forcings = [Forcing(inputs_of(model, record), record.dt, is_held=True) for record in records]
-    judged = [JudgedRun(*run) for run in zip(forcings, starts, measured, states, strict=True)]
-    return SimulatedCandidates(model, names, tuple(judged), outputs, sigma)
+        return LinearCandidates(model, names, used, judged, channels, sigma)
+    return SimulatedCandidates(model, names, judged, outputs, sigma)
+
+
+def simulated_starts(model: Model, runs: Sequence[Prediction]) -> list[Array]:
+    """Return the state in which the simulation of each run begins, (states,)."""
+    return [np.array([run.simulated[state][0] for state in model.states]) for run in runs]
 
 
 def channel_weights(trial: Trial, outputs: Sequence[str], measured: Sequence[Array]) -> dict[str, float]:
@@ -125,6 +135,11 @@ def _recorded_states(model: Model, record: Record) -> Array | None:
         return None
     states = _columns(record, model.states)
     return states if np.all(np.isfinite(states)) else None
+
+
+def _recorded_forcings(model: Model, records: Sequence[Record]) -> list[Forcing]:
+    """All inputs of a model at the samples of each record."""
+    return [Forcing(inputs_of(model, record), record.dt, is_held=True) for record in records]
 
 
 def _linear_forcings(model: Model, records: Sequence[Record]) -> tuple[tuple[int, ...], list[Forcing]]:

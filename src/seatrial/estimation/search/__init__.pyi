@@ -17,4 +17,5 @@ from seatrial.estimation.search.restarts import (
     run_search as run_search,
 )
 from seatrial.estimation.search.runs import JudgedRun as JudgedRun
+from seatrial.estimation.search.sample_search import SampleSearch as SampleSearch
 from seatrial.estimation.search.simulated_candidates import SimulatedCandidates as SimulatedCandidates

@@ -9,8 +9,10 @@ from seatrial.core.figures.chart import Axis, Chart, LegendEntry
 from seatrial.core.figures.curves import NamedCurve, curves_chart
 from seatrial.core.figures.marks import ACCENT, GREY, INK, SECOND, Line, Mark, Marker, Points, Rule, Shape, Stroke
 from seatrial.core.figures.rows import row_panel
-from seatrial.core.results import Coefficient, ReferenceEstimate, Search
+from seatrial.core.results import Coefficient, ReferenceEstimate, Search, SearchTrack
 from seatrial.core.results.method_comparison import OWN_NAME
+from seatrial.core.text.numbers import power_of_ten
+from seatrial.core.values import NOTATION, Array, display_unit
 
 # curves in one chart of coefficients, few enough to be distinguished by their dashes
 _CURVES_IN_CHART = 4
@@ -60,6 +62,37 @@ def trace_charts(search: Search, reference: ReferenceEstimate) -> tuple[Chart, .
     free = [c for c in reference.coefficients if c.name in search.trace and c.estimate != 0.0]
     groups = [free[k : k + _CURVES_IN_CHART] for k in range(0, len(free), _CURVES_IN_CHART)]
     return tuple(_trace_chart(search, group) for group in groups)
+
+
+def track_charts(track: SearchTrack, method: str) -> tuple[Chart, ...]:
+    """Return each channel over time: recorded, and simulated with the coefficients of each moment."""
+    charts = []
+    for channel, measured in track.measured.items():
+        factor, unit = display_unit(NOTATION[channel].unit)
+        series = {"recorded": measured, method: track.tracked[channel], OWN_NAME: track.reference[channel]}
+        curves = [NamedCurve(name, track.time, factor * values) for name, values in series.items()]
+        charts.append(curves_chart(f"{channel} tracked", curves, "t, s", f"{channel}, {unit}"))
+    return tuple(charts)
+
+
+def value_charts(track: SearchTrack, reference: ReferenceEstimate, method: str) -> tuple[Chart, ...]:
+    """Return each coefficient over time, of the search and of the package's own follower, with the known value."""
+    charts = []
+    for c in reference.coefficients:
+        if c.name in track.values:
+            series = {method: track.values[c.name], OWN_NAME: track.reference_values[c.name]}
+            series |= {} if c.truth is None else {"known": np.full(len(track.time), c.truth)}
+            power = _thousands(np.concatenate([*series.values()]))
+            curves = [NamedCurve(name, track.time, values / 10.0**power) for name, values in series.items()]
+            unit = f"{power_of_ten(power)} {c.unit}" if power else c.unit
+            charts.append(curves_chart(c.name, curves, "t, s", f"{c.name}, {unit}"))
+    return tuple(charts)
+
+
+def _thousands(values: Array) -> int:
+    """Power of ten, a multiple of three, that leaves the largest value between 1 and 1000."""
+    largest = float(np.max(np.abs(values), initial=0.0))
+    return 3 * int(np.floor(np.log10(largest) / 3.0)) if largest > 0.0 else 0
 
 
 def _trace_chart(search: Search, group: Sequence[Coefficient]) -> Chart:

@@ -12,6 +12,7 @@ from seatrial.estimation.identify.search_problem import (
     search_box,
     search_budget,
     search_candidates,
+    simulated_starts,
 )
 from seatrial.estimation.identify.strategies.published import NO_INTERVALS, PublishedEstimate
 from seatrial.estimation.search import (
@@ -48,15 +49,15 @@ def estimate_by_search(
     model, runs = trial.model, training_predictions(reference)
     box = search_box(model, method, settings)
     budget = search_budget(method, settings, box.size)
-    candidates = search_candidates(trial, model, runs)
+    candidates = search_candidates(trial, model, [run.measured for run in runs], simulated_starts(model, runs))
     finished = _restarts(method, settings, box, budget, candidates, seed, report_progress)
     result = _search_result(trial, settings, box, budget, candidates, finished)
     used = finished[result.used].solution
     own = np.array([[reference.model.parameters[name].value for name in model.parameters.free_names]])
     return PublishedEstimate(
         Solution(used.point, used.value, used.status, result.evaluations, used.history, seed),
-        _method_text(method, settings, result),
-        _findings(result, used.point, settings.restarts),
+        search_method_text(method, settings, result),
+        search_findings(result, used.point, settings.restarts),
         result,
         float(candidates.record_rms(own)[0]),
     )
@@ -155,7 +156,7 @@ def _named(names: Sequence[str], values: Array) -> dict[str, float]:
     return dict(zip(names, map(float, values), strict=True))
 
 
-def _method_text(method: EstimateMethod, settings: SearchSettings, search: Search) -> Method:
+def search_method_text(method: EstimateMethod, settings: SearchSettings, search: Search) -> Method:
     published = search_method(method)
     judged = "one sample an iteration" if settings.fitness is SearchFitness.SAMPLE else "rms over the whole record"
     return Method(
@@ -168,7 +169,7 @@ def _method_text(method: EstimateMethod, settings: SearchSettings, search: Searc
     )
 
 
-def _findings(search: Search, point: Array, required: int) -> tuple[Finding, ...]:
+def search_findings(search: Search, point: Array, required: int) -> tuple[Finding, ...]:
     """A warning for each coefficient that ends on an end of its range, and one for a search that was interrupted."""
     findings = [
         Finding(Severity.WARNING, "bound-hit", f"coefficient {name} ends on an end of its range", f"{value:g}",
