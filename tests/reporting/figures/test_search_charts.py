@@ -62,7 +62,7 @@ def test_a_followed_stream_shows_motion_and_coefficients_over_time(fit: Fit) -> 
         {name: 1e7 * time},
     )
     (motion,) = track_charts(track, "iwho")
-    assert [entry.name for entry in motion.legend] == ["recorded", "iwho", "seatrial"]
+    assert [entry.words for entry in motion.legend] == ["recorded", "iwho", "seatrial"]
     assert motion.panels[0].y.name == "theta, deg"
     (values,) = value_charts(track, found.reference, "iwho")
     assert values.panels[0].y.ends[1] == pytest.approx(80.0, rel=0.2)
