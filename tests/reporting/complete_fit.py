@@ -12,6 +12,7 @@ from seatrial.core.results import (
     Collinearity,
     Consequence,
     Direction,
+    DisturbanceCandidate,
     Extrapolation,
     Fit,
     Identifiability,
@@ -140,6 +141,25 @@ def disturbance() -> NoiseModel:
         {"u": 0.02, "psi": 0.0017, "x0": 0.5, "y0": 0.5},
         "with output error the residuals stay coloured (p < 0.001); allowing for process noise raises the "
         "log-likelihood by 412 with 3 further parameters",
+        is_white=True,
+        disturbance="first-order Markov on u, v, r",
+        added={"gust_memory_r": 4.8},
+        candidates=(
+            DisturbanceCandidate("none", -812.4, 0, 0.0, 0.0, 0.0, False, {}, -1.912, False),
+            DisturbanceCandidate("white", 7312.4, 3, 16249.6, 16.3, 3e-9, False, {}, 1.204, False),
+            DisturbanceCandidate(
+                "first-order Markov on u, v, r",
+                7724.1,
+                6,
+                17073.0,
+                22.5,
+                0.23,
+                True,
+                {"gust_memory_u": 6.1, "gust_memory_v": 5.2, "gust_memory_r": 4.8},
+                1.311,
+                True,
+            ),
+        ),
     )
 
 

@@ -84,7 +84,7 @@ def fabricated_fit(*, names: tuple[str, ...] = ("zigzag_10_10", "zigzag_20_20", 
             "output error over whole runs",
             "weak form, windows of 3 ship lengths",
             "information matrix of the criterion, corrected for the residuals’ autocorrelation",
-            ("residuals within segments are white and stay so over whole runs: no process noise to guard against",),
+            ("the residuals over whole runs are white (Ljung-Box, p 0.3)",),
             {"rate_Hz": 5.0, "window_L": 3.0, "loss": "squares"},
         ),
         offsets=tuple(
@@ -92,7 +92,7 @@ def fabricated_fit(*, names: tuple[str, ...] = ("zigzag_10_10", "zigzag_20_20", 
             for k, n in enumerate(names[:3])
         ),
         channel_noise=tuple(
-            Noise(c, {"u": "m/s", "v": "m/s", "r": "rad/s"}.get(c, "rad" if c == "psi" else "m"), s, 0.2, p)
+            Noise(c, {"u": "m/s", "v": "m/s", "r": "rad/s"}.get(c, "rad" if c == "psi" else "m"), s, 0.2, p, p > 0.01)
             for (c, s), p in zip(NOISE.items(), (0.41, 0.62, 0.003, 0.08, 0.3, 0.00002), strict=True)
         ),
         residuals=tuple(_residuals(c, s, rng, colour=0.6 if c in ("r", "y0") else 0.0) for c, s in NOISE.items()),

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from seatrial.core.results import (
         Baseline,
         Design,
+        DisturbanceCandidate,
         Extrapolation,
         Fit,
         ManoeuvrePrecision,
@@ -194,6 +195,21 @@ def _print_identifiability(fit: "Fit") -> None:
         print_lines((f"not identifiable: {symmetry.text}" for symmetry in identifiability.structural), "  ")
     if noise_model is not None and noise_model.text:
         print_lines([f"{noise_model.method}: {noise_model.text}"])
+    if noise_model is not None and noise_model.candidates:
+        _print_disturbances(noise_model.candidates)
+
+
+def _print_disturbances(candidates: "Sequence[DisturbanceCandidate]") -> None:
+    from seatrial.core.text.numbers import exact, fixed, p_value
+
+    rows = [["disturbance", "log-likelihood", "dof", "ratio", "by chance", "innovations", "held-out", ""]]
+    for c in candidates:
+        ratios = [fixed(c.likelihood_ratio, 1), fixed(c.critical_ratio, 1)] if c.critical_ratio > 0.0 else ["", ""]
+        verdict = f"{'white' if c.is_white else 'not white'}, {p_value(c.whiteness_p)}"
+        held_out = "" if c.held_out_score is None else exact(c.held_out_score, DIGITS)
+        used = "used" if c.is_chosen else ""
+        rows.append([c.name, fixed(c.log_likelihood, 1), str(c.degrees_of_freedom), *ratios, verdict, held_out, used])
+    print_table(rows, flush_left=(0, 5, 7), indent="  ")
 
 
 def print_measures(

@@ -21,8 +21,9 @@ from seatrial.core.text.numbers import DASH, fixed, p_value, rounded, signed_per
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import display_unit
 from seatrial.core.values.channel_text import channel_meaning, channel_unit, unit_text
+from seatrial.reporting.disturbance_table import DisturbanceRow, disturbance_rows
 from seatrial.reporting.figures.directions import direction_chart, profile_chart, sensitivity_chart
-from seatrial.reporting.tables import WHITENESS_P, assumption
+from seatrial.reporting.tables import assumption
 
 # relative standard deviation up to which a combination is well determined, and up to which poorly
 WELL_DETERMINED, POORLY_DETERMINED = 0.1, 1.0
@@ -81,6 +82,7 @@ class NoiseText:
     process: tuple[NoiseRow, ...]
     quiet_states: str
     measurement: tuple[NoiseRow, ...]
+    candidates: tuple[DisturbanceRow, ...]
 
 
 @dataclass(frozen=True)
@@ -231,12 +233,12 @@ def _noise_text(d: NoiseModel, names: Sequence[str]) -> NoiseText:
     p = p_value(d.whiteness_p)
     if not math.isfinite(d.whiteness_p):
         whiteness = ""
-    elif d.whiteness_p >= WHITENESS_P:
-        whiteness = f"The residuals are white in every channel (smallest {p})."
+    elif d.is_white:
+        whiteness = f"The residuals are white in every channel (Ljung-Box with 20 and 100 lags, {p})."
     else:
         whiteness = (
-            f"The residuals are not white (smallest {p}): they contain model error or disturbances that this "
-            "criterion does not describe."
+            f"The residuals are not white (Ljung-Box with 20 and 100 lags, {p}): they contain model error or "
+            "disturbances that this criterion does not describe."
         )
     active = {state: q for state, q in d.process.items() if q > 0}
     quiet = [state for state in d.process if state not in active]
@@ -247,6 +249,7 @@ def _noise_text(d: NoiseModel, names: Sequence[str]) -> NoiseText:
         tuple(_noise_row(state, q, "/√s") for state, q in active.items()),
         enumeration(quiet),
         tuple(_noise_row(channel, s, "") for channel, s in d.measurement.items()),
+        disturbance_rows(d.candidates),
     )
 
 

@@ -7,7 +7,6 @@ from seatrial.core.results.method_comparison import count_inside_own_intervals
 from seatrial.core.text.numbers import duration, estimate_text, exact, fixed, interval, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import Severity
-from seatrial.estimation.estimate.settings import WHITE_INFLATION
 from seatrial.reporting.identifiability_chapter import determined_sentence
 from seatrial.reporting.measures import (
     extrapolation_text,
@@ -228,17 +227,13 @@ def _prior_disagreement(fit: Fit) -> str:
 def _residuals(fit: Fit) -> str:
     if not fit.channel_noise:
         return ""
-    coloured = [
-        n.channel
-        for n, r in zip(fit.channel_noise, fit.residuals, strict=True)
-        if 1.0 + 2.0 * n.correlation_time * r.rate > WHITE_INFLATION
-    ]
+    coloured = [n.channel for n in fit.channel_noise if not n.is_white]
     if not coloured:
-        return "The residuals are white in all channels."
+        return "The residuals are white in all channels (Ljung-Box with 20 and 100 lags)."
     return (
-        f"The residuals are coloured in {len(coloured)} of {len(fit.channel_noise)} channels "
+        f"The residuals are not white in {len(coloured)} of {len(fit.channel_noise)} channels "
         f"({enumeration(coloured)}): model error "
-        "or disturbances remain. The intervals allow for their correlation."
+        "or disturbances remain."
     )
 
 

@@ -17,8 +17,6 @@ from seatrial.reporting.citations import Citations
 from seatrial.reporting.mathml import inline, pieces
 
 _SEVERITIES = (Severity.ERROR, Severity.WARNING, Severity.INFO)
-# significance level of the whiteness test
-WHITENESS_P = 0.01
 # findings of a group that are shown unfolded
 MAX_UNFOLDED = 3
 
@@ -180,7 +178,7 @@ def noise(items: Sequence[Noise]) -> list[dict[str, str]]:
             "deviation": significant(_display_value(n.standard_deviation, n.unit), 3),
             "time": significant(n.correlation_time, 2),
             "p": p_value(n.whiteness_p).removeprefix("p ").removeprefix("= "),
-            "verdict": "white" if n.whiteness_p >= WHITENESS_P else "coloured",
+            "verdict": "white" if n.is_white else "not white",
         }
         for n in items
     ]

@@ -11,6 +11,7 @@ from seatrial.core.equations.augment import (
     with_biases,
     with_gusts,
     with_lags,
+    with_waves,
 )
 from seatrial.core.values import InputError
 from seatrial.physics.models.nomoto import nomoto
@@ -22,7 +23,7 @@ INPUTS = 0.3 * np.sin(0.1 * np.arange(ROWS))[:, None]
 
 def test_a_gust_pushes_and_fades() -> None:
     """With r' = gust and nothing else, r = g0 tau (1 - exp(-t / tau)): damping and rudder switched off by T."""
-    model = with_gusts(nomoto().with_values({"T": 1e12}), ("r",), memory=2.0)
+    model = with_gusts(nomoto().with_values({"T": 1e12}), {"r": 2.0})
     assert model.states[-1] == gust_name("r") == "gust_r"
     start = np.zeros(5)
     start[-1] = 0.01
@@ -30,6 +31,20 @@ def test_a_gust_pushes_and_fades() -> None:
     time = DT * np.arange(ROWS)
     np.testing.assert_allclose(states[:, -1], 0.01 * np.exp(-time / 2.0), rtol=1e-6)
     np.testing.assert_allclose(states[:, 0], 0.02 * (1.0 - np.exp(-time / 2.0)), atol=1e-8)
+
+
+def test_a_wave_swings_and_fades() -> None:
+    """Free response of w'' + 2 zeta omega w' + omega^2 w = 0 from w0, and r' = w."""
+    omega, zeta = 0.8, 0.1
+    model = with_waves(nomoto().with_values({"T": 1e12}), ("r",), omega, zeta)
+    assert model.states[-2:] == ("wave_r", "wave_r_rate")
+    start = np.zeros(6)
+    start[-2] = 0.01
+    states, _ = trajectory(model, 0.0 * INPUTS, DT, start)
+    time, damped = DT * np.arange(ROWS), omega * np.sqrt(1.0 - zeta**2)
+    free = np.cos(damped * time) + zeta * omega / damped * np.sin(damped * time)
+    np.testing.assert_allclose(states[:, -2], 0.01 * np.exp(-zeta * omega * time) * free, atol=2e-8)
+    np.testing.assert_allclose(np.gradient(states[:, 0], DT)[1:-1], states[1:-1, -2], atol=3e-5)
 
 
 def test_biases_are_added_to_what_is_read() -> None:
@@ -50,7 +65,14 @@ def test_a_lagging_channel_follows() -> None:
     np.testing.assert_allclose(0.5 * np.gradient(late, DT)[1:-1], (states[:, 0] - late)[1:-1], atol=2e-5)
 
 
-@pytest.mark.parametrize("more", [lambda m: with_gusts(m, ("r",), 1.0), lambda m: with_lags(m, ("r",), 1.0)])
+@pytest.mark.parametrize(
+    "more",
+    [
+        lambda m: with_gusts(m, {"r": 1.0}),
+        lambda m: with_waves(m, ("r",), 1.0, 0.1),
+        lambda m: with_lags(m, ("r",), 1.0),
+    ],
+)
 def test_twice_the_same_is_refused(more) -> None:
     with pytest.raises(InputError, match="already"):
         more(more(nomoto()))

@@ -57,7 +57,7 @@ def fit() -> Fit:
         solution=Solution(np.arange(3.0) / 7.0, 1.5, Status.CONVERGED, 9, (3.0, 1.5), 4),
         method=Method("output error", "weak form", "information matrix", ("white residuals",), {"rate": 10.0}),
         offsets=(Offset("delta zero", "first", "rad", 0.01, None),),
-        channel_noise=(Noise("u", "m/s", 0.02, 0.1, math.nan),),
+        channel_noise=(Noise("u", "m/s", 0.02, 0.1, math.nan, False),),
         residuals=(Residuals("u", 10.0, np.arange(5.0) / 3.0, np.array([1.0, 0.1])),),
         predictions=(
             Prediction("first", "training", first, record("first", RecordKind.SIMULATED), {"u": 0.1}, {}, 2.0),

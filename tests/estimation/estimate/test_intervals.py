@@ -42,7 +42,7 @@ def made(model: Model, runs: int, seconds: float | None) -> PointEstimate:
 def test_white_residuals_get_the_information_matrix(model: Model) -> None:
     one = made(model, 6, None)
     interval = estimate_uncertainty(one, WHITE).interval
-    assert interval.meaning.startswith("information matrix (residuals are white)")
+    assert interval.meaning.startswith("information matrix, every sample counted as independent")
     np.testing.assert_allclose(interval.covariance, np.linalg.inv(one.optimum.normal.without_local()[1]), rtol=1e-8)
 
 

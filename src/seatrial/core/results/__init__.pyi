@@ -1,6 +1,8 @@
 """Results: fits, designs, tunings, studies and estimates on a stream, described field by field."""
 
-from seatrial.core.results.coefficients import CandidateModel, Coefficient, Method, Noise, NoiseModel, Offset, Residuals
+from seatrial.core.results.coefficients import (
+    CandidateModel, Coefficient, DisturbanceCandidate, Method, Noise, NoiseModel, Offset, Residuals,
+)  # fmt: skip
 from seatrial.core.results.design import Actuator, Confirmation, Design, ManoeuvrePrecision, TimedOrder, TrialLimits
 from seatrial.core.results.fit import Fit
 from seatrial.core.results.identifiability import (
@@ -22,7 +24,8 @@ from seatrial.numerics.optimise import Solution, Status
 
 __all__ = [
     "Actuator", "Bars", "Baseline", "CandidateModel", "Check", "CheckStatus", "Claim", "Coefficient",
-    "Collinearity", "Confirmation", "Consequence", "Curve", "Design", "Direction", "Extrapolation", "Figure",
+    "Collinearity", "Confirmation", "Consequence", "Curve", "Design", "Direction", "DisturbanceCandidate",
+    "Extrapolation", "Figure",
     "Fit", "Identifiability", "IntervalBasis", "IntervalEstimate", "ManoeuvrePrecision", "Matrix", "Measure",
     "Method", "Noise", "NoiseModel", "Offset", "OpenLoopScores", "PointMotion", "Prediction", "Profile",
     "ReferenceEstimate", "Residuals", "RollCharacteristics", "Seakeeping", "Search", "SearchRestart", "SearchTrack",

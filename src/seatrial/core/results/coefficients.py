@@ -121,8 +121,39 @@ class Noise:
     standard_deviation: Annotated[Number, Field(description="in `unit`")]
     correlation_time: Annotated[Number, Field(description="s, integral scale of the residuals' autocorrelation")]
     whiteness_p: Annotated[
-        Number, Field(description="p-value of a portmanteau test (Ljung & Box 1978) that the residuals are white")
+        Number,
+        Field(
+            description="twice the smaller p-value of two portmanteau tests (Ljung & Box 1978; 20 and 100 lags) that "
+            "the residuals are white, at most 1"
+        ),
     ]
+    is_white: Annotated[bool, Field(description="whether the channel passes the test")]
+
+
+@dataclass(frozen=True)
+class DisturbanceCandidate:
+    """One model of what disturbs the ship, fitted with the coefficients to the same records."""
+
+    name: Annotated[str, Field(description="kind of disturbance and the states it acts on")]
+    log_likelihood: Annotated[Number, Field(description="at its optimum, up to a constant that all candidates share")]
+    degrees_of_freedom: Annotated[int, Field(description="unknowns that describe the disturbance")]
+    likelihood_ratio: Annotated[Number, Field(description="twice the log-likelihood above that of the first candidate")]
+    critical_ratio: Annotated[Number, Field(description="what chance alone gives once in a thousand cases")]
+    whiteness_p: Annotated[
+        Number, Field(description="smallest p-value over the channels, times their number, that innovations are white")
+    ]
+    is_white: Annotated[bool, Field(description="whether the innovations pass the test")]
+    parameters: Annotated[
+        dict[str, Number], Field(description="memories [s], peak frequency of waves [rad/s] and its damping")
+    ]
+    held_out_score: Annotated[
+        Number | None,
+        Field(
+            description="mean log-likelihood of a sample in the last quarter of each run, predicted from the samples "
+            "before it by a fit to the other three quarters; null: not computed"
+        ),
+    ]
+    is_chosen: Annotated[bool, Field(description="whether it is behind the estimate")]
 
 
 @dataclass(frozen=True)
@@ -131,7 +162,11 @@ class NoiseModel:
 
     method: Annotated[str, Field(description="output error or prediction error, the criterion of the fit")]
     whiteness_p: Annotated[
-        Number, Field(description="smallest p-value over the channels that the residuals (innovations) are white")
+        Number,
+        Field(
+            description="smallest p-value over the channels, times their number, that the residuals (innovations) are "
+            "white"
+        ),
     ]
     process: Annotated[
         dict[str, Number],
@@ -139,6 +174,15 @@ class NoiseModel:
     ]
     measurement: Annotated[dict[str, Number], Field(description="channel -> standard deviation, SI")]
     text: Annotated[str, Field(description="why this criterion")] = ""
+    is_white: Annotated[bool, Field(description="whether all channels pass the test of whiteness")] = False
+    disturbance: Annotated[str, Field(description="kind of disturbance that the criterion allows for")] = "none"
+    added: Annotated[
+        dict[str, Number],
+        Field(description="its parameters: memories [s], peak frequency of waves [rad/s] and its damping"),
+    ] = field(default_factory=dict)
+    candidates: Annotated[
+        tuple[DisturbanceCandidate, ...], Field(description="disturbances that were compared; empty: none were needed")
+    ] = ()
 
 
 @dataclass(frozen=True, eq=False)

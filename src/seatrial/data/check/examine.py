@@ -6,6 +6,7 @@ from seatrial.core.values import Finding, Record, worst_first
 from seatrial.data.check.channels import channel_findings, lag_findings
 from seatrial.data.check.conventions import with_standard_signs
 from seatrial.data.check.dropped_rows import dropped_rows_findings
+from seatrial.data.check.feedback import feedback_findings
 from seatrial.data.check.kinematic_consistency import kinematic_consistency_findings
 from seatrial.data.check.repair import repair
 from seatrial.data.check.rudder import rudder_findings
@@ -17,6 +18,7 @@ from seatrial.data.check.yaw_rate_consistency import yaw_rate_findings
 _CHECKS_WITH_STANDARD_SIGNS = (
     velocity_convention_findings, kinematic_consistency_findings, yaw_rate_findings, rudder_findings, lag_findings,
     phase_findings,
+    feedback_findings,
 )  # fmt: skip
 
 

@@ -2,14 +2,22 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 import numpy as np
 
 from seatrial.core.values import Array, ProgressReporter
 from seatrial.data.trial import EstimateSettings, FitCriterion
-from seatrial.estimation.estimate.correlated_disturbances import select_disturbance_model
+from seatrial.estimation.estimate.disturbance_choice import DisturbanceChoice, choose_disturbance
+from seatrial.estimation.estimate.disturbance_screen import FAINT_HINT, HINT, spectral_hint
+from seatrial.estimation.estimate.input_offsets import with_input_offsets
 from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
-from seatrial.estimation.estimate.point_estimate import PointEstimate, residual_correlation, residual_spread
+from seatrial.estimation.estimate.point_estimate import (
+    PointEstimate,
+    residual_correlation,
+    residual_spread,
+    rounding_level,
+)
 from seatrial.estimation.estimate.process_noise import (
     ProcessNoise,
     fit_prediction_error,
@@ -18,6 +26,7 @@ from seatrial.estimation.estimate.process_noise import (
     implied_process_noise,
 )
 from seatrial.estimation.estimate.settings import WHITE_INFLATION
+from seatrial.estimation.information.whiteness import WhitenessTest, whiteness_test
 from seatrial.estimation.problem.output_error import OutputError
 
 PREDICTION_ERROR, WHOLE_RUNS = "prediction error", "output error over whole runs"
@@ -27,7 +36,15 @@ _COARSE_SAMPLES = "samples too far apart for prediction error, which takes input
 _FREE_DECAY = (
     "a free decay, which its initial state explains: whole runs show what one decay has in common with the next"
 )
-_WHITE = "residuals are white within segments and over whole runs: no process noise to guard against"
+WAVE_FORCES = ("F3", "M5")
+"""Inputs that are forces of recorded waves."""
+
+_WHITE = "no process noise was detected"
+_FEEDBACK = (
+    "inputs follow outputs, so that output error would take an unmodelled disturbance for the ship's response; none is "
+    "detected, and prediction error without one is output error"
+)
+_SPREAD = "intervals cover the spread between the disturbance models"
 # residuals over whole runs over those within segments that count as equal, ours
 _MAX_RESIDUAL_GROWTH = 1.05
 # rad from sample to sample, ours: straight lines between samples then lose 1 % of an input
@@ -43,6 +60,8 @@ class CriterionChoice:
     Attributes:
         residuals: simulated minus measured, under prediction error one step ahead, (rows, ny), SI.
         inflation: variance inflation of each channel's residuals, (ny,); rho: their autocorrelations.
+        whiteness: tests of the residuals (under prediction error of the normalised innovations).
+        disturbances: the disturbance models that were compared; None: none were.
         process: intensities of process noise that suit the estimate; noise: the prediction-error optimum, if used.
         beside: what suits an output-error estimate over a few whole runs, where it makes one-step residuals white.
     """
@@ -51,16 +70,25 @@ class CriterionChoice:
     residuals: Array
     inflation: Array
     rho: list[Array]
+    whiteness: WhitenessTest
     criterion: str
     reasons: tuple[str, ...]
     process_intensities: dict[str, float] = field(default_factory=dict)
     process_noise: ProcessNoise | None = None
     implied_noise: ProcessNoise | None = None
+    disturbances: DisturbanceChoice | None = None
 
     @property
-    def is_white(self) -> bool:
-        """Whether nothing but noise is left."""
+    def is_nearly_white(self) -> bool:
+        """Whether residuals are correlated so weakly that each sample counts as one."""
         return bool(np.max(self.inflation) <= WHITE_INFLATION)
+
+    def hints_at_disturbance(self, limit: float) -> bool:
+        """Whether the residuals fail a test of whiteness, or their spectrum rises to low frequencies by `limit`."""
+        if not has_noise(self.estimate):
+            return False
+        pieces = [self.residuals[a:b] for a, b in pairwise(self.estimate.problem.data.offsets)]
+        return not self.whiteness.is_white or spectral_hint(pieces) > limit
 
     def with_reasons(self, *reasons: str) -> "CriterionChoice":
         """The same with more reasons."""
@@ -75,45 +103,59 @@ def choose_criterion(
     fit_whole_runs: Callable[[], PointEstimate | None],
     report_progress: ProgressReporter | None,
     *,
+    begun: PointEstimate | None = None,
     is_unforced: bool = False,
+    has_feedback: bool = False,
 ) -> CriterionChoice:
     """The criterion to use; `shooting` is the estimate over segments of `seconds`, `whole_runs` makes the other one.
 
-    is_unforced: nothing moves the ship but its initial state.
+    begun: where the search began, from which prediction error may start too.
+    is_unforced: nothing moves the ship but its initial state; has_feedback: inputs follow outputs.
     """
+    other = None if begun is None else with_input_offsets(begun)
     shot = _output_error_choice(shooting, _output_error_name(seconds))
     match settings.criterion:
         case FitCriterion.OUTPUT_ERROR | FitCriterion.MULTIPLE_SHOOTING:
             return _required_choice(shot, settings, noise, "the criterion is set by the trial")
         case FitCriterion.PREDICTION_ERROR:
-            process_noise = fit_prediction_error(shooting, noise, thorough=True, report_progress=report_progress)
-            return _prediction_error_choice(process_noise, "it is set by the trial", process_noise.test.summary)
+            white = fit_prediction_error(
+                with_input_offsets(shooting), noise, other=other, thorough=True, report_progress=report_progress
+            )
+            disturbances = choose_disturbance(white, report_progress=report_progress)
+            return _prediction_error_choice(disturbances, "it is set by the trial", disturbances.summary)
         case FitCriterion.AUTO if is_unforced and _is_explained(shot):
             return _required_choice(shot, settings, noise, _FREE_DECAY)
         case FitCriterion.AUTO:
             pass
     if settings.segment_s is not None:
         return _required_choice(shot, settings, noise, "the length of segments is set by the trial")
-    over_runs = _whole_runs_choice(shot, fit_whole_runs()) if shot.is_white else None
-    if over_runs is not None and over_runs.is_white:
-        return over_runs.with_reasons(_WHITE)
-    if shot.is_white and over_runs is None:
+    over_runs = _whole_runs_choice(shot, fit_whole_runs()) if shot.is_nearly_white else None
+    limit = FAINT_HINT if has_feedback else HINT
+    in_waves = set(WAVE_FORCES) & set(shooting.problem.model.input_names)  # recorded forces explain what moves the ship
+    if over_runs is not None and over_runs.is_nearly_white and (in_waves or not over_runs.hints_at_disturbance(limit)):
+        return over_runs.with_reasons(_WHITE, *([_FEEDBACK] if has_feedback else []))
+    if shot.is_nearly_white and over_runs is None:
         shot = shot.with_reasons("whole runs do not fit within the noise of the segments")
     if settings.robust or not has_noise(shooting):
         return shot.with_reasons(_CORRELATED, _SEGMENTED)
     if is_coarsely_sampled(shooting.problem):
         return shot.with_reasons(_CORRELATED, _COARSE_SAMPLES)
-    process_noise = fit_prediction_error(shooting, noise, report_progress=report_progress)
-    if process_noise.test.is_needed and not process_noise.test.is_white:
-        process_noise = select_disturbance_model(process_noise, report_progress=report_progress)
-    if process_noise.test.favours_prediction_error:
-        added = (f"added to the model: {process_noise.disturbance_model}",) if process_noise.disturbance_model else ()
-        return _prediction_error_choice(process_noise, *shot.reasons, process_noise.test.summary, *added)
-    if over_runs is not None and not process_noise.test.is_needed:
-        return over_runs.with_reasons(process_noise.test.summary)
-    return replace(
-        shot.with_reasons(process_noise.test.summary, _SEGMENTED), process_intensities=process_noise.process_intensities
+    white = fit_prediction_error(
+        with_input_offsets(shooting), noise, other=other, thorough=not in_waves, report_progress=report_progress
     )
+    if np.isnan(white.newton_decrement):  # not searched: no disturbance makes such innovations white
+        return replace(shot.with_reasons(white.test.summary, _SEGMENTED), process_intensities=white.process_intensities)
+    disturbances = choose_disturbance(white, needs_disturbance=has_feedback, report_progress=report_progress)
+    best = disturbances.chosen.noise
+    if over_runs is not None and over_runs.whiteness.is_white and not disturbances.chosen.unknown_count:
+        return replace(over_runs.with_reasons(disturbances.summary), disturbances=disturbances)
+    if best.test.is_nearly_white or has_feedback:
+        reasons = (*shot.reasons, disturbances.summary)
+        return _prediction_error_choice(disturbances, *reasons, *([] if best.test.is_white else [_SPREAD]))
+    return replace(
+        shot.with_reasons(disturbances.summary, _SEGMENTED, _SPREAD),
+        process_intensities=best.process_intensities, disturbances=disturbances,
+    )  # fmt: skip
 
 
 def is_coarsely_sampled(problem: OutputError) -> bool:
@@ -138,7 +180,7 @@ def _required_choice(
     shooting: CriterionChoice, settings: EstimateSettings, noise: Mapping[str, float], reason: str
 ) -> CriterionChoice:
     """The user's own choice; what it leaves coloured is measured as process noise, for the floor of predictions."""
-    if shooting.is_white or not has_noise(shooting.estimate):
+    if shooting.is_nearly_white or not has_noise(shooting.estimate):
         return shooting.with_reasons(reason)
     if (
         shooting.criterion == WHOLE_RUNS
@@ -146,7 +188,7 @@ def _required_choice(
         and not settings.robust
     ):
         implied = implied_process_noise(shooting.estimate, noise)
-        compatible = implied if implied.test.is_white else None
+        compatible = implied if implied.test.is_nearly_white else None
         return replace(
             shooting.with_reasons(reason, _CORRELATED),
             process_intensities=implied.process_intensities,
@@ -182,18 +224,27 @@ def _output_error_name(seconds: float) -> str:
 
 
 def _output_error_choice(estimate: PointEstimate, criterion: str) -> CriterionChoice:
-    residuals = estimate.residuals()
-    rho, inflation = residual_correlation(estimate.problem, residuals)
+    problem, residuals = estimate.problem, estimate.residuals()
+    rho, inflation = residual_correlation(problem, residuals)
+    whiteness = whiteness_test([residuals[a:b] for a, b in pairwise(problem.data.offsets)])
+    is_silent = problem.noise <= rounding_level(problem)  # the colour of rounding errors says nothing about the ship
+    whiteness = WhitenessTest(np.where(is_silent, 1.0, whiteness.p_values))
     where = "over whole runs" if criterion == WHOLE_RUNS else "within segments"
-    said = f"the residuals' correlation {where} inflates variances by {np.max(inflation):.3g}"
+    p = f"Ljung-Box, p {whiteness.smallest:.2g}"
+    text = f"the residuals {where} are white ({p})"
+    if not whiteness.is_white:
+        effect = f"their correlation inflates variances by {np.max(inflation):.3g}"
+        text = f"the residuals {where} are not white ({p}): {effect}"
     if np.max(inflation) > WHITE_INFLATION:
-        said += ", and correlated samples count as their effective number, so that priors keep their weight"
-    return CriterionChoice(estimate, residuals, inflation, rho, criterion, (said,))
+        text += ", and correlated samples count as their effective number, so that priors keep their weight"
+    return CriterionChoice(estimate, residuals, inflation, rho, whiteness, criterion, (text,))
 
 
-def _prediction_error_choice(noise: ProcessNoise, *reasons: str) -> CriterionChoice:
-    made, innovations = noise.as_point_estimate(), noise.problem.innovations(noise.optimum.solution.point)
-    rho, inflation = residual_correlation(made.problem, innovations.normalised)
+def _prediction_error_choice(disturbances: DisturbanceChoice, *reasons: str) -> CriterionChoice:
+    noise = disturbances.chosen.noise
+    estimate, innovations = noise.as_point_estimate(), noise.problem.innovations(noise.optimum.solution.point)
+    rho, inflation = residual_correlation(estimate.problem, innovations.normalised)
     return CriterionChoice(
-        made, -innovations.e, inflation, rho, PREDICTION_ERROR, reasons, noise.process_intensities, noise
-    )
+        estimate, -innovations.e, inflation, rho, noise.test.whiteness, PREDICTION_ERROR, reasons,
+        noise.process_intensities, noise, disturbances=disturbances,
+    )  # fmt: skip

@@ -9,6 +9,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results import NoiseModel
 from seatrial.core.values import Array, InputError, ProgressReporter, Record
+from seatrial.data.check.feedback import has_feedback
 from seatrial.data.trial import EstimateSettings, FitCriterion
 from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.estimate.criterion_choice import PREDICTION_ERROR, CriterionChoice, choose_criterion
@@ -17,7 +18,9 @@ from seatrial.estimation.estimate.intervals import (
     estimate_uncertainty,
     innovations_uncertainty,
     refuse_few_runs,
+    with_spread,
 )
+from seatrial.estimation.estimate.plausibility import refuse_implausible
 from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error
 from seatrial.estimation.estimate.process_noise_interval import process_noise_interval
 from seatrial.estimation.estimate.runs import Runs
@@ -28,10 +31,10 @@ from seatrial.estimation.estimate.settings import (
     EstimatorOptions,
     IntervalMethod,
 )
-from seatrial.estimation.estimate.start import find_start
+from seatrial.estimation.estimate.start import SearchStart, find_start
 from seatrial.estimation.estimate.time_scale import characteristic_time, is_pure_roll
-from seatrial.estimation.information.autocorrelation import whiteness_p
 from seatrial.estimation.information.covariance import Interval, inverse
+from seatrial.estimation.information.whiteness import WhitenessTest
 
 _MIN_RUDDER_RANGE = float(np.radians(0.5))
 """Range of rudder angle [rad] that counts as a manoeuvre: 0.5 deg, chosen."""
@@ -47,6 +50,7 @@ class Estimation:
         uncertainty: intervals of all shared unknowns, and the estimates they rest on.
         residuals: simulated minus measured, under prediction error one step ahead, (rows, ny), SI.
         inflation: variance inflation of each channel's residuals; rho: their autocorrelations.
+        whiteness: tests of the residuals.
         disturbance: what is between model and records, and why this criterion.
         start: where the search began, in words.
         criterion, reasons: what was used, and why.
@@ -58,6 +62,7 @@ class Estimation:
     residuals: Array
     inflation: Array
     rho: list[Array]
+    whiteness: WhitenessTest
     noise_model: NoiseModel
     start_method: str
     criterion: str
@@ -137,7 +142,8 @@ def estimate_model(
     over whole runs or prediction error with process noise, unless a criterion or a segment length is set.
 
     Raises:
-        InputError: no excitation, no free parameter, outputs that cannot be compared, or a search that cannot begin.
+        InputError: no excitation, no free parameter, outputs that cannot be compared, a search that cannot begin, or
+            one that ends outside physics.
     """
     began = time.perf_counter()
     options, settings = options or EstimatorOptions(), with_segment_seconds(settings or EstimateSettings(), model, runs)
@@ -167,12 +173,18 @@ def estimate_model(
 
     is_unforced = is_pure_roll(model) and not moving_inputs(model, runs.records)
     choice = choose_criterion(
-        shooting, seconds, settings, runs.noise, whole_runs, report_progress, is_unforced=is_unforced
-    )
+        shooting, seconds, settings, runs.noise, whole_runs, report_progress, is_unforced=is_unforced,
+        begun=_begun(shooting, start),
+        has_feedback=any(has_feedback(record) for record in runs.records),
+    )  # fmt: skip
     criterion = f"{choice.criterion}, Huber loss" if settings.robust else choice.criterion
+    uncertainty = _uncertainty(choice, options, report)
+    estimate = choice.estimate
+    refuse_implausible(estimate, uncertainty.interval.standard_error)
     return Estimation(
-        choice.estimate, shooting, _uncertainty(choice, options, report), choice.residuals, choice.inflation,
-        choice.rho, _noise_model(choice), start.origin, criterion, choice.reasons, time.perf_counter() - began,
+        estimate, shooting, uncertainty, choice.residuals, choice.inflation,
+        choice.rho, choice.whiteness, _noise_model(choice), start.origin, criterion, choice.reasons,
+        time.perf_counter() - began,
     )  # fmt: skip
 
 
@@ -192,24 +204,37 @@ def _uncertainty(choice: CriterionChoice, options: EstimatorOptions, report_prog
     if choice.implied_noise is not None and options.intervals in (IntervalMethod.AUTO, IntervalMethod.PROFILE):
         interval = process_noise_interval(choice.estimate, choice.implied_noise)
         return Uncertainty(interval, information=inverse(interval.covariance))
-    if choice.process_noise is None:
-        rng = np.random.default_rng(options.seed)
-        return estimate_uncertainty(choice.estimate, choice.inflation, options.intervals, rng, counted)
-    return innovations_uncertainty(choice.process_noise, options.intervals)
+    if choice.disturbances is not None and choice.process_noise is not None:
+        return innovations_uncertainty(choice.disturbances, options.intervals)
+    rng = np.random.default_rng(options.seed)
+    uncertainty = estimate_uncertainty(choice.estimate, choice.inflation, options.intervals, rng, counted)
+    if choice.disturbances is None or choice.whiteness.is_white:
+        return uncertainty
+    estimate = choice.estimate
+    widened = with_spread(uncertainty.interval, choice.disturbances, estimate.problem.free, estimate.common_parameters)
+    return replace(uncertainty, interval=widened)
 
 
 def _noise_model(choice: CriterionChoice) -> NoiseModel:
     """Noise in states and channels; intensities that do not make the innovations white bound the process noise."""
-    data = choice.estimate.problem.data
-    samples = np.isfinite(data.measured).sum(axis=0)
-    tests = [whiteness_p(r, int(n)) for r, n in zip(choice.rho, samples, strict=True)]
+    noise, compared = choice.process_noise, choice.disturbances
     return NoiseModel(
-        "output error" if choice.process_noise is None else PREDICTION_ERROR,
-        float(min(1.0, len(tests) * min(tests))),
+        "output error" if noise is None else PREDICTION_ERROR,
+        choice.whiteness.smallest,
         choice.process_intensities,
-        dict(zip(data.outputs, map(float, choice.estimate.problem.noise), strict=True)),
+        dict(zip(choice.estimate.problem.data.outputs, map(float, choice.estimate.problem.noise), strict=True)),
         "; ".join(dict.fromkeys(choice.reasons)),
+        is_white=choice.whiteness.is_white,
+        disturbance="none" if noise is None else noise.disturbance_model,
+        added={} if noise is None else noise.added_parameters,
+        candidates=() if compared is None else compared.rows(is_used=noise is not None),
     )
+
+
+def _begun(shooting: PointEstimate, start: SearchStart) -> PointEstimate:
+    """The start of the search as an estimate of its own, with the noise that the search ended with."""
+    solution = replace(shooting.optimum.solution, point=start.common_parameters)
+    return PointEstimate(shooting.problem, replace(shooting.optimum, solution=solution, local=start.initial_states))
 
 
 def _fit_whole_runs(

@@ -1,12 +1,13 @@
 """Which interval is defensible for this fit, and the interval itself."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatrial.core.values import Array, InputError
+from seatrial.estimation.estimate.disturbance_choice import DisturbanceChoice
 from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.estimate.process_noise import ProcessNoise
 from seatrial.estimation.estimate.resampling import ReportCount, bootstrap_fits, full_jackknife, one_step_jackknife
 from seatrial.estimation.estimate.settings import WHITE_INFLATION, IntervalMethod
 from seatrial.estimation.information.covariance import (
@@ -98,11 +99,13 @@ def estimate_uncertainty(
     return Uncertainty(replace(from_information(hessian), meaning=meaning))
 
 
-def innovations_uncertainty(noise: ProcessNoise, kind: IntervalMethod) -> Uncertainty:
+def innovations_uncertainty(disturbances: DisturbanceChoice, kind: IntervalMethod) -> Uncertainty:
     """Intervals of a prediction-error estimate: its information matrix; runs left out where innovations are not white.
 
-    Full refits and a bootstrap would cost a search each and are not offered: one step stands for them, and says so.
+    With too few runs for that, the spread between the disturbance models is added. Full refits and a bootstrap would
+    cost a search each and are not offered: one step stands for them, and says so.
     """
+    noise = disturbances.chosen.noise
     runs = len(noise.output_error.data.runs)
     steps = noise.leave_one_out if runs >= RUNS_FOR_JACKKNIFE else None
     wanted = kind in (IntervalMethod.JACKKNIFE, IntervalMethod.BOOTSTRAP)
@@ -112,7 +115,25 @@ def innovations_uncertainty(noise: ProcessNoise, kind: IntervalMethod) -> Uncert
         widened = with_prior(made, noise.information, precision)
         count = len(noise.output_error.free)
         return Uncertainty(_offsets_by_information(widened, noise.information, count), steps)
-    return Uncertainty(noise.interval, steps)
+    interval = noise.interval
+    return Uncertainty(
+        interval
+        if noise.test.is_white
+        else with_spread(interval, disturbances, noise.output_error.free, noise.common_parameters),
+        steps,
+    )
+
+
+def with_spread(
+    interval: Interval, disturbances: DisturbanceChoice, free: Sequence[str], common_parameters: Array
+) -> Interval:
+    """The interval with the scatter of the disturbance models about the estimate added to that of its coefficients."""
+    k = len(free)
+    covariance = interval.covariance.copy()
+    covariance[:k, :k] += disturbances.spread(common_parameters[:k])
+    return replace(
+        interval, covariance=covariance, meaning=f"{interval.meaning}, with the spread of disturbance models"
+    )
 
 
 def refuse_few_runs(kind: IntervalMethod, runs: int) -> None:

@@ -9,7 +9,8 @@ from scipy.special import chdtrc
 
 from seatrial.core.values import Array
 from seatrial.estimation.estimate.settings import WHITE_INFLATION
-from seatrial.estimation.information.autocorrelation import autocorrelation, variance_inflation, whiteness_p
+from seatrial.estimation.information.autocorrelation import autocorrelation, variance_inflation
+from seatrial.estimation.information.whiteness import WhitenessTest, whiteness_test
 from seatrial.estimation.problem.prediction_error import PredictionError
 from seatrial.estimation.problem.segments import Segments
 
@@ -29,15 +30,14 @@ class ProcessNoiseTest:
         limit: what chance alone exceeds once in a thousand cases.
         inflation_without, inflation: variance inflation of each channel's normalised innovations without and with
             process noise, (ny,); NaN where no fit without it was made.
-        whiteness_p: smallest p-value over the channels that the innovations are white (Ljung & Box 1978), times ny.
-        text: the verdict in words.
+        whiteness: of the normalised innovations with process noise.
     """
 
     likelihood_ratio: float
     critical_value: float
     inflation_without: Array
     inflation: Array
-    whiteness_p: float
+    whiteness: WhitenessTest
 
     @property
     def is_needed(self) -> bool:
@@ -47,17 +47,34 @@ class ProcessNoiseTest:
     @property
     def is_white(self) -> bool:
         """Innovations are white: nothing is left to explain."""
-        return bool(np.max(self.inflation) <= WHITE_INFLATION)
+        return self.whiteness.is_white
+
+    @property
+    def is_nearly_white(self) -> bool:
+        """Innovations are white, or correlated so weakly that what is left to explain hardly changes the estimate."""
+        return self.is_white or bool(np.max(self.inflation) <= WHITE_INFLATION)
 
     @property
     def favours_prediction_error(self) -> bool:
         """Prediction error is the criterion to use."""
-        return self.is_needed and self.is_white
+        return self.is_needed and self.is_nearly_white
+
+    @property
+    def innovations_text(self) -> str:
+        """Whether the innovations are white, with the test's number, in words."""
+        p, after = f"p {self.whiteness.smallest:.2g}", float(np.max(self.inflation))
+        if self.is_white:
+            return f"innovations are white (Ljung-Box, {p})"
+        effect = "weakly" if self.is_nearly_white else "strongly"
+        return (
+            f"innovations are not white (Ljung-Box, {p}) and {effect} correlated (variance inflation {after:.3g}): "
+            "model error, or a disturbance of another kind"
+        )
 
     @property
     def summary(self) -> str:
         """The verdict in words."""
-        before, after = float(np.max(self.inflation_without)), float(np.max(self.inflation))
+        before = float(np.max(self.inflation_without))
         if not self.is_needed:
             return (
                 f"no process noise: it raises twice the log-likelihood by {self.likelihood_ratio:.3g} only, "
@@ -67,9 +84,7 @@ class ProcessNoiseTest:
         why = f"without process noise {seen}twice the log-likelihood is {self.likelihood_ratio:.3g} lower"
         if np.isinf(self.likelihood_ratio):
             why = "without process noise the model diverges over whole runs"
-        if self.is_white:
-            return f"process noise: {why}; with it innovations are white (inflation {after:.3g})"
-        return f"{why}; with it innovations stay coloured (inflation {after:.3g}): model error or coloured disturbances"
+        return f"process noise: {why}; with it {self.innovations_text}"
 
 
 def likelihood_ratio_test(
@@ -80,16 +95,15 @@ def likelihood_ratio_test(
     before: normalised innovations (rows, ny) without process noise, where that was fitted.
     """
     data, ny = problem.runs.data, len(problem.runs.data.outputs)
-    rho, inflation = innovation_correlation(problem, point)
-    samples = np.isfinite(data.measured).sum(axis=0)
+    normalised = problem.innovations(point).normalised
     return ProcessNoiseTest(
         likelihood_ratio=max(2.0 * (cost_without - cost_with), 0.0),
         critical_value=boundary_quantile(len(problem.process), CONFIDENCE_LEVEL),
         inflation_without=np.full(ny, np.nan)
         if innovations_without is None
         else _inflation(_autocorrelations(data, innovations_without)),
-        inflation=inflation,
-        whiteness_p=min(1.0, ny * min(whiteness_p(r, int(n)) for r, n in zip(rho, samples, strict=True))),
+        inflation=_inflation(_autocorrelations(data, normalised)),
+        whiteness=whiteness_test([normalised[a:b] for a, b in pairwise(data.offsets)]),
     )
 
 

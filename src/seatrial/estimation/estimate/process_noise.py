@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from seatrial.core.equations.augment import GUST_MEMORY, gust_name
+from seatrial.core.equations.augment import gust_name, memory_name
 from seatrial.core.values import Array, Index, InputError, ProgressReporter, spelling_hint
 from seatrial.data.check.signal import sample_noise
 from seatrial.estimation.estimate.likelihood_ratio import (
@@ -34,6 +34,10 @@ _SCAN_SHARES = 10.0 ** np.arange(-3.0, 0.5, 0.5)
 _ROUGH, _NEGLIGIBLE, _MAX_DECREMENT = 1.0, 1e-3, 1e-3
 # most steps by the exact gradient, ours
 _NEWTON_STEPS = 6
+# promised decrease of the cost at which the search without process noise ends, ours
+_ROUGHLY_NEGLIGIBLE = 1e-2
+# how far a state moves at least, SI, where nothing measures it; chosen
+_LEAST_SPREAD = 1e-6
 # the filter eliminates initial states: there are no local unknowns
 _NO_INITIAL_STATES = np.zeros((0, 0))
 # of the search for intensities alone, ours
@@ -54,7 +58,7 @@ class ProcessNoise:
             where the coefficients were not searched.
         runs: the output-error problem over whole runs that it was made from; `problem.runs` is another one where the
             model has more states (gusts with a memory, biases, lags), whose parameters stand behind the free ones.
-        colours: what was added to the model, in words; empty: nothing.
+        disturbance_model: the disturbance in words.
     """
 
     problem: PredictionError
@@ -62,7 +66,7 @@ class ProcessNoise:
     newton_decrement: float
     test: ProcessNoiseTest
     output_error: OutputError
-    disturbance_model: str = ""
+    disturbance_model: str = "white"
 
     @property
     def common_parameters(self) -> Array:
@@ -76,10 +80,21 @@ class ProcessNoise:
         Of a gust with a memory that of the white noise with the same effect over longer times.
         """
         names, q = self.problem.process, self.problem.split(self.optimum.solution.point)[1]
-        found = dict(zip(names, map(float, q), strict=True))
-        memory = self.added_parameters.get(GUST_MEMORY, 1.0)
-        found |= {s: found[gust_name(s)] * memory for s in self.output_error.model.states if gust_name(s) in found}
-        return {s: v for s, v in found.items() if s in self.output_error.model.states}
+        intensities, states = dict(zip(names, map(float, q), strict=True)), self.output_error.model.states
+        memories = self.added_parameters
+        gusts = {s: intensities[gust_name(s)] * memories[memory_name(s)] for s in states if gust_name(s) in intensities}
+        return {s: v for s, v in intensities.items() if s in states} | gusts
+
+    @property
+    def state_spread(self) -> Array:
+        """How far each driven state of the caller's model moves in the records, SI: measured, or at its start."""
+        model, data = self.output_error.model, self.output_error.data
+        spread = np.sqrt(np.max(self.problem.start_variance, axis=0))[: len(model.states)]
+        for i, state in enumerate(model.states):
+            if state in data.outputs:
+                spread[i] = np.nanstd(data.measured[:, data.outputs.index(state)])
+        driven = [s for s in self.problem.process if s in model.states]
+        return np.maximum(spread[[model.states.index(s) for s in driven]], _LEAST_SPREAD)
 
     @property
     def added_parameters(self) -> dict[str, float]:
@@ -148,8 +163,12 @@ class ProcessNoise:
 
     def _eliminate_noise(self, normal: NormalEquations) -> tuple[Array, Array]:
         kept, others = self._common_indices, np.setdiff1d(self._free_indices, self._common_indices)
-        cross = normal.hessian[np.ix_(kept, others)]
-        solved = np.linalg.solve(normal.hessian[np.ix_(others, others)], cross.T)
+        cross, inner = normal.hessian[np.ix_(kept, others)], normal.hessian[np.ix_(others, others)]
+        scale = 1.0 / np.sqrt(np.maximum(np.diag(inner), 1e-300))
+        # least squares: the memory of a gust without intensity has no influence
+        solved = (
+            scale[:, None] * np.linalg.lstsq(inner * scale[:, None] * scale, scale[:, None] * cross.T, rcond=1e-12)[0]
+        )
         return normal.gradient[kept], normal.hessian[np.ix_(kept, kept)] - cross @ solved
 
 
@@ -170,14 +189,14 @@ def implied_intensities(estimate: PointEstimate, known_noise: Mapping[str, float
     chosen = np.concatenate([data.run_segments(int(r)) for r in runs])
     problem = replace(estimate.problem, data=data.selected(chosen))
     part = PointEstimate(problem, replace(estimate.optimum, local=estimate.optimum.local[chosen]))
-    begun = _initial_problem(part, known_noise, ())
+    begun = initial_problem(part, known_noise, ())
     squares = _fit_intensities(begun, part)[: len(begun.process)]
     return dict(zip(begun.process, np.sqrt(squares).tolist(), strict=True))
 
 
 def implied_process_noise(estimate: PointEstimate, known_noise: Mapping[str, float]) -> ProcessNoise:
     """Noise in the states and in the channels that suits the estimate as it is, over all its runs, with its gate."""
-    problem = _initial_problem(estimate, known_noise, ())
+    problem = initial_problem(estimate, known_noise, ())
     return _without_search(problem, np.concatenate([estimate.common_parameters, _fit_intensities(problem, estimate)]))
 
 
@@ -186,6 +205,7 @@ def fit_prediction_error(
     known_noise: Mapping[str, float] | None = None,
     driven_states: tuple[str, ...] = (),
     *,
+    other: PointEstimate | None = None,
     thorough: bool = False,
     evaluations: int = 60,
     report_progress: ProgressReporter | None = None,
@@ -196,9 +216,11 @@ def fit_prediction_error(
     the gradient of the likelihood itself by central differences of the innovations, until it vanishes.
 
     Args:
-        made: over segments or whole runs; its robust loss is not kept, outliers must be gone.
-        known: standard deviations of channels that are not estimated, SI.
-        driven: states with process noise; empty: all that are no kinematics.
+        estimate: over segments or whole runs; its robust loss is not kept, outliers must be gone.
+        known_noise: standard deviations of channels that are not estimated, SI.
+        driven_states: states with process noise; empty: all that are no kinematics.
+        other: another point of the same problem, from which the search starts if that is likelier: disturbances and
+            feedback can lead output error far astray.
         thorough: search the coefficients even where the innovations cannot become white.
 
     Returns:
@@ -209,15 +231,23 @@ def fit_prediction_error(
         InputError: a driven state is none of the model's, or reaches no compared channel.
     """
     report = report_progress or (lambda _: None)
-    problem = _initial_problem(estimate, known_noise or {}, driven_states)
     report("process noise: intensities")
-    point = np.concatenate([estimate.common_parameters, _fit_intensities(problem, estimate)])
+    begun = [(e, *_begun(e, known_noise or {}, driven_states)) for e in (estimate, other) if e is not None]
+    estimate, problem, point = min(begun, key=lambda one: one[1].cost(one[2], _NO_INITIAL_STATES))
     if not thorough and np.max(innovation_correlation(problem, point)[1]) > _HOPELESS_INFLATION:
         return _without_search(problem, point)
     exact, found, slope = search_prediction_error(problem, point, evaluations, report)
     cost, before = _cost_without_process_noise(problem, estimate, found.solution.point)
     verdict = likelihood_ratio_test(exact, found.solution.point, found.normal.cost, cost, before)
     return ProcessNoise(exact, found, slope, verdict, problem.runs)
+
+
+def _begun(
+    estimate: PointEstimate, known_noise: Mapping[str, float], driven_states: tuple[str, ...]
+) -> tuple[PredictionError, Array]:
+    """The problem and its point with intensities that suit the estimate as it is."""
+    problem = initial_problem(estimate, known_noise, driven_states)
+    return problem, np.concatenate([estimate.common_parameters, _fit_intensities(problem, estimate)])
 
 
 def search_prediction_error(
@@ -245,7 +275,7 @@ def _without_search(problem: PredictionError, point: Array) -> ProcessNoise:
     return ProcessNoise(problem, optimum, np.nan, verdict, problem.runs)
 
 
-def _initial_problem(
+def initial_problem(
     estimate: PointEstimate, known_noise: Mapping[str, float], driven_states: tuple[str, ...]
 ) -> PredictionError:
     """The problem with its initial states."""
@@ -287,7 +317,7 @@ def _state_spread(estimate: PointEstimate, states: tuple[str, ...]) -> Array:
             spread.append(np.nanstd(estimate.problem.data.measured[:, outputs.index(state)]))
         else:
             spread.append(np.std(estimate.optimum.local[:, starts.index(state)]) if state in starts else 0.0)
-    return np.maximum(spread, 1e-6)
+    return np.maximum(spread, _LEAST_SPREAD)
 
 
 def _fit_intensities(problem: PredictionError, estimate: PointEstimate) -> Array:
@@ -354,6 +384,12 @@ def _refine(problem: PredictionError, optimum: Optimum) -> tuple[PredictionError
     return exact, Optimum(solution, _NO_INITIAL_STATES, normal), slope
 
 
+def newton_step(problem: PredictionError, point: Array) -> Array:
+    """The point after one full Newton step, within the bounds."""
+    step, _ = _newton_step(problem, point, problem.normal(point, _NO_INITIAL_STATES))
+    return np.clip(point + step, problem.lower, problem.upper)
+
+
 def _newton_step(problem: PredictionError, point: Array, normal: NormalEquations) -> tuple[Array, float]:
     """Newton step of the unknowns that no bound holds, and half the squared gradient in the information's metric."""
     low, high, slope = problem.lower, problem.upper, normal.gradient
@@ -378,5 +414,7 @@ def _cost_without_process_noise(
     if not np.any(np.isfinite(costs)):
         return np.inf, None
     begin = begins[int(np.argmin(costs))]
-    found = levenberg_marquardt(quiet, begin, _NO_INITIAL_STATES, negligible=1e-2, evaluations=_FEW_EVALUATIONS)
+    found = levenberg_marquardt(
+        quiet, begin, _NO_INITIAL_STATES, negligible=_ROUGHLY_NEGLIGIBLE, evaluations=_FEW_EVALUATIONS
+    )
     return found.normal.cost, quiet.innovations(found.solution.point).normalised

@@ -5,10 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatrial.core.values import NOTATION, InputError, Record, display_unit
+from seatrial.estimation.estimate.criterion_choice import WAVE_FORCES
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.settings import WHITE_INFLATION
-
-WAVE_FORCES = ("F3", "M5")
 
 
 def refuse_unmeasured_waves(estimation: Estimation, records: Sequence[Record]) -> None:

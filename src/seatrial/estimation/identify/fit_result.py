@@ -9,7 +9,6 @@ from seatrial.core.results import Coefficient, Method, Noise, Offset, Profile, R
 from seatrial.core.values import NOTATION, Array, DivergedError, Finding, InputError, Parameter, Parameters, Severity
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import split_segments
-from seatrial.estimation.information.autocorrelation import whiteness_p
 from seatrial.estimation.information.covariance import Interval
 
 NO_PROFILE = Finding(
@@ -82,15 +81,15 @@ def offsets(estimation: Estimation) -> tuple[Offset, ...]:
 
 def noise(estimation: Estimation) -> tuple[Noise, ...]:
     """Noise of each compared channel and the colour of its residuals."""
-    problem = estimation.estimate.problem
-    samples = np.isfinite(problem.data.measured).sum(axis=0)
+    problem, whiteness = estimation.estimate.problem, estimation.whiteness
     return tuple(
         Noise(
             channel,
             NOTATION[channel].unit if channel in NOTATION else "1",
             float(problem.noise[i]),
             float(0.5 * (estimation.inflation[i] - 1.0) * problem.data.dt),
-            whiteness_p(estimation.rho[i], int(samples[i])),
+            float(whiteness.p_values[i]),
+            bool(whiteness.p_values[i] >= whiteness.level),
         )
         for i, channel in enumerate(problem.data.outputs)
     )

@@ -8,10 +8,10 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
 from seatrial.data.trial import TrialRecord
+from seatrial.estimation.estimate.criterion_choice import WAVE_FORCES
 from seatrial.estimation.estimate.fit import moving_inputs
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.time_scale import is_pure_roll
-from seatrial.estimation.estimate.unmeasured_waves import WAVE_FORCES
 
 WAVE_SLOPE = "alpha_w"
 """The input by which waves drive roll."""

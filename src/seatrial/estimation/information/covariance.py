@@ -40,7 +40,7 @@ def inverse(hessian: Array) -> Array:
 
 def from_information(hessian: Array) -> Interval:
     """Inverse of the Fisher information: the Cramer-Rao bound (Rao 1945), for white residuals."""
-    return Interval(inverse(hessian), np.inf, "information matrix (residuals are white)")
+    return Interval(inverse(hessian), np.inf, "information matrix, every sample counted as independent")
 
 
 def jackknife_steps(hessian: Array, run_gradients: Array, run_hessians: Array) -> Array:

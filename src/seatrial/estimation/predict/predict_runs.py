@@ -61,7 +61,7 @@ def prediction_uncertainty(estimation: Estimation) -> PredictionUncertainty:
     if len(offsets) > 1:
         between = np.atleast_2d(np.cov(offsets, rowvar=False))
     else:
-        between = np.diag(1.0 / problem.priors[1][count:])
+        between = np.diag(_single_session_variance(estimation))
     intensity = estimation.noise_model.process if estimation.has_process_noise else {}
     return PredictionUncertainty(
         estimation.interval.covariance[:count, :count],
@@ -69,6 +69,21 @@ def prediction_uncertainty(estimation: Estimation) -> PredictionUncertainty:
         np.array([intensity.get(s, 0.0) for s in problem.model.states]),
         estimation.interval.degrees_of_freedom,
     )
+
+
+def _single_session_variance(estimation: Estimation) -> Array:
+    """Variance between sessions of each offset where there is one session, (kinds,): what its prior says.
+
+    Of an offset that the trial does not state, its estimated size: nothing else is known of it.
+    """
+    problem = estimation.estimate.problem
+    count, states = len(problem.free), len(problem.session_parameters)
+    variance = 1.0 / problem.priors[1][count:]
+    second_moment = estimation.estimate.common_parameters**2 + estimation.interval.standard_error**2
+    for j, nuisance in enumerate(problem.nuisances):
+        if not nuisance.is_stated:
+            variance[states + j] = second_moment[count + states + j]
+    return variance
 
 
 def calibrate_intervals(

@@ -28,12 +28,13 @@ class Nuisance:
     """An input correction estimated once a session, with its prior.
 
     Attributes:
-        scale: size of a meaningful change, SI.
+        is_stated: whether the trial asks for it; its prior then says how much sessions differ.
     """
 
     correction: InputCorrection
     prior: Prior
     unit: str
+    is_stated: bool = True
 
 
 @dataclass(frozen=True, eq=False)

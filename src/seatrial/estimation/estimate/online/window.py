@@ -114,6 +114,7 @@ def refuse_diverging(estimate: PointEstimate, runs: Runs, settings: EstimateSett
         InputError: they do.
     """
     problem = output_error_problem(estimate.problem.model, runs, np.inf, settings)
+    problem = replace(problem, nuisances=estimate.problem.nuisances)
     with np.errstate(all="ignore"):
         simulated = problem.simulated_outputs(estimate.common_parameters, problem.measured_initial_states())
     if not np.all(np.isfinite(simulated)):

@@ -1,14 +1,12 @@
 """Disturbances with a memory, biases and lags are found where they are, and not where white noise suffices."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
-from seatrial.estimation.estimate.correlated_disturbances import select_disturbance_model
+from seatrial.estimation.estimate.disturbance_choice import DisturbanceChoice, choose_disturbance, critical_gain
 from seatrial.estimation.estimate.point_estimate import fit_output_error
 from seatrial.estimation.estimate.process_noise import ProcessNoise, fit_prediction_error
 from seatrial.estimation.problem.output_error import OutputError
@@ -59,45 +57,67 @@ def found_in(model: Model, seed: int, *, gust: float = 2e-3, memory: float = 0.0
     )
 
 
+def names(choice: DisturbanceChoice) -> list[str]:
+    return [f.noise.disturbance_model for f in choice.fitted]
+
+
 def test_a_gust_with_a_memory(model: Model) -> None:
     white = found_in(model, 1, memory=6.0)
-    best = select_disturbance_model(white)
+    choice = choose_disturbance(white)
+    best = choice.chosen.noise
     assert not white.test.is_white
-    assert best.disturbance_model == "gusts with a memory on r"
+    assert names(choice) == ["none", "white", "first-order Markov on r"]
+    assert best.disturbance_model == "first-order Markov on r"
     assert best.test.is_white
-    assert best.added_parameters["gust_memory"] == pytest.approx(6.0, rel=0.3)
+    assert best.added_parameters["gust_memory_r"] == pytest.approx(6.0, rel=0.3)
     assert best.process_intensities["r"] == pytest.approx(2e-3 * np.sqrt(2 * 6.0), rel=0.3)
     assert set(best.measurement_noise) == set(NOISE)
     assert best.common_parameters.shape == white.common_parameters.shape == (2,)
     assert np.all(np.abs(best.common_parameters - [K, T]) / best.interval.standard_error < 3.0)
-    made = best.as_point_estimate()
-    assert made.problem.model.equations is white.problem.runs.model.equations
-    assert made.residuals().shape == made.problem.data.measured.shape
+    estimate = best.as_point_estimate()
+    assert estimate.problem.model.equations is white.problem.runs.model.equations
+    assert estimate.residuals().shape == estimate.problem.data.measured.shape
 
 
 def test_wandering_positions(model: Model) -> None:
-    white = found_in(model, 2, bias=0.1)
-    best = select_disturbance_model(white)
-    assert best.disturbance_model == "wandering biases of x0, y0"
+    best = choose_disturbance(found_in(model, 2, bias=0.1)).chosen.noise
+    assert best.disturbance_model == "white, and wandering biases of x0, y0"
     assert best.test.is_white
     assert set(best.process_intensities) == {"r"}
 
 
 def test_white_noise_needs_no_more(model: Model) -> None:
     white = found_in(model, 3)
+    choice = choose_disturbance(white)
     assert white.test.is_white
-    assert select_disturbance_model(white) is white
+    assert choice.chosen.noise is white
+    assert "twice its log-likelihood" in choice.summary
 
 
-def test_what_was_not_searched_stays(model: Model) -> None:
-    white = found_in(model, 3)
-    shut = replace(white, newton_decrement=float("nan"))
-    assert select_disturbance_model(shut) is shut
+def test_the_table_has_every_candidate(model: Model) -> None:
+    choice = choose_disturbance(found_in(model, 1, memory=6.0))
+    none, white, markov = choice.rows(is_used=True)
+    assert [r.degrees_of_freedom for r in (none, white, markov)] == [0, 1, 2]
+    assert none.likelihood_ratio == 0.0 < white.likelihood_ratio < markov.likelihood_ratio
+    assert [r.is_white for r in (none, white, markov)] == [False, False, True]
+    assert [r.is_chosen for r in (none, white, markov)] == [False, False, True]
+    assert list(markov.parameters) == ["gust_memory_r"]
+
+
+def test_the_spread_holds_the_other_candidates(model: Model) -> None:
+    choice = choose_disturbance(found_in(model, 1, memory=6.0))
+    _, white, markov = (f.noise.common_parameters for f in choice.fitted)
+    np.testing.assert_allclose(choice.spread(markov), np.outer(white - markov, white - markov))
+
+
+def test_chance_gains_are_those_of_chi_squared() -> None:
+    """Abramowitz & Stegun 1972, table 26.8, upper 0.1 % points."""
+    assert [critical_gain(k) for k in (1, 2, 5)] == pytest.approx([10.828, 13.816, 20.515], abs=1e-3)
 
 
 def test_intervals_have_room_for_what_was_added(model: Model) -> None:
     """Unknowns more: the information of the coefficients is that of all, with the others eliminated."""
-    best = select_disturbance_model(found_in(model, 1, memory=6.0))
+    best = choose_disturbance(found_in(model, 1, memory=6.0)).chosen.noise
     hessian = best.optimum.normal.hessian
     inside = best.optimum.solution.point > best.problem.lower
     whole = np.linalg.inv(hessian[np.ix_(inside, inside)])

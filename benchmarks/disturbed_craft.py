@@ -1,0 +1,227 @@
+"""Craft in gusts and waves, steered by a programme or by a controller: records whose truth is known.
+
+All runs of a cell at once, in equal steps by the compiled model; disturbances are accelerations of the driven states.
+`independent_nomoto` makes the same of the steering model of first order without any of the package's numerics.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Record
+from seatrial.physics.simulate.batch import SegmentBatch
+
+Array = NDArray[np.float64]
+SAMPLE_S, SECONDS = 0.1, 600.0
+FINE_S = 0.02
+SLEW, PROGRAMME_SLEW = math.radians(5.0), math.radians(20.0)
+AMPLITUDE, LIMIT, COURSE = math.radians(4.0), math.radians(20.0), math.radians(10.0)
+BIT_S, LEG_S = 4.0, 60.0
+GAIN, RATE_GAIN = 1.0, 4.0
+WAVE_FREQUENCY, WAVE_DAMPING = 0.8, 0.1
+WAVE_SLOPE = math.radians(1.0)
+
+
+@dataclass(frozen=True)
+class Disturbance:
+    """What disturbs the craft.
+
+    Attributes:
+        size: standard deviation over that of the craft's `driven`; memory: s, 0: a new value each sample.
+        waves: standard deviation of a second-order force at 0.8 rad/s, over the same; offset: of the rudder, rad.
+    """
+
+    size: float
+    memory: float
+    waves: float = 0.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Craft:
+    """A craft and how it is measured and steered.
+
+    Attributes:
+        model: the truth, with its free parameters; driven: state -> acceleration of a disturbance of size 1, SI.
+        steered: input -> share of the programme or of the controller's output that it gets.
+        held: input -> its mean; start: state -> value at the start; wave_slope: whether irregular waves are recorded.
+        sensors: channel -> standard deviation, SI; constant: channel -> value that is recorded without noise.
+        length: m; guess: where the search starts.
+        controlled, rate: states of the controller, gain, rate_gain: its input = gain * error - rate_gain * rate.
+    """
+
+    name: str
+    model: Model
+    driven: Mapping[str, float]
+    sensors: Mapping[str, float]
+    length: float
+    guess: Mapping[str, float]
+    steered: Mapping[str, float] = field(default_factory=lambda: {"delta": 1.0})
+    controlled: str = "psi"
+    rate: str = "r"
+    held: Mapping[str, float] = field(default_factory=dict)
+    start: Mapping[str, float] = field(default_factory=dict)
+    constant: Mapping[str, float] = field(default_factory=dict)
+    wave_slope: str = ""
+    bit_s: float = BIT_S
+    leg_s: float = LEG_S
+    slew: float = SLEW
+    amplitude: float = AMPLITUDE
+    limit: float = LIMIT
+    course: float = COURSE
+    gain: float = GAIN
+    rate_gain: float = RATE_GAIN
+
+
+def programme(craft: Craft, rows: int, step: float, rng: np.random.Generator) -> Array:
+    """A random binary rudder: a new side every `bit_s` with probability a half, at 20 deg/s, (rows,)."""
+    bits = rng.choice([-1.0, 1.0], math.ceil(rows * step / craft.bit_s) + 1)
+    target, angle = craft.amplitude * np.repeat(bits, round(craft.bit_s / step))[:rows], np.zeros(rows)
+    for k in range(1, rows):
+        angle[k] = angle[k - 1] + np.clip(target[k] - angle[k - 1], -PROGRAMME_SLEW * step, PROGRAMME_SLEW * step)
+    return angle
+
+
+def course_at(time: float, craft: Craft) -> float:
+    """The heading that is ordered: a square wave."""
+    return craft.course if int(time // craft.leg_s) % 2 == 0 else -craft.course
+
+
+def _rudder_rate(craft: Craft, error: Array, turning: Array, angle: Array) -> Array:
+    """Rate by which the rudder reaches the ordered angle at the next sample, within its limits, (runs,)."""
+    ordered = np.clip(craft.gain * error - craft.rate_gain * turning, -craft.limit, craft.limit)
+    return np.clip((ordered - angle) / SAMPLE_S, -craft.slew, craft.slew)
+
+
+def coloured(rows: int, count: int, disturbance: Disturbance, step: float, rng: np.random.Generator) -> Array:
+    """Gusts and waves of unit `driven`, (rows, count)."""
+    values = np.zeros((rows, count))
+    if disturbance.size > 0.0 and disturbance.memory > 0.0:
+        keep = math.exp(-step / disturbance.memory)
+        x = rng.standard_normal(count)
+        for k in range(rows):
+            values[k] = disturbance.size * x
+            x = keep * x + math.sqrt(1.0 - keep**2) * rng.standard_normal(count)
+    elif disturbance.size > 0.0:
+        hold = round(SAMPLE_S / step)
+        values += disturbance.size * np.repeat(rng.standard_normal((rows // hold + 1, count)), hold, axis=0)[:rows]
+    if disturbance.waves > 0.0:
+        values += disturbance.waves * _waves(rows, count, step, rng)
+    return values
+
+
+def _waves(rows: int, count: int, step: float, rng: np.random.Generator) -> Array:
+    """A lightly damped second-order process of unit variance, exact in steps, (rows, count)."""
+    decay, fast = WAVE_DAMPING * WAVE_FREQUENCY, WAVE_FREQUENCY * math.sqrt(1.0 - WAVE_DAMPING**2)
+    grown, cos, sin = math.exp(-decay * step), math.cos(fast * step), math.sin(fast * step)
+    ratio = decay / fast
+    transition = grown * np.array([[cos + ratio * sin, sin / fast],
+                                   [-(WAVE_FREQUENCY**2) / fast * sin, cos - ratio * sin]])  # fmt: skip
+    stationary = np.diag([1.0, WAVE_FREQUENCY**2])
+    root = np.linalg.cholesky(stationary - transition @ stationary @ transition.T)
+    x = np.sqrt(np.diag(stationary))[:, None] * rng.standard_normal((2, count))
+    values = np.empty((rows, count))
+    for k in range(rows):
+        values[k] = x[0]
+        x = transition @ x + root @ rng.standard_normal((2, count))
+    return values
+
+
+def records(
+    craft: Craft, disturbance: Disturbance, count: int, rng: np.random.Generator, *, is_closed: bool,
+    step: float = SAMPLE_S, seconds: float = SECONDS,
+) -> list[Record]:  # fmt: skip
+    """Simulate runs of a craft by its compiled model, in steps of `step` [s]."""
+    model, names = craft.model, craft.model.input_names
+    rows, kept = round(seconds / step) + 1, round(SAMPLE_S / step)
+    mean = np.array([craft.held.get(n, 0.0) for n in names])
+    share = np.array([craft.steered.get(n, 0.0) for n in names])
+    slope = np.zeros((rows, count))
+    if craft.wave_slope:
+        slope = WAVE_SLOPE * _waves(rows, count, step, rng)
+    is_wave = np.array([n == craft.wave_slope for n in names], dtype=float)
+    batch = SegmentBatch(model, np.zeros((2 * count, len(names))), 2 * np.arange(count + 1), step, model.states)
+    values = np.tile(model.parameters.values, (count, 1))
+    x = np.tile([craft.start.get(s, 0.0) for s in model.states], (count, 1)).astype(float)
+    push = {model.states.index(s): size * coloured(rows, count, disturbance, step, rng)
+            for s, size in craft.driven.items()}  # fmt: skip
+    angle, turned = np.zeros(count), np.zeros(count)
+    plan = None if is_closed else np.array([programme(craft, rows, step, rng) for _ in range(count)])
+    states, inputs, sensed = (np.empty((rows, count, len(model.states))), np.empty((rows, count)), {})
+    noise = {s: size * rng.standard_normal((rows // kept + 1, count)) for s, size in craft.sensors.items()}
+    psi, rate = model.states.index(craft.controlled), model.states.index(craft.rate)
+    for k in range(rows):
+        states[k] = x
+        if plan is None:
+            if k % kept == 0:
+                error = course_at(k * step, craft) - x[:, psi] - noise[craft.controlled][k // kept]
+                turning = x[:, rate] + noise[craft.rate][k // kept]
+                turned = _rudder_rate(craft, error, turning, angle)
+            after = angle + turned * step
+        else:
+            angle, after = plan[:, k], plan[:, min(k + 1, rows - 1)]
+        inputs[k] = angle
+        ends = np.stack([angle, after], axis=1) + disturbance.offset
+        sloping = np.stack([slope[k], slope[min(k + 1, rows - 1)]], axis=1)
+        both = mean + share * ends[:, :, None] + is_wave * sloping[:, :, None]
+        batch.inputs[:] = both.reshape(2 * count, -1)
+        half = {i: 0.25 * step * (p[k] + p[min(k + 1, rows - 1)]) for i, p in push.items()}
+        for i, kick in half.items():
+            x[:, i] += kick
+        y, _ = batch.simulate(0, count, x, values, np.empty((count, 0)))
+        x, angle = np.ascontiguousarray(y.reshape(count, 2, -1)[:, 1]), after
+        for i, kick in half.items():
+            x[:, i] += kick
+    sensed = {s: states[::kept, :, model.states.index(s)] + n[: len(states[::kept])] for s, n in noise.items()}
+    time = SAMPLE_S * np.arange(len(inputs[::kept]))
+    kept_angle = inputs[::kept]
+    worked = {n: craft.held.get(n, 0.0) + f * kept_angle for n, f in craft.steered.items()}
+    worked |= {craft.wave_slope: slope[::kept]} if craft.wave_slope else {}
+    moving = {**worked, **sensed}
+    still = {n: v for n, v in {**craft.held, **craft.constant}.items() if n not in worked}
+    return [
+        Record.from_arrays(
+            f"run {i}", time,
+            {s: v[:, i] for s, v in moving.items()} | {s: np.full(len(time), v) for s, v in still.items()},
+        )
+        for i in range(count)
+    ]  # fmt: skip
+
+
+def independent_nomoto(
+    craft: Craft, disturbance: Disturbance, count: int, rng: np.random.Generator, *, is_closed: bool,
+    seconds: float = SECONDS,
+) -> list[Record]:  # fmt: skip
+    """T r' + r = K (delta + w): exact in steps of 0.02 s for forces constant within each, with numpy alone."""
+    gain, lag = (craft.model.parameters[n].value for n in ("K", "T"))
+    rows, kept = round(seconds / FINE_S) + 1, round(SAMPLE_S / FINE_S)
+    push = craft.driven["r"] * lag / gain * coloured(rows, count, disturbance, FINE_S, rng) + disturbance.offset
+    decay = math.exp(-FINE_S / lag)
+    plan = None if is_closed else np.array([programme(craft, rows, FINE_S, rng) for _ in range(count)])
+    noise = {s: size * rng.standard_normal((rows // kept + 1, count)) for s, size in craft.sensors.items()}
+    r, psi, angle, turned = (np.zeros(count) for _ in range(4))
+    kept_rows = np.empty((3, rows // kept + 1, count))
+    for k in range(rows):
+        if k % kept == 0:
+            sample = psi + noise["psi"][k // kept], r + noise["r"][k // kept]
+            kept_rows[:, k // kept] = angle if plan is None else plan[:, k], *sample
+            error = course_at(k * FINE_S, craft) - sample[0]
+            turned = _rudder_rate(craft, error, sample[1], angle)
+        after = angle + turned * FINE_S if plan is None else plan[:, min(k + 1, rows - 1)]
+        now = angle if plan is None else plan[:, k]
+        final = gain * (0.5 * (now + after) + push[k])
+        psi, r = psi + final * FINE_S + (r - final) * lag * (1.0 - decay), final + (r - final) * decay
+        angle = after
+    time = SAMPLE_S * np.arange(kept_rows.shape[1])
+    return [
+        Record.from_arrays(f"run {i}", time, {"delta": kept_rows[0, :, i], "psi": kept_rows[1, :, i],
+                                               "r": kept_rows[2, :, i], "u": np.full(len(time), craft.constant["u"])})
+        for i in range(count)
+    ]  # fmt: skip
+
+
+Generator = Callable[..., list[Record]]

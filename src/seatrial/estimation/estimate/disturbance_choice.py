@@ -1,0 +1,193 @@
+"""Which disturbance explains the records: none, white, with a memory, waves. Likelihood decides, whiteness confirms.
+
+Candidates are compared in the order of their unknowns; one is preferred to the best before it where twice the gain of
+log-likelihood exceeds what chance gives once in a thousand cases (Wilks 1938; 10.8 for one unknown). Tests of whiteness
+see weak disturbances far too rarely to decide (benchmarks/gusts.py).
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from scipy.special import gammaincinv
+
+from seatrial.core.results import DisturbanceCandidate
+from seatrial.core.values import Array, ProgressReporter
+from seatrial.estimation.estimate.disturbance_models import DisturbanceModel, gusts, sensor_models, waves
+from seatrial.estimation.estimate.likelihood_ratio import CONFIDENCE_LEVEL, likelihood_ratio_test
+from seatrial.estimation.estimate.process_noise import ProcessNoise, newton_step, search_prediction_error
+from seatrial.numerics.optimise import levenberg_marquardt
+
+_NO_INITIAL_STATES = np.zeros((0, 0))
+# most evaluations of each search; chosen
+_EVALUATIONS = 60
+# promised decrease of the cost at which the search without a disturbance ends; its gradient is exact
+_NEGLIGIBLE = 1e-3
+HELD_OUT_SHARE = 0.25
+"""Share of each run, at its end, on which candidates are scored; chosen."""
+
+# samples over which the innovations' spectrum is averaged when its peak is looked for; chosen
+_SPECTRUM_SEGMENT = 1024
+
+
+@dataclass(frozen=True, eq=False)
+class FittedDisturbance:
+    """A candidate at its optimum; unknown_count: unknowns that describe the disturbance."""
+
+    noise: ProcessNoise
+    unknown_count: int
+
+    @property
+    def log_likelihood(self) -> float:
+        """At the optimum, up to a constant that all candidates share."""
+        return -self.noise.optimum.normal.cost
+
+
+@dataclass(frozen=True, eq=False)
+class DisturbanceChoice:
+    """The disturbance that is used, and all that were fitted, in the order of their unknowns."""
+
+    chosen: FittedDisturbance
+    fitted: tuple[FittedDisturbance, ...]
+
+    @property
+    def summary(self) -> str:
+        """Which disturbance is used and why, in words."""
+        noise = self.chosen.noise
+        if not self.chosen.unknown_count:
+            return f"no disturbance is likelier than noise of the sensors alone; {noise.test.innovations_text}"
+        simpler = [f for f in self.fitted if f.unknown_count < self.chosen.unknown_count]
+        text = f"the likeliest disturbance is {noise.disturbance_model}"
+        if simpler:
+            best = max(simpler, key=lambda f: f.log_likelihood)
+            gain = 2.0 * (self.chosen.log_likelihood - best.log_likelihood)
+            text += f" (twice its log-likelihood is {gain:.3g} above that of {best.noise.disturbance_model})"
+        return f"{text}; {noise.test.innovations_text}"
+
+    def rows(self, *, is_used: bool) -> tuple[DisturbanceCandidate, ...]:
+        """The table of candidates; is_used: whether the chosen one is behind the estimate."""
+        simplest = self.fitted[0]
+        return tuple(
+            DisturbanceCandidate(
+                name=f.noise.disturbance_model,
+                log_likelihood=f.log_likelihood,
+                degrees_of_freedom=f.unknown_count,
+                likelihood_ratio=2.0 * (f.log_likelihood - simplest.log_likelihood),
+                critical_ratio=critical_gain(f.unknown_count - simplest.unknown_count),
+                whiteness_p=f.noise.test.whiteness.smallest,
+                is_white=f.noise.test.is_white,
+                parameters=f.noise.added_parameters,
+                held_out_score=held_out_score(f.noise),
+                is_chosen=is_used and f is self.chosen,
+            )
+            for f in self.fitted
+        )
+
+    def spread(self, coefficients: Array) -> Array:
+        """Mean square distance of the disturbed candidates' coefficients from these, (k, k)."""
+        k = len(coefficients)
+        away = [f.noise.common_parameters[:k] - coefficients for f in self.fitted if f.unknown_count]
+        away = np.array([a for a in away if np.any(a)]).reshape(-1, k)
+        return away.T @ away / max(len(away), 1)
+
+
+def choose_disturbance(
+    white: ProcessNoise,
+    *,
+    needs_disturbance: bool = False,
+    evaluations: int = _EVALUATIONS,
+    report_progress: ProgressReporter | None = None,
+) -> DisturbanceChoice:
+    """Fit every candidate and choose one.
+
+    Args:
+        white: the optimum with white noise on the states.
+        needs_disturbance: whether a disturbance is used even where none is likelier (inputs follow outputs).
+    """
+    report = report_progress or (lambda _: None)
+    count = len(white.problem.process)
+    fitted = [] if needs_disturbance else [FittedDisturbance(without_disturbance(white, evaluations, report), 0)]
+    fitted.append(FittedDisturbance(white, count))
+    has_room = not white.output_error.extra_terms  # force points know the caller's parameters only
+    if has_room:
+        fitted += _fitted([gusts(white)], white, evaluations, report)
+    best = likeliest(fitted)
+    if not best.noise.test.is_white:
+        more = list(sensor_models(white))
+        gusty = next((f for f in fitted if f.noise.disturbance_model.startswith("first-order Markov")), None)
+        if gusty is not None:
+            more.append(waves(white, gusty.noise, _peak_frequency(gusty.noise)))
+        fitted += _fitted(more, white, evaluations, report)
+        best = likeliest(fitted)
+    return DisturbanceChoice(best, tuple(fitted))
+
+
+def likeliest(fitted: Sequence[FittedDisturbance]) -> FittedDisturbance:
+    """The candidate that likelihood prefers; `fitted` begins with the simplest."""
+    ordered = sorted(fitted, key=lambda f: f.unknown_count)
+    best = ordered[0]
+    for one in ordered[1:]:
+        extra = max(one.unknown_count - best.unknown_count, 1)
+        if 2.0 * (one.log_likelihood - best.log_likelihood) > critical_gain(extra):
+            best = one
+    return best
+
+
+def critical_gain(unknown_count: int) -> float:
+    """What `unknown_count` unknowns without effect add to twice the log-likelihood once in a thousand cases."""
+    return float(2.0 * gammaincinv(0.5 * unknown_count, CONFIDENCE_LEVEL)) if unknown_count > 0 else 0.0
+
+
+def without_disturbance(white: ProcessNoise, evaluations: int, report: ProgressReporter) -> ProcessNoise:
+    """The optimum of the same likelihood with noise of the sensors only."""
+    problem = replace(white.problem, process=(), steps=None)
+    point, size = white.optimum.solution.point, white.problem.runs.size
+    begin = np.concatenate([point[:size], point[size + len(white.problem.process) :]])
+    report("no disturbance")
+    optimum = levenberg_marquardt(problem, begin, _NO_INITIAL_STATES, negligible=_NEGLIGIBLE, evaluations=evaluations)
+    verdict = likelihood_ratio_test(problem, optimum.solution.point, optimum.normal.cost, optimum.normal.cost, None)
+    return ProcessNoise(problem, optimum, 0.0, verdict, white.output_error, "none")
+
+
+def held_out_score(noise: ProcessNoise) -> float | None:
+    """Mean log-likelihood of a sample in the last quarter of each run, by a fit to the rest (one Newton step).
+
+    None where that fit diverges on the last quarter, or nothing is measured there.
+    """
+    problem, data = noise.problem, noise.problem.runs.data
+    measured = data.measured.copy()
+    for a, b in pairwise(data.offsets):
+        measured[a + round((1.0 - HELD_OUT_SHARE) * (b - a)) : b] = np.nan
+    count = int(np.isfinite(data.measured).sum() - np.isfinite(measured).sum())
+    fitted = replace(problem, runs=replace(problem.runs, data=replace(data, measured=measured)))
+    point = newton_step(fitted, noise.optimum.solution.point)
+    score = fitted.cost(point, _NO_INITIAL_STATES) - problem.cost(point, _NO_INITIAL_STATES)
+    return score / count if count and np.isfinite(score) else None
+
+
+def _fitted(
+    models: Sequence[DisturbanceModel], white: ProcessNoise, evaluations: int, report: ProgressReporter
+) -> Iterator[FittedDisturbance]:
+    without = white.optimum.normal.cost + 0.5 * white.test.likelihood_ratio
+    for one in models:
+        report(f"disturbance: {one.name}")
+        if not np.isfinite(one.problem.cost(one.point, _NO_INITIAL_STATES)):
+            continue
+        exact, optimum, decrement = search_prediction_error(one.problem, one.point, evaluations, report)
+        verdict = likelihood_ratio_test(exact, optimum.solution.point, optimum.normal.cost, without, None)
+        verdict = replace(verdict, inflation_without=white.test.inflation_without)
+        noise = ProcessNoise(exact, optimum, decrement, verdict, white.output_error, one.name)
+        yield FittedDisturbance(noise, one.unknown_count)
+
+
+def _peak_frequency(noise: ProcessNoise) -> float:
+    """Frequency [rad/s] at which the innovations of any channel exceed their mean power most, (Welch 1967)."""
+    data = noise.problem.runs.data
+    values = np.nan_to_num(noise.problem.innovations(noise.optimum.solution.point).normalised)
+    length = min(_SPECTRUM_SEGMENT, int(np.max(np.diff(data.offsets))))
+    window = np.hanning(length)[:, None]
+    pieces = [values[a : a + length] for a in range(0, len(values) - length + 1, length // 2)]
+    power = np.mean([np.abs(np.fft.rfft(window * p, axis=0)) ** 2 for p in pieces], axis=0)[2:]
+    peak = np.argmax(np.max(power / power.mean(axis=0), axis=1))
+    return float(2.0 * np.pi * (peak + 2) / (length * data.dt))
