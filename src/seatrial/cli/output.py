@@ -96,12 +96,13 @@ def _print_coefficients(fit: "Fit") -> None:
 def _print_method_comparison(fit: "Fit", reference: "ReferenceEstimate") -> None:
     """A published method beside the package's own estimate: coefficients, then what each took and how it predicts."""
     from seatrial.core.results.method_comparison import coefficient_comparison, cost_comparison
+    from seatrial.core.text.words import counted
 
     for table in (coefficient_comparison(fit, reference), cost_comparison(fit, reference)):
         last = len(table.header) - 1
         print_table([table.header, *table.rows], flush_left=(0, last) if table.header[last] == "unit" else (0,))
     if fit.search is not None and fit.search.is_interrupted:
-        print(f"interrupted after {len(fit.search.restarts)} searches, which are kept")
+        print(f"interrupted after {counted(len(fit.search.restarts), 'restart')}")
 
 
 def _print_prediction(p: "Prediction") -> None:
