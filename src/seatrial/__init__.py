@@ -8,6 +8,7 @@
 Functions (each also a command)
     load_trial    read and validate a trial file
     check         what is odd about the records: findings
+    draft_trial   draft a trial file from logs (command init)
     identify      estimate the model's coefficients, with intervals
     simulate      run a manoeuvre, or the inputs of a record, through a model
     predict       predict a measured run and compare it with the measurement
@@ -20,6 +21,7 @@ Functions (each also a command)
 
 Files
     read_record, write_record    records
+    survey_log                   what is in a log
     Layout, ColumnSpec           how a record file of another program is laid out
     save, load, load_fit         result folders
     report                       the page of a result

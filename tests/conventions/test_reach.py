@@ -21,6 +21,7 @@ _WINDOW = "step of the recursive estimator; tests/estimation/identify/test_onlin
 EXCEPTIONS: dict[str, str] = {
     ": export_lazily": "every subpackage that exports names runs it on import",
     "api: demo": "`make demo` runs it; it takes longer than a test may",
+    "api: draft_trial": "tests/data/draft drafts by it",
     "api: identify": _IN_DOCS,
     "api: load": _IN_DOCS,
     "api: load_fit": _IN_DOCS,

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from seatrial.core.results import Design, Fit
     from seatrial.core.results.online import SampleCounts, Snapshot
     from seatrial.core.values import Finding, ProgressReporter, Record
+    from seatrial.data.draft import DraftTrial, LogSurvey
     from seatrial.data.folder.model_file import ModelFile
     from seatrial.data.trial import Trial
     from seatrial.onboard.follow import FollowResult
@@ -31,15 +32,62 @@ def load_trial(path: str | Path, own_model: "Model | None" = None) -> "Trial":
     return load_trial(path, own_model)
 
 
-def check(trial: "Trial") -> "tuple[Finding, ...]":
+def check(trial: "Trial | str | Path") -> "tuple[Finding, ...]":
     """Check the trial's records and return the findings: frames, signs, units, gaps, jumps, lags.
+
+    Args:
+        trial: a trial, or a trial file; of a file neither ship nor model is needed, and a finding `model` says what
+            is not ready to be estimated.
 
     Raises:
         InputError: a record cannot be read at all.
     """
-    from seatrial.data.trial import load_records
+    from seatrial.core.values import Finding, InputError, Severity
+    from seatrial.data.trial import Trial, load_records, load_runs, load_trial
+    from seatrial.data.trial.records import load_run
+    from seatrial.data.trial.trial import Role
 
-    return load_records(trial)[1]
+    if isinstance(trial, Trial):
+        return load_records(trial)[1]
+    try:
+        return load_records(load_trial(trial))[1]
+    except InputError as error:
+        runs = load_runs(trial)
+        if not runs:
+            raise
+        used = (run for run in runs if run.role is not Role.LEAVE_OUT)
+        findings = [finding for run in used for finding in load_run(run, 0.0).findings]
+        what, advice = "'seatrial identify' cannot start yet", str(error)
+        return (*findings, Finding(Severity.INFO, "model", what, "", advice))
+
+
+def draft_trial(*logs: "str | Path", folder: "str | Path" = ".") -> "DraftTrial":
+    """Draft a trial file from logs: channels, units, frames and signs by name and behaviour, each with its evidence.
+
+    Args:
+        logs: files of any format, or folders; files of one kind are runs, of several kinds sources of one run.
+        folder: where the trial file will lie; the paths in it count from there.
+
+    Returns:
+        The text of the file; what is unsure stands in it as a commented line with both readings.
+
+    Raises:
+        InputError: no logs, or one that cannot be read.
+    """
+    from seatrial.data.draft import draft_trial
+
+    return draft_trial(*logs, folder=folder)
+
+
+def survey_log(path: "str | Path") -> "LogSurvey":
+    """Read one log of any format and list its topics and columns with rates, ranges and the share missing.
+
+    Raises:
+        InputError: the file cannot be read.
+    """
+    from seatrial.data.draft import survey_log
+
+    return survey_log(Path(path))
 
 
 def identify(

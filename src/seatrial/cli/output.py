@@ -64,6 +64,19 @@ def print_findings(findings: "tuple[Finding, ...]", per_code: int) -> None:
     print(f"{counted(len(findings), 'finding')}, {counted(errors, 'error')} among them")
 
 
+def next_step(findings: "tuple[Finding, ...]", trial: Path) -> str:
+    """Return what to do after a check: the edit of the first error, what is missing for a model, or to identify."""
+    from seatrial.core.text.plain import ascii_text
+
+    error = next((finding for finding in findings if finding.severity.value == "error"), None)
+    missing = next((finding for finding in findings if finding.code == "model"), None)
+    if error is not None:
+        return ascii_text(f"Next: {error.advice}")
+    if missing is not None:
+        return ascii_text(f"Next: {missing.advice}")
+    return f"Next: seatrial identify {trial} --out results"
+
+
 def print_fit(fit: "Fit") -> None:
     """Print free coefficients, predictions of the runs held out, models and estimators compared, identifiability."""
     from seatrial.core.text.numbers import duration

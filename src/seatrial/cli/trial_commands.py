@@ -7,7 +7,7 @@ import typer
 
 from seatrial.cli.application import Json, OwnModelPath, Seed, TrialPath, app, own_model, result_document
 from seatrial.cli.follow_output import journal_path, live_display, print_outcome, stop_on_signal, stream_heading
-from seatrial.cli.output import print_design, print_findings, print_fit, progress_reporter, write_json
+from seatrial.cli.output import next_step, print_design, print_findings, print_fit, progress_reporter, write_json
 
 Method = Annotated[
     str | None,
@@ -22,23 +22,31 @@ FINDINGS_PER_CODE = 2  # findings of one kind that `check` prints without --all;
 
 @app.command()
 def check(
-    trial: TrialPath,
+    trial: Annotated[Path, typer.Argument(metavar="TRIAL.toml|LOG", help="Trial file, or a log of any format.")],
     show_all: Annotated[
-        bool, typer.Option("--all", help="Show every finding, not the first few of each kind.")
+        bool, typer.Option("--all", help="Show every finding (column), not the first few of each kind.")
     ] = False,
     model: OwnModelPath = None,
     json: Json = None,
     seed: Seed = 0,  # noqa: ARG001
 ) -> None:
-    """Check the records: frames, signs, units, gaps, jumps, lags.
+    """Check the records: frames, signs, units, gaps, jumps, lags. Of a bare log: list what is in it.
+
+    Neither a model nor particulars are needed.
 
     Example: seatrial check examples/esso_osaka.toml
     """
     from seatrial import api
     from seatrial.data.folder.document import findings_document
 
-    findings = api.check(api.load_trial(trial, own_model(model)))
+    if trial.suffix.lower() != ".toml":
+        from seatrial.cli.log_commands import print_survey
+
+        print_survey(api.survey_log(trial), show_all=show_all)
+        return
+    findings = api.check(trial if model is None else api.load_trial(trial, own_model(model)))
     print_findings(findings, len(findings) if show_all else FINDINGS_PER_CODE)
+    print(next_step(findings, trial))
     write_json(json, lambda: findings_document(findings))
 
 

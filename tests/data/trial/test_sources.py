@@ -7,7 +7,7 @@ import pytest
 from tests.data.read.samples import HEADING, SAMPLES, SPEED, TIME
 
 from seatrial.core.values import InputError
-from seatrial.data.trial import Role, Trial, load_trial
+from seatrial.data.trial import Role, Trial, load_runs, load_trial
 
 HEAD = """
 [ship]
@@ -126,3 +126,15 @@ def test_what_does_not_fit_is_refused(text: str, sentence: str, tmp_path: Path) 
     SAMPLES["run.bin"].write(tmp_path / "run.bin")
     with pytest.raises(InputError, match=sentence):
         load(tmp_path, text).runs[0].raw_record()
+
+
+def test_runs_are_read_without_ship_and_model(tmp_path: Path) -> None:
+    write_two(tmp_path)
+    path = tmp_path / "trial.toml"
+    path.write_text(TWO, encoding="utf-8")
+    assert [run.name for run in load_runs(path)] == ["joined"]
+    with pytest.raises(InputError, match=r"\[ship\], with name and L, is missing"):
+        load_trial(path)
+    path.write_text(TWO.replace("speed.csv", "none.csv"), encoding="utf-8")
+    with pytest.raises(InputError, match=r"trial.toml: records\[1\].sources\[1\].files: there is no file"):
+        load_runs(path)

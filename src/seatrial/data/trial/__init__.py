@@ -2,7 +2,7 @@
 
 from seatrial.data.trial.approach import approach_condition
 from seatrial.data.trial.estimate_method import SEARCHES, EstimateMethod, FitCriterion
-from seatrial.data.trial.load import load_trial
+from seatrial.data.trial.load import load_runs, load_trial
 from seatrial.data.trial.records import CheckedRecords, TrialRecord, checked_records, load_records, refuse_errors
 from seatrial.data.trial.search_settings import SearchFitness, SearchSettings
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
@@ -11,5 +11,5 @@ from seatrial.data.trial.trial import RecordFile, Role, Trial, TrialRun, Trimmin
 __all__ = [
     "SEARCHES", "CheckedRecords", "EstimateMethod", "EstimateSettings", "FitCriterion", "ModelFamily",
     "RecordFile", "Role", "SearchFitness", "SearchSettings", "Trial", "TrialRecord", "TrialRun", "Trimming",
-    "approach_condition", "checked_records", "load_records", "load_trial", "refuse_errors",
+    "approach_condition", "checked_records", "load_records", "load_runs", "load_trial", "refuse_errors",
 ]  # fmt: skip

@@ -18,7 +18,7 @@ from seatrial.data.trial.runs import expand_variables, require_training_run, run
 from seatrial.data.trial.schema import TrialFile
 from seatrial.data.trial.schema_errors import schema_error
 from seatrial.data.trial.thruster_table import layout_text
-from seatrial.data.trial.trial import Trial
+from seatrial.data.trial.trial import Trial, TrialRun
 
 
 def parse_trial(path: Path) -> TrialFile:
@@ -59,6 +59,9 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
     """
     path = Path(path)
     file = parse_trial(path)
+    if file.ship is None or file.model is None:
+        missing = "[ship], with name and L, is" if file.ship is None else "[model], with the name of its equations, is"
+        raise InputError(f"{path}: {missing} missing; add it, 'seatrial models' lists the models")
     try:
         ship = ship_of(file.ship)
         layout = layout_text(file.model.name, file.model.damping, file.thruster, ship)
@@ -107,6 +110,22 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         stream=stream,
         findings=(*ranges, *(finding for points in forces for finding in force_findings(points, unit))),
     )
+
+
+def load_runs(path: str | Path) -> tuple[TrialRun, ...]:
+    """Read the runs that a trial file describes, without ship and model: what checking records needs.
+
+    Waves are left out, as their forces need the ship.
+
+    Raises:
+        InputError: as `load_trial`, of the tables of records alone.
+    """
+    path = Path(path)
+    file = parse_trial(path)
+    try:
+        return runs_of(file.records, file.data.folder, path.resolve().parent, length=None)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
 
 
 def _reference_force(model: Model, ship: Ship) -> float | None:

@@ -46,11 +46,11 @@ def runs_of(
     folder: str,
     trial_folder: Path,
     excitation: Excitation | None = None,
-    length: float = 1.0,
+    length: float | None = 1.0,
 ) -> tuple[TrialRun, ...]:
     """Every run of every block, each with one role; files in sorted order.
 
-    excitation, length [m]: of the ships that met waves.
+    excitation, length [m]: of the ships that met waves; without a length waves are left out.
 
     Raises:
         InputError: a glob or a role pattern that matches nothing, a run with two roles, a name used twice.
@@ -80,13 +80,13 @@ def require_training_run(runs: Sequence[TrialRun]) -> None:
 
 
 def _block_runs(
-    block: RecordsTable, data_folder: Path, where: str, excitation: Excitation | None, length: float
+    block: RecordsTable, data_folder: Path, where: str, excitation: Excitation | None, length: float | None
 ) -> list[TrialRun]:
     whole = _sources_of(block, data_folder, where) if block.sources else _files_of(block, data_folder, where)
     data = [replace(one, part=part) for one in whole for part in _parts(block, one.name, len(whole))]
     trimming = Trimming(block.from_s, block.to_s, block.skip_acceleration, block.rate, block.from_release)
     roles = _roles(block, [one.name for one in data], where)
-    met = wave_encounter(block.waves, excitation, length, where)
+    met = None if length is None else wave_encounter(block.waves, excitation, length, where)
     return [
         TrialRun(one, role, session_of(_session_path(one), block.session), trimming, block.source, met)
         for one, role in zip(data, roles, strict=True)

@@ -344,10 +344,10 @@ class TrialFile(StrictTable):
 
     question: str = ""
     accept: tuple[str, ...] = ()
-    ship: ShipTable
+    ship: ShipTable | None = None
     data: DataTable = DataTable()
     records: tuple[RecordsTable, ...] = ()
-    model: ModelTable
+    model: ModelTable | None = None
     thruster: tuple[ThrusterTable, ...] = ()
     sensors: Sensors = Sensors()
     forces: tuple[ForcesTable, ...] = ()

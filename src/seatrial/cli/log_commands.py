@@ -1,0 +1,95 @@
+"""Commands on logs: what is in one, and a trial file drafted from several."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from seatrial.cli.application import app
+from seatrial.cli.output import print_lines, print_table
+
+if TYPE_CHECKING:
+    from seatrial.data.draft import ColumnSummary, LogSurvey, TopicSummary
+
+COLUMNS_SHOWN = 12  # columns of a topic that `check` lists without --all; ours, one screen for a log of a few topics
+DIGITS = 5  # significant ones of a range; chosen
+_TEXT_COLUMNS = (0, 1, 5)  # of the table of a topic: name, unit and channel
+TOPICS_SHOWN = 15  # topics, the same way
+
+
+@app.command()
+def init(
+    logs: Annotated[list[Path], typer.Argument(metavar="LOG...", help="Logs of any format, or folders with logs.")],
+    out: Annotated[Path, typer.Option("--out", metavar="TRIAL.toml", help="The trial file to write; a new one.")],
+) -> None:
+    """Draft a trial file from logs: what each column is, with the evidence, and the manoeuvres found.
+
+    Example: seatrial init 00000042.BIN --out trial.toml
+    """
+    from seatrial import api
+    from seatrial.core.text.words import counted
+    from seatrial.core.values import InputError
+    from seatrial.core.values.files import write_atomically
+
+    if out.exists():
+        raise InputError(f"--out '{out}' exists and is not overwritten; name another file, or remove it")
+    draft = api.draft_trial(*logs, folder=out.resolve().parent)
+    write_atomically(out, draft.text.encode())
+    for part in draft.guesses:
+        rows = [
+            ["OPEN" if g.is_open else "", g.symbol, str(g.source), g.unit, g.frame, "; ".join(g.evidence)]
+            for g in part
+            if g.is_used
+        ]
+        print_table(
+            [["", "channel", "column", "unit", "frame", "because"], *rows],
+            flush_left=range(len(rows[0])) if rows else (),
+        )
+    print_lines(f"{one.name}: {one.start:.4g} to {one.stop:.4g} s, {one.evidence}" for one in draft.stretches)
+    questions = draft.open_questions
+    if questions:
+        print_lines([f"{counted(len(questions), 'column')} to decide, marked OPEN in the file"])
+    print(f"trial file: {out}")
+    print(f"Next: read it, decide what is OPEN, then seatrial check {out}")
+
+
+def print_survey(survey: "LogSurvey", *, show_all: bool) -> None:
+    """Print the topics and columns of a log with rates, ranges and the share missing."""
+    from seatrial.core.text.words import counted
+    from seatrial.data.draft import guess_columns
+
+    guesses = {str(guess.source): guess for guess in guess_columns(survey)}
+    print_lines([f"{survey.path.name}: {survey.layout.format}, {counted(len(survey.topics), 'topic')}"])
+    topics = survey.topics if show_all else survey.topics[:TOPICS_SHOWN]
+    for topic in topics:
+        _print_topic(topic, show_all=show_all, symbols={key: guess.symbol for key, guess in guesses.items()})
+    if len(topics) < len(survey.topics):
+        names = ", ".join(topic.topic for topic in survey.topics[len(topics) :])
+        print_lines([f"... and {len(survey.topics) - len(topics)} more topics; --all shows them: {names[:300]}"])
+    print_lines(f"event at {event.time:.6g} s: {event.name}" for event in survey.log.events[:TOPICS_SHOWN])
+    if survey.log.parameters:
+        print_lines([f"{counted(len(survey.log.parameters), 'parameter')} stored"])
+    print(f"Next: seatrial init {survey.path} --out trial.toml")
+
+
+def _print_topic(topic: "TopicSummary", *, show_all: bool, symbols: dict[str, str]) -> None:
+    from seatrial.core.text.numbers import exact
+
+    clock = "no time stamps" if topic.time is None else f"{exact(topic.rate, 4)} Hz, {exact(topic.duration, 5)} s"
+    by = f" (time: {topic.time.source}, {topic.time_note})" if topic.time is not None and topic.time.source else ""
+    print_lines([f"{topic.topic or 'columns'}: {topic.rows} rows, {clock}{by}"])
+    columns = topic.columns if show_all else topic.columns[:COLUMNS_SHOWN]
+    print_table([_column_cells(topic, column, symbols) for column in columns], flush_left=_TEXT_COLUMNS, indent="  ")
+    if len(columns) < len(topic.columns):
+        print(f"  ... and {len(topic.columns) - len(columns)} more columns; --all shows them")
+
+
+def _column_cells(topic: "TopicSummary", column: "ColumnSummary", symbols: dict[str, str]) -> Sequence[str]:
+    from seatrial.core.text.numbers import exact
+
+    source = f"{topic.topic}/{column.name}" if topic.topic else column.name
+    missing = f"{column.missing:.1%} missing" if column.missing > 0.0 and math.isfinite(column.missing) else ""
+    ends = (exact(column.low, DIGITS), exact(column.high, DIGITS))
+    return [column.name, column.unit, *ends, missing, f"-> {symbols[source]}" if source in symbols else ""]

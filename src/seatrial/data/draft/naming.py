@@ -1,0 +1,205 @@
+"""What a column may be, by its name: the messages of known loggers first, then the names that people use."""
+
+import re
+from dataclasses import dataclass
+
+from seatrial.core.values import InputError, si_unit
+from seatrial.data.read.quantities import log_quantity
+
+_SCALED_DEGREE, _CENTI = 1e-7, 1e-2  # MAVLink and PX4: degrees as integers of 1e-7, centidegrees and cm/s
+
+
+@dataclass(frozen=True)
+class NameRule:
+    """A pattern of ``topic/field`` (small letters) and what it names; an empty unit is to be found by behaviour."""
+
+    pattern: str
+    symbol: str
+    unit: str = ""
+    frame: str = ""
+    positive: str = ""
+    scale: float = 1.0
+    logger: str = ""
+
+
+def _rules(logger: str, *rows: tuple) -> list[NameRule]:
+    """Rules of one logger: pattern, symbol, unit, then frame, positive and scale where they are stated."""
+    return [NameRule(*row, logger=logger) for row in rows]
+
+
+_MESSAGES = [
+    *_rules(
+        "ArduPilot",
+        (r"(xkf1|nkf1)(\[0\])?/vn", "u", "m/s", "earth"), (r"(xkf1|nkf1)(\[0\])?/ve", "v", "m/s", "earth"),
+        (r"(xkf1|nkf1)(\[0\])?/pn", "x0", "m"), (r"(xkf1|nkf1)(\[0\])?/pe", "y0", "m"),
+        (r"(att|xkf1\[0\]|xkf1|nkf1)/yaw", "psi", "deg"), (r"(att|xkf1\[0\]|xkf1|nkf1)/roll", "phi", "deg"),
+        (r"(att|xkf1\[0\]|xkf1|nkf1)/pitch", "theta", "deg"), (r"imu(\[0\])?/gyrz", "r", "rad/s"),
+        (r"imu(\[0\])?/gyrx", "p", "rad/s"), (r"gps(\[0\])?/lat", "lat", "deg"), (r"gps(\[0\])?/lng", "lon", "deg"),
+        (r"gps(\[0\])?/spd", "sog", "m/s"), (r"gps(\[0\])?/gcrs", "cog", "deg"), (r"bat(\[0\])?/volt", "voltage", "V"),
+        (r"rcou/c(\d+)", "command_{}", "us"),
+    ),
+    *_rules(
+        "MAVLink",
+        (r"attitude/yaw", "psi", "rad"), (r"attitude/roll", "phi", "rad"), (r"attitude/pitch", "theta", "rad"),
+        (r"attitude/yawspeed", "r", "rad/s"), (r"attitude/rollspeed", "p", "rad/s"),
+        (r"local_position_ned/x", "x0", "m"), (r"local_position_ned/y", "y0", "m"),
+        (r"local_position_ned/vx", "u", "m/s", "earth"), (r"local_position_ned/vy", "v", "m/s", "earth"),
+        (r"global_position_int/lat", "lat", "deg", "", "", _SCALED_DEGREE),
+        (r"global_position_int/lon", "lon", "deg", "", "", _SCALED_DEGREE),
+        (r"servo_output_raw/servo(\d+)_raw", "command_{}", "us"),
+    ),
+    *_rules(
+        "PX4",
+        (r"vehicle_local_position/x", "x0", "m"), (r"vehicle_local_position/y", "y0", "m"),
+        (r"vehicle_local_position/heading", "psi", "rad"), (r"battery_status(\[0\])?/voltage_v", "voltage", "V"),
+        (r"vehicle_local_position/vx", "u", "m/s", "earth"), (r"vehicle_local_position/vy", "v", "m/s", "earth"),
+        (r"vehicle_attitude/q\[0\]", "q_w", "1"), (r"vehicle_attitude/q\[1\]", "q_x", "1"),
+        (r"vehicle_attitude/q\[2\]", "q_y", "1"), (r"vehicle_attitude/q\[3\]", "q_z", "1"),
+        (r"vehicle_angular_velocity/xyz\[2\]", "r", "rad/s"), (r"vehicle_angular_velocity/xyz\[0\]", "p", "rad/s"),
+        (r"vehicle_gps_position/lat", "lat", "deg", "", "", _SCALED_DEGREE),
+        (r"vehicle_gps_position/lon", "lon", "deg", "", "", _SCALED_DEGREE),
+        (r"actuator_outputs(\[0\])?/output\[(\d+)\]", "command_{}", "us"),
+    ),
+    *_rules(
+        "NMEA 0183",
+        (r"(gga|rmc|gns|gll)/lat", "lat", "rad"), (r"(gga|rmc|gns|gll)/lon", "lon", "rad"),
+        (r"(vtg|rmc)/north", "u", "m/s", "earth"), (r"(vtg|rmc)/east", "v", "m/s", "earth"),
+        (r"(hdt|ths)/heading", "psi", "rad"), (r"hdm/heading", "psi_magnetic", "rad"), (r"rot/rate", "r", "rad/s"),
+        (r"rsa/angle", "delta", "rad"), (r"(vhw|vbw)/speed", "stw", "m/s"), (r"rpm/s(\d)", "rpm_{}", "rps"),
+        (r"xdr/(roll|heel)", "phi", "rad"), (r"xdr/(ptch|pitch)", "theta", "rad"), (r"xdr/heave?", "z", "m"),
+    ),
+    *_rules(
+        "NMEA 2000",
+        (r"positionrapidupdate(@\d+)?/latitude", "lat", "deg"), (r"positionrapidupdate(@\d+)?/longitude", "lon", "deg"),
+        (r"cogsograpidupdate:true(@\d+)?/cog", "cog", "rad"), (r"cogsograpidupdate(:\w+)?(@\d+)?/sog", "sog", "m/s"),
+        (r"rateofturn(@\d+)?/rate", "r", "rad/s"), (r"vesselheading:true(@\d+)?/heading", "psi", "rad"),
+        (r"vesselheading:magnetic(@\d+)?/heading", "psi_magnetic", "rad"),
+        (r"attitude(@\d+)?/yaw", "psi", "rad"),
+        (r"attitude(@\d+)?/roll", "phi", "rad"),
+        (r"attitude(@\d+)?/pitch", "theta", "rad"), (r"speed(@\d+)?/speedwaterreferenced", "stw", "m/s"),
+        (r"rudder(:\w+)?(@\d+)?/position", "delta", "rad"), (r"heave(@\d+)?/heave", "z", "m", "", "up"),
+        (r"engineparametersrapidupdate(:\w+)?(@\d+)?/speed", "n", "rpm"),
+    ),
+    *_rules(
+        "ROS",
+        (r".*pose\.orientation\.w", "q_w", "1", "enu"), (r".*pose\.orientation\.x", "q_x", "1", "enu"),
+        (r".*pose\.orientation\.y", "q_y", "1", "enu"), (r".*pose\.orientation\.z", "q_z", "1", "enu"),
+        (r".*pose\.position\.x", "x0", "m", "enu"), (r".*pose\.position\.y", "y0", "m", "enu"),
+        (r"([^/]*/)*(pose|position|pose2d)/x", "x0", "m", "enu"),
+        (r"([^/]*/)*(pose|position|pose2d)/y", "y0", "m", "enu"),
+        (r"([^/]*/)*(pose|position|pose2d)/theta", "psi", "rad", "enu"),
+        (r".*twist\.linear\.x", "u", "m/s", "body"), (r".*twist\.linear\.y", "v", "m/s", "body", "port"),
+        (r".*twist\.angular\.z", "r", "rad/s", "", "port"),
+    ),
+]  # fmt: skip
+_WORDS = [
+    *_rules(
+        "",
+        (r"lat(itude)?", "lat", ""), (r"lon(gitude)?|lng", "lon", ""),
+        (r"sog|speed_over_ground|ground_?speed", "sog", ""),
+        (r"cog|course(_over_ground)?", "cog", ""), (r"stw|speed_through_water|log_speed", "stw", ""),
+        (r"hdm|mag(netic)?_heading|heading_mag(netic)?", "psi_magnetic", ""),
+        (r"(true_)?heading|hdg|hdt|psi|psi_hat|yaw|yaw_angle", "psi", ""),
+        (r"yaw_?rate|yaw_?speed|rot|rate_of_turn|r|r_angvelo|gyro_?z|angular_velocity_z", "r", ""),
+        (r"x_ned|north(ing)?|x0|pos(ition)?_n(orth)?", "x0", ""),
+        (r"y_ned|east(ing)?|y0|pos(ition)?_e(ast)?", "y0", ""),
+        (r"x_position(_mid)?|x", "x0", ""), (r"y_position(_mid)?|y", "y0", ""),
+        (r"surge(_speed|_velocity)?|u_velo", "u", "", "body"), (r"sway(_speed|_velocity)?|vm?_velo", "v", "", "body"),
+        (r"v(el)?_?n(orth)?|vel_north", "u", "", "earth"), (r"v(el)?_?e(ast)?|vel_east", "v", "", "earth"),
+        (r"u", "u", ""), (r"v", "v", ""), (r"surge_(dot|acc(eleration)?)", "u_dot", "", "body"),
+        (r"sway_(dot|acc(eleration)?)", "v_dot", "", "body"),
+        (r"rudder(_angle)?|rud|delta(_rudder)?|rsa|helm|nozzle(_angle)?", "delta", ""),
+        (r"n_prop|(prop(eller)?|shaft)_(rate|rpm|rps|speed)|rpm|rps|n", "n", ""),
+        (r"roll(_angle)?|phi|heel", "phi", ""), (r"pitch(_angle)?|theta|trim_angle", "theta", ""),
+        (r"roll_rate|p", "p", ""), (r"heave|z", "z", ""), (r"(battery_)?voltage", "voltage", ""),
+        (r"thr(ottle|uster)?_?(left|port)(_pwm)?", "command_1", ""),
+        (r"thr(ottle|uster)?_?(right|starboard|stbd)(_pwm)?", "command_2", ""),
+        (r"(thruster|motor|throttle|pwm|command|cmd)_?(\d+)", "command_{}", ""),
+        (r"wind_velo_true|true_wind_speed|tws", "wind_speed", ""),
+        (r"wind_dir_true|true_wind_dir(ection)?|twd", "wind_direction", ""),
+        (r"wind_velo_relative(_mid)?|apparent_wind_speed|aws", "wind_speed_relative", ""),
+        (r"wind_dir_relative(_mid)?|apparent_wind_angle|awa", "wind_direction_relative", ""),
+    ),
+]  # fmt: skip
+_UNIT_WORDS = {
+    "deg": "deg", "degrees": "deg", "degree": "deg", "rad": "rad", "radians": "rad", "kn": "kn", "knots": "kn",
+    "kts": "kn", "kt": "kn", "mps": "m/s", "m/s": "m/s", "ms": "m/s", "rpm": "rpm", "rps": "rps", "m": "m",
+    "dps": "deg/s", "deg/s": "deg/s", "rad/s": "rad/s", "deg/min": "deg/min", "m/s2": "m/s^2", "km/h": "km/h",
+    "v": "V", "us": "us", "°": "deg", "°/s": "deg/s", "°/min": "deg/min", "pwm": "us",
+}  # fmt: skip
+# words of topics that hold orders or limits, not measurements
+_ORDERS = re.compile(r"set_?point|target|desired|reference|goal|limits?\b|cmd|command|(^|/)[re]_")
+# loggers whose messages are all known: other messages say nothing
+_KNOWN_LOGGERS = ("ulog", "ardupilot-bin", "ardupilot-tlog", "nmea0183", "nmea2000")
+_BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]")
+
+
+@dataclass(frozen=True)
+class NameGuess:
+    """What the name of a column says.
+
+    Attributes:
+        rule: what it names.
+        symbol: with the number of a thruster filled in.
+        unit: stated by the file, by the name, or by the logger's documentation; empty: not known.
+        evidence: for people.
+    """
+
+    rule: NameRule
+    symbol: str
+    unit: str
+    evidence: str
+
+
+def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "text") -> NameGuess | None:
+    """Return what a column is by its name, None where the name says nothing.
+
+    Messages of autopilots and buses are known one by one; in other logs a column of a topic that holds orders is left.
+    stated_unit: the unit that the file states; it overrides what the name says.
+    """
+    for rule in _MESSAGES if topic else ():
+        match = re.fullmatch(rule.pattern, f"{topic}/{name}".lower())
+        if match:
+            return _guess(rule, match, _known_unit(stated_unit) or rule.unit, f"{rule.logger} {topic}")
+    if log_format in _KNOWN_LOGGERS or _ORDERS.search(topic.lower()):
+        return None
+    bracketed = _BRACKETS.search(name)
+    unit = _known_unit(stated_unit) or (_known_unit(bracketed[1]) if bracketed else "")
+    plain = re.sub(r"[^a-z0-9]+", "_", _BRACKETS.sub("", name).strip().lower()).strip("_")
+    for text, word_unit in _with_unit_word(plain):
+        for rule in _WORDS:
+            match = re.fullmatch(rule.pattern, text)
+            if match:
+                return _guess(rule, match, unit or word_unit, "its name")
+    return None
+
+
+def _with_unit_word(plain: str) -> list[tuple[str, str]]:
+    """The name as it is, and without a last word that is a unit."""
+    head, _, tail = plain.rpartition("_")
+    return [(plain, ""), *([(head, _UNIT_WORDS[tail])] if head and tail in _UNIT_WORDS else [])]
+
+
+def _guess(rule: NameRule, match: re.Match[str], unit: str, evidence: str) -> NameGuess | None:
+    symbol = rule.symbol
+    if "{}" in symbol:
+        number = int(match.groups()[-1]) + (rule.logger == "PX4")
+        symbol = symbol.format(max(number, 1))
+    try:
+        expected = log_quantity(symbol).unit
+    except InputError:
+        return None
+    if unit and unit != "us" and si_unit(unit)[1] != expected:
+        unit = ""
+    return NameGuess(rule, symbol, unit, evidence)
+
+
+def _known_unit(text: str) -> str:
+    word = text.strip().lower()
+    if word in _UNIT_WORDS:
+        return _UNIT_WORDS[word]
+    try:
+        si_unit(text.strip())
+    except InputError:
+        return ""
+    return text.strip()

@@ -1,0 +1,152 @@
+"""A trial file drafted from logs of a craft that is simulated: units, frames and signs as planted, nothing silent."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.data.read.samples import SAMPLES
+
+from seatrial.api import check, draft_trial, survey_log
+from seatrial.core.values import Array, InputError
+from seatrial.data.draft import ColumnGuess, find_stretches, guess_columns
+from seatrial.data.draft.naming import guess_by_name
+from seatrial.data.draft.survey import column_values, time_column
+from seatrial.data.draft.text_layout import text_layout
+from seatrial.data.trial import load_runs
+
+DEGREE, KNOT = np.pi / 180.0, 1852.0 / 3600.0
+STEP = 0.2
+
+
+def motion() -> dict[str, Array]:
+    """A zigzag, a straight run and a circle by Nomoto's first-order equation; SI, starboard positive."""
+    time = STEP * np.arange(2400)
+    delta = np.where(time < 180.0, 0.3 * np.sign(np.sin(0.12 * time)), np.where(time < 260.0, 0.0, 0.35))
+    r, psi = np.zeros(time.size), np.zeros(time.size)
+    for k in range(1, time.size):
+        r[k] = r[k - 1] + STEP * (0.15 * delta[k - 1] - r[k - 1]) / 6.0
+        psi[k] = psi[k - 1] + STEP * r[k - 1]
+    u = np.full(time.size, 4.0) - 20.0 * r**2
+    v = -8.0 * r
+    north, east = u * np.cos(psi) - v * np.sin(psi), u * np.sin(psi) + v * np.cos(psi)
+    x0, y0 = (STEP * np.concatenate([[0.0], np.cumsum(w)[:-1]]) for w in (north, east))
+    return {"t": time, "delta": delta, "r": r, "psi": psi, "u": u, "v": v, "north": north, "east": east,
+            "x0": x0, "y0": y0}  # fmt: skip
+
+
+TRUTH = motion()
+BASE = {"time": TRUTH["t"], "north": TRUTH["x0"], "east": TRUTH["y0"], "heading": np.mod(TRUTH["psi"] / DEGREE, 360.0)}
+
+
+def write(path: Path, columns: dict[str, Array]) -> Path:
+    rows = np.column_stack(list(columns.values())).tolist()
+    lines = [",".join(columns), *(",".join(f"{x:.9g}" for x in row) for row in rows)]
+    path.write_text("\n".join(lines), encoding="utf-8")
+    return path
+
+
+def guesses(path: Path) -> dict[str, ColumnGuess]:
+    (part,) = draft_trial(path).guesses
+    return {guess.symbol: guess for guess in part if guess.is_used}
+
+
+@pytest.mark.parametrize(
+    ("unit", "sign"), [("rad/s", 1.0), ("deg/s", 1.0), ("deg/min", 1.0), ("deg/s", -1.0), ("deg/min", -1.0)]
+)
+def test_the_unit_and_sign_of_a_yaw_rate_follow_from_the_heading(unit: str, sign: float, tmp_path: Path) -> None:
+    size = {"rad/s": 1.0, "deg/s": 1.0 / DEGREE, "deg/min": 60.0 / DEGREE}[unit]
+    result = guesses(write(tmp_path / "run.csv", BASE | {"ROT": sign * size * TRUTH["r"]}))
+    assert (result["r"].unit, result["r"].positive, result["r"].is_open) == (unit, "" if sign > 0 else "port", False)
+    assert (result["psi"].unit, result["x0"].symbol) == ("deg", "x0")
+
+
+@pytest.mark.parametrize("symbols", [("u", "v"), ("north", "east")])
+@pytest.mark.parametrize("size", [1.0, KNOT])
+def test_the_frame_and_unit_of_velocities_follow_from_the_track(
+    symbols: tuple[str, str], size: float, tmp_path: Path
+) -> None:
+    velocities = {name: TRUTH[symbol] / size for name, symbol in zip("uv", symbols, strict=True)}
+    result = guesses(write(tmp_path / "run.csv", BASE | velocities))
+    for symbol in ("u", "v"):
+        guess = result[symbol]
+        assert guess.frame == ("body" if symbols[0] == "u" else "earth") and not guess.is_open
+        assert guess.unit == ("m/s" if size == 1.0 else "kn")
+
+
+@pytest.mark.parametrize(("sign", "positive"), [(1.0, ""), (-1.0, "port")])
+def test_the_sign_of_a_rudder_follows_from_the_turn(sign: float, positive: str, tmp_path: Path) -> None:
+    result = guesses(write(tmp_path / "run.csv", BASE | {"rudder [deg]": sign * TRUTH["delta"] / DEGREE}))
+    assert (result["delta"].unit, result["delta"].positive, result["delta"].is_open) == ("deg", positive, False)
+
+
+def test_what_the_numbers_do_not_show_stays_open_with_both_readings(tmp_path: Path) -> None:
+    columns = {"time": TRUTH["t"], "heading": 0.01 * TRUTH["psi"], "depth": TRUTH["u"], "n": TRUTH["u"]}
+    draft = draft_trial(write(tmp_path / "run.csv", columns), folder=tmp_path)
+    assert {guess.symbol for guess in draft.open_questions} == {"psi", "n"}
+    assert '# channels.psi = { column = "heading", unit = "rad" }' in draft.text and 'or unit = "deg"' in draft.text
+    assert "# not used: depth" in draft.text
+
+
+def test_the_drafted_file_is_read_and_checked_without_model_and_ship(tmp_path: Path) -> None:
+    columns = BASE | {"rot_deg_s": TRUTH["r"] / DEGREE, "odd 'name'\\": TRUTH["u"], "rudder": TRUTH["delta"] / DEGREE}
+    write(tmp_path / "a.csv", columns)
+    write(tmp_path / "b.csv", columns)
+    draft = draft_trial(tmp_path / "a.csv", tmp_path / "b.csv", folder=tmp_path)
+    (tmp_path / "trial.toml").write_text(draft.text, encoding="utf-8")
+    runs = load_runs(tmp_path / "trial.toml")
+    assert [run.name for run in runs] == ["a", "b"]
+    np.testing.assert_allclose(runs[0].raw_record()["delta"], TRUTH["delta"], atol=1e-6)
+    findings = check(tmp_path / "trial.toml")
+    assert findings[-1].code == "model" and "[ship], with name and L, is missing" in findings[-1].advice
+    assert not [one for one in findings if one.severity.value == "error"]
+
+
+def test_manoeuvres_are_found_and_offered_as_parts(tmp_path: Path) -> None:
+    draft = draft_trial(write(tmp_path / "run.csv", BASE), folder=tmp_path)
+    zigzag, straight, circle = draft.stretches
+    assert (zigzag.name, straight.name, circle.name) == ("zigzag1", "straight1", "circle_starboard_1")
+    assert zigzag.start < 20.0 and 150.0 < zigzag.stop < 210.0
+    assert circle.start > 250.0 and circle.stop > 450.0
+    assert '#     { name = "zigzag1", from = "' in draft.text
+    assert find_stretches([], []) == ()
+
+
+def test_sources_of_several_kinds_make_one_run(tmp_path: Path) -> None:
+    write(tmp_path / "gnss.csv", {key: BASE[key] for key in ("time", "north", "east")})
+    write(tmp_path / "compass.csv", {key: BASE[key] for key in ("time", "heading")})
+    draft = draft_trial(tmp_path, folder=tmp_path)
+    (tmp_path / "trial.toml").write_text(draft.text, encoding="utf-8")
+    (run,) = load_runs(tmp_path / "trial.toml")
+    assert set(run.raw_record().channels) == {"x0", "y0", "psi"}
+
+
+def test_messages_of_loggers_are_known(tmp_path: Path) -> None:
+    SAMPLES["run.bin"].write(tmp_path / "run.bin")
+    SAMPLES["run.nmea"].write(tmp_path / "run.nmea")
+    by_source = {guess.source: guess for guess in guess_columns(survey_log(tmp_path / "run.bin"))}
+    assert (by_source["XKF1/VN"].symbol, by_source["XKF1/VN"].frame) == ("u", "earth")
+    assert {guess.symbol for guess in guess_columns(survey_log(tmp_path / "run.nmea"))} >= {"psi", "u", "v"}
+    assert guess_by_name("vehicle_rates_setpoint", "roll", "", "ulog") is None
+    assert guess_by_name("speed_reference", "yaw", "", "rosbag") is None
+
+
+def test_header_separator_and_encoding_are_recognised(tmp_path: Path) -> None:
+    text = "Fähre, Versuch 3\n14.05.2026\nZeit;Kurs;Tiefe\n0,0;12,5;3\n0,2;12,6;3\n0,4;12,7;3\n"
+    (tmp_path / "run.csv").write_bytes(text.encode("cp1252"))
+    layout = text_layout(tmp_path / "run.csv")
+    assert (layout.header_lines, layout.encoding, layout.decimal) == (3, "cp1252", ",")
+    survey = survey_log(tmp_path / "run.csv")
+    (topic,) = survey.topics
+    assert [column.name for column in topic.columns] == ["Kurs", "Tiefe"] and topic.rate == pytest.approx(5.0)
+    (table,) = survey.log.tables
+    assert time_column(table, layout)[1] == "named 'Zeit', unit by its step"
+    values = column_values(table, 1)
+    assert values is not None and values.tolist() == [12.5, 12.6, 12.7]
+    (tmp_path / "run.csv").write_text("no numbers\nat all\n", encoding="utf-8")
+    with pytest.raises(InputError, match="has no rows of numbers"):
+        text_layout(tmp_path / "run.csv")
+
+
+def test_no_logs_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="there is no log to draft a trial of"):
+        draft_trial(tmp_path)
