@@ -165,6 +165,8 @@ def _print_model_selection(fit: "Fit") -> None:
 
 def _print_baselines(fit: "Fit") -> None:
     """How far each estimator is from the fit, or from the truth where it is known, and how it predicts."""
+    from seatrial.core.text.numbers import exact
+
     if not fit.baselines:
         return
     first = fit.baselines[0]
@@ -173,6 +175,10 @@ def _print_baselines(fit: "Fit") -> None:
     rows = [head, *([r.name[:60], *_baseline_cells(r, first, fit)] for r in fit.baselines)]
     print_table(rows, flush_left=(0, len(head) - 1))
     for r in fit.baselines:
+        scores = (f"{equation} CC {exact(s.correlation, ERROR_DIGITS)}, explained {exact(s.explained, ERROR_DIGITS)}"
+                  for equation, s in r.test.items())  # fmt: skip
+        if r.test:
+            print_lines([f"test rows, {r.name[:60]}: {'; '.join(scores)}"], "  ")
         print_lines((f"{SEVERITY_MARK[f.severity.value]} [{f.code}] {r.name[:60]}: {f.text}" for f in r.findings), "  ")
     print("  good trajectories and correlations (CC) prove nothing about coefficients")
 

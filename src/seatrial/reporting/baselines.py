@@ -76,7 +76,7 @@ def baseline_chapter(fit: Fit) -> BaselineChapter | None:
         tuple(exact(_display_value(c.truth, c), 4) for c in free) if first.error else (),
         tuple(_baseline_row(r, first, free) for r in fit.baselines if r.values and (r is first or not r.is_fit)),
         Markup(svg(estimator_chart(_coefficient_errors(fit.baselines), axis_name))),
-        tuple(text_table(t) for t in (_table("Held-out runs", held), _table("Training runs", fitted)) if t.header[1:]),
+        tuple(text_table(t) for t in _tables(fit.baselines, held, fitted) if t.header[1:] and t.rows),
         tuple(note for r in fit.baselines for note in _notes(r)),
     )
 
@@ -233,6 +233,24 @@ def _table(title: str, items: Sequence[tuple[str, OpenLoopScores]]) -> Table:
         errors = [s.rms[k] * _COLUMNS[k][1] if k in s.rms else None for k in keys]
         rows.append((name, *errors, *(s.correlation.get(c) for c in channels)))
     return Table(title, ("Estimator", *header) if header else ("Estimator",), tuple(rows))
+
+
+def _tables(
+    items: Sequence[Baseline], held: Sequence[tuple[str, OpenLoopScores]], fitted: Sequence[tuple[str, OpenLoopScores]]
+) -> tuple[Table, ...]:
+    """Scores of simulated runs, and of the rows that pipelines keep for testing."""
+    return _table("Held-out runs", held), _table("Training runs", fitted), _test_table(items)
+
+
+def _test_table(items: Sequence[Baseline]) -> Table:
+    rows = [
+        (r.name, equation, s.rows, s.rmse, s.correlation, s.explained) for r in items for equation, s in r.test.items()
+    ]
+    return Table(
+        "Rows kept for testing", ("Estimator", "equation", "rows", "RMSE, SI", "CC", "explained"), tuple(rows),
+        "The last part of each record, predicted row by row by the regression. Explained: 1 less the residual's mean "
+        "square over the variance; below 0 the mean of the rows predicts better.",
+    )  # fmt: skip
 
 
 def _notes(baseline: Baseline) -> list[str]:

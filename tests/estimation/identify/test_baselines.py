@@ -15,6 +15,7 @@ from seatrial.core.results import Baseline, Fit, Offset
 from seatrial.core.results.prediction import NO_COMPARISON
 from seatrial.core.values import InputError, Record
 from seatrial.data.trial import load_trial
+from seatrial.data.trial.compare_settings import SupportVectorSettings
 from seatrial.estimation.identify import identify
 from seatrial.estimation.identify.baselines import (
     compare_estimators,
@@ -80,7 +81,9 @@ def test_the_fit_stands_first_with_its_own_numbers(fit: Fit) -> None:
     assert set(first.normalised_difference.values()) == {0.0}
     rms = [p.rms["psi_deg"] for p in fit.validation]
     assert first.validation.rms["psi_deg"] == pytest.approx(np.sqrt(np.mean(np.square(rms))))
-    assert [r.name for r in fit.baselines[1:]] == [e.name for e in standard_estimators(10.0)]
+    assert [r.name for r in fit.baselines[1:]] == [
+        e.name for e in standard_estimators(10.0, SupportVectorSettings(ablation=True))
+    ]
 
 
 def test_gaps_and_errors_are_what_they_say(fit: Fit) -> None:

@@ -15,7 +15,15 @@ from seatrial.core.results.identifiability import (
     Stability,
     Symmetry,
 )
-from seatrial.core.results.prediction import Baseline, Extrapolation, IntervalBasis, Measure, OpenLoopScores, Prediction
+from seatrial.core.results.prediction import (
+    Baseline,
+    Extrapolation,
+    IntervalBasis,
+    Measure,
+    OpenLoopScores,
+    Prediction,
+    RowScore,
+)
 from seatrial.core.results.ship_motions import IntervalEstimate, PointMotion, RollCharacteristics, Seakeeping
 from seatrial.core.results.study import Bars, Check, CheckStatus, Claim, Curve, Figure, Matrix, Study, Table, Verdict
 from seatrial.core.results.published_method import ReferenceEstimate, Search, SearchRestart, SearchTrack
@@ -28,7 +36,7 @@ __all__ = [
     "Extrapolation", "Figure",
     "Fit", "Identifiability", "IntervalBasis", "IntervalEstimate", "ManoeuvrePrecision", "Matrix", "Measure",
     "Method", "Noise", "NoiseModel", "Offset", "OpenLoopScores", "PointMotion", "Prediction", "Profile",
-    "ReferenceEstimate", "Residuals", "RollCharacteristics", "Seakeeping", "Search", "SearchRestart", "SearchTrack",
-    "Sensitivity", "Solution", "Stability", "Status", "Study", "Summary", "Symmetry", "Table", "TimedOrder",
-    "TrialLimits", "Verdict",
+    "ReferenceEstimate", "Residuals", "RollCharacteristics", "RowScore", "Seakeeping", "Search", "SearchRestart",
+    "SearchTrack", "Sensitivity", "Solution", "Stability", "Status", "Study", "Summary", "Symmetry", "Table",
+    "TimedOrder", "TrialLimits", "Verdict",
 ]  # fmt: skip

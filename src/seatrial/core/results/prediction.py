@@ -106,6 +106,16 @@ class OpenLoopScores:
 
 
 @dataclass(frozen=True)
+class RowScore:
+    """Rows of one equation that were kept for testing, predicted by the regression."""
+
+    rmse: Annotated[Number, Field(description="of the target, its unit")]
+    correlation: Annotated[Number, Field(description="Pearson's coefficient of target and prediction")]
+    explained: Annotated[Number, Field(description="1 - residual variance over variance, about the mean (R squared)")]
+    rows: Annotated[int, Field(description="number of rows")]
+
+
+@dataclass(frozen=True)
 class Baseline:
     """An estimator on the records of a fit; first the fit itself, then, if it has any, without its offsets."""
 
@@ -128,6 +138,9 @@ class Baseline:
     bias: Annotated[
         dict[str, Number], Field(description="equation -> constant that the estimator allowed itself in addition")
     ] = field(default_factory=dict)
+    test: Annotated[dict[str, RowScore], Field(description="equation -> score on rows kept for testing")] = field(
+        default_factory=dict
+    )
     findings: tuple[ReportedFinding, ...] = ()
     note: Annotated[str, Field(description="why the estimator failed; empty where it did not")] = ""
     is_fit: Annotated[bool, Field(description="whether these are the coefficients of the fit")] = False

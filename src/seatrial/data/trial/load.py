@@ -106,6 +106,7 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         path=path,
         forces=forces,
         family=file.family,
+        compare=file.compare,
         design_request=file.design,
         stream=stream,
         findings=(*ranges, *(finding for points in forces for finding in force_findings(points, unit))),

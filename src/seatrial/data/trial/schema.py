@@ -10,6 +10,7 @@ from seatrial.core.values import si_unit
 from seatrial.data.read.layout import TEXT_CLOCKS, Separator
 from seatrial.data.read.registry import require_format
 from seatrial.data.trial.amounts import STRICT_FIELDS, Angle, Deviation, SiAmount, Speed, StrictTable, Unit
+from seatrial.data.trial.compare_settings import CompareSettings
 from seatrial.data.trial.design_request import DesignRequest
 from seatrial.data.trial.sea_table import SeaTable
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
@@ -353,6 +354,7 @@ class TrialFile(StrictTable):
     forces: tuple[ForcesTable, ...] = ()
     excitation: ExcitationTable | None = None
     family: ModelFamily | None = None
+    compare: CompareSettings = CompareSettings()
     noise: dict[str, Deviation] = Field(default_factory=dict)
     truth: dict[str, float] = Field(default_factory=dict)
     estimate: EstimateSettings = EstimateSettings()

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Finding, ForcePoints, Record, Ship
+from seatrial.data.trial.compare_settings import CompareSettings
 from seatrial.data.trial.design_request import DesignRequest
 from seatrial.data.trial.run_data import RecordFile, RecordSources
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
@@ -104,6 +105,7 @@ class Trial:
         reference_point: m forward of midship to which the model's u, v, x0, y0 refer.
         forces: static force points that are fitted with the runs.
         family: models to compare; None: the default family of the model.
+        compare: settings of the regressions that a comparison sets beside the fit.
         design: the manoeuvre that is to be designed; None: none is.
         follow: the stream that is to be followed; None: none is.
         findings: what is odd about the trial itself: priors beyond their range, force points of unexpected sign.
@@ -122,6 +124,7 @@ class Trial:
     path: Path | None = None
     forces: tuple[ForcePoints, ...] = ()
     family: ModelFamily | None = None
+    compare: CompareSettings = field(default_factory=CompareSettings)
     design_request: DesignRequest | None = None
     stream: Stream | None = None
     findings: tuple[Finding, ...] = ()

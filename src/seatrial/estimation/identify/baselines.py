@@ -14,6 +14,7 @@ from seatrial.core.results import Baseline, Coefficient, Fit, OpenLoopScores, Pr
 from seatrial.core.results.prediction import NO_COMPARISON
 from seatrial.core.values import Finding, InputError, ProgressReporter, Record, Severity
 from seatrial.data.trial import SEARCHES, SearchFitness, SearchSettings, Trial
+from seatrial.data.trial.compare_settings import SupportVectorSettings
 from seatrial.estimation.identify.strategies.search import estimate_by_search
 from seatrial.estimation.predict.open_loop import rms_errors
 from seatrial.estimation.regress.estimators import RegressionEstimator
@@ -27,11 +28,16 @@ _NO_COMPARISON_TEXT = "no other estimators to compare: "
 
 
 def with_baselines(
-    fit: Fit, train: Sequence[Record], seconds: float, report_progress: ProgressReporter | None = None
+    fit: Fit,
+    train: Sequence[Record],
+    seconds: float,
+    report_progress: ProgressReporter | None = None,
+    svr: SupportVectorSettings | None = None,
 ) -> Fit:
     """The fit with the regressions on its training runs, or with a finding that says why there can be none."""
     try:
-        return replace(fit, baselines=compare_estimators(fit, train, available_estimators(seconds), report_progress))
+        estimators = available_estimators(seconds, svr)
+        return replace(fit, baselines=compare_estimators(fit, train, estimators, report_progress))
     except InputError as error:
         said = Finding(Severity.INFO, NO_COMPARISON, f"{_NO_COMPARISON_TEXT}{error}", "")
         return replace(fit, findings=(*fit.findings, said))
@@ -69,9 +75,9 @@ def _failed_regressions(fit: Fit) -> list[Baseline]:
             if f.code == NO_COMPARISON]  # fmt: skip
 
 
-def _simulated_baseline(fit: Fit, baseline: Baseline) -> Baseline:
-    """With the errors of all runs that are simulated with its values."""
-    ship = fit.model.with_values(dict(baseline.values))
+def _simulated_baseline(fit: Fit, baseline: Baseline, model: Model | None = None) -> Baseline:
+    """With the errors of all runs that are simulated with its values, or with a `model` of terms beyond the fit's."""
+    ship = model or fit.model.with_values(dict(baseline.values))
     training, validation = (
         simulation_errors(ship, _predictions_of_role(fit, role)) for role in ("training", "validation")
     )
@@ -162,8 +168,8 @@ def _baseline(fit: Fit, train: Sequence[Record], estimator: RegressionEstimator)
     if not np.all(np.isfinite(regression.values)):
         return Baseline(estimator.name, note="its coefficients are no finite numbers", findings=regression.findings)
     values = dict(zip(fit.model.parameters.free_names, regression.values.tolist(), strict=True))
-    rival = Baseline(estimator.name, values, bias=regression.bias, findings=regression.findings)
-    return _with_differences(fit, _simulated_baseline(fit, rival))
+    rival = Baseline(estimator.name, values, bias=regression.bias, test=regression.test, findings=regression.findings)
+    return _with_differences(fit, _simulated_baseline(fit, rival, regression.in_model(fit.model)))
 
 
 def _with_differences(fit: Fit, baseline: Baseline) -> Baseline:

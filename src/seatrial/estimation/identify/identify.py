@@ -74,7 +74,7 @@ def identify(
     if not compare or situation is Situation.UNKNOWN_WAVES:  # no input, so that there is nothing to regress on
         return fit
     window = WEAK_FORM_SHIP_LENGTHS * task.characteristic_time
-    fit = with_baselines(fit, task.runs.records, window, report_progress)
+    fit = with_baselines(fit, task.runs.records, window, report_progress, trial.compare.svr)
     has_searches = trial.model.is_affine and situation is Situation.RECORDED_WAVES
     return with_search_baselines(fit, trial, seed, report_progress) if has_searches else fit
 
@@ -99,7 +99,7 @@ def _published(task: Identification, situation: Situation) -> Fit:
         estimate = estimate_by_search(trial, reference, task.options.seed, task.report_progress)
     else:
         window = WEAK_FORM_SHIP_LENGTHS * task.characteristic_time
-        estimate = estimate_by_regression(trial.model, task.runs.records, method, window)
+        estimate = estimate_by_regression(trial.model, task.runs.records, method, window, trial.compare.svr)
     fit = published_fit(reference, estimate, cpu_s)
     return replace(fit, elapsed_s=time.perf_counter() - task.began)
 

@@ -28,6 +28,9 @@ from seatrial.estimation.regress.pipeline import (
     Cleaning as Cleaning,
     DIFFERENCED_AND_CENTRED as DIFFERENCED_AND_CENTRED,
     Pipeline as Pipeline,
+    ablations as ablations,
+    pipelines as pipelines,
+    row_score as row_score,
 )
 from seatrial.estimation.regress.solvers import (
     Lasso as Lasso,
@@ -47,5 +50,6 @@ from seatrial.estimation.regress.standard_estimators import standard_estimators 
 from seatrial.estimation.regress.support_vectors import SupportVectors as SupportVectors
 from seatrial.estimation.regress.system import (
     RegressionSystem as RegressionSystem,
+    assemble_systems as assemble_systems,
     build_systems as build_systems,
 )

@@ -7,6 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from seatrial.core.equations import Model
+from seatrial.core.results.prediction import RowScore
 from seatrial.core.values import Array, Finding, Record
 from seatrial.estimation.regress.features import RegressionMotion
 from seatrial.estimation.regress.operators import DerivativeOperator
@@ -17,21 +18,30 @@ from seatrial.estimation.regress.solvers import (
     solve_with_instruments,
 )
 from seatrial.estimation.regress.system import RegressionSystem, build_systems
+from seatrial.physics.models.candidate_terms import with_candidate_terms
 from seatrial.physics.simulate.replay import replay
 
 
 @dataclass(frozen=True, eq=False)
 class RegressionEstimate:
-    """Values of the free coefficients (k,) in the model's order; the constant each equation allowed itself besides."""
+    """Values of the free coefficients (k,) in the model's order; the constant each equation allowed itself besides.
+
+    Attributes:
+        candidates: coefficients of terms that were kept and that the model does not have.
+        test: equation -> score on the rows kept for testing.
+    """
 
     values: Array
     bias: dict[str, float] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
     settings: dict[str, float] = field(default_factory=dict)
+    candidates: dict[str, float] = field(default_factory=dict)
+    test: dict[str, RowScore] = field(default_factory=dict)
 
     def in_model(self, model: Model) -> Model:
-        """The model with these coefficients."""
-        return model.with_values(dict(zip(model.parameters.free_names, self.values.tolist(), strict=True)))
+        """The model with these coefficients, wider where terms were kept that it does not have."""
+        values = dict(zip(model.parameters.free_names, self.values.tolist(), strict=True))
+        return (with_candidate_terms(model) if self.candidates else model).with_values(values | self.candidates)
 
 
 class RegressionEstimator(Protocol):

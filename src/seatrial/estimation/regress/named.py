@@ -5,6 +5,7 @@ from types import MappingProxyType
 
 from seatrial._plugins import failure_text, installed, load_plugin
 from seatrial.core.values import InputError, spelling_hint
+from seatrial.data.trial.compare_settings import SupportVectorSettings
 from seatrial.data.trial.estimate_method import EstimateMethod
 from seatrial.estimation.regress.estimators import RegressionEstimator
 from seatrial.estimation.regress.standard_estimators import standard_estimators
@@ -32,28 +33,35 @@ _NAMES: Mapping[EstimateMethod, str] = MappingProxyType({
 """Name in tables of each regression that `[estimate] method` can name."""
 
 
-def available_estimators(half_width: float) -> tuple[RegressionEstimator, ...]:
+def available_estimators(
+    half_width: float, svr: SupportVectorSettings | None = None
+) -> tuple[RegressionEstimator, ...]:
     """Return the standard estimators, then the installed ones; windows of that half width [s].
 
     Raises:
         InputError: an installed estimator cannot be made; the sentence says which.
     """
-    return (*standard_estimators(half_width), *(_plugin(name, half_width) for name in installed(ENTRY_POINT_GROUP)))
+    return (
+        *standard_estimators(half_width, svr),
+        *(_plugin(name, half_width) for name in installed(ENTRY_POINT_GROUP)),
+    )
 
 
-def estimator_named(name: str, half_width: float) -> RegressionEstimator:
+def estimator_named(name: str, half_width: float, svr: SupportVectorSettings | None = None) -> RegressionEstimator:
     """Return the estimator that tables list under a name; windows of that half width [s].
 
     Raises:
         InputError: there is no such estimator (the nearest is named), or an installed one cannot be made.
     """
-    estimators = {estimator.name: estimator for estimator in available_estimators(half_width)}
+    estimators = {estimator.name: estimator for estimator in available_estimators(half_width, svr)}
     if name not in estimators:
         raise InputError(f"unknown estimator '{name}'{spelling_hint(name, list(estimators))}")
     return estimators[name]
 
 
-def estimator_of_method(method: EstimateMethod, half_width: float) -> RegressionEstimator:
+def estimator_of_method(
+    method: EstimateMethod, half_width: float, svr: SupportVectorSettings | None = None
+) -> RegressionEstimator:
     """Return the regression that `[estimate] method` names; windows of that half width [s].
 
     Raises:
@@ -61,7 +69,7 @@ def estimator_of_method(method: EstimateMethod, half_width: float) -> Regression
     """
     if method not in _NAMES:
         raise InputError(f"method '{method}' is no regression; these are {', '.join(_NAMES)}")
-    return estimator_named(_NAMES[method], half_width)
+    return estimator_named(_NAMES[method], half_width, svr)
 
 
 def _plugin(name: str, half_width: float) -> RegressionEstimator:

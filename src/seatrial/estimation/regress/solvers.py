@@ -141,10 +141,15 @@ class Lasso:
     Attributes:
         penalties: lambda of eq. (11), of which the best over contiguous folds is taken (eq. (12): 1e-6 to 1e6).
         refit: whether the chosen coefficients are then found by least squares, without the penalty's pull to zero.
+        folds: contiguous folds of the cross-validation.
+        is_scaled: whether columns and target are brought to unit root mean square; else a penalty acts on the numbers
+            as they come, so that a column of small numbers is dropped first.
     """
 
     penalties: tuple[float, ...] = tuple(PENALTIES)
     refit: bool = False
+    folds: int = FOLDS
+    is_scaled: bool = True
 
     def __post_init__(self) -> None:
         if not self.penalties or not all(0.0 <= p < np.inf for p in self.penalties):
@@ -152,8 +157,9 @@ class Lasso:
 
     def solve(self, system: RegressionSystem) -> RegressionSolution:
         """Coefficients that the best penalty leaves; 0 for those it drops."""
-        scaled, penalties = scale_system(system), np.sort(self.penalties)
-        missed = _holdout_errors(scaled, lambda matrix, target: _lasso_path(matrix, target, penalties))
+        scaled = scale_system(system) if self.is_scaled else _as_it_comes(system)
+        penalties = np.sort(self.penalties)
+        missed = _holdout_errors(scaled, lambda matrix, target: _lasso_path(matrix, target, penalties), self.folds)
         best = int(np.argmin(missed))
         found = _lasso_path(scaled.matrix, scaled.target, penalties[best : best + 1])[0]
         kept = found != 0.0
@@ -161,6 +167,11 @@ class Lasso:
             found[kept] = _least_squares(scaled.matrix[:, kept], scaled.target)
         settings = {"penalty": float(penalties[best]), "coefficients kept": float(kept.sum())}
         return RegressionSolution(scaled.unscaled(found), findings=_dropped_findings(system, kept), settings=settings)
+
+
+def _as_it_comes(system: RegressionSystem) -> ScaledSystem:
+    """The system in its own units."""
+    return ScaledSystem(np.ones(len(system.names)), 1.0, system.matrix, system.target)
 
 
 def solve_with_instruments(system: RegressionSystem, instruments: RegressionSystem) -> RegressionSolution:
@@ -218,10 +229,10 @@ def _best_penalty(scaled: ScaledSystem, path: Callable[[Array, Array, Array], Ar
     return float(PENALTIES[int(np.argmin(missed))])
 
 
-def _holdout_errors(scaled: ScaledSystem, path: Callable[[Array, Array], Array]) -> Array:
+def _holdout_errors(scaled: ScaledSystem, path: Callable[[Array, Array], Array], count: int = FOLDS) -> Array:
     """Sum of squares over contiguous blocks left out, for each of the coefficients (n, k) that `path` gives."""
     missed = []
-    for fold in folds(len(scaled.target), min(FOLDS, len(scaled.target))):
+    for fold in folds(len(scaled.target), min(count, len(scaled.target))):
         found = path(np.delete(scaled.matrix, fold, axis=0), np.delete(scaled.target, fold))
         missed.append(np.sum((scaled.target[fold] - found @ scaled.matrix[fold].T) ** 2, axis=1))
     return np.sum(missed, axis=0)

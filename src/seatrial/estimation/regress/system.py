@@ -48,9 +48,21 @@ def build_systems(
     Raises:
         InputError: no run is long enough for the operator, or the features of a system are constant or collinear.
     """
+    made = assemble_systems(model, motions, operator)
+    if not made:
+        raise InputError("no run is long enough for the regression's windows; give longer runs or shorter windows")
+    for system in made:
+        refuse_degenerate(system)
+    return made
+
+
+def assemble_systems(
+    model: Model, motions: Sequence[RegressionMotion], operator: DerivativeOperator
+) -> tuple[RegressionSystem, ...]:
+    """The systems of all runs together as they are, to be predicted; none where no run is long enough."""
     of_runs = [rows for motion in motions if len((rows := operator.rows(model, motion)).time)]
     if not of_runs:
-        raise InputError("no run is long enough for the regression's windows; give longer runs or shorter windows")
+        return ()
     rows = RegressionRows(
         np.concatenate([r.time for r in of_runs]),
         np.concatenate([r.target for r in of_runs]),
@@ -58,10 +70,7 @@ def build_systems(
         of_runs[0].step,
     )
     names = model.parameters.free_names
-    made = tuple(_system(model, rows, equations, columns, names) for equations, columns in _coupled_equations(model))
-    for system in made:
-        refuse_degenerate(system)
-    return made
+    return tuple(_system(model, rows, equations, columns, names) for equations, columns in _coupled_equations(model))
 
 
 def refuse_degenerate(system: RegressionSystem) -> None:

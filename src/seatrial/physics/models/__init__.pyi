@@ -1,3 +1,4 @@
+from seatrial.physics.models.candidate_terms import with_candidate_terms
 from seatrial.physics.models.abkowitz import abkowitz
 from seatrial.physics.models.catalogue import ModelSummary, model_summaries
 from seatrial.physics.models.heave_pitch import heave_pitch, heave_pitch_strip, heave_pitch_zoh
@@ -36,4 +37,5 @@ __all__ = [
     "physical_start_values",
     "roll",
     "waterjet",
+    "with_candidate_terms",
 ]

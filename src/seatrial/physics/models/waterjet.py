@@ -25,6 +25,9 @@ TABLE_2 = {
 WATERJET_COEFFICIENTS = tuple(TABLE_2)
 
 
+CANDIDATE_TERMS = ("N_vrr", "N_vvr")  # of eq. (2); Lasso takes them out, eq. (13), and table 2 has no values of them
+
+
 @cache
 def waterjet() -> Model:
     """Return the eleven-coefficient model with the published ship; free parameters are the coefficients of Table 2.
@@ -32,7 +35,21 @@ def waterjet() -> Model:
     States u, v, r [m/s, m/s, rad/s], psi, x0, y0; inputs nozzle angle delta [rad], jet velocity v_j [m/s].
     A uniform current (current_north, current_east) moves the water; u and v are through it.
     """
-    sheet = Sheet("waterjet", SONG, "waterjet craft, simplified MMG")
+    return _craft("waterjet", ())
+
+
+@cache
+def waterjet_candidates() -> Model:
+    """Return the model with all thirteen terms of eq. (2); those that table 2 does not have are free and zero.
+
+    q L (N_vrr v (L r)^2 + N_vvr v^2 L r) / U in yaw makes both nondimensional.
+    """
+    return _craft("waterjet_candidates", CANDIDATE_TERMS)
+
+
+def _craft(name: str, candidate_terms: tuple[str, ...]) -> Model:
+    """The craft with the terms of table 2 and these candidates."""
+    sheet = Sheet(name, SONG, "waterjet craft, simplified MMG")
     u, v, r, psi, x0, y0 = sheet.states("u v r psi x0 y0")
     delta = sheet.input("delta", positive="port")
     v_j = sheet.input("v_j")
@@ -49,8 +66,9 @@ def waterjet() -> Model:
     x_T = sheet.parameter("x_T", -0.45 * LENGTH, "m", "nozzle position forward of G", "chosen")
 
     def coefficient(name: str) -> sp.Symbol:
+        source = f"{SONG}, table 2 (CFD)" if name in TABLE_2 else f"{SONG}, eq. (2); not in table 2"
         return sheet.parameter(
-            name, TABLE_2[name], source=f"{SONG}, table 2 (CFD)", free=True, latex=f"{name[0]}'_{{{name[2:]}}}"
+            name, TABLE_2.get(name, 0.0), source=source, free=True, latex=f"{name[0]}'_{{{name[2:]}}}"
         )
 
     U = sheet.bind("U", sp.sqrt(u**2 + v**2 + sp.Float(1e-12)), "speed through water", "m/s")
@@ -75,9 +93,11 @@ def waterjet() -> Model:
         "eq. (2), v|v| and r|r| corrected",
         "N",
     )
+    yaw = coefficient("N_v") * v * U + coefficient("N_r") * r_L * U + coefficient("N_rr") * r_L * sp.Abs(r_L)
+    features = {"N_vrr": v * r_L**2 / U, "N_vvr": v**2 * r_L / U}
     N_H = sheet.bind(
         "N_H",
-        q * L * (coefficient("N_v") * v * U + coefficient("N_r") * r_L * U + coefficient("N_rr") * r_L * sp.Abs(r_L)),
+        q * L * (yaw + sum(coefficient(term) * features[term] for term in candidate_terms)),
         "eq. (2), r|r| corrected",
         "N m",
     )

@@ -16,6 +16,9 @@ from seatrial.physics.simulate.linear import (
     LinearBatch as LinearBatch,
     batch_class as batch_class,
 )
+from seatrial.physics.simulate.loop_records import (
+    loop_record as loop_record,
+)
 from seatrial.physics.simulate.population import (
     Forcing as Forcing,
     affine_population_matrices as affine_population_matrices,

@@ -10,22 +10,28 @@ from seatrial.core.results import Method, Solution, Status
 from seatrial.core.text.numbers import significant
 from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.trial import EstimateMethod
+from seatrial.data.trial.compare_settings import SupportVectorSettings
 from seatrial.estimation.identify.strategies.published import NO_INTERVALS, PublishedEstimate
 from seatrial.estimation.regress import RegressionEstimate, estimator_of_method
 
 
 def estimate_by_regression(
-    model: Model, records: Sequence[Record], method: EstimateMethod, window_s: float
+    model: Model,
+    records: Sequence[Record],
+    method: EstimateMethod,
+    window_s: float,
+    svr: SupportVectorSettings | None = None,
 ) -> PublishedEstimate:
     """Return what a regression finds for the free coefficients of a model, from the records as they are.
 
     Args:
         window_s: half width of windows, where the method has any [s].
+        svr: settings of the support vectors and of the published pipeline.
 
     Raises:
         InputError: the model is not linear in its coefficients, or the records do not show every state of it.
     """
-    estimator = estimator_of_method(method, window_s)
+    estimator = estimator_of_method(method, window_s, svr)
     began = time.process_time()
     try:
         regression = estimator.estimate(model, records)

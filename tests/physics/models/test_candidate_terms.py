@@ -1,0 +1,24 @@
+"""Candidate terms: the model itself with two terms more, which change nothing while they are zero."""
+
+import numpy as np
+import pytest
+
+from seatrial.physics.models import waterjet, with_candidate_terms
+from seatrial.physics.models.heave_pitch import heave_pitch
+from seatrial.physics.models.waterjet import CANDIDATE_TERMS, waterjet_candidates
+
+
+def test_zero_candidates_change_nothing_and_values_are_kept() -> None:
+    craft = waterjet().with_values({"m_y": 5000.0})
+    wide = with_candidate_terms(craft)
+    assert wide.parameters.free_names == (*craft.parameters.free_names, *CANDIDATE_TERMS)
+    assert wide.parameters["m_y"].value == 5000.0
+    state, inputs, rates = np.array([0.8, 0.1, 0.02, 0.0, 0.0, 0.0]), np.array([0.1, 1.866]), np.empty((2, 6))
+    for model, row in zip((craft, wide), rates, strict=True):
+        model.compiled.rates(0.0, state, inputs, model.parameters.values, row)
+    assert rates[0] == pytest.approx(rates[1], rel=1e-14)
+    assert waterjet_candidates().name != craft.name
+
+
+def test_a_model_without_candidates_is_itself() -> None:
+    assert with_candidate_terms(heave_pitch()) is heave_pitch() or with_candidate_terms(heave_pitch()) == heave_pitch()
