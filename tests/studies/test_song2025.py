@@ -10,8 +10,9 @@ import pytest
 
 from seatrial.core.results import Bars, Matrix, Study, Verdict
 from seatrial.data.folder.document import document, strict_json
+from seatrial.physics.models import waterjet, with_candidate_terms
 from seatrial_studies.song2025 import study
-from seatrial_studies.song2025.candidates import thirteen_coefficient_model
+from seatrial_studies.song2025.declarations import DECLARATIONS
 from seatrial_studies.song2025.published import DROPPED_COEFFICIENTS, STATEMENTS
 from seatrial_studies.song2025.reproduction import EstimatorResult
 from seatrial_studies.song2025.verdicts import checks
@@ -35,7 +36,8 @@ def test_every_statement_is_judged() -> None:
     verdicts = {c.claim.split(" (")[0]: c.verdict for c in made().claims}
     assert verdicts[STATEMENTS["robust"].text] is Verdict.REFUTED
     assert verdicts[STATEMENTS["improved"].text] is Verdict.UNKNOWABLE
-    assert verdicts[STATEMENTS["wider"].text] is Verdict.UNKNOWABLE
+    assert verdicts[STATEMENTS["wider"].text] is Verdict.HOLDS_IN_OWN_SETTING
+    assert verdicts[STATEMENTS["cleaning"].text] is Verdict.CONFIRMED
 
 
 def test_every_table_and_figure_of_the_paper_has_its_place() -> None:
@@ -45,6 +47,9 @@ def test_every_table_and_figure_of_the_paper_has_its_place() -> None:
         assert wanted in titles
     assert sum(isinstance(f, Matrix) for f in made().figures) == 3
     assert sum(isinstance(f, Bars) for f in made().figures) == 5
+    every = [t.title for t in made().tables] + [f.title for f in made().figures]
+    assert DECLARATIONS.missing_counterparts(every) == ()
+    assert every.index("What wrong coefficients cost a controller") == len(made().tables) - 1
 
 
 def test_it_can_be_written_as_json() -> None:
@@ -56,7 +61,7 @@ def test_it_can_be_written_as_json() -> None:
 
 def test_the_two_further_candidates_act_as_eq_2_has_them() -> None:
     """N_vrr v r^2 L^2 / U and N_vvr v^2 r L / U, times q L over the yaw inertia; zero they change nothing."""
-    craft = thirteen_coefficient_model()
+    craft = with_candidate_terms(waterjet())
     assert craft.parameters.free_names[-2:] == DROPPED_COEFFICIENTS
     state, inputs = np.array([0.8, 0.1, 0.02, 0.0, 0.0, 0.0]), np.array([0.1, 1.866])
     rates = {}

@@ -5,13 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.core.results import Study, Verdict
+from seatrial.core.results import CheckStatus, Study, Verdict
 from seatrial.physics.hydro.dispersion import G
 from seatrial.physics.loops.fin import Preamplifier
 from seatrial.physics.loops.loop_states import state_space
 from seatrial.physics.sea.spectrum import ittc
 from seatrial_studies import yu2014
 from seatrial_studies.yu2014.audit import audit
+from seatrial_studies.yu2014.declarations import DECLARATIONS
 from seatrial_studies.yu2014.histories import rms_variation, simulate_histories
 from seatrial_studies.yu2014.improved_gains import (
     FIVE_FREE,
@@ -193,7 +194,9 @@ def test_fitted_is_called_fitted_and_levels_are_said_not_to_match(study: Study) 
         if table.title.endswith(", fitted"):
             assert "not reproduced" in table.note
     assert "levels do not match" in next(t for t in study.tables if "one number of it" in t.title).note
-    assert any("K_q" in row[0] for t in study.tables if t.title == "Left open by the paper" for row in t.rows)
+    assert any("Kq" in str(row[0]) for t in study.tables if t.title == "Assumed" for row in t.rows)
+    titles += [f.title for f in study.figures]
+    assert DECLARATIONS.missing_counterparts(titles) == ()
 
 
 def test_figures_3_to_7_are_there(study: Study) -> None:
@@ -208,3 +211,17 @@ def test_the_paper_is_beaten_and_misses_stay(study: Study) -> None:
     assert held["washout, five gains: roll variance over the paper's, worse of two seas"].holds
     assert held["the same, JONSWAP: roll variance over the paper's"].holds
     assert all(c.holds == (c.value <= c.limit) for c in study.checks if isinstance(c.limit, float))
+
+
+def test_energy_comes_first_and_no_verdict_hangs_on_time(study: Study) -> None:
+    first = study.claims[0]
+    assert "energy" in first.claim and "0.77/0.75/0.68/0.91/1.04/0.85" in first.evidence
+    times = [c for c in study.checks if "time" in c.name]
+    assert len(times) == 2 and all(c.status is CheckStatus.WITHDRAWN for c in times)
+
+
+def test_claims_are_judged_in_the_context_they_were_made_in(study: Study) -> None:
+    settings = {c.claim: c.setting for c in study.claims if c.verdict is Verdict.HOLDS_IN_OWN_SETTING}
+    assert sorted(settings.values()) == ["18 kn, 90°, 3.3 m, where the PID was set", "one speed"]
+    (joint,) = [c for c in study.claims if "global" in c.claim]
+    assert joint.verdict is Verdict.UNKNOWABLE and "all six conditions" in joint.evidence

@@ -145,26 +145,50 @@ def _correlations(evidence: SupportVectorEvidence) -> list[Matrix]:
 
 
 def _motions(evidence: SupportVectorEvidence, run: PublishedManoeuvre) -> list[Figure]:
-    outcome = evidence.comparison(Table2Column.IMPROVED, run)
+    outcome, own = evidence.comparison(Table2Column.IMPROVED, run), evidence.own_comparison(run)
     time, drawn = outcome.reference.time, []
-    pairs = [("truth", outcome.reference), ("improved column, signs corrected", outcome.replayed)]
+    pairs = [
+        ("truth (simulated)", outcome.reference),
+        ("improved column, signs corrected", outcome.replayed),
+        ("our pipeline", own.replayed),
+    ]
     if run is PublishedManoeuvre.ZIGZAG_20:
         pairs.append(("original column, N_v corrected", evidence.comparison(Table2Column.ORIGINAL, run).replayed))
     for c in CHANNELS:
         curves = tuple(_curve(name, r.time, r[c]) for name, r in pairs)
         drawn.append(Figure(f"Figures {_FIGURE_NUMBERS[run]}: {run}, {c}", "time [s]", f"{c} [{_UNITS[c]}]", curves))
-    own, other = hull_and_jet_forces(TRUTH, outcome.reference), _forces(outcome)
-    for letter, values in own.items():
-        curves = (_curve("truth", time, values), _curve("improved column, signs corrected", time, other[letter]))
+    columns = [
+        ("truth (simulated)", hull_and_jet_forces(TRUTH.craft(), outcome.reference)),
+        ("improved column, signs corrected", _forces(outcome)),
+        ("our pipeline", _forces(own)),
+    ]
+    for letter in columns[0][1]:
+        curves = tuple(_curve(name, time, of_run[letter]) for name, of_run in columns)
         unit = "N m" if letter == "N" else "N"
         drawn.append(
             Figure(f"Figures {_FIGURE_NUMBERS[run]}: {run}, {letter}", "time [s]", f"{letter} [{unit}]", curves)
         )
-    return drawn
+    return [*drawn, *_helmsman(evidence, run)]
+
+
+def _helmsman(evidence: SupportVectorEvidence, run: PublishedManoeuvre) -> list[Figure]:
+    """Track, heading and nozzle with the helmsman in the loop, as figures b and c compare them."""
+    outcome, own = evidence.comparison(Table2Column.IMPROVED, run), evidence.own_comparison(run)
+    number = _FIGURE_NUMBERS[run].split(",")[0]
+    records = [("truth (simulated)", outcome.reference), ("improved column, signs corrected", outcome.steered.record),
+               ("our pipeline", own.steered.record)]  # fmt: skip
+    steered = [(name, record) for name, record in records if record is not None]
+    note = "The helmsman steers each craft himself, so that nozzle angles differ."
+    track = tuple(_curve(name, r["y0"], r["x0"]) for name, r in steered)
+    made = [Figure(f"Figure {number}b: {run}, track", "y0 [m]", "x0 [m]", track, note, is_map=True)]
+    for letter, channel, words in (("c", "psi", "heading"), ("c", "delta", "nozzle")):
+        curves = tuple(_curve(name, r.time, np.degrees(r[channel])) for name, r in steered)
+        made.append(Figure(f"Figure {number}{letter}: {run}, {words}", "time [s]", f"{words} [°]", curves, note))
+    return made
 
 
 def _forces(comparison: RunComparison) -> dict[str, np.ndarray]:
-    return hull_and_jet_forces(comparison.coefficient_set, comparison.replayed)
+    return hull_and_jet_forces(comparison.craft, comparison.replayed)
 
 
 def _curve(name: str, x: np.ndarray, y: np.ndarray) -> Curve:

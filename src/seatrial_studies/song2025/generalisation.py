@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from seatrial.core.equations import Model
 from seatrial.core.values import Array, Record
 from seatrial.data.example_series import JET_VELOCITY
 from seatrial.physics.simulate import forces, trajectory
@@ -26,9 +27,10 @@ STEADY_SECONDS, STEP = 1500.0, 0.1
 
 @dataclass(frozen=True, eq=False)
 class RunComparison:
-    """One run of one column and the truth's.
+    """One run of one craft, a column of table 2 or our own, and the truth's.
 
     Attributes:
+        title: whose coefficients.
         reference: the truth, helmsman in the loop.
         steered: the column's, helmsman in the loop, so that nozzle angles differ as in figures 4c and 7c.
         replayed: the column's on the reference's nozzle history; shorter than the reference where it diverges.
@@ -36,7 +38,8 @@ class RunComparison:
         largest_drift: of the replayed motion, deg.
     """
 
-    coefficient_set: CoefficientSet
+    title: str
+    craft: Model
     run: PublishedManoeuvre
     reference: Record
     steered: ManoeuvreRun
@@ -61,10 +64,15 @@ def compare_runs(
 
 def compare_run(coefficient_set: CoefficientSet, run: PublishedManoeuvre, truth: Record) -> RunComparison:
     """Compare one column in one run with the record `truth`."""
-    craft = coefficient_set.craft()
+    return compare_craft(coefficient_set.title, coefficient_set.craft(), run, truth)
+
+
+def compare_craft(title: str, craft: Model, run: PublishedManoeuvre, truth: Record) -> RunComparison:
+    """Compare one craft in one run with the record `truth`."""
     steered, again = simulate_manoeuvre(craft, run), replay_inputs(craft, truth)
     return RunComparison(
-        coefficient_set,
+        title,
+        craft,
         run,
         truth,
         steered,
@@ -85,9 +93,9 @@ def prediction_accuracy(truth: Record, other: Record) -> Accuracy:
     )
 
 
-def hull_and_jet_forces(coefficient_set: CoefficientSet, record: Record) -> dict[str, Array]:
-    """Return X, Y [N] and N [N m] of hull and jet along a record by the column's model, by letter, each (n,)."""
-    of_model = forces(coefficient_set.craft(), record)
+def hull_and_jet_forces(craft: Model, record: Record) -> dict[str, Array]:
+    """Return X, Y [N] and N [N m] of hull and jet along a record by a model, by letter, each (n,)."""
+    of_model = forces(craft, record)
     return {letter: of_model[binding] for letter, binding in FORCES.items()}
 
 

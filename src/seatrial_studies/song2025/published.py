@@ -156,24 +156,6 @@ STATEMENTS = {
     "wider": SupportVectorStatement("conclusion 1", "the modular model's speed can be extended to a wider range"),
 }
 
-# what a repetition has to choose
-NOT_PRINTED = (
-    "added masses m_x, m_y, added inertia J_zz, inertia I_zz",
-    "water density; 1000 is what makes the printed mass of C_b L B d",
-    "jet area A_j, inflow fraction alpha, nozzle position x_T",
-    "jet velocity v_j, and whether it is constant",
-    "nozzle rate; integrator",
-    "limits of the cleaning: standard score, threshold of small values, what counts as a duplicate",
-    "whether the 8:2 split is random or in blocks",
-    "number of Lasso penalties",
-    "penalty C and tube of the support vector regression, scaling of features and targets",
-    "N_vrr and N_vvr: they are in equation (2), not in table 2; whether the reference motions hold them",
-    "current U_c, psi_c of figure 1",
-    "whether predictions run with the helmsman in the loop (figures 4c and 7c compare nozzle angles) or on the same "
-    "nozzle history",
-    "unit of r in table 4 and figures",
-)
-
 
 def printed_coefficients(column: Table2Column) -> dict[str, float]:
     """Return a column of table 2 as printed, by coefficient in the order of `COEFFICIENTS`."""

@@ -1,11 +1,12 @@
 """The published steps on our own series: cleaning, Lasso, support vectors; where their errors come from; ours."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from seatrial.core.equations import Model
+from seatrial.core.results import RowScore
 from seatrial.core.values import Array, Finding, InputError, Record
 from seatrial.data.example_series import JET_VELOCITY, SENSOR_NOISE, SLEW_RATE, with_sensor_noise
 from seatrial.estimation.estimate import Runs, estimate_model
@@ -31,9 +32,10 @@ from seatrial.estimation.regress import (
 )
 from seatrial.physics.manoeuvres import programme
 from seatrial.physics.models import WATERJET_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models import waterjet, with_candidate_terms
 from seatrial.physics.simulate import manoeuvre
-from seatrial_studies.song2025.candidates import thirteen_coefficient_model
 from seatrial_studies.song2025.craft_models import TRUTH, reference_record
+from seatrial_studies.song2025.printed_regressors import lasso_choice
 from seatrial_studies.song2025.published import PublishedManoeuvre
 
 # s, windows of the weak form; series of noise; our choice
@@ -49,7 +51,11 @@ YAW_LENGTH = 9.8  # m: noise in r is that in u and v over one ship length
 
 @dataclass(frozen=True, eq=False)
 class EstimatorResult:
-    """What one way of doing it finds; errors relative to the truth, shape (11,); NaN and a note where it fails."""
+    """What one way of doing it finds; errors relative to the truth, shape (11,); NaN and a note where it fails.
+
+    Attributes:
+        candidates: coefficients kept beyond the eleven; test: equation -> score on the rows kept for testing.
+    """
 
     name: str
     values: Array
@@ -57,6 +63,13 @@ class EstimatorResult:
     bias: dict[str, float]
     findings: tuple[Finding, ...] = ()
     note: str = ""
+    candidates: dict[str, float] = field(default_factory=dict)
+    test: dict[str, RowScore] = field(default_factory=dict)
+
+    @property
+    def craft(self) -> Model:
+        """Return the craft with these coefficients, those kept beyond the eleven included."""
+        return RegressionEstimate(self.values, candidates=self.candidates).in_model(craft_without_coefficients())
 
     @property
     def median_error(self) -> float:
@@ -209,8 +222,9 @@ def estimator_result(estimator: RegressionEstimator, record: Record) -> Estimato
 
 def _relative_result(name: str, regressed: RegressionEstimate) -> EstimatorResult:
     return EstimatorResult(
-        name, regressed.values, regressed.values / true_coefficients() - 1.0, regressed.bias, regressed.findings
-    )
+        name, regressed.values, regressed.values / true_coefficients() - 1.0, regressed.bias, regressed.findings,
+        candidates=regressed.candidates, test=regressed.test,
+    )  # fmt: skip
 
 
 def _least_squares(operator: Euler | Central | Weak | Differenced | Centred) -> LinearRegression:
@@ -249,11 +263,15 @@ def _lasso_selections(clean: Record, measured: Record) -> tuple[LassoSelection, 
         ("sensor noise, Euler (as published)", measured, Euler()),
         ("sensor noise, weak form", measured, Weak(WINDOW_S)),
     )
-    return tuple(_lasso_selection(*case) for case in cases)
+    printed = (
+        LassoSelection(f"noise-free, printed regressors on forces, {words}", *lasso_choice(clean, is_scaled=is_scaled))
+        for words, is_scaled in (("scaled", True), ("as they come", False))
+    )
+    return (*(_lasso_selection(*case) for case in cases), *printed)
 
 
 def _lasso_selection(setting: str, record: Record, operator: Euler | Central | Weak) -> LassoSelection:
-    craft = thirteen_coefficient_model()
+    craft = with_candidate_terms(waterjet())
     train = blocks(Cleaning().clean(craft, record), 0.8)[0] if not isinstance(operator, Weak) else record
     kept, dropped, penalties = list[str](), list[str](), {}
     for system in build_systems(craft, [RegressionMotion.from_record(craft, train)], operator):

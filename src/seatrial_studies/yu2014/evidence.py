@@ -7,12 +7,16 @@ import numpy as np
 from seatrial.numerics.optimise import Normaliser
 from seatrial.physics.loops import Preamplifier
 from seatrial_studies.yu2014.audit import FinGainAudit
+from seatrial_studies.yu2014.energy import EnergyComparison
 from seatrial_studies.yu2014.histories import RollHistories
 from seatrial_studies.yu2014.improved_gains import FiveGainDesign, ThreeGainOptimum
+from seatrial_studies.yu2014.joint_search import JointOptimum
 from seatrial_studies.yu2014.published import TABLE_1
 from seatrial_studies.yu2014.published_loop import FinObjective, RollResponse, SeaCondition, performance, roll_response
+from seatrial_studies.yu2014.regulators import RegulatorSetting
 from seatrial_studies.yu2014.searches import FinGainSearches
 from seatrial_studies.yu2014.table_1_fit import Table1Fit, best_fit_of
+from seatrial_studies.yu2014.time_domain_search import TimeDomainSearch
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,9 +28,13 @@ class FinGainEvidence:
         table_1_responses: the GA's column at these, long-crested, by reading, in the table's order.
         table_1_fits: table 1 fitted, each reading in both senses of the heading.
         rms_variation: of the rms roll of one record of 1000 s, share.
-        time_domain_seconds: s one search takes with records in time, compiled and with scipy's lsim.
+        time_domain_seconds: CPU time [s] of one search with records in time, compiled and with scipy's lsim.
         ratios_elsewhere: for each row of table 1 the least that three gains can make of the larger of roll and fin-rate
             variance over the paper's, by reading.
+        energy: W and estimates of losses in every row, best fit.
+        regulators: Gh and Gl as functions, by reading.
+        joint_optima: one set of gains for all six conditions, by reading.
+        time_domain: the search by records of 1000 s; None in the quick version.
         three_gain_optima: the best of three gains by reading, with Ms <= 2 and with the paper's own Ms.
     """
 
@@ -38,6 +46,10 @@ class FinGainEvidence:
     rms_variation: float
     searches: tuple[FinGainSearches, ...]
     time_domain_seconds: tuple[float, float]
+    energy: tuple[EnergyComparison, ...]
+    regulators: dict[Preamplifier, tuple[RegulatorSetting, ...]]
+    joint_optima: dict[Preamplifier, JointOptimum]
+    time_domain: TimeDomainSearch | None
     three_gain_optima: dict[Preamplifier, tuple[ThreeGainOptimum, ThreeGainOptimum]]
     ratios_elsewhere: dict[Preamplifier, tuple[float, ...]]
     five_gain_design: FiveGainDesign
@@ -67,7 +79,7 @@ class FinGainEvidence:
 
     @property
     def search_seconds(self) -> float:
-        """Return the median time [s] of one search with its front."""
+        """Return the median CPU time [s] of one search with its front."""
         return float(np.median(np.concatenate([s.seconds for s in self.searches])))
 
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from seatrial.core.results import Bars, Curve, Figure
 from seatrial.physics.loops import Preamplifier
+from seatrial_studies.yu2014.energy_tables import fin_rate_ratios
 from seatrial_studies.yu2014.evidence import FinGainEvidence
 from seatrial_studies.yu2014.published import GAIN_NAMES, TABLE_1
 from seatrial_studies.yu2014.published_loop import PREAMPLIFIER_LABELS, FinObjective
@@ -13,6 +14,7 @@ from seatrial_studies.yu2014.searches import BOX
 def figures(evidence: FinGainEvidence) -> tuple[Figure | Bars, ...]:
     """Return all figures in the order of the page."""
     return (
+        fin_rate_ratios(evidence),
         _reductions(evidence),
         *_histories(evidence),
         *(_search_results(evidence, r) for r in Preamplifier),

@@ -50,7 +50,7 @@ def simulate_histories(fit: Table1Fit, seed: int) -> RollHistories:
     time = np.arange(0.0, DURATION, SAMPLE)
     made = stabiliser_loop(fit.preamplifier, sea.speed, fit.K_q)
     scale = math.degrees(fit.level)
-    free = scale * _response_to_slope(lines, made.disturbance.frequency_response(np.abs(lines.omega_e)), time)
+    free = scale * response_to_slope(lines, made.disturbance.frequency_response(np.abs(lines.omega_e)), time)
     return RollHistories(
         time,
         free,
@@ -66,11 +66,11 @@ def _controlled_motion(
     made, w = transfer_loop.with_gains(gains), np.abs(lines.omega_e)
     roll = made.disturbance.frequency_response(w) / (1.0 + made.open_loop(w))
     rate = -1j * w * (made.gain_values @ made.controller_terms(w)) * roll
-    return scale * _response_to_slope(lines, roll, time), scale * _response_to_slope(lines, rate, time)
+    return scale * response_to_slope(lines, roll, time), scale * response_to_slope(lines, rate, time)
 
 
-def _response_to_slope(lines: WaveComponents, operator: Complex, time: Array) -> Array:
-    """Response to the effective wave slope; operators at |omega_e|, lines the ship overtakes conjugated."""
+def response_to_slope(lines: WaveComponents, operator: Complex, time: Array) -> Array:
+    """Return the response (n,) to the effective wave slope; operators at |omega_e|, overtaken lines conjugated."""
     k = lines.omega**2 / G
     hull = np.array(
         [

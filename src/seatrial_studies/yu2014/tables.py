@@ -4,10 +4,12 @@ from collections.abc import Sequence
 
 from seatrial.core.results import Table
 from seatrial.physics.loops import FREQUENCIES_AND_DAMPINGS, Preamplifier
+from seatrial_studies.yu2014.declarations import declaration_tables
+from seatrial_studies.yu2014.energy_tables import energy_tables, joint_table, regulator_table, time_domain_table
 from seatrial_studies.yu2014.evidence import FinGainEvidence
 from seatrial_studies.yu2014.improved_gains import FiveGainComparison
 from seatrial_studies.yu2014.misprints import misprint_table
-from seatrial_studies.yu2014.published import GAIN_NAMES, NOT_PRINTED, PUBLISHED_VALUES, TABLE_1, ControllerResult
+from seatrial_studies.yu2014.published import GAIN_NAMES, PUBLISHED_VALUES, TABLE_1, ControllerResult
 from seatrial_studies.yu2014.published_loop import PREAMPLIFIER_LABELS
 from seatrial_studies.yu2014.searches import BITS, FinGainSearches
 
@@ -22,6 +24,7 @@ _FIVE_GAIN_NAMES = (*GAIN_NAMES, "KB", "KL")
 def tables(evidence: FinGainEvidence) -> tuple[Table, ...]:
     """Return all tables in the order of the page."""
     return (
+        *energy_tables(evidence),
         _table_1(evidence),
         _fitted_table_1(evidence),
         _fitted_baseline(evidence),
@@ -29,11 +32,14 @@ def tables(evidence: FinGainEvidence) -> tuple[Table, ...]:
         _implied_uncontrolled_roll(),
         _search_scatter(evidence),
         *(_search_results(evidence, reading) for reading in Preamplifier),
+        joint_table(evidence),
+        time_domain_table(evidence),
         _times(evidence),
         _three_gains(evidence),
         _five_gains(evidence),
+        *(regulator_table(evidence, reading) for reading in Preamplifier),
         misprint_table(evidence.audit),
-        Table("Left open by the paper", ("what", "print", "here"), NOT_PRINTED),
+        *declaration_tables(),
     )
 
 

@@ -4,6 +4,8 @@ import numpy as np
 
 from seatrial.core.results import Check, Claim, Verdict
 from seatrial.physics.loops import Preamplifier
+from seatrial_studies.declarations import TIME_IS_NO_VERDICT
+from seatrial_studies.yu2014.energy import EnergyComparison
 from seatrial_studies.yu2014.evidence import FinGainEvidence
 from seatrial_studies.yu2014.improved_gains import MS_LIMIT
 from seatrial_studies.yu2014.published import DESIGN_ROW, DESIGN_ROW_AT_22_KN, GAIN_NAMES, STATEMENTS, TABLE_1
@@ -13,7 +15,8 @@ from seatrial_studies.yu2014.searches import FinGainSearches
 PRINTED, WASHOUT = Preamplifier.PRINTED, Preamplifier.WASHOUT
 THREE_GAIN_LIMIT, FIVE_GAIN_LIMIT = 0.62, 0.70
 ON_FRONT = 0.99
-ELSEWHERE_LIMIT = 0.8
+JOINT_FRONT = 0.99  # worst ratio from which on the paper's gains count as on the joint front; our choice
+LEAST_SPREAD = 0.2  # share of a range: below it a gain would count as an attractor; our choice
 TIME_RATIO_LIMIT = 1e-3
 # rms log errors up to which table 1 and its baseline count as fitted; our choice
 FIT_ERROR, BASELINE_ERROR = 0.25, 0.30
@@ -23,10 +26,10 @@ REDUCTION_TOLERANCE = 2.0  # points of reduction
 def claims(evidence: FinGainEvidence) -> tuple[Claim, ...]:
     """Return all claims in the order of the page."""
     return (
+        _energy_claim(evidence),
         _fin_rate_claim(evidence),
         _reduction_claim(evidence),
         _design_point_claim(evidence),
-        _energy_claim(evidence),
         _loop_claim(evidence),
         _saturation_claim(evidence),
         _optimality_claim(evidence),
@@ -35,9 +38,9 @@ def claims(evidence: FinGainEvidence) -> tuple[Claim, ...]:
     )
 
 
-def _claim(key: str, verdict: Verdict, evidence: str) -> Claim:
+def _claim(key: str, verdict: Verdict, evidence: str, setting: str = "") -> Claim:
     said = STATEMENTS[key]
-    return Claim(f"{said.text[0].upper()}{said.text[1:]} ({said.source})", verdict, evidence)
+    return Claim(f"{said.text[0].upper()}{said.text[1:]} ({said.source})", verdict, evidence, setting)
 
 
 def _fin_rate_claim(evidence: FinGainEvidence) -> Claim:
@@ -46,16 +49,20 @@ def _fin_rate_claim(evidence: FinGainEvidence) -> Claim:
         "rate",
         Verdict.CONFIRMED if rows == len(TABLE_1) else Verdict.REFUTED,
         f"by its own table in {rows} of {len(TABLE_1)} rows; at 22 / 90 {DESIGN_ROW_AT_22_KN.traditional.rate} against "
-        f"{DESIGN_ROW_AT_22_KN.genetic.rate}°/s",
+        f"{DESIGN_ROW_AT_22_KN.genetic.rate}°/s, a ratio of "
+        f"{DESIGN_ROW_AT_22_KN.genetic.rate / DESIGN_ROW_AT_22_KN.traditional.rate:.2f}",
     )
 
 
 def _reduction_claim(evidence: FinGainEvidence) -> Claim:
     rows = evidence.audit.lower_reductions
+    set_row = DESIGN_ROW.genetic.reduction < DESIGN_ROW.traditional.reduction
     return _claim(
         "reduction",
-        Verdict.CONFIRMED if rows == len(TABLE_1) else Verdict.REFUTED,
-        f"by its own table lower in {rows} of {len(TABLE_1)} rows, at 18 / 90; higher in the others",
+        Verdict.HOLDS_IN_OWN_SETTING if set_row else Verdict.REFUTED,
+        f"said of the condition the PID was set for: {DESIGN_ROW.genetic.reduction} after "
+        f"{DESIGN_ROW.traditional.reduction} %. Of all {len(TABLE_1)} rows it is lower in {rows}, higher in the others",
+        "18 kn, 90°, 3.3 m, where the PID was set" if set_row else "",
     )
 
 
@@ -73,16 +80,25 @@ def _design_point_claim(evidence: FinGainEvidence) -> Claim:
 
 
 def _energy_claim(evidence: FinGainEvidence) -> Claim:
-    saved = [1.0 - (row.genetic.rate / row.traditional.rate) ** 2 for row in TABLE_1]
+    def ratios(values: list[float]) -> str:
+        return "/".join(f"{value:.2f}" for value in values)
+
+    printed, ours = (
+        [e.printed_rate_ratio for e in evidence.energy],
+        [e.fitted_rate_ratio for e in evidence.energy],
+    )
+    saved = ", ".join(f"{EnergyComparison.saved(e.printed):.0f}" for e in evidence.energy)
+    own = [EnergyComparison.saved(e.fitted) for e in evidence.energy]
     return _claim(
         "energy",
         Verdict.UNKNOWABLE,
-        "by its table W, the square of the fin rate, changes by "
-        + ", ".join(f"{-100 * s:+.0f} %" for s in saved)
-        + f"; but {len(evidence.audit.contradictory_rows)} of {len(TABLE_1)} rows contradict themselves "
+        f"the fin rate of the GA over the PID's is {ratios(printed)} in print, so that W falls by {saved} %. In our "
+        f"counterpart, the PID's gains fitted to its column, it is {ratios(ours)} and W falls by {min(own):.0f} to "
+        f"{max(own):.0f} %: the nearest that three gains in the paper's box come to that column. The PID's gains are "
+        "not printed, and "
+        f"{len(evidence.audit.contradictory_rows)} of {len(TABLE_1)} rows contradict themselves "
         f"(roll without fins implied at 22 / 90: {DESIGN_ROW_AT_22_KN.traditional.uncontrolled:.2f}° and "
-        f"{DESIGN_ROW_AT_22_KN.genetic.uncontrolled:.2f}°), "
-        "and the gains compared with are not printed",
+        f"{DESIGN_ROW_AT_22_KN.genetic.uncontrolled:.2f}°)",
     )
 
 
@@ -90,13 +106,15 @@ def _loop_claim(evidence: FinGainEvidence) -> Claim:
     made = " and ".join(
         f"{evidence.table_1_responses[r][4].reduction:.1f} % ({PREAMPLIFIER_LABELS[r]})" for r in Preamplifier
     )
+    differ = DESIGN_ROW.genetic.reduction != DESIGN_ROW_AT_22_KN.genetic.reduction
     return _claim(
         "loop",
-        Verdict.REFUTED,
-        "at 90° waves are met alike at any speed: with a constant K_alpha both rows would be one, but the table has "
-        f"{DESIGN_ROW.genetic.reduction} and {DESIGN_ROW_AT_22_KN.genetic.reduction} %. With lift growing "
-        "as the square of "
-        f"the speed 22 / 90 becomes {made}",
+        Verdict.HOLDS_IN_OWN_SETTING if differ else Verdict.CONFIRMED,
+        "the paper takes it as constant for convenience, at one speed. At 90° waves are met alike at any speed: with a "
+        "constant K_alpha both rows of table 1 would be one, but they have "
+        f"{DESIGN_ROW.genetic.reduction} and {DESIGN_ROW_AT_22_KN.genetic.reduction} %, so that the table was not made "
+        f"with it. With lift growing as the square of the speed 22 / 90 becomes {made}",
+        "one speed" if differ else "",
     )
 
 
@@ -152,15 +170,26 @@ def _scatter_text(searches: FinGainSearches) -> str:
 
 
 def _global_optimum_claim(evidence: FinGainEvidence) -> Claim:
+    printed, washout = evidence.joint_optima[PRINTED], evidence.joint_optima[WASHOUT]
+    on_front = [joint.worst_ratio >= JOINT_FRONT for joint in (printed, washout)]
+    verdict = Verdict.CONFIRMED if all(on_front) else Verdict.UNKNOWABLE if any(on_front) else Verdict.REFUTED
     least = {r: min(values) for r, values in evidence.ratios_elsewhere.items()}
-    following = evidence.table_1_responses[WASHOUT][0].reduction
     row = {r: TABLE_1[values.index(least[r])].name for r, values in evidence.ratios_elsewhere.items()}
     return _claim(
         "global",
-        Verdict.REFUTED if max(least.values()) < ELSEWHERE_LIMIT else Verdict.UNKNOWABLE,
-        "the search has one sea and one speed. Other gains in the paper's box leave of both roll and fin-rate variance "
-        + " and ".join(f"{least[r]:.2f} at {row[r]} ({PREAMPLIFIER_LABELS[r]})" for r in Preamplifier)
-        + f"; in long following waves (18 / 45) the paper's reduce the roll by {following:.0f} % as a washout",
+        verdict,
+        "judged by one set of gains for all six conditions, of both roll and fin-rate variance the best in the "
+        "paper's box "
+        "leaves in the worst condition "
+        + " and ".join(
+            f"{joint.worst_ratio:.3f} at {joint.Ms_ratio:.2f} times the paper's largest Ms "
+            f"({PREAMPLIFIER_LABELS[joint.preamplifier]}: the paper's gains are "
+            f"{'on' if joint.worst_ratio >= JOINT_FRONT else 'off'} the joint front within "
+            f"{100.0 * (1.0 - JOINT_FRONT):.0f} %)"
+            for joint in (printed, washout)
+        )
+        + ". No one set is optimal in each condition: other gains leave "
+        + " and ".join(f"{least[r]:.2f} at {row[r]} ({PREAMPLIFIER_LABELS[r]})" for r in Preamplifier),
     )
 
 
@@ -174,61 +203,62 @@ def checks(evidence: FinGainEvidence) -> tuple[Check, ...]:
     held = made.held_out_seas[:2]
     at_22 = evidence.table_1_responses[WASHOUT][4].reduction - DESIGN_ROW_AT_22_KN.genetic.reduction
     printed, washout = evidence.three_gain_optima[PRINTED][0], evidence.three_gain_optima[WASHOUT][1]
-    compiled, single = evidence.time_domain_seconds
     narrowest = float(evidence.searches_with(WASHOUT).relative_spread.min())
     worst, rate = max(c.roll_ratio for c in made.design_seas), max(c.rate_ratio for c in made.design_seas)
+    at_22_check = Check.between(
+        "washout, 22 / 90 with lift as U²: points of reduction from the paper's",
+        at_22,
+        -REDUCTION_TOLERANCE,
+        REDUCTION_TOLERANCE,
+    )
     return (
-        _check_at_most(
+        Check.at_most(
             "as printed: largest objective of better gains over the paper's",
             float(printed.objective_ratios.max()),
             THREE_GAIN_LIMIT,
         ),
-        _check_at_most("as printed: their Ms", printed.Ms, MS_LIMIT + 1e-6),
-        Check(
+        Check.at_most("as printed: their Ms", printed.Ms, MS_LIMIT + 1e-6),
+        Check.between(
             "washout: best worst objective of three gains over the paper's, at its Ms",
             float(washout.objective_ratios.max()),
-            f"{ON_FRONT} to 1: the paper's lie on the front",
-            bool(ON_FRONT <= washout.objective_ratios.max() <= 1.0 + 1e-9),
+            ON_FRONT,
+            1.0 + 1e-9,
+            "the paper's gains do not lie on the front",
         ),
-        _check_at_most(
-            "washout, five gains: roll variance over the paper's, worse of two seas", worst, FIVE_GAIN_LIMIT
-        ),
-        _check_at_most("washout, five gains: fin-rate variance over the paper's, worse of two seas", rate, 1.0 + 1e-6),
-        _check_at_most("washout, five gains: Ms", made.Ms, MS_LIMIT + 1e-6),
-        _check_at_most("the same, JONSWAP: roll variance over the paper's", held[0].roll_ratio, FIVE_GAIN_LIMIT),
-        _check_at_most("the same, JONSWAP: fin-rate variance over the paper's", held[0].rate_ratio, 1.0),
-        _check_at_most(
+        Check.at_most("washout, five gains: roll variance over the paper's, worse of two seas", worst, FIVE_GAIN_LIMIT),
+        Check.at_most("washout, five gains: fin-rate variance over the paper's, worse of two seas", rate, 1.0 + 1e-6),
+        Check.at_most("washout, five gains: Ms", made.Ms, MS_LIMIT + 1e-6),
+        Check.at_most("the same, JONSWAP: roll variance over the paper's", held[0].roll_ratio, FIVE_GAIN_LIMIT),
+        Check.at_most("the same, JONSWAP: fin-rate variance over the paper's", held[0].rate_ratio, 1.0),
+        Check.at_most(
             "the same, JONSWAP short-crested: roll variance over the paper's", held[1].roll_ratio, FIVE_GAIN_LIMIT
         ),
-        _check_at_most("the same, JONSWAP short-crested: fin-rate variance over the paper's", held[1].rate_ratio, 1.0),
-        Check(
-            "washout, 22 / 90 with lift as U²: points of reduction from the paper's",
-            at_22,
-            f"±{REDUCTION_TOLERANCE:g}",
-            abs(at_22) <= REDUCTION_TOLERANCE,
+        Check.at_most(
+            "the same, JONSWAP short-crested: fin-rate variance over the paper's",
+            held[1].rate_ratio,
+            1.0,
+            "the fin rate was limited in the two ITTC seas of the search; this sea was held out from it",
         ),
-        _check_at_most("table 1 fitted, GA: rms log error, better reading", evidence.best_fit.log_error, FIT_ERROR),
-        _check_at_most(
+        at_22_check,
+        Check.at_most("table 1 fitted, GA: rms log error, better reading", evidence.best_fit.log_error, FIT_ERROR),
+        Check.at_most(
             "table 1 fitted, PID: rms log error, better reading",
             min(f.baseline_log_error for f in evidence.table_1_fits),
             BASELINE_ERROR,
         ),
-        Check(
-            "washout: narrowest spread of a gain over seeds, share of its range",
-            narrowest,
-            "above 0.2: no attractor",
-            narrowest > 0.2,
-        ),
-        _check_at_most(
-            "the search's time over scipy's lsim records", evidence.search_seconds / single, TIME_RATIO_LIMIT
-        ),
-        _check_at_most(
-            "the search's time over compiled records",
-            evidence.search_seconds / compiled,
-            TIME_RATIO_LIMIT,
-        ),
+        Check.at_least("washout: narrowest spread of a gain over seeds, share of its range", narrowest, LEAST_SPREAD),
+        *_time_checks(evidence),
     )
 
 
-def _check_at_most(name: str, value: float, limit: float) -> Check:
-    return Check(name, float(value), limit, bool(value <= limit))
+def _time_checks(evidence: FinGainEvidence) -> tuple[Check, Check]:
+    """The two checks of the earlier version that hung on time, withdrawn."""
+    compiled, single = evidence.time_domain_seconds
+    return (
+        Check.at_most(
+            "the search's time over scipy's lsim records", evidence.search_seconds / single, TIME_RATIO_LIMIT
+        ).withdrawn(TIME_IS_NO_VERDICT),
+        Check.at_most(
+            "the search's time over compiled records", evidence.search_seconds / compiled, TIME_RATIO_LIMIT
+        ).withdrawn(TIME_IS_NO_VERDICT),
+    )

@@ -76,7 +76,7 @@ def test_a_turn_with_35_degrees_is_outside_the_quadratic_model():
 
 
 def test_forces_are_mass_times_acceleration(zigzag):
-    of_truth, p = hull_and_jet_forces(TRUTH, zigzag), TRUTH.craft().parameters
+    of_truth, p = hull_and_jet_forces(TRUTH.craft(), zigzag), TRUTH.craft().parameters
     r_dot = np.gradient(zigzag["r"], zigzag.dt)
     inertia = p["I_z"].value + p["J_z"].value
     assert inertia * r_dot[1:-1] == pytest.approx(of_truth["N"][1:-1], abs=0.02 * np.ptp(of_truth["N"]))
