@@ -90,7 +90,13 @@ def _tracking(reproduction: WildHorseReproduction, tracking: Tracking) -> list[F
         observed, identified = (-factor * states[:, state] for states in (data.states, tracking.states))
         curves = (Curve("observed", time, observed), Curve("identified", time, identified))
         figures_.append(Figure(title, TIME_LABEL, unit, curves, f"{printed}. {note}"))
-    return figures_
+    errors = tracking.states - data.states
+    shares = 100.0 * errors / np.sqrt(np.mean(data.states**2, axis=0))
+    curves = tuple(Curve(name, time, shares[:, state]) for name, state in (("heave", 0), ("pitch", 2)))
+    below = (
+        "Identified less observed, in per cent of the rms of the motion: too little to be visible in figures 6 and 7."
+    )
+    return [*figures_, Figure("Figures 6 and 7: error of tracking", TIME_LABEL, "% of rms", curves, below)]
 
 
 def _histories(reproduction: WildHorseReproduction) -> list[Figure]:

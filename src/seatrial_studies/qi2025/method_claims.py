@@ -127,8 +127,10 @@ def tracking_claim(evidence: WildHorseEvidence) -> Claim:
         f"IWHO's model, carried on while its coefficients evolve, is off by {_share_text(own)} of the rms of heave "
         f"and of pitch in 200 s (PSO {_share_text(evidence.tracking.errors[SearchAlgorithm.PSO])}, WHO "
         f"{_share_text(evidence.tracking.errors[SearchAlgorithm.WHO])}); coefficients drawn once from the box and "
-        f"never corrected by {_share_text(guess)}. The waves' force is known and the box is narrow: tracking says "
-        "little of the coefficients (45°, coefficients of 90° assumed)"
+        f"never corrected by {_share_text(guess)}. It does not lag by a sample, the paper's reason for its rebounds: "
+        f"against the motion one sample earlier its error is {1.0 / float(evidence.tracking.lag_gain.max()):.0f} "
+        "times as large or more. The waves' force is known and the box is narrow: tracking says little of the "
+        "coefficients (45°, coefficients of 90° assumed)"
     )
     claim = "The identified heave and pitch follow the observed ones while coefficients evolve (figures 6, 7)"
     if max(own) > TRACKED_SHARE:

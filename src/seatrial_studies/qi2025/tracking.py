@@ -23,7 +23,7 @@ class Tracking:
         errors: rms error of heave and pitch over the rms of the motion, (2,), by algorithm.
         guess_errors: the same of coefficients drawn once from the box and kept, mean over the guesses, (2,).
         lag_gain: rms error of heave and pitch over that against the motion one sample earlier, (2,): above 1 where
-            the model lags a sample.
+            the model lags a sample, as the paper says of its own.
     """
 
     states: Array
