@@ -77,6 +77,8 @@ class ColumnSpec:
         expected = log_quantity(self.symbol).unit
         # a share of a span has no unit: that of the cells is then only a label, such as "us" of a pulse width
         size = 1.0 if self.span != 1.0 and expected == "1" else self.si_factor(expected)
+        if (self.zero, self.span, self.factor, self.offset) == (0.0, 1.0, 1.0, 0.0):
+            return cells if size == 1.0 else cells * size
         return ((cells - self.zero) / self.span * self.factor + self.offset) * size
 
     def si_factor(self, expected: str) -> float:

@@ -5,6 +5,7 @@ import csv
 import gzip
 import io
 import re
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     import pandas
 
 RECORD_MARK = "# seatrial record"
+_HEAD_BYTES = 65536  # of a file that are looked at for zero bytes; chosen
 _SEPARATORS = {",": ",", ";": ";", "tab": "\t", "whitespace": r"\s+"}
 _BYTE_ORDER_MARKS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-sig"}
 _ASCII_COMPATIBLE = ("utf-8", "cp1252", "iso8859-1", "ascii")
@@ -33,16 +35,17 @@ def utf8_text(path: Path, encoding: str) -> bytes:
         InputError: empty, packed wrongly or without end, binary, or not in that encoding.
     """
     data = _unpacked(path) if path.suffix == ".gz" else path.read_bytes()
-    if not data.strip():
+    if not data[:_HEAD_BYTES].strip() and not data.strip():
         raise InputError(f"{path.name} is empty; leave it out or replace it")
     mark = next((mark for mark in _BYTE_ORDER_MARKS if data.startswith(mark)), b"")
     encoding = _BYTE_ORDER_MARKS.get(mark, encoding)
-    if b"\0" in data[:65536] and not encoding.lower().startswith(("utf-16", "utf_16", "utf-32", "utf_32")):
+    if b"\0" in data[:_HEAD_BYTES] and not encoding.lower().startswith(("utf-16", "utf_16", "utf-32", "utf_32")):
         raise InputError(f"{path.name} is not a text file (it holds binary data); check the format")
     try:
         if codecs.lookup(encoding).name in _ASCII_COMPATIBLE and data.isascii():
             return data
-        return data.decode(encoding).encode()
+        text = data.decode(encoding)
+        return data if codecs.lookup(encoding).name == "utf-8" else text.encode()
     except UnicodeDecodeError as error:
         line = data[: error.start].count(b"\n") + 1
         raise InputError(
@@ -96,7 +99,9 @@ def read_text(path: Path, layout: Layout) -> Log:
     Raises:
         InputError: see `utf8_text`; no data lines; a line with too many cells; a quote that does not end in its line.
     """
-    data = utf8_text(path, layout.encoding).rstrip()
+    data = utf8_text(path, layout.encoding)
+    if data[-2:].isspace():
+        data = data.rstrip()
     first = int(data.startswith(RECORD_MARK.encode()))
     start = first + (max(layout.header_lines, 1) if layout.has_named_columns else layout.header_lines)
     header, sample_line = _leading_lines(data, start)
@@ -106,7 +111,12 @@ def read_text(path: Path, layout: Layout) -> Log:
     separator = detect_separator(sample_line, layout)
     if b'"' in data:
         _refuse_open_quotes(data, start, path.name)
-    frame = _data_frame(data, start, separator, layout, path.name)
+    # pandas reads a file faster than bytes, which then need not be kept
+    is_file_itself = path.suffix != ".gz" and len(data) == path.stat().st_size and data[:3] not in _BYTE_ORDER_MARKS
+    source = str(path) if is_file_itself and layout.encoding == "utf-8" else io.BytesIO(data)
+    del data
+    has_spaces = f"{separator} " in sample_line
+    frame = _data_frame(source, start, separator, layout.decimal, path.name, has_spaces=has_spaces)
     names = column_names(header[-1], separator) if layout.has_named_columns else []
     width = frame.shape[1]
     padded = (*names[:width], *[""] * (width - len(names)))
@@ -130,23 +140,27 @@ def _refuse_open_quotes(data: bytes, start: int, file: str) -> None:
             )
 
 
-def _data_frame(data: bytes, start: int, separator: str, layout: Layout, file: str) -> "pandas.DataFrame":
+def _data_frame(
+    source: str | io.BytesIO, start: int, separator: str, decimal: str, file: str, *, has_spaces: bool
+) -> "pandas.DataFrame":
     import pandas as pd
 
     try:
-        return pd.read_csv(
-            io.BytesIO(data),
-            sep=separator,
-            header=None,
-            skiprows=start,
-            decimal=layout.decimal,
-            keep_default_na=False,
-            na_values=list(EMPTY_CELLS),
-            skip_blank_lines=False,
-            skipinitialspace=separator != r"\s+",
-            low_memory=False,
-            **_exact_numbers(pd.__version__),
-        )
+        with warnings.catch_warnings():
+            # of columns that are numbers in one part of the file and text in another; their cells are read one by one
+            warnings.simplefilter("ignore", pd.errors.DtypeWarning)
+            return pd.read_csv(
+                source,
+                sep=separator,
+                header=None,
+                skiprows=start,
+                decimal=decimal,
+                keep_default_na=False,
+                na_values=list(EMPTY_CELLS),
+                skip_blank_lines=False,
+                skipinitialspace=has_spaces,
+                **_exact_numbers(pd.__version__),
+            )
     except pd.errors.ParserError as error:
         found = re.search(r"Expected (\d+) fields in line (\d+), saw (\d+)", str(error))
         where = f"row {found[2]} has {found[3]} cells instead of {found[1]}" if found else str(error)
