@@ -7,9 +7,11 @@ import numpy as np
 
 from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.check import canonical_record, examined_record
+from seatrial.data.check.thrusters import thruster_findings
 from seatrial.data.trial.approach import first_execution
 from seatrial.data.trial.roll_decay_start import trim_to_decay_start
 from seatrial.data.trial.trial import Role, Trial, TrialRun, Trimming
+from seatrial.physics.models.thruster_layout import ThrusterLayout
 from seatrial.physics.sea.encounter import WaveEncounter
 from seatrial.physics.sea.wave_forces import with_wave_forces
 
@@ -62,7 +64,14 @@ def load_records(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, 
     records = tuple(load_run(run, trial.reference_point) for run in trial.runs if run.role is not Role.LEAVE_OUT)
     for channel, deviation in trial.noise.items():
         _refuse_absurd_noise(channel, deviation, [r.record for r in records])
-    return records, (*trial.findings, *(finding for record in records for finding in record.findings))
+    of_runs = (finding for record in records for finding in record.findings)
+    return records, (*trial.findings, *of_runs, *_craft_findings(trial, records))
+
+
+def _craft_findings(trial: Trial, records: tuple[TrialRecord, ...]) -> tuple[Finding, ...]:
+    """What all runs together show of the thrusters that the model has."""
+    layout = trial.model.equations.layout
+    return thruster_findings(ThrusterLayout.from_text(layout), [r.record for r in records]) if layout else ()
 
 
 def _refuse_absurd_noise(channel: str, deviation: float, records: Sequence[Record]) -> None:

@@ -104,6 +104,11 @@ def refuse_without_excitation(model: Model, records: Sequence[Record]) -> None:
     Raises:
         InputError: which records, and what manoeuvre is needed.
     """
+    if model.equations.layout and not moving_inputs(model, records):
+        raise InputError(
+            f"no excitation: none of {', '.join(model.input_names)} moves in {', '.join(r.name for r in records)}; "
+            "record spins, straights ahead and astern, and steps of each thruster"
+        )
     if model.is_affine and not moving_inputs(model, records):
         raise InputError(
             f"no excitation: none of {', '.join(model.input_names)} moves in {', '.join(r.name for r in records)}; "

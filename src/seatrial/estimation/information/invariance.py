@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.equations import Model
+from seatrial.core.equations.model import MEASURED
 from seatrial.core.values import NOTATION, Array, Index, InputError
 from seatrial.estimation.information.null_space import SINGULAR, column_span
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
@@ -55,7 +56,7 @@ class InvarianceConditions:
         """What is compared."""
         return (
             *(self.model.states[i] for i in self.compared_states),
-            *(self.model.outputs[i] for i in self.compared_outputs),
+            *(self.model.outputs[i].removesuffix(MEASURED) for i in self.compared_outputs),
         )
 
     @property
@@ -163,8 +164,9 @@ def invariance_conditions(
             f"model '{model.name}' needs values of {', '.join(model.parameters.missing)}; "
             "give them under [ship] or [model.fixed]"
         )
-    seen = tuple(i for i, n in enumerate(model.states) if n in outputs)
-    compared = tuple(i for i, n in enumerate(model.outputs) if n in outputs)
+    shown = {model.observable_of(name) for name in outputs}
+    seen = tuple(i for i, n in enumerate(model.states) if n in shown)
+    compared = tuple(i for i, n in enumerate(model.outputs) if n in shown)
     states, inputs = _random_points(model, values)
     code, nx = model.compiled, len(model.states)
     f_jac, g_jac = _jacobians(model, states, inputs, values)[1:]

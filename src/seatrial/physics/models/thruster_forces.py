@@ -134,7 +134,9 @@ class ThrusterSheet:
         if thruster.curve is ThrustCurve.OPEN_WATER:
             return self._open_water(thruster, c, w)
         ahead = self._still_knots(thruster, c) if thruster.curve is ThrustCurve.KNOTS else self._still(thruster, c)
-        loss = self._coefficient(thruster, "k_J", 0.0, "N^0.5 s/m", "loss of thrust with speed ahead", scale=0.1)
+        loss = self._coefficient(
+            thruster, "k_J", 0.0, "N^0.5 s/m", "loss of thrust with speed ahead", scale=0.1, lower=0
+        )
         decay = self._coefficient(
             thruster, "k_4", 0.0, "s^2/m^2", "loss of thrust astern with speed", scale=0.02, lower=0
         )

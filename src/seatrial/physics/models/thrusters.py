@@ -8,6 +8,8 @@ M_c = m x_G - Y_rdot. They also show only ratios to M_u, unless the thrust at so
 until it is given, and forces are then those on each kg of it.
 """
 
+import math
+
 import sympy as sp
 
 from seatrial.core.equations import Model, Sheet
@@ -77,7 +79,8 @@ def _coefficient(sheet: Sheet, layout: ThrusterLayout, name: str, entry: tuple[f
     value, unit, power, free = entry
     free = free and (name in _DIAGONAL or layout.damping is Damping.FULL)
     size = layout.length**power * (layout.mass if "kg" in unit else 1.0)
-    return sheet.parameter(name, value * size, unit, "hull damping", HULL, free=free, scale=_SCALE * size)
+    upper = 0.0 if name in _DIAGONAL else math.inf  # a hull at rest in water takes energy out of every motion
+    return sheet.parameter(name, value * size, unit, "hull damping", HULL, free=free, upper=upper, scale=_SCALE * size)
 
 
 def _hull(sheet: Sheet, layout: ThrusterLayout, water: Water, thrust: ThrusterForce) -> ThrusterForce:
