@@ -12,6 +12,7 @@ from seatrial.data.draft import ColumnGuess, find_stretches, guess_columns
 from seatrial.data.draft.naming import guess_by_name
 from seatrial.data.draft.survey import column_values, time_column
 from seatrial.data.draft.text_layout import text_layout
+from seatrial.data.draft.unnamed import recognised_columns
 from seatrial.data.trial import load_runs
 
 DEGREE, KNOT = np.pi / 180.0, 1852.0 / 3600.0
@@ -150,3 +151,39 @@ def test_header_separator_and_encoding_are_recognised(tmp_path: Path) -> None:
 def test_no_logs_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="there is no log to draft a trial of"):
         draft_trial(tmp_path)
+
+
+def test_folders_of_topics_name_their_thrusters_and_axes_that_are_open_leave_sides_open(tmp_path: Path) -> None:
+    half = 0.5 * (np.pi / 2.0 - TRUTH["psi"])
+    for k in (1, 2):
+        folder = tmp_path / f"actuators/actuator_{k}"
+        folder.mkdir(parents=True)
+        write(folder / "azimuth_angle.csv", {"time": TRUTH["t"], "data": 100.0 * k + TRUTH["psi"]})
+    pose = {
+        "pose_position_x": TRUTH["y0"],
+        "pose_position_y": TRUTH["x0"],
+        "pose_orientation_x": 0.0 * half,
+        "pose_orientation_y": 0.0 * half,
+        "pose_orientation_z": np.sin(half),
+        "pose_orientation_w": np.cos(half),
+    }
+    twist = {"twist_linear_x": TRUTH["u"], "twist_angular_z": -TRUTH["r"]}
+    write(tmp_path / "pose.csv", {"time": TRUTH["t"]} | pose)
+    write(tmp_path / "twist_body.csv", {"time": TRUTH["t"]} | twist)
+    used = {g.symbol: g for part in draft_trial(tmp_path).guesses for g in part if g.is_used}
+    assert (used["alpha_1"].unit, used["alpha_2"].unit) == ("deg", "deg") and not used["alpha_2"].is_open
+    assert used["x0"].is_open and used["q_w"].is_open and used["r"].is_open and not used["u"].is_open
+
+
+def test_columns_without_names_are_recognised_by_what_they_do(tmp_path: Path) -> None:
+    columns = [TRUTH["t"], TRUTH["x0"], TRUTH["y0"], TRUTH["psi"] / DEGREE, TRUTH["north"], TRUTH["east"]]
+    columns += [TRUTH["r"] / DEGREE, np.full(TRUTH["t"].size, 10.2), -TRUTH["delta"] / DEGREE]
+    rows = [" ".join(f"{value:.9g}" for value in row) for row in np.column_stack(columns).tolist()]
+    (tmp_path / "run.dat").write_text("\n".join(["towing tank", "zigzag", *rows]), encoding="utf-8")
+    result = guesses(tmp_path / "run.dat")
+    expected = {"x0": (2, "m"), "y0": (3, "m"), "psi": (4, "deg"), "u": (5, "m/s"), "v": (6, "m/s"),
+                "r": (7, "deg/s"), "delta": (9, "deg")}  # fmt: skip
+    assert {symbol: (guess.source, guess.unit) for symbol, guess in result.items()} == expected
+    assert (result["u"].frame, result["delta"].positive) == ("earth", "port")
+    assert not any(guess.is_open for guess in result.values())
+    assert recognised_columns({}, STEP) == []

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from seatrial.core.values import InputError
-from seatrial.data.draft.guess import ColumnGuess, checked_by_behaviour, guess_columns
+from seatrial.data.draft.guess import ColumnGuess, checked_by_behaviour, guess_columns, without_conflicts
 from seatrial.data.draft.manoeuvres import LogStretch, find_stretches
 from seatrial.data.draft.survey import LogSurvey, survey_log
 from seatrial.data.read.registry import FORMATS
@@ -58,8 +58,10 @@ def draft_trial(*logs: str | Path, folder: str | Path = ".") -> DraftTrial:
         (guesses,) = checked_by_behaviour([group], [guess_columns(group)])
         all_guesses, examined = (tuple(guesses),), [group]
     else:
-        examined = [group[0] for group in groups]
-        all_guesses = tuple(map(tuple, checked_by_behaviour(examined, _one_source_each(examined))))
+        groups = [[survey] for survey in surveys]
+        examined = list(surveys)
+        parts = without_conflicts([guess_columns(one) for one in examined])
+        all_guesses = tuple(map(tuple, checked_by_behaviour(examined, parts)))
     stretches = find_stretches(examined, all_guesses)
     text = _trial_text(groups, all_guesses, stretches, Path(folder).resolve())
     return DraftTrial(text, surveys, all_guesses, stretches)
@@ -83,19 +85,6 @@ def _log_files(logs: Sequence[Path]) -> list[Path]:
 def _signature(survey: LogSurvey) -> tuple:
     """What files of one kind share: topics and columns."""
     return (survey.layout.format, *(table.names for table in survey.log.tables))
-
-
-def _one_source_each(surveys: Sequence[LogSurvey]) -> list[tuple[ColumnGuess, ...]]:
-    """The guesses of several sources, each channel used once: from the first source that has it outright."""
-    from dataclasses import replace
-
-    parts = [guess_columns(survey) for survey in surveys]
-    taken: set[str] = set()
-    result = []
-    for part in parts:
-        result.append(tuple(replace(g, is_used=g.is_used and g.symbol not in taken) for g in part))
-        taken |= {g.symbol for g in result[-1] if g.is_used}
-    return result
 
 
 def _trial_text(

@@ -15,7 +15,8 @@ from seatrial.data.check.signal import smoothed, smoothed_derivative, window_len
 from seatrial.data.check.timestamps import rebuild_time_base
 from seatrial.data.check.velocity_conventions import best_convention
 from seatrial.data.draft.naming import NameGuess, guess_by_name
-from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary
+from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary, column_values
+from seatrial.data.draft.unnamed import recognised_columns
 from seatrial.data.read import ColumnSpec
 from seatrial.data.read.assemble import LogSource, assemble_record, record_of_sources
 from seatrial.data.read.quantities import log_quantity
@@ -34,6 +35,7 @@ _SURE_CORRELATION, _UNIT_TOLERANCE = 0.8, 1.3
 _SURE_T = 5.0  # effect over standard error that proves a sign; as in the checks
 _YAW_RATE_UNITS = {"rad/s": 1.0, "deg/s": 180.0 / math.pi, "deg/min": 10800.0 / math.pi}  # per rad/s
 _SPEED_UNITS = {"m/s": 1.0, "kn": 1852.0 / 3600.0, "km/h": 1.0 / 3.6}  # m/s
+_FOLDERS_READ = 3  # folders above a file whose names may be those of a topic; chosen
 _MISFIT = 0.3  # of velocities with the derivative of position that is acceptable; as in the checks
 
 
@@ -86,8 +88,9 @@ def guess_columns(survey: LogSurvey) -> tuple[ColumnGuess, ...]:
     for topic in survey.topics:
         if topic.time is None:
             continue
+        guesses += [((0.0,), guess) for guess in _without_names(survey, topic)]
         for column in topic.columns:
-            named = guess_by_name(topic.topic, column.name, column.unit, survey.layout.format)
+            named = guess_by_name(_topic_name(survey, topic), column.name, column.unit, survey.layout.format)
             if named is not None and not (column.is_constant and named.symbol.startswith("command_")):
                 rank = (column.is_constant, not named.unit, column.missing, -topic.rows)
                 guesses.append((rank, _first_guess(survey, topic, column, named)))
@@ -96,7 +99,28 @@ def guess_columns(survey: LogSurvey) -> tuple[ColumnGuess, ...]:
         if guess.symbol not in best or rank < best[guess.symbol][0]:
             best[guess.symbol] = (rank, guess)
     chosen = [replace(guess, is_used=best[guess.symbol][1] is guess) for _, guess in guesses]
-    return _without_conflicts(chosen)
+    return without_conflicts([chosen])[0]
+
+
+def _without_names(survey: LogSurvey, topic: TopicSummary) -> list[ColumnGuess]:
+    """The guesses of a table whose columns have no names, by what they do."""
+    table = next(one for one in survey.log.tables if one.topic == topic.topic)
+    if any(table.names) or not math.isfinite(topic.rate):
+        return []
+    columns = {int(one.name): column_values(table, int(one.name) - 1) for one in topic.columns}
+    complete = {k: values for k, values in columns.items() if values is not None and np.all(np.isfinite(values))}
+    return [
+        ColumnGuess(one.index, one.symbol, one.unit, one.frame, one.positive, evidence=(one.evidence,))
+        for one in recognised_columns(complete, 1.0 / topic.rate)
+    ]
+
+
+def _topic_name(survey: LogSurvey, topic: TopicSummary) -> str:
+    """The topic, or for a plain table the folders and the file that may be called after one."""
+    if topic.topic:
+        return topic.topic
+    path = survey.path.resolve()
+    return "/".join((*path.parts[-_FOLDERS_READ - 1 : -1], path.name.partition(".")[0]))
 
 
 def _first_guess(survey: LogSurvey, topic: TopicSummary, column: ColumnSummary, named: NameGuess) -> ColumnGuess:
@@ -117,7 +141,10 @@ def _first_guess(survey: LogSurvey, topic: TopicSummary, column: ColumnSummary, 
     if rule.frame == "enu":
         other = 'frame = "earth" (x north, y east): the log does not say'
         return replace(guess, other_reading=other).with_evidence("axes as ROS recommends (REP 103)")
-    return guess if named.unit else _with_unit_by_range(guess, column)
+    guess = guess if named.unit else _with_unit_by_range(guess, column)
+    if rule.logger == "ROS" and rule.positive:
+        return replace(guess, other_reading='positive = "starboard": the log does not say')
+    return guess
 
 
 def _as_pulse(guess: ColumnGuess, column: ColumnSummary, survey: LogSurvey) -> ColumnGuess:
@@ -169,15 +196,21 @@ def _with_unit_by_range(guess: ColumnGuess, column: ColumnSummary) -> ColumnGues
             return replace(guess, unit=unit).with_evidence(f"in {unit} by default")
 
 
-def _without_conflicts(guesses: Sequence[ColumnGuess]) -> tuple[ColumnGuess, ...]:
-    """One source for each channel: what is measured before what follows from other columns."""
-    used = {guess.symbol for guess in guesses if guess.is_used}
+def without_conflicts(parts: Sequence[Sequence[ColumnGuess]]) -> list[tuple[ColumnGuess, ...]]:
+    """Return the guesses of the sources of a run with one source for each channel, what is measured before the rest."""
+    used: set[str] = set()
+    first = []
+    for part in parts:
+        first.append([replace(g, is_used=g.is_used and g.symbol not in used) for g in part])
+        used |= {g.symbol for g in first[-1] if g.is_used}
     follows = {"stw": {"u", "sog"}, "psi_magnetic": {"psi"}, "lat": {"x0"}, "lon": {"y0"}, "sog": {"u"}, "cog": {"v"}}
-    unused = {symbol for symbol, others in follows.items() if others & used}
-    lone = {one for one, other in (("sog", "cog"), ("cog", "sog"), ("lat", "lon"), ("lon", "lat")) if other not in used}
+    unused = {symbol for symbol, sources in follows.items() if sources & used}
+    unused |= {
+        one for one, mate in (("sog", "cog"), ("cog", "sog"), ("lat", "lon"), ("lon", "lat")) if mate not in used
+    }
     if not {"q_w", "q_x", "q_y", "q_z"} <= used or {"psi", "phi", "theta"} <= used:
         unused |= {"q_w", "q_x", "q_y", "q_z"}
-    return tuple(replace(g, is_used=g.is_used and g.symbol not in unused | lone) for g in guesses)
+    return [tuple(replace(g, is_used=g.is_used and g.symbol not in unused) for g in part) for part in first]
 
 
 def checked_by_behaviour(
@@ -190,7 +223,17 @@ def checked_by_behaviour(
         if record is not None:
             changes = decide(record)
             result = [[changes.get(g.symbol, _same)(g) if g.is_used else g for g in one] for one in result]
+    if any(g.is_used and g.is_open and g.frame == "enu" for one in result for g in one):
+        result = [[_as_open_as_the_axes(g) for g in one] for one in result]
     return result
+
+
+def _as_open_as_the_axes(guess: ColumnGuess) -> ColumnGuess:
+    """What was compared with axes that are open themselves has its side with them: a mirrored world looks the same."""
+    if not guess.is_used or guess.is_open or guess.symbol not in ("v", "r", "delta", "psi"):
+        return guess
+    other = "the other side, if the axes of positions and attitude are read the other way"
+    return replace(guess, other_reading=other)
 
 
 def _same(guess: ColumnGuess) -> ColumnGuess:
@@ -298,6 +341,10 @@ def _rudder_sign(record: Record) -> dict:
     if abs(t) < _SURE_T:
         text = f"the turn does not show its sign (effect over standard error {t:.1f})"
         return {"delta": lambda g: replace(g, other_reading='positive = "port"').with_evidence(text)}
-    side = "starboard" if t > 0 else "port"
-    text = f"a positive rudder turns to {side} (effect over standard error {abs(t):.0f})"
-    return {"delta": lambda g: replace(g, positive="port" if t < 0 else "").with_evidence(text)}
+
+    def decided(guess: ColumnGuess) -> ColumnGuess:
+        side = "port" if (guess.positive == "port") == (t > 0) else ""
+        text = f"a positive one turns to {side or 'starboard'} (effect over standard error {abs(t):.0f})"
+        return replace(guess, positive=side).with_evidence(text)
+
+    return {"delta": decided}

@@ -88,6 +88,14 @@ _MESSAGES = [
         (r"([^/]*/)*(pose|position|pose2d)/x", "x0", "m", "enu"),
         (r"([^/]*/)*(pose|position|pose2d)/y", "y0", "m", "enu"),
         (r"([^/]*/)*(pose|position|pose2d)/theta", "psi", "rad", "enu"),
+        (r".*pose_orientation_w", "q_w", "1", "enu"), (r".*pose_orientation_x", "q_x", "1", "enu"),
+        (r".*pose_orientation_y", "q_y", "1", "enu"), (r".*pose_orientation_z", "q_z", "1", "enu"),
+        (r".*pose_position_x", "x0", "m", "enu"), (r".*pose_position_y", "y0", "m", "enu"),
+        (r".*twist_body/twist_linear_x", "u", "m/s", "body"),
+        (r".*twist_body/twist_linear_y", "v", "m/s", "body", "port"),
+        (r".*twist_body/twist_angular_z", "r", "rad/s", "", "port"),
+        (r".*(actuator|thruster|motor)_(\d+)/azimuth_angle/data", "alpha_{}"),
+        (r".*(actuator|thruster|motor)_(\d+)/(.*/)?(motor_speed|rpm)", "rpm_{}"),
         (r".*twist\.linear\.x", "u", "m/s", "body"), (r".*twist\.linear\.y", "v", "m/s", "body", "port"),
         (r".*twist\.angular\.z", "r", "rad/s", "", "port"),
     ),
@@ -160,7 +168,7 @@ def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "te
     for rule in _MESSAGES if topic else ():
         match = re.fullmatch(rule.pattern, f"{topic}/{name}".lower())
         if match:
-            return _guess(rule, match, _known_unit(stated_unit) or rule.unit, f"{rule.logger} {topic}")
+            return _guess(rule, match, _known_unit(stated_unit) or rule.unit, f"{rule.logger} {topic}".strip())
     if log_format in _KNOWN_LOGGERS or _ORDERS.search(topic.lower()):
         return None
     bracketed = _BRACKETS.search(name)
@@ -183,7 +191,7 @@ def _with_unit_word(plain: str) -> list[tuple[str, str]]:
 def _guess(rule: NameRule, match: re.Match[str], unit: str, evidence: str) -> NameGuess | None:
     symbol = rule.symbol
     if "{}" in symbol:
-        number = int(match.groups()[-1]) + (rule.logger == "PX4")
+        number = int(next(part for part in match.groups() if part and part.isdecimal())) + (rule.logger == "PX4")
         symbol = symbol.format(max(number, 1))
     try:
         expected = log_quantity(symbol).unit
