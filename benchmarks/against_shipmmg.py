@@ -11,9 +11,9 @@ import numpy as np
 import shipmmg_equations as peer
 from measure import Line, at_least, at_most, fastest
 
-from seatrial.numerics.kernels.steering import steer
+from seatrial.numerics.kernels.feedback import steer
+from seatrial.physics.manoeuvres.helmsman import Steering, rudder_angles
 from seatrial.physics.manoeuvres.programme import programme
-from seatrial.physics.manoeuvres.steering import Steering, rudder_angles
 from seatrial.physics.simulate.batch import SegmentBatch
 
 HERE = Path(__file__).parent

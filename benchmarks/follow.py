@@ -27,13 +27,13 @@ from seatrial.estimation.identify.online import OnlineEstimator
 from seatrial.estimation.problem.linear_output_error import LinearOutputError
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.numerics.optimise import ImprovedHerdSettings, ImprovedWildHorse, search
-from seatrial.physics.models.qi2025 import SHIP
+from seatrial.physics.models.published import QI2025_SHIP
 from seatrial_studies import swarm_search
 from seatrial_studies.output_error_fit import with_physics_start
 from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, SeawayRun, SeawayScenario, ship, simulate_seaway_run
 
 Array = NDArray[np.float64]
-HEADINGS, RUNS, SECONDS, RATE = (45, 90, 135, 180), 20, 600.0, 10.0
+QI2025_HEADINGS, RUNS, SECONDS, RATE = (45, 90, 135, 180), 20, 600.0, 10.0
 TO_ONE_PERCENT = {90: 28.0, 135: 41.0, 180: 75.0}
 NOISE = {"z": HEAVE_NOISE, "theta": PITCH_NOISE}
 WAVES_AND_FIN = ("F3", "M5", "delta_f1", "z", "theta")
@@ -108,7 +108,7 @@ def heave_pitch(heading: int, run: int, seconds: float) -> tuple[Trial, SeawayRu
     truth = ship(90) if heading == 45 else None
     made = simulate_seaway_run(voyage, np.random.default_rng([heading, run]), truth)
     stream = Stream(source=StreamSource.STDIN, layout=layout(WAVES_AND_FIN), rate=RATE)
-    trial = Trial(ship=SHIP, runs=(), model=with_physics_start(made.truth), noise=NOISE, stream=stream)
+    trial = Trial(ship=QI2025_SHIP, runs=(), model=with_physics_start(made.truth), noise=NOISE, stream=stream)
     return trial, made, made.with_sensor_noise(np.random.default_rng([heading, run, 1]), voyage)
 
 
@@ -238,7 +238,7 @@ def compare_with_wild_horses(seas: int) -> Iterator[Line]:
         when = np.arange(len(data.measured), dtype=np.float64) * swarm_search.STEP
         record = Record("sea", when, made)
         stream = Stream(source=StreamSource.STDIN, layout=layout(tuple(columns)), rate=1.0 / swarm_search.STEP)
-        trial = Trial(ship=SHIP, runs=(), model=with_physics_start(data.model), noise=NOISE, stream=stream)
+        trial = Trial(ship=QI2025_SHIP, runs=(), model=with_physics_start(data.model), noise=NOISE, stream=stream)
         ours.append(follow_stream(trial, record, data.truth).mean[-1])
     what = f"135 deg, {seas} seas of 200 s"
     yield Line(f"{what}: mean error of wild horses, one sample at a time", 100.0 * float(np.mean(theirs)), "%")
@@ -275,7 +275,7 @@ def tanker() -> Iterator[Line]:
 
 def lines(runs: int, seconds: float = 3600.0) -> Iterator[Line]:
     """Everything; so many seas at each heading."""
-    for heading in HEADINGS:
+    for heading in QI2025_HEADINGS:
         yield from in_waves(heading, runs)
     yield from speed(seconds)
     yield from zigzags(max(2, runs // 4))

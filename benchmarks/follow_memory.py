@@ -16,7 +16,7 @@ from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial.stream import Stream, StreamSource
 from seatrial.data.trial.trial import Trial
 from seatrial.estimation.identify.online import OnlineEstimator
-from seatrial.physics.models.qi2025 import SHIP
+from seatrial.physics.models.published import QI2025_SHIP
 from seatrial_studies.output_error_fit import with_physics_start
 from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, SeawayScenario, simulate_seaway_run
 
@@ -38,7 +38,7 @@ def main(voyages: int) -> None:
     )
     noise = {"z": HEAVE_NOISE, "theta": PITCH_NOISE}
     estimator = OnlineEstimator(
-        Trial(ship=SHIP, runs=(), model=with_physics_start(made.truth), noise=noise, stream=stream)
+        Trial(ship=QI2025_SHIP, runs=(), model=with_physics_start(made.truth), noise=noise, stream=stream)
     )
     rows, began = np.stack([record[c] for c in CHANNELS], axis=1), time.perf_counter()
     for number in range(voyages):

@@ -17,8 +17,8 @@ from to_one_percent import Array, problem_from_rest
 from seatrial.estimation.problem.linear_output_error import LinearOutputError
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.numerics.optimise import Box, NormalEquations, Optimum, Solution, levenberg_marquardt, search
-from seatrial.numerics.optimise.improved_wild_horse import ImprovedHerdSettings, ImprovedWildHorse
 from seatrial.numerics.optimise.multistart import Multistart, RestartSettings, multistart
+from seatrial.numerics.optimise.wild_horse import ImprovedHerdSettings, ImprovedWildHorse
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models.heave_pitch_coefficients import physical_start_values

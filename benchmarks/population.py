@@ -16,7 +16,7 @@ from scipy.signal import lsim
 
 from seatrial.numerics.kernels.linear_population import misfit
 from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
-from seatrial.physics.models.qi2025 import SHIP, theoretical_coefficients
+from seatrial.physics.models.published import QI2025_SHIP, theoretical_coefficients
 from seatrial.physics.simulate.population import (
     Forcing,
     complete_parameters,
@@ -66,7 +66,7 @@ def run() -> list[Line]:
     """Times of ours, ratios to the others, agreement of the motions."""
     rng = np.random.default_rng(20251)
     truth = np.array([theoretical_coefficients(90).values[name] for name in COEFFICIENTS])
-    parameters = complete_parameters(truth * (1.0 + 0.1 * rng.uniform(-1.0, 1.0, (COUNT, 8))), SHIP.particulars)
+    parameters = complete_parameters(truth * (1.0 + 0.1 * rng.uniform(-1.0, 1.0, (COUNT, 8))), QI2025_SHIP.particulars)
     A, B = heave_pitch_matrices(parameters)
     u = np.sin(np.outer(np.arange(SAMPLES) * DT, [0.9, 1.3])) * [2e5, 2e6]
     forcing, held = Forcing(u, DT, is_held=False), Forcing(u, DT, is_held=True)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from seatrial.physics.models.qi2025 import theoretical_coefficients
+from seatrial.physics.models.published import theoretical_coefficients
 from seatrial_studies.seaway import FIN, SeawayScenario, ship, simulate_seaway_run
 
 UNITS = {"F3": "N", "M5": "N m", "delta_f1": "rad", "z": "m", "theta": "rad", "zeta": "m"}

@@ -16,7 +16,7 @@ from seatrial.core.values import InputError, RecordKind, Ship
 from seatrial.data.folder.model_file import ModelFile, write_model
 from seatrial.data.folder.orders import orders_csv
 from seatrial.data.read import read_record_csv
-from seatrial.estimation.design.from_trial import design_task
+from seatrial.estimation.design.task import design_task
 from seatrial.estimation.information.symmetries import refuse_unidentifiable
 from seatrial.physics.models import model_named
 

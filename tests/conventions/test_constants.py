@@ -3,7 +3,7 @@
 from tests.conventions.list_constants import bare_constants
 
 # Numbers without words when this was last counted. They may only fall: lower them with every pass over a subpackage.
-MOST_NAMED, MOST_IN_CODE = 39, 375
+MOST_NAMED, MOST_IN_CODE = 14, 145
 
 
 def test_fewer_and_fewer_constants_say_nothing_of_themselves() -> None:

@@ -14,7 +14,7 @@ from seatrial.data.trial.trial import Trial
 from seatrial.onboard.advice import ManoeuvreAdviser, advice, ranked_candidates
 from seatrial.onboard.candidate_manoeuvres import candidate_manoeuvres, fisher_information
 from seatrial.physics.models.heave_pitch import heave_pitch
-from seatrial.physics.models.qi2025 import SHIP, theoretical_coefficients
+from seatrial.physics.models.published import QI2025_SHIP, theoretical_coefficients
 from seatrial.physics.models.roll import roll
 from seatrial.physics.models.waterjet import waterjet
 from seatrial_studies.seaway import FIN
@@ -106,7 +106,7 @@ def test_what_is_promised_is_the_bound_of_both_together(craft):
 
 def test_fins_are_moved_in_calm_water():
     model = theoretical_coefficients(135).applied_to(heave_pitch()).with_values(FIN)
-    trial = _trial(model, SHIP, ("delta_f1", "z", "theta"), rate=10.0)
+    trial = _trial(model, QI2025_SHIP, ("delta_f1", "z", "theta"), rate=10.0)
     value = np.array([p.value for p in model.parameters.free])
     error = 2.0 * np.abs(value)
     snapshot = _snapshot(model, error, {"z": 0.01, "theta": 3.5e-4}, model.parameters.free_names)
@@ -117,7 +117,7 @@ def test_fins_are_moved_in_calm_water():
 
 def test_without_fins_that_lift_waves_are_asked_for():
     model = theoretical_coefficients(135).applied_to(heave_pitch())
-    trial = _trial(model, SHIP, ("F3", "M5", "z", "theta"), rate=10.0)
+    trial = _trial(model, QI2025_SHIP, ("F3", "M5", "z", "theta"), rate=10.0)
     error = 2.0 * np.abs([p.value for p in model.parameters.free])
     snapshot = _snapshot(model, error, {"z": 0.01, "theta": 3.5e-4}, model.parameters.free_names)
     assert "waves" in advice(snapshot, trial, np.diag(error**2), (_record(z=0.0, theta=0.0),))

@@ -5,7 +5,7 @@ import pytest
 
 from seatrial.core.results import CheckStatus, Figure, Study, Verdict
 from seatrial.numerics.optimise import HerdSettings, WildHorse, search
-from seatrial.physics.models.qi2025 import HEADINGS
+from seatrial.physics.models.published import QI2025_HEADINGS
 from seatrial_studies import qi2025
 from seatrial_studies.controller_cost import TRUTH
 from seatrial_studies.pitch_control import CONTROLLER_COST_TITLE
@@ -39,7 +39,7 @@ def test_six_printed_errors_do_not_follow_from_their_values() -> None:
 
 
 def test_the_mean_printed_errors_of_the_improved_herd_recompute() -> None:
-    means = [float(np.mean(np.abs(recomputed_error(h, SearchAlgorithm.IWHO)))) for h in HEADINGS]
+    means = [float(np.mean(np.abs(recomputed_error(h, SearchAlgorithm.IWHO)))) for h in QI2025_HEADINGS]
     assert means == pytest.approx([0.20, 0.16, 0.19], abs=0.006)
 
 
@@ -139,7 +139,7 @@ def test_what_wrong_coefficients_cost_ends_the_page(study: Study) -> None:
     costs = study.tables[-1]
     assert costs.title == CONTROLLER_COST_TITLE
     by_method = {(row[0], row[1]): float(row[-1] or 0.0) for row in costs.rows}
-    for heading in HEADINGS:
+    for heading in QI2025_HEADINGS:
         assert by_method[f"{heading}°", TRUTH] == pytest.approx(0.0, abs=1e-9)
         assert by_method[f"{heading}°", "PSO, printed"] > by_method[f"{heading}°", "IWHO, printed"] > 0.0
 
@@ -197,7 +197,7 @@ def test_what_the_page_must_declare_is_there(study: Study) -> None:
 
 def test_every_table_and_figure_of_the_paper_is_there(study: Study) -> None:
     titles = [t.title for t in study.tables] + [f.title for f in study.figures]
-    for heading in HEADINGS:
+    for heading in QI2025_HEADINGS:
         assert f"Coefficients at {heading}°" in titles
     assert "Time of a run" in titles and "Table 1: the ship" in titles
     assert sum(title.startswith("Figure ") for title in titles) == 11

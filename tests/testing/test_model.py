@@ -7,8 +7,7 @@ import pytest
 
 from seatrial.core.equations import Model, Sheet
 from seatrial.physics.models import MODELS, model_named
-from seatrial.physics.models.published import parameter_set
-from seatrial.physics.models.qi2025 import theoretical_coefficients
+from seatrial.physics.models.published import parameter_set, theoretical_coefficients
 from seatrial.testing import ConformanceError, MirrorLaw, check_model
 
 # parameters of the built-in models that change sign in the mirror (asymmetry, zeros, current), and those split by side

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 if TYPE_CHECKING:
     from seatrial.core.results import Fit, Study
     from seatrial.core.values import ProgressReporter
-    from seatrial.physics.models.catalogue import ModelSummary
+    from seatrial.physics.models.registry import ModelSummary
 
 STUDY_GROUP = "seatrial.studies"
 
@@ -68,6 +68,6 @@ def list_models() -> "tuple[ModelSummary, ...]":
 
     An installed model that cannot be loaded is listed with the reason as its `problem`.
     """
-    from seatrial.physics.models.catalogue import model_summaries
+    from seatrial.physics.models.registry import model_summaries
 
     return model_summaries()

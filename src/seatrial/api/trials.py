@@ -195,7 +195,7 @@ def design(
 
     with precompile(trial.model.name):
         from seatrial.estimation.design.design import design
-        from seatrial.estimation.design.from_trial import design_task
+        from seatrial.estimation.design.task import design_task
 
         task = design_task(trial, prior_model)
     return design(task, seed=seed, report_progress=report_progress or (lambda _: None))

@@ -1,38 +1,13 @@
-from seatrial.control.choose import GainChoice
-from seatrial.control.front import grid_front, pareto_front
-from seatrial.control.gain_evaluation import GainEvaluation, GainEvaluator, gain_evaluator
-from seatrial.control.genetic import GeneticRun, genetic_run, genetic_runs
-from seatrial.control.genetic_settings import GeneticTuning, SearchedObjectives
-from seatrial.control.record_cost import RecordCost, record_cost
-from seatrial.control.seaway_simulation import simulate_in_seaway
-from seatrial.control.task import (
-    Demand,
-    ScheduleGrid,
-    Seaway,
-    SimulationSettings,
-    SlowDisturbance,
-    TuningTask,
-)
+"""Names of this package, imported when first used."""
 
-__all__ = [
-    "Demand",
-    "GainChoice",
-    "GainEvaluation",
-    "GainEvaluator",
-    "GeneticRun",
-    "GeneticTuning",
-    "RecordCost",
-    "ScheduleGrid",
-    "SearchedObjectives",
-    "Seaway",
-    "SimulationSettings",
-    "SlowDisturbance",
-    "TuningTask",
-    "gain_evaluator",
-    "genetic_run",
-    "genetic_runs",
-    "grid_front",
-    "pareto_front",
-    "record_cost",
-    "simulate_in_seaway",
-]
+from seatrial.control.choose import GainChoice as GainChoice
+from seatrial.control.front import grid_front as grid_front, pareto_front as pareto_front
+from seatrial.control.gain_evaluation import GainEvaluation as GainEvaluation, GainEvaluator as GainEvaluator
+from seatrial.control.gain_evaluation import gain_evaluator as gain_evaluator
+from seatrial.control.genetic import GeneticRun as GeneticRun, genetic_run as genetic_run, genetic_runs as genetic_runs
+from seatrial.control.genetic_settings import GeneticTuning as GeneticTuning, SearchedObjectives as SearchedObjectives
+from seatrial.control.record_cost import RecordCost as RecordCost, record_cost as record_cost
+from seatrial.control.seaway_simulation import simulate_in_seaway as simulate_in_seaway
+from seatrial.control.task import Demand as Demand, ScheduleGrid as ScheduleGrid, Seaway as Seaway
+from seatrial.control.task import SimulationSettings as SimulationSettings, SlowDisturbance as SlowDisturbance
+from seatrial.control.task import TuningTask as TuningTask

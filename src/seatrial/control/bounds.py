@@ -1,4 +1,4 @@
-"""What no linear controller does better: the bounds beside a tuning, as many as can be had."""
+"""What no linear controller does better: bounds compared with a tuning, as many as can be computed."""
 
 import contextlib
 from dataclasses import replace
@@ -13,38 +13,30 @@ from seatrial.physics.loops import TransferLoop
 
 
 def is_available() -> bool:
-    """Whether the convex bounds can be had: cvxpy, the extra `bounds`."""
+    """Return whether the convex bounds can be computed: cvxpy, the extra `bounds`, is installed."""
     return find_spec("cvxpy") is not None
 
 
 def bounds(task: TuningTask, loop: TransferLoop, gains: Array) -> tuple[PerformanceBound, ...]:
-    """Bounds against the controller `gains` (g,) of `loop`, in the first sea of the task.
+    """Return bounds against the controller `gains` (g,) of `loop`, in the first sea of the task.
 
     Where cvxpy is installed the convex one in the sea itself, and in a rational spectrum fitted to it: one without
     energy outside a band lets complicated controllers predict what real seas, with tails, do not. The linear-quadratic
     one in the latter, for context. None for servo loops on plants that integrate or run away (an autopilot), nor where
     no sea is met: their output has no variance without control.
-
-    Raises:
-        InputError: the loop is unstable with these gains.
     """
     sea = next((met for met in task.disturbances if isinstance(met, Seaway)), None)
     if sea is None or task.demand is not None:
         return ()
-    met, peak = sea.exposure(loop), task.constraints.Ms
+    waves, peak = sea.exposure(loop), task.constraints.Ms
 
-    def in_the_sea() -> PerformanceBound:
-        return youla_bound(loop, met, gains, peak)
+    def with_tails() -> PerformanceBound:
+        bound = youla_bound(loop, rational_spectrum(waves, loop.disturbance)[0], gains, peak)
+        return replace(bound, name=f"{bound.name}, waves with tails")
 
-    def in_rational_spectrum() -> PerformanceBound:
-        made = youla_bound(loop, rational_spectrum(met, loop.disturbance)[0], gains, peak)
-        return replace(made, name=f"{made.name}, waves with tails")
-
-    def quadratic() -> PerformanceBound:
-        return quadratic_bound(loop, met, gains)
-
-    made: list[PerformanceBound] = []
-    for one in (in_the_sea, in_rational_spectrum, quadratic) if is_available() else (quadratic,):
+    convex = [lambda: youla_bound(loop, waves, gains, peak), with_tails] if is_available() else []
+    computed: list[PerformanceBound] = []
+    for compute in (*convex, lambda: quadratic_bound(loop, waves, gains)):
         with contextlib.suppress(NoBound):
-            made.append(one())
-    return tuple(made)
+            computed.append(compute())
+    return tuple(computed)

@@ -20,6 +20,8 @@ MAX_SATURATION_LOSS = 0.03  # reduction lost to the actuator's limits, as a shar
 _SELECTION_SEEDS, _SELECTION_SEED_OFFSET = 8, 100_000
 # reductions that differ less count as equal; share of the permitted loss used in the selection; chosen
 _EQUAL_REDUCTION, _LOSS_MARGIN = 0.003, 0.85
+# rms whose logarithm is still taken, and range that counts as one: guards against zero
+_LEAST_RMS, _LEAST_RANGE = 1e-150, 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,37 +40,35 @@ def choose(
     seed: int,
     report_progress: Callable[[str], None],
 ) -> GainChoice:
-    """The recommendation, from fronts that are not empty."""
-    known = tuple((judge, front) for judge, front in fronts if len(front.gains))
+    """Return the recommendation, from fronts that are not empty."""
+    filled = tuple((judge, front) for judge, front in fronts if len(front.gains))
     if task.demand is not None:
-        return _choose_by_demand(task, known[0], report_progress)
+        return _choose_by_demand(task, filled[0], report_progress)
     if task.simulation is not None:
-        return _choose_by_simulation(task, known, seed, report_progress)
-    judge, front = known[0]
+        return _choose_by_simulation(task, filled, seed, report_progress)
+    judge, front = filled[0]
     some = _non_dominated_gains(judge, front)
-    return GainChoice(
-        judge, some[_compromise_order(judge, some)[0]], front.name, (_compromise_reason(task, "the front"),)
-    )
+    reasons = (_compromise_reason(task, "the front"),)
+    return GainChoice(judge, some[_compromise_order(judge, some)[0]], front.name, reasons)
 
 
 def _compromise_reason(task: TuningTask, candidates: str) -> str:
     decades = "the output's in decades" if task.demand is None else "in decades"
     return (
-        f"It is the compromise of {candidates}: nearest to the best of output and actuator at once, each "
-        "over its range, "
-        f"{decades} (least largest distance; Zeleny 1973)."
+        f"It is the compromise of {candidates}: nearest to the best of output and actuator at once, each over its "
+        f"range, {decades} (least largest distance; Zeleny 1973)."
     )
 
 
 def _non_dominated_gains(evaluator: GainEvaluator, front: ParetoFront) -> Array:
-    """Gains of the front of which none leaves less of the output at a lower actuator rate, by output, (n, g)."""
+    """Return gains of the front of which none leaves less of the output at a lower actuator rate, by output, (n, g)."""
     both = _output_and_rate_variances(evaluator, front.gains)
     first = non_dominated(both)
     return front.gains[first[np.argsort(both[first, 0])]]
 
 
 def _output_and_rate_variances(evaluator: GainEvaluator, gains: Array) -> Array:
-    """Variances of output and actuator rate, means over what the loop meets, (n, 2)."""
+    """Return variances of output and actuator rate, means over what the loop meets, (n, 2)."""
     return evaluator.evaluate(gains).variances[:, :, [0, 2]].mean(axis=1)
 
 
@@ -79,8 +79,8 @@ def _compromise_order(evaluator: GainEvaluator, gains: Array) -> list[int]:
     """
     both = np.sqrt(_output_and_rate_variances(evaluator, gains))
     decades = slice(0, 1 if evaluator.task.demand is None else 2)
-    both[:, decades] = np.log(np.maximum(both[:, decades], 1e-150))
-    far = (both - both.min(axis=0)) / np.maximum(np.ptp(both, axis=0), 1e-12)
+    both[:, decades] = np.log(np.maximum(both[:, decades], _LEAST_RMS))
+    far = (both - both.min(axis=0)) / np.maximum(np.ptp(both, axis=0), _LEAST_RANGE)
     return np.argsort(far.max(axis=1), kind="stable").tolist()
 
 
@@ -140,7 +140,7 @@ def _best_candidate(candidates: list[_Candidate]) -> _Candidate:
 
 
 def _neighbouring_gains(candidates: Array, gains: Array) -> Array:
-    """Gains between the neighbours, a candidate's distance away, of one of `candidates`, (n, g)."""
+    """Return gains between the neighbours, a candidate's distance away, of one of `candidates`, (n, g)."""
     place = int(np.argmin(np.abs(candidates - gains).max(axis=1)))
     step = max(len(candidates) // CANDIDATE_COUNT, 1)
     low, high = max(place - step, 0), min(place + step, len(candidates) - 1)
@@ -150,7 +150,7 @@ def _neighbouring_gains(candidates: Array, gains: Array) -> Array:
 def _choose_by_demand(
     task: TuningTask, fronts: tuple[GainEvaluator, ParetoFront], report_progress: Callable[[str], None]
 ) -> GainChoice:
-    """The compromise among those that follow the demand without overshooting, in simulation."""
+    """Return the compromise among those that follow the demand without overshooting, in simulation."""
     assert task.demand is not None
     judge, front = fronts
     some = _non_dominated_gains(judge, front)

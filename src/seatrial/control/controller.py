@@ -7,7 +7,7 @@ import numpy as np
 from seatrial.control.gain_evaluation import GainEvaluation, GainEvaluator, exceedance_share
 from seatrial.core.results.tuning import Component, Controller
 from seatrial.core.values import Array
-from seatrial.physics.loops import TransferLoop, margins
+from seatrial.physics.loops import Block, TransferLoop, margins
 from seatrial.physics.loops.margins import frequency_band
 
 # relative excess over a limit that rounding explains; far below any margin that matters, our choice
@@ -17,68 +17,62 @@ _POINTS = 400  # frequencies of the curves in the result, evenly in the logarith
 
 
 def describe_controller(evaluator: GainEvaluator, name: str, gains: Array) -> Controller:
-    """Everything linear theory says of gains (g,) in what the task meets; the frailest speed gives the margins."""
-    made = evaluator.evaluate(gains[None])
-    loops = [evaluator.task.loop_at(met.U, evaluator.loop).with_gains(gains) for met in evaluator.task.disturbances]
+    """Return all that linear theory says of gains (g,) in what the task meets; the frailest speed gives the margins."""
+    evaluation = evaluator.evaluate(gains[None])
+    loops = [evaluator.task.loop_at(one.U, evaluator.loop).with_gains(gains) for one in evaluator.task.disturbances]
     frailest = max(loops, key=lambda loop: margins(loop).Ms)
-    found = margins(frailest)
-    rms = np.sqrt(made.variances[0].mean(axis=0))
+    frail = margins(frailest)
+    variances, limits = evaluation.variances[0], evaluator.task.constraints
+    rms = np.sqrt(variances.mean(axis=0))
+    left = float(rms[0]) / math.sqrt(evaluator.uncontrolled_variance) if evaluator.task.demand is None else math.nan
     omega = np.geomspace(*frequency_band(frailest), _POINTS)
-    limits = evaluator.task.constraints
     return Controller(
         name=name,
         gains=dict(zip(evaluator.loop.gains.names, gains.tolist(), strict=True)),
-        objectives=made.objectives[0],
+        objectives=evaluation.objectives[0],
         rms=dict(zip(("output", "actuator", "actuator_rate"), rms.tolist(), strict=True)),
-        reduction=math.nan
-        if evaluator.task.demand
-        else 1.0 - float(rms[0]) / math.sqrt(evaluator.uncontrolled_variance),
-        Ms=found.Ms,
-        gain_margin=found.gain,
-        phase_margin=found.phase,
-        delay_margin=found.delay,
-        damping=found.damping,
-        saturation=exceedance_share(limits.limit, float(made.variances[0, :, 1].max())),
-        rate_saturation=exceedance_share(limits.rate, float(made.variances[0, :, 2].max())),
-        violated=violated_restrictions(evaluator, made),
+        reduction=1.0 - left,
+        Ms=frail.Ms,
+        gain_margin=frail.gain,
+        phase_margin=frail.phase,
+        delay_margin=frail.delay,
+        damping=frail.damping,
+        saturation=exceedance_share(limits.limit, float(variances[:, 1].max())),
+        rate_saturation=exceedance_share(limits.rate, float(variances[:, 2].max())),
+        violated=violated_restrictions(evaluator, evaluation),
         omega=omega,
         open_loop=frailest.open_loop(omega),
     )
 
 
 def violated_restrictions(evaluator: GainEvaluator, evaluation: GainEvaluation) -> tuple[str, ...]:
-    """Restrictions that the first of some gains does not keep, in words."""
+    """Return restrictions that the first of some gains does not keep, in words."""
     if not math.isfinite(evaluation.Ms[0]):
         return ("stability: the closed loop is unstable",)
     limits, worst = evaluator.task.constraints, evaluation.variances[0].max(axis=0)
-    said = []
+    broken = []
     if evaluation.excess[0, 0] > _ROUNDING:
-        said.append(f"Ms {evaluation.Ms[0]:.3g} where {limits.Ms:.3g} is allowed")
-    for i, (what, limit, share) in enumerate(
-        (("angle", limits.limit, limits.saturation), ("rate", limits.rate, limits.rate_saturation)), start=1
-    ):
+        broken.append(f"Ms {evaluation.Ms[0]:.3g} where {limits.Ms:.3g} is allowed")
+    amplitudes = (("angle", limits.limit, limits.saturation), ("rate", limits.rate, limits.rate_saturation))
+    for i, (kind, limit, share) in enumerate(amplitudes, start=1):
         if evaluation.excess[0, i] > _ROUNDING:
-            said.append(
-                f"{100.0 * exceedance_share(limit, float(worst[i])):.0f} % of the actuator's {what} "
-                "amplitudes beyond its limit "
-                f"where {100.0 * share:.0f} % are allowed"
-            )
-    return tuple(said)
+            beyond = 100.0 * exceedance_share(limit, float(worst[i]))
+            broken.append(f"{beyond:.0f} % of the actuator's {kind} amplitudes beyond its limit "
+                          f"where {100.0 * share:.0f} % are allowed")  # fmt: skip
+    return tuple(broken)
 
 
 def components(loop: TransferLoop) -> tuple[Component, ...]:
-    """The blocks of a loop, in the order of the signal from its output back to it."""
-    series = {"sensor": loop.sensor, "filter": loop.filters, "servo": loop.servo}
-    made = {
-        role: [Component(role, block.name, block.num, block.den, source=block.source) for block in blocks]
-        for role, blocks in series.items()
-    }
-    terms = [
-        Component("term", term.block.name, term.block.num, term.block.den, term.gain, term.block.source)
-        for term in loop.terms
-    ]
-    plant, disturbance = (
-        Component(role, block.name, block.num, block.den, source=block.source)
-        for role, block in (("plant", loop.plant), ("disturbance", loop.disturbance))
+    """Return the blocks of a loop, in the order of the signal from its output back to it."""
+
+    def component(role: str, block: Block, gain: str = "") -> Component:
+        return Component(role, block.name, block.num, block.den, gain, block.source)
+
+    return (
+        *(component("sensor", block) for block in loop.sensor),
+        *(component("term", term.block, term.gain) for term in loop.terms),
+        *(component("filter", block) for block in loop.filters),
+        *(component("servo", block) for block in loop.servo),
+        component("plant", loop.plant),
+        component("disturbance", loop.disturbance),
     )
-    return (*made["sensor"], *terms, *made["filter"], *made["servo"], plant, disturbance)

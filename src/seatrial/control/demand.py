@@ -30,7 +30,8 @@ _SHOWN_DRAWS, _SAMPLES = 20, 1000  # sampled ships and samples in time that a fi
 # steps of a simulation, and its step as a share of the fastest pole's time constant; chosen
 _FEWEST_STEPS, _MOST_STEPS, _STEP_SHARE = 1000, 20_000, 0.2
 _SETTLING_BAND = 0.05  # share of the change: the usual 5 % settling band
-_LEGS = 4
+_LEGS = 4  # of the zigzag: two to either side; chosen
+_SLOWEST_POLE = 1e-6  # rad/s, taken for a loop without states
 _CHANGE_NAMES = {"psi": "course change", "u": "speed change"}
 
 
@@ -53,19 +54,14 @@ def simulate_manoeuvres(
     Ships are drawn from the covariance of the fit; one that has no trim counts as not stable. Where one is not, or
     runs away, the worst overshoot is infinite. A task without a model behind its plant is simulated from its transfer
     functions.
-
-    Raises:
-        InputError: the task has no demand.
-        DivergedError: the loop runs away on the identified ship itself.
     """
-    demand = _required_demand(task)
     ship = task.trimmed_ship or plant_as_model(loop)
     drawn = draw_parameters(ship, draws, seed)
-    stable = drawn.stable_ships(loop, gains)
+    stable = sum(drawn.stable_ships(loop, gains)), drawn.draws
     limits = ActuatorLimits(task.constraints.limit, task.constraints.rate)
     return tuple(
-        _simulate_manoeuvre(one, ship, loop, name, gains, limits, drawn.ships, (sum(stable), drawn.draws))
-        for one in _programmes(task, loop, gains, demand)
+        _simulate_manoeuvre(one, ship, loop, name, gains, limits, drawn.ships, stable)
+        for one in _programmes(task, loop, gains, _required_demand(task))
     )
 
 
@@ -73,9 +69,6 @@ def shortfall(task: TuningTask, loop: TransferLoop, gains: Array, *, draws: int 
     """How far the gains (g,) are from following the task's change, to be compared, and why; 0 and nothing if they do.
 
     Every ship drawn is to be stable; the identified one settles within 5 % and overshoots no more than allowed.
-
-    Raises:
-        InputError: the task has no demand.
     """
     asked = _required_demand(task)
     stable, drawn = stable_draws(task, gains, loop, draws=draws)
@@ -95,17 +88,13 @@ def shortfall(task: TuningTask, loop: TransferLoop, gains: Array, *, draws: int 
 def simulate_tracking(
     ship: TrimmedShip, loop: TransferLoop, gains: Array, limits: ActuatorLimits, dt: float, reference: Array
 ) -> tuple[Array, Array]:
-    """Output and actuator (n,), notation's signs, of a ship that follows a reference (n,) about its trim.
-
-    Raises:
-        DivergedError: the simulation diverges.
-    """
+    """Return output and actuator (n,), notation's signs, of a ship that follows a reference (n,) about its trim."""
     model = ship.model
-    place, of = model.states.index(ship.output), model.input_names.index(ship.actuator)
-    sign = -1.0 if model.inputs[of].is_reversed else 1.0
-    made = ClosedLoop(model, loop, gains, dt, ship.actuator, "", ship.output, ship.state, ship.inputs)
-    states, moved = made.run(np.zeros(len(reference)), limits, ship.state[place] + reference)
-    return states[:, place], sign * ship.inputs[of] + moved
+    place, rudder = model.states.index(ship.output), model.input_names.index(ship.actuator)
+    sign = -1.0 if model.inputs[rudder].is_reversed else 1.0
+    closed = ClosedLoop(model, loop, gains, dt, ship.actuator, "", ship.output, ship.state, ship.inputs)
+    states, moved = closed.run(np.zeros(len(reference)), limits, ship.state[place] + reference)
+    return states[:, place], sign * ship.inputs[rudder] + moved
 
 
 def reference_model(demand: Array, dt: float, time_constant: float, rate: float = math.inf) -> Array:
@@ -154,7 +143,7 @@ def _required_demand(task: TuningTask) -> Demand:
 
 
 def _programmes(task: TuningTask, loop: TransferLoop, gains: Array, demand: Demand) -> tuple[_Programme, ...]:
-    fastest = float(np.abs(loop.with_gains(gains).closed_loop_poles).max(initial=1e-6))
+    fastest = float(np.abs(loop.with_gains(gains).closed_loop_poles).max(initial=_SLOWEST_POLE))
     count = int(np.clip(math.ceil(demand.duration * fastest / _STEP_SHARE), _FEWEST_STEPS, _MOST_STEPS))
     dt, rate = demand.duration / count, _reference_rate(task, loop, demand)
     change, zigzag = np.full(count + 1, demand.change), np.empty(count + 1)
@@ -220,7 +209,7 @@ def _trim(ship: TrimmedShip) -> float:
 def _output_about_trim(
     ship: TrimmedShip, loop: TransferLoop, gains: Array, limits: ActuatorLimits, programme: _Programme
 ) -> Array | None:
-    """Output about the trim (n,); None where the ship runs away."""
+    """Return the output about the trim (n,); None where the ship runs away."""
     try:
         return simulate_tracking(ship, loop, gains, limits, programme.dt, programme.reference)[0] - _trim(ship)
     except InputError:

@@ -1,5 +1,7 @@
 """What to warn of in a tuning."""
 
+from dataclasses import dataclass
+
 from seatrial.control.choose import MAX_SATURATION_LOSS
 from seatrial.control.gain_evaluation import GainEvaluator
 from seatrial.control.task import Demand
@@ -9,6 +11,7 @@ from seatrial.core.results.tuning import (
     OperatingPoint,
     PairedDifference,
     ParetoFront,
+    PerformanceBound,
     SeawaySimulation,
 )
 from seatrial.core.values import Finding, Severity
@@ -17,37 +20,39 @@ _ON_BOUND = 1e-3  # share of a gain's range that counts as on the bound; chosen
 _LEAST_COVERAGE = 0.97  # share of the hypervolume of the checking grid; chosen
 
 
+@dataclass
+class Checks:
+    """What is computed of the chosen controller; an interruption keeps what is there."""
+
+    simulations: tuple[SeawaySimulation, ...] = ()
+    comparisons: tuple[PairedDifference, ...] = ()
+    manoeuvres: tuple[ManoeuvreResponse, ...] = ()
+    schedule: tuple[OperatingPoint, ...] = ()
+    bounds: tuple[PerformanceBound, ...] = ()
+    is_interrupted: bool = False
+
+
 def findings(
-    evaluator: GainEvaluator,
-    chosen: Controller,
-    baselines: tuple[Controller, ...],
-    front: ParetoFront,
-    *,
-    simulations: tuple[SeawaySimulation, ...],
-    comparisons: tuple[PairedDifference, ...],
-    schedule: tuple[OperatingPoint, ...],
-    manoeuvres: tuple[ManoeuvreResponse, ...],
-    is_interrupted: bool,
+    evaluator: GainEvaluator, chosen: Controller, baselines: tuple[Controller, ...], front: ParetoFront, checks: Checks
 ) -> tuple[Finding, ...]:
-    """Everything worth a word, the gravest first."""
+    """Return everything to warn of, the gravest first."""
     found = list[Finding]()
-    if is_interrupted:
+    if checks.is_interrupted:
         found.append(_warning("interrupted", "the work was interrupted; what follows the last step shown is missing",
                               "let it finish before the gains are used"))  # fmt: skip
     found += _gain_findings(evaluator, chosen)
-    found += _simulation_findings(simulations, comparisons)
-    found += _demand_findings(evaluator.task.demand, manoeuvres)
+    found += _simulation_findings(checks.simulations, checks.comparisons)
+    found += _demand_findings(evaluator.task.demand, checks.manoeuvres)
     if front.hypervolume < _LEAST_COVERAGE:
         found.append(_warning("coarse-front", f"the front covers {100.0 * front.hypervolume:.1f} % of what a grid of "
                               "all gains does", "give it another seed"))  # fmt: skip
-    wanting = [slot for slot in schedule if not slot.is_feasible]
-    if wanting:
-        found.append(_warning("schedule-infeasible", f"in {len(wanting)} of {len(schedule)} conditions no gains keep "
-                              "the restrictions; the nearest are given", "slow down or turn there"))  # fmt: skip
+    if wanting := [point for point in checks.schedule if not point.is_feasible]:
+        found.append(_warning("schedule-infeasible", f"in {len(wanting)} of {len(checks.schedule)} conditions no gains "
+                              "keep the restrictions; the nearest are given", "slow down or turn there"))  # fmt: skip
     found += [
-        Finding(Severity.INFO, "rival-breaks-limits", f"controller '{rival.name}' does not keep: {said}", "", "")
+        Finding(Severity.INFO, "rival-breaks-limits", f"controller '{rival.name}' does not keep: {broken}", "", "")
         for rival in baselines
-        for said in rival.violated
+        for broken in rival.violated
     ]
     return tuple(found)
 
@@ -69,9 +74,8 @@ def _gain_findings(evaluator: GainEvaluator, chosen: Controller) -> list[Finding
                 found.append(_warning("gain-on-bound", f"gain {gain.name} ends on its {end} bound {bound:g}",
                                       "widen the bound, or leave the term out where it is zero"))  # fmt: skip
     if chosen.violated:
-        found.append(
-            _warning("breaks-limits", f"the chosen gains do not keep: {'; '.join(chosen.violated)}", "try more")
-        )
+        found.append(_warning("breaks-limits", f"the chosen gains do not keep: {'; '.join(chosen.violated)}",
+                              "try more"))  # fmt: skip
     return found
 
 
@@ -80,14 +84,8 @@ def _simulation_findings(
 ) -> list[Finding]:
     found = []
     if simulations and simulations[0].saturation_loss >= MAX_SATURATION_LOSS:
-        found.append(
-            _warning(
-                "lost-to-limits",
-                f"{100.0 * simulations[0].saturation_loss:.1f} points of reduction are lost to the "
-                "actuator's angle and rate limits",
-                "ask for less saturation",
-            )
-        )
+        found.append(_warning("lost-to-limits", f"{100.0 * simulations[0].saturation_loss:.1f} points of reduction are "
+                              "lost to the actuator's angle and rate limits", "ask for less saturation"))  # fmt: skip
     for pair in comparisons:
         if pair.lower <= 0.0:
             found.append(_warning("not-better", f"over {pair.seeds} seas the chosen gains do not surely beat "

@@ -15,6 +15,8 @@ from seatrial.physics.loops.performance import distinct_variances
 OUTPUT = variance("output", "rad^2", LoopSignal.OUTPUT)
 ACTUATOR = variance("actuator", "rad^2", LoopSignal.ACTUATOR)
 ACTUATOR_RATE = variance("actuator rate", "rad^2/s^2", LoopSignal.ACTUATOR, 1)
+_ROUNDING = 1e-9  # relative excess over a limit that rounding explains
+_UNSTABLE = 1e30  # variance in the place of infinity, whose ratio to a limit is no number where there is none
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +39,7 @@ class GainEvaluation:
     @property
     def is_feasible(self) -> np.ndarray:
         """Which are stable and keep every restriction, (n,)."""
-        return np.all(self.excess <= 1e-9, axis=1)
+        return np.all(self.excess <= _ROUNDING, axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,23 +77,23 @@ class GainEvaluator:
         return np.array([limit**2 / (2.0 * math.log(1.0 / share)) for limit, share in shares])
 
     def evaluate(self, gains: Array) -> GainEvaluation:
-        """All of the gains (n, g)."""
+        """Return all of the gains (n, g)."""
         made = [performance.evaluate(gains) for performance in self.performances]
         places = self._variance_indices[-3:]
         variances = np.stack([e.variances[:, [p[0] for p in places]] for e in made], axis=1)
         peak = np.max([e.Ms for e in made], axis=0)
         worst = variances[:, :, 1:].max(axis=1)
-        over = np.where(np.isfinite(worst), worst, 1e30) / self.allowed_variances - 1.0
+        over = np.where(np.isfinite(worst), worst, _UNSTABLE) / self.allowed_variances - 1.0
         excess = np.column_stack([peak / self.task.constraints.Ms - 1.0, over])
         return GainEvaluation(self._mean_objectives([e.variances for e in made]), excess, peak, variances)
 
     def objective_values(self, gains: Array) -> Array:
-        """Objectives (n, m) of the gains (n, g), means over what disturbs the loop; infinite where unstable."""
+        """Return objectives (n, m) of the gains (n, g), means over what disturbs the loop; infinite where unstable."""
         made = [performance.evaluate(gains, with_Ms=False).variances for performance in self.performances]
         return self._mean_objectives(made)
 
     def _mean_objectives(self, variances: list[Array]) -> Array:
-        """Objectives (n, m) of the variances (n, r) that each disturbance causes."""
+        """Return objectives (n, m) of the variances (n, r) that each disturbance causes."""
         values = [
             np.mean([objective.value(made[:, at]) for made in variances], axis=0)
             for objective, at in zip(self.objectives, self._variance_indices, strict=False)
@@ -99,7 +101,7 @@ class GainEvaluator:
         return np.stack(values, axis=1)
 
     def slopes(self, gains: Array) -> tuple[Array, Array]:
-        """d objectives / d gains (m, g) and d excess / d gains (3, g) at one stable point (g,)."""
+        """Return d objectives / d gains (m, g) and d excess / d gains (3, g) at one stable point (g,)."""
         made = [p.evaluate(gains).variances for p in self.performances]
         rows = [p.variance_gradients(gains) for p in self.performances]
         objectives = np.array([
@@ -116,12 +118,12 @@ class GainEvaluator:
 
 
 def gain_evaluator(task: TuningTask, loop: TransferLoop | None = None) -> GainEvaluator:
-    """A judge of the task's own loop, or of another on the same plant."""
+    """Return a judge of the task's own loop, or of another on the same plant."""
     return GainEvaluator(task, task.loop if loop is None else loop, task.objectives)
 
 
 def exceedance_share(limit: float, variance: float) -> float:
-    """Share of amplitudes beyond the limit, exp(-limit^2 / (2 variance)) (Rayleigh; Longuet-Higgins 1952)."""
+    """Return share of amplitudes beyond the limit, exp(-limit^2 / (2 variance)) (Rayleigh; Longuet-Higgins 1952)."""
     if not math.isfinite(variance):
         return 1.0
     return math.exp(-(limit**2) / (2.0 * variance)) if variance > 0.0 else 0.0

@@ -9,8 +9,9 @@ from seatrial.control.gain_evaluation import GainEvaluator
 from seatrial.core.values import Array, Index
 
 GainBounds = tuple[Array, Array]
-# in the place of infinity; least value whose logarithm is taken; share of a range that is rounding
-_HUGE, _TINY, _ROUNDING = 1e30, 1e-300, 1e-12
+# in the place of infinity; least value whose logarithm is taken; share of a range that is rounding; largest share by
+# which a restriction is exceeded that the search sees
+_HUGE, _TINY, _ROUNDING, _LARGEST_EXCESS = 1e30, 1e-300, 1e-12, 1e3
 
 
 def free_gain_bounds(evaluator: GainEvaluator) -> tuple[Index, GainBounds]:
@@ -21,14 +22,14 @@ def free_gain_bounds(evaluator: GainEvaluator) -> tuple[Index, GainBounds]:
 
 
 def all_gains(evaluator: GainEvaluator, free: Array) -> Array:
-    """All gains (n, g) of free ones (n, f); the others as the loop has them."""
+    """Return all gains (n, g) of free ones (n, f); the others as the loop has them."""
     made = np.tile(evaluator.loop.gain_values, (len(free), 1))
     made[:, free_gain_bounds(evaluator)[0]] = free
     return made
 
 
 def refine_gains(evaluator: GainEvaluator, start: Array, ceiling: Array | None = None) -> Array:
-    """Free gains (f,) of the least product of objectives, none above its `ceiling` (m,), restrictions kept.
+    """Return free gains (f,) of the least product of objectives, none above its `ceiling` (m,), restrictions kept.
 
     SLSQP (Kraft 1988) from feasible free gains, in the unit box, on logarithms of the objectives.
     """
@@ -51,8 +52,8 @@ def refine_gains(evaluator: GainEvaluator, start: Array, ceiling: Array | None =
 
     def constraint_margins(unit: Array) -> Array:
         made = evaluator.evaluate(all_gains_at(unit))
-        left = 1.0 - np.minimum(made.objectives[0, :count] / top, 1e3)
-        return np.concatenate([left, -np.minimum(made.excess[0], 1e3)])
+        left = 1.0 - np.minimum(made.objectives[0, :count] / top, _LARGEST_EXCESS)
+        return np.concatenate([left, -np.minimum(made.excess[0], _LARGEST_EXCESS)])
 
     def constraint_slopes(unit: Array) -> Array:
         if not math.isfinite(evaluator.evaluate(all_gains_at(unit)).Ms[0]):
@@ -61,14 +62,10 @@ def refine_gains(evaluator: GainEvaluator, start: Array, ceiling: Array | None =
         return -np.concatenate([objectives[:count] / top[:, None], excess])[:, places] * width
 
     found = minimize(
-        value,
-        (start - low) / width,
-        jac=slope,
-        bounds=[(0.0, 1.0)] * len(places),
-        method="SLSQP",
+        value, (start - low) / width, jac=slope, bounds=[(0.0, 1.0)] * len(places), method="SLSQP",
         constraints=NonlinearConstraint(constraint_margins, 0.0, np.inf, jac=constraint_slopes),
-        options={"maxiter": 50, "ftol": 1e-10},
-    )
+        options={"maxiter": 50, "ftol": 1e-10},  # iterations at most, and change of the cost at the end; chosen
+    )  # fmt: skip
     unit = np.clip(found.x, 0.0, 1.0)
     unit[unit < _ROUNDING] = 0.0
     return low + unit * width

@@ -80,7 +80,7 @@ def _search_result(
 
 
 def _searched_front(evaluator: GainEvaluator, run: GeneticRun) -> ParetoFront:
-    """What one search saw of the front in the task's objectives, restrictions kept."""
+    """Return what one search saw of the front in the task's objectives, restrictions kept."""
     seen = all_gains(evaluator, run.front.points)
     judged = evaluator.evaluate(seen)
     feasible = np.flatnonzero(judged.is_feasible)
@@ -92,7 +92,7 @@ def _searched_front(evaluator: GainEvaluator, run: GeneticRun) -> ParetoFront:
 
 
 def _covered_share(objectives: Array, reference: Array) -> float:
-    """Hypervolume of objectives (k, m) over that of a reference front (n, m), both up to the latter's nadir."""
+    """Return hypervolume of objectives (k, m) over that of a reference front (n, m), both up to the latter's nadir."""
     live = np.ptp(reference, axis=0) > 0.0
     if not live.any():
         return float("nan")

@@ -26,7 +26,7 @@ from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
 from seatrial.physics.loops.state_space import controllable_form
 
 _FIT, _SPAN = 800, 30.0  # frequencies of the fit, and their span as a factor either side of the mean frequency; chosen
-_TAIL_FACTOR = 100.0
+_TAIL_FACTOR = 100.0  # span of the rational spectrum either side of the mean frequency; chosen
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class ShapingFilter:
     misfit: float
 
     def density(self, omega: Array) -> Array:
-        """One-sided, unit^2 s/rad."""
+        """Return the one-sided density, unit^2 s/rad."""
         return np.abs(self.block.frequency_response(omega)) ** 2
 
 
@@ -52,14 +52,11 @@ def rational_spectrum(exposure: EncounterSpectrum, response: Block) -> tuple[Enc
 
 
 def quadratic_bound(loop: TransferLoop, exposure: EncounterSpectrum, gains: Array) -> PerformanceBound:
-    """Output variance of full-information LQ over that of `gains` (g,), at equal actuator-rate variance.
+    """Return the output variance of full-information LQ over that of `gains` (g,), at equal actuator-rate variance.
 
     Both in the sea of a rational spectrum fitted to the exposure, whose misfit the note states. Spectra that vanish
     outside a band can be predicted ever better the more closely they are fitted, so that bounds in the spectrum itself
     may lie below this one.
-
-    Raises:
-        InputError: unstable gains; NoBound for a plant that is not stable, or where no weight gives that rate.
     """
     refuse_unbounded(loop)
     sea, shaping = rational_spectrum(exposure, loop.disturbance)
@@ -75,7 +72,7 @@ def quadratic_bound(loop: TransferLoop, exposure: EncounterSpectrum, gains: Arra
 
 
 def fit_shaping_filter(exposure: EncounterSpectrum, response: Block) -> ShapingFilter:
-    """g s^2 / two sections of second order, by the cumulated energies of the response and of its rate."""
+    """Return g s^2 / two sections of second order, by the cumulated energies of the response and of its rate."""
     exposure = without_negative_energy(exposure)
     mean = _mean_frequency(exposure, response)
     omega = np.geomspace(mean / _SPAN, mean * _SPAN, _FIT)
@@ -94,9 +91,8 @@ def fit_shaping_filter(exposure: EncounterSpectrum, response: Block) -> ShapingF
     best = least_squares(lambda p: shares(p) - true, start, bounds=edges)
     off = (shares(best.x) - true)[:_FIT]
     unit = _shaping_block(best.x, 1.0)
-    size = exposure.response_variance(response) / float(
-        np.sum(np.abs(unit.frequency_response(omega)) ** 2 * through * steps)
-    )
+    spectrum = np.abs(unit.frequency_response(omega)) ** 2
+    size = exposure.response_variance(response) / float(np.sum(spectrum * through * steps))
     return ShapingFilter(_shaping_block(best.x, math.sqrt(size)), float(max(off.max(), 0.0) - min(off.min(), 0.0)))
 
 
@@ -112,7 +108,7 @@ def _mean_frequency(exposure: EncounterSpectrum, response: Block) -> float:
 
 
 def _cumulative_energy(exposure: EncounterSpectrum, response: Block, omega: Array, power: int) -> Array:
-    """Share of the response's energy, times omega^power, below each omega; nodes in order."""
+    """Return the share of the response's energy, times omega^power, below each omega; nodes in order."""
     w = exposure.omega_e
     energy = exposure.energy * np.abs(response.frequency_response(w)) ** 2 * w**power
     return np.interp(omega, w, _cumulative_share(energy), left=0.0, right=1.0)
@@ -123,11 +119,7 @@ def _cumulative_share(energy: Array) -> Array:
 
 
 def full_information(plant: Block, disturbance: Block, shaping: Block, reference: ReferenceVariances) -> float:
-    """Least output variance at the rate variance held, by the weight of the rate in the cost.
-
-    Raises:
-        NoBound: no weight gives that rate.
-    """
+    """Return the least output variance at the rate variance held, by the weight of the rate in the cost."""
     cost = _variances_by_weight(plant, disturbance, shaping)
     middle = math.log(reference.output / reference.rate)
 

@@ -27,19 +27,18 @@ class ScheduleCondition:
     evaluator: GainEvaluator
 
     def cost(self, gains: Array) -> Array:
-        """Output rms over that without control, of the gains (n, g); infinite where unstable."""
+        """Return the output rms over that without control, of the gains (n, g); infinite where unstable."""
         return np.sqrt(self.evaluator.evaluate(gains).objectives[:, 0] / self.evaluator.uncontrolled_variance)
 
 
 def schedule_conditions(task: TuningTask, grid: ScheduleGrid) -> tuple[ScheduleCondition, ...]:
-    """Every combination of the plan; the first seaway of the task gives spectrum, hull and spreading."""
+    """Return every combination of the plan; the first seaway of the task gives spectrum, hull and spreading."""
     sea = next(met for met in task.disturbances if isinstance(met, Seaway))
     made = []
     for height, U, beta in product(grid.heights, grid.speeds, grid.headings):
-        met = replace(sea, spectrum=sea.spectrum.with_height(height), U=U, beta=beta)
-        made.append(
-            ScheduleCondition(U, beta, height, GainEvaluator(replace(task, disturbances=(met,)), task.loop, (OUTPUT,)))
-        )
+        there = replace(sea, spectrum=sea.spectrum.with_height(height), U=U, beta=beta)
+        evaluator = GainEvaluator(replace(task, disturbances=(there,)), task.loop, (OUTPUT,))
+        made.append(ScheduleCondition(U, beta, height, evaluator))
     return tuple(made)
 
 
@@ -50,7 +49,7 @@ def schedule(
     seed: int,
     report_progress: Callable[[str], None],
 ) -> tuple[OperatingPoint, ...]:
-    """The best gains of each condition, and what `baselines` (name -> gains) and one set for all cost there.
+    """Return the best gains of each condition, and what `baselines` (name -> gains) and one set for all cost there.
 
     "one for all" has the least mean cost of all sets that keep the restrictions in every condition.
     """
@@ -77,7 +76,7 @@ def schedule(
 
 
 def _samples(evaluator: GainEvaluator, seed: int) -> Array:
-    """Gains spread over their box, (n, g): Sobol points, half of them towards small gains."""
+    """Return gains spread over their box, (n, g): Sobol points, half of them towards small gains."""
     from scipy.stats import qmc
 
     _, (low, high) = free_gain_bounds(evaluator)
@@ -87,7 +86,7 @@ def _samples(evaluator: GainEvaluator, seed: int) -> Array:
 
 
 def _common_gains(conditions: tuple[ScheduleCondition, ...], samples: Array, rng: np.random.Generator) -> Array | None:
-    """Gains (g,) of the least mean cost among those that keep the restrictions everywhere; None without any."""
+    """Return gains (g,) of the least mean cost among those that keep the restrictions everywhere; None without any."""
     places, (low, high) = free_gain_bounds(conditions[0].evaluator)
     best, least, tried = None, math.inf, samples
     for size in np.geomspace(0.1, 0.003, _ROUNDS):  # steps from 10 % down to 0.3 % of each gain's range; chosen
@@ -105,7 +104,7 @@ def _common_gains(conditions: tuple[ScheduleCondition, ...], samples: Array, rng
 
 
 def _best_gains(condition: ScheduleCondition, samples: Array) -> Array:
-    """The best samples pressed against the restrictions; the least variance wins, (g,)."""
+    """Return the best samples pressed against the restrictions; the least variance wins, (g,)."""
     judge = condition.evaluator
     judged = judge.evaluate(samples)
     values = np.where(judged.is_feasible, judged.objectives[:, 0], np.inf)

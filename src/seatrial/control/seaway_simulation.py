@@ -22,11 +22,12 @@ from seatrial.physics.loops.state_space import plant_model
 from seatrial.physics.sea.realise import Spacing, WaveComponents, realise, short_crested
 from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop
 
-# wave components of a simulated sea; chosen
-LONG_CRESTED_LINES, SHORT_CRESTED_LINES = 800, 1600
-RUN_IN_SECONDS = 100.0
+LONG_CRESTED_LINES, SHORT_CRESTED_LINES = 800, 1600  # wave components of a simulated sea; chosen
+RUN_IN_SECONDS = 100.0  # before what is counted: several swings of any ship; chosen
 UNCONTROLLED = "uncontrolled"
 _ENERGY_SHARE = 1e-4  # share of the energy cut at either end of the spectrum; chosen
+_REACH, _FREQUENCIES = 12.0, 4001  # highest frequency over the modal one that is looked at, and how many; chosen
+_KEPT_SEAS = 8  # sets of seas kept in memory: one for each setting in use; chosen
 _CONFIDENCE = 0.95  # level of the intervals of means over seeds
 
 
@@ -62,9 +63,8 @@ def simulate_in_seaway(task: TuningTask, loop: TransferLoop, name: str, gains: A
             raise InputError(
                 f"the sea '{seaway.description}' does not move the ship; take another heading or a higher sea"
             )
-        return [
-            1.0 - size(steered, sea, limits) / alone for limits in (UNLIMITED, everything.without_stall, everything)
-        ]
+        stages = (UNLIMITED, everything.without_stall, everything)
+        return [1.0 - size(steered, sea, limits) / alone for limits in stages]
 
     reductions = np.array(map_in_threads(of_one, list(met)))
     shown = _without_run_in(steered.record(f"{name}, first sea", met[0], everything), first)
@@ -78,9 +78,6 @@ def compare_pairwise(chosen: SeawaySimulation, other: SeawaySimulation, stage: s
     """Reduction of one controller minus that of another, sea by sea: mean and Student's 95 % interval of the mean.
 
     stage: ``linear``, ``limited`` or ``stalled``.
-
-    Raises:
-        InputError: no such column, other numbers of seas, or fewer than two.
     """
     columns = ("linear", "limited", "stalled")
     if stage not in columns:
@@ -114,9 +111,9 @@ def closed_loop(task: TuningTask, loop: TransferLoop, gains: Array, U: float, dt
     )  # fmt: skip
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=_KEPT_SEAS)
 def wave_slope_series(seaway: Seaway, trials: SimulationSettings, seed: int) -> tuple[Array, ...]:
-    """Effective wave slope [rad] of each seed, a run-in of `RUN_IN_SECONDS` first; each (n,), read-only."""
+    """Return the effective wave slope [rad] of each seed, a run-in of `RUN_IN_SECONDS` first; each (n,), read-only."""
     count = round((RUN_IN_SECONDS + trials.duration) / trials.dt) + 1
     band = frequency_band(seaway)
 
@@ -128,14 +125,14 @@ def wave_slope_series(seaway: Seaway, trials: SimulationSettings, seed: int) -> 
 
 
 def wave_components(seaway: Seaway, rng: np.random.Generator, band: tuple[float, float]) -> WaveComponents:
-    """Harmonics of one sea, jittered, so that it does not repeat."""
+    """Return harmonics of one sea, jittered, so that it does not repeat."""
     count = LONG_CRESTED_LINES if seaway.spreading is None else SHORT_CRESTED_LINES
     lines = realise(seaway.spectrum, seaway.U, seaway.beta, rng, count=count, spacing=Spacing.JITTERED, band=band)
     return lines if seaway.spreading is None else short_crested(lines, rng, seaway.spreading)
 
 
 def effective_wave_slopes(lines: WaveComponents, seaway: Seaway) -> Complex:
-    """Complex amplitudes of the effective wave slope [rad], (n,); the hull's factor at each heading."""
+    """Return complex amplitudes of the effective wave slope [rad], (n,); the hull's factor at each heading."""
     k = lines.omega**2 / G
     factor: Array = np.ones(len(k))
     if seaway.hull is not None:
@@ -155,9 +152,9 @@ def sum_harmonics(omega: Array, amplitude: Complex, dt: float, count: int) -> Ar
 
 
 def frequency_band(seaway: Seaway) -> tuple[float, float]:
-    """Frequencies [rad/s] of all waves with a slope to speak of, up to twelve times the modal one."""
+    """Return frequencies [rad/s] of all waves with a slope to speak of, up to twelve times the modal one."""
     peak = seaway.spectrum.modal_frequency
-    omega = np.linspace(0.0, 12.0 * peak, 4001)[1:]
+    omega = np.linspace(0.0, _REACH * peak, _FREQUENCIES)[1:]
     factor = np.ones(len(omega)) if seaway.hull is None else seaway.hull.slope_factor(omega, 0.5 * math.pi)
     share = np.cumsum(omega**4 * factor**2 * seaway.spectrum.density(omega))
     share /= share[-1]
@@ -166,6 +163,6 @@ def frequency_band(seaway: Seaway) -> tuple[float, float]:
 
 
 def _without_run_in(record: Record, first: int) -> Record:
-    """Without its first samples, beginning at zero again."""
+    """Return the record without its first samples, beginning at zero again."""
     kept = record.rows(slice(first, None))
     return replace(kept, time=frozen(kept.time - kept.time[0]))

@@ -16,6 +16,7 @@ from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
 from seatrial.physics.sea.spectrum import Spectrum
 
 _UNDAMPED = 1e-9  # real part over size of a pole, below which it counts as undamped: rounding
+_SLOWEST, _FASTEST = 1e-3, 1e2  # frequencies of a slow disturbance over its bandwidth; chosen
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,7 @@ class Seaway:
     spreading: float | None = None
 
     def exposure(self, loop: TransferLoop) -> EncounterSpectrum:
-        """Effective wave slope [rad] that the loop meets."""
+        """Return the effective wave slope [rad] that the loop meets."""
         return wave_slope_spectrum(
             self.spectrum, self.U, self.beta, loop.disturbance, self.hull, spreading=self.spreading
         )
@@ -59,15 +60,12 @@ class SlowDisturbance:
     acting_like: str = "of the actuator"
 
     def exposure(self, loop: TransferLoop) -> EncounterSpectrum:
-        """The disturbance over five decades about its bandwidth."""
+        """Return the disturbance over five decades about its bandwidth."""
         b = self.bandwidth
         return disturbance_spectrum(
-            lambda w: 2.0 * self.rms**2 * b / math.pi / (w**2 + b**2),
-            1e-3 * b,
-            1e2 * b,
-            loop.disturbance,
+            lambda w: 2.0 * self.rms**2 * b / math.pi / (w**2 + b**2), _SLOWEST * b, _FASTEST * b, loop.disturbance,
             self.description,
-        )
+        )  # fmt: skip
 
     @property
     def description(self) -> str:
@@ -179,7 +177,7 @@ class TuningTask:
             refuse_unstable(self.loop)
 
     def loop_at(self, U: float, loop: TransferLoop | None = None) -> TransferLoop:
-        """The loop (the task's own if none is given) at the speed U [m/s]."""
+        """Return the loop (the task's own if none is given) at the speed U [m/s]."""
         made = self.loop if loop is None else loop
         if self.effectiveness is Effectiveness.CONSTANT or U == self.U:
             return made
@@ -187,11 +185,7 @@ class TuningTask:
 
 
 def refuse_unstable(loop: TransferLoop) -> None:
-    """Refuse a plant that runs away by itself: what it does without control has no variance.
-
-    Raises:
-        InputError: which block, and its pole.
-    """
+    """Refuse a plant that runs away by itself: what it does without control has no variance."""
     for block in (loop.plant, loop.disturbance):
         undamped = block.poles[(np.abs(block.poles.real) <= _UNDAMPED * np.abs(block.poles)) & (block.poles.imag > 0.0)]
         if undamped.size:

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,9 +10,8 @@ from seatrial.control.bounds import bounds, is_available
 from seatrial.control.choose import GainChoice, choose
 from seatrial.control.controller import components, describe_controller
 from seatrial.control.demand import simulate_manoeuvres
-from seatrial.control.feasibility import refuse_idle, refuse_infeasible
-from seatrial.control.findings import findings
-from seatrial.control.front import Effort, grid_front, pareto_front, thin_front
+from seatrial.control.findings import Checks, findings
+from seatrial.control.front import Effort, grid_front, pareto_front, refuse_idle, refuse_infeasible, thin_front
 from seatrial.control.gain_evaluation import GainEvaluator, gain_evaluator
 from seatrial.control.published_search import OWN_CHOICE, published_search
 from seatrial.control.schedule import schedule
@@ -20,35 +19,18 @@ from seatrial.control.seaway_simulation import compare_pairwise, simulate_in_sea
 from seatrial.control.task import TuningTask
 from seatrial.core.results.tuning import (
     Controller,
-    ManoeuvreResponse,
-    OperatingPoint,
     PairedDifference,
     ParetoFront,
-    PerformanceBound,
     SeawaySimulation,
     Tuning,
     TuningMethod,
 )
-from seatrial.core.values import Array
 from seatrial.core.values.versions import versions
 from seatrial.numerics.optimise import Solution, Status, hypervolume
 
 FRONT_POINTS = 300  # points of a front that are kept in the result; chosen
-PARAMETER_DRAWS = 100
-# points a gain of the grid that the front is checked against
-_GRID = {1: 2000, 2: 400, 3: 100}
-
-
-@dataclass
-class _Checks:
-    """What later steps add; an interruption keeps what is there."""
-
-    simulations: tuple[SeawaySimulation, ...] = ()
-    comparisons: tuple[PairedDifference, ...] = ()
-    manoeuvres: tuple[ManoeuvreResponse, ...] = ()
-    schedule: tuple[OperatingPoint, ...] = ()
-    bounds: tuple[PerformanceBound, ...] = ()
-    is_interrupted: bool = field(default=False)
+PARAMETER_DRAWS = 100  # ships drawn from the fit that follow a demand; chosen
+_GRID = {1: 2000, 2: 400, 3: 100}  # free gains -> points a gain of the grid that the front is checked against; chosen
 
 
 def tune(
@@ -82,11 +64,12 @@ def tune(
     chosen = describe_controller(choice.evaluator, "chosen", choice.gains)
     reference = None if searched is None else describe_controller(own.evaluator, OWN_CHOICE, own.gains)
     rivals = {name: _given_gains(judges[0], name, gains) for name, gains in task.baselines.items()}
-    others = tuple(describe_controller(one.evaluator, name, one.gains) for name, one in rivals.items())
-    stable = {one.name: rivals[one.name] for one in others if np.isfinite(one.Ms)}
+    baselines = tuple(describe_controller(one.evaluator, name, one.gains) for name, one in rivals.items())
+    stable = {one.name: rivals[one.name] for one in baselines if np.isfinite(one.Ms)}
     compared = stable if reference is None else {reference.name: own, **stable}
-    checked = _run_checks(task, choice, compared, seed, report_progress)
+    checks = _run_checks(task, choice, compared, seed, report_progress)
     more_fronts = (*(made for _, made in fronts[1:]), *(() if searched is None else (searched.front,)))
+    evaluations = sum(made.evaluations for _, made in fronts) if searched is None else searched.result.evaluations
     return Tuning(
         question=task.question,
         name=task.name,
@@ -97,35 +80,21 @@ def tune(
         objectives={objective.name: objective.unit for objective in task.objectives},
         constraints=task.constraints,
         chosen=chosen,
-        reasons=(*choice.reasons, *_comparison_reasons(chosen, others if reference is None else (reference, *others))),
-        baselines=others,
+        reasons=(
+            *choice.reasons,
+            *_comparison_reasons(chosen, baselines if reference is None else (reference, *baselines)),
+        ),
+        baselines=baselines,
         front=thin_front(fronts[0][1], FRONT_POINTS),
         extended_fronts=tuple(thin_front(made, FRONT_POINTS) for made in more_fronts if len(made.gains)),
         components=components(choice.evaluator.loop),
-        seaway_simulations=checked.simulations,
-        paired_differences=checked.comparisons,
-        schedule=checked.schedule,
-        bounds=checked.bounds,
-        manoeuvres=checked.manoeuvres,
-        findings=findings(
-            choice.evaluator,
-            chosen,
-            others,
-            fronts[0][1],
-            simulations=checked.simulations,
-            comparisons=checked.comparisons,
-            schedule=checked.schedule,
-            manoeuvres=checked.manoeuvres,
-            is_interrupted=checked.is_interrupted,
-        ),
-        solution=Solution(
-            choice.gains,
-            float(chosen.objectives[0]),
-            Status.EXHAUSTED,
-            sum(made.evaluations for _, made in fronts) if searched is None else searched.result.evaluations,
-            (),
-            seed,
-        ),
+        seaway_simulations=checks.simulations,
+        paired_differences=checks.comparisons,
+        schedule=checks.schedule,
+        bounds=checks.bounds,
+        manoeuvres=checks.manoeuvres,
+        findings=findings(choice.evaluator, chosen, baselines, fronts[0][1], checks),
+        solution=Solution(choice.gains, float(chosen.objectives[0]), Status.EXHAUSTED, evaluations, (), seed),
         seed=seed,
         elapsed_s=time.perf_counter() - began,
         versions=versions(),
@@ -136,7 +105,7 @@ def tune(
 
 
 def _given_gains(evaluator: GainEvaluator, name: str, gains: Mapping[str, float]) -> GainChoice:
-    """Gains by name as a choice for the loop of `evaluator`."""
+    """Return gains by name as a choice for the loop of `evaluator`."""
     return GainChoice(evaluator, np.array([gains[n] for n in evaluator.loop.gains.names]), name, ())
 
 
@@ -168,9 +137,9 @@ def _run_checks(
     compared: dict[str, GainChoice],
     seed: int,
     report_progress: Callable[[str], None],
-) -> _Checks:
-    """Simulation, schedule and bounds, as far as the task asks for them and nobody interrupts."""
-    made, loop = _Checks(), choice.evaluator.loop
+) -> Checks:
+    """Return simulation, schedule and bounds, as far as the task asks for them and nobody interrupts."""
+    made, loop = Checks(), choice.evaluator.loop
     try:
         if task.demand is not None:
             report_progress(f"the demand, with {PARAMETER_DRAWS} ships that the fit allows")
@@ -178,7 +147,8 @@ def _run_checks(
         if task.simulation is not None and task.demand is None:
             made.simulations, made.comparisons = _simulate_controllers(task, choice, compared, seed, report_progress)
         if task.schedule_grid is not None:
-            fixed = _gains_of_own_loop(task, {**compared, "chosen": choice})
+            named = {**compared, "chosen": choice}
+            fixed = {name: one.gains for name, one in named.items() if one.evaluator.loop is task.loop}
             made.schedule = schedule(task, task.schedule_grid, fixed, seed, report_progress)
         if is_available() and task.demand is None:
             report_progress("bounds")
@@ -186,11 +156,6 @@ def _run_checks(
     except KeyboardInterrupt:
         made.is_interrupted = True
     return made
-
-
-def _gains_of_own_loop(task: TuningTask, choices: dict[str, GainChoice]) -> dict[str, Array]:
-    """The gains that belong to the task's own loop, by name."""
-    return {name: one.gains for name, one in choices.items() if one.evaluator.loop is task.loop}
 
 
 def _simulate_controllers(
@@ -211,7 +176,7 @@ def _simulate_controllers(
 
 
 def _comparison_reasons(chosen: Controller, baselines: tuple[Controller, ...]) -> tuple[str, ...]:
-    """The chosen one beside each rival, a sentence each."""
+    """Return the chosen one beside each rival, a sentence each."""
     return tuple(
         f"Beside '{other.name}' it leaves {100.0 * (1.0 - chosen.reduction):.1f} % of the motion instead of "
         f"{100.0 * (1.0 - other.reduction):.1f} %, at "

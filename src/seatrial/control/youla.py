@@ -23,6 +23,8 @@ from seatrial.physics.loops import EncounterSpectrum, LoopSignal, Performance, T
 KAUTZ_DAMPING = 0.7  # damping ratio of each Kautz section; chosen
 KAUTZ_SECTIONS = 32  # second-order sections of the expansion; chosen
 _GRID = 260  # frequencies of the penalty on the sensitivity; chosen
+_LOWEST = 0.1  # lowest frequency of a Kautz section over the mean one of the waves; chosen
+_DECADES = 1000.0  # least span of their frequencies, three decades; chosen
 NEGLIGIBLE_SHARE = 0.01  # share of the reference's output variance below which a bound is not informative
 BOUND_ROWS = (WeightedVariance(LoopSignal.OUTPUT, np.ones_like), WeightedVariance(LoopSignal.ACTUATOR, lambda w: w))
 
@@ -40,11 +42,7 @@ class ReferenceVariances:
 
 
 def reference_variances(loop: TransferLoop, exposure: EncounterSpectrum, gains: Array) -> ReferenceVariances:
-    """Of gains (g,).
-
-    Raises:
-        InputError: the loop is unstable with these gains.
-    """
+    """Return the variances with gains (g,)."""
     output, rate = (
         float(v) for v in Performance(loop, exposure, BOUND_ROWS).evaluate(gains, with_Ms=False).variances[0]
     )
@@ -72,11 +70,7 @@ def without_negative_energy(exposure: EncounterSpectrum) -> EncounterSpectrum:
 
 
 def refuse_unbounded(loop: TransferLoop) -> None:
-    """Servo loops on plants that integrate or run away have no such bound here.
-
-    Raises:
-        NoBound: which block.
-    """
+    """Refuse loops on plants that integrate or run away: they have no such bound here."""
     for block in (loop.plant, loop.disturbance, *loop.sensor, *loop.filters, *loop.servo):
         if block.order and block.poles.real.max() >= 0.0:
             raise NoBound(
@@ -88,16 +82,12 @@ def refuse_unbounded(loop: TransferLoop) -> None:
 def youla_bound(
     loop: TransferLoop, exposure: EncounterSpectrum, gains: Array, Ms: float, *, sections: int = KAUTZ_SECTIONS
 ) -> PerformanceBound:
-    """Least output variance over that of `gains` (g,) at equal actuator-rate energy, |S| <= `Ms` everywhere.
+    """Return the least output variance over that of `gains` (g,) at equal actuator-rate energy, |S| <= `Ms` everywhere.
 
     It is the least over sums of `sections` Kautz sections; the note says what the second half of them has changed.
 
     Args:
         Ms: above 1; infinite for none, and then no roll-off of |T| either.
-
-    Raises:
-        InputError: Ms out of sense, unstable gains, cvxpy not installed; NoBound for a plant that is not stable and
-            where the solver gives up.
     """
     refuse_unbounded(loop)
     sea = without_negative_energy(exposure)
@@ -115,7 +105,7 @@ def youla_bound(
 
 
 def least_variance(loop: TransferLoop, exposure: EncounterSpectrum, rate: float, Ms: float, sections: int) -> float:
-    """Output variance with no more than `rate` of actuator-rate variance and |S| <= Ms."""
+    """Return the output variance with no more than `rate` of actuator-rate variance and |S| <= Ms."""
     if not Ms > 1.0:
         raise InputError(f"|S| exceeds 1 somewhere in every real loop; give a largest Ms above 1, not {Ms:g}")
     if not rate > 0.0:
@@ -125,7 +115,7 @@ def least_variance(loop: TransferLoop, exposure: EncounterSpectrum, rate: float,
 
 
 def kautz_functions(frequencies: Array, omega: Array) -> Complex:
-    """Functions (1 + 2 n, m): 1, and two for each of n frequencies, at omega (m,) [rad/s].
+    """Return functions (1 + 2 n, m): 1, and two for each of n frequencies, at omega (m,) [rad/s].
 
     With d_i = s^2 + 2 zeta w_i s + w_i^2: s / d_i and w_i / d_i, times the all-passes of the sections before (Wahlberg
     1994, IEEE Trans. Autom. Control 39(6), 1276-1282).
@@ -160,7 +150,7 @@ class _Programme:
         path = in_series("path", (*loop.sensor, *loop.filters, *loop.servo))
         w = exposure.omega_e
         met = np.sqrt(exposure.energy) * np.abs(loop.disturbance.frequency_response(w))
-        low, high = _frequency_span(loop, 0.1 * float(np.sum(w * met**2) / np.sum(met**2)))
+        low, high = _frequency_span(loop, _LOWEST * float(np.sum(w * met**2) / np.sum(met**2)))
         grid, frequencies = np.geomspace(low / 10.0, 4.0 * high, _GRID), np.geomspace(low, high, sections)
         at_nodes = (kautz_functions(frequencies, w) * path.frequency_response(w)).T
         on_grid = (
@@ -176,7 +166,7 @@ class _Programme:
         return cls(A, b, R, on_grid @ turn, (1.0 + Ms) * _servo_response(loop, grid))
 
     def solve(self, Ms: float) -> float:
-        """The least |A x - b|."""
+        """Return the least |A x - b|."""
         cvxpy = _cvxpy()
         x: Any = cvxpy.Variable(self.A.shape[1])
         held = [cvxpy.norm(self.R @ x) <= 1.0]
@@ -197,22 +187,22 @@ class _Programme:
 
 
 def _servo_response(loop: TransferLoop, omega: Array) -> Array:
-    """|servo| over that at rest."""
+    """Return |servo| over that at rest."""
     servo = in_series("servo", loop.servo)
     return np.abs(servo.frequency_response(omega)) / abs(servo.gain)
 
 
 def _triangular(rows: Complex, target: Array) -> tuple[Array, Array]:
-    """The same sum of squares |rows x - target|^2 by few real rows."""
+    """Return the same sum of squares |rows x - target|^2 by few real rows."""
     both = np.column_stack([np.vstack([rows.real, rows.imag]), np.concatenate([target, np.zeros_like(target)])])
     R = np.asarray(np.linalg.qr(both, mode="r"))
     return R[:, :-1], R[:, -1]
 
 
 def _frequency_span(loop: TransferLoop, low: float) -> tuple[float, float]:
-    """From `low` [rad/s] to four times the fastest pole of sensor, filters, servo; three decades at least."""
+    """Return `low` [rad/s] and four times the fastest pole of sensor, filters, servo; three decades at least."""
     poles = [np.abs(block.poles).max() for block in (*loop.sensor, *loop.filters, *loop.servo) if block.order]
-    return low, max(4.0 * float(max(poles, default=0.0)), 1000.0 * low)
+    return low, max(4.0 * float(max(poles, default=0.0)), _DECADES * low)
 
 
 def _cvxpy() -> Any:

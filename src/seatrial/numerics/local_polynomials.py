@@ -40,7 +40,7 @@ def _least_squares(matrix: Array, right: Array) -> Array:
 
 
 def _fitted(values: Array, degree: int, derivative: int, places: npt.NDArray[np.int64]) -> Array:
-    """A derivative of the polynomial fitted to all of `values`, by unit step, at these places among them."""
+    """Return a derivative of the polynomial fitted to all of `values`, by unit step, at these places among them."""
     columns = values.reshape(len(values), -1)
     matrix = np.arange(len(values), dtype=np.float64)[:, None] ** np.arange(degree, -1, -1, dtype=np.float64)
     norms = np.sqrt(np.sum(matrix * matrix, axis=0))

@@ -52,7 +52,7 @@ def lock_exclusively(file: RawIOBase) -> bool:
 
 
 def _lock_first_byte(file: RawIOBase) -> bool:
-    """As Windows locks: a range of bytes; one far beyond any end, so that others can still read the file."""
+    """Lock one byte, as Windows does; it lies far beyond any end, so that others can still read the file."""
     try:
         import msvcrt
     except ImportError:

@@ -9,7 +9,7 @@ from seatrial.core.values import InputError, Ship
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.data.trial import Trial
 from seatrial.data.trial.design_request import DesignRequest, InputRange
-from seatrial.estimation.design.from_trial import design_task
+from seatrial.estimation.design.task import design_task
 from seatrial.physics.models import model_named
 
 NOZZLE = InputRange(lower=-0.6, upper=0.6, unit="rad", rate=0.07, hold=5.0)

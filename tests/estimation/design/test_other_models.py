@@ -8,8 +8,7 @@ import pytest
 
 from seatrial.data.trial import load_trial
 from seatrial.estimation.design.design import design
-from seatrial.estimation.design.from_trial import design_task
-from seatrial.estimation.design.task import DesignTask
+from seatrial.estimation.design.task import DesignTask, design_task
 
 
 def shortened(path: Path, duration: float) -> DesignTask:

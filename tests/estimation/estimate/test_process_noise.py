@@ -12,7 +12,7 @@ from seatrial.estimation.estimate.likelihood_ratio import boundary_quantile
 from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error
 from seatrial.estimation.estimate.process_noise import ProcessNoise, fit_prediction_error, has_noise
 from seatrial.estimation.predict.draws import PredictionUncertainty, draw_runs
-from seatrial.estimation.predict.process_noise_floor import process_noise_floor
+from seatrial.estimation.predict.predict_runs import process_noise_floor
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.physics.models.nomoto import nomoto

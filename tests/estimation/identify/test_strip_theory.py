@@ -8,7 +8,7 @@ import numpy as np
 from seatrial.data.trial import load_trial
 from seatrial.estimation.identify import identify
 from seatrial.physics.models.heave_pitch import heave_pitch
-from seatrial.physics.models.qi2025 import SHIP
+from seatrial.physics.models.published import QI2025_SHIP
 from seatrial.physics.sea.realise import realise, wave_record
 from seatrial.physics.sea.spectrum import ittc
 from seatrial.physics.simulate.linear import LinearBatch
@@ -34,7 +34,7 @@ def write_run(path: Path, U: float, heading: int, seed: int) -> None:
     rng, omega_e, time = np.random.default_rng(seed), 1.8, np.arange(1801) * DT
     lines = realise(ittc(2.27), U, math.radians(heading), rng)
     forces = wave_record(lines, time, box_hull())
-    model = heave_pitch().with_values(at_speed(U, omega_e)).with_ship(SHIP)
+    model = heave_pitch().with_values(at_speed(U, omega_e)).with_ship(QI2025_SHIP)
     inputs = np.zeros((len(time), 4))
     inputs[:, 0], inputs[:, 1] = -forces["F3"], -forces["M5"]
     y, _ = LinearBatch(model, inputs, np.array([0, len(time)]), DT, ("z", "theta")).simulate(
@@ -48,7 +48,7 @@ def write_run(path: Path, U: float, heading: int, seed: int) -> None:
 def test_two_speeds_and_headings_give_one_ship(tmp_path: Path) -> None:
     for number, (U, heading) in enumerate([(5.0, 135), (9.26, 180), (9.26, 110)]):
         write_run(tmp_path / f"run{number}.csv", U, heading, number)
-    particulars = "\n".join(f"{k} = {v!r}" for k, v in SHIP.particulars.items())
+    particulars = "\n".join(f"{k} = {v!r}" for k, v in QI2025_SHIP.particulars.items())
     columns = "\n".join(f'{c} = {{ column = "{c}", unit = "{unit}" }}' for c, unit in CHANNELS.items())
     truth = "\n".join(f"{k} = {v!r}" for k, v in AT_REST.items())
     (tmp_path / "trial.toml").write_text(

@@ -7,7 +7,7 @@ from scipy.linalg import expm
 from tests.numerics.kernels.case import KernelCase
 
 from seatrial.core.equations import Model
-from seatrial.numerics.kernels.steering import steer
+from seatrial.numerics.kernels.feedback import steer
 from seatrial.numerics.kernels.types import COMMAND_SIGNATURE
 
 K, C, B = 1.5, 0.3, 0.8

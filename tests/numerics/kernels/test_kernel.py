@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numba import void
 
-from seatrial.numerics.kernels.evaluate import evaluate
+from seatrial.numerics.kernels.integrate import evaluate
 from seatrial.numerics.kernels.kernel import Kernel, kernel
 from seatrial.numerics.kernels.types import F8, FUNCTION_SIGNATURE, LEAN, OPTIONS, VECTOR
 

@@ -8,7 +8,7 @@ from tests.physics.loops.example_loops import second_order
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError
-from seatrial.numerics.kernels.evaluate import evaluate
+from seatrial.numerics.kernels.integrate import evaluate
 from seatrial.physics.loops import Block, TransferLoop
 from seatrial.physics.loops.fin import fin_loop
 from seatrial.physics.loops.state_space import plant_model

@@ -20,7 +20,15 @@ from seatrial.physics.loops import (
     wave_slope_spectrum,
 )
 from seatrial.physics.loops.fin import ROLL, Preamplifier, fin_loop
-from seatrial.physics.loops.structures import band_pass, five_gain_loop, low_pass, notch, with_filters, with_terms
+from seatrial.physics.loops.structures import (
+    band_pass,
+    five_gain_loop,
+    high_pass,
+    low_pass,
+    notch,
+    with_filters,
+    with_terms,
+)
 from seatrial.physics.sea.spectrum import ittc, jonswap
 
 U, HULL = 18.0 * 1852.0 / 3600.0, HullFactor(100.0, 10.5, 3.4)
@@ -35,6 +43,12 @@ def test_a_band_pass_is_one_in_its_middle_and_half_the_power_over_its_width(omeg
     edges = omega * (np.array([-1.0, 1.0]) * damping + math.sqrt(1.0 + damping**2))
     assert np.abs(block.frequency_response(edges)) ** 2 == pytest.approx(0.5, rel=1e-9)
     assert edges[1] - edges[0] == pytest.approx(2.0 * damping * omega)
+
+
+def test_low_band_and_high_pass_of_one_frequency_and_damping_add_up_to_one() -> None:
+    omega = np.geomspace(0.1, 10.0, 50)
+    parts = [create(1.3, 0.4).frequency_response(omega) for create in (low_pass, band_pass, high_pass)]
+    np.testing.assert_allclose(np.sum(parts, axis=0), 1.0, rtol=1e-13)
 
 
 @given(frequencies, dampings)

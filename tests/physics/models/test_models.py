@@ -12,8 +12,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array
 from seatrial.physics.models import MODELS, model_named
 from seatrial.physics.models.abkowitz import TERMS
-from seatrial.physics.models.published import esso_osaka, kvlcc2
-from seatrial.physics.models.qi2025 import SHIP, theoretical_coefficients
+from seatrial.physics.models.published import QI2025_SHIP, esso_osaka, kvlcc2, theoretical_coefficients
 
 MIRRORED = {"v", "r", "r_rest", "psi", "y0", "delta", "wind_direction"}
 # parameters that change sign in the mirror; those split by side change places
@@ -32,7 +31,7 @@ def filled(name: str, rng: np.random.Generator) -> Model:
         return model.with_values(ABKOWITZ_SHIP | INERTIA | {"prime": 0.7} | terms)
     if name == "heave_pitch_strip":
         at_rest = {"a33": 6e5, "b33": 8e5, "a35_0": 5e6, "b35_0": 3e6, "a55_0": 1e8, "b55_0": 1.5e8}
-        return model.with_values({**at_rest, "lift_1": 2e6, "x_f1": -25.0}).with_ship(SHIP)
+        return model.with_values({**at_rest, "lift_1": 2e6, "x_f1": -25.0}).with_ship(QI2025_SHIP)
     if name.startswith("heave_pitch"):
         return (
             theoretical_coefficients(135)

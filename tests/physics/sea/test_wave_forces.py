@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record
-from seatrial.physics.sea.force_spectrum import force_density
 from seatrial.physics.sea.spectrum import ittc
-from seatrial.physics.sea.wave_forces import with_wave_forces
+from seatrial.physics.sea.wave_forces import force_density, with_wave_forces
 from seatrial_studies.seaway import SPEED, SeawayScenario, box_hull, simulate_seaway_run
 
 

@@ -6,7 +6,7 @@ import pytest
 from seatrial.core.values import InputError
 from seatrial.physics.models.heave_pitch import heave_pitch
 from seatrial.physics.models.nomoto import nomoto
-from seatrial.physics.models.qi2025 import theoretical_coefficients
+from seatrial.physics.models.published import theoretical_coefficients
 from seatrial.physics.simulate.harmonics import frequency_response, harmonic_motion, linear_system
 from seatrial.physics.simulate.linear import LinearBatch
 

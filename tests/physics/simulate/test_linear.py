@@ -8,7 +8,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array
 from seatrial.physics.models.heave_pitch import heave_pitch, heave_pitch_zoh
 from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
-from seatrial.physics.models.qi2025 import HEADINGS, theoretical_coefficients
+from seatrial.physics.models.published import QI2025_HEADINGS, theoretical_coefficients
 from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
 from seatrial.physics.simulate.linear import LinearBatch
 
@@ -54,7 +54,7 @@ def test_continuous_waves_and_a_held_fin_equal_the_integrated_equations(rng: np.
     np.testing.assert_allclose(y[-1] / scale, x / scale, atol=1e-4)
 
 
-@pytest.mark.parametrize("heading", HEADINGS)
+@pytest.mark.parametrize("heading", QI2025_HEADINGS)
 def test_held_waves_equal_the_hold_of_each_sample(heading: int, rng: np.random.Generator) -> None:
     model = ship(heading, held=True)
     u = inputs(0.5, 41, rng)

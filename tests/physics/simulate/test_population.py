@@ -11,7 +11,7 @@ from scipy.signal import lsim
 from seatrial.core.values import Array, InputError
 from seatrial.physics.models import heave_pitch_zoh
 from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
-from seatrial.physics.models.qi2025 import SHIP, theoretical_coefficients
+from seatrial.physics.models.published import QI2025_SHIP, theoretical_coefficients
 from seatrial.physics.simulate.population import (
     Forcing,
     affine_population_matrices,
@@ -31,7 +31,7 @@ AT_REST, SIGMA = np.zeros(4), np.array([0.01, 3.5e-4])
 def plants(rng: np.random.Generator, count: int, spread: float = 0.3) -> tuple[Array, Array]:
     truth = np.array([theoretical_coefficients(90).values[name] for name in COEFFICIENTS])
     around = truth * (1.0 + spread * rng.uniform(-1.0, 1.0, (count, 8)))
-    return heave_pitch_matrices(complete_parameters(around, SHIP.particulars))
+    return heave_pitch_matrices(complete_parameters(around, QI2025_SHIP.particulars))
 
 
 def waves(rng: np.random.Generator, rows: int = SAMPLES) -> Array:
@@ -137,10 +137,15 @@ def test_energy_decays_without_input(seed: int) -> None:
 
 
 def test_what_cannot_be_simulated_has_infinite_fitness(rng: np.random.Generator) -> None:
-    parameters = complete_parameters(np.full((5, 8), 1e5), SHIP.particulars)
+    parameters = complete_parameters(np.full((5, 8), 1e5), QI2025_SHIP.particulars)
     parameters[1, 2] = np.nan
     parameters[2, 6:10] = -1e12
-    parameters[3, 2], parameters[3, 3], parameters[3, 4], parameters[3, 5] = -SHIP.particulars["m"], 0.0, 0.0, 0.0
+    parameters[3, 2], parameters[3, 3], parameters[3, 4], parameters[3, 5] = (
+        -QI2025_SHIP.particulars["m"],
+        0.0,
+        0.0,
+        0.0,
+    )
     parameters[4, 10] = np.inf
     A, B = heave_pitch_matrices(parameters)
     for is_held in (True, False):
@@ -160,7 +165,7 @@ def test_one_sample_fitness_is_one_step(rng: np.random.Generator) -> None:
 
 
 def test_matrices_are_those_of_the_equations_of_motion(rng: np.random.Generator) -> None:
-    parameters = complete_parameters(rng.uniform(1e5, 1e6, (7, 8)), SHIP.particulars)
+    parameters = complete_parameters(rng.uniform(1e5, 1e6, (7, 8)), QI2025_SHIP.particulars)
     A, B = heave_pitch_matrices(parameters)
     for row, a, b in zip(parameters, A, B, strict=True):
         m, i5, a33, a35, a55, a53, b33, b35, b55, b53, c33, c35, c53, c55 = row
@@ -175,7 +180,7 @@ def test_the_models_own_code_gives_the_matrices_of_the_equations_of_motion(rng: 
     points = rng.uniform(1e5, 1e6, (7, 8))
     parameters = np.tile(model.parameters.values, (7, 1))
     parameters[:, [model.parameters.index(name) for name in COEFFICIENTS]] = points
-    expected = heave_pitch_matrices(complete_parameters(points, SHIP.particulars))
+    expected = heave_pitch_matrices(complete_parameters(points, QI2025_SHIP.particulars))
     for found, known in zip(affine_population_matrices(model, parameters, (0, 1)), expected, strict=True):
         np.testing.assert_allclose(found, known, rtol=1e-9, atol=1e-18)
 

@@ -11,7 +11,7 @@ from seatrial.estimation.information.collinearity import collinearity
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.heave_pitch import heave_pitch
 from seatrial.physics.models.nomoto import nomoto
-from seatrial.physics.models.qi2025 import theoretical_coefficients
+from seatrial.physics.models.published import theoretical_coefficients
 from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate import replay

@@ -9,15 +9,13 @@ from seatrial.control.task import ScheduleGrid, Seaway, SlowDisturbance
 from seatrial.core.values import InputError
 from seatrial.physics.loops import HullFactor, TransferLoop
 
+_NO_SLOPE = 1e-6  # |sin(heading)| below which long-crested waves have no slope across the ship: rounding
+
 
 def loop_disturbances(
     file: LoopFile, plant: LoopPlant, hull: HullFactor | None
 ) -> tuple[Seaway | SlowDisturbance, ...]:
-    """Everything that disturbs the loop, in the order of the file.
-
-    Raises:
-        InputError: nothing does, a sea where waves do not act through their slope, amounts out of sense.
-    """
+    """Return everything that disturbs the loop, in the order of the file."""
     if not file.seas and not file.slow_disturbances:
         raise InputError(
             "nothing disturbs the loop: add a block [[seas]], or [[slow_disturbances]] for what acts like the actuator"
@@ -38,11 +36,7 @@ def loop_disturbances(
 def refuse_calm(
     disturbances: tuple[Seaway | SlowDisturbance, ...], loop: TransferLoop, grid: ScheduleGrid | None
 ) -> None:
-    """Refuse seas, and headings of a schedule, that have no slope across the ship.
-
-    Raises:
-        InputError: which one; or a schedule without any sea.
-    """
+    """Refuse seas, and headings of a schedule, that have no slope across the ship."""
     for i, one in enumerate((m for m in disturbances if isinstance(m, Seaway)), start=1):
         try:
             one.exposure(loop)
@@ -55,7 +49,7 @@ def refuse_calm(
         )
     if grid is not None and seas[0].spreading is None:
         for beta in grid.headings:
-            if abs(math.sin(beta)) < 1e-6:
+            if abs(math.sin(beta)) < _NO_SLOPE:
                 raise InputError(
                     f"schedule.headings: long-crested waves at {math.degrees(beta):.0f} deg have no slope across the "
                     "ship; leave the heading out, or give the first sea a spreading"
@@ -63,22 +57,14 @@ def refuse_calm(
 
 
 def seaway(table: SeawayTable, U: float, hull: HullFactor | None, where: str) -> Seaway:
-    """One sea; at the plant's speed U [m/s] where it names none.
-
-    Raises:
-        InputError: height, period or gamma out of sense, a heading outside half a turn, a sea state without waves.
-    """
+    """Return one sea; at the plant's speed U [m/s] where it names none."""
     speed = U if table.speed is None else positive_value(table.speed, "m/s", f"{where}.speed")
     beta = heading_value(table.heading, f"{where}.heading")
     return Seaway(table.to_spectrum(where), speed, beta, hull, table.spreading)
 
 
 def schedule_grid(table: ScheduleTable) -> ScheduleGrid:
-    """The conditions of a schedule.
-
-    Raises:
-        InputError: a speed or height that is not positive, a heading outside half a turn.
-    """
+    """Return the conditions of a schedule."""
     return ScheduleGrid(
         tuple(positive_value(a, "m/s", "schedule.speeds") for a in table.speeds.quantities()),
         tuple(heading_value(a, "schedule.headings") for a in table.headings.quantities()),

@@ -22,6 +22,7 @@ from seatrial.physics.loops.structures import (
 
 _STRUCTURE_KINDS = ("band-pass", "low-pass")
 _NOTCH_DEFAULTS = 0.5, 0.1  # damping ratio and depth of a notch, as in `NotchTable`; chosen
+_ROUNDING = 1e-9  # imaginary part over size of a pole, below which it does not swing
 
 
 def extended_structure(loop: TransferLoop, table: ExtendedStructureTable, where: str) -> TransferLoop:
@@ -29,9 +30,6 @@ def extended_structure(loop: TransferLoop, table: ExtendedStructureTable, where:
 
     Where the file does not set them they stand at the multiples of the plant's own frequency that were found for the
     published fins. Without bounds the new gains may lie within the largest bound of the loop's own, to either side.
-
-    Raises:
-        InputError: nothing swings that could set a frequency, the loop has a gain of that name, bounds out of order.
     """
     made = _with_terms(loop, table, where)
     if "notch" in table.add:
@@ -40,17 +38,14 @@ def extended_structure(loop: TransferLoop, table: ExtendedStructureTable, where:
 
 
 def _with_terms(loop: TransferLoop, table: ExtendedStructureTable, where: str) -> TransferLoop:
-    shapes = (table.band_pass, table.low_pass)
-    parts = [
-        (gain, kind, shape, found)
-        for gain, kind, shape, found in zip(
-            ADDED_GAINS, _STRUCTURE_KINDS, shapes, FREQUENCIES_AND_DAMPINGS, strict=True
-        )
-        if kind in table.add
-    ]
-    if not parts:
+    shapes = zip(
+        ADDED_GAINS, _STRUCTURE_KINDS, (table.band_pass, table.low_pass), FREQUENCIES_AND_DAMPINGS, strict=True
+    )
+    made = {
+        gain: _part(loop, kind, shape, default, where) for gain, kind, shape, default in shapes if kind in table.add
+    }
+    if not made:
         return loop
-    made = {gain: _part(loop, kind, shape, found, where) for gain, kind, shape, found in parts}
     lower, upper = _bounds(loop, table, where)
     is_published = loop.gains.names == tuple(PUBLISHED_GAINS) and len(made) == len(ADDED_GAINS)
     try:
@@ -64,11 +59,11 @@ def _with_terms(loop: TransferLoop, table: ExtendedStructureTable, where: str) -
             full = with_terms(loop, *(Term(name, block) for name, block in made.items()), gains=gains)
     except InputError as error:
         raise InputError(f"{where}.add: {error}") from None
-    known = full.gains
+    gains = full.gains
     for name in made:
-        known = known.bounded(name, lower, upper)
+        gains = gains.bounded(name, lower, upper)
     return replace(
-        full, gains=_clipped_to_bounds(known.with_values({p.name: p.value for p in loop.gains if not p.free}))
+        full, gains=_clipped_to_bounds(gains.with_values({p.name: p.value for p in loop.gains if not p.free}))
     )
 
 
@@ -83,13 +78,12 @@ def _part(loop: TransferLoop, kind: str, shape: PassTable | None, default: tuple
 def _notch(loop: TransferLoop, table: ExtendedStructureTable, where: str) -> Block:
     if table.notch is None:
         return notch(_natural_frequency(loop, f"{where}.notch"), *_NOTCH_DEFAULTS)
-    return notch(
-        positive_value(table.notch.omega, "rad/s", f"{where}.notch.omega"), table.notch.damping, table.notch.depth
-    )
+    omega = positive_value(table.notch.omega, "rad/s", f"{where}.notch.omega")
+    return notch(omega, table.notch.damping, table.notch.depth)
 
 
 def _clipped_to_bounds(gains: Parameters) -> Parameters:
-    """Values moved into their bounds."""
+    """Return values moved into their bounds."""
     return gains.with_values({p.name: min(max(p.value, p.lower), p.upper) for p in gains.free})
 
 
@@ -103,9 +97,9 @@ def _bounds(loop: TransferLoop, table: ExtendedStructureTable, where: str) -> tu
 
 
 def _natural_frequency(loop: TransferLoop, where: str) -> float:
-    """Frequency of the least damped pair of poles of the disturbance's block [rad/s]."""
+    """Return the frequency of the least damped pair of poles of the disturbance's block [rad/s]."""
     poles = loop.disturbance.poles
-    swinging = poles[poles.imag > 1e-9 * np.abs(poles)]
+    swinging = poles[poles.imag > _ROUNDING * np.abs(poles)]
     if not swinging.size:
         raise InputError(f"{where}: nothing swings by itself that could set its frequency; give omega and damping")
     return float(np.abs(swinging[np.argmin(-swinging.real / np.abs(swinging))]))

@@ -27,11 +27,7 @@ _MOST_TIME_CONSTANTS = 1e4  # longest duration of a demand, in its time constant
 
 
 def parse_loop(path: Path) -> LoopFile:
-    """Return the file's tables, checked key by key.
-
-    Raises:
-        InputError: no such file, no TOML, an unknown or missing key, a value of the wrong kind.
-    """
+    """Return the file's tables, checked key by key."""
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
@@ -45,14 +41,11 @@ def parse_loop(path: Path) -> LoopFile:
 
 
 def tuning_task(path: Path, own_model: Model | None = None, model_file: Path | None = None) -> TuningTask:
-    """The tuning that a loop file asks for.
+    """Return the tuning that a loop file asks for.
 
     Args:
         own_model: equations of a model file that are not built in.
         model_file: takes the place of the one that `[plant] model` names.
-
-    Raises:
-        InputError: one sentence naming file and key.
     """
     file = parse_loop(path)
     try:
@@ -98,7 +91,7 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant) -> TuningTask:
 
 
 def _refuse_duplicates(tables: Sequence[ObjectiveTable], objectives: Sequence[Objective]) -> None:
-    """`roll` and `output` are one thing, an off-target with another target is not."""
+    """Refuse one thing named twice: `roll` and `output` are one, an off-target with another target is not."""
     keys = [(made.name, aim.model_dump(exclude={"name"})) for aim, made in zip(tables, objectives, strict=True)]
     for i, key in enumerate(keys, start=1):
         if key in keys[: i - 1]:
@@ -106,7 +99,7 @@ def _refuse_duplicates(tables: Sequence[ObjectiveTable], objectives: Sequence[Ob
 
 
 def _constraints(file: LoopFile, plant: LoopPlant) -> ControllerConstraints:
-    """Limits in SI; angles of half a turn were meant as degrees."""
+    """Return limits in SI; angles of half a turn were meant as degrees."""
     table, unit = file.actuator, symbol_unit(plant.actuator)
 
     def largest(key: str) -> float:
@@ -129,14 +122,11 @@ def _constraints(file: LoopFile, plant: LoopPlant) -> ControllerConstraints:
 def _baselines(baselines: Mapping[str, Mapping[str, float]], loop: TransferLoop) -> dict[str, Mapping[str, float]]:
     names = loop.gains.names
     for rival, gains in baselines.items():
-        for name in gains:
-            if name not in names:
-                raise InputError(
-                    f"baselines.{rival}: the controller has no gain '{name}'{spelling_hint(name, [*names])}"
-                )
-        for name in names:
-            if name not in gains:
-                raise InputError(f"baselines.{rival}: gain {name} is missing; add it")
+        if unknown := [name for name in gains if name not in names]:
+            hint = spelling_hint(unknown[0], [*names])
+            raise InputError(f"baselines.{rival}: the controller has no gain '{unknown[0]}'{hint}")
+        if missing := [name for name in names if name not in gains]:
+            raise InputError(f"baselines.{rival}: gain {missing[0]} is missing; add it")
     return dict(baselines)
 
 
@@ -163,7 +153,7 @@ def _simulation_settings(table: SimulationTable | None, seas: int, demand: Deman
 
 
 def _demand(table: DemandTable, plant: LoopPlant) -> Demand:
-    """Without a time constant the ship's length over its speed; without a duration thirty time constants."""
+    """Return the demand; time constant and duration default to length over speed and to thirty time constants."""
     if plant.disturbed_by == "alpha_w":
         raise InputError("demand: a roll stabiliser follows no demand; leave the table out")
     unit = symbol_unit(plant.output)

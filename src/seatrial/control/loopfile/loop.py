@@ -17,11 +17,7 @@ MEANINGS = {"KP": "proportional gain", "KI": "gain of the integral", "KD": "gain
 
 
 def loop_from_tables(table: ControllerTable, servo: Sequence[BlockTable], plant: LoopPlant, name: str) -> TransferLoop:
-    """The loop that the tables describe; the published one brings its own servo where none is given.
-
-    Raises:
-        InputError: an improper block, an unknown gain, one without bounds, all gains fixed.
-    """
+    """Return the loop that the tables describe; the published one brings its own servo where none is given."""
     own = blocks(servo, "actuator.servo")
     match table.kind:
         case "yu2014":
@@ -49,11 +45,7 @@ def loop_from_tables(table: ControllerTable, servo: Sequence[BlockTable], plant:
 
 
 def gains_from_tables(tables: Mapping[str, GainTable], known_gains: Parameters) -> Parameters:
-    """The known gains with what the file says instead.
-
-    Raises:
-        InputError: a gain that no term has, one without bounds, or none free.
-    """
+    """Return the known gains with what the file says instead."""
     for name in tables:
         if name not in known_gains:
             hint = spelling_hint(name, [*known_gains.names])

@@ -23,11 +23,7 @@ _DERIVATIVES = ("", "rate of the ", "acceleration of the ")
 
 
 def objective(table: ObjectiveTable, plant: LoopPlant, constraints: ControllerConstraints, where: str) -> Objective:
-    """The objective of that name.
-
-    Raises:
-        InputError: words of a fin stabiliser for another loop, or no target and no limit to take it from.
-    """
+    """Return the objective of that name."""
     what = _generic_name(table.name, plant, where)
     if what == "motion_interruptions":
         return motion_interruptions(_in_metres(table.height, f"{where}.height"), table.friction)
@@ -44,7 +40,7 @@ def objective(table: ObjectiveTable, plant: LoopPlant, constraints: ControllerCo
 
 
 def _generic_name(name: str, plant: LoopPlant, where: str) -> str:
-    """`roll` is the output of a fin stabiliser, `fin` its actuator."""
+    """Return the name for any loop: `roll` is the output of a fin stabiliser, `fin` its actuator."""
     on_roll = name.startswith(("roll", "motion"))
     if (on_roll and plant.output != "phi") or (name.startswith("fin") and plant.actuator != "alpha_f"):
         raise InputError(
@@ -55,7 +51,7 @@ def _generic_name(name: str, plant: LoopPlant, where: str) -> str:
 
 
 def _target_rms(table: ObjectiveTable, plant: LoopPlant, constraints: ControllerConstraints, where: str) -> float:
-    """Root mean square aimed at: as given, or that at which the allowed share of amplitudes exceeds the limit.
+    """Return root mean square aimed at: as given, or that at which the allowed share of amplitudes exceeds the limit.
 
     exp(-limit^2 / (2 variance)) = share (Rayleigh; Yu et al. 2014, eq. (2), 150.31 deg^2 for 22 deg and 20 %).
     """

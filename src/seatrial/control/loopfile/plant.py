@@ -45,14 +45,11 @@ class LoopPlant:
 def plant_from_table(
     table: PlantTable, home: Path, own_model: Model | None = None, model_file: Path | None = None
 ) -> LoopPlant:
-    """The plant that the table describes.
+    """Return the plant that the table describes.
 
     Args:
         home: folder of the loop file, from which the model file's path counts.
         model_file: takes the place of `model`.
-
-    Raises:
-        InputError: no such file, another kind of model, no speed, no fin.
     """
     if table.model is not None:
         return _plant_of_model(table, model_file or home / expand_variables(table.model), own_model)
@@ -70,7 +67,7 @@ def plant_from_table(
 
 
 def hull_factor(table: HullTable | None, ship: Ship | None) -> HullFactor | None:
-    """The box of the table, or of the ship's own L, B, d; none where neither is known."""
+    """Return the box of the table, or of the ship's own L, B, d; none where neither is known."""
     if table is not None:
         return HullFactor(*(positive_value(getattr(table, key), "m", f"hull.{key}") for key in ("L", "B", "T")))
     own = {} if ship is None else ship.particulars
@@ -78,7 +75,7 @@ def hull_factor(table: HullTable | None, ship: Ship | None) -> HullFactor | None
 
 
 def _responding_block(table: BlockTable, name: str, where: str) -> Block:
-    """A block whose output answers."""
+    """Return a block whose output answers."""
     made = block(table, name, where)
     if not any(made.num):
         raise InputError(f"{where}.num is zero: nothing would move; give its coefficients, highest power first")
@@ -103,7 +100,7 @@ def _plant_of_roll(roll: Block, table: PlantTable, fin: FinTable) -> LoopPlant:
 
 
 def _fin_effect(table: FinTable, known_K_alpha: float, U: float) -> tuple[float, Effectiveness, str]:
-    """K_alpha at the speed U from the known one, how it goes with the speed, and both in words."""
+    """Return K_alpha at the speed U from the known one, how it goes with the speed, and both in words."""
     law = Effectiveness(table.law)
     at = U if table.at_speed is None else positive_value(table.at_speed, "m/s", "plant.fin.at_speed")
     K_alpha = known_K_alpha if law is Effectiveness.CONSTANT else K_alpha_at(U, at, known_K_alpha)
@@ -139,7 +136,7 @@ def _plant_of_model(table: PlantTable, path: Path, own_model: Model | None) -> L
 
 
 def _signal_names(table: PlantTable, file: ModelFile, path: Path) -> tuple[str, str, str]:
-    """Output, actuator and disturbance: as said, or those by which a model of its kind is controlled."""
+    """Return the output, actuator and disturbance: as said, or those by which a model of its kind is controlled."""
     model, given = file.model, (table.output, table.actuator, table.disturbance)
     for name, known, key, what in zip(
         given,
@@ -168,7 +165,7 @@ def _demand_known(name: str, names: tuple[str, ...], where: str, model: Model, k
 
 
 def _known_K_alpha(table: FinTable, model: Model, path: Path) -> float:
-    """K_alpha of the loop file, or of the model where that was identified."""
+    """Return K_alpha of the loop file, or of the model where that was identified."""
     if "K_alpha" not in model.parameters:
         raise InputError(f"plant.fin: model '{model.name}' of '{path}' has no K_alpha; leave the table out")
     own = model.parameters["K_alpha"]

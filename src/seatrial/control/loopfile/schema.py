@@ -14,7 +14,7 @@ Positive = Annotated[float, Field(gt=0)]
 
 
 def _as_quantities(value: object) -> object:
-    """Bare numbers are amounts in SI units."""
+    """Return bare numbers as amounts in SI units."""
     return {"values": value} if isinstance(value, list) else value
 
 
@@ -29,7 +29,7 @@ class Quantities(StrictTable):
     unit: Unit | None = None
 
     def quantities(self) -> tuple[Amount, ...]:
-        """One by one."""
+        """Return one by one."""
         return tuple(Amount(value=value, unit=self.unit) for value in self.values)
 
 
@@ -313,5 +313,5 @@ class LoopFile(StrictTable):
 
 
 def loop_schema() -> dict[str, Any]:
-    """JSON Schema of a loop file, for editors."""
+    """Return JSON Schema of a loop file, for editors."""
     return LoopFile.model_json_schema()

@@ -12,7 +12,8 @@ from seatrial.estimation.predict.draws import square_root
 from seatrial.numerics.kernels.loop import is_hurwitz
 from seatrial.physics.loops import Block, TransferLoop
 
-SEED, DRAWS = 0, 100
+SEED, DRAWS = 0, 100  # of the ships drawn, and how many; chosen
+_KEPT = 8  # results kept in memory: one for each plant in use; chosen
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +35,7 @@ class ParameterDraws:
         return tuple(all(_is_stable(loop, plant, gains) for plant in plants) for plants in self.plants)
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=_KEPT)
 def draw_parameters(ship: TrimmedShip, draws: int = DRAWS, seed: int = SEED) -> ParameterDraws:
     """Return ships sampled from the Gaussian of the free parameters; none where the fit has no covariance.
 
@@ -74,7 +75,7 @@ def _plant_blocks(ship: TrimmedShip) -> tuple[Block, ...]:
 
 
 def _is_stable(loop: TransferLoop, plant: Block, gains: Array) -> bool:
-    """By Routh's scheme on d + sum gain_i n_i with that plant in the place of the loop's own."""
+    """Return whether d + sum gain_i n_i with that plant in the loop is stable, by Routh's scheme."""
     nums, dens = _open_loop_polynomials(loop)
     fixed = np.polymul(dens, plant.den)
     moved = np.polymul(gains @ nums, plant.num)
@@ -82,8 +83,8 @@ def _is_stable(loop: TransferLoop, plant: Block, gains: Array) -> bool:
     return bool(is_hurwitz(np.ascontiguousarray(row, dtype=np.float64), len(row) - 1))
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=_KEPT)
 def _open_loop_polynomials(loop: TransferLoop) -> tuple[Array, Array]:
-    """Numerators of the controller's terms (g, n) and their common denominator (n,), plant left out."""
+    """Return numerators of the controller's terms (g, n) and their common denominator (n,), plant left out."""
     d, n = replace(loop, plant=Block("none")).polynomials
     return n, d

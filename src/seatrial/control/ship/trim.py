@@ -12,6 +12,10 @@ from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
 
 _ITERATIONS = 30  # Newton steps at most; chosen
 _MOST_RUDDER = 0.6  # rad, 34 deg: largest mean rudder of a trim; chosen
+# relative, of a speed that inputs balance, and of the speed a model was identified at; chosen
+_SPEED_TOLERANCE, _NOMINAL_TOLERANCE = 1e-3, 1e-2
+_SEARCHED = np.geomspace(1e-3, 1e3, 121)  # propulsion over speed, m/s or rps: twenty a decade; chosen
+_RATE_TOLERANCE, _STEP_TOLERANCE = 1e-9, 1e-13  # SI, of the rates at a trim, and of the last relative step: rounding
 _POSE = ("psi", "x0", "y0")
 
 
@@ -34,7 +38,7 @@ def held_inputs_at_speed(
     if len(free) != 1:
         held = held_inputs(model, known, RUDDER)
         balanced = approach_speed(model, held)
-        if abs(balanced - speed) > 1e-3 * speed:
+        if abs(balanced - speed) > _SPEED_TOLERANCE * speed:
             raise InputError(
                 f"model '{model.name}' runs at {balanced:.4g} m/s with these inputs, not at {speed:.4g} m/s; "
                 "give the speed or the propulsion, not both"
@@ -49,7 +53,7 @@ def _at_nominal_speed(model: Model, speed: float) -> Model:
     if "U" not in model.parameters:
         return model
     U = model.parameters["U"].value
-    if U > 0.0 and abs(U - speed) > 1e-2 * speed:
+    if U > 0.0 and abs(U - speed) > _NOMINAL_TOLERANCE * speed:
         raise InputError(
             f"model '{model.name}' holds for {U:.4g} m/s, where it was identified, not for {speed:.4g} m/s; "
             "leave the speed out, or take a model with surge"
@@ -58,7 +62,7 @@ def _at_nominal_speed(model: Model, speed: float) -> Model:
 
 
 def _balancing_input(model: Model, held: Array, name: str, speed: float) -> float:
-    """The input at which surge is in balance on a straight course at u = `speed`."""
+    """Return the input at which surge is in balance on a straight course at u = `speed`."""
     place, k = model.input_names.index(name), model.states.index("u")
     state, inputs, rates = np.zeros(len(model.states)), held.copy(), np.empty(len(model.states))
     state[k] = speed
@@ -68,24 +72,20 @@ def _balancing_input(model: Model, held: Array, name: str, speed: float) -> floa
         model.compiled.rates(0.0, state, inputs, model.parameters.values, rates)
         return float(rates[k])
 
-    tried = np.geomspace(1e-3, 1e3, 121) * speed
+    tried = _SEARCHED * speed
     least = next((i for i, value in enumerate(tried) if surge(value) > 0.0), 0)
     if least == 0:
-        raise InputError(
-            f"model '{model.name}' has no '{name}' that drives the ship at {speed:.4g} m/s; take another speed"
-        )
+        raise InputError(f"model '{model.name}' has no '{name}' that drives the ship at {speed:.4g} m/s; take another "
+                         "speed")  # fmt: skip
     from scipy.optimize import brentq
 
-    return float(brentq(surge, tried[least - 1], tried[least], xtol=1e-12))
+    return float(brentq(surge, tried[least - 1], tried[least], xtol=1e-12))  # of the propulsion: rounding
 
 
 def find_trim(model: Model, held: Array) -> tuple[Array, Array]:
     """State (nx,) and inputs (nu,) of steady motion: a straight course if there is a heading, else rest.
 
     The rudder carries what asymmetry asks for. held: (nu,) in the model's signs.
-
-    Raises:
-        InputError: there is none with less than 34 degrees of rudder.
     """
     names, nx = model.states, len(model.states)
     steers = "psi" in names and RUDDER in model.input_names
@@ -104,19 +104,20 @@ def find_trim(model: Model, held: Array) -> tuple[Array, Array]:
         slopes = jacobian_at(model, x[None], u, of_outputs=False)[0][np.ix_(rows, columns)]
         step = np.linalg.lstsq(slopes, -rates[rows], rcond=None)[0]
         unknown[columns] += step
-        if not np.all(np.isfinite(unknown)) or np.max(np.abs(step), initial=0.0) < 1e-13 * max(1.0, np.abs(x).max()):
+        small = _STEP_TOLERANCE * max(1.0, np.abs(x).max())
+        if not np.all(np.isfinite(unknown)) or np.max(np.abs(step), initial=0.0) < small:
             break
     state, inputs = np.ascontiguousarray(unknown[:nx]), np.ascontiguousarray(unknown[nx:])
     model.compiled.rates(0.0, state, inputs, model.parameters.values, rates)
     kept = not steers or abs(inputs[model.input_names.index(RUDDER)]) < _MOST_RUDDER
-    if not (np.all(np.isfinite(unknown)) and np.max(np.abs(rates[rows])) < 1e-9 and kept):
+    if not (np.all(np.isfinite(unknown)) and np.max(np.abs(rates[rows])) < _RATE_TOLERANCE and kept):
         what = "straight course with less than 34 degrees of rudder" if steers else "steady motion"
         raise InputError(f"model '{model.name}' has no {what} with these inputs; check them and the model's values")
     return state, inputs
 
 
 def jacobian_at(model: Model, states: Array, inputs: Array, *, of_outputs: bool) -> Array:
-    """Exact, at each of the states (n, nx), shape (n, rows, nx + nu + np)."""
+    """Return the exact Jacobian at each of the states (n, nx), shape (n, rows, nx + nu + np)."""
     rows = len(model.outputs) if of_outputs else len(model.states)
     n, width = len(states), len(model.states) + len(model.inputs) + len(model.parameters)
     jac = np.zeros((n, rows, width))

@@ -43,30 +43,23 @@ def trim_ship(
     speed: float | None = None,
     inputs: Mapping[str, float] | None = None,
 ) -> TrimmedShip:
-    """The model of a file, trimmed, with its covariance.
+    """Return the model of a file, trimmed, with its covariance.
 
     Args:
         output: symbol of a state or a measurable output; actuator, disturbance: symbols of inputs.
         speed: m/s, of a straight run; what drives the ship is then found. Without it the speed at which surge
             balances with the inputs given, or with those of the file's own approach.
         inputs: held constant, by name, SI in the notation's signs (``n``, ``v_j``).
-
-    Raises:
-        InputError: output, actuator or disturbance are not of the model, a parameter has no value, no such trim exists,
-            or the actuator has no effect on the output.
     """
     model = file.model
     if output not in model.observables:
-        raise InputError(
-            f"'{output}' is no output of model '{model.name}'{spelling_hint(output, list(model.observables))}; "
-            f"it has {', '.join(model.observables)}"
-        )
+        hint = f"{spelling_hint(output, list(model.observables))}; it has {', '.join(model.observables)}"
+        raise InputError(f"'{output}' is no output of model '{model.name}'{hint}")
+    inputs_known = ", ".join(model.input_names)
     for role, name in (("actuator", actuator), ("disturbance", disturbance)):
         if name not in model.input_names and (name or role == "actuator"):
-            raise InputError(
-                f"{role} '{name}' is no input of model '{model.name}'{spelling_hint(name, list(model.input_names))}; "
-                f"it has {', '.join(model.input_names)}"
-            )
+            hint = spelling_hint(name, list(model.input_names))
+            raise InputError(f"{role} '{name}' is no input of model '{model.name}'{hint}; it has {inputs_known}")
     if model.parameters.missing:
         raise InputError(f"model '{model.name}' has no value for {', '.join(model.parameters.missing)}")
     model, held = held_inputs_at_speed(model, file.approach, speed, inputs)
@@ -77,11 +70,7 @@ def trim_ship(
 
 
 def with_parameters(ship: TrimmedShip, values: Mapping[str, float]) -> TrimmedShip:
-    """Return the same ship with other parameters, trimmed anew with the propulsion held.
-
-    Raises:
-        InputError: the ship has no such trim.
-    """
+    """Return the same ship with other parameters, trimmed anew with the propulsion held."""
     model, held = ship.model.with_values(values), ship.inputs.copy()
     if RUDDER in model.input_names:
         held[model.input_names.index(RUDDER)] = 0.0
@@ -90,7 +79,7 @@ def with_parameters(ship: TrimmedShip, values: Mapping[str, float]) -> TrimmedSh
 
 
 def plant_and_disturbance(ship: TrimmedShip, amplitude: float | None = None) -> tuple[Block, Block]:
-    """Transfer functions from actuator to output and from disturbance to output, in the notation's signs.
+    """Return transfer functions from actuator to output and from disturbance to output, in the notation's signs.
 
     Without a disturbance the second is the first: something that acts like the actuator. What neither follows the input
     nor shows in the output is left out; a heading keeps its integrator. Where a model has a kink on the straight course
@@ -98,10 +87,6 @@ def plant_and_disturbance(ship: TrimmedShip, amplitude: float | None = None) -> 
 
     amplitude: rad, of the roll about which a model of nonlinear roll is linearised by equivalent energy and first
     harmonic; without it at rest. Other models do not heed it.
-
-    Raises:
-        InputError: the actuator or the disturbance has no effect on the output, or a swing of that amplitude does not
-            come back.
     """
     made = linearise(ship)
     if amplitude is not None and set(_ROLL_PARAMETERS) <= set(ship.model.parameters.names):
@@ -111,16 +96,12 @@ def plant_and_disturbance(ship: TrimmedShip, amplitude: float | None = None) -> 
 
 
 def one_sided_plants(ship: TrimmedShip) -> tuple[Block, ...]:
-    """The plant for a turn just begun to starboard and to port; they differ where the model has a kink.
-
-    Raises:
-        InputError: as `plant_and_disturbance`.
-    """
+    """Return the plant for a turn just begun to starboard and to port; they differ where the model has a kink."""
     return tuple(_transfer_function(ship, side, ship.actuator) for side in _one_sided_matrices(ship))
 
 
 def plant_text(ship: TrimmedShip) -> str:
-    """The plant in words: the model, the trim, whether it is stable by itself."""
+    """Return the plant in words: the model, the trim, whether it is stable by itself."""
     model, (plant, _) = ship.model, plant_and_disturbance(ship)
     where = "about its mean position"
     if "u" in model.states:
@@ -132,7 +113,7 @@ def plant_text(ship: TrimmedShip) -> str:
 
 
 def linearise(ship: TrimmedShip) -> LinearisedShip:
-    """About the trim, the mean over both sides."""
+    """Return the matrices about the trim, the mean over both sides."""
     one, other = _one_sided_matrices(ship)
     return LinearisedShip(*(0.5 * (getattr(one, k) + getattr(other, k)) for k in ("A", "B", "C", "D")))
 
@@ -153,7 +134,7 @@ def _one_sided_matrices(ship: TrimmedShip) -> tuple[LinearisedShip, LinearisedSh
 
 
 def _roll_equivalent_matrix(model: Model, A: Array, amplitude: float) -> Array:
-    """A with the damping of equal energy and the stiffness of the first harmonic at that amplitude [rad].
+    """Return a with the damping of equal energy and the stiffness of the first harmonic at that amplitude [rad].
 
     b_e as in `hydro.rolling`; c_e = c_1 + 3/4 c_3 a^2 + 5/8 c_5 a^4, the first harmonic of the restoring moment
     (ITTC 7.5-02-07-04.5; Nayfeh & Mook 1979, section 4.1).
@@ -179,7 +160,7 @@ def _roll_equivalent_matrix(model: Model, A: Array, amplitude: float) -> Array:
 
 
 def _transfer_function(ship: TrimmedShip, linear: LinearisedShip, name: str) -> Block:
-    """C (s I - A)^-1 B + D of one input, controllable and observable states only, in the notation's signs."""
+    """Return C (s I - A)^-1 B + D of one input, controllable and observable states only, in the notation's signs."""
     column = ship.model.input_names.index(name)
     sign = -1.0 if ship.model.inputs[column].is_reversed else 1.0
     b, feed = sign * linear.B[:, column], sign * float(linear.D[column])
@@ -198,12 +179,12 @@ def _transfer_function(ship: TrimmedShip, linear: LinearisedShip, name: str) -> 
 
 
 def _is_significant(entries: Array) -> NDArray[np.bool_]:
-    """Which are more than rounding of the largest."""
+    """Return which are more than rounding of the largest."""
     return np.abs(entries) > _NEGLIGIBLE * np.abs(entries).max(initial=0.0)
 
 
 def _linked_states(A: Array, start: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """States that follow those of `start` through A, themselves included."""
+    """Return states that follow those of `start` through A, themselves included."""
     link, reached = _is_significant(A), start
     for _ in range(len(A)):
         reached = reached | (link @ reached)
@@ -211,7 +192,7 @@ def _linked_states(A: Array, start: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 
 def _characteristic_polynomial(A: Array) -> Array:
-    """det(s I - A), highest power first; roots of rounding size are zeros, so that an integrator stays one."""
+    """Return det(s I - A), highest power first; roots of rounding size are zeros, so that an integrator stays one."""
     roots = np.linalg.eigvals(A)
     roots[np.abs(roots) < _NEGLIGIBLE * np.abs(roots).max(initial=0.0)] = 0.0
     return np.asarray(np.atleast_1d(np.poly(roots).real), dtype=np.float64)

@@ -118,7 +118,7 @@ class Model:
 
     def forces(self, states: Array, inputs: Array) -> dict[str, Array]:
         """Return every binding along a record: states (n, nx), inputs (n, nu) -> name -> (n,)."""
-        from seatrial.numerics.kernels.evaluate import evaluate
+        from seatrial.numerics.kernels.integrate import evaluate
 
         out = np.empty((len(states), max(1, len(self.bindings))))
         x, u = np.ascontiguousarray(states), np.ascontiguousarray(inputs)

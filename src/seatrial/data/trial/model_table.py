@@ -8,8 +8,8 @@ from seatrial.data.trial.amounts import Amount
 from seatrial.data.trial.literature import LiteraturePrior, literature_priors
 from seatrial.data.trial.schema import ModelTable, PriorTable, ShipTable
 from seatrial.physics.models import model_named
+from seatrial.physics.models.heave_pitch_coefficients import with_start_values
 from seatrial.physics.models.published import parameter_set
-from seatrial.physics.models.start_values import with_start_values
 from seatrial.physics.sensors import Sensors, with_sensors
 
 # particulars that people state although not every model asks for them

@@ -32,7 +32,7 @@ def confirm_design(
     seed: int,
     report_progress: Callable[[str], None],
 ) -> Confirmation:
-    """One noisy record and one fit for every ship; `model_inputs` are the plan's inputs at the sensors' rate."""
+    """Return one noisy record and one fit for every ship; `model_inputs` are the plan's inputs at the sensors' rate."""
     predicted = ManoeuvreEvaluator(task, ships, 1.0 / task.request.rate).evaluate(model_inputs).relative_errors
     streams = np.random.SeedSequence(seed).spawn(ships.count)
 
@@ -56,7 +56,7 @@ def confirm_design(
 
 
 def _fit_record(task: DesignTask, record: Record) -> Solution:
-    """Output error from the weak form's start and from the model's own values; the better of the two."""
+    """Return the output error from the weak form's start and from the model's own values; the better of the two."""
     outputs = tuple(task.sensors)
     problem = OutputError(
         task.model, cut_segments(task.model, [record], outputs, None), np.array(list(task.sensors.values())), workers=1
@@ -70,7 +70,7 @@ def _fit_record(task: DesignTask, record: Record) -> Solution:
 
 
 def _weak_form_start(task: DesignTask, problem: OutputError, record: Record) -> list[Array]:
-    """The weak form's start; none where the sensors do not show every state."""
+    """Return the weak form's start; none where the sensors do not show every state."""
     try:
         return [find_start(problem, [record], WINDOW_PER_HOLD * task.shortest_hold).common_parameters]
     except InputError:
@@ -82,7 +82,7 @@ def _model_with_values(model: Model, values: Array) -> Model:
 
 
 def _simulate_trial(task: DesignTask, ship: Model, planned: Record, generator: np.random.Generator) -> Record | None:
-    """Sensors and inputs of a ship that follows the plan; None where the simulation diverges."""
+    """Return sensors and inputs of a ship that follows the plan; None where the simulation diverges."""
     start = dict(zip(ship.states, task.initial_state.tolist(), strict=True))
     try:
         simulated = replay(ship, planned, start)

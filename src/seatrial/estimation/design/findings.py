@@ -16,11 +16,7 @@ _MANY_LEAVING, _ENOUGH_CONVERGED = 0.2, 0.8
 
 
 def refuse_violated_limits(task: DesignTask, designed: ManoeuvrePrecision) -> None:
-    """Refuse limits that no orders found keep.
-
-    Raises:
-        InputError: which limit, what the best orders reach, what is allowed.
-    """
+    """Refuse limits that no orders found keep."""
     if is_within_limits(designed, task.request.limits):
         return
     every = task.request.limits.for_every_ship
@@ -41,7 +37,7 @@ def refuse_violated_limits(task: DesignTask, designed: ManoeuvrePrecision) -> No
 def findings(
     task: DesignTask, designed: ManoeuvrePrecision, confirmation: Confirmation | None, *, is_interrupted: bool
 ) -> tuple[Finding, ...]:
-    """Everything worth a warning, the gravest first."""
+    """Return everything worth a warning, the gravest first."""
     findings = list[Finding]()
     if is_interrupted:
         findings.append(_warning("interrupted", "the work was interrupted; this is the best so far",

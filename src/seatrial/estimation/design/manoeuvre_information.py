@@ -104,7 +104,7 @@ class ManoeuvreEvaluator:
 
 
 def limit_excess(task: DesignTask, information: ManoeuvreInformation, margin: float = 0.0) -> Array:
-    """By how much drift and distance of each ship leave the limits less a margin, in parts of these, (ships,)."""
+    """Return how far drift and distance of each ship leave the limits less a margin, in parts of these, (ships,)."""
     allowed = 1.0 - margin
     over = [
         information.drift / (allowed * task.request.limits.drift) - 1.0,
@@ -114,7 +114,7 @@ def limit_excess(task: DesignTask, information: ManoeuvreInformation, margin: fl
 
 
 def leaves_limits(task: DesignTask, information: ManoeuvreInformation) -> bool:
-    """Whether a ship that the limits bind leaves them; the first ship is the one assumed."""
+    """Return whether a ship that the limits bind leaves them; the first ship is the one assumed."""
     over = limit_excess(task, information)
     return bool(over.max() > 0.0 if task.request.limits.for_every_ship else over[0] > 0.0)
 
@@ -122,7 +122,7 @@ def leaves_limits(task: DesignTask, information: ManoeuvreInformation) -> bool:
 def assess_manoeuvre(
     name: str, evaluator: ManoeuvreEvaluator, model_inputs: Array, executed: Record
 ) -> ManoeuvrePrecision:
-    """A manoeuvre's worth for all ships of the bench, the model itself first."""
+    """Return a manoeuvre's worth for all ships of the bench, the model itself first."""
     precision = evaluator.evaluate(model_inputs)
     nominal = float(precision.drift[0]), float(precision.distance[0])
     return ManoeuvrePrecision(
@@ -137,13 +137,13 @@ def assess_manoeuvre(
 
 
 def simulate_plan(task: DesignTask, planned: Record, name: str) -> Record:
-    """The model driven by a planned record from the task's start."""
+    """Return the model driven by a planned record from the task's start."""
     start = dict(zip(task.model.states, task.initial_state.tolist(), strict=True))
     return replay(task.model, planned, start).renamed(name)
 
 
 def _standard_errors(information: Array, k: int) -> Array:
-    """Standard errors of the first k unknowns; huge for those that nothing determines."""
+    """Return standard errors of the first k unknowns; huge for those that nothing determines."""
     scale = np.sqrt(information.diagonal())
     is_informative = scale > 0.0
     unit = information[np.ix_(is_informative, is_informative)] / np.outer(scale[is_informative], scale[is_informative])

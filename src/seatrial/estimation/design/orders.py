@@ -14,17 +14,17 @@ _TIME_TOLERANCE = 1e-6
 
 
 def order_counts(task: DesignTask) -> tuple[int, ...]:
-    """How many orders each actuator gets in the trial."""
+    """Return how many orders each actuator gets in the trial."""
     return tuple(int(np.ceil(task.request.duration / a.hold - _ORDER_TOLERANCE)) for a in task.request.actuators)
 
 
 def sample_count(task: DesignTask, dt: float) -> int:
-    """Samples of the trial at a step `dt` [s]."""
+    """Return samples of the trial at a step `dt` [s]."""
     return round(task.request.duration / dt) + 1
 
 
 def actuator_response(actuator: Actuator, orders: Array, neutral: float, dt: float, count: int) -> Array:
-    """What the actuator does, shape (count,): from neutral towards each order at its rate, held once there."""
+    """Return what the actuator does, shape (count,): from neutral towards each order at its rate, held once there."""
     which = np.minimum((np.arange(count) * dt / actuator.hold + _ORDER_TOLERANCE).astype(int), len(orders) - 1)
     wanted = orders[which]
     if np.isinf(actuator.rate):
@@ -46,7 +46,7 @@ def orders_at(task: DesignTask, point: Array) -> list[Array]:
 
 
 def input_series(task: DesignTask, orders: list[Array], dt: float) -> Array:
-    """All inputs in the model's signs at a step `dt` [s], shape (rows, nu)."""
+    """Return all inputs in the model's signs at a step `dt` [s], shape (rows, nu)."""
     count, neutral = sample_count(task, dt), task.neutral_positions
     inputs = np.tile(task.neutral_inputs, (count, 1))
     for actuator, wanted in zip(task.request.actuators, orders, strict=True):
@@ -57,7 +57,7 @@ def input_series(task: DesignTask, orders: list[Array], dt: float) -> Array:
 
 
 def order_table(task: DesignTask, orders: list[Array]) -> tuple[TimedOrder, ...]:
-    """The helmsman's table: a line whenever an order changes, all actuators in it."""
+    """Return the helmsman's table: a line whenever an order changes, all actuators in it."""
     actuators = task.request.actuators
     times = sorted({round(k * a.hold, 9) for a, n in zip(actuators, order_counts(task), strict=True) for k in range(n)})
     lines: list[TimedOrder] = []

@@ -1,13 +1,12 @@
 """The search: orders whose worst ship, measured against standard sequences, is identified best."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatrial.core.values import Array
 from seatrial.data.trial.design_request import DesignCriterion
-from seatrial.estimation.design.coordinate_exchange import coordinate_exchange
 from seatrial.estimation.design.manoeuvre_information import (
     ManoeuvreEvaluator,
     ManoeuvreInformation,
@@ -47,7 +46,7 @@ class DesignObjective:
 
     @classmethod
     def from_standards(cls, evaluator: ManoeuvreEvaluator, standards: list[StandardManoeuvre]) -> "DesignObjective":
-        """From the standard manoeuvres that keep within the limits, or all where none does."""
+        """Return the objective of the standard manoeuvres that keep within the limits, or all where none does."""
         precision = [evaluator.evaluate(r.inputs_for(evaluator)) for r in standards]
         errors = np.array([criterion_errors(evaluator.task, t) for t in precision])
         within = np.array([not leaves_limits(evaluator.task, t) for t in precision])
@@ -55,7 +54,7 @@ class DesignObjective:
         return cls(evaluator, np.nanmin(np.where(np.isfinite(chosen), chosen, DIVERGED_RATIO), axis=0))
 
     def cost(self, point: Array) -> float:
-        """Logarithm of the power mean of the ratios, and what leaving the limits costs."""
+        """Return the logarithm of the power mean of the ratios, and what leaving the limits costs."""
         task = self.evaluator.task
         precision = self.evaluator.evaluate(input_series(task, orders_at(task, point), self.evaluator.dt))
         ratio = np.minimum(
@@ -73,7 +72,7 @@ class SearchResult:
 
 
 def criterion_errors(task: DesignTask, information: ManoeuvreInformation) -> Array:
-    """What the criterion looks at, for each ship; NaN for a lost one."""
+    """Return what the criterion looks at, for each ship; NaN for a lost one."""
     if task.request.criterion is DesignCriterion.WORST:
         return information.relative_errors.max(axis=1)
     return np.sqrt(np.mean(information.relative_errors**2, axis=1))
@@ -123,7 +122,7 @@ def search_orders(
 
 
 def _cost_text(value: float) -> str:
-    """A cost in words."""
+    """Return a cost in words."""
     return (
         f"error {np.exp(value):.3f} of the standard"
         if value < np.log(DIVERGED_RATIO)
@@ -132,13 +131,13 @@ def _cost_text(value: float) -> str:
 
 
 def _limit_cost(task: DesignTask, information: ManoeuvreInformation) -> float:
-    """What it costs that ships which the limits bind leave them."""
+    """Return what it costs that ships which the limits bind leave them."""
     over = limit_excess(task, information, LIMIT_MARGIN)
     return LIMIT_PENALTY * float(over.max() if task.request.limits.for_every_ship else over[0])
 
 
 def _random_sequences(task: DesignTask, generator: np.random.Generator) -> list[Array]:
-    """Sequences that jump between two ends, of several switching times and amplitudes."""
+    """Return sequences that jump between two ends, of several switching times and amplitudes."""
     points = []
     for _ in range(RANDOM_STARTS):
         pieces = []
@@ -151,7 +150,7 @@ def _random_sequences(task: DesignTask, generator: np.random.Generator) -> list[
 
 
 def search_step(task: DesignTask) -> float:
-    """The step of the search [s]: a whole number of samples, an eighth of the shortest hold at most."""
+    """Return the step of the search [s]: a whole number of samples, an eighth of the shortest hold at most."""
     samples = max(1, int(task.shortest_hold * task.request.rate / 8.0 + 1e-9))
     while samples > 1 and not _divides_duration(task, samples):
         samples -= 1
@@ -159,11 +158,49 @@ def search_step(task: DesignTask) -> float:
 
 
 def _divides_duration(task: DesignTask, samples: int) -> bool:
-    """Whether trial is a whole number of such steps."""
+    """Return whether trial is a whole number of such steps."""
     total = round(task.request.duration * task.request.rate)
     return total % samples == 0
 
 
 def at_sensor_rate(evaluator: ManoeuvreEvaluator) -> ManoeuvreEvaluator:
-    """The same ships at the sensors' rate."""
+    """Return the same ships at the sensors' rate."""
     return replace(evaluator, dt=1.0 / evaluator.task.request.rate)
+
+
+# as shares of the range; what lies beyond an end means that end
+MOVES = np.array([-1.0, -0.5, -0.2, 0.2, 0.5, 1.0])
+# decrease of the cost in a whole round below which the exchange ends, ours
+NO_GAIN = 1e-3
+
+
+def coordinate_exchange(
+    cost: Callable[[Array], float], point: Array, value: float, generator: np.random.Generator, evaluations: int
+) -> Iterator[tuple[Array, float, int]]:
+    """Return the best point of the unit box, its cost and the evaluations spent, after each coordinate.
+
+    Coordinates come in random order, all of them before any comes again; it ends when a whole round lowers the cost by
+    less than `NO_GAIN`, or when the evaluations are spent.
+    """
+    spent, before = 0, np.inf
+    while before - value > NO_GAIN:
+        before = value
+        for place in generator.permutation(len(point)):
+            candidates = _exchange_candidates(point, int(place))
+            costs = map_in_threads(cost, candidates)
+            spent += len(costs)
+            least = int(np.argmin(costs))
+            if costs[least] < value:
+                point, value = candidates[least], costs[least]
+            yield point, value, spent
+            if spent >= evaluations:
+                return
+
+
+def _exchange_candidates(point: Array, coordinate: int) -> list[Array]:
+    candidates = []
+    for to in np.unique(np.clip(point[coordinate] + MOVES, 0.0, 1.0)):
+        if to != point[coordinate]:
+            candidates.append(point.copy())
+            candidates[-1][coordinate] = to
+    return candidates

@@ -44,7 +44,7 @@ def draw_ships(task: DesignTask, seed: int, draws: int | None = None) -> PriorSh
 
 
 def relative_spread(task: DesignTask) -> Array:
-    """How far ships differ in each free coefficient, as a share of its magnitude, shape (k,)."""
+    """Return how far ships differ in each free coefficient, as a share of its magnitude, shape (k,)."""
     free = task.model.parameters.free
     if task.covariance is not None:
         deviations = np.sqrt(np.diag(task.covariance))
@@ -58,7 +58,7 @@ def relative_spread(task: DesignTask) -> Array:
 
 
 def _latin_hypercube(count: int, size: int, generator: np.random.Generator) -> Array:
-    """One point in every `count`-th part of each side of the unit cube, (count, size)."""
+    """Return one point in every `count`-th part of each side of the unit cube, (count, size)."""
     parts = np.array([generator.permutation(count) for _ in range(size)]).T
     return (parts + generator.random((count, size))) / max(count, 1)
 

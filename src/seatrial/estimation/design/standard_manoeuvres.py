@@ -11,8 +11,8 @@ from seatrial.core.values import Array, InputError
 from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator, leaves_limits
 from seatrial.estimation.design.orders import actuator_response, input_series, sample_count
 from seatrial.estimation.design.task import DesignTask
+from seatrial.physics.manoeuvres.helmsman import binary_sequence
 from seatrial.physics.manoeuvres.programme import programme
-from seatrial.physics.manoeuvres.schedule import binary_sequence
 from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.steer import RUDDER, SOLAS_SLEW_RATE, manoeuvre
 
@@ -41,7 +41,7 @@ class StandardManoeuvre:
 
 
 def standard_manoeuvres(evaluator: ManoeuvreEvaluator) -> list[StandardManoeuvre]:
-    """Random binary sequences and, by the model, zigzags and turning circles or steps and a sweep."""
+    """Return random binary sequences and, by the model, zigzags and turning circles or steps and a sweep."""
     task = evaluator.task
     sequences = [
         _largest_within_limits(evaluator, share, seed) for share in SWITCHING_SHARES for seed in SEQUENCE_SEEDS
@@ -64,7 +64,7 @@ def binary_sequence_inputs(hold: float, amplitude: float, seed: int, evaluator: 
 
 
 def _largest_within_limits(evaluator: ManoeuvreEvaluator, switching: float, seed: int) -> StandardManoeuvre:
-    """The largest amplitude whose drift and distance keep within the limits; else the smallest tried."""
+    """Return the largest amplitude whose drift and distance keep within the limits; else the smallest tried."""
     task = evaluator.task
     hold = max(switching * task.shortest_hold, 2.0 / task.request.rate)
     standard = StandardManoeuvre("", _step_inputs)
@@ -89,7 +89,7 @@ def _is_steered(task: DesignTask) -> bool:
 
 
 def _programmes(task: DesignTask) -> list[str]:
-    """Zigzags that the rudder's range allows, compressed ones as long as fits, the hardest turning circle."""
+    """Return zigzags that the rudder's range allows, compressed ones as long as fits, the hardest turning circle."""
     (rudder,) = [a for a in task.request.actuators if a.name == RUDDER]
     most = float(np.degrees(min(rudder.upper, -rudder.lower)))
     angles = [a for a in _ZIGZAG_ANGLES if a <= most + _ROUNDING]
@@ -100,7 +100,7 @@ def _programmes(task: DesignTask) -> list[str]:
 
 
 def _can_be_steered(evaluator: ManoeuvreEvaluator, standard: StandardManoeuvre) -> bool:
-    """Whether no ship is lost under the helmsman."""
+    """Return whether no ship is lost under the helmsman."""
     try:
         standard.inputs_for(evaluator)
     except InputError:
@@ -109,7 +109,7 @@ def _can_be_steered(evaluator: ManoeuvreEvaluator, standard: StandardManoeuvre) 
 
 
 def _steered_inputs(text: str, evaluator: ManoeuvreEvaluator) -> Array:
-    """Each ship under the helmsman; after the last execute the rudder stays."""
+    """Return each ship under the helmsman; after the last execute the rudder stays."""
     return np.stack([_simulate_steered(evaluator, row, text) for row in evaluator.ships.parameters])
 
 
@@ -145,13 +145,13 @@ def _sweep_inputs(evaluator: ManoeuvreEvaluator) -> Array:
 
 
 def _step_inputs(evaluator: ManoeuvreEvaluator) -> Array:
-    """From end to end eight times."""
+    """Return steps from end to end, eight times."""
     time = evaluator.dt * np.arange(sample_count(evaluator.task, evaluator.dt))
     return _drive_all(evaluator, np.where((8.0 * time / evaluator.task.request.duration).astype(int) % 2, 1.0, -1.0))
 
 
 def _drive_all(evaluator: ManoeuvreEvaluator, course: Array) -> Array:
-    """Every actuator along a course between -1 and 1, at its own rate."""
+    """Return every actuator along a course between -1 and 1, at its own rate."""
     task, dt = evaluator.task, evaluator.dt
     inputs = np.tile(task.neutral_inputs, (len(course), 1))
     for a in task.request.actuators:

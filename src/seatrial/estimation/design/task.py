@@ -8,6 +8,8 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results import Actuator
 from seatrial.core.values import Array, InputError, Ship, spelling_hint
+from seatrial.data.folder.model_file import ModelFile
+from seatrial.data.trial import Trial
 from seatrial.data.trial.design_request import DesignRequest
 from seatrial.physics.simulate.approach import approach_speed, held_inputs
 
@@ -23,9 +25,6 @@ class DesignTask:
         sensors: observable -> standard deviation of its noise, SI.
         request: what may be moved, for how long and within which limits.
         covariance: of the free coefficients where the model comes from a fit; then the ships are drawn from it.
-
-    Raises:
-        InputError: an input, observable or limit that cannot be.
     """
 
     question: str
@@ -66,11 +65,7 @@ class DesignTask:
 
     @property
     def initial_state(self) -> Array:
-        """The state before the first order, shape (nx,): a straight course, or rest for a model without surge.
-
-        Raises:
-            InputError: no speed was given and none balances surge.
-        """
+        """The state before the first order, shape (nx,): a straight course, or rest for a model without surge."""
         state = np.zeros(len(self.model.states))
         if "u" in self.model.states:
             speed = (
@@ -99,3 +94,48 @@ def _demand_movable(actuator: Actuator, model: Model, duration: float) -> None:
         raise InputError(
             f"{name} does not cross its range within the trial of {duration:g} s; narrow the range or raise the rate"
         )
+
+
+def design_task(trial: Trial, model_file: ModelFile | None = None) -> DesignTask:
+    """Return the task that the trial describes.
+
+    Args:
+        model_file: its values, freedom and covariance take the place of the trial's.
+    """
+    where = f"{trial.path}: " if trial.path else ""
+    request = trial.design_request
+    if request is None:
+        raise InputError(f"{where}there is no table [design]; add it with duration, rate and [design.inputs]")
+    try:
+        model = trial.model if model_file is None else _demand_same_equations(model_file.model, trial.model)
+        _demand_sizes(model)
+        task = DesignTask(
+            question=trial.question,
+            ship=trial.ship,
+            model=model,
+            sensors=trial.noise,
+            request=request,
+            covariance=model_file.covariance if model_file is not None and model_file.covariance.size else None,
+        )
+        _ = task.initial_state
+    except InputError as error:
+        raise InputError(f"{where}{error}") from None
+    return task
+
+
+def _demand_same_equations(file_model: Model, model: Model) -> Model:
+    if file_model.equation_hash != model.equation_hash:
+        raise InputError(
+            f"the model file holds the equations '{file_model.name}', the trial '{model.name}'; "
+            "name the same model under [model]"
+        )
+    return file_model
+
+
+def _demand_sizes(model: Model) -> None:
+    for p in model.parameters.free:
+        if p.value == 0.0 and p.scale == 0.0:
+            raise InputError(
+                f"coefficient '{p.name}' is zero, so that nothing can be relative to it; "
+                "give it a likely value under [model.start], or leave it out of model.free"
+            )

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 from seatrial.core.values import ForcePoints, Record
 from seatrial.data.trial import Role, Trial, TrialRecord
-from seatrial.estimation.problem.data_term import DataTerm
+from seatrial.estimation.problem.output_error import DataTerm
 
 
 @dataclass(frozen=True, eq=False)

@@ -37,7 +37,7 @@ class PredictionUncertainty:
 def simulate_points(
     template: OutputError, model: Model, record: Record, start: Array, points: Array, nuisances: Array
 ) -> Array:
-    """All observables along a record's inputs for many sets of unknowns, shape (m, rows, observables).
+    """Return all observables along a record's inputs for many sets of unknowns, shape (m, rows, observables).
 
     template: the problem whose unknowns these are; start: initial states (m, nx); points: free coefficients (m, n);
     owns: a session's own unknowns (m, k). NaN after a divergence.
@@ -55,7 +55,7 @@ def draw_runs(
     rng: np.random.Generator,
     count: int,
 ) -> Array:
-    """`count` runs from the inputs of `record` about the model's values, shape (count, rows, observables).
+    """Return `count` runs from the inputs of `record` about the model's values, (count, rows, observables).
 
     start: initial state (nx,), the same for all; own: the session's own unknowns (k,).
     """
@@ -76,7 +76,7 @@ def draw_runs(
 
 
 def square_root(covariance: Array) -> Array:
-    """A square root of a covariance that may be singular, shape (n, n)."""
+    """Return a square root of a covariance that may be singular, shape (n, n)."""
     if covariance.size == 0:
         return covariance
     values, vectors = np.linalg.eigh(covariance)

@@ -45,7 +45,7 @@ class WindowError:
 
 
 def split_windows(record: Record, protocol: HoldoutProtocol) -> list[Record]:
-    """The record's windows, one after another; empty where it is shorter than one."""
+    """Return the record's windows, one after another; empty where it is shorter than one."""
     steps = round(protocol.window_s / record.dt)
     count = (len(record) - 1) // steps
     return [record.rows(slice(i * steps, (i + 1) * steps + 1)) for i in range(count)][: protocol.max_windows]
@@ -70,12 +70,12 @@ class _WindowSet:
         return cls([piece for found in cut_up for piece in found], whose, nuisances)
 
     def first_seconds(self, seconds: float) -> "_WindowSet":
-        """Their first seconds, five samples at least."""
+        """Return their first seconds, five samples at least."""
         short = [p.between(p.time[0], p.time[0] + max(seconds, 4 * p.dt)) for p in self.records]
         return replace(self, records=short)
 
     def problem(self, template: OutputError, model: Model, outputs: tuple[str, ...]) -> tuple[OutputError, Array]:
-        """One segment a piece with everything but initial states pinned, and the pinned unknowns."""
+        """Return one segment a piece with everything but initial states pinned, and the pinned unknowns."""
         fixed = model.with_parameters(model.parameters.fixed(*model.parameters.names))
         data = cut_segments(fixed, self.records, outputs, None, [str(i) for i in self.record_indices])
         pinned = np.concatenate([self.nuisances[int(i)] for i in data.sessions])

@@ -21,7 +21,7 @@ MeasuresPair = tuple[dict[str, float] | None, dict[str, float] | None]
 def measure_intervals(
     model: Model, interval_basis: IntervalBasis, steer: Callable[[Model], Record], length: float
 ) -> dict[str, tuple[float, float]]:
-    """95 % interval of each measure of the manoeuvre that `steer` makes of a model.
+    """Return 95 % interval of each measure of the manoeuvre that `steer` makes of a model.
 
     The helmsman steers two ships along every principal direction of the coefficients' covariance, one standard
     deviation to either side, and two with the rudder's zero off by what it differs between runs (where the model has it
@@ -64,7 +64,7 @@ def measure_intervals(
 
 
 def _half_difference(pair: MeasuresPair, name: str, centre: float) -> float | None:
-    """Of the two sides; the distance of one side where the other shows no such measure; None where neither does."""
+    """Return half the difference of both sides; the distance of one where only one shows the measure; else None."""
     sides = [m[name] for m in pair if m is not None and name in m]
     if len(sides) == 2:
         return 0.5 * (sides[0] - sides[1])

@@ -39,7 +39,7 @@ class OpenLoopRun:
 def simulate_open_loop(
     template: OutputError, model: Model, record: Record, nuisances: Array, seconds: float
 ) -> OpenLoopRun:
-    """The record simulated over its whole length from its inputs.
+    """Return the record simulated over its whole length from its inputs.
 
     Raises:
         InputError: the simulation diverges (which run, which channel, when).
@@ -54,13 +54,13 @@ def simulate_open_loop(
 
 
 def observables_record(model: Model, record: Record, y: Array) -> Record:
-    """Observables along a record's inputs, shape (rows, observables), as a record."""
+    """Return observables along a record's inputs, shape (rows, observables), as a record."""
     nx = len(model.states)
     return record_of(model, record.name, record.time, y[:, :nx], y[:, nx:], inputs_of(model, record))
 
 
 def rms_errors(measured: Record, simulated: Record) -> dict[str, float]:
-    """Root-mean-square differences: angles in degrees, position and heave in m, u, v in m/s, r in rad/s."""
+    """Return root-mean-square differences: angles in degrees, position and heave in m, u, v in m/s, r in rad/s."""
 
     def difference(symbol: str) -> Array:
         return simulated[symbol] - measured[symbol]
@@ -80,12 +80,12 @@ def rms_errors(measured: Record, simulated: Record) -> dict[str, float]:
 
 
 def is_steered(record: Record, model: Model) -> bool:
-    """Whether manoeuvring measures can be read from the record and from a simulation of it."""
+    """Return whether manoeuvring measures can be read from the record and from a simulation of it."""
     return {"psi", "delta"} <= set(record.channels) and "psi" in model.states
 
 
 def compare_measures(record: Record, simulated: Record, length: float) -> dict[str, Measure]:
-    """Measures of a run and of its simulation, both at the measured executes."""
+    """Return measures of a run and of its simulation, both at the measured executes."""
     of_measured, of_simulated = measures(record, length), measures(simulated, length, reference=record)
     return {k: Measure(of_measured.get(k), of_simulated.get(k)) for k in dict.fromkeys([*of_measured, *of_simulated])}
 
@@ -93,7 +93,7 @@ def compare_measures(record: Record, simulated: Record, length: float) -> dict[s
 def predict_run(
     model: Model, record: Record, role: str, simulation: OpenLoopRun, seconds: float, length: float
 ) -> Prediction:
-    """One run open loop beside its measurement, with rms and manoeuvring measures."""
+    """Return one run open loop beside its measurement, with rms and manoeuvring measures."""
     pairs = compare_measures(record, simulation.record, length) if is_steered(record, model) else {}
     return Prediction(
         record.name, role, record, simulation.record, rms_errors(record, simulation.record), pairs, seconds
@@ -101,10 +101,10 @@ def predict_run(
 
 
 def mean_nuisances(template: OutputError, shared: Array) -> Array:
-    """Mean of each nuisance over the training sessions: what an unseen session is given."""
+    """Return the mean of each nuisance over the training sessions: what an unseen session is given."""
     return nuisance_table(template, shared).mean(axis=0)
 
 
 def nuisance_table(template: OutputError, shared: Array) -> Array:
-    """What each training session has of its own, shape (sessions, k)."""
+    """Return what each training session has of its own, shape (sessions, k)."""
     return shared[len(template.free) :].reshape(len(template.data.sessions), template.unknowns_per_session)

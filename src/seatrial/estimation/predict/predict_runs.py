@@ -1,6 +1,6 @@
 """All runs of a trial predicted: training runs to see the fit, the others to see what it is worth, with intervals."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -30,8 +30,10 @@ from seatrial.estimation.predict.prediction_intervals import (
     prediction_spread,
     with_intervals,
 )
-from seatrial.estimation.predict.process_noise_floor import process_noise_floor
+from seatrial.estimation.problem.output_error import OutputError
 from seatrial.numerics.workers import map_in_threads
+from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.filtering import FilterPoint, KalmanFilter
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +96,7 @@ def calibrate_intervals(
     length: float,
     seed: int,
 ) -> IntervalCalibration:
-    """What intervals of a fit's predictions rest on: every training run is predicted by the estimate without it.
+    """Return what intervals of a fit's predictions rest on: every training run is predicted by the estimate without it.
 
     simulated: the training runs as the fit has them; seconds: of a run's beginning, for its initial state.
     """
@@ -131,7 +133,7 @@ def predict_runs(
     report_progress: ProgressReporter | None = None,
     tied: Sequence[TiedModel] = (),
 ) -> RunPredictions:
-    """Every run open loop: training runs with their own session's offsets, the others with the training mean.
+    """Return every run open loop: training runs with their own session's offsets, the others with the training mean.
 
     Runs that were not fitted get intervals, for which `tied` models are asked as well; all are compared with the ground
     the training runs cover. seconds: of a run's beginning, from which its initial state is taken.
@@ -173,7 +175,7 @@ def predict_runs(
 
 
 def _process_noise_floor(estimation: Estimation, record: Record, start: Array, nuisances: Array) -> dict[str, float]:
-    """What process noise alone would leave of the errors, as far as its intensities are known."""
+    """Return what process noise alone would leave of the errors, as far as its intensities are known."""
     if not any(estimation.noise_model.process.values()):
         return {}
     return process_noise_floor(
@@ -223,3 +225,41 @@ def tied_model_spread(
         for name, value in rms_errors(prediction.simulated, run).items():
             away.setdefault(name, []).append(value)
     return {name: float(np.sqrt(np.mean(np.square(values)))) for name, values in away.items()}
+
+
+def process_noise_floor(
+    template: OutputError,
+    model: Model,
+    record: Record,
+    start: Array,
+    nuisances: Array,
+    intensities: Mapping[str, float],
+) -> dict[str, float]:
+    """Return the rms error over time of an open-loop prediction that process noise alone causes, to first order.
+
+    Args:
+        template: the problem whose nuisances `own` (k,) are; model: at the estimate.
+        record: the run that is predicted, for its inputs; start: its initial state, (nx,).
+        intensity: of states, SI over the root of a second.
+
+    Returns:
+        psi_deg in degrees, position_m in m, u, v in m/s, r in rad/s, as far as the model has them.
+    """
+    split, parameters = len(template.session_parameters), model.parameters
+    values = parameters.values
+    values[[parameters.index(n) for n, _ in template.session_parameters]] = nuisances[:split]
+    inputs = inputs_of(model, record)
+    run = KalmanFilter(
+        model, inputs, np.array([0, len(inputs)]), record.dt, template.data.outputs,
+        corrections=tuple(n.correction for n in template.nuisances), substeps=template.substeps,
+        driven=tuple(intensities),
+    )  # fmt: skip
+    at = FilterPoint(start[None], np.zeros((1, len(start))), values[None], nuisances[None, split:],
+               np.array(list(intensities.values())), np.ones(len(template.data.outputs)))  # fmt: skip
+    mean = dict(zip(model.states, run.variances(0, at).mean(axis=0), strict=True))
+    floor = {}
+    if "psi" in mean:
+        floor["psi_deg"] = float(np.degrees(np.sqrt(mean["psi"])))
+    if {"x0", "y0"} <= set(mean):
+        floor["position_m"] = float(np.sqrt(mean["x0"] + mean["y0"]))
+    return floor | {s: float(np.sqrt(mean[s])) for s in ("u", "v", "r") if s in mean}

@@ -65,7 +65,7 @@ def prediction_spread(
 
 
 def _finite_draws(runs: Array) -> Array:
-    """The draws that do not diverge; none where they are fewer than half."""
+    """Return the draws that do not diverge; none where they are fewer than half."""
     kept = runs[np.all(np.isfinite(runs), axis=(1, 2))]
     return kept if 2 * len(kept) > len(runs) else kept[:0]
 
@@ -107,7 +107,7 @@ class HoldoutModel:
 
 
 def holdout_model(template: OutputError, point: Array, session: str) -> HoldoutModel:
-    """The model at the shared unknowns `point`, which were estimated without the session's run."""
+    """Return the model at the shared unknowns `point`, which were estimated without the session's run."""
     others = [s != session for s in template.data.sessions]
     own = nuisance_table(template, point)[others if any(others) else slice(None)].mean(axis=0)
     return HoldoutModel(template.model.with_values(dict(zip(template.free, point, strict=False))), own)
@@ -122,7 +122,7 @@ def holdout_error(
     uncertainty: PredictionUncertainty,
     rng: np.random.Generator,
 ) -> HoldoutError | None:
-    """How a run is missed by a model that was fitted without it; None where the simulation diverges."""
+    """Return how a run is missed by a model that was fitted without it; None where the simulation diverges."""
     try:
         run = simulate_open_loop(template, holdout.model, record, holdout.nuisances, seconds)
     except InputError:
@@ -149,7 +149,7 @@ def track_holdout_error(
     uncertainty: PredictionUncertainty,
     rng: np.random.Generator,
 ) -> HoldoutError | None:
-    """`missed` for a piece of a run, heading and track only."""
+    """Return `holdout_error` for a piece of a run, heading and track only."""
     try:
         run = simulate_open_loop(template, holdout.model, piece, holdout.nuisances, seconds)
     except InputError:
@@ -168,7 +168,7 @@ def _channel_errors(record: Record, simulation: OpenLoopRun, channels: dict[str,
 def with_intervals(
     prediction: Prediction, spread: PredictionSpread, discrepancy: Discrepancy, degrees_of_freedom: float
 ) -> Prediction:
-    """The prediction with 95 % intervals of its measures and bands of heading and position.
+    """Return the prediction with 95 % intervals of its measures and bands of heading and position.
 
     beyond: model discrepancy; the spread over tied models is the prediction's own.
     """

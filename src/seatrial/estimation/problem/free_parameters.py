@@ -31,7 +31,7 @@ class FreeParameterProblem:
         return np.array([p.upper for p in self.model.parameters.free])
 
     def start(self) -> Array:
-        """The model's own values."""
+        """Return the model's own values."""
         return np.array([p.value for p in self.model.parameters.free])
 
     @cached_property
@@ -39,7 +39,7 @@ class FreeParameterProblem:
         return [self.model.parameters.index(n) for n in self.free]
 
     def _parameter_values(self, shared: Array) -> Array:
-        """All of the model's parameters with the unknowns at `shared`."""
+        """Return all of the model's parameters with the unknowns at `shared`."""
         values = self.model.parameters.values
         values[self._free_indices] = shared
         return values

@@ -71,21 +71,21 @@ class LinearOutputError:
         return self._bounds[1]
 
     def start(self) -> Array:
-        """Values of the free parameters in the model."""
+        """Return values of the free parameters in the model."""
         return self._values[self._free_indices]
 
     def given_initial_states(self) -> Array:
-        """Initial states as given, where the search for them begins; (1, len(starts))."""
+        """Return initial states as given, where the search for them begins; (1, len(starts))."""
         return self.initial_state[None, self._start_indices]
 
     def cost(self, shared: Array, local: Array) -> float:
-        """Half the sum of squares; infinite if the run diverges. Slopes come along and are kept for `normal`."""
+        """Return half the sum of squares; infinite if the run diverges. Slopes come along and are kept for `normal`."""
         made = self.normal(shared, local)
         self._last_evaluation[:] = [(shared.tobytes(), local.tobytes(), made)]
         return made.cost
 
     def normal(self, shared: Array, local: Array) -> NormalEquations:
-        """The Gauss-Newton model at a point; its cost infinite if the run diverges."""
+        """Return the Gauss-Newton model at a point; its cost infinite if the run diverges."""
         for at, start, made in self._last_evaluation:
             if at == shared.tobytes() and start == local.tobytes():
                 return made

@@ -4,15 +4,16 @@ Whole runs give the classical output-error method (Maine & Iliff 1985), pieces o
 (Bock 1981) without continuity constraints, the remedy for nearly unstable ships.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, Prior
-from seatrial.estimation.problem.data_term import DataTerm
 from seatrial.estimation.problem.segments import Segments
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.numerics.workers import map_in_threads
@@ -21,6 +22,27 @@ from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
 from seatrial.physics.simulate.linear import batch_class
 
 _ROWS_PER_RANGE = 4000  # samples that one thread takes at a time; chosen
+
+
+@dataclass(frozen=True, eq=False)
+class Contribution:
+    """Cost, gradient (k,) and Gauss-Newton Hessian (k, k) of one addend by k model parameters."""
+
+    cost: float
+    gradient: Array
+    hessian: Array
+
+
+class DataTerm(Protocol):
+    """What the output-error problem asks of other data."""
+
+    def cost(self, values: Array) -> float:
+        """Return half the sum of squares at these values of all model parameters."""
+        ...
+
+    def normal(self, values: Array, free: Sequence[int]) -> Contribution:
+        """Return the Gauss-Newton model by the parameters at the positions `free`."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -132,13 +154,13 @@ class OutputError:
         return mean, weight
 
     def start(self) -> Array:
-        """Model values and prior means: the shared unknowns where nothing is known yet."""
+        """Return model values and prior means: the shared unknowns where nothing is known yet."""
         point = self.priors[0].copy()
         point[: len(self.free)] = [self.model.parameters[n].value for n in self.free]
         return point
 
     def columns_of(self, session: int) -> np.ndarray:
-        """Positions among the shared unknowns of a session's sensitivity columns."""
+        """Return positions among the shared unknowns of a session's sensitivity columns."""
         own = len(self.free) + session * self.unknowns_per_session
         return np.concatenate([np.arange(len(self.free)), own + np.arange(self.unknowns_per_session)])
 
@@ -156,7 +178,7 @@ class OutputError:
         return local
 
     def unpack(self, shared: Array, local: Array) -> tuple[Array, Array, Array]:
-        """Full initial states, model parameters and corrections of each segment."""
+        """Return full initial states, model parameters and corrections of each segment."""
         count, parameters = self.data.count, self.model.parameters
         values = np.tile(parameters.values, (count, 1))
         values[:, self._free_indices] = shared[: len(self.free)]
@@ -201,7 +223,7 @@ class OutputError:
         return y, s[:, :, :width]
 
     def _work_ranges(self) -> list[tuple[int, int]]:
-        """Ranges of segments of some thousand rows each: the units of work."""
+        """Return ranges of segments of some thousand rows each: the units of work."""
         edges, first = [], 0
         for s in range(1, self.data.count + 1):
             if s == self.data.count or self.data.offsets[s] - self.data.offsets[first] >= _ROWS_PER_RANGE:
@@ -219,7 +241,7 @@ class OutputError:
         return np.ones(len(self.noise)) if self.inflation is None else 1.0 / self.inflation
 
     def _loss(self, scaled: Array) -> tuple[float, Array]:
-        """Half the robust sum of squares of effective samples, and the weight of each residual (Huber 1964)."""
+        """Return half the robust sum of squares of effective samples, and the weight of each residual (Huber 1964)."""
         size = np.abs(scaled)
         if np.isinf(self.huber) or not np.any(size > self.huber):
             return 0.5 * float(np.sum(self._effective_share * scaled**2)), np.broadcast_to(
@@ -235,7 +257,7 @@ class OutputError:
         return 0.5 * float(np.sum(weight * (shared - mean) ** 2))
 
     def _parameter_values(self, shared: Array) -> Array:
-        """All model parameters as the runs share them."""
+        """Return all model parameters as the runs share them."""
         values = self.model.parameters.values
         values[self._free_indices] = shared[: len(self.free)]
         return values
@@ -250,7 +272,7 @@ class OutputError:
         return () if self.pinned is not None else self.extra_terms
 
     def prior_precision(self, shared: Array) -> Array:
-        """Information (size, size) of priors and other data, which stay when runs are left out."""
+        """Return the information (size, size) of priors and other data, which stay when runs are left out."""
         precision, k = np.diag(self.priors[1]), len(self.free)
         for other in self._active_terms:
             precision[:k, :k] += other.normal(self._parameter_values(shared), self._free_indices).hessian
@@ -260,14 +282,14 @@ class OutputError:
         return sum(other.cost(self._parameter_values(shared)) for other in self._active_terms)
 
     def simulated_outputs(self, shared: Array, local: Array) -> Array:
-        """Simulated outputs of all segments, shape (rows, ny); NaN after a divergence."""
+        """Return simulated outputs of all segments, shape (rows, ny); NaN after a divergence."""
         start, values, corrections = self.unpack(shared, local)
         pieces = map_in_threads(lambda p: self._batch.simulate(*p, start, values, corrections)[0], self._work_ranges(),
                         workers=self.workers)  # fmt: skip
         return np.concatenate(pieces)
 
     def cost(self, shared: Array, local: Array) -> float:
-        """Half the (robust) sum of squares and the prior's; infinite if any segment diverges."""
+        """Return half the (robust) sum of squares and the prior's; infinite if any segment diverges."""
         y = self.simulated_outputs(shared, local)
         if not np.all(np.isfinite(y)):
             return np.inf
@@ -276,7 +298,7 @@ class OutputError:
         )
 
     def segment_normals(self, shared: Array, local: Array) -> "SegmentNormals":
-        """Gauss-Newton blocks of every segment, prior left out."""
+        """Return Gauss-Newton blocks of every segment, prior left out."""
         start, values, corrections = self.unpack(shared, local)
         n, m = len(self.free) + self.unknowns_per_session, len(self.starts)
         by_actuator = self._actuator_slopes(values, corrections)
@@ -326,13 +348,13 @@ class OutputError:
         return np.sqrt(total / np.maximum(known.sum(axis=0), 1)[:, None]) / self.noise[:, None]
 
     def normal(self, shared: Array, local: Array) -> NormalEquations:
-        """The Gauss-Newton model at a point."""
+        """Return the Gauss-Newton model at a point."""
         return self.assemble(self.segment_normals(shared, local), shared, np.arange(self.data.count), with_prior=True)
 
     def assemble(
         self, blocks: "SegmentNormals", shared: Array, segments: Index, *, with_prior: bool
     ) -> NormalEquations:
-        """The normal equations of some segments (all for the fit, those of one run for the jackknife).
+        """Return the normal equations of some segments (all for the fit, those of one run for the jackknife).
 
         with_prior: whether what is known besides the records is in them: priors and other data.
         """

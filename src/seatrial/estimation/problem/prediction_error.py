@@ -95,7 +95,7 @@ class PredictionError:
         return shared[:first], np.sqrt(shared[first:second]), np.sqrt(shared[second:])
 
     def columns_of(self, session: int) -> Index:
-        """Positions among the unknowns of what a session's runs depend on."""
+        """Return positions among the unknowns of what a session's runs depend on."""
         return np.concatenate([self.runs.columns_of(session), np.arange(self.runs.size, self.size)])
 
     @cached_property
@@ -108,7 +108,7 @@ class PredictionError:
         )  # fmt: skip
 
     def filter_point(self, shared: Array) -> FilterPoint:
-        """A point as the filter sees it."""
+        """Return a point as the filter sees it."""
         own, intensity, deviation = self.split(shared)
         _, values, corrections = self.runs.unpack(own, np.zeros((self.runs.data.count, len(self.runs.starts))))
         return FilterPoint(self.start, self.start_variance, values, corrections, intensity, deviation)
@@ -122,7 +122,7 @@ class PredictionError:
         return self._filter.transitions(run, start, values, corrections)
 
     def innovations(self, shared: Array) -> KalmanInnovations:
-        """Of all runs, one after the other; infinite for a run that diverges."""
+        """Return the innovations of all runs, one after the other; infinite for a run that diverges."""
         at, measured = self.filter_point(shared), self.runs.data.measured
 
         def one(segment: int) -> tuple[Array, Array]:
@@ -138,23 +138,23 @@ class PredictionError:
         return map_in_threads(function, items, workers=self.runs.workers)
 
     def _loss(self, shared: Array, segment: int) -> tuple[float, Array, Array]:
-        """Minus the log-likelihood of a run, with its innovations and variances."""
+        """Return the minus the log-likelihood of a run, with its innovations and variances."""
         e, v, failed = self._filter.innovations(segment, self.runs.data.measured, self.filter_point(shared))
         return _negative_log_likelihood(e, v) if not failed else np.inf, e, v
 
     def cost(self, shared: Array, local: Array) -> float:  # noqa: ARG002
-        """Minus the log-likelihood, and half the priors' squares; infinite if any run diverges."""
+        """Return the minus the log-likelihood, and half the priors' squares; infinite if any run diverges."""
         costs = self._map(lambda s: self._loss(shared, s)[0], range(self.runs.data.count))
         return float(sum(costs)) + self._prior_normal(shared).cost
 
     def _prior_normal(self, shared: Array) -> NormalEquations:
-        """Priors and data besides the records."""
+        """Return priors and data besides the records."""
         n = len(self.runs.free) + self.runs.unknowns_per_session
         nothing = SegmentNormals(np.zeros(0), np.zeros((0, n)), np.zeros((0, n, n)), n)
         return self.runs.assemble(nothing, shared[: self.runs.size], np.zeros(0, dtype=np.int64), with_prior=True)
 
     def segment_normals(self, shared: Array) -> SegmentNormals:
-        """Cost, gradient and information of every run, by the columns of its session; priors left out.
+        """Return cost, gradient and information of every run, by the columns of its session; priors left out.
 
         Information is the expected one, sum [de de' / S + dS dS' / (2 S^2)] (Astrom 1980, eq. (3.11)).
         """
@@ -180,7 +180,7 @@ class PredictionError:
         return self._map(one, runs)
 
     def _exact_normals(self, shared: Array, runs: Sequence[int]) -> list[tuple[float, Array, Array]]:
-        """The same from central differences of the innovations themselves, whatever they depend on."""
+        """Return the same from central differences of the innovations themselves, whatever they depend on."""
         session = self.runs.data.session
         ahead, behind = self._difference_points(shared)
         items = [(s, c, side) for s in runs for c in self.columns_of(int(session[s])) for side in (ahead, behind)]
@@ -207,16 +207,16 @@ class PredictionError:
         return made
 
     def _difference_points(self, shared: Array) -> tuple[Array, Array]:
-        """Every unknown a step ahead and a step behind, within its bounds."""
+        """Return every unknown a step ahead and a step behind, within its bounds."""
         assert self.steps is not None
         return np.minimum(shared + self.steps, self.upper), np.maximum(shared - self.steps, self.lower)
 
     def normal(self, shared: Array, local: Array) -> NormalEquations:  # noqa: ARG002
-        """The Gauss-Newton model at a point: gradient and expected information."""
+        """Return the Gauss-Newton model at a point: gradient and expected information."""
         return self.assemble(self.segment_normals(shared), shared, np.arange(self.runs.data.count), with_prior=True)
 
     def assemble(self, blocks: SegmentNormals, shared: Array, segments: Index, *, with_prior: bool) -> NormalEquations:
-        """The normal equations of some runs; with_prior: with what is known besides the records."""
+        """Return the normal equations of some runs; with_prior: with what is known besides the records."""
         gradient, hessian = np.zeros(self.size), np.zeros((self.size, self.size))
         for segment in segments:
             columns = self.columns_of(int(self.runs.data.session[segment]))
@@ -233,7 +233,7 @@ class PredictionError:
         )
 
     def difference_steps(self, shared: Array, hessian: Array, share: float = 0.02) -> Array:
-        """Steps for an exact gradient, (size,): a share of what each unknown may move with the others held.
+        """Return steps for an exact gradient, (size,): a share of what each unknown may move with the others held.
 
         Of variances no more than a tenth of themselves, unless they are zero.
         """
@@ -244,27 +244,27 @@ class PredictionError:
 
 
 def _negative_log_likelihood(e: Array, v: Array) -> float:
-    """1/2 sum [e^2 / v + log v]; infinite if a variance is not positive."""
+    """Return 1/2 sum [e^2 / v + log v]; infinite if a variance is not positive."""
     if not (np.all(np.isfinite(e)) and np.all(v > 0)):
         return np.inf
     return 0.5 * float(np.sum(e**2 / v + np.log(v)))
 
 
 def _mean_information(e: Array, v: Array, de: Array) -> tuple[Array, Array]:
-    """sum e de / v and sum de de' / v: gradient and information by the mean."""
+    """Return sum e de / v and sum de de' / v: gradient and information by the mean."""
     root = np.sqrt(v)
     jacobian = (de / root[:, :, None]).reshape(-1, de.shape[2])
     return jacobian.T @ (e / root).ravel(), jacobian.T @ jacobian
 
 
 def _variance_information(e: Array, v: Array, dv: Array) -> tuple[Array, Array]:
-    """1/2 sum (1 - e^2 / v) dv / v and 1/2 sum dv dv' / v^2: gradient and information by the variance."""
+    """Return 1/2 sum (1 - e^2 / v) dv / v and 1/2 sum dv dv' / v^2: gradient and information by the variance."""
     relative = (dv / v[:, :, None]).reshape(-1, dv.shape[2])
     return 0.5 * relative.T @ (1.0 - e**2 / v).ravel(), 0.5 * relative.T @ relative
 
 
 def join_segments(problem: OutputError) -> tuple[OutputError, Index]:
-    """The problem with the segments of each run joined again, and the first segment of each of its runs."""
+    """Return the problem with the segments of each run joined again, and the first segment of each of its runs."""
     data = problem.data
     rows, firsts, kept = [], [], []
     for run in range(len(data.runs)):

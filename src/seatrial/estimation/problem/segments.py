@@ -40,7 +40,7 @@ class Segments:
         return len(self.run)
 
     def run_segments(self, run: int) -> Index:
-        """The segments of a run."""
+        """Return the segments of a run."""
         return np.flatnonzero(self.run == run)
 
     def selected(self, indices: Index) -> "Segments":
@@ -59,7 +59,7 @@ class Segments:
 
 
 def compared_outputs(model: Model, records: Sequence[Record], requested: Sequence[str] = ()) -> tuple[str, ...]:
-    """Observables of the model that at least one record holds; only the wanted ones where some are named.
+    """Return observables of the model that at least one record holds; only the wanted ones where some are named.
 
     Raises:
         InputError: there is none, or a wanted one is no observable of the model or in no record.
@@ -74,7 +74,7 @@ def compared_outputs(model: Model, records: Sequence[Record], requested: Sequenc
 
 
 def _segment_bounds(rows: int, length: int) -> list[tuple[int, int]]:
-    """Overlapping-by-one pieces of about `length` steps, as even as possible."""
+    """Return overlapping-by-one pieces of about `length` steps, as even as possible."""
     steps = rows - 1
     pieces = max(1, round(steps / length))
     edges = np.linspace(0, steps, pieces + 1).round().astype(int)

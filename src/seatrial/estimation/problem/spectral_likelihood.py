@@ -10,9 +10,10 @@ from functools import cached_property
 
 import numpy as np
 
+from seatrial.core.equations import Model
 from seatrial.core.values import Array
 from seatrial.estimation.problem.free_parameters import FreeParameterProblem
-from seatrial.estimation.problem.frequency_response import FrequencyResponse, frequency_response
+from seatrial.numerics.kernels.linear import affine_matrices
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.physics.simulate.harmonics import Complex
 
@@ -21,6 +22,31 @@ _WINDOW_CORRELATION = 35.0 / 18.0
 # points a bin at which the model is evaluated before the window's leakage smears it, over that many bins either way
 POINTS_PER_BIN = 4
 _LEAKAGE_BINS = 8  # bins either way, as above
+
+
+@dataclass(frozen=True, eq=False)
+class FrequencyResponse:
+    """H = (i omega - A)^-1 B of some states, (n, ny, nu), and dH, (q, n, ny, nu), signed omega, exp(+i omega t)."""
+
+    H: Complex
+    dH: Complex
+
+
+def frequency_response(
+    model: Model, values: Array, omega: Array, outputs: tuple[str, ...], free: tuple[str, ...]
+) -> FrequencyResponse:
+    """Return the response of states `outputs` at all parameter values (np,), differentiated by those named `free`.
+
+    dH = R dA H + R dB with the resolvent R = (i omega - A)^-1.
+    """
+    nx, nu = len(model.states), len(model.inputs)
+    wanted = np.array([model.parameters.index(n) for n in free], dtype=np.int64)
+    rates, slopes = affine_matrices(model.compiled.rates_tangent, nx, nx, nu, wanted, values)
+    resolvent = np.linalg.inv(1j * omega[:, None, None] * np.eye(nx) - rates[:, :nx])
+    H = resolvent @ rates[:, nx:-1]
+    driven = slopes[:, None, :, :nx] @ H[None] + slopes[:, None, :, nx:-1]
+    rows = [model.states.index(o) for o in outputs]
+    return FrequencyResponse(H[:, rows], (resolvent[None] @ driven)[:, :, rows])
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,11 +82,11 @@ class SpectralLikelihood(FreeParameterProblem):
         return np.where(held, self.input_transforms * self._hold_transfer[:, None], self.input_transforms)
 
     def cost(self, shared: Array, local: Array) -> float:
-        """Minus the logarithm of the likelihood, up to a constant."""
+        """Return the minus the logarithm of the likelihood, up to a constant."""
         return self.normal(shared, local).cost
 
     def normal(self, shared: Array, local: Array) -> NormalEquations:
-        """Cost, gradient and Fisher information at a point."""
+        """Return cost, gradient and Fisher information at a point."""
         values = self._parameter_values(shared)
         inputs = self._held_inputs()
         found = frequency_response(self.model, values, self.omega, self.outputs, self.free)
@@ -100,7 +126,7 @@ class SpectralLikelihood(FreeParameterProblem):
     def _residual_and_covariance(
         self, bin_response: FrequencyResponse, fine_response: FrequencyResponse, held_inputs: Complex
     ) -> tuple[Complex, Complex, Complex]:
-        """Motions less their mean, S_F H* on the fine grid, and the covariance S."""
+        """Return motions less their mean, S_F H* on the fine grid, and the covariance S."""
         left = self.motion_transforms - np.einsum("kyu,ku->ky", bin_response.H, held_inputs)
         answered = self.input_densities @ fine_response.H.conj().swapaxes(1, 2)
         return (
@@ -115,14 +141,14 @@ def _no_local_unknowns(local: Array, size: int) -> tuple[Array, Array]:
 
 
 def fine_grid(omega: Array) -> Array:
-    """The frequencies at which the model of the waves is needed for those of the transform."""
+    """Return the frequencies at which the model of the waves is needed for those of the transform."""
     step = omega[1] - omega[0]
     count = (len(omega) - 1 + 2 * _LEAKAGE_BINS) * POINTS_PER_BIN + 1
     return omega[0] - _LEAKAGE_BINS * step + np.arange(count) * step / POINTS_PER_BIN
 
 
 def apply_leakage(density: Complex) -> Complex:
-    """Densities on the fine grid, (q, m, ny, ny), as the window shows them at the bins, (q, k, ny, ny)."""
+    """Return densities on the fine grid, (q, m, ny, ny), as the window shows them at the bins, (q, k, ny, ny)."""
     offset = np.arange(-_LEAKAGE_BINS * POINTS_PER_BIN, _LEAKAGE_BINS * POINTS_PER_BIN + 1) / POINTS_PER_BIN
     share = np.sinc(offset) / (1.0 - np.where(np.abs(offset) == 1.0, 2.0, offset) ** 2)
     share = np.where(np.abs(offset) == 1.0, 0.5, share) ** 2
@@ -132,7 +158,7 @@ def apply_leakage(density: Complex) -> Complex:
 
 
 def hann_transform(values: Array, dt: float) -> tuple[Array, Complex]:
-    """Frequencies [rad/s] without zero and Nyquist, and transforms of the columns (n, m) under a Hann window.
+    """Return frequencies [rad/s] without zero and Nyquist, and transforms of the columns (n, m) under a Hann window.
 
     Scaled so that the mean of |d|^2 is the one-sided spectral density.
     """

@@ -18,8 +18,8 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import NOTATION, Array, ForceContent, ForcePoints, InputError
 from seatrial.core.values.force_points import FORCES
-from seatrial.estimation.problem.data_term import Contribution
-from seatrial.numerics.kernels.evaluate import evaluate
+from seatrial.estimation.problem.output_error import Contribution
+from seatrial.numerics.kernels.integrate import evaluate
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 
 _SUFFIX = {
@@ -102,7 +102,7 @@ class StaticForces:
         return np.where(np.isfinite(self._measured), (forces - self._measured) * self._scale, 0.0)
 
     def forces(self, values: Array) -> Array:
-        """The model's X, Y [N], N [N m] at the points for these values of all parameters, shape (n, 3)."""
+        """Return the model's X, Y [N], N [N m] at the points for these values of all parameters, shape (n, 3)."""
         columns = {b.name: i for i, b in enumerate(self.model.bindings)}
         out = np.empty((len(self.points), len(columns)))
         evaluate(self.model.compiled.bindings, self._states, self._inputs, values, 0.0, out)
@@ -116,16 +116,16 @@ class StaticForces:
         return out, jac[:, :, width:]
 
     def residuals(self, values: Array) -> dict[str, Array]:
-        """Model minus measured in standard deviations, for each measured force, (n,); NaN where nothing was."""
+        """Return model minus measured in standard deviations, for each measured force, (n,); NaN where nothing was."""
         gap = (self._linearised(values)[0] - self._measured) * self._scale / np.sqrt(self.points.weight)
         return {force: gap[:, i] for i, force in enumerate(FORCES) if force in self.points.forces}
 
     def cost(self, values: Array) -> float:
-        """Half the weighted sum of squares."""
+        """Return half the weighted sum of squares."""
         return 0.5 * float(np.sum(self._scaled(self._linearised(values)[0]) ** 2))
 
     def normal(self, values: Array, free: Sequence[int]) -> Contribution:
-        """The Gauss-Newton model by the parameters at the positions `free`."""
+        """Return the Gauss-Newton model by the parameters at the positions `free`."""
         residuals, rows = self.scaled_rows(values, free)
         return Contribution(0.5 * float(np.sum(residuals**2)), rows.T @ residuals.ravel(), rows.T @ rows)
 

@@ -52,7 +52,7 @@ class UnknownWaves:
         return np.maximum(fine_grid(self.omega), 1e-2 * self.reference_frequency)
 
     def moment_density(self, point: Array, omega: Array) -> Array:
-        """Density W of the waves' moment per inertia at omega, (n,)."""
+        """Return the density W of the waves' moment per inertia at omega, (n,)."""
         level, w_p, gamma, short = point[0], np.exp(point[1]), point[2], np.exp(point[3]) - 1.0
         sigma = np.where(omega < w_p, *_SIGMA)
         peak = np.exp(-0.5 * ((omega / w_p - 1.0) / sigma) ** 2)
@@ -62,22 +62,22 @@ class UnknownWaves:
         return np.exp(level + shape + gamma * peak - short * (omega**2 - self.reference_frequency**2))
 
     def roll_density(self, point: Array, omega: Array) -> Array:
-        """Density of roll without the sensor's noise, (n,)."""
+        """Return the density of roll without the sensor's noise, (n,)."""
         b, c = np.exp(point[[DAMPING, RESTORING]])
         return self.moment_density(point, omega) / ((c - omega**2) ** 2 + (b * omega) ** 2)
 
     def windowed_density(self, point: Array) -> Array:
-        """Density as the window shows it at `omega`, (k,)."""
+        """Return the density as the window shows it at `omega`, (k,)."""
         seen = apply_leakage(_as_matrix(self.roll_density(point, self._fine_omega)[None]))[0, :, 0, 0]
         return np.asarray(seen.real, dtype=np.float64) + np.exp(point[4])
 
     def cost(self, shared: Array, local: Array) -> float:  # noqa: ARG002
-        """Minus the logarithm of the likelihood, up to a constant."""
+        """Return the minus the logarithm of the likelihood, up to a constant."""
         density = self.windowed_density(shared)
         return float(np.sum(np.log(density) + self.power / density)) / _WINDOW_CORRELATION
 
     def normal(self, shared: Array, local: Array) -> NormalEquations:
-        """Cost, gradient and Fisher information at a point."""
+        """Return cost, gradient and Fisher information at a point."""
         density = self.windowed_density(shared)
         steps = _STEP * np.eye(len(shared))
         slopes = np.array([(self.windowed_density(shared + s) - self.windowed_density(shared - s)) for s in steps]) / (
@@ -92,7 +92,7 @@ class UnknownWaves:
         )
 
     def start_points(self) -> list[Array]:
-        """Points to begin from: roll at, below and above the peak, waves longer and shorter than it."""
+        """Return points to begin from: roll at, below and above the peak, waves longer and shorter than it."""
         near = np.abs(self.omega / self.reference_frequency - 1.0) < 0.1
         level, noise = np.log(np.mean(self.power[near])), np.log(max(np.median(self.power[-20:]), 1e-12))
         made = []
@@ -105,7 +105,7 @@ class UnknownWaves:
         return [np.clip(point, self.lower, self.upper) for point in made]
 
     def band_limited(self, low: float, high: float) -> "UnknownWaves":
-        """The same in a band of frequencies."""
+        """Return the same in a band of frequencies."""
         kept = (self.omega >= low) & (self.omega <= high)
         return replace(self, omega=self.omega[kept], power=self.power[kept])
 

@@ -44,7 +44,7 @@ def _reason(error: Exception) -> str:
 
 @cache
 def _folders() -> tuple[Path, ...]:
-    """The folders that entries are read from; the first is written to."""
+    """Return the folders that entries are read from; the first is written to."""
     chosen = os.environ.get("SEATRIAL_CACHE")
     folder = (Path(chosen) if chosen else Path(platformdirs.user_cache_dir("seatrial"))) / _FOLDER
     readable = False

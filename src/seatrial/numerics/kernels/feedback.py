@@ -1,7 +1,7 @@
-"""A controller in the loop: a linear one, exact from sample to sample, and behind it an actuator with limits.
+"""Integration with a command in the loop, held over its step; and the command of a linear controller with an actuator.
 
-A command(t, x, memory, u), called once at the start of each step of `kernels.steering.steer`. The error runs straight
-between samples; its value at the end of the step, on which the actuator depends only through all lags of the
+`linear_controller` is a command(t, x, memory, u), called once at the start of each step of `steer`. The error runs
+straight between samples; its value at the end of the step, on which the actuator depends only through all lags of the
 controller, is extrapolated by a parabola and put right at the next call. The input held over the step is
 (2 a_{k+1} + 5 a_k - a_{k-1}) / 6 of the actuator's effect a: its mean over the step, sharpened by -dt^2 / 6 a'' for
 what the straight line and the hold take off.
@@ -11,15 +11,41 @@ states and as many places of scratch, the reference (count + 1), the disturbance
 for the actuator's angles (count + 1).
 """
 
+import numpy as np
 from numba import njit
 
+from seatrial.numerics.kernels.integrate import DIVERGED, rk4_step
 from seatrial.numerics.kernels.kernel import kernel
-from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
+from seatrial.numerics.kernels.types import COMMAND, COMMAND_SIGNATURE, F8, FUNCTION, I8, MATRIX, OPTIONS, VECTOR
 
 (
     CONTROLLER_ORDER, COUNT, OUTPUT, ACTUATOR, DISTURBED_INPUT, TRIM, EFFECT, LIMIT, SLEW, STALL, LOSS, STEP, ANGLE,
     EFFECTIVE_ANGLE, SATURATION_EXCESS, ANTI_WINDUP, OUTPUT_LAST, OUTPUT_BEFORE_LAST, ERROR_LAST, HEAD_SIZE,
 ) = range(20)  # fmt: skip
+
+
+@kernel(I8(FUNCTION, COMMAND, VECTOR, VECTOR, VECTOR, VECTOR, F8, MATRIX, MATRIX), **OPTIONS)
+def steer(f, command, x0, u_start, p, memory, dt, x_out, u_out):
+    """Integrate with a command in the loop; return the step at which it diverged, or -1.
+
+    x_out, u_out: states and the input held from that sample on, one row a step.
+    """
+    nx = x0.size
+    x, y = x0.copy(), np.empty(nx)
+    k1, k2, k3, k4 = np.empty(nx), np.empty(nx), np.empty(nx), np.empty(nx)
+    u = u_start.copy()
+    size = 0.0
+    for row in range(x_out.shape[0]):
+        t = row * dt
+        command(t, x, memory, u)
+        for i in range(nx):
+            x_out[row, i] = x[i]
+        for j in range(u.size):
+            u_out[row, j] = u[j]
+        if not size < DIVERGED:
+            return row
+        size = rk4_step(f, t, x, u, u, u, p, dt, k1, k2, k3, k4, y)
+    return -1
 
 
 @njit(inline="always", **OPTIONS)
@@ -46,7 +72,7 @@ def effective_angle(angle, stall, loss):
 
 @njit(inline="always", **OPTIONS)
 def _advance(memory, law, states, n, last_error, error):
-    """States over the step that ends now."""
+    """Advance the controller's states over the step that ends now."""
     g0, g1, scratch = law + n * n, law + n * n + n, states + n
     for i in range(n):
         total = memory[g0 + i] * last_error + memory[g1 + i] * error
@@ -96,6 +122,7 @@ def linear_controller(_, x, memory, u):
     memory[SATURATION_EXCESS] = 0.0 if is_free else order - new
     stall, loss = memory[STALL], memory[LOSS]
     lift = effective_angle(new, stall, loss)
+    # the mean over the step, sharpened: the formula at the head of this file
     mean = (2.0 * lift + 5.0 * effective_angle(angle, stall, loss) - memory[EFFECTIVE_ANGLE]) / 6.0
     memory[EFFECTIVE_ANGLE] = effective_angle(angle, stall, loss)
     place, disturbed = int(memory[ACTUATOR]), int(memory[DISTURBED_INPUT])

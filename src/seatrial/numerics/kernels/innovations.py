@@ -21,10 +21,9 @@ from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, O
 
 @njit(inline="always", **OPTIONS)
 def propagate_covariance(transition, covariance, process, noisy_states, dt, work):
-    """Set spread to Phi (spread + Q/2) Phi' + Q/2, Phi the first columns of s, Q = diag(process) dt.
+    """Set the covariance to Phi (P + Q/2) Phi' + Q/2: Phi the first columns of `transition`, Q = diag(process) dt.
 
-    spread[0] is the covariance, spread[1:] its derivatives by the process variances of the noisy states, then by those
-    of the measurements.
+    covariance[0] is P, the others its derivatives by the variances of the noisy states, then of the measurements.
     """
     nx = covariance.shape[1]
     for m in range(covariance.shape[0]):
@@ -194,15 +193,15 @@ def filter_innovations(
 ):  # fmt: skip
     """Filter one run: innovations e_out (measured - predicted) and their variances v_out, (rows, ny).
 
-    Returns the sample before which the solution left all bounds, the rest being unwritten, or -1.
+    Return the sample before which the solution left all bounds, the rest being unwritten, or -1.
 
     inputs (rows, nu), corrected; weights (rows, 3 nu), their derivatives by offset, gain and delay, or (rows, 0) where
-    no column needs them; x0, variance0 (nx,): mean and variance of the initial state.
-    process: variance a second of each state's white noise, (nx,); measurement: variance of each channel, (ny,).
-    de_out (rows, ny, columns): sensitivities of e, columns as the links say (counted from nx, the first nx being the
-    transition matrix), the last ones by process of the `noisy` states and by measurement; dv_out (rows, ny, noise
-    columns) those of v. With no columns there is no noise column either: the likelihood alone.
-    variance_out (rows or 0, nx): of the states before each sample. A missing sample has e = 0 and v = 1.
+    no column needs them; x0, variance0 (nx,): mean and variance of the initial state. process: variance a second of
+    each state's white noise, (nx,); measurement: variance of each channel, (ny,). de_out (rows, ny, columns):
+    sensitivities of e, columns as the links say (counted from nx, the first nx being the transition matrix), the last
+    ones by process of `noisy_states` and by measurement; dv_out (rows, ny, noise columns) those of v; without columns
+    the likelihood alone. variance_out (rows or 0, nx): of the states before each sample. A missing sample has e = 0 and
+    v = 1.
     """
     nx, nu, width = x0.size, inputs.shape[1], de_out.shape[2]
     whole, covs = nx + nu + p.size, 1 + dv_out.shape[2]
@@ -210,6 +209,7 @@ def filter_innovations(
     return _filter_innovations(f, g, inputs, weights, dt, substeps, x0, variance0, p,
                      chain, link_p, link_u, g_link_p, g_link_u, select, noisy_states, process, measurement, measured,
                      e_out, v_out, de_out, dv_out, variance_out,
-                     np.empty((7, nx)), np.zeros((4, nx, nx + width)), np.empty((3, nu)), np.empty((3, 3 * nu)),
+                     np.empty((7, nx)),  # 7 vectors of states, taken apart at the kernel's head
+                     np.zeros((4, nx, nx + width)), np.empty((3, nu)), np.empty((3, 3 * nu)),
                      np.zeros((nx, whole)), np.zeros((outputs, whole)), np.empty(outputs), np.zeros((covs, nx, nx)),
                      np.empty((nx, nx)), np.empty((covs, nx)))  # fmt: skip

@@ -11,7 +11,7 @@ from numba import njit, void
 from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import F8, FUNCTION, I8, INDEX, LEAN, MATRIX, OPTIONS, VECTOR
 
-DIVERGED = 1e9
+DIVERGED = 1e9  # summed size of states, SI, that no ship reaches; chosen
 
 
 @njit(inline="always", **OPTIONS)
@@ -50,7 +50,7 @@ def rk4_step(f, t, x, u0, um, u1, p, h, k1, k2, k3, k4, y):
         size += abs(y[i])
     f(t + h, y, u1, p, k4)
     for i in range(n):
-        x[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i])
+        x[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i])  # weights of the classical scheme
         size += abs(x[i])
     return size
 
@@ -105,6 +105,13 @@ def _replay(
                     for i in range(select.size):
                         y_out[late, i] = math.nan
                 break
+
+
+@kernel(void(FUNCTION, MATRIX, MATRIX, VECTOR, F8, MATRIX), **OPTIONS)
+def evaluate(f, states, inputs, p, dt, out):
+    """Evaluate f at every row of states and inputs: rates, outputs or bindings along a record."""
+    for row in range(states.shape[0]):
+        f(row * dt, states[row], inputs[row], p, out[row])
 
 
 def replay(

@@ -32,7 +32,7 @@ _PACKAGE = Path(__file__).parents[2]
 
 
 def _source_digest(function: FunctionType) -> bytes:
-    """Of the texts that decide the machine code of a function: its own and those of the kernels it may call.
+    """Return the digest of the texts that decide the machine code of a function: its own, and those of the kernels.
 
     Machine code holds that of the functions it calls, so any change in this folder, or in the function's own folder
     where that belongs to the package, compiles it again. A generated module holds its digest as `SOURCE_DIGEST`.
@@ -56,7 +56,7 @@ class _Machine(_Cache):
         return str(cache_folder())
 
     def _name(self, signature: Signature, codegen: Any) -> str:
-        """Of the entry: everything that decides the machine code is in it."""
+        """Return the name of the entry: everything that decides the machine code is in it."""
         f = self._function
         options = {k: sorted(v) if isinstance(v, set) else v for k, v in sorted(self._options.items())}
         facts = (f.__module__, f.__qualname__, f.__code__.co_firstlineno, signature, options, codegen.magic_tuple(),
@@ -89,7 +89,7 @@ class _Machine(_Cache):
         self._enabled = True
 
     def disable(self) -> None:
-        """Neither read nor write entries."""
+        """Stop reading and writing entries."""
         self._enabled = False
 
     def flush(self) -> None:

@@ -44,30 +44,17 @@ def _affine_matrices(f, nx, nu, parameter_index, p, value, slope, x, u, out, jac
 
 
 def affine_matrices(f, rows, nx, nu, parameter_index, p):
-    """Return the matrix [A | B | c] of an affine function and its derivatives by the parameters of index `wanted`.
+    """Return [A | B | c] of an affine function, (rows, nx + nu + 1), and its slopes by some parameters, (k, ...).
 
     f: a function with its Jacobian, columns [x | u | p]. As f is affine in x and u at fixed p, its slope by a parameter
     at a unit vector less that at the origin is the derivative of that vector's column: exact.
-
-    Returns (rows, nx + nu + 1) and (len(wanted), rows, nx + nu + 1).
     """
     width = nx + nu
     value, slope = np.zeros((rows, width + 1)), np.zeros((len(parameter_index), rows, width + 1))
     if rows:
-        _affine_matrices(
-            f,
-            nx,
-            nu,
-            parameter_index,
-            p,
-            value,
-            slope,
-            np.empty(nx),
-            np.empty(max(nu, 1)),
-            np.empty(rows),
-            np.zeros((rows, width + len(p))),
-            np.empty((rows, max(len(parameter_index), 1))),
-        )
+        scratch = np.empty(nx), np.empty(max(nu, 1)), np.empty(rows), np.zeros((rows, width + len(p)))
+        origin = np.empty((rows, max(len(parameter_index), 1)))
+        _affine_matrices(f, nx, nu, parameter_index, p, value, slope, *scratch, origin)
     return value, slope
 
 
@@ -94,7 +81,7 @@ def affine_population(f, nx, nu, p):
 
 @njit(inline="always", **OPTIONS)
 def _advance(e, g0, g1, x, u0, u1, y):
-    """x <- e x + g0 u0 + g1 u1; y is scratch. Returns the size of the new state."""
+    """Set x to e x + g0 u0 + g1 u1 and return its size; y is scratch."""
     n = x.size
     size = 0.0
     for i in range(n):
@@ -145,10 +132,10 @@ def _replay(e, g0, g1, c, d, matrix_index, inputs, offsets, substeps, x0, y_out,
 
 
 def replay(e, g0, g1, c, d, matrix_index, inputs, offsets, substeps, x0, y_out, failed):
-    """Integrate segments whose matrices are e[which[s]], ...; write y at every sample.
+    """Integrate segments whose matrices are e[matrix_index[s]], ...; write y at every sample.
 
-    Segment s owns rows offsets[s]..offsets[s+1] of y_out. `inputs` holds `fine` steps to a sample (its last sample
-    without any), segments end to end, the constant 1 as the last column.
+    Segment s owns rows offsets[s]..offsets[s+1] of y_out. `inputs` holds `substeps` rows to a sample (its last sample
+    one), segments end to end, the constant 1 as the last column.
     failed[s] becomes the sample at which the solution left all bounds (or was not finite), else stays -1.
     """
     nx = x0.shape[1]
@@ -235,12 +222,11 @@ def replay_tangent(
 ):  # fmt: skip
     """Integrate with sensitivities: columns of parameters (last axis of de, ...), of input corrections, of starts.
 
-    shifts: (corrections, 2), input column and sensitivity column of each; weights: (fine rows, corrections), derivative
-    of that input by its correction. starts: (nx,), sensitivity column of each initial state or -1.
+    correction_columns: (corrections, 2), input column and sensitivity column of each; weights: (fine rows,
+    corrections), derivative of that input by its correction. start_column: (nx,), of each initial state, or -1.
     """
     nx, ncol = x0.shape[1], s_out.shape[2]
     _replay_tangent(
-        e, g0, g1, c, d, de, dg0, dg1, dc, dd, matrix_index, inputs, offsets, substeps, x0, correction_columns,
-        weights, start_column, y_out, s_out, failed, np.empty(nx), np.empty(nx), np.empty((nx, ncol)),
-        np.empty((nx, ncol)),
+        e, g0, g1, c, d, de, dg0, dg1, dc, dd, matrix_index, inputs, offsets, substeps, x0, correction_columns, weights,
+        start_column, y_out, s_out, failed, np.empty(nx), np.empty(nx), np.empty((nx, ncol)), np.empty((nx, ncol)),
     )  # fmt: skip

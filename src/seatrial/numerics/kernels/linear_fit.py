@@ -13,17 +13,16 @@ from numba import njit
 from seatrial.numerics.kernels.integrate import DIVERGED
 from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.linear import _affine_matrices
+from seatrial.numerics.kernels.propagate import MAX_HALVINGS, SERIES_NORM, SERIES_TERMS
 from seatrial.numerics.kernels.simd import LANES, add_scaled, aligned_scratch, broadcast
 from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TANGENT, VECTOR
 
-_SERIES_NORM = 0.25
-_SERIES_TERMS = 11
-_MOST_HALVINGS = 60
+_BLOCKS = 7  # matrices of A's size that `_propagate` keeps: A, E, P, R, power, new, newer
 
 
 @njit(inline="always", **OPTIONS)
 def _product(z, out, a, b, rows, inner, columns):
-    """out = a b, matrices row by row in z."""
+    """Set out = a b, matrices row by row in z."""
     for i in range(rows):
         for j in range(columns):
             total = 0.0
@@ -34,7 +33,7 @@ def _product(z, out, a, b, rows, inner, columns):
 
 @njit(inline="always", **OPTIONS)
 def _slope_of_product(w, z, out, a, da, b, db, rows, inner, columns):
-    """out = da b + a db in lanes; da, db, out in w, a, b in z."""
+    """Set out = da b + a db in lanes; da, db, out in w, a, b in z."""
     for i in range(rows):
         for j in range(columns):
             slot = out + i * columns + j
@@ -45,7 +44,7 @@ def _slope_of_product(w, z, out, a, da, b, db, rows, inner, columns):
 
 @njit(inline="always", **OPTIONS)
 def _scale_by_halving(z, a, n, h):
-    """A <- A h / 2^k until it is small. Returns k, or the most if it stays large or is not finite."""
+    """Scale A to A h / 2^k, small; return k, or the most if it stays large or is not finite."""
     size = 0.0
     for i in range(n):
         row = 0.0
@@ -54,7 +53,7 @@ def _scale_by_halving(z, a, n, h):
         size = max(size, row)
     size *= h
     count, step = 0, h
-    while not size <= _SERIES_NORM and count < _MOST_HALVINGS:
+    while not size <= SERIES_NORM and count < MAX_HALVINGS:
         size *= 0.5
         step *= 0.5
         count += 1
@@ -71,14 +70,15 @@ def _scaled_sum(z, out, factor, a, b, c, size):
 
 @njit(inline="always", **OPTIONS)
 def _propagate(z, w, n, h):
-    """E, P/h, R/h of `propagators` at z[n^2 ...], from A at z[0], and slopes at the same slots from dA at w[0].
+    """Set E, P/h, R/h of `propagators` at z[n^2 ...], from A at z[0], and slopes at the same slots from dA at w[0].
 
-    Both are laid out [A | E | P | R | power | new | newer], n^2 each. Returns whether A could be scaled.
+    Both are laid out [A | E | P | R | power | new | newer], n^2 each. Return whether A could be scaled.
     """
     nn, wide = n * n, n * n * LANES
-    e, p, r, power, new, newer = nn, 2 * nn, 3 * nn, 4 * nn, 5 * nn, 6 * nn
+    e, p, r, power, new = nn, 2 * nn, 3 * nn, 4 * nn, 4 * nn + nn
+    newer = new + nn
     halvings = _scale_by_halving(z, 0, n, h)
-    if halvings == _MOST_HALVINGS:
+    if halvings == MAX_HALVINGS:
         return False
     for m in range(nn):
         one = 1.0 if m % (n + 1) == 0 else 0.0
@@ -87,7 +87,7 @@ def _propagate(z, w, n, h):
     for m in range(wide):
         w[m] *= step
         w[e * LANES + m] = w[p * LANES + m] = w[r * LANES + m] = w[power * LANES + m] = 0.0
-    for k in range(1, _SERIES_TERMS + 1):
+    for k in range(1, SERIES_TERMS + 1):
         over, first, second = 1.0 / k, 1.0 / (k + 1), 1.0 / ((k + 1) * (k + 2))
         _slope_of_product(w, z, new, power, power, 0, 0, n, n, n)
         for m in range(wide):
@@ -123,7 +123,7 @@ def _propagate(z, w, n, h):
 
 @njit(inline="always", **OPTIONS)
 def _discrete_input_matrix(z, n, h, active_inputs, ramp_inputs, b_start, gamma_start):
-    """Gamma from P, R and B (n, used): [h P B - h R B | h R B], the ramp R only in columns that run straight."""
+    """Set Gamma from P, R and B (n, nb): [h P B - h R B | h R B], the ramp R only in columns that run straight."""
     nb, nn = active_inputs.size, n * n
     nv = nb + ramp_inputs.size
     for i in range(n):
@@ -142,7 +142,7 @@ def _discrete_input_matrix(z, n, h, active_inputs, ramp_inputs, b_start, gamma_s
 
 @njit(inline="always", **OPTIONS)
 def _slope_of_input_matrix(w, z, n, h, active_inputs, ramp_inputs, b_start, gamma_start):
-    """The slope of `_drive`, B and its slope at the same places of z and w."""
+    """Set the slope of `_discrete_input_matrix`, B and its slope at the same places of z and w."""
     nb, nn = active_inputs.size, n * n
     nv = nb + ramp_inputs.size
     for i in range(n):
@@ -165,8 +165,8 @@ def _slope_of_input_matrix(w, z, n, h, active_inputs, ramp_inputs, b_start, gamm
 
 @njit(inline="always", **OPTIONS)
 def _load_plant(z, n, plant, active_inputs):
-    """A and B of the plant into z; returns where B begins."""
-    at_b = 7 * n * n
+    """Copy A and B of the plant into z; return where B begins."""
+    at_b = _BLOCKS * n * n
     for i in range(n):
         for j in range(n):
             z[i * n + j] = plant[i, j]
@@ -177,7 +177,7 @@ def _load_plant(z, n, plant, active_inputs):
 
 @njit(inline="always", **OPTIONS)
 def _advance(z, n, nv, gamma_start, state_start):
-    """The state behind [v | x] at `at` moves one step; returns its size."""
+    """Move the state behind [v | x] at `state_start` one step; return its size."""
     size, new = 0.0, state_start + nv + n
     for i in range(n):
         total = 0.0
@@ -194,7 +194,7 @@ def _advance(z, n, nv, gamma_start, state_start):
 
 @njit(inline="always", **OPTIONS)
 def _load_plant_slopes(w, n, dplant, first_parameter, active_inputs, b_start):
-    """Slopes of A and B by the parameters from `first` on; zero in lanes beyond the last."""
+    """Copy slopes of A and B by the parameters from `first_parameter` on; zero in lanes beyond the last."""
     for lane in range(LANES):
         q = first_parameter + lane
         is_parameter = q < dplant.shape[0]
@@ -279,27 +279,12 @@ def _residuals_and_jacobian(
     )  # fmt: skip
 
 
-def _allocate_scratch(nx, nu, count, active_inputs, ramp_inputs, p):
-    """Scratch of `_affine`, and the length of z."""
-    width, rows = nx + nu + 1, max(count, 1)
-    size = (
-        7 * nx * nx
-        + nx * (2 * len(active_inputs) + len(ramp_inputs))
-        + 2 * nx
-        + len(active_inputs)
-        + len(ramp_inputs)
-        + nx
-    )
-    plant, jacobian = np.empty((nx, width)), np.zeros((nx, nx + nu + len(p)))
-    return (
-        plant,
-        np.empty((count, nx, width)),
-        np.empty(nx),
-        np.empty(nu),
-        np.empty(nx),
-        jacobian,
-        np.empty((nx, rows)),
-    ), size
+def _allocate_scratch(nx, nu, count, nb, nv, p):
+    """Return the scratch of `_affine_matrices`, and the length of z for nb active inputs and nv rows of them."""
+    size = _BLOCKS * nx * nx + nx * (nb + nv) + 2 * nx + nv + nx
+    plant, jacobian = np.empty((nx, nx + nu + 1)), np.zeros((nx, nx + nu + len(p)))
+    slopes = np.empty((count, nx, nx + nu + 1)), np.empty(nx), np.empty(nu), np.empty(nx)
+    return (plant, *slopes, jacobian, np.empty((nx, max(count, 1)))), size
 
 
 def residuals_and_jacobian(
@@ -308,16 +293,17 @@ def residuals_and_jacobian(
 ):  # fmt: skip
     """Return residuals weight (x - measured), (samples ny,), and Jacobian (samples ny, columns); 0 where unmeasured.
 
-    f: rates with Jacobian, nu inputs; used: columns of [u | 1] that act; straight: places in `used` of inputs that are
-    not held; h: fine step, s; v: ((samples - 1) fine, nv). select: states that are compared, (ny,); measured:
-    (samples, ny), NaN where nothing was measured; weight: (ny,), 1 over the noise.
-    Columns: the parameters of index `wanted`, then initial states; starts: (nx,), column of each initial state or -1.
-    None in place of both if the run leaves all bounds.
+    f: rates with Jacobian, nu inputs; active_inputs: columns of [u | 1] that act; ramp_inputs: places among these of
+    inputs that are not held; h: fine step, s; v: ((samples - 1) substeps, nv). select: states that are compared, (ny,);
+    measured: (samples, ny), NaN where nothing was measured; weight: (ny,), 1 over the noise. Columns: the parameters
+    of `parameter_index`, then initial states; start_column: (nx,), column of each, or -1. None in place of both if the
+    run leaves all bounds.
     """
     residual, jacobian = np.empty(measured.size), np.empty((measured.size, -(-columns // LANES) * LANES))
-    room, size = _allocate_scratch(len(x0), nu, len(parameter_index), active_inputs, ramp_inputs, p)
+    nb = len(active_inputs)
+    scratch, size = _allocate_scratch(len(x0), nu, len(parameter_index), nb, nb + len(ramp_inputs), p)
     is_fine = _residuals_and_jacobian(
         f, nu, parameter_index, active_inputs, ramp_inputs, p, h, v, substeps, x0, start_column, select, measured,
-        weight, residual, jacobian, *room, np.empty(size), aligned_scratch(size),
+        weight, residual, jacobian, *scratch, np.empty(size), aligned_scratch(size),
     )  # fmt: skip
     return (residual, jacobian[:, :columns]) if is_fine else None

@@ -13,6 +13,7 @@ import math
 from numba import njit, void
 
 from seatrial.numerics.kernels.kernel import kernel
+from seatrial.numerics.kernels.propagate import MAX_HALVINGS, SERIES_NORM, SERIES_TERMS
 from seatrial.numerics.kernels.simd import (
     LANES,
     add_squared_difference,
@@ -23,14 +24,10 @@ from seatrial.numerics.kernels.simd import (
 )
 from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, VECTOR
 
-_SERIES_NORM = 0.25
-_SERIES_TERMS = 11
-_MOST_HALVINGS = 60
-
 
 @njit(inline="always", **OPTIONS)
 def _product(w, a, b, out, rows, inner, columns):
-    """out = a b, matrices of slots row by row."""
+    """Set out = a b, matrices of slots row by row."""
     for i in range(rows):
         for j in range(columns):
             dot(w, out + i * columns + j, a + i * inner, b + j, columns, inner)
@@ -38,7 +35,7 @@ def _product(w, a, b, out, rows, inner, columns):
 
 @njit(inline="always", **OPTIONS)
 def _scale(w, nx, h, at_a, halvings):
-    """A <- A h / 2^n, n the halvings of each lane until it is small; NaN where it is too large. Returns the most."""
+    """Scale A to A h / 2^n, n the halvings of each lane until it is small, NaN if too large; return the most."""
     most = 0
     for lane in range(LANES):
         size = 0.0
@@ -49,11 +46,11 @@ def _scale(w, nx, h, at_a, halvings):
             size = max(size, row)
         size *= abs(h)
         count, step = 0, h
-        while size > _SERIES_NORM and count < _MOST_HALVINGS:
+        while size > SERIES_NORM and count < MAX_HALVINGS:
             size *= 0.5
             step *= 0.5
             count += 1
-        if count == _MOST_HALVINGS:
+        if count == MAX_HALVINGS:
             count, step = 0, math.nan
         for m in range(nx * nx):
             w[(at_a + m) * LANES + lane] *= step
@@ -68,7 +65,7 @@ def _discretise_blocks(a, b, h, phi, gamma, w, nx, nu):
     nn, nb = nx * nx, nx * nu
     e, at_a, power, square = 0, nn, 2 * nn, 3 * nn
     p, r, power_b, held, slope = 4 * nn, 4 * nn + nb, 4 * nn + 2 * nb, 4 * nn + 3 * nb, 4 * nn + 4 * nb
-    halvings = 4 * nn + 5 * nb
+    halvings = slope + nb
     for first in range(0, a.shape[0], LANES):
         for lane in range(LANES):
             c = min(first + lane, a.shape[0] - 1)
@@ -84,7 +81,7 @@ def _discretise_blocks(a, b, h, phi, gamma, w, nx, nu):
                     w[(r + i * nu + j) * LANES + lane] = 0.5 * scaled
                     w[(power_b + i * nu + j) * LANES + lane] = scaled
         most = _scale(w, nx, h, at_a, halvings)
-        for k in range(1, _SERIES_TERMS + 1):
+        for k in range(1, SERIES_TERMS + 1):
             _product(w, power, at_a, square, nx, nx, nx)
             _product(w, at_a, power_b, held, nx, nx, nu)
             over, after, later = 1.0 / k, 1.0 / (k + 1), 1.0 / ((k + 1) * (k + 2))
@@ -135,12 +132,13 @@ def discretise(a, b, h, phi, gamma):
     a: (count, nx, nx), 1/s; b: (count, nx, nu); h: step, s. NaN where a matrix is not finite or too large to be scaled.
     """
     nx, nu = a.shape[1], b.shape[2]
+    # slots: four matrices of A's size, five of B's, the halvings
     _discretise(a, b, h, phi, gamma, aligned_scratch(4 * nx * nx + 5 * nx * nu + 1))
 
 
 @njit(inline="always", **OPTIONS)
 def _load(w, phi, gamma, x0, first, nx, nv):
-    """Slots: rows [Gamma | Phi], then [v | x]; returns where [v | x] begins."""
+    """Fill slots: rows [Gamma | Phi], then [v | x]; return where [v | x] begins."""
     width = nv + nx
     for lane in range(LANES):
         c = min(first + lane, phi.shape[0] - 1)
@@ -155,7 +153,7 @@ def _load(w, phi, gamma, x0, first, nx, nv):
 
 @njit(inline="always", **OPTIONS)
 def _step(w, v, k, nx, nv, here):
-    """From the state beside `here` to that beside the place returned, the other one of two."""
+    """Advance the state beside `here` to that beside the place returned, the other one of two."""
     width = nv + nx
     there = nx * width if here > nx * width else nx * width + width
     for j in range(nv):
@@ -181,7 +179,7 @@ def _trajectories(phi, gamma, v, substeps, x0, select, y, w):
 
 
 def trajectories(phi, gamma, v, substeps, x0, select, y):
-    """Fill y (count, samples, channels): the states `select` at every `every`-th row of v.
+    """Fill y (count, samples, channels): the states `select` at every `substeps`-th row of v.
 
     phi, gamma: of `discretise`; v: (rows, nu or 2 nu), what gamma multiplies; x0: (count, nx).
     """

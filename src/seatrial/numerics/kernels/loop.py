@@ -34,7 +34,7 @@ def is_hurwitz(row, n):
 
 @kernel(void(VECTOR, MATRIX, MATRIX, VECTOR, VECTOR), **_ANY_ORDER_SUMS)
 def _return_difference(k, re, im, x, y):
-    """1 + L at each frequency: x + j y."""
+    """Set x + j y = 1 + L at each frequency."""
     for f in range(x.size):
         x[f] = 1.0 + k[0] * re[0, f]
         y[f] = k[0] * im[0, f]
@@ -46,7 +46,7 @@ def _return_difference(k, re, im, x, y):
 
 @kernel(F8(VECTOR, VECTOR), **_ANY_ORDER_SUMS)
 def _least_return_difference(x, y):
-    """Least |1 + L| along the curve x + j y: a complex parabola through the nearest sample and its neighbours."""
+    """Return the least |1 + L| along the curve x + j y: a complex parabola through the nearest three samples."""
     count = x.size
     least = np.inf
     for f in range(count):
@@ -77,8 +77,8 @@ def evaluate_loops(k, d, n, re, im, s_weights, t_weights, band_re, band_im, Ms, 
     """Compute sensitivity peak and variances of loops; infinite where a loop is unstable.
 
     k: gains (m, g). d (n + 1,), n (g, n + 1): characteristic polynomial d + k n. re, im: L_i (g, f) at the frequencies
-    of the sea; on_s (rs, f), on_t (rt, f): what |S|^2 and |L S|^2 weigh there. wide_re, wide_im: L_i over the whole
-    band, for the peak; without frequencies no peak. peak (m,); out (m, rs + rt).
+    of the sea; s_weights (rs, f), t_weights (rt, f): what |S|^2 and |L S|^2 weigh there. band_re, band_im: L_i over the
+    whole band, for the peak; without frequencies no peak. Ms (m,); out (m, rs + rt).
     """
     order = d.size - 1
     row, x, y = np.empty(order + 1), np.empty(re.shape[1]), np.empty(re.shape[1])
@@ -116,7 +116,7 @@ def evaluate_loops(k, d, n, re, im, s_weights, t_weights, band_re, band_im, Ms, 
 
 @kernel(void(VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX), **_ANY_ORDER_SUMS)
 def variance_gradients(k, re, im, s_weights, t_weights, out):
-    """d variance / d gain of one loop, (rs + rt, g).
+    """Set out = d variance / d gain of one loop, (rs + rt, g).
 
     With z = 1 + L: d|S|^2 = -2 Re(conj(z) L_i) |S|^4, d|L S|^2 = 2 Re(conj(L) L_i) |S|^2 + |L|^2 d|S|^2.
     """

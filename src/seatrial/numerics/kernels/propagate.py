@@ -14,13 +14,14 @@ from numba import njit, void
 from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import CUBE, F8, LEAN, MATRIX, OPTIONS, QUARTIC
 
-_SERIES_NORM = 0.25
-_SERIES_TERMS = 11
+# norm to which A h is halved, terms of the series there (the next is 0.25^12 / 12! = 1e-16, rounding), and halvings
+# after which a matrix counts as too large; chosen
+SERIES_NORM, SERIES_TERMS, MAX_HALVINGS = 0.25, 11, 60
 
 
 @njit(inline="always", **OPTIONS)
 def _add_product(a, b, factor, out):
-    """out += factor a b."""
+    """Add factor a b to out."""
     n = out.shape[0]
     for i in range(n):
         for k in range(n):
@@ -46,7 +47,7 @@ def _count_halvings(a, h):
         size = max(size, row)
     size *= h
     count = 0
-    while size > _SERIES_NORM and count < 60:
+    while size > SERIES_NORM and count < MAX_HALVINGS:
         size *= 0.5
         count += 1
     return count
@@ -54,7 +55,7 @@ def _count_halvings(a, h):
 
 @njit(inline="always", **OPTIONS)
 def _double_derivatives(value, slope, one, two, three):
-    """Derivatives over twice the step, in place; `value` is still that over one."""
+    """Double the step of the derivatives in place; `value` is still that over one."""
     n = one.shape[0]
     _fill(one, 0.0)
     _fill(two, 0.0)
@@ -76,7 +77,7 @@ def _double_derivatives(value, slope, one, two, three):
 def _propagators(a, da, h, value, slope, power, dpower):
     n, count = a.shape[0], da.shape[0]
     halvings = _count_halvings(a, h)
-    if halvings >= 60:
+    if halvings >= MAX_HALVINGS:
         for m in range(3):
             _fill(value[m], math.nan)
             for q in range(count):
@@ -94,7 +95,7 @@ def _propagators(a, da, h, value, slope, power, dpower):
         _fill(dpower[q], 0.0)
         for m in range(3):
             _fill(slope[q, m], 0.0)
-    for k in range(1, _SERIES_TERMS + 1):
+    for k in range(1, SERIES_TERMS + 1):
         first, second = 1.0 / (k + 1), 1.0 / ((k + 1) * (k + 2))
         for q in range(count):
             _fill(following, 0.0)

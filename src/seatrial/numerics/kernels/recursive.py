@@ -1,8 +1,8 @@
 """Coefficients and state of a run without process noise, estimated as the samples come.
 
 z = [coefficients | state]: the coefficients stay, the state follows the very step of the batch (exact propagators with
-spline inputs, or Runge-Kutta), whose derivatives carry the belief's square root on (`square_root`). Scratch comes from
-the caller; the memory needed does not grow with the samples.
+spline inputs, or Runge-Kutta), whose derivatives carry the estimate's square root on (`square_root`). Scratch comes
+from the caller; the memory needed does not grow with the samples.
 """
 
 from numba import njit
@@ -22,7 +22,7 @@ _SCRATCH = (VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, MATRIX)
 
 @njit(inline="always", **OPTIONS)
 def _propagate_root(root, step, k, work):
-    """State rows of the root after a step whose derivatives are `step` (nx, k + nx)."""
+    """Propagate the state rows of the root through a step with the derivatives `step` (nx, k + nx)."""
     nx, n = step.shape
     for i in range(nx):
         for j in range(n):
@@ -57,14 +57,14 @@ def filter_linear(
     slopes, variance, limit, memory, running_means, counts, floor_root, forgetting_factor, forget_every,
     samples_since, v, z_reference, predicted, h, step, work, w, x
 ):  # fmt: skip
-    """Process rows first.. of an affine model; returns the row at which the state left all bounds, or -1.
+    """Process rows first_row.. of an affine model; return the row at which the state left all bounds, or -1.
 
-    plant (nx, nx + nw), seen (ny, nx + nu + 1): the step and the outputs about the coefficients `at`, columns state,
-    then inputs; their derivatives by the coefficients, last axis: de (nx, nx, k), dg (nx, nw, k), dc (ny, nx, k),
-    dd (ny, nu + 1, k). nw = 4 nu + 1: inputs at both ends of the step, their slopes a step at both ends, 1.
-    inputs, slopes, measured: a row a sample; begins: 1 where row `first` is the first of a run. z and root are those of
-    the row before. variance (ny,) and limit, memory, running, tally: see `take`; widest, kept: see `forget`, which is
-    done every so many samples, `since` counting them.
+    step_matrix (nx, nx + nw), output_matrix (ny, nx + nu + 1): the step and the outputs at `expansion_point`, columns
+    state, then inputs; their derivatives by the coefficients, last axis: de (nx, nx, k), dg (nx, nw, k), dc (ny, nx,
+    k), dd (ny, nu + 1, k). nw = 4 nu + 1: inputs at both ends of the step, their slopes a step at both ends, 1.
+    inputs, slopes, measured: a row a sample; is_run_start: 1 where row `first_row` is the first of a run. z and root
+    are those of the row before. variance (ny,) to counts: see `update_sample`; floor_root, forgetting_factor: see
+    `forget`, which is done every `forget_every` samples, samples_since counting them.
     """
     k, nx, nu = expansion_point.size, x.size, inputs.shape[1]
     ny = variance.size
@@ -121,9 +121,8 @@ def filter_linear(
             predicted[i] = total
         for j in range(z.size):
             z_reference[j] = z[j]
-        update_sample(
-            root, z, z_reference, h, predicted, measured[row], variance, limit, memory, running_means, counts, v
-        )
+        update_sample(root, z, z_reference, h, predicted, measured[row], variance, limit, memory, running_means, counts,
+                      v)  # fmt: skip
         _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, samples_since, v)
     return -1
 
@@ -143,8 +142,8 @@ def filter_runge_kutta(
 ):  # fmt: skip
     """Process rows of any model by Runge-Kutta steps, inputs running straight between samples, as `sensitivity` has it.
 
-    places: of the coefficients in p, whose other values stay. No model depends on time itself: it counts as 0.
-    links as in `simulate.batch`, columns [coefficients | state]; select: outputs, states first, then those of g.
+    coefficient_index: of the coefficients in p, whose other values stay. No model depends on time itself: it counts as
+    0. links as in `simulate.batch`, columns [coefficients | state]; select: outputs, states first, then those of g.
     """
     k, nx, nu = coefficient_index.size, jac.shape[0], inputs.shape[1]
     ny = select.size
@@ -197,8 +196,7 @@ def filter_runge_kutta(
                     h[i, k + j] = g_jac[here, j]
         for j in range(z.size):
             z_reference[j] = z[j]
-        update_sample(
-            root, z, z_reference, h, predicted, measured[row], variance, limit, memory, running_means, counts, v
-        )
+        update_sample(root, z, z_reference, h, predicted, measured[row], variance, limit, memory, running_means, counts,
+                      v)  # fmt: skip
         _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, samples_since, v)
     return -1

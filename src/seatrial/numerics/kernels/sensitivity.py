@@ -49,7 +49,7 @@ def propagate_tangent(jac, chain, link_p, link_u, w, s, out):
 
 @njit(inline="always", **OPTIONS)
 def rk4_tangent_step(f, chain, link_p, link_u, t, x, s, u0, um, u1, w0, wm, w1, p, h, jac, k, y, acc, sk, sy, sacc):
-    """Advance state x and sensitivities s, both in place; the rest is scratch. Returns the stages' summed size."""
+    """Advance state x and sensitivities s, both in place; the rest is scratch. Return the stages' summed size."""
     nx, ncol = s.shape
     size = 0.0
     f(t, x, u0, p, k, jac)
@@ -75,10 +75,10 @@ def rk4_tangent_step(f, chain, link_p, link_u, t, x, s, u0, um, u1, w0, wm, w1, 
     f(t + h, y, u1, p, k, jac)
     propagate_tangent(jac, chain, link_p, link_u, w1, sy, sk)
     for i in range(nx):
-        x[i] += h / 6.0 * (acc[i] + k[i])
+        x[i] += h / 6.0 * (acc[i] + k[i])  # weights of the classical scheme
         size += abs(x[i])
         for j in range(ncol):
-            s[i, j] += h / 6.0 * (sacc[i, j] + sk[i, j])
+            s[i, j] += h / 6.0 * (sacc[i, j] + sk[i, j])  # as those of the state
     return size
 
 

@@ -12,21 +12,21 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-LANES = 8
+LANES = 8  # numbers of float64 in a register of 512 bits
 _VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _CONTRACT = ("contract",)
+_ALIGNMENT = 8  # bytes of a float64, which is all that is promised of an array
 
 
 def aligned_scratch(slots: int) -> np.ndarray:
     """Return uninitialised slots, each on a boundary of its own size: loads across cache lines are slow (measured)."""
-    size = 8 * LANES
     buffer = np.empty((slots + 1) * LANES)
-    skip = -buffer.__array_interface__["data"][0] % size // 8
+    skip = -buffer.__array_interface__["data"][0] % (buffer.itemsize * LANES) // buffer.itemsize
     return buffer[skip : skip + slots * LANES]
 
 
 def _instruction(definition: Callable[..., object]) -> Callable[..., None]:
-    """As compiled code sees it: without Numba's context, which is its first argument here."""
+    """Return an instruction as compiled code sees it: without Numba's context, its first argument here."""
     return intrinsic(definition)
 
 
@@ -42,19 +42,20 @@ class _SlotAccess:
         return self.builder.bitcast(self.builder.gep(self.data, [first]), _VECTOR.as_pointer())
 
     def load(self, slot):
-        return self.builder.load(self._pointer(slot), align=8, typ=_VECTOR)
+        return self.builder.load(self._pointer(slot), align=_ALIGNMENT, typ=_VECTOR)
 
     def store(self, value, slot) -> None:
-        self.builder.store(value, self._pointer(slot), align=8)
+        self.builder.store(value, self._pointer(slot), align=_ALIGNMENT)
 
     def broadcast(self, number):
-        one = self.builder.insert_element(ir.Constant(_VECTOR, ir.Undefined), number, ir.Constant(ir.IntType(32), 0))
-        mask = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
+        index = ir.IntType(32)  # bits of a lane's number, as LLVM has them
+        one = self.builder.insert_element(ir.Constant(_VECTOR, ir.Undefined), number, ir.Constant(index, 0))
+        mask = ir.Constant(ir.VectorType(index, LANES), [0] * LANES)
         return self.builder.shuffle_vector(one, ir.Constant(_VECTOR, ir.Undefined), mask)
 
 
 @_instruction
-def dot(_context, w, out, a, b, stride, count):  # noqa: ARG001
+def dot(_context, w, out, a, b, stride, count):
     """Set w[out] = sum over k < count of w[a + k] w[b + k stride], k ascending."""
 
     def generate(context, builder, signature, arguments):
@@ -70,12 +71,12 @@ def dot(_context, w, out, a, b, stride, count):  # noqa: ARG001
         slots.store(builder.load(total), out)
         return context.get_dummy_value()
 
-    return types.void(w, *[types.int64] * 5), generate
+    return types.void(w, *[types.int64] * len((out, a, b, stride, count))), generate
 
 
 @_instruction
 def add_scaled(_context, w, out, a, a_stride, numbers, first, stride, count):  # noqa: ARG001
-    """Add w[out] += sum over k < count of numbers[at + k at_stride] w[a + k a_stride], k ascending."""
+    """Add w[out] += sum over k < count of numbers[first + k stride] w[a + k a_stride], k ascending."""
 
     def generate(context, builder, signature, arguments):
         _, out, a, a_stride, numbers, at, at_stride, count = arguments
@@ -124,7 +125,7 @@ def add_squared_difference(_context, w, out, a, number, factor):  # noqa: ARG001
 
 @_instruction
 def copy_where_greater(_context, w, out, a, counts, threshold):  # noqa: ARG001
-    """Set w[out] = w[a] in the lanes where w[counts] > done."""
+    """Set w[out] = w[a] in the lanes where w[counts] > threshold."""
 
     def generate(context, builder, signature, arguments):
         _, out, a, counts, done = arguments

@@ -19,14 +19,14 @@ def _slopes(u, slope, work):
             continue
         before, after = u[1, j] - u[0, j], u[2, j] - u[1, j]
         work[0] = 2.0
-        slope[0, j] = 2.5 * before + 0.5 * after
+        slope[0, j] = 2.5 * before + 0.5 * after  # not-a-knot: s0 + 2 s1 = 5/2 and 1/2 of the first two rises
         for i in range(1, n - 1):
             after = u[i + 1, j] - u[i, j]
             pivot = 1.0 / (4.0 - work[i - 1])
             work[i] = pivot
             slope[i, j] = (3.0 * (before + after) - slope[i - 1, j]) * pivot
             before = after
-        last = 2.5 * before + 0.5 * (u[n - 2, j] - u[n - 3, j])
+        last = 2.5 * before + 0.5 * (u[n - 2, j] - u[n - 3, j])  # not-a-knot, as at the first end
         slope[n - 1, j] = (last - 2.0 * slope[n - 2, j]) / (1.0 - 2.0 * work[n - 2])
         for i in range(n - 2, -1, -1):
             slope[i, j] -= work[i] * slope[i + 1, j]

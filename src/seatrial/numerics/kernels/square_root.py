@@ -1,4 +1,4 @@
-"""A Gaussian belief kept as a square root: covariance P = R R', R square, not triangular.
+"""A Gaussian estimate kept as a square root: covariance P = R R', R square, not triangular.
 
 Measurements come one scalar after the other (Potter; Bierman 1977, section II.6; Kaminski, Bryson & Schmidt 1971,
 eq. (10)): P stays symmetric and positive however nearly singular it is, and nothing is divided by what may vanish.
@@ -11,13 +11,13 @@ from numba import njit
 
 from seatrial.numerics.kernels.types import OPTIONS
 
-# what `take` counts, by channel: measurements taken, outliers among them
+# what `update_sample` counts, by channel: measurements used, outliers among them
 USED, OUTLIERS = 0, 1
 
 
 @njit(inline="always", **OPTIONS)
 def project_root(root, h, v):
-    """Set v = R' h; returns its square, the variance of h' z."""
+    """Set v = R' h and return its square, the variance of h' z."""
     n = h.size
     for j in range(n):
         v[j] = 0.0
@@ -34,7 +34,7 @@ def project_root(root, h, v):
 
 @njit(inline="always", **OPTIONS)
 def update_scalar(root, z, v, predicted_variance, variance, e):
-    """A measurement of variance `variance` lies e beyond its prediction; v, spread as `across` left them."""
+    """Update by a measurement of this variance, e beyond its prediction; v and its variance: of `project_root`."""
     n = z.size
     total = predicted_variance + variance
     shrink = 1.0 / (total + math.sqrt(variance * total))
@@ -54,10 +54,10 @@ def update_sample(
 ):
     """Update by all channels of one sample, NaN being no measurement.
 
-    h (ny, n), predicted (ny,): slopes and values at z = `before`. An innovation beyond `limit` standard deviations
+    h (ny, n), predicted (ny,): slopes and values at z_reference. An innovation beyond `huber_limit` standard deviations
     counts linearly (Huber 1964): its variance is raised as far as its weight falls, and what moves z ends at the limit.
-    running (ny, 2): means over the latest `memory` of the squared innovation, by its variance and plain, cut at the
-    limit; tally (2, ny).
+    running_means (ny, 2): over the latest `memory` of the squared innovation, by its variance and plain, cut at the
+    limit; counts (2, ny).
     """
     n = z.size
     for channel in range(variance.size):
@@ -84,10 +84,10 @@ def update_sample(
 
 @njit(inline="always", **OPTIONS)
 def forget(root, z, floor_root, forgetting_factor, v):
-    """Take the geometric mean of the estimate (power `kept`) and a wide one about the same point (power 1 - kept).
+    """Take the geometric mean of the estimate (power f) and a wide one about the same point (power 1 - f).
 
-    Information <- kept * information + (1 - kept) * widest' widest: exponential forgetting that ends at the wide belief
-    where nothing is learnt (Kulhavy & Zarrop 1993, section 3). widest (rows, n): root of the wide belief's information.
+    Information <- f * information + (1 - f) * floor_root' floor_root, f the forgetting factor: exponential forgetting
+    that ends at the wide estimate where nothing is learnt (Kulhavy & Zarrop 1993, section 3). floor_root (rows, n).
     """
     n = z.size
     grown = math.sqrt(1.0 / forgetting_factor)

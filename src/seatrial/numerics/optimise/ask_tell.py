@@ -55,11 +55,11 @@ class Box:
         return self.upper - self.lower
 
     def scaled(self, unit: Array) -> Array:
-        """Points of the unit box, shape (..., d), in this one."""
+        """Return points of the unit box, shape (..., d), in this one."""
         return np.clip(self.lower + unit * self.width, self.lower, self.upper)
 
     def random_points(self, generator: np.random.Generator, count: int) -> Array:
-        """Points drawn uniformly, shape (count, d)."""
+        """Return points drawn uniformly, shape (count, d)."""
         return self.scaled(generator.random((count, self.size)))
 
 
@@ -76,11 +76,11 @@ class Optimiser(Protocol):
     """
 
     def ask(self) -> Array:
-        """Points to evaluate next, shape (n, d), inside the box; the same until `tell` is called."""
+        """Return points to evaluate next, shape (n, d), inside the box; the same until `tell` is called."""
         ...
 
     def tell(self, fitness: Array) -> None:
-        """Fitness of the points asked about, shape (n,)."""
+        """Take the fitness of the points asked about, shape (n,)."""
         ...
 
     @property
@@ -103,9 +103,7 @@ class Optimiser(Protocol):
 
 
 def search(
-    optimiser: Optimiser,
-    fitness: Callable[[Array], Array],
-    report_progress: Callable[[int, float], None] | None = None,
+    optimiser: Optimiser, fitness: Callable[[Array], Array], report_progress: Callable[[int, float], None] | None = None
 ) -> Solution:
     """Ask and tell until the optimiser is done; `fitness` takes (n, d) and gives (n,).
 
@@ -127,7 +125,7 @@ def search(
 
 
 def fitness_function(problem: LeastSquaresProblem, local_unknowns: Array | None = None) -> Callable[[Array], Array]:
-    """Half the sum of squares of a least-squares problem at each row, local unknowns (s, m) held where given."""
+    """Return half the sum of squares of a least-squares problem at each row, local unknowns (s, m) held where given."""
     held = np.zeros((0, 0)) if local_unknowns is None else local_unknowns
 
     def fitness(points: Array) -> Array:

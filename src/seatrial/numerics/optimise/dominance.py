@@ -7,7 +7,7 @@ from seatrial.numerics.optimise.solution import Array
 
 
 def non_dominated(objectives: Array) -> NDArray[np.intp]:
-    """Rows no other row is as small as in every objective and smaller in one, shape (k,), in rising order.
+    """Return rows no other row is as small as in every objective and smaller in one, shape (k,), in rising order.
 
     `objectives` has the shape (n, m), each to be made small; a row with infinity or NaN takes no part, and of equal
     rows the first stands for all.
@@ -22,7 +22,7 @@ def non_dominated(objectives: Array) -> NDArray[np.intp]:
 
 
 def hypervolume(objectives: Array, reference: Array) -> float:
-    """Volume that the points (n, m) dominate within the reference point (m,)."""
+    """Return the volume that the points (n, m) dominate within the reference point (m,)."""
     from moocore import hypervolume as volume
 
     return float(volume(objectives, ref=reference))

@@ -35,7 +35,7 @@ class NormalEquations:
     cross: Array
 
     def without_local(self) -> tuple[Array, Array]:
-        """Gradient and Hessian of the shared unknowns with the local ones eliminated at their optimum."""
+        """Return gradient and Hessian of the shared unknowns with the local ones eliminated at their optimum."""
         if self.local_gradient.size == 0:
             return self.gradient, self.hessian
         solved = np.linalg.solve(_with_ridge(self.local_hessian), np.swapaxes(self.cross, 1, 2))
@@ -58,11 +58,11 @@ class LeastSquaresProblem(Protocol):
         ...
 
     def cost(self, shared: Array, local: Array) -> float:
-        """Half the sum of squares; infinite where the model cannot be evaluated."""
+        """Return half the sum of squares; infinite where the model cannot be evaluated."""
         ...
 
     def normal(self, shared: Array, local: Array) -> NormalEquations:
-        """The Gauss-Newton model at a point."""
+        """Return the Gauss-Newton model at a point."""
         ...
 
 
@@ -76,14 +76,14 @@ class Optimum:
 
 
 def _with_ridge(blocks: Array) -> Array:
-    """Blocks with a relative rounding-size ridge, so that an unobservable local direction stays put."""
+    """Return blocks with a relative rounding-size ridge, so that an unobservable local direction stays put."""
     diagonal = np.einsum("sii->si", blocks)
     ridge = 1e-12 * diagonal + 1e-14 * (diagonal.max(axis=1, keepdims=True) + 1e-300)
     return blocks + np.einsum("si,ij->sij", ridge, np.eye(blocks.shape[1]))
 
 
 def _step(normal: NormalEquations, damping: float, low: Array, high: Array) -> tuple[Array, Array]:
-    """The damped Gauss-Newton step with low <= shared step <= high."""
+    """Return the damped Gauss-Newton step with low <= shared step <= high."""
     hessian = normal.hessian.copy()
     diagonal = hessian.reshape(-1)[:: len(hessian) + 1]
     diagonal += damping * np.where(diagonal > 0, diagonal, 1.0)
@@ -100,7 +100,7 @@ def _step(normal: NormalEquations, damping: float, low: Array, high: Array) -> t
 
 
 def _solve_bounded(hessian: Array, gradient: Array, low: Array, high: Array) -> Array:
-    """Minimiser of the quadratic model in a box that holds zero (active sets; Stark & Parker 1995, BVLS)."""
+    """Return the minimiser of the quadratic model in a box that holds zero (active sets; Stark & Parker 1995, BVLS)."""
     free = _solve(hessian, -gradient)
     if ((free >= low) & (free <= high)).all():
         return free
@@ -130,7 +130,7 @@ def _solve_bounded(hessian: Array, gradient: Array, low: Array, high: Array) -> 
 
 
 def _solve(matrix: Array, right: Array) -> Array:
-    """Symmetric solve in the unknowns' own scales; least squares where the matrix is singular to rounding."""
+    """Return symmetric solve in the unknowns' own scales; least squares where the matrix is singular to rounding."""
     from scipy.linalg.lapack import dposv
 
     if not len(right):
@@ -142,7 +142,7 @@ def _solve(matrix: Array, right: Array) -> Array:
 
 
 def _predicted_decrease(normal: NormalEquations, step: Array, local_step: Array) -> float:
-    """Decrease of the quadratic model along a step."""
+    """Return the decrease of the quadratic model along a step."""
     linear = normal.gradient @ step
     curved = step @ normal.hessian @ step
     if local_step.size:

@@ -7,12 +7,10 @@ import numpy as np
 
 from seatrial._plugins import installed, load_plugin
 from seatrial.numerics.optimise.ask_tell import Box, Optimiser, SearchError
-from seatrial.numerics.optimise.cloud_particle_swarm import CloudParticleSwarm
 from seatrial.numerics.optimise.cma_es import CovarianceAdaptation
 from seatrial.numerics.optimise.differential_evolution import DifferentialEvolution
-from seatrial.numerics.optimise.improved_wild_horse import ImprovedWildHorse
-from seatrial.numerics.optimise.particle_swarm import ParticleSwarm
-from seatrial.numerics.optimise.wild_horse import WildHorse
+from seatrial.numerics.optimise.particle_swarm import CloudParticleSwarm, ParticleSwarm
+from seatrial.numerics.optimise.wild_horse import ImprovedWildHorse, WildHorse
 
 ENTRY_POINT_GROUP = "seatrial.optimisers"
 OptimiserFactory = Callable[[Box, np.random.Generator], Optimiser]

@@ -48,7 +48,7 @@ class Population(ABC):
 
     @abstractmethod
     def _propose(self) -> Array:
-        """Points to ask about, shape (n, d); they are clipped to the box."""
+        """Return points to ask about, shape (n, d); they are clipped to the box."""
 
     @abstractmethod
     def _learn(self, points: Array, fitness: Array) -> None:
@@ -60,13 +60,13 @@ class Population(ABC):
         """Return the best point so far, shape (d,), and its fitness; infinite before the first `tell()`."""
 
     def ask(self) -> Array:
-        """Points to evaluate next, shape (n, d), a copy; the same until `tell` is called."""
+        """Return points to evaluate next, shape (n, d), a copy; the same until `tell` is called."""
         if self._pending_points is None:
             self._pending_points = np.clip(self._propose(), self.box.lower, self.box.upper)
         return self._pending_points.copy()
 
     def tell(self, fitness: Array) -> None:
-        """Fitness of the points asked about, shape (n,).
+        """Take the fitness of the points asked about, shape (n,).
 
         Raises:
             SearchError: nothing was asked; a fitness of another shape; NaN or minus infinity, naming the row.
@@ -134,7 +134,7 @@ def reject_nonfinite_settings(settings: "DataclassInstance") -> None:
 
 
 def integer_seed(generator: np.random.Generator) -> int | None:
-    """Seed of a generator, where it is one whole number and the generator is not a descendant."""
+    """Return the seed of a generator, where it is one whole number and the generator is not a descendant."""
     sequence = generator.bit_generator.seed_seq
     if isinstance(sequence, np.random.SeedSequence) and not sequence.spawn_key and isinstance(sequence.entropy, int):
         return sequence.entropy

@@ -150,12 +150,12 @@ class RandomWeightGenetic(Population):
             self._scale = normalisers(fitness, self.settings.normaliser)
 
     def _weighted_sums(self, weights: Array) -> Array:
-        """J of the last generation (yu2014 eq. 7), shape (n,); infinite where a point cannot be."""
+        """Return J of the last generation (yu2014 eq. 7), shape (n,); infinite where a point cannot be."""
         scale = np.ones(self.settings.objectives) if self._scale is None else self._scale
         return np.sum(self._objectives[-1] * (weights / scale), axis=1)
 
     def _next_codes(self) -> Bits:
-        """The next population's codes: elite, then children of parents drawn by roulette."""
+        """Return the next population's codes: elite, then children of parents drawn by roulette."""
         settings, generator = self.settings, self._generator
         r = generator.integers(1, settings.largest_weight, settings.objectives, endpoint=True)
         J = self._weighted_sums(r / r.sum())  # eq. 6
@@ -170,7 +170,7 @@ class RandomWeightGenetic(Population):
 
 
 def normalisers(objectives: Array, kind: Normaliser) -> Array | None:
-    """What objectives (n, m) are divided by, shape (m,); none while no row is finite."""
+    """Return what objectives (n, m) are divided by, shape (m,); none while no row is finite."""
     feasible = objectives[np.isfinite(objectives).all(axis=1)]
     if not feasible.size:
         return None
@@ -183,14 +183,14 @@ def normalisers(objectives: Array, kind: Normaliser) -> Array | None:
 
 
 def selection_probabilities(fitness: Array) -> Array:
-    """Linear scaling (f - f_min) / sum (f - f_min), shape (n,); even where all are alike."""
+    """Return linear scaling (f - f_min) / sum (f - f_min), shape (n,); even where all are alike."""
     share = np.empty(len(fitness))
     selection_shares(np.ascontiguousarray(fitness, dtype=np.float64), share)
     return share
 
 
 def roulette(probabilities: Array, uniforms: Array) -> NDArray[np.int64]:
-    """Rows on which numbers drawn from [0, 1), shape (k,), fall; rows of probability zero never."""
+    """Return rows on which numbers drawn from [0, 1), shape (k,), fall; rows of probability zero never."""
     rows = np.empty((1, len(uniforms)), dtype=np.int64)
     spin(probabilities, np.ascontiguousarray(uniforms)[None], rows)
     return rows[0]
@@ -203,7 +203,7 @@ def crossover_points(generator: np.random.Generator, pairs: int, length: int, Pc
 
 
 def cross_over(mothers: Bits, fathers: Bits, crossover_point: NDArray[np.int64]) -> Bits:
-    """Children of pairs, shape (2 pairs, length): all codes are exchanged from the cut on."""
+    """Return children of pairs, shape (2 pairs, length): all codes are exchanged from the cut on."""
     children = np.empty((2 * len(mothers), mothers.shape[1]), dtype=np.uint8)
     exchange_tails(mothers, fathers, crossover_point, children)
     return children
@@ -217,7 +217,7 @@ def decode(codes: Bits, box: Box) -> Array:
 
 
 def encode(points: Array, box: Box, bits: int) -> Bits:
-    """Codes (..., d * bits) nearest to points (..., d) of the box."""
+    """Return codes (..., d * bits) nearest to points (..., d) of the box."""
     steps = np.rint((points - box.lower) / box.width * (2.0**bits - 1)).astype(np.int64)
     digits = steps[..., None] >> np.arange(bits - 1, -1, -1) & 1
     return digits.astype(np.uint8).reshape(*points.shape[:-1], -1)

@@ -17,7 +17,7 @@ _POLL = 0.1  # s between looks at the keyboard
 
 
 def worker_count(workers: int | None = None) -> int:
-    """`workers` where given, else the cores this process may use.
+    """Return `workers` where given, else the number of cores this process may use.
 
     Raises:
         ValueError: fewer than one worker.
@@ -37,22 +37,18 @@ def map_in_threads(
     report_progress: CountReporter | None = None,
     partial_results: list[tuple[int, Result]] | None = None,
 ) -> list[Result]:
-    """`[function(item) for item in items]` over threads of this process.
+    """Return `[function(item) for item in items]`, worked out by threads of this process.
 
     Args:
         workers: number of threads; None takes the cores, 1 works in the caller's own thread.
-        progress: called in the caller's thread with (done, total) after each finished item.
-        keep: gets (position, result) of each item as it finishes, so that a map cut short loses nothing.
+        report_progress: called in the caller's thread with (done, total) after each finished item.
+        partial_results: gets (position, result) of each item as it finishes, so that a map cut short loses nothing.
 
     Raises:
         KeyboardInterrupt: at once on Ctrl-C; waiting items are dropped, running ones are not waited for.
         Exception: what `function` raised first.
     """
-    count = min(worker_count(workers), len(items))
-    kept = [] if partial_results is None else partial_results
-    if count <= 1:
-        return _map_sequentially(function, items, report_progress, kept)
-    return _gather(ThreadPoolExecutor(count), function, items, report_progress, kept)
+    return _ordered_map(ThreadPoolExecutor, function, items, workers, report_progress, partial_results)
 
 
 def map_in_processes(
@@ -63,55 +59,46 @@ def map_in_processes(
     report_progress: CountReporter | None = None,
     partial_results: list[tuple[int, Result]] | None = None,
 ) -> list[Result]:
-    """`mapped` over processes, for Python code that holds the lock; function, items and results must pickle.
+    """Return what `map_in_threads` does, from processes: for Python code that holds the lock.
 
-    The processes start afresh (not forked), so that threads of compiled code cannot hang them.
+    Function, items and results must pickle. The processes start afresh (not forked), so that threads of compiled code
+    cannot hang them.
     """
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
 
-    count = min(worker_count(workers), len(items))
-    kept = [] if partial_results is None else partial_results
-    if count <= 1:
-        return _map_sequentially(function, items, report_progress, kept)
-    pool = ProcessPoolExecutor(count, mp_context=multiprocessing.get_context("spawn"))
-    return _gather(pool, function, items, report_progress, kept)
+    def spawn(count: int) -> Executor:
+        return ProcessPoolExecutor(count, mp_context=multiprocessing.get_context("spawn"))
+
+    return _ordered_map(spawn, function, items, workers, report_progress, partial_results)
 
 
-def _map_sequentially(
-    function: Callable[[Item], Result],
-    items: Sequence[Item],
-    report_progress: CountReporter | None,
-    partial_results: list[tuple[int, Result]],
-) -> list[Result]:
-    results = []
-    for place, item in enumerate(items):
-        results.append(function(item))
-        partial_results.append((place, results[-1]))
-        if report_progress:
-            report_progress(place + 1, len(items))
-    return results
-
-
-def _gather(
-    pool: Executor,
-    function: Callable[[Item], Result],
-    items: Sequence[Item],
-    report_progress: CountReporter | None,
-    partial_results: list[tuple[int, Result]],
-) -> list[Result]:
-    places = {pool.submit(function, item): place for place, item in enumerate(items)}
+def _ordered_map(
+    make_pool: Callable[[int], Executor], function: Callable[[Item], Result], items: Sequence[Item],
+    workers: int | None, report_progress: CountReporter | None, partial_results: list[tuple[int, Result]] | None,
+) -> list[Result]:  # fmt: skip
     finished: dict[int, Result] = {}
+
+    def keep(place: int, result: Result) -> None:
+        finished[place] = result
+        if partial_results is not None:
+            partial_results.append((place, result))
+        if report_progress:
+            report_progress(len(finished), len(items))
+
+    count = min(worker_count(workers), len(items))
+    if count <= 1:
+        for place, item in enumerate(items):
+            keep(place, function(item))
+        return list(finished.values())
+    pool = make_pool(count)
+    places = {pool.submit(function, item): place for place, item in enumerate(items)}
     pending = set(places)
     try:
         while pending:
             done, pending = wait(pending, timeout=_POLL, return_when=FIRST_COMPLETED)
             for future in sorted(done, key=places.__getitem__):
-                place = places[future]
-                finished[place] = future.result()
-                partial_results.append((place, finished[place]))
-                if report_progress:
-                    report_progress(len(finished), len(items))
+                keep(places[future], future.result())
     except BaseException:
         pool.shutdown(wait=False, cancel_futures=True)
         raise

@@ -25,12 +25,9 @@ if TYPE_CHECKING:
 
 DOFS = ["Heave", "Pitch"]
 _REQUIRED_VARIABLES = (
-    "added_mass",
-    "radiation_damping",
-    "diffraction_force",
-    "Froude_Krylov_force",
-    "hydrostatic_stiffness",
-)
+    "added_mass", "radiation_damping", "diffraction_force", "Froude_Krylov_force", "hydrostatic_stiffness",
+)  # fmt: skip
+_MIDSHIP_TOLERANCE, _HEADING_TOLERANCE = 1e-6, 1e-9  # m and rad by which a dataset may be off: rounding
 
 
 @dataclass(frozen=True)
@@ -75,7 +72,7 @@ class HullExcitation:
     data: HullData
 
     def forces(self, omega: Array, U: float, beta: Array | float) -> tuple[Complex, Complex]:
-        """As `Excitation.forces`; the sum of Froude-Krylov force and diffraction at the frequency of the wave.
+        """Return `Excitation.forces`: Froude-Krylov force and diffraction at the frequency of the wave.
 
         Raises:
             InputError: frequency or heading outside the data, or as `checked_waves`.
@@ -90,7 +87,7 @@ class HullExcitation:
 
 
 def read_capytaine(path: str | Path) -> HullData:
-    """Hull data from a NetCDF file that Capytaine wrote.
+    """Return hull data from a NetCDF file that Capytaine wrote.
 
     Raises:
         InputError: no such file, not NetCDF, xarray not installed, or as `hull_data`.
@@ -101,9 +98,8 @@ def read_capytaine(path: str | Path) -> HullData:
     try:
         import xarray as xr
     except ImportError:
-        raise InputError(
-            f"{file.name} needs xarray and h5netcdf; install them with: pip install 'seatrial[hydro]'"
-        ) from None
+        advice = "install them with: pip install 'seatrial[hydro]'"
+        raise InputError(f"{file.name} needs xarray and h5netcdf; {advice}") from None
     try:
         dataset = xr.load_dataset(file)
     except (OSError, ValueError) as error:
@@ -136,18 +132,18 @@ def hull_data(dataset: xr.Dataset, name: str = "the dataset") -> HullData:
 
 
 def _refuse_other_conventions(dataset: xr.Dataset, name: str) -> None:
-    """Forward speed and other reference points."""
+    """Refuse data computed with forward speed or about another reference point."""
     if "forward_speed" in dataset.coords and np.any(dataset["forward_speed"].values != 0.0):
         raise InputError(
             f"{name} was computed with forward speed, which breaks the antisymmetry of A35, A53; compute it at rest, "
             "the speed terms are added here"
         )
-    if "rotation_center" in dataset and np.abs(np.ravel(dataset["rotation_center"].values)[0]) > 1e-6:
+    if "rotation_center" in dataset and np.abs(np.ravel(dataset["rotation_center"].values)[0]) > _MIDSHIP_TOLERANCE:
         raise InputError(f"{name} turns about a point that is not midship; give the rotation centre x = 0")
 
 
 def _heave_and_pitch(dataset: xr.Dataset, name: str) -> xr.Dataset:
-    """Heave and pitch, one water depth, one period axis."""
+    """Return heave and pitch, one water depth, one period axis."""
     for dimension in ("influenced_dof", "radiating_dof"):
         known = [str(v) for v in np.atleast_1d(dataset[dimension].values)] if dimension in dataset.coords else []
         for dof in DOFS:
@@ -164,7 +160,7 @@ def _heave_and_pitch(dataset: xr.Dataset, name: str) -> xr.Dataset:
 
 
 def _wave_table(dataset: xr.Dataset, key: str, name: str) -> WaveTable:
-    """A wave force, conjugated from exp(-i omega t) to exp(+i omega t)."""
+    """Return a wave force, conjugated from exp(-i omega t) to exp(+i omega t)."""
     force = dataset[key]
     if "complex" in force.dims:
         force = force.sel(complex="re") + 1j * force.sel(complex="im")
@@ -172,7 +168,7 @@ def _wave_table(dataset: xr.Dataset, key: str, name: str) -> WaveTable:
         force = force.expand_dims("wave_direction")
     force = force.sortby("wave_direction").transpose("omega", "wave_direction", "influenced_dof")
     headings = np.asarray(force["wave_direction"].values, dtype=np.float64)
-    kept = (headings > -1e-9) & (headings < np.pi + 1e-9)
+    kept = (headings > -_HEADING_TOLERANCE) & (headings < np.pi + _HEADING_TOLERANCE)
     return WaveTable(
         f"{name}: {key}",
         np.asarray(dataset["omega"].values, dtype=np.float64),

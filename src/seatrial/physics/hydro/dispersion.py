@@ -10,7 +10,7 @@ _ITERATIONS = 60  # Newton steps at most; chosen
 
 
 def wavenumber(omega: ArrayLike, depth: float) -> Array:
-    """Positive root k [rad/m] of omega^2 = g k tanh(k depth) (Newman 1977, Marine Hydrodynamics, chap. 6).
+    """Return the positive root k [rad/m] of omega^2 = g k tanh(k depth) (Newman 1977, Marine Hydrodynamics, chap. 6).
 
     Args:
         omega: rad/s, any shape, positive.
@@ -33,11 +33,7 @@ def wavenumber(omega: ArrayLike, depth: float) -> Array:
 
 
 def group_velocity(omega: ArrayLike, depth: float) -> Array:
-    """c_g [m/s] = omega / (2 k) (1 + 2 k h / sinh(2 k h)) (Newman 1977, chap. 6).
-
-    Raises:
-        InputError: as `wavenumber`.
-    """
+    """Return c_g [m/s] = omega / (2 k) (1 + 2 k h / sinh(2 k h)) (Newman 1977, chap. 6)."""
     w, k = np.asarray(omega, dtype=np.float64), wavenumber(omega, depth)
-    twice = np.minimum(2.0 * k * depth, 700.0)
+    twice = np.minimum(2.0 * k * depth, 700.0)  # beyond, sinh overflows, and its share is zero
     return 0.5 * w / k * (1.0 + twice / np.sinh(twice))

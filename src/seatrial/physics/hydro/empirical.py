@@ -30,7 +30,7 @@ class HullForm:
 
     @classmethod
     def from_ship(cls, ship: Ship) -> "HullForm":
-        """The form of a ship.
+        """Return the form of a ship.
 
         Raises:
             InputError: L, B, d or C_b is not among its particulars.
@@ -78,25 +78,27 @@ def _validity(form: HullForm, C_b: Range, L_B: Range, B_d: Range) -> tuple[bool,
 
 
 def added_mass(form: HullForm) -> EmpiricalEstimate:
-    """m_x', m_y', J_z' by Zhou's regression; outside merchant proportions it is an extrapolation."""
+    """Return m_x', m_y', J_z' by Zhou's regression; outside merchant proportions it is an extrapolation."""
     C_b, L_B, d_B, dL_BB = form.C_b, form.L / form.B, form.d / form.B, form.d * form.L / form.B**2
-    x = 0.398 + 11.97 * C_b * (1 + 3.73 * d_B) - 2.89 * C_b * L_B * (1 + 1.13 * d_B)
-    x += 0.175 * C_b * L_B**2 * (1 + 0.541 * d_B) - 1.107 * L_B * d_B
-    y = 0.882 - 0.54 * C_b * (1 - 1.6 * d_B) - 0.156 * (1 - 0.673 * C_b) * L_B
-    y += 0.826 * dL_BB * (1 - 0.678 * d_B) - 0.638 * C_b * dL_BB * (1 - 0.669 * d_B)
-    z = 0.01 * (33 - 76.85 * C_b * (1 - 0.784 * C_b) + 3.43 * L_B * (1 - 0.63 * C_b))
+    x = 0.398 + 11.97 * C_b * (1 + 3.73 * d_B) - 2.89 * C_b * L_B * (1 + 1.13 * d_B)  # regression of Zhou
+    x += 0.175 * C_b * L_B**2 * (1 + 0.541 * d_B) - 1.107 * L_B * d_B  # regression of Zhou
+    y = 0.882 - 0.54 * C_b * (1 - 1.6 * d_B) - 0.156 * (1 - 0.673 * C_b) * L_B  # regression of Zhou
+    y += 0.826 * dL_BB * (1 - 0.678 * d_B) - 0.638 * C_b * dL_BB * (1 - 0.669 * d_B)  # regression of Zhou
+    z = 0.01 * (33 - 76.85 * C_b * (1 - 0.784 * C_b) + 3.43 * L_B * (1 - 0.63 * C_b))  # regression of Zhou
     m = form.mass_prime
     values = {"m_x_prime": m * x / 100, "m_y_prime": m * y, "J_z_prime": m * z**2}
+    # ranges of the forms that the regression was fitted to
     return EmpiricalEstimate(values, ZHOU, *_validity(form, (0.5, 0.85), (4.0, 8.0), (2.2, 4.0)))
 
 
 def clarke(form: HullForm) -> EmpiricalEstimate:
-    """Linear derivatives and added masses by Clarke's regression (there over rho/2 L^2 U^2, here times L/d).
+    """Return linear derivatives and added masses by Clarke's regression (there over rho/2 L^2 U^2, here times L/d).
 
     Y_r, N_v and N_r here are hydrodynamic parts at constant speed, without rigid-body terms.
     """
     B_d, B_L, d_L = form.B / form.d, form.B / form.L, form.d / form.L
     S = math.pi * d_L**2 * form.L / form.d
+    # coefficients of Clarke's regression
     values = {
         "Y_v": -S * (1 + 0.40 * form.C_b * B_d),
         "Y_r": -S * (-0.5 + 2.2 * B_L - 0.080 * B_d),
@@ -105,29 +107,33 @@ def clarke(form: HullForm) -> EmpiricalEstimate:
         "m_y_prime": S * (1 + 0.16 * form.C_b * B_d - 5.1 * B_L**2),
         "J_z_prime": S * (1 / 12 + 0.017 * form.C_b * B_d - 0.33 * B_L),
     }
+    # ranges of the forms that the regression was fitted to
     return EmpiricalEstimate(values, CLARKE, *_validity(form, (0.5, 0.85), (5.0, 8.0), (2.0, 4.5)))
 
 
 def kijima(form: HullForm) -> EmpiricalEstimate:
     """Linear derivatives by Kijima; his Y_r' - (m' + m_x') = -1.5 C_b B/L becomes Y_r' with the added mass of Zhou."""
     k, m_x = form.aspect_ratio, added_mass(form).values["m_x_prime"]
+    # coefficients of Kijima's regression
     values = {
         "Y_v": -(math.pi / 2 * k + 1.4 * form.fullness),
         "Y_r": form.mass_prime + m_x - 1.5 * form.fullness,
         "N_v": -k,
         "N_r": -0.54 * k + k**2,
     }
+    # ranges of the forms that the regression was fitted to
     return EmpiricalEstimate(values, KIJIMA, *_validity(form, (0.5, 0.85), (5.0, 8.0), (2.0, 4.5)))
 
 
 def yoshimura(form: HullForm) -> EmpiricalEstimate:
-    """All hull coefficients of the MMG standard method but R_0, by the regressions of Yoshimura & Masumoto.
+    """Return all hull coefficients of the MMG standard method but R_0, by the regressions of Yoshimura & Masumoto.
 
     Linear ones are good to about 25 % on KVLCC2, cubic ones only to their order of magnitude; X_rr with x_G m_y' rests
     on one transcription.
     """
     C_b, L_B, f, k = form.C_b, form.L / form.B, form.fullness, form.aspect_ratio
     m_x, m_y = (added_mass(form).values[n] for n in ("m_x_prime", "m_y_prime"))
+    # coefficients of the regressions of Yoshimura & Masumoto
     values = {
         "X_vv": 1.15 * f - 0.18,
         "X_vr": m_y - 1.91 * f + 0.08,
@@ -146,12 +152,14 @@ def yoshimura(form: HullForm) -> EmpiricalEstimate:
         "N_vrr": -0.075 * (1 - C_b) * L_B - 0.098,
         "N_rrr": 0.25 * f - 0.056,
     }
+    # ranges of the forms that the regression was fitted to
     return EmpiricalEstimate(values, YOSHIMURA, *_validity(form, (0.5, 0.85), (2.5, 7.0), (2.1, 3.8)))
 
 
 def interaction_coefficients(form: HullForm, aspect_ratio: float) -> EmpiricalEstimate:
-    """Wake, rudder and interaction coefficients; `aspect_ratio` of the rudder is H_R^2 / A_R."""
+    """Return wake, rudder and interaction coefficients; `aspect_ratio` of the rudder is H_R^2 / A_R."""
     f = form.fullness
+    # regressions of the sources named below
     values = {
         "w_P0": 0.5 * form.C_b - 0.05,
         "t_R": 0.39,
@@ -168,17 +176,19 @@ def interaction_coefficients(form: HullForm, aspect_ratio: float) -> EmpiricalEs
         f"w_P0 Taylor; t_R, l_R, gamma_R, kappa {YOSHIMURA}; a_H Quadvlieg 2013; x_H Aoki et al. 2006; "
         f"epsilon Kijima et al. 1990; f_alpha {FUJII}; through MANSIM"
     )
+    # ranges of the forms that the regressions were fitted to
     return EmpiricalEstimate(values, source, *_validity(form, (0.5, 0.85), (4.0, 8.0), (2.0, 4.5)))
 
 
 def cross_flow_coefficients(C_D: float, C_rY: float, C_rN: float) -> dict[str, float]:
-    """Cubic coefficients that stand in for a cross-flow drag integral of Yoshimura's low-speed model.
+    """Return cubic coefficients that stand in for a cross-flow drag integral of Yoshimura's low-speed model.
 
     -C_D integral of |v' + C x r'| (v' + C x r') over x in [-1/2, 1/2], C = C_rY for the force and C_rN for the
     moment, fitted by least squares over |v'| <= 0.5, |r'| <= 1 (uniform), where U' = 1.
     """
     import numpy as np
 
+    # grid of 21 by 21 motions over the range above; chosen
     v, r = (a.ravel() for a in np.meshgrid(np.linspace(-0.5, 0.5, 21), np.linspace(-1.0, 1.0, 21)))
     x = (np.arange(100) + 0.5) / 100 - 0.5
     flow_Y, flow_N = (v[:, None] + c * x * r[:, None] for c in (C_rY, C_rN))

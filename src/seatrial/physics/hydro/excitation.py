@@ -23,7 +23,7 @@ class Excitation(Protocol):
     """
 
     def forces(self, omega: Array, U: float, beta: Array | float) -> tuple[Complex, Complex]:
-        """F3 and M5, each of the shape (n,) of `omega` [rad/s, of the wave, not of encounter].
+        """Return F3 and M5, each of the shape (n,) of `omega` [rad/s, of the wave, not of encounter].
 
         `U` in m/s; `beta` in rad, 0 following, pi / 2 beam, pi head, one for all or one for each frequency.
         """
@@ -76,11 +76,7 @@ class BoxHull:
             )
 
     def forces(self, omega: Array, U: float, beta: Array | float) -> tuple[Complex, Complex]:
-        """As `Excitation.forces`.
-
-        Raises:
-            InputError: as `checked_waves`.
-        """
+        """Return the forces of `Excitation.forces`."""
         w, heading = checked_waves(omega, U, beta)
         F, S = box_wave(w, U, heading, self.L, self.B, self.T)
         q = w**2 / G * np.cos(heading)
@@ -115,12 +111,13 @@ def box_wave(omega: Array, U: float, beta: Array, L: float, B: float, T: float) 
     from scipy.special import spherical_jn
 
     elevation = kappa * f * spherical_jn(0, s)
+    # 6 / L as above
     slope = np.sign(np.cos(beta)) * kappa * f * 6 / L * spherical_jn(1, s)
     return elevation, slope
 
 
 def checked_waves(omega: ArrayLike, U: float, beta: ArrayLike) -> tuple[Array, Array]:
-    """Frequencies and headings of one shape (n,), in sense.
+    """Return frequencies and headings of one shape (n,), in sense.
 
     Raises:
         InputError: a frequency is not positive, a speed is negative or beyond 50 m/s, a heading is beyond +-2 pi, or

@@ -37,6 +37,7 @@ def equivalent_damping(damping: Array, restoring: Array, amplitude: Array) -> tu
     """
     period, by_restoring = swing_period(restoring, amplitude)
     omega = 2.0 * np.pi / period
+    # energy of a sine in b_2 and b_3: 8 / (3 pi) and 3/4, as above
     linear, square = 8.0 / (3.0 * np.pi) * amplitude, 0.75 * amplitude**2
     features = np.stack([np.ones_like(omega), linear * omega, square * omega**2], axis=1)
     by_omega = linear * damping[1] + 2.0 * square * omega * damping[2]
@@ -44,7 +45,7 @@ def equivalent_damping(damping: Array, restoring: Array, amplitude: Array) -> tu
 
 
 def metacentric_height(c_1: float, gyradius: float) -> float:
-    """GM [m] = c_1 k^2 / g, k [m] the radius of gyration in roll with the added inertia in it."""
+    """Return GM [m] = c_1 k^2 / g, k [m] the radius of gyration in roll with the added inertia in it."""
     return c_1 * gyradius**2 / G
 
 

@@ -13,7 +13,7 @@ from seatrial.physics.hydro.excitation import MAX_SHIP_SPEED, Complex
 
 
 def coefficients_at_speed(A: Array, B: Array, omega_e: Array, U: float) -> tuple[Array, Array]:
-    """Added mass and damping at the speed U [m/s] from those at rest.
+    """Return added mass and damping at the speed U [m/s] from those at rest.
 
     A35 = A35_0 - U / omega_e^2 B33, A53 = A53_0 + U / omega_e^2 B33, A55 = A55_0 + U^2 / omega_e^2 A33,
     B35 = B35_0 + U A33, B53 = B53_0 - U A33, B55 = B55_0 + U^2 / omega_e^2 B33; A33 and B33 stay.
@@ -29,7 +29,7 @@ def coefficients_at_speed(A: Array, B: Array, omega_e: Array, U: float) -> tuple
 def excitation_at_speed(
     froude_krylov: Complex, diffraction: Complex, omega: Array, omega_e: Array, U: float
 ) -> Complex:
-    """Excitation (n, 2) at the speed U from its two parts (n, 2) at rest, at the wave frequencies `omega`.
+    """Return excitation (n, 2) at the speed U from its two parts (n, 2) at rest, at the wave frequencies `omega`.
 
     The diffraction of a section is proportional to omega omega_e there, so that at rest is taken omega_e / omega
     times, and the moment gains -U / (i omega_e) F3_D = i U / omega F3_D. With `coefficients_at_speed` a hull in
@@ -52,7 +52,7 @@ def excitation_at_speed(
 
 
 def _speed_terms(A: Array, B: Array, omega_e: Array, U: float) -> tuple[Array, Array]:
-    """What the speed adds to A and B; A33 and B33 are the same before and after."""
+    """Return what the speed adds to A and B; A33 and B33 are the same before and after."""
     n = np.size(omega_e)
     if np.shape(A) != (n, 2, 2) or np.shape(B) != (n, 2, 2):
         raise InputError(

@@ -48,7 +48,7 @@ class WaveTable:
         self._refuse_phase_jumps()
 
     def interpolate(self, omega: Array, U: float, beta: Array | float) -> Complex:
-        """Values (k, m) at the frequencies (k,) and one heading, or one for each.
+        """Return values (k, m) at the frequencies (k,) and one heading, or one for each.
 
         Raises:
             InputError: as `checked_waves`, or a frequency or heading outside the table.
@@ -68,7 +68,7 @@ class WaveTable:
     def _refuse_phase_jumps(self) -> None:
         """Neighbours in frequency that both carry a fifth of the largest value and differ by over a quarter turn."""
         size = np.abs(self.values)
-        loud = np.minimum(size[1:], size[:-1]) > 0.2 * size.max(axis=(0, 1))
+        loud = np.minimum(size[1:], size[:-1]) > 0.2 * size.max(axis=(0, 1))  # a fifth: chosen
         turned = np.real(self.values[1:] * self.values[:-1].conj()) < 0
         if np.any(loud & turned):
             i, j, _ = np.argwhere(loud & turned)[0]
@@ -80,7 +80,7 @@ class WaveTable:
 
 
 def interpolated(x: Array, values: Complex | Array, points: Array) -> Complex:
-    """PCHIP along the first axis, real and imaginary parts each; a single row holds at its own point only."""
+    """Return PCHIP along the first axis, real and imaginary parts each; a single row holds at its own point only."""
     if x.size == 1:
         return np.repeat(np.asarray(values, dtype=np.complex128), points.size, axis=0)
     from scipy.interpolate import PchipInterpolator

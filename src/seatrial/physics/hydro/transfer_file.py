@@ -27,7 +27,7 @@ class TabulatedExcitation:
     speed: float | None = None
 
     def forces(self, omega: Array, U: float, beta: Array | float) -> tuple[Complex, Complex]:
-        """As `Excitation.forces`.
+        """Return the forces of `Excitation.forces`.
 
         Raises:
             InputError: frequency, heading or speed not in the table; nothing is extrapolated.
@@ -74,14 +74,11 @@ def read_transfer(
 
 
 def _complex_values(names: tuple[str, ...], columns: list[Array]) -> Complex:
-    """F3 and M5 (rows, 2) from the four columns."""
+    """Return F3 and M5 (rows, 2) from the four columns."""
     one, two, three, four = columns
-    values = np.empty((one.size, 2), dtype=np.complex128)
-    if names == CARTESIAN_COLUMNS:
-        values[:, 0], values[:, 1] = one + 1j * two, three + 1j * four
-    else:
-        values[:, 0], values[:, 1] = one * np.exp(1j * np.radians(two)), three * np.exp(1j * np.radians(four))
-    return values
+    polar = one * np.exp(1j * np.radians(two)), three * np.exp(1j * np.radians(four))
+    parts = (one + 1j * two, three + 1j * four) if names == CARTESIAN_COLUMNS else polar
+    return np.asarray(np.column_stack(parts), dtype=np.complex128)
 
 
 def _csv_columns(file: Path) -> dict[str, Array]:
@@ -91,21 +88,16 @@ def _csv_columns(file: Path) -> dict[str, Array]:
         frame = pd.read_csv(file, comment="#", skipinitialspace=True, dtype=str, keep_default_na=False)
     except (ValueError, OSError) as error:
         raise InputError(f"{file.name} is not a readable CSV table ({str(error).splitlines()[0]})") from None
-    columns: dict[str, Array] = {}
-    for name in frame.columns:
-        numbers = pd.to_numeric(frame[name], errors="coerce").to_numpy(dtype=np.float64)
-        columns[str(name).strip()] = numbers
-    return columns
+    numbers = {name: pd.to_numeric(frame[name], errors="coerce") for name in frame.columns}
+    return {str(name).strip(): column.to_numpy(dtype=np.float64) for name, column in numbers.items()}
 
 
 def _netcdf_columns(file: Path) -> dict[str, Array]:
     try:
         import xarray as xr
     except ImportError:
-        raise InputError(
-            f"{file.name} is a NetCDF file, which needs xarray and h5netcdf; "
-            "install them with: pip install 'seatrial[formats]'"
-        ) from None
+        advice = "install them with: pip install 'seatrial[formats]'"
+        raise InputError(f"{file.name} is a NetCDF file, which needs xarray and h5netcdf; {advice}") from None
     try:
         frame = xr.load_dataset(file).to_dataframe().reset_index()
     except (OSError, ValueError) as error:
@@ -115,7 +107,7 @@ def _netcdf_columns(file: Path) -> dict[str, Array]:
 
 
 def _value_names(name: str, columns: dict[str, Array]) -> tuple[str, ...]:
-    """Which of the two sets of columns the file has."""
+    """Return which of the two sets of columns the file has."""
     wanted = POLAR_COLUMNS if any(key in columns for key in POLAR_COLUMNS) else CARTESIAN_COLUMNS
     for key in ("omega", *wanted):
         if key not in columns:
@@ -132,7 +124,7 @@ def _refuse_gaps(name: str, key: str, column: Array) -> None:
 
 
 def _to_table(name: str, omega: Array, heading_deg: Array, values: Complex) -> WaveTable:
-    """Rows in any order to the grid (n, h, 2)."""
+    """Return rows in any order to the grid (n, h, 2)."""
     frequencies, i = np.unique(omega, return_inverse=True)
     angles, j = np.unique(heading_deg, return_inverse=True)
     seen = np.zeros((frequencies.size, angles.size), dtype=np.int64)

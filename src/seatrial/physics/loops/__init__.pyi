@@ -1,58 +1,22 @@
 """Names of this package, imported when first used."""
 
-from seatrial.physics.loops.autopilot import (
-    heading_loop as heading_loop,
-    pitch_loop as pitch_loop,
-    speed_loop as speed_loop,
-)
-from seatrial.physics.loops.block import (
-    Block as Block,
-    in_series as in_series,
-)
-from seatrial.physics.loops.encounter_spectrum import (
-    EncounterSpectrum as EncounterSpectrum,
-    HullFactor as HullFactor,
-    wave_slope_spectrum as wave_slope_spectrum,
-)
-from seatrial.physics.loops.fin import (
-    fin_loop as fin_loop,
-    K_alpha_at as K_alpha_at,
-    Preamplifier as Preamplifier,
-)
-from seatrial.physics.loops.loop import (
-    Term as Term,
-    TransferLoop as TransferLoop,
-)
-from seatrial.physics.loops.loop_states import (
-    StateSpace as StateSpace,
-    state_space as state_space,
-)
-from seatrial.physics.loops.margins import (
-    StabilityMargins as StabilityMargins,
-    margins as margins,
-)
-from seatrial.physics.loops.objective import (
-    LoopSignal as LoopSignal,
-    Objective as Objective,
-    WeightedVariance as WeightedVariance,
-    squared_deviation as squared_deviation,
-    variance as variance,
-)
-from seatrial.physics.loops.performance import (
-    LoopEvaluation as LoopEvaluation,
-    Performance as Performance,
-    distinct_variances as distinct_variances,
-)
-from seatrial.physics.loops.python_control import (
-    block_from_system as block_from_system,
-    controller_transfer_function as controller_transfer_function,
-    open_loop_transfer_function as open_loop_transfer_function,
-)
-from seatrial.physics.loops.state_space import (
-    controllable_form as controllable_form,
-    plant_model as plant_model,
-)
-from seatrial.physics.loops.structures import (
-    FREQUENCIES_AND_DAMPINGS as FREQUENCIES_AND_DAMPINGS,
-    five_gain_loop as five_gain_loop,
-)
+from seatrial.physics.loops.autopilot import heading_loop as heading_loop, pitch_loop as pitch_loop
+from seatrial.physics.loops.autopilot import speed_loop as speed_loop
+from seatrial.physics.loops.block import Block as Block, in_series as in_series
+from seatrial.physics.loops.encounter_spectrum import EncounterSpectrum as EncounterSpectrum, HullFactor as HullFactor
+from seatrial.physics.loops.encounter_spectrum import wave_slope_spectrum as wave_slope_spectrum
+from seatrial.physics.loops.fin import fin_loop as fin_loop, K_alpha_at as K_alpha_at, Preamplifier as Preamplifier
+from seatrial.physics.loops.loop import Term as Term, TransferLoop as TransferLoop
+from seatrial.physics.loops.loop_states import StateSpace as StateSpace, state_space as state_space
+from seatrial.physics.loops.margins import StabilityMargins as StabilityMargins, margins as margins
+from seatrial.physics.loops.objective import LoopSignal as LoopSignal, Objective as Objective
+from seatrial.physics.loops.objective import WeightedVariance as WeightedVariance
+from seatrial.physics.loops.objective import squared_deviation as squared_deviation, variance as variance
+from seatrial.physics.loops.performance import LoopEvaluation as LoopEvaluation, Performance as Performance
+from seatrial.physics.loops.performance import distinct_variances as distinct_variances
+from seatrial.physics.loops.python_control import block_from_system as block_from_system
+from seatrial.physics.loops.python_control import controller_transfer_function as controller_transfer_function
+from seatrial.physics.loops.python_control import open_loop_transfer_function as open_loop_transfer_function
+from seatrial.physics.loops.state_space import controllable_form as controllable_form, plant_model as plant_model
+from seatrial.physics.loops.structures import FREQUENCIES_AND_DAMPINGS as FREQUENCIES_AND_DAMPINGS
+from seatrial.physics.loops.structures import five_gain_loop as five_gain_loop

@@ -16,8 +16,10 @@ from seatrial.physics.loops.loop import Term, TransferLoop
 FOSSEN = "pole placement, Fossen 2021, section 15.3"
 DAMPING_RATIO = 0.8  # of the closed loop, Fossen 2021, section 15.3
 _SLOWEST, _START, _FASTEST = 0.75, 1.5, 6.0  # bandwidths over the plant's mean pole: least, first and largest; chosen
-_LARGEST_KD = 10.0
+_LARGEST_KD = 10.0  # over that which halves the motion at the resonance; chosen
 _FILTER_RATIO = 0.1  # derivative filter's time constant times the largest bandwidth; chosen
+_INTEGRAL_RATIO = 0.1  # KI over omega KP, Fossen 2021, section 15.3
+_RESONANCE_BAND = 0.05, 20.0, 400  # over the mean pole, and how many frequencies: where a resonance is sought; chosen
 _NEGLIGIBLE_POLE = 1e-9  # of the largest pole, below which a pole counts as zero: rounding
 MEANINGS = {"KP": "proportional gain", "KI": "gain of the integral", "KD": "gain of the filtered derivative"}
 UNITS = {"KP": "1", "KI": "1/s", "KD": "s"}
@@ -37,7 +39,7 @@ def heading_loop(
     actuator: str = "delta",
     disturbance_input: str = "",
 ) -> TransferLoop:
-    """PD or PID on the heading error: KP + KI / s + KD s / (tau s + 1), from psi to the rudder [rad].
+    """Return PD or PID on the heading error: KP + KI / s + KD s / (tau s + 1), from psi to the rudder [rad].
 
     Args:
         plant: from the rudder to the heading; it may be unstable, and turn either way. parts: gains to have.
@@ -54,13 +56,12 @@ def heading_loop(
     def placed(omega: float) -> Gains:
         inverse, slope = _equivalent_lag(plant, omega, integrators=1)
         KP = omega**2 * slope
-        return {"KP": KP, "KI": 0.1 * omega * KP, "KD": 2.0 * DAMPING_RATIO * omega * slope - inverse}
+        return {"KP": KP, "KI": _INTEGRAL_RATIO * omega * KP, "KD": 2.0 * DAMPING_RATIO * omega * slope - inverse}
 
     gains, sign = _gain_ranges([placed(c * scale) for c in (_SLOWEST, _START, _FASTEST)], "KP")
     tau = _FILTER_RATIO / (_FASTEST * scale) if derivative_filter is None else derivative_filter
-    return _pid_loop(
-        name, plant, disturbance, servo, sign, gains, parts, tau, integral_lag, ("psi", actuator, disturbance_input)
-    )
+    names = ("psi", actuator, disturbance_input)
+    return _pid_loop(name, plant, disturbance, servo, sign, gains, parts, tau, integral_lag, names)
 
 
 def speed_loop(
@@ -72,7 +73,7 @@ def speed_loop(
     actuator: str = "n",
     disturbance_input: str = "",
 ) -> TransferLoop:
-    """PI on the speed error, from u to the propulsion input (propeller rate or jet velocity, its SI unit).
+    """Return PI on the speed error, from u to the propulsion input (propeller rate or jet velocity, its SI unit).
 
     Raises:
         InputError: the plant has no pole off the origin.
@@ -100,7 +101,7 @@ def pitch_loop(
     actuator: str = "delta_f1",
     disturbance_input: str = "M5",
 ) -> TransferLoop:
-    """PID on pitch (or heave) by a fin; gains in units of what the plant's resonance needs.
+    """Return PID on pitch (or heave) by a fin; gains in units of what the plant's resonance needs.
 
     KD of 1 / |omega P| at the resonance halves the motion there; KP of 1 / |P(0)| doubles the stiffness.
 
@@ -109,7 +110,7 @@ def pitch_loop(
     """
     if not (math.isfinite(plant.gain) and plant.gain):
         raise InputError(f"block '{plant.name}' has no restoring: a constant actuator gives no constant answer")
-    omega = np.geomspace(0.05, 20.0, 400) * mean_pole(plant)
+    omega = np.geomspace(*_RESONANCE_BAND) * mean_pole(plant)
     place = int(np.argmax(np.abs(plant.frequency_response(omega))))
     top, damped = float(omega[place]), 1.0 / float(np.abs(plant.frequency_response(omega[place : place + 1]))[0])
     start = {"KP": 0.0, "KI": 0.0, "KD": damped / top}
@@ -123,11 +124,7 @@ def pitch_loop(
 
 
 def mean_pole(plant: Block) -> float:
-    """Geometric mean of the plant's poles off the origin, rad/s.
-
-    Raises:
-        InputError: it has none.
-    """
+    """Return the geometric mean of the plant's poles off the origin, rad/s."""
     sizes = np.abs(plant.poles)
     some = sizes[sizes > _NEGLIGIBLE_POLE * sizes.max(initial=0.0)]
     if not some.size:
@@ -136,7 +133,7 @@ def mean_pole(plant: Block) -> float:
 
 
 def _equivalent_lag(plant: Block, omega: float, *, integrators: int) -> tuple[float, float]:
-    """1 / K and T / K of the lag K / (T s + 1), behind so many integrators, that P is at that frequency."""
+    """Return 1 / K and T / K of the lag K / (T s + 1), behind so many integrators, that P is at that frequency."""
     s = 1j * omega
     inverse = complex(1.0 / (s**integrators * plant.frequency_response(np.array([omega]))[0]))
     return inverse.real, inverse.imag / omega

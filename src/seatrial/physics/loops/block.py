@@ -57,17 +57,17 @@ class Block:
         return self.num[-1] / self.den[-1] if self.den[-1] else math.inf
 
     def frequency_response(self, omega: Array) -> Complex:
-        """Frequency response at omega [rad/s], any shape."""
+        """Return the frequency response at omega [rad/s], any shape."""
         s = 1j * np.asarray(omega, dtype=np.float64)
         return np.asarray(np.polyval(self.num, s) / np.polyval(self.den, s), dtype=np.complex128)
 
     def scaled(self, factor: float) -> "Block":
-        """The block times a number."""
+        """Return the block times a number."""
         return Block(self.name, tuple(factor * c for c in self.num), self.den, self.source)
 
 
 def in_series(name: str, blocks: Iterable[Block]) -> Block:
-    """The product of blocks; nothing cancels."""
+    """Return the product of blocks; nothing cancels."""
     num, den = np.ones(1), np.ones(1)
     for block in blocks:
         num, den = np.polymul(num, block.num), np.polymul(den, block.den)

@@ -25,9 +25,11 @@ _ACCURACY, _ACCURACY_OF_REDUCED = 1e-10, 1e-9  # relative, of variances on all n
 # relative, of variances over directions and in one of them; chosen
 _ACCURACY_OF_DIRECTIONS, _ACCURACY_OF_ONE = 1e-6, 1e-8
 _NEGLIGIBLE_EXPONENT = 36.0  # exp(-36) is 2e-16, rounding
-_DAMPING_DIVISOR = 2.0
-# rad/s: a wave that keeps up with the ship
-_LOWEST_FREQUENCY = 1e-9
+_DAMPING_DIVISOR = 2.0  # of the sharpened response: feedback may leave half of the damping; chosen
+_LOWEST_FREQUENCY = 1e-9  # rad/s: a wave that keeps up with the ship
+_ACROSS, _NO_SLOPE = 1e-9, 1e-12  # |sin(heading)| and share of the sea's variance that count as none: rounding
+_REACH = 12.0  # highest wave frequency over the modal one, as said above
+_FIRST_STRIDE = 8  # directions left out between those of the first grid; chosen
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,7 @@ class HullFactor:
     T: float
 
     def slope_factor(self, omega: Array, beta: float) -> Array:
-        """F [-] at wave frequencies omega [rad/s] and heading beta [rad, 0 following]."""
+        """Return F [-] at wave frequencies omega [rad/s] and heading beta [rad, 0 following]."""
         k = omega**2 / G
         across, along = k * self.B * math.sin(beta) / (2.0 * math.pi), k * self.L * math.cos(beta) / (2.0 * math.pi)
         return np.exp(-k * self.T / 2.0) * np.sinc(across) * np.sinc(along)
@@ -69,7 +71,7 @@ class EncounterSpectrum:
         return float(np.sum(self.energy))
 
     def response_variance(self, block: Block) -> float:
-        """Of what the block makes of the disturbance."""
+        """Return the variance of what the block makes of the disturbance."""
         return float(np.sum(np.abs(block.frequency_response(self.omega_e)) ** 2 * self.energy))
 
 
@@ -82,7 +84,7 @@ def wave_slope_spectrum(
     *,
     spreading: float | None = None,
 ) -> EncounterSpectrum:
-    """Effective wave slope [rad] that a ship meets; its spectrum is (omega^2 / g)^2 sin^2(beta) F^2 S(omega).
+    """Return effective wave slope [rad] that a ship meets; its spectrum is (omega^2 / g)^2 sin^2(beta) F^2 S(omega).
 
     Args:
         U: m/s; beta: rad, 0 following, pi / 2 beam, pi head.
@@ -95,18 +97,12 @@ def wave_slope_spectrum(
     """
     said = f"{spectrum.name}, {math.degrees(beta):.0f} deg"
     if spreading is None:
-        made = EncounterSpectrum(
-            *_reduced_nodes(
-                *_long_crested_nodes(spectrum, U, beta, response, hull, _ACCURACY), response, _ACCURACY_OF_REDUCED
-            ),
-            said,
-        )
+        nodes = _long_crested_nodes(spectrum, U, beta, response, hull, _ACCURACY)
+        made = EncounterSpectrum(*_reduced_nodes(*nodes, response, _ACCURACY_OF_REDUCED), said)
     else:
-        met = _ShortCrestedNodes(spectrum, U, beta, response, hull, spreading)
-        made = EncounterSpectrum(
-            *_reduced_nodes(*met.converged_nodes(), response, _ACCURACY_OF_DIRECTIONS), f"{said}, short-crested"
-        )
-    if not made.variance > 1e-12 * spectrum.moment(0):
+        nodes = _ShortCrestedNodes(spectrum, U, beta, response, hull, spreading).converged_nodes()
+        made = EncounterSpectrum(*_reduced_nodes(*nodes, response, _ACCURACY_OF_DIRECTIONS), f"{said}, short-crested")
+    if not made.variance > _NO_SLOPE * spectrum.moment(0):
         raise InputError(
             f"the sea has no wave slope across the ship at a heading of {math.degrees(beta):.0f} deg; "
             "take another heading, or a short-crested sea"
@@ -117,7 +113,7 @@ def wave_slope_spectrum(
 def disturbance_spectrum(
     density: Callable[[Array], Array], lower: float, upper: float, response: Block, description: str
 ) -> EncounterSpectrum:
-    """Exposure to a disturbance of one-sided `density` [unit^2 s/rad] over the frequency of encounter itself."""
+    """Return exposure to a disturbance of one-sided `density` [unit^2 s/rad] over the frequency of encounter itself."""
     return EncounterSpectrum(*_converged_nodes(density, lambda w: w, (lower, upper), response, _ACCURACY), description)
 
 
@@ -139,8 +135,8 @@ class _ShortCrestedNodes:
         self._half_spread = math.acos(10.0 ** (-6.5 / exponent))
 
     def converged_nodes(self) -> tuple[Array, Array]:
-        """|frequencies of encounter| and energies."""
-        before, stride = np.full(2, np.inf), 8
+        """Return |frequencies of encounter| and energies."""
+        before, stride = np.full(2, np.inf), _FIRST_STRIDE
         while True:
             omega_e, energy = self._nodes_at_stride(stride)
             now = _variances(omega_e, energy, self._response)
@@ -149,7 +145,7 @@ class _ShortCrestedNodes:
             before, stride = now, stride // 2
 
     def _nodes_at_stride(self, stride: int) -> tuple[Array, Array]:
-        """From every `stride`-th of the finest directions."""
+        """Return frequencies and energies of every `stride`-th of the finest directions."""
         places = range(0, _DIRECTIONS, stride)
         away = np.linspace(-self._half_spread, self._half_spread, _DIRECTIONS)[::stride]
         shares = quadrature.weights(len(places)) * np.cos(away) ** (2.0 * self._exponent)
@@ -166,7 +162,7 @@ def _long_crested_nodes(
     spectrum: Spectrum, U: float, beta: float, response: Block, hull: HullFactor | None, accuracy: float
 ) -> tuple[Array, Array]:
     speed_factor(U, beta)
-    across = math.sin(beta) ** 2 if abs(math.sin(beta)) > 1e-9 else 0.0
+    across = math.sin(beta) ** 2 if abs(math.sin(beta)) > _ACROSS else 0.0
 
     def density(omega: Array) -> Array:
         factor = 1.0 if hull is None else hull.slope_factor(omega, beta) ** 2
@@ -176,7 +172,7 @@ def _long_crested_nodes(
         return np.abs(encounter_frequency(omega, U, beta))
 
     lower = (spectrum.B / _NEGLIGIBLE_EXPONENT) ** 0.25
-    upper = 12.0 * spectrum.modal_frequency
+    upper = _REACH * spectrum.modal_frequency
     if hull is not None:
         upper = min(upper, math.sqrt(0.5 * _NEGLIGIBLE_EXPONENT * G / hull.T))
     peak = spectrum.modal_frequency
@@ -204,7 +200,7 @@ def _converged_nodes(
 
 
 def _reduced_nodes(omega_e: Array, energy: Array, response: Block, accuracy: float) -> tuple[Array, Array]:
-    """On fewer nodes, as long as the sharpened response does not notice."""
+    """Return fewer nodes, as long as the sharpened response does not notice."""
     sharp, count = _with_less_damping(response), _REDUCED_NODES
     true = _variances(omega_e, energy, sharp)
     while count < len(omega_e):
@@ -216,12 +212,12 @@ def _reduced_nodes(omega_e: Array, energy: Array, response: Block, accuracy: flo
 
 
 def _with_less_damping(response: Block) -> Block:
-    """With half of its damping, as feedback may leave it."""
+    """Return the block with half of its damping, as feedback may leave it."""
     poles = response.poles
     return replace(response, den=tuple(response.den[0] * np.poly(poles.real / _DAMPING_DIVISOR + 1j * poles.imag).real))
 
 
 def _variances(omega_e: Array, energy: Array, response: Block) -> Array:
-    """Of the response's angle and rate."""
+    """Return the variances of the response's angle and rate."""
     size = np.abs(response.frequency_response(omega_e)) ** 2 * energy
     return np.array([size.sum(), (omega_e**2 * size).sum()])

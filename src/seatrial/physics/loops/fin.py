@@ -34,20 +34,17 @@ class Preamplifier(Enum):
     WASHOUT = 2.51  # K_q, fitted as above
 
     def block(self, K_q: float | None = None) -> Block:
-        """G_q = K_q / ((30 s + 1) (0.056 s + 1)), with 30 s in the numerator as washout."""
+        """Return G_q = K_q / ((30 s + 1) (0.056 s + 1)), with 30 s in the numerator as washout."""
         gain = self.value if K_q is None else K_q
         num = (gain,) if self is Preamplifier.PRINTED else (30.0 * gain, 0.0)  # 30 s: the lag, as printed
         return Block("preamplifier", num, (30.0 * 0.056, 30.056, 1.0), PAPER)  # lags of 30 s and 0.056 s, as printed
 
 
 def published_gains() -> Parameters:
-    """K_P, K_I, K_D as found by the paper's genetic algorithm, free within its bounds."""
-    return Parameters(
-        tuple(
-            Parameter(name, value, "1", *BOUNDS[name], free=True, source=f"{PAPER[:-2]} 3", meaning=MEANINGS[name])
-            for name, value in PUBLISHED_GAINS.items()
-        )
-    )
+    """Return K_P, K_I, K_D as found by the paper's genetic algorithm, free within its bounds."""
+    source = f"{PAPER[:-2]} 3"
+    gains = ((name, value, BOUNDS[name], MEANINGS[name]) for name, value in PUBLISHED_GAINS.items())
+    return Parameters(tuple(Parameter(n, v, "1", *b, free=True, source=source, meaning=m) for n, v, b, m in gains))
 
 
 def fin_loop(
@@ -75,5 +72,5 @@ def fin_loop(
 
 
 def K_alpha_at(U: float, U_reference: float, K_alpha: float = K_ALPHA) -> float:
-    """Fin effectiveness at U, known at U_reference [m/s]: lift grows with the square of the speed."""
+    """Return the fin effectiveness at U, known at U_reference [m/s]: lift grows with the square of the speed."""
     return K_alpha * (U / U_reference) ** 2

@@ -63,7 +63,7 @@ class TransferLoop:
         return self.gains.values
 
     def with_gains(self, values: Array) -> Self:
-        """The same loop with all gains given, shape (g,)."""
+        """Return the same loop with all gains given, shape (g,)."""
         return replace(self, gains=self.gains.with_values(dict(zip(self.gains.names, values, strict=True))))
 
     @cached_property
@@ -87,16 +87,16 @@ class TransferLoop:
         return frozen(common), frozen(numerators)
 
     def controller_terms(self, omega: Array) -> Complex:
-        """What each gain multiplies between y and a, shape (g, n), at omega (n,) [rad/s]."""
+        """Return what each gain multiplies between y and a, shape (g, n), at omega (n,) [rad/s]."""
         common = in_series("common", (*self.sensor, *self.filters, *self.servo)).frequency_response(omega)
         return np.stack([term.block.frequency_response(omega) * common for term in self.terms])
 
     def open_loop_terms(self, omega: Array) -> Complex:
-        """L_i, shape (g, n): L = sum gain_i L_i."""
+        """Return L_i, shape (g, n): L = sum gain_i L_i."""
         return self.controller_terms(omega) * self.plant.frequency_response(omega)
 
     def open_loop(self, omega: Array) -> Complex:
-        """L at its gains, shape (n,)."""
+        """Return L at its gains, shape (n,)."""
         return self.gain_values @ self.open_loop_terms(omega)
 
     @property

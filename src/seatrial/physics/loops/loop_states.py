@@ -30,7 +30,7 @@ class StateSpace:
         return self.A[0] + np.tensordot(gains, self.A[1:], 1)
 
     def actuator_row(self, gains: Array) -> Array:
-        """Row that gives the actuator, (n,)."""
+        """Return row that gives the actuator, (n,)."""
         return self.a[0] + gains @ self.a[1:]
 
 
@@ -86,7 +86,7 @@ def state_space(loop: TransferLoop) -> StateSpace:
 
 
 def _observable_form(plant: Block, disturbance: Block | None) -> tuple[Array, Array, Array]:
-    """A (n, n), b (n, 2) of actuator and disturbance, c (n,): observable form, so that both share the states."""
+    """Return A (n, n), b (n, 2) of actuator and disturbance, c (n,): observable form, so that both share the states."""
     den, n = np.array(plant.den) / plant.den[0], plant.order
     A = np.diag(np.ones(max(n - 1, 0)), 1)
     A[:, 0] = -den[1:]

@@ -11,6 +11,10 @@ from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops.loop import TransferLoop
 
 _SAMPLES = 2000  # frequencies that the margins are bracketed on; chosen
+_BELOW, _ABOVE = 0.3, 2.0  # ends of the band over the slowest and the fastest root; chosen
+_EMPTY_BAND = 1e-2, 1e2  # rad/s, where there is no root; chosen
+_AT_ORIGIN, _PEAK_TOLERANCE = 1e-6, 1e-9  # rad/s, a root that counts as zero; of log omega at the peak: rounding
+_LEAST = 1e-300  # rad/s, guards against a pole at zero
 
 
 @dataclass(frozen=True)
@@ -36,7 +40,7 @@ class StabilityMargins:
 
 
 def frequency_band(loop: TransferLoop) -> tuple[float, float]:
-    """Frequencies [rad/s] between which everything of the loop happens.
+    """Return frequencies [rad/s] between which everything of the loop happens.
 
     A little more than from the slowest to the fastest of its poles and zeros; beside the open ones those that swing
     when it is closed at its own gains or with all at their upper bounds, as integrators let it.
@@ -46,17 +50,17 @@ def frequency_band(loop: TransferLoop) -> tuple[float, float]:
     closed = d + loop.gain_values @ n, d + np.where(np.isfinite(bounds), bounds, loop.gain_values) @ n
     swinging = [roots[np.abs(roots.imag) > 0.5 * np.abs(roots.real)] for roots in (np.roots(row) for row in closed)]
     roots = np.abs(np.concatenate([np.roots(d), *(np.roots(row) for row in n), *swinging]))
-    some = roots[roots > 1e-6]
-    return (0.3 * float(some.min()), 2.0 * float(some.max())) if some.size else (1e-2, 1e2)
+    some = roots[roots > _AT_ORIGIN]
+    return (_BELOW * float(some.min()), _ABOVE * float(some.max())) if some.size else _EMPTY_BAND
 
 
 def sensitivity_magnitude(loop: TransferLoop, omega: Array) -> Array:
-    """|S| of the loop at omega [rad/s], (n,)."""
+    """Return |S| of the loop at omega [rad/s], (n,)."""
     return 1.0 / np.abs(1.0 + loop.open_loop(omega))
 
 
 def sensitivity_peak(loop: TransferLoop) -> tuple[float, float]:
-    """Ms and where it is [rad/s], to rounding, by a search about the largest sample; the loop must be stable."""
+    """Return Ms and where it is [rad/s], to rounding, by a search about the largest sample; the loop must be stable."""
     from scipy.optimize import minimize_scalar
 
     u = _log_frequencies(loop)
@@ -64,15 +68,15 @@ def sensitivity_peak(loop: TransferLoop) -> tuple[float, float]:
     ends = u[max(place - 1, 0)], u[min(place + 1, _SAMPLES - 1)]
     found = minimize_scalar(
         lambda v: -float(sensitivity_magnitude(loop, np.exp(np.array([v])))[0]), bounds=ends, method="bounded",
-        options={"xatol": 1e-9},
+        options={"xatol": _PEAK_TOLERANCE},
     )  # fmt: skip
     return max(-float(found.fun), 1.0), math.exp(float(found.x))
 
 
 def margins(loop: TransferLoop) -> StabilityMargins:
-    """The margins at the loop's gains; Ms to rounding, by a search about the largest sample."""
+    """Return the margins at the loop's gains; Ms to rounding, by a search about the largest sample."""
     poles = loop.closed_loop_poles
-    damping = float(np.min(-poles.real / np.maximum(np.abs(poles), 1e-300)))
+    damping = float(np.min(-poles.real / np.maximum(np.abs(poles), _LEAST)))
     if not np.all(poles.real < 0.0):
         return StabilityMargins(False, math.inf, math.nan, math.nan, math.nan, math.nan, damping)
     peak, at = sensitivity_peak(loop)
@@ -89,11 +93,11 @@ def _log_frequencies(loop: TransferLoop) -> Array:
     """Logarithms of frequencies over the band and all closed poles: a weak loop that integrates crosses one early."""
     low, high = frequency_band(loop)
     poles = np.abs(loop.closed_loop_poles)
-    return np.linspace(math.log(min(low, 0.3 * poles.min())), math.log(max(high, 2.0 * poles.max())), _SAMPLES)
+    return np.linspace(math.log(min(low, _BELOW * poles.min())), math.log(max(high, _ABOVE * poles.max())), _SAMPLES)
 
 
 def _crossing_frequencies(loop: TransferLoop, function: Callable[[Complex], Array]) -> Array:
-    """Frequencies [rad/s] at which a function of L changes its sign."""
+    """Return frequencies [rad/s] at which a function of L changes its sign."""
     from scipy.optimize import brentq
 
     u = _log_frequencies(loop)

@@ -54,7 +54,7 @@ def _first_variance(variances: Array) -> Array:
 
 
 def variance(name: str, unit: str, signal: LoopSignal, power: int = 0) -> Objective:
-    """Variance of the output or the actuator (power 0), of its rate (1), of its acceleration (2)."""
+    """Return the variance of the output or the actuator (power 0), of its rate (1), of its acceleration (2)."""
     return Objective(name, unit, (WeightedVariance(signal, _frequency_power(power)),), _first_variance, np.ones_like)
 
 
@@ -65,13 +65,8 @@ def squared_deviation(name: str, signal: LoopSignal, target: float, *, one_sided
         off = variances - target
         return np.maximum(off, 0.0) if one_sided else off
 
-    return Objective(
-        name,
-        "",
-        (WeightedVariance(signal, _frequency_power(0)),),
-        lambda v: miss(v)[:, 0] ** 2,
-        lambda v: 2.0 * miss(v),
-    )
+    row = WeightedVariance(signal, _frequency_power(0))
+    return Objective(name, "", (row,), lambda v: miss(v)[:, 0] ** 2, lambda v: 2.0 * miss(v))
 
 
 def motion_interruptions(height: float, friction: float = 0.25) -> Objective:
@@ -87,12 +82,14 @@ def motion_interruptions(height: float, friction: float = 0.25) -> Objective:
 
     def value(v: Array) -> Array:
         with np.errstate(invalid="ignore"):
+            # 60 s a minute
             made = 60.0 / math.pi * np.sqrt(v[:, 1] / v[:, 0]) * np.exp(-((friction * G) ** 2) / (2.0 * v[:, 0]))
         return np.where(np.isfinite(v[:, 0]), made, np.inf)
 
     def slope(v: Array) -> Array:
-        of = value(v)
-        return np.stack([of * ((friction * G) ** 2 / (2.0 * v[:, 0] ** 2) - 0.5 / v[:, 0]), 0.5 * of / v[:, 1]], axis=1)
+        rate = value(v)
+        by_first = rate * ((friction * G) ** 2 / (2.0 * v[:, 0] ** 2) - 0.5 / v[:, 0])
+        return np.stack([by_first, 0.5 * rate / v[:, 1]], axis=1)
 
     rows = (WeightedVariance(LoopSignal.OUTPUT, lateral), WeightedVariance(LoopSignal.OUTPUT, lambda w: w * lateral(w)))
     return Objective("motion interruptions", "1/min", rows, value, slope)
@@ -107,7 +104,7 @@ def motion_sickness(lever: float) -> Objective:
 
     def score(v: Array) -> tuple[Array, Array]:
         ratio = 0.5 * np.log10(v[:, 1] / v[:, 0])
-        return (np.log10(0.798 * np.sqrt(v[:, 1]) / G) + 0.819 - 2.32 * ratio**2) / 0.4, ratio
+        return (np.log10(0.798 * np.sqrt(v[:, 1]) / G) + 0.819 - 2.32 * ratio**2) / 0.4, ratio  # constants as above
 
     def value(v: Array) -> Array:
         with np.errstate(invalid="ignore"):
@@ -118,10 +115,9 @@ def motion_sickness(lever: float) -> Objective:
         z, ratio = score(v)
         density = np.exp(-0.5 * z**2) / math.sqrt(2.0 * math.pi) / 0.4  # normal density; 0.4 as in `sea.response`
         half = 0.5 / math.log(10.0)
-        return np.stack(
-            [density * 2.32 * 2.0 * ratio * half / v[:, 0], density * (1.0 - 2.32 * 2.0 * ratio) * half / v[:, 1]],
-            axis=1,
-        )
+        by_first = density * 2.32 * 2.0 * ratio * half / v[:, 0]  # 2.32 as above
+        by_second = density * (1.0 - 2.32 * 2.0 * ratio) * half / v[:, 1]  # 2.32 as above
+        return np.stack([by_first, by_second], axis=1)
 
     rows = (
         WeightedVariance(LoopSignal.OUTPUT, lambda w: abs(lever) * w),

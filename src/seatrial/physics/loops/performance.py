@@ -81,7 +81,7 @@ class Performance:
         return tuple(np.ascontiguousarray(part) for part in (seen.real, seen.imag, wide.real, wide.imag))  # type: ignore[return-value]
 
     def evaluate(self, gains: Array, *, with_Ms: bool = True) -> LoopEvaluation:
-        """Loops with the gains (m, g); without the peak, `peak` only states whether a loop is stable (zero).
+        """Return loops with the gains (m, g); without the peak, `peak` only states whether a loop is stable (zero).
 
         Raises:
             InputError: there is not one gain for each term.
@@ -98,7 +98,7 @@ class Performance:
         return LoopEvaluation(out, peak)
 
     def variance_gradients(self, gains: Array) -> Array:
-        """d variances / d gains at one point (g,), shape (r, g); the loop must be stable."""
+        """Return d variances / d gains at one point (g,), shape (r, g); the loop must be stable."""
         re, im, _, _ = self._open_loop_tables
         out = np.empty((len(self.variances), len(gains)))
         variance_gradients(np.ascontiguousarray(gains, dtype=np.float64), re, im, *self._node_weights, out)
@@ -124,7 +124,7 @@ class Performance:
 
 
 def _closest_to_zero(near: np.ndarray) -> float:
-    """Where in -1 to 1 the complex parabola through three points comes nearest to zero."""
+    """Return where in -1 to 1 the complex parabola through three points comes nearest to zero."""
     b, c = 0.5 * (near[2] - near[0]), 0.5 * (near[2] + near[0]) - near[1]
     u = 0.0
     for _ in range(4):
@@ -137,7 +137,7 @@ def _closest_to_zero(near: np.ndarray) -> float:
 
 
 def distinct_variances(objectives: tuple[Objective, ...]) -> tuple[tuple[WeightedVariance, ...], list[list[int]]]:
-    """All different rows of some objectives, outputs first, and for each objective where its own stand."""
+    """Return all different rows of some objectives, outputs first, and for each objective where its own stand."""
     different = dict.fromkeys(row for objective in objectives for row in objective.variances)
     rows = sorted(different, key=lambda row: row.signal is LoopSignal.ACTUATOR)
     return tuple(rows), [[rows.index(row) for row in objective.variances] for objective in objectives]

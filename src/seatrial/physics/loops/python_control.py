@@ -13,14 +13,14 @@ if TYPE_CHECKING:
 
 
 def transfer_function(block: Block) -> "TransferFunction":
-    """The block as python-control's transfer function."""
+    """Return the block as python-control's transfer function."""
     import control
 
     return control.TransferFunction(np.array(block.num), np.array(block.den), name=block.name.replace(" ", "_"))
 
 
 def block_from_system(system: "TransferFunction | StateSpace", name: str) -> Block:
-    """A continuous system of one input and one output as a block.
+    """Return a continuous system of one input and one output as a block.
 
     Raises:
         InputError: it is in discrete time, has several inputs or outputs, or is improper.
@@ -36,7 +36,7 @@ def block_from_system(system: "TransferFunction | StateSpace", name: str) -> Blo
 
 
 def controller_transfer_function(loop: TransferLoop) -> "TransferFunction":
-    """K(s) at the loop's gains, from the output to the actuator; the loop feeds back minus it."""
+    """Return K(s) at the loop's gains, from the output to the actuator; the loop feeds back minus it."""
     import control
 
     parallel = control.TransferFunction([0.0], [1.0])
@@ -46,7 +46,7 @@ def controller_transfer_function(loop: TransferLoop) -> "TransferFunction":
 
 
 def open_loop_transfer_function(loop: TransferLoop) -> "TransferFunction":
-    """L(s) at the loop's gains, from the common denominator."""
+    """Return L(s) at the loop's gains, from the common denominator."""
     import control
 
     d, n = loop.polynomials

@@ -24,7 +24,7 @@ def weights(count: int) -> Array:
 
 
 def nodes(edges: tuple[float, ...], count: int) -> tuple[Array, Array]:
-    """`count` nodes, between all edges as many, even in their logarithm, and the width that each stands for."""
+    """Return `count` nodes, as many between all edges, even in their logarithm, and the width that each stands for."""
     made: list[Array] = []
     width: list[Array] = []
     own = count // (len(edges) - 1)
@@ -36,7 +36,7 @@ def nodes(edges: tuple[float, ...], count: int) -> tuple[Array, Array]:
 
 
 def gather_nodes(omega: Array, energy: Array, count: int) -> tuple[Array, Array]:
-    """The same sums over energy on `count` nodes: each energy goes to its eight neighbours by Lagrange.
+    """Return the same sums over energy on `count` nodes: each energy goes to its eight neighbours by Lagrange.
 
     What is summed must be smooth over arsinh(20 omega), as the response of a loop is. Single energies may come out
     negative.

@@ -10,13 +10,16 @@ from seatrial.core.values import Array, InputError
 from seatrial.physics.loops.block import Block
 from seatrial.physics.loops.loop import TransferLoop
 
+_LEAST_SIZE = 1e-3  # rad/s, least scale of the states; chosen
+_NO_REST = 1e-12  # of the largest coefficient, below which a rest of a division is rounding
+
 
 def controllable_form(block: Block) -> tuple[Array, Array, Array, float]:
-    """A, b, c, d of a block: controllable form with each state scaled by the size of the poles."""
+    """Return A, b, c, d of a block: controllable form with each state scaled by the size of the poles."""
     den = np.array(block.den) / block.den[0]
     num = np.concatenate([np.zeros(len(den) - len(block.num)), np.array(block.num) / block.den[0]])
     n, d = block.order, float(num[0])
-    size = max(float(np.abs(den[-1])) ** (1.0 / n), 1e-3) if n and den[-1] else 1.0
+    size = max(float(np.abs(den[-1])) ** (1.0 / n), _LEAST_SIZE) if n and den[-1] else 1.0
     powers = size ** np.arange(n)
     A = np.diag(np.full(max(n - 1, 0), size), -1) if n else np.zeros((0, 0))
     b = np.zeros(n)
@@ -51,7 +54,7 @@ def plant_model(loop: TransferLoop) -> Model:
 
 
 def _observable_model(n: int, output: str, inputs: tuple[str, str], meanings: tuple[str, str, str]) -> Model:
-    """The model of order n with all coefficients zero; meanings: of the coefficients a, b and d."""
+    """Return the model of order n with all coefficients zero; meanings: of the coefficients a, b and d."""
     from seatrial.core.equations import Sheet
 
     sheet = Sheet(f"linear_plant_{n}", "assembled from the loop's blocks", "a plant known by its transfer functions")
@@ -80,10 +83,10 @@ def _over_common_denominator(plant: Block, disturbance: Block) -> tuple[Array, A
 
 
 def _quotient(dividend: Array, divisor: Array) -> Array | None:
-    """whole / part where it leaves no rest."""
+    """Return dividend / divisor where it leaves no rest."""
     if len(divisor) > len(dividend):
         return None
     quotient, rest = np.polydiv(dividend, divisor)
-    if np.any(np.abs(rest) > 1e-12 * np.abs(dividend).max()):
+    if np.any(np.abs(rest) > _NO_REST * np.abs(dividend).max()):
         return None
     return np.atleast_1d(np.asarray(quotient, dtype=np.float64))

@@ -17,18 +17,18 @@ from seatrial.physics.loops.loop import Term, TransferLoop
 from seatrial.physics.loops.margins import margins
 
 ADDED_GAINS = ("KB", "KL")
-ADDED_GAIN_LIMIT = 100.0
+ADDED_GAIN_LIMIT = 100.0  # to either side; the largest bound of the published gains
 # Found by `python benchmarks/fin_structures.py`: CMA-ES over both frequencies and dampings, the five gains by SLSQP at
 # each, for the least mean roll variance in three beam seas of 3.3 m (ITTC, JONSWAP, ITTC short-crested) with no more
 # fin-rate energy than the published gains in any and Ms <= 1.9; frequencies and dampings rounded, gains found again
 # and rounded so that no sea asks for more rate.
 FREQUENCIES_AND_DAMPINGS = (0.53, 0.66), (2.7, 0.4)
-SEARCHED_GAINS = {"KP": 34.2, "KI": 0.0, "KD": 0.0, "KB": 24.4, "KL": -32.8}
+SEARCHED_GAINS = {"KP": 34.2, "KI": 0.0, "KD": 0.0, "KB": 24.4, "KL": -32.8}  # found with these, as above
 SOURCE = "searched, see seatrial.physics.loops.structures"
 
 
 def band_pass(omega: float, damping: float) -> Block:
-    """2 zeta omega s / (s^2 + 2 zeta omega s + omega^2): 1 at omega [rad/s]; its width is 2 zeta omega.
+    """Return 2 zeta omega s / (s^2 + 2 zeta omega s + omega^2): 1 at omega [rad/s]; its width is 2 zeta omega.
 
     Raises:
         InputError: frequency or damping is not positive.
@@ -37,8 +37,8 @@ def band_pass(omega: float, damping: float) -> Block:
     return Block("band-pass", (width, 0.0), (1.0, width, omega**2))
 
 
-def low_pass(omega: float, damping: float = 0.7) -> Block:
-    """omega^2 / (s^2 + 2 zeta omega s + omega^2): 1 at rest, falling above omega [rad/s].
+def low_pass(omega: float, damping: float = 0.7) -> Block:  # damping about that of Butterworth's filter
+    """Return omega^2 / (s^2 + 2 zeta omega s + omega^2): 1 at rest, falling above omega [rad/s].
 
     Raises:
         InputError: frequency or damping is not positive.
@@ -62,6 +62,12 @@ def notch(omega: float, damping: float, depth: float) -> Block:
     return Block("notch", (1.0, depth * width, omega**2), (1.0, width, omega**2))
 
 
+def high_pass(omega: float, damping: float) -> Block:
+    """Return s^2 / (s^2 + 2 zeta omega s + omega^2): 1 far above omega [rad/s], falling below."""
+    width = 2.0 * _positive("high-pass", "damping", damping) * _positive("high-pass", "frequency", omega)
+    return Block("high-pass", (1.0, 0.0, 0.0), (1.0, width, omega**2))
+
+
 def _positive(block: str, quantity: str, value: float) -> float:
     if not (np.isfinite(value) and value > 0.0):
         raise InputError(f"{block}: the {quantity} must be positive, not {value:g}")
@@ -69,7 +75,7 @@ def _positive(block: str, quantity: str, value: float) -> float:
 
 
 def with_terms(loop: TransferLoop, *extra: Term, gains: tuple[Parameter, ...]) -> TransferLoop:
-    """The loop with more terms beside its own; `gains`: one for each, in the order of the terms.
+    """Return the loop with more terms beside its own; `gains`: one for each, in the order of the terms.
 
     Raises:
         InputError: gains and terms do not go together, a gain lacks a bound, or the loop has a term of that name.
@@ -86,7 +92,7 @@ def with_terms(loop: TransferLoop, *extra: Term, gains: tuple[Parameter, ...]) -
 
 
 def with_filters(loop: TransferLoop, *filters: Block) -> TransferLoop:
-    """The loop with fixed filters common to all its terms, notches for example."""
+    """Return the loop with fixed filters common to all its terms, notches for example."""
     return replace(loop, filters=(*loop.filters, *filters))
 
 
@@ -94,7 +100,7 @@ BAND_PASS, LOW_PASS = band_pass(*FREQUENCIES_AND_DAMPINGS[0]), low_pass(*FREQUEN
 
 
 def five_gain_loop(loop: TransferLoop, band: Block = BAND_PASS, low: Block = LOW_PASS) -> TransferLoop:
-    """A fin loop with a band-pass (KB) and a low-pass (KL) beside its three terms; added gains may be negative.
+    """Return a fin loop with a band-pass (KB) and a low-pass (KL) beside its three terms; added gains may be negative.
 
     Its gains are those found for the published loop with washout where they keep this loop stable with Ms <= 2; its
     own, with nothing of the added terms, where not (another plant or preamplifier).

@@ -13,8 +13,9 @@ from seatrial.physics.manoeuvres.measures import measures
 from seatrial.physics.manoeuvres.recognition import ManoeuvreKind, ObservedManoeuvre
 
 RESOLUTION = "IMO MSC.137(76)"
-MINIMUM_LENGTH = 100.0
-RUDDER_TOLERANCE = 1.0
+MINIMUM_LENGTH = 100.0  # m, MSC.137(76), of the ships that it is for
+RUDDER_TOLERANCE = 1.0  # deg by which a rudder angle may be off; chosen
+_HEADING_TOLERANCE = 0.2  # of a switching heading, by which it may be off; chosen
 
 
 @dataclass(frozen=True)
@@ -40,13 +41,9 @@ class ImoCriterion:
 
 
 def imo_criteria(
-    record: Record,
-    length: float,
-    scale: float = 1.0,
-    switching: float | None = None,
-    reference: Record | None = None,
+    record: Record, length: float, scale: float = 1.0, switching: float | None = None, reference: Record | None = None
 ) -> tuple[ImoCriterion, ...]:
-    """The standards that the record's manoeuvre allows to judge; empty where it allows none.
+    """Return the standards that the record's manoeuvre allows to judge; empty where it allows none.
 
     Angles and lengths over L are the same at model scale; the time L/V on which overshoot limits rest is scaled by the
     square root of `scale` (Froude).
@@ -81,19 +78,19 @@ def imo_criteria(
 
 
 def first_overshoot_limit(time: float) -> float:
-    """Limit [deg] of the first overshoot of a 10/10 zigzag, L/V in s: 5.3.3.1."""
+    """Return the limit [deg] of the first overshoot of a 10/10 zigzag, L/V in s: 5.3.3.1."""
     return float(np.clip(5.0 + 0.5 * time, 10.0, 20.0))  # deg; time is L/V in s; MSC.137(76), 5.3.3
 
 
 def second_overshoot_limit(time: float) -> float:
-    """Limit [deg] of the second overshoot of a 10/10 zigzag, L/V in s: 5.3.3.2."""
+    """Return the limit [deg] of the second overshoot of a 10/10 zigzag, L/V in s: 5.3.3.2."""
     return float(np.clip(17.5 + 0.75 * time, 25.0, 40.0))  # deg; time is L/V in s; MSC.137(76), 5.3.3
 
 
 def _turning_limits(values: dict[str, float]) -> list[tuple[str, float, str]]:
-    if values["rudder_deg"] < 35.0 - RUDDER_TOLERANCE:
+    if values["rudder_deg"] < 35.0 - RUDDER_TOLERANCE:  # deg, the largest of most rudders
         return []
-    return [("advance_L", 4.5, "5.3.1"), ("tactical_diameter_L", 5.0, "5.3.1")]
+    return [("advance_L", 4.5, "5.3.1"), ("tactical_diameter_L", 5.0, "5.3.1")]  # ship lengths, MSC.137(76)
 
 
 def _zigzag_limits(
@@ -102,17 +99,14 @@ def _zigzag_limits(
     rudder, heading = values["rudder_deg"], math.degrees(switching) if switching else switching_heading(manoeuvre)
     wanted: list[tuple[str, float, str]] = []
     if abs(rudder - 10.0) <= RUDDER_TOLERANCE:
-        wanted.append(("initial_turning_L", 2.5, "5.3.2"))
-    if (
-        abs(rudder - 10.0) <= RUDDER_TOLERANCE
-        and abs(heading - 10.0) <= 0.2 * 10.0
-        and values.get("approach_speed", 0.0) > 0.0
-    ):
-        time = length / values["approach_speed"] * math.sqrt(scale)
-        wanted.append(("overshoot_1_deg", first_overshoot_limit(time), "5.3.3.1"))
-        wanted.append(("overshoot_2_deg", second_overshoot_limit(time), "5.3.3.2"))
-    if abs(rudder - 20.0) <= RUDDER_TOLERANCE and abs(heading - 20.0) <= 0.2 * 20.0:
-        wanted.append(("overshoot_1_deg", 25.0, "5.3.3.3"))
+        wanted.append(("initial_turning_L", 2.5, "5.3.2"))  # ship lengths, MSC.137(76)
+        if abs(heading - 10.0) <= _HEADING_TOLERANCE * 10.0 and values.get("approach_speed", 0.0) > 0.0:
+            time = length / values["approach_speed"] * math.sqrt(scale)
+            wanted.append(("overshoot_1_deg", first_overshoot_limit(time), "5.3.3.1"))
+            wanted.append(("overshoot_2_deg", second_overshoot_limit(time), "5.3.3.2"))
+    twenty = 20.0  # deg, rudder and heading of the zigzag 20/20
+    if abs(rudder - twenty) <= RUDDER_TOLERANCE and abs(heading - twenty) <= _HEADING_TOLERANCE * twenty:
+        wanted.append(("overshoot_1_deg", 25.0, "5.3.3.3"))  # deg, MSC.137(76)
     return wanted
 
 

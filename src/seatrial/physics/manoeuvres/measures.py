@@ -12,12 +12,14 @@ from seatrial.physics.manoeuvres.track import Swing, mean_between, speed, steady
 QUARTER_TURN, HALF_TURN = float(np.radians(90.0)), float(np.radians(180.0))
 INITIAL_TURN = float(np.radians(10.0))
 PEAK_HALF_WIDTH = 0.04  # of the swing's samples, over which its peak is fitted; chosen
+_FEWEST_SAMPLES = 5  # of a swing that has a peak; chosen
+_LAST_SHARE = 0.1  # of the time amidships, over which the residual rate is taken; chosen
 
 
 def measures(
     record: Record, length: float, switching: float | None = None, reference: Record | ObservedManoeuvre | None = None
 ) -> dict[str, float]:
-    """Measures of the manoeuvre the record shows, by name; those it does not allow are absent.
+    """Return measures of the manoeuvre the record shows, by name; those it does not allow are absent.
 
     Args:
         record: needs ``psi`` and ``delta``; ``x0``, ``y0`` for distances, ``u``, ``v``, ``r`` for speeds and rates.
@@ -99,7 +101,7 @@ def _peaks(manoeuvre: ObservedManoeuvre) -> dict[int, tuple[float, float]]:
 
 
 def _heading_off_course(manoeuvre: ObservedManoeuvre, k: int) -> float:
-    """Heading [rad] off the first course at execute k + 1, positive to the side of the hold before it."""
+    """Return the heading [rad] off the first course at execute k + 1, positive to the side of the hold before it."""
     return float(np.sign(manoeuvre.holds[k - 1].angle)) * (
         manoeuvre.psi_at(manoeuvre.executes[k]) - manoeuvre.psi_at(manoeuvre.executes[0])
     )
@@ -108,7 +110,7 @@ def _heading_off_course(manoeuvre: ObservedManoeuvre, k: int) -> float:
 def _peak(time: Array, heading: Array, start: float, stop: float) -> tuple[float, float] | None:
     """Time and size of the largest heading between two times, by a parabola about it; None if it lies at the end."""
     rows = np.flatnonzero((time >= start) & (time <= stop))
-    if len(rows) < 5:
+    if len(rows) < _FEWEST_SAMPLES:
         return None
     top = int(np.argmax(heading[rows]))
     half = max(2, round(PEAK_HALF_WIDTH * len(rows)))
@@ -125,7 +127,7 @@ def _peak(time: Array, heading: Array, start: float, stop: float) -> tuple[float
 
 
 def _distance_run(record: Record, start: float, stop: float) -> float | None:
-    """Distance run through the water (or over ground, as the velocities are) between two times [m]."""
+    """Return the distance run through the water (or over ground, as the velocities are) between two times [m]."""
     flow = speed(record)
     if flow is None:
         return None
@@ -152,11 +154,11 @@ def _turning_circle_measures(manoeuvre: ObservedManoeuvre, length: float) -> dic
 
 
 def _pull_out_measures(manoeuvre: ObservedManoeuvre) -> dict[str, float]:
-    """Yaw rate left when the rudder has been amidships: mean over the last tenth of that time."""
+    """Return the yaw rate left when the rudder has been amidships: mean over the last tenth of that time."""
     hold, execute = manoeuvre.longest_hold
     swing = Swing(manoeuvre, execute, float(np.sign(hold.angle)))
     made = _approach_measures(manoeuvre, swing, hold.angle)
     released, stop = float(manoeuvre.record.time[hold.last - 1]), float(manoeuvre.record.time[-1])
-    last = stop - 0.1 * (stop - released)
+    last = stop - _LAST_SHARE * (stop - released)
     rate = swing.side * (manoeuvre.psi_at(stop) - manoeuvre.psi_at(last)) / (stop - last)
     return {**made, "residual_yaw_rate_deg_s": float(np.degrees(rate))}

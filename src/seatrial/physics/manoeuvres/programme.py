@@ -5,8 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from seatrial.core.values import Array, InputError
-from seatrial.physics.manoeuvres import schedule, turning, zigzag
-from seatrial.physics.manoeuvres.steering import Steering
+from seatrial.physics.manoeuvres import helmsman
+from seatrial.physics.manoeuvres.helmsman import Steering
 
 SIDES = {"starboard": 1, "port": -1}
 ZIGZAG_EXECUTES = 5  # executes of a zigzag where none are given: two overshoots each side; chosen
@@ -14,6 +14,9 @@ LENGTHS_PER_EXECUTE = 40.0  # longest time of an execute, ship lengths travelled
 TURNING_CIRCLE_TURN = 540.0  # deg of heading change, one and a half turns: enough for a steady turn
 PULL_OUT_TURN = 360.0
 SPIRAL_HOLD_LENGTHS = 15.0  # ship lengths travelled at each rudder angle; chosen
+_CIRCLE_LENGTHS, _PULL_OUT_LENGTHS, _PRBS_LENGTHS = 150.0, 200.0, 200.0  # ship lengths at the longest; chosen
+_MOST_EXECUTES = 50  # of each angle; guards against a slip
+_RUDDER, _SPIRAL_RUDDER = 20.0, 25.0  # deg, where none is given; chosen
 
 
 @dataclass(frozen=True)
@@ -36,7 +39,7 @@ class Programme:
 
 
 def programme(text: str) -> Programme:
-    """The programme that `text` names, fields separated by colons, angles in degrees.
+    """Return the programme that `text` names, fields separated by colons, angles in degrees.
 
     ``zigzag:20/10[:port]`` rudder angle / switching heading, five executes; ``consecutive-zigzags[:5]`` 10/10 to 30/30
     with so many executes each; ``turning-circle:35[:port]`` 540 deg of heading; ``pull-out:20[:port]``;
@@ -86,59 +89,58 @@ def _zigzag(text: str, fields: list[str]) -> Programme:
 def _consecutive_zigzags(text: str, fields: list[str]) -> Programme:
     _refuse_extra_fields(fields, 1)
     each = int(fields[0]) if fields else ZIGZAG_EXECUTES
-    if not 1 <= each <= 50:
-        raise InputError(f"{each} executes of each angle are not between 1 and 50")
+    if not 1 <= each <= _MOST_EXECUTES:
+        raise InputError(f"{each} executes of each angle are not between 1 and {_MOST_EXECUTES}")
     # deg, zigzag angles 10/10 to 30/30; chosen
     executes = [(angle, angle) for angle in (10.0, 15.0, 20.0, 25.0, 30.0) for _ in range(each)]
     return _zigzag_programme(text, "consecutive-zigzags", executes, 1)
 
 
 def _zigzag_programme(text: str, kind: str, executes: list[tuple[float, float]], side: int) -> Programme:
-    table = zigzag.table(executes, side)
-    count = len(executes)
-    return Programme(
-        text, kind, zigzag.helmsman, lambda steering: steering.memory(count, table), LENGTHS_PER_EXECUTE * count
-    )
+    table, count = helmsman.zigzag_table(executes, side), len(executes)
+    longest = LENGTHS_PER_EXECUTE * count
+    return Programme(text, kind, helmsman.zigzag, lambda steering: steering.memory(count, table), longest)
 
 
 def _turning_circle(text: str, fields: list[str]) -> Programme:
     side, fields = _split_side(fields)
     _refuse_extra_fields(fields, 1)
     table = side * math.radians(_angle(fields[0])), side * math.radians(TURNING_CIRCLE_TURN)
-    return Programme(text, "turning-circle", turning.helmsman, lambda steering: steering.memory(1, table), 150.0)
+    return Programme(text, "turning-circle", helmsman.turning, lambda ship: ship.memory(1, table), _CIRCLE_LENGTHS)
 
 
 def _pull_out(text: str, fields: list[str]) -> Programme:
     side, fields = _split_side(fields)
     _refuse_extra_fields(fields, 1)
-    table = side * math.radians(_angle(fields[0] if fields else "20")), side * math.radians(PULL_OUT_TURN)
-    return Programme(text, "pull-out", turning.helmsman, lambda steering: steering.memory(2, table), 200.0)
+    rudder = _angle(fields[0]) if fields else _RUDDER
+    table = side * math.radians(rudder), side * math.radians(PULL_OUT_TURN)
+    return Programme(text, "pull-out", helmsman.turning, lambda ship: ship.memory(2, table), _PULL_OUT_LENGTHS)
 
 
 def _spiral(text: str, fields: list[str]) -> Programme:
     side, fields = _split_side(fields)
     _refuse_extra_fields(fields, 1)
-    steps = schedule.spiral_steps(_angle(fields[0]) if fields else 25.0, side)
+    steps = helmsman.spiral_steps(_angle(fields[0]) if fields else _SPIRAL_RUDDER, side)
 
     def memory(steering: Steering) -> Array:
         return steering.memory(len(steps), (SPIRAL_HOLD_LENGTHS * steering.characteristic_time, *steps))
 
-    return Programme(text, "spiral", schedule.helmsman, memory, SPIRAL_HOLD_LENGTHS * len(steps) + 10.0)
+    return Programme(text, "spiral", helmsman.timetable, memory, SPIRAL_HOLD_LENGTHS * len(steps) + 10.0)
 
 
 def _prbs(text: str, fields: list[str]) -> Programme:
     _refuse_extra_fields(fields, 3)
-    amplitude = _angle(fields[0]) if fields else 20.0
+    amplitude = _angle(fields[0]) if fields else _RUDDER
     stated = len(fields) > 1 and fields[1] != ""
     hold = float(fields[1]) if stated else 0.0
     if stated and not (math.isfinite(hold) and hold > 0.0):
         raise InputError(f"the switching time {fields[1]} s is not positive")
-    steps = schedule.binary_sequence(amplitude, int(fields[2]) if len(fields) > 2 else 0)
+    steps = helmsman.binary_sequence(amplitude, int(fields[2]) if len(fields) > 2 else 0)
 
     def memory(steering: Steering) -> Array:
         return steering.memory(len(steps), (hold or steering.characteristic_time, *steps))
 
-    return Programme(text, "prbs", schedule.helmsman, memory, 200.0)
+    return Programme(text, "prbs", helmsman.timetable, memory, _PRBS_LENGTHS)
 
 
 _KINDS: dict[str, tuple[Callable[[str, list[str]], Programme], str]] = {

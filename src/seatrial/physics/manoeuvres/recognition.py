@@ -17,6 +17,12 @@ MINIMUM_RUDDER = float(np.radians(0.5))
 TURN_HEADING_CHANGE = float(np.radians(135.0))
 # course keeping before the first execute: off the common level by a quarter, and the heading less than 8 deg away after
 ANGLE_TOLERANCE, COURSE_TOLERANCE = 0.25, float(np.radians(8.0))
+# shares: of an angle that is amidships, of samples there that make a stop, of the largest rate that is a slew; of a
+# slew from which its beginning is extrapolated; chosen
+_AMIDSHIPS, _STOP, _SLEWING, _SLEW_PART = 0.1, 0.3, 0.2, (0.25, 0.75)
+_CHECKED_SHARE = 0.8  # of executes at which a zigzag's heading lies to the side steered from; chosen
+_FEWEST_ANGLES, _STANDING = 6, 0.02  # rudder angles of a spiral, and share of the samples at each; chosen
+_TIME_TOLERANCE = 1e-3  # of a sampling step, by which times may differ: rounding
 
 
 class ManoeuvreKind(StrEnum):
@@ -48,7 +54,7 @@ class ObservedManoeuvre:
 
     @classmethod
     def from_record(cls, record: Record) -> "ObservedManoeuvre":
-        """Heading and rudder of a record, missing samples bridged by straight lines.
+        """Return the heading and rudder of a record, missing samples bridged by straight lines.
 
         Raises:
             InputError: channel psi or delta is missing or holds fewer than two values.
@@ -61,8 +67,8 @@ class ObservedManoeuvre:
         Raises:
             InputError: its channel psi is missing or holds fewer than two values, or its times are not this one's.
         """
-        time = self.record.time
-        if len(record) != len(time) or not np.allclose(record.time, time, rtol=0.0, atol=1e-3 * self.record.dt):
+        time, slack = self.record.time, _TIME_TOLERANCE * self.record.dt
+        if len(record) != len(time) or not np.allclose(record.time, time, rtol=0.0, atol=slack):
             raise InputError(
                 f"record '{record.name}' is not sampled at the times of '{self.record.name}', at whose executes it is "
                 "to be measured; resample it"
@@ -109,26 +115,26 @@ class ObservedManoeuvre:
         if base == hold.angle:
             return float(self.record.time[first])
         share = (self.delta[first : hold.last] - base) / (hold.angle - base)
-        quarter, three = (self._crossing_time(share, first, hold.first, level) for level in (0.25, 0.75))
+        quarter, three = (self._crossing_time(share, first, hold.first, level) for level in _SLEW_PART)
         return max(quarter - 0.5 * (three - quarter), float(self.record.time[before.first if before else first]))
 
     def _is_direct_reversal(self, before: Hold, hold: Hold) -> bool:
-        """Whether the rudder went from one hold to the next without a stop amidships."""
+        """Return whether the rudder went from one hold to the next without a stop amidships."""
         between = self.delta[before.last : hold.first]
-        return len(between) < 2 or float(np.mean(np.abs(between) < 0.1 * abs(hold.angle))) < 0.3
+        return len(between) < 2 or float(np.mean(np.abs(between) < _AMIDSHIPS * abs(hold.angle))) < _STOP
 
     def _last_row_before_slew(self, hold: Hold) -> int:
-        """The last row before a hold at which the rudder had not yet begun to slew to it."""
+        """Return the last row before a hold at which the rudder had not yet begun to slew to it."""
         rates = np.diff(self.delta[: hold.first + 1]) * np.sign(hold.angle)
         if not len(rates) or rates.max() <= 0.0:
             return 0
-        slewing = rates > 0.2 * rates.max()
+        slewing = rates > _SLEWING * rates.max()
         end = int(np.flatnonzero(slewing)[-1])
         before = np.flatnonzero(~slewing[:end])
         return int(before[-1]) + 1 if len(before) else 0
 
     def _crossing_time(self, share: Array, first: int, hold_start: int, level: float) -> float:
-        """Time at which `share` last rises through `level` on its way to the hold."""
+        """Return the time at which `share` last rises through `level` on its way to the hold."""
         reached = hold_start - first + int(np.argmax(share[hold_start - first :] >= level))
         below = np.flatnonzero(share[: reached + 1] < level)
         row = int(below[-1]) if len(below) else 0
@@ -144,7 +150,7 @@ class ObservedManoeuvre:
         return self.holds[k], self.executes[k]
 
     def psi_at(self, time: float) -> float:
-        """Heading [rad], linear between samples."""
+        """Return the heading [rad], linear between samples."""
         return float(np.interp(time, self.record.time, self.psi))
 
     @cached_property
@@ -161,14 +167,14 @@ class ObservedManoeuvre:
         if all(a != b for a, b in pairwise(sides)):
             course = self.psi_at(times[0])
             checked = [s * (self.psi_at(t) - course) < 0.0 for s, t in zip(sides[1:], times[1:], strict=True)]
-            return ManoeuvreKind.ZIGZAG if np.mean(checked) >= 0.8 else ManoeuvreKind.OTHER
+            return ManoeuvreKind.ZIGZAG if np.mean(checked) >= _CHECKED_SHARE else ManoeuvreKind.OTHER
         return ManoeuvreKind.OTHER
 
     def _kind_of_turn(self) -> ManoeuvreKind:
         hold, execute = self.longest_hold
         if abs(self.psi[min(hold.last, len(self.psi) - 1)] - self.psi_at(execute)) < TURN_HEADING_CHANGE:
             return ManoeuvreKind.OTHER
-        amidships = np.abs(self.delta[hold.last :]) < 0.1 * abs(hold.angle)
+        amidships = np.abs(self.delta[hold.last :]) < _AMIDSHIPS * abs(hold.angle)
         long = np.count_nonzero(amidships) > 0.25 * (hold.last - hold.first)
         return ManoeuvreKind.PULL_OUT if long else ManoeuvreKind.TURNING_CIRCLE
 
@@ -193,7 +199,7 @@ class _TransferredManoeuvre(ObservedManoeuvre):
 
 
 def recognise_manoeuvre(record: Record) -> ManoeuvreKind:
-    """Which manoeuvre a record shows, from its channels ``delta`` and ``psi`` alone.
+    """Return which manoeuvre a record shows, from its channels ``delta`` and ``psi`` alone.
 
     Raises:
         InputError: one of the two is missing or empty.
@@ -202,7 +208,7 @@ def recognise_manoeuvre(record: Record) -> ManoeuvreKind:
 
 
 def to_starboard(record: Record, symbol: str) -> Array:
-    """Values of a channel whose positive direction is starboard or port, turned to positive starboard."""
+    """Return values of a channel whose positive direction is starboard or port, turned to positive starboard."""
     channel = record.channel(symbol)
     if np.count_nonzero(np.isfinite(channel.values)) < 2:
         raise InputError(f"record '{record.name}': channel '{symbol}' holds fewer than two values")
@@ -210,7 +216,7 @@ def to_starboard(record: Record, symbol: str) -> Array:
 
 
 def _heading(record: Record) -> Array:
-    """Heading [rad], positive to starboard, unwrapped and bridged, shape (n,)."""
+    """Return the heading [rad], positive to starboard, unwrapped and bridged, shape (n,)."""
     psi = to_starboard(record, "psi")
     known = np.isfinite(psi)
     return np.interp(record.time, record.time[known], np.unwrap(psi[known]))
@@ -222,7 +228,7 @@ def _without_gaps(record: Record, values: Array) -> Array:
 
 
 def _find_hold(delta: Array, first: int, last: int) -> Hold | None:
-    """The flat part of rows first..last, or None where the rudder wanders."""
+    """Return the flat part of rows first..last, or None where the rudder wanders."""
     size = np.abs(delta[first:last])
     angle = float(np.median(delta[first:last][size >= (1.0 - HOLD_TOLERANCE) * np.max(size)]))
     flat = np.abs(delta[first:last] - angle) <= HOLD_TOLERANCE * abs(angle)
@@ -235,7 +241,7 @@ def _find_hold(delta: Array, first: int, last: int) -> Hold | None:
 
 
 def _median_angle(holds: list[Hold]) -> float:
-    """Median of the holds' angles without sign, each weighted by its length."""
+    """Return the median of the holds' angles without sign, each weighted by its length."""
     order = sorted(holds, key=lambda h: abs(h.angle))
     share = np.cumsum([h.last - h.first for h in order])
     return abs(order[int(np.searchsorted(share, 0.5 * share[-1]))].angle)
@@ -244,9 +250,9 @@ def _median_angle(holds: list[Hold]) -> float:
 def _is_spiral(delta: Array) -> bool:
     """Whether the rudder stood at six or more angles, large ones on both sides, and changed sides at most twice."""
     levels, counts = np.unique(np.round(np.degrees(delta)), return_counts=True)
-    stood = levels[counts >= 0.02 * len(delta)]
+    stood = levels[counts >= _STANDING * len(delta)]
     largest = float(np.max(np.abs(stood), initial=0.0))
-    if len(stood) < 6 or stood.max() < 0.5 * largest or stood.min() > -0.5 * largest:
+    if len(stood) < _FEWEST_ANGLES or stood.max() < 0.5 * largest or stood.min() > -0.5 * largest:
         return False
     sides = np.sign(delta[np.abs(delta) > np.radians(0.5 * largest)])
     return bool(np.count_nonzero(np.diff(sides)) <= 2)

@@ -7,6 +7,8 @@ import numpy as np
 from seatrial.core.values import Array, Record
 from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre
 
+_TURN_TOLERANCE = 1e-3  # rad by which a full turn may fall short: rounding
+
 
 @dataclass(frozen=True, eq=False)
 class Swing:
@@ -23,7 +25,7 @@ class Swing:
     side: float
 
     def time_of(self, change: float) -> float | None:
-        """First time [s] at which the heading has changed by `change` [rad] to this side, or None."""
+        """Return the first time [s] at which the heading has changed by `change` [rad] to this side, or None."""
         time = self.manoeuvre.record.time
         deviation = self.side * (self.manoeuvre.psi - self.manoeuvre.psi_at(self.start)) - change
         rows = np.flatnonzero((deviation >= 0.0) & (time >= self.start))
@@ -63,7 +65,7 @@ def speed(record: Record) -> Array | None:
 
 
 def mean_between(record: Record, values: Array, start: float, stop: float) -> float | None:
-    """Mean of the finite values with start <= t <= stop, or the nearest sample's, or None."""
+    """Return the mean of the finite values with start <= t <= stop, or the nearest sample's, or None."""
     inside = (record.time >= start) & (record.time <= stop) & np.isfinite(values)
     if inside.any():
         return float(np.mean(values[inside]))
@@ -78,7 +80,7 @@ def steady_turning(swing: Swing, stop: float, length: float, approach: float | N
     """
     turned = swing.side * (swing.manoeuvre.psi_at(stop) - swing.manoeuvre.psi_at(swing.start))
     begin = swing.time_of(turned - np.pi)
-    if turned < 2.0 * np.pi - 1e-3 or begin is None:
+    if turned < 2.0 * np.pi - _TURN_TOLERANCE or begin is None:
         return {}
     record = swing.manoeuvre.record
     rate = np.pi / (stop - begin)

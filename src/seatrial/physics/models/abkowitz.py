@@ -42,6 +42,7 @@ def _series(sheet: Sheet, force: str, terms: Sequence[str], variables: dict[str,
     total = sp.Integer(0)
     for term in terms:
         sub = term.replace("d", r"\delta")
+        # 0.01: characteristic size of a dimensionless coefficient; chosen
         coefficient = sheet.parameter(f"{force}_{term}", 0.0, latex=f"{force}'_{{{sub}}}", scale=0.01)
         total += coefficient * sp.Mul(*(variables[letter] for letter in term.replace("0", "")))
     return total
@@ -64,6 +65,7 @@ def _full_model() -> Model:
         sheet.parameter(n, 0.0, latex=f"{n[0]}'_{{\\dot {n[2]}}}", meaning="added mass, negative", scale=0.01)
         for n in ("X_udot", "Y_vdot", "Y_rdot", "N_vdot", "N_rdot")
     )
+    # 1e-12 m^2/s^2 keeps the root smooth at rest
     U = sheet.bind("U", sp.sqrt(prime * (u**2 + v**2) + (1 - prime) * U_n**2 + sp.Float(1e-12)), SNAME, "m/s")
     variables = {
         "u": sheet.bind("du_p", (u - U_n) / U, f"u', {SNAME}"),

@@ -41,7 +41,7 @@ def _coefficients(sheet: Sheet) -> dict[str, sp.Symbol]:
 
 
 def _fin(sheet: Sheet, number: int) -> tuple[sp.Expr, sp.Expr]:
-    """Force and moment of a fin: its angle held by the servo between samples."""
+    """Return the force and moment of a fin: its angle held by the servo between samples."""
     angle = sheet.input(f"delta_f{number}", positive="down", is_held=True)
     slope = sheet.parameter(f"lift_{number}", 0.0, "N/rad", f"lift slope of fin {number}", scale=1.0)
     x = sheet.parameter(f"x_f{number}", 0.0, "m", f"place of fin {number}, forward of the origin", scale=1.0)
@@ -57,7 +57,7 @@ def _assembled_model(name: str, meaning: str, *, is_held: bool = False) -> Model
 
 
 def _plant(sheet: Sheet, states: tuple[sp.Symbol, ...], c: dict[str, sp.Symbol], *, is_held: bool = False) -> None:
-    """Two coupled equations of motion with the coefficients `c`, whatever they are made of."""
+    """Write two coupled equations of motion with the coefficients `c`, whatever they are made of."""
     z, z_dot, theta, theta_dot = states
     F3 = sheet.input("F3", positive="down", is_held=is_held)
     M5 = sheet.input("M5", positive="bow up", is_held=is_held)

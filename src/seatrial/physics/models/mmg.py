@@ -79,32 +79,15 @@ def _hull(sheet: Sheet, motion: _Motion) -> tuple[sp.Symbol, sp.Symbol, sp.Symbo
     v, r_L, U, s = motion.v, motion.r_L, motion.U, motion.s_u
     r_s = sheet.bind("r_s", s * r_L, "r' U, odd in the direction of advance", "m/s")
     v_s = sheet.bind("v_s", s * v, "v, odd in the direction of advance", "m/s")
-    X_H = sheet.bind(
-        "X_H",
-        motion.q
-        * (
-            s * (-c["R_0"] * U**2 + c["X_vv"] * v**2 + c["X_rr"] * r_L**2 + c["X_vvvv"] * v**4 / U**2)
-            + c["X_vr"] * v * r_L
-        ),
-        f"{YASUKAWA}, hull force polynomial",
-        "N",
-    )
+    even = s * (-c["R_0"] * U**2 + c["X_vv"] * v**2 + c["X_rr"] * r_L**2 + c["X_vvvv"] * v**4 / U**2)
+    X_H = sheet.bind("X_H", motion.q * (even + c["X_vr"] * v * r_L), f"{YASUKAWA}, hull force polynomial", "N")
     cubic = c["Y_vvv"] * v**3 + c["Y_vvr"] * v**2 * r_s + c["Y_vrr"] * v * r_L**2 + c["Y_rrr"] * r_s * r_L**2
-    Y_H = sheet.bind(
-        "Y_H",
-        motion.q * (Y_0 * U**2 + c["Y_v"] * v * U + c["Y_r"] * r_s * U + cubic / U),
-        f"{YASUKAWA}, hull force polynomial; Y_0 {EXTENSION}",
-        "N",
-    )
+    side = Y_0 * U**2 + c["Y_v"] * v * U + c["Y_r"] * r_s * U + cubic / U
+    Y_H = sheet.bind("Y_H", motion.q * side, f"{YASUKAWA}, hull force polynomial; Y_0 {EXTENSION}", "N")
     cubic = c["N_vvv"] * v_s * v**2 + c["N_vvr"] * v**2 * r_L + c["N_vrr"] * v_s * r_L**2 + c["N_rrr"] * r_L**3
-    N_H = sheet.bind(
-        "N_H",
-        motion.q
-        * motion.L
-        * (N_0 * U**2 + c["N_v"] * v_s * U + c["N_r"] * r_L * U + cubic / U + N_rr * r_L * sp.Abs(r_L)),
-        f"{YASUKAWA}, hull force polynomial; N_0, N_rr {EXTENSION}",
-        "N m",
-    )
+    turn = N_0 * U**2 + c["N_v"] * v_s * U + c["N_r"] * r_L * U + cubic / U + N_rr * r_L * sp.Abs(r_L)
+    source = f"{YASUKAWA}, hull force polynomial; N_0, N_rr {EXTENSION}"
+    N_H = sheet.bind("N_H", motion.q * motion.L * turn, source, "N m")
     return X_H, Y_H, N_H
 
 
@@ -120,7 +103,7 @@ class _Propeller:
 
 
 def _propeller_inflow(sheet: Sheet, motion: _Motion) -> sp.Symbol:
-    """Axial inflow u (1 - w_P) of the propeller; no wake where the ship goes astern."""
+    """Return the axial inflow u (1 - w_P) of the propeller; no wake where the ship goes astern."""
     x_P = sheet.parameter("x_P_prime", -0.48, meaning="propeller position over L", source=YASUKAWA, latex="x'_P")
     w_P0 = sheet.parameter("w_P0", meaning="wake fraction straight ahead", latex="w_{P0}")
     C_1 = sheet.parameter("C_1", 0.0, meaning="change of wake with drift, rate", latex="C_1")
@@ -128,11 +111,8 @@ def _propeller_inflow(sheet: Sheet, motion: _Motion) -> sp.Symbol:
     C_2m = sheet.parameter("C_2_minus", 1.0, meaning="limit of 1 - w_P over 1 - w_P0, beta_P < 0", latex="C_2^-")
     beta_P = sheet.bind("beta_P", motion.beta - x_P * motion.r_L / motion.U, f"{YASUKAWA}, beta_P", "rad")
     C_2 = sheet.bind("C_2", sp.Piecewise((C_2p, beta_P > 0), (C_2m, True)), f"{YASUKAWA}, change of wake with beta_P")
-    w_P = sheet.bind(
-        "w_P",
-        1 - (1 - w_P0) * (1 + (1 - sp.exp(-C_1 * sp.Abs(beta_P))) * (C_2 - 1)),
-        f"{YASUKAWA}, change of wake with beta_P",
-    )
+    wake = 1 - (1 - w_P0) * (1 + (1 - sp.exp(-C_1 * sp.Abs(beta_P))) * (C_2 - 1))
+    w_P = sheet.bind("w_P", wake, f"{YASUKAWA}, change of wake with beta_P")
     return sheet.bind("u_P", sp.Piecewise((motion.u * (1 - w_P), motion.u > 0), (motion.u, True)), "u (1 - w_P)", "m/s")
 
 
@@ -155,12 +135,8 @@ def _propeller(sheet: Sheet, motion: _Motion, n: sp.Symbol) -> _Propeller:
     u_a = sheet.bind("u_a", sp.Piecewise((motion.u, motion.u < J_a * n_D), (J_a * n_D, True)), KITAGAWA, "m/s")
     u_s = sheet.bind("u_s", sp.Piecewise((motion.u, motion.u < J_s * n_D), (J_s * n_D, True)), KITAGAWA, "m/s")
     driven = sp.Piecewise((n_D * (k_0 * n_D + k_1 * u_P), n >= 0), (n_D * (a_0 * n_D + a_1 * u_a), True))
-    thrust = sheet.output(
-        "thrust",
-        motion.rho * D_P**2 * (driven + k_2 * u_P * sp.Abs(u_P)),
-        f"{YASUKAWA}, thrust, T = rho n^2 D_P^4 K_T; astern {KITAGAWA}",
-        "N",
-    )
+    force = motion.rho * D_P**2 * (driven + k_2 * u_P * sp.Abs(u_P))
+    thrust = sheet.output("thrust", force, f"{YASUKAWA}, thrust, T = rho n^2 D_P^4 K_T; astern {KITAGAWA}", "N")
     X_P = sheet.bind("X_P", (1 - t_P) * thrust, f"{YASUKAWA}, propeller force", "N")
     side = sp.Piecewise((sp.Integer(0), n >= 0), (n_D * (Y_nn * n_D + Y_nu * u_s), True))
     Y_P = sheet.bind("Y_P", Y_T * thrust + motion.q * side, f"{EXTENSION}; astern {KITAGAWA}", "N")
@@ -174,45 +150,27 @@ def _rudder_inflow(
 ) -> tuple[sp.Symbol, sp.Symbol]:
     epsilon = sheet.parameter("epsilon", meaning="wake ratio, rudder over propeller", latex=r"\varepsilon")
     kappa = sheet.parameter("kappa", meaning="slipstream acceleration at the rudder", latex=r"\kappa")
-    kappa_a = sheet.parameter(
-        "kappa_astern",
-        0.0,
-        meaning="flow at the rudder over n D_P, propeller astern",
-        source=KITAGAWA,
-        latex=r"\kappa^-",
-    )
+    kappa_a = sheet.parameter("kappa_astern", 0.0, meaning="flow at the rudder over n D_P, propeller astern",
+                              source=KITAGAWA, latex=r"\kappa^-")  # fmt: skip
     gamma_p = sheet.parameter("gamma_R_plus", meaning="flow straightening, beta_R > 0", latex=r"\gamma_R^+")
     gamma_m = sheet.parameter("gamma_R_minus", meaning="flow straightening, beta_R < 0", latex=r"\gamma_R^-")
     l_R = sheet.parameter("l_R_prime", meaning="effective position of the rudder over L", latex=r"\ell'_R")
     eta = sheet.bind("eta", propeller.D_P / H_R, f"{YASUKAWA}, eta = D_P / H_R")
-    z = sheet.bind(
-        "z",
-        propeller.u_P**2 + 8 / sp.pi * propeller.thrust / (motion.rho * propeller.D_P**2),
-        "square of the slipstream",
-        "m^2/s^2",
-    )
+    slipstream = propeller.u_P**2 + 8 / sp.pi * propeller.thrust / (motion.rho * propeller.D_P**2)
+    z = sheet.bind("z", slipstream, "square of the slipstream", "m^2/s^2")
     z_root = sheet.bind("z_root", sp.sqrt(z**2 + motion.U_0**4), EXTENSION, "m^2/s^2")
     u_inf = sheet.bind("u_inf", sp.sqrt((z + z_root) / 2), "slipstream far aft, positive part of z", "m/s")
     backwash = sp.Piecewise((sp.Integer(0), n >= 0), (kappa_a * propeller.n_D, True))
-    u_slip = sheet.bind(
-        "u_slip",
-        epsilon * (propeller.u_P + kappa * (u_inf - propeller.u_P)) + backwash,
-        f"{YASUKAWA}, u_R inside the slipstream; astern {KITAGAWA}",
-        "m/s",
-    )
+    inside = epsilon * (propeller.u_P + kappa * (u_inf - propeller.u_P)) + backwash
+    u_slip = sheet.bind("u_slip", inside, f"{YASUKAWA}, u_R inside the slipstream; astern {KITAGAWA}", "m/s")
     u_free = sheet.bind("u_free", epsilon * propeller.u_P, f"{YASUKAWA}, u_R", "m/s")
-    square = sheet.bind(
-        "u_R_2",
-        eta * u_slip * sp.Abs(u_slip) + (1 - eta) * u_free * sp.Abs(u_free),
-        f"{YASUKAWA}, u_R, squared",
-        "m^2/s^2",
-    )
+    both = eta * u_slip * sp.Abs(u_slip) + (1 - eta) * u_free * sp.Abs(u_free)
+    square = sheet.bind("u_R_2", both, f"{YASUKAWA}, u_R, squared", "m^2/s^2")
     root = sheet.bind("u_R_abs", sp.sqrt(square**2 + motion.U_0**4), EXTENSION, "m^2/s^2")
     u_R = sheet.bind("u_R", square / sp.sqrt(root), f"{YASUKAWA}, u_R", "m/s")
     v_B = sheet.bind("v_B", motion.U * motion.beta - l_R * motion.r_L, f"{YASUKAWA}, U beta_R", "m/s")
-    gamma_R = sheet.bind(
-        "gamma_R", sp.Piecewise((gamma_p, v_B > 0), (gamma_m, True)), f"{YASUKAWA}, gamma_R by the side of beta_R"
-    )
+    side = sp.Piecewise((gamma_p, v_B > 0), (gamma_m, True))
+    gamma_R = sheet.bind("gamma_R", side, f"{YASUKAWA}, gamma_R by the side of beta_R")
     return u_R, sheet.bind("v_R", gamma_R * v_B, f"{YASUKAWA}, v_R", "m/s")
 
 
@@ -231,29 +189,22 @@ def _rudder(
     sine = sheet.bind("sin_delta", sp.sin(motion.delta_R), "of the rudder angle")
     cosine = sheet.bind("cos_delta", sp.cos(motion.delta_R), "of the rudder angle")
     U_R = sheet.bind("U_R", sp.sqrt(u_R**2 + v_R**2 + motion.U_0**2), f"{YASUKAWA}, U_R", "m/s")
-    F_N = sheet.bind(
-        "F_N",
-        motion.rho / 2 * A_R * f_alpha * U_R * (u_R * sine - v_R * cosine),
-        f"{YASUKAWA}, normal force: U_R sin(alpha_R) = u_R sin(delta) - v_R cos(delta)",
-        "N",
-    )
+    normal = motion.rho / 2 * A_R * f_alpha * U_R * (u_R * sine - v_R * cosine)
+    source = f"{YASUKAWA}, normal force: U_R sin(alpha_R) = u_R sin(delta) - v_R cos(delta)"
+    F_N = sheet.bind("F_N", normal, source, "N")
     even = sheet.bind("even", motion.q * (motion.U * motion.delta_R) ** 2, EXTENSION, "N")
     F_C = sheet.bind("F_C", F_N * cosine, "athwartships part of the normal force", "N")
     X_R = sheet.bind("X_R", -(1 - t_R) * F_N * sine, f"{YASUKAWA}, rudder forces", "N")
     Y_R = sheet.bind("Y_R", -(1 + a_H) * F_C + Y_dd * even, f"{YASUKAWA}, rudder forces; Y_dd {EXTENSION}", "N")
-    N_R = sheet.bind(
-        "N_R",
-        motion.L * (-(x_R + a_H * x_H) * F_C + N_dd * even),
-        f"{YASUKAWA}, rudder forces; N_dd {EXTENSION}",
-        "N m",
-    )
+    yaw = motion.L * (-(x_R + a_H * x_H) * F_C + N_dd * even)
+    N_R = sheet.bind("N_R", yaw, f"{YASUKAWA}, rudder forces; N_dd {EXTENSION}", "N m")
     return X_R, Y_R, N_R
 
 
 def _wind(
     sheet: Sheet, motion: _Motion, psi: sp.Symbol, current: tuple[sp.Symbol, sp.Symbol]
 ) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
-    """Wind force; the apparent wind is that of the ship over ground, current included."""
+    """Return the wind force; the apparent wind is that of the ship over ground, current included."""
     speed, direction = sheet.input("wind_speed"), sheet.input("wind_direction")
     A_T = sheet.parameter("A_T", 0.0, "m^2", "transverse projected area above water, 0: no wind force")
     A_L = sheet.parameter("A_L", 0.0, "m^2", "lateral projected area above water, 0: no wind force")
@@ -263,10 +214,8 @@ def _wind(
         for name in ("C_X0", "C_X1", "C_X3", "C_Y1", "C_Y3", "C_N1", "C_N2", "C_N3")
     }
     north, east = current
-    sine, cosine = (
-        sheet.bind("sin_psi", sp.sin(psi), "of the heading"),
-        sheet.bind("cos_psi", sp.cos(psi), "of the heading"),
-    )
+    sine = sheet.bind("sin_psi", sp.sin(psi), "of the heading")
+    cosine = sheet.bind("cos_psi", sp.cos(psi), "of the heading")
     air_north = sheet.bind("air_north", north + speed * sp.cos(direction), "water against air", "m/s")
     air_east = sheet.bind("air_east", east + speed * sp.sin(direction), "water against air", "m/s")
     u_A = sheet.bind("u_A", motion.u + air_north * cosine + air_east * sine, "apparent wind from ahead", "m/s")
@@ -284,7 +233,7 @@ def _wind(
 
 
 def _accelerations(sheet: Sheet, motion: _Motion, X: sp.Symbol, Y: sp.Symbol, N: sp.Symbol) -> None:
-    """Accelerations; X_m, Y_m, N_m are what a balance feels that holds the ship in steady motion."""
+    """Write the accelerations; X_m, Y_m, N_m are what a balance feels that holds the ship in steady motion."""
     m = sheet.parameter("m", unit="kg", meaning="mass")
     x_G = sheet.parameter("x_G", unit="m", meaning="centre of gravity forward of midship")
     I_z = sheet.parameter("I_z", unit="kg m^2", meaning="yaw inertia about the centre of gravity")

@@ -26,6 +26,11 @@ def _rudder(sheet: Sheet) -> sp.Expr:
     return delta + sheet.parameter("delta_0", 0.0, "rad", "added to the recorded rudder angle", scale=0.02)
 
 
+def _cubic(sheet: Sheet) -> sp.Symbol:
+    meaning = "cubic manoeuvring coefficient"
+    return sheet.parameter("alpha", 0.0, "s^2/rad^2", meaning, "linear unless freed", scale=1.0)
+
+
 @cache
 def nomoto() -> Model:
     """Return the model of first order: T dr/dt + r + alpha r^3 = K (delta + delta_0).
@@ -36,11 +41,9 @@ def nomoto() -> Model:
     r, psi, x0, y0 = sheet.states("r psi x0 y0")
     delta = _rudder(sheet)
     U = _speed(sheet)
-    K = sheet.parameter("K", 0.1, "1/s", "gain", CHOSEN_START, free=True)
+    K = sheet.parameter("K", 0.1, "1/s", "gain", CHOSEN_START, free=True)  # start value, chosen
     T = sheet.parameter("T", 10.0, "s", "time constant", CHOSEN_START, free=True)
-    alpha = sheet.parameter(
-        "alpha", 0.0, "s^2/rad^2", "cubic manoeuvring coefficient", "linear unless freed", scale=1.0
-    )
+    alpha = _cubic(sheet)
     sheet.rate(r, (K * delta - r - alpha * r**3) / T, f"{NOMOTO}, first order; cubic term {NORRBIN}")
     pose_rates(sheet, U, sp.Integer(0), r, psi, x0, y0)
     return sheet.model()
@@ -57,17 +60,14 @@ def nomoto2() -> Model:
     r, r_rest, psi, x0, y0 = sheet.states("r r_rest psi x0 y0")
     delta = _rudder(sheet)
     U = _speed(sheet)
-    K = sheet.parameter("K", 0.1, "1/s", "gain", CHOSEN_START, free=True)
+    K = sheet.parameter("K", 0.1, "1/s", "gain", CHOSEN_START, free=True)  # start value, chosen
     T_1 = sheet.parameter("T_1", 20.0, "s", "slow time constant", CHOSEN_START, free=True)
     T_2 = sheet.parameter("T_2", 2.0, "s", "fast time constant", CHOSEN_START, free=True)
     T_3 = sheet.parameter("T_3", 4.0, "s", "time constant of the zero", CHOSEN_START, free=True)
-    alpha = sheet.parameter(
-        "alpha", 0.0, "s^2/rad^2", "cubic manoeuvring coefficient", "linear unless freed", scale=1.0
-    )
+    alpha = _cubic(sheet)
     r_dot = sheet.bind("r_dot", r_rest + K * T_3 / (T_1 * T_2) * delta, NOMOTO_SECOND_ORDER, "rad/s^2")
     sheet.rate(r, r_dot, NOMOTO_SECOND_ORDER)
-    sheet.rate(
-        r_rest, (K * delta - r - alpha * r**3 - (T_1 + T_2) * r_dot) / (T_1 * T_2), f"{NOMOTO_SECOND_ORDER}; {NORRBIN}"
-    )
+    balance = K * delta - r - alpha * r**3 - (T_1 + T_2) * r_dot
+    sheet.rate(r_rest, balance / (T_1 * T_2), f"{NOMOTO_SECOND_ORDER}; {NORRBIN}")
     pose_rates(sheet, U, sp.Integer(0), r, psi, x0, y0)
     return sheet.model()

@@ -4,15 +4,48 @@ Numbers were compared with several independent transcriptions of the same table;
 """
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from functools import cache, partial
+from types import MappingProxyType
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Ship, spelling_hint
-from seatrial.physics.models.parameter_set import ParameterSet
-from seatrial.physics.models.qi2025 import HEADINGS, theoretical_coefficients
+from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS
 
 YASUKAWA = "Yasukawa & Yoshimura 2015, J Mar Sci Technol 20, 37-52, doi 10.1007/s00773-014-0293-y"
 MIYAUCHI = "Miyauchi et al. 2022, J Mar Sci Technol 27, 1065-1083, doi 10.1007/s00773-022-00889-3, captive tests"
+
+
+@dataclass(frozen=True)
+class ParameterSet:
+    """Values of one model's parameters, their source, and the ship they belong to.
+
+    Attributes:
+        model: name of the model in the registry.
+        values: parameter -> value in the model's units and signs.
+        note: what was converted, chosen or doubtful.
+    """
+
+    name: str
+    model: str
+    ship: Ship
+    values: Mapping[str, float] = field(default_factory=dict)
+    source: str = ""
+    note: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", MappingProxyType(dict(self.values)))
+
+    def applied_to(self, model: Model) -> Model:
+        """Return `model` with the ship's particulars and these values.
+
+        Raises:
+            InputError: the model lacks one of the parameters, or still misses a value.
+        """
+        return model.with_values(self.values, source=self.source).with_ship(self.ship)
+
+
+QI2025 = "Qi et al. 2025, improved wild horse optimizer, tables 1-4"
 
 
 # principal particulars of the 7 m model and of the ship; radius of gyration 0.25 L
@@ -58,6 +91,7 @@ def kvlcc2_full() -> ParameterSet:
     )
 
 
+# particulars of the data set: m, m^2, kg and kg m^2; radius of gyration 0.25 L
 _ESSO_SHIP = {
     "L": 3.0, "B": 0.489, "d": 0.201, "C_b": 0.83, "m": 244.6, "x_G": 0.094, "D_P": 0.084, "A_R": 0.0106,
     "H_R": 0.1279, "A_T": 0.135, "A_L": 0.520, "rho": 998.0, "I_z": 244.6 * (0.25 * 3.0) ** 2,
@@ -87,10 +121,10 @@ def esso_osaka() -> ParameterSet:
     """Return the 3 m model of Esso Osaka (data set of Osaka University): captive-test values, converted."""
     from seatrial.physics.hydro.empirical import cross_flow_coefficients
 
-    ship = Ship(
-        "Esso Osaka 3 m model", _ESSO_SHIP, "FRT-DS-ESSO data set, Wakita et al. 2022, Miyauchi et al. 2022", 108.33
-    )
+    source = "FRT-DS-ESSO data set, Wakita et al. 2022, Miyauchi et al. 2022"
+    ship = Ship("Esso Osaka 3 m model", _ESSO_SHIP, source, 108.33)  # scale of the model, 1:108.33
     unit = 0.5 * 998.0 * 3.0**4 * 0.201  # rho/2 L^4 d [kg m^2], which makes a moment of inertia dimensionless
+    # from the published values as the note says
     converted = {
         **cross_flow_coefficients(0.9665, 2.217, 0.8097),
         "J_z_prime": 0.0286 - _ESSO_SHIP["I_z"] / unit,
@@ -102,11 +136,35 @@ def esso_osaka() -> ParameterSet:
     return ParameterSet("esso-osaka", "mmg", ship, {**_ESSO, **converted}, MIYAUCHI, _ESSO_NOTE)
 
 
+# L from I5/m = (0.25 L)^2, B from the section area of table 1 over the draught
+QI2025_SHIP = Ship(
+    "ship of Qi et al. 2025",
+    {"L": 60.0, "B": 16.2 / 2.27, "d": 2.27, "m": 4.42e5, "I5": 9.945e7,
+     "c33": 3.15e6, "c35": 6.83e6, "c53": 6.83e6, "c55": 6.54e8},
+    QI2025,
+)  # fmt: skip
+# in the order of HEAVE_PITCH_COEFFICIENTS, magnitudes as printed
+_PRINTED_COEFFICIENTS = {
+    90: (8.045e5, 7.753e6, 2.595e8, 1.479e7, 9.369e5, 1.159e7, 2.885e8, 3.324e6),
+    135: (6.311e5, 3.281e6, 1.525e8, 7.865e6, 8.033e5, 9.429e6, 2.091e8, 2.267e6),
+    180: (6.101e5, 2.663e6, 1.377e8, 6.611e6, 7.400e5, 8.951e6, 1.873e8, 2.356e6),
+}
+QI2025_HEADINGS = tuple(_PRINTED_COEFFICIENTS)
+
+
+def theoretical_coefficients(heading: int) -> ParameterSet:
+    """Return the theoretical coefficients at a heading to the waves of 90, 135 or 180 degrees, 18 kn; b53 negative."""
+    values = dict(zip(HEAVE_PITCH_COEFFICIENTS, _PRINTED_COEFFICIENTS[heading], strict=True))
+    values["b53"] = -values["b53"]
+    note = "b53 negative by strip theory; the tables drop the sign"
+    return ParameterSet(f"qi2025-{heading}", "heave_pitch", QI2025_SHIP, values, QI2025, note)
+
+
 PARAMETER_SETS: dict[str, Callable[[], ParameterSet]] = {
     "kvlcc2": kvlcc2_l7,
     "kvlcc2-full": kvlcc2_full,
     "esso-osaka": esso_osaka,
-    **{f"qi2025-{heading}": partial(theoretical_coefficients, heading) for heading in HEADINGS},
+    **{f"qi2025-{heading}": partial(theoretical_coefficients, heading) for heading in QI2025_HEADINGS},
 }
 
 

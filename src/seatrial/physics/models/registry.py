@@ -3,71 +3,19 @@
 import runpy
 import traceback
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from seatrial._plugins import failure_text, installed, load_plugin
 from seatrial.core.values import InputError, spelling_hint
+from seatrial.physics import models
 
 if TYPE_CHECKING:
     from seatrial.core.equations import Model
 
 ENTRY_POINT_GROUP = "seatrial.models"
-
-
-def _waterjet() -> "Model":
-    from seatrial.physics.models.waterjet import waterjet
-
-    return waterjet()
-
-
-def _nomoto() -> "Model":
-    from seatrial.physics.models.nomoto import nomoto
-
-    return nomoto()
-
-
-def _nomoto2() -> "Model":
-    from seatrial.physics.models.nomoto import nomoto2
-
-    return nomoto2()
-
-
-def _abkowitz() -> "Model":
-    from seatrial.physics.models.abkowitz import abkowitz
-
-    return abkowitz()
-
-
-def _mmg() -> "Model":
-    from seatrial.physics.models.mmg import mmg
-
-    return mmg()
-
-
-def _heave_pitch() -> "Model":
-    from seatrial.physics.models.heave_pitch import heave_pitch
-
-    return heave_pitch()
-
-
-def _heave_pitch_zoh() -> "Model":
-    from seatrial.physics.models.heave_pitch import heave_pitch_zoh
-
-    return heave_pitch_zoh()
-
-
-def _heave_pitch_strip() -> "Model":
-    from seatrial.physics.models.heave_pitch import heave_pitch_strip
-
-    return heave_pitch_strip()
-
-
-def _roll() -> "Model":
-    from seatrial.physics.models.roll import roll
-
-    return roll()
 
 
 def _thrusters(layout: str = "") -> "Model":
@@ -77,11 +25,19 @@ def _thrusters(layout: str = "") -> "Model":
     return thrusters(ThrusterLayout.from_text(layout) if layout else CATAMARAN)
 
 
+# each is imported when it is made first
 MODELS: dict[str, Callable[[], "Model"]] = {
-    "waterjet": _waterjet, "nomoto": _nomoto, "nomoto2": _nomoto2, "abkowitz": _abkowitz, "mmg": _mmg,
-    "heave_pitch": _heave_pitch, "heave_pitch_zoh": _heave_pitch_zoh, "heave_pitch_strip": _heave_pitch_strip,
-    "roll": _roll, "thrusters": _thrusters,
-}  # fmt: skip
+    "waterjet": lambda: models.waterjet(),
+    "nomoto": lambda: models.nomoto(),
+    "nomoto2": lambda: models.nomoto2(),
+    "abkowitz": lambda: models.abkowitz(),
+    "mmg": lambda: models.mmg(),
+    "heave_pitch": lambda: models.heave_pitch(),
+    "heave_pitch_zoh": lambda: models.heave_pitch_zoh(),
+    "heave_pitch_strip": lambda: models.heave_pitch_strip(),
+    "roll": lambda: models.roll(),
+    "thrusters": _thrusters,
+}
 LAYOUT_MODELS: dict[str, Callable[[str], "Model"]] = {"thrusters": _thrusters}
 """Models whose equations depend on a layout; without one they have a default."""
 
@@ -143,9 +99,46 @@ def model_from_file(path: Path) -> "Model":
     except InputError:
         raise
     except Exception as error:
-        line = next(
-            (f.lineno for f in reversed(traceback.extract_tb(error.__traceback__)) if f.filename == str(path)), 0
-        )
-        place = f"{path}, line {line or getattr(error, 'lineno', 0)}"
-        raise InputError(f"model file {place}: {type(error).__name__}: {error}; correct the file") from error
+        frames = reversed(traceback.extract_tb(error.__traceback__))
+        line = next((f.lineno for f in frames if f.filename == str(path)), 0) or getattr(error, "lineno", 0)
+        cause = f"{type(error).__name__}: {error}"
+        raise InputError(f"model file {path}, line {line}: {cause}; correct the file") from error
     return _require_model(model, f"model file {path}")
+
+
+@dataclass(frozen=True)
+class ModelSummary:
+    """One model by the name under which trial files and model files know it.
+
+    Attributes:
+        name: as in ``[model] name``.
+        states, inputs: symbols in order; empty where the model cannot be loaded.
+        source: citation of the equations.
+        package: the package that installs it; empty for a built-in model.
+        problem: why an installed model cannot be loaded; empty where it can.
+    """
+
+    name: str
+    states: tuple[str, ...] = ()
+    inputs: tuple[str, ...] = ()
+    source: str = ""
+    package: str = ""
+    problem: str = ""
+
+
+def model_summaries() -> tuple[ModelSummary, ...]:
+    """Return the built-in models, then the installed ones, each in alphabetical order."""
+    packages = {
+        name: point.dist.name if point.dist is not None else "unknown"
+        for name, point in installed(ENTRY_POINT_GROUP).items()
+        if name not in MODELS
+    }
+    return (*(_summary(name, "") for name in sorted(MODELS)), *(_summary(*item) for item in packages.items()))
+
+
+def _summary(name: str, package: str) -> ModelSummary:
+    try:
+        model = model_named(name)
+    except InputError as error:
+        return ModelSummary(name, package=package, problem=str(error))
+    return ModelSummary(name, model.states, model.input_names, model.equations.source, package)

@@ -71,6 +71,7 @@ def _craft(name: str, candidate_terms: tuple[str, ...]) -> Model:
             name, TABLE_2.get(name, 0.0), source=source, free=True, latex=f"{name[0]}'_{{{name[2:]}}}"
         )
 
+    # 1e-12 m^2/s^2 keeps the root smooth at rest
     U = sheet.bind("U", sp.sqrt(u**2 + v**2 + sp.Float(1e-12)), "speed through water", "m/s")
     q = sheet.bind("q", rho * L * d / 2, "q = rho L d / 2", "kg/m^2")
     r_L = sheet.bind("r_L", L * r, "L r", "m/s")

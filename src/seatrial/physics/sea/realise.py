@@ -12,6 +12,7 @@ from seatrial.physics.sea.encounter import speed_factor
 from seatrial.physics.sea.spectrum import Spectrum
 
 DEFAULT_COMPONENTS = 30  # wave components of a realisation; chosen
+_NO_ENERGY = 1e-6  # share of the sea's energy that counts as none; chosen
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,11 +43,11 @@ class WaveComponents:
         return encounter_frequency(self.omega, self.U, self.direction)
 
     def elevation(self, time: Array) -> Array:
-        """Elevation [m] at the ship's origin at `time` [s]."""
+        """Return the elevation [m] at the ship's origin at `time` [s]."""
         return harmonic_sum(self.omega_e, self.amplitude, time)
 
     def forces(self, excitation: Excitation) -> Complex:
-        """Complex amplitudes of F3 [N, up] and M5 [N m, bow down] of each line, (n, 2)."""
+        """Return complex amplitudes of F3 [N, up] and M5 [N m, bow down] of each line, (n, 2)."""
         F3, M5 = excitation.forces(self.omega, self.U, self.direction)
         return np.stack([F3, M5], axis=1) * self.amplitude[:, None]
 
@@ -70,7 +71,7 @@ class Spacing(Enum):
 def _frequencies_and_amplitudes(
     spacing: Spacing, spectrum: Spectrum, band: tuple[float, float], count: int, rng: np.random.Generator
 ) -> tuple[Array, Array]:
-    """Frequencies and amplitudes."""
+    """Return frequencies and amplitudes."""
     edges = np.linspace(*band, count + 1)
     match spacing:
         case Spacing.EQUAL_INTERVAL:
@@ -100,7 +101,7 @@ def realise(
     spacing: Spacing = Spacing.EQUAL_INTERVAL,
     band: tuple[float, float] | None = None,
 ) -> WaveComponents:
-    """A long-crested sea of `count` lines with phases drawn uniformly; band in rad/s, 0.1 to 99 % of the energy.
+    """Return a long-crested sea of `count` lines with phases drawn uniformly; band in rad/s, 0.1 to 99 % of the energy.
 
     Raises:
         InputError: speed or heading out of sense, no line, a band upside down or without energy.
@@ -112,7 +113,7 @@ def realise(
     if not 0.0 <= chosen[0] < chosen[1]:
         raise InputError(f"the band from {chosen[0]:g} to {chosen[1]:g} rad/s is empty; give lower before upper")
     share = float(np.diff(spectrum.share_below(np.array(chosen)))[0])
-    if share < 1e-6:
+    if share < _NO_ENERGY:
         raise InputError(
             f"the {spectrum.name} spectrum has no energy between {chosen[0]:g} and {chosen[1]:g} rad/s; "
             f"it peaks at {spectrum.modal_frequency:.3g} rad/s"
@@ -122,7 +123,7 @@ def realise(
 
 
 def short_crested(components: WaveComponents, rng: np.random.Generator, exponent: float = 1.0) -> WaveComponents:
-    """The lines spread about their heading by cos^2s over +- 90 deg, whose integral is one.
+    """Return the lines spread about their heading by cos^2s over +- 90 deg, whose integral is one.
 
     D = Gamma(s + 1) / (sqrt(pi) Gamma(s + 1/2)) cos^2s(chi); s = 1 is the 2 / pi cos^2 of the ITTC (St. Denis & Pierson
     1953). Each line gets one direction: the middles of equal shares of D, shuffled, so that the energy stays in every
@@ -147,16 +148,12 @@ def spread_angle(share: Array, exponent: float) -> Array:
 
 
 def above_nyquist(components: WaveComponents, dt: float) -> Index:
-    """Which lines are met at more than half the sampling rate of a step of `dt` [s]."""
+    """Return which lines are met at more than half the sampling rate of a step of `dt` [s]."""
     return np.flatnonzero(np.abs(components.omega_e) > np.pi / dt)
 
 
 def refuse_above_nyquist(components: WaveComponents, dt: float) -> None:
-    """Refuse a time step that cannot show all lines.
-
-    Raises:
-        InputError: how many lines are beyond half the sampling rate, and the furthest of them.
-    """
+    """Refuse a time step that cannot show all lines."""
     beyond = above_nyquist(components, dt)
     if beyond.size:
         met = np.abs(components.omega_e)
@@ -172,9 +169,6 @@ def refuse_short_record(components: WaveComponents, duration: float) -> None:
     """Refuse a record that does not last one period of its longest wave, as met.
 
     In following seas shorter waves may run along with the ship for any time; no record can be required to hold them.
-
-    Raises:
-        InputError: how long it would have to be.
     """
     longest = int(np.argmin(components.omega))
     met = abs(float(components.omega_e[longest]))
@@ -182,13 +176,12 @@ def refuse_short_record(components: WaveComponents, duration: float) -> None:
         needed = f"needs {2.0 * np.pi / met:.3g} s" if met > 0.0 else "runs along with the ship for ever"
         raise InputError(
             f"the record of {duration:g} s is too short for its longest wave: that of "
-            f"{components.omega[longest]:.3g} rad/s "
-            f"{needed} to pass; record longer, or raise the lower end of the band"
+            f"{components.omega[longest]:.3g} rad/s {needed} to pass; record longer, or raise the lower end of the band"
         )
 
 
 def wave_record(components: WaveComponents, time: Array, excitation: Excitation | None = None) -> Record:
-    """The sea as a planned record: zeta [m, up], and with an excitation F3 [N, up] and M5 [N m, bow down].
+    """Return the sea as a planned record: zeta [m, up], and with an excitation F3 [N, up] and M5 [N m, bow down].
 
     Raises:
         InputError: the time step cannot show all lines, or the time is too short for the longest wave.
@@ -198,9 +191,7 @@ def wave_record(components: WaveComponents, time: Array, excitation: Excitation 
     refuse_short_record(components, plan.duration)
     channels = dict(plan.channels)
     if excitation is not None:
-        amplitude = components.forces(excitation)
-        for j, symbol in enumerate(("F3", "M5")):
-            channels[symbol] = Channel.from_notation(
-                symbol, frozen(harmonic_sum(components.omega_e, amplitude[:, j], time))
-            )
+        for symbol, amplitude in zip(("F3", "M5"), components.forces(excitation).T, strict=True):
+            force = harmonic_sum(components.omega_e, amplitude, time)
+            channels[symbol] = Channel.from_notation(symbol, frozen(force))
     return replace(plan, channels=channels, provenance=Provenance("sum of harmonics"))

@@ -52,12 +52,10 @@ class MotionStatistics:
 
     def exceedance(self, amplitude: float) -> float:
         """Probability that an amplitude exceeds this one, exp(-a^2 / (2 m0)) (Rayleigh; Longuet-Higgins 1952)."""
-        if self.m0 == 0.0:
-            return 0.0
-        return math.exp(-(amplitude**2) / (2.0 * self.m0))
+        return math.exp(-(amplitude**2) / (2.0 * self.m0)) if self.m0 else 0.0
 
     def most_probable_maximum(self, duration: float) -> float:
-        """Most probable largest amplitude in `duration` [s], sqrt(2 m0 ln N), N = duration / T_z (same source).
+        """Return most probable largest amplitude in `duration` [s], sqrt(2 m0 ln N), N = duration / T_z (same source).
 
         Raises:
             InputError: the duration holds no whole period.
@@ -71,12 +69,12 @@ class MotionStatistics:
 
 
 def response_spectrum(spectrum: Spectrum, omega: Array, operator: Complex) -> Array:
-    """|H|^2 S over the wave frequency, shape of `omega`."""
+    """Return |H|^2 S over the wave frequency, shape of `omega`."""
     return np.abs(operator) ** 2 * spectrum.density(omega)
 
 
 def motion_statistics(spectrum: Spectrum, omega: Array, omega_e: Array, operator: Complex) -> MotionStatistics:
-    """Statistics of the motion `operator`, all arrays (n,), rad/s; trapezoids over rising omega.
+    """Return statistics of the motion `operator`, all arrays (n,), rad/s; trapezoids over rising omega.
 
     Raises:
         InputError: omega does not rise, an operator is not finite, or the sea has no energy between the ends.
@@ -97,12 +95,12 @@ def motion_statistics(spectrum: Spectrum, omega: Array, omega_e: Array, operator
 
 
 def vertical_motion(heave: Complex, pitch: Complex, x: float) -> Complex:
-    """Upward motion at x [m, forward of midship] from heave [up] and pitch [rad, bow down]: z - x theta."""
+    """Return the upward motion at x [m, forward of midship] from heave [up] and pitch [rad, bow down]: z - x theta."""
     return heave - x * pitch
 
 
 def motion_sickness(motion: MotionStatistics) -> float:
-    """Share of people sick within two hours in a vertical motion, 0 to 1 (O'Hanlon & McCauley 1974; Lloyd 1989).
+    """Return share of people sick within two hours in a vertical motion, 0 to 1 (O'Hanlon & McCauley 1974; Lloyd 1989).
 
     Phi((log10(a / g) - mu) / .4), mu = -.819 + 2.32 log10(omega_e)^2, a = .798 sqrt(m4) the mean absolute acceleration,
     omega_e = sqrt(m4 / m2) its mean frequency.

@@ -26,7 +26,7 @@ class SeaState:
     modal_period: float | None
 
     def spectrum(self) -> Spectrum:
-        """The Bretschneider spectrum of the typical height and period.
+        """Return the Bretschneider spectrum of the typical height and period.
 
         Raises:
             InputError: the state has no typical height or no typical period (0, 1, 9).
@@ -55,7 +55,7 @@ _STATES = (
 
 
 def sea_state(number: int) -> SeaState:
-    """The sea state of that number.
+    """Return the sea state of that number.
 
     Raises:
         InputError: the number is not one of 0 to 9.

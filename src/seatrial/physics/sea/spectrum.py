@@ -13,8 +13,9 @@ SIGMA_BELOW, SIGMA_ABOVE = 0.07, 0.09  # peak widths of JONSWAP, Hasselmann et a
 # beyond nine sigma the raised peak adds less than a rounding error
 _PEAK_REACH = 9.0
 _LOWEST_RATIO = 0.1  # of the modal frequency: exp(-1.25 / x^4) is zero below
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)  # 64 points of Gauss-Legendre quadrature; chosen
+_STEEPNESS = 1.25  # 5/4: B over the fourth power of the modal frequency, where S is largest
 _BISECTIONS = 64  # halve an interval below rounding
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)  # 64 points of Gauss-Legendre quadrature; chosen
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class Spectrum:
         return 2.0 * math.pi * self.moment(0) / self.moment(1)
 
     def with_height(self, height: float) -> "Spectrum":
-        """The sea of that significant height [m] and the same steepness and shape: periods go with its root.
+        """Return the sea of that significant height [m] and the same steepness and shape: periods go with its root.
 
         Raises:
             InputError: the height is not positive.
@@ -58,7 +59,7 @@ class Spectrum:
         return replace(self, B=self.B / ratio**2)
 
     def density(self, omega: ArrayLike) -> Array:
-        """S [m^2 s/rad] at `omega` [rad/s], any shape; zero where omega is not positive."""
+        """Return S [m^2 s/rad] at `omega` [rad/s], any shape; zero where omega is not positive."""
         x = np.asarray(omega, dtype=np.float64) / self.modal_frequency
         return np.asarray(self._base_density(x) * self._peak_factor(x), dtype=np.float64)
 
@@ -74,13 +75,13 @@ class Spectrum:
         return plain + float(self._peak_excess(np.array(np.inf), n))
 
     def share_below(self, omega: ArrayLike) -> Array:
-        """Share of the energy below `omega` [rad/s], any shape: exp(-B / omega^4), and what the peak adds."""
+        """Return share of the energy below `omega` [rad/s], any shape: exp(-B / omega^4), and what the peak adds."""
         x = np.asarray(omega, dtype=np.float64) / self.modal_frequency
-        plain = self.A / (4.0 * self.B) * np.exp(-1.25 / np.maximum(x, _LOWEST_RATIO) ** 4)
+        plain = self.A / (4.0 * self.B) * np.exp(-_STEEPNESS / np.maximum(x, _LOWEST_RATIO) ** 4)
         return np.asarray((plain + self._peak_excess(x, 0.0)) / self.moment(0), dtype=np.float64)
 
     def energy_between(self, lower: ArrayLike, upper: ArrayLike) -> Array:
-        """int S [m^2] from `lower` to `upper` [rad/s], shapes that go together."""
+        """Return int S [m^2] from `lower` to `upper` [rad/s], shapes that go together."""
         return self.moment(0) * (self.share_below(upper) - self.share_below(lower))
 
     def frequency_of_share(self, share: ArrayLike) -> Array:
@@ -102,8 +103,8 @@ class Spectrum:
             low, high = np.where(above, low, middle), np.where(above, middle, high)
         return np.asarray(0.5 * (low + high), dtype=np.float64)
 
-    def band(self, lower: float = 0.001, upper: float = 0.99) -> tuple[float, float]:
-        """Frequencies [rad/s] below which the shares `lower` and `upper` of the energy lie (Qi et al. 2025).
+    def band(self, lower: float = 0.001, upper: float = 0.99) -> tuple[float, float]:  # shares of Qi et al. 2025
+        """Return frequencies [rad/s] below which the shares `lower` and `upper` of the energy lie (Qi et al. 2025).
 
         Raises:
             InputError: as `frequency_of_share`, or the shares do not rise.
@@ -114,9 +115,9 @@ class Spectrum:
         return float(first), float(last)
 
     def _base_density(self, x: Array) -> Array:
-        """Density without the raised peak at omega = x omega_p; exp(-1.25 / x^4) is zero below x = 0.1."""
+        """Return the density without the raised peak at omega = x omega_p; exp(-1.25 / x^4) is zero below x = 0.1."""
         safe = np.maximum(x, _LOWEST_RATIO)
-        return self.A / (safe * self.modal_frequency) ** 5 * np.exp(-1.25 / safe**4)
+        return self.A / (safe * self.modal_frequency) ** 5 * np.exp(-_STEEPNESS / safe**4)
 
     def _peak_factor(self, x: Array) -> Array:
         sigma = np.where(x <= 1.0, SIGMA_BELOW, SIGMA_ABOVE)
@@ -153,7 +154,7 @@ def ittc_two_parameter(height: float, mean_period: float) -> Spectrum:
         InputError: the significant height [m] or the mean period T1 = 2 pi m0 / m1 [s] is not positive.
     """
     h, T1 = _positive("significant height", height, "m"), _positive("mean period", mean_period, "s")
-    B = (2.0 * math.pi / (_gamma(0.75) * T1)) ** 4
+    B = (2.0 * math.pi / (_gamma(0.75) * T1)) ** 4  # Gamma(3/4), as above
     return Spectrum("ITTC two-parameter", B * h**2 / 4.0, B)
 
 
@@ -170,7 +171,7 @@ def bretschneider(height: float, peak_period: float) -> Spectrum:
 
 # gamma 3.3: mean of JONSWAP, Hasselmann et al. 1973
 def jonswap(height: float, peak_period: float, gamma: float = 3.3) -> Spectrum:
-    """JONSWAP (Hasselmann et al. 1973), scaled so that 4 sqrt(m0) = height.
+    """Return JONSWAP (Hasselmann et al. 1973), scaled so that 4 sqrt(m0) = height.
 
     Raises:
         InputError: the significant height [m] or the peak period [s] is not positive, or gamma is not from 1 to 20.
@@ -178,7 +179,7 @@ def jonswap(height: float, peak_period: float, gamma: float = 3.3) -> Spectrum:
     if not 1.0 <= gamma <= 20.0:  # the records of JONSWAP have 1 to 7; beyond 20 is a mistake
         raise InputError(f"the peak enhancement gamma of a JONSWAP spectrum lies from 1 to 20, not at {gamma:g}")
     raw = replace(bretschneider(height, peak_period), name="JONSWAP", gamma=gamma)
-    return replace(raw, A=raw.A * height**2 / (16.0 * raw.moment(0)))
+    return replace(raw, A=raw.A * height**2 / (16.0 * raw.moment(0)))  # m0 = height^2 / 16
 
 
 def _positive(quantity: str, value: float, unit: str) -> float:

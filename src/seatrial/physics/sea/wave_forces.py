@@ -4,8 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatrial.core.values import Array, Channel, InputError, Record, frozen
-from seatrial.physics.hydro.excitation import Excitation
-from seatrial.physics.sea.encounter import wave_frequency
+from seatrial.physics.hydro.excitation import Complex, Excitation, encounter_frequency
+from seatrial.physics.sea.encounter import speed_factor, wave_frequency
+from seatrial.physics.sea.spectrum import Spectrum
 
 # frequencies that hold this share of the elevation's energy pass the filter, from either end
 _NEGLIGIBLE = 1e-4
@@ -15,10 +16,12 @@ _LOST_PERIODS, _NEEDED_PERIODS = 1.0, 6.0
 _DRIFT_BINS = 4
 # periods of the slowest waves by which the record is continued, and from which; ridge of the predictor
 _EXTRAPOLATED_PERIODS, _PREDICTOR_PERIODS, _RIDGE = 2.0, 1.5, 1e-7
+_MARGINS = 0.8, 1.2  # of the band's ends, within which the filter passes; chosen
+_STEPS_PER_PERIOD = 5.0  # of the predictor, in the shortest period; chosen
 
 
 def with_wave_forces(record: Record, excitation: Excitation, U: float, beta: float) -> Record:
-    """The record with F3 [N, up] and M5 [N m, bow down] computed from its channel zeta [m, up].
+    """Return the record with F3 [N, up] and M5 [N m, bow down] computed from its channel zeta [m, up].
 
     U in m/s, beta in rad (0 following, pi head). The ends, where the filter knows only half of what it needs, are cut
     off. A record that has F3 and M5 already keeps them. Speed and mean frequency of encounter come along as channels.
@@ -73,7 +76,7 @@ def _with_encounter_channels(record: Record, U: float) -> Record:
 
 
 def _band(level: Array, dt: float) -> tuple[float, float]:
-    """Frequencies of encounter [rad/s] that hold nearly all of the energy."""
+    """Return frequencies of encounter [rad/s] that hold nearly all of the energy."""
     window = np.hanning(len(level))
     power = np.abs(np.fft.rfft((level - np.average(level, weights=window)) * window)) ** 2
     power[:_DRIFT_BINS] = 0.0
@@ -87,14 +90,14 @@ def _band(level: Array, dt: float) -> tuple[float, float]:
 def _filtered_forces(
     level: Array, dt: float, band: tuple[float, float], excitation: Excitation, U: float, beta: float
 ) -> Array:
-    """F3 and M5 along the record, (n, 2); both ends continued as the waves would have gone on, and faded out."""
+    """Return F3 and M5 along the record, (n, 2); both ends continued as the waves would have gone on, and faded out."""
     n, more = len(level), round(_EXTRAPOLATED_PERIODS * 2.0 * np.pi / band[0] / dt)
     fade = np.cos(np.linspace(0.0, 0.5 * np.pi, more)) ** 2
     after = linear_prediction(level, more, band, dt) * fade
     before = (linear_prediction(level[::-1], more, band, dt) * fade)[::-1]
     padded = np.concatenate([before, level, after])
     omega_e = 2.0 * np.pi * np.fft.rfftfreq(len(padded), dt)
-    inside = (omega_e >= 0.8 * band[0]) & (omega_e <= 1.2 * band[1])
+    inside = (omega_e >= _MARGINS[0] * band[0]) & (omega_e <= _MARGINS[1] * band[1])
     transfer: NDArray[np.complex128] = np.zeros((len(omega_e), 2), dtype=np.complex128)
     F3, M5 = excitation.forces(wave_frequency(omega_e[inside], U, beta), U, beta)
     transfer[inside, 0], transfer[inside, 1] = F3, M5
@@ -107,7 +110,7 @@ def linear_prediction(level: Array, count: int, band: tuple[float, float], dt: f
 
     The predictor works on every k-th sample, so that its steps are a fifth of the shortest period.
     """
-    k = max(1, int(2.0 * np.pi / band[1] / dt / 5.0))
+    k = max(1, int(2.0 * np.pi / band[1] / dt / _STEPS_PER_PERIOD))
     order = min(round(_PREDICTOR_PERIODS * 2.0 * np.pi / band[0] / (k * dt)), len(level) // (4 * k))
     windows = np.lib.stride_tricks.sliding_window_view(level, order * k + 1)[:, ::k]
     past, present = windows[:, :-1], windows[:, -1]
@@ -118,3 +121,31 @@ def linear_prediction(level: Array, count: int, band: tuple[float, float], dt: f
     for i in range(order * k, len(made)):
         made[i] = predictor @ made[i - order * k : i : k]
     return made[order * k :]
+
+
+_CELLS = 100_000  # cells of the wave spectrum; chosen
+_BAND = (5e-4, 0.9995)  # shares of the energy below either end; chosen
+
+
+def force_density(spectrum: Spectrum, excitation: Excitation, U: float, beta: float, edges: Array) -> Complex:
+    """Return one-sided density of F3 [N, up] and M5 [N m, bow down] between `edges` of |omega_e| [rad/s], (n, 2, 2).
+
+    Element ij is that of E[F_i conj(F_j)]. The sea is cut into many cells of wave frequency; each brings its energy to
+    the frequency at which it is met, waves that the ship overtakes as the conjugate. So a following sea, where up to
+    three waves are met at one frequency, needs no Jacobian.
+
+    Raises:
+        InputError: speed or heading out of sense, or frequencies that the excitation does not know.
+    """
+    speed_factor(U, beta)
+    bounds = np.linspace(*spectrum.band(*_BAND), _CELLS + 1)
+    omega = 0.5 * (bounds[1:] + bounds[:-1])
+    energy = spectrum.density(omega) * np.diff(bounds)
+    met = encounter_frequency(omega, U, beta)
+    F = np.stack(excitation.forces(omega, U, beta), axis=1)
+    F = np.where((met < 0.0)[:, None], F.conj(), F)
+    made = np.zeros((len(edges) - 1, 2, 2), dtype=np.complex128)
+    place = np.searchsorted(edges, np.abs(met), side="right") - 1
+    inside = (place >= 0) & (place < len(made))
+    np.add.at(made, place[inside], energy[inside, None, None] * F[inside, :, None] * F[inside, None, :].conj())
+    return made / np.diff(edges)[:, None, None]

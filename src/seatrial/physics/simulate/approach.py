@@ -10,11 +10,11 @@ from seatrial.core.values import Array, InputError, Record, spelling_hint
 from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT, inputs_of
 
 RUDDER = "delta"
-_MAX_SPEED = 100.0
+_MAX_SPEED = 100.0  # m/s; guards against a wrong unit
 
 
 def held_inputs(model: Model, values_by_name: Mapping[str, float], rudder: str) -> Array:
-    """Constant inputs in the model's signs, shape (nu,), rudder amidships; absent wind channels mean still air.
+    """Return constant inputs in the model's signs, shape (nu,), rudder amidships; absent wind channels mean still air.
 
     Raises:
         InputError: an input is missing, unknown, or the rudder is among those given.
@@ -33,11 +33,7 @@ def held_inputs(model: Model, values_by_name: Mapping[str, float], rudder: str) 
 
 
 def approach_speed(model: Model, held: Array) -> float:
-    """The speed u [m/s] at which surge is in balance on a straight course without drift.
-
-    Raises:
-        InputError: there is none below 100 m/s.
-    """
+    """Return the speed u [m/s] at which surge is in balance on a straight course without drift."""
     from scipy.optimize import brentq
 
     place, parameters = model.states.index("u"), model.parameters.values
@@ -51,17 +47,14 @@ def approach_speed(model: Model, held: Array) -> float:
     speeds = np.geomspace(1e-3, _MAX_SPEED, 60)  # m/s; grid that brackets the speed; chosen
     for low, high in pairwise(speeds):
         if surge(low) > 0.0 >= surge(high):
-            return float(brentq(surge, low, high, xtol=1e-12))
+            return float(brentq(surge, low, high, xtol=1e-12))  # m/s, rounding
     raise InputError(f"model '{model.name}' has no steady speed ahead with these inputs; give the approach speed")
 
 
 def straight_run(model: Model, plan: Record, speed: float | None = None) -> dict[str, float]:
-    """Where a planned record starts: on a straight course at u = `speed`, all else zero.
+    """Return where a planned record starts: on a straight course at u = `speed`, all else zero.
 
     Without a speed it is the one at which surge balances with the plan's first inputs, rudder amidships.
-
-    Raises:
-        InputError: as `inputs_of` and `approach_speed`.
     """
     start = dict.fromkeys(model.states, 0.0)
     if "u" in start and speed is not None:
@@ -74,11 +67,7 @@ def straight_run(model: Model, plan: Record, speed: float | None = None) -> dict
 
 
 def characteristic_time(model: Model, start: Array, given_speed: float | None) -> float:
-    """L/U [s] from the start's u, the speed given, or the model's parameter U; else a Nomoto model's time constant.
-
-    Raises:
-        InputError: length or speed is not known.
-    """
+    """L/U [s] from the start's u, the speed given, or the model's parameter U; else a Nomoto model's time constant."""
     names = model.parameters.names
     length = model.parameters["L"].value if "L" in names else 0.0
     if "u" in model.states:

@@ -84,7 +84,7 @@ class SegmentBatch:
         return _table(chain, 2), _table(link_p, 3), _table(link_u, 4)
 
     def _correction_values(self, corrections: Array) -> tuple[Array, Array, Array]:
-        """gain, offset, delay, each (segments, nu), from correction values (segments, n)."""
+        """Return gain, offset, delay, each (segments, nu), from correction values (segments, n)."""
         shape = (self.segment_count, len(self.model.inputs))
         made = {"gain": np.ones(shape), "zero": np.zeros(shape), "delay": np.zeros(shape)}
         for m, c in enumerate(self.corrections):
@@ -94,7 +94,7 @@ class SegmentBatch:
     def simulate(
         self, first: int, last: int, start: Array, parameters: Array, corrections: Array
     ) -> tuple[Array, Index]:
-        """Outputs of segments first..last: shapes (rows, ny), and the sample of failure or -1, (segments,).
+        """Return outputs of segments first..last: shapes (rows, ny), and the sample of failure or -1, (segments,).
 
         start (segments, nx), parameters (segments, np) all of the model's, corrections (segments, n): for all segments.
         """
@@ -109,7 +109,7 @@ class SegmentBatch:
     def differentiate(
         self, first: int, last: int, start: Array, parameters: Array, corrections: Array
     ) -> tuple[Array, Array, Index]:
-        """`simulate` with d(output)/d(column), shape (rows, ny, width)."""
+        """Return what `simulate` does, with d(output)/d(column), shape (rows, ny, width)."""
         offsets, inputs, failed, y = self._segment_rows(first, last)
         gain, zero, delay = (a[first:last] for a in self._correction_values(corrections))
         column = np.full(len(self.model.states), -1, dtype=np.int64)
@@ -126,15 +126,11 @@ class SegmentBatch:
     def _segment_rows(self, first: int, last: int) -> tuple[Index, Array, Index, Array]:
         rows = slice(self.offsets[first], self.offsets[last])
         offsets = np.ascontiguousarray(self.offsets[first : last + 1] - self.offsets[first])
-        return (
-            offsets,
-            self.inputs[rows],
-            np.full(last - first, -1, dtype=np.int64),
-            np.empty((rows.stop - rows.start, len(self.outputs))),
-        )
+        y = np.empty((rows.stop - rows.start, len(self.outputs)))
+        return offsets, self.inputs[rows], np.full(last - first, -1, dtype=np.int64), y
 
     def influential_states(self) -> tuple[str, ...]:
-        """States whose initial value reaches any of the outputs."""
+        """Return states whose initial value reaches any of the outputs."""
         nx = len(self.model.states)
         compiled = self.model.compiled
         reached = {int(i) for i in self._output_columns if i < nx}

@@ -8,7 +8,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, DivergedError, InputError, Provenance, Record, frozen, spelling_hint
 from seatrial.numerics.kernels import feedback as kernel
-from seatrial.numerics.kernels.steering import steer
+from seatrial.numerics.kernels.feedback import steer
 from seatrial.physics.loops import TransferLoop
 from seatrial.physics.simulate.channels import record_of
 from seatrial.physics.simulate.controller import controller_state_space
@@ -104,7 +104,7 @@ class ClosedLoop:
     def run(
         self, disturbance: Array, limits: ActuatorLimits = UNLIMITED, reference: Array | None = None
     ) -> tuple[Array, Array]:
-        """States (n, nx) and the actuator's angle from its trim (n,) at the samples of the disturbance (n,).
+        """Return states (n, nx) and the actuator's angle from its trim (n,) at the samples of the disturbance (n,).
 
         reference: (n,), absolute, as the output; by default the output's trim.
 
@@ -157,7 +157,7 @@ class ClosedLoop:
         return np.concatenate([head, *laws, made.slow_rate, np.zeros(2 * n), *series])
 
     def _input_index(self, name: str) -> int:
-        """Of an input; -1 of none."""
+        """Return the place of an input; -1 of none."""
         return self.model.input_names.index(name) if name else -1
 
     def _sign(self, place: int) -> float:
@@ -166,7 +166,7 @@ class ClosedLoop:
     def record(
         self, name: str, disturbance: Array, limits: ActuatorLimits = UNLIMITED, reference: Array | None = None
     ) -> Record:
-        """`run` as a record: all states, inputs at their trim, the actuator, the disturbance, the reference."""
+        """Return `run` as a record: all states, inputs at their trim, the actuator, the disturbance, the reference."""
         states, angle = self.run(disturbance, limits, reference)
         place, disturbed = self._input_index(self.actuator), self._input_index(self.disturbance_input)
         inputs = np.tile(self.inputs, (len(states), 1))
@@ -218,7 +218,7 @@ def closed_loop(
 
 
 def hold_equivalent(series: Array) -> Array:
-    """Values (n,) that, each held over its step, act on a mass as the smooth series does: mid-values, sharpened.
+    """Return values (n,) that, each held over its step, act on a mass as the smooth series does: mid-values, sharpened.
 
     A hold takes sinc(omega dt / 2) off: w - dt^2 / 24 w'' at mid-step, by cubics, makes up for it.
     """

@@ -50,7 +50,7 @@ _UNIT_GAIN = ControllerStateSpace(np.zeros((0, 0)), np.zeros(0), np.zeros(0), 1.
 
 
 def controller_state_space(loop: TransferLoop, gains: Array) -> ControllerStateSpace:
-    """Sensor, terms with those gains (g,), filters and servo in a row."""
+    """Return sensor, terms with those gains (g,), filters and servo in a row."""
     seen = reduce(_append_block, loop.sensor, _UNIT_GAIN)
     made = replace(seen, c=np.zeros(len(seen.c)), d=0.0)
     slowest = _slowest_pole(loop.plant)
@@ -64,14 +64,17 @@ def controller_state_space(loop: TransferLoop, gains: Array) -> ControllerStateS
     return replace(made, slow_rate=drift)
 
 
+_AT_ORIGIN = 1e-9  # rad/s, below which a pole integrates: rounding
+
+
 def _slowest_pole(plant: Block) -> float:
-    """The plant's pole nearest the origin but not at it, rad/s; zero where it has none."""
+    """Return the plant's pole nearest the origin but not at it, rad/s; zero where it has none."""
     sizes = np.abs(plant.poles)
-    return float(sizes[sizes > 1e-9].min(initial=np.inf)) if np.any(sizes > 1e-9) else 0.0
+    return float(sizes[sizes > _AT_ORIGIN].min(initial=np.inf)) if np.any(sizes > _AT_ORIGIN) else 0.0
 
 
 def _append_block(first: ControllerStateSpace, block: Block) -> ControllerStateSpace:
-    """A block behind."""
+    """Return a block behind."""
     A, b, c, d = controllable_form(block)
     n, m = len(first.b), len(b)
     whole = np.zeros((n + m, n + m))
@@ -86,12 +89,12 @@ def _append_block(first: ControllerStateSpace, block: Block) -> ControllerStateS
 def _add_term(
     controller: ControllerStateSpace, sensor: ControllerStateSpace, gain: float, block: Block, slowest: float
 ) -> ControllerStateSpace:
-    """One more term on what the sensor shows; `controller` has the sensor's states first."""
+    """Return one more term on what the sensor shows; `controller` has the sensor's states first."""
     A, b, c, d = controllable_form(block)
     n, m, s = len(controller.b), len(b), len(sensor.b)
     whole = np.zeros((n + m, n + m))
     whole[:n, :n], whole[n:, :s], whole[n:, n:] = controller.A, np.outer(b, sensor.c), A
-    is_slow = bool(m) and float(np.abs(block.poles).min()) < max(slowest, 1e-9)
+    is_slow = bool(m) and float(np.abs(block.poles).min()) < max(slowest, _AT_ORIGIN)
     drift = np.concatenate([controller.slow_rate[:-1], np.zeros(m), controller.slow_rate[-1:]])
     if is_slow:
         drift[n : n + m] += gain * (c @ A)

@@ -11,17 +11,13 @@ _DEFAULT_LIMIT = 1e9  # of a state in any other unit, as said above
 
 
 def state_limits(model: Model) -> Array:
-    """Bounds of the states' magnitudes, shape (nx,)."""
+    """Return bounds of the states' magnitudes, shape (nx,)."""
     units = [NOTATION[s].unit if s in NOTATION else "" for s in model.states]
     return np.array([_LIMITS_BY_UNIT.get(unit, _DEFAULT_LIMIT) for unit in units])
 
 
 def require_bounded(model: Model, time: Array, states: Array, subject: str) -> None:
-    """Accept states (n, nx) that stay within their bounds.
-
-    Raises:
-        DivergedError: they do not; the first time [s] and channel are named.
-    """
+    """Accept states (n, nx) that stay within their bounds."""
     inside = np.abs(states) <= state_limits(model)
     if inside.all():
         return

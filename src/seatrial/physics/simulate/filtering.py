@@ -59,7 +59,7 @@ class KalmanFilter(SegmentBatch):
         return (self._links[0], *none, *none)
 
     def innovations(self, segment: int, measured: Array, point: FilterPoint) -> tuple[Array, Array, bool]:
-        """Innovations e (measured - predicted) and variances v of one segment, (rows, ny); whether it diverged.
+        """Return innovations e (measured - predicted) and variances v of one segment, (rows, ny); whether it diverged.
 
         measured: of all segments, NaN where there is none; there e = 0 and v = 1.
         """
@@ -69,7 +69,7 @@ class KalmanFilter(SegmentBatch):
     def sensitivities(
         self, segment: int, measured: Array, point: FilterPoint
     ) -> tuple[Array, Array, Array, Array, bool]:
-        """`innovations` with de by all columns, (rows, ny, columns), and dv by the noise's, (rows, ny, noises).
+        """Return `innovations` with de by all columns, (rows, ny, columns), and dv by the noise's, (rows, ny, noises).
 
         The gain counts as independent of parameters and corrections.
         """
@@ -83,20 +83,15 @@ class KalmanFilter(SegmentBatch):
         return self._run(segment, nothing, point, self._state_links, 0, 0, with_variance=True)[4]
 
     def transitions(self, segment: int, start: Array, parameters: Array, corrections: Array) -> tuple[Array, Array]:
-        """Transition matrices from sample to sample, (rows - 1, nx, nx), and outputs by states, (rows, ny, nx).
+        """Return transition matrices from sample to sample, (rows - 1, nx, nx), and outputs by states, (rows, ny, nx).
 
         Along the motion without noise; start, parameters, corrections: as in `simulate`, of all segments.
         """
         a, b = self.offsets[segment : segment + 2]
         gain, zero, delay = (c[segment] for c in self._correction_values(corrections))
-        inputs, rows, nx = (
-            corrected_inputs(self.inputs[a:b], self.dt, gain, zero, delay)[0],
-            b - a,
-            len(self.model.states),
-        )
-        whole = SegmentBatch(
-            self.model, inputs, np.array([0, rows]), self.dt, self.model.states, substeps=self.substeps
-        )
+        inputs, rows = corrected_inputs(self.inputs[a:b], self.dt, gain, zero, delay)[0], b - a
+        model, nx = self.model, len(self.model.states)
+        whole = SegmentBatch(model, inputs, np.array([0, rows]), self.dt, model.states, substeps=self.substeps)
         one = parameters[segment : segment + 1]
         states = whole.simulate(0, 1, start[segment : segment + 1], one, np.zeros((1, 0)))[0]
         ahead = np.minimum(np.column_stack([np.arange(rows), np.arange(1, rows + 1)]), rows - 1).ravel()
@@ -118,7 +113,6 @@ class KalmanFilter(SegmentBatch):
         *,
         with_variance: bool = False,
     ) -> tuple[Array, Array, Array, Array, Array, bool]:
-        nx, ny = len(self.model.states), len(self.outputs)
         from seatrial.numerics.kernels.innovations import filter_innovations  # compiled when it is first wanted
 
         chain, link_p, link_u, g_link_p, g_link_u = links

@@ -25,7 +25,7 @@ class LinearSystem:
 
 
 def linear_system(model: Model, outputs: tuple[str, ...] = ()) -> LinearSystem:
-    """The matrices at the model's own parameters; outputs: observables in order, all states if none is named.
+    """Return the matrices at the model's own parameters; outputs: observables in order, all states if none is named.
 
     Raises:
         InputError: the model is not affine in states and inputs.
@@ -42,13 +42,13 @@ def linear_system(model: Model, outputs: tuple[str, ...] = ()) -> LinearSystem:
 
 
 def frequency_response(system: LinearSystem, omega: Array) -> Complex:
-    """C (i omega - A)^-1 B + D, shape (n, ny, nu); omega in rad/s, signed, time factor exp(+i omega t)."""
+    """Return C (i omega - A)^-1 B + D, shape (n, ny, nu); omega in rad/s, signed, time factor exp(+i omega t)."""
     resolvent = 1j * omega[:, None, None] * np.eye(len(system.A)) - system.A
     return system.C @ np.linalg.solve(resolvent, np.broadcast_to(system.B, (len(omega), *system.B.shape))) + system.D
 
 
 def harmonic_motion(system: LinearSystem, omega: Array, amplitude: Complex, time: Array, start: Array) -> Array:
-    """Outputs under u = Re sum amplitude exp(i omega t), from state `start` at time[0]; exact, shape (n, ny).
+    """Return outputs under u = Re sum amplitude exp(i omega t), from state `start` at time[0]; exact, shape (n, ny).
 
     omega: (h,) rad/s, signed; amplitude: (h, nu); time: (n,) s, evenly spaced.
     """

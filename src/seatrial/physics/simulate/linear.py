@@ -45,8 +45,9 @@ def discrete_matrices(
 ) -> DiscreteMatrices:
     """Exact discrete matrices over a step h [s] for each row of `parameters`, and derivatives by `differentiated`."""
     made = [_matrices_of_one(model, row, h, select, differentiated) for row in parameters]
-    e, g0, g1, c, d = (np.array([values[i] for values, _ in made]) for i in range(5))
-    de, dg0, dg1, dc, dd = (np.array([slopes[i].transpose(1, 2, 0) for _, slopes in made], order="C") for i in range(5))
+    e, g0, g1, c, d = (np.array(column) for column in zip(*(values for values, _ in made), strict=True))
+    slopes = zip(*(slopes for _, slopes in made), strict=True)
+    de, dg0, dg1, dc, dd = (np.array([s.transpose(1, 2, 0) for s in column], order="C") for column in slopes)
     return DiscreteMatrices(e, g0, g1, c, d, (de, dg0, dg1, dc, dd))
 
 
@@ -79,7 +80,7 @@ class LinearBatch(SegmentBatch):
     def simulate(
         self, first: int, last: int, start: Array, parameters: Array, corrections: Array
     ) -> tuple[Array, Index]:
-        """As `SegmentBatch.simulate`."""
+        """Return the outputs of `SegmentBatch.simulate`."""
         offsets, failed, y, fine, _ = self._prepare(first, last, corrections)
         m, which = self._matrices(parameters[first:last], np.empty(0, dtype=np.int64))
         replay(m.e, m.g0, m.g1, m.c, m.d, which, fine, offsets, self._steps_per_sample,
@@ -89,7 +90,7 @@ class LinearBatch(SegmentBatch):
     def differentiate(
         self, first: int, last: int, start: Array, parameters: Array, corrections: Array
     ) -> tuple[Array, Array, Index]:
-        """As `SegmentBatch.differentiate`."""
+        """Return the slopes of `SegmentBatch.differentiate`."""
         offsets, failed, y, fine, weights = self._prepare(first, last, corrections)
         wanted = np.array([self.model.parameters.index(n) for n in self.parameters], dtype=np.int64)
         m, which = self._matrices(parameters[first:last], wanted)
@@ -129,7 +130,7 @@ class LinearBatch(SegmentBatch):
         return offsets, failed, y, np.concatenate([u for u, _ in fine]), np.concatenate([w for _, w in fine])
 
     def _corrected_inputs(self, segment: int, corrections: Array) -> tuple[Array, Array]:
-        """Corrected inputs of one segment at the fine step, (rows, nu + 1), and slopes, (rows, corrections)."""
+        """Return corrected inputs of one segment at the fine step, (rows, nu + 1), and slopes, (rows, corrections)."""
         if not self.corrections:
             return self._recorded_inputs[segment]
         plain = self._recorded_inputs[segment][0]
@@ -158,7 +159,7 @@ class LinearBatch(SegmentBatch):
         return made
 
     def _delayed_input(self, segment: int, j: int, delay: float) -> tuple[Array, Array]:
-        """Input j at the fine step, late by `delay` [s], and its rate of change; clamped to the segment."""
+        """Return input j at the fine step, late by `delay` [s], and its rate of change; clamped to the segment."""
         samples = self.inputs[self.offsets[segment] : self.offsets[segment + 1], j]
         place = np.arange((len(samples) - 1) * self._steps_per_sample + 1) / self._steps_per_sample - delay / self.dt
         inside = (place >= 0.0) & (place <= len(samples) - 1.0)
@@ -181,5 +182,5 @@ class LinearBatch(SegmentBatch):
 
 
 def batch_class(model: Model) -> type[SegmentBatch]:
-    """The engine that suits the model."""
+    """Return the engine that suits the model."""
     return LinearBatch if model.is_affine else SegmentBatch

@@ -70,7 +70,7 @@ class Forcing:
         return np.hstack([u, after])
 
     def one_step(self, sample: int) -> "Forcing":
-        """From one sample to the next.
+        """Return the forcing from one sample to the next.
 
         Raises:
             InputError: there is no next one.
@@ -101,7 +101,7 @@ def affine_population_matrices(model: Model, parameters: Array, inputs: Sequence
 
 
 def discretised_hold(A: Array, B: Array, dt: float) -> tuple[Array, Array]:
-    """Phi (count, nx, nx) and Psi (count, nx, nu) of A, B, same shapes: x_{k+1} = Phi x_k + Psi u_k.
+    """Return Phi (count, nx, nx) and Psi (count, nx, nu) of A, B, same shapes: x_{k+1} = Phi x_k + Psi u_k.
 
     NaN where a matrix is not finite or too large to be scaled.
     """
@@ -109,7 +109,7 @@ def discretised_hold(A: Array, B: Array, dt: float) -> tuple[Array, Array]:
 
 
 def discretised_ramp(A: Array, B: Array, dt: float) -> tuple[Array, Array, Array]:
-    """Phi, G0, G1 of inputs straight between samples: x_{k+1} = Phi x_k + G0 u_k + G1 u_{k+1}; as for a hold."""
+    """Return Phi, G0, G1 of inputs straight between samples: x_{k+1} = Phi x_k + G0 u_k + G1 u_{k+1}; as for a hold."""
     phi, gamma = _discretised(A, B, dt, is_ramp=True)
     nu = B.shape[2]
     return phi, gamma[:, :, :nu], gamma[:, :, nu:]
@@ -118,7 +118,7 @@ def discretised_ramp(A: Array, B: Array, dt: float) -> tuple[Array, Array, Array
 def trajectories(
     A: Array, B: Array, forcing: Forcing, start: Array, channels: tuple[int, ...] = HEAVE_AND_PITCH
 ) -> Array:
-    """States `channels` of every candidate, shape (count, samples, channels).
+    """Return states `channels` of every candidate, shape (count, samples, channels).
 
     A (count, nx, nx), B (count, nx, nu); start (nx,) for all or (count, nx). What grows beyond all bounds is infinite
     or NaN in the result.
@@ -178,7 +178,7 @@ def one_sample_fitness(
 def complete_parameters(coefficients: Array, particulars: Mapping[str, float]) -> Array:
     """All fourteen parameters, (count, 14) in the order of ALL_COEFFICIENTS, from the eight unknown ones (count, 8).
 
-    particulars: m, I5 and the stiffnesses, as in the particulars of `seatrial.physics.models.qi2025.SHIP`.
+    particulars: m, I5 and the stiffnesses, as in the particulars of `seatrial.physics.models.published.SHIP`.
 
     Raises:
         InputError: one of the known values is missing, or there are not eight columns.
@@ -196,7 +196,7 @@ def complete_parameters(coefficients: Array, particulars: Mapping[str, float]) -
 
 
 def heave_pitch_matrices(parameters: Array) -> tuple[Array, Array]:
-    """A (count, 4, 4) and B (count, 4, 2) of x' = A x + B (F3, M5), x = (z, z_dot, theta, theta_dot).
+    """Return A (count, 4, 4) and B (count, 4, 2) of x' = A x + B (F3, M5), x = (z, z_dot, theta, theta_dot).
 
     parameters (count, 14): m I5 a33 a35 a55 a53 b33 b35 b55 b53 c33 c35 c53 c55 in SI units (Qi et al. 2025, eq. (1));
     F3 and z, M5 and theta share their signs. A singular mass matrix gives infinite or NaN entries.

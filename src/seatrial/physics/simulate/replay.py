@@ -39,7 +39,7 @@ def replay(model: Model, record: Record, initial: Mapping[str, float] | None = N
 
 
 def trajectory(model: Model, inputs: Array, dt: float, start: Array, substeps: int = 1) -> tuple[Array, Array]:
-    """States (n, nx) and outputs (n, ny) from inputs (n, nu) in the model's signs; NaN after a divergence.
+    """Return states (n, nx) and outputs (n, ny) from inputs (n, nu) in the model's signs; NaN after a divergence.
 
     Raises:
         InputError: a parameter has no value, or `substeps` is less than one.
@@ -55,7 +55,7 @@ def trajectory(model: Model, inputs: Array, dt: float, start: Array, substeps: i
 
 
 def initial_state(model: Model, record: Record, initial: Mapping[str, float]) -> Array:
-    """The state at the record's first sample, shape (nx,): given, measured, or zero for the pose.
+    """Return the state at the record's first sample, shape (nx,): given, measured, or zero for the pose.
 
     Raises:
         InputError: `initial` names no state, a state is neither given nor measured, or its channel is not the model's.
@@ -67,7 +67,7 @@ def initial_state(model: Model, record: Record, initial: Mapping[str, float]) ->
 
 
 def _first_slope(record: Record, symbol: str) -> float:
-    """Rate of a channel at its first sample, by a cubic through its first second or five samples."""
+    """Return rate of a channel at its first sample, by a cubic through its first second or five samples."""
     count = min(len(record), max(6, round(1.0 / record.dt)))
     time, values = record.time[:count] - record.time[0], record[symbol][:count]
     good = np.isfinite(values)
@@ -99,3 +99,17 @@ def _measured_start(model: Model, record: Record, state: str) -> float:
             f"{NOTATION[state].frame}-fixed; turn it first or give its initial value"
         )
     return value if channel.positive == NOTATION[state].positive else -value
+
+
+def forces(model: Model, record: Record) -> dict[str, Array]:
+    """Return every binding of the model (forces, speeds, angles; SI units) at the record's samples: name -> (n,).
+
+    Raises:
+        InputError: the record lacks a state or an input of the model.
+    """
+    absent = [s for s in model.states if s not in record]
+    if absent:
+        raise InputError(
+            f"record '{record.name}' has no channel '{absent[0]}', a state of model '{model.name}'; simulate it first"
+        )
+    return model.forces(record.matrix(model.states), inputs_of(model, record))

@@ -9,9 +9,9 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Provenance, Record, frozen
 from seatrial.core.values.record import MAX_SAMPLES
-from seatrial.numerics.kernels.steering import steer
+from seatrial.numerics.kernels.feedback import steer
+from seatrial.physics.manoeuvres.helmsman import FINISHED, NOT_FINISHED, Steering, rudder_angles
 from seatrial.physics.manoeuvres.programme import Programme
-from seatrial.physics.manoeuvres.steering import FINISHED, NOT_FINISHED, Steering, rudder_angles
 from seatrial.physics.simulate.approach import RUDDER, approach_speed, characteristic_time, held_inputs
 from seatrial.physics.simulate.channels import record_of
 from seatrial.physics.simulate.divergence import require_bounded
@@ -88,7 +88,7 @@ def _require_steerable(model: Model, dt: float, slew_rate: float) -> None:
 def _steer_programme(
     model: Model, programme: Programme, steering: Steering, start: Array, held: Array, longest: float
 ) -> tuple[Array, bool]:
-    """Inputs at the samples (n, nu), in the model's signs, and whether the helmsman has finished."""
+    """Return inputs at the samples (n, nu), in the model's signs, and whether the helmsman has finished."""
     dt = steering.dt
     if not 1.0 <= longest / dt < MAX_SAMPLES:
         raise InputError(f"a manoeuvre of {longest:g} s is not between 1 and {MAX_SAMPLES:.0e} steps of {dt:g} s")

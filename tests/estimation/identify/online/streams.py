@@ -12,7 +12,7 @@ from seatrial.data.trial.follow_table import require_stream
 from seatrial.data.trial.stream import Stream, StreamSource
 from seatrial.estimation.identify.online import OnlineEstimator
 from seatrial.estimation.identify.online.stream_window import StreamWindow
-from seatrial.physics.models.qi2025 import SHIP
+from seatrial.physics.models.published import QI2025_SHIP
 from seatrial_studies.output_error_fit import with_physics_start
 from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, SeawayScenario, simulate_seaway_run
 
@@ -39,7 +39,11 @@ def sea_stream(heading: int, duration: float, seed: int = 1) -> SeaStream:
     truth = np.array([run.truth.parameters[n].value for n in model.parameters.free_names])
     noise = {"z": HEAVE_NOISE, "theta": PITCH_NOISE}
     trial = Trial(
-        ship=SHIP, runs=(), model=model, noise=noise, stream=Stream(source=StreamSource.STDIN, layout=LAYOUT, rate=10.0)
+        ship=QI2025_SHIP,
+        runs=(),
+        model=model,
+        noise=noise,
+        stream=Stream(source=StreamSource.STDIN, layout=LAYOUT, rate=10.0),
     )
     return SeaStream(trial, run.with_sensor_noise(np.random.default_rng(seed + 1), scenario), truth)
 

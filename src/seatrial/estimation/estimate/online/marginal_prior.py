@@ -8,7 +8,7 @@ import numpy as np
 
 from seatrial.core.values import Array, Index
 from seatrial.estimation.information.covariance import inverse
-from seatrial.estimation.problem.data_term import Contribution
+from seatrial.estimation.problem.output_error import Contribution
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,7 +20,7 @@ from seatrial.estimation.problem.segments import compared_outputs
 from seatrial.estimation.problem.spectral_likelihood import SpectralLikelihood, fine_grid, hann_transform
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt
 from seatrial.physics.sea.encounter import WaveEncounter
-from seatrial.physics.sea.force_spectrum import force_density
+from seatrial.physics.sea.wave_forces import force_density
 from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.harmonics import Complex
 
