@@ -45,8 +45,8 @@ def print_table(rows: Sequence[Sequence[str]], flush_left: Sequence[int] = (0,),
     print_lines(aligned([[ascii_text(cell) for cell in row] for row in rows], flush_left), indent)
 
 
-def print_findings(findings: "tuple[Finding, ...]", per_code: int) -> None:
-    """Print findings by kind, errors first; of each kind the first few."""
+def print_findings(findings: "Sequence[Finding]", per_code: int, rest: str = "--all shows them") -> None:
+    """Print findings by kind, errors first; of each kind the first few, and where the `rest` is shown."""
     from seatrial.core.text.words import counted
 
     order = list(SEVERITY_MARK)
@@ -57,7 +57,7 @@ def print_findings(findings: "tuple[Finding, ...]", per_code: int) -> None:
     for (severity, code), alike in sorted(kinds.items(), key=lambda item: order.index(item[0][0])):
         print_lines(f"{SEVERITY_MARK[severity]} [{code}] {finding.text}" for finding in alike[:per_code])
         if len(alike) > per_code:
-            print(f"        ... and {len(alike) - per_code} more of this kind; --all shows them")
+            print(f"        ... and {len(alike) - per_code} more of this kind; {rest}")
         if alike[0].advice:
             print_lines([f"        advice: {alike[0].advice}"])
     errors = sum(finding.severity.value == "error" for finding in findings)
@@ -90,7 +90,15 @@ def print_fit(fit: "Fit") -> None:
     _print_model_selection(fit)
     _print_baselines(fit)
     _print_identifiability(fit)
+    _print_warnings(fit)
     print_lines([f"intervals: {fit.method.intervals}", f"{fit.method.criterion}; {duration(fit.elapsed_s)}"])
+
+
+def _print_warnings(fit: "Fit") -> None:
+    """Warnings, those on the fit before those on the records; what is only worth knowing stays in the report."""
+    warnings = [f for f in fit.findings if f.severity.value != "info"]
+    if warnings:
+        print_findings(warnings[::-1], 1, "the report lists them")
 
 
 def _print_coefficients(fit: "Fit") -> None:
@@ -121,7 +129,9 @@ def _print_method_comparison(fit: "Fit", reference: "ReferenceEstimate") -> None
 def _print_prediction(p: "Prediction") -> None:
     from seatrial.core.text.numbers import exact
 
-    print_lines([f"validation {p.record}: rms {_named_numbers(p.rms)}"])
+    rms = f"rms {_named_numbers(p.rms)}" if p.rms else "no error, nothing can be compared"
+    until = "" if p.divergence is None else f"; it diverges, and its first {exact(p.divergence.seconds, 4)} s count"
+    print_lines([f"validation {p.record}: {rms}{until}"])
     if p.noise_floor:
         print_lines([f"process noise alone: {_named_numbers(p.noise_floor)}"], "  ")
     if p.tied_spread:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from seatrial.core.figures.svg_text import svg
-from seatrial.core.results import Extrapolation, Measure, Prediction
+from seatrial.core.results import Divergence, Extrapolation, Measure, Prediction
 from seatrial.core.results.fit_charts import has_band, prediction_chart
-from seatrial.core.text.numbers import DASH, column_texts, fixed, interval, ratio_text, significant
+from seatrial.core.text.numbers import DASH, column_texts, duration, fixed, interval, ratio_text, significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import InputError, Record
 from seatrial.physics.manoeuvres import ImoCriterion, imo_criteria
@@ -121,7 +121,8 @@ def score_table(predictions: Sequence[Prediction], length: float) -> ScoreTable:
             for t, f, s, (_, unit) in zip(texts, floors, spreads, header, strict=True)
         )
         e = _extrapolation(p)
-        rows.append(RunScore(p.record, p.role == "validation", cells, ratio_text(e.index) if e else "",
+        until = "" if p.divergence is None else f" (diverges; first {duration(p.divergence.seconds)})"
+        rows.append(RunScore(f"{p.record}{until}", p.role == "validation", cells, ratio_text(e.index) if e else "",
                           extrapolation_zone(e.index) if e else ""))  # fmt: skip
     return ScoreTable(
         tuple(header), tuple(rows), any(c.floor for row in rows for c in row.cells),
@@ -177,7 +178,7 @@ def _error_texts(errors: Mapping[str, float]) -> list[str]:
 
 
 def _notes(p: Prediction) -> list[str]:
-    notes = []
+    notes = [] if p.divergence is None else [_divergence_note(p.divergence)]
     e = _extrapolation(p)
     if e:
         notes.append(f"Extrapolation index {extrapolation_text(e)}")
@@ -191,6 +192,14 @@ def _notes(p: Prediction) -> list[str]:
             f"{enumeration(_error_texts(p.tied_spread))} (std. dev.)."
         )
     return notes
+
+
+def _divergence_note(d: Divergence) -> str:
+    terms = f", driven by the terms of {enumeration(d.terms)}" if d.terms else ""
+    return (
+        f"The simulation diverges in {d.state} after {duration(d.seconds)}{terms}; errors are those up to then. "
+        "Findings say what to do."
+    )
 
 
 def _measure_table(rows: Sequence[MeasureRow]) -> MeasureTable:

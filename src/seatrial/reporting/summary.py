@@ -77,6 +77,8 @@ def _prediction_sentence(p: Prediction, fit: Fit) -> str:
     if not parts and "r" in p.rms:
         parts.append(f"{significant(p.rms['r'] * math.degrees(1.0), 2)} deg/s in yaw rate")
     text = f"{p.record}, not fitted, is predicted open loop over {duration(p.measured.duration)}"
+    if p.divergence is not None:
+        text = f"{p.record}, not fitted, diverges after {duration(p.divergence.seconds)}; until then it is predicted"
     errors = f" with errors of {enumeration(parts)} (rms)" if parts else ""
     return f"{text}{errors}{_noise_floor(p) if parts else ''}.{_first_measures(p)}"
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import DivergedError, InputError, Parameters, Prior
-from seatrial.estimation.identify.fit_result import divergence_message, refuse_unidentified, unidentified
+from seatrial.estimation.identify.fit_result import divergence_message, refuse_unidentified, unconverged, unidentified
+from seatrial.numerics.optimise import Status
 from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models.waterjet import waterjet
 
@@ -57,3 +58,19 @@ def test_a_model_that_cannot_be_sailed_names_its_coefficients() -> None:
     assert "simulation of run 'a' diverges)" in said
     assert "smaller step" not in said
     assert all(name in said for name in COEFFICIENTS)
+
+
+@pytest.mark.parametrize(
+    ("status", "is_settled", "codes"),
+    [
+        (Status.CONVERGED, True, []),
+        (Status.EXHAUSTED, True, ["not-converged"]),
+        (Status.CONVERGED, False, ["noise-not-settled"]),
+    ],
+)
+def test_a_search_at_its_limit_and_noise_that_changes_are_warned_of(
+    status: Status, is_settled: bool, codes: list[str]
+) -> None:
+    optimum = SimpleNamespace(solution=SimpleNamespace(status=status))
+    estimation: Any = SimpleNamespace(estimate=SimpleNamespace(optimum=optimum, is_settled=is_settled))
+    assert [f.code for f in unconverged(estimation)] == codes

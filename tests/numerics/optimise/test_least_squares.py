@@ -250,6 +250,21 @@ def test_what_is_negligible_ends_the_search() -> None:
     assert told.point[0] == pytest.approx(2.0, abs=1e-4)
 
 
+def test_a_sufficient_promise_counts_where_evaluations_run_out() -> None:
+    """One step before the end of Misra1a, whose promise is measured first."""
+    point, evaluations = np.array([250.0, 5e-4]), 6
+    before = levenberg_marquardt(MISRA, point, NONE, evaluations=evaluations, tolerance=1e-12)
+    assert before.solution.status is Status.EXHAUSTED
+    step = np.linalg.solve(before.normal.hessian, -before.normal.gradient)
+    promise = float(-0.5 * before.normal.gradient @ step)
+    for factor, status in ((1.01, Status.CONVERGED), (0.99, Status.EXHAUSTED)):
+        after = levenberg_marquardt(
+            MISRA, point, NONE, evaluations=evaluations, tolerance=1e-12, sufficient=factor * promise
+        )
+        assert after.solution.status is status
+        np.testing.assert_array_equal(after.solution.point, before.solution.point)
+
+
 def test_pinned_unknowns_stay_while_local_ones_move(rng: np.random.Generator) -> None:
     problem, own = Separate(rng), np.array([2.0, 0.7])
     problem.lower = problem.upper = own

@@ -17,6 +17,7 @@ from seatrial.core.results.identifiability import (
 )
 from seatrial.core.results.prediction import (
     Baseline,
+    Divergence,
     Extrapolation,
     IntervalBasis,
     Measure,
@@ -33,7 +34,7 @@ from seatrial.numerics.optimise import Solution, Status
 __all__ = [
     "Actuator", "Bars", "Baseline", "CandidateModel", "Check", "CheckStatus", "Claim", "Coefficient",
     "Collinearity", "Confirmation", "Consequence", "Curve", "Design", "Direction", "DisturbanceCandidate",
-    "Extrapolation", "Figure",
+    "Divergence", "Extrapolation", "Figure",
     "Fit", "Identifiability", "IntervalBasis", "IntervalEstimate", "ManoeuvrePrecision", "Matrix", "Measure",
     "Method", "Noise", "NoiseModel", "Offset", "OpenLoopScores", "PointMotion", "Prediction", "Profile",
     "ReferenceEstimate", "Residuals", "RollCharacteristics", "RowScore", "Seakeeping", "Search", "SearchRestart",

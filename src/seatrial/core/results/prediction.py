@@ -31,6 +31,19 @@ class Extrapolation:
     ]
 
 
+@dataclass(frozen=True)
+class Divergence:
+    """Where a simulated run leaves all bounds, and what drives it there; the run is scored up to that time."""
+
+    time: Annotated[Number, Field(description="s on the record's clock, first sample that is not scored")]
+    seconds: Annotated[Number, Field(description="s from the run's first sample that are scored")]
+    state: Annotated[str, Field(description="the state that leaves its bounds first")]
+    terms: Annotated[
+        tuple[str, ...],
+        Field(description="parameters whose terms in the state's equation drive it away, the strongest first"),
+    ] = ()
+
+
 @dataclass(frozen=True, eq=False)
 class Prediction:
     """One run simulated open loop, compared with its measurement."""
@@ -61,6 +74,9 @@ class Prediction:
     tied_spread: Annotated[
         dict[str, Number], Field(description="standard deviation over tied models, keys as in `measures` and `rms`")
     ] = field(default_factory=dict)
+    divergence: Annotated[
+        Divergence | None, Field(description="null: the simulation lasts as long as the run; else NaN follows it")
+    ] = None
 
 
 @dataclass(frozen=True, eq=False)

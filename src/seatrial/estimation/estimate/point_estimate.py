@@ -14,6 +14,11 @@ from seatrial.numerics.optimise import Optimum, levenberg_marquardt
 
 # promised decrease of the cost at which a search ends, ours
 _NEGLIGIBLE = 1e-8
+# promised decrease that suffices where the evaluations run out: the point then lies within 0.014 standard errors
+# (root of twice the promise) of the model's minimum, ours
+_SUFFICIENT = 1e-4
+# rounds of noise estimates at most; each brings the noise some 40 % nearer where residuals are coloured, ours
+_ROUNDS = 25
 # of a search before noise levels are estimated anew, ours
 _FEW_EVALUATIONS = 12
 # of a channel, over its largest value
@@ -22,10 +27,11 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class PointEstimate:
-    """An optimum of an output-error problem whose noise levels agree with its residuals."""
+    """An optimum of an output-error problem; `is_settled`: its noise levels agree with its residuals."""
 
     problem: OutputError
     optimum: Optimum
+    is_settled: bool = True
 
     @property
     def common_parameters(self) -> Array:
@@ -64,7 +70,7 @@ def fit_output_error(
     initial_states: Array,
     known_noise: Mapping[str, float],
     *,
-    rounds: int = 8,
+    rounds: int = _ROUNDS,
     evaluations: int = 60,
     report_progress: ProgressReporter | None = None,
 ) -> PointEstimate:
@@ -77,8 +83,8 @@ def fit_output_error(
     stated_noise = np.array([known_noise.get(o, np.nan) for o in problem.data.outputs])
     problem = replace(problem, noise=np.where(np.isfinite(stated_noise), stated_noise, problem.noise))
     estimate = _search(problem, common_parameters, initial_states, min(_FEW_EVALUATIONS, evaluations), report_progress)
-    spent = estimate.optimum.solution.evaluations
-    for _ in range(rounds):
+    spent, settled = estimate.optimum.solution.evaluations, False
+    for k in range(rounds):
         noise = np.where(
             np.isfinite(stated_noise), stated_noise, residual_spread(estimate.problem, estimate.residuals())
         )
@@ -92,14 +98,14 @@ def fit_output_error(
             again,
             estimate.common_parameters,
             estimate.optimum.local,
-            evaluations if settled else _FEW_EVALUATIONS,
+            evaluations if settled or k == rounds - 1 else _FEW_EVALUATIONS,
             report_progress,
         )
         spent += estimate.optimum.solution.evaluations
         if settled:
             break
     solution = replace(estimate.optimum.solution, evaluations=spent)
-    return replace(estimate, optimum=replace(estimate.optimum, solution=solution))
+    return replace(estimate, optimum=replace(estimate.optimum, solution=solution), is_settled=settled)
 
 
 def _effective_inflation(inflation: Array) -> Array | None:
@@ -132,6 +138,7 @@ def _search(
         common_parameters,
         initial_states,
         negligible=_NEGLIGIBLE,
+        sufficient=_SUFFICIENT,
         evaluations=evaluations,
         report_progress=report,
     )

@@ -26,7 +26,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         findings: on the estimate, from the strategy.
 
     Raises:
-        InputError: a run cannot be simulated with the estimated coefficients.
+        InputError: a training run cannot be simulated with the estimated coefficients.
     """
     trial, runs = task.trial, task.runs
     predicted = _predictions(task, selected)
@@ -49,7 +49,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         findings=(
             *task.findings, *selected.findings, *findings, *fit_result.unidentified(task.estimation),
             *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation),
-            *_profile_findings(task, assessment),
+            *_profile_findings(task, assessment), *predicted.findings,
         ),
         records=tuple(r.record for r in task.records),
         seed=task.options.seed,

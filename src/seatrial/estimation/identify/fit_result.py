@@ -179,9 +179,14 @@ def divergence_message(estimation: Estimation, error: DivergedError) -> str:
 
 
 def unconverged(estimation: Estimation) -> list[Finding]:
-    """A warning where the search did not converge."""
-    status = estimation.estimate.optimum.solution.status
-    if status.is_success:
-        return []
-    return [Finding(Severity.WARNING, "not-converged", "the search did not converge", status.value,
-                    "do not use the coefficients before this is understood")]  # fmt: skip
+    """Return a warning where the search did not converge, and where noise levels and residuals do not agree."""
+    status, findings = estimation.estimate.optimum.solution.status, []
+    if not status.is_success:
+        findings.append(Finding(Severity.WARNING, "not-converged", "the search did not converge", status.value,
+                        "do not use the coefficients before this is understood"))  # fmt: skip
+    if not estimation.estimate.is_settled:
+        findings.append(Finding(Severity.WARNING, "noise-not-settled", "the noise levels still change from round to "
+                        "round, and with them the weights of the channels", "",
+                        "state the sensors' noise under [noise], or leave out a channel that the model cannot follow"
+                        ))  # fmt: skip
+    return findings

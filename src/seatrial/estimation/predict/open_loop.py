@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.results import Measure, Prediction
-from seatrial.core.values import Array, Record
+from seatrial.core.results import Divergence, Measure, Prediction
+from seatrial.core.values import Array, InputError, Record
+from seatrial.estimation.predict.divergence import divergence_of, without_diverged_rows
 from seatrial.estimation.predict.draws import simulate_points
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import cut_segments
@@ -14,6 +15,8 @@ from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.physics.manoeuvres import measures
 from seatrial.physics.simulate.channels import inputs_of, record_of
 from seatrial.physics.simulate.divergence import require_bounded
+
+_ERROR_ORDER = ("psi_deg", "position_m", "theta_deg", "phi_deg", "z", "u", "v", "r")
 
 
 def estimate_initial_state(
@@ -30,10 +33,14 @@ def estimate_initial_state(
 
 @dataclass(frozen=True, eq=False)
 class OpenLoopRun:
-    """One run simulated: all observables of the model as channels, and the initial state it began with, (nx,)."""
+    """One run simulated: all observables of the model as channels, and the initial state it began with, (nx,).
+
+    Where it diverges (`divergence`), its channels are NaN from there on.
+    """
 
     record: Record
     initial_state: Array
+    divergence: Divergence | None = None
 
 
 def simulate_open_loop(
@@ -44,13 +51,32 @@ def simulate_open_loop(
     Raises:
         InputError: the simulation diverges (which run, which channel, when).
     """
+    run, states = _simulated(template, model, record, nuisances, seconds)
+    require_bounded(model, record.time, states, f"run '{record.name}'")
+    return run
+
+
+def simulate_while_bounded(
+    template: OutputError, model: Model, record: Record, nuisances: Array, seconds: float
+) -> OpenLoopRun:
+    """Return the record simulated from its inputs for as long as it stays within its bounds.
+
+    Raises:
+        InputError: it cannot be simulated at all: an input is missing, or fewer than three samples.
+    """
+    run, states = _simulated(template, model, record, nuisances, seconds)
+    divergence = divergence_of(model, record, states)
+    return OpenLoopRun(without_diverged_rows(run.record, model.input_names, divergence), run.initial_state, divergence)
+
+
+def _simulated(
+    template: OutputError, model: Model, record: Record, nuisances: Array, seconds: float
+) -> tuple[OpenLoopRun, Array]:
+    """The run over its whole length, and its states, (n, nx)."""
     start = estimate_initial_state(template, model, record, nuisances, seconds)
     point = np.array([[model.parameters[n].value for n in template.free]])
-    simulated = observables_record(
-        model, record, simulate_points(template, model, record, start[None], point, nuisances[None])[0]
-    )
-    require_bounded(model, record.time, np.stack([simulated[s] for s in model.states], axis=1), f"run '{record.name}'")
-    return OpenLoopRun(simulated, start)
+    y = simulate_points(template, model, record, start[None], point, nuisances[None])[0]
+    return OpenLoopRun(observables_record(model, record, y), start), y[:, : len(model.states)]
 
 
 def observables_record(model: Model, record: Record, y: Array) -> Record:
@@ -60,23 +86,29 @@ def observables_record(model: Model, record: Record, y: Array) -> Record:
 
 
 def rms_errors(measured: Record, simulated: Record) -> dict[str, float]:
-    """Return root-mean-square differences: angles in degrees, position and heave in m, u, v in m/s, r in rad/s."""
+    """Return root-mean-square differences over the samples that both hold; what is never compared is absent.
 
-    def difference(symbol: str) -> Array:
-        return simulated[symbol] - measured[symbol]
+    Angles in degrees, position and heave in m, u, v in m/s, r in rad/s. A track that never moves is not modelled.
+    """
+    both = set(measured.channels) & set(simulated.channels)
+    squares = {s: (simulated[s] - measured[s]) ** 2 for s in both}
+    factors = {"psi_deg": ("psi", np.degrees(1.0)), "theta_deg": ("theta", np.degrees(1.0)),
+               "phi_deg": ("phi", np.degrees(1.0)), **{s: (s, 1.0) for s in ("z", "u", "v", "r")}}  # fmt: skip
+    errors = {name: factor * _root_mean(squares[s]) for name, (s, factor) in factors.items() if s in both}
+    if {"x0", "y0"} <= both and has_moving_track(simulated):
+        errors["position_m"] = _root_mean(squares["x0"] + squares["y0"])
+    return {name: errors[name] for name in _ERROR_ORDER if name in errors and np.isfinite(errors[name])}
 
-    errors = {}
-    if "psi" in measured and "psi" in simulated:
-        errors["psi_deg"] = float(np.degrees(np.sqrt(np.nanmean(difference("psi") ** 2))))
-    if {"x0", "y0"} <= set(measured.channels) & set(simulated.channels):
-        errors["position_m"] = float(np.sqrt(np.nanmean(difference("x0") ** 2 + difference("y0") ** 2)))
-    for symbol, name in (("theta", "theta_deg"), ("phi", "phi_deg")):
-        if symbol in measured and symbol in simulated:
-            errors[name] = float(np.degrees(np.sqrt(np.nanmean(difference(symbol) ** 2))))
-    for symbol in ("z", "u", "v", "r"):
-        if symbol in measured and symbol in simulated:
-            errors[symbol] = float(np.sqrt(np.nanmean(difference(symbol) ** 2)))
-    return errors
+
+def has_moving_track(simulated: Record) -> bool:
+    """Return whether the simulated position moves at all; that of a model of steering alone does not."""
+    spans = [np.ptp(values[np.isfinite(values)]) for s in ("x0", "y0") if np.isfinite(values := simulated[s]).any()]
+    return any(span > 0.0 for span in spans)
+
+
+def _root_mean(squares: Array) -> float:
+    finite = squares[np.isfinite(squares)]
+    return float(np.sqrt(np.mean(finite))) if len(finite) else float("nan")
 
 
 def is_steered(record: Record, model: Model) -> bool:
@@ -84,20 +116,42 @@ def is_steered(record: Record, model: Model) -> bool:
     return {"psi", "delta"} <= set(record.channels) and "psi" in model.states
 
 
-def compare_measures(record: Record, simulated: Record, length: float) -> dict[str, Measure]:
-    """Return measures of a run and of its simulation, both at the measured executes."""
-    of_measured, of_simulated = measures(record, length), measures(simulated, length, reference=record)
-    return {k: Measure(of_measured.get(k), of_simulated.get(k)) for k in dict.fromkeys([*of_measured, *of_simulated])}
+def compare_measures(
+    record: Record, simulated: Record, length: float, divergence: Divergence | None = None
+) -> dict[str, Measure]:
+    """Measures of a run and of its simulation, both at the measured executes.
+
+    Of a simulation that diverges those are read that lie within the time it lasted.
+    """
+    of_measured = measures(record, length)
+    if divergence is None:
+        of_simulated = measures(simulated, length, reference=record)
+        names = dict.fromkeys([*of_measured, *of_simulated])
+    else:
+        of_simulated, names = _measures_until(record, simulated, length, divergence), dict.fromkeys(of_measured)
+    return {k: Measure(of_measured.get(k), of_simulated.get(k)) for k in names}
+
+
+def _measures_until(record: Record, simulated: Record, length: float, divergence: Divergence) -> dict[str, float]:
+    rows = slice(0, int(np.searchsorted(record.time, divergence.time)))
+    if len(record.time[rows]) < 2:
+        return {}
+    try:
+        return measures(simulated.rows(rows), length, reference=record.rows(rows))
+    except InputError:  # too little is left of the run
+        return {}
 
 
 def predict_run(
     model: Model, record: Record, role: str, simulation: OpenLoopRun, seconds: float, length: float
 ) -> Prediction:
-    """Return one run open loop beside its measurement, with rms and manoeuvring measures."""
-    pairs = compare_measures(record, simulation.record, length) if is_steered(record, model) else {}
+    """One run open loop beside its measurement, with rms and manoeuvring measures."""
+    found = simulation.divergence
+    pairs = compare_measures(record, simulation.record, length, found) if is_steered(record, model) else {}
     return Prediction(
-        record.name, role, record, simulation.record, rms_errors(record, simulation.record), pairs, seconds
-    )
+        record.name, role, record, simulation.record, rms_errors(record, simulation.record), pairs, seconds,
+        divergence=found,
+    )  # fmt: skip
 
 
 def mean_nuisances(template: OutputError, shared: Array) -> Array:

@@ -7,12 +7,13 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.results import IntervalBasis, Prediction
-from seatrial.core.values import Array, InputError, ProgressReporter, Record
+from seatrial.core.values import Array, Finding, InputError, ProgressReporter, Record
 from seatrial.data.trial import Role, TrialRecord
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.information.discrepancy import NO_DISCREPANCY, Discrepancy, HoldoutError, discrepancy
 from seatrial.estimation.information.extrapolation import extrapolation, extrapolation_index, motion_envelope
+from seatrial.estimation.predict.divergence import divergence_finding, not_predicted_finding
 from seatrial.estimation.predict.draws import PredictionUncertainty
 from seatrial.estimation.predict.holdout_windows import session_nuisances
 from seatrial.estimation.predict.open_loop import (
@@ -22,6 +23,7 @@ from seatrial.estimation.predict.open_loop import (
     predict_run,
     rms_errors,
     simulate_open_loop,
+    simulate_while_bounded,
 )
 from seatrial.estimation.predict.prediction_intervals import (
     DRAWS,
@@ -118,10 +120,11 @@ def calibrate_intervals(
 
 @dataclass(frozen=True, eq=False)
 class RunPredictions:
-    """All runs predicted, and what intervals of further predictions are made of."""
+    """All runs predicted, what intervals of further predictions are made of, and which runs diverge or cannot be."""
 
     predictions: tuple[Prediction, ...]
     interval_basis: IntervalBasis
+    findings: tuple[Finding, ...] = ()
 
 
 def predict_runs(
@@ -138,31 +141,47 @@ def predict_runs(
     Runs that were not fitted get intervals, for which `tied` models are asked as well; all are compared with the ground
     the training runs cover. seconds: of a run's beginning, from which its initial state is taken.
 
+    A validation run that diverges is scored as long as it lasts; one that cannot be simulated is left out. Both are
+    findings.
+
     Raises:
-        InputError: a simulation diverges.
+        DivergedError: the simulation of a training run diverges.
+        InputError: a training run cannot be simulated.
     """
     report = report_progress or (lambda _: None)
     problem, mean = (
         estimation.estimate.problem,
         mean_nuisances(estimation.estimate.problem, estimation.estimate.common_parameters),
     )
-    runs = []
+    items, runs, findings = [], [], []
     for item in records:
         report(f"predicting {item.record.name}")
-        own = session_nuisances(estimation, item.session) if item.role is Role.TRAIN else mean
-        runs.append(simulate_open_loop(problem, estimation.model, item.record, own, seconds))
-    train = [item for item in records if item.role is Role.TRAIN]
-    fitted = [run.record for run, item in zip(runs, records, strict=True) if item.role is Role.TRAIN]
+        if item.role is Role.TRAIN:
+            own = session_nuisances(estimation, item.session)
+            run = simulate_open_loop(problem, estimation.model, item.record, own, seconds)
+        else:
+            try:
+                run = simulate_while_bounded(problem, estimation.model, item.record, mean, seconds)
+            except InputError as error:
+                findings.append(not_predicted_finding(item.record, error))
+                continue
+        items.append(item)
+        runs.append(run)
+    train = [item for item in items if item.role is Role.TRAIN]
+    fitted = [run.record for run, item in zip(runs, items, strict=True) if item.role is Role.TRAIN]
     covered = motion_envelope(fitted)
     report("runs left out, predicted")
     calibration = calibrate_intervals(estimation, train, fitted, seconds, length, seed)
-    streams = np.random.SeedSequence((seed, 1)).spawn(len(records))
+    streams = np.random.SeedSequence((seed, 1)).spawn(len(items))
     predictions = []
-    for item, run, stream in zip(records, runs, streams, strict=True):
+    for item, run, stream in zip(items, runs, streams, strict=True):
         role = "training" if item.role is Role.TRAIN else "validation"
         one = predict_run(estimation.model, item.record, role, run, seconds, length)
-        one = replace(one, extrapolation=extrapolation(run.record, covered))
-        if item.role is not Role.TRAIN:
+        moved = run.record if run.divergence is None else item.record  # what a runaway simulation reaches says nothing
+        one = replace(one, extrapolation=extrapolation(moved, covered))
+        if run.divergence is not None:
+            findings.append(divergence_finding(estimation.model, one, run.divergence))
+        elif item.role is not Role.TRAIN:
             rng = np.random.default_rng(stream)
             spread = prediction_spread(
                 problem, estimation.model, item.record, run, mean, length, calibration.uncertainty, rng, DRAWS
@@ -171,7 +190,8 @@ def predict_runs(
             one = replace(one, tied_spread=tied_model_spread(tied, one, seconds, length), noise_floor=alone)
             one = with_intervals(one, spread, calibration.discrepancy, calibration.uncertainty.degrees_of_freedom)
         predictions.append(one)
-    return RunPredictions(tuple(predictions), _interval_basis(estimation, calibration, covered, tied))
+    basis = _interval_basis(estimation, calibration, covered, tied)
+    return RunPredictions(tuple(predictions), basis, tuple(findings))
 
 
 def _process_noise_floor(estimation: Estimation, record: Record, start: Array, nuisances: Array) -> dict[str, float]:

@@ -163,13 +163,16 @@ def levenberg_marquardt(
     *,
     tolerance: float = 1e-10,
     negligible: float = 0.0,
+    sufficient: float = 0.0,
     evaluations: int = 100,
     report_progress: Callable[[int, float], None] | None = None,
 ) -> Optimum:
     """Minimise from a start; stops when the model promises less than `tolerance` of the cost, or rounding is reached.
 
     A promised decrease below `negligible` stops it too: where residuals are in standard deviations, 1e-8 is a move of
-    some 1e-4 standard errors, and data without noise are not fitted down to their last bit.
+    some 1e-4 standard errors, and data without noise are not fitted down to their last bit. Where the evaluations run
+    out, a promised decrease of `sufficient` or less counts as converged: kinks of a model (|r| r, sides of a rudder)
+    keep the search from getting nearer.
 
     Deterministic. The result's status says how it ended; bounds of the shared unknowns are never left.
     """
@@ -219,4 +222,7 @@ def levenberg_marquardt(
         history.append(normal.cost)
         if report_progress:
             report_progress(count, normal.cost)
+    if status is Status.EXHAUSTED and sufficient > 0.0:
+        newton = _step(normal, 0.0, problem.lower - shared, problem.upper - shared)
+        status = Status.CONVERGED if _predicted_decrease(normal, *newton) <= sufficient else status
     return Optimum(Solution(shared, normal.cost, status, count, tuple(history)), local, normal)

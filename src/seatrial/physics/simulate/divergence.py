@@ -16,12 +16,21 @@ def state_limits(model: Model) -> Array:
     return np.array([_LIMITS_BY_UNIT.get(unit, _DEFAULT_LIMIT) for unit in units])
 
 
+def first_row_outside(states: Array, limits: Array) -> int | None:
+    """Return the first row of states (n, nx) in which one exceeds its limit (nx,) or is NaN; None where none is."""
+    inside = np.all(np.abs(states) <= limits, axis=1)
+    return None if inside.all() else int(np.argmin(inside))
+
+
 def require_bounded(model: Model, time: Array, states: Array, subject: str) -> None:
-    """Accept states (n, nx) that stay within their bounds."""
-    inside = np.abs(states) <= state_limits(model)
-    if inside.all():
+    """Accept states (n, nx) that stay within their bounds.
+
+    Raises:
+        DivergedError: they do not; the first time [s] and channel are named.
+    """
+    row = first_row_outside(states, state_limits(model))
+    if row is None:
         return
-    row = int(np.argmin(inside.all(axis=1)))
     state = model.states[_diverging_state(states, row, state_limits(model))]
     raise DivergedError(
         f"the simulation of {subject} with model '{model.name}' diverges: '{state}' left its bounds at "
