@@ -207,7 +207,7 @@ def with_bounds(p: Prediction) -> Prediction:
         half_width={"psi": 0.02 + 0.0012 * t, "x0": 0.5 + 0.03 * t, "y0": 0.5 + 0.05 * t},
         noise_floor={"psi_deg": 1.4, "position_m": 0.19, "r": 0.0004},
         tied_spread={"psi_deg": 0.31, "position_m": 0.08, "overshoot_1_deg": 0.22},
-        extrapolation=Extrapolation(1.9, {"yaw_rate": 1.9, "drift": 1.3, "rudder": 1.25, "speed": 0.98})
+        extrapolation=Extrapolation(1.9, {"yaw_rate": 1.9, "drift": 1.3, "rudder": 1.25, "fastest": 0.98})
         if held
         else None,
     )

@@ -21,4 +21,10 @@ def test_an_extrapolation_in_words() -> None:
         "Read its intervals as lower limits."
     )
     assert extrapolation_text(Extrapolation(math.inf, {"drift": math.inf})).startswith("∞: the run drifts at ∞ times")
-    assert "stays inside" in extrapolation_text(Extrapolation(0.8, {"speed": 0.8}))
+    assert "stays inside" in extrapolation_text(Extrapolation(0.8, {"fastest": 0.8}))
+
+
+def test_a_slow_run_is_said_to_be_slow() -> None:
+    assert extrapolation_text(Extrapolation(2.0, {"fastest": 0.5, "slowest": 2.0})) == (
+        "2.0: the run slows to 1/2.0 of the lowest speed of any training run. Read its intervals as lower limits."
+    )

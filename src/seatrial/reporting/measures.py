@@ -64,7 +64,8 @@ _EXTRAPOLATION_CLAUSES = {
     "yaw_rate": ("turns {} times as fast as", "{} times the yaw rate"),
     "drift": ("drifts at {} times the angle of", "{} times the drift angle"),
     "rudder": ("uses {} times the rudder of", "{} times the rudder"),
-    "speed": ("goes {} times as fast as", "{} times the speed"),
+    "fastest": ("goes {} times as fast as", "{} times the highest speed"),
+    "slowest": ("slows to 1/{} of the lowest speed of", "1/{} of the lowest speed"),
 }
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record, Ship
-from seatrial.estimation.identify.roll_characteristics import assumed_gyradius, roll_characteristics
+from seatrial.estimation.identify.roll_characteristics import assumed_gyradius, one_speed_finding, roll_characteristics
 from seatrial.estimation.information.covariance import Interval
 from seatrial.physics.hydro.free_roll import equivalent_damping, swing_period
 from seatrial.physics.models.nomoto import nomoto
@@ -92,3 +92,20 @@ def test_without_any_size_there_is_no_metacentric_height(decay: Record) -> None:
     assert known.metacentric_height is None
     assert "give k_xx_prime, k_xx or B" in known.gyradius_source
     assert roll_characteristics(nomoto(), correlated(), FREE, [decay], SHIP) is None
+
+
+@pytest.mark.parametrize(
+    ("speeds", "text"),
+    [((1.0, 1.01), "at 1 m/s alone"), ((None, None), "at a speed that was not recorded"), ((0.0, 1.0), "")],
+)
+def test_decays_at_one_speed_are_said_not_to_identify_its_effect(
+    decay: Record, speeds: tuple[float | None, ...], text: str
+) -> None:
+    runs = [
+        decay if u is None else Record.from_arrays(str(u), decay.time, {"phi": decay["phi"], "u": u + 0.0 * decay.time})
+        for u in speeds
+    ]
+    known = roll_characteristics(roll().with_values(TRUE), correlated(), FREE, runs, SHIP)
+    findings = one_speed_finding(known, runs)
+    assert [text in f.message for f in findings] == ([True] if text else [])
+    assert one_speed_finding(None, runs) == ()

@@ -23,16 +23,20 @@ def test_ratios_are_those_of_the_largest_values() -> None:
     train = [run("a", 0.02, 0.1, 0.2, 5.0), run("b", -0.04, -0.05, -0.3, 6.0)]
     found = extrapolation(run("c", 0.06, 0.15, -0.45, 5.5), motion_envelope(train))
     assert found is not None
-    assert found.ratios == pytest.approx({"yaw_rate": 1.5, "drift": 1.5, "rudder": 1.5, "speed": 5.5 / 6.0})
+    assert found.ratios == pytest.approx(
+        {"yaw_rate": 1.5, "drift": 1.5, "rudder": 1.5, "fastest": 5.5 / 6.0, "slowest": 5.0 / 5.5}
+    )
     assert found.index == pytest.approx(1.5)
 
 
-@pytest.mark.parametrize(("speed", "ratio"), [(3.0, 5.0 / 3.0), (9.0, 1.5), (5.5, 5.5 / 6.0)])
-def test_speed_leaves_the_range_both_ways(speed: float, ratio: float) -> None:
+@pytest.mark.parametrize(
+    ("speed", "name", "ratio"), [(3.0, "slowest", 5.0 / 3.0), (9.0, "fastest", 1.5), (5.5, "fastest", 5.5 / 6.0)]
+)
+def test_speed_leaves_the_range_both_ways(speed: float, name: str, ratio: float) -> None:
     train = [run("a", 0.02, 0.1, 0.2, 5.0), run("b", 0.02, 0.1, 0.2, 6.0)]
     found = extrapolation(run("c", 0.02, 0.1, 0.2, speed), motion_envelope(train))
     assert found is not None
-    assert found.ratios["speed"] == pytest.approx(ratio)
+    assert found.ratios[name] == pytest.approx(ratio)
 
 
 def test_a_run_covers_itself() -> None:

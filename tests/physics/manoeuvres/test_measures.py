@@ -132,3 +132,22 @@ def test_criteria_of_a_turning_circle_say_where_they_apply(circle: Callable[...,
     assert "100 m and more" in small[0].note
     model = imo_criteria(circle(), LENGTH, scale=20.0)
     assert all(c.applies and "model scale 1:20" in c.note for c in model)
+
+
+@pytest.mark.parametrize("speed", [0.0, 3.0])
+def test_a_model_without_surge_has_no_distances_and_no_standard_to_meet(speed: float) -> None:
+    model = nomoto().with_values({"K": 0.1, "T": 5.0, "U": speed})
+    record = manoeuvre(model, programme("turning-circle:35"), dt=0.2, speed=1.0, duration=400.0)
+    found = measures(record, LENGTH)
+    assert {"time_90_s", "steady_yaw_rate_deg_s", "rudder_deg"} == set(found)
+    assert imo_criteria(record, LENGTH) == ()
+
+
+def test_a_position_that_never_moves_is_no_track_and_zero_has_no_sign(circle: Callable[..., Record]) -> None:
+    record = circle(1, "starboard")
+    still = record.with_channel("v", record.channel("v").with_values(np.zeros(len(record))))
+    for symbol in ("x0", "y0"):
+        still = still.with_channel(symbol, still.channel(symbol).with_values(np.zeros(len(record))))
+    found = measures(still, LENGTH)
+    assert not {"advance_L", "transfer_L", "tactical_diameter_L"} & set(found)
+    assert math.copysign(1.0, found["steady_drift_deg"]) == 1.0

@@ -27,7 +27,10 @@ class Extrapolation:
     index: Annotated[Number, Field(description="largest of the ratios; up to 1 is interpolation")]
     ratios: Annotated[
         dict[str, Number],
-        Field(description="yaw_rate, drift, rudder, speed of the run over those of the training runs"),
+        Field(
+            description="yaw_rate, drift, rudder, fastest speed of the run over those of the training runs, and their "
+            "slowest speed over the run's"
+        ),
     ]
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.check import canonical_record, examined_record
+from seatrial.data.check.copies import copies
 from seatrial.data.check.thrusters import thruster_findings
 from seatrial.data.trial.approach import first_execution
 from seatrial.data.trial.roll_decay_start import trim_to_decay_start
@@ -64,14 +65,35 @@ def load_records(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, 
     records = tuple(load_run(run, trial.reference_point) for run in trial.runs if run.role is not Role.LEAVE_OUT)
     for channel, deviation in trial.noise.items():
         _refuse_absurd_noise(channel, deviation, [r.record for r in records])
+    records, repeated = _without_copies(records)
     of_runs = (finding for record in records for finding in record.findings)
-    return records, (*trial.findings, *of_runs, *_craft_findings(trial, records))
+    return records, (*trial.findings, *repeated, *of_runs, *_craft_findings(trial, records))
 
 
 def _craft_findings(trial: Trial, records: tuple[TrialRecord, ...]) -> tuple[Finding, ...]:
     """What all runs together show of the thrusters that the model has."""
     layout = trial.model.equations.layout
     return thruster_findings(ThrusterLayout.from_text(layout), [r.record for r in records]) if layout else ()
+
+
+def _without_copies(records: tuple[TrialRecord, ...]) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ...]]:
+    """The records, each once, and a warning for each copy; a validation run that copies a training run stays."""
+    dropped, findings = set(), []
+    for index, first in copies([r.record for r in records]).items():
+        copy, original = records[index], records[first]
+        if copy.role is original.role:
+            dropped.add(index)
+            consequence, advice = "it counts once", "leave the copy out"
+        else:
+            consequence, advice = "its score is that of a fitted run", "validate on a run that was not trained on"
+        findings.append(
+            Finding(
+                Severity.WARNING, "copied-run",
+                f"record '{copy.record.name}' is a copy of '{original.record.name}', sample by sample: {consequence}",
+                f"{len(copy.record)} samples", advice,
+            )
+        )  # fmt: skip
+    return tuple(r for i, r in enumerate(records) if i not in dropped), tuple(findings)
 
 
 def _refuse_absurd_noise(channel: str, deviation: float, records: Sequence[Record]) -> None:

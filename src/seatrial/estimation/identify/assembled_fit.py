@@ -14,7 +14,7 @@ from seatrial.estimation.identify.identifiability import identifiability
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.model_selection import SelectedModel, with_model_spread
 from seatrial.estimation.identify.profile import profiles
-from seatrial.estimation.identify.roll_characteristics import roll_characteristics
+from seatrial.estimation.identify.roll_characteristics import one_speed_finding, roll_characteristics
 from seatrial.estimation.identify.seakeeping import seakeeping
 from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
 
@@ -33,6 +33,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
     estimation = with_model_spread(selected.estimation, selected.tied)
     assessment = _identifiability(task, estimation)
     free = estimation.estimate.problem.free
+    roll = roll_characteristics(estimation.model, estimation.interval, free, runs.records, trial.ship)
     return Fit(
         question=trial.question
         or f"Which {trial.model.name} model explains these records, and how well does it predict?",
@@ -50,6 +51,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *task.findings, *selected.findings, *findings, *fit_result.unidentified(task.estimation),
             *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation),
             *_profile_findings(task, assessment), *predicted.findings,
+            *one_speed_finding(roll, runs.records),
         ),
         records=tuple(r.record for r in task.records),
         seed=task.options.seed,
@@ -60,7 +62,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         candidate_models=selected.candidates,
         interval_basis=predicted.interval_basis,
         seakeeping=seakeeping(estimation.model, task.train, runs.length),
-        roll=roll_characteristics(estimation.model, estimation.interval, free, runs.records, trial.ship),
+        roll=roll,
     )  # fmt: skip
 
 

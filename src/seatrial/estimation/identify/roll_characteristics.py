@@ -7,7 +7,7 @@ from scipy.special import stdtrit
 
 from seatrial.core.equations import Model
 from seatrial.core.results.ship_motions import IntervalEstimate, RollCharacteristics
-from seatrial.core.values import Array, Record, Ship
+from seatrial.core.values import Array, Finding, Record, Severity, Ship
 from seatrial.estimation.information.covariance import Interval
 from seatrial.physics.hydro.free_roll import equivalent_damping, metacentric_height, observed_swings, swing_period
 
@@ -16,8 +16,29 @@ GYRADIUS_WITH_ADDED_INERTIA, DRY_GYRADIUS = "k_xx_prime", "k_xx"
 
 # share of the moment of inertia that the water adds in roll, and the radius of gyration with it over the breadth
 ADDED_INERTIA_SHARE, GYRADIUS_OVER_BREADTH = (0.05, 0.18, 0.30), (0.35, 0.40, 0.45)
+# means of speed that differ by less are one speed: m/s, and share of the largest; ours
+_ONE_SPEED, _ONE_SPEED_SHARE = 0.05, 0.05
 # amplitudes of the curves; least swing over the largest that is shown, ours
 _POINTS, _MIN_SWING_SHARE = 40, 0.05
+
+
+def one_speed_finding(roll: RollCharacteristics | None, records: Sequence[Record]) -> tuple[Finding, ...]:
+    """Return the note that decays at one speed, or at an unrecorded one, show no dependence of damping on speed."""
+    if roll is None:
+        return ()
+    speeds = [float(np.nanmean(r["u"])) for r in records if "u" in r and np.isfinite(r["u"]).any()]
+    if len(speeds) == len(records) and np.ptp(speeds) > max(_ONE_SPEED, _ONE_SPEED_SHARE * np.max(np.abs(speeds))):
+        return ()
+    where = f"at {np.mean(speeds):.3g} m/s alone" if speeds else "at a speed that was not recorded"
+    return (
+        Finding(
+            Severity.INFO,
+            "one-speed",
+            f"the runs are {where}: they do not identify b(U), how damping depends on speed",
+            f"{len(records)} of the training runs",
+            "use the damping at this speed only; record decays at three speeds and fit each by itself",
+        ),
+    )
 
 
 def roll_characteristics(

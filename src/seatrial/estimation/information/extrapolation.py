@@ -41,7 +41,7 @@ def _speed(record: Record) -> Array:
 def extrapolation(predicted: Record, training_envelope: Mapping[str, float]) -> Extrapolation | None:
     """Ratios of a run's `motion_envelope` to that of the training runs; None where nothing can be compared.
 
-    The ratio of speed is that of the fastest, or of the slowest the other way round, whichever leaves the range more.
+    That of the slowest speed is turned round, so that a run that goes half as fast as any training run has 2.
     """
     own = motion_envelope([predicted])
     both = {
@@ -51,8 +51,8 @@ def extrapolation(predicted: Record, training_envelope: Mapping[str, float]) -> 
     }
     ratios = {n: both[n][0] / both[n][1] for n in ("yaw_rate", "drift", "rudder") if n in both}
     if {"fastest", "slowest"} <= set(both):
-        slow = both["slowest"][1] / max(both["slowest"][0], 1e-3)
-        ratios["speed"] = max(both["fastest"][0] / both["fastest"][1], slow)
+        ratios["fastest"] = both["fastest"][0] / both["fastest"][1]
+        ratios["slowest"] = both["slowest"][1] / max(both["slowest"][0], _NEGLIGIBLE["slowest"])
     return Extrapolation(max(ratios.values()), ratios) if ratios else None
 
 

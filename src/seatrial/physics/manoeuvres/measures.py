@@ -22,7 +22,8 @@ def measures(
     """Return measures of the manoeuvre the record shows, by name; those it does not allow are absent.
 
     Args:
-        record: needs ``psi`` and ``delta``; ``x0``, ``y0`` for distances, ``u``, ``v``, ``r`` for speeds and rates.
+        record: needs ``psi`` and ``delta``; ``x0``, ``y0`` for distances, ``u``, ``v``, ``r`` for speeds and rates. A
+            simulated record without ``u`` is that of a model without surge, whose distances mean nothing.
         length: of the ship [m], the unit of names ending in ``_L``.
         switching: switching heading [rad] of a zigzag where it is known; overshoots are counted from it. By default
             they are counted from the heading at which the rudder began to move.
@@ -47,13 +48,17 @@ def measures(
     if isinstance(reference, Record):
         reference = ObservedManoeuvre.from_record(reference)
     seen = reference.transferred_to(record) if reference else ObservedManoeuvre.from_record(record)
-    match seen.kind:
+    return {name: value + 0.0 for name, value in _measures_of(seen, length, switching).items()}  # -0 + 0 is 0
+
+
+def _measures_of(manoeuvre: ObservedManoeuvre, length: float, switching: float | None) -> dict[str, float]:
+    match manoeuvre.kind:
         case ManoeuvreKind.ZIGZAG:
-            return _zigzag_measures(seen, length, switching)
+            return _zigzag_measures(manoeuvre, length, switching)
         case ManoeuvreKind.TURNING_CIRCLE:
-            return _turning_circle_measures(seen, length)
+            return _turning_circle_measures(manoeuvre, length)
         case ManoeuvreKind.PULL_OUT:
-            return _pull_out_measures(seen)
+            return _pull_out_measures(manoeuvre)
         case _:
             return {}
 

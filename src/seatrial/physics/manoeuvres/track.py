@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seatrial.core.values import Array, Record
+from seatrial.core.values import Array, Record, RecordKind
 from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre
 
 _TURN_TOLERANCE = 1e-3  # rad by which a full turn may fall short: rounding
@@ -38,22 +38,31 @@ class Swing:
         return float(time[row - 1] - a / (b - a) * (time[row] - time[row - 1])) if b > a else float(time[row])
 
     def displacement(self, time: float) -> tuple[float, float] | None:
-        """Distance along the original course and across it to this side [m] since the execute; None without x0, y0.
+        """Distance along the original course and across it to this side [m] since the execute; None without a track.
 
         The course is the heading at the execute (MSC.137(76), definitions 4.2.3 and 4.2.4).
         """
         record = self.manoeuvre.record
-        if "x0" not in record or "y0" not in record:
+        if not has_track(record):
             return None
         known = np.isfinite(record["x0"]) & np.isfinite(record["y0"])
-        if np.count_nonzero(known) < 2:
-            return None
         when = (self.start, time)
         dx, dy = (float(np.diff(np.interp(when, record.time[known], record[s][known]))[0]) for s in ("x0", "y0"))
         course = self.manoeuvre.psi_at(self.start)
         along = dx * np.cos(course) + dy * np.sin(course)
         across = -dx * np.sin(course) + dy * np.cos(course)
         return float(along), float(self.side * across)
+
+
+def has_track(record: Record) -> bool:
+    """Return whether the record shows where the craft went: a position that moves, not that of a model without surge.
+
+    A model of steering alone (Nomoto) keeps its speed, or stays where it is; its distances are no prediction.
+    """
+    if not {"x0", "y0"} <= set(record.channels) or (record.kind is RecordKind.SIMULATED and "u" not in record):
+        return False
+    known = np.isfinite(record["x0"]) & np.isfinite(record["y0"])
+    return bool(known.any()) and any(np.ptp(record[s][known]) > 0.0 for s in ("x0", "y0"))
 
 
 def speed(record: Record) -> Array | None:
