@@ -66,8 +66,10 @@ def _initial_state(model: "Model", record: "Record", length: float) -> "tuple[di
     return dict(zip(model.states, state.tolist(), strict=True)), seconds
 
 
-def measure_intervals(model: "ModelFile", steer: "Steering") -> dict[str, tuple[float, float]]:
-    """Return the 95 % interval of each measure of the manoeuvre; empty where the model file states no uncertainty.
+def measure_intervals(model: "ModelFile", steer: "Steering") -> dict[str, tuple[float, float] | None]:
+    """Return the 95 % interval of each measure of the manoeuvre, None for those that the fit does not determine.
+
+    Empty where the model file states no uncertainty.
 
     Raises:
         InputError: most of the ships within the fit's uncertainty cannot be steered through the manoeuvre.

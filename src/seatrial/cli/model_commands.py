@@ -93,7 +93,7 @@ def simulate(
         raise InputError("give either --manoeuvre or --inputs")
     file = api.load_model(model_file, own_model(model))
     writable_folder(out.parent)
-    measured, intervals = None, {}
+    measured, intervals = None, dict[str, tuple[float, float] | None]()
     if inputs is not None:
         measured = read_record_csv(Path(inputs)) if trial is None else api.prepared_run(trial, inputs)
         record = api.replay(file, measured, speed)
@@ -126,7 +126,7 @@ def simulate(
         lambda: {
             "record": str(out),
             "measures": measures,
-            "intervals": {name: list(pair) for name, pair in intervals.items()},
+            "intervals": {name: pair and list(pair) for name, pair in intervals.items()},
             "extrapolation_index": None if leaving is None else leaving.index,
             "rms": rms,
             "seed": seed,

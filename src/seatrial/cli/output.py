@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 # index of extrapolation beyond which intervals are lower limits; chosen, as in the report
 EXTRAPOLATION_LIMIT = 1.2
 EXTRAPOLATION_NOTE = ": beyond the training runs, read its intervals as lower limits"
+NOT_DETERMINED = "not determined"
 # orders that are printed; chosen: the file has them all
 MAX_ORDERS_PRINTED = 8
 SEVERITY_MARK = {"error": "ERROR  ", "warning": "warning", "info": "note   "}
@@ -139,8 +140,10 @@ def _print_prediction(p: "Prediction") -> None:
     if p.extrapolation is not None:
         _print_extrapolation(p.extrapolation)
     for name, m in p.measures.items():
-        if m.simulated is not None and m.lower is not None and m.upper is not None:
-            measured = "" if m.measured is None else f", measured {exact(m.measured, 4)}"
+        measured = "" if m.measured is None else f", measured {exact(m.measured, 4)}"
+        if not m.is_determined:
+            print_lines([f"{name}: {NOT_DETERMINED}{measured}"], "  ")
+        elif m.simulated is not None and m.lower is not None and m.upper is not None:
             print_lines([f"{name}: {exact(m.simulated, 4)} [{exact(m.lower, 4)}, {exact(m.upper, 4)}]{measured}"], "  ")
 
 
@@ -244,7 +247,7 @@ def _print_disturbances(candidates: "Sequence[DisturbanceCandidate]") -> None:
 
 def print_measures(
     measures: Mapping[str, float],
-    intervals: Mapping[str, tuple[float, float]],
+    intervals: Mapping[str, tuple[float, float] | None],
     extrapolation: "Extrapolation | None",
 ) -> None:
     """Print measures of a simulated manoeuvre with their 95 % intervals, and how far it leaves the training runs."""
@@ -252,8 +255,9 @@ def print_measures(
 
     rows = []
     for name, value in measures.items():
-        ends = [exact(end, 4) for end in intervals.get(name, ())]
-        rows.append([name, exact(value, 4), f"[{', '.join(ends)}]" if ends else ""])
+        pair = intervals.get(name)
+        text = "" if pair is None else f"[{', '.join(exact(end, 4) for end in pair)}]"
+        rows.append([name, exact(value, 4), NOT_DETERMINED if pair is None and name in intervals else text])
     print_table(rows, flush_left=(0, 2), indent="  ")
     if extrapolation is not None:
         _print_extrapolation(extrapolation)

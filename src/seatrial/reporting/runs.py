@@ -213,7 +213,7 @@ def _measure_row(name: str, m: Measure, spread: float | None) -> MeasureRow:
     difference = _signed(m.simulated - m.measured, digits) if both else DASH  # type: ignore[operator]
     return MeasureRow(
         label, unit, fixed(m.measured, digits), fixed(m.simulated, digits), difference,
-        interval(m.lower, m.upper, digits), is_inside(m), _two_digits(spread),
+        interval(m.lower, m.upper, digits) if m.is_determined else "not determined", is_inside(m), _two_digits(spread),
     )  # fmt: skip
 
 

@@ -99,6 +99,7 @@ def _first_measures(p: Prediction) -> str:
             digits = measure_decimals(measure_label(name)[1], m)
             bounds = interval(m.lower, m.upper, digits)
             simulated = f"{fixed(m.simulated, digits)}{unit}{' ' + bounds if bounds else ''}"
+            simulated = simulated if m.is_determined else "not determined"
             texts.append(f"{label} {simulated}, measured {fixed(m.measured, digits)}{unit}")
     return f" Simulated {'; '.join(texts)}." if texts else ""
 

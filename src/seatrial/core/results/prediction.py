@@ -18,6 +18,9 @@ class Measure:
         Number | None, Field(description="95 % interval of the simulated value; null until a method defends it")
     ] = None
     upper: Annotated[Number | None, Field(description="as `lower`")] = None
+    is_determined: Annotated[
+        bool, Field(description="false: the records leave the simulated value open, its interval would say nothing")
+    ] = True
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from seatrial.core.values import Array, InputError, Record
 from seatrial.estimation.information.discrepancy import Discrepancy
 from seatrial.estimation.information.extrapolation import extrapolation
 from seatrial.estimation.predict.draws import square_root
-from seatrial.physics.manoeuvres import measures
+from seatrial.physics.manoeuvres import bounded_interval, measures
 
 _RUDDER_OFFSET = "delta zero"
 
@@ -20,8 +20,8 @@ MeasuresPair = tuple[dict[str, float] | None, dict[str, float] | None]
 
 def measure_intervals(
     model: Model, interval_basis: IntervalBasis, steer: Callable[[Model], Record], length: float
-) -> dict[str, tuple[float, float]]:
-    """Return 95 % interval of each measure of the manoeuvre that `steer` makes of a model.
+) -> dict[str, tuple[float, float] | None]:
+    """Return the 95 % interval of each measure of the manoeuvre that `steer` makes of a model; None: not determined.
 
     The helmsman steers two ships along every principal direction of the coefficients' covariance, one standard
     deviation to either side, and two with the rudder's zero off by what it differs between runs (where the model has it
@@ -52,14 +52,14 @@ def measure_intervals(
     ]
     beyond = Discrepancy(interval_basis.measure_deviation, interval_basis.factor, 1.0, {})
     t = float(stdtrit(interval_basis.degrees_of_freedom, 0.975))
-    intervals = {}
+    intervals: dict[str, tuple[float, float] | None] = {}
     for name, value in centre.items():
         away = [d for pair in pairs if (d := _half_difference(pair, name, value)) is not None]
         if 2 * len(away) > len(pairs) or not pairs:
             spread = beyond.measure_sd(name, float(np.sqrt(np.sum(np.square(away)))), index)
             apart = [m[name] - value for m in tied if name in m]
             half = t * float(np.hypot(spread, np.sqrt(np.mean(np.square(apart))) if apart else 0.0))
-            intervals[name] = (value - half, value + half)
+            intervals[name] = bounded_interval(name, value, half)
     return intervals
 
 

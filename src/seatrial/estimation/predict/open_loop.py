@@ -119,7 +119,7 @@ def is_steered(record: Record, model: Model) -> bool:
 def compare_measures(
     record: Record, simulated: Record, length: float, divergence: Divergence | None = None
 ) -> dict[str, Measure]:
-    """Measures of a run and of its simulation, both at the measured executes.
+    """Return measures of a run and of its simulation, both at the measured executes.
 
     Of a simulation that diverges those are read that lie within the time it lasted.
     """
@@ -145,7 +145,7 @@ def _measures_until(record: Record, simulated: Record, length: float, divergence
 def predict_run(
     model: Model, record: Record, role: str, simulation: OpenLoopRun, seconds: float, length: float
 ) -> Prediction:
-    """One run open loop beside its measurement, with rms and manoeuvring measures."""
+    """Return one run open loop beside its measurement, with rms and manoeuvring measures."""
     found = simulation.divergence
     pairs = compare_measures(record, simulation.record, length, found) if is_steered(record, model) else {}
     return Prediction(

@@ -20,7 +20,7 @@ from seatrial.estimation.predict.open_loop import (
     simulate_open_loop,
 )
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.physics.manoeuvres import measures
+from seatrial.physics.manoeuvres import bounded_interval, measures
 from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre
 
 _TRACK_CHANNELS = ("psi", "x0", "y0")
@@ -181,7 +181,8 @@ def with_intervals(
         half = t * float(
             np.hypot(discrepancy.measure_sd(name, spread.measures[name], index), prediction.tied_spread.get(name, 0.0))
         )
-        return replace(m, lower=m.simulated - half, upper=m.simulated + half)
+        bounds = bounded_interval(name, m.simulated, half)
+        return replace(m, is_determined=False) if bounds is None else replace(m, lower=bounds[0], upper=bounds[1])
 
     bands = {c: t * discrepancy.channel_sd(c, s, prediction.measured.dt, index) for c, s in spread.channels.items()}
     return replace(prediction, measures={n: bounded(n, m) for n, m in prediction.measures.items()}, half_width=bands)

@@ -3,6 +3,9 @@
 from seatrial.physics.manoeuvres.imo import ImoCriterion as ImoCriterion, imo_criteria as imo_criteria
 from seatrial.physics.manoeuvres.measures import measures as measures
 from seatrial.physics.manoeuvres.programme import programme as programme
-from seatrial.physics.manoeuvres.recognition import ManoeuvreKind as ManoeuvreKind
-from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre as ObservedManoeuvre
-from seatrial.physics.manoeuvres.recognition import recognise_manoeuvre as recognise_manoeuvre
+from seatrial.physics.manoeuvres.ranges import bounded_interval as bounded_interval
+from seatrial.physics.manoeuvres.recognition import (
+    ManoeuvreKind as ManoeuvreKind,
+    ObservedManoeuvre as ObservedManoeuvre,
+    recognise_manoeuvre as recognise_manoeuvre,
+)
