@@ -39,7 +39,8 @@ def rudder_findings(record: Record) -> tuple[Finding, ...]:
         return (Finding(Severity.WARNING, "no-excitation", text, span, ZIGZAG_ADVICE),)
     first, steady = _t_ratio(yaw_acceleration_response(record)), _t_ratio(steady_turning_response(record))
     pooled = (first + steady) / math.sqrt(2.0) if max(first, steady) < 0 else 0.0
-    if min(first, pooled) > -DOUBTFUL_T:
+    contradicts = min(first, steady) < -DOUBTFUL_T and max(first, steady) > DOUBTFUL_T
+    if min(first, pooled) > -DOUBTFUL_T or contradicts:
         return ()
     is_clear = first < -CERTAIN_T or pooled < -POOLED_T
     text = f"record '{record.name}': rudder {channel_name(record, 'delta')} {'has' if is_clear else 'may have'}"

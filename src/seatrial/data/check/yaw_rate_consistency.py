@@ -23,6 +23,7 @@ WRONG_MISFIT, ROUGH_MISFIT = 0.9, 0.5
 COURSE_RANGE, MOVING = (0.2, 5.0), 0.3
 # rad: a rudder that never goes further, were its unit mistaken; share of it that its range must exceed; chosen
 FULL_RUDDER, MOVED_SHARE = math.radians(45.0), 0.5
+SECONDS_PER_MINUTE = 60.0  # s
 
 
 def yaw_rate_findings(record: Record) -> tuple[Finding, ...]:
@@ -81,6 +82,9 @@ def _yaw_rate_verdict(record: Record, r: Array, psi_dot: Array) -> list[Finding]
     misfit = trimmed_rms(r - psi_dot) / trimmed_rms(psi_dot)
     evidence = f"correlation with d(psi)/dt {match:.3f}, factor {factor:.3g}, misfit {misfit:.0%}"
     name = f"record '{record.name}': channel {channel_name(record, 'r')}"
+    if abs(match) > FOLLOWS and _is_per_minute(abs(factor)):
+        what = f"{name} looks like deg/min"
+        return [Finding(Severity.ERROR, "angle-unit", what, evidence, 'set unit = "deg/min" for channels.r')]
     if abs(match) > FOLLOWS and abs(math.log(abs(factor) / DEGREES_PER_RADIAN)) < SAME_UNIT:
         return [_angle_unit_finding(record, "r", "psi", psi_dot, evidence)]
     if abs(match) > FOLLOWS and abs(math.log(abs(factor) * DEGREES_PER_RADIAN)) < SAME_UNIT:
@@ -95,6 +99,14 @@ def _yaw_rate_verdict(record: Record, r: Array, psi_dot: Array) -> list[Finding]
         what = f"{name} follows d(psi)/dt only roughly"
         return [Finding(Severity.WARNING, "yaw-rate", what, evidence, "check noise, lag and scale of r")]
     return []
+
+
+def _is_per_minute(factor: float) -> bool:
+    """Whether a rate is too large by 60 (deg/min declared deg/s) or 3438 (declared rad/s), and not by 57.3."""
+    sizes = (SECONDS_PER_MINUTE, SECONDS_PER_MINUTE * DEGREES_PER_RADIAN)
+    best = min(sizes, key=lambda size: abs(math.log(factor / size)))
+    distance = abs(math.log(factor / best))
+    return distance < SAME_UNIT and distance < abs(math.log(factor / DEGREES_PER_RADIAN))
 
 
 def _angle_unit_finding(record: Record, large: str, small: str, psi_dot: Array, evidence: str) -> Finding:
