@@ -37,12 +37,13 @@ def init(
         raise InputError(f"--out '{out}' exists and is not overwritten; name another file, or remove it")
     draft = api.draft_trial(*logs, folder=out.resolve().parent)
     write_atomically(out, draft.text.encode())
-    for part in draft.guesses:
-        rows = [
-            ["OPEN" if g.is_open else "", g.symbol, str(g.source), g.unit, g.frame, "; ".join(g.evidence)]
-            for g in part
-            if g.is_used
-        ]
+    rows = [
+        ["OPEN" if g.is_open else "", g.symbol, str(g.source), g.unit, g.frame, "; ".join(g.evidence)]
+        for part in draft.guesses
+        for g in part
+        if g.is_used
+    ]
+    if rows:
         print_table(
             [["", "channel", "column", "unit", "frame", "because"], *rows],
             flush_left=range(len(rows[0])) if rows else (),

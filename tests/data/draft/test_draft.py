@@ -9,6 +9,7 @@ from tests.data.read.samples import SAMPLES
 from seatrial.api import check, draft_trial, survey_log
 from seatrial.core.values import Array, InputError
 from seatrial.data.draft import ColumnGuess, find_stretches, guess_columns
+from seatrial.data.draft.clocks import with_common_clock
 from seatrial.data.draft.naming import guess_by_name
 from seatrial.data.draft.survey import column_values, time_column
 from seatrial.data.draft.text_layout import text_layout
@@ -187,3 +188,16 @@ def test_columns_without_names_are_recognised_by_what_they_do(tmp_path: Path) ->
     assert (result["u"].frame, result["delta"].positive) == ("earth", "port")
     assert not any(guess.is_open for guess in result.values())
     assert recognised_columns({}, STEP) == []
+
+
+def test_a_clock_in_local_time_is_moved_to_that_of_the_other_sources(tmp_path: Path) -> None:
+    write(tmp_path / "gnss.csv", {key: BASE[key] for key in ("time", "north", "east")})
+    write(tmp_path / "gyro.csv", {"time": TRUTH["t"], "rot_deg_s": TRUTH["r"] / DEGREE})
+    write(tmp_path / "compass.csv", {"time": TRUTH["t"] + 7200.0, "heading": BASE["heading"]})
+    draft = draft_trial(tmp_path, folder=tmp_path)
+    assert "clock_offset = -7200    # its clock runs 7200 s ahead" in draft.text
+    (tmp_path / "trial.toml").write_text(draft.text, encoding="utf-8")
+    record = load_runs(tmp_path / "trial.toml")[0].raw_record()
+    np.testing.assert_allclose(np.unwrap(record["psi"]), TRUTH["psi"], atol=1e-6)
+    surveys = [survey_log(tmp_path / "gnss.csv"), survey_log(tmp_path / "gyro.csv")]
+    assert with_common_clock(surveys) == surveys

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from seatrial.core.values import InputError
+from seatrial.data.draft.clocks import with_common_clock
 from seatrial.data.draft.guess import ColumnGuess, checked_by_behaviour, guess_columns, without_conflicts
 from seatrial.data.draft.manoeuvres import LogStretch, find_stretches
 from seatrial.data.draft.survey import LogSurvey, survey_log
-from seatrial.data.read.registry import FORMATS
+from seatrial.data.read import FORMATS, ColumnSpec
+from seatrial.data.read.layout import TimeSpec
 
 _UNUSED_SHOWN = 12  # names of columns without a channel in the comment; chosen
 
@@ -58,8 +60,8 @@ def draft_trial(*logs: str | Path, folder: str | Path = ".") -> DraftTrial:
         (guesses,) = checked_by_behaviour([group], [guess_columns(group)])
         all_guesses, examined = (tuple(guesses),), [group]
     else:
-        groups = [[survey] for survey in surveys]
-        examined = list(surveys)
+        examined = with_common_clock(surveys)
+        groups = [[survey] for survey in examined]
         parts = without_conflicts([guess_columns(one) for one in examined])
         all_guesses = tuple(map(tuple, checked_by_behaviour(examined, parts)))
     stretches = find_stretches(examined, all_guesses)
@@ -136,16 +138,17 @@ def _layout_lines(survey: LogSurvey) -> list[str]:
     topic = next((one for one in survey.topics if one.time is not None), None)
     if topic is None or topic.time is None:
         return [*lines, "# OPEN: no column is recognised as the time; add time = { column = ..., unit = ... }"]
+    offset = topic.time.clock_offset if isinstance(topic.time, TimeSpec) else 0.0
+    if offset:
+        lines.append(
+            f"clock_offset = {offset:g}    # its clock runs {-offset:g} s ahead of the other sources: local time"
+        )
     if topic.time.source:
         lines.append(f"time = {_time_table(topic.time)}    # {_comment(topic.time_note)}")
     return lines
 
 
-def _time_table(time: object) -> str:
-    from seatrial.data.read import ColumnSpec
-    from seatrial.data.read.layout import TimeSpec
-
-    assert isinstance(time, ColumnSpec)
+def _time_table(time: ColumnSpec) -> str:
     parts = [f"column = {_quoted(time.source)}"]
     if time.unit != "s":
         parts.append(f"unit = {_quoted(time.unit)}")

@@ -41,7 +41,8 @@ class TopicSummary:
     Attributes:
         topic: its name, empty for a plain table.
         time: the column of its stamps; None where there is none.
-        rows, rate, duration: number of samples, median rate [Hz], s from first to last stamp (NaN without stamps).
+        rows, rate: number of samples, median rate [Hz].
+        start, duration: first stamp on the log's clock, time from it to the last [s]; NaN without stamps.
         columns: those that hold numbers.
         time_note: how the time column was recognised.
     """
@@ -50,6 +51,7 @@ class TopicSummary:
     time: ColumnSpec | None
     rows: int
     rate: float
+    start: float
     duration: float
     columns: tuple[ColumnSummary, ...]
     time_note: str
@@ -100,7 +102,8 @@ def _topic_summary(table: RawTable, layout: Layout) -> TopicSummary:
         if table.names[index] not in own and (summary := _column_summary(table, index)) is not None
     ]
     duration = float(known[-1] - known[0]) if known.size > 1 else float("nan")
-    return TopicSummary(table.topic, time, len(table), 1.0 / step, duration, tuple(columns), note)
+    start = float(known[0]) if known.size else float("nan")
+    return TopicSummary(table.topic, time, len(table), 1.0 / step, start, duration, tuple(columns), note)
 
 
 def _column_summary(table: RawTable, index: int) -> ColumnSummary | None:

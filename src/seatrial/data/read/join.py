@@ -65,10 +65,10 @@ def common_time(series: Sequence[Series], rate: float | None) -> Array:
         first, last = max(series, key=lambda one: one.time[0]), min(measured, key=lambda one: one.time[-1])
         raise InputError(
             f"channels '{first.column.symbol}' and '{last.column.symbol}' do not overlap in time: "
-            f"{first.label} starts at {first.time[0]:.6g} s, {last.label} ends at {last.time[-1]:.6g} s; "
+            f"{first.label} starts {first.time[0] - last.time[-1]:.6g} s after {last.label} ends; "
             "check their clocks, or set clock_offset"
         )
-    return start + step * np.arange(int((stop - start) / step * (1.0 + _ROUNDING_STEPS)) + 1)
+    return start + step * np.arange(int((stop - start) / step + _ROUNDING_STEPS) + 1)
 
 
 def values_at(one: Series, time: Array, longest_gap: float | None) -> Array:
