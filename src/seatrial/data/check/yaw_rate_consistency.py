@@ -23,7 +23,7 @@ WRONG_MISFIT, ROUGH_MISFIT = 0.9, 0.5
 COURSE_RANGE, MOVING = (0.2, 5.0), 0.3
 # rad: a rudder that never goes further, were its unit mistaken; share of it that its range must exceed; chosen
 FULL_RUDDER, MOVED_SHARE = math.radians(45.0), 0.5
-SECONDS_PER_MINUTE = 60.0  # s
+SECONDS_PER_MINUTE = 60.0  # s, the factor of a rate in deg/min that is declared deg/s; by definition
 
 
 def yaw_rate_findings(record: Record) -> tuple[Finding, ...]:
