@@ -254,6 +254,27 @@ def test_a_socket_is_read_on_while_a_search_takes_its_time(tmp_path: Path) -> No
     assert len(notes.values) == 20
 
 
+def test_what_comes_while_a_journal_is_read_back_is_noted_before_it_is_processed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("seatrial.onboard.follow._PROCESSING_S", 0.0)
+    journal = tmp_path / "a.journal"
+    follow(stream_trial(), source=ListSource(sample_range(0, 20)), journal=journal, estimator=RecordingEstimator())
+    before = journal.stat().st_size
+
+    class Killed(RecordingEstimator):
+        def update(self, sample: Sample) -> Snapshot:
+            if len(self.values) == 10:
+                raise KeyboardInterrupt  # in the middle of the old journal
+            return super().update(sample)
+
+    follow(stream_trial(), source=ListSource(sample_range(30, 35)), journal=journal, estimator=Killed())
+    assert journal.stat().st_size > before + 5 * 45  # bytes of an entry, at least
+    again = RecordingEstimator()
+    follow(stream_trial(), source=ListSource(), journal=journal, estimator=again)
+    assert len(again.values) == 25
+
+
 def test_what_comes_while_a_journal_is_taken_in_is_not_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("seatrial.onboard.follow._PROCESSING_S", 0.0)
     journal, notes = tmp_path / "a.journal", RecordingEstimator()

@@ -24,6 +24,7 @@ from seatrial.onboard.advice import ManoeuvreAdviser
 from seatrial.onboard.journal import Journal, journal_identity
 from seatrial.onboard.required_channels import check_required_channels
 from seatrial.onboard.run_buffer import RunBuffer, with_training_records
+from seatrial.onboard.sample_order import StreamEvent
 from seatrial.onboard.sources import SampleSource, open_source
 from seatrial.onboard.stream_session import StreamEstimator, StreamSession
 
@@ -96,10 +97,11 @@ def follow(
         reopen = partial(_open_stream, stack, stream, once=once) if can_reopen else None
         is_ended = False
         try:
-            early = [] if log is None else _replay_journal(session, log, current, display, source_waits=can_reopen)
-            if early is not None:
-                current, first = _resume_source(session, current, early, reopen)
-                is_ended = _process_stream(session, current, first, display)
+            waiting = [] if log is None else _replay_journal(session, log, current, display, source_waits=can_reopen)
+            if waiting is not None:
+                if reopen is not None and session.last_journalled is not None:
+                    current, waiting = _resumed(session, current, session.last_journalled, reopen)
+                is_ended = _process_stream(session, current, waiting, display)
         except KeyboardInterrupt:
             pass
         finally:
@@ -151,31 +153,34 @@ class _Display:
 
 def _replay_journal(
     session: StreamSession, journal: Journal, source: SampleSource, display: _Display, *, source_waits: bool
-) -> list[Sample] | None:
-    """Process the journal and return the samples that arrived meanwhile; None where the user stopped it.
+) -> list[StreamEvent] | None:
+    """Process the journal and return what arrived meanwhile, journalled at once; None where the user stopped it.
 
-    source_waits: whether the source keeps its samples until they are read.
+    source_waits: whether the source keeps its samples until they are read. Those of any other source begin a new run,
+    as the length of the break is unknown.
     """
-    early: list[Sample] = []
+    early: list[StreamEvent] = []
+    if not (source_waits or journal.is_empty):
+        session.restart()
     polled = monotonic()
-    for event in session.journal_events(journal):
+    for event in session.journal_events(journal, continues=source_waits):
         session.process(event)
         if not display.should_continue(source):
             return None
         if not source_waits and monotonic() - polled > _PROCESSING_S and len(early) < _MAX_QUEUE and not source.is_over:
-            early += source.poll(0.0)
+            early += session.admit(source.poll(0.0))
             polled = monotonic()
     return early
 
 
 def _process_stream(
-    session: StreamSession, source: SampleSource, first_samples: list[Sample], display: _Display
+    session: StreamSession, source: SampleSource, waiting: list[StreamEvent], display: _Display
 ) -> bool:
-    """Process samples until the source ends (True) or the user stops it (False).
+    """Process what waits, then samples until the source ends (True) or the user stops it (False).
 
     The source is polled between two samples that take long, so that none is lost during a search.
     """
-    queue = deque(session.admit(first_samples))
+    queue = deque(waiting)
     while display.should_continue(source):
         if source.is_over and not queue:
             return True
@@ -195,22 +200,18 @@ def _open_stream(stack: ExitStack, stream: Stream, *, once: bool) -> SampleSourc
     return source
 
 
-def _resume_source(
-    session: StreamSession, source: SampleSource, early_samples: list[Sample], reopen: Callable[[], SampleSource] | None
-) -> tuple[SampleSource, list[Sample]]:
-    """Return the source from which to go on after a journal, and its samples that are new.
+def _resumed(
+    session: StreamSession, source: SampleSource, last: Sample, reopen: Callable[[], SampleSource]
+) -> tuple[SampleSource, list[StreamEvent]]:
+    """Return the source from which to go on behind a journal's last sample, and what is new of it.
 
-    A source that can be reopened (`reopen`) is read up to the journal's last sample; where that is not found, the file
-    is another one and is read from its start, as a new run. Samples of any other source (`early_samples` first) begin a
-    new run too, as the length of the break is unknown.
+    Where that sample is not found the file is another one and is read from its start, as a new run.
     """
-    if session.last_journalled is None:
-        return source, early_samples
-    new = None if reopen is None else _samples_after(source, session.last_journalled)
+    new = _samples_after(source, last)
     if new is not None:
-        return source, new
+        return source, session.admit(new)
     session.restart()
-    return (source, early_samples) if reopen is None else (reopen(), [])
+    return reopen(), []
 
 
 def _samples_after(source: SampleSource, last: Sample) -> list[Sample] | None:

@@ -6,9 +6,11 @@ CRC-32; `R`, length (u16), why a run begins (UTF-8), CRC-32.
 
 import errno
 import hashlib
+import mmap
 import os
 import struct
 import zlib
+from array import array
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from io import RawIOBase
@@ -31,8 +33,6 @@ _SAMPLE_HEAD = struct.Struct("<cd")
 _FLUSH_S = 0.7
 # bytes that a break can tear off; chosen: more than a second of samples, far less than a run
 _MAX_TORN = 1 << 18
-# bytes read at once
-_CHUNK = 1 << 20
 
 
 @dataclass(frozen=True)
@@ -51,11 +51,12 @@ def journal_identity(model: Model, layout: Layout) -> str:
 
 
 class Journal:
-    """An open journal: read `entries` first, then `append` and `write_pending`.
+    """An open journal: `entries` that it held, `append` and `write_pending` new ones.
 
     Attributes:
         path: the file.
         torn_bytes: bytes half-written before a break, which were cut off.
+        damaged_places: stretches between whole entries that were skipped.
         write_error: why nothing more is written; empty while all is well.
     """
 
@@ -63,13 +64,17 @@ class Journal:
         """Create or open a journal of `columns` values a sample.
 
         Raises:
-            InputError: it cannot be written, is not a journal, belongs to another trial, or is open elsewhere.
+            InputError: it cannot be written, is not a journal, belongs to another trial, is open elsewhere, or has
+                damage that a break cannot explain.
         """
-        self.path, self.torn_bytes, self.write_error = path, 0, ""
+        self.path, self.torn_bytes, self.damaged_places, self.write_error = path, 0, 0, ""
         self._columns, self._sample_size = columns, _SAMPLE_HEAD.size + 8 * columns  # bytes of a float64
         self._pending: list[bytes] = []
+        self._frames = array("q")  # offsets of the whole entries
         self._clock, self._flushed_at = clock, clock()
         header = _HEADER_PREFIX + f"{identity} {columns}\n".encode()
+        if path.exists() and not path.is_file():
+            raise InputError(f"journal '{path}' is a folder, pipe or device; name a file")
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             self._file: RawIOBase = path.open("r+b" if path.exists() else "x+b", buffering=0)
@@ -81,34 +86,20 @@ class Journal:
                     f"journal '{path}' is being written by another process; end that process, or name another journal"
                 )
             self._entries_start = _check_header(self._file, header, path)
+            self._recover()
         except InputError:
             self._file.close()
             raise
 
     def entries(self) -> Iterator[JournalEntry]:
-        """Yield the entries in order; a torn end is then cut off, so that writing goes on behind the last whole entry.
+        """Yield the entries that the journal held when it was opened, in order, also while others are appended."""
+        for offset in self._frames:
+            yield self._parsed(offset)
 
-        Raises:
-            InputError: damage that a break cannot explain.
-        """
-        position = self._entries_start
-        self._file.seek(position)
-        rest = b""
-        while piece := self._file.read(_CHUNK):
-            rest += piece
-            used = 0
-            while (sized_entry := self._read_entry(rest, used)) is not None:
-                entry, size = sized_entry
-                used += size
-                yield entry
-            position, rest = position + used, rest[used:]
-            if len(rest) > _MAX_TORN:
-                raise InputError(
-                    f"journal '{self.path}' is damaged at byte {position}, long before its end; move it elsewhere"
-                )
-        self.torn_bytes = len(rest)
-        self._file.truncate(position)
-        self._file.seek(position)
+    @property
+    def is_empty(self) -> bool:
+        """Whether it held no entry when it was opened."""
+        return not self._frames
 
     def append(self, entry: JournalEntry) -> None:
         """Append an entry, to be written by `write_pending`."""
@@ -140,23 +131,50 @@ class Journal:
             self.flush()
             self._try_write(self._file.close)
 
-    def _read_entry(self, data: bytes, offset: int) -> tuple[JournalEntry, int] | None:
-        """The complete entry at that offset and its size in bytes; None if there is none."""
-        tag = data[offset : offset + 1]
-        if tag == _SAMPLE_TAG:
-            size = self._sample_size
-        elif tag == _RUN_TAG and len(data) >= offset + 3:
+    def _recover(self) -> None:
+        """Find the whole entries, skip what is damaged between them, and cut off a torn end."""
+        size = self._file.seek(0, os.SEEK_END)
+        self._content = mmap.mmap(self._file.fileno(), size, access=mmap.ACCESS_READ)
+        end = self._entries_start
+        for frame in self._whole_frames(size):
+            self.damaged_places += frame.start > end
+            self._frames.append(frame.start)
+            end = frame.stop
+        self.torn_bytes = size - end
+        if self.torn_bytes > _MAX_TORN:
+            raise InputError(f"journal '{self.path}' is damaged at byte {end}, long before its end; move it elsewhere")
+        self._file.truncate(end)
+        self._file.seek(end)
+
+    def _whole_frames(self, size: int) -> Iterator[range]:
+        """Yield the bytes of every entry whose checksum holds; behind damage, from the next one on."""
+        offset = self._entries_start
+        while offset < size:
+            stop = self._frame_stop(offset)
+            if stop:
+                yield range(offset, stop)
+            offset = stop or offset + 1
+
+    def _frame_stop(self, offset: int) -> int:
+        """Return the byte behind the entry that begins at `offset`; 0 where there is no whole one."""
+        data, size = self._content, self._sample_size
+        if data[offset : offset + 1] == _RUN_TAG and len(data) >= offset + 3:
             size = 3 + struct.unpack_from("<H", data, offset + 1)[0]
-        else:
-            return None
-        if len(data) < offset + size + _CRC.size:
-            return None
-        if _CRC.unpack_from(data, offset + size)[0] != zlib.crc32(data[offset : offset + size]):
-            return None
-        if tag == _RUN_TAG:
-            return RunEntry(data[offset + 3 : offset + size].decode(errors="replace")), size + _CRC.size
-        values = np.frombuffer(data, "<f8", self._columns, offset + _SAMPLE_HEAD.size).astype(np.float64)
-        return Sample(_SAMPLE_HEAD.unpack_from(data, offset)[1], values), size + _CRC.size
+        elif data[offset : offset + 1] != _SAMPLE_TAG:
+            return 0
+        stop = offset + size + _CRC.size
+        if stop > len(data) or _CRC.unpack_from(data, offset + size)[0] != zlib.crc32(data[offset : offset + size]):
+            return 0
+        return stop
+
+    def _parsed(self, offset: int) -> JournalEntry:
+        """Return the entry that begins at `offset`."""
+        data = self._content
+        if data[offset : offset + 1] == _RUN_TAG:
+            length = struct.unpack_from("<H", data, offset + 1)[0]
+            return RunEntry(data[offset + 3 : offset + 3 + length].decode(errors="replace"))
+        values = np.frombuffer(data[offset + _SAMPLE_HEAD.size : offset + self._sample_size], "<f8").astype(np.float64)
+        return Sample(_SAMPLE_HEAD.unpack_from(data, offset)[1], values)
 
     def _try_write(self, action: Callable[[], object]) -> None:
         """Do it; an error (a full disk) ends the journal, not the estimation."""

@@ -6,6 +6,7 @@ from typing import Protocol
 import numpy as np
 
 from seatrial.core.results.online import Sample, SampleCounts, Snapshot
+from seatrial.core.text.words import counted
 from seatrial.core.values import InputError
 from seatrial.data.trial.stream import Stream
 from seatrial.onboard.journal import Journal, RunEntry
@@ -47,29 +48,40 @@ class StreamSession:
         self.messages: list[str] = []
         self._name, self._estimator, self._journal, self._buffer = stream.name, estimator, journal, buffer
         self._stream, self._order, self._earlier_counts = stream, _sample_order(stream), SampleCounts()
-        self._run_count = 0
+        self._run_count, self._restarts = 0, False
         self._estimator_error = ""
 
-    def journal_events(self, journal: Journal) -> Iterator[StreamEvent]:
+    def journal_events(self, journal: Journal, *, continues: bool) -> Iterator[StreamEvent]:
         """Yield the events of the journal, in order; they are not written again.
 
-        Raises:
-            InputError: the journal is damaged.
+        continues: whether the samples to come go on where the journal ends; otherwise they may be admitted meanwhile.
         """
+        order = self._order if continues else _sample_order(self._stream)
         for entry in journal.entries():
             if isinstance(entry, Sample):
                 self.last_journalled = entry
-                yield from self._order.admit(entry)
+                yield from order.admit(entry)
             elif entry.reason == _RESTART_REASON:
-                self._reset_order()
+                self._earlier_counts = combined_counts(self._earlier_counts, order.counts)
+                order = _sample_order(self._stream)
+        if continues:
+            self._order = order
+        else:
+            self._earlier_counts = combined_counts(self._earlier_counts, order.counts)
         if journal.torn_bytes:
             torn = f"the last {journal.torn_bytes} bytes of '{journal.path.name}'"
             self._add_message(f"{torn} were incomplete after a break and were cut off")
+        if journal.damaged_places:
+            places = counted(journal.damaged_places, "damaged place")
+            self._add_message(f"{places} of '{journal.path.name}' cost the samples there and were skipped")
 
     def admit(self, samples: Iterable[Sample]) -> list[StreamEvent]:
         """Return the events that follow from these samples, written to the journal first."""
         events = [event for sample in samples for event in self._order.admit(sample)]
         if self._journal is not None:
+            if events and self._restarts:
+                self._journal.append(RunEntry(_RESTART_REASON))
+                self._restarts = False
             for event in events:
                 self._journal.append(RunEntry(event.reason) if isinstance(event, RunStart) else event)
             self._journal.write_pending()
@@ -91,8 +103,7 @@ class StreamSession:
     def restart(self) -> None:
         """Begin a run with the next sample, whatever its time: its positions may have another origin than before."""
         self._reset_order()
-        if self._journal is not None:
-            self._journal.append(RunEntry(_RESTART_REASON))
+        self._restarts = True
 
     def finish(self) -> None:
         """End the stream."""
