@@ -15,7 +15,10 @@ LAG = "Fossen 2021, section 9.8, actuator of first order; time constants up and 
 
 _EXPONENT = {ThrustCurve.QUADRATIC: 2, ThrustCurve.LINEAR: 1}
 _LAG_FACTOR = 25.0  # largest over starting time constant, chosen: beyond, a lag is a constant
-_ROUNDED = 1e-3  # shares of full command squared, about which spinning up and down change over smoothly; chosen
+_CHANGEOVER = 0.3
+"""Command over its gap to the order about which spinning down changes to spinning up: wide enough that steps of a third
+of a time constant resolve it; a sharper one gives the likelihood false optima (benchmarks/thrusters_truth.py)."""
+_NO_GAP = 1e-12  # shares of full command to the fourth, which keep the changeover finite where order and command agree
 _EXPONENT_START, _EXPONENTS = 1.5, (1.0, 4.0)
 """Exponent of a power curve where a search starts, and its bounds: from a linear one to far beyond a square; chosen."""
 _OPEN_WATER = (0.4, -0.3, -0.1)
@@ -105,7 +108,9 @@ class ThrusterSheet:
         (c,) = sheet.states(f"c_{name}")
         gap = sheet.bind(f"gap_{name}", order - c, LAG)
         growth = sheet.bind(f"growth_{name}", gap * c, LAG)
-        up = sheet.bind(f"up_{name}", (1 + growth / sp.sqrt(growth**2 + sp.Float(_ROUNDED) ** 2)) / 2, LAG)
+        up = sheet.bind(
+            f"up_{name}", (1 + growth / sp.sqrt(growth**2 + (_CHANGEOVER * gap**2) ** 2 + _NO_GAP)) / 2, LAG
+        )
         sheet.rate(c, gap / (down + (tau - down) * up), LAG)
         return c
 
