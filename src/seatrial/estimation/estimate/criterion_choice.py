@@ -44,7 +44,7 @@ _FEEDBACK = (
     "inputs follow outputs, so that output error would take an unmodelled disturbance for the ship's response; none is "
     "detected, and prediction error without one is output error"
 )
-_SPREAD = "intervals cover the spread between the disturbance models"
+SPREAD = "intervals cover the spread between the disturbance models"
 # residuals over whole runs over those within segments that count as equal, ours
 _MAX_RESIDUAL_GROWTH = 1.05
 # rad from sample to sample, ours: straight lines between samples then lose 1 % of an input
@@ -113,7 +113,7 @@ def choose_criterion(
     is_unforced: nothing moves the ship but its initial state; has_feedback: inputs follow outputs.
     """
     other = None if begun is None else with_input_offsets(begun)
-    shot = _output_error_choice(shooting, _output_error_name(seconds))
+    shot = output_error_choice(shooting, _output_error_name(seconds))
     match settings.criterion:
         case FitCriterion.OUTPUT_ERROR | FitCriterion.MULTIPLE_SHOOTING:
             return _required_choice(shot, settings, noise, "the criterion is set by the trial")
@@ -122,7 +122,8 @@ def choose_criterion(
                 with_input_offsets(shooting), noise, other=other, thorough=True, report_progress=report_progress
             )
             disturbances = choose_disturbance(white, report_progress=report_progress)
-            return _prediction_error_choice(disturbances, "it is set by the trial", disturbances.summary)
+            reasons = ("it is set by the trial", disturbances.summary)
+            return prediction_error_choice(disturbances.chosen.noise, disturbances, *reasons)
         case FitCriterion.AUTO if is_unforced and _is_explained(shot):
             return _required_choice(shot, settings, noise, _FREE_DECAY)
         case FitCriterion.AUTO:
@@ -151,9 +152,9 @@ def choose_criterion(
         return replace(over_runs.with_reasons(disturbances.summary), disturbances=disturbances)
     if best.test.is_nearly_white or has_feedback:
         reasons = (*shot.reasons, disturbances.summary)
-        return _prediction_error_choice(disturbances, *reasons, *([] if best.test.is_white else [_SPREAD]))
+        return prediction_error_choice(best, disturbances, *reasons, *([] if best.test.is_white else [SPREAD]))
     return replace(
-        shot.with_reasons(disturbances.summary, _SEGMENTED, _SPREAD),
+        shot.with_reasons(disturbances.summary, _SEGMENTED, SPREAD),
         process_intensities=best.process_intensities, disturbances=disturbances,
     )  # fmt: skip
 
@@ -210,7 +211,7 @@ def _whole_runs_choice(shooting: CriterionChoice, whole_runs: PointEstimate | No
     """The estimate over whole runs, if its residuals are no larger (5 %) than within segments."""
     if whole_runs is None:
         return None
-    left = _output_error_choice(whole_runs, WHOLE_RUNS)
+    left = output_error_choice(whole_runs, WHOLE_RUNS)
     within, over = (residual_spread(f.estimate.problem, f.residuals) for f in (shooting, left))
     return (
         replace(left, reasons=(*shooting.reasons, *left.reasons))
@@ -223,7 +224,8 @@ def _output_error_name(seconds: float) -> str:
     return WHOLE_RUNS if np.isinf(seconds) else f"output error, multiple shooting with segments of {seconds:.3g} s"
 
 
-def _output_error_choice(estimate: PointEstimate, criterion: str) -> CriterionChoice:
+def output_error_choice(estimate: PointEstimate, criterion: str) -> CriterionChoice:
+    """An output-error estimate with tests of what it leaves."""
     problem, residuals = estimate.problem, estimate.residuals()
     rho, inflation = residual_correlation(problem, residuals)
     whiteness = whiteness_test([residuals[a:b] for a, b in pairwise(problem.data.offsets)])
@@ -240,9 +242,9 @@ def _output_error_choice(estimate: PointEstimate, criterion: str) -> CriterionCh
     return CriterionChoice(estimate, residuals, inflation, rho, whiteness, criterion, (text,))
 
 
-def _prediction_error_choice(disturbances: DisturbanceChoice, *reasons: str) -> CriterionChoice:
-    noise = disturbances.chosen.noise
-    estimate, innovations = noise.as_point_estimate(), noise.problem.innovations(noise.optimum.solution.point)
+def prediction_error_choice(noise: ProcessNoise, disturbances: DisturbanceChoice, *reasons: str) -> CriterionChoice:
+    """The estimate with the chosen disturbance, and tests of its innovations."""
+    estimate, innovations = (noise.as_point_estimate(), noise.problem.innovations(noise.optimum.solution.point))
     rho, inflation = residual_correlation(estimate.problem, innovations.normalised)
     return CriterionChoice(
         estimate, -innovations.e, inflation, rho, noise.test.whiteness, PREDICTION_ERROR, reasons,

@@ -53,17 +53,22 @@ class DisturbanceChoice:
 
     @property
     def summary(self) -> str:
+        """Which disturbance is used and why, and whether it suffices, in words."""
+        return f"{self.choice_text}; {self.chosen.noise.test.innovations_text}"
+
+    @property
+    def choice_text(self) -> str:
         """Which disturbance is used and why, in words."""
         noise = self.chosen.noise
         if not self.chosen.unknown_count:
-            return f"no disturbance is likelier than noise of the sensors alone; {noise.test.innovations_text}"
+            return "no disturbance is likelier than noise of the sensors alone"
         simpler = [f for f in self.fitted if f.unknown_count < self.chosen.unknown_count]
         text = f"the likeliest disturbance is {noise.disturbance_model}"
         if simpler:
             best = max(simpler, key=lambda f: f.log_likelihood)
             gain = 2.0 * (self.chosen.log_likelihood - best.log_likelihood)
             text += f" (twice its log-likelihood is {gain:.3g} above that of {best.noise.disturbance_model})"
-        return f"{text}; {noise.test.innovations_text}"
+        return text
 
     def rows(self, *, is_used: bool) -> tuple[DisturbanceCandidate, ...]:
         """The table of candidates; is_used: whether the chosen one is behind the estimate."""

@@ -20,6 +20,7 @@ from seatrial.estimation.estimate.intervals import (
     refuse_few_runs,
     with_spread,
 )
+from seatrial.estimation.estimate.large_records import choice_over_all, choice_runs
 from seatrial.estimation.estimate.plausibility import refuse_implausible
 from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error
 from seatrial.estimation.estimate.process_noise_interval import process_noise_interval
@@ -144,18 +145,45 @@ def estimate_model(
     """Estimate the free parameters of `model` from training runs.
 
     Start by the weak form, then multiple shooting with re-estimated noise; then, by the decision table, output error
-    over whole runs or prediction error with process noise, unless a criterion or a segment length is set.
+    over whole runs or prediction error with process noise, unless a criterion or a segment length is set. Of long
+    records all this is done on some stretches, and the estimate then moved to the optimum of all samples.
 
     Raises:
         InputError: no excitation, no free parameter, outputs that cannot be compared, a search that cannot begin, or
             one that ends outside physics.
     """
     began = time.perf_counter()
-    options, settings = options or EstimatorOptions(), with_segment_seconds(settings or EstimateSettings(), model, runs)
+    options, settings = (
+        options or EstimatorOptions(),
+        with_segment_seconds(settings or EstimateSettings(), model, runs),
+    )
     if not model.parameters.free:
         raise InputError(f"model '{model.name}' has no free parameter; free some under [model]")
     refuse_without_excitation(model, runs.records)
     refuse_few_runs(options.intervals, len(runs))
+    report = report_progress or (lambda _: None)
+    is_free = settings.criterion is FitCriterion.AUTO and settings.segment_s is None and not settings.robust
+    some = choice_runs(runs) if is_free else None
+    begun, shooting, choice = _chosen(model, some or runs, settings, options, report_progress)
+    if some is not None:
+        report("all samples")
+        choice = choice_over_all(choice, runs)
+    criterion = f"{choice.criterion}, Huber loss" if settings.robust else choice.criterion
+    uncertainty = _uncertainty(choice, options, report)
+    estimate = choice.estimate
+    refuse_implausible(estimate, uncertainty.interval.standard_error)
+    return Estimation(
+        estimate, shooting, uncertainty, choice.residuals, choice.inflation,
+        choice.rho, choice.whiteness, _noise_model(choice), begun.origin, criterion, choice.reasons,
+        time.perf_counter() - began,
+    )  # fmt: skip
+
+
+def _chosen(
+    model: Model, runs: Runs, settings: EstimateSettings, options: EstimatorOptions,
+    report_progress: ProgressReporter | None,
+) -> tuple[SearchStart, PointEstimate, CriterionChoice]:  # fmt: skip
+    """Where the search began, the estimate over segments, and the criterion's choice."""
     report = report_progress or (lambda _: None)
     report("weak-form start")
     unit = characteristic_time(model, runs.records, runs.length, settings.segment_s)
@@ -182,15 +210,7 @@ def estimate_model(
         begun=_begun(shooting, start),
         has_feedback=any(has_feedback(record) for record in runs.records),
     )  # fmt: skip
-    criterion = f"{choice.criterion}, Huber loss" if settings.robust else choice.criterion
-    uncertainty = _uncertainty(choice, options, report)
-    estimate = choice.estimate
-    refuse_implausible(estimate, uncertainty.interval.standard_error)
-    return Estimation(
-        estimate, shooting, uncertainty, choice.residuals, choice.inflation,
-        choice.rho, choice.whiteness, _noise_model(choice), start.origin, criterion, choice.reasons,
-        time.perf_counter() - began,
-    )  # fmt: skip
+    return start, shooting, choice
 
 
 def segment_seconds(model: Model, settings: EstimateSettings, unit: float) -> float:
@@ -210,7 +230,7 @@ def _uncertainty(choice: CriterionChoice, options: EstimatorOptions, report_prog
         interval = process_noise_interval(choice.estimate, choice.implied_noise)
         return Uncertainty(interval, information=inverse(interval.covariance))
     if choice.disturbances is not None and choice.process_noise is not None:
-        return innovations_uncertainty(choice.disturbances, options.intervals)
+        return innovations_uncertainty(choice.process_noise, choice.disturbances, options.intervals)
     rng = np.random.default_rng(options.seed)
     uncertainty = estimate_uncertainty(choice.estimate, choice.inflation, options.intervals, rng, counted)
     if choice.disturbances is None or choice.whiteness.is_white:

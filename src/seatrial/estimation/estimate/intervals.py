@@ -8,6 +8,7 @@ import numpy as np
 from seatrial.core.values import Array, InputError
 from seatrial.estimation.estimate.disturbance_choice import DisturbanceChoice
 from seatrial.estimation.estimate.point_estimate import PointEstimate
+from seatrial.estimation.estimate.process_noise import ProcessNoise
 from seatrial.estimation.estimate.resampling import ReportCount, bootstrap_fits, full_jackknife, one_step_jackknife
 from seatrial.estimation.estimate.settings import WHITE_INFLATION, IntervalMethod
 from seatrial.estimation.information.covariance import (
@@ -99,13 +100,12 @@ def estimate_uncertainty(
     return Uncertainty(replace(from_information(hessian), meaning=meaning))
 
 
-def innovations_uncertainty(disturbances: DisturbanceChoice, kind: IntervalMethod) -> Uncertainty:
+def innovations_uncertainty(noise: ProcessNoise, disturbances: DisturbanceChoice, kind: IntervalMethod) -> Uncertainty:
     """Intervals of a prediction-error estimate: its information matrix; runs left out where innovations are not white.
 
     With too few runs for that, the spread between the disturbance models is added. Full refits and a bootstrap would
     cost a search each and are not offered: one step stands for them, and says so.
     """
-    noise = disturbances.chosen.noise
     runs = len(noise.output_error.data.runs)
     steps = noise.leave_one_out if runs >= RUNS_FOR_JACKKNIFE else None
     wanted = kind in (IntervalMethod.JACKKNIFE, IntervalMethod.BOOTSTRAP)

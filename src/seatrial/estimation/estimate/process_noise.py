@@ -79,8 +79,8 @@ class ProcessNoise:
 
         Of a gust with a memory that of the white noise with the same effect over longer times.
         """
-        names, q = self.problem.process, self.problem.split(self.optimum.solution.point)[1]
-        intensities, states = dict(zip(names, map(float, q), strict=True)), self.output_error.model.states
+        names, q = (self.problem.process, self.problem.split(self.optimum.solution.point)[1])
+        intensities, states = (dict(zip(names, map(float, q), strict=True)), self.output_error.model.states)
         memories = self.added_parameters
         gusts = {s: intensities[gust_name(s)] * memories[memory_name(s)] for s in states if gust_name(s) in intensities}
         return {s: v for s, v in intensities.items() if s in states} | gusts
@@ -127,7 +127,7 @@ class ProcessNoise:
     @property
     def leave_one_out(self) -> Array:
         """`shared` with each run left out by one Newton step from stored normal equations, (runs, k)."""
-        blocks, point, runs = self._segment_normals, self.optimum.solution.point, self.problem.runs.data
+        blocks, point, runs = (self._segment_normals, self.optimum.solution.point, self.problem.runs.data)
         parts = [
             self.problem.assemble(blocks, point, runs.run_segments(int(r)), with_prior=False)
             for r in np.unique(runs.run)
@@ -156,14 +156,14 @@ class ProcessNoise:
 
     @cached_property
     def _free_indices(self) -> Index:
-        point, low, high = self.optimum.solution.point, self.problem.lower, self.problem.upper
+        point, low, high = (self.optimum.solution.point, self.problem.lower, self.problem.upper)
         inside = (point > low) & (point < high)
         inside[: self.problem.runs.size] = True
         return np.flatnonzero(inside)
 
     def _eliminate_noise(self, normal: NormalEquations) -> tuple[Array, Array]:
-        kept, others = self._common_indices, np.setdiff1d(self._free_indices, self._common_indices)
-        cross, inner = normal.hessian[np.ix_(kept, others)], normal.hessian[np.ix_(others, others)]
+        kept, others = (self._common_indices, np.setdiff1d(self._free_indices, self._common_indices))
+        cross, inner = (normal.hessian[np.ix_(kept, others)], normal.hessian[np.ix_(others, others)])
         scale = 1.0 / np.sqrt(np.maximum(np.diag(inner), 1e-300))
         # least squares: the memory of a gust without intensity has no influence
         solved = (
@@ -374,7 +374,7 @@ def _refine(problem: PredictionError, optimum: Optimum) -> tuple[PredictionError
         )
         if better is None:
             break
-        point, normal, count = better, exact.normal(better, _NO_INITIAL_STATES), count + 1
+        point, normal, count = (better, exact.normal(better, _NO_INITIAL_STATES), count + 1)
     slope = _newton_step(exact, point, normal)[1]
     status = Status.CONVERGED if slope <= _MAX_DECREMENT else Status.STALLED
     history = (*optimum.solution.history, normal.cost)
@@ -382,6 +382,20 @@ def _refine(problem: PredictionError, optimum: Optimum) -> tuple[PredictionError
         optimum.solution, point=point, value=normal.cost, status=status, evaluations=count, history=history
     )
     return exact, Optimum(solution, _NO_INITIAL_STATES, normal), slope
+
+
+def newton_optimum(problem: PredictionError, few: Optimum, share: float) -> Optimum:
+    """The optimum of a problem by one Newton step from that of some of its samples, `share` of which it has more.
+
+    The gradient is taken by differences to one side, a filter pass for each unknown.
+    """
+    point = few.solution.point
+    steps = problem.difference_steps(point, share * few.normal.hessian)
+    normal = replace(problem, steps=steps, is_one_sided=True).normal(point, _NO_INITIAL_STATES)
+    step, decrement = _newton_step(problem, point, normal)
+    moved = np.clip(point + step, problem.lower, problem.upper)
+    solution = Solution(moved, normal.cost - decrement, Status.CONVERGED, few.solution.evaluations + 1)
+    return Optimum(solution, _NO_INITIAL_STATES, replace(normal, cost=normal.cost - decrement))
 
 
 def newton_step(problem: PredictionError, point: Array) -> Array:

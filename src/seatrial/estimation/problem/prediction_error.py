@@ -56,6 +56,7 @@ class PredictionError:
         start, start_variance: mean and variance of the initial state of each run, both (runs, nx).
         measurement: known standard deviations of channels, SI, NaN where unknown, (ny,).
         steps: steps of the central differences by which the exact gradient is taken, (size,); None: gain frozen.
+        is_one_sided: whether differences are taken to one side, which halves their cost.
     """
 
     runs: OutputError
@@ -64,6 +65,7 @@ class PredictionError:
     start_variance: Array
     measurement: Array
     steps: Array | None = field(default=None)
+    is_one_sided: bool = False
 
     @property
     def size(self) -> int:
@@ -164,7 +166,7 @@ class PredictionError:
         return SegmentNormals(costs, gradients, hessians, gradients.shape[1])
 
     def _frozen_gain_normals(self, shared: Array, runs: Sequence[int]) -> list[tuple[float, Array, Array]]:
-        width, at = len(self.runs.free) + self.runs.unknowns_per_session + self.noise_count, self.filter_point(shared)
+        width, at = (len(self.runs.free) + self.runs.unknowns_per_session + self.noise_count, self.filter_point(shared))
 
         def one(segment: int) -> tuple[float, Array, Array]:
             e, v, de, dv, failed = self._filter.sensitivities(segment, self.runs.data.measured, at)
@@ -180,36 +182,37 @@ class PredictionError:
         return self._map(one, runs)
 
     def _exact_normals(self, shared: Array, runs: Sequence[int]) -> list[tuple[float, Array, Array]]:
-        """Return the same from central differences of the innovations themselves, whatever they depend on."""
-        session = self.runs.data.session
+        """Return the same from differences of the innovations themselves, whatever they depend on; a run after the other."""
         ahead, behind = self._difference_points(shared)
-        items = [(s, c, side) for s in runs for c in self.columns_of(int(session[s])) for side in (ahead, behind)]
+        return [self._exact_normal(shared, segment, ahead, behind) for segment in runs]
 
-        def moved(item: tuple[int, int, Array]) -> tuple[Array, Array]:
-            segment, column, side = item
+    def _exact_normal(self, shared: Array, segment: int, ahead: Array, behind: Array) -> tuple[float, Array, Array]:
+        columns = self.columns_of(int(self.runs.data.session[segment]))
+        cost, e, v = self._loss(shared, segment)
+
+        def moved(item: tuple[int, Array]) -> tuple[Array, Array]:
+            column, side = item
+            if side[column] == shared[column]:
+                return e, v
             point = shared.copy()
             point[column] = side[column]
             return self._loss(point, segment)[1:]
 
-        sides, made = iter(self._map(moved, items)), []
-        for segment in runs:
-            cost, e, v = self._loss(shared, segment)
-            columns = self.columns_of(int(session[segment]))
-            de, dv = np.empty((*e.shape, len(columns))), np.empty((*e.shape, len(columns)))
-            for c, column in enumerate(columns):
-                (e_1, v_1), (e_0, v_0), way = next(sides), next(sides), ahead[column] - behind[column]
-                de[:, :, c], dv[:, :, c] = ((e_1 - e_0) / way, (v_1 - v_0) / way) if way > 0 else (0.0, 0.0)
-            if not np.isfinite(cost):
-                made.append((cost, np.zeros(len(columns)), np.eye(len(columns))))
-                continue
-            mean, spread = _mean_information(e, v, de), _variance_information(e, v, dv)
-            made.append((cost, mean[0] + spread[0], mean[1] + spread[1]))
-        return made
+        sides = iter(self._map(moved, [(int(c), side) for c in columns for side in (ahead, behind)]))
+        if not np.isfinite(cost):
+            return cost, np.zeros(len(columns)), np.eye(len(columns))
+        de, dv = np.empty((*e.shape, len(columns))), np.empty((*e.shape, len(columns)))
+        for c, column in enumerate(columns):
+            (e_1, v_1), (e_0, v_0), way = (next(sides), next(sides), ahead[column] - behind[column])
+            de[:, :, c], dv[:, :, c] = ((e_1 - e_0) / way, (v_1 - v_0) / way) if way > 0 else (0.0, 0.0)
+        mean, spread = _mean_information(e, v, de), _variance_information(e, v, dv)
+        return cost, mean[0] + spread[0], mean[1] + spread[1]
 
     def _difference_points(self, shared: Array) -> tuple[Array, Array]:
         """Return every unknown a step ahead and a step behind, within its bounds."""
         assert self.steps is not None
-        return np.minimum(shared + self.steps, self.upper), np.maximum(shared - self.steps, self.lower)
+        ahead, behind = (np.minimum(shared + self.steps, self.upper), np.maximum(shared - self.steps, self.lower))
+        return (ahead, np.where(ahead > shared, shared, behind)) if self.is_one_sided else (ahead, behind)
 
     def normal(self, shared: Array, local: Array) -> NormalEquations:  # noqa: ARG002
         """Return the Gauss-Newton model at a point: gradient and expected information."""
@@ -237,7 +240,7 @@ class PredictionError:
 
         Of variances no more than a tenth of themselves, unless they are zero.
         """
-        steps, noise = share / np.sqrt(np.maximum(np.diag(hessian), 1e-300)), slice(self.runs.size, None)
+        steps, noise = (share / np.sqrt(np.maximum(np.diag(hessian), 1e-300)), slice(self.runs.size, None))
         tenth = np.where(shared > 0, 0.1 * shared, steps)
         steps[noise] = np.minimum(steps, tenth)[noise]
         return steps

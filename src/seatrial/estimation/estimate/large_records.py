@@ -1,0 +1,104 @@
+"""Records of more samples than a choice needs: decide on a stated part of them, then take one step over all."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from seatrial.core.values import Record
+from seatrial.estimation.estimate.criterion_choice import (
+    SPREAD,
+    CriterionChoice,
+    output_error_choice,
+    prediction_error_choice,
+)
+from seatrial.estimation.estimate.point_estimate import fit_output_error
+from seatrial.estimation.estimate.process_noise import ProcessNoise, newton_optimum
+from seatrial.estimation.estimate.runs import Runs
+from seatrial.estimation.information.whiteness import whiteness_test
+from seatrial.estimation.problem.output_error import OutputError
+from seatrial.estimation.problem.prediction_error import PredictionError
+from seatrial.estimation.problem.segments import cut_segments
+
+MOST_SAMPLES = 100_000
+"""Samples of all runs up to which everything is done with all of them; chosen."""
+
+CHOICE_SAMPLES, _STRETCHES = 20_000, 3
+"""Samples on which start, disturbance and criterion are chosen beyond that, and stretches of a single run; chosen."""
+
+PIECE_SAMPLES = 20_000
+"""Samples of the pieces in which all of them are filtered: each forgets its initial state within a few; chosen."""
+
+
+_LATER_EVALUATIONS = 6
+"""Most evaluations of output error over all samples, from the optimum over some; chosen."""
+
+
+def choice_runs(runs: Runs) -> Runs | None:
+    """Return stretches of all runs with some twenty thousand samples; None where all runs together are short enough."""
+    if sum(len(r) for r in runs.records) <= MOST_SAMPLES:
+        return None
+    count = max(1, round(_STRETCHES / len(runs)))
+    length = max(CHOICE_SAMPLES // (count * len(runs)), 2)
+    stretches = [(s, session) for r, session in zip(runs.records, runs.sessions, strict=True)
+                 for s in _stretches(r, count, length)]  # fmt: skip
+    return replace(runs, records=tuple(s for s, _ in stretches), sessions=tuple(n for _, n in stretches))
+
+
+def _stretches(record: Record, count: int, length: int) -> Iterator[Record]:
+    """Yield stretches of a record from its beginning to its end."""
+    length = min(length, len(record))
+    for number, first in enumerate(np.linspace(0, len(record) - length, count).round().astype(int).tolist()):
+        yield record.rows(slice(first, first + length)).renamed(f"{record.name}, stretch {number + 1}")
+
+
+def choice_over_all(choice: CriterionChoice, runs: Runs) -> CriterionChoice:
+    """Return a choice moved to its optimum over all samples.
+
+    Prediction error takes one Newton step: the point comes from so many samples that what the step leaves is far below
+    its standard error. Output error searches on from the point.
+    """
+    few = choice.estimate.problem
+    total, part = sum(len(r) for r in runs.records), len(few.data.inputs)
+    reason = f"criterion and disturbance were chosen on {part} of {total} samples, the estimate is that of all"
+    if choice.disturbances is None or choice.process_noise is None:
+        problem = _with_all_samples(few, runs, None)  # whole: without a disturbance nothing is forgotten
+        estimate = fit_output_error(problem, choice.estimate.common_parameters, problem.measured_initial_states(),
+                                    runs.noise, rounds=1, evaluations=_LATER_EVALUATIONS)  # fmt: skip
+        return output_error_choice(estimate, choice.criterion).with_reasons(reason)
+    noise = _noise_over_all(choice.process_noise, runs)
+    reasons = (f"{choice.disturbances.choice_text}; over all samples {noise.test.innovations_text}", reason)
+    more = () if noise.test.is_white else (SPREAD,)
+    return prediction_error_choice(noise, choice.disturbances, *reasons, *more)
+
+
+def _noise_over_all(few: ProcessNoise, runs: Runs) -> ProcessNoise:
+    output_error = _with_all_samples(few.output_error, runs, PIECE_SAMPLES * few.output_error.data.dt)
+    problem = _filter_problem(few, output_error)
+    share = len(output_error.data.inputs) / len(few.problem.runs.data.inputs)
+    optimum = newton_optimum(problem, few.optimum, share)
+    normalised = problem.innovations(optimum.solution.point).normalised
+    pieces = [normalised[a:b] for a, b in pairwise(output_error.data.offsets)]
+    test = replace(few.test, whiteness=whiteness_test(pieces))
+    return ProcessNoise(problem, optimum, 0.0, test, output_error, few.disturbance_model)
+
+
+def _with_all_samples(problem: OutputError, runs: Runs, seconds: float | None) -> OutputError:
+    """The problem with all samples, in pieces of so many seconds; None: whole runs."""
+    return replace(
+        problem, data=cut_segments(problem.model, runs.records, problem.data.outputs, seconds, runs.sessions)
+    )
+
+
+def _filter_problem(few: ProcessNoise, output_error: OutputError) -> PredictionError:
+    """The prediction-error problem on these samples: measured initial states, the others as on average over the few."""
+    old, data = few.problem, output_error.data
+    states, measured = old.runs.model.states, output_error.measured_initial_states()
+    start = np.tile(old.start.mean(axis=0), (data.count, 1))
+    for m, state in enumerate(output_error.starts):
+        if state in data.outputs:
+            start[:, states.index(state)] = measured[:, m]
+    variance = np.tile(old.start_variance.max(axis=0), (data.count, 1))
+    runs = replace(old.runs, data=replace(data, outputs=old.runs.data.outputs))
+    return replace(old, runs=runs, start=start, start_variance=variance, steps=None)
