@@ -12,6 +12,7 @@ import design
 import follow
 import fusion
 import generation
+import gusts
 import heave_pitch
 import loops
 import montecarlo
@@ -30,6 +31,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "against_shipmmg": against_shipmmg.run,
     "against_optimisers": against_optimisers.run,
     "montecarlo": montecarlo.run,
+    "gusts": gusts.run,
     "waterjet_regressions": waterjet_regressions.run,
     "fusion": fusion.run,
     "population": population.run,

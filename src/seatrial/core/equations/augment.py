@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     import sympy as sp
 
 WAVE_FREQUENCY, WAVE_DAMPING, SENSOR_LAG = "wave_frequency", "wave_damping", "sensor_lag"
+MEMORY_PREFIX = "gust_memory_"
 _SOURCE = "augmented model"
 FOSSEN = "Fossen 2011, section 8.2.6, without the zero at the origin"
 
@@ -30,7 +31,7 @@ def gust_name(state: str) -> str:
 
 def memory_name(state: str) -> str:
     """Name of the parameter that holds the memory of a gust on `state`."""
-    return f"gust_memory_{state}"
+    return f"{MEMORY_PREFIX}{state}"
 
 
 def wave_name(state: str) -> str:

@@ -50,6 +50,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         findings=(
             *task.findings, *selected.findings, *findings, *fit_result.unidentified(task.estimation),
             *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation),
+            *fit_result.few_memories(estimation),
             *_profile_findings(task, assessment), *predicted.findings,
             *one_speed_finding(roll, runs.records),
         ),

@@ -5,6 +5,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from seatrial.core.equations.augment import MEMORY_PREFIX
 from seatrial.core.results import Coefficient, Method, Noise, Offset, Profile, Residuals
 from seatrial.core.values import NOTATION, Array, DivergedError, Finding, InputError, Parameter, Parameters, Severity
 from seatrial.estimation.estimate.fit import Estimation
@@ -18,6 +19,11 @@ NO_PROFILE = Finding(
     "",
     "intervals are those of the innovations' information; set another method under [estimate] to have profiles",
 )
+
+
+FEWEST_MEMORIES = 40.0
+"""Memories of a disturbance that records last at least, for intervals of the information to hold; chosen: in 12 of them
+85 to 88 % of 95 % intervals held the truth (simulated Nomoto craft, open loop)."""
 
 
 def coefficients(
@@ -133,6 +139,19 @@ def bounds_hit(estimation: Estimation) -> list[Finding]:
                 "widen the bound under [model.bounds], or give a prior instead")
         for i in hit
     ]  # fmt: skip
+
+
+def few_memories(estimation: Estimation) -> list[Finding]:
+    """Return a warning where the records last few memories of the disturbance that was estimated with the fit."""
+    data = estimation.estimate.problem.data
+    seconds = len(data.inputs) * data.dt
+    memories = {n: t for n, t in estimation.noise_model.added.items() if n.startswith(MEMORY_PREFIX)}
+    longest = max(memories.values(), default=0.0)
+    if seconds >= FEWEST_MEMORIES * longest:
+        return []
+    return [Finding(Severity.WARNING, "few-memories", "the records last few memories of the disturbance: intervals may "
+                    "be too narrow", f"{seconds:.0f} s, memory {longest:.3g} s", "record at least "
+                    f"{FEWEST_MEMORIES * longest:.0f} s")]  # fmt: skip
 
 
 def refuse_unidentified(estimation: Estimation) -> None:

@@ -182,7 +182,7 @@ class PredictionError:
         return self._map(one, runs)
 
     def _exact_normals(self, shared: Array, runs: Sequence[int]) -> list[tuple[float, Array, Array]]:
-        """Return the same from differences of the innovations themselves, whatever they depend on; a run after the other."""
+        """Return the same from differences of the innovations themselves, whatever they depend on."""
         ahead, behind = self._difference_points(shared)
         return [self._exact_normal(shared, segment, ahead, behind) for segment in runs]
 
