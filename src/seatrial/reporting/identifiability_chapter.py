@@ -230,14 +230,14 @@ def _stability_sentence(s: Stability, names: Sequence[str]) -> str:
 
 
 def _noise_text(d: NoiseModel, names: Sequence[str]) -> NoiseText:
-    p = p_value(d.whiteness_p)
+    p, values = p_value(d.whiteness_p), "innovations" if d.disturbance != "none" else "residuals"
     if not math.isfinite(d.whiteness_p):
         whiteness = ""
     elif d.is_white:
-        whiteness = f"The residuals are white in every channel (Ljung-Box with 20 and 100 lags, {p})."
+        whiteness = f"The {values} are white in every channel (Ljung-Box with 20 and 100 lags, {p})."
     else:
         whiteness = (
-            f"The residuals are not white (Ljung-Box with 20 and 100 lags, {p}): they contain model error or "
+            f"The {values} are not white (Ljung-Box with 20 and 100 lags, {p}): they contain model error or "
             "disturbances that this criterion does not describe."
         )
     active = {state: q for state, q in d.process.items() if q > 0}
