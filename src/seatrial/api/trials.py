@@ -99,6 +99,7 @@ def identify(
     choose: bool = False,
     compare: bool = False,
     method: str | None = None,
+    windows: str = "",
 ) -> "Fit":
     """Estimate the trial's model from its training runs and predict its validation runs, with intervals.
 
@@ -111,6 +112,8 @@ def identify(
         compare: compare the fit with other estimators (regressions) on the same records.
         method: takes the place of the trial's ``[estimate] method``: ``auto``, ``output-error``, ...; or a published
             one such as ``iwho`` or ``svr``, which is compared with the package's own estimate.
+        windows: lengths of windows in which validation runs are predicted as well, in seconds or ship lengths:
+            ``10s,5L``; empty: chosen by the length of each run.
 
     Raises:
         InputError: the records do not pass the checks, show no excitation, or cannot distinguish the parameters; an
@@ -131,6 +134,7 @@ def identify(
         intervals=IntervalMethod(intervals),
         choose=choose,
         compare=compare,
+        windows=windows,
     )
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
         Prediction,
         ReferenceEstimate,
         Study,
+        WindowScore,
     )
     from seatrial.core.values import Finding
 
@@ -133,6 +134,8 @@ def _print_prediction(p: "Prediction") -> None:
     rms = f"rms {_named_numbers(p.rms)}" if p.rms else "no error, nothing can be compared"
     until = "" if p.divergence is None else f"; it diverges, and its first {exact(p.divergence.seconds, 4)} s count"
     print_lines([f"validation {p.record}: {rms}{until}"])
+    for w in p.windows:
+        _print_window(w)
     if p.noise_floor:
         print_lines([f"process noise alone: {_named_numbers(p.noise_floor)}"], "  ")
     if p.tied_spread:
@@ -145,6 +148,22 @@ def _print_prediction(p: "Prediction") -> None:
             print_lines([f"{name}: {NOT_DETERMINED}{measured}"], "  ")
         elif m.simulated is not None and m.lower is not None and m.upper is not None:
             print_lines([f"{name}: {exact(m.simulated, 4)} [{exact(m.lower, 4)}, {exact(m.upper, 4)}]{measured}"], "  ")
+
+
+def _print_window(w: "WindowScore") -> None:
+    """Where a baseline errs less that comes first; then the scores by channel with those of the baselines."""
+    from seatrial.core.text.numbers import exact, fixed
+    from seatrial.core.text.words import counted
+
+    better = [f"{name} by {baseline}" for name, baseline in w.better_baselines.items()]
+    note = f"; predicted better without this fit: {', '.join(better)}" if better else ""
+    print_lines([f"{counted(w.count, 'window')} of {w.window}{note}"], "  ")
+    rows = [["", "rms", "fit %", "R2", "in band", *(b.name for b in w.baselines)]]
+    for name, s in w.scores.items():
+        band = "" if s.inside_band is None else f"{100.0 * s.inside_band:.0f} %"
+        rivals = [exact(b.rms[name], ERROR_DIGITS) if name in b.rms else "" for b in w.baselines]
+        rows.append([name, exact(s.rms, ERROR_DIGITS), fixed(s.fit_percent, 1), fixed(s.r_squared, 3), band, *rivals])
+    print_table(rows, indent="    ")
 
 
 def _named_numbers(values: Mapping[str, float]) -> str:

@@ -61,6 +61,9 @@ def identify(
     compare: Annotated[
         bool, typer.Option("--compare", help="Compare with other estimators on the same records.")
     ] = False,
+    windows: Annotated[
+        str, typer.Option("--windows", metavar="LENGTHS", help="Score held-out runs in windows of: 10s,5L.")
+    ] = "",
     method: Method = None,
     model: OwnModelPath = None,
     json: Json = None,
@@ -87,6 +90,7 @@ def identify(
             choose=choose,
             compare=compare,
             method=method,
+            windows=windows,
         )
         report_progress("report")
         page = api.save(fit, out)

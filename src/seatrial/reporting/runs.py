@@ -20,8 +20,10 @@ from seatrial.reporting.measures import (
     measure_decimals,
     measure_label,
 )
+from seatrial.reporting.text_tables import TextTable
+from seatrial.reporting.windows import window_tables
 
-_ERROR_LABELS = {"psi_deg": ("heading", "deg"), "position_m": ("position", "m"), "u": ("u", "m/s"), "v": ("v", "m/s"),
+ERROR_LABELS = {"psi_deg": ("heading", "deg"), "position_m": ("position", "m"), "u": ("u", "m/s"), "v": ("v", "m/s"),
            "r": ("r", "deg/s"), "z": ("heave", "m"), "theta_deg": ("pitch", "deg"),
            "phi_deg": ("roll", "deg")}  # fmt: skip
 # degrees of a radian
@@ -101,12 +103,13 @@ class RunSection:
     is_other_manoeuvre: bool
     has_band: bool
     notes: tuple[str, ...]
+    windows: tuple[TextTable, ...] = ()
 
 
 def score_table(predictions: Sequence[Prediction], length: float) -> ScoreTable:
     """Return the errors of every run, those held out first."""
-    names = [name for name in _ERROR_LABELS if any(name in p.rms for p in predictions)]
-    header = [_ERROR_LABELS[name] for name in names]
+    names = [name for name in ERROR_LABELS if any(name in p.rms for p in predictions)]
+    header = [ERROR_LABELS[name] for name in names]
     if "position_m" in names and length > 0:
         header.insert(names.index("position_m") + 1, ("position", "L"))
     ordered = sorted(predictions, key=lambda p: p.role != "validation")
@@ -164,7 +167,7 @@ def _run_section(p: Prediction, length: float, inputs: Sequence[str], key: str) 
         _measure_table([row for name, row in rows.items() if name not in late]),
         _measure_table([row for name, row in rows.items() if name in late]),
         bool(rows) and all(m.simulated is None for m in p.measures.values()),
-        has_band(p), tuple(_notes(p)),
+        has_band(p), tuple(_notes(p)), tuple(window_tables(p, ERROR_LABELS, {"r": _DEGREES})),
     )  # fmt: skip
 
 
@@ -173,7 +176,7 @@ def _summary(p: Prediction) -> str:
 
 
 def _error_texts(errors: Mapping[str, float]) -> list[str]:
-    return [f"{_ERROR_LABELS[name][0]} {significant(errors[name], 2)} {_ERROR_LABELS[name][1]}"
+    return [f"{ERROR_LABELS[name][0]} {significant(errors[name], 2)} {ERROR_LABELS[name][1]}"
             for name in ("psi_deg", "position_m", "z", "theta_deg", "phi_deg") if name in errors]  # fmt: skip
 
 

@@ -15,6 +15,8 @@ from seatrial.reporting.measures import (
     measure_decimals,
     measure_label,
 )
+from seatrial.reporting.runs import ERROR_LABELS
+from seatrial.reporting.windows import baseline_sentence
 
 # distance of an estimate from its prior's mean, in the prior's standard deviations, from which on they disagree
 PRIOR_DISAGREEMENT = 3.0
@@ -43,6 +45,7 @@ def facts(fit: Fit) -> list[tuple[str, str]]:
 def sentences(fit: Fit) -> list[str]:
     """Return the summary, most important first."""
     parts = [
+        baseline_sentence(fit.validation, ERROR_LABELS),
         *_held_out(fit), _coverage(fit), *_extrapolation(fit), _roll_properties(fit), _identifiability(fit),
         _significance(fit), _truth_coverage(fit), _prior_disagreement(fit), _criterion(fit), _residuals(fit),
         _convergence(fit), _warnings(fit),

@@ -6,6 +6,7 @@ from typing import Annotated
 from pydantic import Field
 
 from seatrial.core.results.fields import ListedArray, Number, ReportedFinding, StoredArray, StoredRecord
+from seatrial.core.results.window_scores import WindowScore
 
 
 @dataclass(frozen=True)
@@ -83,6 +84,9 @@ class Prediction:
     divergence: Annotated[
         Divergence | None, Field(description="null: the simulation lasts as long as the run; else NaN follows it")
     ] = None
+    windows: Annotated[
+        tuple[WindowScore, ...], Field(description="windows of the run, each predicted by itself; validation runs only")
+    ] = ()
 
 
 @dataclass(frozen=True, eq=False)

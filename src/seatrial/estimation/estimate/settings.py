@@ -36,9 +36,11 @@ class EstimatorOptions:
         intervals: where intervals come from; seed: of what is drawn for them.
         evaluations: limit of each search.
         workers: threads; None: one for each core.
+        windows: in which validation runs are predicted as well, as ``10s,5L``; empty: by the length of the run.
     """
 
     intervals: IntervalMethod = IntervalMethod.AUTO
     seed: int = 0
     evaluations: int = 60
     workers: int | None = None
+    windows: str = ""

@@ -17,6 +17,7 @@ from seatrial.estimation.identify.profile import profiles
 from seatrial.estimation.identify.roll_characteristics import one_speed_finding, roll_characteristics
 from seatrial.estimation.identify.seakeeping import seakeeping
 from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
+from seatrial.estimation.predict.window_scores import window_lengths
 
 
 def assembled_fit(task: Identification, selected: SelectedModel, findings: Sequence[Finding] = ()) -> Fit:
@@ -73,7 +74,7 @@ def _predictions(task: Identification, selected: SelectedModel) -> RunPrediction
     try:
         return predict_runs(
             estimation, task.records, task.initial_seconds, task.runs.length, task.options.seed, task.report_progress,
-            selected.tied,
+            selected.tied, window_lengths(task.options.windows),
         )  # fmt: skip
     except DivergedError as error:
         raise InputError(fit_result.divergence_message(estimation, error)) from None

@@ -32,6 +32,8 @@ from seatrial.estimation.predict.prediction_intervals import (
     prediction_spread,
     with_intervals,
 )
+from seatrial.estimation.predict.window_baselines import window_baselines
+from seatrial.estimation.predict.window_scores import WindowLength, WindowPredictor, window_scores
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.simulate.channels import inputs_of
@@ -135,6 +137,7 @@ def predict_runs(
     seed: int = 0,
     report_progress: ProgressReporter | None = None,
     tied: Sequence[TiedModel] = (),
+    windows: Sequence[WindowLength] = (),
 ) -> RunPredictions:
     """Return every run open loop: training runs with their own session's offsets, the others with the training mean.
 
@@ -173,6 +176,10 @@ def predict_runs(
     report("runs left out, predicted")
     calibration = calibrate_intervals(estimation, train, fitted, seconds, length, seed)
     streams = np.random.SeedSequence((seed, 1)).spawn(len(items))
+    predictor = WindowPredictor(
+        problem, estimation.model, mean, calibration.uncertainty, calibration.discrepancy,
+        window_baselines(problem, estimation.model, [item.record for item in train]), length, seconds,
+    )  # fmt: skip
     predictions = []
     for item, run, stream in zip(items, runs, streams, strict=True):
         role = "training" if item.role is Role.TRAIN else "validation"
@@ -189,6 +196,10 @@ def predict_runs(
             alone = _process_noise_floor(estimation, item.record, run.initial_state, mean)
             one = replace(one, tied_spread=tied_model_spread(tied, one, seconds, length), noise_floor=alone)
             one = with_intervals(one, spread, calibration.discrepancy, calibration.uncertainty.degrees_of_freedom)
+        if item.role is not Role.TRAIN:
+            index = one.extrapolation.index if one.extrapolation else 1.0
+            rng = np.random.default_rng(stream.spawn(1)[0])
+            one = replace(one, windows=window_scores(predictor, item.record, windows, index, rng))
         predictions.append(one)
     basis = _interval_basis(estimation, calibration, covered, tied)
     return RunPredictions(tuple(predictions), basis, tuple(findings))

@@ -64,6 +64,20 @@ def prediction_spread(
     return PredictionSpread(_track_spread(model, simulation, runs), spreads)
 
 
+def window_spread(
+    template: OutputError,
+    model: Model,
+    window: Record,
+    simulation: OpenLoopRun,
+    nuisances: Array,
+    uncertainty: PredictionUncertainty,
+    rng: np.random.Generator,
+) -> dict[str, Array]:
+    """Return the scatter of heading and position of runs drawn about a simulated window: channel -> (n,), SI."""
+    runs = draw_runs(template, model, window, simulation.initial_state, nuisances, uncertainty, rng, HOLDOUT_DRAWS)
+    return _track_spread(model, simulation, _finite_draws(runs))
+
+
 def _finite_draws(runs: Array) -> Array:
     """Return the draws that do not diverge; none where they are fewer than half."""
     kept = runs[np.all(np.isfinite(runs), axis=(1, 2))]

@@ -1,0 +1,53 @@
+"""Predictions over windows of a run, with baselines that anybody could make."""
+
+from dataclasses import dataclass, field
+from typing import Annotated
+
+from pydantic import Field
+
+from seatrial.core.results.fields import Number
+
+
+@dataclass(frozen=True)
+class ChannelScore:
+    """How one channel is predicted over all windows of a length; null where a window diverges."""
+
+    rms: Annotated[Number, Field(description="root-mean-square error, unit as in `Prediction.rms`")]
+    fit_percent: Annotated[
+        Number, Field(description="100 (1 - |error| / |measured - mean|), as MATLAB's compare (NRMSE); 100 is perfect")
+    ]
+    r_squared: Annotated[Number, Field(description="1 - sum of squared errors over that about the mean")]
+    inside_band: Annotated[
+        Number | None, Field(description="share of samples inside their 95 % band; null: no band")
+    ] = None
+
+
+@dataclass(frozen=True)
+class WindowBaseline:
+    """A prediction that needs no fit of this model, over the same windows from the same beginnings."""
+
+    name: str
+    rms: Annotated[dict[str, Number], Field(description="keys as in `WindowScore.scores`; null where it diverges")]
+
+
+@dataclass(frozen=True)
+class WindowScore:
+    """A run cut into windows of one length, each predicted open loop from the state estimated in its beginning."""
+
+    window: Annotated[str, Field(description="as required: 10 s, 5 L (ship lengths at the run's speed)")]
+    seconds: Annotated[Number, Field(description="length of the windows")]
+    count: Annotated[int, Field(description="number of windows")]
+    scores: Annotated[dict[str, ChannelScore], Field(description="keys as in `Prediction.rms`")] = field(
+        default_factory=dict
+    )
+    baselines: tuple[WindowBaseline, ...] = ()
+
+    @property
+    def better_baselines(self) -> dict[str, str]:
+        """Return the channel of each baseline that errs less than the fit -> name of the best one there."""
+        better: dict[str, str] = {}
+        for channel, score in self.scores.items():
+            rivals = [(b.rms[channel], b.name) for b in self.baselines if b.rms.get(channel, score.rms) < score.rms]
+            if rivals:
+                better[channel] = min(rivals)[1]
+        return better

@@ -1,0 +1,81 @@
+"""Windows of held-out runs: lengths, scores against their definitions, baselines that are right where they must be."""
+
+import numpy as np
+import pytest
+from tests.estimation.identify.conftest import TRUTH
+from tests.estimation.predict.test_divergence import GENTLE, run
+
+from seatrial.core.results import Fit
+from seatrial.core.values import InputError, Record, Ship
+from seatrial.data.trial import Role, Trial, TrialRun
+from seatrial.estimation.identify import identify
+from seatrial.estimation.predict.window_baselines import ARX, CONSTANT_COURSE, at_rest, constant_course, fit_arx
+from seatrial.estimation.predict.window_scores import WindowLength, window_lengths
+from seatrial.physics.models.nomoto import nomoto
+
+
+@pytest.fixture(scope="module")
+def fit() -> Fit:
+    rng = np.random.default_rng(4)
+    runs = [run(name, GENTLE, rng, phase) for name, phase in (("a", 0.0), ("b", 7.0), ("v", 3.0))]
+    roles = (Role.TRAIN, Role.TRAIN, Role.VALIDATE)
+    trial = Trial(
+        Ship("craft", {"L": 8.0}), tuple(TrialRun(r, role) for r, role in zip(runs, roles, strict=True)), nomoto()
+    )
+    return identify(trial, windows="50s,5L")
+
+
+def test_lengths_are_seconds_or_ship_lengths() -> None:
+    assert window_lengths("10s, 5L") == (WindowLength(10.0, "s"), WindowLength(5.0, "L"))
+    assert window_lengths("") == ()
+    for text in ("10", "5 m", "0s", "-3s"):
+        with pytest.raises(InputError, match="write seconds or ship lengths"):
+            window_lengths(text)
+
+
+def test_windows_of_both_units_are_scored_with_baselines(fit: Fit) -> None:
+    in_seconds, in_lengths = fit.validation[0].windows
+    assert (in_seconds.seconds, in_seconds.count) == (50.0, 4)
+    assert in_lengths.seconds == pytest.approx(5.0 * 8.0 / 2.0)
+    assert {b.name for b in in_seconds.baselines} == {CONSTANT_COURSE, ARX}
+    assert fit["T"].estimate == pytest.approx(TRUTH["T"], rel=0.1)
+    score = in_seconds.scores["r"]
+    assert score.fit_percent > 80.0
+    assert 1.0 - score.r_squared == pytest.approx((1.0 - score.fit_percent / 100.0) ** 2)
+    (straight,) = [b for b in in_seconds.baselines if b.name == CONSTANT_COURSE]
+    assert score.rms < straight.rms["r"]
+    assert straight.rms["r"] == pytest.approx(np.sqrt(np.mean(fit.validation[0].measured["r"] ** 2)), rel=0.25)
+
+
+def test_a_baseline_that_errs_less_is_named(fit: Fit) -> None:
+    for window in fit.validation[0].windows:
+        for channel, name in window.better_baselines.items():
+            (rival,) = [b for b in window.baselines if b.name == name]
+            assert rival.rms[channel] < window.scores[channel].rms
+
+
+def test_straight_on_is_exact_on_a_straight_course() -> None:
+    time = 0.5 * np.arange(40)
+    values = {
+        "psi": np.full(40, 0.3),
+        "u": np.full(40, 2.0),
+        "r": np.zeros(40),
+        "x0": 1.0 + 1.9 * time,
+        "y0": 0.6 * time,
+    }
+    record = Record.from_arrays("straight", time, values)
+    predicted = constant_course(record, 5.0)
+    for channel in values:
+        np.testing.assert_allclose(predicted[channel], record[channel], atol=1e-9)
+    assert not np.any(at_rest(record, 5.0)["psi"])
+
+
+def test_arx_finds_the_difference_equation_it_is_made_of(rng: np.random.Generator) -> None:
+    delta, r = rng.standard_normal(400), np.zeros(400)
+    for k in range(2, 400):
+        r[k] = 1.2 * r[k - 1] - 0.4 * r[k - 2] + 0.05 * delta[k - 1] + 0.02
+    record = Record.from_arrays("arx", 0.5 * np.arange(400.0), {"r": r, "delta": delta, "psi": np.zeros(400)})
+    arx = fit_arx(nomoto(), [record])
+    assert arx is not None
+    np.testing.assert_allclose(arx.weights[:, 0], [-0.4, 1.2, 0.0, 0.05, 0.02], atol=1e-9)
+    np.testing.assert_allclose(arx.predict(record, 1.0)["r"], r, atol=1e-9)
