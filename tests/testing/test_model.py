@@ -12,7 +12,10 @@ from seatrial.testing import ConformanceError, MirrorLaw, check_model
 
 # parameters of the built-in models that change sign in the mirror (asymmetry, zeros, current), and those split by side
 ODD = {"Y_0", "N_0", "Y_T", "N_T", "Y_dd", "N_dd", "Y_nn", "Y_nu", "N_nn", "N_nu", "delta_0", "current_east", "phi_0"}
-LAW = MirrorLaw(frozenset(ODD | {"r_rest"}), {"C_2_plus": "C_2_minus", "gamma_R_plus": "gamma_R_minus"})
+SPLIT = {"C_2_plus": "C_2_minus", "gamma_R_plus": "gamma_R_minus", "command_1": "command_2"}
+SPLIT |= {f"{n}_port": f"{n}_starboard" for n in ("c", "T", "zero", "span", "angle", "x", "y")}
+ODD |= {"r_rest", "y_port", "y_starboard", "angle_port", "angle_starboard"}
+LAW = MirrorLaw(frozenset(ODD), SPLIT)
 
 
 def complete(name: str) -> Model:

@@ -1,6 +1,6 @@
 """States and inputs of ordinary size at which a model is evaluated."""
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -20,21 +20,24 @@ class MirrorLaw:
 
     Attributes:
         odd: names of parameters, states and inputs that change sign.
-        swapped: parameters of one side -> their counterparts of the other.
+        swapped: names of one side -> their counterparts of the other, of parameters, states, inputs and outputs.
     """
 
     odd: frozenset[str] = frozenset()
     swapped: Mapping[str, str] = field(default_factory=dict)
 
-    def signs(self, names: Collection[str]) -> Array:
-        """Return -1 for quantities that change sign in the mirror, else 1, shape (len(names),)."""
-        return np.array([-1.0 if name in self.odd or _is_lateral(name) else 1.0 for name in names])
+    def motion(self, names: Sequence[str], values: Array) -> Array:
+        """Return states, inputs or outputs of the mirrored ship, shape (len(names),)."""
+        return self._mirrored(names, values, {name for name in names if name in self.odd or _is_lateral(name)})
 
-    def parameters(self, model: Model, values: Array) -> Array:
+    def parameters(self, names: Sequence[str], values: Array) -> Array:
         """Return the parameters of the mirrored ship, shape (np,); they change only as declared."""
-        by_name = dict(zip(model.parameters.names, values, strict=True))
+        return self._mirrored(names, values, self.odd)
+
+    def _mirrored(self, names: Sequence[str], values: Array, odd: Collection[str]) -> Array:
+        by_name = dict(zip(names, values, strict=True))
         pairs = {**self.swapped, **{starboard: port for port, starboard in self.swapped.items()}}
-        return np.array([by_name[pairs.get(n, n)] * (-1.0 if n in self.odd else 1.0) for n in by_name])
+        return np.array([by_name[pairs.get(n, n)] * (-1.0 if n in odd else 1.0) for n in names])
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,9 +67,9 @@ class Point:
     def mirrored(self, model: Model, law: MirrorLaw) -> "Point":
         """Return the point with port and starboard exchanged."""
         return Point(
-            self.states * law.signs(model.states),
-            self.inputs * law.signs(model.input_names),
-            law.parameters(model, self.parameters),
+            law.motion(model.states, self.states),
+            law.motion(model.input_names, self.inputs),
+            law.parameters(model.parameters.names, self.parameters),
         )
 
     def text(self, model: Model) -> str:

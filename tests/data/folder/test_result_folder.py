@@ -178,7 +178,7 @@ def test_the_json_has_the_documented_entries_and_no_nan(fit: Fit) -> None:
     assert table["intervals"] == "information matrix"
     assert table["validation"][0]["rms"] == {"psi_deg": 1.0 / 3.0, "v": None}
     measure = table["validation"][0]["measures"]["overshoot_1_deg"]
-    assert measure == {"measured": 4.0, "simulated": None, "lower": None, "upper": None}
+    assert measure == {"measured": 4.0, "simulated": None, "lower": None, "upper": None, "is_determined": True}
     assert table["findings"][0] == {
         "severity": "info", "code": "constant", "text": "run first: jet never changes (1.8 m/s)",
         "evidence": "1.8 m/s", "advice": "none needed",

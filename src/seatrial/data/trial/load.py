@@ -51,8 +51,8 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
 
     Args:
         path: the TOML file.
-        own_model: takes the place of the built-in model that `[model] name` names; the truth of parameters it does
-            not have is left out.
+        own_model: takes the place of the built-in model that `[model] name` names; truth and bounds of parameters
+            it does not have are left out.
 
     Raises:
         InputError: one sentence naming file, key and what to do.

@@ -7,11 +7,12 @@ from seatrial.core.values import InputError, Parameters, Prior, Ship, si_unit, s
 from seatrial.data.trial.amounts import Amount
 from seatrial.data.trial.literature import LiteraturePrior, literature_priors
 from seatrial.data.trial.schema import ModelTable, PriorTable, ShipTable
-from seatrial.physics.models import model_named
+from seatrial.physics.models import MODELS, model_named
 from seatrial.physics.models.heave_pitch_coefficients import with_start_values
 from seatrial.physics.models.published import parameter_set
 from seatrial.physics.sensors import Sensors, with_sensors
 
+Bounds = Mapping[str, tuple[float, float]]
 # particulars that people state although not every model asks for them
 COMMON_PARTICULARS = (
     "L", "B", "d", "m", "I_z", "x_G", "C_b", "volume", "D_P", "x_P", "A_R", "H_R", "x_R", "A_T", "A_L", "rho",
@@ -59,7 +60,15 @@ def build_trial_model(
     model = with_start_values(
         model.with_parameters(_with_free_and_fixed(parameters, table, craft)), own_ship
     ).with_ship(own_ship)
-    return model.with_parameters(_with_priors(_with_bounds(model.parameters, table), table, literature))
+    bounds = table.bounds if own_model is None else _bounds_in_common(table, model, layout)
+    bounded = _with_bounds(model.parameters, bounds)
+    return model.with_parameters(_with_priors(bounded, table, literature))
+
+
+def _bounds_in_common(table: ModelTable, own_model: Model, layout: str) -> Bounds:
+    """The bounds without those of parameters that only the model has in whose place the user's own stands."""
+    replaced = model_named(table.name, layout).parameters if table.name in MODELS else ()
+    return {n: ends for n, ends in table.bounds.items() if n in own_model.parameters or n not in replaced}
 
 
 def _without_particulars(ship: Ship, names: tuple[str, ...]) -> Ship:
@@ -103,9 +112,9 @@ def _with_free_and_fixed(parameters: Parameters, table: ModelTable, craft: Model
     return parameters.fixed(*table.fixed)
 
 
-def _with_bounds(parameters: Parameters, table: ModelTable) -> Parameters:
-    _refuse_unknown("model.bounds", tuple(table.bounds), parameters)
-    for name, (lower, upper) in table.bounds.items():
+def _with_bounds(parameters: Parameters, bounds: Bounds) -> Parameters:
+    _refuse_unknown("model.bounds", tuple(bounds), parameters)
+    for name, (lower, upper) in bounds.items():
         if not lower < upper:
             raise InputError(
                 f"model.bounds.{name}: lower bound {lower:g} is not below upper bound {upper:g}; swap them"
