@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import chdtrc
 
 from seatrial.core.values import Array, Finding, Record, Severity
 from seatrial.core.values.notation import COMMANDS as THRUSTER_COMMANDS
@@ -108,6 +107,8 @@ def _feedback_test(
     motion = _remainder(np.hstack([own, values[_LAGS:, None], _past(outputs - outputs[0])]), outputs[_LAGS:])
     size = np.sqrt(power) * np.maximum(np.linalg.norm(motion, axis=0), _SMALLEST)
     correlations = np.array([order[k:] @ motion[:-k] for k in range(1, _LAGS + 1)]) / size
+    from scipy.special import chdtrc  # here, as `check` has no other use for it
+
     p = chdtrc(_LAGS, rows * np.sum(correlations**2, axis=0))
     j = int(np.argmin(p))
     k = int(np.argmax(np.abs(correlations[:, j])))

@@ -10,6 +10,7 @@ from scipy.special import stdtrit
 from seatrial.core.equations import Model
 from seatrial.core.results.window_scores import ChannelScore, WindowBaseline, WindowScore
 from seatrial.core.values import Array, InputError, Record
+from seatrial.data.check.signal import sample_noise
 from seatrial.estimation.estimate.time_scale import characteristic_time
 from seatrial.estimation.information.discrepancy import Discrepancy
 from seatrial.estimation.predict.draws import PredictionUncertainty
@@ -116,7 +117,9 @@ def _score(
         lasts = run.divergence is None
         spread = window_spread(p.template, p.model, window, run, p.nuisances, p.uncertainty, rng) if lasts else {}
         simulated.append(run.record)
-        halves.append({c: t * p.discrepancy.channel_sd(c, sd, window.dt, index) for c, sd in spread.items()})
+        sds = {c: p.discrepancy.channel_sd(c, sd, window.dt, index) for c, sd in spread.items()}
+        # a measured sample lies about the true one by its sensor's noise
+        halves.append({c: t * np.hypot(sd, sample_noise(window[c])) for c, sd in sds.items() if c in window})
     scores = {
         key: _channel_score(windows, simulated, halves, channels, factor)
         for key, (channels, factor) in _SCORES.items()

@@ -6,9 +6,15 @@ from types import MappingProxyType
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Parameters
-from seatrial.physics.models.waterjet import waterjet_candidates
 
-_WIDER: Mapping[str, Callable[[], Model]] = MappingProxyType({"waterjet": waterjet_candidates})
+
+def _waterjet_candidates() -> Model:
+    from seatrial.physics.models.waterjet import waterjet_candidates  # here, as it imports SymPy
+
+    return waterjet_candidates()
+
+
+_WIDER: Mapping[str, Callable[[], Model]] = MappingProxyType({"waterjet": _waterjet_candidates})
 
 
 def with_candidate_terms(model: Model) -> Model:
