@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.special import chdtrc
 
 from seatrial.core.values import Record
-from seatrial.data.check.feedback import feedback_findings, feedback_tests, has_feedback
+from seatrial.data.check.feedback import chi_square_tail, feedback_findings, feedback_tests, has_feedback
 
 DT, ROWS, K, T = 0.1, 6001, 0.15, 8.0
 
@@ -52,3 +53,8 @@ def test_a_record_without_motion_or_too_short_says_nothing() -> None:
     short = Record.from_arrays("short", record.time[:20], {n: record[n][:20] for n in ("delta", "psi")})
     still = Record.from_arrays("still", record.time, {"delta": record["delta"]})
     assert feedback_tests(short) == feedback_tests(still) == ()
+
+
+def test_the_tail_of_chi_square_is_that_of_another_code() -> None:
+    values = np.array([0.0, 0.5, 3.0, 20.0, 90.0])
+    np.testing.assert_allclose(chi_square_tail(10, values), chdtrc(10, values), rtol=1e-13)

@@ -18,7 +18,8 @@ class ChannelScore:
     ]
     r_squared: Annotated[Number, Field(description="1 - sum of squared errors over that about the mean")]
     inside_band: Annotated[
-        Number | None, Field(description="share of samples inside their 95 % band; null: no band")
+        Number | None,
+        Field(description="share of samples inside their 95 % band (sensor noise included); null: no band"),
     ] = None
 
 
