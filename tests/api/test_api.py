@@ -3,10 +3,12 @@
 from pathlib import Path
 
 import pytest
+from tests.reporting.fabricated import fabricated_fit
 
 import seatrial.api as sea
 from seatrial.core.values import InputError, Ship
 from seatrial.data.folder.model_file import ModelFile
+from seatrial.data.folder.result_folder import model_of_fit
 from seatrial.data.trial import Role
 
 
@@ -86,3 +88,12 @@ def test_a_run_of_a_trial_can_be_replayed(repository: Path) -> None:
     assert (again.time == record.time).all()
     with pytest.raises(InputError, match=f"no run 'none'.*{name}"):
         sea.prepared_run(trial, "none")
+
+
+def test_a_fit_is_simulated_as_its_model_file_is() -> None:
+    fit = fabricated_fit()
+    record = sea.simulate(fit, "zigzag:20/20", inputs={"v_j": 1.866}, duration=20.0)
+    file = model_of_fit(fit)
+    again = sea.simulate(file, "zigzag:20/20", inputs={"v_j": 1.866}, duration=20.0)
+    assert (record["psi"] == again["psi"]).all() and record["psi"].any()
+    assert sea.predict(fit, fit.records[0]).rms == sea.predict(file, fit.records[0]).rms

@@ -8,12 +8,12 @@ from seatrial.core.values import InputError
 if TYPE_CHECKING:
     from seatrial.api.simulation import Steering
     from seatrial.core.equations import Model
-    from seatrial.core.results import Extrapolation, Prediction
+    from seatrial.core.results import Extrapolation, Fit, Prediction
     from seatrial.core.values import Record
     from seatrial.data.folder.model_file import ModelFile
 
 
-def predict(model: "ModelFile | Model", record: "Record") -> "Prediction":
+def predict(model: "Fit | ModelFile | Model", record: "Record") -> "Prediction":
     """Predict a measured run open loop from its inputs and its initial state, and compare it with the measurement.
 
     The initial state is estimated by output error from the first seconds of the run, as `identify` does for the runs

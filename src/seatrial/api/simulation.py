@@ -8,6 +8,7 @@ from seatrial.core.values import InputError
 
 if TYPE_CHECKING:
     from seatrial.core.equations import Model
+    from seatrial.core.results import Fit
     from seatrial.core.values import Record
     from seatrial.data.folder.model_file import ModelFile
 
@@ -15,7 +16,7 @@ Steering = Callable[["Model"], "Record"]
 
 
 def steering(
-    model: "ModelFile | Model",
+    model: "Fit | ModelFile | Model",
     manoeuvre: str,
     *,
     speed: float | None = None,
@@ -27,7 +28,7 @@ def steering(
     """Return a function that steers the manoeuvre with any model of these equations, under the file's conditions.
 
     Args:
-        model: a model, or a model file with its ship and approach condition.
+        model: a model; or a fit or model file, with their ship and approach condition.
         manoeuvre: e.g. ``zigzag:20/20`` (see `seatrial.manoeuvres`).
         speed: approach speed, m/s; without it the speed at which surge balances.
         inputs: constant inputs besides the rudder, SI; without them those of the trials.
@@ -66,7 +67,7 @@ def steering(
 
 
 def simulate(
-    model: "ModelFile | Model",
+    model: "Fit | ModelFile | Model",
     manoeuvre: "str | Record",
     *,
     speed: float | None = None,
@@ -78,7 +79,7 @@ def simulate(
     """Simulate a manoeuvre, or the inputs of a record, with a model and return the record of it.
 
     Args:
-        model: a model, or a model file with its ship and approach condition.
+        model: a model; or a fit or model file, with their ship and approach condition.
         manoeuvre: e.g. ``zigzag:20/20``, ``turning-circle:35``, or a record whose inputs drive the model: a measured
             one from its first sample, a planned one from a straight run.
         speed: approach speed, m/s; without it the speed at which surge balances.
@@ -112,10 +113,14 @@ def replay(model: "ModelFile", record: "Record", speed: float | None = None) -> 
     return replay(model.model, record, start)
 
 
-def as_model_file(model: "ModelFile | Model") -> "ModelFile":
-    """Return the model file as it is, or one that holds the bare model."""
+def as_model_file(model: "Fit | ModelFile | Model") -> "ModelFile":
+    """Return the model file as it is, that of a fit, or one that holds the bare model."""
+    from seatrial.core.results import Fit
     from seatrial.data.folder.model_file import ModelFile
+    from seatrial.data.folder.result_folder import model_of_fit
 
+    if isinstance(model, Fit):
+        return model_of_fit(model)
     return model if isinstance(model, ModelFile) else ModelFile(model)
 
 

@@ -61,7 +61,8 @@ class FolderKind(Generic[T]):
     repeated: frozenset[str] = frozenset()
 
 
-def _model_of_fit(fit: Fit) -> ModelFile:
+def model_of_fit(fit: Fit) -> ModelFile:
+    """Return the model file of a fit: equations, values and their covariance, ship, records, approach condition."""
     held_out = {p.record for p in fit.validation}
     roles = [(r, "validation" if r.name in held_out else "training") for r in fit.records]
     sources = tuple(RecordSource(record.name, role, record.provenance.sha256) for record, role in roles)
@@ -87,7 +88,7 @@ def _tuning_products(tuning: Tuning) -> dict[str, bytes]:
 
 KINDS: tuple[FolderKind[Any], ...] = (
     FolderKind(
-        Fit, "result.json", "seatrial identify TRIAL --out DIR", _model_of_fit, _fields_of_fit,
+        Fit, "result.json", "seatrial identify TRIAL --out DIR", model_of_fit, _fields_of_fit,
         repeated=frozenset({"validation", "intervals"}),
     ),
     FolderKind(
