@@ -83,7 +83,7 @@ def test_an_interrupt_ends_with_a_sentence(
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("seatrial.api.load_trial", interrupted)
+    monkeypatch.setattr("seatrial.api.check", interrupted)
     assert run_command("check", tmp_path / "any.toml") == 130
     assert "seatrial: interrupted" in capsys.readouterr().err
 

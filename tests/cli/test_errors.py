@@ -11,14 +11,14 @@ from seatrial.cli import INPUT_EXIT_CODE, INTERNAL_EXIT_CODE, INTERRUPT_EXIT_COD
 
 @pytest.fixture
 def failing_with(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[BaseException], None]:
-    """Let `check` raise an exception as soon as it loads a trial; error files go below a folder of the test."""
+    """Let `check` raise an exception; error files go below a folder of the test."""
     monkeypatch.setattr("platformdirs.user_log_path", lambda _: tmp_path / "log")
 
     def prepare(error: BaseException) -> None:
-        def load_trial(*_: object) -> None:
+        def check(*_: object) -> None:
             raise error
 
-        monkeypatch.setattr(api, "load_trial", load_trial)
+        monkeypatch.setattr(api, "check", check)
 
     return prepare
 

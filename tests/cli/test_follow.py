@@ -80,7 +80,7 @@ def test_what_was_amiss_is_counted_and_said(tmp_path: Path, run_command: Callabl
         ([], ["--source", "udp"], "source 'udp' needs a port; add port to [follow]"),
         ([], ["--source", "nmea-udp"], "has other columns"),
         ([], ["--page", "99999"], "there is no port 99999 for the page"),
-        ([], ["--journal", "."], "journal '.' cannot be written"),
+        ([], ["--journal", "."], "journal '.' is a folder, pipe or device"),
         ([], ["--journal", str(EXAMPLES / "waterjet.toml")], "is not a journal of 'seatrial follow'"),
     ],
 )

@@ -129,6 +129,7 @@ class Journal:
         """Write all entries through to the disk and close the file."""
         if not self._file.closed:
             self.flush()
+            self._content.close()  # it holds the file, and with it the lock
             self._try_write(self._file.close)
 
     def _recover(self) -> None:
@@ -142,6 +143,7 @@ class Journal:
             end = frame.stop
         self.torn_bytes = size - end
         if self.torn_bytes > _MAX_TORN:
+            self._content.close()
             raise InputError(f"journal '{self.path}' is damaged at byte {end}, long before its end; move it elsewhere")
         self._file.truncate(end)
         self._file.seek(end)

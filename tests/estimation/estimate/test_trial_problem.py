@@ -15,7 +15,7 @@ SHIP = Ship("tanker", {"L": 8.0})
 
 def steered_record(model: Model, name: str) -> Record:
     time = 0.5 * np.arange(81)
-    delta = 0.3 * np.sign(np.sin(0.12 * time))
+    delta = (0.3 if name == "a" else 0.2) * np.sign(np.sin(0.12 * time))
     truth = replay(model, Record.from_arrays(name, time, {"delta": delta}), {"r": 0.0})
     return Record.from_arrays(name, time, {"delta": delta, "u": np.full(81, 2.0), "r": truth["r"], "psi": truth["psi"]})
 

@@ -18,7 +18,11 @@ def trial_in_python(example: Trial) -> Trial:
     runs = tuple(
         TrialRun(run.raw_record(), Role.VALIDATE if run.name in held_out else Role.TRAIN) for run in example.runs
     )
-    return Trial(ship, runs, model_named("waterjet").with_ship(ship))
+    model = model_named("waterjet").with_ship(ship)
+    parameters = model.parameters
+    for p in example.model.parameters.free:
+        parameters = parameters.bounded(p.name, p.lower, p.upper)
+    return Trial(ship, runs, model.with_parameters(parameters))
 
 
 def test_a_trial_made_of_records_gives_the_bits_of_its_file(repository: Path) -> None:
