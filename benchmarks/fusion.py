@@ -148,20 +148,24 @@ def diameter(model: Model) -> float:
 
 
 def diameter_spread(
-    runs: list[Record], means: Mapping[str, float], truth: Model, points: tuple[ForcePoints, ...]
+    runs: list[Record],
+    means: Mapping[str, float],
+    truth: Model,
+    points: tuple[ForcePoints, ...],
+    spreads: tuple[float, ...] = SPREADS,
 ) -> DiameterSpread:
     """Fit with each prior width and predict the turn."""
     data = replace(Runs.one_session_each(runs, truth.parameters["L"].value), forces=points)
     settings, options = EstimateSettings(channels=tuple(NOISE)), EstimatorOptions(workers=1)
     made = {}
-    for percent in SPREADS:
+    for percent in spreads:
         found = estimate_model(with_priors(truth, means, percent), data, settings, options)
         made[percent] = diameter(found.model)
     return DiameterSpread(made, diameter(truth))
 
 
 def compare_with_captive(
-    seed: int = SEED, training: tuple[str, ...] = TRAINING
+    seed: int = SEED, training: tuple[str, ...] = TRAINING, spreads: tuple[float, ...] = SPREADS
 ) -> tuple[DiameterSpread, DiameterSpread]:
     """Without and with captive points, from the same records and priors."""
     truth = kvlcc2_full().applied_to(mmg())
@@ -170,7 +174,8 @@ def compare_with_captive(
     runs = [noisy(with_wind(truth, record, streams[0]), streams[0]) for record in calm]
     means = off_centre_means(truth, streams[1])
     points = simulate_captive_points(truth, streams[2], float(calm[0]["u"][0]))
-    return diameter_spread(runs, means, truth, ()), diameter_spread(runs, means, truth, (points,))
+    alone = diameter_spread(runs, means, truth, (), spreads)
+    return alone, diameter_spread(runs, means, truth, (points,), spreads)
 
 
 RECORDED = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"

@@ -123,7 +123,7 @@ def test_a_turned_force_is_refused_with_the_way_to_declare_it(tmp_path: Path, fu
 
 
 def test_the_predicted_turn_hardly_moves_with_the_prior(fusion: ModuleType) -> None:
-    alone, together = fusion.compare_with_captive(seed=13)
+    alone, together = fusion.compare_with_captive(seed=13, spreads=(10.0, 100.0))
     assert together.points <= fusion.LIMIT
     loose = max(alone.predicted)
     missed = [abs(moved.predicted[loose] - moved.truth) for moved in (alone, together)]
