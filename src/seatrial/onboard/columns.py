@@ -237,7 +237,7 @@ def _escaped(line: bytes) -> str:
 def _refuse_encoding(encoding: str) -> None:
     try:
         name = codecs.lookup(encoding).name
-    except LookupError:
-        raise InputError(f"unknown encoding '{encoding}'; try 'utf-8' or 'cp1252'") from None
+    except (LookupError, ValueError):
+        raise InputError(f"unknown encoding {encoding!r}; try 'utf-8' or 'cp1252'") from None
     if name.startswith(("utf-16", "utf-32")):
         raise InputError(f"encoding '{encoding}' cannot be followed line by line; have the logger write utf-8")

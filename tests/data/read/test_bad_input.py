@@ -56,9 +56,10 @@ def test_wrong_encoding(tmp_path: Path) -> None:
     assert "not utf-8 text (byte 0xb0 in line 4)" in text and "cp1252" in text
 
 
-def test_unknown_encoding(tmp_path: Path) -> None:
-    layout = Layout("text", TIME, LAYOUT.columns, encoding="latin-99")
-    assert "unknown encoding 'latin-99'" in message(tmp_path, "t,speed\n0,1\n", layout)
+@pytest.mark.parametrize("encoding", ["latin-99", "undefined", "hex", "a\0b"])
+def test_unknown_encoding(tmp_path: Path, encoding: str) -> None:
+    layout = Layout("text", TIME, LAYOUT.columns, encoding=encoding)
+    assert f"unknown encoding {encoding!r}" in message(tmp_path, "t,speed\n0,\u00e5..1\n", layout)
 
 
 def test_wrong_column_names_the_nearest(tmp_path: Path) -> None:

@@ -52,8 +52,8 @@ def utf8_text(path: Path, encoding: str) -> bytes:
             f"{path.name} is not {encoding} text (byte 0x{data[error.start]:02x} in line {line}); "
             "set encoding, for example to 'cp1252'"
         ) from None
-    except LookupError:
-        raise InputError(f"{path.name}: unknown encoding '{encoding}'; try 'utf-8' or 'cp1252'") from None
+    except (LookupError, ValueError):  # no such codec, or one that is none of text
+        raise InputError(f"{path.name}: unknown encoding {encoding!r}; try 'utf-8' or 'cp1252'") from None
 
 
 def decoded_text(path: Path, encoding: str) -> str:
