@@ -31,11 +31,11 @@ def test_checks_hold_in_another_series_of_noise() -> None:
 
 
 def test_every_statement_is_judged() -> None:
-    """Nine statements; its improvement comes from tube and scale, robustness is refuted."""
+    """Nine statements; its improvement holds in its own setting, robustness is refuted."""
     assert len(made().claims) == len(STATEMENTS)
     verdicts = {c.claim.split(" (")[0]: c.verdict for c in made().claims}
     assert verdicts[STATEMENTS["robust"].text] is Verdict.REFUTED
-    assert verdicts[STATEMENTS["improved"].text] is Verdict.UNKNOWABLE
+    assert verdicts[STATEMENTS["improved"].text] is Verdict.HOLDS_IN_OWN_SETTING
     assert verdicts[STATEMENTS["wider"].text] is Verdict.HOLDS_IN_OWN_SETTING
     assert verdicts[STATEMENTS["cleaning"].text] is Verdict.CONFIRMED
 

@@ -35,7 +35,7 @@ def _chain(evidence: SupportVectorEvidence) -> Table:
 
 def _steps(evidence: SupportVectorEvidence) -> Table:
     return Table(
-        "Conclusion 2: the improved pipeline with each step left out, noise-free simulated series",
+        "Conclusions 2 to 4: the improved pipeline with each step left out, noise-free simulated series",
         ("pipeline", "median error %", "largest %", "note"),
         tuple((r.name, 100.0 * r.median_error, 100.0 * r.largest_error, r.note) for r in evidence.ablation.steps),
         "Cleaning takes nothing but small values here: simulated data without noise are clean",

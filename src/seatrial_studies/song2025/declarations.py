@@ -10,6 +10,10 @@ _SYMBOLS = (
     Symbol("U_c, ψ_c", "speed and direction of a uniform current", "m/s, rad", "figure 1 alone; none is simulated"),
     Symbol("δ", "nozzle angle", "rad", "input"),
     Symbol("m, m_x, m_y", "mass, added masses", "kg", "5540; not printed"),
+    Symbol(
+        "m', m_x', m_y'; I_zz', J_zz'", "the same over ρ L² d / 2; inertias over ρ L⁴ d / 2", "1", "read from eq. (14)"
+    ),
+    Symbol("X_uu' ... N_rr'", "coefficients in eq. (14)", "1", "those of table 2"),
     Symbol("I_zz, J_zz", "yaw inertia, added inertia", "kg m²", "not printed"),
     Symbol("X_H, Y_H, N_H", "hull forces and moment, eqs. (2), (13)", "N, N, N m", "thirteen, then eleven terms"),
     Symbol("X_uu ... N_rr, N_vrr, N_vvr", "hydrodynamic coefficients", "1", "table 2; the last two are not in it"),
@@ -22,12 +26,15 @@ _SYMBOLS = (
     ),
     Symbol("Λ", "threshold of small values, eq. (8)", "as the data", "not printed"),
     Symbol("M, N, r; D", "training samples, samples, share, eq. (9); data sets", "1", "r = 0.8"),
+    Symbol(
+        "Y, X, ε in eq. (10)", "responses, regressors, random error of the linear model", "of the rows", "section 1.3.1"
+    ),
     Symbol("λ, K; β, p", "penalties, their list, eqs. (11), (12); coefficients", "1", "1e-6 to 1e6"),
     Symbol("h, k", "sampling interval, sample", "s, 1", "0.1"),
     Symbol("X_w, Y_w, N_w; C_Xw, C_Yw, C_Nw", "coefficients and features, eq. (14)", "1; m²/s²", "section 1.4"),
     Symbol("μ", "mean that centring takes off, eq. (18)", "as the data", "of the rows"),
     Symbol("ω, b, Φ, K", "weights, bias, map, linear kernel, eqs. (19) to (26)", "1", "b should be near 0"),
-    Symbol("C, ζ (ε), ξ, α, η", "penalty, tube, slacks, multipliers", "1", "C and tube not printed"),
+    Symbol("C, ζ (ε; E in eq. (24)), ξ, α, η", "penalty, tube, slacks, multipliers", "1", "C and tube not printed"),
     Symbol("Cond, λ_max, λ_min", "condition number and singular values, eqs. (27), (28)", "1", "table 3"),
     Symbol("RMSE, CC", "root mean square error, correlation", "m/s, rad/s; 1", "table 4"),
 )
@@ -59,15 +66,21 @@ _DEVIATIONS = (
     Deviation("eqs. (1), (2), (3), (13), (14)", "as printed", "corrected", "see the misprints, each with what it does"),
     Deviation("section 1.3.1, responses of Lasso", "forces X_H, Y_H, N_H on raw products",
               "acceleration times inertia on eq. (14)'s features; the printed ones beside", "forces are not measured"),
+    Deviation("section 1.2, training data",
+              "10/10, 15/15, 20/20, 25/25, 30/30, five executes each, 0.1 s: 2100 s, 21000 samples",
+              "the same, ending with the last execute; samples in the table of cleaning",
+              "what follows the last execute is not printed"),
     Deviation("section 1.3.1, folds", "ten subsets", "ten contiguous blocks", "neighbouring samples are one sample"),
     Deviation("eq. (27)", "norm times an inverse without norm", "norm times norm of the inverse", "eq. (28) is that"),
     Deviation("table 3", "labels", "surge and sway exchanged beside", "sway's number cannot be below yaw's"),
 )  # fmt: skip
 _FIGURES = (
-    FigureCounterpart("Figure 1", "coordinate systems and current", ("Symbols",)),
+    FigureCounterpart("Figure 1", "coordinate systems and current",
+                      reason="not drawn: a schematic; its quantities are in Symbols"),
     FigureCounterpart("Figure 2", "sensitivity of each coefficient",
                       ("Figure 2: indirect sensitivity of each coefficient",)),
-    FigureCounterpart("Figure 3", "flow of the identification", ("The chain: thirteen terms, Lasso, support vectors",)),
+    FigureCounterpart("Figure 3", "flow of the identification",
+                      reason="not drawn: a schematic; its steps are in the tables of the chain and of steps left out"),
     FigureCounterpart("Figure 4", "20/20: motions, track, heading and nozzle", (
         "Figures 4, 5: zigzag:20/20, u", "Figure 4b: zigzag:20/20, track", "Figure 4c: zigzag:20/20, nozzle")),
     FigureCounterpart("Figure 5", "20/20: forces", ("Figures 4, 5: zigzag:20/20, X", "Figures 4, 5: zigzag:20/20, N")),

@@ -14,6 +14,9 @@ from seatrial_studies.song2025.craft_models import TRUTH, replay_inputs
 from seatrial_studies.song2025.generalisation import prediction_accuracy
 from seatrial_studies.song2025.published import Accuracy
 
+# relative change of a coefficient that a sentence names; our choice
+NOTABLE_CHANGE = 0.2
+
 
 @dataclass(frozen=True)
 class Discrimination:
@@ -30,6 +33,11 @@ class Discrimination:
     changes: dict[str, float]
     accuracy: Accuracy
     sensor_noise: dict[str, float]
+
+    @property
+    def changes_text(self) -> str:
+        """Return the changes above a fifth, per cent of the signed value."""
+        return ", ".join(f"{n} {100 * c:+.0f} %" for n, c in self.changes.items() if abs(c) > NOTABLE_CHANGE)
 
     @property
     def cc_loss(self) -> dict[str, float]:

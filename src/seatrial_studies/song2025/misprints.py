@@ -55,6 +55,13 @@ def misprint_table(audit: SupportVectorAudit) -> Table:
             f"sway {audit.equation_27_readings.without_inverse:.3g}",
             f"{audit.equation_27_readings.with_inverse:.6g}, as eq. (28)",
         ),
+        (
+            "section 1.3.2, N_vv and N_vr insensitive; Y_rr sensitive, named twice",
+            "no equation has N_vv or N_vr; Y_vr is named nowhere",
+            "N_vvr and N_vrr; Y_vr for one Y_rr (our reading)",
+        ),
+        ("below eq. (16): eq. (16) less rho times eq. (17)", "(17) is the result", "eq. (15) less rho times eq. (16)"),
+        ("eq. (24), E", "called the difference of prediction and truth", "epsilon of (21), (22), that is zeta of (20)"),
         ("table 3, labels", "sway's number below yaw's is impossible", "surge and sway exchanged"),
         ("table 4, 35/35", _impossible_error_text(audit), "a slipped decimal would explain v and r"),
         (
@@ -82,6 +89,6 @@ def _impossible_error_text(audit: SupportVectorAudit) -> str:
     times = (
         ""
         if math.isnan(cell.amplitude_ratio)
-        else f"; with its CC the prediction would turn {cell.amplitude_ratio:.1f} times"
+        else f"; with its CC the prediction would turn {cell.amplitude_ratio:.1f} times as fast"
     )
     return f"RMSE of r 0.0957 rad/s exceeds the largest |r| of the run, {cell.largest:.4f}{times}"

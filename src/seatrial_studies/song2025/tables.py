@@ -200,7 +200,9 @@ def _sensitivity(evidence: SupportVectorEvidence) -> Table:
         ("coefficient", *alone.states, "total", "variance inflation"),
         tuple(rows),
         "Variance inflation: total over unique sensitivity, squared. What a coefficient does alone says nothing of "
-        "whether a record can identify it",
+        "whether a record can identify it. "
+        f"{' and '.join(DROPPED_COEFFICIENTS)}, which Lasso takes out, are zero in our truth: no relative change moves "
+        "them",
     )
 
 
@@ -236,7 +238,7 @@ def _accuracy(evidence: SupportVectorEvidence) -> Table:
         "corrected. Ours: coefficients of our own improved pipeline from the noise-free simulated "
         "series. "
         f"A move of 100 % along the weakest direction of the record "
-        f"({evidence.discrimination.weakest_direction.text}) costs "
+        f"({evidence.discrimination.changes_text}, relative to the signed values) costs "
         f"{max(evidence.discrimination.cc_loss.values()):.1e} of CC",
     )  # fmt: skip
 
