@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 def print_tuning(tuning: "Tuning") -> None:
     """Print everything a tuning contains, the chosen gains first."""
-    from seatrial.core.text.numbers import duration, exact
+    from seatrial.core.text.numbers import exact
 
     gains = ", ".join(f"{name} {exact(value, 5)}" for name, value in tuning.chosen.gains.items())
     print_lines([f"{tuning.name}: {tuning.plant}", *(f"  in {sea}" for sea in tuning.seas), f"chosen: {gains}"])
@@ -27,7 +27,24 @@ def print_tuning(tuning: "Tuning") -> None:
     for finding in tuning.findings:
         advice = f": {finding.advice}" if finding.advice else ""
         print_lines([f"{SEVERITY_MARK[finding.severity.value]} [{finding.code}] {finding.text}{advice}"])
-    print_lines([f"{tuning.solution.evaluations} controllers tried; {duration(tuning.elapsed_s)}"])
+    print_lines([_effort_text(tuning)])
+
+
+def _effort_text(tuning: "Tuning") -> str:
+    """What each part of the work took; with a published search, the parts that stand beside it too."""
+    from seatrial.control.published_search import FRONT_NAME
+    from seatrial.core.text.numbers import duration
+
+    search = tuning.search
+    if search is None:
+        return f"{tuning.solution.evaluations} controllers tried; {duration(tuning.elapsed_s)}"
+    fronts = (tuning.front, *(front for front in tuning.extended_fronts if front.name != FRONT_NAME))
+    return "; ".join([
+        f"one genetic search: {search.evaluations} controllers tried, {duration(search.cpu_s)} of CPU time; made with "
+        f"{len(search.gains)} seeds",
+        *(f"front of {one.name}: {one.evaluations} controllers, {duration(one.cpu_s)} of CPU time" for one in fronts),
+        f"everything with its checks: {duration(tuning.elapsed_s)}",
+    ])  # fmt: skip
 
 
 def _margins_text(c: "Controller") -> str:

@@ -13,9 +13,13 @@ from seatrial.core.results.tuning import (
     ParetoFront,
     PerformanceBound,
     SeawaySimulation,
+    TuningMethod,
 )
 from seatrial.core.values import Finding, Severity
 
+_NO_RESTRICTIONS = (
+    "the genetic search knows no restriction: run without --method, or take 'own front' (reference in tuning.json)"
+)
 _ON_BOUND = 1e-3  # share of a gain's range that counts as on the bound; chosen
 _LEAST_COVERAGE = 0.97  # share of the hypervolume of the checking grid; chosen
 
@@ -33,15 +37,20 @@ class Checks:
 
 
 def findings(
-    evaluator: GainEvaluator, chosen: Controller, baselines: tuple[Controller, ...], front: ParetoFront, checks: Checks
+    evaluator: GainEvaluator,
+    chosen: Controller,
+    baselines: tuple[Controller, ...],
+    front: ParetoFront,
+    checks: Checks,
+    method: TuningMethod = TuningMethod.FRONT,
 ) -> tuple[Finding, ...]:
-    """Return everything to warn of, the gravest first."""
+    """Return everything to warn of, the gravest first; advice is such as the `method` can follow."""
     found = list[Finding]()
     if checks.is_interrupted:
         found.append(_warning("interrupted", "the work was interrupted; what follows the last step shown is missing",
                               "let it finish before the gains are used"))  # fmt: skip
-    found += _gain_findings(evaluator, chosen)
-    found += _simulation_findings(checks.simulations, checks.comparisons)
+    found += _gain_findings(evaluator, chosen, method)
+    found += _simulation_findings(checks.simulations, checks.comparisons, method)
     found += _demand_findings(evaluator.task.demand, checks.manoeuvres)
     if front.hypervolume < _LEAST_COVERAGE:
         found.append(_warning("coarse-front", f"the front covers {100.0 * front.hypervolume:.1f} % of what a grid of "
@@ -61,7 +70,12 @@ def _warning(code: str, text: str, advice: str) -> Finding:
     return Finding(Severity.WARNING, code, text, "", advice)
 
 
-def _gain_findings(evaluator: GainEvaluator, chosen: Controller) -> list[Finding]:
+def _advice(advice: str, method: TuningMethod) -> str:
+    """Return advice to restrict or to search on, replaced where the search can do neither."""
+    return _NO_RESTRICTIONS if method is TuningMethod.GENETIC else advice
+
+
+def _gain_findings(evaluator: GainEvaluator, chosen: Controller, method: TuningMethod) -> list[Finding]:
     found = []
     for gain in evaluator.loop.gains.free:
         width, value = gain.upper - gain.lower, chosen.gains[gain.name]
@@ -75,17 +89,18 @@ def _gain_findings(evaluator: GainEvaluator, chosen: Controller) -> list[Finding
                                       "widen the bound, or leave the term out where it is zero"))  # fmt: skip
     if chosen.violated:
         found.append(_warning("breaks-limits", f"the chosen gains do not keep: {'; '.join(chosen.violated)}",
-                              "try more"))  # fmt: skip
+                              _advice("try more", method)))  # fmt: skip
     return found
 
 
 def _simulation_findings(
-    simulations: tuple[SeawaySimulation, ...], comparisons: tuple[PairedDifference, ...]
+    simulations: tuple[SeawaySimulation, ...], comparisons: tuple[PairedDifference, ...], method: TuningMethod
 ) -> list[Finding]:
     found = []
     if simulations and simulations[0].saturation_loss >= MAX_SATURATION_LOSS:
         found.append(_warning("lost-to-limits", f"{100.0 * simulations[0].saturation_loss:.1f} points of reduction are "
-                              "lost to the actuator's angle and rate limits", "ask for less saturation"))  # fmt: skip
+                              "lost to the actuator's angle and rate limits",
+                              _advice("set a lower limit on saturation", method)))  # fmt: skip
     for pair in comparisons:
         if pair.lower <= 0.0:
             found.append(_warning("not-better", f"over {pair.seeds} seas the chosen gains do not surely beat "

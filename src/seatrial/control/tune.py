@@ -93,7 +93,7 @@ def tune(
         schedule=checks.schedule,
         bounds=checks.bounds,
         manoeuvres=checks.manoeuvres,
-        findings=findings(choice.evaluator, chosen, baselines, fronts[0][1], checks),
+        findings=findings(choice.evaluator, chosen, baselines, fronts[0][1], checks, method),
         solution=Solution(choice.gains, float(chosen.objectives[0]), Status.EXHAUSTED, evaluations, (), seed),
         seed=seed,
         elapsed_s=time.perf_counter() - began,
@@ -175,10 +175,16 @@ def _simulate_controllers(
     return (first, *others), tuple(pairs)
 
 
+def _meaning(controller: Controller) -> str:
+    """Return what the name of the package's own choice stands for; nothing for given gains."""
+    return " (the package's choice from its own front)" if controller.name == OWN_CHOICE else ""
+
+
 def _comparison_reasons(chosen: Controller, baselines: tuple[Controller, ...]) -> tuple[str, ...]:
     """Return the chosen one beside each rival, a sentence each."""
     return tuple(
-        f"Beside '{other.name}' it leaves {100.0 * (1.0 - chosen.reduction):.1f} % of the motion instead of "
+        f"By linear theory, beside '{other.name}'{_meaning(other)} it leaves "
+        f"{100.0 * (1.0 - chosen.reduction):.1f} % of the motion instead of "
         f"{100.0 * (1.0 - other.reduction):.1f} %, at "
         f"{chosen.rms['actuator_rate'] / other.rms['actuator_rate']:.2f} times the actuator's rms rate and Ms "
         f"{chosen.Ms:.2f} instead of {other.Ms:.2f}."

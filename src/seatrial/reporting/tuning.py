@@ -49,9 +49,10 @@ def html(tuning: Tuning) -> str:
         "bounds": bool(tuning.bounds),
         "loop": bool(tuning.components),
     }
+    titles = TITLES if tuning.search is None else {**TITLES, "answer": "Answer of the genetic algorithm"}
     context: dict[str, object] = {
         "tuning": tuning,
-        "titles": {key: title for key, title in TITLES.items() if has_content.get(key, True)},
+        "titles": {key: title for key, title in titles.items() if has_content.get(key, True)},
         "answer": tuning_text.sentences(tuning),
         "facts": tuning_text.facts(tuning),
         "settings": tuning_text.settings(tuning),

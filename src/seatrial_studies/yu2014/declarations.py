@@ -3,6 +3,7 @@
 from seatrial.core.results import Table
 from seatrial_studies.declarations import Assumption, Declarations, Deviation, FigureCounterpart, Symbol
 from seatrial_studies.yu2014.energy import BLOCK_COEFFICIENT, EFFICIENCY, GYRADIUS_SHARE
+from seatrial_studies.yu2014.published import ASPECT, CHORD, DENSITY, SPAN, THICKNESS
 
 _SYMBOLS = (
     Symbol("Gr(s)", "rate gyro", "deg s/deg", "400 s / (s² + 80 s + 4000)"),
@@ -27,6 +28,10 @@ _SYMBOLS = (
     Symbol("σφmax², σαmax², Wmax", "normalisers of eq. (7), from the first generation", "as above", "see Assumed"),
     Symbol("f, pi, fmin", "fitness 1/J, selection probability, worst fitness", "1", "eq. (8) and below"),
     Symbol("Pc, Pm", "probabilities of crossover and mutation", "1", "0.8, 0.01"),
+    Symbol("ω, ωe", "frequency of the waves, and as the ship meets them", "rad/s", "no conversion printed"),
+    Symbol("ρ, V", "density and volume of the fin", "kg/m³, m³", f"{DENSITY:g}; span times chord times thickness here"),
+    Symbol("b, span, aspect, thickness", "of the fin: chord, span, span over chord, thickness", "m, m, 1, m",
+           f"{CHORD:g}, {SPAN:g}, {ASPECT:g}, {THICKNESS:g}"),
     Symbol("γ", "heading to the waves", "deg", "45, 90, 135"),
 )  # fmt: skip
 _ASSUMPTIONS = (
@@ -39,6 +44,7 @@ _ASSUMPTIONS = (
     Assumption("sea of the search", "not printed", "18 kn, 90°, 3.3 m; all six conditions in the joint search"),
     Assumption("gains of the traditional PID", "not printed", "fitted to its column"),
     Assumption("bits of the codes", "not printed", "17, the fewest that hold the printed gains"),
+    Assumption("when the weights are drawn", "before choosing the individuals to cross", "once for each generation"),
     Assumption("the random integers r", "positive", "1 to 100"),
     Assumption("the one answer of the last generation", "not said", "the fittest under equal weights"),
     Assumption("roll and fin rate of table 1", "rms or significant not said", "rms"),
@@ -64,9 +70,10 @@ _DEVIATIONS = (
               "no sampling error, and a classical Runge-Kutta step of 0.1 s diverges at the gyro's poles"),
 )  # fmt: skip
 _FIGURES = (
-    FigureCounterpart("Figure 1", "block diagram of the loop", ("Symbols",)),
-    FigureCounterpart("Figure 2",
-                      "principle of the search: sea, loop, objectives, GA", ("The published search over seeds",)),
+    FigureCounterpart("Figure 1", "block diagram of the loop",
+                      reason="not drawn: a schematic; its blocks are in Symbols"),
+    FigureCounterpart("Figure 2", "principle of the search: sea, loop, objectives, GA",
+                      reason="not drawn: a schematic; what it finds is in The published search over seeds"),
     FigureCounterpart("Figure 3", "roll without fins over time", ("Figure 3: roll without fins",)),
     FigureCounterpart("Figure 4", "roll under the PID", ("Figure 4: roll under the traditional PID (fitted)",)),
     FigureCounterpart("Figure 5", "roll under the GA's gains", ("Figure 5: roll under the GA's gains",)),

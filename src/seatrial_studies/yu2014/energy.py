@@ -24,6 +24,8 @@ from seatrial_studies.yu2014.published import (
 from seatrial_studies.yu2014.published_loop import HULL_FACTOR, KNOT, performance
 from seatrial_studies.yu2014.table_1_fit import Table1Fit
 
+SECONDS_PER_HOUR = 3600.0  # s, by definition
+WATTS_PER_KILOWATT = 1000.0  # W, by definition
 EFFICIENCY = 0.8  # eta of the fin drive, not printed; assumed: saved shares do not depend on it
 SEA_WATER = 1025.0  # kg/m^3, density
 GRAVITY = 9.80665  # m/s^2, standard
@@ -105,7 +107,7 @@ def roll_power(roll_rate_rms: float) -> float:
 
 def reversals_per_hour(rate_rms: float, acceleration_rms: float) -> float:
     """Return how often a Gaussian fin angle turns back in an hour: two a zero up-crossing of its rate (Rice 1944)."""
-    return 2.0 * 3600.0 / (2.0 * math.pi) * acceleration_rms / rate_rms
+    return 2.0 * SECONDS_PER_HOUR / (2.0 * math.pi) * acceleration_rms / rate_rms
 
 
 def fin_energy(loop_performance: Performance, gains: Array, speed: float, level: float = 1.0) -> FinEnergy:

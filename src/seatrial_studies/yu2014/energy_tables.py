@@ -2,12 +2,10 @@
 
 from seatrial.core.results import Bars, Table
 from seatrial.physics.loops import Preamplifier
-from seatrial_studies.yu2014.energy import EFFICIENCY, EnergyComparison
+from seatrial_studies.yu2014.energy import EFFICIENCY, WATTS_PER_KILOWATT, EnergyComparison
 from seatrial_studies.yu2014.evidence import FinGainEvidence
 from seatrial_studies.yu2014.published import GAIN_NAMES, INERTIA, TABLE_1
 from seatrial_studies.yu2014.published_loop import PREAMPLIFIER_LABELS
-
-_WATTS_PER_KILOWATT = 1000.0
 
 
 def energy_tables(evidence: FinGainEvidence) -> tuple[Table, ...]:
@@ -50,7 +48,7 @@ def _work(evidence: FinGainEvidence) -> Table:
 
 
 def _losses(evidence: FinGainEvidence) -> Table:
-    kW = _WATTS_PER_KILOWATT
+    kW = WATTS_PER_KILOWATT
     rows = [
         (
             e.row,

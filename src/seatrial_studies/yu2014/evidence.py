@@ -31,7 +31,7 @@ class FinGainEvidence:
         time_domain_seconds: CPU time [s] of one search with records in time, compiled and with scipy's lsim.
         ratios_elsewhere: for each row of table 1 the least that three gains can make of the larger of roll and fin-rate
             variance over the paper's, by reading.
-        energy: W and estimates of losses in every row, best fit.
+        energy: W and estimates of losses in every row, best fit; fitted_energies: the same of each of `table_1_fits`.
         regulators: Gh and Gl as functions, by reading.
         joint_optima: one set of gains for all six conditions, by reading.
         time_domain: the search by records of 1000 s; None in the quick version.
@@ -47,6 +47,7 @@ class FinGainEvidence:
     searches: tuple[FinGainSearches, ...]
     time_domain_seconds: tuple[float, float]
     energy: tuple[EnergyComparison, ...]
+    fitted_energies: tuple[tuple[EnergyComparison, ...], ...]
     regulators: dict[Preamplifier, tuple[RegulatorSetting, ...]]
     joint_optima: dict[Preamplifier, JointOptimum]
     time_domain: TimeDomainSearch | None
@@ -62,6 +63,11 @@ class FinGainEvidence:
     def best_fit(self) -> Table1Fit:
         """Return the better fit of both readings."""
         return min(self.table_1_fits, key=lambda f: f.log_error)
+
+    @property
+    def nearest_baseline(self) -> Table1Fit:
+        """Return the fit that comes nearest to the traditional PID's column."""
+        return min(self.table_1_fits, key=lambda f: f.baseline_log_error)
 
     def searches_with(
         self,

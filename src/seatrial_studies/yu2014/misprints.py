@@ -44,6 +44,11 @@ def misprint_table(audit: FinGainAudit) -> Table:
             + "; below the target J2 rewards fin motion",
             "as printed, and one-sided beside",
         ),
+        (
+            "section 2.2, p substituted in “eq. (2)”",
+            "eq. (2) is J2, which has no p",
+            "in the share of amplitudes beyond 22°, Rayleigh",
+        ),
         ("eq. (3), W without the 1 / (2 pi) of J1", "a factor that eq. (7) divides out", "neither has it"),
         ("eq. (7), sigma with 'max', in words 'the fittest'", "two searches, different answers", "max; best beside"),
         (

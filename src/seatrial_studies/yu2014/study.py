@@ -61,7 +61,8 @@ def _evidence(*, quick: bool, seed: int, report: ProgressReporter) -> FinGainEvi
     fits = tuple(fit_table_1(r, following_is_zero=zero) for r in Preamplifier for zero in (True, False))
     best = min(fits, key=lambda f: f.log_error)
     report("energy, regulators")
-    energy, regulators = compare_energy(best), {r: regulator_settings(r) for r in Preamplifier}
+    energies = tuple(compare_energy(fit) for fit in fits)
+    regulators = {r: regulator_settings(r) for r in Preamplifier}
     report("the published search")
     searched = tuple(search_over_seeds(setting, QUICK_SEEDS if quick else SEEDS, seed) for setting in SETTINGS)
     report("one search for all six conditions")
@@ -89,7 +90,8 @@ def _evidence(*, quick: bool, seed: int, report: ProgressReporter) -> FinGainEvi
         rms_variation=rms_variation(best.preamplifier),
         searches=searched,
         time_domain_seconds=time_domain_seconds(seed),
-        energy=energy,
+        energy=energies[fits.index(best)],
+        fitted_energies=energies,
         regulators=regulators,
         joint_optima=joint,
         time_domain=by_records,

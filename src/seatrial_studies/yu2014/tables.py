@@ -11,7 +11,7 @@ from seatrial_studies.yu2014.improved_gains import FiveGainComparison
 from seatrial_studies.yu2014.misprints import misprint_table
 from seatrial_studies.yu2014.published import GAIN_NAMES, PUBLISHED_VALUES, TABLE_1, ControllerResult
 from seatrial_studies.yu2014.published_loop import PREAMPLIFIER_LABELS
-from seatrial_studies.yu2014.searches import BITS, FinGainSearches
+from seatrial_studies.yu2014.searches import BITS, BOX, TIMES_TITLE, FinGainSearches
 
 ResultCells = tuple[float, float, float]
 _HEADER = (
@@ -156,6 +156,7 @@ def _search_scatter(evidence: FinGainEvidence) -> Table:
         for s in evidence.searches
     ]
     count = len(evidence.searches[0].Ms)
+    box = ", ".join(f"{n} {low:g} to {high:g}" for n, low, high in zip(GAIN_NAMES, BOX.lower, BOX.upper, strict=True))
     return Table(
         "The published search over seeds",
         (
@@ -169,7 +170,9 @@ def _search_scatter(evidence: FinGainEvidence) -> Table:
             "beaten in all objectives",
         ),
         tuple(rows),
-        f"{count} seeds each, population 50, 200 generations, codes of {BITS} bits, 18 kn, 90°, 3.3 m. The answer is "
+        f"{count} seeds each, population 50, 200 generations, codes of {BITS} bits, 18 kn, 90°, 3.3 m, in the box "
+        f"{box}. Plain binary codes, parents by roulette, one-point crossover; the best in each of the "
+        "three objectives survive. The answer is "
         "the fittest of the last generation under equal weights; beaten: another seed evaluated a point with all three "
         f"objectives smaller. Paper: {', '.join(f'{v:.5g}' for v in PUBLISHED_VALUES)}. With the best of "
         "the first generation as "
@@ -202,7 +205,7 @@ def _times(evidence: FinGainEvidence) -> Table:
         ("records of 1000 s, scipy's lsim one after another", single, single / evidence.search_seconds),
     )
     return Table(
-        "Time of one published search of 10,000 evaluations",
+        TIMES_TITLE,
         ("objectives by", "s", "times the first"),
         rows,
         "The first is a whole search with its front, median of all; the others are the records alone, extrapolated "
