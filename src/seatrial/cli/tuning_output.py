@@ -40,11 +40,17 @@ def _effort_text(tuning: "Tuning") -> str:
         return f"{tuning.solution.evaluations} controllers tried; {duration(tuning.elapsed_s)}"
     fronts = (tuning.front, *(front for front in tuning.extended_fronts if front.name != FRONT_NAME))
     return "; ".join([
-        f"one genetic search: {search.evaluations} controllers tried, {duration(search.cpu_s)} of CPU time; made with "
+        f"one genetic search: {search.evaluations} controllers tried{_cpu_text(search.cpu_s)}; made with "
         f"{len(search.gains)} seeds",
-        *(f"front of {one.name}: {one.evaluations} controllers, {duration(one.cpu_s)} of CPU time" for one in fronts),
+        *(f"front of {one.name}: {one.evaluations} controllers{_cpu_text(one.cpu_s)}" for one in fronts),
         f"everything with its checks: {duration(tuning.elapsed_s)}",
     ])  # fmt: skip
+
+
+def _cpu_text(cpu_s: float) -> str:
+    from seatrial.core.text.numbers import duration
+
+    return f", {duration(cpu_s)} of CPU time" if math.isfinite(cpu_s) else ""
 
 
 def _margins_text(c: "Controller") -> str:
