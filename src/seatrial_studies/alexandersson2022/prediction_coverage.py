@@ -113,9 +113,9 @@ def simulated_turn_intervals(fit: Fit, side: str, approach: Mapping[str, float])
         fit.ship.length,
     )
     return [
-        TurnInterval(side, name, *intervals[key], float(getattr(MEASURED_TURNS[side], field)))
+        TurnInterval(side, name, *interval, float(getattr(MEASURED_TURNS[side], field)))
         for key, (name, field) in _MEASURES.items()
-        if key in intervals
+        if (interval := intervals.get(key)) is not None  # None: not determined
     ]
 
 
