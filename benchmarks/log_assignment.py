@@ -2,7 +2,9 @@
 
 `python benchmarks/log_assignment.py` prints the table; SEATRIAL_DATA is the folder of the records. A channel counts as
 right with its column, unit, frame and sign; as open where the draft gives it as a commented line with both readings.
-The truth was written down from the documentation of the records (README.md beside them), not from the drafts.
+The truth was written down from the documentation of the records (README.md beside them), not from the drafts; but the
+ferry's pose, said to be east-north-up there, is north-east-down: its x goes with the north of the GNSS fixes
+(correlation 0.96, slope 0.95; y with the east 0.998, 1.003), and its z is -41.5 m where their altitude is 43.8 m.
 """
 
 import os
@@ -46,9 +48,9 @@ TRUTH: dict[str, Mapping[str, str]] = {
     },
     "milliampere/maneuvering1": {
         **{f"alpha_{k}": "data|deg" for k in range(1, 5)}, **{f"rpm_{k}": "motor_speed|rpm" for k in range(1, 5)},
-        "x0": "pose_position_x|m|enu", "y0": "pose_position_y|m|enu", "q_w": "pose_orientation_w|1|enu",
-        "q_x": "pose_orientation_x|1|enu", "q_y": "pose_orientation_y|1|enu", "q_z": "pose_orientation_z|1|enu",
-        "u": "twist_linear_x|m/s|body", "v": "twist_linear_y|m/s|body|port", "r": "twist_angular_z|rad/s||port",
+        "x0": "pose_position_x|m|earth", "y0": "pose_position_y|m|earth", "q_w": "pose_orientation_w|1|earth",
+        "q_x": "pose_orientation_x|1|earth", "q_y": "pose_orientation_y|1|earth", "q_z": "pose_orientation_z|1|earth",
+        "u": "twist_linear_x|m/s|body", "v": "twist_linear_y|m/s|body", "r": "twist_angular_z|rad/s",
     },
     "logs/nmea0183_202412051037.txt": _NMEA_0183,
     "logs/nmea0183_202412061726.txt": _NMEA_0183,

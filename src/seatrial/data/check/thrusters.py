@@ -9,7 +9,7 @@ from seatrial.core.values import Array, Finding, Record, Severity
 from seatrial.numerics.local_polynomials import smoothed_locally
 from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout
 
-_SURE = 6.0
+SURE_EFFECT = 6.0
 """Standard errors by which an effect must differ from none before its sign counts; chosen."""
 _SMOOTHING_S = 0.7
 """Window of the local polynomials that differentiate velocities [s]; chosen: some samples of a small craft's log."""
@@ -28,7 +28,7 @@ _STILL = 1e-3
 
 
 @dataclass(frozen=True)
-class _Effect:
+class ThrusterEffect:
     """Standard errors by which a thruster's effect on surge and on yaw is positive as the layout has it; 0: unclear."""
 
     surge: float
@@ -93,7 +93,7 @@ def _angle_findings(thruster: Thruster, records: Sequence[Record]) -> list[Findi
 
 
 def _side_findings(layout: ThrusterLayout, records: Sequence[Record]) -> list[Finding]:
-    effects = _effects(layout, records)
+    effects = thruster_effects(layout, records)
     findings = []
     for thruster, effect in zip(layout.thrusters, effects, strict=True):
         evidence = (
@@ -102,13 +102,13 @@ def _side_findings(layout: ThrusterLayout, records: Sequence[Record]) -> list[Fi
         other = "astern" if thruster.command.span > 0 else "ahead"
         inverted = f'set command.positive = "{other}" for it'
         sides = "exchange the channels of port and starboard, or the signs of their y"
-        if effect.surge < -_SURE and effect.yaw < -_SURE:
+        if effect.surge < -SURE_EFFECT and effect.yaw < -SURE_EFFECT:
             what, advice = "works inverted: more command drives and turns the craft the other way", inverted
-        elif effect.surge < -_SURE and effect.yaw > _SURE:
+        elif effect.surge < -SURE_EFFECT and effect.yaw > SURE_EFFECT:
             what, advice = "works inverted and on the other side", f"{inverted} and {sides}"
-        elif effect.yaw < -_SURE < effect.surge:
+        elif effect.yaw < -SURE_EFFECT < effect.surge:
             what, advice = "turns the craft as one on the other side would", sides
-        elif effect.surge < -_SURE:
+        elif effect.surge < -SURE_EFFECT:
             what, advice = "works inverted: more command drives the craft the other way", inverted
         else:
             continue
@@ -119,11 +119,14 @@ def _side_findings(layout: ThrusterLayout, records: Sequence[Record]) -> list[Fi
     return findings
 
 
-def _effects(layout: ThrusterLayout, records: Sequence[Record]) -> list[_Effect]:
-    """Least squares of du/dt and dr/dt on what each thruster should give, motion's own damping beside it."""
+def thruster_effects(layout: ThrusterLayout, records: Sequence[Record]) -> list[ThrusterEffect]:
+    """Return what each thruster drives and turns as the records show it, standard conventions, with u and r.
+
+    Least squares of du/dt and dr/dt on what each thruster should give, with the motion's own damping.
+    """
     surge = _regression([_columns(layout, r, "u") for r in records], records[0].dt, len(layout.thrusters))
     yaw = _regression([_columns(layout, r, "r") for r in records], records[0].dt, len(layout.thrusters))
-    return [_Effect(a, b) for a, b in zip(surge, yaw, strict=True)]
+    return [ThrusterEffect(a, b) for a, b in zip(surge, yaw, strict=True)]
 
 
 def _columns(layout: ThrusterLayout, record: Record, channel: str) -> tuple[Array, Array]:

@@ -1,5 +1,7 @@
+from seatrial.data.draft.behaviour import checked_by_behaviour
+from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.draft import DraftTrial, draft_trial
-from seatrial.data.draft.guess import ColumnGuess, checked_by_behaviour, guess_columns
+from seatrial.data.draft.guess import guess_columns
 from seatrial.data.draft.manoeuvres import LogStretch, find_stretches
 from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary, survey_log
 

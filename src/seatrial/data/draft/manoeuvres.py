@@ -7,7 +7,8 @@ import numpy as np
 
 from seatrial.core.values import Array, Record
 from seatrial.data.check.signal import Mask, mask_intervals, smoothed
-from seatrial.data.draft.guess import ColumnGuess, run_record
+from seatrial.data.draft.behaviour import run_record
+from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.survey import LogSurvey
 
 _STRAIGHT_S = 20.0  # s, of the shortest straight run; chosen

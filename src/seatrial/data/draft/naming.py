@@ -169,7 +169,8 @@ def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "te
         match = re.fullmatch(rule.pattern, f"{topic}/{name}".lower())
         if match:
             return _guess(rule, match, _known_unit(stated_unit) or rule.unit, f"{rule.logger} {topic}".strip())
-    if log_format in _KNOWN_LOGGERS or _ORDERS.search(topic.lower()):
+    last = topic if log_format != "text" else topic.rpartition("/")[2]  # folders are called as anybody likes
+    if log_format in _KNOWN_LOGGERS or _ORDERS.search(last.lower()):
         return None
     bracketed = _BRACKETS.search(name)
     unit = _known_unit(stated_unit) or (_known_unit(bracketed[1]) if bracketed else "")

@@ -1,0 +1,165 @@
+"""What the motion shows of the guesses: units, frames, signs."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from seatrial.core.values import InputError, Record
+from seatrial.data.check.conventions import with_standard_signs
+from seatrial.data.check.motion import recorded_motion
+from seatrial.data.check.repair import repair
+from seatrial.data.check.rudder import yaw_acceleration_response
+from seatrial.data.check.signal import smoothed, smoothed_derivative, window_length
+from seatrial.data.check.timestamps import rebuild_time_base
+from seatrial.data.check.velocity_conventions import ACCEPTABLE_MISFIT, best_convention
+from seatrial.data.draft.axes import with_axes_by_fixes
+from seatrial.data.draft.column_guess import Changes, ColumnGuess
+from seatrial.data.draft.commands import command_directions
+from seatrial.data.draft.survey import LogSurvey
+from seatrial.data.read.assemble import LogSource, assemble_record, record_of_sources
+
+# correlation with the rate of the heading that proves a yaw rate; factor by which a unit may be missed; chosen
+_SURE_CORRELATION, _UNIT_TOLERANCE = 0.8, 1.3
+_SURE_T = 5.0  # effect over standard error that proves a sign; as in the checks
+_YAW_RATE_UNITS = {"rad/s": 1.0, "deg/s": 180.0 / math.pi, "deg/min": 10800.0 / math.pi}  # per rad/s
+_SPEED_UNITS = {"m/s": 1.0, "kn": 1852.0 / 3600.0, "km/h": 1.0 / 3.6}  # m/s
+
+
+def checked_by_behaviour(
+    surveys: Sequence[LogSurvey], guesses: Sequence[Sequence[ColumnGuess]]
+) -> list[list[ColumnGuess]]:
+    """Return the guesses of the sources of one run with units, frames and signs as the motion shows them."""
+    result = with_axes_by_fixes([list(one) for one in guesses], partial(run_record, surveys))
+    for decide in (_yaw_rate_unit, _velocity_convention, _rudder_sign, command_directions):
+        record = run_record(surveys, result)
+        if record is not None:
+            changes = decide(record)
+            result = [[changes.get(g.symbol, _same)(g) if g.is_used else g for g in one] for one in result]
+    if any(g.is_used and g.is_open and g.frame == "enu" for one in result for g in one):
+        result = [[_as_open_as_the_axes(g) for g in one] for one in result]
+    return result
+
+
+def _as_open_as_the_axes(guess: ColumnGuess) -> ColumnGuess:
+    """What was compared with axes that are open themselves has its side with them: a mirrored world looks the same."""
+    if not guess.is_used or guess.is_open or guess.symbol not in ("v", "r", "delta", "psi"):
+        return guess
+    other = "the other side, if the axes of positions and attitude are read the other way"
+    return replace(guess, other_reading=other)
+
+
+def _same(guess: ColumnGuess) -> ColumnGuess:
+    return guess
+
+
+def run_record(surveys: Sequence[LogSurvey], guesses: Sequence[Sequence[ColumnGuess]]) -> Record | None:
+    """The record of the used guesses, even and complete, in standard signs; None where there is none."""
+    sources = []
+    for survey, part in zip(surveys, guesses, strict=True):
+        columns = tuple(g.column for g in part if g.is_used)
+        if columns:
+            time = next(topic.time for topic in survey.topics if topic.time is not None)
+            geometry = replace(survey.layout.geometry, variation=0.0)
+            sources.append(LogSource(survey.log, replace(survey.layout, time=time, columns=columns, geometry=geometry)))
+    try:
+        if len(sources) == 1:
+            record = assemble_record(sources[0].log, sources[0].layout, "")
+        else:
+            record = record_of_sources("run", sources)
+        even, _ = rebuild_time_base(record)
+        return with_standard_signs(repair(even)[0])
+    except (InputError, IndexError, StopIteration):
+        return None
+
+
+def _yaw_rate_unit(record: Record) -> Changes:
+    """Unit and sign of r by the derivative of the heading."""
+    if "psi" not in record or "r" not in record or len(record) < 4 * window_length(len(record)):
+        return {}
+    length = window_length(len(record))
+    turning = smoothed_derivative(record["psi"], record.dt, length)
+    rate = smoothed(record["r"], length)
+    power = float(turning @ turning)
+    if power == 0.0 or not np.any(rate):
+        return {}
+    factor = float(rate @ turning) / power
+    match = factor * math.sqrt(power / float(rate @ rate))
+    if abs(match) < _SURE_CORRELATION:
+        text = f"correlation with d(psi)/dt only {match:.2f}"
+        return {"r": lambda g: replace(g, other_reading=g.other_reading or "another column").with_evidence(text)}
+
+    def decided(guess: ColumnGuess) -> ColumnGuess:
+        in_file = abs(factor) * _YAW_RATE_UNITS[guess.unit] if guess.unit in _YAW_RATE_UNITS else abs(factor)
+        unit = min(_YAW_RATE_UNITS, key=lambda one: abs(math.log(in_file / _YAW_RATE_UNITS[one])))
+        if abs(math.log(in_file / _YAW_RATE_UNITS[unit])) > math.log(_UNIT_TOLERANCE):
+            return replace(guess, other_reading="another unit").with_evidence(f"{in_file:.3g} times d(psi)/dt in rad/s")
+        opposite = {"port": "", "": "port", "starboard": "port"}[guess.positive]
+        positive = opposite if factor < 0 else guess.positive
+        text = (
+            f"follows d(psi)/dt with correlation {match:.2f}: {unit}, positive to {'port' if positive else 'starboard'}"
+        )
+        return replace(guess, unit=unit, positive=positive, other_reading="").with_evidence(text)
+
+    return {"r": decided}
+
+
+def _velocity_convention(record: Record) -> Changes:
+    """Frame, sign and unit of u and v, and the unit of psi, by the derivative of position."""
+    motion = recorded_motion(record)
+    if motion is None or motion.path_length == 0.0:
+        return {}
+    best = best_convention(motion)
+    misfit = motion.misfit(best)
+    if misfit > ACCEPTABLE_MISFIT:
+        text = f"u, v fit the derivative of position in no frame ({misfit:.0%} misfit)"
+        return {
+            s: (lambda g: replace(g, other_reading='frame = "body" or "earth"').with_evidence(text)) for s in ("u", "v")
+        }
+    scale = motion.speed_scale(best)
+    unit = min(_SPEED_UNITS, key=lambda one: abs(math.log(max(scale, 1e-9) / _SPEED_UNITS[one])))  # never log of zero
+    text = f"{misfit:.0%} misfit with the derivative of position, {best.frame}-fixed"
+    changes = {}
+    for symbol in ("u", "v"):
+        flips = symbol == "v" and best.v_sign < 0
+
+        def decided(guess: ColumnGuess, flips: bool = flips) -> ColumnGuess:
+            frame = best.frame if guess.frame != "enu" else guess.frame
+            opposite = "" if guess.positive in ("port", "west") else "west" if frame == "earth" else "port"
+            positive = opposite if flips else guess.positive
+            known = guess.unit if not guess.is_open else unit
+            return replace(guess, frame=frame, positive=positive, unit=known, other_reading="").with_evidence(text)
+
+        changes[symbol] = decided
+    if best.psi_factor == 1.0:
+        changes["psi"] = lambda g: replace(g, other_reading="").with_evidence("turns velocities into the track")
+    elif best.psi_factor == -1.0:
+        changes["psi"] = lambda g: replace(g, positive="port", other_reading="").with_evidence(
+            "turns against the track"
+        )
+    else:
+        right = "deg" if best.psi_factor < 1.0 else "rad"
+        changes["psi"] = lambda g: replace(g, unit=right, other_reading="").with_evidence(
+            f"turns with the track: {right}"
+        )
+    return changes
+
+
+def _rudder_sign(record: Record) -> Changes:
+    """The side to which a positive rudder turns the ship."""
+    if "delta" not in record or "psi" not in record:
+        return {}
+    response = yaw_acceleration_response(record)
+    t = 0.0 if response is None else response[0] / max(response[1], 1e-300)  # never a division by zero
+    if abs(t) < _SURE_T:
+        text = f"the turn does not show its sign (effect over standard error {t:.1f})"
+        return {"delta": lambda g: replace(g, other_reading='positive = "port"').with_evidence(text)}
+
+    def decided(guess: ColumnGuess) -> ColumnGuess:
+        side = "port" if (guess.positive == "port") == (t > 0) else ""
+        text = f"a positive one turns to {side or 'starboard'} (effect over standard error {abs(t):.0f})"
+        return replace(guess, positive=side).with_evidence(text)
+
+    return {"delta": decided}

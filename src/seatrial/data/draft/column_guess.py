@@ -1,0 +1,60 @@
+"""What one column is taken for, with the evidence."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+from seatrial.data.read import ColumnSpec
+
+
+@dataclass(frozen=True)
+class ColumnGuess:
+    """What one column is taken for.
+
+    Attributes:
+        source: as the trial file addresses it.
+        symbol, unit, frame, positive, zero, span, scale, kind: as in a channel of the trial file.
+        evidence: why.
+        other_reading: what it may be instead; empty: it is assigned outright.
+        is_used: whether it is the one chosen for its symbol.
+    """
+
+    source: str | int
+    symbol: str
+    unit: str
+    frame: str = ""
+    positive: str = ""
+    zero: float = 0.0
+    span: float = 1.0
+    scale: float = 1.0
+    kind: str = ""
+    evidence: tuple[str, ...] = ()
+    other_reading: str = ""
+    is_used: bool = True
+
+    @property
+    def is_open(self) -> bool:
+        """Whether a person must choose."""
+        return bool(self.other_reading)
+
+    @property
+    def column(self) -> ColumnSpec:
+        """The column as a layout has it."""
+        return ColumnSpec(
+            self.symbol,
+            self.source,
+            self.unit,
+            self.frame,
+            self.positive,
+            zero=self.zero,
+            span=self.span,
+            factor=self.scale,
+            is_held=self.kind == "command" or self.symbol.startswith("command_"),
+        )
+
+    def with_evidence(self, text: str) -> "ColumnGuess":
+        """Return the guess with one more reason."""
+        return replace(self, evidence=(*self.evidence, text))
+
+
+Changes = Mapping[str, Callable[[ColumnGuess], ColumnGuess]]
+"""Channel -> what its guess becomes."""

@@ -1,0 +1,90 @@
+"""Commands of thrusters and rudders: what a pulse means, and which way each drives and turns the craft."""
+
+from dataclasses import replace
+from functools import partial
+
+from seatrial.core.values import InputError, Record
+from seatrial.data.check import canonical_record
+from seatrial.data.check.thrusters import SURE_EFFECT, ThrusterEffect, thruster_effects
+from seatrial.data.draft.column_guess import Changes, ColumnGuess
+from seatrial.data.draft.stored_parameters import OutputSetting, is_disabled, output_setting
+from seatrial.data.draft.survey import ColumnSummary, LogSurvey
+from seatrial.physics.models.thruster_layout import CommandInput, Thruster, ThrusterLayout
+
+_RANGE, _REST, _SPAN = (700.0, 2300.0), 1500.0, 400.0  # us, of servo pulses (ArduPilot, SERVOn_MIN, MAX)
+_REST_TOLERANCE = 60.0  # us; chosen: trims of motors that stand still
+_FULL_RUDDER = 35.0  # deg, of most ships' rudders (SOLAS II-1/29): what a draft proposes
+_ONLY_SIGN = 'positive = "astern", and which side it drives: the log does not say'
+
+
+def command_guess(guess: ColumnGuess, column: ColumnSummary, survey: LogSurvey) -> ColumnGuess | None:
+    """Return a command as a share of its range: by the parameters of the output where the log has them, else its rest.
+
+    An output that steers is a rudder angle; None: the output is disabled.
+    """
+    parameters = survey.log.parameters
+    number = int(guess.symbol.removeprefix("command_"))
+    if column.low >= -1.0 and column.high <= 1.0:
+        return replace(guess, unit="1").with_evidence("between -1 and 1")
+    if not (_RANGE[0] <= column.low and column.high <= _RANGE[1]):
+        return replace(guess, unit="1", other_reading="set zero and span: command = (cell - zero) / span")
+    if is_disabled(parameters, number):
+        return None
+    setting = output_setting(parameters, number)
+    if setting is not None and setting.is_rudder:
+        return _as_rudder(guess, setting)
+    if setting is not None and setting.span:
+        stated = replace(guess, unit="us", zero=setting.zero, span=setting.span)
+        return replace(stated, positive="astern" if setting.is_reversed else "").with_evidence(setting.evidence)
+    pulse = _by_rest(guess, column)
+    return pulse if setting is None else pulse.with_evidence(setting.evidence)
+
+
+def _by_rest(guess: ColumnGuess, column: ColumnSummary) -> ColumnGuess:
+    text = f"pulses of {column.low:g} to {column.high:g} us, {column.common:g} the most often"
+    is_at_rest = abs(column.common - _REST) < _REST_TOLERANCE
+    pulse = replace(guess, unit="us", zero=column.common if is_at_rest else _REST, span=_SPAN).with_evidence(text)
+    return replace(pulse, other_reading=_ONLY_SIGN if is_at_rest else "zero = 1000, span = 1000 (one direction)")
+
+
+def _as_rudder(guess: ColumnGuess, setting: OutputSetting) -> ColumnGuess:
+    """A rudder's order: the angle at full deflection is no parameter of an autopilot."""
+    zero, span = (setting.zero, setting.span) if setting.span else (_REST, _SPAN)
+    rudder = replace(guess, symbol="delta", unit="deg", zero=zero, span=span, scale=_FULL_RUDDER, kind="command")
+    other = "scale = the rudder angle at full deflection in deg: the log does not say"
+    side = "port" if setting.is_reversed else ""
+    return replace(rudder, positive=side, other_reading=other).with_evidence(setting.evidence)
+
+
+def command_directions(record: Record) -> Changes:
+    """Return what shows which way each command drives the craft and to which side it turns it."""
+    names = [name for name in record.channels if name.startswith("command_")]
+    if not names or not {"u", "r", "psi"} <= set(record.channels):
+        return {}
+    try:
+        body = canonical_record(record, 0.0)
+    except InputError:
+        return {}
+    # one metre to port: ahead turns to starboard, so that an effect on yaw is positive to that side
+    to_port = tuple(Thruster(name, 0.0, -1.0, CommandInput(name)) for name in names)
+    effects = thruster_effects(ThrusterLayout(to_port), [body])
+    return {
+        name: partial(_with_direction, effect)
+        for name, effect in zip(names, effects, strict=True)
+        if abs(effect.surge) > SURE_EFFECT
+    }
+
+
+def _with_direction(effect: ThrusterEffect, guess: ColumnGuess) -> ColumnGuess:
+    """The guess with its direction where nothing but that is open; open where its parameters contradict the motion."""
+    if guess.is_open and guess.other_reading != _ONLY_SIGN:
+        return guess
+    is_astern = (guess.positive == "astern") == (effect.surge > 0.0)
+    word = "astern" if is_astern else "ahead"
+    text = f"more drives {word} (effect over standard error {abs(effect.surge):.0f})"
+    if abs(effect.yaw) > SURE_EFFECT:
+        side = "port" if effect.yaw * effect.surge > 0.0 else "starboard"
+        text += f"; it turns the craft as a thruster on the {side} side does ({abs(effect.yaw):.0f})"
+    if not guess.is_open and is_astern != (guess.positive == "astern"):
+        return replace(guess, other_reading=f'positive = "{word}": {text}')
+    return replace(guess, positive="astern" if is_astern else "", other_reading="").with_evidence(text)

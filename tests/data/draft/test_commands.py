@@ -1,0 +1,82 @@
+"""Commands of thrusters: what the motion and the autopilot's parameters say of them."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.data.draft.craft import two_thrusters
+from tests.data.draft.test_draft import guesses, write
+from tests.data.read.samples import dataflash
+
+from seatrial.api import draft_trial
+from seatrial.core.values import Record
+from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.commands import command_directions, command_guess
+from seatrial.data.draft.survey import ColumnSummary, survey_log
+
+CRAFT = two_thrusters()
+
+
+def _log(left_sign: float, right_sign: float) -> dict[str, np.ndarray]:
+    motion = {"time": CRAFT["t"], "x_ned": CRAFT["x0"], "y_ned": CRAFT["y0"], "yaw": np.degrees(CRAFT["psi"])}
+    body = {"surge": CRAFT["u"], "sway": 0.0 * CRAFT["u"], "yaw_rate": CRAFT["r"]}
+    pulses = {f"thr_{side}": 1500.0 + sign * 400.0 * np.where(CRAFT["t"] % 20.0 < 9.0, 0.0, CRAFT[side])
+              for side, sign in (("left", left_sign), ("right", right_sign))}  # fmt: skip
+    return motion | body | pulses
+
+
+@pytest.mark.parametrize(("left", "right"), [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)])
+def test_the_direction_of_a_command_follows_from_the_motion(left: float, right: float) -> None:
+    channels = {symbol: CRAFT[symbol] for symbol in ("u", "r", "psi")}
+    channels |= {"command_1": left * CRAFT["left"], "command_2": right * CRAFT["right"]}
+    changes = command_directions(Record.from_arrays("run", CRAFT["t"], channels))
+    for symbol, sign, side in (("command_1", left, "port"), ("command_2", right, "starboard")):
+        guess = changes[symbol](ColumnGuess("thr", symbol, "us"))
+        assert guess.is_open == (sign < 0.0)
+        unsigned = ColumnGuess("thr", symbol, "us", other_reading='positive = "astern", and which side it drives: '
+                               "the log does not say")  # fmt: skip
+        decided = changes[symbol](unsigned)
+        assert (decided.positive, decided.is_open) == ("" if sign > 0.0 else "astern", False)
+        assert f"as a thruster on the {side} side" in decided.evidence[-1]
+
+
+def test_commands_that_the_motion_does_not_follow_stay_open(tmp_path: Path) -> None:
+    columns = _log(1.0, 1.0) | {"surge": np.full(CRAFT["t"].size, 1.0), "yaw_rate": 0.0 * CRAFT["t"]}
+    result = guesses(write(tmp_path / "run.csv", columns))
+    assert result["command_1"].is_open and result["command_2"].is_open
+    assert command_directions(Record.from_arrays("run", CRAFT["t"], {"u": CRAFT["u"]})) == {}
+
+
+def _autopilot(path: Path, parameters: dict[str, float]) -> Path:
+    micro = [round(1e6 * t) for t in CRAFT["t"]]
+    pulses = (1500.0 + 400.0 * CRAFT["left"]).round().astype(int).tolist()
+    path.write_bytes(dataflash({
+        "PARM": ("QNf", "TimeUS,Name,Value", [(0, name.encode(), value) for name, value in parameters.items()]),
+        "RCOU": ("QHHH", "TimeUS,C1,C3,C4", [(t, p, p, p) for t, p in zip(micro, pulses, strict=True)]),
+        "GPS": ("QLLf", "TimeUS,Lat,Lng,Spd", [(t, 500000000 + k, 80000000, 1.0) for k, t in enumerate(micro)]),
+    }))  # fmt: skip
+    return path
+
+
+def test_parameters_of_the_autopilot_say_what_its_outputs_are(tmp_path: Path) -> None:
+    servos = {"SERVO1_FUNCTION": 26.0, "SERVO1_TRIM": 1510.0, "SERVO1_MIN": 1100.0, "SERVO1_MAX": 1900.0}
+    servos |= {"SERVO3_FUNCTION": 70.0, "SERVO3_TRIM": 1500.0, "SERVO3_MIN": 1050.0, "SERVO3_MAX": 1850.0}
+    servos |= {"SERVO3_REVERSED": 1.0, "SERVO4_FUNCTION": 0.0, "GPS_POS1_X": 0.6, "GPS_POS1_Y": -0.2}
+    draft = draft_trial(_autopilot(tmp_path / "run.bin", servos), folder=tmp_path)
+    used = {g.symbol: g for part in draft.guesses for g in part if g.is_used}
+    assert "command_4" not in used and used["delta"].is_open and used["delta"].zero == 1510.0
+    throttle = used["command_3"]
+    assert (throttle.zero, throttle.span, throttle.positive, throttle.is_open) == (1500.0, 450.0, "astern", False)
+    assert "SERVO3_FUNCTION, _TRIM, _MIN, _MAX, _REVERSED of the log (throttle)" in draft.text
+    assert "antenna = { x = 0.6, y = -0.2 }    # GPS_POS1_X and GPS_POS1_Y, from the autopilot" in draft.text
+    assert 'kind = "command", zero = 1510, span = 390, scale = 35' in draft.text
+
+
+def test_a_share_of_the_range_needs_no_parameters(tmp_path: Path) -> None:
+    survey = survey_log(write(tmp_path / "run.csv", {"time": CRAFT["t"], "left": CRAFT["left"]}))
+    share = ColumnSummary("left", "", -1.0, 1.0, 0.0, is_constant=False, common=0.0)
+    guess = command_guess(ColumnGuess("left", "command_1", ""), share, survey)
+    assert guess is not None and (guess.unit, guess.is_open) == ("1", False)
+    percent = ColumnSummary("left", "", -100.0, 100.0, 0.0, is_constant=False, common=0.0)
+    guess = command_guess(ColumnGuess("left", "command_1", ""), percent, survey)
+    assert guess is not None and "set zero and span" in guess.other_reading
