@@ -16,22 +16,18 @@ import numpy as np
 from seatrial.core.values import Record
 from seatrial.data.trial import checked_records, load_trial
 from seatrial.estimation.estimate import estimate_model
-from seatrial.estimation.estimate.fit import with_segment_seconds
+from seatrial.estimation.estimate.fit import Estimation, with_segment_seconds
 from seatrial.estimation.estimate.runs import training_runs
-from seatrial.estimation.predict.black_box import (
-    BlackBox,
-    black_box_errors,
-    constant_velocity,
-    fit_black_box,
-    linear_features,
-    quadratic_features,
-)
-from seatrial.estimation.predict.horizon_errors import INITIAL_S, predict_windows
-from seatrial.estimation.predict.open_loop import mean_nuisances
+from seatrial.estimation.predict.open_loop import mean_nuisances, open_loop_runs
+from seatrial.estimation.predict.window_baselines import window_baselines
+from seatrial.estimation.predict.window_scores import Predictor, pooled_rms
+from seatrial.estimation.predict.windows import Windows
 
 TRIAL = Path(__file__).parents[1] / "examples" / "blueboat.toml"
 LIMITS = {"u": 0.11, "v": 0.06, "r": 0.045, "position_m": 1.0}
 """Mean over left-out runs to be reached at 10 s: m/s, m/s, rad/s, m."""
+INITIAL_S = 1.0
+"""Length of a window's beginning from which its state is estimated [s]."""
 
 
 @dataclass(frozen=True)
@@ -43,12 +39,12 @@ class Row:
     scores: dict[str, float]
 
 
-def black_box_scores(box: BlackBox, record: Record, window_s: float) -> dict[str, float]:
-    """Return rms errors of a baseline on a run's windows."""
-    errors = black_box_errors(box, [record], window_s, INITIAL_S)
-    scores = {c: float(np.sqrt(np.mean(errors[c] ** 2))) for c in ("u", "v", "r")}
-    scores["psi_deg"] = float(np.degrees(np.sqrt(np.mean(errors["psi"] ** 2))))
-    return scores | {"position_m": float(np.sqrt(np.mean(errors["x0"] ** 2 + errors["y0"] ** 2)))}
+def scores(windows: Windows, predict: Predictor) -> dict[str, float]:
+    """Return rms errors over all windows: u, v [m/s], r [rad/s], heading [deg], position [m]."""
+    predicted = predict(windows, INITIAL_S)
+    rms = {c: pooled_rms(windows.pieces, predicted, (c,)) for c in ("u", "v", "r")}
+    rms["psi_deg"] = float(np.degrees(pooled_rms(windows.pieces, predicted, ("psi",))))
+    return rms | {"position_m": pooled_rms(windows.pieces, predicted, ("x0", "y0"))}
 
 
 def leave_one_run_out(window_s: float) -> list[Row]:
@@ -61,17 +57,17 @@ def leave_one_run_out(window_s: float) -> list[Row]:
         began = time.perf_counter()
         kept = runs.selected([i for i in range(len(runs)) if i != left_out])
         estimation = estimate_model(trial.model, kept, settings)
-        problem = estimation.estimate.problem
-        nuisances = mean_nuisances(problem, estimation.estimate.common_parameters)
-        windows = predict_windows(problem, estimation.model, [record], [nuisances], window_s)
-        rows.append(Row("model", record.name, windows.rms()))
-        inputs, dt = trial.model.input_names, record.dt
-        boxes = {
-            "constant velocity": constant_velocity(inputs, dt),
-            "linear ARX": fit_black_box(kept.records, inputs, linear_features),
-            "NARX ridge": fit_black_box(kept.records, inputs, quadratic_features),
-        }
-        rows += [Row(name, record.name, black_box_scores(box, record, window_s)) for name, box in boxes.items()]
+
+        def model(windows: Windows, seconds: float, fit: Estimation = estimation) -> list[Record]:
+            found = fit.estimate
+            nuisances = mean_nuisances(found.problem, found.common_parameters)[None]
+            return [run.record for run in open_loop_runs(found.problem, fit.model, windows, nuisances, seconds)]
+
+        predictors = {"model": model} | window_baselines(
+            estimation.estimate.problem, trial.model, kept.records, INITIAL_S
+        )
+        windows = Windows.cut([record], window_s)
+        rows += [Row(name, record.name, scores(windows, predict)) for name, predict in predictors.items()]
         print(f"{record.name}: {time.perf_counter() - began:.0f} s", flush=True)
     return rows
 

@@ -9,7 +9,7 @@ from seatrial.core.results import Fit
 from seatrial.core.values import InputError, Record, Ship
 from seatrial.data.trial import Role, Trial, TrialRun
 from seatrial.estimation.identify import identify
-from seatrial.estimation.predict.window_baselines import ARX, CONSTANT_COURSE, at_rest, constant_course, fit_arx
+from seatrial.estimation.predict.window_baselines import ARX, CONSTANT_COURSE, NARX, at_rest, constant_course
 from seatrial.estimation.predict.window_scores import WindowLength, window_lengths
 from seatrial.physics.models.nomoto import nomoto
 
@@ -37,7 +37,7 @@ def test_windows_of_both_units_are_scored_with_baselines(fit: Fit) -> None:
     in_seconds, in_lengths = fit.validation[0].windows
     assert (in_seconds.seconds, in_seconds.count) == (50.0, 4)
     assert in_lengths.seconds == pytest.approx(5.0 * 8.0 / 2.0)
-    assert {b.name for b in in_seconds.baselines} == {CONSTANT_COURSE, ARX}
+    assert {b.name for b in in_seconds.baselines} == {CONSTANT_COURSE, ARX, NARX}
     assert fit["T"].estimate == pytest.approx(TRUTH["T"], rel=0.1)
     score = in_seconds.scores["r"]
     assert score.fit_percent > 80.0
@@ -68,14 +68,3 @@ def test_straight_on_is_exact_on_a_straight_course() -> None:
     for channel in values:
         np.testing.assert_allclose(predicted[channel], record[channel], atol=1e-9)
     assert not np.any(at_rest(record, 5.0)["psi"])
-
-
-def test_arx_finds_the_difference_equation_it_is_made_of(rng: np.random.Generator) -> None:
-    delta, r = rng.standard_normal(400), np.zeros(400)
-    for k in range(2, 400):
-        r[k] = 1.2 * r[k - 1] - 0.4 * r[k - 2] + 0.05 * delta[k - 1] + 0.02
-    record = Record.from_arrays("arx", 0.5 * np.arange(400.0), {"r": r, "delta": delta, "psi": np.zeros(400)})
-    arx = fit_arx(nomoto(), [record])
-    assert arx is not None
-    np.testing.assert_allclose(arx.weights[:, 0], [-0.4, 1.2, 0.0, 0.05, 0.02], atol=1e-9)
-    np.testing.assert_allclose(arx.predict(record, 1.0)["r"], r, atol=1e-9)

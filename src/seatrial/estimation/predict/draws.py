@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Array, Record
+from seatrial.core.values import Array
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.linear import batch_class
 
 # s for which a disturbance of the states is held constant, ours
@@ -35,44 +34,70 @@ class PredictionUncertainty:
 
 
 def simulate_points(
-    template: OutputError, model: Model, record: Record, start: Array, points: Array, nuisances: Array
+    template: OutputError, model: Model, dt: float, inputs: Array, start: Array, points: Array, nuisances: Array
 ) -> Array:
-    """Return all observables along a record's inputs for many sets of unknowns, shape (m, rows, observables).
+    """Return all observables along inputs for many sets of unknowns, shape (m, rows, observables).
 
-    template: the problem whose unknowns these are; start: initial states (m, nx); points: free coefficients (m, n);
-    owns: a session's own unknowns (m, k). NaN after a divergence.
+    Args:
+        template: the problem whose unknowns these are.
+        inputs: in the model's signs, (m, rows, nu), every `dt` seconds.
+        start: initial states, (m, nx); points: free coefficients, (m, n); nuisances: a session's own unknowns, (m, k).
+
+    Returns:
+        NaN after a divergence.
     """
-    return _simulate(template, model, record.dt, inputs_of(model, record), start, points, nuisances)
+    count, rows, parameters = len(points), inputs.shape[1], model.parameters
+    split = len(template.session_parameters)
+    values = np.tile(parameters.values, (count, 1))
+    values[:, [parameters.index(n) for n in template.free]] = points
+    values[:, [parameters.index(n) for n, _ in template.session_parameters]] = nuisances[:, :split]
+    batch = batch_class(model)(
+        model,
+        np.ascontiguousarray(inputs).reshape(count * rows, -1),
+        np.arange(count + 1) * rows,
+        dt,
+        model.observables,
+        corrections=tuple(n.correction for n in template.nuisances),
+        substeps=template.substeps,
+    )
+    y, _ = batch.simulate(0, count, start, values, np.ascontiguousarray(nuisances[:, split:]))
+    return y.reshape(count, rows, -1)
 
 
 def draw_runs(
     template: OutputError,
     model: Model,
-    record: Record,
+    dt: float,
+    inputs: Array,
     start: Array,
     nuisances: Array,
     uncertainty: PredictionUncertainty,
     rng: np.random.Generator,
     count: int,
 ) -> Array:
-    """Return `count` runs from the inputs of `record` about the model's values, (count, rows, observables).
+    """Return `count` runs about the model's values along each of w inputs, (w, count, rows, observables).
 
-    start: initial state (nx,), the same for all; own: the session's own unknowns (k,).
+    Args:
+        inputs: in the model's signs, (w, rows, nu), every `dt` seconds.
+        start: initial states, (w, nx), the same for all draws; nuisances: a session's own unknowns, (w, k).
     """
+    width, total = len(inputs), len(inputs) * count
     point = np.array([model.parameters[n].value for n in template.free])
-    points = point + rng.standard_normal((count, len(point))) @ square_root(uncertainty.coefficients).T
-    owns = nuisances + rng.standard_normal((count, len(nuisances))) @ square_root(uncertainty.offsets).T
-    inputs, begin = inputs_of(model, record), np.tile(start, (count, 1))
+    points = point + rng.standard_normal((total, len(point))) @ square_root(uncertainty.coefficients).T
+    offsets = rng.standard_normal((total, nuisances.shape[1])) @ square_root(uncertainty.offsets).T
+    owns = np.repeat(nuisances, count, axis=0) + offsets
+    along, state = (np.repeat(a, count, axis=0) for a in (inputs, start))
+    shape = (width, count, inputs.shape[1], -1)
     if not np.any(uncertainty.process):
-        return _simulate(template, model, record.dt, inputs, begin, points, owns)
-    steps = max(1, round(_KICK_SECONDS / record.dt))
-    kick = uncertainty.process * np.sqrt(steps * record.dt)
+        return simulate_points(template, model, dt, along, state, points, owns).reshape(shape)
+    steps = max(1, round(_KICK_SECONDS / dt))
+    kick = uncertainty.process * np.sqrt(steps * dt)
     pieces = []
-    for first in range(0, len(inputs) - 1, steps):
-        piece = _simulate(template, model, record.dt, inputs[first : first + steps + 1], begin, points, owns)
+    for first in range(0, inputs.shape[1] - 1, steps):
+        piece = simulate_points(template, model, dt, along[:, first : first + steps + 1], state, points, owns)
         pieces.append(piece if first == 0 else piece[:, 1:])
-        begin = piece[:, -1, : len(model.states)] + kick * rng.standard_normal((count, len(kick)))
-    return np.concatenate(pieces, axis=1)
+        state = piece[:, -1, : len(model.states)] + kick * rng.standard_normal((total, len(kick)))
+    return np.concatenate(pieces, axis=1).reshape(shape)
 
 
 def square_root(covariance: Array) -> Array:
@@ -81,24 +106,3 @@ def square_root(covariance: Array) -> Array:
         return covariance
     values, vectors = np.linalg.eigh(covariance)
     return vectors * np.sqrt(np.maximum(values, 0.0))
-
-
-def _simulate(
-    template: OutputError, model: Model, dt: float, inputs: Array, start: Array, points: Array, nuisances: Array
-) -> Array:
-    count, parameters = len(points), model.parameters
-    split = len(template.session_parameters)
-    values = np.tile(parameters.values, (count, 1))
-    values[:, [parameters.index(n) for n in template.free]] = points
-    values[:, [parameters.index(n) for n, _ in template.session_parameters]] = nuisances[:, :split]
-    batch = batch_class(model)(
-        model,
-        np.tile(inputs, (count, 1)),
-        np.arange(count + 1) * len(inputs),
-        dt,
-        model.observables,
-        corrections=tuple(n.correction for n in template.nuisances),
-        substeps=template.substeps,
-    )
-    y, _ = batch.simulate(0, count, start, values, np.ascontiguousarray(nuisances[:, split:]))
-    return y.reshape(count, len(inputs), -1)

@@ -1,6 +1,6 @@
 """Open-loop prediction of a run: initial state from its first seconds, nothing else taken from it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -8,10 +8,8 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Divergence, Measure, Prediction
 from seatrial.core.values import Array, InputError, Record
 from seatrial.estimation.predict.divergence import divergence_of, without_diverged_rows
-from seatrial.estimation.predict.draws import simulate_points
+from seatrial.estimation.predict.windows import Windows, initial_states, simulate_windows
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.estimation.problem.segments import cut_segments
-from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.physics.manoeuvres import measures
 from seatrial.physics.simulate.channels import inputs_of, record_of
 from seatrial.physics.simulate.divergence import require_bounded
@@ -23,12 +21,7 @@ def estimate_initial_state(
     template: OutputError, model: Model, record: Record, nuisances: Array, seconds: float
 ) -> Array:
     """Output-error estimate of the initial state from the first `seconds` of a record, model held, shape (nx,)."""
-    beginning = record.between(record.time[0], record.time[0] + max(seconds, 4 * record.dt))
-    held = model.with_parameters(model.parameters.fixed(*model.parameters.names))
-    data = cut_segments(held, [beginning], template.data.outputs, None)
-    problem = replace(template, model=held, data=data, pinned=nuisances, inflation=None)
-    found = levenberg_marquardt(problem, nuisances, problem.measured_initial_states(), evaluations=40)
-    return problem.unpack(nuisances, found.local)[0][0]
+    return initial_states(template, model, Windows.whole(record), nuisances[None], seconds)[0]
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,9 +44,10 @@ def simulate_open_loop(
     Raises:
         InputError: the simulation diverges (which run, which channel, when).
     """
-    run, states = _simulated(template, model, record, nuisances, seconds)
-    require_bounded(model, record.time, states, f"run '{record.name}'")
-    return run
+    start = estimate_initial_state(template, model, record, nuisances, seconds)
+    y = simulate_windows(template, model, Windows.whole(record), nuisances[None], start[None])[0]
+    require_bounded(model, record.time, y[:, : len(model.states)], f"run '{record.name}'")
+    return OpenLoopRun(observables_record(model, record, y), start)
 
 
 def simulate_while_bounded(
@@ -64,19 +58,28 @@ def simulate_while_bounded(
     Raises:
         InputError: it cannot be simulated at all: an input is missing, or fewer than three samples.
     """
-    run, states = _simulated(template, model, record, nuisances, seconds)
-    divergence = divergence_of(model, record, states)
-    return OpenLoopRun(without_diverged_rows(run.record, model.input_names, divergence), run.initial_state, divergence)
+    return open_loop_runs(template, model, Windows.whole(record), nuisances[None], seconds)[0]
 
 
-def _simulated(
-    template: OutputError, model: Model, record: Record, nuisances: Array, seconds: float
-) -> tuple[OpenLoopRun, Array]:
-    """The run over its whole length, and its states, (n, nx)."""
-    start = estimate_initial_state(template, model, record, nuisances, seconds)
-    point = np.array([[model.parameters[n].value for n in template.free]])
-    y = simulate_points(template, model, record, start[None], point, nuisances[None])[0]
-    return OpenLoopRun(observables_record(model, record, y), start), y[:, : len(model.states)]
+def open_loop_runs(
+    template: OutputError, model: Model, windows: Windows, nuisances: Array, seconds: float
+) -> list[OpenLoopRun]:
+    """Return each window simulated from its inputs for as long as it stays within its bounds.
+
+    nuisances: of each run, (runs, k); seconds: of a window's beginning, for its initial state; 0: as measured.
+
+    Raises:
+        InputError: as `simulate_while_bounded`.
+    """
+    states = initial_states(template, model, windows, nuisances, seconds)
+    simulated = simulate_windows(template, model, windows, nuisances, states)
+    return [_while_bounded(model, *one) for one in zip(windows.pieces, simulated, states, strict=True)]
+
+
+def _while_bounded(model: Model, measured: Record, y: Array, start: Array) -> OpenLoopRun:
+    divergence = divergence_of(model, measured, y[:, : len(model.states)])
+    record = without_diverged_rows(observables_record(model, measured, y), model.input_names, divergence)
+    return OpenLoopRun(record, start, divergence)
 
 
 def observables_record(model: Model, record: Record, y: Array) -> Record:

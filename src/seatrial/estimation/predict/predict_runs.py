@@ -176,10 +176,11 @@ def predict_runs(
     report("runs left out, predicted")
     calibration = calibrate_intervals(estimation, train, fitted, seconds, length, seed)
     streams = np.random.SeedSequence((seed, 1)).spawn(len(items))
+    held_out = [item for item in items if item.role is not Role.TRAIN]
+    baselines = window_baselines(problem, estimation.model, [i.record for i in train], seconds) if held_out else {}
     predictor = WindowPredictor(
-        problem, estimation.model, mean, calibration.uncertainty, calibration.discrepancy,
-        window_baselines(problem, estimation.model, [item.record for item in train]), length, seconds,
-    )  # fmt: skip
+        problem, estimation.model, mean, calibration.uncertainty, calibration.discrepancy, baselines, length, seconds
+    )
     predictions = []
     for item, run, stream in zip(items, runs, streams, strict=True):
         role = "training" if item.role is Role.TRAIN else "validation"

@@ -1,5 +1,6 @@
 """Intervals of predictions: what is foreseen by draws, and what runs left out missed beyond it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,14 +20,17 @@ from seatrial.estimation.predict.open_loop import (
     observables_record,
     simulate_open_loop,
 )
+from seatrial.estimation.predict.windows import Windows
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.manoeuvres import bounded_interval, measures
 from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre
+from seatrial.physics.simulate.channels import inputs_of
 
 _TRACK_CHANNELS = ("psi", "x0", "y0")
 _MEASURE_CHANNELS = ("psi", "x0", "y0", "u", "v", "r")
 # ships drawn for the interval of a prediction, and for that of a run left out, ours
 DRAWS, HOLDOUT_DRAWS = 100, 32
+_ROWS_AT_ONCE = 200_000  # of drawn windows, simulated together; chosen: some 20 MB
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,25 +61,51 @@ def prediction_spread(
 
     Nothing is foreseen where half of the draws or more diverge: what is left of them would look too certain.
     """
-    runs = _finite_draws(
-        draw_runs(template, model, record, simulation.initial_state, nuisances, uncertainty, rng, count)
-    )
+    runs = _drawn_about(template, model, record, simulation, nuisances, uncertainty, rng, count)
     spreads = _measure_spread(model, record, simulation, runs, length, rng) if is_steered(record, model) else {}
-    return PredictionSpread(_track_spread(model, simulation, runs), spreads)
+    return PredictionSpread(_track_spread(model, simulation.record, runs), spreads)
 
 
-def window_spread(
+def window_spreads(
     template: OutputError,
     model: Model,
-    window: Record,
+    windows: Windows,
+    simulated: Sequence[Record],
+    states: Array,
+    nuisances: Array,
+    uncertainty: PredictionUncertainty,
+    rng: np.random.Generator,
+) -> list[dict[str, Array]]:
+    """Return of each window the scatter of heading and position of drawn runs: channel -> (steps + 1,), SI.
+
+    simulated: the windows open loop from their initial `states` (windows, nx); nuisances: of each run, (runs, k).
+    """
+    size = max(1, _ROWS_AT_ONCE // (HOLDOUT_DRAWS * (windows.steps + 1)))
+    spreads = []
+    for chosen in (slice(i, i + size) for i in range(0, len(windows), size)):
+        part = windows.selected(chosen)
+        drawn = draw_runs(
+            template, model, part.dt, part.inputs(model), states[chosen], nuisances[part.run], uncertainty, rng,
+            HOLDOUT_DRAWS,
+        )  # fmt: skip
+        spreads += [_track_spread(model, s, _finite_draws(y)) for s, y in zip(simulated[chosen], drawn, strict=True)]
+    return spreads
+
+
+def _drawn_about(
+    template: OutputError,
+    model: Model,
+    record: Record,
     simulation: OpenLoopRun,
     nuisances: Array,
     uncertainty: PredictionUncertainty,
     rng: np.random.Generator,
-) -> dict[str, Array]:
-    """Return the scatter of heading and position of runs drawn about a simulated window: channel -> (n,), SI."""
-    runs = draw_runs(template, model, window, simulation.initial_state, nuisances, uncertainty, rng, HOLDOUT_DRAWS)
-    return _track_spread(model, simulation, _finite_draws(runs))
+    count: int,
+) -> Array:
+    """Runs drawn from what is left open, those that last, (at most `count`, rows, observables)."""
+    inputs, start = inputs_of(model, record)[None], simulation.initial_state[None]
+    runs = draw_runs(template, model, record.dt, inputs, start, nuisances[None], uncertainty, rng, count)
+    return _finite_draws(runs[0])
 
 
 def _finite_draws(runs: Array) -> Array:
@@ -84,10 +114,10 @@ def _finite_draws(runs: Array) -> Array:
     return kept if 2 * len(kept) > len(runs) else kept[:0]
 
 
-def _track_spread(model: Model, simulation: OpenLoopRun, runs: Array) -> dict[str, Array]:
+def _track_spread(model: Model, simulated: Record, runs: Array) -> dict[str, Array]:
     place = {c: model.observables.index(model.observable_of(c)) for c in model.channels}
     return {
-        c: np.sqrt(np.mean((runs[:, :, place[c]] - simulation.record[c]) ** 2, axis=0))
+        c: np.sqrt(np.mean((runs[:, :, place[c]] - simulated[c]) ** 2, axis=0))
         for c in _TRACK_CHANNELS
         if c in place and len(runs)
     }
@@ -168,10 +198,8 @@ def track_holdout_error(
         run = simulate_open_loop(template, holdout.model, piece, holdout.nuisances, seconds)
     except InputError:
         return None
-    runs = _finite_draws(
-        draw_runs(template, holdout.model, piece, run.initial_state, holdout.nuisances, uncertainty, rng, HOLDOUT_DRAWS)
-    )
-    return _channel_errors(piece, run, _track_spread(holdout.model, run, runs)) if len(runs) else None
+    runs = _drawn_about(template, holdout.model, piece, run, holdout.nuisances, uncertainty, rng, HOLDOUT_DRAWS)
+    return _channel_errors(piece, run, _track_spread(holdout.model, run.record, runs)) if len(runs) else None
 
 
 def _channel_errors(record: Record, simulation: OpenLoopRun, channels: dict[str, Array]) -> HoldoutError:

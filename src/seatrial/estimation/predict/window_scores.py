@@ -14,8 +14,9 @@ from seatrial.data.check.signal import sample_noise
 from seatrial.estimation.estimate.time_scale import characteristic_time
 from seatrial.estimation.information.discrepancy import Discrepancy
 from seatrial.estimation.predict.draws import PredictionUncertainty
-from seatrial.estimation.predict.open_loop import has_moving_track, simulate_while_bounded
-from seatrial.estimation.predict.prediction_intervals import window_spread
+from seatrial.estimation.predict.open_loop import has_moving_track, open_loop_runs
+from seatrial.estimation.predict.prediction_intervals import window_spreads
+from seatrial.estimation.predict.windows import Windows
 from seatrial.estimation.problem.output_error import OutputError
 
 MAX_WINDOWS = 40
@@ -30,8 +31,8 @@ _SCORES: Mapping[str, tuple[tuple[str, ...], float]] = {
     "phi_deg": (("phi",), _DEGREES), "z": (("z",), 1.0), "u": (("u",), 1.0), "v": (("v",), 1.0), "r": (("r",), 1.0),
 }  # fmt: skip
 
-Predictor = Callable[[Record, float], Record]
-"""A window and the seconds of its beginning that may be used -> the window predicted; NaN where it diverges."""
+Predictor = Callable[[Windows, float], Sequence[Record]]
+"""Windows and the seconds of their beginning that may be used -> the windows predicted; NaN where one diverges."""
 
 
 @dataclass(frozen=True)
@@ -93,39 +94,35 @@ def window_scores(
         wanted = [(f"{n:g} L", n * unit) for n in DEFAULT_LENGTHS if unit and 2.0 * n * unit <= record.duration]
         wanted = wanted or [("half of the run", 0.5 * record.duration)]
     return tuple(
-        _score(predictor, windows, name, seconds, index, rng)
+        _score(predictor, windows.evenly_spread(MAX_WINDOWS), name, seconds, index, rng)
         for name, seconds in wanted
-        if (windows := _windows(record, seconds))
+        if len(windows := Windows.cut([record], seconds))
     )
 
 
-def _windows(record: Record, seconds: float) -> list[Record]:
-    steps = max(round(seconds / record.dt), 4)  # five samples at least, from which an initial state is estimated
-    count = (len(record) - 1) // steps
-    chosen = np.unique(np.linspace(0, count - 1, min(count, MAX_WINDOWS)).round().astype(int)) if count else []
-    return [record.rows(slice(int(k) * steps, (int(k) + 1) * steps + 1)) for k in chosen]
-
-
 def _score(
-    p: WindowPredictor, windows: list[Record], name: str, seconds: float, index: float, rng: np.random.Generator
+    p: WindowPredictor, windows: Windows, name: str, seconds: float, index: float, rng: np.random.Generator
 ) -> WindowScore:
-    initial = min(p.seconds, _INITIAL_SHARE * seconds)
+    initial, nuisances, pieces = min(p.seconds, _INITIAL_SHARE * seconds), p.nuisances[None], windows.pieces
+    runs = open_loop_runs(p.template, p.model, windows, nuisances, initial)
+    simulated, states = [run.record for run in runs], np.stack([run.initial_state for run in runs])
+    spreads = window_spreads(p.template, p.model, windows, simulated, states, nuisances, p.uncertainty, rng)
     t = float(stdtrit(p.uncertainty.degrees_of_freedom, 0.975))
-    simulated, halves = [], []
-    for window in windows:
-        run = simulate_while_bounded(p.template, p.model, window, p.nuisances, initial)
-        lasts = run.divergence is None
-        spread = window_spread(p.template, p.model, window, run, p.nuisances, p.uncertainty, rng) if lasts else {}
-        simulated.append(run.record)
-        sds = {c: p.discrepancy.channel_sd(c, sd, window.dt, index) for c, sd in spread.items()}
+    halves = []
+    for piece, run, spread in zip(pieces, runs, spreads, strict=True):
+        lasting = spread if run.divergence is None else {}
+        sds = {c: p.discrepancy.channel_sd(c, sd, piece.dt, index) for c, sd in lasting.items()}
         # a measured sample lies about the true one by its sensor's noise
-        halves.append({c: t * np.hypot(sd, sample_noise(window[c])) for c, sd in sds.items() if c in window})
+        halves.append({c: t * np.hypot(sd, sample_noise(piece[c])) for c, sd in sds.items() if c in piece})
     scores = {
-        key: _channel_score(windows, simulated, halves, channels, factor)
+        key: _channel_score(pieces, simulated, halves, channels, factor)
         for key, (channels, factor) in _SCORES.items()
-        if _is_compared(windows, simulated, channels)
+        if _is_compared(pieces, simulated, channels)
     }
-    rivals = [WindowBaseline(n, _baseline_rms(predict, windows, initial, scores)) for n, predict in p.baselines.items()]
+    rivals = [
+        WindowBaseline(n, _baseline_rms(predict(windows, initial), pieces, scores))
+        for n, predict in p.baselines.items()
+    ]
     return WindowScore(name, seconds, len(windows), scores, tuple(r for r in rivals if r.rms))
 
 
@@ -135,7 +132,7 @@ def _is_compared(windows: list[Record], simulated: list[Record], channels: tuple
     return held and (channels != ("x0", "y0") or any(has_moving_track(s) for s in simulated))
 
 
-def _errors(windows: list[Record], simulated: list[Record], channel: str) -> Array:
+def _errors(windows: Sequence[Record], simulated: Sequence[Record], channel: str) -> Array:
     """Errors where something was measured, (n,); infinite after a divergence."""
     pairs = [(s[channel] - w[channel], np.isfinite(w[channel])) for w, s in zip(windows, simulated, strict=True)]
     errors = np.concatenate([e[measured] for e, measured in pairs])
@@ -169,13 +166,16 @@ def _channel_score(
 
 
 def _baseline_rms(
-    predict: Predictor, windows: list[Record], initial: float, scores: Mapping[str, ChannelScore]
+    simulated: Sequence[Record], windows: list[Record], scores: Mapping[str, ChannelScore]
 ) -> dict[str, float]:
-    simulated = [predict(window, initial) for window in windows]
-    rms = {}
-    for key in scores:
-        channels, factor = _SCORES[key]
-        if all(c in s for s in simulated for c in channels):
-            errors = [_errors(windows, simulated, c) for c in channels]
-            rms[key] = factor * float(np.sqrt(np.mean(np.sum(np.square(errors), axis=0))))
-    return rms
+    compared = {key: _SCORES[key][0] for key in scores if all(c in s for s in simulated for c in _SCORES[key][0])}
+    return {key: _SCORES[key][1] * pooled_rms(windows, simulated, channels) for key, channels in compared.items()}
+
+
+def pooled_rms(windows: Sequence[Record], simulated: Sequence[Record], channels: Sequence[str]) -> float:
+    """Return the rms of the errors over all windows, of several channels that of their norm; infinite if one diverges.
+
+    In the channels' own unit.
+    """
+    errors = [_errors(windows, simulated, channel) for channel in channels]
+    return float(np.sqrt(np.mean(np.sum(np.square(errors), axis=0))))

@@ -95,9 +95,30 @@ def cut_segments(
     Raises:
         InputError: time steps differ, or a record has fewer than three samples.
     """
+    lengths = [
+        len(r) - 1 if segment_seconds is None else max(2, round(segment_seconds / records[0].dt)) for r in records
+    ]
+    bounds = [_segment_bounds(len(record), length) for record, length in zip(records, lengths, strict=True)]
+    return segments_between(model, records, outputs, bounds, sessions)
+
+
+def segments_between(
+    model: Model,
+    records: Sequence[Record],
+    outputs: tuple[str, ...],
+    bounds: Sequence[Sequence[tuple[int, int]]],
+    sessions: Sequence[str] | None = None,
+) -> Segments:
+    """Cut records (all of one time step) at the given rows: of each record, first row and row behind the last.
+
+    Rows in no segment still count as commands given before it. Sessions as in `cut_segments`.
+
+    Raises:
+        InputError: as `cut_segments`.
+    """
     dt = records[0].dt
     of_runs, inputs, measured, firsts, lengths, runs = [], [], [], [], [], []
-    for index, record in enumerate(records):
+    for index, (record, of_record) in enumerate(zip(records, bounds, strict=True)):
         if abs(record.dt - dt) > 1e-3 * dt:
             raise InputError(
                 f"record '{record.name}' has a time step of {record.dt:g} s, the first one {dt:g} s; give one rate"
@@ -107,8 +128,7 @@ def cut_segments(
         u = inputs_of(model, record)
         y = np.stack([record[o] if o in record else np.full(len(record), np.nan) for o in outputs], axis=1)
         of_runs.append(u)
-        length = len(record) - 1 if segment_seconds is None else max(2, round(segment_seconds / dt))
-        for first, last in _segment_bounds(len(record), length):
+        for first, last in of_record:
             inputs.append(u[first:last])
             firsts.append(first)
             measured.append(y[first:last])

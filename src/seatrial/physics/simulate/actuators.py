@@ -60,7 +60,8 @@ class ActuatorHistory:
         lead = max(1, round(_SETTLING_S / dt))
         rows = [np.concatenate([np.repeat(u[:1], lead, axis=0), u]) for u in inputs]
         offsets = np.concatenate([[0], np.cumsum([len(r) for r in rows])]).astype(np.int64)
-        of_run = np.array([session[np.flatnonzero(run == k)[0]] for k in range(len(inputs))], dtype=np.int64)
+        segments = [np.flatnonzero(run == k) for k in range(len(inputs))]
+        of_run = np.array([session[s[0]] if len(s) else 0 for s in segments], dtype=np.int64)
         row = offsets[run] + lead + first
         return cls(_actuators_only(model, names), np.concatenate(rows), offsets, dt, run, row, of_run)
 
