@@ -72,7 +72,7 @@ def window_errors(
     place = [model.observables.index(model.observable_of(channel)) for channel in _TRACK]
     simulated = simulate_windows(template, model, windows, of_runs, states)[:, :, place]
     errors = []
-    for piece, index, track in zip(windows.pieces, windows.run.tolist(), simulated, strict=True):
+    for piece, index, track in zip(windows.pieces, windows.run, simulated, strict=True):
         if not np.all(np.isfinite(track)):
             raise InputError(
                 f"the simulation of run '{piece.name}' from {piece.time[0]:g} s diverges; check the bounds"
@@ -82,7 +82,7 @@ def window_errors(
             continue
         position = float(np.sqrt(np.nanmean(error[:, 0] ** 2 + error[:, 1] ** 2)))
         heading = float(np.degrees(np.sqrt(np.nanmean(error[:, 2] ** 2))))
-        errors.append(WindowError(piece.name, labels[index], fold, float(piece.time[0]), position, heading))
+        errors.append(WindowError(piece.name, labels[int(index)], fold, float(piece.time[0]), position, heading))
     return errors
 
 
