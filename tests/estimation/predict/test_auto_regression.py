@@ -58,7 +58,7 @@ def test_what_runs_away_is_held_at_the_training_runs(record: Record) -> None:
     assert regression is not None
     full = np.ones(len(record))
     driven = record.with_channel("command_1", record.channel("command_1").with_values(50.0 * full))
-    (predicted,) = regression.predict(Windows.whole(driven), 1.0)
+    (predicted,) = regression.predict(Windows.of_record(driven), 1.0)
     assert predicted["u"].max() == record["u"].max()
 
 

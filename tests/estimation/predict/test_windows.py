@@ -50,7 +50,7 @@ def test_windows_follow_one_another_and_the_remainder_is_dropped(records: list[R
     assert windows.evenly_spread(2).first.tolist() == [0, 0]
     assert windows.beginnings(1.0).steps == 10
     assert windows.beginnings(0.1).steps == MIN_STEPS
-    whole = Windows.whole(records[1])
+    whole = Windows.of_record(records[1])
     np.testing.assert_array_equal(whole.pieces[0].time, records[1].time)
 
 

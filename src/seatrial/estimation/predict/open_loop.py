@@ -21,7 +21,7 @@ def estimate_initial_state(
     template: OutputError, model: Model, record: Record, nuisances: Array, seconds: float
 ) -> Array:
     """Output-error estimate of the initial state from the first `seconds` of a record, model held, shape (nx,)."""
-    return initial_states(template, model, Windows.whole(record), nuisances[None], seconds)[0]
+    return initial_states(template, model, Windows.of_record(record), nuisances[None], seconds)[0]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +45,7 @@ def simulate_open_loop(
         InputError: the simulation diverges (which run, which channel, when).
     """
     start = estimate_initial_state(template, model, record, nuisances, seconds)
-    y = simulate_windows(template, model, Windows.whole(record), nuisances[None], start[None])[0]
+    y = simulate_windows(template, model, Windows.of_record(record), nuisances[None], start[None])[0]
     require_bounded(model, record.time, y[:, : len(model.states)], f"run '{record.name}'")
     return OpenLoopRun(observables_record(model, record, y), start)
 
@@ -58,7 +58,7 @@ def simulate_while_bounded(
     Raises:
         InputError: it cannot be simulated at all: an input is missing, or fewer than three samples.
     """
-    return open_loop_runs(template, model, Windows.whole(record), nuisances[None], seconds)[0]
+    return open_loop_runs(template, model, Windows.of_record(record), nuisances[None], seconds)[0]
 
 
 def open_loop_runs(

@@ -40,7 +40,7 @@ class Windows:
     steps: int
 
     @classmethod
-    def whole(cls, record: Record) -> "Windows":
+    def of_record(cls, record: Record) -> "Windows":
         """Return a run as one window."""
         return cls([record], np.zeros(1, dtype=np.int64), np.zeros(1, dtype=np.int64), len(record) - 1)
 
