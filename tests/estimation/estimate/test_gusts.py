@@ -30,6 +30,14 @@ def test_a_gust_with_a_memory_is_modelled(gusts: ModuleType, is_closed: bool) ->
         assert np.all(np.abs(np.log(o.standard_error / o.bound)) < 0.6), o
 
 
+def test_a_closed_loop_is_fitted_by_prediction_error_though_nothing_disturbs_it(gusts: ModuleType) -> None:
+    cell = gusts.Cell("nomoto", gusts.Disturbance(0.0, 0.0), is_closed=True)
+    (result,) = gusts.outcomes(cell, "independent", 1, gusts.SEED, 1)
+    assert result.disturbance == "white"
+    assert np.all(np.abs(result.error) < 3.5 * result.standard_error)
+    assert np.all(np.abs(np.log(result.standard_error / result.bound)) < 0.3)
+
+
 def test_the_score_can_fail(gusts: ModuleType) -> None:
     one = np.ones(2)
     biased = [gusts.Outcome(3.0 * one, one, one, "white", True, 0.1)] * 10

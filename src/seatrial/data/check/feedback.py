@@ -84,8 +84,8 @@ def feedback_findings(record: Record) -> tuple[Finding, ...]:
             Severity.INFO,
             "feedback",
             f"record '{record.name}': '{t.command}' follows '{t.motion}' (a controller, or a helmsman as in a zigzag): "
-            "output error would take disturbances that are answered for the ship's own response; where identify "
-            "detects any, it uses prediction error with a disturbance model",
+            "output error would take disturbances that are answered for the ship's own response; identify uses "
+            "prediction error with a disturbance model",
             f"cross-correlation {t.correlation:.2f}, output {t.lag:.2g} s before input, p {t.p:.1g}",
             "a stretch of rudder steps that do not depend on the motion identifies the coefficients better",
         )

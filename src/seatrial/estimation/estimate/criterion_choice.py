@@ -9,7 +9,7 @@ import numpy as np
 from seatrial.core.values import Array, ProgressReporter
 from seatrial.data.trial import EstimateSettings, FitCriterion
 from seatrial.estimation.estimate.disturbance_choice import DisturbanceChoice, choose_disturbance
-from seatrial.estimation.estimate.disturbance_screen import FAINT_HINT, HINT, spectral_hint
+from seatrial.estimation.estimate.disturbance_screen import HINT, spectral_hint
 from seatrial.estimation.estimate.input_offsets import with_input_offsets
 from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
 from seatrial.estimation.estimate.point_estimate import (
@@ -41,8 +41,8 @@ WAVE_FORCES = ("F3", "M5")
 
 _WHITE = "no process noise was detected"
 _FEEDBACK = (
-    "inputs follow outputs, so that output error would take an unmodelled disturbance for the ship's response; none is "
-    "detected, and prediction error without one is output error"
+    "inputs follow outputs, so that output error would take answered disturbances for the ship's own response: "
+    "a disturbance is estimated, however faint"
 )
 SPREAD = "intervals cover the spread between the disturbance models"
 # residuals over whole runs over those within segments that count as equal, ours
@@ -83,12 +83,13 @@ class CriterionChoice:
         """Whether residuals are correlated so weakly that each sample counts as one."""
         return bool(np.max(self.inflation) <= WHITE_INFLATION)
 
-    def hints_at_disturbance(self, limit: float) -> bool:
-        """Whether the residuals fail a test of whiteness, or their spectrum rises to low frequencies by `limit`."""
+    @property
+    def hints_at_disturbance(self) -> bool:
+        """Whether the residuals fail a test of whiteness, or their spectrum rises to low frequencies."""
         if not has_noise(self.estimate):
             return False
         pieces = [self.residuals[a:b] for a, b in pairwise(self.estimate.problem.data.offsets)]
-        return not self.whiteness.is_white or spectral_hint(pieces) > limit
+        return not self.whiteness.is_white or spectral_hint(pieces) > HINT
 
     def with_reasons(self, *reasons: str) -> "CriterionChoice":
         """The same with more reasons."""
@@ -131,13 +132,15 @@ def choose_criterion(
     if settings.segment_s is not None:
         return _required_choice(shot, settings, noise, "the length of segments is set by the trial")
     over_runs = _whole_runs_choice(shot, fit_whole_runs()) if shot.is_nearly_white else None
-    limit = FAINT_HINT if has_feedback else HINT
     in_waves = set(WAVE_FORCES) & set(shooting.problem.model.input_names)  # recorded forces explain what moves the ship
-    if over_runs is not None and over_runs.is_nearly_white and (in_waves or not over_runs.hints_at_disturbance(limit)):
-        return over_runs.with_reasons(_WHITE, *([_FEEDBACK] if has_feedback else []))
+    has_filter = has_noise(shooting) and not settings.robust
+    is_closed = has_feedback and has_filter and not is_coarsely_sampled(shooting.problem)
+    is_plain = over_runs is not None and over_runs.is_nearly_white and not is_closed
+    if over_runs is not None and is_plain and (in_waves or not over_runs.hints_at_disturbance):
+        return over_runs.with_reasons(_WHITE)
     if shot.is_nearly_white and over_runs is None:
         shot = shot.with_reasons("whole runs do not fit within the noise of the segments")
-    if settings.robust or not has_noise(shooting):
+    if not has_filter:
         return shot.with_reasons(_CORRELATED, _SEGMENTED)
     if is_coarsely_sampled(shooting.problem):
         return shot.with_reasons(_CORRELATED, _COARSE_SAMPLES)
@@ -146,12 +149,12 @@ def choose_criterion(
     )
     if np.isnan(white.newton_decrement):  # not searched: no disturbance makes such innovations white
         return replace(shot.with_reasons(white.test.summary, _SEGMENTED), process_intensities=white.process_intensities)
-    disturbances = choose_disturbance(white, needs_disturbance=has_feedback, report_progress=report_progress)
+    disturbances = choose_disturbance(white, needs_disturbance=is_closed, report_progress=report_progress)
     best = disturbances.chosen.noise
     if over_runs is not None and over_runs.whiteness.is_white and not disturbances.chosen.unknown_count:
         return replace(over_runs.with_reasons(disturbances.summary), disturbances=disturbances)
-    if best.test.is_nearly_white or has_feedback:
-        reasons = (*shot.reasons, disturbances.summary)
+    if best.test.is_nearly_white or is_closed:
+        reasons = (*shot.reasons, *([_FEEDBACK] if is_closed else []), disturbances.summary)
         return prediction_error_choice(best, disturbances, *reasons, *([] if best.test.is_white else [SPREAD]))
     return replace(
         shot.with_reasons(disturbances.summary, _SEGMENTED, SPREAD),

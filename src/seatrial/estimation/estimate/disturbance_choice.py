@@ -59,16 +59,22 @@ class DisturbanceChoice:
     @property
     def choice_text(self) -> str:
         """Which disturbance is used and why, in words."""
-        noise = self.chosen.noise
         if not self.chosen.unknown_count:
             return "no disturbance is likelier than noise of the sensors alone"
-        simpler = [f for f in self.fitted if f.unknown_count < self.chosen.unknown_count]
-        text = f"the likeliest disturbance is {noise.disturbance_model}"
-        if simpler:
-            best = max(simpler, key=lambda f: f.log_likelihood)
-            gain = 2.0 * (self.chosen.log_likelihood - best.log_likelihood)
-            text += f" (twice its log-likelihood is {gain:.3g} above that of {best.noise.disturbance_model})"
-        return text
+        best = max(
+            (f for f in self.fitted if f.unknown_count < self.chosen.unknown_count), key=lambda f: f.log_likelihood
+        )
+        text = "the likeliest disturbance is" if self.is_detected else "none is detected, the one estimated is"
+        gain = max(2.0 * (self.chosen.log_likelihood - best.log_likelihood), 0.0)
+        margin = f"twice its log-likelihood is {gain:.3g} above that of {best.noise.disturbance_model}"
+        return f"{text} {self.chosen.noise.disturbance_model} ({margin})"
+
+    @property
+    def is_detected(self) -> bool:
+        """Whether the disturbance explains more than chance would."""
+        none = self.fitted[0]
+        limit = critical_gain(self.chosen.unknown_count - none.unknown_count)
+        return 2.0 * (self.chosen.log_likelihood - none.log_likelihood) > limit
 
     def rows(self, *, is_used: bool) -> tuple[DisturbanceCandidate, ...]:
         """The table of candidates; is_used: whether the chosen one is behind the estimate."""
@@ -108,23 +114,24 @@ def choose_disturbance(
 
     Args:
         white: the optimum with white noise on the states.
-        needs_disturbance: whether a disturbance is used even where none is likelier (inputs follow outputs).
+        needs_disturbance: whether a disturbance is used even where none is likelier (inputs follow outputs); what the
+            likelihood would be without one is still in the table.
     """
     report = report_progress or (lambda _: None)
     count = len(white.problem.process)
-    fitted = [] if needs_disturbance else [FittedDisturbance(without_disturbance(white, evaluations, report), 0)]
-    fitted.append(FittedDisturbance(white, count))
+    fitted = [FittedDisturbance(without_disturbance(white, evaluations, report), 0), FittedDisturbance(white, count)]
     has_room = not white.output_error.extra_terms  # force points know the caller's parameters only
     if has_room:
         fitted += _fitted([gusts(white)], white, evaluations, report)
-    best = likeliest(fitted)
+    eligible = int(needs_disturbance)  # the first to choose from
+    best = likeliest(fitted[eligible:])
     if not best.noise.test.is_white:
         more = list(sensor_models(white))
         gusty = next((f for f in fitted if f.noise.disturbance_model.startswith("first-order Markov")), None)
         if gusty is not None:
             more.append(waves(white, gusty.noise, _peak_frequency(gusty.noise)))
         fitted += _fitted(more, white, evaluations, report)
-        best = likeliest(fitted)
+        best = likeliest(fitted[eligible:])
     return DisturbanceChoice(best, tuple(fitted))
 
 

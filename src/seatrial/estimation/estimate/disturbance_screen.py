@@ -14,9 +14,6 @@ from seatrial.core.values import Array
 HINT = 6.0
 """Twice the gain of log-likelihood in any channel from which on disturbances are fitted: 1 % by chance; chosen."""
 
-FAINT_HINT = 2.0
-"""The same where inputs follow outputs, so that an unmodelled disturbance would bias the coefficients; chosen."""
-
 # longest piece whose periodogram is taken, and shortest that counts, samples; chosen
 _LONGEST_PIECE, _SHORTEST_PIECE = 4096, 32
 # correlation times that are tried, samples, and how many; chosen
