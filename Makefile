@@ -21,6 +21,9 @@ export SEATRIAL_DATA := $(abspath $(CURDIR)/../shared/data)
 endif
 endif
 
+# As the command line: threads of the linear algebra would wait for one another.
+export OPENBLAS_NUM_THREADS ?= 1
+
 help:
 	@echo 'make demo   run the main job on a simulated trial series; the report lies in demo/'
 	@echo 'make test   the whole test suite'

@@ -151,6 +151,7 @@ def run(names: tuple[str, ...] = ("check", "identify", "simulate", "report")) ->
     lines = []
     with tempfile.TemporaryDirectory() as folder:
         environment = {**os.environ, "PYTHONPYCACHEPREFIX": f"{folder}/bytecode"}
+        environment["OPENBLAS_NUM_THREADS"] = "1"  # as the command line sets it, also for the floor
         environment.pop("PYTHONDONTWRITEBYTECODE", None)
         least = floor(environment)
         lines.append(Line("imports alone", least, "s"))

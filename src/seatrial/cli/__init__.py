@@ -1,6 +1,7 @@
 """The command line: parse, call, print, exit code (0 done, 2 input, 70 internal, 130 interrupted)."""
 
 import gc
+import os
 import sys
 
 from seatrial.cli.commands import app
@@ -9,12 +10,17 @@ INPUT_EXIT_CODE, INTERNAL_EXIT_CODE, INTERRUPT_EXIT_CODE = 2, 70, 130  # 70: EX_
 # new objects between two searches for unreachable cycles: most are modules and classes that live as long as the
 # process; chosen: Python's own 700 costs a sixteenth of the time of a command
 _COLLECTION_THRESHOLD = 50_000
+# matrices are small and work is shared out over runs: threads of the linear algebra would wait for one another, and
+# round differently from machine to machine; read when NumPy is first imported
+_ALGEBRA_THREADS = {"OPENBLAS_NUM_THREADS": "1"}
 _INTERRUPT_MESSAGE = "seatrial: interrupted; files are written whole or not at all"
 
 
 def main() -> None:
     """Run the command line; bad input is one line on standard error, and so is an error of the program itself."""
     gc.set_threshold(_COLLECTION_THRESHOLD)
+    for variable, threads in _ALGEBRA_THREADS.items():
+        os.environ.setdefault(variable, threads)
     try:
         app()
     except SystemExit as ending:

@@ -131,4 +131,6 @@ def _past(values: Array) -> Array:
 def _remainder(features: Array, target: Array) -> Array:
     """What features (n, k) do not explain of the target (n, m)."""
     unit = features / np.maximum(np.linalg.norm(features, axis=0), _SMALLEST)
-    return target - unit @ np.linalg.lstsq(unit, target, rcond=_SINGULAR)[0]
+    directions, triangle = np.linalg.qr(unit)
+    independent = directions[:, np.abs(np.diagonal(triangle)) > _SINGULAR]
+    return target - independent @ (independent.T @ target)

@@ -126,11 +126,11 @@ def _with_best_penalty(box: AutoRegression, train: Sequence[Record], weights: Ar
 
 def _ridge(table: Array, target: Array) -> Array:
     """Weights and intercept for each penalty, (p, k + 1, channels), of standardised features (rows, k)."""
-    left, size, right = np.linalg.svd(table, full_matrices=False)
+    size, axes = np.linalg.eigh(table.T @ table)
     mean = target.mean(axis=0)
-    projected = left.T @ (target - mean)
-    shrunk = size / (size**2 + _PENALTIES[:, None])
-    weights = np.einsum("ji,pj,jc->pic", right, shrunk, projected)
+    projected = axes.T @ (table.T @ (target - mean))
+    shrunk = 1.0 / (np.maximum(size, 0.0) + _PENALTIES[:, None])
+    weights = np.einsum("ij,pj,jc->pic", axes, shrunk, projected)
     return np.concatenate([weights, np.broadcast_to(mean, (len(weights), 1, len(mean)))], axis=1)
 
 
