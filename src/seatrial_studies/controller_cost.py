@@ -107,6 +107,11 @@ def controller_costs(
     return tuple(costs)
 
 
+def largest_excess(groups: Mapping[int, tuple[ControllerCost, ...]], selected: Callable[[str], bool]) -> float:
+    """Return the largest excess cost of the controllers whose method is selected."""
+    return max(cost.excess for costs in groups.values() for cost in costs if selected(cost.method))
+
+
 def controller_cost_table(
     title: str, groups: Mapping[str, tuple[ControllerCost, ...]], labels: ControlLabels, note: str
 ) -> Table:

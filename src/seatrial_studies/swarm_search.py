@@ -154,7 +154,7 @@ class RepeatedSearches:
     Attributes:
         points: what each run found, (runs, 8); evaluations: candidates that each judged, (runs,).
         seconds: time of one run, median.
-        trace: best point after each iteration of the first run, (iterations, 8).
+        traces: best point of each run after each iteration, (runs, iterations, 8).
         histories: best fitness of each run after each iteration, (runs, iterations).
         lower_bounds: lower ends of each run's box, by magnitude, (runs, 8).
     """
@@ -164,8 +164,13 @@ class RepeatedSearches:
     evaluations: Array
     lower_bounds: Array
     seconds: float
-    trace: Array
+    traces: Array
     histories: Array
+
+    @property
+    def trace(self) -> Array:
+        """Return the best point after each iteration of the first run, (iterations, 8)."""
+        return self.traces[0]
 
     @property
     def best_fitness(self) -> Array:
@@ -187,6 +192,11 @@ class RepeatedSearches:
         """Return the mean of the runs' relative errors, (8,)."""
         return np.mean(np.abs(self.errors), axis=0)
 
+    @property
+    def scatter(self) -> float:
+        """Return the standard deviation over the runs, relative to the truth, mean over the coefficients."""
+        return float(np.mean(np.std(self.errors, axis=0, ddof=1)))
+
 
 def repeat_searches(
     seas: list[SearchData],
@@ -206,4 +216,5 @@ def repeat_searches(
     points = np.array([f.solution.point for f in finished])
     evaluations = np.array([f.solution.evaluations for f in finished])
     histories = np.array([f.solution.history for f in finished])
-    return RepeatedSearches(truth, points, evaluations, lower, seconds, finished[0].trace, histories)
+    traces = np.array([f.trace for f in finished])
+    return RepeatedSearches(truth, points, evaluations, lower, seconds, traces, histories)

@@ -56,4 +56,5 @@ def test_a_study_ends_with_the_three_counts_of_its_checks(capsys: pytest.Capture
         "checks: 1 holding, 1 failing, 1 withdrawn",
     ]
     assert any(line.strip().startswith("FAILS") and line.endswith("few runs") for line in lines)
+    assert lines[1] == "Not all of them: the fit has two optima."
     assert any(". Setting: search box about the truth" in line for line in lines)

@@ -13,6 +13,7 @@ def fabricated_study(fit: Fit) -> Study:
         source="Somebody et al. 2022, doi 10.1000/xyz",
         title="A benchmark repeated",
         question="Does a second pair of hands reach the published numbers?",
+        answer=("Not all of them: the fit has two optima.",),
         claims=(
             Claim("The model predicts a turn within 5 %", Verdict.CONFIRMED, "advance −1.6 %"),
             Claim("The fit is unique", Verdict.REFUTED, "two optima, 3 % apart"),

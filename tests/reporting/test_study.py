@@ -16,6 +16,7 @@ def test_claims_and_checks_are_there(study_page: Path, study: Study) -> None:
 
 def test_outcome_names_what_fails(study: Study) -> None:
     assert outcome(study) == [
+        "Not all of them: the fit has two optima.",
         "4 claims judged: 1 confirmed, 1 holds in its own setting, 1 refuted, 1 unknowable.",
         "3 checks: 1 holding, 1 failing, 1 withdrawn. Failing: RMSE over bound.",
     ]

@@ -1,14 +1,18 @@
 """qi2025 repeated quickly: the print audited, claims with evidence, checks that can fail."""
 
+import re
+
 import numpy as np
 import pytest
 
-from seatrial.core.results import CheckStatus, Figure, Study, Verdict
+from seatrial.core.results import CheckStatus, Figure, Matrix, Study, Verdict
 from seatrial.numerics.optimise import HerdSettings, WildHorse, search
 from seatrial.physics.models.published import QI2025_HEADINGS
 from seatrial_studies import qi2025
 from seatrial_studies.controller_cost import TRUTH
 from seatrial_studies.pitch_control import CONTROLLER_COST_TITLE
+from seatrial_studies.published_ship import B53_NOTE
+from seatrial_studies.qi2025.ablation import HerdVariant
 from seatrial_studies.qi2025.audit import audit
 from seatrial_studies.qi2025.declarations import DECLARATIONS
 from seatrial_studies.qi2025.model_state_objective import model_state_objective
@@ -16,7 +20,7 @@ from seatrial_studies.qi2025.published import SearchAlgorithm, misprinted_errors
 from seatrial_studies.qi2025.reproduction import SearchSetting
 from seatrial_studies.qi2025.search_claims import judged_in_settings
 from seatrial_studies.qi2025.ten_runs import FAMILY_PROBABILITY, RUNS, TenRuns
-from seatrial_studies.qi2025.tracking import relative_error, tracked_states
+from seatrial_studies.qi2025.tracking import Tracking, relative_error, tracked_states
 from seatrial_studies.swarm_search import (
     centred_box,
     off_centre_box,
@@ -52,6 +56,8 @@ def test_the_speed_behind_the_tables_is_eighteen_knots_if_b53_is_negative() -> N
     assert audited.spectrum_heights == pytest.approx((3.42, 2.27), abs=0.005)
     assert audited.step_rank == 2
     assert audited.beyond_box[:2] == (14, 24)
+    assert list(audited.implied_frequencies.values()) == pytest.approx([1.57, 1.80, 1.86], abs=0.005)
+    assert audited.repetition == pytest.approx(84.1, abs=0.1)
     assert all(0.05 < change < 0.5 for pair in audited.sign_effect.values() for change in pair)
 
 
@@ -89,7 +95,7 @@ def test_the_papers_contrast_appears_only_in_its_own_setting(study: Study) -> No
         assert "±10 %" in claims[name].setting
     assert claims["PSO is less accurate than WHO, some of its errors near 60 %"].verdict is Verdict.REFUTED
     assert all(len(c.evidence) > 20 for c in study.claims)
-    assert len(study.claims) >= 19
+    assert len(study.claims) >= 26
 
 
 @pytest.mark.parametrize(
@@ -105,8 +111,48 @@ def test_a_verdict_follows_from_both_settings(own: bool, elsewhere: bool, verdic
     assert judged_in_settings("c", "e", holds_in_own=own, holds_elsewhere=elsewhere).verdict is verdict
 
 
+def test_the_page_answers_its_question_and_expands_its_abbreviations(study: Study) -> None:
+    text = " ".join(study.answer)
+    names = ("improved wild horse optimiser (IWHO)", "wild horse optimiser (WHO)", "particle swarm optimisation (PSO)")
+    for words in (*names, "no single setting", "costs at most 0.8 %"):
+        assert words in text
+    assert not re.search(r"\de[+-]\d", text + " ".join(c.evidence for c in study.claims))
+
+
+def test_classical_least_squares_refutes_that_many_coefficients_are_hard(study: Study) -> None:
+    (claim,) = [c for c in study.claims if c.claim.startswith("Classical methods")]
+    assert claim.verdict is Verdict.REFUTED and "at most 35 evaluations" in claim.evidence
+
+
+def test_tracking_is_compared_at_every_heading(study: Study) -> None:
+    (claim,) = [c for c in study.claims if "tracks the attitude" in c.claim]
+    assert all(f"at {h}°" in claim.evidence for h in (45, *QI2025_HEADINGS))
+    assert claim.verdict is not Verdict.CONFIRMED
+
+
+def test_a_model_is_the_most_accurate_only_if_it_beats_all_others_in_both_motions() -> None:
+    small, large = np.full((9, 2), 0.1), np.full((9, 2), 0.2)
+    errors = {(90, a): large for a in SearchAlgorithm} | {(90, SearchAlgorithm.IWHO): small}
+    assert Tracking(np.empty((0, 4)), errors, np.ones(2), np.ones(2)).is_most_accurate((90,))
+    errors[90, SearchAlgorithm.PSO] = np.column_stack([large[:, 0], small[:, 1]])
+    assert not Tracking(np.empty((0, 4)), errors, np.ones(2), np.ones(2)).is_most_accurate((90,))
+
+
+def test_each_addition_of_iwho_is_judged_and_mating_puts_values_in_the_middle(study: Study) -> None:
+    assert sum("improves the search" in c.claim for c in study.claims) == 3
+    (table,) = [t for t in study.tables if t.title == f"Parts of IWHO left out: {SearchSetting.PAPER.value}"]
+    at_centre = {str(row[0]): float(row[-1] or 0.0) for row in table.rows}
+    assert at_centre["IWHO complete"] > 10.0 and at_centre[HerdVariant.NO_MATING] == 0.0
+
+
+def test_b53_is_said_to_be_shown_by_magnitude(study: Study) -> None:
+    notes = {x.title: x.note for x in (*study.tables, *study.figures) if not isinstance(x, Matrix)}
+    for title in (*(f"Coefficients at {h}°" for h in QI2025_HEADINGS), "Figure 11: a53 and b53"):
+        assert B53_NOTE in notes[title]
+
+
 def test_particle_swarms_judge_more_candidates_than_herds(study: Study) -> None:
-    (claim,) = [c for c in study.claims if c.claim.startswith("PSO takes eight times")]
+    (claim,) = [c for c in study.claims if c.claim.startswith("PSO takes 8.2 times as long as WHO and 6.6 times")]
     assert claim.verdict is Verdict.REFUTED
     assert "PSO 15960, WHO 9990, IWHO 9990" in claim.evidence and "as many candidates" not in claim.evidence
 

@@ -283,10 +283,11 @@ def print_measures(
 
 
 def print_study(study: "Study") -> None:
-    """Print claims with their verdicts, then checks with their limits, then how many there are of each kind."""
+    """Print the question with its answer, claims with their verdicts, checks with their limits, and their numbers."""
     from seatrial.core.results import CheckStatus
     from seatrial.core.text.numbers import exact
 
+    print_lines(line for line in (study.question, *study.answer) if line)
     rows = []
     for claim in study.claims:
         setting = f". Setting: {claim.setting}" if claim.setting else ""

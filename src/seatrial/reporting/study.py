@@ -60,8 +60,8 @@ def html(study: Study) -> str:
 
 
 def outcome(study: Study) -> list[str]:
-    """Return how many claims have which verdict, how many checks hold, fail and are withdrawn, and which fail."""
-    sentences = []
+    """Return the answer to the question, then how many claims have which verdict, and how many checks hold or fail."""
+    sentences = list(study.answer)
     if study.claims:
         sentences.append(f"{counted(len(study.claims), 'claim').capitalize()} judged: {study.claim_counts}.")
     if study.checks:

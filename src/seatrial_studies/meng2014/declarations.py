@@ -16,8 +16,12 @@ _SYMBOLS = (
         "N/m, N/rad, N, N m/rad",
         "listed as unknown, then taken from theory",
     ),
-    Symbol("A, B, C, E; u, W", "matrices of the state equation, fin and wave inputs, eq. (3)", "SI", "eq. (3)"),
-    Symbol("N", "particles", "1", "60"),
+    Symbol("x1 … x4", "states: heave, its rate, pitch, its rate", "m, m/s, rad, rad/s", "eq. (2); x2, x4 lost"),
+    Symbol("E, A*, B*, C*", "matrices before the inversion of E", "SI", "eq. (3)"),
+    Symbol("A, B, C; u, W", "E⁻¹ A*, E⁻¹ B*, E⁻¹ C*; fin and wave inputs", "SI", "eq. (3); u = F_R, W = (F3 M5)"),
+    Symbol("para", "the unknowns", "SI", "twelve listed, eight searched"),
+    Symbol("N, D", "particles, unknowns", "1", "60, 8"),
+    Symbol("i, t", "number of a particle, iteration", "1", "1 to 60, 1 to 1000"),
     Symbol(
         "v, x, pbest, gbest",
         "velocity, place, own best and best of all, eqs. (4), (5)",
@@ -29,7 +33,14 @@ _SYMBOLS = (
     Symbol("w, w1, w2", "inertia weight and its ends, eq. (6)", "1", "w1 = 0.9, w2 = 0.4"),
     Symbol("Ex, En, He", "expectation, entropy, hyper-entropy of the cloud", "1", "5 w1 − w2, 5, 0.5"),
     Symbol("A, B", "thresholds of the ratio of fitness", "1", "0.15, 0.93"),
-    Symbol("p_m", "probability of mutation", "1", "0.2"),
+    Symbol(
+        "x_i, u_i, n, En′",
+        "cloud drop, its certainty, their number, drawn entropy",
+        "1",
+        "INPUT and OUTPUT of the cloud",
+    ),
+    Symbol("RANDN(a, b)", "normal random number of mean a and deviation b", "as a", "for En′ and x_i"),
+    Symbol("rand, p_m", "random number in (0, 1), probability of mutation", "1", "p_m = 0.2"),
     Symbol("Y, dataNum", "observed motions and their number, eq. (7)", "m, deg", "dataNum not printed"),
 )
 _ASSUMPTIONS = (
@@ -49,7 +60,12 @@ _ASSUMPTIONS = (
     Assumption("its spread", "lost", "En from 0.1 of the range to 0, He = En / 10"),
     Assumption("velocity limit", "not printed", "0.2 of the range"),
     Assumption(
-        "PSO compared with", "inertia not printed", "constriction: 0.7298, 1.49618, 1.49618; eq. (4) as printed beside"
+        "PSO compared with",
+        "inertia not printed",
+        "Clerc and Kennedy's constriction values 0.7298, 1.49618, 1.49618; eq. (4) as printed beside",
+    ),
+    Assumption(
+        "coefficients of the sea", "one set for each course", "constant in an irregular sea, as Qi et al. 2025 have it"
     ),
 )
 _DEVIATIONS = (

@@ -12,6 +12,9 @@ from seatrial_studies.meng2014.reproduction import HEADINGS, BoxPlacement, Cloud
 from seatrial_studies.output_error_fit import OutputErrorResults
 from seatrial_studies.swarm_search import RepeatedSearches
 
+# relative difference of coefficients up to which two swarms have found the same minimum; our choice
+SAME_POINT = 1e-3
+
 
 @dataclass(frozen=True, eq=False)
 class UndetectedChange:
@@ -60,7 +63,10 @@ class CloudSwarmEvidence:
 
     @property
     def noise_allowance(self) -> float:
-        """What noise excuses: a sum of squares of n residuals larger by one variance, its root by 1 / (2 n)."""
+        """Return the excess of fitness that the noise explains.
+
+        A sum of squares of n residuals larger by one variance has a root larger by 1 / (2 n).
+        """
         return 0.5 / self.reproduction.seas[HEADINGS[0]][0].measured.size
 
     def is_stuck(self, searches: dict[int, RepeatedSearches]) -> NDArray[np.bool_]:
@@ -78,6 +84,13 @@ class CloudSwarmEvidence:
     def output_error_ratio(self) -> float:
         """Return the root mean square of our errors in noise over their Cramer-Rao bound, all headings."""
         return float(np.sqrt(np.mean([self.output_error[h].error_over_bound ** 2 for h in HEADINGS])))
+
+    @property
+    def same_minimum_share(self) -> float:
+        """Return the share of runs off centre in which both swarms end at the same point."""
+        icpso, pso = (self.off_centre(a) for a in SwarmAlgorithm)
+        away = [np.abs(icpso[h].errors - pso[h].errors).max(axis=1) for h in HEADINGS]
+        return float(np.mean(np.array(away) < SAME_POINT))
 
     @property
     def swarm_ratio(self) -> float:

@@ -14,7 +14,7 @@ from seatrial_studies.swarm_search import STEP, RepeatedSearches, candidate_matr
 FIGURE_HEADING = 135
 # iterations of the figure of convergence: later nothing moves; our choice
 _DRAWN_ITERATIONS = 300
-# smallest excess that is drawn, a tenth of what noise excuses; our choice
+# smallest excess that is drawn, a tenth of what the noise explains; our choice
 _LEAST_EXCESS = 6e-5
 
 
@@ -38,7 +38,7 @@ def _curves(evidence: CloudSwarmEvidence) -> list[Figure]:
         (0, 100.0, "Figure 2: heave", "cm"),
         (1, float(np.degrees(1.0)), "Figure 3: pitch", "deg"),
     ):
-        measured = Curve("measured", samples, -factor * data.measured[:, j])
+        measured = Curve("truth with noise, simulated", samples, -factor * data.measured[:, j])
         identified = Curve("identified", samples, -factor * y[:, j])
         made.append(Figure(title, "sample", unit, (measured, identified), note))
     return made

@@ -4,6 +4,7 @@ import time
 
 from seatrial.core.results import Study
 from seatrial.core.values import ProgressReporter, versions
+from seatrial_studies.meng2014.answer import answer
 from seatrial_studies.meng2014.cloud_weight import cloud_weight
 from seatrial_studies.meng2014.controllers import controllers
 from seatrial_studies.meng2014.evidence import CloudSwarmEvidence
@@ -40,6 +41,7 @@ def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -
         source=SOURCE,
         title="A cloud particle swarm and heave-pitch coefficients: a published search repeated",
         question=QUESTION,
+        answer=answer(evidence),
         claims=claims(evidence),
         checks=checks(evidence),
         tables=tables(evidence),

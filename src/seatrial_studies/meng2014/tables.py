@@ -8,6 +8,7 @@ from seatrial_studies.meng2014.declarations import declaration_tables
 from seatrial_studies.meng2014.evidence import CloudSwarmEvidence
 from seatrial_studies.meng2014.reproduction import HEADINGS, BoxPlacement, CloudVariant, SwarmAlgorithm
 from seatrial_studies.pitch_control import pitch_controller_cost_table
+from seatrial_studies.published_ship import B53_NOTE
 from seatrial_studies.swarm_search import RepeatedSearches
 
 
@@ -40,8 +41,8 @@ def _convergence(evidence: CloudSwarmEvidence) -> Table:
         rows.append((name, *cells, int(np.sum(~np.isfinite(needed))), error))
     header = ("", *(f"{h}\u00b0" for h in HEADINGS), f"runs of {runs} that never do", "mean error %")
     note = (
-        "Iterations until the better end of both swarms in the same sea and box is reached within what noise excuses, "
-        "median over the runs, a dash where it is never; box \u00b150 % off centre."
+        "Iterations until the better end of both swarms in the same sea and box is reached within what the noise "
+        "explains, median over the runs, a dash where it is never; box \u00b150 % off centre."
     )
     return Table("How fast the swarms converge", header, tuple(rows), note)
 
@@ -72,8 +73,16 @@ def _coefficients(evidence: CloudSwarmEvidence, heading: int) -> Table:
         100.0 * np.abs(own.noisy_errors).mean(axis=0), 100.0 * own.cramer_rao_bound.mean(axis=0),
     ]  # fmt: skip
     rows = tuple((name, *(float(c[k]) for c in columns)) for k, name in enumerate(COEFFICIENTS))
-    header = ("", "truth", "ICPSO, mean", "ICPSO error %", "in \u00b110 % box, %", "ours, %", "bound, %")
-    note = "Mean over runs of the errors of single runs; box \u00b150 % off centre unless stated. b53 is negative."
+    header = (
+        "",
+        "truth",
+        "ICPSO, mean",
+        "ICPSO error %",
+        "in \u00b110 % box, %",
+        "ours, %",
+        "Cramér-Rao standard deviation, %",
+    )
+    note = f"Mean over runs of the errors of single runs; box \u00b150 % off centre unless stated. {B53_NOTE}"
     if heading < 90:
         note += " Coefficients assumed: those of 90\u00b0."
     return Table(f"Coefficients at {heading}\u00b0", header, rows, note)
@@ -92,7 +101,8 @@ def _means(evidence: CloudSwarmEvidence) -> Table:
     note = (
         f"Over coefficients and runs, after {evidence.reproduction.iterations} iterations of 60; box "
         "\u00b150 % off centre or "
-        "\u00b110 % about the truth, which keeps what noise moves from going further."
+        "\u00b110 % about the truth, which keeps what noise moves from going further. Where the swarms agree, both end "
+        "in the same minimum, which the noise decides."
     )
     return Table("Mean errors, %", header, rows, note)
 

@@ -8,7 +8,7 @@ import numpy as np
 from seatrial.core.values import Array
 from seatrial.physics.hydro import G, encounter_frequency
 from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
-from seatrial.physics.sea import ittc, motion_statistics
+from seatrial.physics.sea import ittc, motion_statistics, realise
 from seatrial.physics.simulate import frequency_response, linear_system, trajectories
 from seatrial_studies.published_ship import HEADINGS, SIGNIFICANT_HEIGHT, SPEED
 from seatrial_studies.qi2025.published import SearchAlgorithm, recomputed_error, true_values
@@ -25,6 +25,10 @@ class WildHorseAudit:
 
     Attributes:
         implied_speeds: heading -> (b35 + |b53|) / (2 a33) and (b35 - |b53|) / (2 a33), m/s.
+        implied_frequencies: heading -> frequency of encounter [rad/s] that the tables' coefficients have been computed
+            for, sqrt(2 U b33 / (a53 - a35)) with |b53|'s sign: strip theory adds +- U b33 / w^2 to a35 and a53.
+        encounter_ranges: heading -> least and largest frequency of encounter [rad/s] of the 30 harmonics.
+        repetition: s after which the sea at 90 degrees repeats itself: 2 pi over the interval of the harmonics.
         sign_effect: heading -> rms change of heave and pitch by the printed sign of b53, over their rms.
         saturated_values: values of WHO at 90 and 135 degrees between -10 and -9.3 %, and their number.
         median_extremes: largest heave [m] and pitch [deg] within 200 s at 45 degrees, median over seas.
@@ -36,6 +40,9 @@ class WildHorseAudit:
     """
 
     implied_speeds: dict[int, tuple[float, float]]
+    implied_frequencies: dict[int, float]
+    encounter_ranges: dict[int, tuple[float, float]]
+    repetition: float
     sign_effect: dict[int, tuple[float, float]]
     saturated_values: tuple[int, int]
     median_extremes: tuple[float, float]
@@ -52,6 +59,9 @@ def audit(seas: list[SearchData], seed: int) -> WildHorseAudit:
     heave, pitch = _statistics_at_45()
     return WildHorseAudit(
         {h: _implied_speeds(h) for h in HEADINGS},
+        {h: _implied_frequency(h) for h in HEADINGS},
+        {h: _encounter_range(h) for h in HEADINGS},
+        _repetition(),
         {h: _sign_effect(h, seed) for h in HEADINGS},
         _saturation(),
         (float(np.median(tops[:, 0])), math.degrees(float(np.median(tops[:, 1])))),
@@ -66,6 +76,26 @@ def audit(seas: list[SearchData], seed: int) -> WildHorseAudit:
 def _implied_speeds(heading: int) -> tuple[float, float]:
     a33, b35, b53 = (true_values(heading)[COEFFICIENTS.index(n)] for n in ("a33", "b35", "b53"))
     return float((b35 + b53) / (2.0 * a33)), float((b35 - b53) / (2.0 * a33))
+
+
+def _implied_frequency(heading: int) -> float:
+    """Return w from a53 - a35 = 2 U b33 / w^2 (strip theory, Salvesen, Tuck & Faltinsen 1970, without end terms)."""
+    a35, a53, b33 = (true_values(heading)[COEFFICIENTS.index(n)] for n in ("a35", "a53", "b33"))
+    return float(np.sqrt(2.0 * SPEED * b33 / (a53 - a35)))
+
+
+def _harmonics() -> Array:
+    """Frequencies [rad/s] of the 30 harmonics, equal intervals over the band."""
+    return realise(ittc(SIGNIFICANT_HEIGHT), SPEED, 0.0, np.random.default_rng(0)).omega
+
+
+def _encounter_range(heading: int) -> tuple[float, float]:
+    omega_e = np.abs(encounter_frequency(_harmonics(), SPEED, math.radians(heading)))
+    return float(omega_e.min()), float(omega_e.max())
+
+
+def _repetition() -> float:
+    return float(2.0 * np.pi / np.diff(_harmonics())[0])
 
 
 def _sign_effect(heading: int, seed: int) -> tuple[float, float]:

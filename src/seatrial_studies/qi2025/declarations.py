@@ -10,6 +10,9 @@ from seatrial_studies.qi2025.reproduction import (
     WildHorseReproduction,
 )
 
+FREQUENCY_TITLE = "Frequencies of encounter"
+"""Title of the table on what constant coefficients and equal intervals mean."""
+
 _SYMBOLS = (
     Symbol("z, θ", "heave and pitch", "m, rad", "z up, θ bow down in figures; the model has z down, θ bow up"),
     Symbol("m, I5", "mass and pitch moment of inertia", "kg, kg m²", "table 1"),
@@ -18,16 +21,37 @@ _SYMBOLS = (
     Symbol("c33, c35, c53, c55", "restoring coefficients", "N/m, N/rad, N, N m/rad", "table 1, known to the search"),
     Symbol("F3, M5", "force and moment of the waves, eq. (14)", "N, N m", "30 harmonics, known to the search"),
     Symbol("X, Y, U, V", "states, motions, forces, measurement noise", "SI", "eqs. (2) to (7)"),
+    Symbol("F3r, F3i, M5r, M5i", "parts of force and moment in and out of phase", "N/m, N", "eq. (14); not printed"),
+    Symbol("M, A_M, B_M", "matrices of eqs. (3) to (5)", "SI", "A = M⁻¹ A_M, B = M⁻¹ B_M"),
     Symbol("A, B, H; Φ, Ψ", "matrices in continuous time; over a sample, eq. (12)", "SI", "zero-order hold, eq. (8)"),
+    Symbol(
+        "x(k), y(k), t, t0, τ", "state and output at sample k; times of eqs. (8) to (11)", "SI, s", "eqs. (8) to (12)"
+    ),
     Symbol("T_S", "sampling interval, one iteration", "s", "0.5"),
     Symbol("S_ξ, A, B, h1/3", "spectrum of the waves, eq. (13)", "m² s, m²/s⁴, 1/s⁴, m", "h1/3 = 2.27"),
     Symbol("ω, Δω, ξ_ak", "frequency of a harmonic, interval, amplitude", "rad/s, rad/s, m", "√(2 S_ξ Δω)"),
+    Symbol("g", "acceleration of gravity", "m/s²", "9.81"),
+    Symbol("h, rr, ss, v", "draught, equivalent radius and section, speed", "m, m, m², kn", "table 1"),
     Symbol("N, P_S, P_C, T_max", "population, stallions, crossover, iterations", "1", "40, 0.25, 0.13, 200"),
+    Symbol("G, T", "groups N P_S; iteration, eq. (17)", "1", "10; 1 to 200"),
+    Symbol("x_G, x̄_G", "place of a foal of group G, and its new one", "as the unknowns", "eqs. (15), (18), (20)"),
+    Symbol("Crossover, Mean", "mating: mean of two foals of other groups", "as the unknowns", "eq. (18)"),
+    Symbol("R1, R3; R2", "random vectors, a random number, in [0, 1]", "1", "eq. (16)"),
+    Symbol("R_w", "random number in [0, 1], which line of eq. (19) or (25)", "1", "0.5 divides them"),
+    Symbol("Q1, Q2", "random numbers in [−1, 1]", "1", "eqs. (24), (25)"),
+    Symbol("f_i, f_min, f_avg", "fitness of a stallion, least and mean of all", "as F", "eq. (22)"),
+    Symbol("ω of eqs. (22) to (25)", "dynamic inertia weight", "1", "0.1 to 0.9"),
+    Symbol("rand", "random number in [0, 1]", "1", "eq. (21)"),
     Symbol("ω_min, ω_max", "limits of the dynamic inertia weight, eq. (22)", "1", "0.1, 0.9"),
     Symbol("Z, R, IDX, P, FT", "adaptive parameter of a stride and what it is drawn from", "1", "eqs. (16), (17)"),
     Symbol("N_S, WH", "place of a stallion, of the best one (waterhole)", "as the unknowns", "eqs. (15), (19)"),
     Symbol("ub, lb", "bounds of the search", "as the unknowns", "not printed"),
     Symbol("ω, c1, c2, r1, r2", "particle swarm, eq. (29)", "1", "not printed"),
+    Symbol("v_ij, x_ij, P_ij, G_j", "velocity, place, own best and best of all of PSO", "as the unknowns", "eq. (29)"),
+    Symbol("N of eqs. (26) to (28)", "observations; eq. (28) has the two motions of one sample", "1", "2"),
+    Symbol("θ of eqs. (26) to (28)", "the unknowns; in (28) also pitch", "", "one letter for both"),
+    Symbol("y_s, y_m", "motions by the theoretical and by the identified values", "m and an angle", "eqs. (26), (27)"),
+    Symbol("z0, θ0; z1, θ1", "heave and pitch, theoretical and identified", "m and an angle", "eq. (28)"),
     Symbol(
         "J, ε, F", "error functional, output error, fitness, eqs. (26) to (28)", "m and an angle", "unit not printed"
     ),
@@ -36,7 +60,12 @@ _ASSUMPTIONS = (
     Assumption(
         "box of the searches", "not printed", "±10 % about the truth, as WHO's clipped values suggest; others beside it"
     ),
-    Assumption("ω, c1, c2 of PSO", "not printed", "0.7298, 1.49618, 1.49618 (constriction), clipped to the box"),
+    Assumption("ω, c1, c2 of PSO", "not printed",
+               "Clerc and Kennedy's constriction values 0.7298, 1.49618, 1.49618; clipped to the box"),
+    Assumption("which foals mate, eq. (18)", "two of other groups",
+               "the worst of two other groups, as in the program of WHO's authors"),
+    Assumption("coefficients of the sea", "one set for each heading",
+               f"as printed, constant in an irregular sea; what that means: '{FREQUENCY_TITLE}'"),
     Assumption(
         "state a candidate steps from", "not printed", "the true previous one (generous); the model's own beside it"
     ),
@@ -45,12 +74,14 @@ _ASSUMPTIONS = (
     Assumption("coefficients at 45°", "not printed", "those of 90°"),
     Assumption("forces of the waves", "not printed", "box-shaped hull in closed form, Jensen, Mansour & Olsen 2004"),
     Assumption("hull behind table 1", "half length 30 m, section 16.2 m²", "L 60 m, B 16.2/2.27 = 7.14 m"),
-    Assumption("phases of the harmonics", "not printed", "random, one sea a run; 30 equal intervals of frequency"),
+    Assumption("phases of the harmonics", "not printed", "random, one sea a run"),
+    Assumption("spacing of the harmonics", "30 equal intervals",
+               f"as printed; at 90° the sea then repeats itself within a record: '{FREQUENCY_TITLE}'"),
     Assumption("band of the harmonics", "not printed", "0.1 to 99 % of the energy, 0.544 to 2.78 rad/s"),
     Assumption("measurement noise", "V in eq. (7), no number", "none; 1 cm and 0.02° for our fit beside it"),
     Assumption("state at the start", "not printed", "at rest"),
     Assumption("after the last iteration", "figures run to 200 s, the search ends at 100 s", "the last point is kept"),
-)
+)  # fmt: skip
 _DEVIATIONS = (
     Deviation("tables 2 to 4", "b53 positive", "negative", "(b35 + |b53|) / (2 a33) is the speed only then"),
     Deviation("eq. (14)", "harmonics at ω", "at the frequency of encounter ω − ω² U cos β / g", "the ship has way on"),

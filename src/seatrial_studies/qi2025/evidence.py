@@ -4,10 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from seatrial.core.text import significant
 from seatrial.core.values import Array
 from seatrial_studies.controller_cost import ControllerCost
 from seatrial_studies.output_error_fit import OutputErrorResults
 from seatrial_studies.published_ship import HEADINGS
+from seatrial_studies.qi2025.ablation import Ablation
 from seatrial_studies.qi2025.audit import WildHorseAudit
 from seatrial_studies.qi2025.centre_bias import CentreBias
 from seatrial_studies.qi2025.hold_bias import HoldBias
@@ -25,7 +27,8 @@ SATURATED_FROM_PERCENT = -9.3
 class WildHorseEvidence:
     """Searches, the print worked through, our fits and the cost of a hold by heading, the bias to the middle.
 
-    Also the model carried on while its coefficients evolve, and controllers tuned on coefficients, by heading.
+    Also the model carried on while its coefficients evolve, IWHO with parts left out, and controllers tuned on
+    coefficients, by heading.
     """
 
     reproduction: WildHorseReproduction
@@ -34,6 +37,7 @@ class WildHorseEvidence:
     hold_bias: dict[int, HoldBias]
     centre_bias: CentreBias
     tracking: Tracking
+    ablation: Ablation
     controllers: dict[int, tuple[ControllerCost, ...]]
 
     def errors_of_mean(self, setting: SearchSetting, algorithm: SearchAlgorithm) -> list[float]:
@@ -45,6 +49,10 @@ class WildHorseEvidence:
     def single_run_errors(self, setting: SearchSetting, algorithm: SearchAlgorithm) -> list[float]:
         """Return the mean error of single runs at each heading, per cent."""
         return [100.0 * float(np.mean(self.reproduction.searches[setting, h, algorithm].mean_error)) for h in HEADINGS]
+
+    def scatter(self, setting: SearchSetting, algorithm: SearchAlgorithm) -> list[float]:
+        """Return the standard deviation over the runs at each heading, per cent, mean over the coefficients."""
+        return [100.0 * self.reproduction.searches[setting, h, algorithm].scatter for h in HEADINGS]
 
     def share_at_lower_bound(self, setting: SearchSetting, algorithm: SearchAlgorithm) -> float:
         """Share of the values of all runs that lie on the lower bound."""
@@ -67,6 +75,11 @@ class WildHorseEvidence:
         return float(np.mean([self.reproduction.searches[SearchSetting.PAPER, h, algorithm].seconds for h in HEADINGS]))
 
     @property
+    def bound_ratio(self) -> float:
+        """Return the root mean square of our errors in noise over their Cramer-Rao bound, all headings."""
+        return float(np.sqrt(np.mean([o.error_over_bound**2 for o in self.output_error.values()])))
+
+    @property
     def output_error_seconds(self) -> float:
         """Time of our noise-free fit, mean over the headings."""
         return float(np.mean([o.seconds for o in self.output_error.values()]))
@@ -80,3 +93,8 @@ def count_below_printed(errors: Array, heading: int) -> int:
 def percent_text(values: list[float]) -> str:
     """Numbers at the three headings."""
     return "/".join(f"{v:.2f}" for v in values) + " %"
+
+
+def range_text(values: list[float]) -> str:
+    """Return the least and the largest number, two digits each."""
+    return f"{significant(min(values), 2)} to {significant(max(values), 2)} %"

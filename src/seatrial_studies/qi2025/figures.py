@@ -4,6 +4,7 @@ import numpy as np
 
 from seatrial.core.results import Curve, Figure
 from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
+from seatrial_studies.published_ship import B53_NOTE
 from seatrial_studies.qi2025.published import FIGURE_5_TOP, FIGURES_6_7, REBOUND_ITERATIONS, SearchAlgorithm
 from seatrial_studies.qi2025.reproduction import FIGURE_HEADING, ITERATIONS, SearchSetting, WildHorseReproduction
 from seatrial_studies.qi2025.tracking import Tracking
@@ -109,6 +110,7 @@ def _histories(reproduction: WildHorseReproduction) -> list[Figure]:
         "IWHO's first run at 45°, box ±10 % about the truth; coefficients of 90° assumed. The search ends at "
         f"{ITERATIONS * STEP:.0f} s, the figures of the paper at {time[-1]:.0f} s: the last point is kept."
     )
+    errors = np.abs(found.errors[0])
     figures_ = []
     for number, (pair, (units, size, power)) in enumerate(_HISTORY_PAIRS.items(), start=8):
         curves = []
@@ -117,5 +119,7 @@ def _histories(reproduction: WildHorseReproduction) -> list[Figure]:
             curves.append(Curve(f"{name}, {power} {unit}", time, rows[:, k] / size))
             curves.append(Curve(f"{name}, theory", time, np.full(len(time), abs(found.truth[k]) / size)))
         label = ", ".join(f"{power} {unit}" for unit in units)
-        figures_.append(Figure(f"Figure {number}: {pair[0]} and {pair[1]}", TIME_LABEL, label, tuple(curves), note))
+        ends = " and ".join(f"{name} {100.0 * errors[COEFFICIENTS.index(name)]:.1f} %" for name in pair)
+        said = f"{note} Then {ends} off." + (f" {B53_NOTE}" if "b53" in pair else "")
+        figures_.append(Figure(f"Figure {number}: {pair[0]} and {pair[1]}", TIME_LABEL, label, tuple(curves), said))
     return figures_

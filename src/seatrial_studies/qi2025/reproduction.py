@@ -41,6 +41,8 @@ from seatrial_studies.swarm_search import (
 ITERATIONS, QUICK_RUNS = 200, 5
 # how often the ten runs are made again, for the scatter of what they give
 TEN_RUN_REPEATS, QUICK_TEN_RUN_REPEATS = 10, 3
+# runs of IWHO with parts left out, at each heading; our choice
+ABLATION_RUNS, QUICK_ABLATION_RUNS = 10, 2
 # the heading of the paper's figures, whose coefficients it does not print
 FIGURE_HEADING = 45
 # half widths of the search box, shares of the truth
@@ -92,7 +94,8 @@ def optimisers(
 class WildHorseReproduction:
     """Searches by setting, heading and algorithm, and the seas they met, by heading.
 
-    At 45 degrees one run of the settings of the figures, with the coefficients of 90 degrees, assumed.
+    At 45 degrees the settings of the figures with the coefficients of 90 degrees, assumed: all runs in the paper's
+    setting, else one.
     `ten_runs`: by heading, IWHO's runs in the paper's setting, the ten of the tables and as many tens more.
     """
 
@@ -125,12 +128,20 @@ def reproduce_searches(*, quick: bool, seed: int, report_progress: ProgressRepor
         if report_progress and met:
             report_progress(f"searches: {setting.value}")
         for heading in met:
-            runs = 1 if heading == FIGURE_HEADING else QUICK_RUNS if quick and setting not in TEN_RUN_SETTINGS else RUNS
-            found |= _search_setting(setting, heading, seas[heading][:runs], seed)
+            found |= _search_setting(setting, heading, seas[heading][: _run_count(setting, heading, quick)], seed)
     if report_progress:
         report_progress("the ten runs again")
     again = {h: _repeat_ten_runs(h, QUICK_TEN_RUN_REPEATS if quick else TEN_RUN_REPEATS, seed) for h in HEADINGS}
     return WildHorseReproduction(found, seas, again, RUNS, quick)
+
+
+def _run_count(setting: SearchSetting, heading: int, quick: bool) -> int:
+    """Runs of a setting; at the heading of the figures one, but as many as elsewhere in the paper's setting."""
+    if setting is SearchSetting.PAPER:
+        return RUNS
+    if heading == FIGURE_HEADING:
+        return 1
+    return QUICK_RUNS if quick and setting not in TEN_RUN_SETTINGS else RUNS
 
 
 def _repeat_ten_runs(heading: int, count: int, seed: int) -> TenRuns:
@@ -147,15 +158,20 @@ def _search_setting(
     seed: int,
     algorithms: tuple[SearchAlgorithm, ...] = tuple(SearchAlgorithm),
 ) -> dict[tuple[SearchSetting, int, SearchAlgorithm], RepeatedSearches]:
-    boxes = _boxes(setting, seas, seed)
     memory = FitnessMemory.KEEP if setting is SearchSetting.REMEMBERED else FitnessMemory.RE_EVALUATE
     variant = StrideVariant.REFERENCE if setting is SearchSetting.REFERENCE else StrideVariant.PAPER
-    judge = partial(_objective, setting)
     return {
-        (setting, heading, algorithm): repeat_searches(seas, boxes, made, judge, seed)
-        for algorithm, made in optimisers(ITERATIONS, memory, variant).items()
+        (setting, heading, algorithm): repeat_in_setting(setting, seas, make, seed)
+        for algorithm, make in optimisers(ITERATIONS, memory, variant).items()
         if algorithm in algorithms
     }
+
+
+def repeat_in_setting(
+    setting: SearchSetting, seas: list[SearchData], make: OptimiserFactory, seed: int
+) -> RepeatedSearches:
+    """Return one run in each sea, in the setting's box and by its fitness."""
+    return repeat_searches(seas, _boxes(setting, seas, seed), make, partial(_objective, setting), seed)
 
 
 def _boxes(setting: SearchSetting, seas: list[SearchData], seed: int) -> list[Box]:

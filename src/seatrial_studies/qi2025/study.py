@@ -6,6 +6,8 @@ from seatrial.core.results import Study
 from seatrial.core.values import ProgressReporter, versions
 from seatrial_studies.output_error_fit import output_error_results
 from seatrial_studies.published_ship import HEADINGS
+from seatrial_studies.qi2025.ablation import ablation
+from seatrial_studies.qi2025.answer import answer
 from seatrial_studies.qi2025.audit import audit
 from seatrial_studies.qi2025.centre_bias import centre_bias
 from seatrial_studies.qi2025.controllers import controllers
@@ -13,7 +15,12 @@ from seatrial_studies.qi2025.evidence import WildHorseEvidence
 from seatrial_studies.qi2025.figures import figures
 from seatrial_studies.qi2025.hold_bias import hold_bias
 from seatrial_studies.qi2025.published import SOURCE
-from seatrial_studies.qi2025.reproduction import FIGURE_HEADING, reproduce_searches
+from seatrial_studies.qi2025.reproduction import (
+    ABLATION_RUNS,
+    FIGURE_HEADING,
+    QUICK_ABLATION_RUNS,
+    reproduce_searches,
+)
 from seatrial_studies.qi2025.tables import tables
 from seatrial_studies.qi2025.tracking import track
 from seatrial_studies.qi2025.verdicts import checks, claims
@@ -31,6 +38,8 @@ def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -
     began = time.perf_counter()
     report = report_progress or (lambda _: None)
     reproduction = reproduce_searches(quick=quick, seed=seed, report_progress=report)
+    report("IWHO with parts left out")
+    ablated = ablation(reproduction, seed, QUICK_ABLATION_RUNS if quick else ABLATION_RUNS)
     report("audit and our own fits")
     fits = {h: output_error_results(reproduction.seas[h], seed) for h in HEADINGS}
     audited, held, centred = (
@@ -38,13 +47,15 @@ def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -
     )  # fmt: skip
     report("controllers tuned on each method's coefficients")
     evidence = WildHorseEvidence(
-        reproduction, audited, fits, held, centred, track(reproduction, seed), controllers(reproduction, fits, seed)
-    )
+        reproduction, audited, fits, held, centred, track(reproduction, seed), ablated,
+        controllers(reproduction, fits, seed),
+    )  # fmt: skip
     return Study(
         name="qi2025",
         source=SOURCE,
         title="Wild horses and heave-pitch coefficients: a published search repeated",
         question=QUESTION,
+        answer=answer(evidence),
         claims=claims(evidence),
         checks=checks(evidence),
         tables=tables(evidence),

@@ -47,3 +47,9 @@ def test_a_withdrawn_check_stays_listed_with_its_derivation() -> None:
         failing.withdrawn("")
     study = Study("s", "paper", (), (failing, withdrawn, Check.at_most("c", 0.0, 1.0)))
     assert study.check_counts == "1 holding, 1 failing, 1 withdrawn" and study.claim_counts == ""
+
+
+def test_counts_of_claims_are_grammatical() -> None:
+    assert Verdict.HOLDS_IN_OWN_SETTING.counted(1) == "1 holds in its own setting"
+    assert Verdict.HOLDS_IN_OWN_SETTING.counted(6) == "6 hold in their own setting"
+    assert Verdict.REFUTED.counted(2) == "2 refuted"

@@ -120,6 +120,12 @@ class Verdict(StrEnum):
     REFUTED = "refuted"
     UNKNOWABLE = "unknowable"
 
+    def counted(self, number: int) -> str:
+        """Return so many claims with this verdict: ``1 holds in its own setting``, ``6 hold in their own setting``."""
+        if self is Verdict.HOLDS_IN_OWN_SETTING and number != 1:
+            return f"{number} hold in their own setting"
+        return f"{number} {self}"
+
 
 @dataclass(frozen=True)
 class Claim:
@@ -216,6 +222,9 @@ class Study(Summarised):
     elapsed_s: float = 0.0
     title: Annotated[str, Field(description="heads the page")] = ""
     question: str = ""
+    answer: Annotated[
+        tuple[str, ...], Field(description="sentences that answer the question, the most important first; empty: none")
+    ] = ()
     kind: Annotated[str, Field(description="stands above the title")] = "A published study repeated"
     tables: tuple[Table, ...] = ()
     figures: tuple[Figure | Bars | Matrix, ...] = ()
@@ -234,7 +243,7 @@ class Study(Summarised):
     def claim_counts(self) -> str:
         """Return how many claims have which verdict, such as ``2 confirmed, 1 unknowable``."""
         counts = Counter(claim.verdict for claim in self.claims)
-        return ", ".join(f"{counts[verdict]} {verdict}" for verdict in Verdict if counts[verdict])
+        return ", ".join(verdict.counted(counts[verdict]) for verdict in Verdict if counts[verdict])
 
     @property
     def check_counts(self) -> str:

@@ -175,12 +175,15 @@ class ImprovedHerdSettings(HerdSettings):
 
     Attributes:
         scatter: probability that a horse is drawn anew in the whole box (eq. 21).
-        omega_min, omega_max: limits of the waterhole's weight (eq. 22).
+        omega_min, omega_max: limits of the waterhole's weight (eq. 22); both 1: eq. 23 is the first line of eq. 19.
+        has_competition: whether leaders compete for the waterhole (eq. 24); else they move by the second line of
+            eq. 19.
     """
 
     scatter: float = 0.05
     omega_min: float = 0.1
     omega_max: float = 0.9
+    has_competition: bool = True
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -210,6 +213,8 @@ class ImprovedWildHorse(WildHorse):
         q1, q2 = self._generator.uniform(-1, 1, (2, len(stride), 1))
         near = stride * (waterhole - self._leaders) + self._waterhole_weights()[:, None] * waterhole  # eq. 23
         rival = waterhole - z * (self._leaders * q1 - self._leaders * q2)  # eq. 24
+        if not self.improved_settings.has_competition:
+            rival = stride * (waterhole - self._leaders) - waterhole  # eq. 19, second line
         return np.where(ahead, near, rival)  # eq. 25
 
     def _waterhole_weights(self) -> Array:
