@@ -23,6 +23,9 @@ def test_intervals_floor_extrapolation_and_what_cannot_be_told_are_printed(capsy
     assert "the records determine about 6 of 11 free coefficients" in text
     assert fit.identifiability is not None and fit.identifiability.structural[0].text in text
     assert fit.noise_model is not None and fit.noise_model.text in text
+    ahead = "samples ahead 1 (0.2 s) to 10 (2 s), held-out runs, rms: r 0.012 to 0.115 deg/s, psi 0.012 to 0.115 deg"
+    assert ahead in text
+    assert "frequency response, model inside the records' 95 % region: v/delta" in text
 
 
 def test_what_was_not_examined_is_not_printed(capsys: pytest.CaptureFixture[str]) -> None:

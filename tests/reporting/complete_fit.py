@@ -16,6 +16,7 @@ from seatrial.core.results import (
     Extrapolation,
     Fit,
     Identifiability,
+    KStepErrors,
     Measure,
     NoiseModel,
     OpenLoopScores,
@@ -26,6 +27,7 @@ from seatrial.core.results import (
     Symmetry,
 )
 from seatrial.core.values import Finding, Parameter, Prior, Severity, Ship
+from seatrial.estimation.information.frequency_response import frequency_responses
 from seatrial.physics.models.published import YASUKAWA, kvlcc2
 
 
@@ -38,7 +40,19 @@ def complete_fit(fit: Fit) -> Fit:
         noise_model=disturbance(),
         candidate_models=family(),
         baselines=baselines(fit),
-    )
+        k_step_errors=tuple(k_step_errors(c, unit, role) for c, unit in (("r", "rad/s"), ("psi", "rad"))
+                            for role in ("training", "validation")),
+        frequency_responses=frequency_responses(fit.model, fit.predictions, ("u", "v", "r", "psi", "x0", "y0")),
+    )  # fmt: skip
+
+
+def k_step_errors(channel: str, unit: str, role: str) -> KStepErrors:
+    """Errors that grow with the horizon, the held-out runs' up to a horizon less."""
+    steps = (1, 3, 10, 30)[: 4 if role == "training" else 3]
+    seconds = np.array([0.2 * k for k in steps])
+    rms, held = (tuple((size * (0.01 + seconds)).tolist()) for size in (1e-3, 2e-3))
+    return KStepErrors(channel, unit, role, steps, tuple(seconds.tolist()), rms, (99.0,) * len(steps), held,
+                       (400,) * len(steps))  # fmt: skip
 
 
 def tanker() -> Fit:

@@ -100,6 +100,7 @@ def identify(
     compare: bool = False,
     method: str | None = None,
     windows: str = "",
+    horizons: str = "",
 ) -> "Fit":
     """Estimate the trial's model from its training runs and predict its validation runs, with intervals.
 
@@ -114,6 +115,8 @@ def identify(
             one such as ``iwho`` or ``svr``, which is compared with the package's own estimate.
         windows: lengths of windows in which validation runs are predicted as well, in seconds or ship lengths:
             ``10s,5L``; empty: chosen by the length of each run.
+        horizons: how far ahead the fit's Kalman filter predicts from every moment, in samples or seconds:
+            ``1,10,5s``; empty: chosen by the length of the runs.
 
     Raises:
         InputError: the records do not pass the checks, show no excitation, or cannot distinguish the parameters; an
@@ -135,6 +138,7 @@ def identify(
         choose=choose,
         compare=compare,
         windows=windows,
+        horizons=horizons,
     )
 
 

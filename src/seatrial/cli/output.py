@@ -89,6 +89,8 @@ def print_fit(fit: "Fit") -> None:
         _print_method_comparison(fit, fit.reference)
     for p in fit.validation:
         _print_prediction(p)
+    _print_k_step_errors(fit)
+    _print_frequency_responses(fit)
     _print_model_selection(fit)
     _print_baselines(fit)
     _print_identifiability(fit)
@@ -148,6 +150,40 @@ def _print_prediction(p: "Prediction") -> None:
             print_lines([f"{name}: {NOT_DETERMINED}{measured}"], "  ")
         elif m.simulated is not None and m.lower is not None and m.upper is not None:
             print_lines([f"{name}: {exact(m.simulated, 4)} [{exact(m.lower, 4)}, {exact(m.upper, 4)}]{measured}"], "  ")
+
+
+def _print_k_step_errors(fit: "Fit") -> None:
+    """One line: errors at the shortest and the longest horizon, of the runs held out where there are any."""
+    from seatrial.core.text.numbers import exact
+    from seatrial.core.values import display_unit
+
+    held = [e for e in fit.k_step_errors if e.role == "validation"]
+    errors = held or list(fit.k_step_errors)
+    if not errors:
+        return
+    steps, seconds = errors[0].steps, errors[0].seconds
+    ahead = " to ".join(dict.fromkeys(f"{steps[k]} ({exact(seconds[k], ERROR_DIGITS)} s)" for k in (0, -1)))
+    texts = []
+    for e in errors:
+        factor, unit = display_unit(e.unit)
+        ends = dict.fromkeys(exact(factor * e.rms[k], ERROR_DIGITS) for k in (0, -1))
+        texts.append(f"{e.channel} {' to '.join(ends)} {unit}")
+    print_lines([f"samples ahead {ahead}, {'held-out' if held else 'training'} runs, rms: {', '.join(texts)}"])
+
+
+def _print_frequency_responses(fit: "Fit") -> None:
+    """One line: at how many frequencies the model lies within the 95 % region of the records."""
+    from seatrial.core.text.numbers import exact
+
+    texts = []
+    for r in fit.frequency_responses:
+        compared = r.is_compared
+        if compared.any():
+            low, high = (exact(w, 2) for w in r.excited_range)
+            inside = int((r.is_inside & compared).sum())
+            texts.append(f"{r.output}/{r.input} {inside} of {int(compared.sum())} ({low} to {high} rad/s)")
+    if texts:
+        print_lines([f"frequency response, model inside the records' 95 % region: {', '.join(texts)}"])
 
 
 def _print_window(w: "WindowScore") -> None:

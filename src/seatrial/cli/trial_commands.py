@@ -64,6 +64,9 @@ def identify(
     windows: Annotated[
         str, typer.Option("--windows", metavar="LENGTHS", help="Score held-out runs in windows of: 10s,5L.")
     ] = "",
+    horizons: Annotated[
+        str, typer.Option("--horizons", metavar="STEPS", help="Score predictions so far ahead: 1,10,5s.")
+    ] = "",
     method: Method = None,
     model: OwnModelPath = None,
     json: Json = None,
@@ -91,6 +94,7 @@ def identify(
             compare=compare,
             method=method,
             windows=windows,
+            horizons=horizons,
         )
         report_progress("report")
         page = api.save(fit, out)

@@ -13,6 +13,7 @@ from seatrial.core.text.numbers import duration, significant
 from seatrial.core.text.words import common_prefix
 from seatrial.core.values.arrays import correlation_matrix
 from seatrial.reporting import (
+    ahead,
     baselines,
     identifiability_chapter,
     published_chapter,
@@ -41,6 +42,8 @@ TITLES = {
     "rolling": "Roll: period, damping, metacentric height",
     "prediction": "Prediction of held-out runs",
     "training": "Fit of the training runs",
+    "ahead": "Prediction some samples ahead",
+    "frequency": "Frequency response: records and model",
     "baselines": "Other estimators on the same records",
     "residuals": "Residuals",
     "waves": "Motions in waves",
@@ -69,6 +72,8 @@ def html(fit: Fit) -> str:
         "waves": seakeeping is not None,
         "standards": is_steered,
         "training": bool(fit.predictions),
+        "ahead": bool(fit.k_step_errors),
+        "frequency": bool(fit.frequency_responses),
         "residuals": bool(fit.residuals),
         "baselines": comparison is not None,
     }
@@ -103,6 +108,8 @@ def html(fit: Fit) -> str:
         "correlation": Markup(_correlation_figure(fit)),
         "correlated": correlation_text(fit.model.parameters.free_names, fit.covariance),
         "runs": runs.run_sections(fit.predictions, length, fit.model.input_names),
+        "ahead": ahead.k_step_chapter(fit),
+        "frequency": ahead.frequency_chapter(fit),
         "noise": tables.noise(fit.channel_noise),
         "whiteness": Markup(svg(residual_chart(fit.residuals))),
         "offsets": tables.offsets(fit.offsets),

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from seatrial.core.values import Prior, Record
 from seatrial.estimation.problem.output_error import Nuisance, OutputError
-from seatrial.estimation.problem.prediction_error import PredictionError, join_segments
+from seatrial.estimation.problem.prediction_error import PredictionError, join_segments, over_runs
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate import replay
@@ -129,3 +129,12 @@ def test_segments_are_joined_again(runs: OutputError) -> None:
 def test_likelihood_does_not_depend_on_workers(problem: PredictionError, point: Array) -> None:
     two = replace(problem, runs=replace(problem.runs, workers=2))
     assert two.cost(point, NONE) == problem.cost(point, NONE)
+
+
+def test_other_runs_keep_the_filter_and_begin_as_measured(problem: PredictionError, point: Array) -> None:
+    cut = cut_segments(problem.runs.model, [record_of("d", 9)], OUTPUTS, None, ("day 1",))
+    other = replace(problem.runs, data=replace(cut, sessions=problem.runs.data.sessions))
+    moved = over_runs(problem, other)
+    np.testing.assert_allclose(moved.start[0], [cut.measured[0, OUTPUTS.index(s)] for s in moved.runs.model.states])
+    innovations = moved.innovations(point).normalised[20:]
+    assert 0.7 < np.std(innovations) < 1.1

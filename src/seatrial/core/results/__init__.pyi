@@ -5,6 +5,7 @@ from seatrial.core.results.coefficients import (
 )  # fmt: skip
 from seatrial.core.results.design import Actuator, Confirmation, Design, ManoeuvrePrecision, TimedOrder, TrialLimits
 from seatrial.core.results.fit import Fit
+from seatrial.core.results.frequency_response import FrequencyResponse
 from seatrial.core.results.identifiability import (
     Collinearity,
     Consequence,
@@ -15,6 +16,7 @@ from seatrial.core.results.identifiability import (
     Stability,
     Symmetry,
 )
+from seatrial.core.results.k_step import KStepErrors
 from seatrial.core.results.prediction import (
     Baseline,
     Divergence,
@@ -53,9 +55,11 @@ __all__ = [
     "Extrapolation",
     "Figure",
     "Fit",
+    "FrequencyResponse",
     "Identifiability",
     "IntervalBasis",
     "IntervalEstimate",
+    "KStepErrors",
     "ManoeuvrePrecision",
     "Matrix",
     "Measure",

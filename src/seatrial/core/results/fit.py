@@ -16,7 +16,9 @@ from seatrial.core.results.coefficients import (
     at_level,
 )
 from seatrial.core.results.fields import ListedArray, NamedModel, ReportedFinding, StoredRecord, StoredSolution
+from seatrial.core.results.frequency_response import FrequencyResponse
 from seatrial.core.results.identifiability import Identifiability
+from seatrial.core.results.k_step import KStepErrors
 from seatrial.core.results.prediction import Baseline, IntervalBasis, Prediction
 from seatrial.core.results.published_method import ReferenceEstimate, Search
 from seatrial.core.results.ship_motions import RollCharacteristics, Seakeeping
@@ -76,6 +78,15 @@ class Fit(Summarised):
         ReferenceEstimate | None,
         Field(description="the package's own estimate, which a published method is compared with; null: this is it"),
     ] = None
+
+    k_step_errors: Annotated[
+        tuple[KStepErrors, ...],
+        Field(description="errors so many samples ahead; empty: not computed, or samples too far apart for a filter"),
+    ] = ()
+    frequency_responses: Annotated[
+        tuple[FrequencyResponse, ...],
+        Field(description="of outputs to inputs, records and model; empty: no input moves, or runs too short"),
+    ] = ()
 
     @computed_field(description="the predictions of runs that were not fitted")
     @property

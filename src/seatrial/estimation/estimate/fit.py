@@ -23,6 +23,7 @@ from seatrial.estimation.estimate.intervals import (
 from seatrial.estimation.estimate.large_records import choice_over_all, choice_runs
 from seatrial.estimation.estimate.plausibility import refuse_implausible
 from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error
+from seatrial.estimation.estimate.process_noise import ProcessNoise
 from seatrial.estimation.estimate.process_noise_interval import process_noise_interval
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import (
@@ -55,6 +56,7 @@ class Estimation:
         disturbance: what is between model and records, and why this criterion.
         start: where the search began, in words.
         criterion, reasons: what was used, and why.
+        process_noise: the Kalman filter that suits the estimate; None: none was needed, or multiple shooting was used.
     """
 
     estimate: PointEstimate
@@ -69,6 +71,7 @@ class Estimation:
     criterion: str
     reasons: tuple[str, ...]
     elapsed_s: float
+    process_noise: ProcessNoise | None = None
 
     @property
     def interval(self) -> Interval:
@@ -175,7 +178,7 @@ def estimate_model(
     return Estimation(
         estimate, shooting, uncertainty, choice.residuals, choice.inflation,
         choice.rho, choice.whiteness, _noise_model(choice), begun.origin, criterion, choice.reasons,
-        time.perf_counter() - began,
+        time.perf_counter() - began, choice.process_noise or choice.implied_noise,
     )  # fmt: skip
 
 

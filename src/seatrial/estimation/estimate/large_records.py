@@ -18,7 +18,7 @@ from seatrial.estimation.estimate.process_noise import ProcessNoise, newton_opti
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.information.whiteness import whiteness_test
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.estimation.problem.prediction_error import PredictionError
+from seatrial.estimation.problem.prediction_error import over_runs
 from seatrial.estimation.problem.segments import cut_segments
 
 MOST_SAMPLES = 100_000
@@ -75,7 +75,7 @@ def choice_over_all(choice: CriterionChoice, runs: Runs) -> CriterionChoice:
 
 def _noise_over_all(few: ProcessNoise, runs: Runs) -> ProcessNoise:
     output_error = _with_all_samples(few.output_error, runs, PIECE_SAMPLES * few.output_error.data.dt)
-    problem = _filter_problem(few, output_error)
+    problem = over_runs(few.problem, output_error)
     share = len(output_error.data.inputs) / len(few.problem.runs.data.inputs)
     optimum = newton_optimum(problem, few.optimum, share)
     normalised = problem.innovations(optimum.solution.point).normalised
@@ -89,16 +89,3 @@ def _with_all_samples(problem: OutputError, runs: Runs, seconds: float | None) -
     return replace(
         problem, data=cut_segments(problem.model, runs.records, problem.data.outputs, seconds, runs.sessions)
     )
-
-
-def _filter_problem(few: ProcessNoise, output_error: OutputError) -> PredictionError:
-    """The prediction-error problem on these samples: measured initial states, the others as on average over the few."""
-    old, data = few.problem, output_error.data
-    states, measured = old.runs.model.states, output_error.measured_initial_states()
-    start = np.tile(old.start.mean(axis=0), (data.count, 1))
-    for m, state in enumerate(output_error.starts):
-        if state in data.outputs:
-            start[:, states.index(state)] = measured[:, m]
-    variance = np.tile(old.start_variance.max(axis=0), (data.count, 1))
-    runs = replace(old.runs, data=replace(data, outputs=old.runs.data.outputs))
-    return replace(old, runs=runs, start=start, start_variance=variance, steps=None)

@@ -327,7 +327,7 @@ def _fit_intensities(problem: PredictionError, estimate: PointEstimate) -> Array
     held = held.with_parameters(held.parameters.fixed(*held.parameters.names))
     session_values = begin[len(runs.free) :]
     alone = replace(problem, runs=replace(runs, model=held, pinned=session_values, extra_terms=()))
-    deviation = np.clip(_channel_noise(runs), 1e-2 * runs.noise, runs.noise)
+    deviation = third_difference_noise(runs)
     whole = _state_spread(estimate, problem.process) / np.sqrt(_longest_run(runs))
     scanned = [
         _balance_noise(alone, np.concatenate([session_values, (share * whole) ** 2, deviation**2]))
@@ -338,11 +338,12 @@ def _fit_intensities(problem: PredictionError, estimate: PointEstimate) -> Array
     return found.solution.point[len(session_values) :]
 
 
-def _channel_noise(runs: OutputError) -> Array:
-    """White noise on each channel from third differences, median over runs; infinite where none can be computed."""
+def third_difference_noise(runs: OutputError) -> Array:
+    """White noise on each channel from third differences, median over runs; at most the residuals', 1 % at least."""
     pieces = [runs.data.measured[a:b] for a, b in pairwise(runs.data.offsets)]
     columns = [[p[:, i] for p in pieces if np.any(np.isfinite(np.diff(p[:, i], 3)))] for i in range(len(runs.noise))]
-    return np.array([np.median([sample_noise(c) for c in mine]) if mine else np.inf for mine in columns])
+    noise = np.array([np.median([sample_noise(c) for c in mine]) if mine else np.inf for mine in columns])
+    return np.clip(noise, 1e-2 * runs.noise, runs.noise)
 
 
 def _balance_noise(problem: PredictionError, point: Array) -> tuple[float, Array]:

@@ -37,6 +37,7 @@ class EstimatorOptions:
         evaluations: limit of each search.
         workers: threads; None: one for each core.
         windows: in which validation runs are predicted as well, as ``10s,5L``; empty: by the length of the run.
+        horizons: of the k-step errors, samples or seconds, as ``1,10,5s``; empty: by the length of the runs.
     """
 
     intervals: IntervalMethod = IntervalMethod.AUTO
@@ -44,3 +45,4 @@ class EstimatorOptions:
     evaluations: int = 60
     workers: int | None = None
     windows: str = ""
+    horizons: str = ""

@@ -16,6 +16,8 @@ from seatrial.estimation.identify.model_selection import SelectedModel, with_mod
 from seatrial.estimation.identify.profile import profiles
 from seatrial.estimation.identify.roll_characteristics import one_speed_finding, roll_characteristics
 from seatrial.estimation.identify.seakeeping import seakeeping
+from seatrial.estimation.information.frequency_response import frequency_responses
+from seatrial.estimation.predict.k_step import horizon_list, k_step_errors
 from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
 from seatrial.estimation.predict.window_scores import window_lengths
 
@@ -34,6 +36,8 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
     estimation = with_model_spread(selected.estimation, selected.tied)
     assessment = _identifiability(task, estimation)
     free = estimation.estimate.problem.free
+    predicted_runs = {p.record for p in predicted.predictions}
+    scored = [r for r in task.records if r.record.name in predicted_runs]
     roll = roll_characteristics(estimation.model, estimation.interval, free, runs.records, trial.ship)
     return Fit(
         question=trial.question
@@ -65,6 +69,8 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         interval_basis=predicted.interval_basis,
         seakeeping=seakeeping(estimation.model, task.train, runs.length),
         roll=roll,
+        k_step_errors=k_step_errors(selected.estimation, scored, horizon_list(task.options.horizons)),
+        frequency_responses=frequency_responses(estimation.model, predicted.predictions, task.outputs),
     )  # fmt: skip
 
 

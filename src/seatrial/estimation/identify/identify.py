@@ -22,6 +22,7 @@ from seatrial.estimation.identify.strategies.search import estimate_by_search
 from seatrial.estimation.identify.strategies.steered import identify_steered, identify_with_static_forces
 from seatrial.estimation.identify.strategies.unknown_waves import identify_in_unknown_waves
 from seatrial.estimation.identify.strategies.wave_spectrum import identify_by_wave_spectrum
+from seatrial.estimation.predict.k_step import horizon_list
 from seatrial.estimation.predict.window_scores import window_lengths
 
 STRATEGIES: Mapping[Situation, Callable[[Identification], Fit]] = MappingProxyType({
@@ -45,6 +46,7 @@ def identify(
     choose: bool = False,
     compare: bool = False,
     windows: str = "",
+    horizons: str = "",
 ) -> Fit:
     """Estimate the trial's model from its training runs and predict its validation runs open loop, with intervals.
 
@@ -57,6 +59,7 @@ def identify(
         compare: whether regressions on the same training runs, for a linear model searches as well, are compared with
             the fit.
         windows: in which validation runs are predicted as well, as ``10s,5L``; empty: by the length of the run.
+        horizons: of the k-step errors, samples or seconds, as ``1,10,5s``; empty: by the length of the runs.
 
     Raises:
         InputError: the records do not pass the checks, show no excitation, do not determine the coefficients, or are
@@ -68,7 +71,8 @@ def identify(
     refuse_options(method, choose=choose, compare=compare)
     checked = checked_records(trial)
     window_lengths(windows)  # what is misspelt is refused before the fit
-    options = EstimatorOptions(intervals, seed, windows=windows)
+    horizon_list(horizons)
+    options = EstimatorOptions(intervals, seed, windows=windows, horizons=horizons)
     task = Identification(trial, checked.records, checked.findings, options, choose, began, report_progress)
     situation = identification_situation(task)
     if method.is_published:

@@ -139,6 +139,13 @@ class PredictionError:
     def _map(self, function: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
         return map_in_threads(function, items, workers=self.runs.workers)
 
+    def predicted_ahead(self, shared: Array, segment: int, origins: Index, steps: int) -> Array:
+        """Return the outputs of a run up to `steps` samples ahead of each origin, (origins, steps + 1, ny).
+
+        See `KalmanFilter.predict_ahead`.
+        """
+        return self._filter.predict_ahead(segment, self.runs.data.measured, self.filter_point(shared), origins, steps)
+
     def _loss(self, shared: Array, segment: int) -> tuple[float, Array, Array]:
         """Return the minus the log-likelihood of a run, with its innovations and variances."""
         e, v, failed = self._filter.innovations(segment, self.runs.data.measured, self.filter_point(shared))
@@ -264,6 +271,22 @@ def _variance_information(e: Array, v: Array, dv: Array) -> tuple[Array, Array]:
     """Return 1/2 sum (1 - e^2 / v) dv / v and 1/2 sum dv dv' / v^2: gradient and information by the variance."""
     relative = (dv / v[:, :, None]).reshape(-1, dv.shape[2])
     return 0.5 * relative.T @ (1.0 - e**2 / v).ravel(), 0.5 * relative.T @ relative
+
+
+def over_runs(problem: PredictionError, output_error: OutputError) -> PredictionError:
+    """Return the problem over the runs of another one: measured initial states, the others as in the mean so far.
+
+    output_error: over the same outputs, its model without the states of a disturbance.
+    """
+    old, data = problem.runs, output_error.data
+    measured = output_error.measured_initial_states()
+    start = np.tile(problem.start.mean(axis=0), (data.count, 1))
+    for m, state in enumerate(output_error.starts):
+        if state in data.outputs:
+            start[:, old.model.states.index(state)] = measured[:, m]
+    variance = np.tile(problem.start_variance.max(axis=0), (data.count, 1))
+    runs = replace(old, data=replace(data, outputs=old.data.outputs))
+    return replace(problem, runs=runs, start=start, start_variance=variance, steps=None)
 
 
 def join_segments(problem: OutputError) -> tuple[OutputError, Index]:

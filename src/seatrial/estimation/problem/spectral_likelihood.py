@@ -25,7 +25,7 @@ _LEAKAGE_BINS = 8  # bins either way, as above
 
 
 @dataclass(frozen=True, eq=False)
-class FrequencyResponse:
+class DifferentiatedResponse:
     """H = (i omega - A)^-1 B of some states, (n, ny, nu), and dH, (q, n, ny, nu), signed omega, exp(+i omega t)."""
 
     H: Complex
@@ -34,7 +34,7 @@ class FrequencyResponse:
 
 def frequency_response(
     model: Model, values: Array, omega: Array, outputs: tuple[str, ...], free: tuple[str, ...]
-) -> FrequencyResponse:
+) -> DifferentiatedResponse:
     """Return the response of states `outputs` at all parameter values (np,), differentiated by those named `free`.
 
     dH = R dA H + R dB with the resolvent R = (i omega - A)^-1.
@@ -46,7 +46,7 @@ def frequency_response(
     H = resolvent @ rates[:, nx:-1]
     driven = slopes[:, None, :, :nx] @ H[None] + slopes[:, None, :, nx:-1]
     rows = [model.states.index(o) for o in outputs]
-    return FrequencyResponse(H[:, rows], (resolvent[None] @ driven)[:, :, rows])
+    return DifferentiatedResponse(H[:, rows], (resolvent[None] @ driven)[:, :, rows])
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +124,7 @@ class SpectralLikelihood(FreeParameterProblem):
         return np.einsum("kx,kxy,ky->k", left.conj(), np.linalg.inv(S), left).real / len(self.outputs)
 
     def _residual_and_covariance(
-        self, bin_response: FrequencyResponse, fine_response: FrequencyResponse, held_inputs: Complex
+        self, bin_response: DifferentiatedResponse, fine_response: DifferentiatedResponse, held_inputs: Complex
     ) -> tuple[Complex, Complex, Complex]:
         """Return motions less their mean, S_F H* on the fine grid, and the covariance S."""
         left = self.motion_transforms - np.einsum("kyu,ku->ky", bin_response.H, held_inputs)

@@ -55,7 +55,7 @@ def propagate_covariance(transition, covariance, process, noisy_states, dt, work
     I8(
         *(TANGENT, TANGENT, MATRIX, MATRIX, F8, I8, VECTOR, VECTOR, VECTOR),
         *(TABLE, TABLE, TABLE, TABLE, TABLE, INDEX, INDEX, VECTOR, VECTOR, MATRIX),
-        *(MATRIX, MATRIX, CUBE, CUBE, MATRIX),
+        *(MATRIX, MATRIX, CUBE, CUBE, MATRIX, MATRIX),
         *(MATRIX, CUBE, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, CUBE, MATRIX, MATRIX),
     ),
     **LEAN,
@@ -63,7 +63,7 @@ def propagate_covariance(transition, covariance, process, noisy_states, dt, work
 def _filter_innovations(
     f, g, inputs, weights, dt, substeps, x0, variance0, p,
     chain, link_p, link_u, g_link_p, g_link_u, select, noisy_states, process, measurement, measured,
-    e_out, v_out, de_out, dv_out, variance_out,
+    e_out, v_out, de_out, dv_out, variance_out, state_out,
     work_x, work_s, work_u, work_w, jac, g_jac, g_value, covariance, work, covariance_times_h,
 ):  # fmt: skip
     nx, ny, rows = x0.size, select.size, measured.shape[0]
@@ -147,6 +147,9 @@ def _filter_innovations(
                 for i in range(nx):
                     for j in range(nx):
                         covariance[m, i, j] -= covariance_times_h[m, i] * gain[j] + gain[i] * covariance_times_h[m, j]
+        if state_out.shape[0] > 0:
+            for i in range(nx):
+                state_out[row, i] = x[i]
         if row == rows - 1:
             break
         for i in range(nx):
@@ -189,7 +192,7 @@ def _filter_innovations(
 def filter_innovations(
     f, g, inputs, weights, dt, substeps, x0, variance0, p,
     chain, link_p, link_u, g_link_p, g_link_u, select, ng, noisy_states, process, measurement, measured,
-    e_out, v_out, de_out, dv_out, variance_out,
+    e_out, v_out, de_out, dv_out, variance_out, state_out,
 ):  # fmt: skip
     """Filter one run: innovations e_out (measured - predicted) and their variances v_out, (rows, ny).
 
@@ -200,15 +203,15 @@ def filter_innovations(
     each state's white noise, (nx,); measurement: variance of each channel, (ny,). de_out (rows, ny, columns):
     sensitivities of e, columns as the links say (counted from nx, the first nx being the transition matrix), the last
     ones by process of `noisy_states` and by measurement; dv_out (rows, ny, noise columns) those of v; without columns
-    the likelihood alone. variance_out (rows or 0, nx): of the states before each sample. A missing sample has e = 0 and
-    v = 1.
+    the likelihood alone. variance_out (rows or 0, nx): of the states before each sample; state_out (rows or 0,
+    nx): their means after it. A missing sample has e = 0 and v = 1.
     """
     nx, nu, width = x0.size, inputs.shape[1], de_out.shape[2]
     whole, covs = nx + nu + p.size, 1 + dv_out.shape[2]
     outputs = ng if np.any(select >= nx) else 0
     return _filter_innovations(f, g, inputs, weights, dt, substeps, x0, variance0, p,
                      chain, link_p, link_u, g_link_p, g_link_u, select, noisy_states, process, measurement, measured,
-                     e_out, v_out, de_out, dv_out, variance_out,
+                     e_out, v_out, de_out, dv_out, variance_out, state_out,
                      np.empty((7, nx)),  # 7 vectors of states, taken apart at the kernel's head
                      np.zeros((4, nx, nx + width)), np.empty((3, nu)), np.empty((3, 3 * nu)),
                      np.zeros((nx, whole)), np.zeros((outputs, whole)), np.empty(outputs), np.zeros((covs, nx, nx)),

@@ -29,6 +29,19 @@ class FilterPoint:
 
 
 @dataclass(frozen=True, eq=False)
+class _FilteredSegment:
+    """What one pass of the filter leaves; arrays that were not required have no rows or columns."""
+
+    e: Array
+    v: Array
+    de: Array
+    dv: Array
+    variance: Array
+    states: Array
+    is_diverged: bool
+
+
+@dataclass(frozen=True, eq=False)
 class KalmanFilter(SegmentBatch):
     """Segments to be filtered; columns: parameters, corrections, squares of intensities, squares of deviations.
 
@@ -63,8 +76,8 @@ class KalmanFilter(SegmentBatch):
 
         measured: of all segments, NaN where there is none; there e = 0 and v = 1.
         """
-        e, v, _, _, _, failed = self._run(segment, measured, point, self._state_links, 0, 0)
-        return e, v, failed
+        run = self._run(segment, measured, point, self._state_links, 0, 0)
+        return run.e, run.v, run.is_diverged
 
     def sensitivities(
         self, segment: int, measured: Array, point: FilterPoint
@@ -74,22 +87,43 @@ class KalmanFilter(SegmentBatch):
         The gain counts as independent of parameters and corrections.
         """
         width = len(self.parameters) + len(self.corrections) + self.noise_count
-        e, v, de, dv, _, failed = self._run(segment, measured, point, self._shifted_links, width, self.noise_count)
-        return e, v, de, dv, failed
+        run = self._run(segment, measured, point, self._shifted_links, width, self.noise_count)
+        return run.e, run.v, run.de, run.dv, run.is_diverged
 
     def variances(self, segment: int, point: FilterPoint) -> Array:
         """Variance of each state where nothing is measured, (rows, nx): how far a run may stray from its prediction."""
         nothing = np.full((int(self.offsets[-1]), len(self.outputs)), np.nan)
-        return self._run(segment, nothing, point, self._state_links, 0, 0, with_variance=True)[4]
+        return self._run(segment, nothing, point, self._state_links, 0, 0, with_states=True).variance
+
+    def predict_ahead(self, segment: int, measured: Array, point: FilterPoint, origins: Index, steps: int) -> Array:
+        """Return outputs up to `steps` samples ahead, from the samples up to each origin, (origins, steps + 1, ny).
+
+        Step 0 is the filtered sample itself. The inputs are those recorded; white noise to come counts as zero. NaN
+        where the filter or a prediction diverges.
+
+        Args:
+            measured: as in `innovations`; origins: rows within the segment, at least `steps` before its end.
+        """
+        run = self._run(segment, measured, point, self._state_links, 0, 0, with_states=True)
+        if run.is_diverged:
+            return np.full((len(origins), steps + 1, len(self.outputs)), np.nan)
+        inputs = self._segment_inputs(segment, point.corrections)[0]
+        rows = (origins[:, None] + np.arange(steps + 1)).ravel()
+        bounds = np.arange(len(origins) + 1, dtype=np.int64) * (steps + 1)
+        ahead = SegmentBatch(
+            self.model, np.ascontiguousarray(inputs[rows]), bounds, self.dt, self.outputs, substeps=self.substeps
+        )
+        values, none = np.tile(point.parameters[segment], (len(origins), 1)), np.zeros((len(origins), 0))
+        y, _ = ahead.simulate(0, len(origins), run.states[origins], values, none)
+        return y.reshape(len(origins), steps + 1, -1)
 
     def transitions(self, segment: int, start: Array, parameters: Array, corrections: Array) -> tuple[Array, Array]:
         """Return transition matrices from sample to sample, (rows - 1, nx, nx), and outputs by states, (rows, ny, nx).
 
         Along the motion without noise; start, parameters, corrections: as in `simulate`, of all segments.
         """
-        a, b = self.offsets[segment : segment + 2]
-        gain, zero, delay = (c[segment] for c in self._correction_values(corrections))
-        inputs, rows = corrected_inputs(self.inputs[a:b], self.dt, gain, zero, delay)[0], b - a
+        inputs = self._segment_inputs(segment, corrections)[0]
+        rows = len(inputs)
         model, nx = self.model, len(self.model.states)
         whole = SegmentBatch(model, inputs, np.array([0, rows]), self.dt, model.states, substeps=self.substeps)
         one = parameters[segment : segment + 1]
@@ -111,29 +145,34 @@ class KalmanFilter(SegmentBatch):
         width: int,
         noise_count: int,
         *,
-        with_variance: bool = False,
-    ) -> tuple[Array, Array, Array, Array, Array, bool]:
+        with_states: bool = False,
+    ) -> _FilteredSegment:
         from seatrial.numerics.kernels.innovations import filter_innovations  # compiled when it is first wanted
 
         chain, link_p, link_u, g_link_p, g_link_u = links
         nx, ny, (a, b) = len(self.model.states), len(self.outputs), self.offsets[segment : segment + 2]
-        gain, zero, delay = (c[segment] for c in self._correction_values(point.corrections))
-        inputs, weights = corrected_inputs(self.inputs[a:b], self.dt, gain, zero, delay)
+        inputs, weights = self._segment_inputs(segment, point.corrections)
         if not len(link_u) + len(g_link_u):
             weights = np.empty((b - a, 0))
         process = np.zeros(nx)
         process[self._driven] = point.intensity**2
         e, v = np.empty((b - a, ny)), np.empty((b - a, ny))
         de, dv = np.empty((b - a, ny, width)), np.empty((b - a, ny, noise_count))
-        variance = np.empty((b - a if with_variance else 0, nx))
+        variance, states = (np.empty((b - a if with_states else 0, nx)) for _ in range(2))
         compiled = self.model.compiled
         failed = filter_innovations(
             compiled.rates_tangent, compiled.outputs_tangent, inputs, weights, self.dt, self.substeps,
             point.start[segment], point.start_variance[segment], point.parameters[segment], chain, link_p, link_u,
             g_link_p, g_link_u, self._output_columns, len(self.model.outputs), self._driven, process,
-            point.deviation**2, np.ascontiguousarray(measured[a:b]), e, v, de, dv, variance,
+            point.deviation**2, np.ascontiguousarray(measured[a:b]), e, v, de, dv, variance, states,
         )  # fmt: skip
-        return e, v, de, dv, variance, failed >= 0
+        return _FilteredSegment(e, v, de, dv, variance, states, failed >= 0)
+
+    def _segment_inputs(self, segment: int, corrections: Array) -> tuple[Array, Array]:
+        """Return the corrected inputs of a segment and their derivatives, as `corrected_inputs`."""
+        a, b = self.offsets[segment : segment + 2]
+        gain, zero, delay = (c[segment] for c in self._correction_values(corrections))
+        return corrected_inputs(self.inputs[a:b], self.dt, gain, zero, delay)
 
 
 def corrected_inputs(inputs: Array, dt: float, gain: Array, zero: Array, delay: Array) -> tuple[Array, Array]:
