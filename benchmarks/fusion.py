@@ -25,7 +25,7 @@ from measure import Line, at_most, machine
 
 from seatrial.core.equations import Model
 from seatrial.core.values import ForcePoints, Prior, Record
-from seatrial.data.trial import EstimateSettings, Role, load_records, load_trial
+from seatrial.data.trial import EstimateMethod, EstimateSettings, Role, load_records, load_trial
 from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.problem.static_forces import StaticForces
@@ -153,10 +153,11 @@ def diameter_spread(
     truth: Model,
     points: tuple[ForcePoints, ...],
     spreads: tuple[float, ...] = SPREADS,
+    method: EstimateMethod = EstimateMethod.AUTO,
 ) -> DiameterSpread:
     """Fit with each prior width and predict the turn."""
     data = replace(Runs.one_session_each(runs, truth.parameters["L"].value), forces=points)
-    settings, options = EstimateSettings(channels=tuple(NOISE)), EstimatorOptions(workers=1)
+    settings, options = EstimateSettings(channels=tuple(NOISE), method=method), EstimatorOptions(workers=1)
     made = {}
     for percent in spreads:
         found = estimate_model(with_priors(truth, means, percent), data, settings, options)
@@ -165,7 +166,10 @@ def diameter_spread(
 
 
 def compare_with_captive(
-    seed: int = SEED, training: tuple[str, ...] = TRAINING, spreads: tuple[float, ...] = SPREADS
+    seed: int = SEED,
+    training: tuple[str, ...] = TRAINING,
+    spreads: tuple[float, ...] = SPREADS,
+    method: EstimateMethod = EstimateMethod.AUTO,
 ) -> tuple[DiameterSpread, DiameterSpread]:
     """Without and with captive points, from the same records and priors."""
     truth = kvlcc2_full().applied_to(mmg())
@@ -174,8 +178,8 @@ def compare_with_captive(
     runs = [noisy(with_wind(truth, record, streams[0]), streams[0]) for record in calm]
     means = off_centre_means(truth, streams[1])
     points = simulate_captive_points(truth, streams[2], float(calm[0]["u"][0]))
-    alone = diameter_spread(runs, means, truth, (), spreads)
-    return alone, diameter_spread(runs, means, truth, (points,), spreads)
+    alone = diameter_spread(runs, means, truth, (), spreads, method)
+    return alone, diameter_spread(runs, means, truth, (points,), spreads, method)
 
 
 RECORDED = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"

@@ -10,7 +10,7 @@ import pytest
 
 from seatrial.core.results import Fit
 from seatrial.core.values import ForcePoints, InputError
-from seatrial.data.trial import load_trial
+from seatrial.data.trial import EstimateMethod, load_trial
 from seatrial.estimation.identify import identify
 from seatrial.estimation.problem.static_forces import StaticForces
 from seatrial.physics.models.published import kvlcc2
@@ -123,7 +123,8 @@ def test_a_turned_force_is_refused_with_the_way_to_declare_it(tmp_path: Path, fu
 
 
 def test_the_predicted_turn_hardly_moves_with_the_prior(fusion: ModuleType) -> None:
-    alone, together = fusion.compare_with_captive(seed=13, spreads=(10.0, 100.0))
+    """A sample of the benchmark, which also chooses a disturbance; output error alone takes a third of the time."""
+    alone, together = fusion.compare_with_captive(seed=13, spreads=(10.0, 100.0), method=EstimateMethod.OUTPUT_ERROR)
     assert together.points <= fusion.LIMIT
     loose = max(alone.predicted)
     missed = [abs(moved.predicted[loose] - moved.truth) for moved in (alone, together)]
