@@ -15,14 +15,14 @@ from scipy.linalg import expm
 from scipy.signal import lsim
 
 from seatrial.numerics.kernels.linear_population import misfit
+from seatrial.physics.models import heave_pitch_zoh
 from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
-from seatrial.physics.models.published import QI2025_SHIP, theoretical_coefficients
+from seatrial.physics.models.published import theoretical_coefficients
 from seatrial.physics.simulate.population import (
     Forcing,
-    complete_parameters,
+    affine_population_matrices,
     discretised_ramp,
     fitness,
-    heave_pitch_matrices,
     one_sample_fitness,
     trajectories,
 )
@@ -65,9 +65,11 @@ def sum_of_squares(y: np.ndarray, measured: np.ndarray) -> np.ndarray:
 def run() -> list[Line]:
     """Times of ours, ratios to the others, agreement of the motions."""
     rng = np.random.default_rng(20251)
-    truth = np.array([theoretical_coefficients(90).values[name] for name in COEFFICIENTS])
-    parameters = complete_parameters(truth * (1.0 + 0.1 * rng.uniform(-1.0, 1.0, (COUNT, 8))), QI2025_SHIP.particulars)
-    A, B = heave_pitch_matrices(parameters)
+    model = theoretical_coefficients(90).applied_to(heave_pitch_zoh())
+    parameters = np.tile(model.parameters.values, (COUNT, 1))
+    unknown = [model.parameters.index(name) for name in COEFFICIENTS]
+    parameters[:, unknown] *= 1.0 + 0.1 * rng.uniform(-1.0, 1.0, (COUNT, 8))
+    A, B = affine_population_matrices(model, parameters, (0, 1))
     u = np.sin(np.outer(np.arange(SAMPLES) * DT, [0.9, 1.3])) * [2e5, 2e6]
     forcing, held = Forcing(u, DT, is_held=False), Forcing(u, DT, is_held=True)
     y = trajectories(A, B, forcing, START)
@@ -77,7 +79,7 @@ def run() -> list[Line]:
     seconds = fastest(lambda: fitness(A, B, forcing, START, measured, SIGMA), 200)
     in_hold = fastest(lambda: fitness(A, B, held, START, measured, SIGMA), 200)
     stored = fastest(lambda: trajectories(A, B, forcing, START), 200)
-    prepared = fastest(lambda: heave_pitch_matrices(parameters), 200)
+    prepared = fastest(lambda: affine_population_matrices(model, parameters, (0, 1)), 200)
     one = fastest(lambda: one_sample_fitness(A, B, held, 9, y[0, 9, [0, 0, 1, 1]], measured[10], SIGMA), 200)
     what = f"{COUNT} candidates, {SAMPLES} samples"
     lines = [

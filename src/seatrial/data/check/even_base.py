@@ -14,7 +14,7 @@ GAP_STEPS, GAP_QUANTA = 2.5, 1.5
 STEP_LAG = 20
 # distance of a stamp from the even base, in steps and in roundings, up to which the samples are even; chosen
 LARGEST_JITTER, LARGEST_ROUNDING = 0.6, 1.01
-# significant digits that a logger may round its stamps to, fewest first; more are not told from noise
+# significant digits that a logger may round its stamps to, fewest first; more cannot be distinguished from noise
 _DIGITS = range(2, 7)
 # share of a rounding by which a stamp may differ from a multiple of it, and of stamps that may be zero; representation
 _REPRESENTATION = 1e-6

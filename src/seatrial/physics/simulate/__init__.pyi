@@ -8,10 +8,8 @@ from seatrial.physics.simulate.harmonics import harmonic_motion as harmonic_moti
 from seatrial.physics.simulate.linear import LinearBatch as LinearBatch, batch_class as batch_class
 from seatrial.physics.simulate.population import Forcing as Forcing
 from seatrial.physics.simulate.population import affine_population_matrices as affine_population_matrices
-from seatrial.physics.simulate.population import complete_parameters as complete_parameters
 from seatrial.physics.simulate.population import discretised_hold as discretised_hold
 from seatrial.physics.simulate.population import discretised_ramp as discretised_ramp, fitness as fitness
-from seatrial.physics.simulate.population import heave_pitch_matrices as heave_pitch_matrices
 from seatrial.physics.simulate.population import one_sample_fitness as one_sample_fitness, trajectories as trajectories
 from seatrial.physics.simulate.replay import ZERO_STARTS as ZERO_STARTS, initial_state as initial_state
 from seatrial.physics.simulate.replay import replay as replay, trajectory as trajectory

@@ -3,7 +3,7 @@
 Every candidate has matrices of its own, x' = A x + B u. A candidate's numbers do not depend on its neighbours.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
@@ -15,10 +15,7 @@ from seatrial.numerics.kernels.compiled_function import TangentPointer
 from seatrial.numerics.kernels.linear import affine_population
 from seatrial.numerics.kernels.linear_population import discretise, misfit
 from seatrial.numerics.kernels.linear_population import trajectories as simulated
-from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
-from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_STIFFNESSES as STIFFNESSES
 
-ALL_COEFFICIENTS = ("m", "I5", *COEFFICIENTS, *STIFFNESSES)
 HEAVE_AND_PITCH = (0, 2)
 
 
@@ -173,51 +170,6 @@ def one_sample_fitness(
     seen = np.full((2, len(channels)), np.nan)
     seen[1] = measured
     return fitness(A, B, forcing.one_step(sample), state, seen, sigma, channels)
-
-
-def complete_parameters(coefficients: Array, particulars: Mapping[str, float]) -> Array:
-    """All fourteen parameters, (count, 14) in the order of ALL_COEFFICIENTS, from the eight unknown ones (count, 8).
-
-    particulars: m, I5 and the stiffnesses, as in the particulars of `seatrial.physics.models.published.SHIP`.
-
-    Raises:
-        InputError: one of the known values is missing, or there are not eight columns.
-    """
-    if coefficients.ndim != 2 or coefficients.shape[1] != len(COEFFICIENTS):
-        raise InputError(f"coefficients of shape {coefficients.shape}; give (count, 8) in the order {COEFFICIENTS}")
-    missing = [name for name in ("m", "I5", *STIFFNESSES) if name not in particulars]
-    if missing:
-        raise InputError(f"'{missing[0]}' of the ship is missing; heave and pitch need m, I5, {', '.join(STIFFNESSES)}")
-    whole = np.empty((len(coefficients), len(ALL_COEFFICIENTS)))
-    whole[:, :2] = particulars["m"], particulars["I5"]
-    whole[:, 2:10] = coefficients
-    whole[:, 10:] = [particulars[name] for name in STIFFNESSES]
-    return whole
-
-
-def heave_pitch_matrices(parameters: Array) -> tuple[Array, Array]:
-    """Return A (count, 4, 4) and B (count, 4, 2) of x' = A x + B (F3, M5), x = (z, z_dot, theta, theta_dot).
-
-    parameters (count, 14): m I5 a33 a35 a55 a53 b33 b35 b55 b53 c33 c35 c53 c55 in SI units (Qi et al. 2025, eq. (1));
-    F3 and z, M5 and theta share their signs. A singular mass matrix gives infinite or NaN entries.
-
-    Raises:
-        InputError: there are not fourteen columns.
-    """
-    if parameters.ndim != 2 or parameters.shape[1] != len(ALL_COEFFICIENTS):
-        raise InputError(f"parameters of shape {parameters.shape}; give (count, 14) in the order {ALL_COEFFICIENTS}")
-    m, i5, a33, a35, a55, a53, b33, b35, b55, b53, c33, c35, c53, c55 = parameters.T
-    count = len(parameters)
-    A, B = np.zeros((count, 4, 4)), np.zeros((count, 4, 2))
-    A[:, 0, 1] = A[:, 2, 3] = 1.0
-    heave, pitch = m + a33, i5 + a55
-    loads = np.stack([c33, b33, c35, b35, c53, b53, c55, b55], axis=1).reshape(count, 2, 4)
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        det = heave * pitch - a35 * a53
-        B[:, 1, 0], B[:, 1, 1] = pitch / det, -a35 / det
-        B[:, 3, 0], B[:, 3, 1] = -a53 / det, heave / det
-        A[:, 1::2] = -(B[:, 1::2, :1] * loads[:, :1] + B[:, 1::2, 1:] * loads[:, 1:])
-    return A, B
 
 
 def _discretised(A: Array, B: Array, dt: float, *, is_ramp: bool) -> tuple[Array, Array]:
