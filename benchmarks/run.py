@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 import against_optimisers
 import against_shipmmg
+import checking
 import design
 import follow
 import fusion
@@ -34,6 +35,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "gusts": gusts.run,
     "waterjet_regressions": waterjet_regressions.run,
     "fusion": fusion.run,
+    "checking": checking.run,
     "population": population.run,
     "heave_pitch": heave_pitch.run,
     "design": design.run,

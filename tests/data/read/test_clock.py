@@ -72,6 +72,16 @@ def test_fractions_of_varying_length_that_run_forward_stay_decimal() -> None:
     np.testing.assert_allclose(np.diff(read(spec(), t=texts)), 0.05, atol=1e-6)
 
 
+def test_stamps_of_one_length_and_of_several_give_the_same_bits() -> None:
+    nanoseconds = [1_234_567, 270_819_650, 270_819_651, 999_999_999]
+    alike = [f"2026/05/14 09:20:00.{part:09d}UTC" for part in nanoseconds]
+    mixed = [*alike[:-1], "2026-05-14T09:20:00.99999999900"]
+    np.testing.assert_array_equal(read(spec(), t=alike), read(spec(), t=mixed))
+    np.testing.assert_array_equal(read(spec(), t=[alike[0], "", alike[1]])[[0, 2]], read(spec(), t=alike)[:2])
+    assert np.isnan(read(spec(), t=[alike[0], "", alike[1]])[1])
+    np.testing.assert_array_equal(read(spec(), t=["1969-12-31T23:59:59.25Z"] * 2), [-0.75, -0.75])
+
+
 def test_the_offset_of_a_clock_is_added() -> None:
     np.testing.assert_allclose(read(TimeSpec("time", "t", "s", clock_offset=-0.5), t=[1.0, 2.0]), [0.5, 1.5])
 

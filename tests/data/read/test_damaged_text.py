@@ -33,8 +33,11 @@ def read(path: Path, content: bytes, layout: Layout = LAYOUT) -> np.ndarray:
         ROWS.replace(",", " , ").encode(),
         ROWS.replace("\n", "\n\n").rstrip("\n").replace("\n\n", "\n").encode() + b"\n\n\n",
         b't,"speed"\n0,"1.5"\n1,"-2.5"\n2,"3.5"\n',
+        ROWS.replace("\n", "\r").encode(),
+        ROWS.replace("speed\n", "speed," + "x" * 70_000 + "\n").encode(),
+        ROWS.replace("3.5", "3.5" + "0" * 70_000).encode(),
     ],
-    ids=["BOM", "UTF-16", "CRLF", "minus sign", "spaces", "empty end", "quoted"],
+    ids=["BOM", "UTF-16", "CRLF", "minus sign", "spaces", "empty end", "quoted", "CR", "long header", "long cell"],
 )
 def test_what_is_clear_is_read(content: bytes, tmp_path: Path) -> None:
     np.testing.assert_array_equal(read(tmp_path / "run.csv", content), [1.5, -2.5, 3.5])

@@ -277,6 +277,8 @@ class Record:
 
 
 def _check_time_order(name: str, time: Array) -> None:
+    if np.all(time[1:] >= time[:-1]):  # the usual case at a tenth of the cost
+        return
     stamped = np.flatnonzero(np.isfinite(time))
     back = np.flatnonzero(np.diff(time[stamped]) < 0)
     if back.size:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from seatrial.core.values import Array, Finding, Record, Severity
-from seatrial.data.check.motion import recorded_motion
+from seatrial.data.check.motion import RecordedMotion
 from seatrial.data.check.repair import INPUT_CHANNELS
 from seatrial.data.check.signal import (
     jackknife_least_squares,
@@ -64,10 +64,10 @@ def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]
     return [Finding(Severity.WARNING, "stuck", text, evidence, "look whether the sensor stopped or the ship lay still")]
 
 
-def lag_findings(record: Record) -> tuple[Finding, ...]:
+def lag_findings(record: Record, motion: RecordedMotion | None) -> tuple[Finding, ...]:
     """Lags of u, v behind the positions and of r behind the heading, of a clean, signed record as declared."""
     late_and_early = (
-        (velocity_lag(record), "u, v lag behind the positions", "u, v lead the positions"),
+        (velocity_lag(motion), "u, v lag behind the positions", "u, v lead the positions"),
         (yaw_rate_lag(record), "r lags behind the heading", "r leads the heading"),
     )
     findings = []
@@ -81,7 +81,7 @@ def lag_findings(record: Record) -> tuple[Finding, ...]:
     return tuple(findings)
 
 
-def velocity_lag(record: Record) -> tuple[float, float] | None:
+def velocity_lag(motion: RecordedMotion | None) -> tuple[float, float] | None:
     """Return the delay tau of the measured velocity w [s] and its standard error.
 
     Fitted: d(position)/dt - w = tau dw/dt - d lever + constant.
@@ -89,10 +89,9 @@ def velocity_lag(record: Record) -> tuple[float, float] | None:
     A reference point d ahead is fitted along (its lever is the turned yaw rate), so that it does not pass for a lag.
     None where positions are missing or the declared frame is refuted.
     """
-    motion = recorded_motion(record)
     if motion is None or best_convention(motion).changes:
         return None
-    length, psi, dt = motion.window_samples, record["psi"], record.dt
+    length, psi, dt = motion.window_samples, motion.record["psi"], motion.record.dt
     levers, turning = (-np.sin(psi), np.cos(psi)), np.gradient(psi, dt)
     features, levered, target = [], [], []
     for position, velocity, lever in zip(

@@ -4,22 +4,18 @@ from dataclasses import dataclass
 
 from seatrial.core.values import Finding, Record, worst_first
 from seatrial.data.check.channels import channel_findings, lag_findings
+from seatrial.data.check.comparison_stretch import comparison_stretch
 from seatrial.data.check.conventions import with_standard_signs
 from seatrial.data.check.dropped_rows import dropped_rows_findings
 from seatrial.data.check.feedback import feedback_findings
 from seatrial.data.check.kinematic_consistency import kinematic_consistency_findings
+from seatrial.data.check.motion import recorded_motion
 from seatrial.data.check.repair import repair
 from seatrial.data.check.rudder import rudder_findings
 from seatrial.data.check.run_phases import phase_findings
 from seatrial.data.check.timestamps import rebuild_time_base
 from seatrial.data.check.velocity_conventions import velocity_convention_findings
 from seatrial.data.check.yaw_rate_consistency import yaw_rate_findings
-
-_CHECKS_WITH_STANDARD_SIGNS = (
-    velocity_convention_findings, kinematic_consistency_findings, yaw_rate_findings, rudder_findings, lag_findings,
-    phase_findings,
-    feedback_findings,
-)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,13 +42,25 @@ def examined_record(record: Record) -> ExaminedRecord:
     """
     even, time_findings = rebuild_time_base(record)
     complete, repair_findings = repair(even)
-    declared = with_standard_signs(complete)
     findings = [
-        *channel_findings(record), *time_findings, *repair_findings, *dropped_rows_findings(record, even, complete)
+        *channel_findings(record), *time_findings, *repair_findings, *dropped_rows_findings(record, even, complete),
+        *_comparison_findings(comparison_stretch(with_standard_signs(complete))),
     ]  # fmt: skip
-    for check in _CHECKS_WITH_STANDARD_SIGNS:
-        findings += check(declared)
     return ExaminedRecord(complete, tuple(worst_first(findings)))
+
+
+def _comparison_findings(record: Record) -> list[Finding]:
+    """What channels say of one another, of a complete record with standard signs."""
+    motion = recorded_motion(record)
+    return [
+        *(() if motion is None else velocity_convention_findings(motion)),
+        *(() if motion is None else kinematic_consistency_findings(motion)),
+        *yaw_rate_findings(record),
+        *rudder_findings(record),
+        *lag_findings(record, motion),
+        *phase_findings(record),
+        *feedback_findings(record),
+    ]
 
 
 def examine(record: Record) -> tuple[Finding, ...]:

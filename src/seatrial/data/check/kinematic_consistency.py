@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seatrial.core.values import Array, Finding, Record, Severity
-from seatrial.data.check.motion import RecordedMotion, recorded_motion
+from seatrial.core.values import Array, Finding, Severity
+from seatrial.data.check.motion import RecordedMotion
 from seatrial.data.check.signal import cumulative_integral, least_squares, sample_noise
 from seatrial.data.check.velocity_conventions import best_convention
 
@@ -26,10 +26,10 @@ class ErrorCause:
     residual_rms: float
 
 
-def kinematic_consistency_findings(record: Record) -> tuple[Finding, ...]:
-    """A finding where a clean, signed record does not close; none where the declared reading is already refuted."""
-    motion = recorded_motion(record)
-    if motion is None or motion.path_length == 0 or best_convention(motion).changes:
+def kinematic_consistency_findings(motion: RecordedMotion) -> tuple[Finding, ...]:
+    """A finding where a record does not close; none where the declared reading is already refuted."""
+    record = motion.record
+    if motion.path_length == 0 or best_convention(motion).changes:
         return ()
     error = consistency_error(motion)
     rms = float(np.sqrt(np.mean(error**2))) * np.sqrt(2.0)

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -52,7 +53,7 @@ class RecordedMotion:
         """Smoothing window in samples."""
         return window_length(len(self.record))
 
-    @property
+    @cached_property
     def position_derivative(self) -> tuple[Array, Array]:
         """Smoothed derivative of position, north and east [m/s]."""
         north, east = (smoothed_derivative(self.record[s], self.record.dt, self.window_samples) for s in ("x0", "y0"))
@@ -76,16 +77,42 @@ class RecordedMotion:
         lever = self.reference_offset * np.gradient(psi, self.record.dt)
         return north - lever * s, east + lever * c
 
+    def smoothed_velocity(self, convention: VelocityConvention) -> tuple[Array, Array]:
+        """Return `velocity` smoothed, on the samples of `position_derivative`."""
+        parts = self._smoothed_parts(abs(convention.psi_factor))
+        turn = 1.0 if convention.psi_factor > 0 else -1.0
+        if convention.frame == "body":
+            north = parts["u cos"] - convention.v_sign * turn * parts["v sin"]
+            east = turn * parts["u sin"] + convention.v_sign * parts["v cos"]
+        else:
+            north, east = parts["u"], convention.v_sign * parts["v"]
+        return north - turn * parts["lever sin"], east + parts["lever cos"]
+
+    def _smoothed_parts(self, psi_factor: float) -> dict[str, Array]:
+        """What every reading of one size of psi is a sum of, smoothed once."""
+        if psi_factor not in self._parts:
+            u, v, psi = self.record["u"], self.record["v"], psi_factor * self.record["psi"]
+            c, s = np.cos(psi), np.sin(psi)
+            lever = self.reference_offset * np.gradient(self.record["psi"], self.record.dt)
+            products = {"u cos": u * c, "u sin": u * s, "v cos": v * c, "v sin": v * s, "u": u, "v": v,
+                        "lever cos": lever * c, "lever sin": lever * s}  # fmt: skip
+            self._parts[psi_factor] = {name: smoothed(part, self.window_samples) for name, part in products.items()}
+        return self._parts[psi_factor]
+
+    @cached_property
+    def _parts(self) -> dict[float, dict[str, Array]]:
+        return {}
+
     def speed_scale(self, convention: VelocityConvention) -> float:
         """Return the least-squares factor from the reading's velocity to the position's."""
-        north, east = (smoothed(w, self.window_samples) for w in self.velocity(convention))
+        north, east = self.smoothed_velocity(convention)
         gx, gy = self.position_derivative
-        power = float(north @ north + east @ east)
-        return float(gx @ north + gy @ east) / power if power > 0 else 0.0
+        power = float(np.sum(north * north + east * east))
+        return float(np.sum(gx * north + gy * east)) / power if power > 0 else 0.0
 
     def misfit(self, convention: VelocityConvention) -> float:
         """Return the size of (derivative of position - scaled velocity) over the size of the derivative."""
-        north, east = (smoothed(w, self.window_samples) for w in self.velocity(convention))
+        north, east = self.smoothed_velocity(convention)
         gx, gy = self.position_derivative
         k = max(self.speed_scale(convention), 0.0)
         size = max(trimmed_rms(gx, gy), 1e-12)  # above zero, for the division

@@ -16,8 +16,9 @@ JACKKNIFE_BLOCKS = 8
 
 
 def window_length(count: int) -> int:
-    """Odd length of the smoothing window in samples: a sixtieth of the record, between 11 and a quarter of it."""
-    return max(3, min(max(11, count // 60), count // 4)) | 1  # chosen: short against a manoeuvre
+    """Odd length of the smoothing window: a sixtieth of the record, 11 to 150 samples, at most a quarter of it."""
+    # chosen: short against a manoeuvre, in a log of many manoeuvres too
+    return max(3, min(max(11, count // 60), 150, count // 4)) | 1
 
 
 def smoothed(values: Array, length: int) -> Array:
@@ -34,8 +35,9 @@ def smoothed_derivative(values: Array, dt: float, length: int) -> Array:
 def trimmed_rms(*components: Array) -> float:
     """Root mean square of a vector's length over the 95 % smallest: a few bad samples do not count."""
     kept = 0.95  # share of the samples; chosen
-    squares = np.sort(np.sum([c**2 for c in components], axis=0))
-    return float(np.sqrt(np.mean(squares[: max(1, int(kept * len(squares)))])))
+    squares = np.sum([c**2 for c in components], axis=0)
+    count = max(1, int(kept * len(squares)))
+    return float(np.sqrt(np.mean(np.partition(squares, count - 1)[:count])))
 
 
 def cumulative_integral(rate: Array, dt: float) -> Array:

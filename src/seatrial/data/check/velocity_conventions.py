@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seatrial.core.values import Finding, Record, Severity
-from seatrial.data.check.motion import RecordedMotion, VelocityConvention, recorded_motion
+from seatrial.core.values import Finding, Severity
+from seatrial.data.check.motion import RecordedMotion, VelocityConvention
 
 # factors by which another convention must reduce the misfit to be certain, or possible; chosen
 CERTAIN_RATIO, DOUBTFUL_RATIO = 3.0, 1.5
@@ -24,10 +24,9 @@ _SPEED_UNITS = {
 }
 
 
-def velocity_convention_findings(record: Record) -> tuple[Finding, ...]:
-    """Findings on u, v and psi of a clean, signed record; none where positions or velocities are missing."""
-    motion = recorded_motion(record)
-    if motion is None or np.ptp(record["x0"]) + np.ptp(record["y0"]) == 0:
+def velocity_convention_findings(motion: RecordedMotion) -> tuple[Finding, ...]:
+    """Findings on u, v and psi of a record; none where it stays at one place."""
+    if np.ptp(motion.record["x0"]) + np.ptp(motion.record["y0"]) == 0:
         return ()
     best = best_convention(motion)
     comparison = _Comparison(motion, best, motion.misfit(motion.conventions[0]), motion.misfit(best))

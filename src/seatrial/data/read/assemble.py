@@ -98,7 +98,7 @@ def _time_column(layout: Layout, table: RawTable) -> ColumnSpec:
 
 def _measured(column: ColumnSpec, table: RawTable) -> Measured:
     values = column.in_si(table.numbers(column))
-    if np.all(np.isnan(values)):
+    if np.isnan(values[:1]).all() and np.isnan(values).all():
         raise InputError(
             f"{table.title}: {column.display_name} (channel '{column.symbol}') holds no number at all; leave it out"
         )
@@ -146,6 +146,8 @@ def record_name(file: str) -> str:
 
 
 def _require_increasing_time(time: Array, table: RawTable, layout: Layout) -> None:
+    if len(time) > 1 and np.all(time[1:] >= time[:-1]):  # the usual case at a tenth of the cost
+        return
     stamped = np.flatnonzero(np.isfinite(time))
     if stamped.size < 2:
         count = "no time stamp" if stamped.size == 0 else "one sample"

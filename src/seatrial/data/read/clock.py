@@ -66,7 +66,8 @@ def _column_stamps(table: RawTable, time: ColumnSpec) -> Stamps:
         return Stamps(np.asarray(cells.astype("datetime64[ns]").astype(np.int64) * _NANO, dtype=np.float64))
     first = next((text for cell in cells if (text := _text(cell))), "") if not _is_numeric(cells) else ""
     if _DATE_TIME.fullmatch(first):
-        return _parsed([_text(cell) for cell in cells], table, time)
+        alike = _parsed_alike(cells, first)
+        return Stamps(alike) if alike is not None else _parsed([_text(cell) for cell in cells], table, time)
     if _TIME_OF_DAY.fullmatch(first):
         return _parsed([f"1970-01-01 {text}" if (text := _text(cell)) else "" for cell in cells], table, time)
     numbers = table.numbers(time)
@@ -82,6 +83,30 @@ def _column_stamps(table: RawTable, time: ColumnSpec) -> Stamps:
             return Stamps((numbers - _EXCEL_EPOCH_DAYS) * _DAY_S)
         case _:
             return Stamps(numbers * time.si_factor("s"))
+
+
+def _parsed_alike(cells: Sequence | np.ndarray, first: str) -> Array | None:
+    """Seconds since 1970 of dates that are written in one length, fractions as decimals; None where they are not."""
+    import pandas as pd
+
+    texts = pd.Series(cells, dtype="str")
+    lengths = texts.str.len()
+    filled = lengths > 0
+    if not bool((lengths[filled] == len(first)).all()):
+        return None
+    for written, plain in (("/", "-"), (",", "."), ("UTC", "")):
+        if written in first:
+            texts = texts.str.replace(written, plain, regex=False)
+    try:
+        parsed = pd.to_datetime(texts.where(filled, None), format="ISO8601", utc=True)
+    except (ValueError, TypeError):
+        return None
+    moments = parsed.dt.tz_localize(None).to_numpy()
+    whole = moments.astype("datetime64[s]")
+    nanoseconds = (moments - whole).astype("timedelta64[ns]").astype(np.int64)
+    seconds = whole.astype(np.int64) + nanoseconds / 1e9  # ns of a second: the nearest number to the decimal fraction
+    seconds[np.isnat(moments)] = np.nan
+    return seconds
 
 
 def _parsed(texts: list[str], table: RawTable, time: ColumnSpec) -> Stamps:
