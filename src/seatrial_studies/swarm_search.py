@@ -204,10 +204,11 @@ def repeat_searches(
     make_optimiser: Callable[[Box, np.random.Generator], Population],
     make_objective: Callable[[SearchData, Population], Fitness],
     seed: int,
+    first_run: int = 0,
 ) -> RepeatedSearches:
-    """One run in each sea and box, each with a generator of its own."""
+    """One run in each sea and box, each with a generator of its own, numbered from `first_run`."""
     finished, clock = [], [time.perf_counter()]
-    for run, (data, box) in enumerate(zip(seas, boxes, strict=True)):
+    for run, (data, box) in enumerate(zip(seas, boxes, strict=True), start=first_run):
         finished.append(run_search(box, make_optimiser, partial(make_objective, data), seed, run))
         clock.append(time.perf_counter())
     seconds = float(np.median(np.diff(clock)))

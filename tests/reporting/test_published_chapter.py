@@ -1,9 +1,12 @@
 """The chapter on a published method: one table with the package's own estimate, effort, and what the search did."""
 
+from dataclasses import replace
+
 import pytest
 from tests.reporting.published_fit import published
 
 from seatrial.core.results import Fit
+from seatrial.core.values import RecordKind
 from seatrial.reporting.pages import report_page
 from seatrial.reporting.published_chapter import published_chapter
 
@@ -46,3 +49,18 @@ def test_the_page_has_the_chapter_and_claims_no_significance(fit: Fit, search_fi
     assert "The method gives no intervals." in text
     assert "differ from zero at the 95 % level" not in text
     assert TITLE not in report_page(fit)
+
+
+def test_the_page_of_a_search_says_what_it_did_and_has_no_empty_columns(fit: Fit, search_fit: Fit) -> None:
+    text = report_page(search_fit)
+    assert "2 restarts of 120 evaluations" in text and "scatter over the restarts by up to" in text
+    assert "did not converge" not in text and "slow directions" not in text and "nothing to warn of" not in text
+    assert '<th class="num">95 % from</th><th class="num">to</th><th></th>' not in text
+    assert '<th class="num">95 % from</th><th class="num">to</th><th></th>' in report_page(fit)
+
+
+def test_a_simulated_record_is_not_called_measured(fit: Fit) -> None:
+    predictions = tuple(replace(p, measured=replace(p.measured, kind=RecordKind.SIMULATED)) for p in fit.predictions)
+    text = report_page(replace(fit, predictions=predictions))
+    assert "Reference, itself simulated: broad grey line." in text and "Inputs as measured" not in text
+    assert "Inputs as measured" in report_page(fit)

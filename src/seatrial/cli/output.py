@@ -120,14 +120,20 @@ def _print_coefficients(fit: "Fit") -> None:
 
 def _print_method_comparison(fit: "Fit", reference: "ReferenceEstimate") -> None:
     """A published method beside the package's own estimate: coefficients, then what each took and how it predicts."""
-    from seatrial.core.results.method_comparison import coefficient_comparison, cost_comparison
-    from seatrial.core.text.words import counted
+    from seatrial.core.results.method_comparison import (
+        coefficient_comparison,
+        cost_comparison,
+        inside_own_intervals,
+    )
 
     for table in (coefficient_comparison(fit, reference), cost_comparison(fit, reference)):
         last = len(table.header) - 1
         print_table([table.header, *table.rows], flush_left=(0, last) if table.header[last] == "unit" else (0,))
-    if fit.search is not None and fit.search.is_interrupted:
-        print(f"interrupted after {counted(len(fit.search.restarts), 'restart')}")
+    print(inside_own_intervals(fit, reference))
+    if fit.search is not None:
+        stopped = "interrupted: " if fit.search.is_interrupted else ""
+        counts = "best" if fit.search.fitness == "record" else "first"
+        print(f"{stopped}{fit.search.effort}; the {counts} of them counts")
 
 
 def _print_prediction(p: "Prediction") -> None:
@@ -145,7 +151,7 @@ def _print_prediction(p: "Prediction") -> None:
     if p.extrapolation is not None:
         _print_extrapolation(p.extrapolation)
     for name, m in p.measures.items():
-        measured = "" if m.measured is None else f", measured {exact(m.measured, 4)}"
+        measured = "" if m.measured is None else f", {p.reference_word} {exact(m.measured, 4)}"
         if not m.is_determined:
             print_lines([f"{name}: {NOT_DETERMINED}{measured}"], "  ")
         elif m.simulated is not None and m.lower is not None and m.upper is not None:

@@ -101,6 +101,7 @@ def html(fit: Fit) -> str:
         "equations": tables.equations(fit.model, citations),
         "sign_conventions": tables.sign_conventions(fit.model),
         "coefficients": tables.coefficients(fit.coefficients),
+        "has_intervals": any(c.lower is not None for c in fit.coefficients if not c.fixed),
         "has_truth": any(c.truth is not None for c in fit.coefficients if not c.fixed),
         "has_meaning": any(c.meaning for c in fit.coefficients if not c.fixed),
         "has_prior": any(c.prior_mean is not None for c in fit.coefficients if not c.fixed),

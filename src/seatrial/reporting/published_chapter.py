@@ -13,7 +13,7 @@ from seatrial.core.results.method_comparison import (
     ComparisonTable,
     coefficient_comparison,
     cost_comparison,
-    count_inside_own_intervals,
+    inside_own_intervals,
 )
 from seatrial.core.text.numbers import exact
 from seatrial.core.text.words import counted, enumeration
@@ -57,11 +57,9 @@ def published_chapter(fit: Fit) -> PublishedChapter | None:
 
 
 def _sentences(fit: Fit, reference: ReferenceEstimate) -> list[str]:
-    count = sum(not c.fixed for c in fit.coefficients)
     text = [
         f"{fit.method.criterion[:1].upper()}{fit.method.criterion[1:]}. The method gives no intervals.",
-        f"{count_inside_own_intervals(fit, reference)} of its {counted(count, 'coefficient')} lie inside the 95 % "
-        "intervals of the package’s own estimate.",
+        f"{inside_own_intervals(fit, reference)}, the package’s own estimate.",
     ]
     search = fit.search
     if search is None:
@@ -95,8 +93,11 @@ def _search_figures(search: Search, reference: ReferenceEstimate) -> tuple[tuple
         return tuple((Markup(svg(chart)), caption) for chart, caption in drawn if chart is not None)
     drawn.append((waterfall_chart(search, reference), "Weighted rms over the whole record at the end of each restart, "
                   "in order of size, and of the package’s own estimate."))  # fmt: skip
-    drawn.append((restart_chart(search, reference), "Values of each restart less the package’s own estimate, per cent "
-                  "of it; bars: its 95 % intervals, diamonds: known values."))  # fmt: skip
+    free = [c for c in reference.coefficients if not c.fixed]
+    marks = ["bars: its 95 % intervals"] if any(c.lower is not None for c in free) else []
+    marks += ["diamonds: known values"] if any(c.truth is not None for c in free) else []
+    values = f"Values of each restart less the package’s own estimate, per cent of it{'; ' if marks else ''}"
+    drawn.append((restart_chart(search, reference), f"{values}{', '.join(marks)}."))
     if by_samples:
         caption = "Best value after each iteration of the restart that is used."
         drawn += [(chart, caption) for chart in trace_charts(search, reference)]

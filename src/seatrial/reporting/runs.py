@@ -98,10 +98,12 @@ class RunSection:
     is_held_out: bool
     summary: str
     figure: Markup
+    caption: str
+    reference_word: str
+    model_word: str
     measures: MeasureTable
     later_overshoots: MeasureTable
     is_other_manoeuvre: bool
-    has_band: bool
     notes: tuple[str, ...]
     windows: tuple[TextTable, ...] = ()
 
@@ -164,11 +166,26 @@ def _run_section(p: Prediction, length: float, inputs: Sequence[str], key: str) 
     late = {name for name in rows if name.startswith("overshoot_") and int(name.split("_")[1]) > MAX_OVERSHOOTS}
     return RunSection(
         p.record, key, p.role == "validation", _summary(p), Markup(svg(prediction_chart(p, length, inputs))),
+        _caption(p), p.reference_word, p.model_word,
         _measure_table([row for name, row in rows.items() if name not in late]),
         _measure_table([row for name, row in rows.items() if name in late]),
         bool(rows) and all(m.simulated is None for m in p.measures.values()),
-        has_band(p), tuple(_notes(p)), tuple(window_tables(p, ERROR_LABELS, {"r": _DEGREES})),
+        tuple(_notes(p)), tuple(window_tables(p, ERROR_LABELS, {"r": _DEGREES})),
     )  # fmt: skip
+
+
+def _caption(p: Prediction) -> str:
+    """What the figure of a run shows; a record that is simulated itself is not called measured."""
+    lines = (
+        "Reference, itself simulated: broad grey line. Model, open loop: thin dashed line. Inputs as in the reference."
+        if p.is_reference_simulated
+        else "Measured: broad grey line. Simulated open loop: thin dashed line. Inputs as measured."
+    )
+    band = (
+        f" Pale: 95 % band of the {p.model_word}{'’s' if p.is_reference_simulated else ''} run, along the track to its "
+        "sides; it is cut off where it leaves the picture."
+    )
+    return f"{lines} Ships at equal times, to scale.{band if has_band(p) else ''}"
 
 
 def _summary(p: Prediction) -> str:

@@ -2,9 +2,9 @@
 
 import math
 
-from seatrial.core.results import Coefficient, Fit, Prediction, ReferenceEstimate, Symmetry
-from seatrial.core.results.method_comparison import count_inside_own_intervals
-from seatrial.core.text.numbers import duration, estimate_text, exact, fixed, interval, significant
+from seatrial.core.results import Coefficient, Fit, Prediction, ReferenceEstimate, Search, Symmetry
+from seatrial.core.results.method_comparison import inside_own_intervals
+from seatrial.core.text.numbers import duration, estimate_text, exact, fixed, interval, percent, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import Severity
 from seatrial.reporting.identifiability_chapter import determined_sentence
@@ -103,7 +103,7 @@ def _first_measures(p: Prediction) -> str:
             bounds = interval(m.lower, m.upper, digits)
             simulated = f"{fixed(m.simulated, digits)}{unit}{' ' + bounds if bounds else ''}"
             simulated = simulated if m.is_determined else "not determined"
-            texts.append(f"{label} {simulated}, measured {fixed(m.measured, digits)}{unit}")
+            texts.append(f"{label} {simulated}, {p.reference_word} {fixed(m.measured, digits)}{unit}")
     return f" Simulated {'; '.join(texts)}." if texts else ""
 
 
@@ -113,7 +113,8 @@ def _coverage(fit: Fit) -> str:
     verdicts = [inside for inside in judged if inside is not None]
     if not verdicts:
         return ""
-    return f"{sum(verdicts)} of {len(verdicts)} measured manoeuvring values lie inside their predicted 95 % intervals."
+    word = fit.validation[0].reference_word
+    return f"{sum(verdicts)} of {len(verdicts)} {word} manoeuvring values lie inside their predicted 95 % intervals."
 
 
 def _extrapolation(fit: Fit) -> list[str]:
@@ -196,10 +197,9 @@ def _significance(fit: Fit) -> str:
 
 def _published_sentence(fit: Fit, reference: ReferenceEstimate) -> str:
     """How a published method's values compare with the package's own estimate."""
-    inside, count = count_inside_own_intervals(fit, reference), len(_free_coefficients(fit))
     return (
-        f"The method gives no intervals. {inside} of its {count} coefficients lie inside the 95 % intervals of the "
-        "package’s own estimate, which the next section shows with it."
+        f"The method gives no intervals. {inside_own_intervals(fit, reference)}, the package’s own estimate, which the "
+        "next section shows with it."
     )
 
 
@@ -244,11 +244,26 @@ def _residuals(fit: Fit) -> str:
 
 
 def _convergence(fit: Fit) -> str:
+    if fit.search is not None:
+        return _search_end(fit.search)
     return "" if fit.solution.status.is_success else f"The search did not converge: {fit.solution.status.value}."
+
+
+def _search_end(search: Search) -> str:
+    """What a search by a population can say of its end: its restarts and their scatter, no test of convergence."""
+    text = f"The search has no test of convergence: it spends all its iterations, here {search.effort}."
+    used = search.restarts[search.used].values
+    shares = {name: sd / abs(used[name]) for name, sd in search.scatter.items() if used[name] != 0.0}
+    if not shares:
+        return f"{text} More restarts would show how far its values scatter."
+    widest = max(shares, key=lambda name: shares[name])
+    return f"{text} Its values scatter over the restarts by up to {percent(shares[widest])} % ({widest})."
 
 
 def _warnings(fit: Fit) -> str:
     codes = list(dict.fromkeys(f.code for f in fit.findings if f.severity is not Severity.INFO))
+    if fit.reference is not None and not codes:
+        return ""  # the checks judge records and the package's own estimate, not a published method
     return (
         f"The checks warn of: {enumeration(codes)} (see Findings)." if codes else "The checks found nothing to warn of."
     )

@@ -131,7 +131,10 @@ def reproduce_searches(*, quick: bool, seed: int, report_progress: ProgressRepor
             found |= _search_setting(setting, heading, seas[heading][: _run_count(setting, heading, quick)], seed)
     if report_progress:
         report_progress("the ten runs again")
-    again = {h: _repeat_ten_runs(h, QUICK_TEN_RUN_REPEATS if quick else TEN_RUN_REPEATS, seed) for h in HEADINGS}
+    repeats = QUICK_TEN_RUN_REPEATS if quick else TEN_RUN_REPEATS
+    again = {
+        h: _repeat_ten_runs(h, found[SearchSetting.PAPER, h, SearchAlgorithm.IWHO], repeats, seed) for h in HEADINGS
+    }
     return WildHorseReproduction(found, seas, again, RUNS, quick)
 
 
@@ -144,11 +147,13 @@ def _run_count(setting: SearchSetting, heading: int, quick: bool) -> int:
     return QUICK_RUNS if quick and setting not in TEN_RUN_SETTINGS else RUNS
 
 
-def _repeat_ten_runs(heading: int, count: int, seed: int) -> TenRuns:
+def _repeat_ten_runs(heading: int, first_ten: RepeatedSearches, count: int, seed: int) -> TenRuns:
     """Ten runs as often as `count` says; the first ten are those of the tables."""
-    seas = [simulate_search_data(heading, np.random.default_rng([seed, heading, run])) for run in range(count * RUNS)]
-    searches = _search_setting(SearchSetting.PAPER, heading, seas, seed, (SearchAlgorithm.IWHO,))
-    return TenRuns(searches[SearchSetting.PAPER, heading, SearchAlgorithm.IWHO].errors, seed)
+    runs = range(RUNS, count * RUNS)
+    seas = [simulate_search_data(heading, np.random.default_rng([seed, heading, run])) for run in runs]
+    make = optimisers(ITERATIONS, FitnessMemory.RE_EVALUATE)[SearchAlgorithm.IWHO]
+    more = repeat_in_setting(SearchSetting.PAPER, seas, make, seed, RUNS)
+    return TenRuns(np.concatenate([first_ten.errors, more.errors]), seed)
 
 
 def _search_setting(
@@ -156,22 +161,20 @@ def _search_setting(
     heading: int,
     seas: list[SearchData],
     seed: int,
-    algorithms: tuple[SearchAlgorithm, ...] = tuple(SearchAlgorithm),
 ) -> dict[tuple[SearchSetting, int, SearchAlgorithm], RepeatedSearches]:
     memory = FitnessMemory.KEEP if setting is SearchSetting.REMEMBERED else FitnessMemory.RE_EVALUATE
     variant = StrideVariant.REFERENCE if setting is SearchSetting.REFERENCE else StrideVariant.PAPER
     return {
         (setting, heading, algorithm): repeat_in_setting(setting, seas, make, seed)
         for algorithm, make in optimisers(ITERATIONS, memory, variant).items()
-        if algorithm in algorithms
     }
 
 
 def repeat_in_setting(
-    setting: SearchSetting, seas: list[SearchData], make: OptimiserFactory, seed: int
+    setting: SearchSetting, seas: list[SearchData], make: OptimiserFactory, seed: int, first_run: int = 0
 ) -> RepeatedSearches:
     """Return one run in each sea, in the setting's box and by its fitness."""
-    return repeat_searches(seas, _boxes(setting, seas, seed), make, partial(_objective, setting), seed)
+    return repeat_searches(seas, _boxes(setting, seas, seed), make, partial(_objective, setting), seed, first_run)
 
 
 def _boxes(setting: SearchSetting, seas: list[SearchData], seed: int) -> list[Box]:

@@ -30,11 +30,14 @@ EFFICIENCY = 0.8  # eta of the fin drive, not printed; assumed: saved shares do 
 SEA_WATER = 1025.0  # kg/m^3, density
 GRAVITY = 9.80665  # m/s^2, standard
 BLOCK_COEFFICIENT = 0.5  # of the assumed box of 100 x 10.5 x 3.4 m; assumed, a slender patrol ship
-GYRADIUS_SHARE = 0.4  # roll radius of gyration with added mass over the breadth; customary, IMO MSC.1/Circ.1281
+# roll radius of gyration with added mass over the breadth: C sqrt(g) / pi of T = 2 C B / sqrt(GM) with C = 0.373 +
+# 0.023 B/d - 0.043 L/100 = 0.401 for 100 x 10.5 x 3.4 m (2008 IS Code, IMO resolution MSC.267(85), part A, 2.3)
+GYRADIUS_SHARE = 0.4
 PLANT_DAMPING = 0.3796  # s, coefficient of s of G_phi: 2 zeta T
 PLANT_PERIOD_SQUARED = 1.43242  # s^2, coefficient of s^2 of G_phi
-PROFILE_DRAG = 0.0065  # drag coefficient at zero lift; Whicker & Fehlner 1958, DTMB Report 933, NACA 0015
-OSWALD = 0.9  # efficiency in C_L^2 / (0.9 pi a_e); Whicker & Fehlner 1958
+# drag coefficient of NACA 0015 at zero lift: Whicker & Fehlner 1958, DTMB Report 933, as later texts on fins quote it
+PROFILE_DRAG = 0.0065
+OSWALD = 0.9  # efficiency in C_L^2 / (0.9 pi a_e); Whicker & Fehlner 1958, quoted likewise
 
 
 @dataclass(frozen=True)
@@ -76,9 +79,9 @@ def work(rate: float) -> float:
 
 
 def lift_slope() -> float:
-    """Return C_L per radian at twice the aspect ratio, the hull being a mirror (Whicker & Fehlner 1958)."""
+    """Return C_L per radian at twice the aspect ratio, the hull a mirror (Whicker & Fehlner 1958, eq. (1), linear)."""
     a = 2.0 * ASPECT
-    return 1.8 * math.pi * a / (1.8 + math.sqrt(a**2 + 4.0))  # 1.8: as fitted there, unswept
+    return 1.8 * math.pi * a / (1.8 + math.sqrt(a**2 + 4.0))  # 1.8: 0.9 of 2 pi, over pi; unswept
 
 
 def fin_drag_power(fin_rms: float, speed: float) -> float:
@@ -95,7 +98,8 @@ def fin_drag_power(fin_rms: float, speed: float) -> float:
 def roll_power(roll_rate_rms: float) -> float:
     """Return the mean power [W] that roll damping dissipates at an rms roll rate [deg/s]: an upper bound of the loss.
 
-    2 zeta T (Delta g GM) var(roll rate): the moment of damping times the rate (Himeno 1981, Univ. Michigan Report 239).
+    2 zeta T (Delta g GM) var(roll rate): the moment of damping times the rate (Himeno 1981, Prediction of Ship Roll
+    Damping, University of Michigan, Department of Naval Architecture and Marine Engineering, Report 239).
     Waves feed the motion, so that the engine loses this at most. GM from the plant's period by a gyradius of 0.4 B.
     """
     hull = HULL_FACTOR
@@ -106,7 +110,9 @@ def roll_power(roll_rate_rms: float) -> float:
 
 
 def reversals_per_hour(rate_rms: float, acceleration_rms: float) -> float:
-    """Return how often a Gaussian fin angle turns back in an hour: two a zero up-crossing of its rate (Rice 1944)."""
+    """Return how often a Gaussian fin angle turns back in an hour: two a zero up-crossing of its rate (Rice 1945, Bell
+    System Technical Journal 24, part III).
+    """
     return 2.0 * SECONDS_PER_HOUR / (2.0 * math.pi) * acceleration_rms / rate_rms
 
 

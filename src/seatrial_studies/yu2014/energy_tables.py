@@ -62,11 +62,12 @@ def _losses(evidence: FinGainEvidence) -> Table:
         "Estimates: what propulsion loses, and how often the fins turn back",
         ("kn / °", "fin drag, kW: PID", "GA", "roll, kW at most: PID", "GA", "reversals an hour: PID", "GA"),
         tuple(rows),
-        "Ours, fitted. Drag of both fins by C_D = 0.0065 + C_L² / (0.9 π a_e) (Whicker & Fehlner 1958). Roll: the "
+        "Ours, fitted. Drag of both fins by C_D = 0.0065 + C_L² / (0.9 π a_e) (Whicker & Fehlner 1958, as later "
+        "texts quote it). Roll: the "
         "power that "
         "its damping dissipates (Himeno 1981), which waves feed, so that the engine loses this at most. Reversals: "
         "two for "
-        "each zero up-crossing of the fin rate (Rice 1944); bearings and seals wear with them",
+        "each zero up-crossing of the fin rate (Rice 1945); bearings and seals wear with them",
     )
 
 

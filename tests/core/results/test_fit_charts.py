@@ -11,7 +11,7 @@ from tests.reporting.fabricated import fabricated_fit
 from seatrial.core.figures.marks import Area, Points
 from seatrial.core.results import Fit
 from seatrial.core.results.fit_charts import coefficients_chart, has_band, prediction_chart
-from seatrial.core.values import InputError
+from seatrial.core.values import InputError, RecordKind
 
 matplotlib.use("Agg")
 
@@ -35,6 +35,18 @@ def test_without_truth_and_prior_the_legend_says_nothing_of_them(fit: Fit) -> No
     chart = coefficients_chart(plain)
     assert chart is not None and len(chart.legend) == 1
     assert coefficients_chart([c for c in plain if c.fixed]) is None
+
+
+def test_a_record_that_is_simulated_itself_is_called_a_reference(fit: Fit) -> None:
+    p = fit.predictions[0]
+    assert [entry.words for entry in prediction_chart(p, 5.0, ()).legend][:2] == ["measured", "simulated, open loop"]
+    simulated = replace(p, measured=replace(p.measured, kind=RecordKind.SIMULATED))
+    words = [entry.words for entry in prediction_chart(simulated, 5.0, ()).legend]
+    assert words[:2] == ["reference (simulated)", "model, open loop"]
+    assert simulated.is_reference_simulated and (simulated.reference_word, simulated.model_word) == (
+        "reference",
+        "model",
+    )
 
 
 def test_inputs_are_shown_as_measured_only(fit: Fit) -> None:

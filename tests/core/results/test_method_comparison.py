@@ -11,6 +11,7 @@ from seatrial.core.results.method_comparison import (
     coefficient_comparison,
     cost_comparison,
     count_inside_own_intervals,
+    inside_own_intervals,
     pooled_rms,
 )
 
@@ -29,6 +30,26 @@ def test_each_coefficient_stands_with_the_own_interval_and_the_difference(fit: F
     assert row["coefficient"] == c.name
     expected = 0.02 * c.estimate / c.standard_error
     assert float(row["difference/s.e."].replace("\u2212", "-")) == pytest.approx(expected, rel=0.05)
+
+
+def test_what_was_done_and_what_lies_inside_is_said_in_words(fit: Fit) -> None:
+    assert fit.reference is not None and fit.search is not None
+    assert fit.search.effort == "2 restarts of 120 evaluations"
+    uneven = replace(fit.search, restarts=(replace(fit.search.restarts[0], evaluations=118), fit.search.restarts[1]))
+    assert uneven.effort == "2 restarts of 118 to 120 evaluations"
+    free = sum(not c.fixed for c in fit.coefficients)
+    count = count_inside_own_intervals(fit, fit.reference)
+    assert inside_own_intervals(fit, fit.reference) == (
+        f"{count} of the {free} coefficients of iwho lie inside the 95 % intervals of seatrial"
+    )
+
+
+def test_without_intervals_there_are_no_columns_for_them(fit: Fit) -> None:
+    assert fit.reference is not None
+    bare = tuple(replace(c, standard_error=None, lower=None, upper=None) for c in fit.reference.coefficients)
+    table = coefficient_comparison(fit, replace(fit.reference, coefficients=bare))
+    assert not {"std. error", "95 % from", "to", "difference/s.e."} & set(table.header)
+    assert all(len(row) == len(table.header) for row in table.rows)
 
 
 def test_effort_stands_with_the_errors_of_runs_held_out(fit: Fit) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatrial.core.values import Finding, InputError, Record, Severity
+from seatrial.core.values import Finding, InputError, Record, RecordKind, Severity
 from seatrial.data.trial import Trimming, load_records, load_trial, refuse_errors
 from seatrial.data.trial.records import apply_trimming
 
@@ -18,6 +18,15 @@ def test_records_come_in_the_notation_tables_conventions(trial_file: Path) -> No
     assert first.channel("delta").positive == "starboard"
     assert first["delta"][0] == pytest.approx(np.radians(20.0))
     assert first.provenance.sha256
+
+
+def test_records_may_be_declared_simulated(trial_file: Path) -> None:
+    assert {r.record.kind for r in load_records(load_trial(trial_file))[0]} == {RecordKind.MEASURED}
+    trial_file.write_text(trial_file.read_text().replace("[[records]]", '[[records]]\nkind = "simulated"', 1))
+    assert RecordKind.SIMULATED in {r.record.kind for r in load_records(load_trial(trial_file))[0]}
+    trial_file.write_text(trial_file.read_text().replace('"simulated"', '"planned"', 1))
+    with pytest.raises(InputError, match="kind"):
+        load_trial(trial_file)
 
 
 def test_a_wrong_column_is_named(trial_file: Path) -> None:

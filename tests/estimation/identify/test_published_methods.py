@@ -171,6 +171,7 @@ def test_progress_names_search_and_iteration(repository: Path) -> None:
         example(repository, "heave_pitch", EstimateMethod.PSO, replace(FEW, restarts=1)), report_progress=lines.append
     )
     assert any(re.match(r"pso, search 1 of 1: iteration 6 of 6, best ", line) for line in lines)
+    assert all(line.startswith(("own estimate: ", "pso, search 1 of 1: ")) for line in lines)
 
 
 def free_bounds(trial: Trial, **bounds: tuple[float, float]) -> Trial:

@@ -189,7 +189,7 @@ class Fit(Summarised):
             "ship": self.ship.name, "criterion": self.method.criterion, "intervals": self.intervals,
             "coefficients": f"{len(free)} free, {len(self.coefficients) - len(free)} fixed",
             "runs": f"{len(self.records)}, of these {len(self.validation)} for validation",
-            "search": self.solution.status.value,
+            "search": self.search.effort if self.search else self.solution.status.value,
         }  # fmt: skip
         header = ("coefficient", "unit", "estimate", "std. error", "lower 95 %", "upper 95 %")
         return Summary(f"Fit of model {self.model.name}", header, rows, facts)

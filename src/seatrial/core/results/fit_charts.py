@@ -93,8 +93,10 @@ def prediction_chart(prediction: Prediction, length: float, inputs: Sequence[str
     measured, simulated = prediction.measured, prediction.simulated
     names = [s for s in reading_order(list(measured.channels)) if s in inputs or s in simulated]
     names = [s for s in names if not is_constant(measured, s)][:MAX_PANELS]
-    title = f"{prediction.record}: measured and simulated"
-    legend = [LegendEntry("measured", MEASURED), LegendEntry("simulated, open loop", SIMULATED)]
+    reference, model = prediction.reference_word, prediction.model_word
+    title = f"{prediction.record}: {reference} and {model}"
+    origin = " (simulated)" if prediction.is_reference_simulated else ""
+    legend = [LegendEntry(f"{reference}{origin}", MEASURED), LegendEntry(f"{model}, open loop", SIMULATED)]
     if len(names) == 1 and names[0] not in inputs and not has_track(measured):
         return _single_channel(prediction, names[0], title, legend)
     legend += [LegendEntry("95 % band", BAND)] if has_band(prediction) else []

@@ -9,6 +9,7 @@ from seatrial.core.results.coefficients import Coefficient
 from seatrial.core.results.fit import Fit
 from seatrial.core.results.published_method import ReferenceEstimate
 from seatrial.core.text.numbers import exact, significant
+from seatrial.core.text.words import counted
 
 OWN_NAME = "seatrial"
 """What the tables call the package's own estimate."""
@@ -30,11 +31,13 @@ def coefficient_comparison(fit: Fit, reference: ReferenceEstimate) -> Comparison
     own = {c.name: c for c in reference.coefficients}
     free = [c for c in fit.coefficients if not c.fixed]
     has_truth = any(c.truth is not None for c in free)
-    header = ("coefficient", fit.method.name, *(["scatter"] if scatter else []), OWN_NAME, "std. error", "95 % from",
-              "to", "difference/s.e.", *(["known"] if has_truth else []), "unit")  # fmt: skip
+    has_intervals = any(own[c.name].lower is not None for c in free)
+    interval_header = ["std. error", "95 % from", "to", "difference/s.e."] if has_intervals else []
+    header = ("coefficient", fit.method.name, *(["scatter"] if scatter else []), OWN_NAME, *interval_header,
+              *(["known"] if has_truth else []), "unit")  # fmt: skip
     rows = [
         (c.name, exact(c.estimate, _DIGITS), *([significant(scatter[c.name], 2)] if scatter else []),
-         *_own_cells(own[c.name]), _difference(c, own[c.name]),
+         exact(own[c.name].estimate, _DIGITS), *(_interval_cells(c, own[c.name]) if has_intervals else ()),
          *([exact(c.truth, _DIGITS)] if has_truth else []), c.unit if c.unit != "1" else "")
         for c in free
     ]  # fmt: skip
@@ -67,6 +70,14 @@ def count_inside_own_intervals(fit: Fit, reference: ReferenceEstimate) -> int:
     return sum(a is not None and b is not None and a <= value <= b for value, a, b in free)
 
 
+def inside_own_intervals(fit: Fit, reference: ReferenceEstimate) -> str:
+    """Return how many of the method's values the package's own estimate allows, as a clause."""
+    count = sum(not c.fixed for c in fit.coefficients)
+    inside = count_inside_own_intervals(fit, reference)
+    coefficients = f"{counted(count, 'coefficient')} of {fit.method.name}"
+    return f"{inside} of the {coefficients} lie inside the 95 % intervals of {OWN_NAME}"
+
+
 def pooled_rms(errors: Mapping[str, Mapping[str, float]], runs: Sequence[str]) -> dict[str, float]:
     """Return the root of the mean square of each error over the runs that have it."""
     known = [errors[run] for run in runs if run in errors]
@@ -74,13 +85,10 @@ def pooled_rms(errors: Mapping[str, Mapping[str, float]], runs: Sequence[str]) -
     return {key: float(np.sqrt(np.mean([table[key] ** 2 for table in known if key in table]))) for key in keys}
 
 
-def _own_cells(c: Coefficient) -> tuple[str, str, str, str]:
-    return (
-        exact(c.estimate, _DIGITS),
-        significant(c.standard_error, 2),
-        exact(c.lower, _DIGITS),
-        exact(c.upper, _DIGITS),
-    )
+def _interval_cells(c: Coefficient, reference: Coefficient) -> tuple[str, str, str, str]:
+    """Standard error and interval of the package's own estimate, and the method's difference from it."""
+    lower, upper = (exact(end, _DIGITS) for end in (reference.lower, reference.upper))
+    return significant(reference.standard_error, 2), lower, upper, _difference(c, reference)
 
 
 def _difference(c: Coefficient, reference: Coefficient) -> str:

@@ -7,6 +7,7 @@ from pydantic import Field
 
 from seatrial.core.results.fields import ListedArray, Number, ReportedFinding, StoredArray, StoredRecord
 from seatrial.core.results.window_scores import WindowScore
+from seatrial.core.values import RecordKind
 
 
 @dataclass(frozen=True)
@@ -87,6 +88,21 @@ class Prediction:
     windows: Annotated[
         tuple[WindowScore, ...], Field(description="windows of the run, each predicted by itself; validation runs only")
     ] = ()
+
+    @property
+    def is_reference_simulated(self) -> bool:
+        """Return whether the record that the run is compared with is itself a simulation."""
+        return self.measured.kind is RecordKind.SIMULATED
+
+    @property
+    def reference_word(self) -> str:
+        """Return what figures and tables call that record: ``measured``, or ``reference`` where it is simulated."""
+        return "reference" if self.is_reference_simulated else "measured"
+
+    @property
+    def model_word(self) -> str:
+        """Return what they call the model's run: ``simulated``, or ``model`` where the other one is simulated too."""
+        return "model" if self.is_reference_simulated else "simulated"
 
 
 @dataclass(frozen=True, eq=False)

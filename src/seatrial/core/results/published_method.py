@@ -7,6 +7,7 @@ from pydantic import Field
 
 from seatrial.core.results.coefficients import Coefficient, Method
 from seatrial.core.results.fields import Number, StoredArray
+from seatrial.core.text.words import counted
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,13 @@ class Search:
         Field(description="as `trace`, of the package's own follower at the same samples; empty: no stream"),
     ] = field(default_factory=dict)
     track: Annotated[SearchTrack | None, Field(description="null: no stream was followed")] = None
+
+    @property
+    def effort(self) -> str:
+        """Return how often it was made and how many candidates each judged: ``3 restarts of 8000 evaluations``."""
+        counts = sorted({one.evaluations for one in self.restarts})
+        each = " to ".join(map(str, counts[:1] + counts[1:][-1:]))
+        return f"{counted(len(self.restarts), 'restart')} of {each} evaluations"
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ files = "*.csv"
 header_lines = 1
 validate = [{validate}]
 source = "simulated in steps of 0.01 s with sensor noise"
+kind = "simulated"
 time = {{ column = "time [s]", unit = "s" }}
 
 [records.channels]

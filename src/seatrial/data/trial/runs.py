@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from seatrial.core.values import InputError, si_unit, spelling_hint
+from seatrial.core.values import InputError, RecordKind, si_unit, spelling_hint
 from seatrial.data.read import ColumnSpec, Layout, format_of
 from seatrial.data.read.layout import Geometry, TimeSpec
 from seatrial.data.read.quantities import log_quantity
@@ -87,8 +87,9 @@ def _block_runs(
     trimming = Trimming(block.from_s, block.to_s, block.skip_acceleration, block.rate, block.from_release)
     roles = _roles(block, [one.name for one in data], where)
     met = None if length is None else wave_encounter(block.waves, excitation, length, where)
+    kind = None if block.kind is None else RecordKind(block.kind)
     return [
-        TrialRun(one, role, session_of(_session_path(one), block.session), trimming, block.source, met)
+        TrialRun(one, role, session_of(_session_path(one), block.session), trimming, block.source, met, kind)
         for one, role in zip(data, roles, strict=True)
     ]
 

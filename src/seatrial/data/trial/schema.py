@@ -187,6 +187,7 @@ class RecordsTable(ColumnsTable):
     format: Format | None = None
     scale: Annotated[float, Field(gt=0)] = 1.0
     source: str = ""
+    kind: Literal["measured", "simulated"] | None = None
     train: Strings = ()
     validate_: Strings = Field((), alias="validate")
     leave_out: Strings = ()

@@ -1,13 +1,13 @@
 """A trial: ship, runs, model and settings, from a trial file or made in Python."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Finding, ForcePoints, Record, Ship
+from seatrial.core.values import Finding, ForcePoints, Record, RecordKind, Ship
 from seatrial.data.trial.compare_settings import CompareSettings
 from seatrial.data.trial.design_request import DesignRequest
 from seatrial.data.trial.run_data import RecordFile, RecordSources
@@ -56,6 +56,7 @@ class TrialRun:
         trimming: which part is used.
         source: where the data come from, for people.
         waves: how the ship met the waves; None: no waves, or the record holds their forces.
+        kind: whether the record was measured or simulated; None: as the record itself says.
     """
 
     data: RecordFile | RecordSources | Record
@@ -64,6 +65,7 @@ class TrialRun:
     trimming: Trimming = Trimming()
     source: str = ""
     waves: WaveEncounter | None = None
+    kind: RecordKind | None = None
 
     def __post_init__(self) -> None:
         if not self.session:
@@ -85,7 +87,8 @@ class TrialRun:
         Raises:
             InputError: its file cannot be read.
         """
-        return self.data if isinstance(self.data, Record) else self.data.read()
+        record = self.data if isinstance(self.data, Record) else self.data.read()
+        return record if self.kind is None else replace(record, kind=self.kind)
 
 
 @dataclass(frozen=True, eq=False)

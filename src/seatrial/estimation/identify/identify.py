@@ -73,10 +73,11 @@ def identify(
     window_lengths(windows)  # what is misspelt is refused before the fit
     horizon_list(horizons)
     options = EstimatorOptions(intervals, seed, windows=windows, horizons=horizons)
-    task = Identification(trial, checked.records, checked.findings, options, choose, began, report_progress)
+    own_progress = _of_own_estimate(report_progress) if method.is_published else report_progress
+    task = Identification(trial, checked.records, checked.findings, options, choose, began, own_progress)
     situation = identification_situation(task)
     if method.is_published:
-        return _published(task, situation)
+        return _published(task, situation, report_progress)
     fit = STRATEGIES[situation](task)
     fit = replace(fit, method=replace(fit.method, name=method.value))
     if not compare or situation is Situation.UNKNOWN_WAVES:  # no input, so that there is nothing to regress on
@@ -87,7 +88,12 @@ def identify(
     return with_search_baselines(fit, trial, seed, report_progress) if has_searches else fit
 
 
-def _published(task: Identification, situation: Situation) -> Fit:
+def _of_own_estimate(report_progress: ProgressReporter | None) -> ProgressReporter | None:
+    """What reports the progress of the package's own estimate beside a published method's, marked as such."""
+    return None if report_progress is None else lambda text: report_progress(f"own estimate: {text}")
+
+
+def _published(task: Identification, situation: Situation, report_progress: ProgressReporter | None) -> Fit:
     """The fit of the published method that the trial names, compared with the package's own.
 
     Raises:
@@ -104,7 +110,7 @@ def _published(task: Identification, situation: Situation) -> Fit:
     cpu_s = time.process_time() - began
     reference = STRATEGIES[situation](task)
     if method.is_search:
-        estimate = estimate_by_search(trial, reference, task.options.seed, task.report_progress)
+        estimate = estimate_by_search(trial, reference, task.options.seed, report_progress)
     else:
         window = WEAK_FORM_SHIP_LENGTHS * task.characteristic_time
         estimate = estimate_by_regression(trial.model, task.runs.records, method, window, trial.compare.svr)

@@ -73,7 +73,7 @@ def motion_interruptions(height: float, friction: float = 0.25) -> Objective:
     """Tips a minute of a person standing `height` [m] above the axis of roll (Graham 1990, Nav. Eng. J. 102(2), 65-71).
 
     The lateral force estimator of roll alone is (g + height omega^2) phi; it exceeds `friction` g, the half stance over
-    the height of the centre of gravity, on either side at the rate of Rice (1944) for a Gaussian process:
+    the height of the centre of gravity, on either side at the rate of Rice (1945) for a Gaussian process:
     60 / pi sqrt(v_2 / v_0) exp(-(friction g)^2 / (2 v_0)).
     """
 

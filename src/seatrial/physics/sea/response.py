@@ -47,7 +47,7 @@ class MotionStatistics:
 
     @property
     def zero_crossing_period(self) -> float:
-        """Mean period between upward zero crossings, 2 pi sqrt(m0 / m2), s (Rice 1944); infinite without motion."""
+        """Mean period between upward zero crossings, 2 pi sqrt(m0 / m2), s (Rice 1945); infinite without motion."""
         return 2.0 * math.pi * math.sqrt(self.m0 / self.m2) if self.m2 > 0.0 else math.inf
 
     def exceedance(self, amplitude: float) -> float:

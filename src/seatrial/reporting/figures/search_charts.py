@@ -51,8 +51,9 @@ def restart_chart(search: Search, reference: ReferenceEstimate) -> Chart | None:
         marks.append(Points(np.array(row), height, _RESTART))
         marks.append(Points(np.array([row[search.used]]), height[:1], _USED))
     axis = Axis((-reach, reach), "deviation from the package's own estimate, per cent of it", tick_count=8)
-    legend = [LegendEntry("restart that is used", _USED), LegendEntry("other restarts", _RESTART),
-              LegendEntry("own 95 % interval", _INTERVAL)]  # fmt: skip
+    legend = [LegendEntry("restart that is used", _USED)]
+    legend += [LegendEntry("other restarts", _RESTART)] if len(search.restarts) > 1 else []
+    legend += [LegendEntry(f"95 % interval of {OWN_NAME}", _INTERVAL)] if any(c.lower is not None for c in free) else []
     legend += [LegendEntry("known value", _TRUTH)] if any(c.truth is not None for c in free) else []
     return Chart("values of the restarts", (row_panel([c.name for c in free], axis, marks, top=4.0),), tuple(legend))
 
