@@ -289,6 +289,8 @@ def _print_identifiability(fit: "Fit") -> None:
         print_lines((f"not identifiable: {symmetry.text}" for symmetry in identifiability.structural), "  ")
     if noise_model is not None and noise_model.text:
         print_lines([f"{noise_model.method}: {noise_model.text}"])
+    if noise_model is not None and noise_model.closed_loop is not None:
+        print_lines(noise_model.closed_loop.sentences)
     if noise_model is not None and noise_model.candidates:
         _print_disturbances(noise_model.candidates)
 

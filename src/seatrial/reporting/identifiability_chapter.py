@@ -83,6 +83,7 @@ class NoiseText:
     quiet_states: str
     measurement: tuple[NoiseRow, ...]
     candidates: tuple[DisturbanceRow, ...]
+    closed_loop: str
 
 
 @dataclass(frozen=True)
@@ -250,6 +251,7 @@ def _noise_text(d: NoiseModel, names: Sequence[str]) -> NoiseText:
         enumeration(quiet),
         tuple(_noise_row(channel, s, "") for channel, s in d.measurement.items()),
         disturbance_rows(d.candidates),
+        " ".join(sentence(text) for text in d.closed_loop.sentences) if d.closed_loop else "",
     )
 
 

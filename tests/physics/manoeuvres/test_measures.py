@@ -151,3 +151,12 @@ def test_a_position_that_never_moves_is_no_track_and_zero_has_no_sign(circle: Ca
     found = measures(still, LENGTH)
     assert not {"advance_L", "transfer_L", "tactical_diameter_L"} & set(found)
     assert math.copysign(1.0, found["steady_drift_deg"]) == 1.0
+
+
+def test_a_rudder_that_never_rests_holds_no_angle() -> None:
+    """A controller that answers steps of heading with kicks of one sample."""
+    time = 0.1 * np.arange(400)
+    delta = np.where(np.arange(400) % 50 == 25, 0.2, 0.0)
+    psi = 0.1 * np.cos(0.7 * time)
+    record = Record.from_arrays("auto", time, {"delta": delta, "psi": psi, "r": np.gradient(psi, time)})
+    assert recognise_manoeuvre(record) in ManoeuvreKind

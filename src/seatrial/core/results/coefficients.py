@@ -5,6 +5,7 @@ from typing import Annotated
 
 from pydantic import Field, PlainSerializer, WithJsonSchema
 
+from seatrial.core.results.closed_loop import FeedbackEvidence
 from seatrial.core.results.fields import ABSENT, Number, StoredArray
 from seatrial.core.values import InputError
 
@@ -183,6 +184,10 @@ class NoiseModel:
     candidates: Annotated[
         tuple[DisturbanceCandidate, ...], Field(description="disturbances that were compared; empty: none were needed")
     ] = ()
+    closed_loop: Annotated[
+        FeedbackEvidence | None,
+        Field(description="a controller that was on in training runs; null: no input follows outputs"),
+    ] = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -69,6 +69,9 @@ _TABLE = [
     Quantity("wind_speed_relative", "apparent wind speed", "m/s", "body", "none", "V_A", "apparent_wind_speed"),
     Quantity("wind_direction_relative", "direction the apparent wind comes from, off the bow", "rad", "body",
              "starboard", r"\gamma_A", "apparent_wind_from_direction"),
+    Quantity("psi_ref", "ordered heading", "rad", "earth", "starboard", r"\psi_{ref}", "ordered_heading"),
+    Quantity("r_ref", "ordered yaw rate", "rad/s", "body", "starboard", "r_{ref}", "ordered_yaw_rate"),
+    Quantity("phi_ref", "ordered roll angle", "rad", "body", "starboard", r"\phi_{ref}", "ordered_roll_angle"),
     Quantity("voltage", "voltage of the batteries", "V", "none", "none", "V", "battery_voltage"),
     *(
         Quantity(f"{letter}_{k}", f"{meaning} {k}", unit, frame, positive, rf"{latex}_{{{k}}}", f"{name}_{k}")
@@ -83,6 +86,9 @@ _TABLE = [
 
 COMMANDS = tuple(f"{letter}_{k}" for letter in ("command", "alpha", "rpm") for k in _INDEXED)
 """Channels of thrusters: what is ordered or follows an order, never a measurement to be smoothed."""
+
+REFERENCES = ("psi_ref", "r_ref", "phi_ref")
+"""Channels of what a controller is ordered to hold."""
 
 # positive direction -> its opposite, both ways
 _PAIRS = {

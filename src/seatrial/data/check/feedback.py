@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from seatrial.core.text.numbers import p_value
 from seatrial.core.values import Array, Finding, Record, Severity
 from seatrial.core.values.notation import COMMANDS as THRUSTER_COMMANDS
 
@@ -86,7 +87,7 @@ def feedback_findings(record: Record) -> tuple[Finding, ...]:
             f"record '{record.name}': '{t.command}' follows '{t.motion}' (a controller, or a helmsman as in a zigzag): "
             "output error would take disturbances that are answered for the ship's own response; identify uses "
             "prediction error with a disturbance model",
-            f"cross-correlation {t.correlation:.2f}, output {t.lag:.2g} s before input, p {t.p:.1g}",
+            f"cross-correlation {t.correlation:.2f}, output {t.lag:.2g} s before input, {p_value(t.p)}",
             "a stretch of rudder steps that do not depend on the motion identifies the coefficients better",
         )
         for t in feedback_tests(record)

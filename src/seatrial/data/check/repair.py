@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.values import Channel, Finding, InputError, Record, Severity
-from seatrial.core.values.notation import COMMANDS
+from seatrial.core.values.notation import COMMANDS, REFERENCES
 from seatrial.data.check.jumps import spike_rows, track_jumps
 from seatrial.data.check.signal import RowIndices, mask_intervals, unwrapped
 from seatrial.data.check.timestamps import without_empty_ends
 
-INPUT_CHANNELS = ("delta", "n", "v_j", *COMMANDS)
+INPUT_CHANNELS = ("delta", "n", "v_j", *COMMANDS, *REFERENCES)
 # holes up to so many s or samples are interpolated; chosen: what a sensor loses now and then
 SHORT_GAP_S, SHORT_GAP_SAMPLES = 1.0, 5
 

@@ -2,6 +2,7 @@
 
 from seatrial.data.trial.approach import approach_condition
 from seatrial.data.trial.estimate_method import SEARCHES, EstimateMethod, FitCriterion
+from seatrial.data.trial.feedback_table import ControllerGains, Feedback
 from seatrial.data.trial.load import load_runs, load_trial
 from seatrial.data.trial.records import CheckedRecords, TrialRecord, checked_records, load_records, refuse_errors
 from seatrial.data.trial.search_settings import SearchFitness, SearchSettings
@@ -9,7 +10,8 @@ from seatrial.data.trial.settings import EstimateSettings, ModelFamily
 from seatrial.data.trial.trial import RecordFile, Role, Trial, TrialRun, Trimming
 
 __all__ = [
-    "SEARCHES", "CheckedRecords", "EstimateMethod", "EstimateSettings", "FitCriterion", "ModelFamily",
+    "SEARCHES", "CheckedRecords", "ControllerGains", "EstimateMethod", "EstimateSettings", "Feedback", "FitCriterion",
+    "ModelFamily",
     "RecordFile", "Role", "SearchFitness", "SearchSettings", "Trial", "TrialRecord", "TrialRun", "Trimming",
     "approach_condition", "checked_records", "load_records", "load_runs", "load_trial", "refuse_errors",
 ]  # fmt: skip

@@ -72,6 +72,11 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         _refuse_unknown_names("estimate.offsets", list(file.estimate.offsets), symbols)
         _refuse_unknown_names("estimate.gains", list(file.estimate.gains), symbols)
         _refuse_unknown_names("estimate.delays", list(file.estimate.delays), set(model.input_names))
+        if file.feedback is not None:
+            _refuse_unknown_names("feedback.input", [file.feedback.input], set(model.input_names))
+            _refuse_unknown_names("feedback.output", [file.feedback.output], set(model.observables))
+            if isinstance(file.feedback.reference, str):
+                _refuse_unknown_names("feedback.reference", [file.feedback.reference], symbols)
         for structure, names in (file.family.structures if file.family else {}).items():
             _refuse_unknown_names(f"family.structures.'{structure}'", list(names), set(model.parameters.names))
         if own_model is None:
@@ -109,6 +114,7 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         compare=file.compare,
         design_request=file.design,
         stream=stream,
+        feedback=file.feedback,
         findings=(*ranges, *(finding for points in forces for finding in force_findings(points, unit))),
     )
 

@@ -12,6 +12,7 @@ from seatrial.data.read.registry import require_format
 from seatrial.data.trial.amounts import STRICT_FIELDS, Angle, Deviation, SiAmount, Speed, StrictTable, Unit
 from seatrial.data.trial.compare_settings import CompareSettings
 from seatrial.data.trial.design_request import DesignRequest
+from seatrial.data.trial.feedback_table import Feedback
 from seatrial.data.trial.sea_table import SeaTable
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
 from seatrial.data.trial.stream import StreamSettings
@@ -359,6 +360,7 @@ class TrialFile(StrictTable):
     noise: dict[str, Deviation] = Field(default_factory=dict)
     truth: dict[str, float] = Field(default_factory=dict)
     estimate: EstimateSettings = EstimateSettings()
+    feedback: Feedback | None = None
     design: DesignRequest | None = None
     follow: FollowTable | None = None
 

@@ -10,6 +10,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Finding, ForcePoints, Record, RecordKind, Ship
 from seatrial.data.trial.compare_settings import CompareSettings
 from seatrial.data.trial.design_request import DesignRequest
+from seatrial.data.trial.feedback_table import Feedback
 from seatrial.data.trial.run_data import RecordFile, RecordSources
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
 from seatrial.data.trial.stream import Stream
@@ -109,6 +110,7 @@ class Trial:
         forces: static force points that are fitted with the runs.
         family: models to compare; None: the default family of the model.
         compare: settings of the regressions that a comparison sets beside the fit.
+        feedback: the controller that was on in some runs; None: none is declared.
         design: the manoeuvre that is to be designed; None: none is.
         follow: the stream that is to be followed; None: none is.
         findings: what is odd about the trial itself: priors beyond their range, force points of unexpected sign.
@@ -131,6 +133,7 @@ class Trial:
     design_request: DesignRequest | None = None
     stream: Stream | None = None
     findings: tuple[Finding, ...] = ()
+    feedback: Feedback | None = None
 
     def __repr__(self) -> str:
         roles = ", ".join(f"{len(self.runs_with_role(role))} {role}" for role in Role if self.runs_with_role(role))

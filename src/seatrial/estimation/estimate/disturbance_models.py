@@ -1,6 +1,6 @@
 """Candidates for what disturbs a ship: gusts with a memory, waves, wandering sensors; each a model with more states."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -19,7 +19,7 @@ from seatrial.core.equations.augment import (
     with_lags,
     with_waves,
 )
-from seatrial.core.values import Array
+from seatrial.core.values import Array, InputError, Record
 from seatrial.estimation.estimate.process_noise import ProcessNoise
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.prediction_error import PredictionError
@@ -27,6 +27,9 @@ from seatrial.estimation.problem.prediction_error import PredictionError
 POSITIONS, VELOCITIES = ("x0", "y0"), ("u", "v")
 # memories of gusts from which the search starts: from so many samples to a tenth of the longest run, so many values
 _FEWEST_MEMORY_SAMPLES, _LONGEST_MEMORY_SHARE, _MEMORIES = 5.0, 0.1, 4
+FEWEST_SAMPLES = round(_FEWEST_MEMORY_SAMPLES / _LONGEST_MEMORY_SHARE)
+"""Samples of the longest run from which on a disturbance can be estimated: in fewer no memory is tried."""
+
 # intensities from which the search starts, over that of white noise with the same effect; gusts are the larger
 _INTENSITY_FACTORS = (0.5, 1.5, 5.0, 15.0)
 # intensity where white noise was none, over that which would explain all motion of its state; smallest size, SI
@@ -113,6 +116,22 @@ def sensor_models(base: ProcessNoise) -> Iterator[DisturbanceModel]:
     velocities = tuple(c for c in VELOCITIES if c in outputs and c in states)
     if velocities and not base.output_error.extra_terms:
         yield _lags(base, velocities, _LAG_SAMPLES * base.output_error.data.dt)
+
+
+def refuse_short_runs(records: Sequence[Record]) -> None:
+    """Refuse runs too short for any disturbance model.
+
+    Raises:
+        InputError: how many samples the longest run has, how many are needed, and what to do.
+    """
+    longest = max(records, key=len)
+    if len(longest) < FEWEST_SAMPLES:
+        raise InputError(
+            f"a disturbance model needs a run of at least {FEWEST_SAMPLES} samples, and the longest one, "
+            f"'{longest.name}', has {len(longest)}: the disturbance's memory is sought between "
+            f"{_FEWEST_MEMORY_SAMPLES:.0f} samples and a tenth of the run; record longer, or write "
+            'method = "output-error" under [estimate]'
+        )
 
 
 def longest_run(problem: OutputError) -> float:

@@ -9,10 +9,11 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results import NoiseModel
 from seatrial.core.values import Array, InputError, ProgressReporter, Record
-from seatrial.data.check.feedback import has_feedback
 from seatrial.data.trial import EstimateSettings, FitCriterion
 from seatrial.estimation.estimate.assemble import output_error_problem
+from seatrial.estimation.estimate.closed_loop import LoopEvidence, closed_loop, loop_evidence
 from seatrial.estimation.estimate.criterion_choice import PREDICTION_ERROR, CriterionChoice, choose_criterion
+from seatrial.estimation.estimate.disturbance_models import refuse_short_runs
 from seatrial.estimation.estimate.intervals import (
     Uncertainty,
     estimate_uncertainty,
@@ -152,8 +153,8 @@ def estimate_model(
     records all this is done on some stretches, and the estimate then moved to the optimum of all samples.
 
     Raises:
-        InputError: no excitation, no free parameter, outputs that cannot be compared, a search that cannot begin, or
-            one that ends outside physics.
+        InputError: no excitation, no free parameter, outputs that cannot be compared, runs too short for a disturbance
+            that is required, a search that cannot begin, or one that ends outside physics.
     """
     began = time.perf_counter()
     options, settings = (
@@ -164,10 +165,15 @@ def estimate_model(
         raise InputError(f"model '{model.name}' has no free parameter; free some under [model]")
     refuse_without_excitation(model, runs.records)
     refuse_few_runs(options.intervals, len(runs))
+    if settings.criterion is FitCriterion.PREDICTION_ERROR or (
+        settings.criterion is FitCriterion.AUTO and runs.feedback is not None
+    ):
+        refuse_short_runs(runs.records)
     report = report_progress or (lambda _: None)
     is_free = settings.criterion is FitCriterion.AUTO and settings.segment_s is None and not settings.robust
     some = choice_runs(runs) if is_free else None
-    begun, shooting, choice = _chosen(model, some or runs, settings, options, report_progress)
+    evidence = loop_evidence(runs.records, runs.feedback, some.records if some else None)
+    begun, shooting, choice = _chosen(model, some or runs, settings, options, evidence, report_progress)
     if some is not None:
         report("all samples")
         choice = choice_over_all(choice, runs)
@@ -177,13 +183,13 @@ def estimate_model(
     refuse_implausible(estimate, uncertainty.interval.standard_error)
     return Estimation(
         estimate, shooting, uncertainty, choice.residuals, choice.inflation,
-        choice.rho, choice.whiteness, _noise_model(choice), begun.origin, criterion, choice.reasons,
+        choice.rho, choice.whiteness, _noise_model(choice, evidence), begun.origin, criterion, choice.reasons,
         time.perf_counter() - began, choice.process_noise or choice.implied_noise,
     )  # fmt: skip
 
 
 def _chosen(
-    model: Model, runs: Runs, settings: EstimateSettings, options: EstimatorOptions,
+    model: Model, runs: Runs, settings: EstimateSettings, options: EstimatorOptions, evidence: LoopEvidence,
     report_progress: ProgressReporter | None,
 ) -> tuple[SearchStart, PointEstimate, CriterionChoice]:  # fmt: skip
     """Where the search began, the estimate over segments, and the criterion's choice."""
@@ -211,7 +217,7 @@ def _chosen(
     choice = choose_criterion(
         shooting, seconds, settings, runs.noise, whole_runs, report_progress, is_unforced=is_unforced,
         begun=_begun(shooting, start),
-        has_feedback=any(has_feedback(record) for record in runs.records),
+        has_feedback=evidence.is_closed,
     )  # fmt: skip
     return start, shooting, choice
 
@@ -243,7 +249,7 @@ def _uncertainty(choice: CriterionChoice, options: EstimatorOptions, report_prog
     return replace(uncertainty, interval=widened)
 
 
-def _noise_model(choice: CriterionChoice) -> NoiseModel:
+def _noise_model(choice: CriterionChoice, evidence: LoopEvidence) -> NoiseModel:
     """Noise in states and channels; intensities that do not make the innovations white bound the process noise."""
     noise, compared = choice.process_noise, choice.disturbances
     return NoiseModel(
@@ -256,6 +262,7 @@ def _noise_model(choice: CriterionChoice) -> NoiseModel:
         disturbance="none" if noise is None else noise.disturbance_model,
         added={} if noise is None else noise.added_parameters,
         candidates=() if compared is None else compared.rows(is_used=noise is not None),
+        closed_loop=closed_loop(evidence, compared, noise),
     )
 
 

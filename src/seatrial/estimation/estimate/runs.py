@@ -4,7 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from seatrial.core.values import ForcePoints, Record
-from seatrial.data.trial import Role, Trial, TrialRecord
+from seatrial.data.trial import Feedback, Role, Trial, TrialRecord
+from seatrial.data.trial.feedback_table import refuse_unusable_feedback
 from seatrial.estimation.problem.output_error import DataTerm
 
 
@@ -18,6 +19,7 @@ class Runs:
         length: of the ship [m].
         noise: channel -> known standard deviation, SI; that of other channels is estimated.
         forces: tables of static force points that are fitted with the runs.
+        feedback: the controller that was on in some of them; None: none is declared.
         carried: information from records that are no longer kept.
     """
 
@@ -26,6 +28,7 @@ class Runs:
     length: float
     noise: Mapping[str, float] = field(default_factory=dict)
     forces: tuple[ForcePoints, ...] = ()
+    feedback: Feedback | None = None
     carried: tuple[DataTerm, ...] = ()
 
     @classmethod
@@ -43,7 +46,13 @@ class Runs:
 
 
 def training_runs(trial: Trial, records: Sequence[TrialRecord]) -> Runs:
-    """Return the training runs among the records, with the trial's known noise and force points."""
+    """Return the training runs among the records, with the trial's known noise, force points and controller.
+
+    Raises:
+        InputError: the records do not hold what is declared of the controller.
+    """
     train = [r for r in records if r.role is Role.TRAIN]
+    if trial.feedback is not None:
+        refuse_unusable_feedback(trial.feedback, [r.record for r in train], f"{trial.path}: " if trial.path else "")
     sessions = tuple(r.session for r in train)
-    return Runs(tuple(r.record for r in train), sessions, trial.ship.length, trial.noise, trial.forces)
+    return Runs(tuple(r.record for r in train), sessions, trial.ship.length, trial.noise, trial.forces, trial.feedback)

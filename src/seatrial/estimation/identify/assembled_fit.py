@@ -10,6 +10,7 @@ from seatrial.core.values.versions import versions
 from seatrial.data.trial.approach import approach_condition
 from seatrial.estimation.estimate import Estimation, IntervalMethod
 from seatrial.estimation.identify import fit_result
+from seatrial.estimation.identify.closed_loop_findings import closed_loop_findings
 from seatrial.estimation.identify.identifiability import identifiability
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.model_selection import SelectedModel, with_model_spread
@@ -55,7 +56,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         findings=(
             *task.findings, *selected.findings, *findings, *fit_result.unidentified(task.estimation),
             *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation),
-            *fit_result.few_memories(estimation),
+            *fit_result.few_memories(estimation), *closed_loop_findings(estimation),
             *_profile_findings(task, assessment), *predicted.findings,
             *one_speed_finding(roll, runs.records),
         ),

@@ -92,7 +92,7 @@ class ObservedManoeuvre:
         return self._without_course_keeping([h for h in held if h.last - h.first >= max(shortest, 2.0)])
 
     def _without_course_keeping(self, holds: list[Hold]) -> tuple[Hold, ...]:
-        level = _median_angle(holds)
+        level = _median_angle(holds) if holds else 0.0
         while len(holds) > 1 and abs(abs(holds[0].angle) - level) > ANGLE_TOLERANCE * level:
             if abs(self.psi[holds[1].first] - self.psi[holds[0].first]) > COURSE_TOLERANCE:
                 break
