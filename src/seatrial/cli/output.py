@@ -132,8 +132,8 @@ def _print_method_comparison(fit: "Fit", reference: "ReferenceEstimate") -> None
     print(inside_own_intervals(fit, reference))
     if fit.search is not None:
         stopped = "interrupted: " if fit.search.is_interrupted else ""
-        counts = "best" if fit.search.fitness == "record" else "first"
-        print(f"{stopped}{fit.search.effort}; the {counts} of them counts")
+        used = "best" if fit.search.fitness == "record" else "first"
+        print(f"{stopped}{fit.search.effort}{f'; the {used} is used' if len(fit.search.restarts) > 1 else ''}")
 
 
 def _print_prediction(p: "Prediction") -> None:

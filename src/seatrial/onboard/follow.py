@@ -19,7 +19,7 @@ from seatrial.data.trial.follow_table import require_stream
 from seatrial.data.trial.stream import Stream, StreamSource
 from seatrial.estimation.identify import identify
 from seatrial.estimation.identify.online import OnlineEstimator, SearchFollower, own_trial
-from seatrial.estimation.identify.strategies.published import published_fit
+from seatrial.estimation.identify.strategies.published import own_estimate_progress, published_fit
 from seatrial.onboard.advice import ManoeuvreAdviser
 from seatrial.onboard.journal import Journal, journal_identity
 from seatrial.onboard.required_channels import check_required_channels
@@ -130,7 +130,7 @@ def _final_fit(trial: Trial, estimator: StreamEstimator, seed: int, report_progr
     if not isinstance(estimator, SearchFollower):
         return identify(trial, seed=seed, report_progress=report_progress)
     began = process_time()
-    reference = identify(own_trial(trial), seed=seed, report_progress=report_progress)
+    reference = identify(own_trial(trial), seed=seed, report_progress=own_estimate_progress(report_progress))
     return published_fit(reference, estimator.estimate(reference), process_time() - began)
 
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Protocol, Self, TextIO
 
 from seatrial.core.results.online import SampleCounts, Snapshot
+from seatrial.core.text.numbers import DASH
 from seatrial.core.text.plain import ascii_text
 from seatrial.core.text.words import counted, enumeration, printable
 from seatrial.onboard.history import History, RecentHistory
@@ -132,7 +133,10 @@ class _Lines:
 def log_line(snapshot: Snapshot, counts: SampleCounts) -> str:
     """Return moment, phase, coefficients with half of their 95 % intervals, what is not identified, faults, change."""
     sizes = f"{counted(snapshot.samples, 'sample')} {counted(snapshot.runs, 'run')}"
-    rows = [f"{row.name} {row.value} +- {row.half_width} {row.unit}".rstrip() for row in estimate_rows(snapshot)]
+    rows = [
+        f"{row.name} {row.value}{f' +- {row.half_width}' if row.half_width != DASH else ''} {row.unit}".rstrip()
+        for row in estimate_rows(snapshot)
+    ]
     names = [printable(name) for name in snapshot.unidentified]
     parts = [
         f"{time_text(snapshot.time)} {snapshot.phase.value} {sizes}",

@@ -252,6 +252,8 @@ def _convergence(fit: Fit) -> str:
 def _search_end(search: Search) -> str:
     """What a search by a population can say of its end: its restarts and their scatter, no test of convergence."""
     text = f"The search has no test of convergence: it spends all its iterations, here {search.effort}."
+    if search.track is not None:
+        return text  # a stream is followed once
     used = search.restarts[search.used].values
     shares = {name: sd / abs(used[name]) for name, sd in search.scatter.items() if used[name] != 0.0}
     if not shares:

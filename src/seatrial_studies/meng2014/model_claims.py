@@ -3,6 +3,7 @@
 import numpy as np
 
 from seatrial.core.results import Claim, Verdict
+from seatrial.core.text import significant
 from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial_studies.meng2014.evidence import CloudSwarmEvidence, error_text
 from seatrial_studies.meng2014.reproduction import SwarmAlgorithm
@@ -30,10 +31,11 @@ def twelve_unknowns_claim(evidence: CloudSwarmEvidence) -> Claim:
     flat, errors = evidence.twelve_unknowns.curvatures, evidence.twelve_unknowns.errors
     beam, fin, both = (flat[name] for name in (BEAM_WAVES, ONE_FIN, WAVES_AND_FIN))
     text = (
-        f"waves and a moving fin together identify twelve (flattest direction {both:.0e} of the steepest), and our fit "
-        f"finds all of them without noise within {max(errors.values()):.0e} at all five headings; beam waves alone "
-        f"could not ({beam:.0e}), nor one fin alone ({fin:.0e}). The paper lists twelve and searches eight, the "
-        "stiffnesses being taken from theory. Box, noise and sea are assumed"
+        f"waves and a moving fin together identify twelve (flattest direction {significant(both, 1)} of the steepest), "
+        f"and our fit finds all of them without noise within {significant(max(errors.values()), 1)} at all five "
+        f"headings; beam waves alone could not ({significant(beam, 1)}), nor one fin alone ({significant(fin, 1)}). "
+        "The paper lists twelve and searches eight, the stiffnesses being taken from theory. Box, noise and sea are "
+        "assumed"
     )
     claim = "Twelve parameters are to be identified"
     if both < SINGULAR_CURVATURE or max(errors.values()) > FOUND_ERROR:

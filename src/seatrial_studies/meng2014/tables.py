@@ -8,7 +8,6 @@ from seatrial_studies.meng2014.declarations import declaration_tables
 from seatrial_studies.meng2014.evidence import CloudSwarmEvidence
 from seatrial_studies.meng2014.reproduction import HEADINGS, BoxPlacement, CloudVariant, SwarmAlgorithm
 from seatrial_studies.pitch_control import pitch_controller_cost_table
-from seatrial_studies.published_ship import B53_NOTE
 from seatrial_studies.swarm_search import RepeatedSearches
 
 
@@ -82,7 +81,10 @@ def _coefficients(evidence: CloudSwarmEvidence, heading: int) -> Table:
         "ours, %",
         "Cramér-Rao standard deviation, %",
     )
-    note = f"Mean over runs of the errors of single runs; box \u00b150 % off centre unless stated. {B53_NOTE}"
+    note = (
+        "Mean over runs of the errors of single runs; box \u00b150 % off centre unless stated. b53 is negative; its "
+        "magnitude is shown, as Qi et al. 2025 print it."
+    )
     if heading < 90:
         note += " Coefficients assumed: those of 90\u00b0."
     return Table(f"Coefficients at {heading}\u00b0", header, rows, note)

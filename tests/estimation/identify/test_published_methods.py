@@ -68,6 +68,11 @@ def test_the_methods_coefficients_have_no_intervals_and_lie_in_their_ranges(hors
     assert horses.method.name == "iwho"
 
 
+def test_what_only_the_own_estimate_has_does_not_stand_for_the_method(own: Fit, horses: Fit) -> None:
+    assert own.k_step_errors or own.frequency_responses
+    assert not horses.k_step_errors and not horses.frequency_responses
+
+
 def test_evaluations_history_and_scatter_are_those_of_the_restarts(horses: Fit) -> None:
     search = horses.search
     assert search is not None

@@ -14,7 +14,7 @@ from seatrial.estimation.identify.baselines import with_baselines, with_search_b
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.search_problem import check_search_settings
 from seatrial.estimation.identify.situation import Situation, is_explained, situation_of
-from seatrial.estimation.identify.strategies.published import published_fit, refuse_options
+from seatrial.estimation.identify.strategies.published import own_estimate_progress, published_fit, refuse_options
 from seatrial.estimation.identify.strategies.recorded_waves import identify_in_recorded_waves
 from seatrial.estimation.identify.strategies.regression import estimate_by_regression
 from seatrial.estimation.identify.strategies.roll import identify_driven_roll, identify_free_decay
@@ -73,7 +73,7 @@ def identify(
     window_lengths(windows)  # what is misspelt is refused before the fit
     horizon_list(horizons)
     options = EstimatorOptions(intervals, seed, windows=windows, horizons=horizons)
-    own_progress = _of_own_estimate(report_progress) if method.is_published else report_progress
+    own_progress = own_estimate_progress(report_progress) if method.is_published else report_progress
     task = Identification(trial, checked.records, checked.findings, options, choose, began, own_progress)
     situation = identification_situation(task)
     if method.is_published:
@@ -86,11 +86,6 @@ def identify(
     fit = with_baselines(fit, task.runs.records, window, report_progress, trial.compare.svr)
     has_searches = trial.model.is_affine and situation is Situation.RECORDED_WAVES
     return with_search_baselines(fit, trial, seed, report_progress) if has_searches else fit
-
-
-def _of_own_estimate(report_progress: ProgressReporter | None) -> ProgressReporter | None:
-    """What reports the progress of the package's own estimate beside a published method's, marked as such."""
-    return None if report_progress is None else lambda text: report_progress(f"own estimate: {text}")
 
 
 def _published(task: Identification, situation: Situation, report_progress: ProgressReporter | None) -> Fit:

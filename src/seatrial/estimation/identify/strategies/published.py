@@ -6,7 +6,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.results import Coefficient, Fit, Method, Prediction, ReferenceEstimate, Search, Solution
-from seatrial.core.values import DivergedError, Finding, InputError, Severity
+from seatrial.core.values import DivergedError, Finding, InputError, ProgressReporter, Severity
 from seatrial.data.trial import EstimateMethod
 from seatrial.estimation.predict.open_loop import compare_measures, is_steered, rms_errors
 from seatrial.physics.simulate.replay import replay
@@ -30,6 +30,11 @@ class PublishedEstimate:
     findings: tuple[Finding, ...] = ()
     search: Search | None = None
     record_rms: float | None = None
+
+
+def own_estimate_progress(report_progress: ProgressReporter | None) -> ProgressReporter | None:
+    """Return what reports the package's own estimate next to a published method: each line is marked as such."""
+    return None if report_progress is None else lambda text: report_progress(f"own estimate: {text}")
 
 
 def published_fit(reference: Fit, estimate: PublishedEstimate, cpu_s: float) -> Fit:
@@ -61,6 +66,8 @@ def published_fit(reference: Fit, estimate: PublishedEstimate, cpu_s: float) -> 
         noise_model=None,
         candidate_models=(),
         interval_basis=None,
+        k_step_errors=(),
+        frequency_responses=(),
         seakeeping=None,
         roll=None,
         search=estimate.search,
