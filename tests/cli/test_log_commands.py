@@ -30,7 +30,7 @@ def test_a_bare_log_is_listed(tmp_path: Path) -> None:
 def test_a_draft_is_written_once_and_checked(tmp_path: Path) -> None:
     log, trial = write(tmp_path / "run.csv", BASE | {"rot": TRUTH["r"]}), tmp_path / "trial.toml"
     text = output("init", str(log), "--out", str(trial))
-    assert "follows d(psi)/dt" in text and "zigzag1:" in text and "Next: read it, decide what is OPEN" in text
+    assert "follows d(psi)/dt" in text and "zigzag1, " in text and "Next: seatrial check" in text
     with pytest.raises(InputError, match="exists and is not overwritten"):
         output("init", str(log), "--out", str(trial))
     assert "Next: " in output("check", str(trial))

@@ -11,7 +11,7 @@ from seatrial.cli.application import app
 from seatrial.cli.output import print_lines, print_table
 
 if TYPE_CHECKING:
-    from seatrial.data.draft import ColumnSummary, LogSurvey, TopicSummary
+    from seatrial.data.draft import ColumnGuess, ColumnSummary, LogSurvey, TopicSummary
 
 COLUMNS_SHOWN = 12  # columns of a topic that `check` lists without --all; ours, one screen for a log of a few topics
 DIGITS = 5  # significant ones of a range; chosen
@@ -37,23 +37,26 @@ def init(
         raise InputError(f"--out '{out}' exists and is not overwritten; name another file, or remove it")
     draft = api.draft_trial(*logs, folder=out.resolve().parent)
     write_atomically(out, draft.text.encode())
-    rows = [
-        ["OPEN" if g.is_open else "", g.symbol, str(g.source), g.unit, g.frame, "; ".join(g.evidence)]
-        for part in draft.guesses
-        for g in part
-        if g.is_used
-    ]
-    if rows:
-        print_table(
-            [["", "channel", "column", "unit", "frame", "because"], *rows],
-            flush_left=range(len(rows[0])) if rows else (),
-        )
-    print_lines(f"{one.name}: {one.start:.4g} to {one.stop:.4g} s, {one.evidence}" for one in draft.stretches)
+    _print_guesses([g for part in draft.guesses for g in part if g.is_used])
+    for run, stretches in zip(draft.runs, draft.stretches, strict=True):
+        name = run.name or run.sources[0].path.name
+        print_lines(f"{name}: {one.name}, {one.start:.4g} to {one.stop:.4g} s: {one.evidence}" for one in stretches)
     questions = draft.open_questions
     if questions:
         print_lines([f"{counted(len(questions), 'column')} to decide, marked OPEN in the file"])
     print(f"trial file: {out}")
-    print(f"Next: read it, decide what is OPEN, then seatrial check {out}")
+    first = "read it, decide what is OPEN, then " if questions else ""
+    print(f"Next: {first}seatrial check {out}")
+
+
+def _print_guesses(guesses: "Sequence[ColumnGuess]") -> None:
+    rows = [
+        ["OPEN" if g.is_open else "", g.symbol, str(g.source), g.unit, g.frame, g.positive, "; ".join(g.evidence)]
+        for g in guesses
+    ]
+    if rows:
+        header = ["", "channel", "column", "unit", "frame", "positive", "because"]
+        print_table([header, *rows], flush_left=range(len(header)))
 
 
 def print_survey(survey: "LogSurvey", *, show_all: bool) -> None:

@@ -37,7 +37,7 @@ def rudder_findings(record: Record) -> tuple[Finding, ...]:
         text = f"record '{record.name}': the rudder never moves, so nothing can be learnt about steering"
         span = f"range {math.degrees(float(np.ptp(record['delta']))):.2g} deg"
         return (Finding(Severity.WARNING, "no-excitation", text, span, ZIGZAG_ADVICE),)
-    first, steady = _t_ratio(yaw_acceleration_response(record)), _t_ratio(steady_turning_response(record))
+    first, steady = t_ratio(yaw_acceleration_response(record)), t_ratio(steady_turning_response(record))
     pooled = (first + steady) / math.sqrt(2.0) if max(first, steady) < 0 else 0.0
     contradicts = min(first, steady) < -DOUBTFUL_T and max(first, steady) > DOUBTFUL_T
     if min(first, pooled) > -DOUBTFUL_T or contradicts:
@@ -50,7 +50,8 @@ def rudder_findings(record: Record) -> tuple[Finding, ...]:
     return (Finding(Severity.ERROR if is_clear else Severity.WARNING, "rudder-sign", text, evidence, advice),)
 
 
-def _t_ratio(estimate: tuple[float, float] | None) -> float:
+def t_ratio(estimate: tuple[float, float] | None) -> float:
+    """Return an estimate over its standard error; 0 where there is none."""
     return 0.0 if estimate is None else estimate[0] / max(estimate[1], 1e-300)  # above zero
 
 

@@ -2,13 +2,16 @@ from seatrial.data.draft.behaviour import checked_by_behaviour
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.draft import DraftTrial, draft_trial
 from seatrial.data.draft.guess import guess_columns
-from seatrial.data.draft.manoeuvres import LogStretch, find_stretches
+from seatrial.data.draft.manoeuvres import find_stretches
+from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
+from seatrial.data.draft.stretch import LogStretch
 from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary, survey_log
 
 __all__ = [
     "ColumnGuess",
     "ColumnSummary",
     "DraftTrial",
+    "LogRun",
     "LogStretch",
     "LogSurvey",
     "TopicSummary",
@@ -16,5 +19,6 @@ __all__ = [
     "draft_trial",
     "find_stretches",
     "guess_columns",
+    "runs_of_logs",
     "survey_log",
 ]

@@ -11,7 +11,13 @@ from seatrial.core.values import InputError, Record
 from seatrial.data.check.conventions import with_standard_signs
 from seatrial.data.check.motion import recorded_motion
 from seatrial.data.check.repair import repair
-from seatrial.data.check.rudder import yaw_acceleration_response
+from seatrial.data.check.rudder import (
+    CERTAIN_T,
+    DOUBTFUL_T,
+    steady_turning_response,
+    t_ratio,
+    yaw_acceleration_response,
+)
 from seatrial.data.check.signal import smoothed, smoothed_derivative, window_length
 from seatrial.data.check.timestamps import rebuild_time_base
 from seatrial.data.check.velocity_conventions import ACCEPTABLE_MISFIT, best_convention
@@ -23,8 +29,8 @@ from seatrial.data.read.assemble import LogSource, assemble_record, record_of_so
 
 # correlation with the rate of the heading that proves a yaw rate; factor by which a unit may be missed; chosen
 _SURE_CORRELATION, _UNIT_TOLERANCE = 0.8, 1.3
-_SURE_T = 5.0  # effect over standard error that proves a sign; as in the checks
 _YAW_RATE_UNITS = {"rad/s": 1.0, "deg/s": 180.0 / math.pi, "deg/min": 10800.0 / math.pi}  # per rad/s
+_SPEED_TOLERANCE = 1.15  # factor by which a unit of speed may be missed; chosen: units differ by 1.8 and more
 _SPEED_UNITS = {"m/s": 1.0, "kn": 1852.0 / 3600.0, "km/h": 1.0 / 3.6}  # m/s
 
 
@@ -33,7 +39,7 @@ def checked_by_behaviour(
 ) -> list[list[ColumnGuess]]:
     """Return the guesses of the sources of one run with units, frames and signs as the motion shows them."""
     result = with_axes_by_fixes([list(one) for one in guesses], partial(run_record, surveys))
-    for decide in (_yaw_rate_unit, _velocity_convention, _rudder_sign, command_directions):
+    for decide in (_yaw_rate_unit, _velocity_convention, _ground_speed_unit, _rudder_sign, command_directions):
         record = run_record(surveys, result)
         if record is not None:
             changes = decide(record)
@@ -119,7 +125,7 @@ def _velocity_convention(record: Record) -> Changes:
             s: (lambda g: replace(g, other_reading='frame = "body" or "earth"').with_evidence(text)) for s in ("u", "v")
         }
     scale = motion.speed_scale(best)
-    unit = min(_SPEED_UNITS, key=lambda one: abs(math.log(max(scale, 1e-9) / _SPEED_UNITS[one])))  # never log of zero
+    unit = _speed_unit(scale)
     text = f"{misfit:.0%} misfit with the derivative of position, {best.frame}-fixed"
     changes = {}
     for symbol in ("u", "v"):
@@ -129,6 +135,8 @@ def _velocity_convention(record: Record) -> Changes:
             frame = best.frame if guess.frame != "enu" else guess.frame
             opposite = "" if guess.positive in ("port", "west") else "west" if frame == "earth" else "port"
             positive = opposite if flips else guess.positive
+            if guess.is_open and not unit:
+                return replace(guess, frame=frame).with_evidence(f"{text}, {scale:.2f} times as large")
             known = guess.unit if not guess.is_open else unit
             return replace(guess, frame=frame, positive=positive, unit=known, other_reading="").with_evidence(text)
 
@@ -147,19 +155,48 @@ def _velocity_convention(record: Record) -> Changes:
     return changes
 
 
+def _ground_speed_unit(record: Record) -> Changes:
+    """The unit of a speed over ground by the derivative of position."""
+    if not {"x0", "y0", "u", "v"} <= set(record.channels) or record.channel("u").frame != "earth":
+        return {}
+    length = window_length(len(record))
+    track = np.concatenate([smoothed_derivative(record[s], record.dt, length) for s in ("x0", "y0")])
+    over_ground = np.concatenate([smoothed(record[s], length) for s in ("u", "v")])
+    power = float(over_ground @ over_ground)
+    factor = float(track @ over_ground) / power if power > 0.0 else 0.0
+    size = max(float(np.linalg.norm(track)), np.finfo(float).tiny)
+    misfit = float(np.linalg.norm(track - factor * over_ground)) / size
+    unit = _speed_unit(factor) if misfit < ACCEPTABLE_MISFIT else ""
+
+    def decided(guess: ColumnGuess) -> ColumnGuess:
+        if not guess.is_open or not unit:
+            return guess
+        return replace(guess, unit=unit, other_reading="").with_evidence(
+            f"{misfit:.0%} misfit with the derivative of position: {unit}"
+        )
+
+    return {"sog": decided}
+
+
+def _speed_unit(factor: float) -> str:
+    """The unit in which a speed is factor m/s; empty where none is near."""
+    unit = min(_SPEED_UNITS, key=lambda one: abs(math.log(max(factor, 1e-9) / _SPEED_UNITS[one])))  # never log of zero
+    return unit if abs(math.log(max(factor, 1e-9) / _SPEED_UNITS[unit])) < math.log(_SPEED_TOLERANCE) else ""
+
+
 def _rudder_sign(record: Record) -> Changes:
-    """The side to which a positive rudder turns the ship."""
+    """The side to which a positive rudder turns the ship, by the yaw acceleration and by the turn that follows."""
     if "delta" not in record or "psi" not in record:
         return {}
-    response = yaw_acceleration_response(record)
-    t = 0.0 if response is None else response[0] / max(response[1], 1e-300)  # never a division by zero
-    if abs(t) < _SURE_T:
-        text = f"the turn does not show its sign (effect over standard error {t:.1f})"
-        return {"delta": lambda g: replace(g, other_reading='positive = "port"').with_evidence(text)}
+    first, steady = t_ratio(yaw_acceleration_response(record)), t_ratio(steady_turning_response(record))
+    t = first if abs(first) > abs(steady) else steady
+    numbers = f"effect over standard error {first:.1f} on yaw acceleration, {steady:.1f} on the turn that follows"
+    if abs(t) < CERTAIN_T or min(first, steady) < -DOUBTFUL_T < DOUBTFUL_T < max(first, steady):
+        text = f"the turn does not show its sign ({numbers})"
+        return {"delta": lambda g: replace(g, other_reading=g.other_reading or 'positive = "port"').with_evidence(text)}
 
     def decided(guess: ColumnGuess) -> ColumnGuess:
         side = "port" if (guess.positive == "port") == (t > 0) else ""
-        text = f"a positive one turns to {side or 'starboard'} (effect over standard error {abs(t):.0f})"
-        return replace(guess, positive=side).with_evidence(text)
+        return replace(guess, positive=side).with_evidence(f"a positive one turns to {side or 'starboard'} ({numbers})")
 
     return {"delta": decided}

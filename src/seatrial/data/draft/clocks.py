@@ -1,4 +1,4 @@
-"""Clocks of the sources of one run that differ by whole hours: local time beside UTC."""
+"""Clocks of the sources of one run that differ by whole quarters of an hour: local time beside UTC."""
 
 import math
 from collections.abc import Sequence
@@ -12,22 +12,22 @@ _LARGEST_ZONE_S = 15.0 * 3600.0  # s; of the zones in use
 _LEAST_OVERLAP = 0.5  # of the shorter source, that the shift must give; chosen
 
 
-def with_common_clock(surveys: Sequence[LogSurvey]) -> list[LogSurvey]:
-    """Return the surveys of one run with the clocks of those that lie whole quarters of an hour off moved to the rest.
+def zone_offsets(surveys: Sequence[LogSurvey]) -> list[float]:
+    """Return the s to add to the clock of each source of one run so that it runs with the others.
 
-    The rest are those that overlap with most others; of equal numbers those with stamps in a message's header.
+    The others are those that overlap with most; of equal numbers those with stamps in a message's header.
     """
-    spans = [_span(survey) for survey in surveys]
+    spans = [time_span(survey) for survey in surveys]
     counts = [
         (sum(_overlap(one, other) > 0.0 for other in spans), _has_header_stamp(survey))
         for one, survey in zip(spans, surveys, strict=True)
     ]
     reference = spans[max(range(len(spans)), key=lambda k: counts[k])]
-    return [_shifted(survey, _zone_offset(span, reference)) for survey, span in zip(surveys, spans, strict=True)]
+    return [_zone_offset(span, reference) for span in spans]
 
 
-def _span(survey: LogSurvey) -> tuple[float, float]:
-    """First and last stamp [s]; NaN where there is none."""
+def time_span(survey: LogSurvey) -> tuple[float, float]:
+    """Return the first and the last stamp [s]; NaN where there is none."""
     topics = [topic for topic in survey.topics if math.isfinite(topic.start)]
     if not topics:
         return math.nan, math.nan
@@ -52,7 +52,8 @@ def _zone_offset(span: tuple[float, float], reference: tuple[float, float]) -> f
     return offset if abs(offset) <= _LARGEST_ZONE_S and _overlap(moved, reference) > _LEAST_OVERLAP * shorter else 0.0
 
 
-def _shifted(survey: LogSurvey, offset: float) -> LogSurvey:
+def shifted(survey: LogSurvey, offset: float) -> LogSurvey:
+    """Return the survey with `offset` s added to its clock."""
     if offset == 0.0:
         return survey
     return replace(survey, topics=tuple(_with_offset(topic, offset) for topic in survey.topics))

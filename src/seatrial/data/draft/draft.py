@@ -1,19 +1,22 @@
 """A trial file drafted from logs: every guess with its evidence, what is unsure as a commented line."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from seatrial.core.values import InputError
+from seatrial.data.draft.agreement import agreed_guesses
 from seatrial.data.draft.behaviour import checked_by_behaviour
-from seatrial.data.draft.clocks import with_common_clock
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.draft_text import trial_text
+from seatrial.data.draft.draft_text import RecordsBlock, trial_text
 from seatrial.data.draft.guess import guess_columns, without_conflicts
-from seatrial.data.draft.manoeuvres import LogStretch, find_stretches
+from seatrial.data.draft.manoeuvres import find_stretches, numbered
+from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
+from seatrial.data.draft.stretch import LogStretch
 from seatrial.data.draft.survey import LogSurvey, survey_log
 from seatrial.data.read import FORMATS
+
+_RUNS_EXAMINED = 6  # the longest, whose motion is compared with the guesses; chosen: some show what others do not
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,14 +26,16 @@ class DraftTrial:
     Attributes:
         text: the TOML file.
         surveys: the logs, in order.
-        guesses: of the columns of each kind of log.
-        stretches: manoeuvres found, of the first log of each kind.
+        runs: which of them belong together.
+        guesses: of the columns of each source of the longest run.
+        stretches: manoeuvres found, of each run.
     """
 
     text: str
     surveys: tuple[LogSurvey, ...]
+    runs: tuple[LogRun, ...]
     guesses: tuple[tuple[ColumnGuess, ...], ...]
-    stretches: tuple[LogStretch, ...] = ()
+    stretches: tuple[tuple[LogStretch, ...], ...] = ()
 
     @property
     def open_questions(self) -> tuple[ColumnGuess, ...]:
@@ -42,30 +47,61 @@ def draft_trial(*logs: str | Path, folder: str | Path = ".") -> DraftTrial:
     """Draft a trial file for logs: files, or folders whose logs are taken.
 
     Args:
-        logs: files of one kind are runs; files of several kinds are sources of one run.
+        logs: which of them are runs, and which are sources of one run, follows from kind, clock and name.
         folder: where the trial file will lie; the paths in it count from there.
 
     Raises:
         InputError: no logs, or one that cannot be read.
     """
-    paths = _log_files([Path(log) for log in logs])
-    surveys = tuple(survey_log(path) for path in paths)
-    kinds: dict[tuple, list[LogSurvey]] = {}
-    for survey in surveys:
-        kinds.setdefault(_signature(survey), []).append(survey)
-    groups = list(kinds.values())
-    if len(groups) == 1:
-        group = max(groups[0], key=lambda one: one.duration if math.isfinite(one.duration) else 0.0)
-        (guesses,) = checked_by_behaviour([group], [guess_columns(group)])
-        all_guesses, examined = (tuple(guesses),), [group]
-    else:
-        examined = with_common_clock(surveys)
-        groups = [[survey] for survey in examined]
-        parts = without_conflicts([guess_columns(one) for one in examined])
-        all_guesses = tuple(map(tuple, checked_by_behaviour(examined, parts)))
-    stretches = find_stretches(examined, all_guesses)
-    text = trial_text(groups, all_guesses, stretches, Path(folder).resolve())
-    return DraftTrial(text, surveys, all_guesses, stretches)
+    surveys, reasons = _surveys([Path(log) for log in logs])
+    runs = runs_of_logs(surveys)
+    used = {survey.path for run in runs for survey in run.sources}
+    left_out = {one.path: "it is of another kind than the runs" for one in surveys if one.path not in used}
+    named = [without_conflicts([guess_columns(one) for one in run.sources]) for run in runs]
+    longest = sorted(range(len(runs)), key=lambda k: -runs[k].duration)[:_RUNS_EXAMINED]
+    examined = [checked_by_behaviour(runs[k].sources, named[k]) for k in longest]
+    guesses = [agreed_guesses(parts, examined) for parts in named]
+    stretches = numbered([find_stretches(run.sources, parts) for run, parts in zip(runs, guesses, strict=True)])
+    text = trial_text(_blocks(runs, guesses, stretches, longest[0]), reasons | left_out, Path(folder).resolve())
+    return DraftTrial(text, tuple(surveys), tuple(runs), guesses[longest[0]], stretches)
+
+
+def _blocks(
+    runs: Sequence[LogRun],
+    guesses: Sequence[tuple[tuple[ColumnGuess, ...], ...]],
+    stretches: Sequence[tuple[LogStretch, ...]],
+    longest: int,
+) -> list[RecordsBlock]:
+    """One block for files of one kind, else one for each run."""
+    if runs[0].name:
+        return [
+            RecordsBlock(run.name, tuple(zip(run.sources, parts, strict=True)), (), found)
+            for run, parts, found in zip(runs, guesses, stretches, strict=True)
+        ]
+    files = tuple(run.sources[0] for run in runs)
+    return [RecordsBlock("", ((files[longest], guesses[longest][0]),), files, stretches[0] if len(runs) == 1 else ())]
+
+
+def _surveys(logs: Sequence[Path]) -> tuple[list[LogSurvey], dict[Path, str]]:
+    """The logs, and the files of folders that are none, with the reason; a file that is named must be one."""
+    named = {log for log in logs if not log.is_dir()}
+    surveys, reasons = list[LogSurvey](), dict[Path, str]()
+    for path in _log_files(logs):
+        try:
+            survey = survey_log(path)
+        except InputError as error:
+            if path in named:
+                raise
+            reasons[path] = str(error)
+            continue
+        if path in named or any(topic.time is not None for topic in survey.topics):
+            surveys.append(survey)
+        else:
+            reasons[path] = "no column is a time"
+    if not surveys:
+        first = next(iter(reasons.items()))
+        raise InputError(f"there is no log to draft a trial of: {first[0]}: {first[1]}")
+    return surveys, reasons
 
 
 def _log_files(logs: Sequence[Path]) -> list[Path]:
@@ -81,8 +117,3 @@ def _log_files(logs: Sequence[Path]) -> list[Path]:
     if not files:
         raise InputError("there is no log to draft a trial of; name files, or a folder with logs")
     return files
-
-
-def _signature(survey: LogSurvey) -> tuple:
-    """What files of one kind share: topics and columns."""
-    return (survey.layout.format, *(table.names for table in survey.log.tables))

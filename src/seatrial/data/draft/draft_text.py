@@ -1,12 +1,13 @@
 """The text of a drafted trial file: every line with its evidence, what is unsure as a comment."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.manoeuvres import LogStretch
 from seatrial.data.draft.stored_parameters import antenna_place
+from seatrial.data.draft.stretch import LogStretch
 from seatrial.data.draft.survey import LogSurvey
 from seatrial.data.read import ColumnSpec
 from seatrial.data.read.layout import TimeSpec
@@ -14,33 +15,60 @@ from seatrial.data.read.layout import TimeSpec
 _UNUSED_SHOWN = 12  # names of columns without a channel in the comment; chosen
 
 
-def trial_text(
-    groups: Sequence[Sequence[LogSurvey]],
-    guesses: Sequence[Sequence[ColumnGuess]],
-    stretches: Sequence[LogStretch],
-    folder: Path,
-) -> str:
-    """Return the TOML file of logs of one kind, which are runs, or of several kinds, which are sources of one run.
+@dataclass(frozen=True, eq=False)
+class RecordsBlock:
+    """One block of records of the file.
 
-    folder: where the file will lie; the paths in it count from there.
+    Attributes:
+        name: of the run; empty: the runs are called after their files.
+        sources: each log with its guesses; of files of one kind the longest.
+        files: those of one kind; empty for a run with a name.
+        stretches: manoeuvres in the run.
+    """
+
+    name: str
+    sources: tuple[tuple[LogSurvey, tuple[ColumnGuess, ...]], ...]
+    files: tuple[LogSurvey, ...]
+    stretches: tuple[LogStretch, ...]
+
+
+def trial_text(blocks: Sequence[RecordsBlock], left_out: Mapping[Path, str], folder: Path) -> str:
+    """Return the TOML file; only its first block gives the evidence.
+
+    left_out: files that are no source of a run, with the reason. folder: where the file will lie; the paths in it count
+    from there.
     """
     lines = [
         "# Drafted by seatrial init. Every line says why; lines with OPEN are for you to choose.",
         "",
         *_particulars(),
+        *(f"# left out: {_comment(_relative(path, folder))}: {_comment(why)}" for path, why in left_out.items()),
     ]
-    lines += ["[[records]]"]
-    if len(groups) == 1:
-        files = ", ".join(_quoted(_relative(survey.path, folder)) for survey in groups[0])
-        lines += [f"files = [{files}]", *_antenna_lines(groups[0], guesses)]
-        lines += [*_layout_lines(groups[0][0]), *_channel_lines(groups[0][0], guesses[0])]
-    else:
-        lines += ['name = "run"', *_antenna_lines([group[0] for group in groups], guesses)]
-        for group, part in zip(groups, guesses, strict=True):
-            if any(g.is_used for g in part):
-                lines += ["", "[[records.sources]]", f"file = {_quoted(_relative(group[0].path, folder))}"]
-                lines += [*_layout_lines(group[0]), *_channel_lines(group[0], part)]
-    return "\n".join([*lines, *_part_lines(stretches)]) + "\n"
+    for number, block in enumerate(blocks):
+        written = _block_lines(block, folder)
+        lines += written if number == 0 else ["", *map(_without_evidence, written)]
+    return "\n".join(lines) + "\n"
+
+
+def _block_lines(block: RecordsBlock, folder: Path) -> list[str]:
+    lines = ["[[records]]"]
+    if block.files:
+        files = ", ".join(_quoted(_relative(survey.path, folder)) for survey in block.files)
+        lines += [f"files = [{files}]", *_antenna_lines(block.sources)]
+        for survey, guesses in block.sources:
+            lines += [*_layout_lines(survey), *_channel_lines(survey, guesses)]
+        return [*lines, *_part_lines(block.stretches)]
+    lines += [f"name = {_quoted(block.name)}", *_antenna_lines(block.sources), *_part_lines(block.stretches)]
+    for survey, guesses in block.sources:
+        if any(g.is_used for g in guesses):
+            lines += ["", "[[records.sources]]", f"file = {_quoted(_relative(survey.path, folder))}"]
+            lines += [*_layout_lines(survey), *_channel_lines(survey, guesses)]
+    return lines
+
+
+def _without_evidence(line: str) -> str:
+    """A line of a further block: its evidence stands in the first one."""
+    return line if line.startswith("#") else line.partition("    # ")[0]
 
 
 def _particulars() -> list[str]:
@@ -56,11 +84,11 @@ def _particulars() -> list[str]:
     ]
 
 
-def _antenna_lines(surveys: Sequence[LogSurvey], guesses: Sequence[Sequence[ColumnGuess]]) -> list[str]:
+def _antenna_lines(sources: Sequence[tuple[LogSurvey, tuple[ColumnGuess, ...]]]) -> list[str]:
     """Where the antenna is, where a log states it and its fixes or velocities over ground are used."""
-    if not any(g.is_used and g.symbol in ("lat", "sog") for part in guesses for g in part):
+    if not any(g.is_used and g.symbol in ("lat", "sog") for _, guesses in sources for g in guesses):
         return []
-    places = [place for survey in surveys if (place := antenna_place(survey.log.parameters)) is not None]
+    places = [place for survey, _ in sources if (place := antenna_place(survey.log.parameters)) is not None]
     if not places:
         return []
     why = f"{places[0].evidence}; add the place of the autopilot where that is not midship"

@@ -1,109 +1,118 @@
-"""Stretches of a long log that are manoeuvres: straight runs, turns and circles, zigzags."""
+"""Manoeuvres in a long log, found by heading, speed, rudder and roll; cut where the mode of an autopilot changes."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
-import numpy as np
-
-from seatrial.core.values import Array, Record
-from seatrial.data.check.signal import Mask, mask_intervals, smoothed
+from seatrial.core.values import InputError, Record
 from seatrial.data.draft.behaviour import run_record
 from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.motion_stretches import SHORTEST_STRAIGHT_S, decays, spirals, stops, straight_runs
+from seatrial.data.draft.stretch import MIN_SAMPLES, LogStretch
 from seatrial.data.draft.survey import LogSurvey
+from seatrial.data.draft.turns import turning_stretches
 
-_STRAIGHT_S = 20.0  # s, of the shortest straight run; chosen
-_STRAIGHT_HEADING = np.radians(5.0)  # rad, range of headings of a straight run; chosen
-_CIRCLE, _ZIGZAG_TURNS = np.radians(270.0), 3  # rad of one turn, and turns to alternate sides; chosen
-_SMALLEST_TURN, _LARGEST_ZIGZAG = np.radians(8.0), np.radians(120.0)  # rad of a turn of a zigzag; chosen
-_TURNING_SHARE = 0.1  # of the largest yaw rate: beyond, the ship turns; chosen
-_SMOOTHING_S = 2.0  # s over which the yaw rate is smoothed; chosen
-_MOST_STRETCHES = 12  # offered; the longest
+_MOST_STRETCHES = 12  # offered of one run; the longest
+_FINDERS: tuple[Callable[[Record], list[LogStretch]], ...] = (turning_stretches, spirals, stops, decays)
+# PX4, msg/VehicleStatus.msg: number of a navigation state -> its name
+_PX4_STATES = {0: "MANUAL", 1: "ALTCTL", 2: "POSCTL", 3: "AUTO", 4: "LOITER", 5: "RTL", 10: "ACRO", 14: "OFFBOARD",
+               15: "STABILIZED", 17: "TAKEOFF", 18: "LAND"}  # fmt: skip
+_WITHOUT_CONTROLLER = ("MANUAL", "INITIALISING")
 
 
 @dataclass(frozen=True)
-class LogStretch:
-    """A manoeuvre in a log: start and stop are s after the first sample."""
+class _Mode:
+    """A mode of the autopilot: start and stop on the clock of the log [s]."""
 
     name: str
     start: float
     stop: float
-    evidence: str
+
+    @property
+    def text(self) -> str:
+        """What it means for an estimate."""
+        if self.name in _WITHOUT_CONTROLLER:
+            return f"mode {self.name}: no controller"
+        return f"mode {self.name}: a controller is on, its orders follow the motion"
 
 
 def find_stretches(surveys: Sequence[LogSurvey], guesses: Sequence[Sequence[ColumnGuess]]) -> tuple[LogStretch, ...]:
-    """Return the manoeuvres of a log by its heading, in order; none where it has no heading."""
+    """Return the manoeuvres of one run in order, those of the same kind under the same name.
+
+    Zigzags, circles with or without pull-out, spins, spirals, straight runs, stops and roll decays; where the log has
+    modes, each stretch lies within one, and modes without a manoeuvre are offered as a whole.
+    """
     record = run_record(surveys, guesses)
-    if record is None or "psi" not in record or len(record) < 30:  # samples below which nothing is a manoeuvre
+    if record is None:
         return ()
-    stretches = [*_turns(record), *_straight_runs(record)]
+    modes = _modes(surveys, record)
+    stretches = [one for mode in modes for one in _in_mode(record, mode)] if modes else _found(record)
     longest = sorted(stretches, key=lambda one: one.start - one.stop)[:_MOST_STRETCHES]
+    return tuple(sorted(longest, key=lambda one: one.start))
+
+
+def numbered(runs: Sequence[Sequence[LogStretch]]) -> tuple[tuple[LogStretch, ...], ...]:
+    """Return the stretches of several runs with names that differ: ``zigzag1``, ``zigzag2``."""
     counts: dict[str, int] = {}
-    named = []
-    for one in sorted(longest, key=lambda one: one.start):
-        counts[one.name] = counts.get(one.name, 0) + 1
-        named.append(LogStretch(f"{one.name}{counts[one.name]}", one.start, one.stop, one.evidence))
-    return tuple(named)
+    result = []
+    for run in runs:
+        named = []
+        for one in run:
+            counts[one.name] = counts.get(one.name, 0) + 1
+            named.append(replace(one, name=f"{one.name}{counts[one.name]}"))
+        result.append(tuple(named))
+    return tuple(result)
 
 
-def _turns(record: Record) -> list[LogStretch]:
-    """Circles, and zigzags of turns; a turn lasts while the yaw rate is over a tenth of its largest."""
-    psi, time = np.unwrap(record["psi"]), record.time - record.time[0]
-    length = max(3, round(_SMOOTHING_S / record.dt)) | 1
-    rate = smoothed(np.gradient(psi, record.dt), min(length, (len(psi) // 4) | 1))
-    first = (len(psi) - len(rate)) // 2
-    largest = float(np.max(np.abs(rate)))
-    ends = sorted(end for side in (1.0, -1.0) for end in mask_intervals(side * rate > _TURNING_SHARE * largest))
-    turns = [(a + first, b + first - 1, float(psi[b + first - 1] - psi[a + first])) for a, b in ends]
-    turns = [turn for turn in turns if abs(turn[2]) > _SMALLEST_TURN]
-    stretches = []
-    for a, b, angle in turns:
-        if abs(angle) > _CIRCLE:
-            side = "starboard" if angle > 0 else "port"
-            text = f"heading changes by {np.degrees(abs(angle)):.0f} deg to {side}"
-            stretches.append(LogStretch(f"circle_{side}_", float(time[a]), float(time[b]), text))
-    return stretches + _zigzags([turn for turn in turns if abs(turn[2]) < _LARGEST_ZIGZAG], time)
-
-
-def _zigzags(turns: list[tuple[int, int, float]], time: Array) -> list[LogStretch]:
-    """Runs of at least three turns that alternate without a pause longer than themselves."""
-    chains: list[list[tuple[int, int, float]]] = []
-    for turn in turns:
-        follows = chains and turn[2] * chains[-1][-1][2] < 0 and turn[0] - chains[-1][-1][1] < turn[1] - turn[0]
-        if follows:
-            chains[-1].append(turn)
-        else:
-            chains.append([turn])
-    stretches = []
-    for chain in chains:
-        if len(chain) >= _ZIGZAG_TURNS:
-            angle = np.degrees(float(np.median([abs(turn[2]) for turn in chain])))
-            text = f"{len(chain)} turns to alternate sides, {angle:.0f} deg each"
-            stretches.append(LogStretch("zigzag", float(time[chain[0][0]]), float(time[chain[-1][1]]), text))
-    return stretches
-
-
-def _straight_runs(record: Record) -> list[LogStretch]:
-    """Stretches over which the heading stays within five degrees while the craft moves."""
-    psi, time = np.unwrap(record["psi"]), record.time - record.time[0]
-    window = max(2, round(_STRAIGHT_S / record.dt))
-    if len(psi) <= window:
+def _found(record: Record) -> list[LogStretch]:
+    if len(record) < MIN_SAMPLES:
         return []
-    from scipy.ndimage import maximum_filter1d, minimum_filter1d
-
-    spread = maximum_filter1d(psi, window) - minimum_filter1d(psi, window)
-    still = spread < _STRAIGHT_HEADING
-    if "u" in record:
-        still &= np.abs(record["u"]) > 0.2 * np.nanmax(np.abs(record["u"]))  # of the largest speed: it moves
-    half = window // 2
-    return [
-        LogStretch("straight", float(time[a]), float(time[b - 1]),
-                   f"heading within {np.degrees(_STRAIGHT_HEADING):.0f} deg")
-        for a, b in mask_intervals(_widened(still, half))
-    ]  # fmt: skip
+    manoeuvres = [one for finder in _FINDERS for one in finder(record)]
+    return [*manoeuvres, *(part for one in straight_runs(record) for part in _outside(one, manoeuvres))]
 
 
-def _widened(mask: Mask, half: int) -> Mask:
-    """The mask with the windows about its samples filled: stretches that overlap are one."""
-    from scipy.ndimage import maximum_filter1d
+def _outside(straight: LogStretch, manoeuvres: Sequence[LogStretch]) -> list[LogStretch]:
+    """What of a straight run lies in no manoeuvre, where it is long enough to be one."""
+    pieces = [straight]
+    for one in manoeuvres:
+        cut = [
+            replace(piece, start=start, stop=stop)
+            for piece in pieces
+            for start, stop in ((piece.start, min(piece.stop, one.start)), (max(piece.start, one.stop), piece.stop))
+        ]
+        pieces = [piece for piece in cut if piece.stop - piece.start >= SHORTEST_STRAIGHT_S]
+    return pieces
 
-    return np.asarray(maximum_filter1d(mask.astype(np.uint8), 2 * half + 1), dtype=bool)
+
+def _modes(surveys: Sequence[LogSurvey], record: Record) -> list[_Mode]:
+    events = sorted(
+        (event.time, _mode_name(event.name)) for one in surveys for event in one.log.events if _mode_name(event.name)
+    )
+    start, end = float(record.time[0]), float(record.time[-1])
+    pairs = pairwise([*events, (end, "")])
+    modes = [_Mode(name, max(time, start), min(stop, end)) for (time, name), (stop, _) in pairs]
+    return [one for one in modes if one.stop - one.start > 0.0]
+
+
+def _mode_name(event: str) -> str:
+    """The name of a mode; empty for another event."""
+    kind, _, name = event.partition(" ")
+    if kind == "nav_state" and name.isdecimal():
+        return _PX4_STATES.get(int(name), name)
+    return name if kind == "MODE" else ""
+
+
+def _in_mode(record: Record, mode: _Mode) -> list[LogStretch]:
+    """The manoeuvres within a mode; the mode itself where there are none and it lasts."""
+    try:
+        part = record.between(mode.start, mode.stop)
+    except InputError:
+        return []
+    offset = float(part.time[0] - record.time[0])
+    found = [
+        replace(one, start=one.start + offset, stop=one.stop + offset, evidence=f"{one.evidence}; {mode.text}")
+        for one in _found(part)
+    ]
+    if found or part.duration < SHORTEST_STRAIGHT_S:
+        return found
+    return [LogStretch(f"{mode.name.lower()}_", offset, offset + part.duration, mode.text)]

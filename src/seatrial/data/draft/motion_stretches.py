@@ -1,0 +1,145 @@
+"""Straight runs, spirals, stops and roll decays in a log."""
+
+from itertools import pairwise
+
+import numpy as np
+
+from seatrial.core.values import Array, Record
+from seatrial.data.check.signal import Mask, mask_intervals
+from seatrial.data.draft.stretch import LogStretch, elapsed, padded, smooth_speed
+
+SHORTEST_STRAIGHT_S = 20.0  # s, of the shortest straight run; chosen
+_STRAIGHT_HEADING = np.radians(5.0)  # rad, range of headings of a straight run; chosen
+_MOVES = 0.2  # of the largest speed, above which a craft moves; chosen
+# deg within which a rudder is held, and largest step between two holds; s of a hold; holds of a spiral; chosen
+_HOLD_DEG, _LARGEST_STEP_DEG, _HOLD_S, _SPIRAL_HOLDS = 1.0, 12.0, 20.0, 5
+_FAST, _STOPPED = 0.7, 0.1  # of the largest speed, between which a craft stops; chosen
+_FALLING = 0.9  # share of a stop's samples at which the speed falls; chosen
+_LOOK_S = 0.5  # s between two looks at the rudder; chosen: short against a hold
+# half swings of a roll decay, factor by which they shrink in all, largest growth of one, scatter of their time; chosen
+_HALF_SWINGS, _SHRINKS, _GROWTH, _PERIOD_SCATTER = 6, 2.0, 1.02, 0.25
+_NOISE_SAMPLES = 2  # samples of a swing that is but noise about zero; chosen
+_SMALLEST_ROLL = np.radians(2.0)  # rad, of the first swing of a decay; chosen
+
+
+def straight_runs(record: Record) -> list[LogStretch]:
+    """Return stretches over which the heading stays within five degrees while the craft moves."""
+    window = max(2, round(SHORTEST_STRAIGHT_S / record.dt))
+    if "psi" not in record or len(record) <= window:
+        return []
+    from scipy.ndimage import maximum_filter1d, minimum_filter1d
+
+    psi, time = np.unwrap(record["psi"]), elapsed(record)
+    even = maximum_filter1d(psi, window) - minimum_filter1d(psi, window) < _STRAIGHT_HEADING
+    flow = smooth_speed(record)
+    if flow is not None:
+        even &= flow > _MOVES * np.max(flow)
+    text = f"heading within {np.degrees(_STRAIGHT_HEADING):.0f} deg"
+    ends = mask_intervals(_widened(even, window // 2))
+    return [LogStretch("straight", float(time[a]), float(time[b - 1]), text) for a, b in ends]
+
+
+def _widened(mask: Mask, half: int) -> Mask:
+    """The mask with the windows about its samples filled: stretches that overlap are one."""
+    from scipy.ndimage import maximum_filter1d
+
+    return np.asarray(maximum_filter1d(mask.astype(np.uint8), 2 * half + 1), dtype=bool)
+
+
+def spirals(record: Record) -> list[LogStretch]:
+    """Return stretches in which the rudder stands at one angle after the other from one side to the other."""
+    if "delta" not in record:
+        return []
+    holds = _rudder_holds(record)
+    time, stretches, chain = elapsed(record), list[LogStretch](), list[tuple[int, int, float]]()
+    for hold in [*holds, (len(record), len(record), np.inf)]:
+        if chain and not _goes_on(chain, hold):
+            angles = [angle for _, _, angle in chain]
+            if len(chain) >= _SPIRAL_HOLDS and min(angles) < 0.0 < max(angles):
+                text = f"rudder held at {len(chain)} angles from {angles[0]:.0f} to {angles[-1]:.0f} deg"
+                stretches.append(LogStretch("spiral", float(time[chain[0][0]]), float(time[chain[-1][1] - 1]), text))
+            chain = chain[-1:] if chain and abs(hold[2] - chain[-1][2]) <= _LARGEST_STEP_DEG else []
+        chain.append(hold)
+    return stretches
+
+
+def _rudder_holds(record: Record) -> list[tuple[int, int, float]]:
+    """First row, row after the last, and angle [deg] of the stretches in which the rudder stays within a degree."""
+    stride = max(1, round(_LOOK_S / record.dt))
+    degrees = np.degrees(padded(record, record["delta"]))[::stride].tolist()
+    holds, first = list[tuple[int, int, float]](), 0
+    for row in range(1, len(degrees) + 1):
+        if row < len(degrees) and abs(degrees[row] - degrees[first]) <= _HOLD_DEG:
+            continue
+        if (row - first) * stride * record.dt >= _HOLD_S:
+            holds.append((first * stride, min(row * stride, len(record)), float(np.median(degrees[first:row]))))
+        first = row
+    return holds
+
+
+def _goes_on(chain: list[tuple[int, int, float]], hold: tuple[int, int, float]) -> bool:
+    """Whether a hold continues a chain: one step further to the same side."""
+    step = hold[2] - chain[-1][2]
+    direction = np.sign(chain[-1][2] - chain[0][2])
+    return 0.0 < abs(step) <= _LARGEST_STEP_DEG and (direction == 0.0 or np.sign(step) == direction)
+
+
+def stops(record: Record) -> list[LogStretch]:
+    """Return stretches in which the speed falls from most of its largest to a tenth."""
+    flow, time = smooth_speed(record), elapsed(record)
+    if flow is None:
+        return []
+    largest, stretches = float(np.max(flow)), list[LogStretch]()
+    for first, _ in mask_intervals(flow < _STOPPED * largest):
+        fast = np.flatnonzero(flow[:first] > _FAST * largest)
+        if not fast.size:
+            continue
+        falling = np.diff(flow[fast[-1] : first + 1]) < 0.0
+        if falling.size and np.mean(falling) > _FALLING:
+            row = int(fast[-1])
+            text = f"speed falls from {flow[row]:.2g} to {flow[first]:.2g} m/s, {_propulsion(record, row, first)}"
+            start = float(time[_start_of_fall(flow, row)])
+            stretches.append(LogStretch("stop", start, float(time[first]), text))
+    return stretches
+
+
+def _start_of_fall(flow: Array, row: int) -> int:
+    """The last row before `row` at which the speed did not fall."""
+    steady = np.flatnonzero(np.diff(flow[: row + 1]) >= 0.0)
+    return int(steady[-1]) + 1 if steady.size else 0
+
+
+def _propulsion(record: Record, first: int, last: int) -> str:
+    names = [s for s in record.channels if s == "n" or s.startswith(("command_", "rpm_"))]
+    if not names:
+        return "propeller not recorded"
+    is_astern = any(float(np.mean(record[name][first : last + 1])) < 0.0 for name in names)
+    return "propeller astern" if is_astern else "coasting"
+
+
+def decays(record: Record) -> list[LogStretch]:
+    """Return stretches in which the roll swings evenly and dies out."""
+    if "phi" not in record:
+        return []
+    phi = record["phi"] - float(np.median(record["phi"]))
+    edges = np.flatnonzero(np.diff(phi >= 0.0)) + 1
+    swings = [(int(a), int(b), float(np.max(np.abs(phi[a:b])))) for a, b in pairwise(edges)]
+    swings = [swing for swing in swings if swing[1] - swing[0] > _NOISE_SAMPLES]
+    time, stretches, chain = elapsed(record), list[LogStretch](), list[tuple[int, int, float]]()
+    for swing in [*swings, (len(phi), len(phi), np.inf)]:
+        if chain and swing[2] > _GROWTH * chain[-1][2]:
+            if _dies_out(chain):
+                text = f"roll swings {len(chain)} half periods from {np.degrees(chain[0][2]):.1f} deg down"
+                stretches.append(LogStretch("decay", float(time[chain[0][0]]), float(time[chain[-1][1] - 1]), text))
+            chain = []
+        chain.append(swing)
+    return stretches
+
+
+def _dies_out(chain: list[tuple[int, int, float]]) -> bool:
+    lengths = np.array([b - a for a, b, _ in chain], dtype=float)
+    return (
+        len(chain) >= _HALF_SWINGS
+        and chain[0][2] > max(_SMALLEST_ROLL, _SHRINKS * chain[-1][2])
+        and float(np.std(lengths)) < _PERIOD_SCATTER * float(np.mean(lengths))
+    )

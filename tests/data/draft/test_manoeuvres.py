@@ -1,0 +1,117 @@
+"""Manoeuvres planted in long logs: their kind, their ends, and the mode of the autopilot in which they were."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.data.draft.craft import two_thrusters
+from tests.data.draft.test_draft import write
+from tests.data.read.samples import dataflash
+
+from seatrial.api import draft_trial
+from seatrial.core.values import Array, Record
+from seatrial.data.draft.manoeuvres import numbered
+from seatrial.data.draft.motion_stretches import decays, spirals, stops, straight_runs
+from seatrial.data.draft.stretch import LogStretch, elapsed, padded, smooth_speed
+from seatrial.data.draft.turns import turning_stretches
+
+STEP = 0.5  # s
+
+
+def nomoto(delta: Array, u: Array) -> Record:
+    """First-order response to a rudder [rad] at a speed [m/s]."""
+    r, psi = np.zeros(delta.size), np.zeros(delta.size)
+    for k in range(1, delta.size):
+        r[k] = r[k - 1] + STEP * (0.15 * delta[k - 1] - r[k - 1]) / 6.0
+        psi[k] = psi[k - 1] + STEP * r[k - 1]
+    return Record.from_arrays("run", STEP * np.arange(delta.size), {"delta": delta, "u": u, "psi": psi, "r": r})
+
+
+def over(time: Array, start: float, stop: float) -> Array:
+    return (time >= start) & (time < stop)
+
+
+TIME = STEP * np.arange(1600)
+
+
+def test_a_circle_with_a_pull_out_reaches_to_its_end() -> None:
+    delta = 0.35 * over(TIME, 100.0, 400.0) - 0.35 * over(TIME, 550.0, 750.0)
+    first, second = turning_stretches(nomoto(delta, np.full(TIME.size, 4.0)))
+    assert (first.name, second.name) == ("circle_starboard_with_pull_out_", "circle_port_with_pull_out_")
+    assert first.start == pytest.approx(100.0, abs=5.0) and first.stop == pytest.approx(550.0, abs=5.0)
+    assert second.start == pytest.approx(550.0, abs=5.0) and second.stop == pytest.approx(800.0, abs=5.0)
+
+
+def test_a_circle_that_goes_straight_into_the_next_has_no_pull_out() -> None:
+    delta = 0.35 * over(TIME, 100.0, 400.0) - 0.35 * over(TIME, 400.0, 800.0)
+    assert [one.name for one in turning_stretches(nomoto(delta, np.full(TIME.size, 4.0)))] == [
+        "circle_starboard_", "circle_port_",
+    ]  # fmt: skip
+
+
+def test_a_turn_without_speed_is_a_spin() -> None:
+    delta = 0.35 * over(TIME, 100.0, 300.0) + 0.35 * over(TIME, 500.0, 700.0)
+    u = np.where(TIME < 320.0, 0.2, 4.0)
+    spin, circle = turning_stretches(nomoto(delta, u))
+    assert spin.name == "spin_starboard_" and "on the spot" in spin.evidence
+    assert circle.name.startswith("circle_starboard_")
+
+
+def test_a_rudder_that_stands_at_one_angle_after_the_other_is_a_spiral() -> None:
+    angles = np.radians([15.0, 10.0, 5.0, 0.0, -5.0, -10.0, -15.0])
+    delta = np.concatenate([np.zeros(100), np.repeat(angles, 200), np.zeros(100)])
+    noise = np.radians(0.1) * np.random.default_rng(3).standard_normal(delta.size)
+    (spiral,) = spirals(nomoto(delta + noise, np.full(delta.size, 4.0)))
+    assert spiral.name == "spiral" and "7 angles from 15 to -15 deg" in spiral.evidence
+    assert (spiral.start, spiral.stop) == (pytest.approx(50.0, abs=3.0), pytest.approx(750.0, abs=3.0))
+    assert spirals(nomoto(0.3 * np.sign(np.sin(0.05 * TIME)), np.full(TIME.size, 4.0))) == []
+
+
+@pytest.mark.parametrize(("n", "words"), [(-2.0, "propeller astern"), (0.0, "coasting")])
+def test_a_speed_that_falls_to_nothing_is_a_stop(n: float, words: str) -> None:
+    u = np.where(TIME < 200.0, 4.0, 4.0 * np.exp(-(TIME - 200.0) / 60.0))
+    record = Record.from_arrays("run", TIME, {"u": u, "psi": 0.0 * u, "n": np.where(TIME < 200.0, 4.0, n)})
+    (stop,) = stops(record)
+    assert stop.start == pytest.approx(200.0, abs=5.0) and stop.stop == pytest.approx(200.0 + 60.0 * np.log(10), abs=5)
+    assert words in stop.evidence
+    flow = smooth_speed(record)
+    assert flow is not None and flow.shape == elapsed(record).shape == padded(record, u).shape
+
+
+def test_a_roll_that_dies_out_is_a_decay() -> None:
+    swing = np.radians(10.0) * np.exp(-(TIME - 100.0) / 60.0) * np.cos((TIME - 100.0) * 2.0 * np.pi / 10.0)
+    phi = np.where(TIME < 100.0, 0.0, swing)
+    (decay,) = decays(Record.from_arrays("run", TIME, {"phi": phi}))
+    assert decay.start == pytest.approx(100.0, abs=5.0) and decay.name == "decay"
+    steady = np.radians(10.0) * np.cos(TIME * 2.0 * np.pi / 10.0)
+    assert decays(Record.from_arrays("run", TIME, {"phi": steady})) == []
+
+
+def test_straight_runs_inside_a_zigzag_are_not_offered(tmp_path: Path) -> None:
+    delta = 0.2 * np.sign(np.sin(0.08 * TIME)) * over(TIME, 0.0, 600.0)
+    record = nomoto(delta, np.full(TIME.size, 4.0))
+    columns = {"time": TIME, "heading": np.degrees(record["psi"]), "surge": record["u"]}
+    (stretches,) = draft_trial(write(tmp_path / "run.csv", columns)).stretches
+    zigzag, straight = stretches
+    assert zigzag.name == "zigzag1" and straight.start >= zigzag.stop
+    assert straight_runs(record)[-1].stop == pytest.approx(TIME[-1], abs=1.0)
+
+
+def test_parts_lie_within_one_mode_and_say_whether_a_controller_was_on(tmp_path: Path) -> None:
+    craft = two_thrusters()
+    micro = [round(1e6 * t) for t in craft["t"]]
+    degrees = np.mod(np.degrees(craft["psi"]), 360.0).tolist()
+    rows = [(t, u, psi) for t, u, psi in zip(micro, craft["u"].tolist(), degrees, strict=True)]
+    modes = [(0, 0, 0), (micro[500], 10, 10), (micro[520], 4, 4)]
+    (tmp_path / "run.bin").write_bytes(dataflash({
+        "MODE": ("QBB", "TimeUS,Mode,ModeNum", modes), "XKF1": ("Qff", "TimeUS,VN,Yaw", rows),
+    }))  # fmt: skip
+    (stretches,) = draft_trial(tmp_path / "run.bin").stretches
+    assert all(not one.start < craft["t"][500] < one.stop for one in stretches)
+    assert "mode MANUAL: no controller" in stretches[0].evidence
+    assert "mode HOLD: a controller is on, its orders follow the motion" in stretches[-1].evidence
+
+
+def test_names_of_several_runs_differ() -> None:
+    one = LogStretch("zigzag", 0.0, 10.0, "")
+    assert [[s.name for s in run] for run in numbered([[one, one], [one]])] == [["zigzag1", "zigzag2"], ["zigzag3"]]
