@@ -11,7 +11,7 @@ from seatrial.cli.application import app
 from seatrial.cli.output import print_lines, print_table
 
 if TYPE_CHECKING:
-    from seatrial.data.draft import ColumnGuess, ColumnSummary, LogSurvey, TopicSummary
+    from seatrial.data.draft import ColumnGuess, ColumnSummary, DraftTrial, LogSurvey, TopicSummary
 
 COLUMNS_SHOWN = 12  # columns of a topic that `check` lists without --all; ours, one screen for a log of a few topics
 DIGITS = 5  # significant ones of a range; chosen
@@ -45,8 +45,16 @@ def init(
     if questions:
         print_lines([f"{counted(len(questions), 'column')} to decide, marked OPEN in the file"])
     print(f"trial file: {out}")
-    first = "read it, decide what is OPEN, then " if questions else ""
-    print(f"Next: {first}seatrial check {out}")
+    print_lines([_after_draft(draft, out)])
+
+
+def _after_draft(draft: "DraftTrial", out: Path) -> str:
+    """What to do next: name columns where none is recognised, decide what is open, else check."""
+    if not any(g.is_used for part in draft.guesses for g in part):
+        log = draft.surveys[0].path
+        return f"Next: no column is recognised; seatrial check {log} lists them, name channels in {out}"
+    first = "read it, decide what is OPEN, then " if draft.open_questions else ""
+    return f"Next: {first}seatrial check {out}"
 
 
 def _print_guesses(guesses: "Sequence[ColumnGuess]") -> None:

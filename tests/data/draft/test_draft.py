@@ -201,3 +201,11 @@ def test_a_clock_in_local_time_is_moved_to_that_of_the_other_sources(tmp_path: P
     np.testing.assert_allclose(np.unwrap(record["psi"]), TRUTH["psi"], atol=1e-6)
     surveys = [survey_log(tmp_path / "gnss.csv"), survey_log(tmp_path / "gyro.csv")]
     assert zone_offsets(surveys) == [0.0, 0.0]
+
+
+def test_a_draft_of_which_all_is_open_says_what_to_choose(tmp_path: Path) -> None:
+    columns = {"time": TRUTH["t"], "heading": 0.01 * TRUTH["psi"], "n": TRUTH["u"]}
+    draft = draft_trial(write(tmp_path / "run.csv", columns), folder=tmp_path)
+    (tmp_path / "trial.toml").write_text(draft.text, encoding="utf-8")
+    with pytest.raises(InputError, match=r"no channel is declared, all 2 readings are open \(psi, n\); choose: below"):
+        check(tmp_path / "trial.toml")

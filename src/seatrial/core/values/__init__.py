@@ -2,6 +2,7 @@
 
 from seatrial.core.values.arrays import Array, Index, frozen
 from seatrial.core.values.channel import Channel, Provenance
+from seatrial.core.values.channel_names import channel_hint
 from seatrial.core.values.errors import DivergedError, InputError, spelling_hint
 from seatrial.core.values.finding import Finding, Severity, worst_first
 from seatrial.core.values.force_points import ForceContent, ForcePoints
@@ -16,6 +17,6 @@ from seatrial.core.values.versions import versions
 __all__ = [
     "NOTATION", "Array", "Channel", "DivergedError", "Finding", "ForceContent", "ForcePoints", "Index", "InputError",
     "Parameter", "Parameters", "Prior", "ProgressReporter", "Provenance", "Quantity", "Record", "RecordKind",
-    "Severity", "Ship", "display_unit", "frozen", "quantity", "si_unit", "spelling_hint", "versions",
+    "Severity", "Ship", "channel_hint", "display_unit", "frozen", "quantity", "si_unit", "spelling_hint", "versions",
     "worst_first",
 ]  # fmt: skip

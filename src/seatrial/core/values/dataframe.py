@@ -8,6 +8,7 @@ import numpy as np
 
 from seatrial.core.values.arrays import Array, frozen
 from seatrial.core.values.channel import Channel
+from seatrial.core.values.channel_names import channel_hint
 from seatrial.core.values.errors import InputError, spelling_hint
 from seatrial.core.values.notation import OPPOSITE, positive_direction, quantity
 from seatrial.core.values.units import si_unit
@@ -42,7 +43,7 @@ class ColumnDeclarations:
         for argument, table in tables.items():
             for symbol in table:
                 if symbol not in symbols and (argument, symbol) != ("units", "time"):
-                    raise InputError(f"{argument} names the channel '{symbol}'{spelling_hint(symbol, symbols)}")
+                    raise InputError(f"{argument} names the channel '{symbol}'{channel_hint(symbol, symbols)}")
 
     def channel(self, symbol: str, numbers: Array, label: str, metadata: Mapping[str, Any] | None) -> Channel:
         """Return the channel of a column in SI units; `metadata` as in `Channel.metadata` where the frame keeps it.

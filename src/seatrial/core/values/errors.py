@@ -1,5 +1,7 @@
 """Errors that a user can meet: bad input, in one sentence."""
 
+from collections.abc import Sequence
+
 
 class InputError(ValueError):
     """States what is wrong, where, and what to do; the command line prints it and exits with code 2."""
@@ -9,9 +11,23 @@ class DivergedError(InputError):
     """States where and when a simulation left all bounds."""
 
 
+MAX_LISTED = 160
+"""Letters of a list of names in a message; ours, a third of the longest message."""
+
+
+def listed(names: Sequence[str]) -> str:
+    """Return names with commas between them; of many the first, and how many more there are."""
+    shown = list[str]()
+    for name in names:
+        if sum(map(len, shown)) + 2 * len(shown) + len(name) > MAX_LISTED and shown:
+            return f"{', '.join(shown)} and {len(names) - len(shown)} more"
+        shown.append(name)
+    return ", ".join(shown)
+
+
 def spelling_hint(name: str, valid_names: list[str]) -> str:
     """Return the end of a sentence that names the valid name most like `name`, or all of them where none is alike."""
     import difflib
 
     close = difflib.get_close_matches(name, valid_names, n=1, cutoff=0.5)
-    return f"; did you mean '{close[0]}'?" if close else f"; known are {', '.join(valid_names)}"
+    return f"; did you mean '{close[0]}'?" if close else f"; known are {listed(valid_names)}"

@@ -6,7 +6,8 @@ body-fixed x forward, y starboard, z down (ITTC 2021 symbols; SNAME 1950; Fossen
 
 from dataclasses import dataclass
 
-from seatrial.core.values.errors import InputError, spelling_hint
+from seatrial.core.values.channel_names import channel_hint
+from seatrial.core.values.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -108,7 +109,7 @@ def quantity(symbol: str) -> Quantity:
         InputError: the symbol is not in the table; the nearest one is named.
     """
     if symbol not in NOTATION:
-        raise InputError(f"unknown channel '{symbol}'{spelling_hint(symbol, sorted(NOTATION))}")
+        raise InputError(f"unknown channel '{symbol}'{channel_hint(symbol, sorted(NOTATION))}")
     return NOTATION[symbol]
 
 

@@ -11,8 +11,9 @@ import numpy as np
 from seatrial.core.text.words import NAMES_SHOWN, enumeration
 from seatrial.core.values.arrays import Array, frozen
 from seatrial.core.values.channel import Channel, Provenance
+from seatrial.core.values.channel_names import channel_hint
 from seatrial.core.values.dataframe import ColumnDeclarations, channel_columns, column_numbers
-from seatrial.core.values.errors import InputError, spelling_hint
+from seatrial.core.values.errors import InputError
 
 if TYPE_CHECKING:
     import pandas
@@ -103,7 +104,7 @@ class Record:
         """
         if symbol not in self.channels:
             raise InputError(
-                f"record '{self.name}' has no channel '{symbol}'{spelling_hint(symbol, list(self.channels))}"
+                f"record '{self.name}' has no channel '{symbol}'{channel_hint(symbol, list(self.channels))}"
             )
         return self.channels[symbol]
 

@@ -46,7 +46,7 @@ def find_stretches(surveys: Sequence[LogSurvey], guesses: Sequence[Sequence[Colu
     if record is None:
         return ()
     modes = _modes(surveys, record)
-    stretches = [one for mode in modes for one in _in_mode(record, mode)] if modes else _found(record)
+    stretches = [one for mode in modes for one in _in_mode(record, mode)] if modes else _manoeuvres_of(record)
     longest = sorted(stretches, key=lambda one: one.start - one.stop)[:_MOST_STRETCHES]
     return tuple(sorted(longest, key=lambda one: one.start))
 
@@ -64,7 +64,7 @@ def numbered(runs: Sequence[Sequence[LogStretch]]) -> tuple[tuple[LogStretch, ..
     return tuple(result)
 
 
-def _found(record: Record) -> list[LogStretch]:
+def _manoeuvres_of(record: Record) -> list[LogStretch]:
     if len(record) < MIN_SAMPLES:
         return []
     manoeuvres = [one for finder in _FINDERS for one in finder(record)]
@@ -111,7 +111,7 @@ def _in_mode(record: Record, mode: _Mode) -> list[LogStretch]:
     offset = float(part.time[0] - record.time[0])
     found = [
         replace(one, start=one.start + offset, stop=one.stop + offset, evidence=f"{one.evidence}; {mode.text}")
-        for one in _found(part)
+        for one in _manoeuvres_of(part)
     ]
     if found or part.duration < SHORTEST_STRAIGHT_S:
         return found

@@ -1,12 +1,15 @@
 """A trial file into a `Trial`."""
 
+import re
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 
 from pydantic import ValidationError
 
 from seatrial.core.equations import Model
-from seatrial.core.values import NOTATION, InputError, Ship, spelling_hint
+from seatrial.core.values import NOTATION, InputError, Ship, channel_hint, spelling_hint
+from seatrial.core.values.errors import listed
 from seatrial.data.check.captive_forces import force_findings
 from seatrial.data.trial.design_request import refuse_unsuitable
 from seatrial.data.trial.excitation import excitation_of
@@ -15,10 +18,12 @@ from seatrial.data.trial.forces import read_force_points
 from seatrial.data.trial.literature import prior_range_findings
 from seatrial.data.trial.model_table import build_trial_model, ship_of
 from seatrial.data.trial.runs import expand_variables, require_training_run, runs_of
-from seatrial.data.trial.schema import TrialFile
+from seatrial.data.trial.schema import NO_CHANNELS, TrialFile
 from seatrial.data.trial.schema_errors import schema_error
 from seatrial.data.trial.thruster_table import layout_text
 from seatrial.data.trial.trial import Trial, TrialRun
+
+_OPEN = re.compile(r"^# OPEN (\w+):", re.MULTILINE)  # as `seatrial init` marks what a person must choose
 
 
 def parse_trial(path: Path) -> TrialFile:
@@ -37,13 +42,25 @@ def parse_trial(path: Path) -> TrialFile:
     try:
         file = TrialFile.model_validate(table)
     except ValidationError as error:
-        raise schema_error(error, TrialFile, str(path)) from None
+        sentence = schema_error(error, TrialFile, str(path))
+        if str(sentence).endswith(NO_CHANNELS) and (names := _OPEN.findall(path.read_text(encoding="utf-8"))):
+            raise _all_open(path, names) from None
+        raise sentence from None
     if not file.records and file.design is None and file.follow is None:
         raise InputError(
             f"{path}: key 'records' is missing; add it, or a [design] table for 'seatrial design', or [follow] for "
             "'seatrial follow'"
         )
     return file
+
+
+def _all_open(path: Path, names: list[str]) -> InputError:
+    """What to say of a drafted file none of whose readings has been chosen."""
+    count = "the only reading is" if len(names) == 1 else f"all {len(names)} readings are"
+    return InputError(
+        f"{path}: no channel is declared, {count} open ({listed(names)}); choose: below each line "
+        "'# OPEN NAME' correct unit, frame and side by what it says, and remove the # before channels.NAME"
+    )
 
 
 def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
@@ -78,9 +95,11 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
             if isinstance(file.feedback.reference, str):
                 _refuse_unknown_names("feedback.reference", [file.feedback.reference], symbols)
         for structure, names in (file.family.structures if file.family else {}).items():
-            _refuse_unknown_names(f"family.structures.'{structure}'", list(names), set(model.parameters.names))
+            _refuse_unknown_names(
+                f"family.structures.'{structure}'", list(names), set(model.parameters.names), spelling_hint
+            )
         if own_model is None:
-            _refuse_unknown_names("truth", list(file.truth), set(model.parameters.names))
+            _refuse_unknown_names("truth", list(file.truth), set(model.parameters.names), spelling_hint)
         unit = _reference_force(model, ship)
         ranges = prior_range_findings(file.model.priors_from, ship)
         home = path.resolve().parent
@@ -141,7 +160,9 @@ def _reference_force(model: Model, ship: Ship) -> float | None:
     return known["rho"] / 2 * known["L"] * known["d"] if {"rho", "L", "d"} <= set(known) else None
 
 
-def _refuse_unknown_names(where: str, names: list[str], valid_names: set[str]) -> None:
+def _refuse_unknown_names(
+    where: str, names: list[str], valid_names: set[str], hint: Callable[[str, list[str]], str] = channel_hint
+) -> None:
     for name in names:
         if name not in valid_names:
-            raise InputError(f"{where}: unknown name '{name}'{spelling_hint(name, sorted(valid_names))}")
+            raise InputError(f"{where}: unknown name '{name}'{hint(name, sorted(valid_names))}")

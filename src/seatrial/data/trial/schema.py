@@ -46,6 +46,7 @@ def _not_zero(value: float) -> float:
     return value
 
 
+NO_CHANNELS = "key 'channels' is missing; add it"
 ClockUnit = Annotated[str, BeforeValidator(_valid_clock)]
 NonZero = Annotated[float, AfterValidator(_not_zero)]
 Strings = Annotated[tuple[str, ...], BeforeValidator(_as_tuple)]
@@ -211,7 +212,7 @@ class RecordsTable(ColumnsTable):
         if self.sources and self.channels:
             raise ValueError("channels of a run of several sources belong to each of [[records.sources]]; move them")
         if not self.sources and not self.channels:
-            raise ValueError("key 'channels' is missing; add it")
+            raise ValueError(NO_CHANNELS)
         return self
 
     @model_validator(mode="after")

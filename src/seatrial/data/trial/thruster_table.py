@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, TypeAdapter, model_validator
 
-from seatrial.core.values import NOTATION, InputError, Ship, spelling_hint
+from seatrial.core.values import NOTATION, InputError, Ship, channel_hint
 from seatrial.data.trial.amounts import Amount, Angle, InSi, PositiveLength, StrictTable
 from seatrial.physics.models.thruster_layout import (
     DEFAULT_LAG,
@@ -132,7 +132,7 @@ def _command(table: ThrusterTable, where: str) -> CommandInput:
 def _channel(name: str, unit: str, where: str) -> str:
     suited = sorted(s for s, q in NOTATION.items() if q.unit == unit)
     if name not in suited:
-        raise InputError(f"{where}: '{name}' is no channel in {unit}{spelling_hint(name, suited)}")
+        raise InputError(f"{where}: '{name}' is no channel in {unit}{channel_hint(name, suited)}")
     return name
 
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Array, Index, InputError, Record, spelling_hint
+from seatrial.core.values import Array, Index, InputError, Record, channel_hint
 from seatrial.physics.simulate.actuators import ActuatorHistory
 from seatrial.physics.simulate.channels import inputs_of
 
@@ -67,7 +67,7 @@ def compared_outputs(model: Model, records: Sequence[Record], requested: Sequenc
     found = tuple(o for o in model.channels if any(o in r for r in records))
     for name in requested:
         if name not in found:
-            raise InputError(f"channel '{name}' cannot be compared{spelling_hint(name, list(found))}")
+            raise InputError(f"channel '{name}' cannot be compared{channel_hint(name, list(found))}")
     if not found:
         raise InputError(f"no record holds any output of model '{model.name}': {', '.join(model.observables)}")
     return tuple(o for o in found if not requested or o in requested)
