@@ -305,7 +305,7 @@ def _print_disturbances(candidates: "Sequence[DisturbanceCandidate]") -> None:
         held_out = "" if c.held_out_score is None else exact(c.held_out_score, DIGITS)
         used = "used" if c.is_chosen else ""
         rows.append([c.name, fixed(c.log_likelihood, 1), str(c.degrees_of_freedom), *ratios, verdict, held_out, used])
-    print_table(rows, flush_left=(0, 5, 7), indent="  ")
+    print_table(rows, flush_left=(0, 5, 7), indent="  ")  # columns of words: name, verdict, use
 
 
 def print_measures(

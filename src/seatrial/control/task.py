@@ -96,7 +96,7 @@ class SimulationSettings:
 
     seeds: int = 20  # seas; chosen
     duration: float = 1000.0  # s; chosen
-    dt: float = 0.05  # s; chosen
+    dt: float = 0.05  # s, step of the simulation; chosen
 
 
 @dataclass(frozen=True)

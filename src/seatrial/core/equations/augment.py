@@ -154,6 +154,7 @@ def _symbol(name: str) -> "sp.Symbol":
 
 def _time_constant(name: str, value: float, meaning: str) -> Parameter:
     """Free between 0.05 and 200 times its start value: from the sampling time to longer than any run, chosen."""
+    # bounds as the docstring says; chosen
     return Parameter(name, value, "s", 0.05 * value, 200.0 * value, value, None, True, _SOURCE, meaning, "")
 
 

@@ -89,7 +89,7 @@ def _load_or_generate(equations: ModelEquations, kind: tuple[str, ...], text: Ca
     return module
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=64)  # models kept in a process; chosen
 def compile_equations(equations: ModelEquations) -> CompiledEquations:
     """Return the functions of a set of equations, generated where the cache does not hold them."""
 

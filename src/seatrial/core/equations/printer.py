@@ -28,7 +28,7 @@ class _Printer(PythonCodePrinter):
             return f"math.sqrt({text})"
         if exponent == -sp.Rational(1, 2):
             return f"(1.0/math.sqrt({text}))"
-        if exponent.is_Integer and 1 <= abs(int(exponent)) <= 8:
+        if exponent.is_Integer and 1 <= abs(int(exponent)) <= 8:  # powers written as products, up to the eighth; chosen
             product = "*".join([f"({text})"] * abs(int(exponent)))
             return f"({product})" if exponent > 0 else f"(1.0/({product}))"
         return f"({text})**({self._print(exponent)})"

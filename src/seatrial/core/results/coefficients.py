@@ -102,11 +102,12 @@ def at_level(coefficient: Coefficient, level: float, degrees_of_freedom: float) 
     lower, upper = (float("nan") if end is None else end for end in (coefficient.lower, coefficient.upper))
     if level == STORED_LEVEL:
         return lower, upper
-    factor = _two_sided_quantile(level, degrees_of_freedom) / _two_sided_quantile(STORED_LEVEL, degrees_of_freedom)
+    factor = two_sided_quantile(level, degrees_of_freedom) / two_sided_quantile(STORED_LEVEL, degrees_of_freedom)
     return value - factor * (value - lower), value + factor * (upper - value)
 
 
-def _two_sided_quantile(level: float, degrees_of_freedom: float) -> float:
+def two_sided_quantile(level: float, degrees_of_freedom: float) -> float:
+    """Return the half width in standard errors of an interval that holds the value with this probability."""
     from scipy.special import ndtri, stdtrit  # here, as `check` imports this module and has no use for them
 
     probability = 0.5 * (1.0 + level)

@@ -113,7 +113,7 @@ def _require_drift_sign(table: ForcesTable, beta: Array, sheet: RawTable, where:
             f'{where}.motion.beta says nothing about its sign, and both are in use; add positive = "bow to starboard" '
             '(of the course: v = -U sin beta) or "bow to port" (v = U sin beta)'
         )
-    far = np.flatnonzero(np.abs(beta) > np.pi + 1e-9)
+    far = np.flatnonzero(np.abs(beta) > np.pi + 1e-9)  # rad of rounding; chosen
     if far.size:
         raise InputError(
             f"{sheet.file}: row {sheet.first_row + far[0]}: the drift angle is {np.degrees(beta[far[0]]):.4g} deg, "

@@ -82,4 +82,4 @@ def _swing_count(values: Array, size: float) -> int:
 
 def _noise_deviation(values: Array) -> float:
     """Standard deviation of white noise by third differences, whose variance is 20 times that of the noise."""
-    return float(np.std(np.diff(values, 3)) / np.sqrt(20.0))
+    return float(np.std(np.diff(values, 3)) / np.sqrt(20.0))  # 1 + 9 + 9 + 1, squared binomial coefficients

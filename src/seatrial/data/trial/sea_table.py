@@ -20,8 +20,8 @@ class SeaTable(StrictTable):
     spectrum: Literal["ittc", "ittc2", "bretschneider", "jonswap", "sea-state"] = "ittc"
     height: PositiveLength | None = None
     period: PositiveDuration | None = None
-    gamma: float = 3.3
-    state: Annotated[int, Field(ge=0, le=9)] | None = None
+    gamma: float = 3.3  # mean peak enhancement of JONSWAP, Hasselmann et al. 1973
+    state: Annotated[int, Field(ge=0, le=9)] | None = None  # sea states of the WMO code
 
     @model_validator(mode="after")
     def _keys_of_the_spectrum(self) -> Self:

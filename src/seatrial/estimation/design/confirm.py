@@ -49,6 +49,7 @@ def confirm_design(
     for number, result in enumerate(results):
         if result is not None and result.status.is_success:
             true = ships.parameters[number, places]
+            # smaller values count by their scale; chosen
             errors.append((result.point - true) / np.where(np.abs(true) > 1e-3 * scale, np.abs(true), scale))
             bounds.append(predicted[number])
     none = np.full((1, len(places)), np.nan)

@@ -61,7 +61,7 @@ class ManoeuvreEvaluator:
         places = [parameters.index(n) for n in parameters.free_names]
         values = np.abs(self.ships.parameters[:, places])
         scale = np.array([p.characteristic_scale for p in parameters.free])
-        return np.where(values > 1e-3 * scale, values, scale)
+        return np.where(values > 1e-3 * scale, values, scale)  # smaller values count by their scale; chosen
 
     @cached_property
     def _batch_without_inputs(self) -> SegmentBatch:
@@ -150,4 +150,4 @@ def _standard_errors(information: Array, k: int) -> Array:
     variance = np.full(len(scale), np.inf)
     inverse = np.linalg.inv(unit + _REGULARISATION * np.eye(len(unit)))
     variance[is_informative] = np.abs(inverse.diagonal()) / scale[is_informative] ** 2
-    return np.sqrt(np.minimum(variance[:k], 1e30))
+    return np.sqrt(np.minimum(variance[:k], 1e30))  # a finite number for what is not identified; chosen

@@ -59,6 +59,7 @@ def input_series(task: DesignTask, orders: list[Array], dt: float) -> Array:
 def order_table(task: DesignTask, orders: list[Array]) -> tuple[TimedOrder, ...]:
     """Return the helmsman's table: a line whenever an order changes, all actuators in it."""
     actuators = task.request.actuators
+    # digits of s, against rounding; chosen
     times = sorted({round(k * a.hold, 9) for a, n in zip(actuators, order_counts(task), strict=True) for k in range(n)})
     lines: list[TimedOrder] = []
     for time in times:

@@ -101,6 +101,7 @@ def search_orders(
             best, value, evaluations = step[0], step[1], drawn + step[2]
         history.append(value)
         box = Box(np.full(len(best), BOX_LOWER), np.full(len(best), BOX_UPPER))
+        # draws of a point outside the box; chosen
         settings = AdaptationSettings(iterations=generations, step=INITIAL_STEP / (BOX_UPPER - BOX_LOWER), resampling=5)
         strategy = CovarianceAdaptation(box, generator, settings, best)
         while not strategy.done:
@@ -144,6 +145,7 @@ def _random_sequences(task: DesignTask, generator: np.random.Generator) -> list[
         for count in order_counts(task):
             times = int(generator.integers(1, 4))
             signs = np.repeat(generator.choice([-1.0, 1.0], size=count // times + 1), times)[:count]
+            # amplitudes up to 0.45 about the middle of the range; chosen
             pieces.append(0.5 + 0.45 * generator.choice([0.25, 0.5, 0.75, 1.0]) * signs)
         points.append(np.concatenate(pieces))
     return points
@@ -151,6 +153,7 @@ def _random_sequences(task: DesignTask, generator: np.random.Generator) -> list[
 
 def search_step(task: DesignTask) -> float:
     """Return the step of the search [s]: a whole number of samples, an eighth of the shortest hold at most."""
+    # an eighth of the hold, rounding; chosen
     samples = max(1, int(task.shortest_hold * task.request.rate / 8.0 + 1e-9))
     while samples > 1 and not _divides_duration(task, samples):
         samples -= 1

@@ -80,4 +80,4 @@ def _prior_values(task: DesignTask, unit: Array) -> Array:
 def _normal_deviates(unit: Array) -> Array:
     from scipy.special import ndtri
 
-    return ndtri(np.clip(unit, 1e-9, 1.0 - 1e-9))
+    return ndtri(np.clip(unit, 1e-9, 1.0 - 1e-9))  # within 6 standard deviations; chosen

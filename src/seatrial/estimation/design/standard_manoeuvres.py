@@ -147,6 +147,7 @@ def _sweep_inputs(evaluator: ManoeuvreEvaluator) -> Array:
 def _step_inputs(evaluator: ManoeuvreEvaluator) -> Array:
     """Return steps from end to end, eight times."""
     time = evaluator.dt * np.arange(sample_count(evaluator.task, evaluator.dt))
+    # eight steps, as said above
     return _drive_all(evaluator, np.where((8.0 * time / evaluator.task.request.duration).astype(int) % 2, 1.0, -1.0))
 
 

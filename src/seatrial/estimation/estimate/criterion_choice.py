@@ -174,6 +174,7 @@ def is_coarsely_sampled(problem: OutputError) -> bool:
         values = data.inputs[:, j]
         if not channel.is_held and np.ptp(values) > 0.0:
             power = np.abs(np.fft.rfft(values - np.mean(values))) ** 2
+            # share of the power that counts as band; chosen
             place = int(np.searchsorted(np.cumsum(power), 0.95 * np.sum(power)))
             if 2.0 * np.pi * place / len(values) > _MAX_PHASE_STEP:
                 return True

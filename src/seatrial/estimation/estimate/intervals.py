@@ -73,7 +73,7 @@ def estimate_uncertainty(
     if kind is IntervalMethod.JACKKNIFE:
         points = full_jackknife(estimate, problem.workers, report_progress)
         full, fast = jackknife(points, ""), jackknife(_required(steps), "")
-        share = fast.standard_error / np.maximum(full.standard_error, 1e-300)
+        share = fast.standard_error / np.maximum(full.standard_error, 1e-300)  # above zero, for a division
         agreement = float(np.median(share[: len(problem.free)]))
         meaning = f"jackknife over {runs} runs, each refitted (one step would give {agreement:.2f} of these errors)"
         return Uncertainty(over_runs(replace(full, meaning=meaning)), points, agreement)

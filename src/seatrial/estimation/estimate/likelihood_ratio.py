@@ -136,4 +136,4 @@ def boundary_quantile(count: int, level: float) -> float:
     def excess(value: float) -> float:
         return float(sum(w * chdtrc(j, value) for j, w in enumerate(weights) if j)) - (1.0 - level)
 
-    return float(np.asarray(brentq(excess, 0.0, 200.0))) if count else 0.0
+    return float(np.asarray(brentq(excess, 0.0, 200.0))) if count else 0.0  # bracket beyond any quantile in use

@@ -51,8 +51,9 @@ def residual_spread(problem: OutputError, residuals: Array) -> Array:
     """
     count = np.isfinite(residuals).sum(axis=0)
     unknowns = problem.size + problem.data.count * len(problem.starts)
-    freedom = max(1.0 - unknowns / max(count.sum(), 1), 0.1)
+    freedom = max(1.0 - unknowns / max(count.sum(), 1), 0.1)  # a tenth of the samples at least stays free; chosen
     if np.isfinite(problem.huber):
+        # normal standard deviation over median absolute deviation
         spread = 1.4826 * np.nanmedian(np.abs(residuals), axis=0)
     else:
         spread = np.sqrt(np.nanmean(residuals**2, axis=0))
@@ -61,6 +62,7 @@ def residual_spread(problem: OutputError, residuals: Array) -> Array:
 
 def rounding_level(problem: OutputError) -> Array:
     """Noise below which a channel counts as free of noise, 1e-9 of its largest value, shape (ny,), SI."""
+    # a channel that is zero throughout, SI; chosen
     return _ROUNDING * np.maximum(np.nanmax(np.abs(problem.data.measured), axis=0), 1e-6)
 
 
@@ -71,7 +73,7 @@ def fit_output_error(
     known_noise: Mapping[str, float],
     *,
     rounds: int = _ROUNDS,
-    evaluations: int = 60,
+    evaluations: int = 60,  # of the residuals, at most; chosen
     report_progress: ProgressReporter | None = None,
 ) -> PointEstimate:
     """Alternate short searches with estimates of the noise and its colour until both settle, then search to the end.
@@ -119,6 +121,7 @@ def _is_settled(before: OutputError, after: OutputError) -> bool:
     ratio = np.log(after.noise / before.noise)
     ones = np.ones(len(before.noise))
     colours = [ones if p.inflation is None else p.inflation for p in (before, after)]
+    # noise settled to 2 %, its colour to 10 %; chosen
     return bool(np.max(np.abs(ratio)) < 0.02 and np.max(np.abs(np.log(colours[1] / colours[0]))) < 0.1)
 
 
@@ -156,7 +159,7 @@ def residual_correlation(problem: OutputError, residuals: Array) -> tuple[list[A
     Residuals of the size of rounding count as white (inflation 1): their colour says nothing about the ship.
     """
     longest = int(np.max(np.diff(problem.data.offsets)))
-    lags = min(longest // 2, 400)
+    lags = min(longest // 2, 400)  # longest correlation considered [samples]; chosen
     rho = [autocorrelation(split_segments(problem, residuals[:, i]), lags) for i in range(residuals.shape[1])]
     silent = problem.noise <= rounding_level(problem)
     return rho, np.where(silent, 1.0, [variance_inflation(r) for r in rho])

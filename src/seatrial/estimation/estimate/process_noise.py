@@ -164,7 +164,7 @@ class ProcessNoise:
     def _eliminate_noise(self, normal: NormalEquations) -> tuple[Array, Array]:
         kept, others = (self._common_indices, np.setdiff1d(self._free_indices, self._common_indices))
         cross, inner = (normal.hessian[np.ix_(kept, others)], normal.hessian[np.ix_(others, others)])
-        scale = 1.0 / np.sqrt(np.maximum(np.diag(inner), 1e-300))
+        scale = 1.0 / np.sqrt(np.maximum(np.diag(inner), 1e-300))  # above zero, for a division
         # least squares: the memory of a gust without intensity has no influence
         solved = (
             scale[:, None] * np.linalg.lstsq(inner * scale[:, None] * scale, scale[:, None] * cross.T, rcond=1e-12)[0]
@@ -207,7 +207,7 @@ def fit_prediction_error(
     *,
     other: PointEstimate | None = None,
     thorough: bool = False,
-    evaluations: int = 60,
+    evaluations: int = 60,  # of the innovations, at most; chosen
     report_progress: ProgressReporter | None = None,
 ) -> ProcessNoise:
     """Coefficients, process and measurement noise together by maximum likelihood, from an output-error estimate.
@@ -292,6 +292,7 @@ def initial_problem(
         else:
             column = estimate.optimum.local[:, m]
             start[:, i] = local[:, m]
+            # a tenth of the largest, SI; chosen
             variance[:, i] = max(np.std(column), 0.1 * np.max(np.abs(column)), 1e-3) ** 2
     chosen = driven_states or tuple(s for s in problem.starts if s not in KINEMATIC_STATES)
     for state in chosen:
@@ -343,7 +344,7 @@ def third_difference_noise(runs: OutputError) -> Array:
     pieces = [runs.data.measured[a:b] for a, b in pairwise(runs.data.offsets)]
     columns = [[p[:, i] for p in pieces if np.any(np.isfinite(np.diff(p[:, i], 3)))] for i in range(len(runs.noise))]
     noise = np.array([np.median([sample_noise(c) for c in mine]) if mine else np.inf for mine in columns])
-    return np.clip(noise, 1e-2 * runs.noise, runs.noise)
+    return np.clip(noise, 1e-2 * runs.noise, runs.noise)  # a hundredth of the residuals at least; chosen
 
 
 def _balance_noise(problem: PredictionError, point: Array) -> tuple[float, Array]:
@@ -354,7 +355,8 @@ def _balance_noise(problem: PredictionError, point: Array) -> tuple[float, Array
         if not np.all(np.isfinite(squares)):
             return np.inf, point
         point = point.copy()
-        point[-ny:] *= np.clip(squares, 1e-4, 1e4)
+        point[-ny:] *= np.clip(squares, 1e-4, 1e4)  # factors on variances in one round; chosen
+        # factors on intensities in one round; chosen
         point[-ny - len(problem.process) : -ny] *= np.clip(np.median(squares), 1e-2, 1e2)
         point = np.clip(point, problem.lower, problem.upper)
     return problem.cost(point, _NO_INITIAL_STATES), point
@@ -367,6 +369,7 @@ def _refine(problem: PredictionError, optimum: Optimum) -> tuple[PredictionError
     normal = exact.normal(point, _NO_INITIAL_STATES)
     for _ in range(_NEWTON_STEPS):
         step, slope = _newton_step(exact, point, normal)
+        # shares of a step that are tried; chosen
         trials = (np.clip(point + share * step, exact.lower, exact.upper) for share in (1.0, 0.5, 0.25, 0.125))
         better = (
             next((p for p in trials if exact.cost(p, _NO_INITIAL_STATES) < normal.cost), None)
@@ -410,7 +413,8 @@ def _newton_step(problem: PredictionError, point: Array, normal: NormalEquations
     low, high, slope = problem.lower, problem.upper, normal.gradient
     free = (low < high) & ~((point <= low) & (slope > 0)) & ~((point >= high) & (slope < 0))
     gradient, hessian = slope[free], normal.hessian[np.ix_(free, free)]
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-300))
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-300))  # above zero, for a division
+    # rounding of a singular matrix; chosen
     solved = scale * np.linalg.lstsq(hessian * scale[:, None] * scale, scale * gradient, rcond=1e-12)[0]
     step = np.zeros_like(point)
     step[free] = -solved

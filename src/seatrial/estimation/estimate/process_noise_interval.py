@@ -47,6 +47,7 @@ def _eliminate_initial_state(slopes: Array, count: int, weights: Array) -> Array
     """Weighted slopes W J, (rows, ny, count), of the first columns with the others (initial state) eliminated."""
     weighted = slopes * weights[:, :, None]
     normal = np.einsum("tyk,tyl->kl", weighted, slopes)
+    # rounding of a singular matrix; chosen
     solved = np.linalg.lstsq(normal[count:, count:], normal[count:, :count], rcond=1e-12)[0]
     return weighted[:, :, :count] - weighted[:, :, count:] @ solved
 

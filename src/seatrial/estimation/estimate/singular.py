@@ -19,7 +19,8 @@ def weakest_direction(hessian: Array, names: tuple[str, ...], values: Array) -> 
     named alone.
     """
     diagonal = np.diag(hessian)
-    size = np.maximum(np.abs(values), 1e-3)
+    size = np.maximum(np.abs(values), 1e-3)  # of coefficients that are nearly zero, in their unit; chosen
+    # rounding of double precision; chosen
     silent = np.flatnonzero(diagonal * size**2 <= 1e-14 * np.max(diagonal * size**2))
     if len(silent):
         return 0.0, names[int(silent[0])]

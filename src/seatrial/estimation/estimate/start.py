@@ -66,10 +66,11 @@ def weak_form_start(model: Model, records: Sequence[Record], seconds: float, rou
     problem = WeakForm(model, states, inputs, records[0].dt, seconds, np.ones(len(model.states)))
     point = np.clip(point, problem.lower, problem.upper)
     is_varying = np.all([np.ptp(x, axis=0) > 0 for x in states], axis=0)
-    floor = 1e-9 * np.max(np.abs(np.concatenate(states)), axis=0)
+    floor = 1e-9 * np.max(np.abs(np.concatenate(states)), axis=0)  # share of the largest value that is rounding; chosen
     for _ in range(rounds):
         residual = problem.linearised(point)[0]
         spread = np.maximum(np.sqrt(np.mean(residual**2, axis=0)), floor)
         problem = replace(problem, residual_sd=np.where(is_varying, spread, np.inf))
+        # of the weak form, at most; chosen
         point = levenberg_marquardt(problem, point, np.zeros((0, 0)), evaluations=30).solution.point
     return point

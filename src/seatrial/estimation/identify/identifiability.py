@@ -109,7 +109,7 @@ def consequences(estimation: Estimation) -> tuple[Consequence, ...]:
     shared[fitted] = estimate.common_parameters[: len(free)]
     information = problem.normal(shared, estimate.optimum.local).without_local()[1]
     moving = np.array([*fitted, *range(size, len(shared))])
-    deviation = np.maximum(estimation.interval.standard_error[: len(free)], 1e-300)
+    deviation = np.maximum(estimation.interval.standard_error[: len(free)], 1e-300)  # above zero, for a division
     sizes = _signed_scales(estimation)
     felt = _MIN_INFLUENCE * np.max(np.diag(information)[fitted] * sizes**2)
     chi_squared = 2.0 * problem.cost(shared, estimate.optimum.local)

@@ -240,7 +240,7 @@ def rank_candidates(fitted: Sequence[FittedVariant], *, choose: bool) -> tuple[C
 def _is_tied(excess: Array) -> bool:
     """Whether scores of runs are worse by no more than their scatter explains."""
     error = np.std(excess, ddof=1) / np.sqrt(len(excess)) if len(excess) > 1 else np.inf
-    return bool(excess.mean() <= stdtrit(max(len(excess) - 1, 1), 0.95) * error)
+    return bool(excess.mean() <= stdtrit(max(len(excess) - 1, 1), 0.95) * error)  # one-sided level; chosen
 
 
 def _candidate(f: FittedVariant, *, tied: bool, used: bool) -> CandidateModel:

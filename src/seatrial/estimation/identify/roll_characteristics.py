@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.special import stdtrit
 
 from seatrial.core.equations import Model
+from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.results.ship_motions import IntervalEstimate, RollCharacteristics
 from seatrial.core.values import Array, Finding, Record, Severity, Ship
 from seatrial.estimation.information.covariance import Interval
@@ -122,7 +122,7 @@ class _HalfWidths:
 
     def __init__(self, interval: Interval, free: tuple[str, ...]) -> None:
         self._free, self._covariance = free, interval.covariance
-        self._quantile = float(stdtrit(interval.degrees_of_freedom, 0.975))
+        self._quantile = two_sided_quantile(STORED_LEVEL, interval.degrees_of_freedom)
 
     def half_width(self, slopes: Array, names: Sequence[str]) -> Array:
         """slopes (n, len(names)); a fixed coefficient counts as exact."""

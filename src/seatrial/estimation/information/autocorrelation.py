@@ -33,7 +33,7 @@ def variance_inflation(rho: Array) -> float:
     return float(1.0 + 2.0 * np.sum(rho[1:stop]))
 
 
-def whiteness_p(rho: Array, samples: int, lags: int = 20) -> float:
+def whiteness_p(rho: Array, samples: int, lags: int = 20) -> float:  # first samples of correlation; chosen, as usual
     """p-value that residuals with this autocorrelation are white (Ljung & Box 1978)."""
     count = min(lags, len(rho) - 1, samples - 1)
     if count < 1:

@@ -11,7 +11,7 @@ from seatrial.core.values import Array
 def condition_number(information: Array) -> float:
     """Condition number of the information scaled to unit diagonal; infinite where a direction is missing."""
     values = np.linalg.eigvalsh(_unit_diagonal(information))
-    return float(values[-1] / values[0]) if values[0] > 1e-15 * values[-1] else np.inf
+    return float(values[-1] / values[0]) if values[0] > 1e-15 * values[-1] else np.inf  # rounding of double precision
 
 
 def collinearity(information: Array, names: Sequence[str]) -> tuple[Collinearity, ...]:
@@ -21,7 +21,7 @@ def collinearity(information: Array, names: Sequence[str]) -> tuple[Collinearity
     """
     unit = _unit_diagonal(information)
     values, vectors = np.linalg.eigh(unit)
-    covariance = (vectors / np.maximum(values, 1e-14 * values[-1])) @ vectors.T
+    covariance = (vectors / np.maximum(values, 1e-14 * values[-1])) @ vectors.T  # rounding of double precision; chosen
     factors = np.diag(covariance)
     correlation = covariance / np.sqrt(np.outer(factors, factors))
     np.fill_diagonal(correlation, 0.0)
@@ -35,5 +35,5 @@ def collinearity(information: Array, names: Sequence[str]) -> tuple[Collinearity
 
 
 def _unit_diagonal(information: Array) -> Array:
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(information), 1e-300))
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(information), 1e-300))  # above zero, for a division
     return information * scale[:, None] * scale[None, :]

@@ -6,8 +6,8 @@ White-noise errors are valid only for white residuals; the other two stay valid 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import stdtrit
 
+from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.values import Array
 
 
@@ -27,14 +27,14 @@ class Interval:
     @property
     def half_width(self) -> Array:
         """Half widths of the 95 % intervals."""
-        return float(stdtrit(self.degrees_of_freedom, 0.975)) * self.standard_error
+        return two_sided_quantile(STORED_LEVEL, self.degrees_of_freedom) * self.standard_error
 
 
 def inverse(hessian: Array) -> Array:
     """Inverse of a symmetric positive matrix in its own scales; singular directions get a huge variance, not zero."""
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-100))
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-100))  # above zero, for a division
     values, vectors = np.linalg.eigh(hessian * scale[:, None] * scale[None, :])
-    values = np.maximum(values, 1e-14 * values[-1])
+    values = np.maximum(values, 1e-14 * values[-1])  # rounding of double precision; chosen
     return scale[:, None] * ((vectors / values) @ vectors.T) * scale[None, :]
 
 

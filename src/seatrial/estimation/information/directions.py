@@ -34,7 +34,7 @@ def directions(
     """
     scaled = relative_information(information, sizes)
     values, vectors = np.linalg.eigh(scaled)
-    least = _NO_INFORMATION * max(float(values[-1]), 1e-300)
+    least = _NO_INFORMATION * max(float(values[-1]), 1e-300)  # above zero, for a division
     deviations = [float(1.0 / np.sqrt(value)) if value > least else np.inf for value in values]
     held = deviations
     if precision is not None and np.any(precision):

@@ -97,6 +97,7 @@ def discrepancy(holdout_errors: Sequence[HoldoutError]) -> Discrepancy:
             pairs.setdefault(measure_kind(name), []).append((*pair, discrepancy_growth(miss.index)))
     known = {kind: np.array(values) for kind, values in pairs.items() if len(values) >= _FEWEST_VALUES}
     kinds = {kind: float(excess_sd(v[:, :1], v[:, 1:2], v[:, 2:])[0]) for kind, v in known.items()}
+    # above zero, for a division
     ratios = [np.mean((v[:, 0] / np.maximum(v[:, 1], 1e-300)) ** 2) for v in known.values()]
     factor = float(np.sqrt(max(np.median(ratios), 1.0))) if ratios else 1.0
     elapsed = {
@@ -115,7 +116,7 @@ def _elapsed_excess_sd(holdout_errors: Sequence[HoldoutError], channel: str) -> 
     for row, miss in enumerate(holdout_errors):
         error[row, : len(miss.errors[channel])] = miss.errors[channel]
         expected[row, : len(miss.predicted_sd[channel])] = miss.predicted_sd[channel]
-    count = np.maximum(np.isfinite(error).sum(axis=0), 1e-9)
+    count = np.maximum(np.isfinite(error).sum(axis=0), 1e-9)  # where nothing is measured; chosen
     grown = np.array([[discrepancy_growth(miss.index)] for miss in holdout_errors])
     from scipy.optimize import isotonic_regression
 
@@ -130,8 +131,8 @@ def excess_sd(errors: Array, predicted_sd: Array, growth_factors: Array) -> Arra
     """
     count = np.isfinite(errors).sum(axis=0)
     square, expected = np.where(np.isfinite(errors), errors, 0.0) ** 2, np.nan_to_num(predicted_sd) ** 2
-    low, high = np.zeros(errors.shape[1]), np.max(square, axis=0) + 1e-300
-    for _ in range(60):
+    low, high = np.zeros(errors.shape[1]), np.max(square, axis=0) + 1e-300  # above zero, for a division
+    for _ in range(60):  # bisections, down to the last bit
         middle = 0.5 * (low + high)
         large = np.sum(square / (expected + growth_factors**2 * middle), axis=0) > count
         low, high = np.where(large, middle, low), np.where(large, high, middle)

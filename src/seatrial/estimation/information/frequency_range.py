@@ -18,6 +18,7 @@ def frequency_range(records: Sequence[Record], channels: Sequence[str]) -> dict[
     found = {}
     for channel in channels:
         pieces = [_measured_samples(r, channel) for r in records if channel in r]
+        # samples of the shortest spectrum; chosen
         powers = [_power_spectrum(values, dt) for values, dt in pieces if len(values) > 16 and np.ptp(values) > 0.0]
         if powers:
             found[channel] = _central_band(powers)
@@ -34,7 +35,7 @@ def _measured_samples(record: Record, channel: str) -> tuple[Array, float]:
 def _power_spectrum(values: Array, dt: float) -> tuple[Array, Array]:
     from scipy.signal import welch
 
-    length = max(16, 2 * len(values) // (_WELCH_SEGMENTS + 1))
+    length = max(16, 2 * len(values) // (_WELCH_SEGMENTS + 1))  # samples of the shortest spectrum; chosen
     frequency, power = welch(values - np.mean(values), 1.0 / dt, nperseg=min(length, len(values)))
     return 2.0 * np.pi * frequency, power * len(values) * dt
 

@@ -113,7 +113,7 @@ class SymmetrySearch:
 
     def _worst_residual(self, generator: Generator) -> tuple[float, tuple[str, ...]]:
         """Worst residual of the law at several points, and the hidden states that have to help it."""
-        rng = np.random.default_rng(5)
+        rng = np.random.default_rng(5)  # any seed: the law holds at every point
         members = [self.model.parameters.index(n) for n in generator.parameters]
         points = [
             self.perturbed_values(self.model.parameters.values, [*members, *self.unset_parameters], rng)
@@ -157,7 +157,7 @@ class SymmetrySearch:
         sign = int(np.sign(generator.centre(name) * other[fixed_index]))
         if not sign or abs(generator.centre(name) / (sign * other[fixed_index]) - 1.0) > EXACT:
             return 0
-        other[fixed_index] *= 1.17
+        other[fixed_index] *= 1.17  # any other value; chosen
         law, k = self._find_affine_law(members, other), generator.parameters.index(name)
         if law is None or not law[0][k]:
             return 0
@@ -191,6 +191,7 @@ def search_symmetries(model: Model, outputs: Sequence[str], forces: Sequence[str
 
 def _perturbed_value(p: Parameter, value: float, rng: np.random.Generator) -> float:
     """Another value of a parameter, inside its bounds and with its sign."""
+    # factors away from the value; chosen
     other = value * rng.uniform(0.6, 1.6) if value else p.characteristic_scale * rng.normal()
     return float(np.clip(other, p.lower, p.upper))
 

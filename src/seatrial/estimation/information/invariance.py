@@ -99,7 +99,7 @@ class InvarianceConditions:
         size, left = np.linalg.norm(parts), parts.sum(axis=1)
         if size == 0.0:
             return 0.0, ()
-        norms = np.maximum(np.linalg.norm(moved, axis=0), 1e-300)
+        norms = np.maximum(np.linalg.norm(moved, axis=0), 1e-300)  # above zero, for a division
         weights = np.linalg.lstsq(moved / norms, left, rcond=SINGULAR)[0]
         share = (
             np.abs(weights)

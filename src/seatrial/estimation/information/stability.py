@@ -8,10 +8,10 @@ factor, det(A) (L/U)^2 with d(v, r)/dt = A (v, r), which has C's sign for every 
 from collections.abc import Callable
 
 import numpy as np
-from scipy.special import stdtrit
 
 from seatrial.core.equations import Model
 from seatrial.core.results import Stability
+from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.values import Array
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 
@@ -66,7 +66,7 @@ def stability(
 
     centre = index_of(model)
     slope = _gradient(model, index_of)
-    half = float(stdtrit(degrees_of_freedom, 0.975)) * float(np.sqrt(max(slope @ covariance @ slope, 0.0)))
+    half = two_sided_quantile(STORED_LEVEL, degrees_of_freedom) * float(np.sqrt(max(slope @ covariance @ slope, 0.0)))
     slowest = float(np.max(np.linalg.eigvals(straight_course_rates(model, speed, inputs)).real)) * unit
     starboard, port = (_index(rates, unit) for rates in one_sided_rates(model, speed, inputs))
     text = _stability_text(centre, half, slowest) + _asymmetry_text(starboard, port)

@@ -117,7 +117,7 @@ def _be(names: Sequence[str]) -> str:
 
 def _shift_text(g: Generator, names: Sequence[str]) -> str:
     sizes = [abs(g.shift[n]) for n in names]
-    if max(sizes) - min(sizes) > 1e-9 * max(sizes):
+    if max(sizes) - min(sizes) > 1e-9 * max(sizes):  # rounding; chosen
         unit = g.shift[names[0]]
         steps = join_names([f"{n} by {g.shift[n] / unit:+.4g}" for n in names])
         return f"{join_names(names)} have an effect in combination only and can be shifted together ({steps})"

@@ -3,10 +3,10 @@
 from collections.abc import Callable
 
 import numpy as np
-from scipy.special import stdtrit
 
 from seatrial.core.equations import Model
 from seatrial.core.results import IntervalBasis
+from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.values import Array, InputError, Record
 from seatrial.estimation.information.discrepancy import Discrepancy
 from seatrial.estimation.information.extrapolation import extrapolation
@@ -51,7 +51,7 @@ def measure_intervals(
         m for one in interval_basis.tied if (m := _measures_or_none(model.with_values(one), steer, length)) is not None
     ]
     beyond = Discrepancy(interval_basis.measure_deviation, interval_basis.factor, 1.0, {})
-    t = float(stdtrit(interval_basis.degrees_of_freedom, 0.975))
+    t = two_sided_quantile(STORED_LEVEL, interval_basis.degrees_of_freedom)
     intervals: dict[str, tuple[float, float] | None] = {}
     for name, value in centre.items():
         away = [d for pair in pairs if (d := _half_difference(pair, name, value)) is not None]

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import stdtrit
 
 from seatrial.core.equations import Model
 from seatrial.core.results import Measure, Prediction
+from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.check.signal import sample_noise
 from seatrial.estimation.information.discrepancy import Discrepancy, HoldoutError
@@ -214,7 +214,7 @@ def with_intervals(
 
     beyond: model discrepancy; the spread over tied models is the prediction's own.
     """
-    t = float(stdtrit(degrees_of_freedom, 0.975))
+    t = two_sided_quantile(STORED_LEVEL, degrees_of_freedom)
     index = prediction.extrapolation.index if prediction.extrapolation else 1.0
 
     def bounded(name: str, m: Measure) -> Measure:

@@ -5,9 +5,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import stdtrit
 
 from seatrial.core.equations import Model
+from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.results.window_scores import ChannelScore, WindowBaseline, WindowScore
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.check.signal import sample_noise
@@ -107,7 +107,7 @@ def _score(
     runs = open_loop_runs(p.template, p.model, windows, nuisances, initial)
     simulated, states = [run.record for run in runs], np.stack([run.initial_state for run in runs])
     spreads = window_spreads(p.template, p.model, windows, simulated, states, nuisances, p.uncertainty, rng)
-    t = float(stdtrit(p.uncertainty.degrees_of_freedom, 0.975))
+    t = two_sided_quantile(STORED_LEVEL, p.uncertainty.degrees_of_freedom)
     halves = []
     for piece, run, spread in zip(pieces, runs, spreads, strict=True):
         lasting = spread if run.divergence is None else {}

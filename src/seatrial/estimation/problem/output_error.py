@@ -249,7 +249,7 @@ class OutputError:
             )
         inside = size <= self.huber
         loss = np.where(inside, 0.5 * scaled**2, self.huber * (size - 0.5 * self.huber))
-        weight = np.where(inside, 1.0, self.huber / np.maximum(size, 1e-300))
+        weight = np.where(inside, 1.0, self.huber / np.maximum(size, 1e-300))  # above zero, for a division
         return float(np.sum(self._effective_share * loss)), self._effective_share * weight
 
     def _prior_cost(self, shared: Array) -> float:

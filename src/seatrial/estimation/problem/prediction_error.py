@@ -80,11 +80,12 @@ class PredictionError:
     @property
     def lower(self) -> Array:
         """Lower bounds: no process noise."""
-        return self._bounds(self.runs.lower, 0.0, (1e-4 * self.runs.noise) ** 2)
+        return self._bounds(self.runs.lower, 0.0, (1e-4 * self.runs.noise) ** 2)  # of the residuals of the runs; chosen
 
     @property
     def upper(self) -> Array:
         """Upper bounds."""
+        # of the residuals of the runs; chosen
         return self._bounds(self.runs.upper, np.inf, (1e4 * self.runs.noise) ** 2)
 
     def _bounds(self, run_bounds: Array, process_bound: float, variance_bounds: Array) -> Array:
@@ -242,13 +243,15 @@ class PredictionError:
             cost, gradient, hessian, np.zeros((0, 0)), np.zeros((0, 0, 0)), np.zeros((0, self.size, 0))
         )
 
+    # of a standard deviation, as said below; chosen
     def difference_steps(self, shared: Array, hessian: Array, share: float = 0.02) -> Array:
         """Return steps for an exact gradient, (size,): a share of what each unknown may move with the others held.
 
         Of variances no more than a tenth of themselves, unless they are zero.
         """
+        # above zero, for a division
         steps, noise = (share / np.sqrt(np.maximum(np.diag(hessian), 1e-300)), slice(self.runs.size, None))
-        tenth = np.where(shared > 0, 0.1 * shared, steps)
+        tenth = np.where(shared > 0, 0.1 * shared, steps)  # a tenth, as said above
         steps[noise] = np.minimum(steps, tenth)[noise]
         return steps
 

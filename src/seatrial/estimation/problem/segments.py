@@ -119,7 +119,7 @@ def segments_between(
     dt = records[0].dt
     of_runs, inputs, measured, firsts, lengths, runs = [], [], [], [], [], []
     for index, (record, of_record) in enumerate(zip(records, bounds, strict=True)):
-        if abs(record.dt - dt) > 1e-3 * dt:
+        if abs(record.dt - dt) > 1e-3 * dt:  # share by which time steps may differ; chosen
             raise InputError(
                 f"record '{record.name}' has a time step of {record.dt:g} s, the first one {dt:g} s; give one rate"
             )

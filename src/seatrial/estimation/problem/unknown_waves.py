@@ -15,7 +15,7 @@ from seatrial.estimation.problem.spectral_likelihood import apply_leakage, fine_
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.physics.simulate.harmonics import Complex
 
-DAMPING, RESTORING = 5, 6
+DAMPING, RESTORING = 5, 6  # places among the unknowns
 _SIGMA = (0.07, 0.09)  # peak widths of JONSWAP, Hasselmann et al. 1973
 _WINDOW_CORRELATION = 35.0 / 18.0  # of a Hann window, as in `spectral_likelihood`
 _STEP = 1e-5  # of the logarithmic unknowns, for central differences
@@ -39,24 +39,26 @@ class UnknownWaves:
     def lower(self) -> Array:
         """Lower bounds."""
         c = self.reference_frequency
+        # wide bounds of logarithms, in the order of the unknowns; chosen
         return np.array([-90.0, np.log(0.3 * c), 0.0, 0.0, -90.0, np.log(2e-3 * c), np.log(0.16 * c**2)])
 
     @property
     def upper(self) -> Array:
         """Upper bounds."""
         c = self.reference_frequency
+        # wide bounds of logarithms, in the order of the unknowns; chosen
         return np.array([90.0, np.log(4.0 * c), np.log(10.0), np.log(20.0), 0.0, np.log(2.0 * c), np.log(6.0 * c**2)])
 
     @cached_property
     def _fine_omega(self) -> Array:
-        return np.maximum(fine_grid(self.omega), 1e-2 * self.reference_frequency)
+        return np.maximum(fine_grid(self.omega), 1e-2 * self.reference_frequency)  # rad/s over the peak, lowest; chosen
 
     def moment_density(self, point: Array, omega: Array) -> Array:
         """Return the density W of the waves' moment per inertia at omega, (n,)."""
         level, w_p, gamma, short = point[0], np.exp(point[1]), point[2], np.exp(point[3]) - 1.0
         sigma = np.where(omega < w_p, *_SIGMA)
         peak = np.exp(-0.5 * ((omega / w_p - 1.0) / sigma) ** 2)
-        shape = -np.log(omega / self.reference_frequency) - 1.25 * (
+        shape = -np.log(omega / self.reference_frequency) - 1.25 * (  # exponent of Pierson and Moskowitz 1964
             (w_p / omega) ** 4 - (w_p / self.reference_frequency) ** 4
         )
         return np.exp(level + shape + gamma * peak - short * (omega**2 - self.reference_frequency**2))
@@ -93,15 +95,19 @@ class UnknownWaves:
 
     def start_points(self) -> list[Array]:
         """Return points to begin from: roll at, below and above the peak, waves longer and shorter than it."""
-        near = np.abs(self.omega / self.reference_frequency - 1.0) < 0.1
+        near = np.abs(self.omega / self.reference_frequency - 1.0) < 0.1  # band about the peak; chosen
+        # last bins, mostly noise; a positive level; chosen
         level, noise = np.log(np.mean(self.power[near])), np.log(max(np.median(self.power[-20:]), 1e-12))
         made = []
-        for ratio in (0.8, 1.0, 1.25):
+        for ratio in (0.8, 1.0, 1.25):  # natural frequencies over that of the peak; chosen
             c = (ratio * self.reference_frequency) ** 2
-            b = 0.15 * np.sqrt(c)
+            b = 0.15 * np.sqrt(c)  # damping to begin from, 2 zeta; chosen
             moment = level + np.log((c - self.reference_frequency**2) ** 2 + (b * self.reference_frequency) ** 2)
-            made += [np.array([moment, np.log(w * self.reference_frequency), 0.3, 0.2, noise, np.log(b), np.log(c)])
-                     for w in (0.75, 1.15)]  # fmt: skip
+            # peak shape and short waves to begin from; chosen
+            made += [
+                np.array([moment, np.log(w * self.reference_frequency), 0.3, 0.2, noise, np.log(b), np.log(c)])
+                for w in (0.75, 1.15)
+            ]  # wave peaks over that of the motion; chosen
         return [np.clip(point, self.lower, self.upper) for point in made]
 
     def band_limited(self, low: float, high: float) -> "UnknownWaves":

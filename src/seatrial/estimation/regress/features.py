@@ -94,7 +94,7 @@ def features(model: Model, motion: RegressionMotion) -> Features:
     probe = values.copy()
     probe[free] = _PROBE_FACTOR * values[free] + np.where(values[free] == 0.0, 1.0, 0.0)
     moved = np.abs(_tangent(model, motion, probe)[1] - slope).max(axis=(0, 1))
-    curved = np.flatnonzero(moved > 1e-9 * np.abs(slope).max(axis=(0, 1)))
+    curved = np.flatnonzero(moved > 1e-9 * np.abs(slope).max(axis=(0, 1)))  # rounding; chosen
     if curved.size:
         named = ", ".join(model.parameters.free_names[i] for i in curved)
         raise InputError(

@@ -72,7 +72,7 @@ class Smoothed:
 
     def rows(self, model: Model, motion: RegressionMotion) -> RegressionRows:
         """All rows of stretches longer than the window."""
-        width = max(5, 2 * round(0.5 * self.seconds / motion.dt) + 1)
+        width = max(5, 2 * round(0.5 * self.seconds / motion.dt) + 1)  # samples of the shortest window; chosen
         pieces = []
         for stretch in motion.gapless_slices():
             part = motion.rows(stretch)
@@ -130,6 +130,7 @@ class Differenced:
     def rows(self, model: Model, motion: RegressionMotion) -> RegressionRows:
         """All rows whose predecessor is there."""
         before = self.inner.rows(model, motion)
+        # share by which time steps may differ; chosen
         follows = np.abs(np.diff(before.time) - before.step) <= 1e-3 * before.step
         return RegressionRows(
             before.time[1:][follows],

@@ -71,7 +71,7 @@ class Pipeline:
 
     name: str = IMPROVED
     cleaning: Cleaning = field(default_factory=Cleaning)
-    training_share: float = 0.8
+    training_share: float = 0.8  # 80:20, Song et al. 2025
     selection: Lasso | None = field(default_factory=Lasso)
     operator: DerivativeOperator = DIFFERENCED_AND_CENTRED
     solver: LinearSolver = field(default_factory=SupportVectors)

@@ -95,7 +95,7 @@ class Ridge:
 class TruncatedSvd:
     """Least squares in the directions whose singular value exceeds `share` of the largest (Hansen 1987)."""
 
-    share: float = 0.03
+    share: float = 0.03  # of the largest singular value; chosen
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.share < 1.0:

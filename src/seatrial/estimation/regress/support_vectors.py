@@ -45,6 +45,7 @@ class SupportVectors:
         scaled = scale_system(system)
         thin = slice(None, None, max(1, len(system.target) // self.max_rows))
         matrix, target = (scaled.matrix, scaled.target) if self.is_standardised else (system.matrix, system.target)
+        # MB of its cache; chosen
         machine = SVR(kernel="linear", C=self.penalty, epsilon=self.tube, cache_size=500, max_iter=self.max_iterations)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ConvergenceWarning)

@@ -49,7 +49,7 @@ def _folders() -> tuple[Path, ...]:
     folder = (Path(chosen) if chosen else Path(platformdirs.user_cache_dir("seatrial"))) / _FOLDER
     readable = False
     try:
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)  # read and written by its owner alone
         _demand_trusted(folder.stat())
         readable = True
         with tempfile.NamedTemporaryFile(dir=folder, prefix=".writing-"):
@@ -59,7 +59,7 @@ def _folders() -> tuple[Path, ...]:
     parent = Path(tempfile.mkdtemp(prefix="seatrial-"))
     atexit.register(shutil.rmtree, parent, ignore_errors=True)
     temporary = parent / _FOLDER
-    temporary.mkdir(mode=0o700)
+    temporary.mkdir(mode=0o700)  # read and written by its owner alone
     _log.warning(
         "the compile cache '%s' cannot be written (%s), so this run compiles into a temporary folder; make it writable "
         "for you alone or set SEATRIAL_CACHE to another folder", folder, reason,

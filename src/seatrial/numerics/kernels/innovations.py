@@ -170,7 +170,7 @@ def _filter_innovations(
                 place = (stage + 1) // 2
                 f(t + (m + 0.5 * place) * step, y, work_u[place], p, k, jac)
                 propagate_tangent(jac, chain, link_p, link_u, work_w[place], sy, sk)
-                weight = step / 6.0 if place != 1 else step / 3.0
+                weight = step / 6.0 if place != 1 else step / 3.0  # weights of the Runge-Kutta method of order 4
                 ahead_by = step if stage == 2 else 0.5 * step
                 for i in range(nx):
                     acc[i] += weight * k[i]

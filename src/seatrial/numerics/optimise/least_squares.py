@@ -78,6 +78,7 @@ class Optimum:
 def _with_ridge(blocks: Array) -> Array:
     """Return blocks with a relative rounding-size ridge, so that an unobservable local direction stays put."""
     diagonal = np.einsum("sii->si", blocks)
+    # rounding of double precision; chosen
     ridge = 1e-12 * diagonal + 1e-14 * (diagonal.max(axis=1, keepdims=True) + 1e-300)
     return blocks + np.einsum("si,ij->sij", ridge, np.eye(blocks.shape[1]))
 
@@ -121,9 +122,10 @@ def _solve_bounded(hessian: Array, gradient: Array, low: Array, high: Array) -> 
             step[first], held[first] = limit[first], True
             continue
         step = target
+        # above zero, for a division
         slope = (gradient + hessian @ step) / np.sqrt(np.maximum(np.diag(hessian), 1e-300))
         wrong = np.where(held & (low < high), np.where(step <= low, -slope, slope), -np.inf)
-        if not wrong.size or np.max(wrong) <= 1e-12 * np.max(np.abs(slope)):
+        if not wrong.size or np.max(wrong) <= 1e-12 * np.max(np.abs(slope)):  # rounding; chosen
             return step
         held[int(np.argmax(wrong))] = False
     return step
@@ -135,9 +137,10 @@ def _solve(matrix: Array, right: Array) -> Array:
 
     if not len(right):
         return right
-    scale = 1.0 / np.sqrt(np.maximum(np.abs(matrix.diagonal()), 1e-300))
+    scale = 1.0 / np.sqrt(np.maximum(np.abs(matrix.diagonal()), 1e-300))  # above zero, for a division
     scaled = matrix * scale[:, None] * scale
     _, found, failed = dposv(scaled.T, scale * right)
+    # rounding of a singular matrix; chosen
     return scale * (np.linalg.lstsq(scaled, scale * right, rcond=1e-13)[0] if failed else found)
 
 
@@ -161,7 +164,7 @@ def levenberg_marquardt(
     shared: Array,
     local: Array,
     *,
-    tolerance: float = 1e-10,
+    tolerance: float = 1e-10,  # promised decrease over the cost; chosen
     negligible: float = 0.0,
     sufficient: float = 0.0,
     evaluations: int = 100,
@@ -178,7 +181,7 @@ def levenberg_marquardt(
     """
     shared = _clip_to_bounds(shared, problem)
     normal = problem.normal(shared, local)
-    count, damping, growth = 1, 1e-4, 2.0
+    count, damping, growth = 1, 1e-4, 2.0  # Nielsen 1999, with a small first damping; chosen
     history = [normal.cost]
     if not np.isfinite(normal.cost):
         return Optimum(Solution(shared, normal.cost, Status.FAILED, count), local, normal)
@@ -209,11 +212,14 @@ def levenberg_marquardt(
             shared, local = trial, trial_local
             normal = problem.normal(shared, local)
             count += 1
-            bold = gain > 0.8 and rejected == 0
+            bold = gain > 0.8 and rejected == 0  # share of the promise that is kept; chosen
+            # Nielsen 1999, eq. (2.4); a hundredth after a good step, chosen
             damping *= 0.01 if bold else max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0) ** 3)
-            damping, growth, rejected = max(damping, 1e-14), 2.0, 0
+            damping, growth, rejected = max(damping, 1e-14), 2.0, 0  # rounding of double precision; chosen
         else:
+            # damping after a rejected step, at least; chosen
             damping, growth, rejected = max(damping, 1e-8) * growth, growth * 2.0, rejected + 1
+            # promised decrease that is rounding; rejected steps in a row; chosen
             if predicted <= 1e-14 * normal.cost or rejected > 25:
                 rounding = max(_ROUNDING * normal.cost, _EXHAUSTED * history[0])
                 promised = _predicted_decrease(normal, *_step(normal, 0.0, low, high))

@@ -106,6 +106,9 @@ class CloudSettings(SwarmSettings):
     `omega` is not used. The velocity limit and the spread of the mutation are not printed; ours.
 
     Attributes:
+        population, iterations: particles, and populations evaluated, the first included (Meng et al. 2014).
+        c1, c2: pull towards the own best and the best of all (Meng et al. 2014).
+        velocity_limit: largest velocity, as a share of the box's width; ours.
         w1, w2: largest and smallest inertia weight.
         a, b: thresholds on the best fitness over a particle's own, between bad and middling, middling and good.
         entropy, hyper_entropy: En and He of the weight's cloud; its expectation is Ex = 5 w1 - w2.
@@ -165,6 +168,7 @@ class CloudParticleSwarm(ParticleSwarm):
         ratio = self._fitness_ratio()
         # En' ~ N(En, He), then eq. 6 with Ex = 5 w1 - w2
         entropy = self._generator.normal(c.entropy, c.hyper_entropy, len(ratio))
+        # Meng et al. 2014, in the weight of the middle group
         away = (ratio - (5 * c.w1 - c.w2)) / np.where(entropy == 0.0, np.finfo(float).tiny, entropy)
         cloud = c.w1 - (c.w1 - c.w2) * np.exp(-0.5 * away**2)
         return np.where(ratio > c.b, c.w2, np.where(ratio < c.a, c.w1, cloud))[:, None]

@@ -57,7 +57,7 @@ class HerdSettings:
     @property
     def groups(self) -> int:
         """Number of groups, G = ceil(N P_S)."""
-        return int(np.ceil(round(self.population * self.stallions, 9)))
+        return int(np.ceil(round(self.population * self.stallions, 9)))  # digits, against rounding; chosen
 
 
 class WildHorse(Population):

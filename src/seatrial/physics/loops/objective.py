@@ -83,6 +83,7 @@ def motion_interruptions(height: float, friction: float = 0.25) -> Objective:
     def value(v: Array) -> Array:
         with np.errstate(invalid="ignore"):
             # 60 s a minute
+            # crossings a minute of a narrow band, Rice 1945
             made = 60.0 / math.pi * np.sqrt(v[:, 1] / v[:, 0]) * np.exp(-((friction * G) ** 2) / (2.0 * v[:, 0]))
         return np.where(np.isfinite(v[:, 0]), made, np.inf)
 

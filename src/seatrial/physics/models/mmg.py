@@ -156,6 +156,7 @@ def _rudder_inflow(
     gamma_m = sheet.parameter("gamma_R_minus", meaning="flow straightening, beta_R < 0", latex=r"\gamma_R^-")
     l_R = sheet.parameter("l_R_prime", meaning="effective position of the rudder over L", latex=r"\ell'_R")
     eta = sheet.bind("eta", propeller.D_P / H_R, f"{YASUKAWA}, eta = D_P / H_R")
+    # momentum theory of the slipstream, Yasukawa and Yoshimura 2015
     slipstream = propeller.u_P**2 + 8 / sp.pi * propeller.thrust / (motion.rho * propeller.D_P**2)
     z = sheet.bind("z", slipstream, "square of the slipstream", "m^2/s^2")
     z_root = sheet.bind("z_root", sp.sqrt(z**2 + motion.U_0**4), EXTENSION, "m^2/s^2")

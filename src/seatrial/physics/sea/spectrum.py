@@ -179,7 +179,7 @@ def jonswap(height: float, peak_period: float, gamma: float = 3.3) -> Spectrum:
     if not 1.0 <= gamma <= 20.0:  # the records of JONSWAP have 1 to 7; beyond 20 is a mistake
         raise InputError(f"the peak enhancement gamma of a JONSWAP spectrum lies from 1 to 20, not at {gamma:g}")
     raw = replace(bretschneider(height, peak_period), name="JONSWAP", gamma=gamma)
-    return replace(raw, A=raw.A * height**2 / (16.0 * raw.moment(0)))  # m0 = height^2 / 16
+    return replace(raw, A=raw.A * height**2 / (16.0 * raw.moment(0)))  # significant height is four standard deviations
 
 
 def _positive(quantity: str, value: float, unit: str) -> float:

@@ -47,7 +47,7 @@ def approach_speed(model: Model, held: Array) -> float:
     speeds = np.geomspace(1e-3, _MAX_SPEED, 60)  # m/s; grid that brackets the speed; chosen
     for low, high in pairwise(speeds):
         if surge(low) > 0.0 >= surge(high):
-            return float(brentq(surge, low, high, xtol=1e-12))  # m/s, rounding
+            return float(brentq(surge, low, high, xtol=1e-12))  # m/s of rounding; chosen
     raise InputError(f"model '{model.name}' has no steady speed ahead with these inputs; give the approach speed")
 
 

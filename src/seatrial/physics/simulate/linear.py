@@ -165,6 +165,7 @@ class LinearBatch(SegmentBatch):
         inside = (place >= 0.0) & (place <= len(samples) - 1.0)
         place = np.clip(place, 0.0, len(samples) - 1.0)
         if self.model.inputs[j].is_held:
+            # samples of rounding; chosen
             return samples[np.minimum(np.floor(place + 1e-9).astype(int), len(samples) - 1)], np.zeros(len(place))
         if not np.any(samples):
             return np.zeros(len(place)), np.zeros(len(place))

@@ -68,7 +68,7 @@ def initial_state(model: Model, record: Record, initial: Mapping[str, float]) ->
 
 def _first_slope(record: Record, symbol: str) -> float:
     """Return rate of a channel at its first sample, by a cubic through its first second or five samples."""
-    count = min(len(record), max(6, round(1.0 / record.dt)))
+    count = min(len(record), max(6, round(1.0 / record.dt)))  # samples at least, a second otherwise; chosen
     time, values = record.time[:count] - record.time[0], record[symbol][:count]
     good = np.isfinite(values)
     if np.count_nonzero(good) < 4:

@@ -24,12 +24,12 @@ def curvature(problem: OutputError, common_parameters: Array, initial_states: Ar
     coefficients. Costs two simulations for each unknown.
     """
     information = normal.without_local()[1]
-    scale = np.sqrt(np.maximum(np.diagonal(information), 1e-300))
+    scale = np.sqrt(np.maximum(np.diagonal(information), 1e-300))  # above zero, for a division
     scaled = information / np.outer(scale, scale)
     if not np.all(np.isfinite(scaled)):
         return np.inf
     values, vectors = np.linalg.eigh(scaled)
-    if values[0] < 1e-13:
+    if values[0] < 1e-13:  # rounding of a singular matrix; chosen
         return np.inf
     axes = (vectors / np.sqrt(values)).T / scale
     follow = -np.linalg.pinv(normal.local_hessian, hermitian=True) @ np.swapaxes(normal.cross, 1, 2)

@@ -61,6 +61,6 @@ def covariance_root(covariance: Array, name: str) -> Array:
     deviation = np.sqrt(np.maximum(np.diagonal(covariance), 0.0))
     scale = np.where(deviation > 0.0, deviation, 1.0)
     values, vectors = np.linalg.eigh(covariance / np.outer(scale, scale))
-    if values[0] < -1e-8 * max(values[-1], 1.0):
+    if values[0] < -1e-8 * max(values[-1], 1.0):  # rounding of a covariance; chosen
         raise InputError(f"{name} is not positive; give one that comes from a fit")
     return scale[:, None] * vectors * np.sqrt(np.maximum(values, 0.0))

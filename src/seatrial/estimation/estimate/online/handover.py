@@ -24,8 +24,9 @@ def gaussian_state_from_fit(
     """
     model, data, k = problem.model, problem.data, len(problem.free)
     information = normal.without_local()[1]
-    scale = np.sqrt(np.maximum(np.diagonal(information), 1e-300))
+    scale = np.sqrt(np.maximum(np.diagonal(information), 1e-300))  # above zero, for a division
     scaled = information / np.outer(scale, scale)
+    # rounding of a singular matrix; chosen
     if not np.all(np.isfinite(scaled)) or np.linalg.eigvalsh(scaled)[0] < 1e-13:
         raise InputError("the records so far do not identify every coefficient; keep the window until they do")
     covariance = (np.linalg.inv(scaled) / np.outer(scale, scale))[:k, :k]

@@ -187,6 +187,7 @@ class RecursiveFilter:
         k, z = len(self.names), self._filter_state.z
         joint = self.joint_covariance
         own, other = self._filter_state.root[:k], self._filter_state.root[k:]
+        # rounding of a singular matrix; chosen
         sensitivity = np.asarray(np.linalg.lstsq(own.T, other.T, rcond=1e-12)[0].T, dtype=np.float64)
         left = other - sensitivity @ own
         return GaussianState(z[:k].copy(), joint[:k, :k], z[k:].copy(), sensitivity, left @ left.T)

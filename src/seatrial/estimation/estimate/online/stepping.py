@@ -155,7 +155,7 @@ class ExactStepper:
         error = np.sqrt(np.einsum("ij,ij->i", filter_state.root[:k], filter_state.root[:k]))
         moved = np.abs(now - self._linearised_at)
         near = np.all(moved <= _MAX_MOVE_ERRORS * error) and np.all(
-            moved <= _MAX_MOVE_SHARE * np.abs(self._linearised_at) + 1e-300
+            moved <= _MAX_MOVE_SHARE * np.abs(self._linearised_at) + 1e-300  # above zero, for a division
         )
         if self._linearisation is not None and near:
             return self._linearisation

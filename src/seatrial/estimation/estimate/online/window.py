@@ -21,10 +21,8 @@ from seatrial.numerics.optimise import levenberg_marquardt
 
 # predicted decrease of half the sum of squares: some hundredths of a standard error
 _NEGLIGIBLE = 1e-3
-_FIRST_EVALUATIONS, _LATER_EVALUATIONS = (
-    40,
-    12,
-)  # of the residuals, from a cold start and from the last estimate; chosen
+# of the residuals, from a cold start and from the last estimate; chosen
+_FIRST_EVALUATIONS, _LATER_EVALUATIONS = 40, 12
 _WHITENESS_LEVEL = 0.01  # significance of the whiteness test; chosen
 _TIE_TOLERANCE = 1e-3  # relative difference of misfits that counts as equal; chosen
 
@@ -55,6 +53,7 @@ class WindowEstimate:
     def misfit(self) -> float:
         """Rms residual over the spread of what was measured."""
         spread = np.nanstd(self.estimate.problem.data.measured, axis=0)
+        # where a channel never moves; chosen
         return float(np.sqrt(np.nanmean((self.residuals / np.maximum(spread, 1e-12)) ** 2)))
 
     @property

@@ -28,6 +28,7 @@ _MIN_WAVE_SHARE, _MAX_DAMPING_ERROR, _MAX_RESTORING_ERROR = 0.05, 0.4, 0.15
 _MAX_MISFIT, _BANDS, _SIGMAS = 0.5, 5, 4.0
 # frequencies over which the spectrum is averaged for its peak; fewest swings of a record, ours
 _SMOOTHING_BINS, _MIN_CYCLES = 9, 40
+_NEGLIGIBLE, _EVALUATIONS = 1e-6, 100  # promised gain of log-likelihood that ends a search, and its length; chosen
 # a spectrum has no local unknowns
 _NO_INITIAL_STATES = np.zeros((0, 0))
 
@@ -100,7 +101,7 @@ def spectral_problem(record: Record) -> UnknownWaves:
 def maximum_likelihood(problem: UnknownWaves) -> Optimum:
     """The best of several beginnings."""
     optima = [
-        levenberg_marquardt(problem, begin, _NO_INITIAL_STATES, negligible=1e-6, evaluations=100)
+        levenberg_marquardt(problem, begin, _NO_INITIAL_STATES, negligible=_NEGLIGIBLE, evaluations=_EVALUATIONS)
         for begin in problem.start_points()
     ]
     return min(optima, key=lambda one: one.solution.value)
@@ -150,6 +151,7 @@ def _refuse_unidentifiable(problem: UnknownWaves, optimum: Optimum, interval: In
     ratio = power / problem.windowed_density(point)
     for piece in np.array_split(np.arange(len(ratio)), _BANDS):
         mean = float(np.mean(ratio[piece]))
+        # variance of a periodogram under a Hann window
         if abs(mean - 1.0) > max(_MAX_MISFIT, _SIGMAS * np.sqrt(35.0 / 18.0 / len(piece))):
             low, high = problem.omega[piece[[0, -1]]]
             raise InputError(

@@ -118,16 +118,18 @@ def spectral_problem(model: Model, record: Record, waves: WaveEncounter, noise: 
 def _usable_bins(motions: Complex, noise: dict[str, float], outputs: Sequence[str], dt: float) -> tuple[int, int]:
     """Bins from the third on up to where no motion rises above its sensor's noise."""
     level = np.array([noise[o] ** 2 for o in outputs]) * dt / np.pi
-    above = np.flatnonzero(np.any(np.abs(motions) ** 2 > 20.0 * level, axis=1))
+    above = np.flatnonzero(np.any(np.abs(motions) ** 2 > 20.0 * level, axis=1))  # power over that of the noise; chosen
     last = int(above[-1]) + 1 if len(above) else len(motions)
-    return 8, max(last, 32)
+    return 8, max(last, 32)  # bins, first and fewest; chosen
 
 
 def _maximum_likelihood(problem: SpectralLikelihood) -> Optimum:
     point = problem.start()
     for factor in _NOISE_FACTORS:
         coarse = replace(problem, noise=problem.noise * factor)
+        # of half the sum of squares; chosen
         point = levenberg_marquardt(coarse, point, _NO_INITIAL_STATES, negligible=1e-3).solution.point
+    # of half the sum of squares; chosen
     return levenberg_marquardt(problem, point, _NO_INITIAL_STATES, negligible=1e-6)
 
 
