@@ -49,7 +49,7 @@ _SYMBOLS = (
     Symbol("ω, c1, c2, r1, r2", "particle swarm, eq. (29)", "1", "not printed"),
     Symbol("v_ij, x_ij, P_ij, G_j", "velocity, place, own best and best of all of PSO", "as the unknowns", "eq. (29)"),
     Symbol("N of eqs. (26) to (28)", "observations; eq. (28) has the two motions of one sample", "1", "2"),
-    Symbol("θ of eqs. (26) to (28)", "the unknowns; in (28) also pitch", "", "one letter for both"),
+    Symbol("θ of eqs. (26) to (28)", "the unknowns; in (28) also pitch", "theirs; not printed", "one letter for both"),
     Symbol("y_s, y_m", "motions by the theoretical and by the identified values", "m and an angle", "eqs. (26), (27)"),
     Symbol("z0, θ0; z1, θ1", "heave and pitch, theoretical and identified", "m and an angle", "eq. (28)"),
     Symbol(
