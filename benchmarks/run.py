@@ -15,6 +15,7 @@ import fusion
 import generation
 import gusts
 import heave_pitch
+import long_record
 import loops
 import montecarlo
 import population
@@ -39,6 +40,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "population": population.run,
     "heave_pitch": heave_pitch.run,
     "design": design.run,
+    "long_record": long_record.run,
     "loops": loops.run,
     "tune": tune.run,
     "roll_decay": roll_decay.run,

@@ -10,6 +10,7 @@ from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.physics.models.nomoto import nomoto
+from seatrial.physics.simulate.filtering import KalmanFilter
 
 DT, ROWS, K, T = 0.2, 9000, 0.15, 8.0
 
@@ -40,7 +41,9 @@ def test_one_step_from_stretches_is_the_estimate_of_all(gust: float, monkeypatch
     monkeypatch.setattr(large_records, "MOST_SAMPLES", 8000)
     monkeypatch.setattr(large_records, "CHOICE_SAMPLES", 4500)
     monkeypatch.setattr(large_records, "PIECE_SAMPLES", 3000)
+    filtered = rows_filtered(monkeypatch)
     few = estimated(record)
+    assert sum(rows >= ROWS for rows in filtered) <= 20 * few.estimate.problem.data.count
     assert few.noise_model.method == whole.noise_model.method
     assert "were chosen on 4500 of 9000 samples" in few.noise_model.text
     assert few.estimate.problem.data.count == (3 if gust else 1)
@@ -48,6 +51,32 @@ def test_one_step_from_stretches_is_the_estimate_of_all(gust: float, monkeypatch
     np.testing.assert_allclose(few.interval.standard_error[:2], error, rtol=0.15)
     away = (few.estimate.common_parameters - whole.estimate.common_parameters)[:2] / error
     assert np.all(np.abs(away) < 0.3), away
+
+
+def rows_filtered(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """The samples of every batch that the Kalman filter passes a segment of, from now on."""
+    passes: list[int] = []
+    run = KalmanFilter._run
+
+    def counted(self: KalmanFilter, *arguments, **keywords):
+        passes.append(int(self.offsets[-1]))
+        return run(self, *arguments, **keywords)
+
+    monkeypatch.setattr(KalmanFilter, "_run", counted)
+    return passes
+
+
+def test_steps_over_growing_parts_lead_to_the_optimum_of_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three steps from 1000 of 9000 samples: a fourth one moves the coefficients by less than 0.2 standard errors."""
+    limits = {"MOST_SAMPLES": 8000, "CHOICE_SAMPLES": 1000, "PIECE_SAMPLES": 3000, "_MOST_GROWTH": 2.5}
+    for name, value in limits.items():
+        monkeypatch.setattr(large_records, name, value)
+    few = estimated(steered(np.radians(1.2)))
+    noise = few.process_noise
+    assert noise is not None
+    again = large_records.newton_optimum(noise.problem, noise.optimum, 1.0).solution.point
+    moved = (again - noise.optimum.solution.point)[:2] / few.interval.standard_error[:2]
+    assert np.all(np.abs(moved) < 0.2), moved
 
 
 def test_short_records_are_taken_whole() -> None:

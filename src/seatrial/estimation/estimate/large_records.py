@@ -1,5 +1,6 @@
 """Records of more samples than a choice needs: decide on a stated part of them, then take one step over all."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
@@ -20,6 +21,7 @@ from seatrial.estimation.information.whiteness import whiteness_test
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.prediction_error import over_runs
 from seatrial.estimation.problem.segments import cut_segments
+from seatrial.numerics.optimise import Optimum
 
 MOST_SAMPLES = 100_000
 """Samples of all runs up to which everything is done with all of them; chosen."""
@@ -30,6 +32,8 @@ CHOICE_SAMPLES, _STRETCHES = 20_000, 3
 PIECE_SAMPLES = 20_000
 """Samples of the pieces in which all of them are filtered: each forgets its initial state within a few; chosen."""
 
+_MOST_GROWTH = 10.0
+"""Samples of a Newton step over those of the one before, at most; chosen: a step then leaves 0.1 standard errors."""
 
 _LATER_EVALUATIONS = 6
 """Most evaluations of output error over all samples, from the optimum over some; chosen."""
@@ -37,10 +41,17 @@ _LATER_EVALUATIONS = 6
 
 def choice_runs(runs: Runs) -> Runs | None:
     """Return stretches of all runs with some twenty thousand samples; None where all runs together are short enough."""
-    if sum(len(r) for r in runs.records) <= MOST_SAMPLES:
-        return None
+    return _part(runs, CHOICE_SAMPLES) if _sample_count(runs) > MOST_SAMPLES else None
+
+
+def _sample_count(runs: Runs) -> int:
+    return sum(len(r) for r in runs.records)
+
+
+def _part(runs: Runs, samples: int) -> Runs:
+    """Stretches of all runs with about so many samples together."""
     count = max(1, round(_STRETCHES / len(runs)))
-    length = max(CHOICE_SAMPLES // (count * len(runs)), 2)
+    length = max(samples // (count * len(runs)), 2)
     stretches = [(s, session) for r, session in zip(runs.records, runs.sessions, strict=True)
                  for s in _stretches(r, count, length)]  # fmt: skip
     return replace(runs, records=tuple(s for s, _ in stretches), sessions=tuple(n for _, n in stretches))
@@ -56,11 +67,11 @@ def _stretches(record: Record, count: int, length: int) -> Iterator[Record]:
 def choice_over_all(choice: CriterionChoice, runs: Runs) -> CriterionChoice:
     """Return a choice moved to its optimum over all samples.
 
-    Prediction error takes one Newton step: the point comes from so many samples that what the step leaves is far below
-    its standard error. Output error searches on from the point.
+    Prediction error takes Newton steps: the point comes from so many samples that what a step leaves is far below its
+    standard error. Output error searches on from the point.
     """
     few = choice.estimate.problem
-    total, part = sum(len(r) for r in runs.records), len(few.data.inputs)
+    total, part = _sample_count(runs), len(few.data.inputs)
     reason = f"criterion and disturbance were chosen on {part} of {total} samples, the estimate is that of all"
     if choice.disturbances is None or choice.process_noise is None:
         problem = _with_all_samples(few, runs, None)  # whole: without a disturbance nothing is forgotten
@@ -74,14 +85,28 @@ def choice_over_all(choice: CriterionChoice, runs: Runs) -> CriterionChoice:
 
 
 def _noise_over_all(few: ProcessNoise, runs: Runs) -> ProcessNoise:
+    """The optimum over all samples, by way of parts that grow by one factor, ten at most.
+
+    What a Newton step leaves grows with the square of its distance, and this with the root of that factor.
+    """
+    part = len(few.problem.runs.data.inputs)
+    factor = _sample_count(runs) / part
+    steps = max(1, math.ceil(math.log(factor) / math.log(_MOST_GROWTH)))
+    growth, noise = factor ** (1.0 / steps), few
+    for step in range(1, steps):
+        noise = _one_step(few, noise.optimum, _part(runs, round(part * growth**step)), growth)
+    noise = _one_step(few, noise.optimum, runs, growth)
+    normalised = noise.problem.innovations(noise.optimum.solution.point).normalised
+    pieces = [normalised[a:b] for a, b in pairwise(noise.problem.runs.data.offsets)]
+    return replace(noise, test=replace(few.test, whiteness=whiteness_test(pieces)))
+
+
+def _one_step(few: ProcessNoise, before: Optimum, runs: Runs, growth: float) -> ProcessNoise:
+    """One Newton step over these runs from an optimum of `growth` times fewer samples."""
     output_error = _with_all_samples(few.output_error, runs, PIECE_SAMPLES * few.output_error.data.dt)
     problem = over_runs(few.problem, output_error)
-    share = len(output_error.data.inputs) / len(few.problem.runs.data.inputs)
-    optimum = newton_optimum(problem, few.optimum, share)
-    normalised = problem.innovations(optimum.solution.point).normalised
-    pieces = [normalised[a:b] for a, b in pairwise(output_error.data.offsets)]
-    test = replace(few.test, whiteness=whiteness_test(pieces))
-    return ProcessNoise(problem, optimum, 0.0, test, output_error, few.disturbance_model)
+    optimum = newton_optimum(problem, before, growth)
+    return replace(few, problem=problem, optimum=optimum, newton_decrement=0.0, output_error=output_error)
 
 
 def _with_all_samples(problem: OutputError, runs: Runs, seconds: float | None) -> OutputError:

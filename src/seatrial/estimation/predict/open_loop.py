@@ -10,7 +10,7 @@ from seatrial.core.values import Array, InputError, Record
 from seatrial.estimation.predict.divergence import divergence_of, without_diverged_rows
 from seatrial.estimation.predict.windows import Windows, initial_states, simulate_windows
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.physics.manoeuvres import measures
+from seatrial.physics.manoeuvres import ObservedManoeuvre, measures
 from seatrial.physics.simulate.channels import inputs_of, record_of
 from seatrial.physics.simulate.divergence import require_bounded
 
@@ -126,9 +126,10 @@ def compare_measures(
 
     Of a simulation that diverges those are read that lie within the time it lasted.
     """
-    of_measured = measures(record, length)
+    recognised = ObservedManoeuvre.from_record(record)
+    of_measured = measures(record, length, reference=recognised)
     if divergence is None:
-        of_simulated = measures(simulated, length, reference=record)
+        of_simulated = measures(simulated, length, reference=recognised)
         names = dict.fromkeys([*of_measured, *of_simulated])
     else:
         of_simulated, names = _measures_until(record, simulated, length, divergence), dict.fromkeys(of_measured)

@@ -1,13 +1,17 @@
 """What manoeuvre a record shows: when the rudder was put over, how far, and what the heading did."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatrial.core.values import Array, InputError, Record
+
+Mask = NDArray[np.bool_]
 
 # the rudder is "over" beyond a quarter of the record's largest angle; a stretch is a hold if half of it lies within
 # 15 % of its level and it lasts a tenth of the median hold
@@ -22,6 +26,9 @@ ANGLE_TOLERANCE, COURSE_TOLERANCE = 0.25, float(np.radians(8.0))
 _AMIDSHIPS, _STOP, _SLEWING, _SLEW_PART = 0.1, 0.3, 0.2, (0.25, 0.75)
 _CHECKED_SHARE = 0.8  # of executes at which a zigzag's heading lies to the side steered from; chosen
 _FEWEST_ANGLES, _STANDING = 6, 0.02  # rudder angles of a spiral, and share of the samples at each; chosen
+# stretches of rudder to one side from which on a record is a programme of random orders, not a manoeuvre; chosen
+_MOST_STRETCHES = 1000
+_ROWS_LOOKED_BACK = 64  # at first, for the beginning of a slew; chosen
 _TIME_TOLERANCE = 1e-3  # of a sampling step, by which times may differ: rounding
 
 
@@ -77,7 +84,7 @@ class ObservedManoeuvre:
 
     @cached_property
     def holds(self) -> tuple[Hold, ...]:
-        """Flat stretches of rudder to one side, long against the others, in order."""
+        """Flat stretches of rudder to one side, long against the others, in order; none of a thousand and more."""
         largest = float(np.max(np.abs(self.delta)))
         if largest < MINIMUM_RUDDER:
             return ()
@@ -85,6 +92,8 @@ class ObservedManoeuvre:
         edges = np.flatnonzero(np.diff(level)) + 1
         bounds = [0, *edges.tolist(), len(level)]
         pieces = [(a, b) for a, b in pairwise(bounds) if level[a] != 0.0]
+        if len(pieces) > _MOST_STRETCHES:
+            return ()
         held = [h for a, b in pieces if (h := _find_hold(self.delta, a, b)) is not None]
         if not held:
             return ()
@@ -125,13 +134,19 @@ class ObservedManoeuvre:
 
     def _last_row_before_slew(self, hold: Hold) -> int:
         """Return the last row before a hold at which the rudder had not yet begun to slew to it."""
-        rates = np.diff(self.delta[: hold.first + 1]) * np.sign(hold.angle)
-        if not len(rates) or rates.max() <= 0.0:
+        rates, fastest = self._rates_by_side[float(np.sign(hold.angle))]
+        if not hold.first or fastest[hold.first - 1] <= 0.0:
             return 0
-        slewing = rates > _SLEWING * rates.max()
-        end = int(np.flatnonzero(slewing)[-1])
-        before = np.flatnonzero(~slewing[:end])
-        return int(before[-1]) + 1 if len(before) else 0
+        slewing = _SLEWING * fastest[hold.first - 1]
+        end = _last_row(rates[: hold.first], lambda values: values > slewing)
+        before = _last_row(rates[: end or 0], lambda values: values <= slewing)
+        return 0 if before is None else before + 1
+
+    @cached_property
+    def _rates_by_side(self) -> dict[float, tuple[Array, Array]]:
+        """The rudder's change from row to row, positive to either side, and the largest one so far, (n - 1,)."""
+        rates = np.diff(self.delta)
+        return {side: (side * rates, np.maximum.accumulate(side * rates)) for side in (1.0, -1.0)}
 
     def _crossing_time(self, share: Array, first: int, hold_start: int, level: float) -> float:
         """Return the time at which `share` last rises through `level` on its way to the hold."""
@@ -225,6 +240,18 @@ def _heading(record: Record) -> Array:
 def _without_gaps(record: Record, values: Array) -> Array:
     known = np.isfinite(values)
     return values if known.all() else np.interp(record.time, record.time[known], values[known])
+
+
+def _last_row(values: Array, holds: Callable[[Array], Mask]) -> int | None:
+    """Return the last row of which a condition holds, None where there is none; looks back no further than it must."""
+    first, length = len(values), _ROWS_LOOKED_BACK
+    while first > 0:
+        last, first = first, max(0, first - length)
+        rows = np.flatnonzero(holds(values[first:last]))
+        if len(rows):
+            return first + int(rows[-1])
+        length *= 2
+    return None
 
 
 def _find_hold(delta: Array, first: int, last: int) -> Hold | None:
