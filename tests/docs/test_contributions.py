@@ -18,6 +18,7 @@ from seatrial.core.results import Verdict
 from seatrial.core.values import InputError, Record
 from seatrial.data.example_series.series import true_model
 from seatrial.data.read import ColumnSpec, Layout, read_record
+from seatrial.numerics.optimise import Box, optimiser_named, search
 from seatrial.physics.models import model_from_file
 from seatrial.reporting.study import html
 
@@ -110,6 +111,19 @@ def test_the_estimator_gives_the_true_coefficients_back() -> None:
     truth = np.array([model.parameters[name].value for name in model.parameters.free_names])
     clean = estimator.estimate(model, [record]).values
     np.testing.assert_allclose(clean, truth, rtol=0.02, atol=1e-3)
+
+
+def test_the_optimiser_finds_the_minimum_and_is_found_by_its_name(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    code = (FOLDER / "shrinking_search_optimiser.py").read_text(encoding="utf-8")
+    install(monkeypatch, tmp_path, "seatrial.optimisers", "shrinking_search", code, "ShrinkingSearch")
+    create = optimiser_named("shrinking_search")
+    testing.check_optimiser(create)
+    middle = np.array([0.3, -1.2])
+    herd = create(Box(np.full(2, -2.0), np.full(2, 2.0)), np.random.default_rng(1))
+    solution = search(herd, lambda points: np.sum((points - middle) ** 2, axis=1))
+    np.testing.assert_allclose(solution.point, middle, atol=1e-4)
 
 
 def test_the_study_confirms_its_claim_and_has_a_page() -> None:

@@ -1,5 +1,15 @@
 """Names of this package, imported when first used."""
 
+from seatrial.estimation.information.collinearity import (
+    collinearity as collinearity,
+    condition_number as condition_number,
+)
+from seatrial.estimation.regress.cleaning import (
+    without_duplicates as without_duplicates,
+    without_missing as without_missing,
+    without_outliers as without_outliers,
+    without_small as without_small,
+)
 from seatrial.estimation.regress.estimators import (
     InstrumentalVariables as InstrumentalVariables,
     LinearRegression as LinearRegression,
