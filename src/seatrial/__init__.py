@@ -8,6 +8,7 @@
 Functions (each also a command)
     load_trial    read and validate a trial file
     check         what is odd about the records: findings
+    correct_trial correct a trial file by what the checks are certain of (command check --fix)
     draft_trial   draft a trial file from logs (command init)
     identify      estimate the model's coefficients, with intervals
     simulate      run a manoeuvre, or the inputs of a record, through a model

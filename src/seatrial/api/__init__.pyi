@@ -10,12 +10,22 @@ from seatrial.api.files import (
 from seatrial.api.prediction import extrapolation, measure_intervals, measures, predict, rms_differences
 from seatrial.api.simulation import replay, simulate, steering
 from seatrial.api.studies import demo, list_models, reproduce
-from seatrial.api.trials import check, design, draft_trial, follow, identify, load_trial, prepared_run, survey_log
+from seatrial.api.trials import (
+    check,
+    correct_trial,
+    design,
+    draft_trial,
+    follow,
+    identify,
+    load_trial,
+    prepared_run,
+    survey_log,
+)
 from seatrial.api.tuning import load_loop, tune
 
 __all__ = [
-    "check", "demo", "design", "draft_trial", "extrapolation", "follow", "identify", "list_models", "load", "load_fit",
-    "load_loop", "load_model", "load_trial", "measure_intervals", "measures", "predict", "prepared_run", "read_record",
-    "replay", "report", "reproduce", "rms_differences", "save", "simulate", "steering", "survey_log", "tune",
-    "write_record",
+    "check", "correct_trial", "demo", "design", "draft_trial", "extrapolation", "follow", "identify", "list_models",
+    "load", "load_fit", "load_loop", "load_model", "load_trial", "measure_intervals", "measures", "predict",
+    "prepared_run", "read_record", "replay", "report", "reproduce", "rms_differences", "save", "simulate", "steering",
+    "survey_log", "tune", "write_record",
 ]  # fmt: skip

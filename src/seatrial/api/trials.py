@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from seatrial.data.draft import DraftTrial, LogSurvey
     from seatrial.data.folder.model_file import ModelFile
     from seatrial.data.trial import Trial
+    from seatrial.data.trial.correction import Correction
     from seatrial.onboard.follow import FollowResult
     from seatrial.onboard.sources import SampleSource
 
@@ -59,6 +60,22 @@ def check(trial: "Trial | str | Path") -> "tuple[Finding, ...]":
         findings = [finding for run in used for finding in load_run(run, 0.0).findings]
         what, advice = "'seatrial identify' cannot start yet", str(error)
         return (*findings, Finding(Severity.INFO, "model", what, "", advice))
+
+
+def correct_trial(trial: "str | Path") -> "Correction":
+    """Correct a trial file by what `check` is certain of: units, signs, frames, exchanged columns, reference points.
+
+    A change is kept only where fewer errors are left with it; edits of warnings are not made. No file is written.
+
+    Returns:
+        The text of the corrected file, what was changed, what was not and why, and the findings that are left.
+
+    Raises:
+        InputError: the file or its records cannot be read.
+    """
+    from seatrial.data.trial.correction import corrected_trial
+
+    return corrected_trial(trial)
 
 
 def draft_trial(*logs: "str | Path", folder: "str | Path" = ".") -> "DraftTrial":

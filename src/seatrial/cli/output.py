@@ -20,6 +20,7 @@ if TYPE_CHECKING:
         WindowScore,
     )
     from seatrial.core.values import Finding
+    from seatrial.data.trial.correction import Correction
 
 # index of extrapolation beyond which intervals are lower limits; chosen, as in the report
 EXTRAPOLATION_LIMIT = 1.2
@@ -60,20 +61,48 @@ def print_findings(findings: "Sequence[Finding]", per_code: int, rest: str = "--
         print_lines(f"{SEVERITY_MARK[severity]} [{code}] {finding.text}" for finding in alike[:per_code])
         if len(alike) > per_code:
             print(f"        ... and {len(alike) - per_code} more of this kind; {rest}")
+        if alike[0].consequence:
+            print_lines([f"        consequence: {alike[0].consequence}"])
         if alike[0].advice:
             print_lines([f"        advice: {alike[0].advice}"])
     errors = sum(finding.severity.value == "error" for finding in findings)
     print(f"{counted(len(findings), 'finding')}, {counted(errors, 'error')} among them")
 
 
+def write_correction(correction: "Correction", trial: Path, per_code: int) -> None:
+    """Write the corrected trial file beside the original, and print what was changed and what is left.
+
+    Raises:
+        InputError: there is a corrected file already.
+    """
+    from seatrial.core.values import InputError
+    from seatrial.core.values.files import write_atomically
+    from seatrial.data.trial.correction import change_lines
+
+    fixed = trial.with_name(f"{trial.stem}.fixed.toml")
+    print_lines(change_lines(correction))
+    if not correction.applied:
+        print("nothing was changed: no error has an edit that removes it")
+        print_findings(correction.findings, per_code)
+        return
+    if fixed.exists():
+        raise InputError(f"'{fixed}' exists and is not overwritten; move or remove it")
+    write_atomically(fixed, correction.text.encode())
+    print_findings(correction.findings, per_code, f"seatrial check {fixed} --all shows them")
+    print(f"corrected: {fixed}")
+    print(f"Next: seatrial check {fixed}")
+
+
 def next_step(findings: "tuple[Finding, ...]", trial: Path) -> str:
-    """Return what to do after a check: the edit of the first error, what is missing for a model, or to identify."""
+    """Return what to do after a check: correct, the advice of the first error, what a model lacks, or to identify."""
     from seatrial.core.text.plain import ascii_text
 
-    error = next((finding for finding in findings if finding.severity.value == "error"), None)
+    errors = [finding for finding in findings if finding.severity.value == "error"]
     missing = next((finding for finding in findings if finding.code == "model"), None)
-    if error is not None:
-        return ascii_text(f"Next: {error.advice}")
+    if any(error.edits for error in errors):
+        return f"Next: seatrial check {trial} --fix"
+    if errors:
+        return ascii_text(f"Next: {errors[0].advice}")
     if missing is not None:
         return ascii_text(f"Next: {missing.advice}")
     return f"Next: seatrial identify {trial} --out results"

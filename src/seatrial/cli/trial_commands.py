@@ -7,7 +7,15 @@ import typer
 
 from seatrial.cli.application import Json, OwnModelPath, Seed, TrialPath, app, own_model, result_document
 from seatrial.cli.follow_output import journal_path, live_display, print_outcome, stop_on_signal, stream_heading
-from seatrial.cli.output import next_step, print_design, print_findings, print_fit, progress_reporter, write_json
+from seatrial.cli.output import (
+    next_step,
+    print_design,
+    print_findings,
+    print_fit,
+    progress_reporter,
+    write_correction,
+    write_json,
+)
 
 Method = Annotated[
     str | None,
@@ -26,6 +34,9 @@ def check(
     show_all: Annotated[
         bool, typer.Option("--all", help="Show every finding (column), not the first few of each kind.")
     ] = False,
+    fix: Annotated[
+        bool, typer.Option("--fix", help="Write TRIAL.fixed.toml with the edits that remove errors.")
+    ] = False,
     model: OwnModelPath = None,
     json: Json = None,
     seed: Seed = 0,  # noqa: ARG001
@@ -35,14 +46,22 @@ def check(
     Neither a model nor particulars are needed.
 
     Example: seatrial check examples/esso_osaka.toml
+
+    What it is certain of, corrected in a copy of the trial file: --fix
     """
     from seatrial import api
+    from seatrial.core.values import InputError
     from seatrial.data.folder.document import findings_document
 
     if trial.suffix.lower() != ".toml":
         from seatrial.cli.log_commands import print_survey
 
+        if fix:
+            raise InputError("--fix corrects a trial file; draft one from the log with 'seatrial init'")
         print_survey(api.survey_log(trial), show_all=show_all)
+        return
+    if fix:
+        write_correction(api.correct_trial(trial), trial, FINDINGS_PER_CODE)
         return
     findings = api.check(trial if model is None else api.load_trial(trial, own_model(model)))
     print_findings(findings, len(findings) if show_all else FINDINGS_PER_CODE)

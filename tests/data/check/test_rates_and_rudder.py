@@ -21,7 +21,7 @@ def findings(factor: float) -> list[Finding]:
 def test_deg_per_minute_is_named(factor: float) -> None:
     (finding,) = findings(factor)
     assert finding.code == "angle-unit" and "looks like deg/min" in finding.message
-    assert finding.advice == 'set unit = "deg/min" for channels.r'
+    assert finding.advice == 'set channels.r.unit = "deg/min" in the trial file'
 
 
 def test_degrees_per_second_are_not_taken_for_them() -> None:

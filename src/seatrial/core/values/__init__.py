@@ -4,7 +4,7 @@ from seatrial.core.values.arrays import Array, Index, frozen
 from seatrial.core.values.channel import Channel, Provenance
 from seatrial.core.values.channel_names import channel_hint
 from seatrial.core.values.errors import DivergedError, InputError, spelling_hint
-from seatrial.core.values.finding import Finding, Severity, worst_first
+from seatrial.core.values.finding import Finding, Severity, TrialEdit, worst_first
 from seatrial.core.values.force_points import ForceContent, ForcePoints
 from seatrial.core.values.notation import NOTATION, Quantity, quantity
 from seatrial.core.values.parameters import Parameter, Parameters, Prior
@@ -17,6 +17,6 @@ from seatrial.core.values.versions import versions
 __all__ = [
     "NOTATION", "Array", "Channel", "DivergedError", "Finding", "ForceContent", "ForcePoints", "Index", "InputError",
     "Parameter", "Parameters", "Prior", "ProgressReporter", "Provenance", "Quantity", "Record", "RecordKind",
-    "Severity", "Ship", "channel_hint", "display_unit", "frozen", "quantity", "si_unit", "spelling_hint", "versions",
-    "worst_first",
+    "Severity", "Ship", "TrialEdit", "channel_hint", "display_unit", "frozen", "quantity", "si_unit", "spelling_hint",
+    "versions", "worst_first",
 ]  # fmt: skip

@@ -1,4 +1,4 @@
-"""A finding: one statement of a check or an estimate, with its evidence and what to do."""
+"""A finding: one statement of a check or an estimate, with its evidence, what follows from it and what to do."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -14,6 +14,28 @@ class Severity(StrEnum):
 
 
 @dataclass(frozen=True)
+class TrialEdit:
+    """One change of a run's block ``[[records]]`` in a trial file.
+
+    Attributes:
+        key: in the block, dotted: ``channels.u.frame``.
+        value: as TOML writes it; empty with `exchanged_with`.
+        unit: SI unit of a number that the file gives in the channel's own; empty: the value stands as it is.
+        exchanged_with: the key with which `key` changes places; one that is absent leaves `key` renamed.
+    """
+
+    key: str
+    value: str = ""
+    unit: str = ""
+    exchanged_with: str = ""
+
+    def __str__(self) -> str:
+        if self.exchanged_with:
+            return f"exchange {self.key} and {self.exchanged_with}"
+        return f"{self.key} = {self.value}{f' {self.unit}' if self.unit else ''}"
+
+
+@dataclass(frozen=True)
 class Finding:
     """States one thing about a record, a model or a fit.
 
@@ -23,6 +45,8 @@ class Finding:
         message: one sentence naming the record and channel.
         evidence: the numbers it rests on.
         advice: what the user can do.
+        consequence: what follows where nothing is done.
+        edits: what `seatrial check --fix` changes in the trial file.
     """
 
     severity: Severity
@@ -30,6 +54,8 @@ class Finding:
     message: str
     evidence: str = ""
     advice: str = ""
+    consequence: str = ""
+    edits: tuple[TrialEdit, ...] = ()
 
     @property
     def text(self) -> str:

@@ -12,7 +12,6 @@ from seatrial.data.check.signal import (
     smoothed_derivative,
     window_length,
 )
-from seatrial.data.check.velocity_conventions import best_convention
 from seatrial.data.check.yaw_rate_consistency import FOLLOWS, heading_rate
 
 OUTPUT_CHANNELS = ("x0", "y0", "psi", "u", "v", "r", "phi", "p", "theta", "z", "u_dot", "v_dot")
@@ -89,7 +88,7 @@ def velocity_lag(motion: RecordedMotion | None) -> tuple[float, float] | None:
     A reference point d ahead is fitted along (its lever is the turned yaw rate), so that it does not pass for a lag.
     None where positions are missing or the declared frame is refuted.
     """
-    if motion is None or best_convention(motion).changes:
+    if motion is None or motion.is_refuted:
         return None
     length, psi, dt = motion.window_samples, motion.record["psi"], motion.record.dt
     levers, turning = (-np.sin(psi), np.cos(psi)), np.gradient(psi, dt)

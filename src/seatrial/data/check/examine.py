@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass
 
-from seatrial.core.values import Finding, Record, worst_first
+from seatrial.core.values import Finding, Record
 from seatrial.data.check.channels import channel_findings, lag_findings
 from seatrial.data.check.comparison_stretch import comparison_stretch
+from seatrial.data.check.consequences import completed
 from seatrial.data.check.conventions import with_standard_signs
 from seatrial.data.check.dropped_rows import dropped_rows_findings
 from seatrial.data.check.feedback import feedback_findings
@@ -24,7 +25,7 @@ class ExaminedRecord:
 
     Attributes:
         record: evenly sampled and complete, conventions as declared.
-        findings: of the checks and of the repairs, gravest first.
+        findings: of the checks and of the repairs, most harmful first.
     """
 
     record: Record
@@ -46,7 +47,7 @@ def examined_record(record: Record) -> ExaminedRecord:
         *channel_findings(record), *time_findings, *repair_findings, *dropped_rows_findings(record, even, complete),
         *_comparison_findings(comparison_stretch(with_standard_signs(complete))),
     ]  # fmt: skip
-    return ExaminedRecord(complete, tuple(worst_first(findings)))
+    return ExaminedRecord(complete, tuple(completed(findings, record)))
 
 
 def _comparison_findings(record: Record) -> list[Finding]:

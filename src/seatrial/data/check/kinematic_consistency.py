@@ -4,13 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seatrial.core.values import Array, Finding, Severity
+from seatrial.core.values import Array, Finding, Severity, TrialEdit
 from seatrial.data.check.motion import RecordedMotion
 from seatrial.data.check.signal import cumulative_integral, least_squares, sample_noise
-from seatrial.data.check.velocity_conventions import best_convention
 
 # factors by which another reading must reduce the residual to be certain, or possible, ours
 CERTAIN_GAIN, DOUBTFUL_GAIN = 4.0, 2.0
+# ratio of residuals up to which two causes explain an error alike, and both are named; chosen
+AMBIGUOUS_RATIO = 1.2
 # residuals over path length that are negligible, and large; multiple of the noise that is tolerated, ours
 MIN_RELATIVE_ERROR, LARGE_RELATIVE_ERROR, NOISE_FACTOR = 1e-4, 3e-3, 1.5
 
@@ -24,12 +25,13 @@ class ErrorCause:
     advice: str
     coefficients: tuple[float, ...]
     residual_rms: float
+    edits: tuple[TrialEdit, ...] = ()
 
 
 def kinematic_consistency_findings(motion: RecordedMotion) -> tuple[Finding, ...]:
     """A finding where a record does not close; none where the declared reading is already refuted."""
     record = motion.record
-    if motion.path_length == 0 or best_convention(motion).changes:
+    if motion.path_length == 0 or motion.is_refuted:
         return ()
     error = consistency_error(motion)
     rms = float(np.sqrt(np.mean(error**2))) * np.sqrt(2.0)
@@ -46,11 +48,16 @@ def kinematic_consistency_findings(motion: RecordedMotion) -> tuple[Finding, ...
     if gain < DOUBTFUL_GAIN:
         advice = "check frame, reference point, lag and bias of u, v against the positions"
         return (Finding(Severity.WARNING, "closure", message, evidence, advice),)
-    message += f"; {best.text} would explain it"
-    evidence += f", {best.residual_rms:.3g} m with it, {second.residual_rms:.3g} m with {second.text}"
-    is_alone = second.residual_rms > DOUBTFUL_GAIN * best.residual_rms
-    is_certain = best.name == "point" and gain > CERTAIN_GAIN and is_alone
-    return (Finding(Severity.ERROR if is_certain else Severity.WARNING, "closure", message, evidence, best.advice),)
+    is_alone = second.residual_rms > AMBIGUOUS_RATIO * best.residual_rms
+    message += f"; {best.text}{'' if is_alone else f', or {second.text},'} would explain it"
+    evidence += f", {best.residual_rms:.3g} m with it; with others " + ", ".join(
+        f"{one.name} {one.residual_rms:.3g} m" for one in ranked[1:]
+    )
+    is_distinct = second.residual_rms > DOUBTFUL_GAIN * best.residual_rms
+    is_certain = best.name == "point" and gain > CERTAIN_GAIN and is_distinct
+    severity = Severity.ERROR if is_certain else Severity.WARNING
+    edits = best.edits if is_distinct else ()
+    return (Finding(severity, "closure", message, evidence, best.advice, edits=edits),)
 
 
 def consistency_error(motion: RecordedMotion) -> Array:
@@ -67,39 +74,73 @@ def _integrated_velocity(motion: RecordedMotion) -> tuple[Array, Array]:
 def candidate_causes(motion: RecordedMotion, error: Array) -> list[ErrorCause]:
     """Each single cause fitted to the closure error by least squares, the integration constants with it.
 
-    point: velocities of a point d ahead of the position's add d (cos psi, sin psi); lag tau: -tau times the velocity;
-    current or bias: grows with time; misalignment a of heading or log: a (-y, x) of the track; scale: the track.
+    Velocities of a point d ahead of the positions' add d (cos psi, sin psi); moved there without turning the lever,
+    d (0, psi), or d (cos psi, sin psi - psi) where the point is declared; a lag tau of u, v -tau times the velocity,
+    one of psi -tau times the integral of velocity across times yaw rate; a current grows with time, a bias of the log
+    with the time on each heading; a misalignment a of heading or log adds a (-y, x) of the track, a scale error
+    the track.
     """
-    x, y = _integrated_velocity(motion)
-    zero, t, psi = np.zeros_like(x), motion.record.time - motion.record.time[0], motion.record["psi"]
+    dt, psi = motion.record.dt, motion.record["psi"]
+    north, east = motion.velocity(motion.conventions[0])
+    x, y = cumulative_integral(north, dt), cumulative_integral(east, dt)
+    t, zero, turning = motion.record.time - motion.record.time[0], np.zeros_like(x), np.gradient(psi, dt)
+    c, s = np.cos(psi), np.sin(psi)
+    ahead, aside = cumulative_integral(c, dt), cumulative_integral(s, dt)
     causes = {
-        "point": [np.concatenate([np.cos(psi), np.sin(psi)])],
-        "lag": [-np.concatenate(motion.velocity(motion.conventions[0]))],
-        "drift": [np.concatenate([t, zero]), np.concatenate([zero, t])],
-        "misalignment": [np.concatenate([-y, x])],
-        "scale": [np.concatenate([x, y])],
+        "point": [(c, s)],
+        "unturned lever": [(zero, psi)],
+        "unturned lever to the point": [(c, s - psi)],
+        "lag of velocity": [(-north, -east)],
+        "lag of heading": [(cumulative_integral(east * turning, dt), -cumulative_integral(north * turning, dt))],
+        "current": [(t, zero), (zero, t)],
+        "bias": [(ahead, aside), (-aside, ahead)],
+        "misalignment": [(-y, x)],
+        "scale": [(x, y)],
     }
     constants = [np.concatenate([zero + 1, zero]), np.concatenate([zero, zero + 1])]
     fitted = []
     for name, features in causes.items():
-        solution, rms = least_squares(np.stack([*constants, *features], axis=1), error)
+        table = np.stack([*constants, *(np.concatenate(pair) for pair in features)], axis=1)
+        solution, rms = least_squares(table, error)
         value = tuple(float(a) for a in solution[2:])
-        fitted.append(ErrorCause(name, *_cause_text(name, value), value, rms * np.sqrt(2.0)))
+        text, advice, edits = _cause_text(name, value, motion)
+        fitted.append(ErrorCause(name, text, advice, value, rms * np.sqrt(2.0), edits))
     return fitted
 
 
-def _cause_text(name: str, coefficients: tuple[float, ...]) -> tuple[str, str]:
+def _cause_text(
+    name: str, coefficients: tuple[float, ...], motion: RecordedMotion
+) -> tuple[str, str, tuple[TrialEdit, ...]]:
+    """What the cause is, what to do, and the edit where there is one."""
+    size = coefficients[0]
     match name:
         case "point":
-            text = f"velocities referred to a point {coefficients[0]:+.3g} m ahead of the positions' point"
-            return text, "correct reference_point of u, v or of x0, y0"
-        case "lag":
-            return f"a lag of {coefficients[0]:.2g} s of the velocities", "shift u, v by the lag, or estimate it"
-        case "drift":
-            text = f"a current or velocity bias of {np.hypot(coefficients[0], coefficients[1]):.3g} m/s"
-            return text, "if the speed is through water, estimate a current for the run"
+            place = motion.record.channel("v").reference_point + size
+            edits = tuple(TrialEdit(f"channels.{symbol}.reference_point", f"{place:.4g}") for symbol in ("u", "v"))
+            text = f"velocities referred to a point {size:+.3g} m ahead of the positions' point"
+            return text, "correct reference_point of u, v or of x0, y0", edits
+        case "unturned lever" | "unturned lever to the point":
+            text = f"velocities moved by a lever of {size:+.3g} m that was not turned with the heading"
+            return text, "give the velocities as they were measured, and reference_point", ()
+        case "lag of velocity":
+            return f"a lag of {size:.2g} s of the velocities", "shift u, v by the lag, or estimate it", ()
+        case "lag of heading":
+            return f"a lag of {size:.2g} s of the heading", "shift psi by the lag", ()
+        case "current":
+            speed = np.hypot(coefficients[0], coefficients[1])
+            text = f"a current or velocity bias of {speed:.3g} m/s"
+            return text, "if the speed is through water, estimate a current for the run", ()
+        case "bias":
+            edits = tuple(
+                TrialEdit(f"channels.{symbol}.offset", f"{-value:.4g}", "m/s")
+                for symbol, value in zip(("u", "v"), coefficients, strict=True)
+            )
+            text = f"a bias of {coefficients[0]:+.3g} m/s of u and {coefficients[1]:+.3g} m/s of v"
+            return text, "correct the zero of the log", edits
         case "misalignment":
-            text = f"a misalignment of {np.degrees(coefficients[0]):+.2g} deg between heading and log"
-            return text, "check the zero of the compass"
+            edits = (TrialEdit("channels.psi.offset", f"{-size:.4g}", "rad"),)
+            text = f"a misalignment of {np.degrees(size):+.2g} deg between heading and log (magnetic variation?)"
+            return text, "check the zero of the compass", edits
         case _:
-            return f"a scale error of {coefficients[0]:+.2%} of the velocities", "check the calibration of the log"
+            edits = tuple(TrialEdit(f"channels.{symbol}.scale", f"{1.0 / (1.0 + size):.5g}") for symbol in ("u", "v"))
+            return f"a scale error of {size:+.2%} of the velocities", "check the calibration of the log", edits

@@ -1,35 +1,62 @@
 """Velocities, heading and position side by side, as declared: what the comparisons work on."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
 from functools import cached_property
 from itertools import product
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatrial.core.values import Array, Record
 from seatrial.data.check.signal import cumulative_integral, smoothed, smoothed_derivative, trimmed_rms, window_length
 
+ComplexArray = NDArray[np.complex128]
 DEGREES_PER_RADIAN = 180.0 / math.pi
 # samples of a record from which on it is compared with itself; chosen: some windows of smoothing
 MIN_SAMPLES = 30
+# factor by which another convention must reduce the misfit to be possible; chosen
+DOUBTFUL_RATIO = 1.5
+# correlation of yaw rate and heading from which on their common sign counts; chosen
+_TURNS_TOGETHER = 0.6
+
+
+class PositionReading(StrEnum):
+    """How x0 and y0 may have been written down."""
+
+    DECLARED = "as declared"
+    EXCHANGED = "exchanged"
+    REVERSED_EAST = "y0 reversed"
 
 
 @dataclass(frozen=True)
 class VelocityConvention:
-    """One way to read the columns u, v and psi; `changes` counts departures from the declared way.
+    """One way to read the columns of a motion; `changes` counts departures from the declared way.
 
     Attributes:
         frame: ``body`` or ``earth``.
         v_sign: factor on v.
         psi_factor: factor on psi (-1: the heading turns the other way; 57.3 or its inverse: wrong unit).
-        changes: number of differences from the declaration.
+        changes: number of differences from the declaration, a yaw rate that then contradicts the heading among them.
+        is_exchanged: whether u and v have changed places.
+        psi_from_east: whether psi counts from east, counter-clockwise, as ROS has it.
+        position: how x0 and y0 are read.
     """
 
     frame: str
     v_sign: float
     psi_factor: float
     changes: int
+    is_exchanged: bool = False
+    psi_from_east: bool = False
+    position: PositionReading = PositionReading.DECLARED
+
+    @property
+    def reverses_turning(self) -> bool:
+        """Whether the heading turns the other way than it was written down."""
+        return self.psi_factor < 0 or self.psi_from_east
 
 
 @dataclass(frozen=True)
@@ -77,51 +104,116 @@ class RecordedMotion:
         lever = self.reference_offset * np.gradient(psi, self.record.dt)
         return north - lever * s, east + lever * c
 
-    def smoothed_velocity(self, convention: VelocityConvention) -> tuple[Array, Array]:
-        """Return `velocity` smoothed, on the samples of `position_derivative`."""
-        parts = self._smoothed_parts(abs(convention.psi_factor))
-        turn = 1.0 if convention.psi_factor > 0 else -1.0
-        if convention.frame == "body":
-            north = parts["u cos"] - convention.v_sign * turn * parts["v sin"]
-            east = turn * parts["u sin"] + convention.v_sign * parts["v cos"]
-        else:
-            north, east = parts["u"], convention.v_sign * parts["v"]
-        return north - turn * parts["lever sin"], east + parts["lever cos"]
+    @cached_property
+    def readings(self) -> list[VelocityConvention]:
+        """The declared reading first, then all others: those of `conventions` with exchanged and reversed axes."""
+        axes = [
+            replace(
+                one, is_exchanged=exchanged, psi_from_east=from_east, position=position,
+                changes=one.changes + exchanged + from_east + (position is not PositionReading.DECLARED),
+            )
+            for position, exchanged, from_east, one in product(
+                PositionReading, (False, True), (False, True), self.conventions
+            )
+            if not (from_east and (one.psi_factor != 1.0 or one.frame == "earth"))
+        ]  # fmt: skip
+        return [replace(one, changes=one.changes + self._contradicts_yaw_rate(one)) for one in axes]
 
-    def _smoothed_parts(self, psi_factor: float) -> dict[str, Array]:
-        """What every reading of one size of psi is a sum of, smoothed once."""
-        if psi_factor not in self._parts:
-            u, v, psi = self.record["u"], self.record["v"], psi_factor * self.record["psi"]
-            c, s = np.cos(psi), np.sin(psi)
-            lever = self.reference_offset * np.gradient(self.record["psi"], self.record.dt)
-            products = {"u cos": u * c, "u sin": u * s, "v cos": v * c, "v sin": v * s, "u": u, "v": v,
-                        "lever cos": lever * c, "lever sin": lever * s}  # fmt: skip
-            self._parts[psi_factor] = {name: smoothed(part, self.window_samples) for name, part in products.items()}
-        return self._parts[psi_factor]
+    def _contradicts_yaw_rate(self, reading: VelocityConvention) -> bool:
+        return self.yaw_rate_sign == (1.0 if reading.reverses_turning else -1.0)
 
     @cached_property
-    def _parts(self) -> dict[float, dict[str, Array]]:
+    def yaw_rate_sign(self) -> float:
+        """1 where r turns as psi does, -1 where it turns against it, 0 where neither is clear or r is missing."""
+        if "r" not in self.record:
+            return 0.0
+        turning = smoothed_derivative(self.record["psi"], self.record.dt, self.window_samples)
+        r = smoothed(self.record["r"], self.window_samples)
+        size = float(np.sqrt(np.sum(turning**2) * np.sum(r**2)))
+        match = float(np.sum(turning * r)) / size if size > 0 else 0.0
+        return float(np.sign(match)) if abs(match) > _TURNS_TOGETHER else 0.0
+
+    def smoothed_track_velocity(self, reading: VelocityConvention) -> ComplexArray:
+        """Return the smoothed derivative of position as the reading has it, north + i east [m/s]."""
+        north, east = self.position_derivative
+        match reading.position:
+            case PositionReading.EXCHANGED:
+                return east + 1j * north
+            case PositionReading.REVERSED_EAST:
+                return north - 1j * east
+            case _:
+                return north + 1j * east
+
+    def smoothed_velocity(self, reading: VelocityConvention) -> ComplexArray:
+        """Return `velocity` smoothed, north + i east [m/s], on the samples of `position_derivative`."""
+        surge, sway, lever = self._smoothed_parts(reading.frame, abs(reading.psi_factor))
+        if reading.frame == "body" and reading.reverses_turning:
+            surge, sway = np.conj(surge), np.conj(sway)
+        if reading.reverses_turning:
+            lever = -np.conj(lever)
+        if reading.is_exchanged:
+            surge, sway = sway, surge
+        velocity = surge + 1j * (reading.v_sign * sway + lever)
+        return np.asarray(1j * velocity if reading.psi_from_east else velocity, dtype=np.complex128)
+
+    def _smoothed_parts(self, frame: str, psi_factor: float) -> tuple[ComplexArray, ...]:
+        """u, v and the lever's velocity, turned by the heading where they are body-fixed, smoothed once."""
+        if (frame, psi_factor) not in self._parts:
+            turn: ComplexArray = np.exp(1j * psi_factor * self.record["psi"])
+            axes = turn if frame == "body" else np.ones_like(turn)
+            lever = self.reference_offset * np.gradient(self.record["psi"], self.record.dt)
+            products = (axes * self.record["u"], axes * self.record["v"], turn * lever.astype(np.complex128))
+            self._parts[frame, psi_factor] = tuple(_smoothed_complex(one, self.window_samples) for one in products)
+        return self._parts[frame, psi_factor]
+
+    @cached_property
+    def _parts(self) -> dict[tuple[str, float], tuple[ComplexArray, ...]]:
         return {}
 
-    def speed_scale(self, convention: VelocityConvention) -> float:
+    def speed_scale(self, reading: VelocityConvention) -> float:
         """Return the least-squares factor from the reading's velocity to the position's."""
-        north, east = self.smoothed_velocity(convention)
-        gx, gy = self.position_derivative
-        power = float(np.sum(north * north + east * east))
-        return float(np.sum(gx * north + gy * east)) / power if power > 0 else 0.0
+        velocity, track = self.smoothed_velocity(reading), self.smoothed_track_velocity(reading)
+        power = float(np.sum(np.abs(velocity) ** 2))
+        return float(np.sum((track * np.conj(velocity)).real)) / power if power > 0 else 0.0
 
-    def misfit(self, convention: VelocityConvention) -> float:
+    def misfit(self, reading: VelocityConvention) -> float:
         """Return the size of (derivative of position - scaled velocity) over the size of the derivative."""
-        north, east = self.smoothed_velocity(convention)
-        gx, gy = self.position_derivative
-        k = max(self.speed_scale(convention), 0.0)
-        size = max(trimmed_rms(gx, gy), 1e-12)  # above zero, for the division
-        return trimmed_rms(gx - k * north, gy - k * east) / size
+        velocity, track = self.smoothed_velocity(reading), self.smoothed_track_velocity(reading)
+        k = max(self.speed_scale(reading), 0.0)
+        return trimmed_rms(np.abs(track - k * velocity)) / max(trimmed_rms(np.abs(track)), 1e-12)  # never a zero
+
+    @cached_property
+    def best_reading(self) -> VelocityConvention:
+        """The reading that fits best; each further change must pay with a misfit smaller by half."""
+        return self.best_of(self.readings)
+
+    def best_of(self, readings: Sequence[VelocityConvention]) -> VelocityConvention:
+        """Return the best of some readings, as `best_reading`."""
+        least = 1e-6  # misfit below which readings are alike; chosen: rounding
+        return min(readings, key=lambda r: max(self.misfit(r), least) * DOUBTFUL_RATIO**r.changes)
+
+    @property
+    def is_refuted(self) -> bool:
+        """Whether another reading than the declared one fits best."""
+        return self.best_reading is not self.readings[0]
+
+    def heading_offset(self) -> tuple[float, float]:
+        """Return the angle [rad] to be added to psi with which velocities fit the track best, and the misfit then."""
+        declared = self.conventions[0]
+        velocity, track = self.smoothed_velocity(declared), self.smoothed_track_velocity(declared)
+        product, power = complex(np.sum(track * np.conj(velocity))), float(np.sum(np.abs(velocity) ** 2))
+        factor = product / power if power > 0 else 0.0
+        size = max(trimmed_rms(np.abs(track)), 1e-12)  # never a zero
+        return float(np.angle(factor)), trimmed_rms(np.abs(track - factor * velocity)) / size
 
     @property
     def path_length(self) -> float:
         """Length of the smoothed track [m]."""
         return float(cumulative_integral(np.hypot(*self.position_derivative), self.record.dt)[-1])
+
+
+def _smoothed_complex(values: ComplexArray, length: int) -> ComplexArray:
+    return smoothed(values.real, length) + 1j * smoothed(values.imag, length)
 
 
 def recorded_motion(record: Record) -> RecordedMotion | None:

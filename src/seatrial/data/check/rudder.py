@@ -5,7 +5,8 @@ from itertools import accumulate
 
 import numpy as np
 
-from seatrial.core.values import Array, Finding, Record, Severity
+from seatrial.core.values import Array, Finding, Record, Severity, TrialEdit
+from seatrial.data.check.consequences import REVERSED
 from seatrial.data.check.motion import MIN_SAMPLES
 from seatrial.data.check.run_phases import STOPPED_FRACTION
 from seatrial.data.check.signal import Mask, jackknife_least_squares, smoothed, smoothed_derivative, window_length
@@ -46,8 +47,9 @@ def rudder_findings(record: Record) -> tuple[Finding, ...]:
     text = f"record '{record.name}': rudder {channel_name(record, 'delta')} {'has' if is_clear else 'may have'}"
     text += " the opposite sign: the ship turns to port where starboard rudder is declared"
     evidence = f"effect over standard error: {first:.1f} on yaw acceleration, {steady:.1f} on the turn that follows"
-    advice = 'declare positive = "port" for delta if it says starboard now, "starboard" if it says port'
-    return (Finding(Severity.ERROR if is_clear else Severity.WARNING, "rudder-sign", text, evidence, advice),)
+    severity = Severity.ERROR if is_clear else Severity.WARNING
+    edits = (TrialEdit("channels.delta.positive", REVERSED),)
+    return (Finding(severity, "rudder-sign", text, evidence, edits=edits),)
 
 
 def t_ratio(estimate: tuple[float, float] | None) -> float:

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from seatrial.core.values import Array, Finding, Record, Severity
+from seatrial.core.values import Array, Finding, Record, Severity, TrialEdit
+from seatrial.data.check.consequences import REVERSED
 from seatrial.data.check.motion import DEGREES_PER_RADIAN, MIN_SAMPLES
 from seatrial.data.check.signal import smoothed, smoothed_derivative, trimmed_rms, window_length
 
@@ -74,7 +75,10 @@ def _mislabelled_finding(record: Record, symbol: str, factor: float, match: floa
     text = f"record '{record.name}': channel {channel_name(record, symbol)} is in truth the yaw rate"
     text += " with the opposite sign" if factor < 0 else ""
     evidence = f"correlation with d(psi)/dt {match:.4f}, factor {factor:.3f}"
-    return Finding(Severity.ERROR, "mislabelled", text, evidence, "declare this column as r")
+    edits = (TrialEdit(f"channels.{symbol}", exchanged_with="channels.r"),)
+    if factor < 0:
+        edits = (*edits, TrialEdit("channels.r.positive", '"port"'))
+    return Finding(Severity.ERROR, "mislabelled", text, evidence, edits=edits)
 
 
 def _yaw_rate_verdict(record: Record, r: Array, psi_dot: Array) -> list[Finding]:
@@ -84,14 +88,16 @@ def _yaw_rate_verdict(record: Record, r: Array, psi_dot: Array) -> list[Finding]
     name = f"record '{record.name}': channel {channel_name(record, 'r')}"
     if abs(match) > FOLLOWS and _is_per_minute(abs(factor)):
         what = f"{name} looks like deg/min"
-        return [Finding(Severity.ERROR, "angle-unit", what, evidence, 'set unit = "deg/min" for channels.r')]
+        edits = (TrialEdit("channels.r.unit", '"deg/min"'),)
+        return [Finding(Severity.ERROR, "angle-unit", what, evidence, edits=edits)]
     if abs(match) > FOLLOWS and abs(math.log(abs(factor) / DEGREES_PER_RADIAN)) < SAME_UNIT:
         return [_angle_unit_finding(record, "r", "psi", psi_dot, evidence)]
     if abs(match) > FOLLOWS and abs(math.log(abs(factor) * DEGREES_PER_RADIAN)) < SAME_UNIT:
         return [_angle_unit_finding(record, "psi", "r", psi_dot, evidence)]
     if match < -FOLLOWS and TURNED_RANGE[0] < abs(factor) < TURNED_RANGE[1]:
         what = f"{name} has the opposite sign of d(psi)/dt"
-        return [Finding(Severity.ERROR, "yaw-rate", what, evidence, "declare the opposite positive direction for r")]
+        edits = (TrialEdit("channels.r.positive", REVERSED),)
+        return [Finding(Severity.ERROR, "yaw-rate", what, evidence, edits=edits)]
     if misfit > WRONG_MISFIT:
         what = f"{name} is not the yaw rate: it does not follow d(psi)/dt"
         return [Finding(Severity.ERROR, "yaw-rate", what, evidence, "look for the yaw rate in another column")]
@@ -111,7 +117,7 @@ def _is_per_minute(factor: float) -> bool:
 
 def _angle_unit_finding(record: Record, large: str, small: str, psi_dot: Array, evidence: str) -> Finding:
     """`large` is 57 times too large or `small` 57 times too small; the course over ground decides which."""
-    course = _course_rate_ratio(record, psi_dot)
+    course, edits = _course_rate_ratio(record, psi_dot), tuple[TrialEdit, ...]()
     if course is None:
         what = f"either '{large}' is in degrees although declared in radians, or '{small}' the other way round"
     else:
@@ -120,8 +126,11 @@ def _angle_unit_finding(record: Record, large: str, small: str, psi_dot: Array, 
         units = "in degrees although declared in radians" if guilty == large else "in radians, declared in degrees"
         what = f"'{guilty}' is {units}"
         evidence += f"; the course turns {course:.3g} times as fast as the heading"
+        rate = "/s" if guilty == "r" else ""
+        edits = (TrialEdit(f"channels.{guilty}.unit", f'"{"deg" if guilty == large else "rad"}{rate}"'),)
     text = f"record '{record.name}': {what}"
-    return Finding(Severity.ERROR, "angle-unit", text, evidence, "correct the unit in the trial file")
+    advice = "correct the unit of the wrong one in the trial file"
+    return Finding(Severity.ERROR, "angle-unit", text, evidence, advice, edits=edits)
 
 
 def _course_rate_ratio(record: Record, psi_dot: Array) -> float | None:
@@ -144,8 +153,8 @@ def _rudder_unit_findings(record: Record) -> list[Finding]:
     largest = float(np.max(np.abs(record["delta"])))
     if largest > math.pi / 2:
         what = f"record '{record.name}': the rudder reaches {math.degrees(largest):.0f} deg"
-        advice = 'the column is probably in degrees: declare unit = "deg" for delta'
-        return [Finding(Severity.ERROR, "angle-unit", what, f"{largest:.4g} rad as declared", advice)]
+        edits = (TrialEdit("channels.delta.unit", '"deg"'),)
+        return [Finding(Severity.ERROR, "angle-unit", what, f"{largest:.4g} rad as declared", edits=edits)]
     if 0.0 < largest < FULL_RUDDER / DEGREES_PER_RADIAN and np.ptp(record["delta"]) > MOVED_SHARE * largest:
         what = f"record '{record.name}': the rudder reaches only {math.degrees(largest):.2g} deg"
         advice = 'if the column is in radians, declare unit = "rad" for delta'

@@ -20,7 +20,7 @@ from seatrial.data.check.rudder import (
 )
 from seatrial.data.check.signal import smoothed, smoothed_derivative, window_length
 from seatrial.data.check.timestamps import rebuild_time_base
-from seatrial.data.check.velocity_conventions import ACCEPTABLE_MISFIT, best_convention
+from seatrial.data.check.velocity_conventions import ACCEPTABLE_MISFIT
 from seatrial.data.draft.axes import with_axes_by_fixes
 from seatrial.data.draft.column_guess import Changes, ColumnGuess
 from seatrial.data.draft.commands import command_directions
@@ -117,7 +117,7 @@ def _velocity_convention(record: Record) -> Changes:
     motion = recorded_motion(record)
     if motion is None or motion.path_length == 0.0:
         return {}
-    best = best_convention(motion)
+    best = motion.best_of(motion.conventions)
     misfit = motion.misfit(best)
     if misfit > ACCEPTABLE_MISFIT:
         text = f"u, v fit the derivative of position in no frame ({misfit:.0%} misfit)"

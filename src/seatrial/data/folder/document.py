@@ -108,7 +108,9 @@ def document_schema(kind: type) -> Table:
 
 def findings_document(findings: tuple[Finding, ...]) -> Table:
     """Return what `check --json` writes."""
-    return {"findings": TypeAdapter(tuple[ReportedFinding, ...]).dump_python(findings)}
+    tables = TypeAdapter(tuple[ReportedFinding, ...]).dump_python(findings)
+    more = ({"consequence": one.consequence, "edits": [str(edit) for edit in one.edits]} for one in findings)
+    return {"findings": [table | rest for table, rest in zip(tables, more, strict=True)]}
 
 
 def strict_json(table: Mapping[str, Any]) -> str:

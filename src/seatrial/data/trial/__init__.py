@@ -1,6 +1,7 @@
 """Trials: ship, runs and their roles, model and settings, from a trial file or made in Python."""
 
 from seatrial.data.trial.approach import approach_condition
+from seatrial.data.trial.correction import corrected_trial
 from seatrial.data.trial.estimate_method import SEARCHES, EstimateMethod, FitCriterion
 from seatrial.data.trial.feedback_table import ControllerGains, Feedback
 from seatrial.data.trial.load import load_runs, load_trial
@@ -13,5 +14,6 @@ __all__ = [
     "SEARCHES", "CheckedRecords", "ControllerGains", "EstimateMethod", "EstimateSettings", "Feedback", "FitCriterion",
     "ModelFamily",
     "RecordFile", "Role", "SearchFitness", "SearchSettings", "Trial", "TrialRecord", "TrialRun", "Trimming",
-    "approach_condition", "checked_records", "load_records", "load_runs", "load_trial", "refuse_errors",
+    "approach_condition", "checked_records", "corrected_trial", "load_records", "load_runs", "load_trial",
+    "refuse_errors",
 ]  # fmt: skip

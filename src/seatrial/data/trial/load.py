@@ -30,7 +30,7 @@ def parse_trial(path: Path) -> TrialFile:
     """The file's tables, checked key by key.
 
     Raises:
-        InputError: no such file, no TOML, an unknown or missing key, a value of the wrong kind.
+        InputError: no such file, no TOML, or as `parse_tables`.
     """
     try:
         with path.open("rb") as file:
@@ -39,6 +39,15 @@ def parse_trial(path: Path) -> TrialFile:
         raise InputError(f"trial file '{path}' cannot be read ({error.strerror}); check the path") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(f"trial file '{path}' is no valid TOML: {error}") from None
+    return parse_tables(table, path)
+
+
+def parse_tables(table: dict, path: Path) -> TrialFile:
+    """The tables of a trial file, checked key by key; path: for messages.
+
+    Raises:
+        InputError: an unknown or missing key, a value of the wrong kind.
+    """
     try:
         file = TrialFile.model_validate(table)
     except ValidationError as error:

@@ -83,7 +83,7 @@ def _without_copies(records: tuple[TrialRecord, ...]) -> tuple[tuple[TrialRecord
         copy, original = records[index], records[first]
         if copy.role is original.role:
             dropped.add(index)
-            consequence, advice = "it counts once", "leave the copy out"
+            consequence, advice = "it counts once", f'add leave_out = ["{copy.record.name}"] to its [[records]]'
         else:
             consequence, advice = "its score is that of a fitted run", "validate on a run that was not trained on"
         findings.append(

@@ -1,0 +1,78 @@
+"""What follows from each kind of finding where nothing is done, most harmful first; its edits in their final form."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from seatrial.core.values import Finding, Record, Severity, TrialEdit
+from seatrial.core.values.notation import OPPOSITE
+
+REVERSED = '"reversed"'
+"""Value of an edit of ``positive`` that stands for the opposite of what is declared."""
+
+CONSEQUENCES: dict[str, str] = {
+    "rows-dropped": "the run would be fitted on what the repair left",
+    "position-axes": "the track is a mirror image: every coefficient of turning has the wrong sign",
+    "velocity-frame": "surge and sway are mixed: no hull coefficient means anything",
+    "velocity-axes": "surge and sway are exchanged: no hull coefficient means anything",
+    "mislabelled": "the model is fitted to another quantity",
+    "heading-sign": "track and heading contradict each other: the fit follows neither",
+    "heading-zero": "velocities are turned by a wrong angle: surge shows as sway",
+    "position-sign": "track and heading contradict each other: the fit follows neither",
+    "angle-unit": "the channel is wrong by a factor of 57 or 60: the fit diverges or ignores it",
+    "speed-unit": "forces go with the square of the speed: every coefficient is wrong",
+    "velocity-sign": "sway damping gets the wrong sign: the model is unstable or the search fails",
+    "yaw-rate": "yaw damping is fitted to another motion",
+    "rudder-sign": "the rudder's coefficients get the wrong sign: a controller tuned on them steers the wrong way",
+    "thruster-side": "thrust coefficients get the wrong sign: a controller tuned on them turns the wrong way",
+    "command-range": "thrust is extrapolated far beyond full command",
+    "closure": "what the channels contradict one another by goes into the coefficients as bias",
+    "lag": "damping and lever coefficients absorb the delay",
+    "held-command": "the rudder's effect is taken for that of what it was held at",
+    "jump": "single positions pull the fit",
+    "outlier": "single samples would pull the fit; they are interpolated",
+    "stuck": "the fit follows a sensor that stopped",
+    "dead-channel": "the channel says nothing, and would be fitted as if it did",
+    "dead-thruster": "its coefficients cannot be estimated",
+    "no-excitation": "the coefficients of steering cannot be estimated",
+    "copied-run": "a run that counts twice makes intervals too narrow",
+    "time-base": "rates are wrong where the clock is",
+    "time-gap": "the run falls into parts with initial states of their own",
+    "empty-rows": "fewer samples remain",
+    "empty-cells": "interpolated cells count as measured",
+    "repeated-rows": "repeated rows would count twice; they are dropped",
+    "resolution": "steps of the sensor count as noise",
+    "feedback": "output error would take disturbances that are answered for the ship's response",
+}
+"""Code -> consequence; findings of one severity come in this order."""
+
+
+def completed(findings: Iterable[Finding], record: Record) -> list[Finding]:
+    """Return findings with consequence and exact edits, most harmful first.
+
+    record: as it was read, with the declared directions that edits of ``positive`` reverse.
+    """
+    codes = list(CONSEQUENCES)
+    severities = list(Severity)
+    final = [_with_edits(replace(one, consequence=CONSEQUENCES.get(one.code, "")), record) for one in findings]
+    return sorted(
+        final,
+        key=lambda one: (
+            -severities.index(one.severity), codes.index(one.code) if one.code in CONSEQUENCES else len(codes),
+        ),
+    )  # fmt: skip
+
+
+def _with_edits(finding: Finding, record: Record) -> Finding:
+    if not finding.edits:
+        return finding
+    edits = tuple(_resolved(edit, record) for edit in finding.edits)
+    advice = f"set {'; '.join(map(str, edits))}" if not edits[0].exchanged_with else "; ".join(map(str, edits))
+    return replace(finding, edits=edits, advice=f"{advice} in the trial file")
+
+
+def _resolved(edit: TrialEdit, record: Record) -> TrialEdit:
+    """The edit with the opposite of the declared direction; numbers in the sense in which the file counts."""
+    symbol = edit.key.split(".")[1]
+    if edit.value == REVERSED:
+        return replace(edit, value=f'"{OPPOSITE[record.channel(symbol).positive]}"')
+    return edit
