@@ -33,7 +33,6 @@ def test_what_agrees_is_no_finding() -> None:
 @pytest.mark.parametrize(
     ("change", "code"),
     [
-        ({"reference_steps": 3}, "few-reference-steps"),
         ({"reference_p": 1e-3}, "reference-residual"),
         ({"controller_correlation": -0.9}, "controller-mismatch"),
     ],
@@ -81,6 +80,7 @@ def test_a_declared_loop_is_used_and_its_short_record_warned_of(trial: st.Trial)
     assert loop.controller_correlation == pytest.approx(1.0, abs=0.05)
     assert [c.name for c in loop.without_disturbance] == ["K", "T"]
     codes = [finding.code for finding in fit.findings]
+    assert fit.intervals.startswith("profile likelihood")
     assert "few-reference-steps" in codes
     assert "controller-mismatch" not in codes
 

@@ -9,7 +9,6 @@ import pytest
 from seatrial.core.values import DivergedError, InputError, Parameters, Prior
 from seatrial.estimation.identify.fit_result import (
     divergence_message,
-    few_memories,
     refuse_unidentified,
     unconverged,
     unidentified,
@@ -80,15 +79,3 @@ def test_a_search_at_its_limit_and_noise_that_changes_are_warned_of(
     optimum = SimpleNamespace(solution=SimpleNamespace(status=status))
     estimation: Any = SimpleNamespace(estimate=SimpleNamespace(optimum=optimum, is_settled=is_settled))
     assert [f.code for f in unconverged(estimation)] == codes
-
-
-@pytest.mark.parametrize(("memory", "count"), [(5.0, 0), (15.0, 0), (16.0, 1)])
-def test_few_memories_are_warned_of(memory: float, count: int) -> None:
-    """A record of 600 s has 40 memories of 15 s."""
-    data = SimpleNamespace(inputs=np.zeros((6000, 1)), dt=0.1)
-    estimation: Any = SimpleNamespace(
-        estimate=SimpleNamespace(problem=SimpleNamespace(data=data)),
-        noise_model=SimpleNamespace(added={"gust_memory_r": memory, "wave_frequency": 900.0}),
-    )
-    findings = few_memories(estimation)
-    assert [f.code for f in findings] == ["few-memories"] * count

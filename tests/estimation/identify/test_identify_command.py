@@ -56,14 +56,17 @@ def test_every_kind_of_interval_can_be_had(
     assert bool(fit["identifiability"]["profiles"]) == (kind == "profile")
 
 
-def test_a_profile_that_cannot_be_had_is_said(
-    trial_of: WriteTrial, tmp_path: Path, run_command: Callable[..., int]
-) -> None:
+def test_prediction_error_has_profiles(trial_of: WriteTrial, tmp_path: Path, run_command: Callable[..., int]) -> None:
     trial = trial_of({"a": 0.0}, more='[estimate]\nmethod = "prediction-error"')
     arguments = ("--intervals", "profile", "--out", tmp_path / "out", "--json", tmp_path / "fit.json")
     assert run_command("identify", trial, *arguments) == 0
     fit = json.loads((tmp_path / "fit.json").read_text())
-    assert [f["code"] for f in fit["findings"] if f["code"] == "no-profile"] == ["no-profile"]
+    assert fit["method"]["intervals"].startswith("profile likelihood; standard errors: ")
+    profiles = {p["parameter"]: p for p in fit["identifiability"]["profiles"]}
+    free = [c for c in fit["coefficients"] if not c["fixed"]]
+    assert set(profiles) == {c["name"] for c in free}
+    for c in free:
+        assert (c["lower"], c["upper"]) == (profiles[c["name"]]["lower"], profiles[c["name"]]["upper"])
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from seatrial.estimation.estimate.disturbance_choice import DisturbanceChoice, c
 from seatrial.estimation.estimate.disturbance_screen import HINT, spectral_hint
 from seatrial.estimation.estimate.input_offsets import with_input_offsets
 from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
+from seatrial.estimation.estimate.plausibility import with_plausible_start
 from seatrial.estimation.estimate.point_estimate import (
     PointEstimate,
     residual_correlation,
@@ -113,15 +114,14 @@ def choose_criterion(
     begun: where the search began, from which prediction error may start too.
     is_unforced: nothing moves the ship but its initial state; has_feedback: inputs follow outputs.
     """
-    other = None if begun is None else with_input_offsets(begun)
+    first = with_input_offsets(with_plausible_start(shooting))
+    other = None if begun is None else with_input_offsets(with_plausible_start(begun))
     shot = output_error_choice(shooting, _output_error_name(seconds))
     match settings.criterion:
         case FitCriterion.OUTPUT_ERROR | FitCriterion.MULTIPLE_SHOOTING:
             return _required_choice(shot, settings, noise, "the criterion is set by the trial")
         case FitCriterion.PREDICTION_ERROR:
-            white = fit_prediction_error(
-                with_input_offsets(shooting), noise, other=other, thorough=True, report_progress=report_progress
-            )
+            white = fit_prediction_error(first, noise, other=other, thorough=True, report_progress=report_progress)
             disturbances = choose_disturbance(white, report_progress=report_progress)
             reasons = ("it is set by the trial", disturbances.summary)
             return prediction_error_choice(disturbances.chosen.noise, disturbances, *reasons)
@@ -144,9 +144,7 @@ def choose_criterion(
         return shot.with_reasons(_CORRELATED, _SEGMENTED)
     if is_coarsely_sampled(shooting.problem):
         return shot.with_reasons(_CORRELATED, _COARSE_SAMPLES)
-    white = fit_prediction_error(
-        with_input_offsets(shooting), noise, other=other, thorough=not in_waves, report_progress=report_progress
-    )
+    white = fit_prediction_error(first, noise, other=other, thorough=not in_waves, report_progress=report_progress)
     if np.isnan(white.newton_decrement):  # not searched: no disturbance makes such innovations white
         return replace(shot.with_reasons(white.test.summary, _SEGMENTED), process_intensities=white.process_intensities)
     disturbances = choose_disturbance(white, needs_disturbance=is_closed, report_progress=report_progress)

@@ -1,4 +1,6 @@
-"""Nothing outside physics is handed on as an estimate: a search that left its basin ends in a sentence."""
+"""Nothing outside physics is handed on as an estimate: a search that left its basin is begun anew, or refused."""
+
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,21 +19,38 @@ def refuse_implausible(estimate: PointEstimate, standard_error: Array) -> None:
     Raises:
         InputError: which coefficients, their values, and what to try.
     """
-    problem, free = estimate.problem, estimate.problem.free
+    free = estimate.problem.free
     if not np.isfinite(estimate.optimum.solution.value):
         return
     values, errors = estimate.common_parameters[: len(free)], standard_error[: len(free)]
-    lost = []
-    for i, name in enumerate(free):
-        parameter = problem.model.parameters[name]
-        size = max(parameter.scale, abs(parameter.value), abs(parameter.prior.mean) if parameter.prior else 0.0)
-        is_absurd = size > 0.0 and parameter.prior is None and abs(values[i]) > ABSURD_FACTOR * size
-        if not np.isfinite(values[i]) or np.isnan(errors[i]) or is_absurd:
-            lost.append(i)
-    if lost:
+    lost = np.flatnonzero(_is_absurd(estimate) | np.isnan(errors))
+    if len(lost):
         text = ", ".join(f"{free[i]} {values[i]:.3g}" for i in lost)
         raise InputError(
             f"the search ended outside physics: {text}, standard error "
             f"{', '.join(f'{errors[i]:.2g}' for i in lost)}; give start values nearer the ship's under [model.start], "
             "bounds under [model.bounds] or priors under [model.priors], or a record with harder manoeuvres"
         )
+
+
+def with_plausible_start(estimate: PointEstimate) -> PointEstimate:
+    """Return the estimate, its free coefficients at the model's own values if any of them got lost.
+
+    Output error takes a disturbance for a ship without damping where a record is short; from there no other criterion
+    finds back, as the likelihood is flat.
+    """
+    if not np.any(_is_absurd(estimate)):
+        return estimate
+    problem, solution = estimate.problem, estimate.optimum.solution
+    point = solution.point.copy()
+    point[: len(problem.free)] = [problem.model.parameters[name].value for name in problem.free]
+    return replace(estimate, optimum=replace(estimate.optimum, solution=replace(solution, point=point)))
+
+
+def _is_absurd(estimate: PointEstimate) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """Return whether each free coefficient is no number or far outside its size, (free,)."""
+    parameters = [estimate.problem.model.parameters[name] for name in estimate.problem.free]
+    values = estimate.common_parameters[: len(parameters)]
+    sizes = [max(p.scale, abs(p.value), abs(p.prior.mean) if p.prior else 0.0) for p in parameters]
+    has_limit = [p.prior is None and size > 0.0 for p, size in zip(parameters, sizes, strict=True)]
+    return ~np.isfinite(values) | (np.array(has_limit) & (np.abs(values) > ABSURD_FACTOR * np.array(sizes)))

@@ -4,7 +4,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 
-from seatrial.core.results import Fit, Identifiability
+from seatrial.core.results import Fit, Identifiability, Profile
 from seatrial.core.values import DivergedError, Finding, InputError
 from seatrial.core.values.versions import versions
 from seatrial.data.trial.approach import approach_condition
@@ -14,9 +14,10 @@ from seatrial.estimation.identify.closed_loop_findings import closed_loop_findin
 from seatrial.estimation.identify.identifiability import identifiability
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.model_selection import SelectedModel, with_model_spread
-from seatrial.estimation.identify.profile import profiles
+from seatrial.estimation.identify.profile import innovation_profiles, profiles
 from seatrial.estimation.identify.roll_characteristics import one_speed_finding, roll_characteristics
 from seatrial.estimation.identify.seakeeping import seakeeping
+from seatrial.estimation.identify.short_records import short_record_findings, short_record_profiles
 from seatrial.estimation.information.frequency_response import frequency_responses
 from seatrial.estimation.predict.k_step import horizon_list, k_step_errors
 from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
@@ -48,7 +49,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         coefficients=fit_result.coefficients(estimation, trial.truth, assessment.profiles),
         covariance=estimation.interval.covariance[: len(free), : len(free)],
         solution=estimation.estimate.optimum.solution,
-        method=fit_result.method(estimation),
+        method=fit_result.method(estimation, has_profiles=bool(assessment.profiles)),
         offsets=fit_result.offsets(estimation),
         channel_noise=fit_result.noise(estimation),
         residuals=fit_result.residuals(estimation),
@@ -56,8 +57,8 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         findings=(
             *task.findings, *selected.findings, *findings, *fit_result.unidentified(task.estimation),
             *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation),
-            *fit_result.few_memories(estimation), *closed_loop_findings(estimation),
-            *_profile_findings(task, assessment), *predicted.findings,
+            *short_record_findings(estimation, assessment.profiles), *closed_loop_findings(estimation),
+            *predicted.findings,
             *one_speed_finding(roll, runs.records),
         ),
         records=tuple(r.record for r in task.records),
@@ -91,14 +92,14 @@ def _identifiability(task: Identification, estimation: Estimation) -> Identifiab
     """Return what the records determine, with profile likelihoods where these are required."""
     approach = approach_condition(task.runs.records, estimation.model)
     assessment = identifiability(estimation, task.symmetries, approach, task.runs.length)
+    return replace(assessment, profiles=_profiles(task, estimation))
+
+
+def _profiles(task: Identification, estimation: Estimation) -> tuple[Profile, ...]:
+    """Return profile likelihoods where these are required, or where the records are too short for anything else."""
+    estimate, errors, report_progress = estimation.estimate, estimation.interval.standard_error, task.report_progress
     if task.options.intervals is not IntervalMethod.PROFILE:
-        return assessment
-    estimate, free = estimation.estimate, estimation.estimate.problem.free
-    return replace(
-        assessment, profiles=profiles(estimate, estimation.interval.standard_error, free, task.report_progress)
-    )
-
-
-def _profile_findings(task: Identification, assessment: Identifiability) -> tuple[Finding, ...]:
-    is_missing = task.options.intervals is IntervalMethod.PROFILE and not assessment.profiles
-    return (fit_result.NO_PROFILE,) if is_missing else ()
+        return short_record_profiles(estimation, report_progress)
+    if estimation.has_process_noise and estimation.process_noise is not None:
+        return innovation_profiles(estimation.process_noise, errors, estimate.problem.free, report_progress)
+    return profiles(estimate, errors, estimate.problem.free, report_progress)

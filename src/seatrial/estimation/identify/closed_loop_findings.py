@@ -8,16 +8,12 @@ from seatrial.core.values import Finding, Severity
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.process_noise import has_noise
 
-FEWEST_REFERENCE_STEPS = 4
-"""Changes of the reference that records of a closed loop contain at least, for intervals to hold; chosen: with two of
-them 80 to 87 % of 95 % intervals held the truth (simulated Nomoto craft, 120 s)."""
-
 LEAST_AGREEMENT = 0.5
 """Correlation of a declared controller's orders with the input below which they contradict each other; chosen."""
 
 
 def closed_loop_findings(estimation: Estimation) -> list[Finding]:
-    """Return warnings of a closed loop fitted by output error, of few steps, and of declarations that do not agree."""
+    """Return warnings of a closed loop that is fitted by output error, and of declarations that do not agree."""
     loop = estimation.noise_model.closed_loop
     if loop is None:
         return []
@@ -27,10 +23,6 @@ def closed_loop_findings(estimation: Estimation) -> list[Finding]:
                                 f"criterion is {estimation.criterion}: disturbances that are answered count as the "
                                 "craft's own response", "", 'write method = "auto" under [estimate], without robust '
                                 "and segment_s, so that prediction error is used"))  # fmt: skip
-    if loop.reference_steps is not None and loop.reference_steps < FEWEST_REFERENCE_STEPS:
-        findings.append(Finding(Severity.WARNING, "few-reference-steps", "the reference changes seldom: intervals may "
-                                "be too narrow", f"{loop.reference_steps} times in all runs", "record at least "
-                                f"{FEWEST_REFERENCE_STEPS} changes of the ordered '{loop.output}'"))  # fmt: skip
     return findings
 
 

@@ -5,25 +5,11 @@ from types import MappingProxyType
 
 import numpy as np
 
-from seatrial.core.equations.augment import MEMORY_PREFIX
 from seatrial.core.results import Coefficient, Method, Noise, Offset, Profile, Residuals
 from seatrial.core.values import NOTATION, Array, DivergedError, Finding, InputError, Parameter, Parameters, Severity
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import split_segments
 from seatrial.estimation.information.covariance import Interval
-
-NO_PROFILE = Finding(
-    Severity.INFO,
-    "no-profile",
-    "no profile likelihood: the coefficients come from prediction error, which has no outputs to fit again",
-    "",
-    "intervals are those of the innovations' information; set another method under [estimate] to have profiles",
-)
-
-
-FEWEST_MEMORIES = 40.0
-"""Memories of a disturbance that records last at least, for intervals of the information to hold; chosen: in 12 of them
-85 to 88 % of 95 % intervals held the truth (simulated Nomoto craft, open loop)."""
 
 
 def coefficients(
@@ -112,9 +98,9 @@ def residuals(estimation: Estimation) -> tuple[Residuals, ...]:
     )
 
 
-def method(estimation: Estimation) -> Method:
-    """What was used and why."""
-    problem = estimation.estimate.problem
+def method(estimation: Estimation, *, has_profiles: bool) -> Method:
+    """What was used and why; has_profiles: whether limits of intervals come from profile likelihoods."""
+    problem, meaning = estimation.estimate.problem, estimation.interval.meaning
     settings: dict[str, float | str] = {
         "samples per second": 1.0 / problem.data.dt,
         "segments": problem.data.count,
@@ -124,7 +110,7 @@ def method(estimation: Estimation) -> Method:
     return Method(
         estimation.criterion,
         estimation.start_method,
-        estimation.interval.meaning,
+        f"profile likelihood; standard errors: {meaning}" if has_profiles else meaning,
         tuple(dict.fromkeys(estimation.reasons)),
         settings,
     )
@@ -139,19 +125,6 @@ def bounds_hit(estimation: Estimation) -> list[Finding]:
                 "widen the bound under [model.bounds], or give a prior instead")
         for i in hit
     ]  # fmt: skip
-
-
-def few_memories(estimation: Estimation) -> list[Finding]:
-    """Return a warning where the records last few memories of the disturbance that was estimated with the fit."""
-    data = estimation.estimate.problem.data
-    seconds = len(data.inputs) * data.dt
-    memories = {n: t for n, t in estimation.noise_model.added.items() if n.startswith(MEMORY_PREFIX)}
-    longest = max(memories.values(), default=0.0)
-    if seconds >= FEWEST_MEMORIES * longest:
-        return []
-    return [Finding(Severity.WARNING, "few-memories", "the records last few memories of the disturbance: intervals may "
-                    "be too narrow", f"{seconds:.0f} s, memory {longest:.3g} s", "record at least "
-                    f"{FEWEST_MEMORIES * longest:.0f} s")]  # fmt: skip
 
 
 def refuse_unidentified(estimation: Estimation) -> None:

@@ -5,7 +5,7 @@ ones. A coefficient that is held keeps its prior, so that the costs of all value
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -13,8 +13,10 @@ import numpy as np
 from seatrial.core.results import Profile
 from seatrial.core.values import Array, ProgressReporter
 from seatrial.estimation.estimate.point_estimate import PointEstimate
+from seatrial.estimation.estimate.process_noise import ProcessNoise, search_prediction_error
 from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.problem.output_error import OutputError
+from seatrial.estimation.problem.prediction_error import PredictionError
 from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.numerics.workers import map_in_threads
 
@@ -25,32 +27,87 @@ CHI_SQUARED_LIMIT = 3.841
 _MAX_POINTS_PER_SIDE, _MAX_DEVIATIONS = 8, 5.0
 # promised decrease of the cost at which a refit ends, ours
 _NEGLIGIBLE = 1e-4
+# most evaluations of a refit by prediction error, ours: it starts at its neighbour
+_EVALUATIONS = 30
 # relative difference of costs that count as one, ours
 _COST_TOLERANCE = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class _Refit:
+    """Twice the loss with one coefficient held, and the optimum of the others, from which the next one starts."""
+
+    twice_loss: float
+    common_parameters: Array
+    local: Array
+
+
+@dataclass(frozen=True, eq=False)
+class _ProfiledFit:
+    """An optimum whose coefficients can be held.
+
+    Attributes:
+        own_errors: standard errors of the free coefficients by its information, (free,).
+        hold: column -> (value, where the others start) -> refit.
+    """
+
+    free: Sequence[str]
+    optimum: _Refit
+    lower: Array
+    upper: Array
+    own_errors: Array
+    hold: Callable[[int], Callable[[float, _Refit], _Refit]]
+    workers: int | None
 
 
 def profiles(
     estimate: PointEstimate, deviations: Array, names: Sequence[str], report_progress: ProgressReporter | None = None
 ) -> tuple[Profile, ...]:
-    """The profile of each named coefficient; none where the estimate minimises another criterion (prediction error).
+    """Return the profile of each named coefficient; none where the estimate minimises another criterion.
 
     deviations: standard errors of all free ones, (free,); first steps are half of them or of the information's, if
     those are smaller.
     """
     if not _is_minimum_of_its_problem(estimate):
         return ()
-    place = {n: i for i, n in enumerate(estimate.problem.free)}
-    own_errors = np.sqrt(np.diag(inverse(estimate.optimum.normal.without_local()[1])))
+    problem, solution = estimate.problem, estimate.optimum.solution
+    fit = _ProfiledFit(
+        problem.free, _Refit(2.0 * solution.value, solution.point, estimate.optimum.local),
+        problem.lower, problem.upper,
+        np.sqrt(np.diag(inverse(estimate.optimum.normal.without_local()[1]))),
+        lambda column: _hold_in_output_error(problem, column), problem.workers,
+    )  # fmt: skip
+    return _profiles(fit, deviations, names, report_progress)
+
+
+def innovation_profiles(
+    noise: ProcessNoise, deviations: Array, names: Sequence[str], report_progress: ProgressReporter | None = None
+) -> tuple[Profile, ...]:
+    """Return the same for prediction error: disturbance and sensor noise are fitted again at each value."""
+    problem, solution = noise.problem, noise.optimum.solution
+    fit = _ProfiledFit(
+        noise.output_error.free, _Refit(2.0 * solution.value, solution.point, np.zeros((0, 0))), problem.lower,
+        problem.upper, noise.interval.standard_error,
+        lambda column: _hold_in_prediction_error(problem, column), problem.runs.workers,
+    )  # fmt: skip
+    return _profiles(fit, deviations, names, report_progress)
+
+
+def _profiles(
+    fit: _ProfiledFit, deviations: Array, names: Sequence[str], report_progress: ProgressReporter | None
+) -> tuple[Profile, ...]:
+    place = {n: i for i, n in enumerate(fit.free)}
     done: list[int] = []
 
     def one(name: str) -> Profile:
-        profile = _profile(estimate, place[name], float(min(deviations[place[name]], own_errors[place[name]])))
+        column = place[name]
+        profile = _profile(fit, column, float(min(deviations[column], fit.own_errors[column])))
         done.append(1)
         if report_progress:
             report_progress(f"profile likelihood: {len(done)} of {len(names)}")
         return profile
 
-    return tuple(map_in_threads(one, list(names), workers=estimate.problem.workers))
+    return tuple(map_in_threads(one, list(names), workers=fit.workers))
 
 
 def _is_minimum_of_its_problem(estimate: PointEstimate) -> bool:
@@ -58,14 +115,14 @@ def _is_minimum_of_its_problem(estimate: PointEstimate) -> bool:
     return bool(np.isclose(cost, estimate.optimum.solution.value, rtol=_COST_TOLERANCE, atol=_COST_TOLERANCE))
 
 
-def _profile(estimate: PointEstimate, column: int, deviation: float) -> Profile:
-    centre = (float(estimate.common_parameters[column]), 2.0 * estimate.optimum.solution.value)
-    below, above = (_branch(estimate, column, sign * deviation) for sign in (-1.0, 1.0))
+def _profile(fit: _ProfiledFit, column: int, deviation: float) -> Profile:
+    centre = (float(fit.optimum.common_parameters[column]), fit.optimum.twice_loss)
+    below, above = (_branch(fit, column, sign * deviation) for sign in (-1.0, 1.0))
     values, costs = np.array([*reversed(below), centre, *above]).T
     costs = costs - np.min(costs)
     least = int(np.argmin(costs))
     return Profile(
-        estimate.problem.free[column],
+        fit.free[column],
         tuple(map(float, values)),
         tuple(map(float, costs)),
         _crossing(values[least::-1], costs[least::-1]),
@@ -73,43 +130,53 @@ def _profile(estimate: PointEstimate, column: int, deviation: float) -> Profile:
     )
 
 
-def _branch(estimate: PointEstimate, column: int, step: float) -> list[tuple[float, float]]:
+def _branch(fit: _ProfiledFit, column: int, step: float) -> list[tuple[float, float]]:
     """Values and twice the loss, outward until the limit is passed, or bound, reach or the model's range is at its end.
 
     Where a refit finds a smaller loss than the estimate's, the limit counts from there.
     """
-    held = _hold_coefficient(estimate, column)
-    shared, local = np.delete(estimate.common_parameters, column), estimate.optimum.local
-    low, high = estimate.problem.lower[column], estimate.problem.upper[column]
-    least, away, points = 2.0 * estimate.optimum.solution.value, 0.5, []
+    refit, start = fit.hold(column), fit.optimum.common_parameters
+    last = replace(fit.optimum, common_parameters=np.delete(start, column))
+    least, away, points = fit.optimum.twice_loss, 0.5, []
     while away <= _MAX_DEVIATIONS and len(points) < _MAX_POINTS_PER_SIDE:
-        value = float(estimate.common_parameters[column]) + away * step
-        if not low <= value <= high:
+        value = float(start[column]) + away * step
+        if not fit.lower[column] <= value <= fit.upper[column]:
             break
-        problem, known = held(value)
-        again = levenberg_marquardt(problem, shared, local, negligible=_NEGLIGIBLE)
-        cost = 2.0 * again.solution.value + known
-        if not np.isfinite(cost):
+        last = refit(value, last)
+        if not np.isfinite(last.twice_loss):
             break
-        shared, local, least = again.solution.point, again.local, min(least, cost)
-        points.append((value, cost))
-        if cost - least > CHI_SQUARED_LIMIT:
+        least = min(least, last.twice_loss)
+        points.append((value, last.twice_loss))
+        if last.twice_loss - least > CHI_SQUARED_LIMIT:
             break
         away += 0.5 if away < 2.5 else 1.25  # steps in standard errors, longer in the tails; chosen
     return points
 
 
-def _hold_coefficient(estimate: PointEstimate, column: int) -> Callable[[float], tuple[OutputError, float]]:
-    """The problem with one coefficient fixed and twice the cost of its own prior, as functions of its value."""
-    problem, name = estimate.problem, estimate.problem.free[column]
-    model = problem.model.with_parameters(problem.model.parameters.fixed(name))
-    mean, weight = (float(of_all[column]) for of_all in problem.priors)
+def _hold_in_output_error(problem: OutputError, column: int) -> Callable[[float, _Refit], _Refit]:
+    def refit(value: float, start: _Refit) -> _Refit:
+        held, prior = _held(problem, column, value)
+        again = levenberg_marquardt(held, start.common_parameters, start.local, negligible=_NEGLIGIBLE)
+        return _Refit(2.0 * again.solution.value + prior, again.solution.point, again.local)
 
-    def problem_at(value: float) -> tuple[OutputError, float]:
-        known = weight * (value - mean) ** 2
-        return replace(problem, model=model.with_values({name: value}), workers=1), known
+    return refit
 
-    return problem_at
+
+def _hold_in_prediction_error(problem: PredictionError, column: int) -> Callable[[float, _Refit], _Refit]:
+    def refit(value: float, start: _Refit) -> _Refit:
+        runs, prior = _held(problem.runs, column, value)
+        held = replace(problem, runs=runs, steps=None)
+        again = search_prediction_error(held, start.common_parameters, _EVALUATIONS, lambda _: None)[1]
+        return _Refit(2.0 * again.solution.value + prior, again.solution.point, start.local)
+
+    return refit
+
+
+def _held(problem: OutputError, column: int, value: float) -> tuple[OutputError, float]:
+    """Return the problem with one coefficient fixed, and twice the cost of its own prior at this value."""
+    name, (mean, weight) = problem.free[column], (float(of_all[column]) for of_all in problem.priors)
+    model = problem.model.with_parameters(problem.model.parameters.fixed(name)).with_values({name: value})
+    return replace(problem, model=model, workers=1), weight * (value - mean) ** 2
 
 
 def _crossing(values: Array, costs: Array) -> float | None:

@@ -1,0 +1,113 @@
+"""Estimates outside physics are refused in a sentence; a search that got lost in output error begins anew."""
+
+import importlib
+import sys
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from seatrial.core.values import InputError, Prior, Record
+from seatrial.data.trial import EstimateMethod, EstimateSettings
+from seatrial.estimation.estimate.assemble import output_error_problem
+from seatrial.estimation.estimate.fit import Estimation, estimate_model
+from seatrial.estimation.estimate.plausibility import refuse_implausible, with_plausible_start
+from seatrial.estimation.estimate.point_estimate import PointEstimate
+from seatrial.estimation.estimate.runs import Runs
+from seatrial.estimation.estimate.settings import EstimatorOptions
+from seatrial.numerics.optimise import Optimum, Solution, Status
+from seatrial.physics.models.nomoto import nomoto
+
+LENGTH, ERRORS = 50.0, np.array([0.01, 1.0])
+
+
+def at(k: float, t: float, *, cost: float = 1.0, prior: Prior | None = None) -> PointEstimate:
+    """A Nomoto craft, K 0.1 and T 10 of its own, estimated at these values."""
+    time = 0.1 * np.arange(100)
+    channels = {"delta": np.sin(time), "r": 0.1 * np.cos(time), "u": 5.0 + 0.0 * time}
+    model = nomoto().with_values({"K": 0.1, "T": 10.0})
+    if prior is not None:
+        model = model.with_parameters(model.parameters.with_priors({"T": prior}))
+    runs = Runs.one_session_each([Record.from_arrays("run", time, channels)], LENGTH)
+    problem = output_error_problem(model, runs, np.inf, EstimateSettings(), 1)
+    point = np.array([k, t])
+    solution = Solution(point, cost, Status.CONVERGED, 1)
+    return PointEstimate(
+        problem, Optimum(solution, np.zeros((1, 1)), problem.normal(problem.start(), np.zeros((1, 1))))
+    )
+
+
+def test_what_ships_have_is_accepted() -> None:
+    refuse_implausible(at(0.3, -40.0), ERRORS)
+
+
+@pytest.mark.parametrize(
+    ("estimate", "errors", "named"),
+    [
+        (at(-6e9, -3e11), np.array([1e12, 1e14]), "K -6e+09, T -3e+11, standard error 1e+12, 1e+14"),
+        (at(0.1, np.nan), ERRORS, "T nan, standard error 1"),
+        (at(0.1, 10.0), np.array([np.nan, 1.0]), "K 0.1, standard error nan"),
+    ],
+)
+def test_a_lost_search_is_one_sentence_with_what_to_try(
+    estimate: PointEstimate, errors: np.ndarray, named: str
+) -> None:
+    with pytest.raises(InputError) as caught:
+        refuse_implausible(estimate, errors)
+    assert str(caught.value) == (
+        f"the search ended outside physics: {named}; give start values nearer the ship's under [model.start], bounds "
+        "under [model.bounds] or priors under [model.priors], or a record with harder manoeuvres"
+    )
+
+
+def test_a_prior_that_expects_large_values_allows_them() -> None:
+    refuse_implausible(at(0.1, 5e4, prior=Prior(4e4, 1e4, "a hulk")), ERRORS)
+
+
+def test_a_model_that_diverges_is_judged_by_its_runs() -> None:
+    refuse_implausible(at(-6e9, 1.0, cost=np.inf), ERRORS)
+
+
+def test_only_a_lost_search_begins_at_the_model_s_own_values() -> None:
+    near, lost = at(0.3, 40.0), at(0.3, 4e9)
+    assert with_plausible_start(near) is near
+    assert with_plausible_start(lost).common_parameters.tolist() == [0.1, 10.0]
+
+
+@pytest.fixture(scope="module")
+def crafts(repository: Path) -> tuple[ModuleType, ModuleType]:
+    sys.path.insert(0, str(repository / "benchmarks"))
+    try:
+        return importlib.import_module("disturbed_craft"), importlib.import_module("standard_craft")
+    finally:
+        sys.path.pop(0)
+
+
+@pytest.fixture(scope="module")
+def gusty_minute(crafts: tuple[ModuleType, ModuleType]) -> Record:
+    """Sixty seconds in gusts that output error takes for a craft without damping."""
+    records, craft = crafts[0], crafts[1].NOMOTO
+    runs = records.independent_nomoto(
+        craft, records.Disturbance(0.5, 5.0), 5, np.random.default_rng([7, 60, 0]), is_closed=False, seconds=60.0
+    )
+    return runs[1]
+
+
+def estimated(record: Record, method: EstimateMethod) -> Estimation:
+    model = nomoto().with_values({"K": 0.1, "T": 10.0})
+    settings = replace(EstimateSettings(), method=method)
+    return estimate_model(model, Runs.one_session_each([record], LENGTH), settings, EstimatorOptions(workers=1))
+
+
+def test_output_error_that_leaves_its_basin_is_refused(gusty_minute: Record) -> None:
+    with pytest.raises(InputError, match=r"the search ended outside physics: K .*, T .*; give start values"):
+        estimated(gusty_minute, EstimateMethod.MULTIPLE_SHOOTING)
+
+
+def test_prediction_error_returns_to_the_basin(gusty_minute: Record) -> None:
+    found = estimated(gusty_minute, EstimateMethod.AUTO)
+    error = found.estimate.common_parameters[:2] - [0.15, 8.0]
+    assert np.all(np.abs(error) < 3.5 * found.interval.standard_error[:2])
+    assert found.noise_model.disturbance == "first-order Markov on r"

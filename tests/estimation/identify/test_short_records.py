@@ -1,0 +1,79 @@
+"""Few memories of a disturbance and few changes of a reference: profiles in place of the information, and a warning."""
+
+import importlib
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from seatrial.core.results import Profile
+from seatrial.core.results.closed_loop import FeedbackEvidence
+from seatrial.estimation.estimate.fit import estimate_model
+from seatrial.estimation.estimate.runs import Runs
+from seatrial.estimation.estimate.settings import EstimatorOptions
+from seatrial.estimation.identify.short_records import short_record_findings, short_record_profiles
+
+PROFILE = Profile("K", (0.1, 0.2), (0.0, 4.0), None, 0.19)
+
+
+def estimation(memory: float, *, steps: int | None = None) -> Any:
+    """What is read of an estimation over 600 s."""
+    data = SimpleNamespace(inputs=np.zeros((6000, 1)), dt=0.1)
+    loop = None if steps is None else FeedbackEvidence("delta", "psi", ("run",), reference_steps=steps)
+    return SimpleNamespace(
+        estimate=SimpleNamespace(problem=SimpleNamespace(data=data, free=("K", "T"))),
+        noise_model=SimpleNamespace(added={"gust_memory_r": memory, "wave_frequency": 900.0}, closed_loop=loop),
+        process_noise=None,
+        has_process_noise=False,
+    )
+
+
+@pytest.mark.parametrize(("memory", "count"), [(5.0, 0), (15.0, 0), (16.0, 1)])
+def test_few_memories_are_warned_of(memory: float, count: int) -> None:
+    """A record of 600 s has 40 memories of 15 s."""
+    findings = short_record_findings(estimation(memory), ())
+    assert [f.code for f in findings] == ["few-memories"] * count
+    assert all("--intervals profile" in f.message for f in findings)
+
+
+def test_few_changes_of_the_reference_are_warned_of() -> None:
+    (finding,) = short_record_findings(estimation(5.0, steps=3), (PROFILE,))
+    assert finding.code == "few-reference-steps"
+    assert "intervals come from a profile likelihood" in finding.message
+    assert short_record_findings(estimation(5.0, steps=4), ()) == []
+
+
+def test_without_a_disturbance_there_is_no_profile() -> None:
+    assert short_record_profiles(estimation(16.0)) == ()
+
+
+def test_a_profile_of_prediction_error_has_the_curvature_of_its_information(repository: Path) -> None:
+    """Half a standard error away the loss is a quarter of chi squared's unit, with all else fitted again."""
+    sys.path.insert(0, str(repository / "benchmarks"))
+    try:
+        records, crafts = importlib.import_module("disturbed_craft"), importlib.import_module("standard_craft")
+    finally:
+        sys.path.pop(0)
+    craft = crafts.NOMOTO
+    (run,) = records.independent_nomoto(
+        craft, records.Disturbance(0.5, 5.0), 1, np.random.default_rng(11), is_closed=False, seconds=120.0
+    )
+    fitted = estimate_model(
+        craft.model.with_values(dict(craft.guess)),
+        Runs.one_session_each([run], craft.length),
+        options=EstimatorOptions(workers=1),
+    )
+    profiles = short_record_profiles(fitted)
+    assert [p.parameter for p in profiles] == ["K", "T"]
+    for p, error in zip(profiles, fitted.interval.standard_error, strict=False):
+        values, costs = np.array(p.values), np.array(p.costs)
+        centre = values[np.argmin(costs)]
+        near = np.isclose(np.abs(values - centre), 0.5 * error, rtol=1e-6)
+        assert near.sum() == 2
+        assert np.mean(costs[near]) == pytest.approx(0.25, rel=0.15)
+        assert p.lower is not None
+        assert p.lower < centre
+        assert p.upper is None or p.upper > centre
