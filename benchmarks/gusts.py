@@ -2,7 +2,8 @@
 
 Every cell has a size a and a memory of the disturbance, open loop (random binary rudder) or closed (a controller on a
 square wave of heading), 600 s at 10 Hz. Every run is identified from scratch by the default of `identify`; errors are
-compared with the Cramer-Rao bound of the true disturbance on the same record.
+compared with the Cramer-Rao bound of the true disturbance on the same record, and with the error that the record itself
+has: of one scoring step from the true coefficients with the true disturbance, which no estimator can undo.
 `python benchmarks/gusts.py --craft nomoto --generator independent --runs 80`.
 """
 
@@ -26,7 +27,7 @@ from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.estimate.fit import estimate_model
 from seatrial.estimation.estimate.input_offsets import with_input_offsets
 from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.estimate.process_noise import ProcessNoise, initial_problem
+from seatrial.estimation.estimate.process_noise import ProcessNoise, initial_problem, newton_step
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.numerics.optimise import Optimum, Solution, Status
@@ -62,12 +63,14 @@ class Cell:
 class Outcome:
     """Errors, standard errors and bounds of the coefficients, (k,) each; what was chosen.
 
+    efficient: errors of an efficient estimate from the same record.
     failure: the sentence by which the record was refused.
     """
 
     error: Array
     standard_error: Array
     bound: Array
+    efficient: Array
     disturbance: str
     is_white: bool
     seconds: float
@@ -82,8 +85,16 @@ class Item:
     record: Record
 
 
-def bound(craft: Craft, disturbance: Disturbance, record: Record) -> Array:
-    """Standard errors that the likelihood of the true disturbance admits on this record, (k,)."""
+@dataclass(frozen=True, eq=False)
+class Limit:
+    """Standard errors that a likelihood admits on a record, and the errors of an efficient estimate, both (k,)."""
+
+    standard_error: Array
+    efficient: Array
+
+
+def limit_of(craft: Craft, disturbance: Disturbance, record: Record) -> Limit:
+    """What the likelihood of the true disturbance admits on this record."""
     model = craft.model
     problem = output_error_problem(model, Runs.one_session_each([record], craft.length), np.inf, EstimateSettings(), 1)
     problem = replace(problem, noise=np.array([craft.sensors[o] for o in problem.data.outputs]))
@@ -117,7 +128,7 @@ def bound(craft: Craft, disturbance: Disturbance, record: Record) -> Array:
     exact = replace(white, steps=white.difference_steps(point, normal.hessian))
     at = Optimum(Solution(point, 0.0, Status.CONVERGED, 1), NONE, exact.normal(point, NONE))
     noise = ProcessNoise(exact, at, 0.0, None, estimate.problem)  # type: ignore[arg-type]
-    return noise.interval.standard_error[:free]
+    return Limit(noise.interval.standard_error[:free], (newton_step(exact, point) - point)[:free])
 
 
 def outcome(item: Item) -> Outcome:
@@ -127,7 +138,7 @@ def outcome(item: Item) -> Outcome:
     blank = model.with_values(dict(craft.guess))
     names = model.parameters.free_names
     truth = np.array([model.parameters[n].value for n in names])
-    limit = bound(craft, disturbance, item.record)
+    limit = limit_of(craft, disturbance, item.record)
     began = time.process_time()
     nothing = np.full(len(names), np.nan)
     try:
@@ -135,11 +146,12 @@ def outcome(item: Item) -> Outcome:
             blank, Runs.one_session_each([item.record], craft.length), None, EstimatorOptions(workers=1)
         )
     except InputError as error:
-        return Outcome(nothing, nothing, limit, "", False, time.process_time() - began, str(error))
+        spent = time.process_time() - began
+        return Outcome(nothing, nothing, limit.standard_error, limit.efficient, "", False, spent, str(error))
     spent, k = time.process_time() - began, len(names)
     return Outcome(
-        fit.estimate.common_parameters[:k] - truth, fit.interval.standard_error[:k], limit,
-        fit.noise_model.disturbance, fit.whiteness.is_white, spent,
+        fit.estimate.common_parameters[:k] - truth, fit.interval.standard_error[:k], limit.standard_error,
+        limit.efficient, fit.noise_model.disturbance, fit.whiteness.is_white, spent,
     )  # fmt: skip
 
 
@@ -156,7 +168,7 @@ def outcomes(cell: Cell, generator: str, runs: int, seed: int, workers: int | No
 
 @dataclass(frozen=True)
 class Score:
-    """The figures of a cell, or of many pooled."""
+    """The figures of a cell, or of many pooled; of_records: of efficient estimates from the same records."""
 
     runs: int
     coverage: float
@@ -167,6 +179,8 @@ class Score:
     chosen: str
     white: float
     seconds: float
+    bias_of_records: float
+    ratio_of_records: float
 
     def problems(self, coverage: float, bias: float, *, has_bound: bool = True) -> str:
         """Which limits are missed."""
@@ -187,7 +201,8 @@ class Score:
 def score(results: Sequence[Outcome]) -> Score:
     """The worst coefficient decides coverage, bias and ratio."""
     good = [o for o in results if not o.failure]
-    error, deviation, limit = (np.array([getattr(o, n) for o in good]) for n in ("error", "standard_error", "bound"))
+    names = ("error", "standard_error", "bound", "efficient")
+    error, deviation, limit, efficient = (np.array([getattr(o, n) for o in good]) for n in names)
     kinds = [o.disturbance.partition(" on ")[0] for o in good]
     chosen = max(set(kinds), key=kinds.count) if kinds else "none fitted"
     return Score(
@@ -200,6 +215,8 @@ def score(results: Sequence[Outcome]) -> Score:
         f"{chosen} {kinds.count(chosen)}/{len(kinds)}",
         float(np.mean([o.is_white for o in good])),
         float(np.median([o.seconds for o in good])),
+        float(np.max(np.abs(np.mean(efficient / limit, axis=0)))),
+        float(np.max(np.sqrt(np.mean((efficient / limit) ** 2, axis=0)))),
     )
 
 
@@ -264,7 +281,8 @@ def main(arguments: list[str]) -> int:
 def _print(name: str, s: Score, problems: str) -> bool:
     print(
         f"{name:<36} cov {s.coverage:.3f} bias {s.bias:.2f} rmse/bound {s.ratio:.2f} width {s.width:.2f} "
-        f"failures {s.failures} {s.chosen} white {s.white:.3f} {s.seconds:.2f} s  {problems or 'holds'}",
+        f"failures {s.failures} {s.chosen} white {s.white:.3f} {s.seconds:.2f} s "
+        f"(records: bias {s.bias_of_records:.2f} rmse/bound {s.ratio_of_records:.2f})  {problems or 'holds'}",
         flush=True,
     )
     return bool(problems)

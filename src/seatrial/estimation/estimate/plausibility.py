@@ -3,12 +3,16 @@
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatrial.core.values import Array, InputError
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 
 ABSURD_FACTOR = 1e3
 """Times its characteristic size that a free coefficient without a prior may reach; chosen."""
+
+_LOST_FACTOR = 30.0
+"""The same from which a search begins anew: further out the likelihood hardly depends on it; chosen."""
 
 
 def refuse_implausible(estimate: PointEstimate, standard_error: Array) -> None:
@@ -23,7 +27,7 @@ def refuse_implausible(estimate: PointEstimate, standard_error: Array) -> None:
     if not np.isfinite(estimate.optimum.solution.value):
         return
     values, errors = estimate.common_parameters[: len(free)], standard_error[: len(free)]
-    lost = np.flatnonzero(_is_absurd(estimate) | np.isnan(errors))
+    lost = np.flatnonzero(_is_beyond(estimate, ABSURD_FACTOR) | np.isnan(errors))
     if len(lost):
         text = ", ".join(f"{free[i]} {values[i]:.3g}" for i in lost)
         raise InputError(
@@ -39,7 +43,7 @@ def with_plausible_start(estimate: PointEstimate) -> PointEstimate:
     Output error takes a disturbance for a ship without damping where a record is short; from there no other criterion
     finds back, as the likelihood is flat.
     """
-    if not np.any(_is_absurd(estimate)):
+    if not np.any(_is_beyond(estimate, _LOST_FACTOR)):
         return estimate
     problem, solution = estimate.problem, estimate.optimum.solution
     point = solution.point.copy()
@@ -47,10 +51,10 @@ def with_plausible_start(estimate: PointEstimate) -> PointEstimate:
     return replace(estimate, optimum=replace(estimate.optimum, solution=replace(solution, point=point)))
 
 
-def _is_absurd(estimate: PointEstimate) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Return whether each free coefficient is no number or far outside its size, (free,)."""
+def _is_beyond(estimate: PointEstimate, factor: float) -> NDArray[np.bool_]:
+    """Return whether each free coefficient is no number or above so many times its size, (free,)."""
     parameters = [estimate.problem.model.parameters[name] for name in estimate.problem.free]
     values = estimate.common_parameters[: len(parameters)]
     sizes = [max(p.scale, abs(p.value), abs(p.prior.mean) if p.prior else 0.0) for p in parameters]
     has_limit = [p.prior is None and size > 0.0 for p, size in zip(parameters, sizes, strict=True)]
-    return ~np.isfinite(values) | (np.array(has_limit) & (np.abs(values) > ABSURD_FACTOR * np.array(sizes)))
+    return ~np.isfinite(values) | (np.array(has_limit) & (np.abs(values) > factor * np.array(sizes)))
