@@ -29,9 +29,11 @@ def steering(
 
     Args:
         model: a model; or a fit or model file, with their ship and approach condition.
-        manoeuvre: e.g. ``zigzag:20/20`` (see `seatrial.manoeuvres`).
+        manoeuvre: e.g. ``zigzag:20/20`` (see `seatrial.manoeuvres`); of a craft with thrusters ``straight:50``,
+            ``spin:50``, ``stop:50``, ``zigzag:30/20`` (per cent of full command; switching heading in degrees).
         speed: approach speed, m/s; without it the speed at which surge balances.
-        inputs: constant inputs besides the rudder, SI; without them those of the trials.
+        inputs: constant inputs besides the rudder, SI; without them those of the trials. ``ahead``: order ahead of a
+            zigzag by thrusters, share of full command.
         duration: s at most.
         rudder_rate: rad/s; without it SOLAS's at the ship's scale.
         seed: of a random binary sequence.
@@ -39,6 +41,9 @@ def steering(
     Raises:
         InputError: unknown manoeuvre, or a rudder that cannot move.
     """
+    file = as_model_file(model)
+    if file.model.equations.layout:
+        return _by_thrusters(manoeuvre, speed, inputs, duration, rudder_rate)
     from seatrial.physics.manoeuvres.programme import programme
     from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE
     from seatrial.physics.simulate.steer import manoeuvre as steered
@@ -47,7 +52,6 @@ def steering(
         raise InputError(
             f"the rudder rate {math.degrees(rudder_rate):g} deg/s is not positive; leave it out for SOLAS's"
         )
-    file = as_model_file(model)
     scale = file.ship.scale if file.ship else 1.0
     constant = {name: value for name, value in file.approach.items() if name in file.model.input_names}
     approach_speed = file.approach.get("u") if "u" not in file.model.states else None
@@ -64,6 +68,21 @@ def steering(
         )
 
     return steer
+
+
+def _by_thrusters(
+    manoeuvre: str,
+    speed: float | None,
+    inputs: Mapping[str, float] | None,
+    duration: float | None,
+    rudder_rate: float | None,
+) -> Steering:
+    from seatrial.physics.manoeuvres.thrust_programme import thrust_programme
+    from seatrial.physics.simulate.thrust import refuse_rudder_options, thrust_manoeuvre
+
+    refuse_rudder_options(speed, rudder_rate)
+    orders = thrust_programme(manoeuvre)
+    return lambda craft: thrust_manoeuvre(craft, orders, duration=duration, inputs=inputs)
 
 
 def simulate(

@@ -59,7 +59,9 @@ def simulate(
     manoeuvre: Annotated[
         str | None,
         typer.Option(
-            "--manoeuvre", help="zigzag:20/20, zigzag:20/10, turning-circle:35, spiral, pull-out or prbs; add :port."
+            "--manoeuvre",
+            help="zigzag:20/20, turning-circle:35, spiral, pull-out or prbs; by thrusters straight:50, spin:50, "
+            "stop:50 or zigzag:30/20 (per cent); add :port.",
         ),
     ] = None,
     inputs: Annotated[

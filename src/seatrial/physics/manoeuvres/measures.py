@@ -5,14 +5,13 @@ IMO MSC.137(76) and MSC/Circ.1053 (2002); ITTC 7.5-02-06-01 (free running model 
 
 import numpy as np
 
-from seatrial.core.values import Array, InputError, Record
+from seatrial.core.values import InputError, Record
 from seatrial.physics.manoeuvres.recognition import ManoeuvreKind, ObservedManoeuvre
-from seatrial.physics.manoeuvres.track import Swing, mean_between, speed, steady_turning
+from seatrial.physics.manoeuvres.thrust_measures import commands_of, thrust_measures
+from seatrial.physics.manoeuvres.track import Swing, mean_between, peak, speed, steady_turning
 
 QUARTER_TURN, HALF_TURN = float(np.radians(90.0)), float(np.radians(180.0))
 INITIAL_TURN = float(np.radians(10.0))
-PEAK_HALF_WIDTH = 0.04  # of the swing's samples, over which its peak is fitted; chosen
-_FEWEST_SAMPLES = 5  # of a swing that has a peak; chosen
 _LAST_SHARE = 0.1  # of the time amidships, over which the residual rate is taken; chosen
 
 
@@ -22,7 +21,8 @@ def measures(
     """Return measures of the manoeuvre the record shows, by name; those it does not allow are absent.
 
     Args:
-        record: needs ``psi`` and ``delta``; ``x0``, ``y0`` for distances, ``u``, ``v``, ``r`` for speeds and rates. A
+        record: needs ``psi`` and ``delta``; of a craft with thrusters see `thrust_measures`.
+            ``x0``, ``y0`` for distances, ``u``, ``v``, ``r`` for speeds and rates. A
             simulated record without ``u`` is that of a model without surge, whose distances mean nothing.
         length: of the ship [m], the unit of names ending in ``_L``.
         switching: switching heading [rad] of a zigzag where it is known; overshoots are counted from it. By default
@@ -47,6 +47,8 @@ def measures(
         raise InputError(f"the ship's length {length:g} m is not positive; measures need it")
     if isinstance(reference, Record):
         reference = ObservedManoeuvre.from_record(reference)
+    if "delta" not in record and commands_of(record):
+        return thrust_measures(record)
     seen = reference.transferred_to(record) if reference else ObservedManoeuvre.from_record(record)
     return {name: value + 0.0 for name, value in _measures_of(seen, length, switching).items()}  # -0 + 0 is 0
 
@@ -99,9 +101,9 @@ def _peaks(manoeuvre: ObservedManoeuvre) -> dict[int, tuple[float, float]]:
     for k in range(1, len(times)):
         stop = times[k + 1] if k + 1 < len(times) else float(record.time[manoeuvre.holds[k].last - 1])
         side = float(np.sign(manoeuvre.holds[k - 1].angle))
-        peak = _peak(record.time, side * (manoeuvre.psi - manoeuvre.psi_at(times[k])), times[k], stop)
-        if peak is not None:
-            made[k] = peak
+        extreme = peak(record.time, side * (manoeuvre.psi - manoeuvre.psi_at(times[k])), times[k], stop)
+        if extreme is not None:
+            made[k] = extreme
     return made
 
 
@@ -110,25 +112,6 @@ def _heading_off_course(manoeuvre: ObservedManoeuvre, k: int) -> float:
     return float(np.sign(manoeuvre.holds[k - 1].angle)) * (
         manoeuvre.psi_at(manoeuvre.executes[k]) - manoeuvre.psi_at(manoeuvre.executes[0])
     )
-
-
-def _peak(time: Array, heading: Array, start: float, stop: float) -> tuple[float, float] | None:
-    """Time and size of the largest heading between two times, by a parabola about it; None if it lies at the end."""
-    rows = np.flatnonzero((time >= start) & (time <= stop))
-    if len(rows) < _FEWEST_SAMPLES:
-        return None
-    top = int(np.argmax(heading[rows]))
-    half = max(2, round(PEAK_HALF_WIDTH * len(rows)))
-    if top + half >= len(rows):
-        return None
-    about, highest = rows[max(top - half, 0) : top + half + 1], rows[top]
-    sampled = float(time[highest]), float(heading[highest])
-    if len(about) < 4:
-        return sampled
-    t = time[about] - time[highest]
-    c, b, a = np.polynomial.polynomial.polyfit(t, heading[about], 2)
-    at = -b / (2.0 * a) if a < 0.0 else 0.0
-    return (sampled[0] + float(at), float(c + at * (b + at * a))) if t[0] <= at <= t[-1] else sampled
 
 
 def _distance_run(record: Record, start: float, stop: float) -> float | None:

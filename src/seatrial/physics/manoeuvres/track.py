@@ -9,6 +9,9 @@ from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre
 
 _TURN_TOLERANCE = 1e-3  # rad by which a full turn may fall short: rounding
 
+PEAK_HALF_WIDTH = 0.04  # of the swing's samples, over which its peak is fitted; chosen
+_FEWEST_SAMPLES = 5  # of a swing that has a peak; chosen
+
 
 @dataclass(frozen=True, eq=False)
 class Swing:
@@ -106,3 +109,22 @@ def steady_turning(swing: Swing, stop: float, length: float, approach: float | N
         if drift is not None:
             made["steady_drift_deg"] = float(np.degrees(drift))
     return made
+
+
+def peak(time: Array, heading: Array, start: float, stop: float) -> tuple[float, float] | None:
+    """Return time and size of the largest heading between two times, by a parabola; None where it lies at the end."""
+    rows = np.flatnonzero((time >= start) & (time <= stop))
+    if len(rows) < _FEWEST_SAMPLES:
+        return None
+    top = int(np.argmax(heading[rows]))
+    half = max(2, round(PEAK_HALF_WIDTH * len(rows)))
+    if top + half >= len(rows):
+        return None
+    about, highest = rows[max(top - half, 0) : top + half + 1], rows[top]
+    sampled = float(time[highest]), float(heading[highest])
+    if len(about) < 4:
+        return sampled
+    t = time[about] - time[highest]
+    c, b, a = np.polynomial.polynomial.polyfit(t, heading[about], 2)
+    at = -b / (2.0 * a) if a < 0.0 else 0.0
+    return (sampled[0] + float(at), float(c + at * (b + at * a))) if t[0] <= at <= t[-1] else sampled

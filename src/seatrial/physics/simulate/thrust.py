@@ -1,0 +1,145 @@
+"""Craft that are steered by thrusters taken through a programme: who works how much, and the run that follows."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, InputError, Provenance, Record, frozen
+from seatrial.core.values.record import MAX_SAMPLES
+from seatrial.numerics.kernels.feedback import steer
+from seatrial.physics.manoeuvres.thrust_programme import (
+    EXAMPLES,
+    FINISHED,
+    LONGEST_S,
+    NOT_FINISHED,
+    ThrustProgramme,
+    thrust_programme,
+)
+from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout
+from seatrial.physics.simulate.approach import held_inputs
+from seatrial.physics.simulate.channels import record_of
+from seatrial.physics.simulate.divergence import require_bounded
+from seatrial.physics.simulate.replay import trajectory
+
+AHEAD = "ahead"
+"""Name of the order ahead of a zigzag, share of full command, among the constant inputs."""
+DEFAULT_AHEAD = 0.5
+"""Order ahead of a zigzag, share of full command; chosen."""
+STEP_S = 0.05
+"""Step of the simulation [s]: a quarter of a small thruster's time constant; chosen."""
+_NO_MOMENT = 0.05
+"""Arm over the longest one, below which a thruster does not turn the craft; chosen."""
+
+
+def thrust_manoeuvre(
+    model: Model,
+    programme: ThrustProgramme,
+    *,
+    dt: float = STEP_S,
+    duration: float | None = None,
+    inputs: Mapping[str, float] | None = None,
+) -> Record:
+    """Return the record of a craft with thrusters taken through a programme.
+
+    Spins and straight runs begin at rest, stops and zigzags in the steady straight run of their order ahead.
+
+    Args:
+        model: of equations with a thruster layout.
+        duration: s at the longest; by default `LONGEST_S`, and it ends when the programme has finished.
+        inputs: other inputs held constant, by name in SI units (``voltage``), and ``ahead`` of a zigzag; angles of
+            azimuth thrusters are 0, ahead, and wind and current those of the model.
+
+    Raises:
+        InputError: an input is missing or unknown, the duration is no time, or the simulation diverges.
+    """
+    layout, given = ThrusterLayout.from_text(model.equations.layout), dict(inputs or {})
+    ahead = given.pop(AHEAD, DEFAULT_AHEAD) if programme.ahead is None else programme.ahead
+    if not 0.0 <= ahead <= 1.0:
+        raise InputError(f"the order ahead {ahead:g} is no share of full command; give 0 to 1")
+    thrusters = _allocation(model, layout)
+    longest = LONGEST_S if duration is None else duration
+    held = held_inputs(model, {**_at_rest(layout), **given}, "")
+    start = np.zeros(len(model.states))
+    if not programme.is_from_rest:
+        run_up = thrust_programme(f"straight:{100.0 * ahead:g}") if ahead > 0.0 else None
+        start = start if run_up is None else _steered(model, run_up, ahead, thrusters, start, held, dt, LONGEST_S)[1]
+        start[[model.states.index(s) for s in ("psi", "x0", "y0")]] = 0.0
+    used, _, finished = _steered(model, programme, ahead, thrusters, start, held, dt, longest)
+    time = frozen(dt * np.arange(len(used)))
+    states, outputs = trajectory(model, used, float(time[-1] - time[0]) / (len(time) - 1), start)
+    require_bounded(model, time, states, f"manoeuvre '{programme.text}'")
+    simulated = record_of(model, programme.text, time, states, outputs, used)
+    ending = f"finished at {time[-1]:g} s" if finished else f"not finished after {time[-1]:g} s"
+    source = f"manoeuvre '{programme.text}' of model '{model.name}'"
+    return replace(simulated, provenance=Provenance(source, steps=(f"ahead {ahead:g}", ending)))
+
+
+def refuse_rudder_options(speed: float | None, rudder_rate: float | None) -> None:
+    """Refuse what only craft with a rudder have.
+
+    Raises:
+        InputError: an approach speed or a rudder rate is given.
+    """
+    if speed is not None:
+        raise InputError(
+            "the speed of a craft with thrusters follows from their commands; leave --speed out and give the order "
+            f"ahead, as in --set {AHEAD}=0.5 or {EXAMPLES['stop']}"
+        )
+    if rudder_rate is not None:
+        raise InputError("a craft with thrusters has no rudder; leave --rudder-rate out")
+
+
+def _at_rest(layout: ThrusterLayout) -> dict[str, float]:
+    """Readings of all commands at rest, and angles ahead."""
+    angles = {t.angle.channel: 0.0 for t in layout.thrusters if isinstance(t.angle, AngleInput)}
+    return {t.command.channel: t.command.zero for t in layout.thrusters} | angles
+
+
+def _allocation(model: Model, layout: ThrusterLayout) -> Array:
+    """Table of the thrusters (n, 5): input, reading at rest, from there to full ahead, signs on ahead and on yaw.
+
+    Each works fully for the order ahead to the side its thrust drives the craft, and for yaw to the side it turns it.
+    """
+    turning = np.array([_arm(thruster) for thruster in layout.thrusters])
+    driving = np.array([math.cos(_angle(thruster)) for thruster in layout.thrusters])
+    longest = float(np.max(np.abs(turning)))
+    yaw = np.where(np.abs(turning) > _NO_MOMENT * longest, np.sign(turning), 0.0)
+    ahead = np.where(np.abs(driving) > _NO_MOMENT, np.sign(driving), 0.0)
+    places = [model.input_names.index(t.command.channel) for t in layout.thrusters]
+    readings = [(t.command.zero, t.command.span) for t in layout.thrusters]
+    return np.column_stack([places, readings, ahead, yaw])
+
+
+def _angle(thruster: Thruster) -> float:
+    return 0.0 if isinstance(thruster.angle, AngleInput) else thruster.angle
+
+
+def _arm(thruster: Thruster) -> float:
+    """Yaw moment of unit thrust [m], positive to starboard (Fossen 2021, section 9.1)."""
+    angle = _angle(thruster)
+    return thruster.x * math.sin(angle) - thruster.y * math.cos(angle)
+
+
+def _steered(
+    model: Model, programme: ThrustProgramme, ahead: float, thrusters: Array, start: Array, held: Array, dt: float,
+    longest: float,
+) -> tuple[Array, Array, bool]:  # fmt: skip
+    """Inputs at the samples (n, nu), the last state (nx,), and whether the programme has finished."""
+    if not 1.0 <= longest / dt < MAX_SAMPLES:
+        raise InputError(f"a manoeuvre of {longest:g} s is not between 1 and {MAX_SAMPLES:.0e} steps of {dt:g} s")
+    count = int(longest / dt) + 1
+    states, inputs = np.empty((count, len(start))), np.empty((count, len(held)))
+    memory = programme.memory(model.states.index("psi"), model.states.index("u"), ahead, thrusters)
+    lost = steer(
+        model.compiled.rates, programme.helmsman, start, held.copy(), model.parameters.values, memory, dt, states,
+        inputs,
+    )  # fmt: skip
+    if lost >= 0:
+        time = frozen(dt * np.arange(lost + 1))
+        require_bounded(model, time, states[: lost + 1], f"manoeuvre '{programme.text}'")
+    finished = memory[FINISHED] != NOT_FINISHED
+    last = min(count, round(memory[FINISHED] / dt) + 1) if finished else count
+    return np.ascontiguousarray(inputs[:last]), states[last - 1].copy(), bool(finished)
