@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from seatrial.core.values import Array, InputError, Record
+from seatrial.core.values import Array, Index, InputError, Record
 from seatrial.physics.manoeuvres.track import peak
 
 _FULL_TURN = float(np.radians(360.0))
@@ -44,7 +44,7 @@ def thrust_measures(record: Record) -> dict[str, float]:
     return {"approach_speed": float(record["u"][executes[0]])} | _overshoots(record.time, psi, executes)
 
 
-def _changes(record: Record) -> Array:
+def _changes(record: Record) -> Index:
     """Rows at which commands change, each change once."""
     values = np.stack([record[name] for name in commands_of(record)], axis=1)
     moved = np.any(np.abs(np.diff(values, axis=0)) > _MOVED * np.maximum(np.ptp(values, axis=0), _MOVED), axis=1)
@@ -85,7 +85,7 @@ def _stop(record: Record, row: int) -> dict[str, float]:
     return approach | {"stopping_distance_m": float(abs(distance)), "stopping_time_s": float(stopped - time[0])}
 
 
-def _overshoots(time: Array, psi: Array, executes: Array) -> dict[str, float]:
+def _overshoots(time: Array, psi: Array, executes: Index) -> dict[str, float]:
     """Overshoot k: how far the heading goes on behind execute k + 1; none where it does not turn back."""
     ends, measures, peaks = [*executes[2:], len(psi) - 1], {}, []
     for k, (execute, end) in enumerate(zip(executes[1:], ends, strict=True), start=1):
