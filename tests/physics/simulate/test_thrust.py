@@ -8,10 +8,10 @@ import pytest
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError
 from seatrial.physics.manoeuvres.measures import measures
-from seatrial.physics.manoeuvres.thrust_programme import EXAMPLES, thrust_programme
+from seatrial.physics.manoeuvres.thrust_programme import thrust_programme
 from seatrial.physics.models.thruster_layout import CATAMARAN, AngleInput, CommandInput, Thruster, ThrusterLayout
 from seatrial.physics.models.thrusters import thrusters
-from seatrial.physics.simulate.thrust import thrust_manoeuvre
+from seatrial.physics.simulate.thrust import refuse_rudder_options, thrust_manoeuvre
 
 SURGE_DRAG, YAW_DRAG, THRUST, ARM = 0.3, 0.8, 1.2, 0.3
 """X_uu and N_rr with their sign turned, thrust of one at half command, all on each kg of M_u; arm [m]; chosen."""
@@ -96,14 +96,11 @@ def test_a_tunnel_thruster_only_turns_and_an_azimuth_points_ahead() -> None:
     assert not np.any(ahead["command_1"]) and set(ahead["command_2"]) == {0.5}
 
 
-@pytest.mark.parametrize("text", ["turning-circle:35", "spin", "spin:0", "zigzag:20", "stop:120", "straight:fast"])
-def test_what_cannot_be_read_names_what_can(text: str) -> None:
-    with pytest.raises(InputError) as error:
-        thrust_programme(text)
-    assert any(example in str(error.value) for example in EXAMPLES.values())
-
-
 def test_options_of_ships_are_refused(craft: Model) -> None:
+    with pytest.raises(InputError, match="leave --speed out"):
+        refuse_rudder_options(1.0, None)
+    with pytest.raises(InputError, match="leave --rudder-rate out"):
+        refuse_rudder_options(None, 0.1)
     with pytest.raises(InputError, match="ahead 2 is no share"):
         thrust_manoeuvre(craft, thrust_programme("zigzag:30/20"), inputs={"ahead": 2.0})
     with pytest.raises(InputError, match="'n' is no held input"):

@@ -1,6 +1,6 @@
 """Programmes for craft that are steered by thrusters: straight run, spin, stop, zigzag by yaw command.
 
-Orders are shares of full command, ahead and to starboard; `give_order` shares them out over the thrusters. Zigzag and
+Orders are shares of full command, ahead and to starboard; `_give_order` shares them out over the thrusters. Zigzag and
 stopping test: ISO 13643-3:2017 and IMO MSC/Circ.1053 (2002), the yaw command in place of the rudder, full astern of the
 approach's share in place of the engine order.
 """
@@ -55,7 +55,7 @@ class ThrustProgramme:
 
 
 @njit(**OPTIONS)
-def give_order(ahead, yaw, memory, u):
+def _give_order(ahead, yaw, memory, u):
     """Share out an order over the thrusters, each within full command."""
     for i in range(int(memory[THRUSTERS])):
         row = TABLE + COLUMNS * i
@@ -64,7 +64,7 @@ def give_order(ahead, yaw, memory, u):
 
 
 @njit(**OPTIONS)
-def finish(t, memory):
+def _finish(t, memory):
     """Note the time at which the programme is through."""
     if memory[FINISHED] < 0.0:
         memory[FINISHED] = t
@@ -76,25 +76,25 @@ def _straight(t, x, memory, u):
     if t - memory[LAST_TIME] >= _SETTLING_S:
         surge = x[int(memory[SURGE])]
         if abs(surge - memory[LAST_SURGE]) < _SETTLED * abs(surge):
-            finish(t, memory)
+            _finish(t, memory)
         memory[LAST_TIME], memory[LAST_SURGE] = t, surge
-    give_order(memory[AHEAD], 0.0, memory, u)
+    _give_order(memory[AHEAD], 0.0, memory, u)
 
 
 @kernel(COMMAND_SIGNATURE, **OPTIONS)
 def _spin(t, x, memory, u):
     """Hold the yaw command until the heading has changed by two turns."""
     if abs(x[int(memory[PSI])]) >= memory[SWITCHING]:
-        finish(t, memory)
-    give_order(memory[AHEAD], memory[YAW], memory, u)
+        _finish(t, memory)
+    _give_order(memory[AHEAD], memory[YAW], memory, u)
 
 
 @kernel(COMMAND_SIGNATURE, **OPTIONS)
 def _stop(t, x, memory, u):
     """Go astern from the first step on until the craft has lost its way."""
     if x[int(memory[SURGE])] <= 0.0:
-        finish(t, memory)
-    give_order(-memory[AHEAD] if t > 0.0 else memory[AHEAD], 0.0, memory, u)
+        _finish(t, memory)
+    _give_order(-memory[AHEAD] if t > 0.0 else memory[AHEAD], 0.0, memory, u)
 
 
 @kernel(COMMAND_SIGNATURE, **OPTIONS)
@@ -106,8 +106,8 @@ def _zigzag(t, x, memory, u):
         memory[STAGE] += 1.0
         side = -side
         if memory[STAGE] >= memory[COUNT]:
-            finish(t, memory)
-    give_order(memory[AHEAD], side * memory[YAW] if t > 0.0 else 0.0, memory, u)
+            _finish(t, memory)
+    _give_order(memory[AHEAD], side * memory[YAW] if t > 0.0 else 0.0, memory, u)
 
 
 EXAMPLES = {
