@@ -77,10 +77,12 @@ def test_a_controller_needs_a_reference_and_a_rate() -> None:
 @pytest.mark.parametrize(
     ("table", "sentence"),
     [
-        ('input = "rudder"\noutput = "psi"', "feedback.input: unknown name 'rudder'; known are delta"),
+        ('input = "rudder"\noutput = "psi"', "feedback.input: unknown name 'rudder'; write delta"),
         ('input = "delta"\noutput = "heading"', "feedback.output: unknown name 'heading'"),
         ('input = "delta"\noutput = "psi"\nreference = "psi_reff"', "did you mean 'psi_ref'?"),
         ('input = "delta"\noutput = "psi"\ngain = 1', "unknown key 'feedback.gain'"),
+        ('input = "delta"\noutput = "psi"\nreference = { value = 1, unit = "kg" }', "no unit of 'psi'; write rad"),
+        ('input = "delta"\noutput = "psi"\nreference = true', "feedback.reference"),
         ('input = "delta"', "key 'feedback.output' is missing"),
     ],
 )
@@ -99,5 +101,6 @@ def test_a_constant_has_a_unit(trial_file: Path) -> None:
     trial_file.write_text(f"{text}\n{more}", encoding="utf-8")
     declared = load_trial(trial_file).feedback
     assert declared is not None
-    assert declared.reference == pytest.approx(0.5 * np.pi)
+    reference = declared.reference_of(RECORD.renamed("a_1"))
+    np.testing.assert_allclose(reference, np.full(len(TIME), 0.5 * np.pi))
     assert declared.runs == ("a_*",)

@@ -8,8 +8,8 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 from pydantic.dataclasses import dataclass
 
-from seatrial.core.values import Array, InputError, Record
-from seatrial.data.trial.amounts import STRICT_FIELDS, InSi
+from seatrial.core.values import NOTATION, Array, InputError, Record, si_unit
+from seatrial.data.trial.amounts import STRICT_FIELDS, Amount
 from seatrial.data.trial.schema_errors import raises_input_error
 
 RATE_OF = {"psi": "r", "phi": "p", "theta": "theta_dot"}
@@ -51,16 +51,23 @@ class Feedback:
 
     Attributes:
         input: the input that it worked; output: the channel that it held.
-        reference: the channel with what was ordered, or a constant, SI; None: not known.
+        reference: the channel with what was ordered, or a constant, SI without a unit; None: not known.
         controller: its gains; None: not known.
         runs: patterns of the names of the runs in which it was on.
     """
 
     input: str
     output: str
-    reference: str | Annotated[float, InSi()] | None = None
+    reference: str | Annotated[float, Field(strict=True)] | Amount | None = None
     controller: ControllerGains | None = None
     runs: Annotated[tuple[str, ...], BeforeValidator(_as_patterns), Field(min_length=1)] = ("*",)
+
+    @model_validator(mode="after")
+    def _constant_is_one_of_the_output(self) -> Self:
+        unit = self.reference.unit if isinstance(self.reference, Amount) else None
+        if unit is not None and self.output in NOTATION and si_unit(unit)[1] != NOTATION[self.output].unit:
+            raise ValueError(f"reference: '{unit}' is no unit of '{self.output}'; write {NOTATION[self.output].unit}")
+        return self
 
     @model_validator(mode="after")
     def _controller_is_complete(self) -> Self:
@@ -73,6 +80,13 @@ class Feedback:
             raise ValueError(f"controller.rate_gain: no channel is the rate of '{self.output}'; leave it out")
         return self
 
+    @property
+    def constant(self) -> float | None:
+        """Return the constant that was ordered, SI; None where it was none."""
+        if isinstance(self.reference, Amount):
+            return self.reference.in_si
+        return None if isinstance(self.reference, str) else self.reference
+
     def concerns(self, record: Record) -> bool:
         """Return whether the controller was on in this run."""
         return any(fnmatch.fnmatchcase(record.name, pattern) for pattern in self.runs)
@@ -81,8 +95,7 @@ class Feedback:
         """Return what was ordered, (rows,), SI; None where that is not known, or the controller was off."""
         if self.reference is None or not self.concerns(record):
             return None
-        output = record[self.output]
-        return record[self.reference] if isinstance(self.reference, str) else 0.0 * output + self.reference
+        return record[self.reference] if isinstance(self.reference, str) else np.full(len(record), self.constant)
 
     def order_of(self, record: Record) -> Array | None:
         """Return what the controller orders in this run, (rows,), SI; None where it or its reference is not known."""

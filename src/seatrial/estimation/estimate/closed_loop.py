@@ -74,7 +74,6 @@ def closed_loop(
     test, declared, records = evidence.test, evidence.declared, evidence.records
     if not evidence.is_closed or (test is None and declared is None):
         return None
-    reference = None if declared is None else declared.reference
     agreement = None if declared is None else controller_agreement(declared, records)
     return FeedbackEvidence(
         input=declared.input if declared else test.command if test else "",
@@ -84,13 +83,20 @@ def closed_loop(
         lag=test.lag if test else None,
         p=test.p if test else None,
         is_declared=declared is not None,
-        reference="" if reference is None else reference if isinstance(reference, str) else f"{reference:g}",
+        reference=_reference_text(declared),
         reference_steps=None if declared is None else reference_steps(declared, records),
         reference_p=None if declared is None or noise is None else reference_p(declared, records, noise),
         controller_correlation=None if agreement is None else agreement.correlation,
         controller_delay=None if agreement is None else agreement.delay,
         without_disturbance=() if disturbances is None or noise is None else _without_disturbance(disturbances),
     )
+
+
+def _reference_text(declared: Feedback | None) -> str:
+    """Return the reference's channel or its constant, SI; empty where none is declared."""
+    if declared is None or declared.reference is None:
+        return ""
+    return declared.reference if isinstance(declared.reference, str) else f"{declared.constant:g}"
 
 
 @dataclass(frozen=True)
