@@ -11,14 +11,21 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.control.loopfile.schema import loop_schema
-from seatrial.core.results import Design, Fit, Study
+from seatrial.core.results import Comparison, Design, Fit, Study
 from seatrial.core.results.online import Snapshot
 from seatrial.core.results.tuning import Tuning
 from seatrial.data.folder.document import document_schema
 from seatrial.data.trial.schema import trial_schema
 
 DOCS = Path(__file__).parent
-RESULTS = {"result": Fit, "design": Design, "tuning": Tuning, "study": Study, "online": Snapshot}
+RESULTS = {
+    "result": Fit,
+    "design": Design,
+    "tuning": Tuning,
+    "study": Study,
+    "comparison": Comparison,
+    "online": Snapshot,
+}
 PAGE = DOCS / "result-folder.md"
 JsonSchema = Mapping[str, Any]
 

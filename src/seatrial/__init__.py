@@ -14,6 +14,7 @@ Functions (each also a command)
     simulate      run a manoeuvre, or the inputs of a record, through a model
     predict       predict a measured run and compare it with the measurement
     design        design the manoeuvre that identifies the coefficients best
+    compare       compare two fits: what differs between days, loadings, facilities or methods
     tune          tune a feedback loop on a model
     follow        identify while the record is being made
     reproduce     repeat a published study

@@ -1,6 +1,7 @@
 from seatrial import control, testing
 from seatrial.api import (
     check,
+    compare,
     demo,
     design,
     correct_trial,
@@ -58,6 +59,7 @@ __all__ = [
     "TrialRun",
     "Tuning",
     "check",
+    "compare",
     "control",
     "correct_trial",
     "demo",

@@ -1,3 +1,4 @@
+from seatrial.api.comparison import compare
 from seatrial.api.files import (
     load,
     load_fit,
@@ -24,8 +25,8 @@ from seatrial.api.trials import (
 from seatrial.api.tuning import load_loop, tune
 
 __all__ = [
-    "check", "correct_trial", "demo", "design", "draft_trial", "extrapolation", "follow", "identify", "list_models",
-    "load", "load_fit", "load_loop", "load_model", "load_trial", "measure_intervals", "measures", "predict",
-    "prepared_run", "read_record", "replay", "report", "reproduce", "rms_differences", "save", "simulate", "steering",
-    "survey_log", "tune", "write_record",
+    "check", "compare", "correct_trial", "demo", "design", "draft_trial", "extrapolation", "follow", "identify",
+    "list_models", "load", "load_fit", "load_loop", "load_model", "load_trial", "measure_intervals", "measures",
+    "predict", "prepared_run", "read_record", "replay", "report", "reproduce", "rms_differences", "save", "simulate",
+    "steering", "survey_log", "tune", "write_record",
 ]  # fmt: skip

@@ -57,7 +57,7 @@ def load_model(path: str | Path, own_model: "Model | None" = None) -> "ModelFile
 
 
 def load(folder: str | Path, own_model: "Model | None" = None) -> "Result":
-    """Load the fit, design, tuning or study that a folder holds; nothing is computed.
+    """Load the fit, design, tuning, study or comparison that a folder holds; nothing is computed.
 
     Args:
         folder: as `save` or a command writes it.
@@ -100,7 +100,8 @@ def save(result: "Result | Snapshot | FollowResult", folder: str | Path) -> Path
     """Write the folder of a result (see docs/result-folder.md) with its report, all files or none.
 
     Args:
-        result: a fit, design, tuning or study, or what `follow` returns: the fit after `once`, else the last estimate.
+        result: a fit, design, tuning, study or comparison, or what `follow` returns: the fit after `once`, else the
+            last estimate.
         folder: other files in it are left alone.
 
     Returns:
@@ -109,7 +110,7 @@ def save(result: "Result | Snapshot | FollowResult", folder: str | Path) -> Path
     Raises:
         InputError: the folder cannot be written.
     """
-    from seatrial.core.results import Design, Fit, Study
+    from seatrial.core.results import Comparison, Design, Fit, Study
     from seatrial.core.results.online import Snapshot
     from seatrial.core.results.tuning import Tuning
     from seatrial.core.values.files import write_files_atomically
@@ -117,7 +118,7 @@ def save(result: "Result | Snapshot | FollowResult", folder: str | Path) -> Path
     from seatrial.reporting.pages import report_page
 
     # asked this way round, no result but that of `follow` needs its module
-    value = result if isinstance(result, Fit | Design | Tuning | Study | Snapshot) else result.result
+    value = result if isinstance(result, Fit | Design | Tuning | Study | Comparison | Snapshot) else result.result
     page = {} if isinstance(value, Snapshot) else {"report.html": report_page(value).encode()}
     files = folder_files(value) | page
     return write_files_atomically(Path(folder), files) / list(files)[-1]

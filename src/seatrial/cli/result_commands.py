@@ -1,4 +1,4 @@
-"""Commands on results and without records: report, reproduce, demo."""
+"""Commands on results and without records: report, compare, reproduce, demo."""
 
 from pathlib import Path
 from typing import Annotated
@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from seatrial.cli.application import Json, OwnModelPath, Seed, app, own_model, result_document
+from seatrial.cli.comparison_output import print_comparison
 from seatrial.cli.output import print_fit, print_study, progress_reporter, write_json
 
 
@@ -26,6 +27,51 @@ def report(
     page = api.report(result, folder / "report.html")
     write_json(json, lambda: result_document(result))
     print(f"report: {page}")
+
+
+@app.command()
+def compare(
+    first: Annotated[Path, typer.Argument(metavar="FIRST", help="Result folder of identify.")],
+    second: Annotated[Path, typer.Argument(metavar="SECOND", help="The one that it is compared with.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Where report and comparison.json go.")
+    ] = None,
+    manoeuvre: Annotated[
+        list[str] | None,
+        typer.Option("--manoeuvre", help="Compare this one, as zigzag:20/20; default: turns and zigzags of IMO."),
+    ] = None,
+    speed: Annotated[
+        float | None, typer.Option(help="Approach speed of both, m/s; default: that of each one's trials.")
+    ] = None,
+    model: OwnModelPath = None,
+    json: Json = None,
+    seed: Seed = 0,  # noqa: ARG001
+) -> None:
+    """Compare two fits, of two days, loadings, facilities or methods: coefficients, manoeuvres, what else changed.
+
+    Example: seatrial compare results/laden results/ballast --out results/loading
+    """
+    from seatrial import api
+    from seatrial.api.comparison import MANOEUVRES
+    from seatrial.core.values.files import writable_folder
+
+    if out is not None:
+        writable_folder(out)
+    equations = own_model(model)
+    with progress_reporter() as report_progress:
+        result = api.compare(
+            api.load_fit(first, equations),
+            api.load_fit(second, equations),
+            names=(str(first), str(second)),
+            manoeuvres=tuple(manoeuvre or MANOEUVRES),
+            speed=speed,
+            report_progress=report_progress,
+        )
+        page = None if out is None else api.save(result, out)
+    print_comparison(result)
+    write_json(json, lambda: result_document(result))
+    if page is not None:
+        print(f"report: {page}")
 
 
 @app.command()

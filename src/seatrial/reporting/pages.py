@@ -1,10 +1,10 @@
 """The page of each kind of result; only the modules that render that kind are imported."""
 
-from seatrial.core.results import Design, Fit, Study
+from seatrial.core.results import Comparison, Design, Fit, Study
 from seatrial.core.results.tuning import Tuning
 
 
-def report_page(result: Fit | Design | Tuning | Study) -> str:
+def report_page(result: Fit | Design | Tuning | Study | Comparison) -> str:
     """Return the self-contained HTML page of a result; nothing is computed."""
     match result:
         case Fit():
@@ -23,3 +23,7 @@ def report_page(result: Fit | Design | Tuning | Study) -> str:
             from seatrial.reporting import study
 
             return study.html(result)
+        case Comparison():
+            from seatrial.reporting import comparison
+
+            return comparison.html(result)

@@ -13,6 +13,7 @@ import pytest
 from tests.onboard.fabricated import heave_pitch
 from tests.reporting.complete_fit import complete_fit
 from tests.reporting.fabricated import fabricated_fit
+from tests.reporting.fabricated_comparison import fabricated_comparison
 from tests.reporting.fabricated_design import fabricated_design
 from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_bare, fabricated_fin
 
@@ -27,6 +28,7 @@ RESULTS: dict[str, Callable[[], object]] = {
     "fin": fabricated_fin,
     "autopilot": fabricated_autopilot,
     "bare tuning": fabricated_bare,
+    "comparison": fabricated_comparison,
     "snapshot": lambda: list(heave_pitch(30.0))[-1],
     "no sample": lambda: NO_SAMPLE,
 }

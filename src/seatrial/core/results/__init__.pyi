@@ -3,6 +3,7 @@
 from seatrial.core.results.coefficients import (
     CandidateModel, Coefficient, DisturbanceCandidate, Method, Noise, NoiseModel, Offset, Residuals,
 )  # fmt: skip
+from seatrial.core.results.comparison import ComparedFit, Comparison, Difference, JointTest, ManoeuvreDifferences
 from seatrial.core.results.design import Actuator, Confirmation, Design, ManoeuvrePrecision, TimedOrder, TrialLimits
 from seatrial.core.results.fit import Fit
 from seatrial.core.results.frequency_response import FrequencyResponse
@@ -45,10 +46,13 @@ __all__ = [
     "Claim",
     "Coefficient",
     "Collinearity",
+    "ComparedFit",
+    "Comparison",
     "Confirmation",
     "Consequence",
     "Curve",
     "Design",
+    "Difference",
     "Direction",
     "DisturbanceCandidate",
     "Divergence",
@@ -59,7 +63,9 @@ __all__ = [
     "Identifiability",
     "IntervalBasis",
     "IntervalEstimate",
+    "JointTest",
     "KStepErrors",
+    "ManoeuvreDifferences",
     "ManoeuvrePrecision",
     "Matrix",
     "Measure",

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from seatrial.core.equations import Model
-from seatrial.core.results import Design, Fit, Study
+from seatrial.core.results import Comparison, Design, Fit, Study
 from seatrial.core.results.online import Snapshot
 from seatrial.core.results.tuning import Tuning
 from seatrial.core.values import Array, InputError
@@ -35,7 +35,7 @@ from seatrial.data.trial.approach import approach_condition
 
 MODEL, ARRAYS = "model.toml", "arrays.npz"
 T = TypeVar("T")
-Result = Fit | Design | Tuning | Study
+Result = Fit | Design | Tuning | Study | Comparison
 
 
 @dataclass(frozen=True)
@@ -101,6 +101,9 @@ KINDS: tuple[FolderKind[Any], ...] = (
         repeated=frozenset({"evaluations", "status"}),
     ),
     FolderKind(Study, "study.json", "seatrial reproduce STUDY --out DIR"),
+    FolderKind(
+        Comparison, "comparison.json", "seatrial compare FIRST SECOND --out DIR", repeated=frozenset({"significant"})
+    ),
 )  # fmt: skip
 
 

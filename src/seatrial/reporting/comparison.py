@@ -1,0 +1,144 @@
+"""The page of two fits compared: what changed, coefficients, manoeuvres; nothing is computed."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from markupsafe import Markup
+
+from seatrial.core.figures.chart import Axis, Chart, LegendEntry
+from seatrial.core.figures.marks import ACCENT, SECOND, Line, Mark, Marker, Points, Rule, Shape, Stroke
+from seatrial.core.figures.rows import row_panel
+from seatrial.core.figures.svg_text import svg
+from seatrial.core.figures.ticks import span
+from seatrial.core.results import Comparison, Difference, ManoeuvreDifferences
+from seatrial.core.text.numbers import DASH, exact, p_value, significant
+from seatrial.core.text.words import counted, enumeration
+from seatrial.reporting.measures import measure_label
+from seatrial.reporting.page import environment
+from seatrial.reporting.tables import finding_groups
+from seatrial.reporting.text_tables import TextTable
+
+TITLES = {
+    "outcome": "What differs", "changes": "What else changed", "coefficients": "Coefficients",
+    "manoeuvres": "Manoeuvres", "findings": "Findings", "versions": "Versions",
+}  # fmt: skip
+_AGREES, _DIFFERS, _ZERO = Stroke(ACCENT, 2.0), Stroke(SECOND, 2.0), Stroke("#8a9299", 1.2)  # px, chosen
+_SIZE = 3.2  # px, chosen
+_HEADER = ("", "first", "second", "difference", "95 % from", "to", "")
+_NUMERIC = (False, True, True, True, True, True, False)
+_SIGNIFICANCE = 0.05
+"""p-value below which coefficients differ, as the intervals have it."""
+_MOST_DIGITS = 6  # of a value, chosen
+_NOTE = (
+    "Second minus first; the interval has the errors of both in it. Differs: zero lies outside the joint 95 % interval "
+    "of the table (Bonferroni)."
+)
+
+
+def html(comparison: Comparison) -> str:
+    """Return the page as text; sections without content are left out."""
+    content: dict[str, object] = {
+        "changes": comparison.changes,
+        "coefficients": comparison.coefficients,
+        "manoeuvres": [manoeuvre_table(m) for m in comparison.manoeuvres],
+        "findings": finding_groups(comparison.findings),
+    }
+    context = {
+        **content,
+        "titles": {key: title for key, title in TITLES.items() if content.get(key, True)},
+        "comparison": comparison,
+        "outcome": outcome(comparison),
+        "note": _NOTE,
+        "table": coefficient_table(comparison.coefficients),
+        "chart": Markup(svg(difference_forest(comparison.coefficients))),
+    }
+    return environment().get_template("comparison.html").render(context)
+
+
+def outcome(comparison: Comparison) -> list[str]:
+    """Return the summary in sentences: coefficients together, one by one, then manoeuvres."""
+    sentences = []
+    test = comparison.joint_test
+    if test is not None:
+        verdict = "differ" if test.p < _SIGNIFICANCE else "do not differ significantly"
+        sentences.append(
+            f"Taken together, the {counted(len(comparison.coefficients), 'coefficient')} {verdict} "
+            f"(χ² {exact(test.statistic, 3)} with {test.degrees_of_freedom} degrees of freedom, {p_value(test.p)})."
+        )
+    apart = [d for d in comparison.coefficients if d.is_significant]
+    if apart:
+        sentences.append(f"Significant one by one: {enumeration([_clause(d) for d in apart])}.")
+    for m in comparison.manoeuvres:
+        names = [f"{measure_label(d.name)[0]} {_clause(d, name='')}".strip() for d in m.measures if d.is_significant]
+        if names:
+            sentences.append(f"{manoeuvre_name(m)}: {enumeration(names)}.")
+    if not sentences or (not apart and not any(d.is_significant for m in comparison.manoeuvres for d in m.measures)):
+        sentences.append("No single quantity differs significantly.")
+    return sentences
+
+
+def _clause(d: Difference, name: str | None = None) -> str:
+    """A quantity with both values."""
+    label = d.name if name is None else name
+    return f"{label} {exact(d.first, 3)} → {exact(d.second, 3)}".strip()
+
+
+def coefficient_table(rows: Sequence[Difference]) -> TextTable:
+    """Return the differences of coefficients as text."""
+    return TextTable("Coefficients that both fits estimate", _HEADER, _NUMERIC, tuple(_row(d) for d in rows), "")
+
+
+def manoeuvre_table(m: ManoeuvreDifferences) -> TextTable:
+    """Return the differences of a manoeuvre's measures as text."""
+    rows = tuple(_row(d, measure_label(d.name)) for d in m.measures)
+    return TextTable(manoeuvre_name(m), _HEADER, _NUMERIC, rows, m.note)
+
+
+def manoeuvre_name(m: ManoeuvreDifferences) -> str:
+    """Return the manoeuvre in words: ``turning-circle:35:port`` -> Turning circle 35 port."""
+    return m.manoeuvre.replace("-", " ").replace(":", " ").capitalize()
+
+
+def _row(d: Difference, label: tuple[str, str] | None = None) -> tuple[str, ...]:
+    """Values with the digits that the difference's interval allows, the difference with two."""
+    name, unit = label or (d.name, "" if d.unit == "1" else d.unit)
+    named = f"{name}, {unit}" if unit else name
+    apart = tuple("" if v is None else significant(v, 2) for v in (d.difference, d.lower, d.upper))
+    width = None if d.lower is None or d.upper is None else d.upper - d.lower
+    values = (DASH if v is None else _value_text(v, width) for v in (d.first, d.second))
+    return named, *values, *apart, "differs" if d.is_significant else ""
+
+
+def _value_text(value: float, width: float | None) -> str:
+    """Digits down to a tenth of the interval's width; four where that is not known."""
+    if not width or not value:
+        return significant(value, 4)
+    digits = 1 + math.ceil(math.log10(max(abs(value) / width, 1.0)))
+    return significant(value, min(max(digits, 2), _MOST_DIGITS))
+
+
+def difference_forest(rows: Sequence[Difference]) -> Chart | None:
+    """Return each difference with its interval [% of the first value]; None where there is none."""
+    usable = [d for d in rows if d.first and d.difference is not None and d.lower is not None and d.upper is not None]
+    if not usable:
+        return None
+    shares = [[100.0 * v / abs(d.first or 1.0) for v in (d.lower, d.difference, d.upper) if v is not None]
+              for d in usable]  # fmt: skip
+    marks: list[Mark] = [Rule(0.0, _ZERO, is_vertical=True)]
+    for row, (d, (lower, middle, upper)) in enumerate(zip(usable, shares, strict=True)):
+        stroke, place = _DIFFERS if d.is_significant else _AGREES, np.full(2, float(row))
+        marks.append(Line(np.array([lower, upper]), place, stroke))
+        marker = Marker(Shape.CIRCLE, _SIZE, stroke.colour, stroke.colour, 0.0)
+        marks.append(Points(np.array([middle]), place[:1], marker))
+    largest = float(np.median([abs(s) for share in shares for s in share])) or 1.0
+    ends = span([np.clip(np.array([s for share in shares for s in share] + [0.0]), -_CUT * largest, _CUT * largest)])
+    axis = Axis(ends, "difference, per cent of the first", tick_count=7)
+    legend = (LegendEntry("95 % interval", _AGREES), LegendEntry("differs (joint 95 %)", _DIFFERS))
+    return Chart(
+        "differences of the coefficients", (row_panel([d.name for d in usable], axis, marks, top=4.0),), legend
+    )
+
+
+_CUT = 6.0
+"""Ends of the axis over the median size of the ends of intervals, at most: wide ones run out of the picture; chosen."""
