@@ -40,5 +40,5 @@ def test_a_closed_loop_is_fitted_by_prediction_error_though_nothing_disturbs_it(
 
 def test_the_score_can_fail(gusts: ModuleType) -> None:
     one = np.ones(2)
-    biased = [gusts.Outcome(3.0 * one, one, one, 0.0 * one, "white", True, 0.1)] * 10
+    biased = [gusts.Outcome(3.0 * one, one, one, 0.0 * one, one > 1.0, "white", True, 0.1)] * 10
     assert gusts.score(biased).problems(0.86, 0.35) == "coverage < 86%; bias > 0.35; RMSE/bound > 1.2"

@@ -7,12 +7,11 @@ from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.identify.profile import innovation_profiles
 
 FEWEST_MEMORIES = 40.0
-"""Memories of a disturbance that records last at least, for intervals of the information to hold; chosen: in 12 of them
-85 to 88 % of 95 % intervals held the truth (simulated Nomoto craft, open loop)."""
+"""Memories of a disturbance that records last at least, for intervals of the information to hold; chosen: in fewer too
+few intervals of simulated craft hold the truth (`python benchmarks/gusts.py --short`)."""
 
 FEWEST_REFERENCE_STEPS = 4
-"""Changes of the reference that records of a closed loop contain at least, for the same; chosen: with two of them 80 to
-87 % of 95 % intervals held the truth (simulated Nomoto craft, 120 s)."""
+"""Changes of the reference that records of a closed loop contain at least, for the same reason; chosen."""
 
 _MOST_COEFFICIENTS, _MOST_SAMPLES = 6, 10_000
 """Free coefficients and samples up to which profiles are computed without being required: seconds; chosen."""
