@@ -7,7 +7,7 @@ from operator import itemgetter
 import numpy as np
 
 from seatrial.core.results.online import Sample, SampleCounts
-from seatrial.core.values import Array, InputError, quantity, spelling_hint
+from seatrial.core.values import Array, InputError, spelling_hint
 from seatrial.data.read.formats.text import RECORD_MARK, detect_separator
 from seatrial.data.read.layout import ColumnSpec, Layout
 from seatrial.onboard.lines import LineBatch
@@ -42,8 +42,9 @@ class ColumnReader:
         _refuse_encoding(layout.encoding)
         self._layout = layout
         self._columns = (layout.time, *layout.columns)
-        units = ["s", *(quantity(column.symbol).unit for column in layout.columns)]
-        self._factors = np.array([c.si_factor(unit) for c, unit in zip(self._columns, units, strict=True)])
+        self._time_factor = layout.time.si_factor("s")
+        for column in layout.columns:
+            column.in_si(np.zeros(1))
         self._header_count = max(layout.header_lines, 1) if layout.has_named_columns else layout.header_lines
         self._lines_to_skip, self._lines_skippable = 0, 0
         self._header_line: bytes | None = None
@@ -94,7 +95,9 @@ class ColumnReader:
         if not rows:
             return []
         with np.errstate(over="ignore"):
-            block = np.array(rows) * self._factors
+            cells = np.array(rows)
+            values = [one.in_si(cells[:, k]) for k, one in enumerate(self._layout.columns, start=1)]
+            block = np.column_stack([self._time_factor * cells[:, 0], *values])
         block[~np.isfinite(block)] = np.nan
         readable = np.isfinite(block[:, 0])
         if not readable.all():
@@ -102,8 +105,8 @@ class ColumnReader:
             self._last_error = f"line {self._line} or shortly before: the time is not a number"
             block = block[readable]
         block.setflags(write=False)
-        values: Array = block[:, 1:]
-        return [Sample(time, row) for time, row in zip(block[:, 0].tolist(), values, strict=True)]
+        channels: Array = block[:, 1:]
+        return [Sample(time, row) for time, row in zip(block[:, 0].tolist(), channels, strict=True)]
 
     def _start_file(self) -> None:
         """Skip the header of a file that begins: its lines the first time, later only lines that are no numbers."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from seatrial.core.values import InputError, quantity, spelling_hint
+from seatrial.core.values import InputError, spelling_hint
 from seatrial.data.read.layout import ColumnSpec
 
 # field -> SI unit; a second word distinguishes the quantities of one sentence
@@ -31,6 +31,7 @@ _DEFAULT_FIELDS: dict[tuple[str, str], tuple[str, ...]] = {
     ("theta", "body"): ("XDR PTCH", "XDR PITCH"),
     ("z", "body"): ("XDR HEAV", "XDR HEAVE"),
     ("n", "none"): ("RPM S0", "RPM S1", "RPM S2"),
+    **{(f"rpm_{k}", "none"): (f"RPM S{k}", f"RPM E{k}") for k in range(1, 5)},  # four shafts or engines
 }
 
 
@@ -66,7 +67,7 @@ def _column_fields(column: ColumnSpec) -> tuple[str, ...]:
         raise InputError(
             f"channel '{column.symbol}': no NMEA field '{source}'{spelling_hint(source, sorted(_FIELD_UNITS))}"
         )
-    if _FIELD_UNITS[source] != quantity(column.symbol).unit:
+    if _FIELD_UNITS[source] != column.quantity.unit:
         raise InputError(
             f"channel '{column.symbol}' cannot come from NMEA '{source}', which is in {_FIELD_UNITS[source]}"
         )

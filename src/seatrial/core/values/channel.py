@@ -19,6 +19,7 @@ class Channel:
         positive: positive direction, e.g. ``starboard`` or ``port``.
         reference_point: metres forward of midship to which the channel refers.
         label: the name in the file it came from.
+        is_command: whether it holds orders, which stay until the next one and are never corrected.
     """
 
     values: Array
@@ -27,6 +28,7 @@ class Channel:
     positive: str
     reference_point: float = 0.0
     label: str = ""
+    is_command: bool = False
 
     @classmethod
     def from_notation(cls, symbol: str, values: Array) -> Self:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.values import Array, Channel, InputError, Record, quantity
-from seatrial.core.values.notation import COMMANDS, OPPOSITE, positive_direction
+from seatrial.core.values.notation import COMMANDS, NOTATION, OPPOSITE, positive_direction
 from seatrial.data.check.signal import unwrapped
 
 _VELOCITY_PAIRS = (("u", "v"), ("u_dot", "v_dot"))
@@ -40,6 +40,8 @@ def with_standard_signs(record: Record) -> Record:
 
 
 def _has_opposite_sign(symbol: str, channel: Channel, record: str) -> bool:
+    if symbol not in NOTATION:
+        return False
     wanted = positive_direction(symbol, channel.frame)
     if channel.positive == wanted:
         return False
@@ -53,7 +55,8 @@ def _with_standard_sign(symbol: str, channel: Channel, *, flip: bool) -> Channel
     values = -channel.values if flip else channel.values
     if symbol in _UNWRAPPED_CHANNELS:
         values = unwrapped(values)
-    return replace(channel.with_values(values), positive=positive_direction(symbol, channel.frame))
+    positive = positive_direction(symbol, channel.frame) if symbol in NOTATION else channel.positive
+    return replace(channel.with_values(values), positive=positive)
 
 
 def _in_body_axes(record: Record) -> Record:

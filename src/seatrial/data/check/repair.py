@@ -61,7 +61,8 @@ def _require_values(record: Record) -> None:
 
 def _interpolate_spikes(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     findings = []
-    for symbol in [s for s in record.channels if s not in INPUT_CHANNELS]:
+    measured = [s for s, channel in record.channels.items() if s not in INPUT_CHANNELS and not channel.is_command]
+    for symbol in measured:
         channel = record.channel(symbol)
         known = np.flatnonzero(np.isfinite(channel.values))
         smooth = unwrapped(channel.values) if channel.unit == "rad" else channel.values

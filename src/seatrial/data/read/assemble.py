@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from seatrial.core.values import Array, Channel, InputError, Provenance, Record, frozen, quantity
+from seatrial.core.values import Array, Channel, InputError, Provenance, Record, frozen
 from seatrial.core.values.froude import froude_scaled
 from seatrial.data.read.clock import stamps
 from seatrial.data.read.derive import Measured, derived_channels
@@ -117,11 +117,12 @@ def _record(name: str, time: Array, measured: dict[str, Measured], scale: float,
 def _channel(column: ColumnSpec, values: Array, label: str) -> Channel:
     return Channel(
         frozen(values),
-        quantity(column.symbol).unit,
+        column.quantity.unit,
         column.declared_frame,
         column.declared_positive,
         column.reference_point,
         label,
+        column.is_held,
     )
 
 

@@ -7,7 +7,6 @@ import numpy as np
 
 from seatrial.core.values import Array, InputError
 from seatrial.data.read.layout import ColumnSpec
-from seatrial.data.read.quantities import log_quantity
 
 # steps of a topic over which nothing is interpolated unless a time is stated, ours
 _GAP_STEPS = 5.0
@@ -81,7 +80,7 @@ def values_at(one: Series, time: Array, longest_gap: float | None) -> Array:
     near_end = ((time < first) & (time > first - margin)) | ((time > last) & (time < last + margin))
     time = np.where(near_end, np.clip(time, first, last), time)
     after = np.searchsorted(one.time, time - margin, side="left")
-    is_angle = log_quantity(one.column.symbol).unit == "rad"
+    is_angle = one.column.quantity.unit == "rad"
     smooth = np.unwrap(one.values) if is_angle else one.values
     values = np.interp(time, one.time, smooth, left=np.nan, right=np.nan)
     limit = _GAP_STEPS * one.step if longest_gap is None else longest_gap

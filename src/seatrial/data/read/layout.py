@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from seatrial.core.values import Array, InputError, si_unit
-from seatrial.core.values.notation import NOTATION, positive_direction
+from seatrial.core.values.notation import NOTATION, Quantity, positive_direction
 from seatrial.data.read.quantities import log_quantity
 
 Separator = Literal["auto", ",", ";", "tab", "whitespace"]
@@ -29,6 +29,7 @@ class ColumnSpec:
         label: the name to keep; empty: the file's own, or ``column k``.
         zero, span, factor, offset: the number in `unit` is (cell - zero) / span * factor + offset.
         is_held: whether a value holds until the next one (commands), in place of a straight line between them.
+        declared: what the trial file declares a channel of its own to be; None: the notation table has it.
     """
 
     symbol: str
@@ -43,6 +44,16 @@ class ColumnSpec:
     factor: float = 1.0
     offset: float = 0.0
     is_held: bool = False
+    declared: Quantity | None = None
+
+    @property
+    def quantity(self) -> Quantity:
+        """What the symbol means.
+
+        Raises:
+            InputError: as `log_quantity`.
+        """
+        return self.declared or log_quantity(self.symbol)
 
     @property
     def display_name(self) -> str:
@@ -56,7 +67,7 @@ class ColumnSpec:
         Raises:
             InputError: neither ``body``, ``earth`` nor ``none``.
         """
-        frame = self.frame or log_quantity(self.symbol).frame
+        frame = self.frame or self.quantity.frame
         if frame not in _FRAME_NAMES:
             raise InputError(f"channel '{self.symbol}': frame must be body, earth, none or enu, not '{frame}'")
         return frame
@@ -64,19 +75,23 @@ class ColumnSpec:
     @property
     def declared_positive(self) -> str:
         """The positive direction in force."""
+        if self.declared is not None:
+            return self.declared.positive
         if self.positive or self.symbol not in NOTATION:
-            return self.positive or log_quantity(self.symbol).positive
+            return self.positive or self.quantity.positive
         return positive_direction(self.symbol, self.declared_frame)
 
     def in_si(self, cells: Array) -> Array:
-        """Return the numbers of the file in the SI unit of the channel.
+        """Return the numbers of the file in the SI unit of the channel; a declared one points as it is declared.
 
         Raises:
             InputError: as `si_factor`.
         """
-        expected = log_quantity(self.symbol).unit
+        expected = self.quantity.unit
         # a share of a span has no unit: that of the cells is then only a label, such as "us" of a pulse width
         size = 1.0 if self.span != 1.0 and expected == "1" else self.si_factor(expected)
+        if self.declared is not None and self.positive not in ("", self.declared.positive):
+            size = -size
         if (self.zero, self.span, self.factor, self.offset) == (0.0, 1.0, 1.0, 0.0):
             return cells if size == 1.0 else cells * size
         return ((cells - self.zero) / self.span * self.factor + self.offset) * size

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.core.values import InputError, spelling_hint
+from seatrial.data.trial.declared_channels import NO_DECLARED, Declared
 from seatrial.data.trial.excitation import wave_encounter
 from seatrial.data.trial.run_data import run_name
 from seatrial.data.trial.runs import expand_variables, layout_of
@@ -20,11 +21,16 @@ _HOST_PATTERN = re.compile(r"[A-Za-z0-9.:_-]+")
 
 
 def stream_of(
-    table: FollowTable, data_folder: Path, trial_folder: Path, excitation: Excitation | None = None, length: float = 1.0
+    table: FollowTable,
+    data_folder: Path,
+    trial_folder: Path,
+    excitation: Excitation | None = None,
+    length: float = 1.0,
+    declared: Declared = NO_DECLARED,
 ) -> Stream:
     """Return the stream that the table describes; files count from `data_folder`, the journal from `trial_folder`.
 
-    excitation, length [m]: of a ship that meets waves.
+    excitation, length [m]: of a ship that meets waves. declared: channels of the trial's own.
 
     Raises:
         InputError: a unit of another kind than the channel's, waves that no excitation turns into forces or that are
@@ -43,7 +49,7 @@ def stream_of(
     settings: dict[str, Any] = {setting.name: getattr(resolved, setting.name) for setting in fields(StreamSettings)}
     return Stream(
         **settings,
-        layout=layout_of(table, "text", "follow"),
+        layout=layout_of(table, "text", "follow", declared),
         name=_stream_name(table.source, file),
         waves=wave_encounter(table.waves, excitation, length, "follow"),
     )

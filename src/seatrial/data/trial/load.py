@@ -11,6 +11,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import NOTATION, InputError, Ship, channel_hint, spelling_hint
 from seatrial.core.values.errors import listed
 from seatrial.data.check.captive_forces import force_findings
+from seatrial.data.trial.declared_channels import declared_channels
 from seatrial.data.trial.design_request import refuse_unsuitable
 from seatrial.data.trial.excitation import excitation_of
 from seatrial.data.trial.follow_table import stream_of
@@ -92,7 +93,8 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         ship = ship_of(file.ship)
         layout = layout_text(file.model.name, file.model.damping, file.thruster, ship)
         model = build_trial_model(file.model, ship, own_model, layout, file.sensors)
-        symbols = set(NOTATION)
+        declared = declared_channels(file.channels)
+        symbols = {*NOTATION, *declared}
         _refuse_unknown_names("noise", list(file.noise), symbols)
         _refuse_unknown_names("estimate.channels", list(file.estimate.channels), set(model.observables))
         _refuse_unknown_names("estimate.offsets", list(file.estimate.offsets), symbols)
@@ -114,10 +116,10 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
         home = path.resolve().parent
         base = home / expand_variables(file.data.folder)
         excitation = excitation_of(file.excitation, ship, model, base)
-        runs = runs_of(file.records, file.data.folder, home, excitation, ship.length) if file.records else ()
+        runs = runs_of(file.records, file.data.folder, home, excitation, ship.length, declared) if file.records else ()
         if runs and file.follow is None:
             require_training_run(runs)
-        stream = None if file.follow is None else stream_of(file.follow, base, home, excitation, ship.length)
+        stream = None if file.follow is None else stream_of(file.follow, base, home, excitation, ship.length, declared)
         if file.design is not None:
             refuse_unsuitable(file.design, model, ship.length)
         forces = tuple(
@@ -158,7 +160,8 @@ def load_runs(path: str | Path) -> tuple[TrialRun, ...]:
     path = Path(path)
     file = parse_trial(path)
     try:
-        return runs_of(file.records, file.data.folder, path.resolve().parent, length=None)
+        declared = declared_channels(file.channels)
+        return runs_of(file.records, file.data.folder, path.resolve().parent, length=None, declared=declared)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
 

@@ -12,6 +12,7 @@ from seatrial.core.values import InputError, RecordKind, si_unit, spelling_hint
 from seatrial.data.read import ColumnSpec, Layout, format_of
 from seatrial.data.read.layout import Geometry, TimeSpec
 from seatrial.data.read.quantities import log_quantity
+from seatrial.data.trial.declared_channels import NO_DECLARED, Declared, DeclaredQuantity
 from seatrial.data.trial.excitation import wave_encounter
 from seatrial.data.trial.run_data import RecordFile, RecordSources, RunPart, SourceFile, run_name
 from seatrial.data.trial.schema import ChannelColumn, ColumnsTable, RecordsTable
@@ -19,6 +20,7 @@ from seatrial.data.trial.trial import Role, TrialRun, Trimming
 from seatrial.physics.hydro.excitation import Excitation
 
 _DATE = re.compile(r"\d{4}-\d{2}-\d{2}|\d{1,2}-[A-Z][a-z]{2}-\d{4}|(?<!\d)(?:19|20)\d{6}(?!\d)")
+_RunData = RecordFile | RecordSources
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 
 
@@ -47,10 +49,12 @@ def runs_of(
     trial_folder: Path,
     excitation: Excitation | None = None,
     length: float | None = 1.0,
+    declared: Declared = NO_DECLARED,
 ) -> tuple[TrialRun, ...]:
     """Every run of every block, each with one role; files in sorted order.
 
-    excitation, length [m]: of the ships that met waves; without a length waves are left out.
+    excitation, length [m]: of the ships that met waves; without a length waves are left out. declared: channels of the
+    trial's own.
 
     Raises:
         InputError: a glob or a role pattern that matches nothing, a run with two roles, a name used twice.
@@ -59,7 +63,7 @@ def runs_of(
     runs = [
         run
         for i, block in enumerate(blocks, start=1)
-        for run in _block_runs(block, base, f"records[{i}]", excitation, length)
+        for run in _block_runs(block, base, f"records[{i}]", excitation, length, declared)
     ]
     names = [run.name for run in runs]
     for name in names:
@@ -80,9 +84,15 @@ def require_training_run(runs: Sequence[TrialRun]) -> None:
 
 
 def _block_runs(
-    block: RecordsTable, data_folder: Path, where: str, excitation: Excitation | None, length: float | None
+    block: RecordsTable,
+    data_folder: Path,
+    where: str,
+    excitation: Excitation | None,
+    length: float | None,
+    declared: Declared,
 ) -> list[TrialRun]:
-    whole = _sources_of(block, data_folder, where) if block.sources else _files_of(block, data_folder, where)
+    located = _sources_of if block.sources else _files_of
+    whole = located(block, data_folder, where, declared)
     data = [replace(one, part=part) for one in whole for part in _parts(block, one.name, len(whole))]
     trimming = Trimming(block.from_s, block.to_s, block.skip_acceleration, block.rate, block.from_release)
     roles = _roles(block, [one.name for one in data], where)
@@ -94,18 +104,22 @@ def _block_runs(
     ]
 
 
-def _files_of(block: RecordsTable, data_folder: Path, where: str) -> list[RecordFile | RecordSources]:
+def _files_of(
+    block: RecordsTable, data_folder: Path, where: str, declared: Declared
+) -> list[RecordFile | RecordSources]:
     paths = sorted({path for text in block.files for path in _matching_files(text, data_folder, where)})
-    layouts = [layout_of(block, block.format or format_of(path), where) for path in paths]
+    layouts = [layout_of(block, block.format or format_of(path), where, declared) for path in paths]
     return [RecordFile(path, _joined(layout, block)) for path, layout in zip(paths, layouts, strict=True)]
 
 
-def _sources_of(block: RecordsTable, data_folder: Path, where: str) -> list[RecordFile | RecordSources]:
+def _sources_of(
+    block: RecordsTable, data_folder: Path, where: str, declared: Declared
+) -> list[RecordFile | RecordSources]:
     files = []
     for i, source in enumerate(block.sources, start=1):
         place = f"{where}.sources[{i}]"
         (path,) = _matching_files(source.file, data_folder, place)[:1]
-        layout = layout_of(source, source.format or format_of(path), place)
+        layout = layout_of(source, source.format or format_of(path), place, declared)
         files.append(SourceFile(path, _joined(layout, block, source.clock_offset)))
     return [RecordSources(block.name, tuple(files))]
 
@@ -189,7 +203,7 @@ def session_of(path: Path, rule: str) -> str:
     return match.group(1) if match.re.groups else match.group(0)
 
 
-def layout_of(block: ColumnsTable, file_format: str, where: str) -> Layout:
+def layout_of(block: ColumnsTable, file_format: str, where: str, declared: Declared = NO_DECLARED) -> Layout:
     """How to parse one file or stream of the block, in the terms of `seatrial.data.read`.
 
     Raises:
@@ -199,7 +213,7 @@ def layout_of(block: ColumnsTable, file_format: str, where: str) -> Layout:
     return Layout(
         format=file_format,
         time=TimeSpec("time", time.column, time.unit, date=time.date, nanoseconds=time.nanoseconds, week=time.week),
-        columns=tuple(_column(s, c, f"{where}.channels.{s}") for s, c in block.channels.items()),
+        columns=tuple(_column(s, c, f"{where}.channels.{s}", declared.get(s)) for s, c in block.channels.items()),
         header_lines=block.header_lines,
         encoding=block.encoding,
         separator=block.separator,
@@ -207,15 +221,17 @@ def layout_of(block: ColumnsTable, file_format: str, where: str) -> Layout:
     )
 
 
-def _column(symbol: str, column: ChannelColumn, where: str) -> ColumnSpec:
+def _column(symbol: str, column: ChannelColumn, where: str, own: DeclaredQuantity | None) -> ColumnSpec:
     try:
-        known = log_quantity(symbol)
+        known = log_quantity(symbol) if own is None else own.quantity
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
     is_share = known.unit == "1" and column.span != 1.0
     if si_unit(column.unit)[1] != known.unit and not is_share:
         raise InputError(f"{where}.unit: '{column.unit}' is no unit of {known.meaning}, which is in {known.unit}")
-    is_command = symbol.startswith("command_") if column.kind is None else column.kind == "command"
+    if own is not None:
+        own.require_side(column.positive, where)
+    usual = "command" if symbol.startswith("command_") or (own is not None and own.is_command) else "measured"
     return ColumnSpec(
         symbol,
         column.column,
@@ -227,5 +243,6 @@ def _column(symbol: str, column: ChannelColumn, where: str) -> ColumnSpec:
         span=column.span,
         factor=column.scale,
         offset=column.offset,
-        is_held=is_command,
+        is_held=(column.kind or usual) == "command",
+        declared=None if own is None else own.quantity,
     )

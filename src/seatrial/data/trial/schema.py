@@ -108,6 +108,16 @@ class ChannelColumn(StrictTable):
     kind: Literal["command", "measured"] | None = None
 
 
+class DeclaredChannel(StrictTable):
+    """`[channels.NAME]`: a channel that the notation table does not have, for models of one's own."""
+
+    meaning: str
+    unit: Unit
+    frame: Literal["body", "earth", "none"] = "none"
+    positive: str = "none"
+    kind: Literal["command", "measured"] = "measured"
+
+
 class WavesTable(StrictTable):
     """`[records.waves]`: heading to the waves (0 following, 180 degrees head; rad without a unit) and ship speed.
 
@@ -349,6 +359,7 @@ class TrialFile(StrictTable):
     question: str = ""
     accept: tuple[str, ...] = ()
     ship: ShipTable | None = None
+    channels: dict[str, DeclaredChannel] = Field(default_factory=dict)
     data: DataTable = DataTable()
     records: tuple[RecordsTable, ...] = ()
     model: ModelTable | None = None

@@ -33,7 +33,7 @@ _SOURCE = "house default"
 
 def _nuisances(settings: EstimateSettings) -> Iterator[Nuisance]:
     for name, deviation in settings.offsets.items():
-        unit = NOTATION[name].unit
+        unit = NOTATION[name].unit if name in NOTATION else "1"
         spread = deviation or _ZERO_DEVIATIONS.get(unit, _OTHER_ZERO_DEVIATION)
         yield Nuisance(InputCorrection(name, "zero"), Prior(0.0, spread, _SOURCE), unit)
     for name, deviation in settings.gains.items():
