@@ -10,7 +10,7 @@ from seatrial.api.files import (
 )
 from seatrial.api.prediction import extrapolation, measure_intervals, measures, predict, rms_differences
 from seatrial.api.simulation import replay, simulate, steering
-from seatrial.api.studies import demo, list_models, reproduce
+from seatrial.api.studies import demo, list_models, model_guide, reproduce
 from seatrial.api.trials import (
     check,
     correct_trial,
@@ -27,6 +27,7 @@ from seatrial.api.tuning import load_loop, tune
 __all__ = [
     "check", "compare", "correct_trial", "demo", "design", "draft_trial", "extrapolation", "follow", "identify",
     "list_models", "load", "load_fit", "load_loop", "load_model", "load_trial", "measure_intervals", "measures",
+    "model_guide",
     "predict", "prepared_run", "read_record", "replay", "report", "reproduce", "rms_differences", "save", "simulate",
     "steering", "survey_log", "tune", "write_record",
 ]  # fmt: skip

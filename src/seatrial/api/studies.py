@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 if TYPE_CHECKING:
     from seatrial.core.results import Fit, Study
     from seatrial.core.values import ProgressReporter
+    from seatrial.data.trial.model_guide import ModelGuide
     from seatrial.physics.models.registry import ModelSummary
 
 STUDY_GROUP = "seatrial.studies"
@@ -61,6 +62,17 @@ def demo(folder: str | Path, seed: int = 0, report_progress: "ProgressReporter |
     report_progress("writing result and report")
     save(fit, folder)
     return fit
+
+
+def model_guide(name: str) -> "ModelGuide":
+    """Return what a model needs: channels, particulars, what is filled from where, and the tables of a trial file.
+
+    Raises:
+        InputError: there is no such model; the nearest name is given.
+    """
+    from seatrial.data.trial.model_guide import model_guide
+
+    return model_guide(name)
 
 
 def list_models() -> "tuple[ModelSummary, ...]":

@@ -139,18 +139,26 @@ def simulate(
 
 @app.command()
 def models(
+    name: Annotated[
+        str, typer.Argument(metavar="[NAME]", help="A model: what it needs, and tables to begin with.")
+    ] = "",
     json: Json = None,
     seed: Seed = 0,  # noqa: ARG001
 ) -> None:
-    """List the built-in and the installed models: name, states, inputs, source.
+    """List the built-in and the installed models; of one, say what it needs and print a starting trial file.
 
-    Example: seatrial models
+    Example: seatrial models mmg
     """
     from dataclasses import asdict
 
     from seatrial import api
-    from seatrial.cli.model_table import print_models
+    from seatrial.cli.model_table import print_model_guide, print_models
 
+    if name:
+        guide = api.model_guide(name)
+        print_model_guide(guide)
+        write_json(json, lambda: asdict(guide))
+        return
     summaries = api.list_models()
     print_models(summaries)
     write_json(json, lambda: {"models": [asdict(summary) for summary in summaries]})

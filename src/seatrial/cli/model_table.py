@@ -3,7 +3,10 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from seatrial.cli.output import print_lines
+
 if TYPE_CHECKING:
+    from seatrial.data.trial.model_guide import FilledValue, ModelGuide
     from seatrial.physics.models import ModelSummary
 
 
@@ -16,3 +19,24 @@ def print_models(summaries: "Sequence[ModelSummary]") -> None:
             print(f"{'':20s} {model.source}")
         if model.package:
             print(f"{'':20s} installed by {model.package}")
+
+
+def print_model_guide(guide: "ModelGuide") -> None:
+    """Print what a model needs, what is filled from where, and the tables of a trial file to begin with."""
+    from seatrial.core.text.words import enumeration
+
+    print_lines([f"{guide.name}: {guide.source}"])
+    print_lines([f"records need {enumeration(list(guide.inputs))}, and one or more of {', '.join(guide.observables)}"])
+    print_lines([f"estimated unless you say otherwise: {', '.join(guide.free)}"])
+    by_source: dict[str, list[FilledValue]] = {}
+    for value in guide.filled:
+        by_source.setdefault(value.source, []).append(value)
+    print("filled, where you do not state it:")
+    for source, values in by_source.items():
+        print_lines([f"  {', '.join(_with_deviation(value) for value in values)}: {source}"])
+    print("\nA trial file begins so ('seatrial init LOG... --out trial.toml' writes the records):\n")
+    print_lines(guide.trial.splitlines())
+
+
+def _with_deviation(value: "FilledValue") -> str:
+    return f"{value.name} (prior sd {value.deviation:g})" if value.deviation else value.name

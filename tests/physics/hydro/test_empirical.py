@@ -9,11 +9,14 @@ from seatrial.physics.hydro.empirical import (
     added_mass,
     clarke,
     cross_flow_coefficients,
+    displacement,
     interaction_coefficients,
+    interaction_wake,
     kijima,
+    propulsion,
     yoshimura,
 )
-from seatrial.physics.models.published import kvlcc2_l7
+from seatrial.physics.models.published import esso_osaka, kvlcc2_l7
 
 KVLCC2 = HullForm.from_ship(kvlcc2_l7().ship)
 
@@ -60,3 +63,28 @@ def test_cross_flow_without_yaw_is_drag() -> None:
 def test_a_ship_without_beam_is_refused() -> None:
     with pytest.raises(InputError, match="lacks B, C_b"):
         HullForm.from_ship(Ship("raft", {"L": 3.0, "d": 0.2}))
+
+
+def test_the_stated_scatter_is_that_of_two_published_tankers() -> None:
+    ships = [(HullForm.from_ship(one.ship), one) for one in (kvlcc2_l7(), esso_osaka())]
+    squares: dict[str, list[float]] = {}
+    stated: dict[str, float] = {}
+    for form, one in ships:
+        rudder = one.ship.particulars["H_R"] ** 2 / one.ship.particulars["A_R"]
+        for estimate in (interaction_coefficients(form, rudder), propulsion(form, 0.75, 0.5, 4)):
+            stated |= estimate.deviations
+            for name in estimate.deviations:
+                squares.setdefault(name, []).append((estimate.values[name] - one.values[name]) ** 2)
+    sides = squares.pop("gamma_R_plus") + squares.pop("gamma_R_minus")
+    assert np.sqrt(np.mean(sides)) == pytest.approx(stated["gamma_R_plus"], abs=0.005)
+    assert np.sqrt(np.mean(squares.pop("t_P"))) < stated["t_P"]
+    for name, values in squares.items():
+        assert np.sqrt(np.mean(values)) == pytest.approx(stated[name], abs=0.01), name
+
+
+def test_the_mass_is_that_of_the_displaced_water() -> None:
+    form, particulars = HullForm.from_ship(kvlcc2_l7().ship), kvlcc2_l7().ship.particulars
+    values = displacement(form, 1000.0).values
+    assert values["m"] == pytest.approx(particulars["m"], rel=0.02)
+    assert values["I_z"] == pytest.approx(particulars["I_z"], rel=0.02)
+    assert interaction_wake(form) == interaction_coefficients(form, 1.8).values["w_P0"]

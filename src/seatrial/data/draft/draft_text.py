@@ -74,7 +74,8 @@ def _without_evidence(line: str) -> str:
 def _particulars() -> list[str]:
     """What a person must give before a model can be estimated; `check` does not need it."""
     return [
-        "# 'seatrial check' needs neither ship nor model; for 'seatrial identify' give both ('seatrial models').",
+        "# 'seatrial check' needs neither ship nor model, 'seatrial identify' both: 'seatrial models' lists them,",
+        "# 'seatrial models mmg' prints what one needs. The simplest, of rudder and yaw rate:",
         "# [ship]",
         '# name = "..."',
         "# L = 0.0    # m, between perpendiculars",

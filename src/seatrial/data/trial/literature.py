@@ -9,19 +9,27 @@ from seatrial.physics.hydro.empirical import (
     HullForm,
     added_mass,
     clarke,
+    displacement,
     interaction_coefficients,
     kijima,
+    propulsion,
     yoshimura,
 )
 from seatrial.physics.models.published import PARAMETER_SETS, parameter_set
 
+USUAL_PROPELLER = {"pitch_ratio": 0.75, "area_ratio": 0.5, "blades": 4.0}
+"""P/D, A_E/A_0 and blades where `[ship]` does not state them; chosen: a merchant ship's fixed propeller."""
+SEA_WATER = 1025.0
+"""kg/m^3 where `[ship]` states no rho (ITTC 7.5-02-01-03, sea water at 15 degC: 1026)."""
+
 
 @dataclass(frozen=True)
 class LiteraturePrior:
-    """What a source says about one parameter."""
+    """What a source says about one parameter; deviation 0: not how far it may be wrong."""
 
     mean: float
     source: str
+    deviation: float = 0.0
 
 
 def _interaction(form: HullForm, ship: Ship) -> EmpiricalEstimate:
@@ -33,12 +41,23 @@ def _interaction(form: HullForm, ship: Ship) -> EmpiricalEstimate:
     return interaction_coefficients(form, ship.particulars["H_R"] ** 2 / ship.particulars["A_R"])
 
 
+def _propulsion(form: HullForm, ship: Ship) -> EmpiricalEstimate:
+    stated = {name: ship.particulars.get(name, usual) for name, usual in USUAL_PROPELLER.items()}
+    return propulsion(form, stated["pitch_ratio"], stated["area_ratio"], round(stated["blades"]))
+
+
+def _displacement(form: HullForm, ship: Ship) -> EmpiricalEstimate:
+    return displacement(form, ship.particulars.get("rho", SEA_WATER))
+
+
 FORMULAS: dict[str, Callable[[HullForm, Ship], EmpiricalEstimate]] = {
     "clarke": lambda form, _: clarke(form),
     "kijima": lambda form, _: kijima(form),
     "yoshimura": lambda form, _: yoshimura(form),
     "zhou": lambda form, _: added_mass(form),
     "interaction": _interaction,
+    "propulsion": _propulsion,
+    "displacement": _displacement,
 }
 _FORMULA_MODEL = "mmg"
 
@@ -52,15 +71,17 @@ def literature_priors(names: Sequence[str], ship: Ship, model: str) -> dict[str,
         InputError: an unknown source, one for another model, or a ship without the particulars a formula needs.
     """
     priors: dict[str, LiteraturePrior] = {}
-    for name in names:
-        _require_source_for_model(name, model)
-        if name in FORMULAS:
-            estimate = FORMULAS[name](HullForm.from_ship(ship), ship)
-            values, source = estimate.values, estimate.source
+    for source_name in names:
+        _require_source_for_model(source_name, model)
+        if source_name in FORMULAS:
+            estimate = FORMULAS[source_name](HullForm.from_ship(ship), ship)
+            values, source, deviations = estimate.values, estimate.source, estimate.deviations
         else:
-            published = parameter_set(name)
-            values, source = published.values, published.source
-        priors |= {parameter: LiteraturePrior(float(value), source) for parameter, value in values.items()}
+            published = parameter_set(source_name)
+            values, source, deviations = published.values, published.source, {}
+        priors |= {
+            name: LiteraturePrior(float(value), source, deviations.get(name, 0.0)) for name, value in values.items()
+        }
     return priors
 
 

@@ -88,7 +88,10 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
     file = parse_trial(path)
     if file.ship is None or file.model is None:
         missing = "[ship], with name and L, is" if file.ship is None else "[model], with the name of its equations, is"
-        raise InputError(f"{path}: {missing} missing; add it, 'seatrial models' lists the models")
+        raise InputError(
+            f"{path}: {missing} missing; add it: 'seatrial models' lists the models, 'seatrial models NAME' prints "
+            "both tables"
+        )
     try:
         ship = ship_of(file.ship)
         layout = layout_text(file.model.name, file.model.damping, file.thruster, ship)

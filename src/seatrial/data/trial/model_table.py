@@ -16,6 +16,7 @@ Bounds = Mapping[str, tuple[float, float]]
 # particulars that people state although not every model asks for them
 COMMON_PARTICULARS = (
     "L", "B", "d", "m", "I_z", "x_G", "C_b", "volume", "D_P", "x_P", "A_R", "H_R", "x_R", "A_T", "A_L", "rho",
+    "pitch_ratio", "area_ratio", "blades",
 )  # fmt: skip
 
 
@@ -142,7 +143,7 @@ def _with_priors(parameters: Parameters, table: ModelTable, literature: Mapping[
         share = table.prior_sd_percent / 100.0
         for p in parameters.free:
             known = literature.get(p.name, LiteraturePrior(p.value, p.source))
-            spread = share * max(abs(known.mean), p.scale) or share
+            spread = known.deviation or share * max(abs(known.mean), p.scale) or share
             priors.setdefault(p.name, Prior(known.mean, spread, known.source))
     return _with_prior_sources(parameters.with_priors(priors), literature)
 

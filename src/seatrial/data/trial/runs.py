@@ -221,17 +221,17 @@ def layout_of(block: ColumnsTable, file_format: str, where: str, declared: Decla
     )
 
 
-def _column(symbol: str, column: ChannelColumn, where: str, own: DeclaredQuantity | None) -> ColumnSpec:
+def _column(symbol: str, column: ChannelColumn, where: str, declared: DeclaredQuantity | None) -> ColumnSpec:
     try:
-        known = log_quantity(symbol) if own is None else own.quantity
+        known = log_quantity(symbol) if declared is None else declared.quantity
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
     is_share = known.unit == "1" and column.span != 1.0
     if si_unit(column.unit)[1] != known.unit and not is_share:
         raise InputError(f"{where}.unit: '{column.unit}' is no unit of {known.meaning}, which is in {known.unit}")
-    if own is not None:
-        own.require_side(column.positive, where)
-    usual = "command" if symbol.startswith("command_") or (own is not None and own.is_command) else "measured"
+    if declared is not None:
+        declared.require_side(column.positive, where)
+    usual = "command" if symbol.startswith("command_") or (declared is not None and declared.is_command) else "measured"
     return ColumnSpec(
         symbol,
         column.column,
@@ -244,5 +244,5 @@ def _column(symbol: str, column: ChannelColumn, where: str, own: DeclaredQuantit
         factor=column.scale,
         offset=column.offset,
         is_held=(column.kind or usual) == "command",
-        declared=None if own is None else own.quantity,
+        declared=None if declared is None else declared.quantity,
     )

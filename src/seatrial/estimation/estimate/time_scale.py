@@ -1,5 +1,6 @@
 """The time in which a ship changes its motion, by which segments, windows and search intervals are measured."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -48,7 +49,28 @@ def characteristic_time(
         return float(np.sqrt(length / G))
     if is_pure_roll(model):
         return PERIOD_SHARE * float(np.median([dominant_period(r[model.states[0]], r.dt) for r in records]))
+    if "u" not in model.states and segment_seconds is None and not any(_shows_speed(r) for r in records):
+        return yaw_time(records)
     return ship_length_seconds(records, length, segment_seconds)
+
+
+def _shows_speed(record: Record) -> bool:
+    return "u" in record or {"x0", "y0"} <= set(record.channels)
+
+
+def yaw_time(records: Sequence[Record]) -> float:
+    """Return the time [s] in which the yaw rate changes: 1/omega of its dominant period, the median of the records.
+
+    For steering models of records that show no speed.
+
+    Raises:
+        InputError: no record holds r or psi, or none swings.
+    """
+    turning = [r for r in records if {"r", "psi"} & set(r.channels)]
+    rates = [(r["r"] if "r" in r else np.gradient(r["psi"], r.dt), r.dt) for r in turning]
+    if not rates:
+        raise InputError("the records show neither speed nor yaw; give r or psi, or set estimate.segment_s")
+    return float(np.median([dominant_period(rate, dt) for rate, dt in rates])) / (2.0 * math.pi)
 
 
 def is_pure_roll(model: Model) -> bool:

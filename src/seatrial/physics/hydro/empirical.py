@@ -7,15 +7,25 @@ Song et al. 2025 (.0281, .785, .0699) and of KVLCC2 (m_y' .222, J_z' .0111 again
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from seatrial.core.values import InputError, Ship
+from seatrial.physics.hydro.propeller_series import OOSTERVELD, thrust_quadratic
 
 ZHOU = "Zhou et al. 1983, regression on Motora's charts"
 CLARKE = "Clarke, Gedling & Hine 1983, Trans. RINA 125, 45-68"
 KIJIMA = "Kijima et al. 1990, The Naval Architect / PRADS, linear derivatives"
 YOSHIMURA = "Yoshimura & Masumoto 2012, MARSIM, hydrodynamic database"
 FUJII = "Fujii & Tuda 1961, gradient of rudder lift"
+HARVALD = "Harvald 1983, Resistance and Propulsion of Ships, single screw"
+# root mean square difference from the published values of KVLCC2 and Esso Osaka (tests/physics/hydro): the only spread
+# that can be checked here; gamma_R over both sides
+_INTERACTION_DEVIATIONS = {
+    "w_P0": 0.18, "t_R": 0.14, "a_H": 0.04, "x_H_prime": 0.01, "l_R_prime": 0.19, "gamma_R_plus": 0.11,
+    "gamma_R_minus": 0.11, "epsilon": 0.31, "kappa": 0.18, "f_alpha": 0.20,
+}  # fmt: skip
+# the same of the thrust; t_P differs by 0.01 from those two, and by 0.05 among ships (chosen)
+_PROPULSION_DEVIATIONS = {"t_P": 0.05, "k_0": 0.02, "k_1": 0.06, "k_2": 0.03}
 
 
 @dataclass(frozen=True)
@@ -35,7 +45,7 @@ class HullForm:
         Raises:
             InputError: L, B, d or C_b is not among its particulars.
         """
-        missing = [n for n in ("L", "B", "d", "C_b") if n not in ship.particulars]
+        missing = [n for n in ("L", "B", "d", "C_b") if not ship.particulars.get(n, 0.0) > 0.0]
         if missing:
             names = ", ".join(missing)
             raise InputError(f"ship '{ship.name}' lacks {names} for empirical coefficients; add them under [ship]")
@@ -60,12 +70,16 @@ class HullForm:
 
 @dataclass(frozen=True)
 class EmpiricalEstimate:
-    """Values of one method, its source, and whether the form lies where the method was fitted."""
+    """Values of one method, its source, and whether the form lies where the method was fitted.
+
+    deviations: standard deviation of those values whose scatter is known.
+    """
 
     values: dict[str, float]
     source: str
     valid: bool
     limits: str
+    deviations: dict[str, float] = field(default_factory=dict)
 
 
 Range = tuple[float, float]
@@ -161,7 +175,7 @@ def interaction_coefficients(form: HullForm, aspect_ratio: float) -> EmpiricalEs
     f = form.fullness
     # regressions of the sources named below
     values = {
-        "w_P0": 0.5 * form.C_b - 0.05,
+        "w_P0": interaction_wake(form),
         "t_R": 0.39,
         "a_H": 0.627 * form.C_b - 0.153,
         "x_H_prime": -0.45,
@@ -177,7 +191,32 @@ def interaction_coefficients(form: HullForm, aspect_ratio: float) -> EmpiricalEs
         f"epsilon Kijima et al. 1990; f_alpha {FUJII}; through MANSIM"
     )
     # ranges of the forms that the regressions were fitted to
-    return EmpiricalEstimate(values, source, *_validity(form, (0.5, 0.85), (4.0, 8.0), (2.0, 4.5)))
+    valid, limits = _validity(form, (0.5, 0.85), (4.0, 8.0), (2.0, 4.5))
+    return EmpiricalEstimate(values, source, valid, limits, dict(_INTERACTION_DEVIATIONS))
+
+
+def propulsion(form: HullForm, pitch_ratio: float, area_ratio: float, blades: int) -> EmpiricalEstimate:
+    """Return thrust deduction and open-water thrust of a single screw whose own curve nobody knows."""
+    wake = interaction_wake(form)
+    k_0, k_1, k_2 = thrust_quadratic(pitch_ratio, area_ratio, blades)
+    # t = 0.60 w + 0.01: Harvald 1983, single screw
+    values = {"t_P": 0.60 * wake + 0.01, "k_0": k_0, "k_1": k_1, "k_2": k_2}
+    source = f"t_P {HARVALD}; k_0, k_1, k_2 {OOSTERVELD}, P/D {pitch_ratio:g}, A_E/A_0 {area_ratio:g}, {blades} blades"
+    valid, limits = _validity(form, (0.5, 0.85), (4.0, 8.0), (2.0, 4.5))  # of merchant ships, as of the wake
+    return EmpiricalEstimate(values, source, valid, limits, dict(_PROPULSION_DEVIATIONS))
+
+
+def interaction_wake(form: HullForm) -> float:
+    """Return the wake fraction of a single screw, 0.5 C_b - 0.05 (Taylor, as in Harvald 1983)."""
+    return 0.5 * form.C_b - 0.05
+
+
+def displacement(form: HullForm, rho: float) -> EmpiricalEstimate:
+    """Return the mass of the displaced water of density rho [kg/m^3], and its inertia with a gyradius of L/4."""
+    mass = rho * form.C_b * form.L * form.B * form.d
+    values = {"rho": rho, "m": mass, "I_z": mass * (0.25 * form.L) ** 2, "x_G": form.x_G_prime * form.L}
+    source = "m = rho C_b L B d (Archimedes); gyradius L/4 (Yasukawa & Yoshimura 2015); x_G midship unless stated"
+    return EmpiricalEstimate(values, source, valid=True, limits="any ship that floats at rest")
 
 
 def cross_flow_coefficients(C_D: float, C_rY: float, C_rN: float) -> dict[str, float]:
