@@ -208,7 +208,7 @@ def propulsion(form: HullForm, pitch_ratio: float, area_ratio: float, blades: in
 
 def interaction_wake(form: HullForm) -> float:
     """Return the wake fraction of a single screw, 0.5 C_b - 0.05 (Taylor, as in Harvald 1983)."""
-    return 0.5 * form.C_b - 0.05
+    return 0.5 * form.C_b - 0.05  # Taylor's formula, as in Harvald 1983
 
 
 def displacement(form: HullForm, rho: float) -> EmpiricalEstimate:
