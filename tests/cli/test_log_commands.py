@@ -31,6 +31,10 @@ def test_a_draft_is_written_once_and_checked(tmp_path: Path) -> None:
     log, trial = write(tmp_path / "run.csv", BASE | {"rot": TRUTH["r"]}), tmp_path / "trial.toml"
     text = output("init", str(log), "--out", str(trial))
     assert "follows d(psi)/dt" in text and "zigzag1, " in text and "Next: seatrial check" in text
+    assert "zigzag1" in trial.with_suffix(".html").read_text(encoding="utf-8")
     with pytest.raises(InputError, match="exists and is not overwritten"):
         output("init", str(log), "--out", str(trial))
     assert "Next: " in output("check", str(trial))
+    trial.unlink()
+    with pytest.raises(InputError, match="the drawing beside --out, exists"):
+        output("init", str(log), "--out", str(trial))

@@ -32,11 +32,16 @@ def init(
     from seatrial.core.text.words import counted
     from seatrial.core.values import InputError
     from seatrial.core.values.files import write_atomically
+    from seatrial.reporting.draft import html as draft_page
 
     if out.exists():
         raise InputError(f"--out '{out}' exists and is not overwritten; name another file, or remove it")
     draft = api.draft_trial(*logs, folder=out.resolve().parent)
+    page = out.with_suffix(".html")
+    if page.exists():
+        raise InputError(f"'{page}', the drawing beside --out, exists and is not overwritten; name another file")
     write_atomically(out, draft.text.encode())
+    write_atomically(page, draft_page(draft, out.name).encode())
     _print_guesses([g for part in draft.guesses for g in part if g.is_used])
     for run, stretches in zip(draft.runs, draft.stretches, strict=True):
         name = run.name or run.sources[0].path.name
@@ -45,6 +50,7 @@ def init(
     if questions:
         print_lines([f"{counted(len(questions), 'column')} to decide, marked OPEN in the file"])
     print(f"trial file: {out}")
+    print(f"drawing: {page}")
     print_lines([_after_draft(draft, out)])
 
 

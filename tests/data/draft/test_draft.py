@@ -110,7 +110,7 @@ def test_manoeuvres_are_found_and_offered_as_parts(tmp_path: Path) -> None:
     assert zigzag.start < 20.0 and 150.0 < zigzag.stop < 210.0
     assert circle.start > 250.0 and circle.stop > 450.0
     assert '#     { name = "zigzag1", from = "' in draft.text
-    assert find_stretches([], []) == ()
+    assert find_stretches([], None) == ()
 
 
 def test_sources_of_several_kinds_make_one_run(tmp_path: Path) -> None:

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from seatrial.core.values import InputError
+from seatrial.core.values import InputError, Record
 from seatrial.data.draft.agreement import agreed_guesses
-from seatrial.data.draft.behaviour import checked_by_behaviour
+from seatrial.data.draft.behaviour import checked_by_behaviour, run_record
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.draft_text import RecordsBlock, trial_text
 from seatrial.data.draft.guess import guess_columns, without_conflicts
@@ -28,6 +28,7 @@ class DraftTrial:
         surveys: the logs, in order.
         runs: which of them belong together.
         guesses: of the columns of each source of the longest run.
+        records: of each run, even and complete; None where its columns make none.
         stretches: manoeuvres found, of each run.
     """
 
@@ -35,6 +36,7 @@ class DraftTrial:
     surveys: tuple[LogSurvey, ...]
     runs: tuple[LogRun, ...]
     guesses: tuple[tuple[ColumnGuess, ...], ...]
+    records: tuple[Record | None, ...] = ()
     stretches: tuple[tuple[LogStretch, ...], ...] = ()
 
     @property
@@ -61,9 +63,10 @@ def draft_trial(*logs: str | Path, folder: str | Path = ".") -> DraftTrial:
     longest = sorted(range(len(runs)), key=lambda k: -runs[k].duration)[:_RUNS_EXAMINED]
     examined = [checked_by_behaviour(runs[k].sources, named[k]) for k in longest]
     guesses = [agreed_guesses(parts, examined) for parts in named]
-    stretches = numbered([find_stretches(run.sources, parts) for run, parts in zip(runs, guesses, strict=True)])
+    records = [run_record(run.sources, parts) for run, parts in zip(runs, guesses, strict=True)]
+    stretches = numbered([find_stretches(run.sources, one) for run, one in zip(runs, records, strict=True)])
     text = trial_text(_blocks(runs, guesses, stretches, longest[0]), reasons | left_out, Path(folder).resolve())
-    return DraftTrial(text, tuple(surveys), tuple(runs), guesses[longest[0]], stretches)
+    return DraftTrial(text, tuple(surveys), tuple(runs), guesses[longest[0]], tuple(records), stretches)
 
 
 def _blocks(

@@ -5,8 +5,6 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from seatrial.core.values import InputError, Record
-from seatrial.data.draft.behaviour import run_record
-from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.motion_stretches import SHORTEST_STRAIGHT_S, decays, spirals, stops, straight_runs
 from seatrial.data.draft.stretch import MIN_SAMPLES, LogStretch
 from seatrial.data.draft.survey import LogSurvey
@@ -36,13 +34,12 @@ class _Mode:
         return f"mode {self.name}: a controller is on, its orders follow the motion"
 
 
-def find_stretches(surveys: Sequence[LogSurvey], guesses: Sequence[Sequence[ColumnGuess]]) -> tuple[LogStretch, ...]:
-    """Return the manoeuvres of one run in order, those of the same kind under the same name.
+def find_stretches(surveys: Sequence[LogSurvey], record: Record | None) -> tuple[LogStretch, ...]:
+    """Return the manoeuvres of the record of one run in order, those of the same kind under the same name.
 
     Zigzags, circles with or without pull-out, spins, spirals, straight runs, stops and roll decays; where the log has
     modes, each stretch lies within one, and modes without a manoeuvre are offered as a whole.
     """
-    record = run_record(surveys, guesses)
     if record is None:
         return ()
     modes = _modes(surveys, record)

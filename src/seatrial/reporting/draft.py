@@ -1,0 +1,68 @@
+"""The page of a drafted trial: what each column is taken for, and every run with its manoeuvres."""
+
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from seatrial.core.figures.svg_text import svg
+from seatrial.core.text.words import counted
+from seatrial.core.values import Record
+from seatrial.data.draft import ColumnGuess, DraftTrial, LogRun, LogStretch
+from seatrial.reporting.figures.log_parts import log_chart
+from seatrial.reporting.page import environment
+
+TITLES = {"columns": "Columns", "runs": "Runs and their manoeuvres"}
+_OPEN_RUNS = 3  # runs whose drawing is unfolded; chosen: what one scrolls through
+
+
+@dataclass(frozen=True)
+class ColumnRow:
+    """A column as text."""
+
+    symbol: str
+    source: str
+    meaning: str
+    evidence: str
+    other_reading: str
+
+
+@dataclass(frozen=True)
+class RunSection:
+    """A run: its name, what was found, its parts, the drawing."""
+
+    key: str
+    name: str
+    note: str
+    parts: tuple[LogStretch, ...]
+    figure: Markup
+
+
+def html(draft: DraftTrial, title: str) -> str:
+    """Return the self-contained page; title: the name of the trial file beside it."""
+    rows = [_column_row(g) for part in draft.guesses for g in part if g.is_used]
+    sections = [
+        _run_section(number, run, record, parts)
+        for number, (run, record, parts) in enumerate(zip(draft.runs, draft.records, draft.stretches, strict=True))
+        if record is not None
+    ]
+    context = {
+        "title": title,
+        "titles": TITLES,
+        "rows": rows,
+        "open_count": counted(len(draft.open_questions), "column") if draft.open_questions else "",
+        "runs": sections,
+        "unfolded": _OPEN_RUNS,
+    }
+    return environment().get_template("draft.html").render(context)
+
+
+def _column_row(guess: ColumnGuess) -> ColumnRow:
+    words = (guess.unit, guess.frame, f"positive {guess.positive}" if guess.positive else "")
+    meaning = ", ".join(word for word in words if word)
+    return ColumnRow(guess.symbol, str(guess.source), meaning, "; ".join(guess.evidence), guess.other_reading)
+
+
+def _run_section(number: int, run: LogRun, record: Record, parts: tuple[LogStretch, ...]) -> RunSection:
+    name = run.name or run.sources[0].path.name
+    figure = Markup(svg(log_chart(record, parts)))
+    return RunSection(f"run-{number}", name, counted(len(parts), "manoeuvre"), parts, figure)
