@@ -18,6 +18,7 @@ from seatrial.data.draft import LogStretch
 # colours of neighbours, told apart by people who see no red or no green (Okabe & Ito 2008), and paler for areas
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00")
 _PALE = ("#d5e8f3", "#f8dfcf", "#d2efe5", "#f6e4ee", "#efe7c8")
+_NUMBER = 9.0  # px, of the number of a part; chosen
 _THIN, _THICK = Stroke(GREY, 0.8), 2.2  # px, chosen
 _CHANNELS_SHOWN = 12  # the first in the order of reading; chosen: two screens of a telephone
 
@@ -72,7 +73,5 @@ def _with_parts(panel: Panel, parts: Sequence[LogStretch]) -> Panel:
     behind: list[Mark] = []
     for number, part in enumerate(parts, start=1):
         behind.append(Rectangle(part.start, low, part.stop, high, _PALE[(number - 1) % len(_PALE)]))
-        behind.append(
-            Text(part.start, high, f"{number}", size=9.0, colour=_colour(number), dx=2.0, dy=9.0)
-        )  # px, chosen
+        behind.append(Text(part.start, high, f"{number}", size=_NUMBER, colour=_colour(number), dx=2.0, dy=_NUMBER))
     return replace(panel, marks=(*behind, *panel.marks))
