@@ -27,7 +27,7 @@ class ColumnRow:
 
 
 @dataclass(frozen=True)
-class RunSection:
+class DrawnRun:
     """A run: its name, what was found, its parts, the drawing."""
 
     key: str
@@ -62,7 +62,7 @@ def _column_row(guess: ColumnGuess) -> ColumnRow:
     return ColumnRow(guess.symbol, str(guess.source), meaning, "; ".join(guess.evidence), guess.other_reading)
 
 
-def _run_section(number: int, run: LogRun, record: Record, parts: tuple[LogStretch, ...]) -> RunSection:
+def _run_section(number: int, run: LogRun, record: Record, parts: tuple[LogStretch, ...]) -> DrawnRun:
     name = run.name or run.sources[0].path.name
     figure = Markup(svg(log_chart(record, parts)))
-    return RunSection(f"run-{number}", name, counted(len(parts), "manoeuvre"), parts, figure)
+    return DrawnRun(f"run-{number}", name, counted(len(parts), "manoeuvre"), parts, figure)
