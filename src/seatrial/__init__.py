@@ -20,7 +20,6 @@ Functions (each also a command)
     reproduce     repeat a published study
     demo          identify a craft with known coefficients
     list_models   the built-in and the installed models
-    model_guide   what one of them needs, and what is filled from where
 
 Files
     read_record, write_record    records

@@ -135,7 +135,12 @@ def follow(
         typer.Option("--journal", metavar="FILE", help="Keep samples there; an existing one is read first."),
     ] = None,
     source: Annotated[
-        str | None, typer.Option("--source", metavar="KIND", help="file, stdin, udp, nmea-file, nmea-stdin, nmea-udp.")
+        str | None,
+        typer.Option(
+            "--source",
+            metavar="KIND",
+            help="file, stdin, udp, nmea-file, nmea2000-udp, mavlink-udp, ...",
+        ),
     ] = None,
     method: Method = None,
     model: OwnModelPath = None,

@@ -8,6 +8,8 @@ from seatrial.core.values import InputError
 from seatrial.data.trial.stream import Stream, StreamSource
 from seatrial.onboard.columns import ColumnReader
 from seatrial.onboard.lines import LineBatch, LineSource
+from seatrial.onboard.message_decoders import BusDecoder, MavlinkDecoder
+from seatrial.onboard.messages import MessageReader
 from seatrial.onboard.nmea import NmeaReader
 from seatrial.onboard.sample_order import combined_counts
 from seatrial.onboard.stdin import PipeLines
@@ -16,6 +18,9 @@ from seatrial.onboard.udp import UdpLines
 
 # sentences that a talker sends with each sample, at most; chosen: an integrated bridge repeats about ten
 _SENTENCES_PER_SAMPLE = 20
+
+_BUS_LINES = 400.0
+"""Lines or datagrams a second that a bus or an autopilot sends; chosen: an NMEA 2000 bus carries some 1800 frames."""
 
 
 class SampleSource(Protocol):
@@ -92,9 +97,19 @@ def open_source(stream: Stream, *, once: bool = False) -> SampleSource:
     Raises:
         InputError: the file or address cannot be opened, or the layout cannot be followed (see the readers).
     """
-    is_nmea = stream.source in (StreamSource.NMEA_FILE, StreamSource.NMEA_STDIN, StreamSource.NMEA_UDP)
-    reader: LineReader = NmeaReader(stream.layout, rate=stream.rate) if is_nmea else ColumnReader(stream.layout)
-    return LineSampleSource(_open_lines(stream, once=once), reader)
+    return LineSampleSource(_open_lines(stream, once=once), _reader(stream))
+
+
+def _reader(stream: Stream) -> LineReader:
+    match stream.source:
+        case StreamSource.NMEA_FILE | StreamSource.NMEA_STDIN | StreamSource.NMEA_UDP:
+            return NmeaReader(stream.layout, rate=stream.rate)
+        case StreamSource.NMEA2000_UDP:
+            return MessageReader(stream.layout, BusDecoder(), rate=stream.rate)
+        case StreamSource.MAVLINK_UDP:
+            return MessageReader(stream.layout, MavlinkDecoder(), rate=stream.rate)
+        case _:
+            return ColumnReader(stream.layout)
 
 
 def _open_lines(stream: Stream, *, once: bool) -> LineSource:
@@ -109,3 +124,7 @@ def _open_lines(stream: Stream, *, once: bool) -> LineSource:
             return UdpLines(stream.port or 0, rate=stream.rate, host=stream.host)
         case StreamSource.NMEA_UDP:
             return UdpLines(stream.port or 0, rate=stream.rate * _SENTENCES_PER_SAMPLE, host=stream.host)
+        case StreamSource.NMEA2000_UDP:
+            return UdpLines(stream.port or 0, rate=_BUS_LINES, host=stream.host)
+        case StreamSource.MAVLINK_UDP:
+            return UdpLines(stream.port or 0, rate=_BUS_LINES, host=stream.host, is_binary=True)

@@ -40,7 +40,7 @@ class UdpLines:
 
     rate: lines expected a second; five times as many pass, the rest is dropped and counted, as are datagrams beyond
     8 KiB and lines beyond 4 KiB. Nothing is kept between reads. Datagrams that the system drops between reads are not
-    counted. port 0: one that is free.
+    counted. port 0: one that is free. is_binary: a datagram is one item, whatever its bytes.
 
     Raises:
         InputError: the address cannot be listened to.
@@ -49,10 +49,17 @@ class UdpLines:
     is_over = False
 
     def __init__(
-        self, port: int, *, rate: float, host: str = "127.0.0.1", clock: Callable[[], float] = time.monotonic
+        self,
+        port: int,
+        *,
+        rate: float,
+        host: str = "127.0.0.1",
+        clock: Callable[[], float] = time.monotonic,
+        is_binary: bool = False,
     ) -> None:
         self._bucket = TokenBucket(RATE_ALLOWANCE * rate, clock)
         self._rate = rate
+        self._is_binary = is_binary
         self._dropped = 0
         self._last_error = ""
         if not 0 <= port <= 65535:  # ports are 16 bits
@@ -110,7 +117,7 @@ class UdpLines:
             self._dropped += 1
             self._last_error = f"a datagram of more than {MAX_DATAGRAM_BYTES} bytes was dropped"
             return []
-        lines = [line for line in datagram.split(b"\n") if line.strip()]
+        lines = [datagram] if self._is_binary else [line for line in datagram.split(b"\n") if line.strip()]
         kept = [line for line in lines if len(line) <= MAX_LINE_BYTES]
         passed = kept[: self._bucket.take(len(kept))]
         self._dropped += len(lines) - len(passed)

@@ -11,6 +11,7 @@ from seatrial.physics.manoeuvres import ManoeuvreKind, imo_criteria, measures, r
 from seatrial.physics.manoeuvres.imo import first_overshoot_limit, second_overshoot_limit
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
+from seatrial.physics.models.published import kvlcc2
 from seatrial.physics.simulate.steer import manoeuvre
 
 LENGTH = 10.0
@@ -104,6 +105,15 @@ def test_programmes_are_recognised(text: str, kind: ManoeuvreKind) -> None:
 def test_pull_out_of_a_stable_ship_leaves_no_rate() -> None:
     record = manoeuvre(nomoto().with_values({"T": 5.0}), programme("pull-out:15"))
     assert measures(record, LENGTH)["residual_yaw_rate_deg_s"] == pytest.approx(0.0, abs=1e-3)
+
+
+def test_a_turning_circle_with_a_pull_out_gives_the_measures_of_both() -> None:
+    record = manoeuvre(kvlcc2(), programme("pull-out:35"), speed=1.18, inputs={"n": 10.4})
+    both = measures(record, 7.0)
+    circle = measures(manoeuvre(kvlcc2(), programme("turning-circle:35"), speed=1.18, inputs={"n": 10.4}), 7.0)
+    for name in ("advance_L", "transfer_L", "tactical_diameter_L"):
+        assert both[name] == pytest.approx(circle[name], rel=1e-3)
+    assert "residual_yaw_rate_deg_s" in both and "residual_yaw_rate_deg_s" not in circle
 
 
 def test_rudder_that_never_moves_shows_nothing() -> None:

@@ -16,7 +16,7 @@ from seatrial.data.trial.trial import Trial
 from seatrial.physics.hydro.excitation import Excitation
 
 _FILE_SOURCES = (StreamSource.FILE, StreamSource.NMEA_FILE)
-_UDP_SOURCES = (StreamSource.UDP, StreamSource.NMEA_UDP)
+_UDP_SOURCES = tuple(source for source in StreamSource if source.endswith("udp"))
 _HOST_PATTERN = re.compile(r"[A-Za-z0-9.:_-]+")
 
 
@@ -66,7 +66,7 @@ def with_source(trial: Trial, source: str) -> Trial:
     if source not in [one.value for one in StreamSource]:
         raise InputError(f"unknown source '{source}'{spelling_hint(source, [one.value for one in StreamSource])}")
     wanted = StreamSource(source)
-    if _is_nmea(wanted) != _is_nmea(stream.source):
+    if _kind(wanted) != _kind(stream.source):
         raise InputError(
             f"source '{wanted}' has other columns than [follow] source = '{stream.source}'; change the table"
         )
@@ -89,10 +89,11 @@ def require_stream(trial: Trial) -> Stream:
     return trial.stream
 
 
-def _is_nmea(source: StreamSource) -> bool:
-    return source in (StreamSource.NMEA_FILE, StreamSource.NMEA_STDIN, StreamSource.NMEA_UDP)
+def _kind(source: StreamSource) -> str:
+    """What the samples are written in: nmea, nmea2000, mavlink; empty: columns."""
+    return source.value.rpartition("-")[0]
 
 
 def _stream_name(source: StreamSource, file: Path | None) -> str:
     """Runs are called after the file, or after where they come from."""
-    return run_name(file) if file is not None and source in _FILE_SOURCES else source.value.removeprefix("nmea-")
+    return run_name(file) if file is not None and source in _FILE_SOURCES else source.value.rpartition("-")[2]

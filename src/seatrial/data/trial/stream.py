@@ -15,7 +15,7 @@ from seatrial.physics.sea.encounter import WaveEncounter
 
 
 class StreamSource(StrEnum):
-    """Where the samples of a stream come from; NMEA 0183 sentences or lines of columns."""
+    """Where samples come from: lines of columns, NMEA 0183 sentences, messages of a bus or an autopilot."""
 
     FILE = "file"
     STDIN = "stdin"
@@ -23,6 +23,8 @@ class StreamSource(StrEnum):
     NMEA_FILE = "nmea-file"
     NMEA_STDIN = "nmea-stdin"
     NMEA_UDP = "nmea-udp"
+    NMEA2000_UDP = "nmea2000-udp"
+    MAVLINK_UDP = "mavlink-udp"
 
 
 @dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
@@ -30,7 +32,8 @@ class StreamSettings:
     """Where samples come from while the record is being made, and how they are followed.
 
     Attributes:
-        source: lines of a growing file, of standard input or of UDP datagrams, or NMEA 0183 sentences from them.
+        source: lines of a growing file, of standard input or of UDP datagrams, or NMEA 0183 sentences from them; NMEA
+            2000 as text and MAVLink in UDP datagrams.
         rate: nominal rate of the samples [Hz].
         file: of a source that is a file.
         host, port: on which UDP is listened to.

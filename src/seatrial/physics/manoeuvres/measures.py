@@ -36,9 +36,10 @@ def measures(
         Zigzag: ``overshoot_1_deg``, ``overshoot_2_deg``, …; ``initial_turning_time_s`` and ``initial_turning_L`` to 10
         deg of heading; ``period_s``, the mean time between successive extremes of heading to the same side. Turning
         circle: ``advance_L``, ``transfer_L``, ``tactical_diameter_L`` and, from a turn through 360 deg on,
-        ``steady_diameter_L``, ``steady_yaw_rate_deg_s``, ``steady_drift_deg``, ``speed_loss``. Pull-out:
-        ``residual_yaw_rate_deg_s``. All with ``rudder_deg`` and ``approach_speed`` [m/s]; distances are positive to the
-        side turned to, drift positive with the bow into the turn, residual rate positive to that side.
+        ``steady_diameter_L``, ``steady_yaw_rate_deg_s``, ``steady_drift_deg``, ``speed_loss``. Turning circle with a
+        pull-out: these and ``residual_yaw_rate_deg_s``. All with ``rudder_deg`` and ``approach_speed`` [m/s]; distances
+        are positive to the side turned to, drift positive with the bow into the turn, residual rate positive to that
+        side.
 
     Raises:
         InputError: psi or delta is missing or empty, the length is not positive, or `reference` has other times.
@@ -60,7 +61,7 @@ def _measures_of(manoeuvre: ObservedManoeuvre, length: float, switching: float |
         case ManoeuvreKind.TURNING_CIRCLE:
             return _turning_circle_measures(manoeuvre, length)
         case ManoeuvreKind.PULL_OUT:
-            return _pull_out_measures(manoeuvre)
+            return _turning_circle_measures(manoeuvre, length) | _pull_out_measures(manoeuvre)
         case _:
             return {}
 

@@ -3,6 +3,7 @@
 import math
 from collections import defaultdict
 from collections.abc import Iterator
+from dataclasses import dataclass
 from datetime import UTC
 from pathlib import Path
 from typing import Any
@@ -35,31 +36,47 @@ def read_nmea2000(path: Path, layout: Layout) -> Log:
         text = line.strip()
         if not text or text.startswith("#"):
             continue
-        try:
-            message = decoder.decode(text)
-        except Exception:
-            continue
-        if message is None:
-            continue
-        stamp = message.timestamp.replace(tzinfo=message.timestamp.tzinfo or UTC)
-        time = stamp.timestamp() if _has_stamp(text) else math.nan
-        reference, values = "", {}
-        for field in message.fields:
-            if _is_reference(field):
-                reference = str(field.value)
-            elif (
-                isinstance(field.value, int | float)
-                and not isinstance(field.value, bool)
-                and field.id not in _LEFT_OUT
-                and not field.id.startswith("reserved")
-            ):
-                values[field.id] = float(field.value)
-                units[field.id] = field.unit_of_measurement or ""
-        if values:
-            rows[message.id, message.source, reference].append((time, values))
+        message = decoded_message(decoder, text)
+        if message is not None:
+            rows[message.name, message.source, message.reference].append((message.time, message.values))
+            units |= message.units
     if not rows:
         raise InputError(f"{path.name} holds no NMEA 2000 message that can be decoded; check the format")
     return Log(path.name, tuple(_tables(path.name, rows, units)))
+
+
+@dataclass(frozen=True)
+class BusMessage:
+    """A message of the bus: canboat's name, who sent it, what it is measured against, stamp [s], numbers with units."""
+
+    name: str
+    source: int
+    reference: str
+    time: float
+    values: dict[str, float]
+    units: dict[str, str]
+
+
+def decoded_message(decoder: Any, text: str) -> BusMessage | None:
+    """Return the message of a line; None where it is none, a part of one, or holds no number. time: NaN without."""
+    try:
+        message = decoder.decode(text)
+    except Exception:
+        return None
+    if message is None:
+        return None
+    stamp = message.timestamp.replace(tzinfo=message.timestamp.tzinfo or UTC)
+    numbers = [field for field in message.fields if _is_number(field)]
+    values = {field.id: float(field.value) for field in numbers}
+    units = {field.id: field.unit_of_measurement or "" for field in numbers}
+    reference = next((str(field.value) for field in reversed(message.fields) if _is_reference(field)), "")
+    time = stamp.timestamp() if _has_stamp(text) else math.nan
+    return BusMessage(message.id, message.source, reference, time, values, units) if values else None
+
+
+def _is_number(field: Any) -> bool:
+    is_value = isinstance(field.value, int | float) and not isinstance(field.value, bool)
+    return is_value and not _is_reference(field) and field.id not in _LEFT_OUT and not field.id.startswith("reserved")
 
 
 def _is_reference(field: Any) -> bool:
