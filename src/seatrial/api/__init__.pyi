@@ -27,7 +27,6 @@ from seatrial.api.tuning import load_loop, tune
 __all__ = [
     "check", "compare", "correct_trial", "demo", "design", "draft_trial", "extrapolation", "follow", "identify",
     "list_models", "load", "load_fit", "load_loop", "load_model", "load_trial", "measure_intervals", "measures",
-    "model_guide",
-    "predict", "prepared_run", "read_record", "replay", "report", "reproduce", "rms_differences", "save", "simulate",
-    "steering", "survey_log", "tune", "write_record",
+    "model_guide", "predict", "prepared_run", "read_record", "replay", "report", "reproduce", "rms_differences", "save",
+    "simulate", "steering", "survey_log", "tune", "write_record",
 ]  # fmt: skip
