@@ -37,7 +37,7 @@ def test_display_turns_angles_into_degrees() -> None:
 
 
 def test_an_unknown_unit_is_refused_and_the_nearest_named() -> None:
-    with pytest.raises(InputError, match="unknown unit 'knt'; did you mean 'kt'"):
+    with pytest.raises(InputError, match="unknown unit 'knt'; write 'kn'"):
         si_unit("knt")
 
 

@@ -2,7 +2,7 @@
 
 import math
 
-from seatrial.core.values.errors import InputError, spelling_hint
+from seatrial.core.values.errors import InputError, listed
 
 _DEGREE = math.pi / 180.0  # rad
 # unit -> (factor to SI, SI unit); exact by definition (SI brochure 2019; 1 kn = 1852 m/h)
@@ -18,6 +18,15 @@ _UNITS: dict[str, tuple[float, str]] = {
     "kg/m^3": (1.0, "kg/m^3"), "kg m^2": (1.0, "kg m^2"), "V": (1.0, "V"), "mV": (1e-3, "V"), "m^2": (1.0, "m^2"),
     "m^3": (1.0, "m^3"),
 }  # fmt: skip
+# unit -> spellings that people use, in small letters
+_SPELLINGS = {
+    "deg": "deg degs degree degrees °", "rad": "rad rads radian radians", "kn": "kn kt kts knt knts knot knots",
+    "m/s": "m/s mps ms m/sec", "km/h": "km/h kmh kph", "deg/s": "deg/s deg/sec degrees/s dps °/s",
+    "deg/min": "deg/min degrees/min °/min", "rad/s": "rad/s", "rpm": "rpm 1/min rev/min", "rps": "rps 1/s rev/s",
+    "m": "m metre metres meter meters", "m/s^2": "m/s2", "V": "v volt volts", "us": "us pwm", "percent": "% pct",
+}  # fmt: skip
+UNIT_WORDS: dict[str, str] = {word: unit for unit, words in _SPELLINGS.items() for word in words.split()}
+"""Spelling, in small letters -> unit."""
 
 
 def si_unit(unit: str) -> tuple[float, str]:
@@ -27,8 +36,14 @@ def si_unit(unit: str) -> tuple[float, str]:
         InputError: the unit is unknown; the nearest known one is named.
     """
     if unit not in _UNITS:
-        raise InputError(f"unknown unit '{unit}'{spelling_hint(unit, sorted(_UNITS))}")
+        raise InputError(f"unknown unit '{unit}'{_unit_hint(unit)}")
     return _UNITS[unit]
+
+
+def _unit_hint(unit: str) -> str:
+    """The end of a sentence on an unknown unit: how it is written here, else all units."""
+    meant = UNIT_WORDS.get(unit.strip().lower()) or next((u for u in _UNITS if u.lower() == unit.strip().lower()), "")
+    return f"; write '{meant}'" if meant else f"; known are {listed(list(_UNITS))}"
 
 
 def display_unit(unit: str) -> tuple[float, str]:

@@ -4,6 +4,7 @@ import re
 from dataclasses import dataclass
 
 from seatrial.core.values import InputError, si_unit
+from seatrial.core.values.units import UNIT_WORDS
 from seatrial.data.read.quantities import log_quantity
 
 _SCALED_DEGREE, _CENTI = 1e-7, 1e-2  # MAVLink and PX4: degrees as integers of 1e-7, centidegrees and cm/s
@@ -129,12 +130,6 @@ _WORDS = [
         (r"wind_dir_relative(_mid)?|apparent_wind_angle|awa", "wind_direction_relative", ""),
     ),
 ]  # fmt: skip
-_UNIT_WORDS = {
-    "deg": "deg", "degrees": "deg", "degree": "deg", "rad": "rad", "radians": "rad", "kn": "kn", "knots": "kn",
-    "kts": "kn", "kt": "kn", "mps": "m/s", "m/s": "m/s", "ms": "m/s", "rpm": "rpm", "rps": "rps", "m": "m",
-    "dps": "deg/s", "deg/s": "deg/s", "rad/s": "rad/s", "deg/min": "deg/min", "m/s2": "m/s^2", "km/h": "km/h",
-    "v": "V", "us": "us", "°": "deg", "°/s": "deg/s", "°/min": "deg/min", "pwm": "us",
-}  # fmt: skip
 # words of topics that hold orders or limits, not measurements
 _ORDERS = re.compile(r"set_?point|target|desired|reference|goal|limits?\b|cmd|command|(^|/)[re]_")
 # loggers whose messages are all known: other messages say nothing
@@ -186,7 +181,7 @@ def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "te
 def _with_unit_word(plain: str) -> list[tuple[str, str]]:
     """The name as it is, and without a last word that is a unit."""
     head, _, tail = plain.rpartition("_")
-    return [(plain, ""), *([(head, _UNIT_WORDS[tail])] if head and tail in _UNIT_WORDS else [])]
+    return [(plain, ""), *([(head, UNIT_WORDS[tail])] if head and tail in UNIT_WORDS else [])]
 
 
 def _guess(rule: NameRule, match: re.Match[str], unit: str, evidence: str) -> NameGuess | None:
@@ -205,8 +200,8 @@ def _guess(rule: NameRule, match: re.Match[str], unit: str, evidence: str) -> Na
 
 def _known_unit(text: str) -> str:
     word = text.strip().lower()
-    if word in _UNIT_WORDS:
-        return _UNIT_WORDS[word]
+    if word in UNIT_WORDS:
+        return UNIT_WORDS[word]
     try:
         si_unit(text.strip())
     except InputError:

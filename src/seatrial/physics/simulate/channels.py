@@ -27,7 +27,10 @@ def _input_values(model: Model, record: Record, item: Input) -> Array:
     if item.name not in record:
         if item.name in ZERO_BY_DEFAULT:
             return np.zeros(len(record))
-        raise InputError(f"record '{record.name}' has no channel '{item.name}', an input of model '{model.name}'")
+        raise InputError(
+            f"record '{record.name}' has no channel '{item.name}', an input of model '{model.name}'; add it "
+            "to the channels, or choose another model"
+        )
     channel = record.channel(item.name)
     if not np.all(np.isfinite(channel.values)):
         row = int(np.argmin(np.isfinite(channel.values)))
