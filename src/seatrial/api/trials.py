@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from seatrial.data.folder.model_file import ModelFile
     from seatrial.data.trial import Trial
     from seatrial.data.trial.correction import Correction
+    from seatrial.data.trial.earlier_result import EarlierResult
     from seatrial.onboard.follow import FollowResult
     from seatrial.onboard.sources import SampleSource
 
@@ -30,7 +31,12 @@ def load_trial(path: str | Path, own_model: "Model | None" = None) -> "Trial":
     """
     from seatrial.data.trial import load_trial
 
-    return load_trial(path, own_model)
+    def read_result(folder: Path) -> "EarlierResult":
+        from seatrial.data.folder.earlier_result import read_earlier_result
+
+        return read_earlier_result(folder, own_model)
+
+    return load_trial(path, own_model, read_result)
 
 
 def check(trial: "Trial | str | Path") -> "tuple[Finding, ...]":

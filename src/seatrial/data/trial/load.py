@@ -13,6 +13,7 @@ from seatrial.core.values.errors import listed
 from seatrial.data.check.captive_forces import force_findings
 from seatrial.data.trial.declared_channels import declared_channels
 from seatrial.data.trial.design_request import refuse_unsuitable
+from seatrial.data.trial.earlier_result import ResultReader, earlier_results
 from seatrial.data.trial.excitation import excitation_of
 from seatrial.data.trial.follow_table import stream_of
 from seatrial.data.trial.forces import read_force_points
@@ -23,6 +24,7 @@ from seatrial.data.trial.schema import NO_CHANNELS, TrialFile
 from seatrial.data.trial.schema_errors import schema_error
 from seatrial.data.trial.thruster_table import layout_text
 from seatrial.data.trial.trial import Trial, TrialRun
+from seatrial.data.trial.used_records import refuse_used_records
 
 _OPEN = re.compile(r"^# OPEN (\w+):", re.MULTILINE)  # as `seatrial init` marks what a person must choose
 
@@ -73,13 +75,14 @@ def _all_open(path: Path, names: list[str]) -> InputError:
     )
 
 
-def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
+def load_trial(path: str | Path, own_model: Model | None = None, read_result: ResultReader | None = None) -> Trial:
     """Read and validate a trial file; record files are found but not read, tables of force points are read.
 
     Args:
         path: the TOML file.
         own_model: takes the place of the built-in model that `[model] name` names; truth and bounds of parameters
             it does not have are left out.
+        read_result: reads the folder of an earlier result that `priors_from` names.
 
     Raises:
         InputError: one sentence naming file, key and what to do.
@@ -95,7 +98,9 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
     try:
         ship = ship_of(file.ship)
         layout = layout_text(file.model.name, file.model.damping, file.thruster, ship)
-        model = build_trial_model(file.model, ship, own_model, layout, file.sensors)
+        home = path.resolve().parent
+        results = earlier_results(file.model.priors_from, home, expand_variables, read_result)
+        model = build_trial_model(file.model, ship, own_model, layout, file.sensors, results)
         declared = declared_channels(file.channels)
         symbols = {*NOTATION, *declared}
         _refuse_unknown_names("noise", list(file.noise), symbols)
@@ -116,10 +121,10 @@ def load_trial(path: str | Path, own_model: Model | None = None) -> Trial:
             _refuse_unknown_names("truth", list(file.truth), set(model.parameters.names), spelling_hint)
         unit = _reference_force(model, ship)
         ranges = prior_range_findings(file.model.priors_from, ship)
-        home = path.resolve().parent
         base = home / expand_variables(file.data.folder)
         excitation = excitation_of(file.excitation, ship, model, base)
         runs = runs_of(file.records, file.data.folder, home, excitation, ship.length, declared) if file.records else ()
+        refuse_used_records(runs, results)
         if runs and file.follow is None:
             require_training_run(runs)
         stream = None if file.follow is None else stream_of(file.follow, base, home, excitation, ship.length, declared)

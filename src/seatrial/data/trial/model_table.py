@@ -1,10 +1,12 @@
 """The model a trial chooses: equations by name, then values, freedom, bounds and priors, in that order."""
 
 from collections.abc import Mapping
+from types import MappingProxyType
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Parameters, Prior, Ship, si_unit, spelling_hint
 from seatrial.data.trial.amounts import Amount
+from seatrial.data.trial.earlier_result import EarlierResult
 from seatrial.data.trial.literature import LiteraturePrior, literature_priors
 from seatrial.data.trial.schema import ModelTable, PriorTable, ShipTable
 from seatrial.physics.models import MODELS, model_named
@@ -32,11 +34,13 @@ def ship_of(table: ShipTable) -> Ship:
 
 
 def build_trial_model(
-    table: ModelTable, ship: Ship, own_model: Model | None = None, layout: str = "", sensors: Sensors | None = None
-) -> Model:
+    table: ModelTable, ship: Ship, own_model: Model | None = None, layout: str = "", sensors: Sensors | None = None,
+    results: Mapping[str, EarlierResult] = MappingProxyType({}),
+) -> Model:  # fmt: skip
     """The model of `[model]` for this ship, ready to be estimated.
 
     layout: of its thrusters, as `model_named` takes it; sensors: what stands between its motion and the records.
+    results: earlier fits among the sources of priors, by their name there.
 
     Later ones win: the model's own values, those of `priors_from`, the parameter set, the ship's particulars, `start`,
     `fixed`.
@@ -47,7 +51,7 @@ def build_trial_model(
     """
     model = own_model or model_named(table.name, layout)
     craft, model = model, with_sensors(model, sensors or Sensors())
-    literature = literature_priors(table.priors_from, ship, model.name)
+    literature = _sourced_priors(table, ship, model, results)
     for name, known in literature.items():
         model = model.with_values({name: known.mean}, source=known.source)
     if table.parameter_set is not None:
@@ -64,6 +68,25 @@ def build_trial_model(
     bounds = table.bounds if own_model is None else _bounds_in_common(table, model, layout)
     bounded = _with_bounds(model.parameters, bounds)
     return model.with_parameters(_with_priors(bounded, table, literature))
+
+
+def _sourced_priors(
+    table: ModelTable, ship: Ship, model: Model, results: Mapping[str, EarlierResult]
+) -> dict[str, LiteraturePrior]:
+    """What the sources of `priors_from` say, later ones win: literature, and earlier results."""
+    priors: dict[str, LiteraturePrior] = {}
+    for name in table.priors_from:
+        result = results.get(name)
+        if result is None:
+            priors |= literature_priors((name,), ship, model.name)
+        elif result.model != model.name:
+            raise InputError(
+                f"model.priors_from: '{name}' is a fit of model '{result.model}', not of '{model.name}'; choose a "
+                "result of this model"
+            )
+        else:
+            priors |= {n: prior for n, prior in result.priors.items() if n in model.parameters}
+    return priors
 
 
 def _bounds_in_common(table: ModelTable, own_model: Model, layout: str) -> Bounds:
@@ -134,7 +157,11 @@ def _with_priors(parameters: Parameters, table: ModelTable, literature: Mapping[
     """Stated priors; for the other free parameters `prior_sd_percent` of the literature's value, or of their start."""
     _refuse_unknown("model.priors", tuple(table.priors), parameters)
     priors = {name: _prior(parameters, name, prior) for name, prior in table.priors.items()}
-    if table.prior_sd_percent is None and table.priors_from:
+    for p in parameters.free:
+        known = literature.get(p.name)
+        if known is not None and known.deviation:
+            priors.setdefault(p.name, Prior(known.mean, known.deviation, known.source))
+    if table.prior_sd_percent is None and any(not known.deviation for known in literature.values()):
         raise InputError(
             "model.priors_from says nothing about how far its values may be wrong; "
             "add prior_sd_percent, for example 25 for regressions of linear coefficients"
@@ -143,7 +170,7 @@ def _with_priors(parameters: Parameters, table: ModelTable, literature: Mapping[
         share = table.prior_sd_percent / 100.0
         for p in parameters.free:
             known = literature.get(p.name, LiteraturePrior(p.value, p.source))
-            spread = known.deviation or share * max(abs(known.mean), p.scale) or share
+            spread = share * max(abs(known.mean), p.scale) or share
             priors.setdefault(p.name, Prior(known.mean, spread, known.source))
     return _with_prior_sources(parameters.with_priors(priors), literature)
 
