@@ -30,7 +30,7 @@ from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.process_noise import ProcessNoise, initial_problem, newton_step
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
-from seatrial.estimation.identify.short_records import short_record_profiles
+from seatrial.estimation.identify.short_records import default_profiles
 from seatrial.numerics.optimise import Optimum, Solution, Status
 from seatrial.numerics.workers import map_in_processes
 
@@ -153,7 +153,7 @@ def outcome(item: Item) -> Outcome:
         spent = time.process_time() - began
         none = np.zeros(len(names), dtype=bool)
         return Outcome(nothing, nothing, limit.standard_error, limit.efficient, none, "", False, spent, str(error))
-    k, profiles = len(names), {p.parameter: (p.lower, p.upper) for p in short_record_profiles(fit)}
+    k, profiles = len(names), {p.parameter: (p.lower, p.upper) for p in default_profiles(fit)}
     spent, values, half = time.process_time() - began, fit.estimate.common_parameters, fit.interval.half_width
     limits = [profiles.get(n, (values[i] - half[i], values[i] + half[i])) for i, n in enumerate(names)]
     is_covered = [(low is None or low <= t) and (high is None or t <= high)

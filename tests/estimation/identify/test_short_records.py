@@ -14,7 +14,8 @@ from seatrial.core.results.closed_loop import FeedbackEvidence
 from seatrial.estimation.estimate.fit import estimate_model
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
-from seatrial.estimation.identify.short_records import short_record_findings, short_record_profiles
+from seatrial.estimation.identify import short_records
+from seatrial.estimation.identify.short_records import default_profiles, short_record_findings
 
 PROFILE = Profile("K", (0.1, 0.2), (0.0, 4.0), None, 0.19)
 
@@ -47,7 +48,21 @@ def test_few_changes_of_the_reference_are_warned_of() -> None:
 
 
 def test_without_a_disturbance_there_is_no_profile() -> None:
-    assert short_record_profiles(estimation(16.0)) == ()
+    assert default_profiles(estimation(16.0)) == ()
+
+
+@pytest.mark.parametrize(("share", "count", "profiles"), [(0.05, 2, ()), (0.2, 2, (PROFILE,)), (0.2, 7, ())])
+def test_vague_coefficients_have_profiles(
+    share: float, count: int, profiles: tuple[Profile, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Standard errors of a fifth of the estimates, of a few coefficients."""
+    monkeypatch.setattr(short_records, "innovation_profiles", lambda *_: (PROFILE,))
+    one = estimation(5.0)
+    one.process_noise, one.has_process_noise = object(), True
+    one.interval = SimpleNamespace(standard_error=share * np.ones(count))
+    one.estimate.common_parameters = -np.ones(count)
+    one.estimate.problem.free = tuple("abcdefg"[:count])
+    assert default_profiles(one) == profiles
 
 
 def test_a_profile_of_prediction_error_has_the_curvature_of_its_information(repository: Path) -> None:
@@ -66,7 +81,7 @@ def test_a_profile_of_prediction_error_has_the_curvature_of_its_information(repo
         Runs.one_session_each([run], craft.length),
         options=EstimatorOptions(workers=1),
     )
-    profiles = short_record_profiles(fitted)
+    profiles = default_profiles(fitted)
     assert [p.parameter for p in profiles] == ["K", "T"]
     for p, error in zip(profiles, fitted.interval.standard_error, strict=False):
         values, costs = np.array(p.values), np.array(p.costs)

@@ -17,7 +17,7 @@ from seatrial.estimation.identify.model_selection import SelectedModel, with_mod
 from seatrial.estimation.identify.profile import innovation_profiles, profiles
 from seatrial.estimation.identify.roll_characteristics import one_speed_finding, roll_characteristics
 from seatrial.estimation.identify.seakeeping import seakeeping
-from seatrial.estimation.identify.short_records import short_record_findings, short_record_profiles
+from seatrial.estimation.identify.short_records import default_profiles, short_record_findings
 from seatrial.estimation.information.frequency_response import frequency_responses
 from seatrial.estimation.predict.k_step import horizon_list, k_step_errors
 from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
@@ -99,7 +99,7 @@ def _profiles(task: Identification, estimation: Estimation) -> tuple[Profile, ..
     """Return profile likelihoods where these are required, or where the records are too short for anything else."""
     estimate, errors, report_progress = estimation.estimate, estimation.interval.standard_error, task.report_progress
     if task.options.intervals is not IntervalMethod.PROFILE:
-        return short_record_profiles(estimation, report_progress)
+        return default_profiles(estimation, report_progress)
     if estimation.has_process_noise and estimation.process_noise is not None:
         return innovation_profiles(estimation.process_noise, errors, estimate.problem.free, report_progress)
     return profiles(estimate, errors, estimate.problem.free, report_progress)

@@ -1,4 +1,6 @@
-"""Records that last few memories of the disturbance, or in which a controller was ordered little: wider intervals."""
+"""Records too short or too calm for intervals of the information under a disturbance: profiles, and warnings."""
+
+import numpy as np
 
 from seatrial.core.equations.augment import MEMORY_PREFIX
 from seatrial.core.results import Profile
@@ -12,6 +14,10 @@ few intervals of simulated craft hold the truth (`python benchmarks/gusts.py --s
 
 FEWEST_REFERENCE_STEPS = 4
 """Changes of the reference that records of a closed loop contain at least, for the same reason; chosen."""
+
+_LARGEST_SHARE = 0.1
+"""Standard error over estimate above which an interval symmetric about the estimate is no longer one of the likelihood:
+the standard error grows with the estimate, so that small estimates seem too certain; chosen."""
 
 _MOST_COEFFICIENTS, _MOST_SAMPLES = 6, 10_000
 """Free coefficients and samples up to which profiles are computed without being required: seconds; chosen."""
@@ -36,19 +42,22 @@ def short_record_findings(estimation: Estimation, profiles: tuple[Profile, ...])
     return findings
 
 
-def short_record_profiles(
-    estimation: Estimation, report_progress: ProgressReporter | None = None
-) -> tuple[Profile, ...]:
-    """Return profiles of the coefficients where the records are too short for the information's intervals.
+def default_profiles(estimation: Estimation, report_progress: ProgressReporter | None = None) -> tuple[Profile, ...]:
+    """Return profiles of the coefficients where the information's intervals do not suffice under a disturbance.
 
-    None where they are long enough, where no disturbance was estimated, and where profiles would take long.
+    That is in short records, and where a standard error exceeds a tenth of its estimate. None where no disturbance was
+    estimated, and where profiles would take long.
     """
     noise, problem, steps = estimation.process_noise, estimation.estimate.problem, _reference_steps(estimation)
-    is_short = _has_few_memories(estimation) or (steps is not None and steps < FEWEST_REFERENCE_STEPS)
-    is_small = len(problem.free) <= _MOST_COEFFICIENTS and len(problem.data.inputs) <= _MOST_SAMPLES
-    if noise is None or not estimation.has_process_noise or not (is_short and is_small):
+    if noise is None or not estimation.has_process_noise:
         return ()
-    return innovation_profiles(noise, estimation.interval.standard_error, problem.free, report_progress)
+    errors, values = estimation.interval.standard_error, estimation.estimate.common_parameters
+    is_short = _has_few_memories(estimation) or (steps is not None and steps < FEWEST_REFERENCE_STEPS)
+    is_vague = bool(np.any((errors > _LARGEST_SHARE * np.abs(values))[: len(problem.free)]))
+    is_small = len(problem.free) <= _MOST_COEFFICIENTS and len(problem.data.inputs) <= _MOST_SAMPLES
+    if not (is_small and (is_short or is_vague)):
+        return ()
+    return innovation_profiles(noise, errors, problem.free, report_progress)
 
 
 def _has_few_memories(estimation: Estimation) -> bool:
