@@ -91,7 +91,11 @@ def test_what_cannot_be_is_refused_by_its_key(tmp_path: Path, was: str, becomes:
 def test_a_sea_known_by_its_spectrum_alone_is_sent_to_identify(tmp_path: Path, repository: Path) -> None:
     text = (repository / "examples" / "heave_pitch_spectrum.toml").read_text(encoding="utf-8")
     told = text.replace("[[records]]", '[follow]\nsource = "file"\nfile = "a.csv"\nrate = 5')
-    told = told.replace("records.", "follow.").replace('files = "sea_unrecorded.csv"\n', "")
+    told = (
+        told.replace("records.", "follow.")
+        .replace('files = "sea_unrecorded.csv"\n', "")
+        .replace('kind = "simulated"\n', "")
+    )
     assert "seatrial identify" in refused(tmp_path, told.replace('source = "simulated"\n', ""))
 
 
