@@ -44,9 +44,11 @@ def k_step_chapter(fit: Fit) -> Chapter | None:
 
 def _k_step_row(e: KStepErrors, every: list[int]) -> tuple[str, ...]:
     factor, unit = display_unit(e.unit)
-    of = dict(zip(e.steps, zip(e.rms, e.held_rms, strict=True), strict=True))
-    cells = [" ".join((significant(factor * of[k][0], 3), f"({significant(factor * of[k][1], 3)})")) if k in of else ""
-             for k in every]  # fmt: skip
+    texts = {
+        k: f"{significant(factor * rms, 3)} ({significant(factor * held, 3)})"
+        for k, rms, held in zip(e.steps, e.rms, e.held_rms, strict=True)
+    }
+    cells = (texts.get(k, "") for k in every)
     return (f"{channel_letter(e.channel)}, {unit}", _ROLES[e.role], *cells)
 
 

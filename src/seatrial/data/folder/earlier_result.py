@@ -36,10 +36,10 @@ def independent_deviations(covariance: Array) -> Array:
     Those of the covariance times the root of the largest eigenvalue of its correlations: diag(s^2) - C is then positive
     semidefinite, so that no combination of coefficients is taken for better known than it was.
     """
-    known = np.isfinite(covariance).all(axis=0) & (np.diag(covariance) > 0.0)
+    determined = np.isfinite(covariance).all(axis=0) & (np.diag(covariance) > 0.0)
     deviations = np.full(len(covariance), np.nan)
-    if known.any():
-        part = covariance[np.ix_(known, known)]
+    if determined.any():
+        part = covariance[np.ix_(determined, determined)]
         largest = float(np.linalg.eigvalsh(correlation_matrix(part))[-1])
-        deviations[known] = np.sqrt(max(largest, 1.0) * np.diag(part))
+        deviations[determined] = np.sqrt(max(largest, 1.0) * np.diag(part))
     return deviations

@@ -90,21 +90,21 @@ def _changed(first: Mapping[str, float], second: Mapping[str, float], tolerance:
 
 def findings(first: Fit, second: Fit) -> tuple[Finding, ...]:
     """Return a warning where fits share records, and where their models cannot be compared by coefficients."""
-    found = []
-    known = {_content(r) for r in _training_records(first)}
-    shared = [r.name for r in _training_records(second) if _content(r) in known]
+    warnings = []
+    contents = {_content(r) for r in _training_records(first)}
+    shared = [r.name for r in _training_records(second) if _content(r) in contents]
     if shared:
-        found.append(Finding(
+        warnings.append(Finding(
             Severity.WARNING, "shared-records", "both fits use the same records, so that their errors are not "
             "independent: intervals of the differences hold for independent ones and are mostly too wide here",
             f"{len(shared)} of {len(_training_records(second))} training runs", "compare fits of different records",
         ))  # fmt: skip
     if first.model.name != second.model.name:
-        found.append(Finding(
+        warnings.append(Finding(
             Severity.INFO, "other-model", f"a {first.model.name} and a {second.model.name} model have no coefficients "
             "in common; manoeuvres are compared alone", "", "identify both with one model",
         ))  # fmt: skip
-    return tuple(found)
+    return tuple(warnings)
 
 
 def _content(record: Record) -> bytes:

@@ -73,13 +73,13 @@ def k_step_errors(
     if is_coarsely_sampled(estimation.estimate.problem):
         return ()
     base = _fitted_filter(estimation)
-    found: list[KStepErrors] = []
+    errors: list[KStepErrors] = []
     for role, name in ((Role.TRAIN, "training"), (Role.VALIDATE, "validation")):
         mine = [i for i in items if i.role is role]
         if mine:
             runs = Runs(tuple(i.record for i in mine), tuple(i.session for i in mine), 0.0)
-            found += _errors(estimation, base, choice_runs(runs) or runs, name, required)
-    return tuple(found)
+            errors += _errors(estimation, base, choice_runs(runs) or runs, name, required)
+    return tuple(errors)
 
 
 def _fitted_filter(estimation: Estimation) -> _Filter:
@@ -129,8 +129,8 @@ def _over(estimation: Estimation, base: _Filter, runs: Runs) -> _Filter:
     data = cut_segments(template.model, runs.records, template.data.outputs, None, runs.sessions)
     output_error: OutputError = replace(template, data=data, inflation=None)
     old, point = base.problem.runs, base.point
-    own = [session_nuisances(estimation, s) for s in data.sessions]
-    shared = np.concatenate([point[: len(old.free)], *own, point[old.size :]])
+    nuisances = [session_nuisances(estimation, s) for s in data.sessions]
+    shared = np.concatenate([point[: len(old.free)], *nuisances, point[old.size :]])
     return _Filter(over_runs(base.problem, output_error), shared)
 
 
