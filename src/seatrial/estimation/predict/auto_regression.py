@@ -22,6 +22,8 @@ _CHOICE_LENGTH = 10.0
 """Length of the training windows by which the penalty is chosen, in beginnings of a window; chosen."""
 _MAX_ROWS, _MAX_CHOICE_WINDOWS = 20_000, 40
 """Samples of all runs that a regression is fitted to, and windows of a run it is chosen by, evenly spread; chosen."""
+_DEGREE = 2
+"""Of the polynomial through a window's beginning: what a craft does in it is no more than to accelerate; chosen."""
 _RATES = ("u", "v", "r", "p", "q", "w")
 _INTEGRALS = {"psi": "r", "phi": "p", "theta": "q", "z": "w"}
 
@@ -64,7 +66,10 @@ class AutoRegression:
     limits: Array
 
     def predict(self, windows: Windows, seconds: float) -> list[Record]:
-        """Return windows as measured over their first seconds, then run freely; heading and track from the rates."""
+        """Return windows run freely behind their first seconds, over which a parabola stands for what was measured.
+
+        So the regression is not credited with noise that it has seen. Heading and track follow from the rates.
+        """
         beginning = max(self.lags, int(seconds / windows.dt))
         measured = np.stack([piece.matrix(self.channels) for piece in windows.pieces])
         velocities = self._run(measured, windows.inputs(self.model), self.weights[None], beginning)[0]
@@ -143,13 +148,12 @@ def _with_positions(window: Record, velocities: Mapping[str, Array], beginning: 
     """The window with predicted velocities, and with angles, heave and track integrated from row `beginning` on."""
 
     def integrated(channel: str, rate: Array) -> Array:
-        values = window[channel].copy()
+        values = _smoothed_beginning(window[channel], beginning)
         steps = 0.5 * window.dt * (rate[beginning - 1 : -1] + rate[beginning:])
-        before = values[:beginning][np.isfinite(values[:beginning])]
-        values[beginning:] = (before[-1] if len(before) else np.nan) + np.cumsum(steps)
+        values[beginning:] = values[beginning - 1] + np.cumsum(steps)
         return values
 
-    values = dict(velocities)
+    values = {channel: _smoothed_beginning(y, beginning) for channel, y in velocities.items()}
     for position, rate in _INTEGRALS.items():
         if position in window and rate in values:
             values[position] = integrated(position, values[rate])
@@ -158,3 +162,15 @@ def _with_positions(window: Record, velocities: Mapping[str, Array], beginning: 
         values["x0"] = integrated("x0", u * np.cos(psi) - v * np.sin(psi))
         values["y0"] = integrated("y0", u * np.sin(psi) + v * np.cos(psi))
     return like_window(window, values)
+
+
+def _smoothed_beginning(values: Array, beginning: int) -> Array:
+    """Values (n,) with a parabola through the measured ones of the first `beginning` rows; a line through a few."""
+    rows = np.arange(beginning)
+    seen = rows[np.isfinite(values[:beginning])]
+    smoothed = values.copy()
+    smoothed[:beginning] = np.nan
+    if len(seen):
+        degree = min(_DEGREE, max(len(seen) - 2, 0))
+        smoothed[:beginning] = np.polyval(np.polyfit(seen, values[seen], degree), rows)
+    return smoothed
