@@ -66,7 +66,7 @@ def test_missing_stamps_are_counted_in() -> None:
     time = 0.1 * np.arange(30)
     time[[0, 10, 11, 29]] = np.nan
     rebuilt, findings = rebuild_time_base(run(time, np.arange(30.0)))
-    assert [f.code for f in findings] == ["time-base"] and "4 samples have no time stamp" in findings[0].message
+    assert [f.code for f in findings] == ["time-base"] and "4 time stamps missing" in findings[0].message
     np.testing.assert_allclose(rebuilt.time, 0.1 * np.arange(30), atol=1e-12)
 
 

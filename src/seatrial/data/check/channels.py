@@ -65,19 +65,22 @@ def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]
 
 def lag_findings(record: Record, motion: RecordedMotion | None) -> tuple[Finding, ...]:
     """Lags of u, v behind the positions and of r behind the heading, of a clean, signed record as declared."""
-    late_and_early = (
-        (velocity_lag(motion), "u, v lag behind the positions", "u, v lead the positions"),
-        (yaw_rate_lag(record), "r lags behind the heading", "r leads the heading"),
+    of_rate = _lag_finding(
+        record, yaw_rate_lag(record), "r lags behind the heading", "r leads the heading, or the heading is late,"
     )
-    findings = []
-    for lag, late, early in late_and_early:
-        delay, error = lag or (0.0, 0.0)
-        if abs(delay) > max(LAG_SAMPLES * record.dt, LAG_STANDARD_ERRORS * error):
-            text = f"record '{record.name}': {late if delay > 0 else early} by about {abs(delay):.2g} s"
-            evidence = f"{abs(delay) / record.dt:.1f} samples, standard error {error:.2g} s"
-            advice = "shift the channel, or estimate the delay as a nuisance"
-            findings.append(Finding(Severity.WARNING, "lag", text, evidence, advice))
-    return tuple(findings)
+    # velocities are turned by the heading: where that is late they seem so
+    of_velocity = _lag_finding(record, velocity_lag(motion), "u, v lag behind the positions", "u, v lead the positions")
+    return of_rate or of_velocity
+
+
+def _lag_finding(record: Record, lag: tuple[float, float] | None, late: str, early: str) -> tuple[Finding, ...]:
+    delay, error = lag or (0.0, 0.0)
+    if abs(delay) <= max(LAG_SAMPLES * record.dt, LAG_STANDARD_ERRORS * error):
+        return ()
+    text = f"record '{record.name}': {late if delay > 0 else early} by about {abs(delay):.2g} s"
+    evidence = f"{abs(delay) / record.dt:.1f} samples, standard error {error:.2g} s"
+    advice = "shift the channel, or estimate the delay as a nuisance"
+    return (Finding(Severity.WARNING, "lag", text, evidence, advice),)
 
 
 def velocity_lag(motion: RecordedMotion | None) -> tuple[float, float] | None:
@@ -85,21 +88,24 @@ def velocity_lag(motion: RecordedMotion | None) -> tuple[float, float] | None:
 
     Fitted: d(position)/dt - w = tau dw/dt - d lever + constant.
 
-    A reference point d ahead is fitted along (its lever is the turned yaw rate), so that it does not pass for a lag.
+    A reference point d ahead (its lever is the turned yaw rate), a scale and a misalignment are fitted along, so that
+    they do not pass for a lag.
     None where positions are missing or the declared frame is refuted.
     """
     if motion is None or motion.is_refuted:
         return None
     length, psi, dt = motion.window_samples, motion.record["psi"], motion.record.dt
     levers, turning = (-np.sin(psi), np.cos(psi)), np.gradient(psi, dt)
-    features, levered, target = [], [], []
+    features, levered, scaled, target = [], [], [], []
     for position, velocity, lever in zip(
         motion.position_derivative, motion.velocity(motion.conventions[0]), levers, strict=True
     ):
         features.append(smoothed_derivative(velocity, dt, length))
         levered.append(smoothed(turning * lever, length))
-        target.append(position - smoothed(velocity, length))
-    return _estimate_delay(features, target, levered)
+        scaled.append(smoothed(velocity, length))
+        target.append(position - scaled[-1])
+    turned = [-scaled[1], scaled[0]]
+    return _estimate_delay(features, target, levered, scaled, turned)
 
 
 def yaw_rate_lag(record: Record) -> tuple[float, float] | None:

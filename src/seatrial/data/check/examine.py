@@ -14,6 +14,7 @@ from seatrial.data.check.motion import recorded_motion
 from seatrial.data.check.repair import repair
 from seatrial.data.check.rudder import rudder_findings
 from seatrial.data.check.run_phases import phase_findings
+from seatrial.data.check.sentinels import without_sentinels
 from seatrial.data.check.timestamps import rebuild_time_base
 from seatrial.data.check.velocity_conventions import velocity_convention_findings
 from seatrial.data.check.yaw_rate_consistency import yaw_rate_findings
@@ -41,10 +42,12 @@ def examined_record(record: Record) -> ExaminedRecord:
     Raises:
         InputError: a channel holds no value, too few samples remain, or a positive direction is unknown.
     """
-    even, time_findings = rebuild_time_base(record)
+    read, sentinel_findings = without_sentinels(record)
+    even, time_findings = rebuild_time_base(read)
     complete, repair_findings = repair(even)
     findings = [
-        *channel_findings(record), *time_findings, *repair_findings, *dropped_rows_findings(record, even, complete),
+        *sentinel_findings, *channel_findings(read), *time_findings, *repair_findings,
+        *dropped_rows_findings(read, even, complete),
         *_comparison_findings(comparison_stretch(with_standard_signs(complete))),
     ]  # fmt: skip
     return ExaminedRecord(complete, tuple(completed(findings, record)))

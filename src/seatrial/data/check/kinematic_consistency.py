@@ -5,13 +5,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array, Finding, Severity, TrialEdit
-from seatrial.data.check.motion import RecordedMotion
+from seatrial.data.check.consequences import REVERSED
+from seatrial.data.check.motion import ComplexArray, RecordedMotion
 from seatrial.data.check.signal import cumulative_integral, least_squares, sample_noise
 
 # factors by which another reading must reduce the residual to be certain, or possible, ours
 CERTAIN_GAIN, DOUBTFUL_GAIN = 4.0, 2.0
 # ratio of residuals up to which two causes explain an error alike, and both are named; chosen
 AMBIGUOUS_RATIO = 1.2
+# causes that a message names at most; chosen: it stays one sentence
+MOST_CAUSES = 3
+# error of sway over sway where its sign is wrong, and how far from it a fit may end; chosen
+REVERSED_SWAY, SWAY_MARGIN = 2.0, 0.4
+# what a cause must explain, in rms of integrated velocity noise and in rms of the noise of positions, where it does not
+# halve the error; chosen
+WALK_FACTOR, NOISE_SHARE = 2.5, 0.25
 # residuals over path length that are negligible, and large; multiple of the noise that is tolerated, ours
 MIN_RELATIVE_ERROR, LARGE_RELATIVE_ERROR, NOISE_FACTOR = 1e-4, 3e-3, 1.5
 
@@ -27,6 +35,10 @@ class ErrorCause:
     residual_rms: float
     edits: tuple[TrialEdit, ...] = ()
 
+    def rank(self) -> float:
+        """Residual with which causes are compared: one with two coefficients must leave less than one with one."""
+        return self.residual_rms * AMBIGUOUS_RATIO ** (len(self.coefficients) - 1)
+
 
 def kinematic_consistency_findings(motion: RecordedMotion) -> tuple[Finding, ...]:
     """A finding where a record does not close; none where the declared reading is already refuted."""
@@ -35,21 +47,22 @@ def kinematic_consistency_findings(motion: RecordedMotion) -> tuple[Finding, ...
         return ()
     error = consistency_error(motion)
     rms = float(np.sqrt(np.mean(error**2))) * np.sqrt(2.0)
-    ranked = sorted(candidate_causes(motion, error), key=lambda e: e.residual_rms)
+    ranked = sorted(candidate_causes(motion, error), key=ErrorCause.rank)
     best, second = ranked[0], ranked[1]
     gain = rms / max(best.residual_rms, 1e-12)  # above zero, for a division
     noise = float(np.hypot(sample_noise(record["x0"]), sample_noise(record["y0"])))
-    if rms < MIN_RELATIVE_ERROR * motion.path_length or (
-        gain < DOUBTFUL_GAIN and rms < max(LARGE_RELATIVE_ERROR * motion.path_length, NOISE_FACTOR * noise)
-    ):
+    is_large = rms > max(LARGE_RELATIVE_ERROR * motion.path_length, NOISE_FACTOR * noise)
+    explained = float(np.sqrt(max(rms**2 - best.residual_rms**2, 0.0)))
+    is_significant = explained > max(WALK_FACTOR * integrated_noise(motion), NOISE_SHARE * noise)
+    if rms < MIN_RELATIVE_ERROR * motion.path_length or not (is_large or gain > DOUBTFUL_GAIN or is_significant):
         return ()
     message = f"record '{record.name}': integrated velocity leaves the position"
     evidence = f"{rms:.3g} m rms over {motion.path_length:.4g} m travelled"
-    if gain < DOUBTFUL_GAIN:
+    if gain < DOUBTFUL_GAIN and not is_significant:
         advice = "check frame, reference point, lag and bias of u, v against the positions"
         return (Finding(Severity.WARNING, "closure", message, evidence, advice),)
-    is_alone = second.residual_rms > AMBIGUOUS_RATIO * best.residual_rms
-    message += f"; {best.text}{'' if is_alone else f', or {second.text},'} would explain it"
+    alike = [one.text for one in ranked if one.residual_rms <= AMBIGUOUS_RATIO * best.residual_rms]
+    message += f"; {', or '.join(alike[:MOST_CAUSES])}, would explain it"
     evidence += f", {best.residual_rms:.3g} m with it; with others " + ", ".join(
         f"{one.name} {one.residual_rms:.3g} m" for one in ranked[1:]
     )
@@ -58,6 +71,17 @@ def kinematic_consistency_findings(motion: RecordedMotion) -> tuple[Finding, ...
     severity = Severity.ERROR if is_certain else Severity.WARNING
     edits = best.edits if is_distinct else ()
     return (Finding(severity, "closure", message, evidence, best.advice, edits=edits),)
+
+
+def integrated_noise(motion: RecordedMotion) -> float:
+    """Return the rms [m] that white noise of u, v and psi alone leaves in the integrated velocity, about its mean.
+
+    A random walk of steps s sqrt(dt) in each of two directions has the variance s^2 dt T / 6 about its mean.
+    """
+    record = motion.record
+    sway = float(np.mean(np.hypot(record["u"], record["v"]))) * sample_noise(record["psi"])
+    speed = float(np.sqrt(sample_noise(record["u"]) ** 2 + sample_noise(record["v"]) ** 2 + sway**2))
+    return speed * float(np.sqrt(record.dt * record.duration / 6.0))  # of the variance above
 
 
 def consistency_error(motion: RecordedMotion) -> Array:
@@ -85,6 +109,7 @@ def candidate_causes(motion: RecordedMotion, error: Array) -> list[ErrorCause]:
     x, y = cumulative_integral(north, dt), cumulative_integral(east, dt)
     t, zero, turning = motion.record.time - motion.record.time[0], np.zeros_like(x), np.gradient(psi, dt)
     c, s = np.cos(psi), np.sin(psi)
+    sway = north * -s + east * c
     ahead, aside = cumulative_integral(c, dt), cumulative_integral(s, dt)
     causes = {
         "point": [(c, s)],
@@ -93,7 +118,9 @@ def candidate_causes(motion: RecordedMotion, error: Array) -> list[ErrorCause]:
         "lag of velocity": [(-north, -east)],
         "lag of heading": [(cumulative_integral(east * turning, dt), -cumulative_integral(north * turning, dt))],
         "current": [(t, zero), (zero, t)],
-        "bias": [(ahead, aside), (-aside, ahead)],
+        "bias of u": [(ahead, aside)],
+        "bias of v": [(-aside, ahead)],
+        "sway": [(-cumulative_integral(sway * s, dt), cumulative_integral(sway * c, dt))],
         "misalignment": [(-y, x)],
         "scale": [(x, y)],
     }
@@ -103,9 +130,20 @@ def candidate_causes(motion: RecordedMotion, error: Array) -> list[ErrorCause]:
         table = np.stack([*constants, *(np.concatenate(pair) for pair in features)], axis=1)
         solution, rms = least_squares(table, error)
         value = tuple(float(a) for a in solution[2:])
+        if name == "misalignment":
+            value, rms = _exact_misalignment(x + 1j * y, motion.record["x0"] + 1j * motion.record["y0"])
+        if name == "sway" and abs(value[0] - REVERSED_SWAY) > SWAY_MARGIN:
+            continue
         text, advice, edits = _cause_text(name, value, motion)
         fitted.append(ErrorCause(name, text, advice, value, rms * np.sqrt(2.0), edits))
     return fitted
+
+
+def _exact_misalignment(integrated: ComplexArray, position: ComplexArray) -> tuple[tuple[float], float]:
+    """The angle [rad] by which the integrated track is turned, and the rms that is left: a large one is not linear."""
+    track, truth = integrated - integrated.mean(), position - position.mean()
+    angle = float(np.angle(np.sum(track * np.conj(truth))))
+    return (angle,), float(np.sqrt(0.5 * np.mean(np.abs(track * np.exp(-1j * angle) - truth) ** 2)))
 
 
 def _cause_text(
@@ -130,13 +168,11 @@ def _cause_text(
             speed = np.hypot(coefficients[0], coefficients[1])
             text = f"a current or velocity bias of {speed:.3g} m/s"
             return text, "if the speed is through water, estimate a current for the run", ()
-        case "bias":
-            edits = tuple(
-                TrialEdit(f"channels.{symbol}.offset", f"{-value:.4g}", "m/s")
-                for symbol, value in zip(("u", "v"), coefficients, strict=True)
-            )
-            text = f"a bias of {coefficients[0]:+.3g} m/s of u and {coefficients[1]:+.3g} m/s of v"
-            return text, "correct the zero of the log", edits
+        case "bias of u" | "bias of v":
+            edits = (TrialEdit(f"channels.{name[-1]}.offset", f"{-size:.4g}", "m/s"),)
+            return f"a {name} by {size:+.3g} m/s", "correct the zero of the log", edits
+        case "sway":
+            return "v with the opposite sign", "turn positive of v round", (TrialEdit("channels.v.positive", REVERSED),)
         case "misalignment":
             edits = (TrialEdit("channels.psi.offset", f"{-size:.4g}", "rad"),)
             text = f"a misalignment of {np.degrees(size):+.2g} deg between heading and log (magnetic variation?)"

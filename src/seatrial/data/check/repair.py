@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from seatrial.core.text.words import counted
 from seatrial.core.values import Channel, Finding, InputError, Record, Severity
 from seatrial.core.values.notation import COMMANDS, REFERENCES
 from seatrial.data.check.jumps import spike_rows, track_jumps
@@ -70,8 +71,12 @@ def _interpolate_spikes(record: Record) -> tuple[Record, tuple[Finding, ...]]:
         if rows.size:
             repaired = interpolate_rows(channel, rows)
             off = np.max(np.abs(smooth[rows] - interpolate_rows(channel.with_values(smooth), rows).values[rows]))
-            record = record.with_channel(symbol, repaired, f"{rows.size} wild samples of {symbol} interpolated")
-            text = f"record '{record.name}', channel '{symbol}': {rows.size} single wild sample(s), interpolated"
+            record = record.with_channel(
+                symbol, repaired, f"{counted(rows.size, 'wild sample')} of {symbol} interpolated"
+            )
+            text = (
+                f"record '{record.name}', channel '{symbol}': {counted(rows.size, 'single wild sample')} interpolated"
+            )
             evidence = f"off by up to {off:.4g} {channel.unit}, first at t = {record.time[rows[0]]:.6g} s"
             advice = "no action needed unless they are real"
             findings.append(Finding(Severity.WARNING, "outlier", text, evidence, advice))
@@ -122,10 +127,10 @@ def _fill_short_gaps(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     if not counts:
         return record, ()
     named = ", ".join(f"{s} {n}" for s, n in counts.items())
-    text = f"record '{record.name}': {sum(counts.values())} cells in short holes are interpolated"
+    text = f"record '{record.name}': {counted(sum(counts.values()), 'cell')} in short holes interpolated"
     evidence = f"{named}; holes of up to {limit} samples"
     finding = Finding(Severity.WARNING, "empty-cells", text, evidence, "no action needed for a few")
-    return record.with_step(f"{sum(counts.values())} empty cells interpolated"), (finding,)
+    return record.with_step(f"{counted(sum(counts.values()), 'empty cell')} interpolated"), (finding,)
 
 
 def _longest_complete_segment(record: Record) -> tuple[Record, tuple[Finding, ...]]:

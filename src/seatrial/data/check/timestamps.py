@@ -4,12 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from seatrial.core.text.words import counted
 from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.check.even_base import GAP_STEPS, EvenBase, even_base
 from seatrial.data.check.signal import unwrapped
 
 # differences of steps over the mean step that are rounding, and that are worth a warning; chosen
 SMALL_UNEVENNESS, LARGE_UNEVENNESS = 1e-3, 0.5
+# rows of the even base over those of the record, counted as so many at least, from which on its clock jumps; chosen
+MOST_GROWTH, FEWEST_ROWS = 20, 10_000
 
 
 def without_empty_ends(record: Record) -> tuple[Record, tuple[Finding, ...]]:
@@ -31,11 +34,11 @@ def without_empty_ends(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     finding = Finding(
         Severity.WARNING,
         "empty-rows",
-        f"record '{record.name}' {where} with {count} empty rows, which are cut off",
-        f"{cells} empty cells, {last - first} of {len(record)} rows remain",
+        f"record '{record.name}' {where} with {counted(count, 'empty row')}, cut off",
+        f"{counted(cells, 'empty cell')}, {last - first} of {len(record)} rows remain",
         "nothing to do if the run ended there; otherwise look for the lost samples",
     )
-    return record.rows(slice(first, last)).with_step(f"{count} empty rows cut off"), (finding,)
+    return record.rows(slice(first, last)).with_step(f"{counted(count, 'empty row')} cut off"), (finding,)
 
 
 def rebuild_time_base(record: Record) -> tuple[Record, tuple[Finding, ...]]:
@@ -56,8 +59,24 @@ def rebuild_time_base(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     if record.is_uniform:
         return record, findings
     grid = even_base(record.time)
+    _refuse_jumping_clock(record, grid)
     rebuilt = _placed_on_grid(record, grid) if grid.is_even else _interpolated_on_grid(record, grid)
     return rebuilt.with_step("time base rebuilt"), findings + _time_base_findings(record, grid)
+
+
+def _refuse_jumping_clock(record: Record, grid: EvenBase) -> None:
+    """Raises:
+    InputError: the even base would have very many more rows than the record, as after a jump of the clock by days.
+    """
+    if grid.index[-1] <= MOST_GROWTH * max(len(record), FEWEST_ROWS):
+        return
+    row = int(np.argmax(np.diff(record.time)))
+    start, before, after = (float(t) for t in record.time[[0, row, row + 1]])
+    raise InputError(
+        f"record '{record.name}': the clock jumps by {after - before:.6g} s after {before - start:.6g} s; cut the run "
+        f'there: parts = [{{ name = "{record.name}-1", to = "{before - start:.6g} s" }}, '
+        f'{{ name = "{record.name}-2", from = "{after - start:.6g} s" }}]'
+    )
 
 
 def _placed_on_grid(record: Record, grid: EvenBase) -> Record:
@@ -102,7 +121,7 @@ def _fill_missing_stamps(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     finding = Finding(
         Severity.WARNING,
         "time-base",
-        f"record '{record.name}': {missing.sum()} samples have no time stamp; they are counted in by their row",
+        f"record '{record.name}': {counted(int(missing.sum()), 'time stamp')} missing, counted in by the row",
         f"first at row {int(np.flatnonzero(missing)[0]) + 1} of {len(record)}",
         "check that no rows were lost there",
     )
@@ -120,7 +139,7 @@ def _without_duplicates(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     finding = Finding(
         Severity.WARNING,
         "repeated-rows",
-        f"record '{record.name}': {repeat.sum()} rows repeat the row before, stamp and values; they are dropped",
+        f"record '{record.name}': {counted(int(repeat.sum()), 'row')} dropped: stamp and values of the row before",
         f"first at t = {record.time[repeat][0]:g} s",
         "see whether the logger wrote twice",
     )
@@ -142,7 +161,7 @@ def _time_base_findings(record: Record, grid: EvenBase) -> tuple[Finding, ...]:
         findings.append(Finding(severity, "time-base", text, evidence, advice))
     if grid.gaps.size:
         longest = int(grid.gaps[np.argmax(steps[grid.gaps])])
-        text = f"record '{record.name}' has {grid.gaps.size} gaps in time"
+        text = f"record '{record.name}' has {counted(grid.gaps.size, 'gap')} in time"
         ends = f"t = {record.time[longest]:.6g} to {record.time[longest + 1]:.6g} s"
         evidence = f"{steps[grid.gaps].sum() - grid.gaps.size * grid.step:.4g} s lost, the longest from {ends}"
         advice = "short gaps are interpolated; split the run at long ones"

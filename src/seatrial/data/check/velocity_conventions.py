@@ -73,10 +73,12 @@ def _comparison_findings(comparison: _Comparison) -> list[Finding]:
     if comparison.is_better_by(CERTAIN_RATIO, NEGLIGIBLE_MISFIT):
         return [*_contradiction_findings(comparison), *findings]
     if comparison.is_better_by(DOUBTFUL_RATIO, ROUGH_MISFIT):
-        doubts = "; ".join(one.message.partition(": ")[2] for one in _contradiction_findings(comparison))
-        text = f"another reading fits the position better: {doubts}"
+        doubts = _contradiction_findings(comparison)
+        text = (
+            f"another reading fits the position better: {'; '.join(one.message.partition(': ')[2] for one in doubts)}"
+        )
         advice = "check frame, sign and unit of u, v and psi"
-        return [comparison.finding(Severity.WARNING, "velocity-frame", text, advice), *findings]
+        return [comparison.finding(Severity.WARNING, doubts[0].code, text, advice), *findings]
     return findings
 
 
@@ -152,4 +154,4 @@ def _speed_unit_findings(motion: RecordedMotion, best: VelocityConvention) -> li
         return [Finding(Severity.ERROR, "speed-unit", f"{name}: u, v are {unit}", evidence, edits=edits)]
     advice = "check units, the scale of the log, and whether the speed is through water"
     text = f"{name}: u, v and the positions differ in scale"
-    return [Finding(Severity.WARNING, "speed-unit", text, evidence, advice)]
+    return [Finding(Severity.WARNING, "speed-scale", text, evidence, advice)]
