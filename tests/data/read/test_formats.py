@@ -1,5 +1,6 @@
 """Every format: a sample with known contents gives the same record, and the reader conforms."""
 
+import pickle
 from functools import cache
 from pathlib import Path
 
@@ -8,7 +9,8 @@ import pytest
 from tests.data.read.samples import HEADING, SAMPLES, SPEED, TIME, Sample
 
 from seatrial.core.values import InputError
-from seatrial.data.read import ColumnSpec, Layout, format_of, read_log, read_record, reader_of
+from seatrial.data.read import ColumnSpec, Layout, Log, format_of, read_log, reader_of
+from seatrial.data.read.assemble import assemble_record
 from seatrial.testing import check_reader
 
 
@@ -24,11 +26,17 @@ def written(folder: Path, name: str) -> Path:
     return folder / name
 
 
+def log_of(sample: Sample, path: Path, layout: Layout | None = None) -> Log:
+    """What the reader returns, as it crosses from its process; that of .mat in a process of its own, as all in use."""
+    wanted = layout or sample.layout
+    return read_log(path, wanted) if sample.format == "mat" else pickle.loads(pickle.dumps(sample.read(path, wanted)))
+
+
 @pytest.mark.parametrize("sample", SAMPLES.values(), ids=SAMPLES)
 def test_a_sample_is_read_as_it_was_written(sample: Sample, folder: Path) -> None:
     path = written(folder, sample.file)
     assert format_of(path) == sample.format
-    record = read_record(path, sample.layout)
+    record = assemble_record(log_of(sample, path), sample.layout, "")
     time = record.time - sample.start
     np.testing.assert_allclose(time, TIME[: len(record)] if len(record) != len(TIME) else TIME, atol=1e-5)
     np.testing.assert_allclose(record["u"], np.interp(time, TIME, SPEED), atol=sample.tolerance)
@@ -39,8 +47,14 @@ def test_a_sample_is_read_as_it_was_written(sample: Sample, folder: Path) -> Non
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # asammdf closes what it did not open
 def test_readers_conform(sample: Sample, folder: Path) -> None:
     # a damaged .mat file can end the process in which scipy reads it
-    read = reader_of("mat") if sample.format == "mat" else sample.read
-    check_reader(read, written(folder, sample.file), sample.layout)
+    path = written(folder, sample.file)
+    content = path.read_bytes()
+
+    def read(file: Path, layout: Layout) -> Log:
+        is_damaged = sample.format == "mat" and file.is_file() and file.read_bytes() != content
+        return (reader_of("mat") if is_damaged else sample.read)(file, layout)
+
+    check_reader(read, path, sample.layout)
 
 
 @pytest.mark.parametrize("file", [name for name, sample in SAMPLES.items() if "/" in str(sample.u.source)])
@@ -48,19 +62,19 @@ def test_a_topic_that_is_missing_is_named(file: str, folder: Path) -> None:
     sample = SAMPLES[file]
     layout = Layout(sample.format, ColumnSpec("time", "", "s"), (ColumnSpec("u", "no/such/topic", "m/s"),))
     with pytest.raises(InputError, match=r"no topic 'no/such'|no column 'no/such/topic'"):
-        read_record(written(folder, file), layout)
+        assemble_record(log_of(sample, written(folder, file), layout), layout, "")
 
 
 def test_parameters_and_events_of_autopilots_are_kept(folder: Path) -> None:
-    log = read_log(written(folder, "run.bin"), SAMPLES["run.bin"].layout)
+    log = log_of(SAMPLES["run.bin"], written(folder, "run.bin"))
     assert log.parameters == {"SERVO1_FUNCTION": 26.0, "SERVO1_REVERSED": 1.0}
     assert [(event.time, event.name) for event in log.events] == [(0.0, "MODE MANUAL"), (6.0, "MODE AUTO")]
-    assert read_log(written(folder, "run.ulg"), SAMPLES["run.ulg"].layout).parameters["CA_ROTOR0_PX"] == 0.25
-    log = read_log(written(folder, "run.tlog"), SAMPLES["run.tlog"].layout)
+    assert log_of(SAMPLES["run.ulg"], written(folder, "run.ulg")).parameters["CA_ROTOR0_PX"] == 0.25
+    log = log_of(SAMPLES["run.tlog"], written(folder, "run.tlog"))
     assert [event.name for event in log.events] == ["MODE MANUAL"] and log.parameters["SERVO1_FUNCTION"] == 26.0
 
 
 def test_units_that_a_file_states_are_kept(folder: Path) -> None:
     for file in ("run.xlsx", "run.mf4", "run.h5", "run.tdms"):
-        (table,) = read_log(written(folder, file), SAMPLES[file].layout).tables
+        (table,) = log_of(SAMPLES[file], written(folder, file)).tables
         assert table.units[table.names.index("speed")] == "m/s"
