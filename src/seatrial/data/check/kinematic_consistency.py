@@ -62,7 +62,7 @@ def kinematic_consistency_findings(motion: RecordedMotion) -> tuple[Finding, ...
         advice = "check frame, reference point, lag and bias of u, v against the positions"
         return (Finding(Severity.WARNING, "closure", message, evidence, advice),)
     alike = [one.text for one in ranked if one.residual_rms <= AMBIGUOUS_RATIO * best.residual_rms]
-    message += f"; {', or '.join(alike[:MOST_CAUSES])}, would explain it"
+    message += f"; {' or '.join(alike[:MOST_CAUSES])} would explain it"
     evidence += f", {best.residual_rms:.3g} m with it; with others " + ", ".join(
         f"{one.name} {one.residual_rms:.3g} m" for one in ranked[1:]
     )
