@@ -9,6 +9,7 @@ import pytest
 from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.read.assemble import record_from_values
+from seatrial.data.read.extras import fault_text
 from seatrial.data.read.reading_process import read_in_process
 
 LAYOUT = Layout("mat", ColumnSpec("time", "t", "s"), (ColumnSpec("u", "speed", "m/s"),))
@@ -41,3 +42,9 @@ def test_rows_of_numbers_become_a_record() -> None:
     record = record_from_values("run", LAYOUT, np.arange(3.0), np.array([[1.0], [2.0], [3.0]]))
     np.testing.assert_array_equal(record["u"], [1.0, 2.0, 3.0])
     assert record.channel("u").label == "column 'speed'"
+
+
+def test_what_a_library_says_is_cut() -> None:
+    text = fault_text(ValueError("a long story " * 40 + "\nand its second line"))
+    assert text.startswith("ValueError: a long story") and len(text) < 140 and "second" not in text
+    assert fault_text(KeyError()) == "KeyError: "

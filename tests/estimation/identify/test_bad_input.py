@@ -73,7 +73,6 @@ CASES: dict[str, tuple[str, Spoil, str]] = {
     "one sample": ("", shortened(1), "one sample"),
     "no outputs": ("", without("r", "psi"), "no record holds any output of model 'nomoto': r, psi, x0, y0"),
     "no input": ("", without("delta"), "record 'a' has no channel 'delta', an input of model 'nomoto'"),
-    "no speed": ("", without("u"), r"no forward speed; give u or positions, or set estimate\.segment_s"),
 }
 
 

@@ -3,7 +3,10 @@
 import importlib
 from types import ModuleType
 
+from seatrial.core.text.words import printable
 from seatrial.core.values import InputError
+
+_LONGEST_FAULT = 120  # letters of a library's message in ours; ours: some explain at length
 
 
 def require_library(module: str, file: str, kind: str, extra: str) -> ModuleType:
@@ -19,3 +22,9 @@ def require_library(module: str, file: str, kind: str, extra: str) -> ModuleType
         raise InputError(
             f"{file} is {kind}, which needs {library}; install it with: pip install 'seatrial[{extra}]'"
         ) from None
+
+
+def fault_text(error: Exception) -> str:
+    """Return what a library says of a damaged file: the kind of its error, and the beginning of its first line."""
+    first = next(iter(str(error).splitlines()), "")
+    return f"{type(error).__name__}: {printable(first, _LONGEST_FAULT)}"

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import require_library
+from seatrial.data.read.extras import fault_text, require_library
 from seatrial.data.read.layout import Layout
 from seatrial.data.read.log import Log, LogEvent, topic_table
 from seatrial.data.read.raw_table import RawTable
@@ -49,7 +49,7 @@ def read_ardupilot_bin(path: Path, layout: Layout) -> Log:  # noqa: ARG001
         events = tuple(_mode_event(row) for row in _messages(log, data, "MODE", dfreader))
     except Exception as error:  # pymavlink raises struct, index, value and type errors on damaged logs
         raise InputError(
-            f"{path.name} is not a readable ArduPilot log ({type(error).__name__}: {error}); download it again"
+            f"{path.name} is not a readable ArduPilot log ({fault_text(error)}); download it again"
         ) from None
     return Log(path.name, tuple(tables), parameters, events)
 

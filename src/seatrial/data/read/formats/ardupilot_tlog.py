@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import require_library
+from seatrial.data.read.extras import fault_text, require_library
 from seatrial.data.read.layout import Layout
 from seatrial.data.read.log import Log, LogEvent, topic_table
 from seatrial.data.read.raw_table import RawTable
@@ -46,9 +46,7 @@ def read_ardupilot_tlog(path: Path, layout: Layout) -> Log:  # noqa: ARG001
     except InputError:
         raise
     except Exception as error:  # pymavlink raises struct, index and value errors on damaged logs
-        raise InputError(
-            f"{path.name} is not a readable MAVLink log ({type(error).__name__}: {error}); record it again"
-        ) from None
+        raise InputError(f"{path.name} is not a readable MAVLink log ({fault_text(error)}); record it again") from None
     return Log(path.name, tuple(tables), parameters, tuple(events))
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import require_library
+from seatrial.data.read.extras import fault_text, require_library
 from seatrial.data.read.layout import Layout
 from seatrial.data.read.log import Log
 from seatrial.data.read.raw_table import RawTable
@@ -36,7 +36,7 @@ def read_excel(path: Path, layout: Layout) -> Log:  # noqa: ARG001
         raise
     except Exception as error:  # openpyxl raises zip, key, XML and value errors on damaged workbooks
         raise InputError(
-            f"{path.name} is not a readable Excel workbook ({type(error).__name__}: {error}); save it again as .xlsx"
+            f"{path.name} is not a readable Excel workbook ({fault_text(error)}); save it again as .xlsx"
         ) from None
     tables = [table for title, rows in sheets if (table := _table(path.name, title, rows)) is not None]
     if len(tables) == 1:

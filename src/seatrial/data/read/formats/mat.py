@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import require_library
+from seatrial.data.read.extras import fault_text, require_library
 from seatrial.data.read.layout import Layout
 from seatrial.data.read.log import Log
 from seatrial.data.read.raw_table import RawTable
@@ -35,7 +35,9 @@ def _read_version_5(path: Path) -> dict[str, np.ndarray]:
     try:
         return _flatten(loadmat(path, squeeze_me=True, struct_as_record=True))
     except Exception as error:  # scipy raises half a dozen unrelated types on damaged files
-        raise InputError(f"{path.name} is not a readable MATLAB file ({error}); save it again with -v7") from None
+        raise InputError(
+            f"{path.name} is not a readable MATLAB file ({fault_text(error)}); save it again with -v7"
+        ) from None
 
 
 def _flatten(variables: Mapping, prefix: str = "") -> dict[str, np.ndarray]:
@@ -64,7 +66,7 @@ def _read_version_7(path: Path) -> dict[str, np.ndarray]:
         with h5py.File(path, "r") as file:
             file.visititems(visit)
     except Exception as error:  # h5py raises OS, runtime, key and value errors on damaged files
-        raise InputError(f"{path.name} is not a readable MATLAB 7.3 file ({error})") from None
+        raise InputError(f"{path.name} is not a readable MATLAB 7.3 file ({fault_text(error)})") from None
     return variables
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import require_library
+from seatrial.data.read.extras import fault_text, require_library
 from seatrial.data.read.layout import Layout
 from seatrial.data.read.log import Log, topic_table
 from seatrial.data.read.raw_table import RawTable
@@ -26,9 +26,7 @@ def read_mdf4(path: Path, layout: Layout) -> Log:  # noqa: ARG001
                 table for k in range(len(file.groups)) if (table := _table(path.name, file, k, names[k])) is not None
             ]
     except Exception as error:  # asammdf raises its own, struct, key and value errors on damaged files
-        raise InputError(
-            f"{path.name} is not a readable MDF file ({type(error).__name__}: {error}); save it again"
-        ) from None
+        raise InputError(f"{path.name} is not a readable MDF file ({fault_text(error)}); save it again") from None
     return Log(path.name, tuple(tables))
 
 

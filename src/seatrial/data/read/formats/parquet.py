@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import require_library
+from seatrial.data.read.extras import fault_text, require_library
 from seatrial.data.read.layout import Layout
 from seatrial.data.read.log import Log
 from seatrial.data.read.raw_table import RawTable
@@ -19,6 +19,6 @@ def read_parquet(path: Path, layout: Layout) -> Log:  # noqa: ARG001
     try:
         table = parquet.read_table(path)
     except Exception as error:  # pyarrow raises OS, value and its own errors on damaged files
-        raise InputError(f"{path.name} is not a readable Parquet file ({error})") from None
+        raise InputError(f"{path.name} is not a readable Parquet file ({fault_text(error)})") from None
     cells = tuple(column.to_numpy(zero_copy_only=False) for column in table.columns)
     return Log.of_table(RawTable(path.name, tuple(table.column_names), cells))

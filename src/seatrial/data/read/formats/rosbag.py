@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import require_library
+from seatrial.data.read.extras import fault_text, require_library
 from seatrial.data.read.layout import Layout
 from seatrial.data.read.log import Log, topic_table
 
@@ -49,7 +49,7 @@ def read_rosbag(path: Path, layout: Layout) -> Log:  # noqa: ARG001
         raise
     except Exception as error:  # rosbags and its decompressors raise a dozen unrelated types on damaged bags
         raise InputError(
-            f"{path.name} is not a readable ROS bag ({type(error).__name__}: {error}); repair it with 'rosbag reindex' "
+            f"{path.name} is not a readable ROS bag ({fault_text(error)}); repair it with 'rosbag reindex' "
             "or 'ros2 bag reindex', or record it again"
         ) from None
     return Log(path.name, tuple(_table(path.name, topic, names, rows) for topic, (names, rows) in samples.items()))

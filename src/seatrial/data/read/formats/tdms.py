@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import require_library
+from seatrial.data.read.extras import fault_text, require_library
 from seatrial.data.read.layout import Layout
 from seatrial.data.read.log import Log, topic_table
 from seatrial.data.read.raw_table import RawTable
@@ -23,9 +23,7 @@ def read_tdms(path: Path, layout: Layout) -> Log:  # noqa: ARG001
         file = nptdms.TdmsFile.read(path)
         tables = [table for group in file.groups() for table in _tables(path.name, group)]
     except Exception as error:  # npTDMS raises struct, key, index and value errors on damaged files
-        raise InputError(
-            f"{path.name} is not a readable TDMS file ({type(error).__name__}: {error}); save it again"
-        ) from None
+        raise InputError(f"{path.name} is not a readable TDMS file ({fault_text(error)}); save it again") from None
     return Log(path.name, tuple(tables))
 
 

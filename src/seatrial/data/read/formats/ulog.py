@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import require_library
+from seatrial.data.read.extras import fault_text, require_library
 from seatrial.data.read.layout import Layout
 from seatrial.data.read.log import Log, LogEvent, topic_table
 
@@ -25,9 +25,7 @@ def read_ulog(path: Path, layout: Layout) -> Log:  # noqa: ARG001
     try:
         log = pyulog.ULog(str(path))
     except Exception as error:  # pyulog raises struct, index, key and type errors on damaged files
-        raise InputError(
-            f"{path.name} is not a readable ULog file ({type(error).__name__}: {error}); download it again"
-        ) from None
+        raise InputError(f"{path.name} is not a readable ULog file ({fault_text(error)}); download it again") from None
     instances = Counter(data.name for data in log.data_list)
     tables, events = [], []
     for data in log.data_list:
