@@ -8,6 +8,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from seatrial.core.results import Table
+from seatrial.core.text import significant
 from seatrial.core.values import Array
 
 Coefficients = TypeVar("Coefficients")
@@ -17,6 +18,8 @@ _TOLERANCE = 1e-9
 _MAX_EVALUATIONS = 2000
 TRUTH = "the truth itself"
 """Name of the row whose controller is tuned on the true coefficients."""
+WITHOUT_CONTROL = "without control"
+"""Name of the row whose gains are zero."""
 
 
 @dataclass(frozen=True)
@@ -107,9 +110,26 @@ def controller_costs(
     return tuple(costs)
 
 
+def with_uncontrolled(
+    costs: tuple[ControllerCost, ...], truth: Coefficients, task: ControlTask[Coefficients]
+) -> tuple[ControllerCost, ...]:
+    """Return the costs with that of gains zero on the true ship after the first, which is tuned on the truth."""
+    best, *rest = costs
+    idle = np.zeros(len(task.start))
+    motion = task.simulate(truth, idle)
+    excess = task.cost(motion) / task.cost(best.actual) - 1.0
+    return (best, ControllerCost(WITHOUT_CONTROL, idle, motion, motion, excess), *rest)
+
+
 def largest_excess(groups: Mapping[int, tuple[ControllerCost, ...]], selected: Callable[[str], bool]) -> float:
     """Return the largest excess cost of the controllers whose method is selected."""
     return max(cost.excess for costs in groups.values() for cost in costs if selected(cost.method))
+
+
+def uncontrolled_excess_text(groups: Mapping[int, tuple[ControllerCost, ...]]) -> str:
+    """Return the least and the largest excess cost without control over the groups, as text in per cent."""
+    excess = [100.0 * c.excess for costs in groups.values() for c in costs if c.method == WITHOUT_CONTROL]
+    return f"{significant(min(excess), 2)} to {significant(max(excess), 2)} %"
 
 
 def controller_cost_table(

@@ -14,6 +14,7 @@ from seatrial_studies.controller_cost import (
     ControlTask,
     controller_cost_table,
     controller_costs,
+    with_uncontrolled,
 )
 from seatrial_studies.seaway import FIN
 from seatrial_studies.swarm_search import candidate_matrices, simulate_search_data
@@ -31,9 +32,10 @@ CONTROLLER_COST_TITLE = "What wrong coefficients cost a controller"
 _NOTE = (
     "A fin (6 m², 25 m aft, assumed as elsewhere) turned by KP pitch + KD pitch rate, tuned by simulation of the ship "
     f"that the coefficients describe, in {SEAS} seas of 200 s, for least pitch variance plus {FIN_WEIGHT:g}² fin "
-    "variance; then simulated on the true ship in the same seas. Fin angles are not limited. 'Predicted': pitch of the "
+    "variance; then simulated on the true ship in the same seas. A positive fin angle lifts the stern; pitch is "
+    "positive bow up, so that positive gains work against it. Fin angles are not limited. 'Predicted': pitch of the "
     "ship that the coefficients describe. 'Cost over best': the sum that was to be least, on the true ship, over that "
-    "of the controller tuned on the truth."
+    "of the controller tuned on the truth; without control it is the pitch variance alone."
 )
 
 
@@ -63,11 +65,15 @@ def pitch_control_task(heading: int, height: float, seed: int) -> ControlTask[Ar
 def pitch_controller_costs(
     columns: Mapping[int, Mapping[str, Array]], truths: Mapping[int, Array], height: float, seed: int
 ) -> dict[int, tuple[ControllerCost, ...]]:
-    """Return the cost of each column of coefficients (8,), by heading [deg], in waves of a significant height [m]."""
-    return {
-        heading: controller_costs(methods, truths[heading], pitch_control_task(heading, height, seed))
-        for heading, methods in columns.items()
-    }
+    """Return the cost of each column of coefficients (8,), by heading [deg], in waves of a significant height [m].
+
+    That of the truth comes first, then that without control.
+    """
+    costs = {}
+    for heading, methods in columns.items():
+        task = pitch_control_task(heading, height, seed)
+        costs[heading] = with_uncontrolled(controller_costs(methods, truths[heading], task), truths[heading], task)
+    return costs
 
 
 def pitch_controller_cost_table(costs: Mapping[int, tuple[ControllerCost, ...]]) -> Table:

@@ -8,6 +8,7 @@ import pytest
 from seatrial.core.values import Array
 from seatrial_studies.controller_cost import (
     TRUTH,
+    WITHOUT_CONTROL,
     ControlLabels,
     ControlledMotion,
     ControlTask,
@@ -67,9 +68,10 @@ def test_the_fin_damps_pitch_and_wrong_coefficients_cost_more_than_none() -> Non
     still = pitch_control_task(135, 2.27, 0).simulate(truth, np.zeros(2))
     wrong = truth * np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 3.0, 1.0])
     costs = pitch_controller_costs({135: {"pitch damping three times": wrong}}, {135: truth}, 2.27, 0)
-    best, other = costs[135]
+    best, idle, other = costs[135]
+    assert idle.method == WITHOUT_CONTROL and idle.actual == still and idle.excess > other.excess
     assert best.actual.output_rms < 0.9 * still.output_rms
     assert other.excess > 1e-3 and best.excess == pytest.approx(0.0, abs=1e-12)
     assert [row[:2] for row in pitch_controller_cost_table(costs).rows] == [
-        ("135°", TRUTH), ("135°", "pitch damping three times"),
+        ("135°", TRUTH), ("135°", WITHOUT_CONTROL), ("135°", "pitch damping three times"),
     ]  # fmt: skip

@@ -110,7 +110,7 @@ def test_claims_are_judged_in_the_papers_own_setting_too(study: Study) -> None:
 
 def test_what_wrong_coefficients_cost_ends_the_page(study: Study) -> None:
     costs = study.tables[-1]
-    assert costs.title == CONTROLLER_COST_TITLE and len(costs.rows) == 25
+    assert costs.title == CONTROLLER_COST_TITLE and len(costs.rows) == 30
     assert all(float(row[-1] or 0.0) > -1e-6 for row in costs.rows)
 
 

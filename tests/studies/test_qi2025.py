@@ -86,14 +86,16 @@ def test_the_papers_contrast_appears_only_in_its_own_setting(study: Study) -> No
     claims = {c.claim: c for c in study.claims}
     for name in (
         "IWHO identifies with errors of about 1 %",
-        "WHO's errors are below 10 %, which engineering allows",
+        "WHO's errors are basically below 10 %, which engineering allows",
         "IWHO is far more accurate than WHO",
         "PSO is far less accurate than IWHO",
         "The method gives accurate parameters in real time",
     ):
         assert claims[name].verdict is Verdict.HOLDS_IN_OWN_SETTING, name
         assert "±10 %" in claims[name].setting
-    assert claims["PSO is less accurate than WHO, some of its errors near 60 %"].verdict is Verdict.REFUTED
+    assert claims["PSO is less accurate than WHO, some of its errors near 60 %"].verdict is Verdict.UNKNOWABLE
+    for name in ("IWHO identifies with errors of about 1 %", "IWHO is far more accurate than WHO"):
+        assert "fails the rule" in claims[name].evidence, name
     assert all(len(c.evidence) > 20 for c in study.claims)
     assert len(study.claims) >= 26
 
@@ -114,14 +116,15 @@ def test_a_verdict_follows_from_both_settings(own: bool, elsewhere: bool, verdic
 def test_the_page_answers_its_question_and_expands_its_abbreviations(study: Study) -> None:
     text = " ".join(study.answer)
     names = ("improved wild horse optimiser (IWHO)", "wild horse optimiser (WHO)", "particle swarm optimisation (PSO)")
-    for words in (*names, "no single setting", "costs at most 0.8 %"):
+    assert study.answer[0].startswith("This is the quick version: at each heading 10 runs in the chosen setting and 5 ")
+    for words in (*names, "no single setting", "costs at most 0.8 %", "without control the cost is"):
         assert words in text
     assert not re.search(r"\de[+-]\d", text + " ".join(c.evidence for c in study.claims))
 
 
 def test_classical_least_squares_refutes_that_many_coefficients_are_hard(study: Study) -> None:
     (claim,) = [c for c in study.claims if c.claim.startswith("Classical methods")]
-    assert claim.verdict is Verdict.REFUTED and "at most 35 evaluations" in claim.evidence
+    assert claim.verdict is Verdict.REFUTED and "at most 36 evaluations" in claim.evidence
 
 
 def test_tracking_is_compared_at_every_heading(study: Study) -> None:
@@ -193,7 +196,11 @@ def test_what_wrong_coefficients_cost_ends_the_page(study: Study) -> None:
 def test_our_own_fit_and_the_saturation_hold(study: Study) -> None:
     """IWHO's errors are what they are, ten runs scatter; times are the machine's."""
     failing = [c.name for c in study.checks if not c.holds]
-    assert [name for name in failing if "time" not in name and "median of" not in name] == []
+    excused = ("time", "median of", "WHO's 16 means")
+    assert [name for name in failing if not any(word in name for word in excused)] == []
+    assert any("WHO's 16 means" in name for name in failing)
+    withdrawn = [c.name for c in study.checks if c.status is CheckStatus.WITHDRAWN]
+    assert any("candidates judged" in name for name in withdrawn) and any("share" in name for name in withdrawn)
     assert sum("median of" in c.name for c in study.checks) == 3
 
 

@@ -54,7 +54,9 @@ _ASSUMPTIONS = (
     Assumption("record", "number of samples not printed", "200 s, a sample every 0.5 s, from rest, force held"),
     Assumption("fitness, eq. (7)", "lost", "root mean square of heave in m and pitch in degrees"),
     Assumption(
-        "law of the weight, eq. (6)", "lost but for its constants", "normal cloud in the form of Wei et al. 2009"
+        "law of the weight, eq. (6)",
+        "lost but for its constants",
+        "our form, a normal cloud of the kind ascribed to Wei et al. 2009; unverified",
     ),
     Assumption("mutation", "probability 0.2; law lost", "particles with ratio below B become drops round the best"),
     Assumption("its spread", "lost", "En from 0.1 of the range to 0, He = En / 10"),
@@ -73,7 +75,7 @@ _DEVIATIONS = (
     Deviation("parameters", "twelve listed", "eight searched", "as the paper itself: stiffnesses come from theory"),
     Deviation("truth", "full-scale trials in eq. (7), theory in the text", "theory", "the simulation has no trials"),
     Deviation("waves", "harmonics at ω", "at the frequency of encounter", "the ship makes 18 kn"),
-    Deviation("CPSO, the parent (Wei et al. 2009; Zhang et al. 2008)", "cited as its base", "left out",
+    Deviation("CPSO, the parent (Wei et al. 2009, reference 12)", "cited as its base", "left out",
               "no source of its law: stored documentation, web pages and program texts were searched for its English "
               "and "
               "Chinese names; only a program of a variant was found, which cites nothing"),
@@ -88,7 +90,7 @@ DECLARATIONS = Declarations(_SYMBOLS, _ASSUMPTIONS, _DEVIATIONS, _FIGURES)
 
 def declaration_tables(reproduction: CloudSwarmReproduction) -> tuple[Table, ...]:
     """Return the tables of the page; a note says what a quick run leaves out."""
-    runs = len(next(iter(reproduction.seas.values())))
+    runs = reproduction.run_count
     note = f"{runs} runs of {reproduction.iterations} iterations at each heading, each in a sea of its own."
     if (runs, reproduction.iterations) != (RUNS, ITERATIONS):
         note += f" This is the quick version: the whole one has {RUNS} runs of {ITERATIONS}."

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatrial.core.values import Array
+from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial_studies.controller_cost import ControllerCost
 from seatrial_studies.meng2014.cloud_weight import CloudWeight
 from seatrial_studies.meng2014.reproduction import HEADINGS, BoxPlacement, CloudSwarmReproduction, SwarmAlgorithm
@@ -107,10 +108,14 @@ class CloudSwarmEvidence:
         return float(np.mean(swarm) / np.mean([self.output_error[h].seconds for h in HEADINGS]))
 
     @property
-    def evaluation_ratio(self) -> float:
-        """Candidates that a run of ICPSO judges over the evaluations of our fit, least over the headings."""
+    def simulation_ratio(self) -> float:
+        """Return the records that a run of ICPSO simulates over those of our fit, least over the headings.
+
+        An evaluation of ours simulates the record and its slope by each coefficient.
+        """
         swarm = self.off_centre(SwarmAlgorithm.ICPSO)
-        return min(float(swarm[h].evaluations[0]) / self.output_error[h].evaluations for h in HEADINGS)
+        simulated = {h: self.output_error[h].evaluations * (1 + len(COEFFICIENTS)) for h in HEADINGS}
+        return min(float(swarm[h].evaluations[0]) / simulated[h] for h in HEADINGS)
 
 
 def error_text(searches: dict[int, RepeatedSearches]) -> str:

@@ -55,12 +55,12 @@ def velocity_law_claim(evidence: CloudSwarmEvidence) -> Claim:
         "it has no inertia weight, while eq. (6) adjusts one. As printed, with c1 = c2 = 2.05, velocities do not die "
         f"out: {stuck.sum()} of {stuck.size} runs end above the least fitness, the mean error off centre is "
         f"{error_text(printed)}, with the weight {error_text(evidence.off_centre(SwarmAlgorithm.ICPSO))}. Eq. (6) "
-        "itself is lost; assumed is the form of Wei et al. 2009",
+        "itself is lost; ours is of the kind ascribed to Wei et al. 2009, unverified",
     )
 
 
 def coinciding_curves_claim(evidence: CloudSwarmEvidence) -> Claim:
-    """Refuted where coefficients more than 10 % off follow the record within its noise."""
+    """Refuted where coefficients more than 10 % off move the ship by less than the noise from the true motion."""
     wrong = 100.0 * np.abs(evidence.undetected_change.relative_change)
     worst = COEFFICIENTS[int(np.argmax(wrong))]
     heave, pitch = evidence.undetected_change.heave_rms, evidence.undetected_change.pitch_rms
@@ -68,8 +68,10 @@ def coinciding_curves_claim(evidence: CloudSwarmEvidence) -> Claim:
     return Claim(
         "Curves that coincide (figures 2, 3) show that the dynamics are described accurately",
         Verdict.REFUTED if hidden else Verdict.UNKNOWABLE,
-        f"coefficients up to {wrong.max():.0f} % off ({worst}) follow the record at 135° within {100 * heave:.1f} cm "
-        f"and {pitch:.3f}° rms; the noise is {100 * HEAVE_NOISE:.0f} cm and {np.degrees(PITCH_NOISE):.2f}°",
+        f"with coefficients up to {wrong.max():.0f} % off ({worst}) the motion at 135° differs from the true one by "
+        f"{100 * heave:.1f} cm and {pitch:.3f}° rms; the noise is {100 * HEAVE_NOISE:.0f} cm and "
+        f"{np.degrees(PITCH_NOISE):.2f}°. To the eye that is within the noise; a fit of the whole record tells them "
+        "apart",
     )
 
 

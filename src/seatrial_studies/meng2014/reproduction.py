@@ -96,6 +96,11 @@ class CloudSwarmReproduction:
     noise_free_searches: dict[tuple[int, int], RepeatedSearches]
     iterations: int
 
+    @property
+    def run_count(self) -> int:
+        """Return the runs at each heading."""
+        return len(next(iter(self.seas.values())))
+
     def excess_fitness(self, heading: int, searches: RepeatedSearches) -> Array:
         """Fitness off centre after each iteration over the better end of both swarms, less 1; (runs, iterations)."""
         ends = [self.searches[BoxPlacement.OFF_CENTRE, heading, a].histories[:, -1] for a in SwarmAlgorithm]

@@ -12,7 +12,7 @@ from seatrial_studies.published_ship import HEADINGS
 from seatrial_studies.qi2025.published import SearchAlgorithm
 from seatrial_studies.qi2025.reproduction import ITERATIONS, SearchSetting, WildHorseReproduction, repeat_in_setting
 
-# the setting as deduced, and the fairest other one: whole record, truth off centre
+# the chosen setting, and the fairest other one: whole record, truth off centre
 ABLATION_SETTINGS = (SearchSetting.PAPER, SearchSetting.WHOLE_OFF_CENTRE)
 # relative error below which a value is the truth itself, which is the middle of the box; our choice
 _AT_CENTRE = 1e-9

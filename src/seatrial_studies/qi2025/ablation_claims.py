@@ -27,7 +27,8 @@ def addition_claim(evidence: WildHorseEvidence, variant: HerdVariant) -> Claim:
     complete, without = (evidence.ablation.run_errors(own, v) for v in (None, variant))
     texts = {s: _compared_text(evidence, s, variant) for s in (own, elsewhere)}
     text = (
-        f"in the setting as deduced {texts[own]}; with the whole record (eq. 27) and a box off centre "
+        f"{evidence.ablation_runs} runs at each heading of 90/135/180°. In the chosen setting {texts[own]}; with the "
+        "whole record (eq. 27) and a box off centre "
         f"{texts[elsewhere]}"
     )
     claim = _ADDITIONS[variant]
@@ -53,8 +54,9 @@ def stability_claim(evidence: WildHorseEvidence) -> Claim:
     return judged_in_settings(
         "IWHO identifies more stably than the other two",
         "standard deviation of the values over the runs, relative to the truth, mean over the coefficients, at "
-        f"90/135/180°: in the setting as deduced {_scatter_text(evidence, own)}; with the whole record and a box off "
-        f"centre {_scatter_text(evidence, elsewhere)}",
+        f"90/135/180°: in the chosen setting {_scatter_text(evidence, own)} ({evidence.run_count(own)} runs each); "
+        f"with the whole record and a box off centre {_scatter_text(evidence, elsewhere)} "
+        f"({evidence.run_count(elsewhere)} runs each)",
         holds_in_own=_is_steadiest(evidence, own),
         holds_elsewhere=_is_steadiest(evidence, elsewhere),
     )

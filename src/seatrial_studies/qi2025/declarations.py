@@ -70,7 +70,8 @@ _ASSUMPTIONS = (
         "state a candidate steps from", "not printed", "the true previous one (generous); the model's own beside it"
     ),
     Assumption("unit of pitch in eq. (28)", "not printed", "rad; degrees beside it"),
-    Assumption("remembered fitness", "not printed", "judged again by each new sample; kept beside it (full run)"),
+    Assumption("remembered fitness", "not printed",
+               "judged again by each new sample; kept beside it, at 45° and, in the full version, at all headings"),
     Assumption("coefficients at 45°", "not printed", "those of 90°"),
     Assumption("forces of the waves", "not printed", "box-shaped hull in closed form, Jensen, Mansour & Olsen 2004"),
     Assumption("hull behind table 1", "half length 30 m, section 16.2 m²", "L 60 m, B 16.2/2.27 = 7.14 m"),
@@ -118,12 +119,13 @@ DECLARATIONS = Declarations(_SYMBOLS, _ASSUMPTIONS, _DEVIATIONS, _FIGURES)
 def declaration_tables(reproduction: WildHorseReproduction) -> tuple[Table, ...]:
     """Return the tables of the page; a note says what was left out of a quick run."""
     ten = " and ".join(f"'{s.value}'" for s in TEN_RUN_SETTINGS)
-    times = f"{QUICK_RUNS} times ({ten}: {RUNS})" if reproduction.is_quick else f"{RUNS} times"
+    times = f"{QUICK_RUNS} runs ({ten}: {RUNS})" if reproduction.is_quick else f"{RUNS} runs"
     note = (
         "Unit, memory and state were chosen as the combination whose IWHO comes nearest to the print; the tables of "
-        f"settings show the others. Every setting is run {times}."
+        f"settings show the others. Each of them has {times} at each of 90, 135 and 180°. At 45°, for figures 1, 2 and "
+        f"5 to 11: {RUNS} runs in the setting '{SearchSetting.PAPER.value}', one run in each of the others shown."
     )
     absent = [s.value for s in SearchSetting if s not in reproduction.settings]
     if absent:
-        note += f" Left out of this quick run: {'; '.join(absent)}."
+        note += f" Left out of this quick version at 90, 135 and 180°: {'; '.join(absent)}."
     return DECLARATIONS.tables(note)

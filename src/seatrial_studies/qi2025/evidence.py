@@ -6,6 +6,7 @@ import numpy as np
 
 from seatrial.core.text import significant
 from seatrial.core.values import Array
+from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial_studies.controller_cost import ControllerCost
 from seatrial_studies.output_error_fit import OutputErrorResults
 from seatrial_studies.published_ship import HEADINGS
@@ -16,6 +17,7 @@ from seatrial_studies.qi2025.hold_bias import HoldBias
 from seatrial_studies.qi2025.published import SearchAlgorithm, printed_error
 from seatrial_studies.qi2025.reproduction import SearchSetting, WildHorseReproduction
 from seatrial_studies.qi2025.tracking import Tracking
+from seatrial_studies.swarm_search import SAMPLES
 
 # a value counts as on its bound where it is off by no more than this share of it
 ON_BOUND_SHARE = 0.005
@@ -70,6 +72,20 @@ class WildHorseEvidence:
         """Return the candidates that a run judges in the paper's setting."""
         return int(self.reproduction.searches[SearchSetting.PAPER, HEADINGS[0], algorithm].evaluations[0])
 
+    def run_count(self, setting: SearchSetting) -> int:
+        """Return the runs of a setting at each heading of the tables."""
+        return len(self.reproduction.searches[setting, HEADINGS[0], SearchAlgorithm.IWHO].points)
+
+    @property
+    def ablation_runs(self) -> int:
+        """Return the runs of IWHO with parts left out, and of IWHO complete beside them, at each heading."""
+        return len(self.ablation.errors[SearchSetting.PAPER, None, HEADINGS[0]])
+
+    @property
+    def output_error_evaluations(self) -> int:
+        """Return the evaluations of our noise-free fit, the most at any heading."""
+        return max(o.evaluations for o in self.output_error.values())
+
     def search_seconds(self, algorithm: SearchAlgorithm) -> float:
         """Time of a run, mean over the headings."""
         return float(np.mean([self.reproduction.searches[SearchSetting.PAPER, h, algorithm].seconds for h in HEADINGS]))
@@ -83,6 +99,11 @@ class WildHorseEvidence:
     def output_error_seconds(self) -> float:
         """Time of our noise-free fit, mean over the headings."""
         return float(np.mean([o.seconds for o in self.output_error.values()]))
+
+
+def simulated_steps(evaluations: int, *, has_slopes: bool) -> int:
+    """Return the steps of evaluations of the whole record, each slope by a coefficient counted as one simulation."""
+    return evaluations * (SAMPLES - 1) * (1 + len(COEFFICIENTS) * has_slopes)
 
 
 def count_below_printed(errors: Array, heading: int) -> int:

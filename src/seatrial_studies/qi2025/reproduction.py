@@ -1,4 +1,4 @@
-"""The paper's searches made again: its setting as deduced, the same off centre, and with the whole record."""
+"""The paper's searches made again: the setting nearest to its IWHO, the same off centre, and the whole record."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

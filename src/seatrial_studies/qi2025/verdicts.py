@@ -14,6 +14,14 @@ from seatrial_studies.qi2025.ten_runs import FAMILY_PROBABILITY
 # limits of our own checks, set beforehand: share of WHO's values on the bound, printed errors that do not recompute,
 # relative error without noise, ratio of computing times, bias in continuous waves in per cent
 ON_BOUND_SHARE, MISPRINT_COUNT, EXACT_ERROR, LEAST_TIME_RATIO, HOLD_BIAS_PERCENT = 0.5, 6, 1e-9, 50.0, 0.1
+_RUNS_ARE_NO_MEANS = (
+    "The check counts values of single runs, while the print shows means of ten, and single runs on the bound do not "
+    "put their mean there. The next check counts the means."
+)
+_UNEQUAL_UNITS = (
+    "A candidate of IWHO is one step of the record, an evaluation of ours the whole record with its slopes: the ratio "
+    "compares different units. In simulated steps our fit does more, see the table 'Candidates judged in a run'."
+)
 # candidates judged by IWHO over evaluations of our fit; our choice
 LEAST_EVALUATION_RATIO = 50.0
 # rms of errors over the Cramer-Rao bound; our choice
@@ -35,9 +43,17 @@ def _search_checks(evidence: WildHorseEvidence) -> list[Check]:
     share = evidence.share_at_lower_bound(SearchSetting.MODEL_STATE, SearchAlgorithm.WHO)
     name = "WHO's values on the lower bound, candidates from the model's own state, share"
     wrong = len(misprinted_errors())
+    hit, count = evidence.audit.saturated_values
     return [
         *_ten_run_checks(evidence),
-        Check.at_least(name, share, ON_BOUND_SHARE),
+        Check.at_least(name, share, ON_BOUND_SHARE).withdrawn(_RUNS_ARE_NO_MEANS),
+        Check.at_least(
+            f"WHO's {count} means at 90 and 135 deg beyond -9.3 %, candidates from the model's own state",
+            evidence.saturated_means(SearchSetting.MODEL_STATE),
+            hit,
+            "no setting tried here gives as many as are printed; box, start state, unit of pitch and what becomes of "
+            "places outside the box are not printed",
+        ),
         Check("printed errors that do not recompute", wrong, f"{MISPRINT_COUNT}", wrong == MISPRINT_COUNT),
     ]
 
@@ -52,7 +68,7 @@ def _ten_run_checks(evidence: WildHorseEvidence) -> list[Check]:
             "is the median at which it would be just that many: the printed error times the median of the drawn tens "
             f"over their quantile of {100.0 * FAMILY_PROBABILITY / len(HEADINGS):.1f} %, which is "
             f"{100.0 * FAMILY_PROBABILITY:.0f} % shared by three checks. The paper's search is probably not quite the "
-            "deduced one, whose start state and unit of pitch are not printed"
+            "this one, whose start state and unit of pitch are chosen, not printed"
         )
         checks.append(
             Check.at_most(
@@ -89,9 +105,9 @@ def _output_error_checks(evidence: WildHorseEvidence) -> list[Check]:
         ).withdrawn(TIME_IS_NO_VERDICT),
         Check.at_least(
             "candidates judged by IWHO over evaluations of our fit",
-            evidence.evaluations(SearchAlgorithm.IWHO) / max(o.evaluations for o in fits),
+            evidence.evaluations(SearchAlgorithm.IWHO) / evidence.output_error_evaluations,
             LEAST_EVALUATION_RATIO,
-        ),
+        ).withdrawn(_UNEQUAL_UNITS),
         Check.between(
             "our errors in noise over the Cramer-Rao bound",
             evidence.bound_ratio,
