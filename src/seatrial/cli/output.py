@@ -315,7 +315,7 @@ def _print_identifiability(fit: "Fit") -> None:
     if identifiability is not None:
         free = sum(not c.fixed for c in fit.coefficients)
         print(f"the records determine about {identifiability.effective_parameters:.0f} of {free} free coefficients")
-        print_lines((f"not identifiable: {symmetry.text}" for symmetry in identifiability.structural), "  ")
+        print_lines((f"no record can separate: {symmetry.text}" for symmetry in identifiability.structural), "  ")
     if noise_model is not None and noise_model.text:
         print_lines([f"{noise_model.method}: {noise_model.text}"])
     if noise_model is not None and noise_model.closed_loop is not None:

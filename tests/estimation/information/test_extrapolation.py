@@ -39,6 +39,14 @@ def test_speed_leaves_the_range_both_ways(speed: float, name: str, ratio: float)
     assert found.ratios[name] == pytest.approx(ratio)
 
 
+def test_a_run_from_rest_is_a_tenth_of_the_speed_away_and_no_farther() -> None:
+    train = [run("a", 0.02, 0.1, 0.2, 1.5), run("b", 0.02, 0.1, 0.2, 5.0)]
+    for speed in (0.3, 0.0):
+        found = extrapolation(run("c", 0.02, 0.1, 0.2, speed), motion_envelope(train))
+        assert found is not None
+        assert found.ratios["slowest"] == pytest.approx(1.5 / 0.5)
+
+
 def test_a_run_covers_itself() -> None:
     one = run("a", 0.02, 0.1, 0.2, 5.0)
     assert extrapolation_index(one, [one]) == pytest.approx(1.0)

@@ -73,6 +73,15 @@ def test_outputs_are_those_the_records_hold(model: Model) -> None:
         compared_outputs(model, [records[0].without("r", "psi")])
 
 
+def test_positions_are_left_out_while_a_steering_model_has_no_speed(model: Model) -> None:
+    time = np.arange(0.0, 20.0, 0.5)
+    tracked = Record.from_arrays("track", time, {name: np.zeros(40) for name in ("r", "psi", "x0", "y0", "delta")})
+    assert compared_outputs(model, [tracked]) == ("r", "psi")
+    assert compared_outputs(model.with_values({"U": 2.0}), [tracked]) == ("r", "psi", "x0", "y0")
+    with pytest.raises(InputError, match=r"'x0' cannot be compared: .* while its speed U is 0; give U"):
+        compared_outputs(model, [tracked], ("r", "x0"))
+
+
 def test_rates_that_differ_and_short_records_are_refused(model: Model) -> None:
     with pytest.raises(InputError, match=r"record 'b' has a time step of 0\.25 s, the first one 0\.5 s"):
         cut_segments(model, [record("a", 21), record("b", 21, dt=0.25)], ("r",), None)

@@ -144,6 +144,11 @@ def test_criteria_of_a_turning_circle_say_where_they_apply(circle: Callable[...,
     assert all(c.applies and "model scale 1:20" in c.note for c in model)
 
 
+def test_a_circle_with_its_pull_out_meets_the_criteria_of_a_circle() -> None:
+    record = manoeuvre(kvlcc2(), programme("pull-out:35"), speed=1.18, inputs={"n": 10.4})
+    assert {c.name for c in imo_criteria(record, LENGTH)} == {"advance_L", "tactical_diameter_L"}
+
+
 @pytest.mark.parametrize("speed", [0.0, 3.0])
 def test_a_model_without_surge_has_no_distances_and_no_standard_to_meet(speed: float) -> None:
     model = nomoto().with_values({"K": 0.1, "T": 5.0, "U": speed})

@@ -10,6 +10,8 @@ from seatrial.core.values import Array, Record
 _PERCENTILE = 99.5  # per cent of the samples within the envelope; chosen
 # rad/s, rad, rad, m/s, m/s, below which a range counts as none; chosen
 _NEGLIGIBLE = {"yaw_rate": 1e-4, "drift": 1e-3, "rudder": 1e-3, "fastest": 1e-3, "slowest": 1e-3}
+_REST_SHARE = 0.1
+"""Share of the fastest speed of the training runs below which a craft counts as at rest; chosen."""
 
 
 def motion_envelope(records: Sequence[Record]) -> dict[str, float]:
@@ -41,7 +43,8 @@ def _speed(record: Record) -> Array:
 def extrapolation(predicted: Record, training_envelope: Mapping[str, float]) -> Extrapolation | None:
     """Ratios of a run's `motion_envelope` to that of the training runs; None where nothing can be compared.
 
-    That of the slowest speed is turned round, so that a run that goes half as fast as any training run has 2.
+    That of the slowest speed is turned round, so that a run that goes half as fast as any training run has 2; the last
+    tenth of the speed down to rest adds nothing, or a run from rest would be infinitely far away.
     """
     own = motion_envelope([predicted])
     both = {
@@ -52,7 +55,8 @@ def extrapolation(predicted: Record, training_envelope: Mapping[str, float]) -> 
     ratios = {n: both[n][0] / both[n][1] for n in ("yaw_rate", "drift", "rudder") if n in both}
     if {"fastest", "slowest"} <= set(both):
         ratios["fastest"] = both["fastest"][0] / both["fastest"][1]
-        ratios["slowest"] = both["slowest"][1] / max(both["slowest"][0], _NEGLIGIBLE["slowest"])
+        rest = max(_REST_SHARE * both["fastest"][1], _NEGLIGIBLE["slowest"])
+        ratios["slowest"] = max(both["slowest"][1], rest) / max(both["slowest"][0], rest)
     return Extrapolation(max(ratios.values()), ratios) if ratios else None
 
 

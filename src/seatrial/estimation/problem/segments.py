@@ -58,14 +58,29 @@ class Segments:
         )
 
 
+def _still_channels(model: Model) -> tuple[str, ...]:
+    """Positions that a model of steering alone leaves where they are: its speed U is fixed at 0."""
+    names = model.parameters.names
+    if "u" in model.states or "U" not in names:
+        return ()
+    speed = model.parameters["U"]
+    return () if speed.free or speed.value else ("x0", "y0")
+
+
 def compared_outputs(model: Model, records: Sequence[Record], requested: Sequence[str] = ()) -> tuple[str, ...]:
     """Return observables of the model that at least one record holds; only the wanted ones where some are named.
 
     Raises:
         InputError: there is none, or a wanted one is no observable of the model or in no record.
     """
-    found = tuple(o for o in model.channels if any(o in r for r in records))
+    still = _still_channels(model)
+    found = tuple(o for o in model.channels if o not in still and any(o in r for r in records))
     for name in requested:
+        if name in still:
+            raise InputError(
+                f"channel '{name}' cannot be compared: model '{model.name}' has no position while its speed U is 0; "
+                "give U under [model.fixed], or free it"
+            )
         if name not in found:
             raise InputError(f"channel '{name}' cannot be compared{channel_hint(name, list(found))}")
     if not found:

@@ -63,7 +63,7 @@ def imo_criteria(
     found = measures(record, length, switching, reference)
     seen = ObservedManoeuvre.from_record(record if reference is None else reference)
     match seen.kind:
-        case ManoeuvreKind.TURNING_CIRCLE:
+        case ManoeuvreKind.TURNING_CIRCLE | ManoeuvreKind.PULL_OUT:  # the circle before the rudder went back
             wanted = _turning_limits(found)
         case ManoeuvreKind.ZIGZAG:
             wanted = _zigzag_limits(seen, found, length, scale, switching)
