@@ -129,3 +129,10 @@ def test_our_fit_reaches_its_bound(study: Study) -> None:
     assert held["our largest relative error, noise-free"]
     assert held["flattest direction of twelve unknowns, beam waves alone"]
     assert held["flattest direction of twelve unknowns, one fin alone"]
+
+
+def test_accuracy_and_mutation_are_judged(study: Study) -> None:
+    claims = {c.claim: c for c in study.claims}
+    assert "plain PSO" in claims["The cloud improves the accuracy of convergence (abstract)"].evidence
+    mutation = claims["Mutation by the cloud keeps the swarm diverse, out of local minima"]
+    assert mutation.verdict is Verdict.UNKNOWABLE and "without" in mutation.evidence

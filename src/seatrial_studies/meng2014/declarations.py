@@ -5,7 +5,8 @@ from seatrial_studies.declarations import Assumption, Declarations, Deviation, F
 from seatrial_studies.meng2014.reproduction import ITERATIONS, RUNS, CloudSwarmReproduction
 
 _SYMBOLS = (
-    Symbol("z, θ", "heave and pitch", "m, rad", "figures 2 and 3 in cm and degrees"),
+    Symbol("z, θ", "heave and pitch", "m, rad", "figures 2 and 3 in cm and degrees; drawn z up, θ bow down"),
+    Symbol("m, I5", "mass and pitch moment of inertia, eqs. (1) and (3)", "kg, kg m²", "lost with the equations"),
     Symbol("F_R, X_R", "lift of the horizontal fin and its lever", "N, m", "not printed"),
     Symbol("F3, M5", "force and moment of the waves", "N, N m", "not printed"),
     Symbol("a33, a35, a53, a55", "added masses", "kg, kg m, kg m, kg m²", "searched"),
@@ -32,7 +33,7 @@ _SYMBOLS = (
     Symbol("r1, r2", "random numbers in (0, 1)", "1", "drawn for every component"),
     Symbol("w, w1, w2", "inertia weight and its ends, eq. (6)", "1", "w1 = 0.9, w2 = 0.4"),
     Symbol("Ex, En, He", "expectation, entropy, hyper-entropy of the cloud", "1", "5 w1 − w2, 5, 0.5"),
-    Symbol("A, B", "thresholds of the ratio of fitness", "1", "0.15, 0.93"),
+    Symbol("A, B; r", "thresholds; r = f_best / f, ratio of the least fitness to a particle's", "1", "0.15, 0.93"),
     Symbol(
         "x_i, u_i, n, En′",
         "cloud drop, its certainty, their number, drawn entropy",
@@ -41,16 +42,22 @@ _SYMBOLS = (
     ),
     Symbol("RANDN(a, b)", "normal random number of mean a and deviation b", "as a", "for En′ and x_i"),
     Symbol("rand, p_m", "random number in (0, 1), probability of mutation", "1", "p_m = 0.2"),
-    Symbol("Y, dataNum", "observed motions and their number, eq. (7)", "m, deg", "dataNum not printed"),
+    Symbol("Y_i, dataNum", "observed motions, i = 1 to dataNum their number, eq. (7)", "m, deg", "dataNum not printed"),
 )
 _ASSUMPTIONS = (
     Assumption("table 1: coefficients and errors", "lost", "nothing; errors of our own searches"),
     Assumption("ship and coefficients", "not printed", "Qi et al. 2025; at 0 and 45° those of 90°; b53 negative"),
+    Assumption(
+        "eqs. (1) to (3)",
+        "lost but for their symbols",
+        "heave and pitch as Qi et al. 2025 have them, eqs. (1) to (5), the fin's force and moment added",
+    ),
+    Assumption("heading of figures 2, 3", "not printed", "135°"),
     Assumption("box of the searches", "not printed", "±50 % with the truth off centre; ±10 % about it beside"),
     Assumption("sea state 3", "no height printed", "0.88 m, ITTC spectrum, 30 equal intervals, random phases"),
     Assumption("forces of the waves", "not printed", "box-shaped hull in closed form, Jensen, Mansour & Olsen 2004"),
-    Assumption("fin", "±10°, pseudo-random", "±10° held for 1 s; 6 m², lift slope 3/rad, 25 m aft"),
-    Assumption("measurement noise", "white, no number", "1 cm and 0.02°"),
+    Assumption("fin", "±10, no unit, pseudo-random", "±10° held for 1 s; 6 m², lift slope 3/rad, 25 m aft"),
+    Assumption("measurement noise", "white, Gaussian, mean 0, no deviation", "the same; 1 cm and 0.02°"),
     Assumption("record", "number of samples not printed", "200 s, a sample every 0.5 s, from rest, force held"),
     Assumption("fitness, eq. (7)", "lost", "root mean square of heave in m and pitch in degrees"),
     Assumption(

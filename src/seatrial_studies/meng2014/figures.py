@@ -31,8 +31,9 @@ def _curves(evidence: CloudSwarmEvidence) -> list[Figure]:
     samples = np.arange(len(y), dtype=np.float64)
     made = []
     note = (
-        f"{FIGURE_HEADING}\u00b0, first run of ICPSO, every {STEP} s. That the curves coincide says "
-        "little of the coefficients."
+        f"{FIGURE_HEADING}\u00b0 (assumed, the paper does not say), first run of ICPSO, box \u00b150 % off centre, a "
+        f"sample every {STEP} s: the simulated truth with its noise, and the motion by the identified coefficients. "
+        "That they coincide says little of the coefficients."
     )
     for j, factor, title, unit in (
         (0, 100.0, "Figure 2: heave", "cm"),
@@ -55,8 +56,9 @@ def _convergence(evidence: CloudSwarmEvidence) -> Figure:
     drawn = np.arange(min(_DRAWN_ITERATIONS, made.iterations), dtype=np.float64)
     curves.append(Curve("within noise", drawn, np.full(len(drawn), np.log10(evidence.noise_allowance))))
     note = (
-        "Median over all headings and runs of the best fitness over the better end of both swarms in the same sea "
-        f"and box, less 1, its first {_DRAWN_ITERATIONS} iterations; box \u00b150 % off centre."
+        "Median over all headings and runs of the best fitness over the less of the two with which ICPSO and PSO end "
+        "in the same "
+        f"sea and box, less 1, its first {_DRAWN_ITERATIONS} iterations; box \u00b150 % off centre."
     )
     return Figure("Convergence", "iteration", "log10 of the excess of the fitness", tuple(curves), note)
 

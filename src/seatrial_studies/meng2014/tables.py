@@ -40,8 +40,8 @@ def _convergence(evidence: CloudSwarmEvidence) -> Table:
         rows.append((name, *cells, int(np.sum(~np.isfinite(needed))), error))
     header = ("", *(f"{h}\u00b0" for h in HEADINGS), f"runs of {runs} that never do", "mean error %")
     note = (
-        "Iterations until the better end of both swarms in the same sea and box is reached within what the noise "
-        "explains, median over the runs, a dash where it is never; box \u00b150 % off centre."
+        "Iterations until the fitness comes within what the noise explains of the less of the two with which ICPSO and "
+        "PSO end in the same sea and box, median over the runs, a dash where it is never; box \u00b150 % off centre."
     )
     return Table("How fast the swarms converge", header, tuple(rows), note)
 
@@ -103,7 +103,7 @@ def _means(evidence: CloudSwarmEvidence) -> Table:
     note = (
         f"Over coefficients and runs, after {evidence.reproduction.iterations} iterations of 60; box "
         "\u00b150 % off centre or "
-        "\u00b110 % about the truth, which keeps what noise moves from going further. Where the swarms agree, both end "
+        "\u00b110 % about the truth, whose walls limit the errors that noise causes. Where the swarms agree, both end "
         "in the same minimum, which the noise decides."
     )
     return Table("Mean errors, %", header, rows, note)

@@ -36,6 +36,7 @@ _SYMBOLS = (
     Symbol("G, T", "groups N P_S; iteration, eq. (17)", "1", "10; 1 to 200"),
     Symbol("x_G, x̄_G", "place of a foal of group G, and its new one", "as the unknowns", "eqs. (15), (18), (20)"),
     Symbol("Crossover, Mean", "mating: mean of two foals of other groups", "as the unknowns", "eq. (18)"),
+    Symbol("R of eqs. (15), (19), (23)", "random number in [−2, 2]", "1", "uniform"),
     Symbol("R1, R3; R2", "random vectors, a random number, in [0, 1]", "1", "eq. (16)"),
     Symbol("R_w", "random number in [0, 1], which line of eq. (19) or (25)", "1", "0.5 divides them"),
     Symbol("Q1, Q2", "random numbers in [−1, 1]", "1", "eqs. (24), (25)"),
@@ -62,6 +63,9 @@ _ASSUMPTIONS = (
     ),
     Assumption("ω, c1, c2 of PSO", "not printed",
                "Clerc and Kennedy's constriction values 0.7298, 1.49618, 1.49618; clipped to the box"),
+    Assumption("velocities of PSO", "start, limit and wall not printed",
+               "start: half the way to a random point of the box; limit: the width of the box; at a wall a particle "
+               "stays there and its velocity across becomes zero (standard swarm of 2006)"),
     Assumption("which foals mate, eq. (18)", "two of other groups",
                "the worst of two other groups, as in the program of WHO's authors"),
     Assumption("coefficients of the sea", "one set for each heading",
@@ -84,6 +88,8 @@ _ASSUMPTIONS = (
     Assumption("after the last iteration", "figures run to 200 s, the search ends at 100 s", "the last point is kept"),
 )  # fmt: skip
 _DEVIATIONS = (
+    Deviation("figures 6, 7", "motions of the search of figure 5", "of the chosen setting; figure 5 from the own state",
+              "no one setting is near to all of the print"),
     Deviation("tables 2 to 4", "b53 positive", "negative", "(b35 + |b53|) / (2 a33) is the speed only then"),
     Deviation("eq. (14)", "harmonics at ω", "at the frequency of encounter ω − ω² U cos β / g", "the ship has way on"),
     Deviation("eq. (14)", "no phases", "a random phase for each harmonic", "without them every crest meets at t = 0"),

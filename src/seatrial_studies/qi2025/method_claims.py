@@ -15,6 +15,8 @@ from seatrial_studies.swarm_search import STEP
 
 # share of the rms of a motion that an error of tracking may have; our choice
 TRACKED_SHARE = 0.1
+# share of the values that counts as most of them
+MOST_SHARE = 0.5
 # s, end of the figures' time axis
 FIGURE_END_S = 200.0
 
@@ -27,6 +29,7 @@ def claims(evidence: WildHorseEvidence) -> tuple[Claim, ...]:
         one_sample_claim(evidence),
         pitch_unit_claim(evidence),
         computing_time_claim(evidence),
+        added_time_claim(evidence),
         real_time_claim(evidence),
         tracking_claim(evidence),
         compared_tracking_claim(evidence),
@@ -57,7 +60,7 @@ def hold_claim(evidence: WildHorseEvidence) -> Claim:
         for name in ("held", "sampled")
     )
     return Claim(
-        "A zero-order hold before the continuous variables discretises the whole system (eq. 8)",
+        "A zero-order hold before the continuous variables makes the whole system discrete without bias (eq. 8)",
         Verdict.REFUTED if min(held) > 10.0 * max(sampled) else Verdict.UNKNOWABLE,
         f"wave force is continuous: fitting motions every 0.5 s with a held force costs {percent_text(held)} mean "
         f"error without any noise; taken as continuous between the same samples {percent_text(sampled)}. The "
@@ -111,9 +114,23 @@ def computing_time_claim(evidence: WildHorseEvidence) -> Claim:
         "times as long as IWHO (table 5)",
         Verdict.REFUTED if ratio < 2.0 else Verdict.UNKNOWABLE,
         "almost all of the work is judging candidates, and in the setting that is judged "
-        f"here a run judges {counts}: PSO {ratio:.1f} times as many as WHO, because all its remembered points are "
-        "judged again, of a herd only the stallions; where fitness is remembered all judge the same number. They "
+        f"here a run judges {counts}: PSO {ratio:.1f} times as many as WHO. PSO judges every particle's best place "
+        "again by the new sample, WHO and IWHO only those of their stallions; where fitness is remembered all judge "
+        "the same number. They "
         f"take {times} ms here",
+    )
+
+
+def added_time_claim(evidence: WildHorseEvidence) -> Claim:
+    """Undecidable: seconds are the machine's, and the work that is counted is the same."""
+    who, iwho = SearchAlgorithm.WHO, SearchAlgorithm.IWHO
+    more = [seconds[iwho] - seconds[who] for seconds in PRINTED_SECONDS.values()]
+    return Claim(
+        "IWHO takes some 0.2 s longer than WHO (table 5)",
+        Verdict.UNKNOWABLE,
+        f"table 5 prints {min(more):.2f} to {max(more):.2f} s more, on a machine and in a program that are not named. "
+        f"Both judge {evidence.evaluations(who)} and {evidence.evaluations(iwho)} candidates here; the table 'Time of "
+        "a run' has the seconds, which vary by machine",
     )
 
 
@@ -186,16 +203,26 @@ def _share_text(shares: Array) -> str:
 
 
 def convergence_claim(evidence: WildHorseEvidence) -> Claim:
-    """Undecidable: the figures run on after the last iteration."""
+    """Refuted where most values are not near the truth at 100 s, confirmed where all are."""
     found = evidence.reproduction.searches[SearchSetting.PAPER, FIGURE_HEADING, SearchAlgorithm.IWHO]
-    errors = 100.0 * np.abs(found.trace / found.truth - 1.0)
-    at = {t: errors[min(round(t / STEP), len(errors) - 1)] for t in (50.0, 100.0)}
-    return Claim(
-        "Parameters converge by 50 s, and are the theoretical values from 100 s on (figures 8 to 11)",
-        Verdict.UNKNOWABLE,
-        f"{ITERATIONS} iterations of {STEP} s end at {ITERATIONS * STEP:.0f} s, while the figures run for "
-        f"{FIGURE_END_S:.0f} s: what the search does after its last iteration is not said. Here (first run at 45°, "
-        f"coefficients of 90° assumed) the errors are up to {at[50.0].max():.1f} % at 50 s; at 100 s "
-        f"{int(np.sum(at[100.0] > ABOUT_ONE_PERCENT))} of {len(COEFFICIENTS)} are more than {ABOUT_ONE_PERCENT:g} % "
-        f"off, by up to {at[100.0].max():.1f} %",
+    errors = 100.0 * np.abs(found.traces / found.truth - 1.0)
+    half, end = (errors[:, min(round(t / STEP), errors.shape[1] - 1)] for t in (50.0, ITERATIONS * STEP))
+    near = {t: float(np.mean(e <= ABOUT_ONE_PERCENT)) for t, e in ((50, half), (100, end))}
+    first = errors[0, min(round(50.0 / STEP), errors.shape[1] - 1)]
+    text = (
+        f"in {len(errors)} runs here (chosen setting; 45°, coefficients of 90° assumed) {100.0 * near[50]:.0f} % of "
+        "the values are "
+        f"within {ABOUT_ONE_PERCENT:g} % of the truth at 50 s and {100.0 * near[100]:.0f} % at 100 s, where the "
+        "largest "
+        f"error is {end.max():.1f} %; in the first run, that of the figures, the largest is {first.max():.1f} % at 50 "
+        "s "
+        f"and {end[0].max():.1f} % at 100 s. {ITERATIONS} iterations of {STEP} s end at {ITERATIONS * STEP:.0f} s, "
+        f"while the figures run for {FIGURE_END_S:.0f} s: what the search does afterwards is not said"
     )
+    claim = (
+        "Parameters fluctuate less from 50 s, most are near the theoretical values at 100 s, and all coincide with "
+        "them afterwards (figures 8 to 11)"
+    )
+    if end.max() <= ABOUT_ONE_PERCENT:
+        return Claim(claim, Verdict.CONFIRMED, text)
+    return Claim(claim, Verdict.REFUTED if near[100] <= MOST_SHARE else Verdict.UNKNOWABLE, text)

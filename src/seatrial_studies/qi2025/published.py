@@ -10,7 +10,7 @@ from seatrial_studies.published_ship import HEADINGS, theoretical_coefficients
 
 SOURCE = (
     "Qi Zhigang, Zhang Hao, Li Bing, Lu Zhe: Ship parameter identification method based on improved wild horse "
-    "optimizer (in Chinese), 2025"
+    "optimizer (in Chinese), 2025; the text at hand names neither journal nor DOI"
 )
 
 
@@ -73,6 +73,8 @@ PRINTED_SECONDS = {
 }
 # motions at 45 degrees that figures 1, 2 and figures 6, 7 show of the same condition: heave m, pitch degrees
 FIGURES_1_2, FIGURES_6_7 = (0.3, 0.3), (0.15, 0.15)
+# m, largest heave upwards in figure 6, whose least is that of FIGURES_6_7
+FIGURE_6_TOP = 0.10
 # where figure 5 ends upwards, and the iterations at which its curve rises again
 FIGURE_5_TOP = 0.010
 REBOUND_ITERATIONS = (50, 150)

@@ -224,7 +224,8 @@ def global_optimum_claim(evidence: WildHorseEvidence) -> Claim:
     return Claim(
         "IWHO gets out of local optima and finds the global one",
         Verdict.REFUTED if is_drawn else Verdict.CONFIRMED if found_anyway else Verdict.UNKNOWABLE,
-        "it finds the middle of a box that is symmetric about zero. Unknowns written as x in [-1, 1], fitness and box "
+        "it is exact only where the truth is zero, the middle of the box. Unknowns written as x in [-1, 1], fitness "
+        "and box "
         f"width as in the paper, mean error with the truth at x = 0 against the truth at ±0.5: {error_text}. Eqs. (19) "
         f"and (23) multiply positions, which draws them to zero. In the chosen setting {share:.0f} % of its values "
         "are the truth, the middle of the box, to the last digits: foals clipped at opposite ends mate there (eq. 18 "

@@ -152,10 +152,13 @@ def _work(reproduction: WildHorseReproduction, output_error: dict[int, OutputErr
 def _frequencies(audited: WildHorseAudit) -> Table:
     rows = tuple((f"{h}°", audited.implied_frequencies[h], *audited.encounter_ranges[h]) for h in HEADINGS)
     header = ("Heading", "of the coefficients, rad/s", "least of the waves, rad/s", "largest of the waves, rad/s")
+    nyquist = math.pi / STEP
+    beyond = " and ".join([f"{r[1]:.2f} at {h}°" for h, r in audited.encounter_ranges.items() if r[1] > nyquist])
     note = (
         "Added mass and damping depend on the frequency of encounter; a set of constants holds at one, that of the "
         "tables by strip theory at a53 − a35 = 2 U b33 / ω². Samples every 0.5 s show no more than "
-        f"{math.pi / STEP:.2f} rad/s. At 90° the waves are met at their own frequencies, and 30 equal intervals repeat "
+        f"{nyquist:.2f} rad/s; the waves reach {beyond}, and what lies beyond is aliased. At 90° the waves are met at "
+        "their own frequencies, and 30 equal intervals repeat "
         f"the sea after {audited.repetition:.0f} s, within a record of 200 s."
     )
     return Table(FREQUENCY_TITLE, header, rows, note)
