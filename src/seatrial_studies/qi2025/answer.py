@@ -33,7 +33,8 @@ def _quick_version(evidence: WildHorseEvidence) -> tuple[str, ...]:
         "This is the quick version: at each heading "
         f"{evidence.run_count(SearchSetting.PAPER)} runs in the chosen setting and "
         f"{evidence.run_count(SearchSetting.OFF_CENTRE)} elsewhere (the whole version: {RUNS}; from the model's own "
-        f"state {evidence.run_count(SearchSetting.MODEL_STATE)} in both), {evidence.ablation_runs} of IWHO with parts "
+        f"state {evidence.run_count(SearchSetting.MODEL_STATE)} in both), {evidence.ablation_runs} of the search with "
+        "parts "
         f"left out ({ABLATION_RUNS}), the ten runs made {tens} times ({TEN_RUN_REPEATS}).",
     )
 
