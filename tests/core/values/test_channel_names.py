@@ -46,6 +46,10 @@ def test_no_unrelated_channel_is_offered(name: str) -> None:
     assert len(hint) < 250
 
 
+def test_letters_in_another_order_are_meant_before_letters_that_differ() -> None:
+    assert "did you mean 'lat'?" in channel_hint("lta", ["delta", "lat", "lon"])
+
+
 def test_long_lists_are_cut_and_say_so() -> None:
     assert listed(["a", "b"]) == "a, b" and listed([]) == ""
     text = listed(SYMBOLS)

@@ -10,10 +10,11 @@ from tests.data.read.samples import dataflash
 
 from seatrial.api import draft_trial
 from seatrial.core.values import Array, Record
-from seatrial.data.draft.manoeuvres import numbered
+from seatrial.data.draft.manoeuvres import find_stretches, numbered
 from seatrial.data.draft.motion_stretches import decays, spirals, stops, straight_runs
 from seatrial.data.draft.stretch import LogStretch, elapsed, padded, smooth_speed
 from seatrial.data.draft.turns import turning_stretches
+from seatrial.physics.manoeuvres.measures import measures
 
 STEP = 0.5  # s
 
@@ -110,6 +111,39 @@ def test_parts_lie_within_one_mode_and_say_whether_a_controller_was_on(tmp_path:
     assert all(not one.start < craft["t"][500] < one.stop for one in stretches)
     assert "mode MANUAL: no controller" in stretches[0].evidence
     assert "mode HOLD: a controller is on, its orders follow the motion" in stretches[-1].evidence
+
+
+def tracked(record: Record) -> Record:
+    """The record with the track of its speed and heading, and no sway."""
+    u, psi = record["u"], record["psi"]
+    x0, y0 = (STEP * np.cumsum(u * turned(psi)) for turned in (np.cos, np.sin))
+    channels = {"delta": record["delta"], "u": u, "v": 0.0 * u, "r": record["r"], "psi": psi, "x0": x0, "y0": y0}
+    return Record.from_arrays("run", record.time, channels)
+
+
+def zigzag_orders() -> Array:
+    """The rudder of a 10/10 zigzag of `nomoto`, put over in 4 s from 200 s on."""
+    delta, r, psi, side = np.zeros(TIME.size), 0.0, 0.0, 1.0
+    for k in range(1, TIME.size):
+        r, psi = r + STEP * (0.15 * delta[k - 1] - r) / 6.0, psi + STEP * r
+        side = -side if side * psi > np.radians(10.0) else side
+        step = np.clip(side * np.radians(10.0) - delta[k - 1], -np.radians(1.25), np.radians(1.25))
+        delta[k] = delta[k - 1] + step if 200.0 <= TIME[k] < 420.0 else 0.0
+    return delta
+
+
+CIRCLE = np.radians(35.0) * np.clip((TIME - 200.0) / 15.0, 0.0, 1.0)
+
+
+@pytest.mark.parametrize(("delta", "name"), [(CIRCLE, "circle"), (zigzag_orders(), "zigzag")])
+def test_a_part_shows_the_approach_so_that_its_measures_are_those_of_the_log(delta: Array, name: str) -> None:
+    record = tracked(nomoto(delta, np.full(TIME.size, 4.0)))
+    part = next(one for one in find_stretches((), record) if one.name.startswith(name))
+    assert 100.0 < part.start <= 190.0
+    of_part, of_log = (measures(one, 100.0) for one in (record.between(part.start, part.stop), record))
+    compared = [key for key in of_part if key in of_log]
+    assert {"circle": "advance_L", "zigzag": "initial_turning_L"}[name] in compared
+    assert [of_part[key] for key in compared] == pytest.approx([of_log[key] for key in compared], rel=0.01)
 
 
 def test_names_of_several_runs_differ() -> None:

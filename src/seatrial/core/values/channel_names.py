@@ -47,5 +47,6 @@ def _spelled(name: str, valid_names: list[str]) -> str:
     if same:
         return same[0]
     long = [one for one in valid_names if min(len(one), len(name)) >= _FEWEST_LETTERS]
-    near = difflib.get_close_matches(name.lower(), long, n=1, cutoff=_LIKENESS)
+    swapped = [one for one in long if sorted(one) == sorted(name.lower())]
+    near = swapped or difflib.get_close_matches(name.lower(), long, n=1, cutoff=_LIKENESS)
     return near[0] if near and name.lower() not in ALIASES else ""

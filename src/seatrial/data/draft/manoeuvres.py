@@ -11,7 +11,9 @@ from seatrial.data.draft.survey import LogSurvey
 from seatrial.data.draft.turns import turning_stretches
 
 _MOST_STRETCHES = 12  # offered of one run; the longest
-_FINDERS: tuple[Callable[[Record], list[LogStretch]], ...] = (turning_stretches, spirals, stops, decays)
+# of a manoeuvre's time, and s at least, that its part shows of the approach: measures need the execute; chosen
+_APPROACH_SHARE, _APPROACH_S = 0.1, 10.0
+_FINDERS: tuple[Callable[[Record], list[LogStretch]], ...] = (turning_stretches, spirals, stops)
 # PX4, msg/VehicleStatus.msg: number of a navigation state -> its name
 _PX4_STATES = {0: "MANUAL", 1: "ALTCTL", 2: "POSCTL", 3: "AUTO", 4: "LOITER", 5: "RTL", 10: "ACRO", 14: "OFFBOARD",
                15: "STABILIZED", 17: "TAKEOFF", 18: "LAND"}  # fmt: skip
@@ -64,8 +66,19 @@ def numbered(runs: Sequence[Sequence[LogStretch]]) -> tuple[tuple[LogStretch, ..
 def _manoeuvres_of(record: Record) -> list[LogStretch]:
     if len(record) < MIN_SAMPLES:
         return []
-    manoeuvres = [one for finder in _FINDERS for one in finder(record)]
+    ordered = [one for finder in _FINDERS for one in finder(record)]
+    manoeuvres = [*_with_approach(ordered), *decays(record)]
     return [*manoeuvres, *(part for one in straight_runs(record) for part in _outside(one, manoeuvres))]
+
+
+def _with_approach(manoeuvres: Sequence[LogStretch]) -> list[LogStretch]:
+    """The manoeuvres from some time before their execute, as far as the record and the manoeuvre before allow."""
+    stretches = []
+    for one in manoeuvres:
+        free_from = max((before.stop for before in manoeuvres if before.start < one.start), default=0.0)
+        lead = max(_APPROACH_S, _APPROACH_SHARE * (one.stop - one.start))
+        stretches.append(replace(one, start=min(one.start, max(one.start - lead, free_from))))
+    return stretches
 
 
 def _outside(straight: LogStretch, manoeuvres: Sequence[LogStretch]) -> list[LogStretch]:

@@ -12,9 +12,10 @@ from seatrial.data.read.clock import stamps
 
 # names of time columns in the order of preference; ours, from the logs of a dozen programs
 _TIME_NAMES = (
-    "time", "t", "timestamp", "utc", "datetime", "date_time", "original_timestamp", "time_s", "time_ms", "timeus",
-    "seconds", "sec", "clock", "zeit", "header_stamp_secs",
+    "time", "t", "timestamp", "utc", "time_utc", "utc_time", "timestamp_utc", "utc_timestamp", "datetime", "date_time",
+    "original_timestamp", "time_s", "time_ms", "timeus", "seconds", "sec", "clock", "zeit", "header_stamp_secs",
 )  # fmt: skip
+_DAY_S = 86400.0  # s of a day
 _MILLISECOND_STEP, _MICROSECOND_STEP = (
     5.0,
     5e3,
@@ -131,9 +132,10 @@ def column_values(table: RawTable, index: int) -> Array | None:
 
 
 def time_column(table: RawTable, layout: Layout) -> tuple[ColumnSpec | None, str]:
-    """Return the column of time stamps and how it was recognised: the format's own, by name, or by behaviour.
+    """Return the column of time stamps and how it was recognised: the format's own, by name, cells, or behaviour.
 
-    By behaviour it is the first column that increases throughout in nearly equal steps.
+    By its cells it is the only column of dates with times that increase; by behaviour the first column of numbers that
+    increases throughout in nearly equal steps.
     """
     from seatrial.data.read.layout import TimeSpec
 
@@ -151,6 +153,10 @@ def time_column(table: RawTable, layout: Layout) -> tuple[ColumnSpec | None, str
                     spec,
                     f"named '{plain[wanted]}', {'dates and times' if spec.unit == 'utc' else 'unit by its step'}",
                 )
+    dated = [index for index in range(len(table.names)) if _has_increasing_dates(table, index)]
+    if len(dated) == 1:
+        source = table.names[dated[0]] or dated[0] + 1
+        return ColumnSpec("time", source, "utc"), "the only column of dates and times"
     for index in range(len(table.names)):
         values = column_values(table, index)
         if values is not None and _is_clock(values):
@@ -161,7 +167,7 @@ def time_column(table: RawTable, layout: Layout) -> tuple[ColumnSpec | None, str
 
 def _plain_name(name: str) -> str:
     """A column's name in small letters without what stands in brackets."""
-    return name.partition("[")[0].partition("(")[0].strip().lower().replace(" ", "_")
+    return name.partition("[")[0].partition("(")[0].strip().lower().replace(" ", "_").replace("/", "_")
 
 
 def _with_unit(table: RawTable, name: str) -> ColumnSpec | None:
@@ -174,6 +180,19 @@ def _with_unit(table: RawTable, name: str) -> ColumnSpec | None:
         return None
     step = float(np.median(steps[steps > 0]))
     return ColumnSpec("time", name, "us" if step > _MICROSECOND_STEP else "ms" if step > _MILLISECOND_STEP else "s")
+
+
+def _has_increasing_dates(table: RawTable, index: int) -> bool:
+    """Whether a column of text holds dates with their time of day that do not go back; a day alone is no stamp."""
+    if column_values(table, index) is not None:
+        return False
+    try:
+        seconds = stamps(table, ColumnSpec("time", index + 1, "utc")).seconds
+    except InputError:
+        return False
+    dated = seconds[np.isfinite(seconds) & (seconds >= _DAY_S)]  # before: a time of day without a date
+    has_times = bool(np.any(dated % _DAY_S > 0.0))
+    return has_times and bool(np.all(np.diff(dated) >= 0.0)) and dated[0] < dated[-1]
 
 
 def _is_clock(values: Array) -> bool:
