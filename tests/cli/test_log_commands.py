@@ -30,7 +30,7 @@ def test_a_bare_log_is_listed(tmp_path: Path) -> None:
 def test_a_draft_is_written_once_and_checked(tmp_path: Path) -> None:
     log, trial = write(tmp_path / "run.csv", BASE | {"rot": TRUTH["r"]}), tmp_path / "trial.toml"
     text = output("init", str(log), "--out", str(trial))
-    assert "follows d(psi)/dt" in text and "zigzag1, " in text and "Next: seatrial check" in text
+    assert "follows d(psi)/dt" in text and "zigzag1, " in text and "Next: 3 manoeuvres were found; " in text
     assert "zigzag1" in trial.with_suffix(".html").read_text(encoding="utf-8")
     with pytest.raises(InputError, match="exists and is not overwritten"):
         output("init", str(log), "--out", str(trial))
@@ -38,3 +38,37 @@ def test_a_draft_is_written_once_and_checked(tmp_path: Path) -> None:
     trial.unlink()
     with pytest.raises(InputError, match="the drawing beside --out, exists"):
         output("init", str(log), "--out", str(trial))
+
+
+def test_sources_without_a_time_column_are_drafted_with_their_columns(tmp_path: Path) -> None:
+    rows = [f"{k * 7 % 5},a{k},{0.1 * k * k - k}" for k in range(40)]
+    for name, columns in (("nav", "speed,note,heading"), ("engine", "rpm,note,load")):
+        (tmp_path / f"{name}.csv").write_text("\n".join([columns, *rows]), encoding="utf-8")
+    logs, trial = [str(tmp_path / f"{name}.csv") for name in ("nav", "engine")], tmp_path / "trial.toml"
+    assert "no time column" in output("init", *logs, "--out", str(trial))
+    text = trial.read_text(encoding="utf-8")
+    for part in ('file = "nav.csv"', 'file = "engine.csv"', "# OPEN: no column is recognised as the time", "heading"):
+        assert part in text
+    assert "OPEN: no input" in text and "text: note" in output("check", logs[0])
+
+
+def test_a_draft_with_manoeuvres_offers_their_parts_and_a_model_of_its_inputs(tmp_path: Path) -> None:
+    columns = BASE | {"thr_left": 1500.0 + 300.0 * TRUTH["delta"], "thr_right": 1500.0 - 300.0 * TRUTH["delta"]}
+    write(tmp_path / "a.csv", columns)
+    write(tmp_path / "b.csv", columns)
+    text = output("init", str(tmp_path), "--out", str(tmp_path / "trial.toml"))
+    assert "6 manoeuvres were found; uncomment their parts" in text
+    draft = (tmp_path / "trial.toml").read_text(encoding="utf-8")
+    assert draft.count("# parts = [") == 2 and "zigzag2" in draft and '# name = "thrusters"' in draft
+
+
+def test_a_model_without_its_input_in_the_records_cannot_start_yet(tmp_path: Path) -> None:
+    write(tmp_path / "run.csv", {"time": TRUTH["t"], "r": TRUTH["r"]})
+    (tmp_path / "trial.toml").write_text(
+        '[ship]\nname = "ship"\nL = 100.0\n[model]\nname = "nomoto"\n[[records]]\nfiles = ["run.csv"]\n'
+        'time = { column = "time" }\nchannels.r = { column = "r", unit = "rad/s" }\n',
+        encoding="utf-8",
+    )
+    assert "Next: cannot start yet: record 'run' has no channel 'delta'" in output(
+        "check", str(tmp_path / "trial.toml")
+    )

@@ -21,7 +21,14 @@ def test_of_one_model_it_says_what_it_needs_and_how_to_begin(
 ) -> None:
     assert run_command("models", "mmg", "--json", tmp_path / "mmg.json") == 0
     printed = capsys.readouterr().out
-    for part in ("records need delta, n", "t_P (prior sd 0.05)", "Harvald 1983", "# C_b = 0.0", "priors_from = ["):
+    assert "\nL = 0.0" in printed and "\nwhere recorded: wind_speed and wind_direction" in printed
+    for part in (
+        "records need delta and n, and",
+        "t_P (prior sd 0.05)",
+        "Harvald 1983",
+        "# C_b = 0.0",
+        "priors_from = [",
+    ):
         assert part in printed
     assert json.loads((tmp_path / "mmg.json").read_text())["needed"]["D_P"] == "m, propeller diameter"
     assert run_command("models", "nomoto") == 0

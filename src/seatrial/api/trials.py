@@ -50,14 +50,14 @@ def check(trial: "Trial | str | Path") -> "tuple[Finding, ...]":
         InputError: a record cannot be read at all.
     """
     from seatrial.core.values import Finding, InputError, Severity
-    from seatrial.data.trial import Trial, load_records, load_runs, load_trial
+    from seatrial.data.trial import Trial, load_runs, load_trial
     from seatrial.data.trial.records import load_run
     from seatrial.data.trial.trial import Role
 
     if isinstance(trial, Trial):
-        return load_records(trial)[1]
+        return _checked(trial)
     try:
-        return load_records(load_trial(trial))[1]
+        return _checked(load_trial(trial))
     except InputError as error:
         runs = load_runs(trial)
         if not runs:
@@ -66,6 +66,22 @@ def check(trial: "Trial | str | Path") -> "tuple[Finding, ...]":
         findings = [finding for run in used for finding in load_run(run, 0.0).findings]
         what, advice = "'seatrial identify' cannot start yet", str(error)
         return (*findings, Finding(Severity.INFO, "model", what, "", advice))
+
+
+def _checked(trial: "Trial") -> "tuple[Finding, ...]":
+    """The findings of the records, and one where a record has no channel for an input of the model."""
+    from seatrial.core.values import Finding, InputError, Severity
+    from seatrial.data.trial import load_records
+    from seatrial.physics.simulate.channels import require_inputs
+
+    records, findings = load_records(trial)
+    try:
+        for record in records:
+            require_inputs(trial.model, record.record)
+    except InputError as error:
+        what = "'seatrial identify' cannot start yet"
+        return (*findings, Finding(Severity.INFO, "model", what, "", f"cannot start yet: {error}"))
+    return findings
 
 
 def correct_trial(trial: "str | Path") -> "Correction":

@@ -56,11 +56,19 @@ def init(
 
 def _after_draft(draft: "DraftTrial", out: Path) -> str:
     """What to do next: name columns where none is recognised, decide what is open, else check."""
+    log = next((one.path for one in draft.surveys if all(topic.time is None for topic in one.topics)), None)
+    if log is not None:
+        return (
+            f"Next: {log.name} has no time column that is recognised; name it in {out}, seatrial check {log} lists all"
+        )
     if not any(g.is_used for part in draft.guesses for g in part):
         log = draft.surveys[0].path
         return f"Next: no column is recognised; seatrial check {log} lists them, name channels in {out}"
     first = "read it, decide what is OPEN, then " if draft.open_questions else ""
-    return f"Next: {first}seatrial check {out}"
+    count = sum(map(len, draft.stretches))
+    were = "manoeuvre was" if count == 1 else "manoeuvres were"
+    parts = f"{count} {were} found; uncomment their parts in {out}, then " if count else ""
+    return f"Next: {first}{parts}seatrial check {out}"
 
 
 def _print_guesses(guesses: "Sequence[ColumnGuess]") -> None:
@@ -95,11 +103,13 @@ def print_survey(survey: "LogSurvey", *, show_all: bool) -> None:
 def _print_topic(topic: "TopicSummary", *, show_all: bool, symbols: dict[str, str]) -> None:
     from seatrial.core.text.numbers import exact
 
-    clock = "no time stamps" if topic.time is None else f"{exact(topic.rate, 4)} Hz, {exact(topic.duration, 5)} s"
+    clock = "no time column" if topic.time is None else f"{exact(topic.rate, 4)} Hz, {exact(topic.duration, 5)} s"
     by = f" (time: {topic.time.source}, {topic.time_note})" if topic.time is not None and topic.time.source else ""
     print_lines([f"{topic.topic or 'columns'}: {topic.rows} rows, {clock}{by}"])
     columns = topic.columns if show_all else topic.columns[:COLUMNS_SHOWN]
     print_table([_column_cells(topic, column, symbols) for column in columns], flush_left=_TEXT_COLUMNS, indent="  ")
+    if topic.text_columns:
+        print_lines([f"  text: {', '.join(topic.text_columns)}"])
     if len(columns) < len(topic.columns):
         print(f"  ... and {len(topic.columns) - len(columns)} more columns; --all shows them")
 

@@ -26,7 +26,11 @@ def print_model_guide(guide: "ModelGuide") -> None:
     from seatrial.core.text.words import enumeration
 
     print_lines([f"{guide.name}: {guide.source}"])
-    print_lines([f"records need {enumeration(list(guide.inputs))}, and one or more of {', '.join(guide.observables)}"])
+    needed = [name for name in guide.inputs if name not in guide.optional_inputs]
+    needs = f"{enumeration(needed)}, and " if needed else ""
+    print_lines([f"records need {needs}one or more of {', '.join(guide.observables)}"])
+    if guide.optional_inputs:
+        print_lines([f"where recorded: {enumeration(list(guide.optional_inputs))}"])
     print_lines([f"estimated unless you say otherwise: {', '.join(guide.free)}"])
     by_source: dict[str, list[FilledValue]] = {}
     for value in guide.filled:

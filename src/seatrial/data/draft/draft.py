@@ -78,11 +78,11 @@ def _blocks(
     """One block for files of one kind, else one for each run."""
     if runs[0].name:
         return [
-            RecordsBlock(run.name, tuple(zip(run.sources, parts, strict=True)), (), found)
+            RecordsBlock(run.name, tuple(zip(run.sources, parts, strict=True)), (), (found,))
             for run, parts, found in zip(runs, guesses, stretches, strict=True)
         ]
     files = tuple(run.sources[0] for run in runs)
-    return [RecordsBlock("", ((files[longest], guesses[longest][0]),), files, stretches[0] if len(runs) == 1 else ())]
+    return [RecordsBlock("", ((files[longest], guesses[longest][0]),), files, tuple(stretches))]
 
 
 def _surveys(logs: Sequence[Path]) -> tuple[list[LogSurvey], dict[Path, str]]:

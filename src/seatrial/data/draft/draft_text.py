@@ -1,7 +1,7 @@
 """The text of a drafted trial file: every line with its evidence, what is unsure as a comment."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,13 +23,13 @@ class RecordsBlock:
         name: of the run; empty: the runs are called after their files.
         sources: each log with its guesses; of files of one kind the longest.
         files: those of one kind; empty for a run with a name.
-        stretches: manoeuvres in the run.
+        stretches: manoeuvres in the run, or in each of the files.
     """
 
     name: str
     sources: tuple[tuple[LogSurvey, tuple[ColumnGuess, ...]], ...]
     files: tuple[LogSurvey, ...]
-    stretches: tuple[LogStretch, ...]
+    stretches: tuple[tuple[LogStretch, ...], ...]
 
 
 def trial_text(blocks: Sequence[RecordsBlock], left_out: Mapping[Path, str], folder: Path) -> str:
@@ -41,7 +41,7 @@ def trial_text(blocks: Sequence[RecordsBlock], left_out: Mapping[Path, str], fol
     lines = [
         "# Drafted by seatrial init. Every line says why; lines with OPEN are for you to choose.",
         "",
-        *_particulars(),
+        *_particulars({g.symbol for _, guesses in blocks[0].sources for g in guesses if g.is_used}),
         *(f"# left out: {_comment(_relative(path, folder))}: {_comment(why)}" for path, why in left_out.items()),
     ]
     for number, block in enumerate(blocks):
@@ -57,10 +57,17 @@ def _block_lines(block: RecordsBlock, folder: Path) -> list[str]:
         lines += [f"files = [{files}]", *_antenna_lines(block.sources)]
         for survey, guesses in block.sources:
             lines += [*_layout_lines(survey), *_channel_lines(survey, guesses)]
-        return [*lines, *_part_lines(block.stretches)]
-    lines += [f"name = {_quoted(block.name)}", *_antenna_lines(block.sources), *_part_lines(block.stretches)]
+        alone = len(block.files) == 1
+        parts = zip(block.files, block.stretches, strict=True)
+        return [*lines, *(line for one, found in parts for line in _part_lines(found, "" if alone else one.path.name))]
+    lines += [
+        f"name = {_quoted(block.name)}",
+        *_antenna_lines(block.sources),
+        *(line for one in block.stretches for line in _part_lines(one, "")),
+    ]
+    nothing_used = not any(g.is_used for _, guesses in block.sources for g in guesses)
     for survey, guesses in block.sources:
-        if any(g.is_used for g in guesses):
+        if nothing_used or any(g.is_used for g in guesses):
             lines += ["", "[[records.sources]]", f"file = {_quoted(_relative(survey.path, folder))}"]
             lines += [*_layout_lines(survey), *_channel_lines(survey, guesses)]
     return lines
@@ -71,16 +78,26 @@ def _without_evidence(line: str) -> str:
     return line if line.startswith("#") else line.partition("    # ")[0]
 
 
-def _particulars() -> list[str]:
+def _particulars(symbols: Set[str]) -> list[str]:
     """What a person must give before a model can be estimated; `check` does not need it."""
+    lines = ["# 'seatrial check' needs neither ship nor model, 'seatrial identify' both: 'seatrial models' lists them."]
+    if "delta" in symbols:
+        name, why = "nomoto", "The simplest, of rudder and yaw rate"
+    elif any(one.startswith(("command_", "rpm_")) for one in symbols):
+        name, why = "thrusters", "That of a craft with thrusters"
+    else:
+        no_input = (
+            "# OPEN: no input (rudder, propeller, thruster) was found, and a model needs one: name its column below."
+        )
+        return [*lines, no_input, ""]
     return [
-        "# 'seatrial check' needs neither ship nor model, 'seatrial identify' both: 'seatrial models' lists them,",
-        "# 'seatrial models mmg' prints what one needs. The simplest, of rudder and yaw rate:",
+        *lines,
+        f"# {why}; 'seatrial models {name}' prints all that it needs:",
         "# [ship]",
         '# name = "..."',
         "# L = 0.0    # m, between perpendiculars",
         "# [model]",
-        '# name = "nomoto"',
+        f'# name = "{name}"',
         "",
     ]
 
@@ -163,10 +180,12 @@ def _channel_table(guess: ColumnGuess) -> str:
     return f"{{ {', '.join(parts)} }}"
 
 
-def _part_lines(stretches: Sequence[LogStretch]) -> list[str]:
+def _part_lines(stretches: Sequence[LogStretch], file: str) -> list[str]:
+    """The manoeuvres as commented parts; file: that in which they are, empty where the block has no other."""
     if not stretches:
         return []
-    lines = ["# Manoeuvres found; remove the # of those you want as runs of their own.", "# parts = ["]
+    where = f" in {_comment(file)}; give it a [[records]] of its own, and" if file else ";"
+    lines = [f"# Manoeuvres found{where} remove the # of those you want as runs of their own.", "# parts = ["]
     lines += [
         f'#     {{ name = "{one.name}", from = "{one.start:.6g} s", to = "{one.stop:.6g} s" }},    # {one.evidence}'
         for one in stretches

@@ -44,7 +44,7 @@ class TopicSummary:
         time: the column of its stamps; None where there is none.
         rows, rate: number of samples, median rate [Hz].
         start, duration: first stamp on the log's clock, time from it to the last [s]; NaN without stamps.
-        columns: those that hold numbers.
+        columns, text_columns: those that hold numbers, and the names of those that hold text.
         time_note: how the time column was recognised.
     """
 
@@ -56,6 +56,7 @@ class TopicSummary:
     duration: float
     columns: tuple[ColumnSummary, ...]
     time_note: str
+    text_columns: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,9 +103,12 @@ def _topic_summary(table: RawTable, layout: Layout) -> TopicSummary:
         for index in range(len(table.names))
         if table.names[index] not in own and (summary := _column_summary(table, index)) is not None
     ]
+    texts = tuple(
+        name or f"{k + 1}" for k, name in enumerate(table.names) if name not in own and column_values(table, k) is None
+    )
     duration = float(known[-1] - known[0]) if known.size > 1 else float("nan")
     start = float(known[0]) if known.size else float("nan")
-    return TopicSummary(table.topic, time, len(table), 1.0 / step, start, duration, tuple(columns), note)
+    return TopicSummary(table.topic, time, len(table), 1.0 / step, start, duration, tuple(columns), note, texts)
 
 
 def _column_summary(table: RawTable, index: int) -> ColumnSummary | None:

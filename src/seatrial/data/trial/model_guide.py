@@ -8,6 +8,7 @@ from seatrial.core.values import Parameter, Ship
 from seatrial.data.trial.literature import USUAL_PROPELLER, LiteraturePrior, literature_priors
 from seatrial.physics.models import model_named
 from seatrial.physics.models.published import kvlcc2_l7
+from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
 
 # formulas that fill what nobody tested, in the order in which later ones win
 _SOURCES: Mapping[str, tuple[str, ...]] = {
@@ -42,7 +43,9 @@ class ModelGuide:
 
     Attributes:
         name, source: of its equations.
-        inputs, observables: channels that records must hold, and those that they may hold, of which one is needed.
+        inputs: channels that act on the model.
+        observables: channels that are compared with it, of which one is needed.
+        optional_inputs: those of the inputs that are zero where they are not recorded.
         needed: particulars to state under `[ship]` -> unit and meaning.
         free: parameters that are estimated by default.
         filled: parameters with a value by formula, or by default in the model.
@@ -52,6 +55,7 @@ class ModelGuide:
     name: str
     source: str
     inputs: tuple[str, ...]
+    optional_inputs: tuple[str, ...]
     observables: tuple[str, ...]
     needed: Mapping[str, str]
     free: tuple[str, ...]
@@ -70,7 +74,8 @@ def model_guide(name: str) -> ModelGuide:
     needed = _needed(model, priors)
     free = tuple(p.name for p in model.parameters.free)
     return ModelGuide(
-        name, model.equations.source, model.input_names, model.observables, needed, free,
+        name, model.equations.source, model.input_names,
+        tuple(name for name in model.input_names if name in ZERO_BY_DEFAULT), model.observables, needed, free,
         tuple(_filled(model, priors)), _trial_tables(model, sources, needed, free),
     )  # fmt: skip
 
@@ -106,7 +111,7 @@ def _stated(parameter: Parameter) -> str:
 
 
 def _trial_tables(model: Model, sources: tuple[str, ...], needed: Mapping[str, str], free: tuple[str, ...]) -> str:
-    lines = ["[ship]", 'name = "..."', *(f"# {name} = 0.0    # {text}" for name, text in needed.items())]
+    lines = ["[ship]", 'name = "..."', *(_particular(name, text) for name, text in needed.items())]
     if sources:
         usual = USUAL_PROPELLER.items()
         lines += [f"# {name} = {value:g}    # of the propeller, where it is known" for name, value in usual]
@@ -123,6 +128,11 @@ def _trial_tables(model: Model, sources: tuple[str, ...], needed: Mapping[str, s
             "y = -0.3    # m to starboard", 'command = { channel = "command_1", unit = "1" }',
         ]  # fmt: skip
     return "\n".join(lines) + "\n"
+
+
+def _particular(name: str, text: str) -> str:
+    """A line to fill in; the length, which every trial needs, is no comment, and zero is refused until it is stated."""
+    return f"{'' if name == 'L' else '# '}{name} = 0.0    # {text}"
 
 
 def _quoted_list(names: tuple[str, ...]) -> str:

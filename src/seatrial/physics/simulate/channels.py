@@ -19,18 +19,28 @@ def inputs_of(model: Model, record: Record) -> Array:
         InputError: an input channel is missing, holds NaN, or points in a direction that has nothing to do with the
             model's.
     """
+    require_inputs(model, record)
     columns = [_input_values(model, record, item) for item in model.inputs]
     return np.ascontiguousarray(np.stack(columns, axis=1)) if columns else np.empty((len(record), 0))
 
 
+def require_inputs(model: Model, record: Record) -> None:
+    """Raise for a record without a channel of an input of the model.
+
+    Raises:
+        InputError: the first input that the record lacks and that is not zero by default.
+    """
+    for item in model.inputs:
+        if item.name not in record and item.name not in ZERO_BY_DEFAULT:
+            raise InputError(
+                f"record '{record.name}' has no channel '{item.name}', an input of model '{model.name}'; add it "
+                "to the channels, or choose another model"
+            )
+
+
 def _input_values(model: Model, record: Record, item: Input) -> Array:
     if item.name not in record:
-        if item.name in ZERO_BY_DEFAULT:
-            return np.zeros(len(record))
-        raise InputError(
-            f"record '{record.name}' has no channel '{item.name}', an input of model '{model.name}'; add it "
-            "to the channels, or choose another model"
-        )
+        return np.zeros(len(record))
     channel = record.channel(item.name)
     if not np.all(np.isfinite(channel.values)):
         row = int(np.argmin(np.isfinite(channel.values)))
