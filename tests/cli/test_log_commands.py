@@ -69,6 +69,6 @@ def test_a_model_without_its_input_in_the_records_cannot_start_yet(tmp_path: Pat
         'time = { column = "time" }\nchannels.r = { column = "r", unit = "rad/s" }\n',
         encoding="utf-8",
     )
-    assert "Next: cannot start yet: record 'run' has no channel 'delta'" in output(
+    assert "Next: identify cannot start yet: record 'run' has no channel 'delta'" in output(
         "check", str(tmp_path / "trial.toml")
     )

@@ -80,7 +80,7 @@ def _checked(trial: "Trial") -> "tuple[Finding, ...]":
             require_inputs(trial.model, record.record)
     except InputError as error:
         what = "'seatrial identify' cannot start yet"
-        return (*findings, Finding(Severity.INFO, "model", what, "", f"cannot start yet: {error}"))
+        return (*findings, Finding(Severity.INFO, "model", what, "", str(error)))
     return findings
 
 

@@ -104,7 +104,7 @@ def next_step(findings: "tuple[Finding, ...]", trial: Path) -> str:
     if errors:
         return ascii_text(f"Next: {errors[0].advice}")
     if missing is not None:
-        return ascii_text(f"Next: {missing.advice}")
+        return ascii_text(f"Next: identify cannot start yet: {missing.advice}")
     return f"Next: seatrial identify {trial} --out results"
 
 
