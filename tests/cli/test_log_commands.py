@@ -49,6 +49,8 @@ def test_sources_without_a_time_column_are_drafted_with_their_columns(tmp_path: 
     text = trial.read_text(encoding="utf-8")
     for part in ('file = "nav.csv"', 'file = "engine.csv"', "# OPEN: no column is recognised as the time", "heading"):
         assert part in text
+    with pytest.raises(InputError, match="channels"):
+        output("check", str(trial))
     assert "OPEN: no input" in text and "text: note" in output("check", logs[0])
 
 

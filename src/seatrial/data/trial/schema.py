@@ -221,7 +221,7 @@ class RecordsTable(ColumnsTable):
             raise ValueError("a run of several sources needs a name; add it")
         if self.sources and self.channels:
             raise ValueError("channels of a run of several sources belong to each of [[records.sources]]; move them")
-        if not self.sources and not self.channels:
+        if not any(one.channels for one in self.sources or (self,)):
             raise ValueError(NO_CHANNELS)
         return self
 
