@@ -79,7 +79,7 @@ def _minimised(optimiser: Optimiser) -> Optimiser:
         require(agrees, f"best claims the fitness {value:g} for a point of fitness {float(sphere(point[None])[0]):g}")
         require(evaluations < _MOST_EVALUATIONS, f"done is still false after {evaluations} evaluations of a sphere")
     shape = optimiser.trace.shape
-    require(shape == (calls, _BOX.size), f"trace has shape {shape} after {calls} tell(), not (tells, d)")
+    require(shape == (calls, _BOX.size), f"trace has shape {shape} after {calls} tell(), not (iterations, d)")
     require(bool(np.all(np.diff(optimiser.history) <= 0.0)), "history rises; it is the best fitness so far")
     require(isinstance(optimiser.status, Status), f"status is {optimiser.status!r}, not a member of Status")
     require(optimiser.seed is None or isinstance(optimiser.seed, int), "seed is neither None nor one whole number")

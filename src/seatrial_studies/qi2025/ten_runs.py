@@ -1,6 +1,7 @@
 """What the mean of ten runs is worth: the paper's ten against tens drawn from many runs of the same search."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -27,7 +28,7 @@ class TenRuns:
         means = self.errors.reshape(-1, RUNS, self.errors.shape[1]).mean(axis=1)
         return np.mean(np.abs(means), axis=1)
 
-    @property
+    @cached_property
     def drawn_tens(self) -> Array:
         """Return the same of tens drawn with replacement from all runs, (BOOTSTRAP_TENS,)."""
         picks = np.random.default_rng([self.seed, 29]).integers(len(self.errors), size=(BOOTSTRAP_TENS, RUNS))

@@ -16,6 +16,7 @@ from seatrial.estimation.predict.predict_runs import process_noise_floor
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.physics.models.nomoto import nomoto
+from seatrial.physics.simulate.channels import inputs_of
 
 Array = NDArray[np.float64]
 K, T, INTENSITY = 0.15, 8.0, 2e-3
@@ -149,17 +150,18 @@ def test_records_without_noise_have_no_likelihood(model: Model) -> None:
 
 def test_floor_is_the_scatter_of_simulated_runs(model: Model) -> None:
     """400 nonlinear simulations with kicks every half second."""
-    sailing = model.with_values({"U": 1.0})
+    moving = model.with_values({"U": 1.0})
     record = Record.from_arrays("run", seconds(120), {"delta": rudder(120)})
     template = OutputError(
-        sailing,
-        cut_segments(sailing, [yawing(np.random.default_rng(0), 0.0, rows=120)], ("r", "psi"), None),
+        moving,
+        cut_segments(moving, [yawing(np.random.default_rng(0), 0.0, rows=120)], ("r", "psi"), None),
         np.ones(2),
     )
     start, own = np.array([0.0, 0.4, 0.0, 0.0]), np.zeros(0)
-    made = process_noise_floor(template, sailing, record, start, own, {"r": INTENSITY})
+    made = process_noise_floor(template, moving, record, start, own, {"r": INTENSITY})
     nothing = PredictionUncertainty(np.zeros((2, 2)), np.zeros((0, 0)), np.array([INTENSITY, 0.0, 0.0, 0.0]), np.inf)
-    runs = draw_runs(template, sailing, record, start, own, nothing, np.random.default_rng(1), 400)
+    inputs, rng = inputs_of(moving, record)[None], np.random.default_rng(1)
+    runs = draw_runs(template, moving, record.dt, inputs, start[None], own[None], nothing, rng, 400)[0]
     spread = np.sqrt(np.mean(np.var(runs, axis=0), axis=0))
     assert made["r"] == pytest.approx(spread[0], rel=0.05)
     assert made["psi_deg"] == pytest.approx(np.degrees(spread[1]), rel=0.1)

@@ -1,6 +1,6 @@
 """Other estimators on the records of a fit: their coefficients, and the runs simulated with them.
 
-Every estimator gets the training runs as they are: no offsets, no priors, no bounds. Its model then sails every run
+Every estimator gets the training runs as they are: no offsets, no priors, no bounds. Its model then simulates every run
 open loop from the recorded inputs and from the initial state that the fit gave that run: coefficients alone differ.
 """
 
