@@ -78,8 +78,8 @@ def coinciding_curves_claim(evidence: CloudSwarmEvidence) -> Claim:
         Verdict.REFUTED if hidden else Verdict.UNKNOWABLE,
         f"with coefficients up to {wrong.max():.0f} % off ({worst}) the motion at 135° differs from the true one by "
         f"{100 * heave:.1f} cm and {pitch:.3f}° rms; the noise is {100 * HEAVE_NOISE:.0f} cm and "
-        f"{np.degrees(PITCH_NOISE):.2f}°. To the eye that is within the noise; a fit of the whole record tells them "
-        "apart",
+        f"{np.degrees(PITCH_NOISE):.2f}°. To the eye that is within the noise; a fit of the whole record separates "
+        "them",
     )
 
 
