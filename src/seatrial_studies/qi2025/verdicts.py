@@ -67,7 +67,7 @@ def _ten_run_checks(evidence: WildHorseEvidence) -> list[Check]:
             f"the printed {printed:.2f} %, {100.0 * FAMILY_PROBABILITY / len(HEADINGS):.1f} % are required. The limit "
             "is the median at which it would be just that many: the printed error times the median of the drawn tens "
             f"over their quantile of {100.0 * FAMILY_PROBABILITY / len(HEADINGS):.1f} %, which is "
-            f"{100.0 * FAMILY_PROBABILITY:.0f} % shared by three checks. The paper's search is probably not quite the "
+            f"{100.0 * FAMILY_PROBABILITY:.0f} % shared by three checks. The paper's search is probably not "
             "this one, whose start state and unit of pitch are chosen, not printed"
         )
         checks.append(
