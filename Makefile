@@ -71,4 +71,4 @@ docs: $(READY)
 	@echo 'the documentation lies in site/index.html'
 
 clean:
-	@rm -rf $(VENV) site demo build dist .pytest_cache .ruff_cache .hypothesis
+	@rm -rf $(VENV) site jupyter_execute demo build dist .pytest_cache .ruff_cache .hypothesis
