@@ -45,7 +45,7 @@ def test_heave_becomes_the_wave(heading: int, U: float, table: int) -> None:
 
 @everywhere
 @at_all_speeds
-def test_what_restores_her_follows_height_and_slope(heading: int, U: float) -> None:
+def test_what_restores_it_follows_height_and_slope(heading: int, U: float) -> None:
     """The static answer of the plant to the wave's forces: heave 1 and pitch the slope, abeam none."""
     omega = np.array([1e-3])
     z, theta = recorded(ship(180), omega, U, heading, np.zeros(1))

@@ -28,8 +28,8 @@ def test_it_compares_when_asked_and_the_report_shows_it_again(
     monkeypatch.setattr("seatrial.estimation.identify.identify", identified)
     trial, out = repository / "examples" / "waterjet.toml", tmp_path / "out"
     assert run_command("identify", trial, "--out", out, "--json", tmp_path / "fit.json", *option) == 0
-    told = json.loads((tmp_path / "fit.json").read_text())["baselines"]
-    assert [r["name"] for r in told][1:] == (["weak form", "ridge", "Euler", "pipeline"] if option else [])
+    listed = json.loads((tmp_path / "fit.json").read_text())["baselines"]
+    assert [r["name"] for r in listed][1:] == (["weak form", "ridge", "Euler", "pipeline"] if option else [])
     (out / "report.html").unlink()
     assert run_command("report", out) == 0
     assert ("Other estimators on the same records" in (out / "report.html").read_text()) == bool(option)

@@ -191,7 +191,7 @@ def test_the_search_itself_beats_the_standard_and_repeats_to_the_bit(
 
 
 @pytest.mark.parametrize("name", ["waterjet", "kvlcc2", "heave_pitch"])
-def test_the_examples_ask_for_what_can_be_told(name: str, repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_examples_ask_for_what_can_be_stated(name: str, repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("SEATRIAL_DATA", raising=False)
     task = design_task(api.load_trial(repository / "examples" / f"{name}_design.toml"))
     assert task.request.draws > 0

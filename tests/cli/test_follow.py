@@ -108,8 +108,8 @@ def test_a_trial_without_the_table_and_a_journal_of_another_are_refused(
 
 def test_ctrl_c_ends_it_with_what_is_known_and_the_journal_goes_on(tmp_path: Path) -> None:
     trial = trial_at(tmp_path, LINES[:1001])
-    out, told = tmp_path / "out", tmp_path / "told.json"
-    command = [*COMMAND, str(trial), "--out", str(out), "--json", str(told), "--page", "0"]
+    out, json_file = tmp_path / "out", tmp_path / "online_page.json"
+    command = [*COMMAND, str(trial), "--out", str(out), "--json", str(json_file), "--page", "0"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
         assert child.stdout is not None
         last_resort = threading.Timer(40.0, child.kill)
@@ -128,19 +128,19 @@ def test_ctrl_c_ends_it_with_what_is_known_and_the_journal_goes_on(tmp_path: Pat
         last_resort.cancel()
     assert child.returncode == 0, wrong
     assert "1200 samples accepted; no faults" in said
-    last = json.loads(told.read_text())
+    last = json.loads(json_file.read_text())
     assert (last["counts"]["accepted"], last["phase"], len(last["coefficients"])) == (1200, "window", 8)
     assert 0 < last["samples"] <= 1200
-    assert json.loads((out / "online.json").read_text()) == json.loads(told.read_text())
+    assert json.loads((out / "online.json").read_text()) == json.loads(json_file.read_text())
     assert journal.stat().st_size < 1250 * 45
 
 
 def test_standard_input_gives_the_same_coefficients(tmp_path: Path, run_command: Callable[..., int]) -> None:
-    trial, told = trial_at(tmp_path, LINES), tmp_path / "told.json"
+    trial, json_file = trial_at(tmp_path, LINES), tmp_path / "online_page.json"
     assert run_command("follow", trial, "--once", "--json", tmp_path / "file.json") == 0
-    command = [*COMMAND, str(trial), "--once", "--source", "stdin", "--json", str(told)]
+    command = [*COMMAND, str(trial), "--once", "--source", "stdin", "--json", str(json_file)]
     with (tmp_path / "voyage_1.csv").open() as lines:
         done = subprocess.run(command, stdin=lines, capture_output=True, text=True, timeout=300.0)
     assert done.returncode == 0, done.stderr
-    piped, read = (json.loads(path.read_text())["coefficients"] for path in (told, tmp_path / "file.json"))
+    piped, read = (json.loads(path.read_text())["coefficients"] for path in (json_file, tmp_path / "file.json"))
     assert piped == read

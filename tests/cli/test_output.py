@@ -14,7 +14,9 @@ def printed(capsys: pytest.CaptureFixture[str]) -> str:
     return capsys.readouterr().out
 
 
-def test_intervals_floor_extrapolation_and_what_cannot_be_told_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
+def test_intervals_floor_extrapolation_and_what_is_not_identifiable_are_printed(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     fit = complete_fit(fabricated_fit())
     print_fit(fit)
     text = printed(capsys)

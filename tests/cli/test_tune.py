@@ -77,7 +77,7 @@ def test_an_autopilot_has_no_schedule_to_write_and_says_what_it_turns(
     assert len(row.split()) == 7, "a heading drifts without control; it has no reduction"
 
 
-def test_a_speed_is_told_in_its_own_units(capsys: pytest.CaptureFixture) -> None:
+def test_a_speed_is_stated_in_its_own_units(capsys: pytest.CaptureFixture) -> None:
     print_tuning(replace(fabricated_bare(), output="u", actuator="v_j"))
     head = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("controller"))
     assert "u [m/s]" in head and "v_j [m/s]" in head and "rate [m/s^2]" in head

@@ -57,7 +57,7 @@ def nomoto() -> Model:
 
 
 def roll() -> Model:
-    """A ship that rolls in 7.5 s, damped more the more she rolls; she knows no fins."""
+    """A ship that rolls in 7.5 s, damped more the more it rolls, without fins."""
     return model_named("roll").with_values({"b_1": 0.06, "b_2": 0.35, "c_1": 0.698})
 
 

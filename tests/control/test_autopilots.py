@@ -63,10 +63,10 @@ def test_an_identified_waterjet_craft_changes_course(repository: Path) -> None:
     demand_is_met(autopilot_of(ship, 9.8, gear=0.5, limit=30.0, rate=20.0), 9.8 / float(ship.state[0]))
 
 
-def test_an_identified_tanker_unstable_on_her_course_changes_course(
+def test_an_identified_tanker_unstable_on_its_course_changes_course(
     data_folder: Path, repository: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Six of her zigzags; the gear is the ship's 2.34 deg/s at the model's scale."""
+    """Six of its zigzags; the gear is the ship's 2.34 deg/s at the model's scale."""
     monkeypatch.setenv("SEATRIAL_DATA", str(data_folder))
     trial = load_trial(repository / "examples" / "kvlcc2_hsva.toml")
     runs = [run for run in trial.runs if run.role is Role.TRAIN][::2]

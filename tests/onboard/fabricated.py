@@ -29,7 +29,7 @@ def heave_pitch(seconds: float, *, step: float = 0.5, seed: int = 3) -> Iterator
 
 
 def mmg(seconds: float, *, step: float = 0.5, seed: int = 4) -> Iterator[Snapshot]:
-    """Fifteen manoeuvring coefficients, some of them not told, one in degrees."""
+    """Fifteen manoeuvring coefficients, some of them not identified, one in degrees."""
     yield from _converging_snapshots(MMG, {"u": 0.021, "v": 0.018, "r": 0.0017, "psi": 0.0034}, seconds, step, seed)
 
 

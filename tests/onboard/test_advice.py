@@ -170,7 +170,7 @@ class _Known:
         return self._records
 
 
-def test_it_looks_once_a_minute_at_most_and_says_nothing_where_all_is_told(craft):
+def test_it_looks_once_a_minute_at_most_and_says_nothing_where_all_is_stated(craft):
     trial, snapshot, covariance, records = craft
     known, now = _Known(covariance, records), [0.0]
     adviser = ManoeuvreAdviser(trial, known, clock=lambda: now[0])
@@ -181,8 +181,8 @@ def test_it_looks_once_a_minute_at_most_and_says_nothing_where_all_is_told(craft
     now[0] = 61.0
     adviser.with_advice(snapshot)
     assert known.asked == 2
-    told = replace(snapshot, unidentified=())
-    assert adviser.with_advice(told) is told
+    all_identified = replace(snapshot, unidentified=())
+    assert adviser.with_advice(all_identified) is all_identified
     waiting = replace(snapshot, phase=EstimatorPhase.WAITING)
     assert adviser.with_advice(waiting) is waiting
 

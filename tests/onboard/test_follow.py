@@ -172,7 +172,7 @@ def test_kill_9_and_a_restart_are_as_one_voyage(tmp_path: Path) -> None:
     assert again.runs == uninterrupted.runs
 
 
-def test_the_house_s_estimate_after_a_restart_is_the_uninterrupted_one_bit_for_bit(tmp_path: Path) -> None:
+def test_the_own_estimate_after_a_restart_is_the_uninterrupted_one_bit_for_bit(tmp_path: Path) -> None:
     file, journal = tmp_path / "log.csv", tmp_path / "a.journal"
     file.write_text("".join(LINES[:701]))
     source = LineSampleSource(TailLines(file, once=True), ColumnReader(require_stream(stream_trial()).layout))

@@ -1,4 +1,4 @@
-"""The journal: everything that was written comes back, a torn end is told from it, what is not its own is refused."""
+"""The journal: everything that was written comes back, a torn end is noticed, what is not its own is refused."""
 
 import os
 import signal
@@ -53,7 +53,7 @@ def read(path: Path) -> tuple[list[JournalEntry], int]:
     return entries, journal.torn_bytes
 
 
-def told(entries: list[JournalEntry]) -> list[object]:
+def contents(entries: list[JournalEntry]) -> list[object]:
     return [(e.time, [repr(v) for v in e.values.tolist()]) if isinstance(e, Sample) else e for e in entries]
 
 
@@ -63,8 +63,8 @@ def test_what_was_written_comes_back_bit_for_bit_and_is_continued(tmp_path: Path
     first = written(path, 3)
     entries, torn = read(path)
     assert torn == 0
-    assert told(entries[:6]) == told(first)
-    assert told(entries[6:]) == told(first[:4])
+    assert contents(entries[:6]) == contents(first)
+    assert contents(entries[6:]) == contents(first[:4])
     assert entries[0] == RunEntry("the clock jumped, å")
     last = entries[-1]
     assert isinstance(last, Sample)
@@ -84,10 +84,10 @@ def test_wherever_a_break_cuts_whole_entries_stay_and_writing_goes_on(
     kept = max(len(data) - cut, 0)
     path.write_bytes(data[:kept])
     entries, torn = read(path)
-    assert told(entries) == told(whole[: len(entries)])
+    assert contents(entries) == contents(whole[: len(entries)])
     assert len(entries) >= len(whole) - 1 - cut / 21
     assert torn < 40
-    assert told(written(path, 1)) == told(entries)
+    assert contents(written(path, 1)) == contents(entries)
     assert len(read(path)[0]) == len(entries) + 2
 
 
@@ -106,7 +106,11 @@ def test_a_last_entry_that_was_garbled_is_cut_off(
     journal = Journal(path, "a", 2)
     entries = list(journal.entries())
     journal.close()
-    assert told(entries) == told(whole) if same else told(entries) in (told(whole[:-1]), told([*whole[:-2], whole[-1]]))
+    assert (
+        contents(entries) == contents(whole)
+        if same
+        else contents(entries) in (contents(whole[:-1]), contents([*whole[:-2], whole[-1]]))
+    )
     assert same or journal.torn_bytes > 0 or journal.damaged_places == 1
 
 
@@ -123,8 +127,8 @@ def test_damage_in_the_middle_costs_the_entries_it_touches(
     path.write_bytes(bytes(data))
     entries, torn = read(path)
     assert torn == 0 and len(entries) >= len(whole) - 3
-    assert set(map(str, told(entries))) <= set(map(str, told(whole)))
-    assert told(written(path, 1)) == told(entries)
+    assert set(map(str, contents(entries))) <= set(map(str, contents(whole)))
+    assert contents(written(path, 1)) == contents(entries)
 
 
 def test_a_long_end_without_a_whole_entry_is_no_break(tmp_path: Path) -> None:

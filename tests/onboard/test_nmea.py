@@ -179,8 +179,8 @@ def test_no_bytes_raise_and_every_sentence_is_accounted_for(lines: list[bytes], 
     reader = NmeaReader(layout("psi", "x0", "y0", "u", "phi", "n", time=time), rate=1.0, clock=lambda: 5.0)
     found = reader.samples(LineBatch(lines)) + reader.flush()
     counts = reader.counts
-    told = reader.used + reader.unused + counts.garbled + counts.checksum + counts.late
-    assert told == sum(bool(line.strip()) for line in lines)
+    counted = reader.used + reader.unused + counts.garbled + counts.checksum + counts.late
+    assert counted == sum(bool(line.strip()) for line in lines)
     assert all(math.isfinite(s.time) and not np.isinf(s.values).any() for s in found)
 
 

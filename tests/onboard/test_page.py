@@ -55,8 +55,10 @@ def test_the_page_is_whole_and_may_do_nothing_but_ask_its_own_address(page: Page
 
 
 def test_before_anything_came_there_is_a_state(page: Page) -> None:
-    told = state(page)
-    assert told["snapshot"] is None and told["points"] == [] and told["title"] == "trial.toml" and not told["is_over"]
+    shows = state(page)
+    assert (
+        shows["snapshot"] is None and shows["points"] == [] and shows["title"] == "trial.toml" and not shows["is_over"]
+    )
 
 
 def test_state_has_the_newest_and_only_the_points_asked_for(page: Page) -> None:
@@ -78,10 +80,10 @@ def test_state_has_the_newest_and_only_the_points_asked_for(page: Page) -> None:
 def test_angles_are_degrees_in_plots_as_in_the_table(page: Page) -> None:
     snapshot = list(mmg(100.0))[-1]
     page.show(snapshot, SampleCounts())
-    told = state(page)
-    assert told["points"][0][2][-1] == pytest.approx(np.degrees(snapshot.value[-1]))
-    assert told["points"][0][4][-1] == pytest.approx(np.degrees(snapshot.noise["psi"]))
-    assert told["snapshot"]["rows"][-1]["unit"] == "deg" and told["snapshot"]["noise"][-1]["unit"] == "deg"
+    shows = state(page)
+    assert shows["points"][0][2][-1] == pytest.approx(np.degrees(snapshot.value[-1]))
+    assert shows["points"][0][4][-1] == pytest.approx(np.degrees(snapshot.noise["psi"]))
+    assert shows["snapshot"]["rows"][-1]["unit"] == "deg" and shows["snapshot"]["noise"][-1]["unit"] == "deg"
 
 
 def test_other_coefficients_and_another_program_are_another_epoch(page: Page) -> None:
@@ -213,5 +215,5 @@ def test_many_ask_while_the_estimate_goes_on(page: Page) -> None:
 def test_control_characters_and_infinities_do_not_reach_the_page(page: Page) -> None:
     snapshot = replace(list(heave_pitch(10.0))[-1], time=np.inf, noise={"z": np.nan}, unidentified=("a33",))
     page.show(snapshot, replace(faulty_counts(), last_problem="\x1b[2J\x00 sentence"))
-    told = state(page)["snapshot"]
-    assert told["last"] == "·[2J· sentence" and told["time"] == "–" and told["noise"][0]["rms"] == "–"
+    shows = state(page)["snapshot"]
+    assert shows["last"] == "·[2J· sentence" and shows["time"] == "–" and shows["noise"][0]["rms"] == "–"

@@ -47,14 +47,14 @@ def test_times() -> None:
     assert time_text(61.04) == "61.0 s" and time_text(1.7e9) == "2023-11-14 22:13:20 UTC" and time_text(np.nan) == "–"
 
 
-def test_a_change_is_told_only_when_it_is_one() -> None:
-    told = CoefficientChange(
+def test_a_change_is_stated_only_when_it_is_one() -> None:
+    change = CoefficientChange(
         since=300.0, statistic=31.2, degrees_of_freedom=8, p=1.3e-4, is_significant=True, most_changed="b33"
     )
     assert (
-        "since 300.0 s" in change_sentence(told)
-        and "b33" in change_sentence(told)
-        and "p 0.00013" in change_sentence(told)
+        "since 300.0 s" in change_sentence(change)
+        and "b33" in change_sentence(change)
+        and "p 0.00013" in change_sentence(change)
     )
     assert (
         change_sentence(CoefficientChange(300.0, 7.0, 8, 0.5, is_significant=False, most_changed="b33")) == ""

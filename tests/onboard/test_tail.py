@@ -36,7 +36,7 @@ def test_once_ends_with_the_last_line_even_without_its_end(tmp_path: Path) -> No
     assert everything(tail) == [b"0,1", b"1,2"] and tail.is_over
 
 
-def test_a_beginning_is_told_once(tmp_path: Path) -> None:
+def test_a_beginning_is_stated_once(tmp_path: Path) -> None:
     path = tmp_path / "run.csv"
     path.write_bytes(b"0\n")
     tail = TailLines(path)

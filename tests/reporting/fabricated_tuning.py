@@ -40,7 +40,7 @@ def fabricated_fin() -> Tuning:
                        (math.radians(1.7), math.radians(13.0), math.radians(16.0)), 0.79)  # fmt: skip
     brisk = replace(brisk, violated=("Ms 2.31, 2 allowed", "33 % of the fin's amplitudes beyond 22 deg, 20 % allowed"))
     return Tuning(
-        question="Which gains keep her upright without wearing out the fins?",
+        question="Which gains keep it upright without wearing out the fins?",
         name="fin stabiliser, washout",
         plant="roll of the published patrol ship: T 7.52 s, damping ratio 0.159",
         seas=("ITTC 3.3 m, long-crested, 90 deg, 9.26 m/s", "ITTC 3.3 m, short-crested, 135 deg, 9.26 m/s"),
@@ -147,7 +147,7 @@ def fabricated_bare() -> Tuning:
 def controller(
     loop: TransferLoop, name: str, gains: Mapping[str, float], rms: tuple[float, ...], reduction: float
 ) -> Controller:
-    """Margins and frequency response of the loop at those gains; the rest as told."""
+    """Margins and frequency response of the loop at those gains; the rest as given."""
     tuned = loop.with_gains(np.array(list(gains.values())))
     known = margins(tuned)
     omega = np.geomspace(*frequency_band(tuned), 600)

@@ -72,8 +72,8 @@ def test_a_design_that_leaves_the_limits_says_so(design: Design) -> None:
 def test_a_ship_that_is_lost_is_said(design: Design) -> None:
     drawn = design.designed.sampled_relative_error.copy()
     drawn[1] = np.nan
-    told = sentences(replace(design, designed=replace(design.designed, sampled_relative_error=drawn)))[1]
-    assert told.endswith("on 4 of 5; 1 ship cannot be simulated.")
+    changed = sentences(replace(design, designed=replace(design.designed, sampled_relative_error=drawn)))[1]
+    assert changed.endswith("on 4 of 5; 1 ship cannot be simulated.")
 
 
 def test_a_design_with_next_to_nothing_renders(design: Design) -> None:
@@ -117,8 +117,8 @@ def test_orders_stand_side_by_side_in_their_order(design: Design) -> None:
 
 def test_an_order_that_leaves_an_input_alone_has_a_dash(design: Design) -> None:
     two = (*design.actuators, Actuator("v_j", 0.0, 3.0, math.inf, 6.0))
-    told = replace(design, actuators=two, orders=(TimedOrder(0.0, {"v_j": 1.5}),))
-    assert order_columns(told) == [[["0:00", "–", "1.5"]]]
+    changed = replace(design, actuators=two, orders=(TimedOrder(0.0, {"v_j": 1.5}),))
+    assert order_columns(changed) == [[["0:00", "–", "1.5"]]]
 
 
 def test_numbers_are_people_s() -> None:

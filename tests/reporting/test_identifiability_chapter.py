@@ -111,7 +111,7 @@ def test_intervals_of_measures_say_whether_they_hold(full: Fit) -> None:
     assert html(replace(full, predictions=(missed,))).count("✗ outside") == 1
 
 
-def test_the_answer_gives_intervals_floor_criterion_and_what_cannot_be_told(full: Fit) -> None:
+def test_the_answer_gives_intervals_floor_criterion_and_what_cannot_be_stated(full: Fit) -> None:
     said = " ".join(summary.sentences(full))
     assert "first overshoot 8.42° [8.08, 8.71], measured 8.31°" in said
     assert "4 of 4 measured manoeuvring values lie inside" in said

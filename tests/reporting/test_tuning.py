@@ -60,7 +60,7 @@ def test_the_same_tuning_gives_the_same_bytes(page: str) -> None:
     assert html(fabricated_fin()) == page
 
 
-def test_the_recommendation_is_told_in_degrees_and_per_cent(fin: Tuning) -> None:
+def test_the_recommendation_is_stated_in_degrees_and_per_cent(fin: Tuning) -> None:
     motion, margins, saturation, simulated, better, doubtful, schedule = sentences(fin)
     assert motion == (
         "By linear theory these gains reduce the roll angle by 74.0 %, to 2.1° rms, with 8.0° and 9.1°/s rms of the "
@@ -86,14 +86,14 @@ def test_an_unstable_loop_is_not_recommended() -> None:
     assert sentences(fabricated_bare()) == ["The loop is unstable with these gains: do not use them."]
 
 
-def test_restrictions_that_are_broken_are_told(fin: Tuning) -> None:
+def test_restrictions_that_are_broken_are_stated(fin: Tuning) -> None:
     broken = replace(fin, chosen=replace(fin.chosen, violated=("Ms 2.3, 2 allowed",)))
     assert "It violates the constraints: Ms 2.3, 2 allowed." in sentences(broken)
     text = html(fin)
     assert text.count(">violated<") == 1 and text.count("infeasible") == sum(not s.is_feasible for s in fin.schedule)
 
 
-def test_demands_are_told_with_the_ships_drawn() -> None:
+def test_demands_are_stated_with_the_ships_drawn() -> None:
     chosen, given = fabricated_autopilot().manoeuvres
     assert demand_sentence(chosen) == (
         "In the course change of 20 deg it does not overshoot and settles in 96.0 s; 100 of 100 ships that the fit "
@@ -108,9 +108,11 @@ def test_demands_are_told_with_the_ships_drawn() -> None:
 
 def test_a_loop_that_follows_is_judged_by_what_is_left() -> None:
     autopilot = fabricated_autopilot()
-    told = replace(autopilot, chosen=replace(autopilot.chosen, reduction=0.9999))
-    assert sentences(told)[0].startswith("By linear theory 0.60° rms of the heading remains, with 1.4° and 0.29°/s rms")
-    assert "reduction" not in html(told)
+    changed = replace(autopilot, chosen=replace(autopilot.chosen, reduction=0.9999))
+    assert sentences(changed)[0].startswith(
+        "By linear theory 0.60° rms of the heading remains, with 1.4° and 0.29°/s rms"
+    )
+    assert "reduction" not in html(changed)
 
 
 def test_findings_stand_by_severity(fin: Tuning) -> None:
@@ -121,9 +123,9 @@ def test_findings_stand_by_severity(fin: Tuning) -> None:
 
 def test_a_schedule_that_is_unstable_elsewhere_says_so(fin: Tuning) -> None:
     lost = replace(fin.schedule[0], baseline_costs={"given": math.inf, "chosen everywhere": 0.3})
-    told = replace(fin, schedule=(lost, *fin.schedule[1:]))
-    assert "‘given’ is unstable in 1" in sentences(told)[-1]
-    assert "unstable" in schedule_table(told.schedule).rows[0]
+    changed = replace(fin, schedule=(lost, *fin.schedule[1:]))
+    assert "‘given’ is unstable in 1" in sentences(changed)[-1]
+    assert "unstable" in schedule_table(changed.schedule).rows[0]
 
 
 def test_what_rounding_left_of_a_zero_is_zero() -> None:

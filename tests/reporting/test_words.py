@@ -1,4 +1,4 @@
-"""Sentences and citations: what a reader is told about correlations, priors, truth and publications."""
+"""Sentences and citations: what a reader learns of correlations, priors, truth and publications."""
 
 from dataclasses import replace
 

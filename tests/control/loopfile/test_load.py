@@ -52,7 +52,7 @@ def test_an_autopilot_in_a_dozen_lines_follows_a_demand(tmp_path: Path) -> None:
 
 
 def test_fins_of_a_ship_known_by_a_decay(tmp_path: Path) -> None:
-    """K_alpha of the loop file becomes the model's, her dimensions make the hull factor, amplitude adds damping."""
+    """K_alpha of the loop file becomes the model's, dimensions make the hull factor, amplitude adds damping."""
     known = model_file(tmp_path, roll())
     plant = ("roll = { num = [1.0], den = [1.43242, 0.3796, 1.0] }", 'model = "model.toml"')
     task = tuning_task(write_loop_file(tmp_path, FIN, plant))

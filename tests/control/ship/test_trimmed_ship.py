@@ -93,7 +93,7 @@ def test_a_kink_on_the_straight_course_is_taken_in_the_middle() -> None:
     assert plant.den[1] == pytest.approx(0.5 * (starboard.den[1] + port.den[1]), rel=1e-9)
 
 
-def test_a_speed_asked_for_is_kept_by_what_drives_her() -> None:
+def test_a_speed_asked_for_is_kept_by_what_drives_it() -> None:
     ship = trim_ship(ModelFile(kvlcc2(), approach={"n": 10.23}), output="u", actuator="n", speed=0.9)
     model, rates = ship.model, np.empty(6)
     model.compiled.rates(0.0, ship.state.copy(), ship.inputs.copy(), model.parameters.values, rates)
@@ -150,7 +150,7 @@ def test_roll_is_linearised_by_first_harmonic_and_energy() -> None:
     assert plant_and_disturbance(ship)[0].den == pytest.approx((1.0, 0.02, 1.2))
 
 
-def test_a_ship_unstable_on_her_course_is_said_to_be() -> None:
+def test_a_ship_unstable_on_its_course_is_said_to_be() -> None:
     file = ModelFile(kvlcc2(), approach={"n": 10.23})
     unstable = with_parameters(trim_ship(file, output="psi", actuator="delta"), {"N_v": -0.14, "Y_v": -0.2})
     poles = plant_and_disturbance(unstable)[0].poles.real

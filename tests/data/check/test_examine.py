@@ -57,7 +57,7 @@ def test_wrong_declarations_are_found(code: str, noise: float) -> None:
 
 
 def sideways(noise: float) -> Record:
-    """A ship that drifts as fast as she sails, so that the sign of v matters."""
+    """A ship that drifts as fast as it goes ahead, so that the sign of v matters."""
     record = zigzag(noise=noise)
     v = record["v"] - 1.0
     c, s = np.cos(record["psi"]), np.sin(record["psi"])

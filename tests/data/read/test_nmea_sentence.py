@@ -88,12 +88,12 @@ def test_a_field_that_is_not_what_it_should_be_raises(body: str) -> None:
 @pytest.mark.parametrize(
     "line", [b"$HEHDT,90.0,T*00", b"$HEHDT,90.0,T*", b"$HEHDT,91.0,T" + sentence("HEHDT,90.0,T")[-5:]]
 )
-def test_a_wrong_checksum_is_told(line: bytes) -> None:
+def test_a_wrong_checksum_is_stated(line: bytes) -> None:
     assert parse_sentence(line) is SentenceFault.CHECKSUM
 
 
 @pytest.mark.parametrize("line", [b"", b"hello", b"$HEHDT,90.0,T", b"$\xff\xff*00", sentence("he,1,2"), b"$*00"])
-def test_what_is_no_sentence_is_told(line: bytes) -> None:
+def test_what_is_no_sentence_is_stated(line: bytes) -> None:
     assert parse_sentence(line) is SentenceFault.GARBLED
 
 

@@ -20,7 +20,7 @@ def test_a_family_is_kept(trial_file: Path) -> None:
     )
 
 
-def test_without_a_table_the_family_of_the_house_counts(trial_file: Path) -> None:
+def test_without_a_table_the_family_of_the_package_counts(trial_file: Path) -> None:
     assert load_trial(trial_file).family is None
 
 

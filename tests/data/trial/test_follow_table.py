@@ -37,7 +37,7 @@ def refused(folder: Path, text: str) -> str:
     return sentence
 
 
-def test_the_table_becomes_a_stream_with_the_house_s_defaults(tmp_path: Path) -> None:
+def test_the_table_becomes_a_stream_with_the_own_defaults(tmp_path: Path) -> None:
     stream = require_stream(load_trial(written(tmp_path, SHIP + STREAM)))
     assert (stream.source, stream.name, stream.file) == (StreamSource.FILE, "log", tmp_path / "log.csv")
     assert (stream.rate, stream.batch_window_s) == (10.0, 3600.0)
@@ -90,13 +90,13 @@ def test_what_cannot_be_is_refused_by_its_key(tmp_path: Path, was: str, becomes:
 
 def test_a_sea_known_by_its_spectrum_alone_is_sent_to_identify(tmp_path: Path, repository: Path) -> None:
     text = (repository / "examples" / "heave_pitch_spectrum.toml").read_text(encoding="utf-8")
-    told = text.replace("[[records]]", '[follow]\nsource = "file"\nfile = "a.csv"\nrate = 5')
-    told = (
-        told.replace("records.", "follow.")
+    stream_text = text.replace("[[records]]", '[follow]\nsource = "file"\nfile = "a.csv"\nrate = 5')
+    stream_text = (
+        stream_text.replace("records.", "follow.")
         .replace('files = "sea_unrecorded.csv"\n', "")
         .replace('kind = "simulated"\n', "")
     )
-    assert "seatrial identify" in refused(tmp_path, told.replace('source = "simulated"\n', ""))
+    assert "seatrial identify" in refused(tmp_path, stream_text.replace('source = "simulated"\n', ""))
 
 
 def test_another_source_takes_the_same_columns(tmp_path: Path) -> None:
@@ -108,6 +108,6 @@ def test_another_source_takes_the_same_columns(tmp_path: Path) -> None:
             with_source(trial, feed)
 
 
-def test_a_trial_without_the_table_is_told_to_add_it(repository: Path) -> None:
+def test_a_trial_without_the_table_is_stated_to_add_it(repository: Path) -> None:
     with pytest.raises(InputError, match=r"waterjet\.toml: there is no \[follow\]"):
         require_stream(load_trial(repository / "examples" / "waterjet.toml"))

@@ -55,7 +55,7 @@ def demand_house(points: ForcePoints) -> None:
         np.testing.assert_allclose(points.forces[symbol], values, rtol=1e-12, atol=1e-12)
 
 
-def test_the_house_conventions(tmp_path: Path) -> None:
+def test_the_package_conventions(tmp_path: Path) -> None:
     points = read(tmp_path, columns())
     demand_house(points)
     assert points.sd["Y"] == pytest.approx(0.03 * 230.0)

@@ -18,7 +18,7 @@ def decay(start: float = 0.15, noise: float = 0.0, damping: float = 0.03, rest: 
 
 
 def test_what_lies_before_the_release_goes() -> None:
-    """The largest angle stands at 15 s, to either side; the step is told."""
+    """The largest angle stands at 15 s, to either side; the step says so."""
     for start in (0.15, -0.15):
         kept = trim_to_decay_start(decay(start, noise=1e-4))
         assert kept.time[0] == pytest.approx(15.0, abs=0.1)

@@ -56,7 +56,7 @@ def test_a_good_design_warns_of_nothing() -> None:
     refuse_violated_limits(TASK, GOOD)
 
 
-def test_coefficients_that_cannot_be_told_are_named() -> None:
+def test_coefficients_that_cannot_be_stated_are_named() -> None:
     """By the ship assumed, and by others only."""
     relative, drawn = GOOD.relative_error.copy(), GOOD.sampled_relative_error.copy()
     relative[2], drawn[3, 6] = 1.2, 3.0

@@ -72,8 +72,8 @@ def test_what_goes_on_longer_or_measures_more_never_tells_less(craft: DesignTask
 def test_a_prior_adds_its_information_and_no_more(craft: DesignTask) -> None:
     sd = 1e-4
     parameters = craft.model.parameters.with_priors({"N_r": Prior(craft.model.parameters["N_r"].value, sd)})
-    told = replace(craft, model=craft.model.with_parameters(parameters))
-    with_it, without = errors(told, 1.0), errors(craft, 1.0)
+    evaluated = replace(craft, model=craft.model.with_parameters(parameters))
+    with_it, without = errors(evaluated, 1.0), errors(craft, 1.0)
     place = craft.model.parameters.free_names.index("N_r")
     size = abs(craft.model.parameters["N_r"].value)
     assert with_it[place] == pytest.approx((size**2 / sd**2 + without[place] ** -2) ** -0.5, rel=1e-6)
@@ -95,30 +95,30 @@ def test_one_course_each_is_that_of_each_alone(craft: DesignTask) -> None:
         assert (one.drift[0], one.distance[0]) == (together.drift[k], together.distance[k])
 
 
-def test_a_lost_ship_is_told_as_lost_and_spoils_no_other(craft: DesignTask) -> None:
+def test_a_lost_ship_is_stated_as_lost_and_spoils_no_other(craft: DesignTask) -> None:
     fleet = draw_ships(craft, 3)
     mad = fleet.parameters.copy()
     mad[1, craft.model.parameters.index("N_r")] = 50.0
     made = input_series(craft, hard(craft), 1.0)
-    told, sane = (
+    evaluated, sane = (
         ManoeuvreEvaluator(craft, PriorShips(mad, fleet.precision), 1.0).evaluate(made),
         ManoeuvreEvaluator(craft, fleet, 1.0).evaluate(made),
     )
-    assert np.isnan(told.relative_errors[1]).all()
+    assert np.isnan(evaluated.relative_errors[1]).all()
     others = [0, 2, 3]
-    assert np.array_equal(told.relative_errors[others], sane.relative_errors[others])
+    assert np.array_equal(evaluated.relative_errors[others], sane.relative_errors[others])
 
 
 def test_limits_bind_the_ship_assumed_and_the_others_on_request(craft: DesignTask) -> None:
     bench = ManoeuvreEvaluator(craft, draw_ships(craft, 3), 1.0)
-    told = bench.evaluate(input_series(craft, hard(craft), 1.0))
-    farthest = int(np.argmax(told.drift))
+    evaluated = bench.evaluate(input_series(craft, hard(craft), 1.0))
+    farthest = int(np.argmax(evaluated.drift))
     assert farthest != 0
-    between = TrialLimits(drift=0.5 * float(told.drift[0] + told.drift[farthest]))
+    between = TrialLimits(drift=0.5 * float(evaluated.drift[0] + evaluated.drift[farthest]))
     bound, strict = with_limits(craft, between), with_limits(craft, replace(between, for_every_ship=True))
-    assert not leaves_limits(bound, told)
-    assert leaves_limits(strict, told)
-    assert limit_excess(bound, told)[farthest] == pytest.approx(told.drift[farthest] / between.drift - 1.0)
+    assert not leaves_limits(bound, evaluated)
+    assert leaves_limits(strict, evaluated)
+    assert limit_excess(bound, evaluated)[farthest] == pytest.approx(evaluated.drift[farthest] / between.drift - 1.0)
 
 
 def test_ships_are_the_model_first_then_within_the_spread_and_the_same_for_a_seed(craft: DesignTask) -> None:

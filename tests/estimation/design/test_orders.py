@@ -1,4 +1,4 @@
-"""Orders: what the helmsman is told, what the actuators make of it, what is handed over."""
+"""Orders: what the helmsman is ordered, what the actuators make of it, what is handed over."""
 
 import math
 from dataclasses import replace
@@ -56,8 +56,8 @@ def test_the_table_steers_what_was_scored(craft: DesignTask) -> None:
     lines = order_table(both, orders)
     assert [line.time for line in lines] == [0.0, 30.0, 45.0, 90.0, 120.0, 135.0]
     for j, actuator in enumerate(both.request.actuators):
-        told = [[line for line in lines if line.time <= k * actuator.hold][-1] for k in range(order_counts(both)[j])]
-        assert [line.values[actuator.name] for line in told] == orders[j].tolist()
+        order = [[line for line in lines if line.time <= k * actuator.hold][-1] for k in range(order_counts(both)[j])]
+        assert [line.values[actuator.name] for line in order] == orders[j].tolist()
 
 
 def test_the_plan_carries_the_record_s_signs_and_gives_back_the_model_s(craft: DesignTask) -> None:

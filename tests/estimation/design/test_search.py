@@ -122,8 +122,8 @@ def test_a_design_keeps_its_limits_and_beats_the_standard_manoeuvres_that_do(lim
 
 def test_its_plan_gives_its_worth_and_its_track(craft: DesignTask, limited: Design) -> None:
     at = ManoeuvreEvaluator(with_limits(craft, limited.limits), draw_ships(craft, 0, 0), 1.0 / limited.rate)
-    told = at.evaluate(inputs_of(limited.model, limited.plan))
-    assert np.array_equal(told.relative_errors[0], limited.designed.relative_error)
+    evaluated = at.evaluate(inputs_of(limited.model, limited.plan))
+    assert np.array_equal(evaluated.relative_errors[0], limited.designed.relative_error)
     track = limited.designed.executed
     assert float(np.hypot(track.channel("x0").values, track.channel("y0").values).max()) == pytest.approx(
         limited.designed.distance, rel=1e-9
@@ -144,6 +144,6 @@ def test_simulated_trials_err_as_the_bound_foretells(limited: Design) -> None:
 def test_the_criterion_decides_what_is_made_small(
     craft: DesignTask, criterion: DesignCriterion, expected: float
 ) -> None:
-    told = ManoeuvreInformation(np.array([[0.1, 0.1, 0.4, 0.1], [0.3, 0.3, 0.3, 0.3]]), np.zeros(2), np.zeros(2))
-    at = criterion_errors(replace(craft, request=replace(craft.request, criterion=criterion)), told)
+    evaluated = ManoeuvreInformation(np.array([[0.1, 0.1, 0.4, 0.1], [0.3, 0.3, 0.3, 0.3]]), np.zeros(2), np.zeros(2))
+    at = criterion_errors(replace(craft, request=replace(craft.request, criterion=criterion)), evaluated)
     assert at == pytest.approx([expected, 0.3])

@@ -53,7 +53,7 @@ def _straight(task: DesignTask) -> float:
 
 
 def test_a_trial_begins_straight_ahead_where_surge_balances(craft: DesignTask) -> None:
-    """Without any order the craft stays at her first speed and on her course."""
+    """Without any order the craft stays at its first speed and on its course."""
     quiet = planned_record(craft, np.tile(craft.neutral_inputs, (sample_count(craft, 0.2), 1)), 0.2)
     sailed = simulate_plan(craft, quiet, "straight")
     assert sailed.channel("u").values[0] > 0.5

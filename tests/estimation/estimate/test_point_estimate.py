@@ -1,4 +1,4 @@
-"""The estimator behind a fit: noise re-estimated, rounding told from noise."""
+"""The estimator behind a fit: noise re-estimated, rounding distinguished from noise."""
 
 from dataclasses import replace
 

@@ -50,18 +50,18 @@ def freed(*names: str) -> Model:
 )
 def test_scalings_of_the_equations_are_found(record: Record, extra: tuple[str, ...], named: set[str]) -> None:
     """All forces and inertias times one number, or the yaw row alone: every trajectory is the same."""
-    told = curvature(freed(*extra), record)
-    share, direction = weakest_direction(*told)
+    curved = curvature(freed(*extra), record)
+    share, direction = weakest_direction(*curved)
     assert share < 1e-13
     assert named <= set(direction.split()[1::2])
     with pytest.raises(
         InputError, match=r"do not determine the direction .* fix one of these parameters under \[model"
     ):
-        refuse_singular(*told)
+        refuse_singular(*curved)
 
 
 @pytest.mark.parametrize("extra", [(), ("A_j",)])
-def test_what_can_be_told_is_not_refused(record: Record, extra: tuple[str, ...]) -> None:
+def test_what_can_be_stated_is_not_refused(record: Record, extra: tuple[str, ...]) -> None:
     refuse_singular(*curvature(freed(*extra), record))
 
 

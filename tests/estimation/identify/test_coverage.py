@@ -24,11 +24,11 @@ def coverage(repository: Path) -> ModuleType:
 
 def test_intervals_hold_what_is_measured(coverage: ModuleType) -> None:
     """Some 70 values of four ships: .85 is three standard deviations below .95 if a ship's values go together."""
-    told = coverage.series(SERIES, 3, IntervalMethod.AUTO)
-    assert len(told) > 12 * SERIES
-    assert {t.kind for t in told} >= {"overshoot_deg", "tactical_diameter_L", "advance_L"}
-    assert np.mean([t.is_inside for t in told]) >= 0.85
-    halves = [t.half_width / t.measured for t in told if t.kind == "tactical_diameter_L"]
+    turns_and_zigzags = coverage.series(SERIES, 3, IntervalMethod.AUTO)
+    assert len(turns_and_zigzags) > 12 * SERIES
+    assert {t.kind for t in turns_and_zigzags} >= {"overshoot_deg", "tactical_diameter_L", "advance_L"}
+    assert np.mean([t.is_inside for t in turns_and_zigzags]) >= 0.85
+    halves = [t.half_width / t.measured for t in turns_and_zigzags if t.kind == "tactical_diameter_L"]
     assert 0.003 < np.median(halves) < 0.1
 
 

@@ -44,14 +44,14 @@ def test_a_good_record_says_nothing() -> None:
     assert unidentified(found({})) == []
 
 
-def test_those_not_told_are_named() -> None:
+def test_those_not_stated_are_named() -> None:
     """Not the one a prior holds."""
     (finding,) = unidentified(found({"X_rr": 1.5, "Y_vr": 2.0, "X_vv": 3.0}, held="X_vv"))
     assert finding.code == "not-identifiable"
     assert "do not determine X_rr, Y_vr:" in finding.text
 
 
-def test_nothing_told_is_refused_with_names_and_noise() -> None:
+def test_nothing_stated_is_refused_with_names_and_noise() -> None:
     """All eleven."""
     with pytest.raises(InputError, match=r"determine none of the free coefficients X_uu, .*N_rr: .*u 1, r 0\.09"):
         refuse_unidentified(found(dict.fromkeys(COEFFICIENTS, 5.0)))

@@ -52,17 +52,17 @@ def found(record: Record) -> Estimation:
 
 
 @pytest.fixture(scope="module")
-def told(found: Estimation) -> Identifiability:
+def answer(found: Estimation) -> Identifiability:
     return identifiability(found, (), {"u": 0.8, "v_j": 1.866}, 9.8)
 
 
-def test_the_weakest_direction_is_the_one_of_this_craft(told: Identifiability) -> None:
+def test_the_weakest_direction_is_the_one_of_this_craft(answer: Identifiability) -> None:
     """X_rr against X_vv and Y_vr, in relative changes."""
-    weakest = told.directions[0].combination
+    weakest = answer.directions[0].combination
     assert set(list(weakest)[:3]) == {"X_rr", "Y_vr", "X_vv"}
     assert weakest["X_rr"] * weakest["X_vv"] < 0 and weakest["X_rr"] * weakest["Y_vr"] < 0
-    assert told.directions[0].standard_deviation > 5 * told.directions[2].standard_deviation
-    assert told.effective_parameters == 11
+    assert answer.directions[0].standard_deviation > 5 * answer.directions[2].standard_deviation
+    assert answer.effective_parameters == 11
 
 
 def test_at_the_truth_the_weakest_direction_is_the_published_one() -> None:
@@ -80,9 +80,9 @@ def test_at_the_truth_the_weakest_direction_is_the_published_one() -> None:
     assert weakest.text.startswith("along +0.71 X_rr -0.49 X_vv -0.46 Y_vr")
 
 
-def test_the_craft_is_stable_on_her_course(told: Identifiability) -> None:
-    assert told.stability is not None
-    assert told.stability.lower > 0
+def test_the_craft_is_stable_on_its_course(answer: Identifiability) -> None:
+    assert answer.stability is not None
+    assert answer.stability.lower > 0
 
 
 def test_a_wrong_added_mass_moves_the_estimates_as_foretold(found: Estimation, record: Record) -> None:
@@ -164,9 +164,9 @@ def test_what_defines_the_coefficients_is_not_assumed() -> None:
     record = manoeuvre(model, programme("zigzag:20/20"), speed=1.18, slew_rate=np.radians(15.8))
     record = with_sensor_noise(record.resampled(2.0), np.random.default_rng(5), 5)
     settings = EstimateSettings(method=EstimateMethod.OUTPUT_ERROR)
-    told = consequences(estimate_model(model, Runs.one_session_each([record], 7.0), settings, ONE_WORKER))
-    assert {c.parameter for c in told} <= {"I_z", "x_G", "X_udot", "Y_vdot", "N_rdot"}
-    assert "Y_vdot" in {c.parameter for c in told}
+    answer = consequences(estimate_model(model, Runs.one_session_each([record], 7.0), settings, ONE_WORKER))
+    assert {c.parameter for c in answer} <= {"I_z", "x_G", "X_udot", "Y_vdot", "N_rdot"}
+    assert "Y_vdot" in {c.parameter for c in answer}
 
 
 def test_a_prior_of_an_assumed_value_does_not_show_in_the_misfit(found: Estimation) -> None:
@@ -235,7 +235,7 @@ def test_prediction_error_has_no_profile_of_output_error(record: Record) -> None
     assert profiles(filtered.estimate, filtered.interval.standard_error, ["N_rr"]) == ()
 
 
-def test_a_direction_held_by_a_prior_does_not_count_as_told(found: Estimation) -> None:
+def test_a_direction_held_by_a_prior_does_not_count_as_stated(found: Estimation) -> None:
     """A prior much tighter than the records takes a parameter from them."""
     problem = found.estimate.problem
     tight = {"X_rr": Prior(0.00414, 1e-7, "tight")}
@@ -243,6 +243,6 @@ def test_a_direction_held_by_a_prior_does_not_count_as_told(found: Estimation) -
     held = replace(problem, model=model)
     normal = held.normal(found.estimate.common_parameters, found.estimate.optimum.local)
     made = replace(found.estimate, problem=held, optimum=replace(found.estimate.optimum, normal=normal))
-    told = identifiability(replace(found, estimate=made), (), {}, 9.8)
-    assert told.effective_parameters == pytest.approx(10.0, abs=0.1)
-    assert told.stability is None
+    answer = identifiability(replace(found, estimate=made), (), {}, 9.8)
+    assert answer.effective_parameters == pytest.approx(10.0, abs=0.1)
+    assert answer.stability is None

@@ -12,15 +12,15 @@ RUNS = {"a": 0.0, "b": 0.01, "c": -0.01, "d": 0.02, "e": -0.02, "v_f": 0.01}
 
 
 @pytest.fixture
-def told(trial_of: WriteTrial, tmp_path: Path, run_command: Callable[..., int]) -> Path:
+def folder(trial_of: WriteTrial, tmp_path: Path, run_command: Callable[..., int]) -> Path:
     """A result folder with `fit.json` beside it: five zigzags train, one is kept out."""
     trial, out = trial_of(RUNS), tmp_path / "out"
     assert run_command("identify", trial, "--out", out, "--json", tmp_path / "fit.json") == 0
     return out
 
 
-def test_identify_tells_what_the_records_tell(told: Path) -> None:
-    fit = json.loads((told.parent / "fit.json").read_text())
+def test_identify_states_what_the_records_determine(folder: Path) -> None:
+    fit = json.loads((folder.parent / "fit.json").read_text())
     assert {"structural", "directions", "effective_parameters"} <= set(fit["identifiability"])
     assert all({"combination", "standard_deviation", "text"} <= set(d) for d in fit["identifiability"]["directions"])
     assert fit["identifiability"]["effective_parameters"] == 2
@@ -32,10 +32,19 @@ def test_identify_tells_what_the_records_tell(told: Path) -> None:
     assert all(m["lower"] <= m["simulated"] <= m["upper"] for m in bounded)
 
 
-def test_a_steered_manoeuvre_has_intervals_and_an_index(told: Path, run_command: Callable[..., int]) -> None:
-    arguments = ("--manoeuvre", "zigzag:20/20", "--out", told / "z.csv", "--json", told / "z.json", "--speed", "2")
-    assert run_command("simulate", told / "model.toml", *arguments) == 0
-    table = json.loads((told / "z.json").read_text())
+def test_a_steered_manoeuvre_has_intervals_and_an_index(folder: Path, run_command: Callable[..., int]) -> None:
+    arguments = (
+        "--manoeuvre",
+        "zigzag:20/20",
+        "--out",
+        folder / "z.csv",
+        "--json",
+        folder / "z.json",
+        "--speed",
+        "2",
+    )
+    assert run_command("simulate", folder / "model.toml", *arguments) == 0
+    table = json.loads((folder / "z.json").read_text())
     low, high = table["intervals"]["overshoot_1_deg"]
     assert low < table["measures"]["overshoot_1_deg"] < high
     assert table["extrapolation_index"] > 1.0, "20 degrees of rudder after 17"

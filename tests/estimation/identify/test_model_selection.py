@@ -95,7 +95,7 @@ def test_structures_free_parameters_and_factors_widen_priors(model: Model) -> No
     assert more["K"].prior == model.parameters["K"].prior
 
 
-def test_the_family_of_the_house_knows_its_models(model: Model) -> None:
+def test_the_family_of_the_package_knows_its_models(model: Model) -> None:
     names = [v.name for v in variants(abkowitz(), None, is_segmented=True)]
     assert names[0] == "as in the trial" and "cubic rudder" in names
     assert not any(n.startswith("priors") for n in names), "this model has no priors"

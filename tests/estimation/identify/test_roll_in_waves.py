@@ -43,7 +43,7 @@ def test_a_recorded_wave_slope_gives_all_coefficients_back() -> None:
     assert not is_unforced_roll(found.model, [record])
 
 
-def test_the_share_of_the_slope_that_she_feels_can_be_told_too() -> None:
+def test_the_share_of_the_slope_that_it_feels_can_be_stated_too() -> None:
     """The probe shows a slope a quarter too steep."""
     record = simulate_roll_record(bretschneider(2.0, 9.0), 4, duration=400.0, dt=0.1)
     steep = record.channel("alpha_w").with_values(1.25 * record["alpha_w"])
@@ -125,7 +125,7 @@ def test_too_short_a_record_is_refused(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("growth", [0.0, 0.004])
 def test_roll_that_never_decays_is_refused(tmp_path: Path, growth: float) -> None:
-    """Nothing drives her and she swings on: no damping can be told, and none is printed."""
+    """Nothing drives the ship and it swings on: no damping can be estimated, and none is printed."""
     time = np.arange(0.0, 120.0, 0.1)
     record = Record.from_arrays("sea", time, {"phi": 0.1 * np.exp(growth * time) * np.cos(0.7 * time)})
     with pytest.raises(InputError, match="record 'sea': the roll does not decay"):

@@ -68,7 +68,7 @@ def test_what_cannot_be_judged_is_refused() -> None:
         choice([LARGE], [waves])
 
 
-def test_a_family_is_the_houses_or_the_trials_own() -> None:
+def test_a_family_is_the_packages_or_the_trials_own() -> None:
     """Nine of the house; a declared one frees further coefficients; one member is no family."""
     assert len(roll_structures(roll(), None)) == 9
     quadratic = roll().with_parameters(roll().parameters.fixed("b_3", "c_3", "c_5"))

@@ -1,4 +1,4 @@
-"""Heave and pitch through a trial file: forces, elevation, or only the sea; and what cannot be told is refused."""
+"""Heave and pitch through a trial file: forces, elevation, or only the sea; and what is not identifiable is refused."""
 
 from functools import partial
 from pathlib import Path
@@ -119,7 +119,7 @@ def test_twelve_unknowns_of_one_input_are_refused_with_their_direction(
         identify(load_trial(path))
 
 
-def test_twelve_unknowns_of_waves_and_fin_are_told(tmp_path: Path) -> None:
+def test_twelve_unknowns_of_waves_and_fin_are_stated(tmp_path: Path) -> None:
     path = write_wave_trial(tmp_path, [SeawayScenario(135)], FORCES)
     path.write_text(path.read_text().replace('"heave_pitch"', f'"heave_pitch"\nfree = {ALL_TWELVE}\n'))
     fit = identify(load_trial(path))

@@ -65,12 +65,12 @@ def test_sandwich_sees_the_colour_that_the_information_matrix_misses(rng: np.ran
     hessian = matrix.T @ matrix
     estimates = noise @ matrix @ np.linalg.inv(hessian)
     true = estimates.std(axis=0)
-    told = []
+    errors_stated = []
     for e, estimate in zip(noise, estimates, strict=True):
         left = (matrix @ estimate - e).reshape(blocks, rows)
         gradients = np.einsum("br,brk->bk", left, matrix.reshape(blocks, rows, 2))
-        told.append(sandwich(hessian, gradients).standard_error)
-    np.testing.assert_allclose(np.mean(told, axis=0), true, rtol=0.2)
+        errors_stated.append(sandwich(hessian, gradients).standard_error)
+    np.testing.assert_allclose(np.mean(errors_stated, axis=0), true, rtol=0.2)
     assert np.all(from_information(hessian).standard_error < 0.35 * true)
 
 

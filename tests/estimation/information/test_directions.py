@@ -54,10 +54,10 @@ def test_words_say_how_well_a_combination_is_known(deviation: float, says: str) 
 def test_words_say_what_a_prior_leaves_of_an_open_direction() -> None:
     """Two directions the records leave open; a prior of 3 % holds one of them."""
     information = np.diag([1.0, 0.25, 1e6])
-    weakest, next_one, told = directions(information, NAMES, np.ones(3), np.diag([0.03**-2, 0.0, 0.01**-2]))
+    weakest, next_one, third = directions(information, NAMES, np.ones(3), np.diag([0.03**-2, 0.0, 0.01**-2]))
     assert weakest.text == "b is not determined: it may be wrong by 200 %"
     assert next_one.text == ("a is determined vaguely, to 100 %; what is known besides the records holds it to 3 %")
-    assert told.text == "c is determined to 0.1 %"
+    assert third.text == "c is determined to 0.1 %"
     assert weakest.standard_deviation == pytest.approx(2.0), "of the records alone"
 
 

@@ -33,7 +33,7 @@ from seatrial.physics.models.waterjet import waterjet
 
 
 @pytest.mark.parametrize("case", NONE)
-def test_models_without_a_symmetry_are_told_to_have_none(case: str) -> None:
+def test_models_without_a_symmetry_are_stated_to_have_none(case: str) -> None:
     make, outputs = NONE[case]
     assert structural_symmetries(make(), outputs) == ()
     refuse_unidentifiable(make(), outputs)
@@ -83,8 +83,8 @@ def test_without_a_simple_law_the_direction_at_the_values_is_given() -> None:
         {"b": 1.0, "c": -0.8, "d": -1.0, "e": model.parameters["e"].value / model.parameters["d"].value}
     )
     assert worst_difference(model, g.transformed_model(model, 1e-6), ("r",), begin(model)) < 1e-10
-    (told,) = structural_symmetries(model, ("r",))
-    assert told.text.startswith(
+    (symmetry,) = structural_symmetries(model, ("r",))
+    assert symmetry.text.startswith(
         "b, c, d and e have an effect in 3 combinations only and can change together (near their"
     )
 
@@ -143,9 +143,9 @@ def test_waterjet_scalings_by_symbols() -> None:
     for b in model.bindings:
         whole[sp.Symbol(b.name, real=True)] = b.expression.xreplace(whole)
     rates = [rate.expression.xreplace(whole) for rate in model.equations.rates]
-    for told in structural_symmetries(model, MOTION):
+    for symmetry in structural_symmetries(model, MOTION):
         change = {}
-        for name in told.parameters:
+        for name in symmetry.parameters:
             symbol = sp.Symbol(name, real=True)
             carried = {"m_x": "m", "m_y": "m", "J_z": "I_z"}.get(name)
             about = sp.Symbol(carried, real=True) if carried else sp.Integer(0)
@@ -177,11 +177,11 @@ def test_directions_of_all_mmg_parameters_leave_the_motion_as_it_is(make: Callab
 def test_rudder_force_of_mmg_is_known_only_as_products() -> None:
     model = kvlcc2()
     model = model.with_parameters(model.parameters.only_free(["f_alpha", "t_R", "a_H", "x_R_prime"]))
-    (told,) = structural_symmetries(model, MOTION)[:1]
-    assert set(told.parameters) == {"f_alpha", "t_R", "a_H", "x_R_prime"}
-    assert "f_alpha is divided by it" in told.text
-    assert "1 - t_R" in told.text
-    assert "1 + a_H" in told.text
+    (symmetry,) = structural_symmetries(model, MOTION)[:1]
+    assert set(symmetry.parameters) == {"f_alpha", "t_R", "a_H", "x_R_prime"}
+    assert "f_alpha is divided by it" in symmetry.text
+    assert "1 - t_R" in symmetry.text
+    assert "1 + a_H" in symmetry.text
 
 
 def test_the_words_for_the_waterjet() -> None:
@@ -208,5 +208,5 @@ def test_the_words_for_the_waterjet() -> None:
     ],
 )
 def test_words_of_small_models(make: Callable[[], Model], words: str) -> None:
-    (told,) = structural_symmetries(make(), ("r",))
-    assert words in told.text
+    (symmetry,) = structural_symmetries(make(), ("r",))
+    assert words in symmetry.text

@@ -27,7 +27,7 @@ from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIEN
 from seatrial.physics.models.waterjet import waterjet
 
 
-def test_parameters_without_influence_are_told_with_the_reason() -> None:
+def test_parameters_without_influence_are_stated_with_the_reason() -> None:
     off, absent = sorted(structural_symmetries(switched_off(), ("r",)), key=lambda s: s.parameters)
     assert off.parameters == ("C_X",)
     assert off.text == "C_X has no influence on r while A_T is 0: fix it, or change that value"
@@ -65,8 +65,8 @@ def test_measured_forces_tell_what_records_cannot() -> None:
         refuse_unidentifiable(model, MOTION, ("X_sum", "Y_sum"))
     tanker = esso_osaka().applied_to(mmg())
     tanker = tanker.with_parameters(tanker.parameters.only_free(["C_X0", "C_X1", "C_X3", "C_Y1", "rho_air"]))
-    told = structural_symmetries(tanker, MOTION, ("X_sum", "Y_sum", "N_sum"))
-    assert any("rho_air" in s.parameters for s in told)
+    symmetry = structural_symmetries(tanker, MOTION, ("X_sum", "Y_sum", "N_sum"))
+    assert any("rho_air" in s.parameters for s in symmetry)
 
 
 def test_heading_alone_leaves_the_unit_of_speed_open() -> None:
@@ -81,15 +81,15 @@ def test_heading_alone_leaves_the_unit_of_speed_open() -> None:
     moved = g.transformed_model(model, np.log(1.3))
     assert worst_difference(model, moved, ("psi",), start) < 1e-9
     assert worst_difference(model, moved, ("psi",), begin(model)) > 1e-3
-    told = [set(s.parameters) for s in structural_symmetries(model, ("psi",))]
-    assert len(told) == 3
-    assert set(g.parameters) in told
+    symmetry = [set(s.parameters) for s in structural_symmetries(model, ("psi",))]
+    assert len(symmetry) == 3
+    assert set(g.parameters) in symmetry
 
 
 def test_a_state_behind_a_zero_reaches_nothing() -> None:
     """Without a speed the first-order model moves nobody: its positions tell nothing."""
-    (told,) = structural_symmetries(nomoto(), ("x0", "y0"))
-    assert told.text == "K and T have no influence on x0 or y0 while U is 0: fix them, or change that value"
+    (symmetry,) = structural_symmetries(nomoto(), ("x0", "y0"))
+    assert symmetry.text == "K and T have no influence on x0 or y0 while U is 0: fix them, or change that value"
     assert structural_symmetries(nomoto().with_values({"U": 2.0}), ("x0", "y0")) == ()
 
 
@@ -97,8 +97,8 @@ def test_a_centre_that_is_another_parameter_is_named() -> None:
     """The rudder's lever counts from the point of the additional force: x_R - x_H scales with 1 + a_H."""
     model = kvlcc2()
     model = model.with_parameters(model.parameters.only_free(["f_alpha", "t_R", "a_H"]))
-    told = structural_symmetries(model, MOTION)
-    (rudder,) = [s for s in told if "f_alpha" in s.parameters]
+    symmetry = structural_symmetries(model, MOTION)
+    (rudder,) = [s for s in symmetry if "f_alpha" in s.parameters]
     assert rudder.text.startswith(
         "1 - t_R, 1 + a_H and x_R_prime - x_H_prime can be multiplied by any factor if f_alpha is divided by it without"
     )

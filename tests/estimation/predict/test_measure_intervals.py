@@ -39,16 +39,16 @@ def margin(sd: float) -> IntervalBasis:
 
 def test_half_widths_are_those_of_the_coefficient(model: Model, steer: Callable[[Model], Record]) -> None:
     sd, value = 0.0005, model.parameters["N_r"].value
-    told = measure_intervals(model, margin(sd), steer, LENGTH)[NAME]
+    interval = measure_intervals(model, margin(sd), steer, LENGTH)[NAME]
     up, down = (measures(steer(model.with_values({"N_r": value + s})), LENGTH)[NAME] for s in (sd, -sd))
     expected = 1.96 * abs(up - down) / 2
-    assert (told[1] - told[0]) / 2 == pytest.approx(expected, rel=1e-4)
-    assert sum(told) / 2 == pytest.approx(measures(steer(model), LENGTH)[NAME], rel=1e-3)
+    assert (interval[1] - interval[0]) / 2 == pytest.approx(expected, rel=1e-4)
+    assert sum(interval) / 2 == pytest.approx(measures(steer(model), LENGTH)[NAME], rel=1e-3)
 
 
 def test_every_measure_has_an_interval(model: Model, steer: Callable[[Model], Record]) -> None:
-    told = measure_intervals(model, margin(1e-4), steer, LENGTH)
-    assert set(told) == set(measures(steer(model), LENGTH))
+    interval = measure_intervals(model, margin(1e-4), steer, LENGTH)
+    assert set(interval) == set(measures(steer(model), LENGTH))
 
 
 def test_unknown_kinds_take_the_factor_known_ones_the_discrepancy(
@@ -61,17 +61,17 @@ def test_unknown_kinds_take_the_factor_known_ones_the_discrepancy(
     reached, value = float(np.max(np.abs(steer(model)["delta"]))), measures(steer(model), LENGTH)[NAME]
     for index in (0.5, 2.0):
         seen = replace(margin(1e-9), measure_deviation={NAME: 0.1}, training_envelope={"rudder": reached / index})
-        told = measure_intervals(model, seen, steer, LENGTH)[NAME]
-        half = value * np.ptp(np.log(told)) / 2  # of a positive measure's logarithm
+        interval = measure_intervals(model, seen, steer, LENGTH)[NAME]
+        half = value * np.ptp(np.log(interval)) / 2  # of a positive measure's logarithm
         assert half == pytest.approx(1.96 * 0.1 * max(index, 1.0) ** 2, rel=1e-3)
 
 
 def test_tied_models_widen_the_interval(model: Model, steer: Callable[[Model], Record]) -> None:
     other = {"Y_r": 1.1 * model.parameters["Y_r"].value}
     apart = measures(steer(model.with_values(other)), LENGTH)[NAME] - measures(steer(model), LENGTH)[NAME]
-    told = measure_intervals(model, replace(margin(1e-9), tied=(other,)), steer, LENGTH)[NAME]
+    interval = measure_intervals(model, replace(margin(1e-9), tied=(other,)), steer, LENGTH)[NAME]
     value = measures(steer(model), LENGTH)[NAME]
-    assert value * np.ptp(np.log(told)) / 2 == pytest.approx(1.96 * abs(apart), rel=1e-3)
+    assert value * np.ptp(np.log(interval)) / 2 == pytest.approx(1.96 * abs(apart), rel=1e-3)
 
 
 def test_ships_that_cannot_be_steered_are_no_interval(model: Model) -> None:
@@ -124,8 +124,8 @@ def test_the_rudders_zero_counts_beside_the_coefficients() -> None:
         return manoeuvre(one, programme("turning-circle:20"), dt=0.5, speed=2.0)
 
     def width(sd: float, between: float) -> float:
-        told = measure_intervals(ship, replace(margin(sd), offsets={"delta zero": between}), steer, 8.0)
-        return float(np.ptp(told["steady_yaw_rate_deg_s"]))
+        interval = measure_intervals(ship, replace(margin(sd), offsets={"delta zero": between}), steer, 8.0)
+        return float(np.ptp(interval["steady_yaw_rate_deg_s"]))
 
     assert width(0.008, 0.006) == pytest.approx(np.hypot(width(0.008, 0.0), width(1e-12, 0.006)), rel=0.01)
     assert width(1e-12, 0.006) == pytest.approx(2 * 1.96 * np.degrees(0.15 * 0.006), rel=0.02)

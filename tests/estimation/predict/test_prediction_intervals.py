@@ -43,7 +43,7 @@ def fitted(model: Model, number: int) -> tuple[Estimation, list[TrialRecord]]:
     return estimate_model(model, Runs.one_session_each(train, 8.0), SETTINGS, EstimatorOptions(workers=1)), records
 
 
-def told(model: Model, number: int) -> RunPredictions:
+def predicted_runs(model: Model, number: int) -> RunPredictions:
     found, records = fitted(model, number)
     return predict_runs(found, records, 4.0, 8.0, number)
 
@@ -52,7 +52,7 @@ def test_bands_and_intervals_hold_what_happens(model: Model) -> None:
     """Fourteen runs: gross errors show, no more; the coverage benchmark counts a hundred series."""
     inside, measures = [], []
     for number in range(REPEATS):
-        p = told(model, number).predictions[-1]
+        p = predicted_runs(model, number).predictions[-1]
         error = p.simulated["psi"] - p.measured["psi"]
         inside.append(np.mean(np.abs(error) <= p.half_width["psi"]))
         measures += [m.lower <= m.measured <= m.upper for m in p.measures.values()
@@ -64,20 +64,20 @@ def test_bands_and_intervals_hold_what_happens(model: Model) -> None:
 
 
 def test_the_same_seed_gives_the_same_intervals(model: Model) -> None:
-    one, other = (told(model, 3).predictions[-1] for _ in range(2))
+    one, other = (predicted_runs(model, 3).predictions[-1] for _ in range(2))
     assert one.measures == other.measures
     np.testing.assert_array_equal(one.half_width["psi"], other.half_width["psi"])
 
 
 def test_the_margin_says_what_intervals_are_made_of(model: Model) -> None:
-    margin = told(model, 1).interval_basis
+    margin = predicted_runs(model, 1).interval_basis
     assert margin.covariance.shape == (2, 2) and margin.degrees_of_freedom == RUNS - 2
     assert margin.factor >= 1.0 and "overshoot_deg" in margin.measure_deviation
     assert set(margin.training_envelope) >= {"rudder", "yaw_rate"}
 
 
 def test_training_runs_have_no_interval(model: Model) -> None:
-    made = told(model, 2)
+    made = predicted_runs(model, 2)
     assert all(not p.half_width and all(m.lower is None for m in p.measures.values()) for p in made.predictions[:-1])
     assert all(p.extrapolation is not None for p in made.predictions)
 

@@ -60,8 +60,8 @@ def problem(model: Model, records: tuple[Record, ...]) -> OutputError:
     sparse[10:40] = np.nan
     gappy = records[1].with_channel("psi", replace(records[1].channel("psi"), values=sparse))
     data = cut_segments(model, [records[0], gappy, records[2].without("u")], OUTPUTS, 10.0, ["x", "y", "x"])
-    told = model.with_parameters(model.parameters.with_priors({"Y_v": Prior(-0.3, 0.05)}))
-    return OutputError(told, data, NOISE, NUISANCES, CURRENT, workers=1)
+    the_with_prior = model.with_parameters(model.parameters.with_priors({"Y_v": Prior(-0.3, 0.05)}))
+    return OutputError(the_with_prior, data, NOISE, NUISANCES, CURRENT, workers=1)
 
 
 def point(problem: OutputError) -> tuple[Array, Array]:

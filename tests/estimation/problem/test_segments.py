@@ -41,7 +41,7 @@ def test_whole_runs_and_runs_shorter_than_a_segment(model: Model) -> None:
     assert cut_segments(model, [record("a", 30)], ("r",), 1e6).count == 1
 
 
-def test_runs_and_sessions_are_told_apart(model: Model) -> None:
+def test_runs_and_sessions_are_stated_apart(model: Model) -> None:
     data = cut_segments(
         model, [record("a", 41), record("b", 41), record("c", 41)], ("r",), 10.0, ["day 2", "day 1", "day 2"]
     )

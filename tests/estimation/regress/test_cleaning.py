@@ -1,4 +1,4 @@
-"""Cleaning: what goes is what the equation says, nothing is invented, order stays, and it is told."""
+"""Cleaning: what goes is what the equation says, nothing is invented, order stays, and it is said."""
 
 from collections.abc import Callable
 from itertools import pairwise
@@ -51,7 +51,7 @@ def of(u: list[float], v: list[float] | None = None) -> Record:
 
 
 def kept(record: Record, cleaned: Record) -> Array:
-    """Whether each sample of the record stayed, told by its number in x0."""
+    """Whether each sample of the record stayed, by its number in x0."""
     return np.isin(record["x0"], cleaned["x0"])
 
 
@@ -70,7 +70,7 @@ def test_nothing_is_invented_and_order_is_kept(name: str, record: Record) -> Non
 
 @pytest.mark.parametrize("name", ALL)
 @given(record=records())
-def test_the_number_of_samples_that_went_is_told(name: str, record: Record) -> None:
+def test_the_number_of_samples_that_went_is_stated(name: str, record: Record) -> None:
     cleaned = ALL[name](record)
     *before, step = cleaned.provenance.steps
     assert tuple(before) == record.provenance.steps

@@ -45,7 +45,7 @@ def test_differencing_makes_noise_fatal() -> None:
     assert np.median(errors("weak form, least squares", 1)) < 0.6
 
 
-def test_names_are_told_apart_and_a_hidden_state_is_refused() -> None:
+def test_names_are_stated_apart_and_a_hidden_state_is_refused() -> None:
     """One row a name; the craft without its sway velocity, heading and position cannot be regressed."""
     names = [e.name for e in standard_estimators(20.0)]
     assert len(set(names)) == len(names)

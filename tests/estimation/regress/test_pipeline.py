@@ -42,7 +42,7 @@ def test_the_constant_is_near_zero_where_the_regression_is_good() -> None:
     assert max(map(abs, found.bias.values())) < 1e-5
 
 
-def test_what_is_not_selected_is_zero_and_told() -> None:
+def test_what_is_not_selected_is_zero_and_stated() -> None:
     """A large penalty leaves little."""
     pipeline = replace(HALF, selection=Lasso((2000.0,)), operator=Central(), solver=OrdinaryLeastSquares())
     found = pipeline.estimate(BLANK, [zigzags()])

@@ -73,7 +73,7 @@ def test_lasso_drops_what_does_nothing_and_says_so() -> None:
 
 
 def test_truncation_leaves_out_a_direction_that_is_hardly_there() -> None:
-    """Two columns alike but for a hundredth: their sum is told, not their difference."""
+    """Two columns alike but for a hundredth: their sum is determined, not their difference."""
     generator = np.random.default_rng(6)
     common = generator.standard_normal(500)
     matrix = np.stack([common, common + 1e-3 * generator.standard_normal(500)], axis=1)

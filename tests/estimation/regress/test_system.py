@@ -28,7 +28,7 @@ def test_equations_that_share_coefficients_stand_together() -> None:
     assert ["v", "r"] in states or ["u", "v", "r"] in states
 
 
-def test_a_straight_run_tells_nothing_of_sway_and_is_told_so() -> None:
+def test_a_straight_run_tells_nothing_of_sway_and_is_stated_so() -> None:
     """No drift, no yaw: the features are zero."""
     straight = zigzags().between(0.0, 9.0)
     with pytest.raises(InputError, match=r"feature of X_vv, X_rr is zero.*manoeuvre"):

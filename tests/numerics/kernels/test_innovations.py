@@ -130,7 +130,7 @@ def test_variances_grow_as_those_of_matrices(oscillator: Model) -> None:
         P = phi @ P @ phi.T + noise
 
 
-def test_a_run_that_leaves_all_bounds_is_told(explosive: Model) -> None:
+def test_a_run_that_leaves_all_bounds_is_stated(explosive: Model) -> None:
     run = KalmanFilter(explosive, np.zeros((100, 1)), np.array([0, 100]), 0.1, ("u",))
     at = FilterPoint(
         np.array([[5.0]]),

@@ -67,9 +67,9 @@ def test_the_record_tells_the_best_so_far(kind: str) -> None:
     seen: list[float] = []
     assert optimiser.best[1] == np.inf
     while not optimiser.done:
-        told = SQUARE(optimiser.ask())
-        optimiser.tell(told)
-        seen.append(min([*seen[-1:], float(told.min())]))
+        costs = SQUARE(optimiser.ask())
+        optimiser.tell(costs)
+        seen.append(min([*seen[-1:], float(costs.min())]))
     assert optimiser.history == tuple(seen)
     assert len(seen) == 25
     assert np.allclose(SQUARE(optimiser.trace), seen, rtol=1e-13)
@@ -125,10 +125,10 @@ def test_where_nothing_can_be_evaluated_the_search_failed(kind: str) -> None:
 def test_a_fitness_without_order_names_its_row(kind: str, value: float) -> None:
     optimiser = make_optimiser(kind, BOX, 1)
     optimiser.tell(SQUARE(optimiser.ask()))
-    told = SQUARE(optimiser.ask())
-    told[7] = value
+    costs = SQUARE(optimiser.ask())
+    costs[7] = value
     with pytest.raises(SearchError, match=r"row 7 in iteration 1 is -?(nan|inf) at \["):
-        optimiser.tell(told)
+        optimiser.tell(costs)
 
 
 @EVERY

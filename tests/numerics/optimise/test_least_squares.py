@@ -244,10 +244,10 @@ def test_history_never_rises_and_bits_repeat() -> None:
 
 def test_what_is_negligible_ends_the_search() -> None:
     exact = Curve(lambda x: np.array([x[0] ** 3 - 8.0]), lambda x: 3 * x[:, None] ** 2)
-    told = levenberg_marquardt(exact, np.array([5.0]), NONE, negligible=1e-4).solution
-    assert told.status is Status.CONVERGED
-    assert told.evaluations < levenberg_marquardt(exact, np.array([5.0]), NONE).solution.evaluations
-    assert told.point[0] == pytest.approx(2.0, abs=1e-4)
+    costs = levenberg_marquardt(exact, np.array([5.0]), NONE, negligible=1e-4).solution
+    assert costs.status is Status.CONVERGED
+    assert costs.evaluations < levenberg_marquardt(exact, np.array([5.0]), NONE).solution.evaluations
+    assert costs.point[0] == pytest.approx(2.0, abs=1e-4)
 
 
 def test_a_sufficient_promise_counts_where_evaluations_run_out() -> None:

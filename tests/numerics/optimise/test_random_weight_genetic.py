@@ -117,24 +117,24 @@ def test_the_best_of_each_objective_open_the_next_population() -> None:
     least = np.full(2, np.inf)
     for _ in range(60):
         points = genetic.ask()
-        told = two_hills(points)
-        least = np.minimum(least, told.min(axis=0))
-        genetic.tell(told)
+        costs = two_hills(points)
+        least = np.minimum(least, costs.min(axis=0))
+        genetic.tell(costs)
         elite = genetic.ask()[:2]
-        assert np.array_equal(elite, points[np.argmin(told, axis=0)])
+        assert np.array_equal(elite, points[np.argmin(costs, axis=0)])
         assert np.array_equal(np.diag(two_hills(elite)), least)
 
 
 def test_the_front_is_what_no_evaluated_point_beats() -> None:
     seen: list[Array] = []
 
-    def told(points: Array) -> Array:
+    def costs(points: Array) -> Array:
         objectives = two_hills(points)
         objectives[points[:, 0] > 2.5] = np.inf
         seen.append(objectives)
         return objectives
 
-    front = _run(told, 5, GeneticSettings(20, 30, 2)).front
+    front = _run(costs, 5, GeneticSettings(20, 30, 2)).front
     every = np.concatenate(seen)
     assert np.array_equal(two_hills(front.points), front.objectives)
     below = (every[:, None] <= front.objectives).all(axis=2) & (every[:, None] < front.objectives).any(axis=2)
@@ -193,10 +193,10 @@ def test_asked_again_it_gives_the_same_and_keeps_no_array_of_the_callers() -> No
     kept = points.copy()
     points[:] = 0
     assert np.array_equal(genetic.ask(), kept)
-    told = two_hills(kept)
-    genetic.tell(told)
+    costs = two_hills(kept)
+    genetic.tell(costs)
     before = genetic.front.objectives.copy()
-    told[:] = 0
+    costs[:] = 0
     assert np.array_equal(genetic.front.objectives, before)
 
 
@@ -239,8 +239,8 @@ def test_where_nothing_can_ever_be_the_search_failed() -> None:
 
 def test_what_cannot_be_is_no_parent() -> None:
     """Without crossover and mutation every child is a parent again."""
-    told = GeneticSettings(60, 5, 2, Pc=0.0, Pm=0.0)
-    genetic = RandomWeightGenetic(BOX, np.random.default_rng(4), told)
+    costs = GeneticSettings(60, 5, 2, Pc=0.0, Pm=0.0)
+    genetic = RandomWeightGenetic(BOX, np.random.default_rng(4), costs)
     points = genetic.ask()
     genetic.tell(np.where(points[:, :1] > 0, np.inf, two_hills(points)))
     children = genetic.ask()
@@ -264,8 +264,8 @@ def test_the_normaliser_changes_the_search() -> None:
 def two_hills_first(genetic: RandomWeightGenetic) -> Array:
     """Of the first generation, what equal weights over the largest objectives prefer."""
     points = RandomWeightGenetic(BOX, np.random.default_rng(genetic.seed), genetic.settings).ask()
-    told = two_hills(points)
-    return points[np.argmin((told / told.max(axis=0)).sum(axis=1))]
+    costs = two_hills(points)
+    return points[np.argmin((costs / costs.max(axis=0)).sum(axis=1))]
 
 
 def test_one_point_may_be_best_of_all_and_cost_nothing() -> None:
@@ -280,10 +280,10 @@ def test_one_point_may_be_best_of_all_and_cost_nothing() -> None:
 def test_objectives_without_a_fitness_name_row_and_column(value: float, says: str) -> None:
     genetic = RandomWeightGenetic(BOX, np.random.default_rng(1), TWO)
     genetic.tell(two_hills(genetic.ask()))
-    told = two_hills(genetic.ask())
-    told[7, 1] = value
+    costs = two_hills(genetic.ask())
+    costs[7, 1] = value
     with pytest.raises(SearchError, match=says):
-        genetic.tell(told)
+        genetic.tell(costs)
 
 
 def test_telling_out_of_turn_or_another_shape_is_refused() -> None:

@@ -45,7 +45,7 @@ def test_blocks_are_those_printed() -> None:
     assert SERVO.gain == pytest.approx(2.444, abs=5e-4)
 
 
-def test_roll_has_the_period_and_damping_told() -> None:
+def test_roll_has_the_period_and_damping_stated() -> None:
     assert 2.0 * math.pi / abs(ROLL.poles[0]) == pytest.approx(7.52, abs=5e-3)
     assert -ROLL.poles[0].real / abs(ROLL.poles[0]) == pytest.approx(0.159, abs=5e-4)
 

@@ -91,7 +91,7 @@ def test_parameter_sets_complete_their_model() -> None:
         parameter_set("kvlc2")
 
 
-def test_a_ship_without_propeller_is_told_what_is_missing() -> None:
+def test_a_ship_without_propeller_is_stated_what_is_missing() -> None:
     ship = parameter_set("kvlcc2").ship
     with pytest.raises(InputError, match=r"needs .*k_0.*w_P0"):
         mmg().with_ship(ship)

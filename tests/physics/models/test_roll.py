@@ -35,7 +35,7 @@ def test_energy_falls_by_the_work_of_damping() -> None:
 
 
 @pytest.mark.parametrize(("channel", "per_radian"), [("alpha_w", 1.0), ("alpha_f", 0.256)])
-def test_a_held_slope_heels_her_to_its_own_side(channel: str, per_radian: float) -> None:
+def test_a_held_slope_heels_it_to_its_own_side(channel: str, per_radian: float) -> None:
     """To the angle itself in a wave slope held long; to K_alpha times the angle of fins."""
     ship = roll().with_values({"b_1": 1.0, "c_1": 4.0, "K_alpha": 0.256})
     slope = Record.from_arrays("held", DT * np.arange(ROWS), {channel: np.full(ROWS, 0.05)})
@@ -71,7 +71,7 @@ def test_the_period_is_that_of_the_swing() -> None:
 
 
 def test_only_ships_without_heading_and_speed_swing() -> None:
-    """A steered ship does not, whatever her model."""
+    """A steered ship does not, whatever its model."""
     assert is_pure_roll(roll())
     assert is_pure_roll(heave_pitch())
     assert not is_pure_roll(nomoto())

@@ -98,7 +98,7 @@ def test_in_following_seas_only_the_longest_wave_has_to_pass() -> None:
     refuse_short_record(lines, 60.0)
 
 
-def test_all_lines_above_nyquist_are_told() -> None:
+def test_all_lines_above_nyquist_are_stated() -> None:
     lines = realise(SEA, 9.26, math.pi, np.random.default_rng(0))
     beyond = above_nyquist(lines, 0.5)
     assert 1 < beyond.size < len(lines.omega)

@@ -26,7 +26,7 @@ def test_the_published_series_of_zigzags_takes_its_time() -> None:
     assert np.degrees(record["delta"]).max() == pytest.approx(30.0)
 
 
-def test_the_rudder_slews_no_faster_than_told() -> None:
+def test_the_rudder_slews_no_faster_than_ordered() -> None:
     rates = np.abs(np.diff(steered("zigzag:20/10")["delta"])) / 0.1
     assert rates.max() == pytest.approx(SLEW, rel=1e-9)
 

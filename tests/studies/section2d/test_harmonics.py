@@ -29,8 +29,8 @@ def test_with_white_noise_the_scatter_is_the_bound_and_the_covariance_says_so(rn
     errors = np.array([f.first - TRUTH for f in found])
     for part, k in ((errors.real, 0), (errors.imag, 3)):
         assert np.std(part) == pytest.approx(bound, rel=0.08)
-        told = np.sqrt(np.mean([f.covariance[k, k] for f in found]))
-        assert told == pytest.approx(np.std(part), rel=0.08)
+        stated = np.sqrt(np.mean([f.covariance[k, k] for f in found]))
+        assert stated == pytest.approx(np.std(part), rel=0.08)
         assert abs(np.mean(part)) < 4.0 * bound / np.sqrt(repeats)
     assert np.mean([f.relative_error for f in found]) == pytest.approx(bound / abs(TRUTH), rel=0.08)
 

@@ -19,7 +19,7 @@ def test_delay_drift_and_gain_are_found(delay: float, drift: float, gain: float,
     assert found.gain == pytest.approx(gain, rel=0.01) and found.delay_scatter < 0.005
 
 
-def test_a_delay_of_a_whole_period_cannot_be_told() -> None:
+def test_a_delay_of_a_whole_period_cannot_be_stated() -> None:
     period = 2.0 * np.pi / OMEGA
     found = compare_instruments(TIME, np.cos(OMEGA * (TIME - period - 0.05)), np.cos(OMEGA * TIME), OMEGA)
     assert found.delay == pytest.approx(0.05, abs=0.003)

@@ -31,15 +31,15 @@ def test_the_truth_comes_back_without_noise() -> None:
     assert found.misfit < 1e-6
 
 
-def test_the_errors_told_are_those_made(rng: np.random.Generator) -> None:
+def test_the_errors_stated_are_those_made(rng: np.random.Generator) -> None:
     fits = [
         fit_oscillator(START, [observed(w, 0.005 * complex(*rng.standard_normal(2))) for w in OMEGAS], FREE, SCALES)
         for _ in range(60)
     ]
     for name in ("extra_added_mass", "quadratic_damping", "gain"):
         made = np.std([getattr(f.oscillator, name) for f in fits])
-        told = np.sqrt(np.mean([f.errors[name] ** 2 for f in fits]))
-        assert told == pytest.approx(made, rel=0.35)
+        stated = np.sqrt(np.mean([f.errors[name] ** 2 for f in fits]))
+        assert stated == pytest.approx(made, rel=0.35)
 
 
 def test_quadratic_damping_bites_more_in_higher_waves_and_not_in_none() -> None:

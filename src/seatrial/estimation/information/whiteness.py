@@ -11,7 +11,7 @@ from seatrial.estimation.information.autocorrelation import autocorrelation, whi
 WHITENESS_LAGS = (20, 100)
 """Lags of the two tests: correlation over a few samples, and weak correlation over many; chosen."""
 
-FALSE_ALARMS = 0.02
+FALSE_ALARMS = 0.01
 """Probability with which white residuals fail in any channel by either test (Bonferroni); chosen."""
 
 
@@ -37,7 +37,7 @@ class WhitenessTest:
 
     @property
     def smallest(self) -> float:
-        """Smallest p-value over the channels, times their number, at most 1: below 0.02 they are not white."""
+        """Smallest p-value over the channels, times their number, at most 1: below 0.01 they are not white."""
         return float(min(1.0, len(self.p_values) * np.min(self.p_values, initial=1.0)))
 
 

@@ -15,7 +15,7 @@ from seatrial.core.values.record_chart import has_track, is_constant, record_tra
 from seatrial.data.check import canonical_record
 from seatrial.data.draft import LogStretch
 
-# colours of neighbours, told apart by people who see no red or no green (Okabe & Ito 2008), and paler for areas
+# colours of neighbours, distinguished by people who see no red or no green (Okabe & Ito 2008), and paler for areas
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00")
 _PALE = ("#d5e8f3", "#f8dfcf", "#d2efe5", "#f6e4ee", "#efe7c8")
 _NUMBER = 9.0  # px, of the number of a part; chosen

@@ -29,11 +29,11 @@ def regressed(
     if shift is not None:
         y[60:] += x[60:] @ shift
 
-    def told(rows: slice) -> GaussianEstimate:
+    def change(rows: slice) -> GaussianEstimate:
         covariance = np.linalg.inv(x[rows].T @ x[rows])
         return GaussianEstimate(covariance @ x[rows].T @ y[rows], covariance)
 
-    return told(slice(60)), told(slice(60, 90)), told(slice(90))
+    return change(slice(60)), change(slice(60, 90)), change(slice(90))
 
 
 def test_nested_estimates_say_what_independent_ones_do(rng: np.random.Generator) -> None:
@@ -95,12 +95,12 @@ def beam() -> SeaStream:
 
 def test_two_hundred_streams_without_change_raise_few_alarms(beam: SeaStream) -> None:
     """Six looks at each; alpha is 5 % for any number of them."""
-    told = [any(c.is_significant for c in looks(beam, beam.measured(100 + k))) for k in range(200)]
-    assert np.mean(told) <= 0.05
+    change = [any(c.is_significant for c in looks(beam, beam.measured(100 + k))) for k in range(200)]
+    assert np.mean(change) <= 0.05
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_a_loaded_ship_is_told_within_a_minute(beam: SeaStream, seed: int) -> None:
+def test_a_loaded_ship_is_stated_within_a_minute(beam: SeaStream, seed: int) -> None:
     """Mass and inertia grow by 10 % in the middle of a stretch, at 135 s."""
     inputs, at = beam.clean.inputs, 1350
     model = beam.ship
@@ -113,9 +113,9 @@ def test_a_loaded_ship_is_told_within_a_minute(beam: SeaStream, seed: int) -> No
     before = run(model, inputs[: at + 1], np.zeros((1, 4)))
     y = np.concatenate([before[:-1], run(heavy, inputs[at:], before[-1:])])
     measured = y[:, [0, 2]] + NOISE * np.random.default_rng([seed, 3]).standard_normal((len(y), 2))
-    told = next(c for c in looks(beam, measured) if c.is_significant)
-    assert at * DT < told.since + STRETCH < at * DT + 60.0
-    assert told.most_changed in ("a33", "a35", "a55", "a53")
+    change = next(c for c in looks(beam, measured) if c.is_significant)
+    assert at * DT < change.since + STRETCH < at * DT + 60.0
+    assert change.most_changed in ("a33", "a35", "a55", "a53")
 
 
 def test_a_watch_that_cannot_be_is_refused() -> None:

@@ -11,9 +11,9 @@ PLACES = np.array([0, 1])
 def _solved(hessian, gradient, known, weight, mean):
     """Minimiser of one part's squares, what is carried and the priors."""
     free = (0, 1)
-    told = known.normal(np.zeros(2), free)
-    h = hessian + np.diag(weight) + told.hessian
-    g = gradient - weight * mean + told.gradient
+    marginal = known.normal(np.zeros(2), free)
+    h = hessian + np.diag(weight) + marginal.hessian
+    g = gradient - weight * mean + marginal.gradient
     return np.linalg.solve(h, -g), h
 
 
@@ -36,9 +36,9 @@ def test_in_parts_is_all_at_once(weight):
 
 def test_a_prior_does_not_pull_again_at_each_stretch_that_tells_nothing():
     weight, mean = np.array([4.0, 0.0]), np.zeros(2)
-    told, seen = np.diag([4.0, 1.0]), np.array([1.0, 1.0])
+    marginal, seen = np.diag([4.0, 1.0]), np.array([1.0, 1.0])
     nothing = marginalise(PLACES, mean, np.zeros((2, 2)), mean, mean)
-    point, hessian = _solved(told, -told @ seen, nothing, weight, mean)
+    point, hessian = _solved(marginal, -marginal @ seen, nothing, weight, mean)
     assert point[0] == pytest.approx(0.5)
     for _ in range(20):
         known = marginalise(PLACES, point, hessian, mean, weight)

@@ -72,7 +72,7 @@ def test_a_gap_beyond_the_window_goes_on_with_what_the_filter_knew():
 
 
 @pytest.mark.parametrize("forgetting", [None, 60.0])
-def test_a_ship_that_becomes_another_is_told_and_followed(forgetting):
+def test_a_ship_that_becomes_another_is_stated_and_followed(forgetting):
     stream = sea_stream(90, 240.0)
     trial, record, truth = stream.trial, stream.record, stream.truth
     voyage = SeawayScenario(90, duration=240.0)
@@ -130,7 +130,7 @@ def test_a_trial_that_follows_nothing_is_refused():
         OnlineEstimator(replace(trial, stream=None))
 
 
-def test_a_ship_that_stays_the_same_is_not_told_to_change():
+def test_a_ship_that_stays_the_same_is_not_stated_to_change():
     # waves known by their elevation: their forces change a little as more of it is known
     trial = load_trial(EXAMPLES / "heave_pitch_follow.toml")
     source = open_source(require_stream(trial), once=True)

@@ -108,7 +108,7 @@ def _with_outages(record: Record, symbols: tuple[str, ...], starts: tuple[int, .
     return record
 
 
-def test_one_second_without_motions_costs_accuracy_that_is_told(outages):
+def test_one_second_without_motions_costs_accuracy_that_is_stated(outages):
     """Holes of a second are interpolated straight, as in a batch fit: some per cent, and coloured residuals."""
     trial, record, truth = outages
     best = feed(OnlineEstimator(trial), record, trial)
