@@ -1,25 +1,12 @@
 """A sample of the benchmark on gusts: gusts with a memory and a controller leave estimates and intervals honest."""
 
-import importlib
-import sys
-from pathlib import Path
-from types import ModuleType
-
+import gusts
 import numpy as np
 import pytest
 
 
-@pytest.fixture(scope="module")
-def gusts(repository: Path) -> ModuleType:
-    sys.path.insert(0, str(repository / "benchmarks"))
-    try:
-        return importlib.import_module("gusts")
-    finally:
-        sys.path.pop(0)
-
-
 @pytest.mark.parametrize("is_closed", [False, True])
-def test_a_gust_with_a_memory_is_modelled(gusts: ModuleType, is_closed: bool) -> None:
+def test_a_gust_with_a_memory_is_modelled(is_closed: bool) -> None:
     """Yaw disturbance worth 2 deg of rudder with a memory of 5 s; two runs, of which each lies within 3.5 errors."""
     cell = gusts.Cell("nomoto", gusts.Disturbance(0.5, 5.0), is_closed)
     results = gusts.outcomes(cell, "independent", 2, gusts.SEED, 1)
@@ -30,7 +17,7 @@ def test_a_gust_with_a_memory_is_modelled(gusts: ModuleType, is_closed: bool) ->
         assert np.all(np.abs(np.log(o.standard_error / o.bound)) < 0.6), o
 
 
-def test_a_closed_loop_is_fitted_by_prediction_error_though_nothing_disturbs_it(gusts: ModuleType) -> None:
+def test_a_closed_loop_is_fitted_by_prediction_error_though_nothing_disturbs_it() -> None:
     cell = gusts.Cell("nomoto", gusts.Disturbance(0.0, 0.0), is_closed=True)
     (result,) = gusts.outcomes(cell, "independent", 1, gusts.SEED, 1)
     assert result.disturbance == "white"
@@ -38,7 +25,7 @@ def test_a_closed_loop_is_fitted_by_prediction_error_though_nothing_disturbs_it(
     assert np.all(np.abs(np.log(result.standard_error / result.bound)) < 0.3)
 
 
-def test_the_score_can_fail(gusts: ModuleType) -> None:
+def test_the_score_can_fail() -> None:
     one = np.ones(2)
     biased = [gusts.Outcome(3.0 * one, one, one, 0.0 * one, one > 1.0, "white", True, 0.1)] * 10
     assert gusts.score(biased).problems(0.86, 0.35) == "coverage < 86%; bias > 0.35; RMSE/bound > 1.2"

@@ -1,14 +1,12 @@
 """A disturbance that no candidate describes: the fit says so, and its interval covers the spread between candidates."""
 
-import importlib
 import math
-import sys
-from pathlib import Path
-from types import ModuleType
 
+import disturbed_craft
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from standard_craft import NOMOTO
 
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.runs import Runs
@@ -26,17 +24,12 @@ def two_tones(rows: int, count: int, _: object, step: float, rng: np.random.Gene
 
 
 @pytest.fixture(scope="module")
-def estimation(repository: Path) -> Estimation:
-    sys.path.insert(0, str(repository / "benchmarks"))
-    try:
-        records: ModuleType = importlib.import_module("disturbed_craft")
-        craft = importlib.import_module("standard_craft").NOMOTO
-    finally:
-        sys.path.pop(0)
+def estimation() -> Estimation:
+    craft = NOMOTO
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(records, "coloured", two_tones)
-        (run,) = records.independent_nomoto(
-            craft, records.Disturbance(0.5, 5.0), 1, np.random.default_rng(2), is_closed=False, seconds=240.0
+        patch.setattr(disturbed_craft, "coloured", two_tones)
+        (run,) = disturbed_craft.independent_nomoto(
+            craft, disturbed_craft.Disturbance(0.5, 5.0), 1, np.random.default_rng(2), is_closed=False, seconds=240.0
         )
     model = craft.model.with_values(dict(craft.guess))
     return estimate_model(model, Runs.one_session_each([run], craft.length), options=EstimatorOptions(workers=1))

@@ -1,13 +1,11 @@
 """Estimates outside physics are refused in a sentence; a search that got lost in output error begins anew."""
 
-import importlib
-import sys
 from dataclasses import replace
-from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
+from disturbed_craft import Disturbance, independent_nomoto
+from standard_craft import NOMOTO
 
 from seatrial.core.values import InputError, Prior, Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings
@@ -77,20 +75,11 @@ def test_only_a_lost_search_begins_at_the_model_s_own_values() -> None:
 
 
 @pytest.fixture(scope="module")
-def crafts(repository: Path) -> tuple[ModuleType, ModuleType]:
-    sys.path.insert(0, str(repository / "benchmarks"))
-    try:
-        return importlib.import_module("disturbed_craft"), importlib.import_module("standard_craft")
-    finally:
-        sys.path.pop(0)
-
-
-@pytest.fixture(scope="module")
-def gusty_minute(crafts: tuple[ModuleType, ModuleType]) -> Record:
+def gusty_minute() -> Record:
     """Sixty seconds in gusts that output error takes for a craft without damping."""
-    records, craft = crafts[0], crafts[1].NOMOTO
-    runs = records.independent_nomoto(
-        craft, records.Disturbance(0.5, 5.0), 5, np.random.default_rng([7, 60, 0]), is_closed=False, seconds=60.0
+    craft = NOMOTO
+    runs = independent_nomoto(
+        craft, Disturbance(0.5, 5.0), 5, np.random.default_rng([7, 60, 0]), is_closed=False, seconds=60.0
     )
     return runs[1]
 

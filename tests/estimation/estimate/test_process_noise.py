@@ -94,7 +94,6 @@ def test_slope_of_the_likelihood_vanishes(found: ProcessNoise) -> None:
 def test_sensor_noise_is_no_process_noise(model: Model, seed: int) -> None:
     none = fit_prediction_error(made_of(model, 0.0, seed))
     assert not none.test.is_needed
-    assert not none.test.favours_prediction_error
     assert none.test.summary.startswith("no process noise")
 
 

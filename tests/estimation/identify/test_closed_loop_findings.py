@@ -1,14 +1,13 @@
 """What a fit warns of where a controller was on, from the sentences of the loop and from a whole identification."""
 
-import importlib
-import sys
 from dataclasses import replace
-from pathlib import Path
-from types import ModuleType, SimpleNamespace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from disturbed_craft import GAIN, RATE_GAIN, SAMPLE_S, Disturbance, course_at, independent_nomoto
+from standard_craft import NOMOTO
 
 import seatrial as st
 from seatrial.core.results.closed_loop import FeedbackEvidence
@@ -42,25 +41,16 @@ def test_what_contradicts_is_one_warning(change: dict[str, Any], code: str) -> N
 
 
 @pytest.fixture(scope="module")
-def crafts(repository: Path) -> tuple[ModuleType, ModuleType]:
-    sys.path.insert(0, str(repository / "benchmarks"))
-    try:
-        return importlib.import_module("disturbed_craft"), importlib.import_module("standard_craft")
-    finally:
-        sys.path.pop(0)
-
-
-@pytest.fixture(scope="module")
-def trial(crafts: tuple[ModuleType, ModuleType]) -> st.Trial:
+def trial() -> st.Trial:
     """Two minutes under a controller in gusts, reference and controller declared."""
-    records, craft = crafts[0], crafts[1].NOMOTO
-    (run,) = records.independent_nomoto(
-        craft, records.Disturbance(0.3, 5.0), 1, np.random.default_rng(5), is_closed=True, seconds=120.0
+    craft = NOMOTO
+    (run,) = independent_nomoto(
+        craft, Disturbance(0.3, 5.0), 1, np.random.default_rng(5), is_closed=True, seconds=120.0
     )
-    reference = np.array([records.course_at(t + 1e-9, craft) for t in run.time])
+    reference = np.array([course_at(t + 1e-9, craft) for t in run.time])
     channels = {c: run[c] for c in ("delta", "psi", "r", "u")}
     record = st.Record.from_arrays("auto", run.time, {**channels, "psi_ref": reference})
-    gains = ControllerGains(gain=records.GAIN, rate_gain=records.RATE_GAIN, sample_s=records.SAMPLE_S)
+    gains = ControllerGains(gain=GAIN, rate_gain=RATE_GAIN, sample_s=SAMPLE_S)
     declared = Feedback(input="delta", output="psi", reference="psi_ref", controller=gains)
     model = st.models.nomoto().with_values(dict(craft.guess))
     return st.Trial(st.Ship("craft", {"L": 50.0}), (st.TrialRun(record),), model, feedback=declared)

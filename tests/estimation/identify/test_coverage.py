@@ -1,28 +1,14 @@
 """A few series of the coverage benchmark: ships the fitted model does not know, intervals that hold their measures."""
 
-import importlib
-import sys
-from pathlib import Path
-from types import ModuleType
-
+import interval_coverage as coverage
 import numpy as np
-import pytest
 
 from seatrial.estimation.estimate.settings import IntervalMethod
 
 SERIES = 3
 
 
-@pytest.fixture(scope="module")
-def coverage(repository: Path) -> ModuleType:
-    sys.path.insert(0, str(repository / "benchmarks"))
-    try:
-        return importlib.import_module("interval_coverage")
-    finally:
-        sys.path.pop(0)
-
-
-def test_intervals_hold_what_is_measured(coverage: ModuleType) -> None:
+def test_intervals_hold_what_is_measured() -> None:
     """Some 70 values of four ships: .85 is three standard deviations below .95 if a ship's values go together."""
     turns_and_zigzags = coverage.series(SERIES, 3, IntervalMethod.AUTO)
     assert len(turns_and_zigzags) > 12 * SERIES
@@ -32,7 +18,7 @@ def test_intervals_hold_what_is_measured(coverage: ModuleType) -> None:
     assert 0.003 < np.median(halves) < 0.1
 
 
-def test_the_table_can_fail(coverage: ModuleType) -> None:
+def test_the_table_can_fail() -> None:
     kinds = [coverage.MeasureInterval(0, "turn", "advance_L", 3.0, 3.2, half) for half in (0.1, 0.3)]
     rows = {line.quantity.split(" (")[0]: line for line in coverage.lines(kinds)}
     assert rows["turns: advance_L"].value == 0.5

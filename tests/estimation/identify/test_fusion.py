@@ -1,10 +1,8 @@
 """Force points beside records: the trial file to the fit, and a prediction that hardly moves with the prior."""
 
-import importlib
-import sys
 from pathlib import Path
-from types import ModuleType
 
+import fusion
 import numpy as np
 import pytest
 
@@ -60,17 +58,7 @@ free = ["Y_v", "Y_r", "Y_vvv", "Y_vrr", "N_v", "N_r", "N_rrr", "N_vvr"]
 """
 
 
-@pytest.fixture(scope="module")
-def fusion(repository: Path) -> ModuleType:
-    """The benchmark."""
-    sys.path.insert(0, str(repository / "benchmarks"))
-    try:
-        return importlib.import_module("fusion")
-    finally:
-        sys.path.pop(0)
-
-
-def write(folder: Path, fusion: ModuleType, side: str) -> Path:
+def write(folder: Path, side: str) -> Path:
     """A zigzag with noise, a table of points and the trial file over both."""
     rng, ship = np.random.default_rng(4), kvlcc2()
     run = fusion.noisy(fusion.manoeuvre(ship, fusion.programme("zigzag:20/20"), dt=0.5, inputs={"n": 10.4}), rng)
@@ -92,9 +80,9 @@ def table(path: Path, columns: dict[str, np.ndarray]) -> None:
 
 
 @pytest.fixture(scope="module")
-def fused(tmp_path_factory: pytest.TempPathFactory, fusion: ModuleType) -> Fit:
+def fused(tmp_path_factory: pytest.TempPathFactory) -> Fit:
     """The fit of one zigzag and the points."""
-    return identify(load_trial(write(tmp_path_factory.mktemp("fusion"), fusion, "starboard")))
+    return identify(load_trial(write(tmp_path_factory.mktemp("fusion"), "starboard")))
 
 
 def test_points_and_record_give_the_coefficients(fused: Fit) -> None:
@@ -116,13 +104,13 @@ def test_the_result_says_what_was_fused_and_cites_the_prior(fused: Fit) -> None:
     assert "Yoshimura & Masumoto" in next(c for c in fused.coefficients if c.name == "N_v").source
 
 
-def test_a_turned_force_is_refused_with_the_way_to_declare_it(tmp_path: Path, fusion: ModuleType) -> None:
-    trial = load_trial(write(tmp_path, fusion, "port"))
+def test_a_turned_force_is_refused_with_the_way_to_declare_it(tmp_path: Path) -> None:
+    trial = load_trial(write(tmp_path, "port"))
     with pytest.raises(InputError, match=r"column 'Y' \(Y\) looks turned.*turn positive of forces.measured.Y round"):
         identify(trial)
 
 
-def test_the_predicted_turn_hardly_moves_with_the_prior(fusion: ModuleType) -> None:
+def test_the_predicted_turn_hardly_moves_with_the_prior() -> None:
     """A sample of the benchmark, which also chooses a disturbance; output error alone takes a third of the time."""
     alone, together = fusion.compare_with_captive(seed=13, spreads=(10.0, 100.0), method=EstimateMethod.OUTPUT_ERROR)
     assert together.points <= fusion.LIMIT
@@ -131,7 +119,7 @@ def test_the_predicted_turn_hardly_moves_with_the_prior(fusion: ModuleType) -> N
     assert missed[1] < missed[0], "where the prior says little, the points do"
 
 
-def test_points_of_another_ship_are_noticed(fusion: ModuleType) -> None:
+def test_points_of_another_ship_are_noticed() -> None:
     ship = kvlcc2()
     points = fusion.simulate_captive_points(ship, np.random.default_rng(2), 1.2, revolutions=10.4)
     other = ship.with_values({"N_v": 1.5 * ship.parameters["N_v"].value})

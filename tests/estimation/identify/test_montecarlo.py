@@ -3,28 +3,14 @@
 Limits are the 0.1 % quantiles of a dozen Gaussian errors; the benchmark holds two hundred to narrow ones.
 """
 
-import importlib
-import sys
-from pathlib import Path
-from types import ModuleType
-
+import montecarlo
 import numpy as np
-import pytest
 from scipy import stats
 
 RUNS = 12
 
 
-@pytest.fixture(scope="module")
-def montecarlo(repository: Path) -> ModuleType:
-    sys.path.insert(0, str(repository / "benchmarks"))
-    try:
-        return importlib.import_module("montecarlo")
-    finally:
-        sys.path.pop(0)
-
-
-def test_errors_keep_to_the_bound(montecarlo: ModuleType) -> None:
+def test_errors_keep_to_the_bound() -> None:
     made = montecarlo.series(runs=RUNS, seed=1, executes=1)
     low, high = np.sqrt(stats.chi2.ppf([0.001, 0.999], RUNS) / RUNS)
     assert made.converged == RUNS
@@ -37,7 +23,7 @@ def test_errors_keep_to_the_bound(montecarlo: ModuleType) -> None:
     np.testing.assert_allclose(widths, stats.norm.ppf(0.975), rtol=0.25)
 
 
-def test_the_table_can_fail(montecarlo: ModuleType) -> None:
+def test_the_table_can_fail() -> None:
     """Errors twice the bound under intervals of one bound."""
     bound, draws = np.full(3, 0.1), np.random.default_rng(3).standard_normal((50, 3))
     wrong = montecarlo.Series(("a", "b", "c"), np.ones(3), bound, 0.2 * draws, np.full((50, 3), 0.1), 49, 50, 1.0)

@@ -1,13 +1,12 @@
 """Few memories of a disturbance and few changes of a reference: profiles in place of the information, and a warning."""
 
-import importlib
-import sys
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from disturbed_craft import Disturbance, independent_nomoto
+from standard_craft import NOMOTO
 
 from seatrial.core.results import Profile
 from seatrial.core.results.closed_loop import FeedbackEvidence
@@ -65,16 +64,11 @@ def test_vague_coefficients_have_profiles(
     assert default_profiles(one) == profiles
 
 
-def test_a_profile_of_prediction_error_has_the_curvature_of_its_information(repository: Path) -> None:
+def test_a_profile_of_prediction_error_has_the_curvature_of_its_information() -> None:
     """Half a standard error away the loss is a quarter of chi squared's unit, with all else fitted again."""
-    sys.path.insert(0, str(repository / "benchmarks"))
-    try:
-        records, crafts = importlib.import_module("disturbed_craft"), importlib.import_module("standard_craft")
-    finally:
-        sys.path.pop(0)
-    craft = crafts.NOMOTO
-    (run,) = records.independent_nomoto(
-        craft, records.Disturbance(0.5, 5.0), 1, np.random.default_rng(11), is_closed=False, seconds=120.0
+    craft = NOMOTO
+    (run,) = independent_nomoto(
+        craft, Disturbance(0.5, 5.0), 1, np.random.default_rng(11), is_closed=False, seconds=120.0
     )
     fitted = estimate_model(
         craft.model.with_values(dict(craft.guess)),

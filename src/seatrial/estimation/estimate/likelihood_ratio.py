@@ -55,11 +55,6 @@ class ProcessNoiseTest:
         return self.is_white or bool(np.max(self.inflation) <= WHITE_INFLATION)
 
     @property
-    def favours_prediction_error(self) -> bool:
-        """Prediction error is the criterion to use."""
-        return self.is_needed and self.is_nearly_white
-
-    @property
     def innovations_text(self) -> str:
         """Whether the innovations are white, with the test's number, in words."""
         p, after = f"p {self.whiteness.smallest:.2g}", float(np.max(self.inflation))
