@@ -29,7 +29,6 @@ EXCEPTIONS: dict[str, str] = {
     "data/example_series: write_demo": "tests/api/test_api.py loads what it writes",
     "data/folder: findings_document": "`seatrial check --json` writes it: tests/cli",
     "data/read: serve": "runs in the process that reads each binary format; tests/data/read/test_formats.py",
-    "data/trial: checked_records": "every identification reads its records by it: tests/estimation/identify",
     "data/trial: trial_schema": "docs/write_schemas.py writes the published schema with it",
     "estimation/estimate: better_estimate": _WINDOW,
     "estimation/estimate: cold_start": _WINDOW,

@@ -1,12 +1,13 @@
 """From files to checked records: units, signs, roles; what errors do; trimming."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from seatrial.core.values import Finding, InputError, Record, RecordKind, Severity
-from seatrial.data.trial import Trimming, load_records, load_trial, refuse_errors
+from seatrial.data.trial import Trimming, checked_records, load_records, load_trial, refuse_errors
 from seatrial.data.trial.records import apply_trimming
 
 
@@ -40,6 +41,34 @@ def test_errors_refuse_unless_accepted() -> None:
     with pytest.raises(InputError, match=r"rudder turns the other way.*set positive.*accept = \[\"rudder-sign\"\]"):
         refuse_errors((error,), ())
     assert refuse_errors((error,), ("rudder-sign",))[0].severity is Severity.WARNING
+
+
+def test_a_validation_run_that_cannot_be_read_is_a_finding(trial_folder: Path) -> None:
+    (trial_folder / "c_2024-05-02.csv").write_text("nothing\nof use\n")
+    checked = checked_records(load_trial(trial_folder / "trial.toml"))
+    assert [r.record.name for r in checked.records] == ["a_2024-05-01", "b_2024-05-02"]
+    (finding,) = [f for f in checked.findings if f.code == "not-read"]
+    assert finding.severity is Severity.WARNING
+    assert "c_2024-05-02.csv: no column" in finding.message
+    (trial_folder / "a_2024-05-01.csv").write_text("nothing\nof use\n")
+    with pytest.raises(InputError, match="no column"):
+        checked_records(load_trial(trial_folder / "trial.toml"))
+
+
+def test_a_validation_run_that_fails_the_checks_is_not_predicted(trial_folder: Path) -> None:
+    header, *rows = (trial_folder / "c_2024-05-02.csv").read_text().splitlines()
+    turned = [",".join((*cells[:4], str(-float(cells[4])), cells[5])) for cells in (row.split(",") for row in rows)]
+    (trial_folder / "c_2024-05-02.csv").write_text("\n".join([header, *turned]) + "\n")
+    trial = load_trial(trial_folder / "trial.toml")
+    errors = [f for f in load_records(trial)[1] if f.severity is Severity.ERROR]
+    checked = checked_records(trial)
+    assert errors
+    assert {f.code for f in errors} <= {f.code for f in checked.findings}
+    assert len(checked.records) == 2
+    (finding,) = [f for f in checked.findings if f.code == "not-predicted"]
+    assert finding.advice.count(f'"{errors[0].code}"') == 1
+    accepted = replace(trial, accept=tuple(f.code for f in errors))
+    assert len(checked_records(accepted).records) == 3
 
 
 def test_noise_beyond_all_that_is_recorded_is_refused(trial_file: Path) -> None:

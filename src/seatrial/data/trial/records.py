@@ -19,6 +19,8 @@ from seatrial.physics.sea.wave_forces import with_wave_forces
 # speed at the end of an acceleration run over the speed at the first rudder execution; largest standard deviation of
 # a sensor over the largest value recorded: chosen
 _ACCELERATED_FRACTION, _LARGEST_NOISE = 0.9, 1000.0
+_NOT_READ = "not-read"
+"""Code of the finding on a validation run whose file cannot be read."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,33 +43,76 @@ class CheckedRecords:
 
 
 def checked_records(trial: Trial) -> CheckedRecords:
-    """Load every run that is not left out and refuse errors that the trial does not accept.
+    """Load every run that is not left out and refuse errors of training runs that the trial does not accept.
+
+    A validation run with such an error is not predicted, which a finding says: the fit does not rest on it.
 
     Raises:
         InputError: as `load_records` and `refuse_errors`.
     """
     records, findings = load_records(trial)
+    records, findings = _without_failed_validation(records, findings, trial.accept)
     findings, rate = refuse_errors(findings, trial.accept), trial.estimate.rate
     if rate is not None:
         records = tuple(replace(r, record=r.record.resampled(rate)) for r in records)
     return CheckedRecords(records, findings)
 
 
+def _without_failed_validation(
+    records: tuple[TrialRecord, ...], findings: tuple[Finding, ...], accept: tuple[str, ...]
+) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ...]]:
+    """The records without validation runs that fail the checks; their errors as warnings, a finding for each run."""
+    failed = {
+        index: errors for index, r in enumerate(records)
+        if r.role is Role.VALIDATE and (errors := [f for f in r.findings if _is_open_error(f, accept)])
+    }  # fmt: skip
+    lowered = [f for errors in failed.values() for f in errors] + [f for f in findings if f.code == _NOT_READ]
+    skipped = [_failed_validation_finding(records[index], errors) for index, errors in failed.items()]
+    kept = tuple(replace(f, severity=Severity.WARNING) if f in lowered else f for f in findings)
+    return tuple(r for i, r in enumerate(records) if i not in failed), (*kept, *skipped)
+
+
+def _failed_validation_finding(run: TrialRecord, errors: Sequence[Finding]) -> Finding:
+    codes = tuple(dict.fromkeys(f.code for f in errors))
+    accepted = ", ".join(f'"{code}"' for code in codes)
+    return Finding(
+        Severity.WARNING, "not-predicted",
+        f"validation run '{run.record.name}' does not pass the checks and is not predicted; the fit does not rest on "
+        "it", ", ".join(codes), f"correct the run; or, if it is right as it is, add accept = [{accepted}] at the top "
+        "of the trial file",
+    )  # fmt: skip
+
+
 def load_records(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ...]]:
     """Read, repair and check every run that is not left out; the trial's own findings come first.
 
+    A validation run that cannot be read is left out, which an error finding says.
+
     Raises:
-        InputError: the trial has no records; a file cannot be parsed; trimming leaves nothing.
+        InputError: the trial has no records; a training run's file cannot be parsed, or trimming leaves nothing of it.
     """
     if not trial.runs:
         where = f"{trial.path}: " if trial.path else ""
         raise InputError(f"{where}there are no [[records]] to read; add them, or plan a trial with 'seatrial design'")
-    records = tuple(load_run(run, trial.reference_point) for run in trial.runs if run.role is not Role.LEAVE_OUT)
+    read = [_load_unless_bad(run, trial.reference_point) for run in trial.runs if run.role is not Role.LEAVE_OUT]
+    records = tuple(r for r in read if isinstance(r, TrialRecord))
+    unread = tuple(r for r in read if isinstance(r, Finding))
     for channel, deviation in trial.noise.items():
         _refuse_absurd_noise(channel, deviation, [r.record for r in records])
     records, repeated = _without_copies(records)
     of_runs = (finding for record in records for finding in record.findings)
-    return records, (*trial.findings, *repeated, *of_runs, *_craft_findings(trial, records))
+    return records, (*trial.findings, *unread, *repeated, *of_runs, *_craft_findings(trial, records))
+
+
+def _load_unless_bad(run: TrialRun, reference_point: float) -> TrialRecord | Finding:
+    """The run, or of a validation run that cannot be read the finding that says why."""
+    try:
+        return load_run(run, reference_point)
+    except InputError as error:
+        if run.role is not Role.VALIDATE:
+            raise
+        advice = "correct the file, or leave the run out; the fit does not rest on it"
+        return Finding(Severity.ERROR, _NOT_READ, f"a validation run cannot be read: {error}", "", advice)
 
 
 def _craft_findings(trial: Trial, records: tuple[TrialRecord, ...]) -> tuple[Finding, ...]:
@@ -151,7 +196,7 @@ def refuse_errors(findings: tuple[Finding, ...], accept: tuple[str, ...]) -> tup
     Raises:
         InputError: an error finding that the trial does not accept.
     """
-    open_errors = [f for f in findings if f.severity is Severity.ERROR and f.code not in accept]
+    open_errors = [f for f in findings if _is_open_error(f, accept)]
     if open_errors:
         first, more = open_errors[0], len(open_errors) - 1
         rest = f" (and {more} more; run 'seatrial check')" if more else ""
@@ -161,3 +206,7 @@ def refuse_errors(findings: tuple[Finding, ...], accept: tuple[str, ...]) -> tup
             f'or, if it is right as it is, add accept = ["{first.code}"] at the top of the trial file'
         )
     return tuple(replace(f, severity=Severity.WARNING) if f.severity is Severity.ERROR else f for f in findings)
+
+
+def _is_open_error(finding: Finding, accept: tuple[str, ...]) -> bool:
+    return finding.severity is Severity.ERROR and finding.code not in accept
