@@ -4,12 +4,10 @@ A line of text (`seatrial journal 1 IDENTITY COLUMNS`), then entries, little-end
 CRC-32; `R`, length (u16), why a run begins (UTF-8), CRC-32.
 """
 
-import errno
 import hashlib
 import mmap
 import os
 import struct
-import zlib
 from array import array
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -22,11 +20,11 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results.online import Sample
 from seatrial.core.values import InputError
+from seatrial.core.values.frames import FrameWriter, whole_frames
 from seatrial.data.read import Layout
-from seatrial.numerics.platform import flush_to_disk, lock_exclusively
+from seatrial.numerics.platform import lock_exclusively
 
 _HEADER_PREFIX = b"seatrial journal 1 "
-_CRC = struct.Struct("<I")
 _SAMPLE_TAG, _RUN_TAG = b"S", b"R"
 _SAMPLE_HEAD = struct.Struct("<cd")
 # s between two flushes: with the wait for samples, an entry is on disk within a second
@@ -69,9 +67,7 @@ class Journal:
         """
         self.path, self.torn_bytes, self.damaged_places, self.write_error = path, 0, 0, ""
         self._columns, self._sample_size = columns, _SAMPLE_HEAD.size + 8 * columns  # bytes of a float64
-        self._pending: list[bytes] = []
         self._frames = array("q")  # offsets of the whole entries
-        self._clock, self._flushed_at = clock, clock()
         header = _HEADER_PREFIX + f"{identity} {columns}\n".encode()
         if path.exists() and not path.is_file():
             raise InputError(f"journal '{path}' is a folder, pipe or device; name a file")
@@ -85,8 +81,8 @@ class Journal:
                 raise InputError(
                     f"journal '{path}' is being written by another process; end that process, or name another journal"
                 )
-            self._entries_start = _check_header(self._file, header, path)
-            self._recover()
+            self._recover(_check_header(self._file, header, path))
+            self._writer = FrameWriter(self._file, _FLUSH_S, clock)
         except InputError:
             self._file.close()
             raise
@@ -102,28 +98,24 @@ class Journal:
         return not self._frames
 
     def append(self, entry: JournalEntry) -> None:
-        """Append an entry, to be written by `write_pending`."""
+        """Append an entry, to be written by `write_pending`; after a write error it is dropped."""
+        if self.write_error:
+            return
         match entry:
             case Sample(time=time, values=values):
                 data = _SAMPLE_HEAD.pack(_SAMPLE_TAG, time) + values.astype("<f8").tobytes()
             case RunEntry(reason=reason):
                 text = reason.encode()[: 2**16 - 1]
                 data = _RUN_TAG + struct.pack("<H", len(text)) + text
-        self._pending.append(data + _CRC.pack(zlib.crc32(data)))
+        self._writer.append(data)
 
     def write_pending(self) -> None:
         """Hand entries to the operating system, where they survive this process; every 0.7 s also to the disk."""
-        data, self._pending = b"".join(self._pending), []
-        if data:
-            self._try_write(lambda: _write_all(self._file, data))
-        if self._clock() - self._flushed_at >= _FLUSH_S:
-            self._flushed_at = self._clock()
-            self._try_write(lambda: flush_to_disk(self._file.fileno()))
+        self._try_write(self._writer.write_pending)
 
     def flush(self) -> None:
         """Write all entries through to the disk now."""
-        self._flushed_at = -_FLUSH_S
-        self.write_pending()
+        self._try_write(self._writer.flush)
 
     def close(self) -> None:
         """Write all entries through to the disk and close the file."""
@@ -132,12 +124,11 @@ class Journal:
             self._content.close()  # it holds the file, and with it the lock
             self._try_write(self._file.close)
 
-    def _recover(self) -> None:
+    def _recover(self, start: int) -> None:
         """Find the whole entries, skip what is damaged between them, and cut off a torn end."""
-        size = self._file.seek(0, os.SEEK_END)
+        size, end = self._file.seek(0, os.SEEK_END), start
         self._content = mmap.mmap(self._file.fileno(), size, access=mmap.ACCESS_READ)
-        end = self._entries_start
-        for frame in self._whole_frames(size):
+        for frame in whole_frames(self._content, start, self._entry_size):
             self.damaged_places += frame.start > end
             self._frames.append(frame.start)
             end = frame.stop
@@ -148,26 +139,12 @@ class Journal:
         self._file.truncate(end)
         self._file.seek(end)
 
-    def _whole_frames(self, size: int) -> Iterator[range]:
-        """Yield the bytes of every entry whose checksum holds; behind damage, from the next one on."""
-        offset = self._entries_start
-        while offset < size:
-            stop = self._frame_stop(offset)
-            if stop:
-                yield range(offset, stop)
-            offset = stop or offset + 1
-
-    def _frame_stop(self, offset: int) -> int:
-        """Return the byte behind the entry that begins at `offset`; 0 where there is no whole one."""
-        data, size = self._content, self._sample_size
-        if data[offset : offset + 1] == _RUN_TAG and len(data) >= offset + 3:
-            size = 3 + struct.unpack_from("<H", data, offset + 1)[0]
-        elif data[offset : offset + 1] != _SAMPLE_TAG:
-            return 0
-        stop = offset + size + _CRC.size
-        if stop > len(data) or _CRC.unpack_from(data, offset + size)[0] != zlib.crc32(data[offset : offset + size]):
-            return 0
-        return stop
+    def _entry_size(self, data: bytes | mmap.mmap, offset: int) -> int:
+        """Return the bytes of the entry that begins at `offset`, without its checksum; 0 where none can begin."""
+        tag = data[offset : offset + 1]
+        if tag == _RUN_TAG and len(data) >= offset + 3:
+            return 3 + struct.unpack_from("<H", data, offset + 1)[0]
+        return self._sample_size if tag == _SAMPLE_TAG else 0
 
     def _parsed(self, offset: int) -> JournalEntry:
         """Return the entry that begins at `offset`."""
@@ -188,12 +165,6 @@ class Journal:
             self.write_error = (
                 f"journal '{self.path}' is no longer written ({error.strerror}); free disk space and start again"
             )
-
-
-def _write_all(file: RawIOBase, data: bytes) -> None:
-    """Write all of it or raise an error: half an entry must be the last."""
-    if file.write(data) != len(data):
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
 def _check_header(file: RawIOBase, header: bytes, path: Path) -> int:
