@@ -30,7 +30,7 @@ def test_a_bare_log_is_listed(tmp_path: Path) -> None:
 def test_a_draft_is_written_once_and_checked(tmp_path: Path) -> None:
     log, trial = write(tmp_path / "run.csv", BASE | {"rot": TRUTH["r"]}), tmp_path / "trial.toml"
     text = output("init", str(log), "--out", str(trial))
-    assert "follows d(psi)/dt" in text and "zigzag1, " in text and "Next: 3 manoeuvres were found; " in text
+    assert "follows d(psi)/dt" in text and "zigzag1, " in text and "of 3 manoeuvres in it, then seatrial check" in text
     assert "zigzag1" in trial.with_suffix(".html").read_text(encoding="utf-8")
     with pytest.raises(InputError, match="exists and is not overwritten"):
         output("init", str(log), "--out", str(trial))
@@ -59,7 +59,7 @@ def test_a_draft_with_manoeuvres_offers_their_parts_and_a_model_of_its_inputs(tm
     write(tmp_path / "a.csv", columns)
     write(tmp_path / "b.csv", columns)
     text = output("init", str(tmp_path), "--out", str(tmp_path / "trial.toml"))
-    assert "6 manoeuvres were found; uncomment their parts" in text
+    assert "uncomment the parts you want of 6 manoeuvres" in text
     draft = (tmp_path / "trial.toml").read_text(encoding="utf-8")
     assert draft.count("# parts = [") == 2 and "zigzag2" in draft and '# name = "thrusters"' in draft
 

@@ -21,7 +21,7 @@ def test_intervals_floor_extrapolation_and_what_is_not_identifiable_are_printed(
     print_fit(fit)
     text = printed(capsys)
     assert "overshoot_1_deg: 8.42 [8.083, 8.715], measured 8.31" in text
-    assert "process noise alone: psi_deg 1.4" in text and "extrapolation index 1.90: beyond" in text
+    assert "process noise alone: heading 1.4 deg" in text and "extrapolation index 1.90: beyond" in text
     assert "the records determine about 6 of 11 free coefficients" in text
     assert fit.identifiability is not None and fit.identifiability.structural[0].text in text
     assert fit.noise_model is not None and fit.noise_model.text in text

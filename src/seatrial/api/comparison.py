@@ -13,8 +13,6 @@ if TYPE_CHECKING:
 MANOEUVRES = ("turning-circle:35", "turning-circle:35:port", "zigzag:10/10", "zigzag:20/20")
 """Manoeuvres that are compared where none are named: those of IMO MSC.137(76)."""
 
-_ORDER = "rudder_deg"  # what was ordered, not what the ship does
-
 
 def compare(
     first: "Fit",
@@ -67,12 +65,13 @@ def _manoeuvre(first: "Fit", second: "Fit", manoeuvre: str, speed: float | None)
     """Both models steered through a manoeuvre, and the measures that both show."""
     from seatrial.core.results.comparison import ManoeuvreDifferences
     from seatrial.estimation.information.differences import differences
+    from seatrial.physics.manoeuvres.measures import ORDERED_MEASURE
 
     try:
         both = [_measured(fit, manoeuvre, speed) for fit in (first, second)]
     except InputError as error:
         return ManoeuvreDifferences(manoeuvre, (), str(error))
-    shared = [name for name in both[0] if name in both[1] and name != _ORDER]
+    shared = [name for name in both[0] if name in both[1] and name != ORDERED_MEASURE]
     first_values, second_values = ([one[name] for name in shared] for one in both)
     return ManoeuvreDifferences(manoeuvre, differences(first_values, second_values))
 

@@ -56,6 +56,8 @@ def init(
 
 def _after_draft(draft: "DraftTrial", out: Path) -> str:
     """What to do next: name columns where none is recognised, decide what is open, else check."""
+    from seatrial.core.text.words import counted
+
     log = next((one.path for one in draft.surveys if all(topic.time is None for topic in one.topics)), None)
     if log is not None:
         return (
@@ -64,11 +66,10 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
     if not any(g.is_used for part in draft.guesses for g in part):
         log = draft.surveys[0].path
         return f"Next: no column is recognised; seatrial check {log} lists them, name channels in {out}"
-    first = "read it, decide what is OPEN, then " if draft.open_questions else ""
     count = sum(map(len, draft.stretches))
-    were = "manoeuvre was" if count == 1 else "manoeuvres were"
-    parts = f"{count} {were} found; uncomment their parts in {out}, then " if count else ""
-    return f"Next: {first}{parts}seatrial check {out}"
+    steps = ["decide what is OPEN in it"] if draft.open_questions else []
+    steps += [f"uncomment the parts you want of {counted(count, 'manoeuvre')} in it"] if count else []
+    return f"Next: {', '.join([f'read {out}', *steps])}, then seatrial check {out}"
 
 
 def _print_guesses(guesses: "Sequence[ColumnGuess]") -> None:

@@ -9,6 +9,7 @@ import typer
 
 from seatrial.cli.application import Json, OwnModelPath, Seed, app, own_model, result_document
 from seatrial.cli.output import print_measures, progress_reporter, write_json
+from seatrial.cli.run_errors import errors_text
 from seatrial.cli.tuning_output import print_tuning
 
 
@@ -122,7 +123,7 @@ def simulate(
     print_measures(measures, intervals, leaving)
     rms = {} if measured is None else api.rms_differences(measured, record)
     if measured is not None and rms:
-        print(f"against {measured.name}: rms {', '.join(f'{name} {value:.3g}' for name, value in rms.items())}")
+        print(f"against {measured.name}: rms {errors_text(rms)}")
     write_json(
         json,
         lambda: {

@@ -6,6 +6,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from seatrial.cli.run_errors import ERROR_DIGITS, error_text, errors_text, label_and_unit
+
 if TYPE_CHECKING:
     from seatrial.core.results import (
         Baseline,
@@ -20,7 +22,6 @@ if TYPE_CHECKING:
         WindowScore,
     )
     from seatrial.core.values import Finding
-    from seatrial.data.trial.correction import Correction
 
 # index of extrapolation beyond which intervals are lower limits; chosen, as in the report
 EXTRAPOLATION_LIMIT = 1.2
@@ -29,8 +30,7 @@ NOT_DETERMINED = "not determined"
 # orders that are printed; chosen: the file has them all
 MAX_ORDERS_PRINTED = 8
 SEVERITY_MARK = {"error": "ERROR  ", "warning": "warning", "info": "note   "}
-# significant digits of estimates, of errors; chosen
-DIGITS, ERROR_DIGITS = 5, 3
+DIGITS = 5  # significant ones of estimates; chosen
 
 
 def print_lines(lines: Iterable[str], indent: str = "") -> None:
@@ -67,45 +67,6 @@ def print_findings(findings: "Sequence[Finding]", per_code: int, rest: str = "--
             print_lines([f"        advice: {alike[0].advice}"])
     errors = sum(finding.severity.value == "error" for finding in findings)
     print(f"{counted(len(findings), 'finding')}, {counted(errors, 'error')} among them")
-
-
-def write_correction(correction: "Correction", trial: Path, per_code: int) -> None:
-    """Write the corrected trial file beside the original, and print what was changed and what is left.
-
-    Raises:
-        InputError: there is a corrected file already.
-    """
-    from seatrial.core.values import InputError
-    from seatrial.core.values.files import write_atomically
-    from seatrial.data.trial.correction import change_lines
-
-    fixed = trial.with_name(f"{trial.stem}.fixed.toml")
-    print_lines(change_lines(correction))
-    if not correction.applied:
-        print("nothing was changed: no error has an edit that removes it")
-        print_findings(correction.findings, per_code)
-        return
-    if fixed.exists():
-        raise InputError(f"'{fixed}' exists and is not overwritten; move or remove it")
-    write_atomically(fixed, correction.text.encode())
-    print_findings(correction.findings, per_code, f"seatrial check {fixed} --all shows them")
-    print(f"corrected: {fixed}")
-    print(f"Next: seatrial check {fixed}")
-
-
-def next_step(findings: "tuple[Finding, ...]", trial: Path) -> str:
-    """Return what to do after a check: correct, the advice of the first error, what a model lacks, or to identify."""
-    from seatrial.core.text.plain import ascii_text
-
-    errors = [finding for finding in findings if finding.severity.value == "error"]
-    missing = next((finding for finding in findings if finding.code == "model"), None)
-    if any(error.edits for error in errors):
-        return f"Next: seatrial check {trial} --fix"
-    if errors:
-        return ascii_text(f"Next: {errors[0].advice}")
-    if missing is not None:
-        return ascii_text(f"Next: identify cannot start yet: {missing.advice}")
-    return f"Next: seatrial identify {trial} --out results"
 
 
 def print_fit(fit: "Fit") -> None:
@@ -168,15 +129,15 @@ def _print_method_comparison(fit: "Fit", reference: "ReferenceEstimate") -> None
 def _print_prediction(p: "Prediction") -> None:
     from seatrial.core.text.numbers import exact
 
-    rms = f"rms {_named_numbers(p.rms)}" if p.rms else "no error, nothing can be compared"
+    rms = f"rms {errors_text(p.rms)}" if p.rms else "no error, nothing can be compared"
     until = "" if p.divergence is None else f"; it diverges, and its first {exact(p.divergence.seconds, 4)} s count"
     print_lines([f"validation {p.record}: {rms}{until}"])
     for w in p.windows:
         _print_window(w)
     if p.noise_floor:
-        print_lines([f"process noise alone: {_named_numbers(p.noise_floor)}"], "  ")
+        print_lines([f"process noise alone: {errors_text(p.noise_floor)}"], "  ")
     if p.tied_spread:
-        print_lines([f"tied models differ by: {_named_numbers(p.tied_spread)}"], "  ")
+        print_lines([f"tied models differ by: {errors_text(p.tied_spread)}"], "  ")
     if p.extrapolation is not None:
         _print_extrapolation(p.extrapolation)
     for name, m in p.measures.items():
@@ -223,24 +184,19 @@ def _print_frequency_responses(fit: "Fit") -> None:
 
 def _print_window(w: "WindowScore") -> None:
     """Where a baseline errs less that comes first; then the scores by channel with those of the baselines."""
-    from seatrial.core.text.numbers import exact, fixed
+    from seatrial.core.text.numbers import fixed
     from seatrial.core.text.words import counted
 
-    better = [f"{name} by {baseline}" for name, baseline in w.better_baselines.items()]
+    better = [f"{label_and_unit(name)[0]} by {baseline}" for name, baseline in w.better_baselines.items()]
     note = f"; predicted better without this fit: {', '.join(better)}" if better else ""
     print_lines([f"{counted(w.count, 'window')} of {w.window}{note}"], "  ")
     rows = [["", "rms", "fit %", "R2", "in band", *(b.name for b in w.baselines)]]
     for name, s in w.scores.items():
         band = "" if s.inside_band is None else f"{100.0 * s.inside_band:.0f} %"
-        rivals = [exact(b.rms[name], ERROR_DIGITS) if name in b.rms else "" for b in w.baselines]
-        rows.append([name, exact(s.rms, ERROR_DIGITS), fixed(s.fit_percent, 1), fixed(s.r_squared, 3), band, *rivals])
+        rivals = [error_text(name, b.rms[name]) if name in b.rms else "" for b in w.baselines]
+        name_and_unit, error = ", ".join(label_and_unit(name)), error_text(name, s.rms)
+        rows.append([name_and_unit, error, fixed(s.fit_percent, 1), fixed(s.r_squared, 3), band, *rivals])
     print_table(rows, indent="    ")
-
-
-def _named_numbers(values: Mapping[str, float]) -> str:
-    from seatrial.core.text.numbers import exact
-
-    return ", ".join(f"{name} {exact(value, ERROR_DIGITS)}" for name, value in values.items())
 
 
 def _print_extrapolation(e: "Extrapolation") -> None:

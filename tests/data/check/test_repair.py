@@ -46,7 +46,7 @@ def test_a_held_position_that_catches_up_is_interpolated() -> None:
     x, y = np.array(record["x0"]), np.array(record["y0"])
     x[500:508], y[500:508] = x[499], y[499]
     mended, findings = repair(with_values(record, x0=x, y0=y))
-    assert [f.code for f in findings] == ["jump"] and "8 samples it stood still" in findings[0].message
+    assert [f.code for f in findings] == ["jump"] and "8 held samples before a jump interpolated" in findings[0].message
     np.testing.assert_allclose(mended["x0"], record["x0"], atol=0.01)
 
 

@@ -113,6 +113,22 @@ def test_parts_lie_within_one_mode_and_say_whether_a_controller_was_on(tmp_path:
     assert "mode HOLD: a controller is on, its orders follow the motion" in stretches[-1].evidence
 
 
+def test_a_zigzag_after_a_pull_out_gets_an_approach_and_says_that_it_is_not_steady() -> None:
+    """The circle gives up the end of its pull-out; the speed recovers by exp(-t / 60 s)."""
+    run = 0.35 * over(TIME, 100.0, 400.0)
+    for row in range(920, 1500):  # 460 to 750 s: a zigzag 11/11, each switch by the heading reached
+        turned = nomoto(run[: row + 1], np.ones(row + 1))["psi"][[920, row]] if row % 4 == 0 else None
+        run[row] = run[row - 1] or 0.2
+        if turned is not None and np.sign(run[row]) * (turned[1] - turned[0]) > 0.2:
+            run[row] = -run[row]
+    u = np.where(TIME < 400.0, np.where(TIME < 100.0, 4.0, 2.0), 4.0 - 2.0 * np.exp(-(TIME - 400.0) / 60.0))
+    circle, zigzag = find_stretches((), nomoto(run, u))[1:3]
+    assert circle.name.startswith("circle_starboard_with_pull_out") and zigzag.name == "zigzag"
+    assert circle.stop == zigzag.start < 460.0 - 10.0
+    assert "rudder 11 deg, switched at 13 deg of heading; no steady approach: speed" in zigzag.evidence
+    assert "approach" not in circle.evidence
+
+
 def tracked(record: Record) -> Record:
     """The record with the track of its speed and heading, and no sway."""
     u, psi = record["u"], record["psi"]

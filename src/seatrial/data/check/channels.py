@@ -5,6 +5,7 @@ import numpy as np
 from seatrial.core.values import Array, Finding, Record, Severity
 from seatrial.data.check.motion import RecordedMotion
 from seatrial.data.check.repair import INPUT_CHANNELS
+from seatrial.data.check.run_clock import moment
 from seatrial.data.check.signal import (
     jackknife_least_squares,
     mask_intervals,
@@ -59,7 +60,7 @@ def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]
         return []
     text = f"record '{record.name}': channel '{symbol}' is stuck for {last - first + 1} samples"
     end = record.time[min(last, len(values) - 1)]
-    evidence = f"{values[first]:.6g} from t = {record.time[first]:.6g} to {end:.6g} s"
+    evidence = f"{values[first]:.6g} from {moment(record.time[first], end)}"
     return [Finding(Severity.WARNING, "stuck", text, evidence, "look whether the sensor stopped or the ship lay still")]
 
 

@@ -3,8 +3,11 @@
 from collections.abc import Iterable
 from dataclasses import replace
 
+import numpy as np
+
 from seatrial.core.values import Finding, Record, Severity, TrialEdit
 from seatrial.core.values.notation import OPPOSITE
+from seatrial.data.check.run_clock import on_run_clock
 
 REVERSED = '"reversed"'
 """Value of an edit of ``positive`` that stands for the opposite of what is declared."""
@@ -33,6 +36,7 @@ CONSEQUENCES: dict[str, str] = {
     "lag": "damping and lever coefficients absorb the delay",
     "closure": "what the channels contradict one another by goes into the coefficients as bias",
     "speed-scale": "every coefficient of a force is wrong by the factor or its square",
+    "approach": "overshoots, advance and approach speed are those of a craft that is still settling",
     "dead-thruster": "its coefficients cannot be estimated",
     "no-excitation": "the coefficients of steering cannot be estimated",
     "copied-run": "a run that counts twice makes intervals too narrow",
@@ -48,13 +52,15 @@ CONSEQUENCES: dict[str, str] = {
 
 
 def completed(findings: Iterable[Finding], record: Record) -> list[Finding]:
-    """Return findings with consequence and exact edits, most harmful first.
+    """Return findings with consequence, exact edits and times from the start of the run, most harmful first.
 
     record: as it was read, with the declared directions that edits of ``positive`` reverse.
     """
     codes = list(CONSEQUENCES)
     severities = list(Severity)
-    final = [_with_edits(replace(one, consequence=CONSEQUENCES.get(one.code, "")), record) for one in findings]
+    start = float(np.nanmin(record.time))
+    with_consequence = [replace(one, consequence=CONSEQUENCES.get(one.code, "")) for one in findings]
+    final = [on_run_clock(_with_edits(one, record), start) for one in with_consequence]
     return sorted(
         final,
         key=lambda one: (

@@ -4,6 +4,7 @@ import numpy as np
 
 from seatrial.core.values import Finding, Record, Severity
 from seatrial.data.check.repair import complete_segments
+from seatrial.data.check.run_clock import moment
 
 # share of the rows of a run that a repair may drop as a warning; the project's rule
 LARGEST_DROPPED_SHARE = 0.05
@@ -28,7 +29,7 @@ def dropped_rows_findings(record: Record, even: Record, complete: Record) -> tup
             Severity.ERROR,
             "rows-dropped",
             f"record '{record.name}': the repair drops {1.0 - kept / rows:.0%} of its rows",
-            f"{kept} of {rows} rows remain, t = {complete.time[0]:.6g} to {complete.time[-1]:.6g} s",
+            f"{kept} of {rows} rows remain, {moment(complete.time[0], complete.time[-1])}",
             _advice(record, even),
         ),
     )

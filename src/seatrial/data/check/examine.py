@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from seatrial.core.values import Finding, Record
+from seatrial.data.check.approach_phase import approach_findings
 from seatrial.data.check.channels import channel_findings, lag_findings
 from seatrial.data.check.comparison_stretch import comparison_stretch
 from seatrial.data.check.consequences import completed
@@ -63,6 +64,7 @@ def _comparison_findings(record: Record) -> list[Finding]:
         *rudder_findings(record),
         *lag_findings(record, motion),
         *phase_findings(record),
+        *approach_findings(record),
         *feedback_findings(record),
     ]
 

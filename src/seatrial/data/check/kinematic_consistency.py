@@ -1,5 +1,6 @@
 """Integrated velocity against position over the whole record: the place where wrong points show."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,8 +14,8 @@ from seatrial.data.check.signal import cumulative_integral, least_squares, sampl
 CERTAIN_GAIN, DOUBTFUL_GAIN = 4.0, 2.0
 # ratio of residuals up to which two causes explain an error alike, and both are named; chosen
 AMBIGUOUS_RATIO = 1.2
-# causes that a message names at most; chosen: it stays one sentence
-MOST_CAUSES = 3
+# causes that a message names at most, and residuals listed beside the best one; chosen: it stays one sentence
+MOST_CAUSES, MOST_RESIDUALS = 3, 3
 # error of sway over sway where its sign is wrong, and how far from it a fit may end; chosen
 REVERSED_SWAY, SWAY_MARGIN = 2.0, 0.4
 # what a cause must explain, in rms of integrated velocity noise and in rms of the noise of positions, where it does not
@@ -63,14 +64,20 @@ def kinematic_consistency_findings(motion: RecordedMotion) -> tuple[Finding, ...
         return (Finding(Severity.WARNING, "closure", message, evidence, advice),)
     alike = [one.text for one in ranked if one.residual_rms <= AMBIGUOUS_RATIO * best.residual_rms]
     message += f"; {' or '.join(alike[:MOST_CAUSES])} would explain it"
-    evidence += f", {best.residual_rms:.3g} m with it; with others " + ", ".join(
-        f"{one.name} {one.residual_rms:.3g} m" for one in ranked[1:]
-    )
+    evidence += f", {_residuals_text(ranked)}"
     is_distinct = second.residual_rms > DOUBTFUL_GAIN * best.residual_rms
     is_certain = best.name == "point" and gain > CERTAIN_GAIN and is_distinct
     severity = Severity.ERROR if is_certain else Severity.WARNING
     edits = best.edits if is_distinct else ()
     return (Finding(severity, "closure", message, evidence, best.advice, edits=edits),)
+
+
+def _residuals_text(ranked: Sequence[ErrorCause]) -> str:
+    """The rms that each cause leaves: of the best one and the next by name, of the rest the range."""
+    texts = [f"{one.name} {one.residual_rms:.2g} m" for one in ranked[1 : 1 + MOST_RESIDUALS]]
+    rest = [one.residual_rms for one in ranked[1 + MOST_RESIDUALS :]]
+    others = f", {len(rest)} others {min(rest):.2g} to {max(rest):.2g} m" if rest else ""
+    return f"{ranked[0].residual_rms:.2g} m with it; with {', '.join(texts)}{others}"
 
 
 def integrated_noise(motion: RecordedMotion) -> float:
@@ -155,10 +162,10 @@ def _cause_text(
         case "point":
             place = motion.record.channel("v").reference_point + size
             edits = tuple(TrialEdit(f"channels.{symbol}.reference_point", f"{place:.4g}") for symbol in ("u", "v"))
-            text = f"velocities referred to a point {size:+.3g} m ahead of the positions' point"
+            text = f"velocities of a point {size:+.3g} m ahead of the positions'"
             return text, "correct reference_point of u, v or of x0, y0", edits
         case "unturned lever" | "unturned lever to the point":
-            text = f"velocities moved by a lever of {size:+.3g} m that was not turned with the heading"
+            text = f"a lever of {size:+.3g} m not turned with the heading"
             return text, "give the velocities as they were measured, and reference_point", ()
         case "lag of velocity":
             return f"a lag of {size:.2g} s of the velocities", "shift u, v by the lag, or estimate it", ()

@@ -8,6 +8,7 @@ from seatrial.core.text.words import counted
 from seatrial.core.values import Channel, Finding, InputError, Record, Severity
 from seatrial.core.values.notation import COMMANDS, REFERENCES
 from seatrial.data.check.jumps import spike_rows, track_jumps
+from seatrial.data.check.run_clock import moment
 from seatrial.data.check.signal import RowIndices, mask_intervals, unwrapped
 from seatrial.data.check.timestamps import without_empty_ends
 
@@ -77,7 +78,7 @@ def _interpolate_spikes(record: Record) -> tuple[Record, tuple[Finding, ...]]:
             text = (
                 f"record '{record.name}', channel '{symbol}': {counted(rows.size, 'single wild sample')} interpolated"
             )
-            evidence = f"off by up to {off:.4g} {channel.unit}, first at t = {record.time[rows[0]]:.6g} s"
+            evidence = f"off by up to {off:.4g} {channel.unit}, first at {moment(record.time[rows[0]])}"
             advice = "no action needed unless they are real"
             findings.append(Finding(Severity.WARNING, "outlier", text, evidence, advice))
     return record, tuple(findings)
@@ -99,9 +100,9 @@ def _repair_position_jumps(record: Record) -> tuple[Record, tuple[Finding, ...]]
     text = (
         f"record '{record.name}': the position jumps {'once' if jumps.rows.size == 1 else f'{jumps.rows.size} times'}"
     )
-    text += f"; {held.size} samples it stood still before are interpolated" if held.size else ""
+    text += f"; {counted(held.size, 'held sample')} before a jump interpolated" if held.size else ""
     text += f"; of the jumps {remaining} cannot be repaired and stay" if remaining else ""
-    evidence = f"up to {jumps.sizes[largest]:.3g} m, at t = {record.time[finite[jumps.rows[largest]]]:.6g} s"
+    evidence = f"up to {jumps.sizes[largest]:.3g} m, at {moment(record.time[finite[jumps.rows[largest]]])}"
     advice = "weight positions robustly" + ("; split the run at a jump that stays" if remaining else "")
     finding = Finding(Severity.WARNING, "jump", text, evidence, advice)
     if held.size == 0:
@@ -143,7 +144,7 @@ def _longest_complete_segment(record: Record) -> tuple[Record, tuple[Finding, ..
     empty = {s: int(np.isnan(c.values).sum()) for s, c in record.channels.items() if np.isnan(c.values).any()}
     text = f"record '{record.name}' has long holes; of {len(segments)} complete parts the longest is kept"
     ends, cells = f"{best.time[0]:.6g} to {best.time[-1]:.6g} s", ", ".join(f"{s} {n}" for s, n in empty.items())
-    evidence = f"t = {ends}, {len(best)} of {len(record)} samples; empty cells: {cells}"
+    evidence = f"{moment(best.time[0], best.time[-1])}, {len(best)} of {len(record)} samples; empty cells: {cells}"
     advice = "split the file at the holes to use the other parts, or leave out the channel that is empty"
     finding = Finding(Severity.WARNING, "empty-rows", text, evidence, advice)
     step = f"longest complete part kept: {ends}"

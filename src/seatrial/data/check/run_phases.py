@@ -4,6 +4,7 @@ import numpy as np
 
 from seatrial.core.values import Finding, Record, Severity
 from seatrial.data.check.motion import MIN_SAMPLES
+from seatrial.data.check.run_clock import moment
 from seatrial.data.check.signal import smoothed, window_length
 from seatrial.physics.manoeuvres.track import speed
 
@@ -42,7 +43,7 @@ def _acceleration_findings(record: Record) -> list[Finding]:
         return []
     U = speed(record)
     assert U is not None
-    text = f"record '{record.name}': the ship is still gathering speed until t = {end:.4g} s"
+    text = f"record '{record.name}': the ship is still gathering speed until {moment(end)}"
     evidence = f"speed {U[0]:.3g} m/s at first, {np.quantile(U, REACHED_QUANTILE):.3g} m/s later"
     advice = "leave the phase out of manoeuvring measures, or fit it with a model that covers it"
     return [Finding(Severity.INFO, "acceleration-phase", text, evidence, advice)]
@@ -58,12 +59,12 @@ def _propeller_findings(record: Record) -> list[Finding]:
     first, last = int(turning[0]), int(turning[-1])
     findings = []
     if first > 0:
-        text = f"record '{record.name}': the propeller is stopped until t = {record.time[first]:.4g} s"
+        text = f"record '{record.name}': the propeller is stopped until {moment(record.time[first])}"
         advice = "cut the beginning, or use a model that covers rest"
         findings.append(Finding(Severity.INFO, "propeller-stopped", text, f"{first} samples", advice))
     rest = record.time[-1] - record.time[last]
     if rest >= MIN_COASTING_S:
-        text = f"record '{record.name}': the ship coasts from t = {record.time[last]:.4g} s on, the propeller stopped"
+        text = f"record '{record.name}': the ship coasts from {moment(record.time[last])} on, the propeller stopped"
         advice = "leave coasting out of turning measures; it carries information on resistance"
         findings.append(Finding(Severity.INFO, "coasting", text, f"{rest:.3g} s at the end", advice))
     return findings

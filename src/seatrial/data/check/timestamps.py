@@ -7,6 +7,7 @@ import numpy as np
 from seatrial.core.text.words import counted
 from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.check.even_base import GAP_STEPS, EvenBase, even_base
+from seatrial.data.check.run_clock import moment
 from seatrial.data.check.signal import unwrapped
 
 # differences of steps over the mean step that are rounding, and that are worth a warning; chosen
@@ -140,7 +141,7 @@ def _without_duplicates(record: Record) -> tuple[Record, tuple[Finding, ...]]:
         Severity.WARNING,
         "repeated-rows",
         f"record '{record.name}': {counted(int(repeat.sum()), 'row')} dropped: stamp and values of the row before",
-        f"first at t = {record.time[repeat][0]:g} s",
+        f"first at {moment(record.time[repeat][0])}",
         "see whether the logger wrote twice",
     )
     kept = replace(record, time=record.time[keep], channels=channels)
@@ -162,7 +163,7 @@ def _time_base_findings(record: Record, grid: EvenBase) -> tuple[Finding, ...]:
     if grid.gaps.size:
         longest = int(grid.gaps[np.argmax(steps[grid.gaps])])
         text = f"record '{record.name}' has {counted(grid.gaps.size, 'gap')} in time"
-        ends = f"t = {record.time[longest]:.6g} to {record.time[longest + 1]:.6g} s"
+        ends = moment(record.time[longest], record.time[longest + 1])
         evidence = f"{steps[grid.gaps].sum() - grid.gaps.size * grid.step:.4g} s lost, the longest from {ends}"
         advice = "short gaps are interpolated; split the run at long ones"
         findings.append(Finding(Severity.WARNING, "time-gap", text, evidence, advice))

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from seatrial.core.values import InputError, Record
+from seatrial.data.check.approach_phase import approach_fault
 from seatrial.data.draft.motion_stretches import SHORTEST_STRAIGHT_S, decays, spirals, stops, straight_runs
 from seatrial.data.draft.stretch import MIN_SAMPLES, LogStretch
 from seatrial.data.draft.survey import LogSurvey
@@ -67,18 +68,41 @@ def _manoeuvres_of(record: Record) -> list[LogStretch]:
     if len(record) < MIN_SAMPLES:
         return []
     ordered = [one for finder in _FINDERS for one in finder(record)]
-    manoeuvres = [*_with_approach(ordered), *decays(record)]
+    manoeuvres = [*_with_approach(record, ordered), *decays(record)]
     return [*manoeuvres, *(part for one in straight_runs(record) for part in _outside(one, manoeuvres))]
 
 
-def _with_approach(manoeuvres: Sequence[LogStretch]) -> list[LogStretch]:
-    """The manoeuvres from some time before their execute, as far as the record and the manoeuvre before allow."""
-    stretches = []
-    for one in manoeuvres:
-        free_from = max((before.stop for before in manoeuvres if before.start < one.start), default=0.0)
+def _with_approach(record: Record, manoeuvres: Sequence[LogStretch]) -> list[LogStretch]:
+    """The manoeuvres from some time before their execute, as far as the record and the manoeuvre before allow.
+
+    A pull-out gives half of its time amidships to the manoeuvre that follows it; an approach that is not steady is
+    named.
+    """
+    stretches = list[LogStretch]()
+    for one in sorted(manoeuvres, key=lambda each: each.start):
         lead = max(_APPROACH_S, _APPROACH_SHARE * (one.stop - one.start))
-        stretches.append(replace(one, start=min(one.start, max(one.start - lead, free_from))))
+        stretches = [_shortened(before, one.start, lead) for before in stretches]
+        free_from = max((before.stop for before in stretches), default=0.0)
+        start = min(one.start, max(one.start - lead, free_from))
+        stretches.append(replace(one, start=start, evidence=f"{one.evidence}{_approach_text(record, one, lead)}"))
     return stretches
+
+
+def _shortened(before: LogStretch, execute: float, lead: float) -> LogStretch:
+    """A manoeuvre that leaves the next one, whose execute is given, up to `lead` s of its pull-out."""
+    if before.released is None or not before.released < execute:
+        return before
+    return replace(before, stop=min(before.stop, max(execute - lead, 0.5 * (before.released + execute))))
+
+
+def _approach_text(record: Record, one: LogStretch, lead: float) -> str:
+    """What is wrong with the approach, as it follows upon the evidence; looked at in the log, beyond the part."""
+    origin = float(record.time[0])
+    try:
+        fault = approach_fault(record.between(origin + max(0.0, one.start - lead), origin + one.stop))
+    except InputError:
+        return ""
+    return f"; no steady approach: {fault}" if fault else ""
 
 
 def _outside(straight: LogStretch, manoeuvres: Sequence[LogStretch]) -> list[LogStretch]:

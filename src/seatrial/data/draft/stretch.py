@@ -15,12 +15,20 @@ _SMOOTHING_S = 2.0  # s over which rates and speeds are smoothed; chosen
 
 @dataclass(frozen=True)
 class LogStretch:
-    """A manoeuvre in a log: start and stop are s after the first sample."""
+    """A manoeuvre in a log.
+
+    Attributes:
+        name: its kind, with the side.
+        start, stop: s after the first sample.
+        evidence: what shows it.
+        released: s after the first sample from which on the rudder is amidships to the stop; None: it is not.
+    """
 
     name: str
     start: float
     stop: float
     evidence: str
+    released: float | None = None
 
 
 def padded(record: Record, values: Array) -> Array:

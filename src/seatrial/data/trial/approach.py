@@ -6,29 +6,22 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
+from seatrial.data.check.approach_phase import approach_fault, first_execution
 
 # how much of each record before its first rudder execution is taken for the approach, s
 APPROACH_SECONDS = 2.0
-# an execution is what reaches this part of the record's largest rudder angle
-EXECUTION_FRACTION = 0.2
-
-
-def first_execution(record: Record) -> int:
-    """The row at which the rudder is first put over; 0 where it never is.
-
-    Raises:
-        InputError: the record has no channel delta.
-    """
-    rudder = np.abs(record["delta"])
-    return int(np.argmax(rudder >= EXECUTION_FRACTION * np.max(rudder)))
 
 
 def approach_condition(records: Sequence[Record], model: Model) -> dict[str, float]:
-    """Surge velocity and inputs other than rudder and wind: median over records of each one's approach."""
+    """Return surge velocity and inputs other than rudder and wind: median over records of each one's approach.
+
+    Of records whose approach is steady; of all where none is.
+    """
+    steady = [record for record in records if not approach_fault(record)]
     symbols = ["u", *(name for name in model.input_names if name != "delta" and not name.startswith("wind"))]
     condition = {}
     for symbol in symbols:
-        values = [_approach_value(r, symbol) for r in records if symbol in r]
+        values = [_approach_value(r, symbol) for r in steady or records if symbol in r]
         if values:
             condition[symbol] = float(np.median(values))
     return condition

@@ -7,9 +7,9 @@ import numpy as np
 
 from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.check import canonical_record, examined_record
+from seatrial.data.check.approach_phase import first_execution
 from seatrial.data.check.copies import copies
 from seatrial.data.check.thrusters import thruster_findings
-from seatrial.data.trial.approach import first_execution
 from seatrial.data.trial.roll_decay_start import trim_to_decay_start
 from seatrial.data.trial.trial import Role, Trial, TrialRun, Trimming
 from seatrial.physics.models.thruster_layout import ThrusterLayout

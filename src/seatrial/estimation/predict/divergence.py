@@ -9,6 +9,7 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Divergence, Prediction
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Finding, InputError, Record, Severity
+from seatrial.data.trial.model_table import COMMON_PARTICULARS
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.divergence import first_row_outside, state_limits
@@ -48,15 +49,16 @@ def _measured_limits(model: Model, record: Record) -> Array:
 
 
 def _driving_terms(model: Model, state: str, x: Array, u: Array) -> tuple[str, ...]:
-    """Parameters p with p * d(rate)/dp of the state's own sign, the strongest first: what drives it farther away."""
+    """Coefficients p with p * d(rate)/dp of the state's own sign, the strongest first: what drives it farther away."""
     nx, nu, p = len(model.states), len(model.inputs), model.parameters.values
     rates, jacobian = np.empty((1, nx)), np.zeros((1, nx, nx + nu + len(p)))
     evaluate_tangent(model.compiled.rates_tangent, x[None], u[None], p[None], 0.0, rates, jacobian)
     i = model.states.index(state)
     pull = p * jacobian[0, i, nx + nu :] * np.sign(x[i])
     pull = np.where(np.isfinite(pull), pull, 0.0)
-    strongest = [int(k) for k in np.argsort(-pull, kind="stable")[:MAX_TERMS]]
     names = model.parameters.names
+    pull[[k for k, name in enumerate(names) if name in COMMON_PARTICULARS]] = 0.0  # they scale every term
+    strongest = [int(k) for k in np.argsort(-pull, kind="stable")[:MAX_TERMS]]
     return tuple(names[k] for k in strongest if pull[k] > _LEAST_TERM_SHARE * float(np.max(pull)) and pull[k] > 0.0)
 
 
@@ -87,8 +89,8 @@ def divergence_finding(model: Model, prediction: Prediction, divergence: Diverge
     return Finding(
         Severity.WARNING,
         "diverged",
-        f"validation run '{prediction.record}' diverges in '{divergence.state}' at t = {divergence.time:g} s, driven "
-        f"by the terms of {named}; it is scored over its first {divergence.seconds:g} s",
+        f"validation run '{prediction.record}' diverges in '{divergence.state}' after {divergence.seconds:g} s, "
+        f"driven by the terms of {named}; it is scored up to then",
         f"{divergence.seconds:g} of {prediction.measured.duration:g} s",
         "; or ".join(cures) or "check the model's coefficients and the run's inputs",
     )

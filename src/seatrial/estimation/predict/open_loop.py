@@ -11,6 +11,7 @@ from seatrial.estimation.predict.divergence import divergence_of, without_diverg
 from seatrial.estimation.predict.windows import Windows, initial_states, simulate_windows
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.manoeuvres import ObservedManoeuvre, measures
+from seatrial.physics.manoeuvres.measures import ORDERED_MEASURE
 from seatrial.physics.simulate.channels import inputs_of, record_of
 from seatrial.physics.simulate.divergence import require_bounded
 
@@ -122,7 +123,7 @@ def is_steered(record: Record, model: Model) -> bool:
 def compare_measures(
     record: Record, simulated: Record, length: float, divergence: Divergence | None = None
 ) -> dict[str, Measure]:
-    """Return measures of a run and of its simulation, both at the measured executes.
+    """Return measures of a run and of its simulation, both at the measured executes, but for the rudder's order.
 
     Of a simulation that diverges those are read that lie within the time it lasted.
     """
@@ -133,7 +134,7 @@ def compare_measures(
         names = dict.fromkeys([*of_measured, *of_simulated])
     else:
         of_simulated, names = _measures_until(record, simulated, length, divergence), dict.fromkeys(of_measured)
-    return {k: Measure(of_measured.get(k), of_simulated.get(k)) for k in names}
+    return {k: Measure(of_measured.get(k), of_simulated.get(k)) for k in names if k != ORDERED_MEASURE}
 
 
 def _measures_until(record: Record, simulated: Record, length: float, divergence: Divergence) -> dict[str, float]:

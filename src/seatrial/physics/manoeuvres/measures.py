@@ -12,6 +12,8 @@ from seatrial.physics.manoeuvres.track import Swing, mean_between, peak, speed, 
 
 QUARTER_TURN, HALF_TURN = float(np.radians(90.0)), float(np.radians(180.0))
 INITIAL_TURN = float(np.radians(10.0))
+ORDERED_MEASURE = "rudder_deg"
+"""The measure that is the order itself: no simulation predicts it."""
 _LAST_SHARE = 0.1  # of the time amidships, over which the residual rate is taken; chosen
 
 
@@ -87,7 +89,7 @@ def _zigzag_measures(manoeuvre: ObservedManoeuvre, length: float, switching: flo
 
 
 def _approach_measures(manoeuvre: ObservedManoeuvre, swing: Swing, angle: float) -> dict[str, float]:
-    made = {"rudder_deg": float(np.degrees(abs(angle)))}
+    made = {ORDERED_MEASURE: float(np.degrees(abs(angle)))}
     flow = speed(manoeuvre.record)
     before = None if flow is None else mean_between(manoeuvre.record, flow, swing.start - 1.0, swing.start)
     return made if before is None else {**made, "approach_speed": before}

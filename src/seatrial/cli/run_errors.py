@@ -1,0 +1,30 @@
+"""Errors of runs on the terminal: under the names and in the units of the report, angles in degrees."""
+
+import math
+from collections.abc import Mapping
+
+ERROR_DIGITS = 3  # significant ones of an error; chosen
+
+
+def errors_text(rms: Mapping[str, float]) -> str:
+    """Return errors with their names and units, ``heading 1.2 deg, r 0.3 deg/s``; rms as in `Prediction.rms`."""
+    texts = []
+    for key, value in rms.items():
+        label, unit = label_and_unit(key)
+        texts.append(f"{label} {error_text(key, value)} {unit}")
+    return ", ".join(texts)
+
+
+def label_and_unit(key: str) -> tuple[str, str]:
+    """Return how the report names an error of `Prediction.rms`, or a measure, and the unit in which it is shown."""
+    from seatrial.reporting.measures import measure_label
+    from seatrial.reporting.runs import ERROR_LABELS
+
+    return ERROR_LABELS[key] if key in ERROR_LABELS else measure_label(key)
+
+
+def error_text(key: str, value: float) -> str:
+    """Return the number of an error of `Prediction.rms` in the unit of `label_and_unit`."""
+    from seatrial.core.text.numbers import exact
+
+    return exact(math.degrees(value) if key == "r" else value, ERROR_DIGITS)
