@@ -78,7 +78,7 @@ def _interpolate_spikes(record: Record) -> tuple[Record, tuple[Finding, ...]]:
             text = (
                 f"record '{record.name}', channel '{symbol}': {counted(rows.size, 'single wild sample')} interpolated"
             )
-            evidence = f"off by up to {off:.4g} {channel.unit}, first at {moment(record.time[rows[0]])}"
+            evidence = f"off by up to {off:.4g} {channel.unit}, first at {moment(float(record.time[rows[0]]))}"
             advice = "no action needed unless they are real"
             findings.append(Finding(Severity.WARNING, "outlier", text, evidence, advice))
     return record, tuple(findings)
@@ -102,7 +102,7 @@ def _repair_position_jumps(record: Record) -> tuple[Record, tuple[Finding, ...]]
     )
     text += f"; {counted(held.size, 'held sample')} before a jump interpolated" if held.size else ""
     text += f"; of the jumps {remaining} cannot be repaired and stay" if remaining else ""
-    evidence = f"up to {jumps.sizes[largest]:.3g} m, at {moment(record.time[finite[jumps.rows[largest]]])}"
+    evidence = f"up to {jumps.sizes[largest]:.3g} m, at {moment(float(record.time[finite[jumps.rows[largest]]]))}"
     advice = "weight positions robustly" + ("; split the run at a jump that stays" if remaining else "")
     finding = Finding(Severity.WARNING, "jump", text, evidence, advice)
     if held.size == 0:
